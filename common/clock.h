@@ -1,0 +1,13 @@
+#pragma once
+/// The only file that asks the machine what time it is, and the only one that sleeps.
+#include "common/time.h"
+
+namespace palpate {
+
+/// Monotonic time of this machine (CLOCK_MONOTONIC). Any thread, no allocation, about 25 ns.
+Time now() noexcept;
+
+/// Sleeps until the absolute monotonic time `deadline`; returns at once when it has passed. Any thread.
+void sleep_until(Time deadline) noexcept;
+
+}  // namespace palpate

@@ -1,0 +1,164 @@
+#include "common/config.h"
+
+#include <cmath>
+#include <set>
+#include <toml++/toml.h>
+
+#include "common/error.h"
+#include "common/text.h"
+
+namespace palpate {
+
+struct Config::Node {
+  std::shared_ptr<const toml::table> root;
+  const toml::table* table;
+  std::string file, name;  // name: "[material]" or "" at the top
+  std::set<std::string> asked;
+
+  const toml::node* find(const std::string& key) {
+    asked.insert(key);
+    return table->get(key);
+  }
+  std::string at(const toml::node& node) const { return fmt::format("{}:{}", file, node.source().begin.line); }
+  std::string full(const std::string& key) const { return name.empty() ? key : fmt::format("{} {}", name, key); }
+  /// The node of `key`; null when absent and `required` is false.
+  const toml::node* get(const std::string& key, bool required) {
+    const toml::node* node = find(key);
+    if (node == nullptr && required) fail("{}: missing key `{}`", at(*table), full(key));
+    return node;
+  }
+  [[noreturn]] void wrong(const toml::node& node, const std::string& key, const std::string& expected) const {
+    fail("{}: `{}` must be {}", at(node), full(key), expected);
+  }
+  double number(const toml::node& node, const std::string& key, const Range& range) const {
+    const auto value = node.value<double>();
+    const std::string unit = *range.unit == 0 ? "" : fmt::format(" ({})", range.unit);
+    if (!node.is_number() || !value) wrong(node, key, "a number" + unit);
+    if (!std::isfinite(*value) || *value < range.min || *value > range.max) {
+      wrong(node, key, fmt::format("between {} and {}{}, not {}", range.min, range.max, unit, *value));
+    }
+    return *value;
+  }
+  Vec3 vector(const toml::node& node, const std::string& key, const Range& range) const {
+    const toml::array* array = node.as_array();
+    if (array == nullptr || array->size() != 3) {
+      wrong(node, key, fmt::format("three numbers [x, y, z]{}{}", *range.unit == 0 ? "" : " in ", range.unit));
+    }
+    Vec3 v;
+    for (std::size_t i = 0; i < 3; ++i) v[static_cast<int>(i)] = number(*array->get(i), key, range);
+    return v;
+  }
+};
+
+Config::Config(std::shared_ptr<Node> node) : node_(std::move(node)) {}
+
+Config Config::read(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) fail("{}: no such file", file.string());
+  try {
+    auto root = std::make_shared<toml::table>(toml::parse_file(file.string()));
+    const toml::table* table = root.get();
+    return Config(std::make_shared<Node>(Node{std::move(root), table, file.string(), "", {}}));
+  } catch (const toml::parse_error& e) {
+    fail("{}:{}: not TOML: {}", file.string(), e.source().begin.line, e.description());
+  }
+}
+
+std::string Config::where(const std::string& key) const {
+  const toml::node* node = key.empty() ? nullptr : node_->table->get(key);
+  return node_->at(node == nullptr ? *node_->table : *node);
+}
+
+bool Config::has(const std::string& key) const {
+  return node_->find(key) != nullptr;
+}
+
+double Config::number(const std::string& key, const Range& range, std::optional<double> otherwise) const {
+  const toml::node* node = node_->get(key, !otherwise);
+  return node == nullptr ? *otherwise : node_->number(*node, key, range);
+}
+
+long Config::integer(const std::string& key, const Range& range, std::optional<long> otherwise) const {
+  const toml::node* node = node_->get(key, !otherwise);
+  if (node == nullptr) return *otherwise;
+  if (!node->is_integer()) node_->wrong(*node, key, "a whole number");
+  node_->number(*node, key, range);
+  return *node->value<long>();
+}
+
+std::string Config::text(const std::string& key, std::optional<std::string> otherwise) const {
+  const toml::node* node = node_->get(key, !otherwise);
+  if (node == nullptr) return *otherwise;
+  if (!node->is_string()) node_->wrong(*node, key, "text in quotes");
+  return *node->value<std::string>();
+}
+
+std::vector<std::string> Config::texts(const std::string& key, std::size_t count,
+                                       std::vector<std::string> otherwise) const {
+  const toml::node* node = node_->get(key, false);
+  if (node == nullptr) return otherwise;
+  const toml::array* array = node->as_array();
+  std::vector<std::string> values;
+  if (array != nullptr) {
+    for (const toml::node& entry : *array) {
+      if (const auto text = entry.value<std::string>(); entry.is_string()) values.push_back(*text);
+    }
+  }
+  if (values.size() != count) node_->wrong(*node, key, fmt::format("{} texts in quotes, [\"...\", ...]", count));
+  return values;
+}
+
+Vec3 Config::vector(const std::string& key, const Range& range, std::optional<Vec3> otherwise) const {
+  const toml::node* node = node_->get(key, !otherwise);
+  return node == nullptr ? *otherwise : node_->vector(*node, key, range);
+}
+
+std::pair<Vec3, Vec3> Config::box(const std::string& key) const {
+  const toml::node* node = node_->get(key, true);
+  const toml::array* corners = node->as_array();
+  if (corners == nullptr || corners->size() != 2) node_->wrong(*node, key, "two corners [[x, y, z], [x, y, z]] in m");
+  const Range metres{.unit = "m"};
+  const std::pair<Vec3, Vec3> box{node_->vector(*corners->get(0), key, metres),
+                                  node_->vector(*corners->get(1), key, metres)};
+  if ((box.first.array() > box.second.array()).any()) {
+    node_->wrong(*node, key, "[minimum corner, maximum corner]; a minimum is larger than its maximum");
+  }
+  return box;
+}
+
+std::filesystem::path Config::file(const std::string& key) const {
+  return std::filesystem::path(node_->file).parent_path() / text(key);
+}
+
+std::optional<Config> Config::table(const std::string& key) const {
+  const toml::node* node = node_->find(key);
+  if (node == nullptr) return {};
+  if (!node->is_table()) node_->wrong(*node, key, fmt::format("a table `[{}]`", key));
+  return Config(std::make_shared<Node>(
+      Node{node_->root, node->as_table(), node_->file, fmt::format("[{}]", key), {}}));
+}
+
+std::vector<Config> Config::tables(const std::string& key) const {
+  const toml::node* node = node_->find(key);
+  std::vector<Config> all;
+  if (node == nullptr) return all;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || !array->is_array_of_tables()) {
+    node_->wrong(*node, key, fmt::format("one or more tables `[[{}]]` (two brackets)", key));
+  }
+  for (const toml::node& entry : *array) {
+    all.push_back(Config(std::make_shared<Node>(
+        Node{node_->root, entry.as_table(), node_->file, fmt::format("[[{}]]", key), {}})));
+  }
+  return all;
+}
+
+void Config::reject_unknown() const {
+  const std::vector<std::string> known(node_->asked.begin(), node_->asked.end());
+  for (const auto& [key, value] : *node_->table) {
+    const std::string name(key.str());
+    if (node_->asked.contains(name)) continue;
+    fail("{}: unknown key `{}`{}", node_->at(value), node_->full(name), suggestion(name, known));
+  }
+}
+
+}  // namespace palpate

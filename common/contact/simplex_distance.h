@@ -1,0 +1,31 @@
+#pragma once
+#include <array>
+#include <span>
+
+#include "common/types.h"
+
+namespace palpate {
+
+/// The point of a triangle closest to a given point, with the feature it lies on.
+struct ClosestPoint {
+  std::array<double, 3> weight;  ///< barycentric, >= 0, sum 1; exactly 0 for corners off the feature
+  int feature_size;              ///< 1 corner, 2 edge, 3 face
+};
+
+/// Closest point to `p` on the triangle (a, b, c), by Voronoi regions (Ericson 2005, section 5.1.5). A
+/// triangle without area gives the closest point of one of its edges. As a projection on a convex set it is
+/// continuous in `p`.
+ClosestPoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
+
+/// Second derivative of the distance d(x_0 .. x_(m-1), p) between the point p and the affine hull of m = 1..3
+/// points, in the order (x_0, .., x_(m-1), p): the first 3 (m + 1) rows and columns are filled.
+using SimplexHessian = Eigen::Matrix<double, 12, 12>;
+
+/// With q = sum b_i x_i the closest point of the hull, d = |p - q| > 0 and n = (p - q) / d, the first
+/// derivatives are d_p = n and d_xi = -b_i n (b is optimal, so its variation drops out). The second come from
+/// eliminating b from |p - sum b_i x_i|: H = phi_yy - phi_yb phi_bb^-1 phi_by. All lengths in one unit; H in
+/// 1/length. About 1 us.
+SimplexHessian distance_hessian(std::span<const Vec3> x, std::span<const double> weight, const Vec3& normal,
+                                double distance) noexcept;
+
+}  // namespace palpate

@@ -1,0 +1,10 @@
+#pragma once
+
+namespace palpate {
+
+/// The rigid tip that touches: a sphere whose centre is the tool position.
+struct SphereTool {
+  double radius = 0.005;  ///< m, (0, 0.1]
+};
+
+}  // namespace palpate

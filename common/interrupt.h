@@ -1,0 +1,16 @@
+#pragma once
+#include "common/time.h"
+
+namespace palpate {
+
+/// Keeps Ctrl-C (SIGINT), SIGTERM and SIGUSR1 from ending the program at once: call first in `main`, before any thread
+/// starts, so that every thread inherits it. They then arrive only at the calls below.
+void block_interrupts();
+
+/// Waits up to `timeout` for Ctrl-C or SIGTERM; true when one came. Main thread.
+bool wait_for_interrupt(Time timeout);
+
+/// Whether SIGUSR1 (the request to re-arm a latched force) came since the last call. Main thread.
+bool take_rearm_request();
+
+}  // namespace palpate

@@ -1,0 +1,31 @@
+#include "common/realtime.h"
+
+#include <fmt/core.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace palpate {
+
+std::string lock_memory() {
+  // MCL_ONFAULT: pages are locked as they are first touched, so a large address space costs nothing.
+  if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0) return {};
+  return fmt::format("memory is not locked ({}): raise `ulimit -l` (memlock in /etc/security/limits.conf)",
+                     std::strerror(errno));
+}
+
+std::string make_realtime(const char* name, int priority) {
+  pthread_setname_np(pthread_self(), name);
+  sched_param param{};
+  param.sched_priority = priority;
+  const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
+  if (refused == 0) return {};
+  return fmt::format("no real-time priority for the {} thread ({}): raise `ulimit -r` (rtprio in "
+                     "/etc/security/limits.conf)",
+                     name, std::strerror(refused));
+}
+
+}  // namespace palpate

@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+
+namespace palpate {
+
+/// Locks the program's memory (mlockall) so that no page fault stalls a loop. Returns an empty text, or one
+/// sentence that says what the system refused and what to change. Call once, after set-up.
+std::string lock_memory();
+
+/// Gives the calling thread real-time priority (SCHED_FIFO `priority`, 1..99) and the name `name` (at most 15
+/// characters, shown by `top -H`). Returns an empty text, or what was refused and what to change.
+std::string make_realtime(const char* name, int priority);
+
+}  // namespace palpate

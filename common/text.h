@@ -1,0 +1,33 @@
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate {
+
+/// Levenshtein distance of two short names. O(|a| |b|).
+int edit_distance(std::string_view a, std::string_view b);
+
+/// `; did you mean "X"?` for the candidate nearest to `name`, or `; known: a, b, c` when none is near.
+std::string suggestion(std::string_view name, std::span<const std::string> candidates);
+
+/// The row called `name` in a registry table (any range of structs with a `name` member). Throws `Error` that
+/// says `what` was looked up, where it was asked for, and the nearest known name.
+template <class Table>
+const auto& find_row(const Table& table, std::string_view name, std::string_view what, std::string_view where);
+
+[[noreturn]] void fail_unknown_name(std::string_view name, std::string_view what, std::string_view where,
+                                    std::span<const std::string> known);
+
+template <class Table>
+const auto& find_row(const Table& table, std::string_view name, std::string_view what, std::string_view where) {
+  for (const auto& row : table) {
+    if (row.name == name) return row;
+  }
+  std::vector<std::string> known;
+  for (const auto& row : table) known.emplace_back(row.name);
+  fail_unknown_name(name, what, where, known);
+}
+
+}  // namespace palpate

@@ -1,0 +1,137 @@
+#include "haptic_client/client.h"
+
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "common/clock.h"
+#include "common/error.h"
+#include "common/interrupt.h"
+#include "common/log.h"
+#include "common/realtime.h"
+#include "common/text.h"
+#include "haptic_client/client_report.h"
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/trace.h"
+
+namespace palpate::client {
+namespace {
+
+constexpr int kPriority = 80;
+constexpr double kTraceSeconds = 60;
+constexpr Time kWelcomePatience = std::chrono::seconds(5);
+constexpr std::int64_t kSilentNs = 300'000'000;
+
+protocol::Endpoint any_address(const protocol::Endpoint& server) {
+  return {.v6 = server.v6};
+}
+
+std::uint64_t random_number() {
+  std::random_device device;
+  return (std::uint64_t{device()} << 32 | device()) | 1;
+}
+
+/// Waits until the server lets us in. Throws when nobody does within five seconds; false on Ctrl-C.
+bool wait_for_welcome(const NetLink& link, const std::string& server) {
+  for (const Time start = now(); !link.welcomed;) {
+    if (wait_for_interrupt(std::chrono::milliseconds(20))) return false;
+    if (now() - start < kWelcomePatience) continue;
+    if (link.refused == static_cast<int>(protocol::RefuseReason::kNoFreeTool)) {
+      fail_at_run_time("the server at {} has no free tool: another client holds it; end that one first", server);
+    }
+    fail_at_run_time("no answer from a server at {} within 5 s; is `sim_server run` up, and UDP open there?", server);
+  }
+  return true;
+}
+
+/// Tells, while the loop runs: a progress line, and once each the loss and the return of the server and a latched fault.
+class Watcher {
+ public:
+  Watcher(HapticLoop& loop, const std::string& server) : loop_(loop), server_(server) {}
+
+  void look(double seconds) {
+    const std::int64_t age = loop_.newest_age_ns;
+    if (age > kSilentNs && !silent_) log::warning("no samples from {}: force goes to zero; asking again", server_);
+    if (age >= 0 && age < kSilentNs && silent_) log::info("{} is back: soft start", server_);
+    silent_ = age > kSilentNs;
+    const Fault fault = loop_.fault;
+    if (fault != Fault::kNone && fault_ == Fault::kNone) {
+      log::warning("force latched off ({}); when it is safe, re-arm with `kill -USR1 {}`", name_of(fault), getpid());
+    }
+    fault_ = fault;
+    const bool terminal = isatty(STDOUT_FILENO) != 0;
+    if (seconds < next_) return;
+    next_ = seconds + (terminal ? 0.2 : 5);
+    fmt::print("{}haptic_client: {:6.1f} s  |F| {:5.2f} N  age {:5.1f} ms  ticks {} ({} missed){}", terminal ? "\r" : "",
+               seconds, loop_.newest_newton.load(), static_cast<double>(age) / 1e6, loop_.ticks.load(),
+               loop_.missed.load(), terminal ? "  " : "\n");
+    std::fflush(stdout);
+  }
+
+ private:
+  HapticLoop& loop_;
+  std::string server_;
+  bool silent_ = false;
+  Fault fault_ = Fault::kNone;
+  double next_ = 0;
+};
+
+void watch(HapticLoop& loop, const std::string& server, std::optional<double> seconds) {
+  Watcher watcher(loop, server);
+  for (const Time start = now();;) {
+    const double elapsed = to_seconds(now() - start);
+    if (seconds && elapsed >= *seconds) break;
+    watcher.look(elapsed);
+    const double left = seconds ? *seconds - elapsed : 0.1;
+    if (wait_for_interrupt(from_seconds(std::min(left, 0.1)))) break;
+    if (take_rearm_request()) loop.rearm = true;
+  }
+  if (isatty(STDOUT_FILENO) != 0) fmt::print("\n");
+}
+
+}  // namespace
+
+int run_client(const ClientConfig& config, const ClientOptions& options) {
+  if (options.report) check_writable(*options.report);
+  if (options.trace) check_writable(*options.trace);
+  const protocol::Endpoint server = protocol::resolve(config.server);
+  const auto device = find_row(devices(), config.device.name, "device", config.device.where).make(config.device);
+  Limiter::Settings limits = config.limits;
+  limits.max_force = std::min(limits.max_force, device->limits().max_force);
+  Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(), config.workspace,
+                    limits);
+  HapticMailboxes mailboxes;
+  const double kept = options.trace ? std::min(options.seconds.value_or(kTraceSeconds), kTraceSeconds) : 0;
+  HapticLoop loop(*device, pipeline, mailboxes, config.rate_hz, static_cast<std::size_t>(kept * config.rate_hz));
+  protocol::UdpSocket socket(any_address(server));
+  NetLink link(socket, server, mailboxes, random_number());
+  std::string refused;
+  {
+    std::jthread net([&] { link.run(); });
+    const struct StopNet {  // also when waiting throws
+      NetLink& link;
+      ~StopNet() { link.stop(); }
+    } stop_net{link};
+    if (!wait_for_welcome(link, config.server)) return 0;
+    log::info("connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", config.server, config.device.name,
+              config.rate_hz, config.method);
+    if (const std::string no_lock = lock_memory(); !no_lock.empty()) log::warning("{}", no_lock);
+    std::jthread haptic([&](const std::stop_token& stop) {
+      refused = make_realtime("palpate-haptic", kPriority);
+      loop.run(stop);
+    });
+    watch(loop, config.server, options.seconds);
+    haptic.request_stop();
+    haptic.join();
+  }
+  if (!refused.empty()) log::warning("{}", refused);
+  const Json report = make_report(config, loop, pipeline, link);
+  print_report(report);
+  if (options.trace) write_trace(*options.trace, loop.record(), {"constant", "linear_time", "linear_position"});
+  if (options.report) write_json(*options.report, report);
+  return 0;
+}
+
+}  // namespace palpate::client

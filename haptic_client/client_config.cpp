@@ -1,0 +1,74 @@
+#include "haptic_client/client_config.h"
+
+#include "common/config.h"
+#include "common/text.h"
+#include "haptic_client/extrapolation/extrapolators.h"
+
+namespace palpate::client {
+namespace {
+
+constexpr double kFar = 1e3;  // m
+
+OperatorSettings read_operator(const Config& config) {
+  OperatorSettings hand;
+  hand.mass = config.number("mass", {0.01, 10, "kg"}, hand.mass);
+  hand.device_damping = config.number("device_damping", {0, 100, "N s/m"}, hand.device_damping);
+  hand.hand_stiffness = config.number("hand_stiffness", {0, 1e5, "N/m"}, hand.hand_stiffness);
+  hand.hand_damping = config.number("hand_damping", {0, 1e3, "N s/m"}, hand.hand_damping);
+  hand.max_force = config.number("max_force", {0.01, 100, "N"}, hand.max_force);
+  config.reject_unknown();
+  return hand;
+}
+
+TrajectorySettings read_trajectory(const Config& config) {
+  TrajectorySettings trajectory;
+  trajectory.file = config.file("file");
+  const auto names = config.texts("columns", 4, {trajectory.columns.begin(), trajectory.columns.end()});
+  std::copy(names.begin(), names.end(), trajectory.columns.begin());
+  trajectory.scale = config.number("scale", {1e-9, 1e9, "m per unit"}, trajectory.scale);
+  trajectory.offset = config.vector("offset", {-kFar, kFar, "m"}, trajectory.offset);
+  config.reject_unknown();
+  return trajectory;
+}
+
+Workspace read_workspace(const Config& config) {
+  Workspace workspace;
+  workspace.scale = config.number("scale", {0.01, 100, "world m per device m"}, workspace.scale);
+  workspace.offset_W = config.vector("offset", {-kFar, kFar, "m"}, workspace.offset_W);
+  config.reject_unknown();
+  return workspace;
+}
+
+Limiter::Settings read_limits(const Config& config) {
+  Limiter::Settings limits;
+  limits.max_force = config.number("force", {0.01, 100, "N"}, limits.max_force);
+  limits.max_slew = config.number("slew", {0.1, 1e5, "N/s"}, limits.max_slew);
+  config.reject_unknown();
+  return limits;
+}
+
+}  // namespace
+
+ClientConfig read_client_config(const std::filesystem::path& file) {
+  const Config config = Config::read(file);
+  ClientConfig client;
+  client.server = config.text("server", client.server);
+  client.rate_hz = config.number("rate_hz", {kMinRate, kMaxRate, "Hz"}, client.rate_hz);
+  client.method = config.text("method", client.method);
+  client.method_where = config.where("method");
+  find_row(extrapolators(), client.method, "method", client.method_where);
+  if (const auto device = config.table("device")) {
+    client.device.name = device->text("name", client.device.name);
+    client.device.where = device->where("name");
+    find_row(devices(), client.device.name, "device", client.device.where);
+    device->reject_unknown();
+  }
+  if (const auto hand = config.table("operator")) client.device.hand = read_operator(*hand);
+  if (const auto trajectory = config.table("trajectory")) client.device.trajectory = read_trajectory(*trajectory);
+  if (const auto workspace = config.table("workspace")) client.workspace = read_workspace(*workspace);
+  if (const auto limits = config.table("limits")) client.limits = read_limits(*limits);
+  config.reject_unknown();
+  return client;
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,42 @@
+#include "haptic_client/device/trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/csv.h"
+#include "common/error.h"
+
+namespace palpate::client {
+namespace {
+constexpr double kClosed = 1e-3;  // m: an end this near the start means the motion repeats
+}
+
+Trajectory::Trajectory(const TrajectorySettings& settings) {
+  auto columns = read_csv_columns(settings.file, settings.columns);
+  t_ = std::move(columns[0]);
+  for (std::size_t i = 0; i < t_.size(); ++i) {
+    if (i > 0 && t_[i] <= t_[i - 1]) {
+      fail("{}: column {} must increase; row {} has {} after {}", settings.file.string(), settings.columns[0], i + 1,
+           t_[i], t_[i - 1]);
+    }
+    p_.push_back(settings.offset + settings.scale * Vec3(columns[1][i], columns[2][i], columns[3][i]));
+  }
+}
+
+Trajectory::Trajectory(std::vector<double> t_s, std::vector<Vec3> p_W) : t_(std::move(t_s)), p_(std::move(p_W)) {}
+
+Vec3 Trajectory::at(double t) const noexcept {
+  if (t <= 0 || t_.size() == 1) return p_.front();
+  if (t >= duration()) {
+    if ((p_.back() - p_.front()).norm() > kClosed) return p_.back();
+    t = std::fmod(t, duration());
+  }
+  const double time = t_.front() + t;
+  const auto after = std::upper_bound(t_.begin(), t_.end(), time);
+  if (after == t_.end()) return p_.back();
+  const auto i = static_cast<std::size_t>(after - t_.begin());
+  const double share = (time - t_[i - 1]) / (t_[i] - t_[i - 1]);
+  return p_[i - 1] + share * (p_[i] - p_[i - 1]);
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,37 @@
+#pragma once
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/types.h"
+
+namespace palpate::client {
+
+/// Where to find a recorded motion, and how to read it.
+struct TrajectorySettings {
+  std::filesystem::path file;
+  std::array<std::string, 4> columns{"t_s", "x_m", "y_m", "z_m"};  ///< time (s) and position
+  double scale = 1;                 ///< metres per unit of the position columns
+  Vec3 offset = Vec3::Zero();       ///< added after scaling, m
+};
+
+/// A path through space: straight between rows, at rest before the first; after the last it repeats if it ends within
+/// 1 mm of where it began, else it stays there. World frame, m, s.
+class Trajectory {
+ public:
+  /// Reads a CSV. Throws `Error` with file and line for a bad row, or times that do not increase.
+  explicit Trajectory(const TrajectorySettings& settings);
+  /// From rows, times increasing; for tests and for a hand that holds still (one row).
+  Trajectory(std::vector<double> t_s, std::vector<Vec3> p_W);
+
+  /// Position at `t` seconds after the start. O(log rows), no allocation.
+  Vec3 at(double t) const noexcept;
+  double duration() const noexcept { return t_.back() - t_.front(); }
+
+ private:
+  std::vector<double> t_;
+  std::vector<Vec3> p_;
+};
+
+}  // namespace palpate::client

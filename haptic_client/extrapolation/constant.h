@@ -1,0 +1,17 @@
+#pragma once
+#include "haptic_client/extrapolation/extrapolator.h"
+
+namespace palpate::client {
+
+/// F(t) = F_n (Picinbono and Lombardo 1999, constant extrapolation). Only forces that the model computed; rough under
+/// about 300 Hz. A few instructions.
+class Constant : public Extrapolator {
+ public:
+  void update(const Sample& sample) noexcept override { force_ = sample.f; }
+  Vec3 force(const Vec3&, Time) const noexcept override { return force_; }
+
+ private:
+  Vec3 force_ = Vec3::Zero();
+};
+
+}  // namespace palpate::client

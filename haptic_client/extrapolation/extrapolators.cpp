@@ -1,0 +1,32 @@
+#include "haptic_client/extrapolation/extrapolators.h"
+
+#include <array>
+
+#include "haptic_client/extrapolation/constant.h"
+#include "haptic_client/extrapolation/linear_position.h"
+#include "haptic_client/extrapolation/linear_time.h"
+
+namespace palpate::client {
+namespace {
+
+template <class Law, auto... Args>
+std::unique_ptr<Extrapolator> make() {
+  return std::make_unique<Law>(Args...);
+}
+
+using Ratio = LinearPosition::Ratio;
+constexpr std::array kExtrapolators{
+    ExtrapolatorRow{"constant", "the newest force (the paper's first law)", &make<Constant>},
+    ExtrapolatorRow{"linear_time", "linear in time (the paper's second law)", &make<LinearTime>},
+    ExtrapolatorRow{"linear_position", "linear in position, as the paper prints it", &make<LinearPosition, Ratio::kPrinted>},
+    ExtrapolatorRow{"linear_position_signed", "linear in position, with the sign of the motion",
+                    &make<LinearPosition, Ratio::kSigned>},
+};
+
+}  // namespace
+
+std::span<const ExtrapolatorRow> extrapolators() {
+  return kExtrapolators;
+}
+
+}  // namespace palpate::client

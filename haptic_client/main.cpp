@@ -1,0 +1,89 @@
+#include <CLI/CLI.hpp>
+
+#include "common/error.h"
+#include "common/interrupt.h"
+#include "common/log.h"
+#include "common/text.h"
+#include "haptic_client/client.h"
+#include "haptic_client/extrapolation/extrapolators.h"
+
+namespace {
+
+using namespace palpate;
+
+/// "  name   what it is" for each row of a registry, for help texts.
+template <class Table>
+std::string list_of(const Table& table) {
+  std::string text;
+  for (const auto& row : table) text += fmt::format("  {:<24}{}\n", row.name, row.summary);
+  return text;
+}
+
+struct Overrides {
+  std::string server, device, method;
+  double rate_hz = 0;
+};
+
+/// What the command line says goes over what the file says.
+void apply(const Overrides& o, client::ClientConfig& config) {
+  if (!o.server.empty()) config.server = o.server;
+  if (!o.device.empty()) {
+    find_row(client::devices(), o.device, "device", "--device");
+    config.device.name = o.device;
+  }
+  if (!o.method.empty()) {
+    find_row(client::extrapolators(), o.method, "method", "--method");
+    config.method = o.method;
+  }
+  if (o.rate_hz != 0) config.rate_hz = o.rate_hz;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Drives a force-feedback device at haptic rate from forces computed by sim_server."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "palpate 0.1.0");
+  app.footer("Example: haptic_client run configs/clients/liver.toml --seconds 20");
+
+  std::string file;
+  Overrides overrides;
+  client::ClientOptions options;
+  auto* command = app.add_subcommand("run", "Connect to a server and run the haptic loop until Ctrl-C");
+  command->add_option("CLIENT", file, "Client file (TOML); without one, a hand that holds still");
+  command->add_option("--server", overrides.server, "ADDR:PORT of sim_server (default 127.0.0.1:45130)");
+  command->add_option("--device", overrides.device, "Device, see below");
+  command->add_option("--method", overrides.method, "How to extrapolate the force, see below");
+  command->add_option("--rate", overrides.rate_hz, "Haptic ticks per second, 100 to 4000 (default 500)")
+      ->check(CLI::Range(client::kMinRate, client::kMaxRate));
+  command->add_option("--seconds", options.seconds, "Stop after so many seconds")->check(CLI::PositiveNumber);
+  command->add_option("--report", options.report, "Write figures of the run to this JSON file");
+  command->add_option("--trace", options.trace, "Write the last minute, a row a tick, to this CSV file");
+  command->footer("Methods:\n" + list_of(client::extrapolators()) + "Devices:\n" + list_of(client::devices()) +
+                  "Example: haptic_client run configs/clients/liver.toml --method constant --report report.json");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    log::error("{}; try --help", e.what());
+    return 2;
+  }
+  client::ClientConfig config = file.empty() ? client::ClientConfig{} : client::read_client_config(file);
+  apply(overrides, config);
+  return client::run_client(config, options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  palpate::log::start("haptic_client");
+  palpate::block_interrupts();
+  try {
+    return run(argc, argv);
+  } catch (const palpate::Error& e) {
+    palpate::log::error("{}", e.what());
+    return e.exit_code();
+  } catch (const std::exception& e) {
+    palpate::log::error("{}", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,51 @@
+#include "haptic_client/net_link.h"
+
+#include "common/clock.h"
+
+namespace palpate::client {
+using protocol::Endpoint;
+using protocol::Verdict;
+
+NetLink::NetLink(protocol::UdpSocket& socket, const Endpoint& server, HapticMailboxes& mailboxes, std::uint64_t nonce)
+    : socket_(socket), server_(server), mailboxes_(mailboxes), session_(nonce) {}
+
+void NetLink::run() {
+  on_timer();
+  socket_.run(mailboxes_.bell, std::chrono::milliseconds(50),
+              {.on_datagram = [this](auto bytes, const Endpoint& from) { on_datagram(bytes, from); },
+               .on_doorbell = [this] { on_tool_state(); },
+               .on_timer = [this] { on_timer(); }});
+  if (session_.welcomed()) send(session_.next_header(), protocol::Bye{});
+}
+
+void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from) {
+  protocol::Datagram datagram;
+  const Verdict verdict = from == server_ ? protocol::decode(bytes, datagram) : Verdict::kNotOurs;
+  if (verdict != Verdict::kAccepted) {
+    ++stats_.rejected;
+    ++stats_.rejected_by[static_cast<std::size_t>(verdict)];
+    return;
+  }
+  if (const auto* sample = session_.receive(datagram, now(), stats_)) mailboxes_.force.write(*sample);
+  welcomed = session_.welcomed();
+  refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
+}
+
+void NetLink::on_tool_state() {
+  protocol::ToolState state;
+  if (!mailboxes_.tool.read(state) || !session_.welcomed()) return;
+  state.tool = session_.welcome().tool;
+  send(session_.next_header(), state);
+}
+
+void NetLink::on_timer() {
+  if (const auto hello = session_.poll(now())) send({}, *hello);
+}
+
+void NetLink::send(const protocol::Header& header, const protocol::Message& message) {
+  std::array<std::byte, protocol::kMaxDatagram> bytes;
+  const std::size_t size = protocol::encode(header, message, bytes);
+  if (socket_.send({bytes.data(), size}, server_)) ++stats_.sent;
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,111 @@
+#include "protocol/codec.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "protocol/wire.h"
+
+namespace palpate::protocol {
+namespace {
+
+constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
+constexpr std::array<std::uint8_t, 3> kReserved{};
+constexpr std::uint8_t kMaxTools = 16;
+constexpr double kMaxMagnitude = 1e9;  // of any position, speed or force: beyond is a bug or an attack
+
+bool small(const Vec3& v) noexcept {
+  return v.cwiseAbs().maxCoeff() <= kMaxMagnitude;
+}
+bool valid(const Hello&) noexcept {
+  return true;
+}
+bool valid(const Welcome& m) noexcept {
+  return m.tool < kMaxTools && m.rate_hz >= 0 && m.rate_hz <= 1e6 && m.tool_radius > 0 && m.tool_radius <= 1;
+}
+bool valid(const Refuse& m) noexcept {
+  return m.reason == RefuseReason::kNoFreeTool || m.reason == RefuseReason::kUnknownSession;
+}
+bool valid(const Bye&) noexcept {
+  return true;
+}
+bool valid(const ToolState& m) noexcept {
+  const auto& q = m.q_W;
+  const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  return m.tool < kMaxTools && m.tick > 0 && small(m.p_W) && small(m.v_W) && std::abs(norm - 1) < 1e-6;
+}
+bool valid(const ForceSample& m) noexcept {
+  return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W);
+}
+
+template <class M>
+Verdict read_as(std::span<const std::byte> payload, Message& out) noexcept {
+  M message;
+  Reader reader(payload);
+  M::fields(message, reader);
+  if (!reader.complete()) return Verdict::kLength;
+  if (!reader.finite()) return Verdict::kNotFinite;
+  if (!valid(message)) return Verdict::kValue;
+  out = message;
+  return Verdict::kAccepted;
+}
+
+Verdict read_payload(MessageType type, std::span<const std::byte> payload, Message& out) noexcept {
+  switch (type) {
+    case MessageType::kHello: return read_as<Hello>(payload, out);
+    case MessageType::kWelcome: return read_as<Welcome>(payload, out);
+    case MessageType::kRefuse: return read_as<Refuse>(payload, out);
+    case MessageType::kBye: return read_as<Bye>(payload, out);
+    case MessageType::kToolState: return read_as<ToolState>(payload, out);
+    case MessageType::kForceSample: return read_as<ForceSample>(payload, out);
+    case MessageType::kChallenge:
+    case MessageType::kTelemetry:
+    case MessageType::kPointer: break;
+  }
+  return Verdict::kType;
+}
+
+}  // namespace
+
+std::size_t encode(const Header& header, const Message& message, std::span<std::byte> out) noexcept {
+  assert(out.size() >= kMaxDatagram);
+  return std::visit(
+      [&](const auto& m) {
+        using M = std::decay_t<decltype(m)>;
+        Writer body(out.subspan(kHeaderBytes));
+        M::fields(m, body);
+        std::size_t payload = body.size();
+        if (M::kType == MessageType::kHello) {
+          std::fill(out.begin() + kHeaderBytes + payload, out.begin() + kHeaderBytes + kHelloPayload, std::byte{0});
+          payload = kHelloPayload;
+        }
+        Writer front(out);
+        front(kMagic), front(kProtocolVersion), front(M::kType), front(static_cast<std::uint16_t>(payload));
+        front(std::uint8_t{0}), front(kReserved), front(header.session), front(header.sequence);
+        return kHeaderBytes + payload;
+      },
+      message);
+}
+
+Verdict decode(std::span<const std::byte> in, Datagram& out) noexcept {
+  if (in.size() < kHeaderBytes) return Verdict::kTooShort;
+  Reader reader(in);
+  std::array<std::uint8_t, 4> magic{};
+  std::array<std::uint8_t, 3> reserved{};
+  std::uint8_t version = 0, tag_bytes = 0;
+  MessageType type{};
+  std::uint16_t payload = 0;
+  Header header;
+  reader(magic), reader(version), reader(type), reader(payload), reader(tag_bytes), reader(reserved);
+  reader(header.session), reader(header.sequence);
+  if (magic != kMagic) return Verdict::kNotOurs;
+  if (version != kProtocolVersion) return Verdict::kVersion;
+  if (reserved != kReserved || (tag_bytes != 0 && tag_bytes != kTagBytes)) return Verdict::kLength;
+  if (in.size() != kHeaderBytes + payload + tag_bytes || in.size() > kMaxDatagram) return Verdict::kLength;
+  Message message;
+  const Verdict verdict = read_payload(type, in.subspan(kHeaderBytes, payload), message);
+  if (verdict != Verdict::kAccepted) return verdict;
+  out = {header, message};
+  return Verdict::kAccepted;
+}
+
+}  // namespace palpate::protocol

@@ -1,0 +1,104 @@
+#pragma once
+/// What travels. Byte layout and meaning: protocol/README.md. Each message lists its fields once, in wire order; writer
+/// and reader both walk that list.
+#include <array>
+#include <cstdint>
+#include <variant>
+
+#include "common/types.h"
+
+namespace palpate::protocol {
+
+/// Every message there is or is planned; the numbers never change.
+enum class MessageType : std::uint8_t {
+  kHello = 1,      ///< client: let me in
+  kChallenge = 2,  ///< server: prove that you receive at your address (reserved)
+  kWelcome = 3,    ///< server: you are in
+  kRefuse = 4,     ///< server: you are not, and why
+  kBye = 5,        ///< either: I am leaving
+  kToolState = 6,  ///< client: where the tool is
+  kForceSample = 7,  ///< server: the force computed for a tool state
+  kTelemetry = 8,  ///< client: loop, laws, safety, while a page is open (reserved)
+  kPointer = 9,    ///< server: the mouse of a page as a device (reserved)
+};
+
+enum class RefuseReason : std::uint8_t {
+  kNoFreeTool = 1,      ///< every tool of the scene is in somebody's hand
+  kUnknownSession = 2,  ///< the session is not (or no longer) known here: say Hello again
+};
+
+struct Hello {
+  static constexpr MessageType kType = MessageType::kHello;
+  std::uint64_t nonce = 0;                   ///< drawn by the client once per run: tells its retries from a second client
+  std::array<std::uint64_t, 2> cookie = {};  ///< copy of the Challenge's; zero before one came
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.nonce), v(m.cookie);
+  }
+};
+
+struct Welcome {
+  static constexpr MessageType kType = MessageType::kWelcome;
+  std::uint64_t nonce = 0;  ///< of the Hello this answers
+  std::uint8_t tool = 0;    ///< the tool of the scene this client holds
+  double rate_hz = 0;       ///< steps per second the server aims for; 0 = as fast as it can
+  double tool_radius = 0;   ///< m
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.nonce), v(m.tool), v(m.rate_hz), v(m.tool_radius);
+  }
+};
+
+struct Refuse {
+  static constexpr MessageType kType = MessageType::kRefuse;
+  std::uint64_t nonce = 0;  ///< of the Hello this answers; 0 when it answers something else
+  RefuseReason reason = RefuseReason::kNoFreeTool;
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.nonce), v(m.reason);
+  }
+};
+
+struct Bye {
+  static constexpr MessageType kType = MessageType::kBye;
+  template <class Self, class Visitor>
+  static void fields(Self&, Visitor&&) {}
+};
+
+struct ToolState {
+  static constexpr MessageType kType = MessageType::kToolState;
+  std::uint8_t tool = 0;
+  std::uint64_t tick = 0;           ///< haptic tick, from 1
+  std::uint64_t newest_sample = 0;  ///< number of the newest ForceSample this tick used; 0 = none yet
+  std::int64_t t_ns = 0;            ///< when the device was read, on the client's own clock
+  Vec3 p_W = Vec3::Zero();          ///< tool centre, m
+  Vec3 v_W = Vec3::Zero();          ///< its velocity, m/s
+  std::array<double, 4> q_W = {1, 0, 0, 0};  ///< orientation, unit quaternion w, x, y, z
+  std::uint32_t buttons = 0;        ///< one bit each
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.tool), v(m.tick), v(m.newest_sample), v(m.t_ns), v(m.p_W), v(m.v_W), v(m.q_W), v(m.buttons);
+  }
+};
+
+struct ForceSample {
+  static constexpr MessageType kType = MessageType::kForceSample;
+  static constexpr std::uint32_t kInContact = 1, kFlagged = 2;  ///< bits of `flags`
+  std::uint8_t tool = 0;
+  std::uint64_t number = 0;      ///< of this sample in its session, from 1
+  std::uint64_t tool_tick = 0;   ///< echoed from the ToolState it answers, as are:
+  std::int64_t tool_t_ns = 0;    ///< the client's own time stamp, so that force age needs no clock synchronisation
+  Vec3 p_W = Vec3::Zero();       ///< the tool position the force was computed for, m
+  Vec3 f_W = Vec3::Zero();       ///< force on the tool, N
+  Vec3 torque_W = Vec3::Zero();  ///< torque on the tool about its centre, N m
+  std::int64_t step_ns = 0;      ///< time the server spent on the step
+  std::uint32_t flags = 0;
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns), v(m.flags);
+  }
+};
+
+using Message = std::variant<Hello, Welcome, Refuse, Bye, ToolState, ForceSample>;
+
+}  // namespace palpate::protocol

@@ -1,0 +1,95 @@
+#pragma once
+/// Who talks to whom: the two ends of a session as pure state machines (protocol/STATES.md). Time is an argument.
+#include <array>
+#include <compare>
+#include <optional>
+#include <vector>
+
+#include "common/time.h"
+#include "protocol/codec.h"
+#include "protocol/replay_window.h"
+
+namespace palpate::protocol {
+
+/// An IP address and port, in network order of bytes.
+struct Endpoint {
+  std::array<std::uint8_t, 16> address{};  ///< IPv4 in the first four
+  std::uint16_t port = 0;
+  bool v6 = false;
+  auto operator<=>(const Endpoint&) const = default;
+};
+
+/// The client's end. Asks until welcomed; asks again, without giving up what it has, when the server falls silent.
+class ClientSession {
+ public:
+  /// `nonce`: drawn once per run of the program.
+  explicit ClientSession(std::uint64_t nonce) : nonce_(nonce) {}
+
+  /// A Hello to send now, if one is due. Call often (every 50 ms will do).
+  std::optional<Hello> poll(Time now) noexcept;
+
+  /// A decoded datagram came. Returns the force sample in it if it is of this session and the newest so far; everything
+  /// else is taken care of here. `stats` gets what was received, lost, doubled or rejected.
+  const ForceSample* receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept;
+
+  /// Header of the next datagram to send in this session.
+  Header next_header() noexcept { return {session_, ++sent_}; }
+
+  bool welcomed() const noexcept { return session_ != 0; }
+  const Welcome& welcome() const noexcept { return welcome_; }
+  /// Why the server last said no, until it says yes.
+  std::optional<RefuseReason> refused() const noexcept { return refused_; }
+
+  static constexpr Time kHelloPeriod = std::chrono::milliseconds(250);
+  static constexpr Time kSilence = std::chrono::milliseconds(300);  ///< without a sample: ask again
+
+ private:
+  std::uint64_t nonce_, session_ = 0, sent_ = 0, newest_sample_ = 0;
+  Welcome welcome_;
+  ReplayWindow window_;
+  std::optional<RefuseReason> refused_;
+  std::optional<Time> last_hello_, last_heard_;
+};
+
+/// The server's end: who holds which tool.
+class ServerSessions {
+ public:
+  struct Member {
+    std::uint64_t session = 0, nonce = 0, sent = 0, newest_tick = 0;
+    Endpoint endpoint{};
+    std::uint8_t tool = 0;
+    Time last_heard{};
+    ReplayWindow window{};
+  };
+  /// What came of a datagram: an answer to send back, or a tool state newer than all before.
+  struct Outcome {
+    std::optional<std::pair<Header, Message>> answer{};
+    const ToolState* tool_state = nullptr;
+    const Member* left = nullptr;  ///< said Bye; valid until the next call
+  };
+
+  ServerSessions(int tools, double rate_hz, double tool_radius) : tools_(tools), rate_hz_(rate_hz), radius_(tool_radius) {}
+
+  /// A decoded datagram came. `fresh_id`: a random number, used if this opens a session.
+  Outcome receive(const Datagram& datagram, const Endpoint& from, Time now, std::uint64_t fresh_id, LinkStats& stats);
+
+  /// Drops and returns members not heard for `kTimeout`.
+  std::vector<Member> expire(Time now);
+
+  /// Who holds `tool`; null when nobody does.
+  Member* holder(std::uint8_t tool) noexcept;
+  const std::vector<Member>& members() const noexcept { return members_; }
+
+  static constexpr Time kTimeout = std::chrono::milliseconds(800);
+
+ private:
+  Outcome admit(const Hello& hello, const Endpoint& from, Time now, std::uint64_t fresh_id, LinkStats& stats);
+  std::optional<std::uint8_t> free_tool() noexcept;
+
+  int tools_;
+  double rate_hz_, radius_;
+  std::vector<Member> members_;
+  Member left_;
+};
+
+}  // namespace palpate::protocol

@@ -1,0 +1,145 @@
+#include "protocol/udp_socket.h"
+
+#include <algorithm>
+#include <asio.hpp>
+#include <charconv>
+
+#include "common/error.h"
+
+namespace palpate::protocol {
+namespace {
+
+using asio::ip::udp;
+
+udp::endpoint to_asio(const Endpoint& endpoint) {
+  if (endpoint.v6) return {asio::ip::address_v6(endpoint.address), endpoint.port};
+  asio::ip::address_v4::bytes_type bytes{};
+  std::copy_n(endpoint.address.begin(), bytes.size(), bytes.begin());
+  return {asio::ip::address_v4(bytes), endpoint.port};
+}
+
+Endpoint from_asio(const udp::endpoint& endpoint) {
+  Endpoint result{.port = endpoint.port(), .v6 = endpoint.address().is_v6()};
+  if (result.v6) {
+    result.address = endpoint.address().to_v6().to_bytes();
+  } else {
+    const auto bytes = endpoint.address().to_v4().to_bytes();
+    std::copy(bytes.begin(), bytes.end(), result.address.begin());
+  }
+  return result;
+}
+
+}  // namespace
+
+Endpoint resolve(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  std::string host = text.substr(0, colon);
+  int port = -1;
+  if (colon != std::string::npos) {
+    const char *first = text.data() + colon + 1, *last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(first, last, port);
+    if (error != std::errc{} || end != last || port > 65535) port = -1;
+  }
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  if (port < 0 || host.empty()) {
+    fail("\"{}\" is no address; expected HOST:PORT such as 127.0.0.1:45130 or [::1]:45130", text);
+  }
+  asio::io_context context;
+  std::error_code failed;
+  const auto found = udp::resolver(context).resolve(host, "", failed);
+  if (failed || found.empty()) fail("\"{}\": host \"{}\" is not known ({})", text, host, failed.message());
+  const auto v4 = std::find_if(found.begin(), found.end(), [](const auto& e) { return e.endpoint().address().is_v4(); });
+  Endpoint endpoint = from_asio(v4 != found.end() ? v4->endpoint() : found.begin()->endpoint());
+  endpoint.port = static_cast<std::uint16_t>(port);
+  return endpoint;
+}
+
+std::string to_string(const Endpoint& endpoint) {
+  const std::string host = to_asio(endpoint).address().to_string();
+  return endpoint.v6 ? fmt::format("[{}]:{}", host, endpoint.port) : fmt::format("{}:{}", host, endpoint.port);
+}
+
+struct UdpSocket::Asio {
+  asio::io_context context;
+  udp::socket socket{context};
+  asio::steady_timer timer{context};
+  asio::posix::stream_descriptor bell{context};
+  std::array<std::byte, 2048> buffer{};
+  Doorbell* doorbell = nullptr;
+  Time period{};
+  const Handlers* handlers = nullptr;
+
+  void receive() {
+    socket.async_wait(udp::socket::wait_read, [this](std::error_code failed) {
+      if (failed) return;
+      // Take all that waits, so that the newest is what the mailboxes hold when this returns.
+      for (int i = 0; i < 256; ++i) {
+        udp::endpoint from;
+        std::error_code error;
+        const std::size_t size = socket.receive_from(asio::buffer(buffer), from, 0, error);
+        if (error == asio::error::would_block) break;
+        if (!error) handlers->on_datagram({buffer.data(), size}, from_asio(from));
+      }
+      receive();
+    });
+  }
+  void listen_to_bell() {
+    bell.async_wait(asio::posix::stream_descriptor::wait_read, [this](std::error_code failed) {
+      if (failed) return;
+      doorbell->answer();
+      handlers->on_doorbell();
+      listen_to_bell();
+    });
+  }
+  void tick() {
+    timer.expires_after(period);
+    timer.async_wait([this](std::error_code failed) {
+      if (failed) return;
+      handlers->on_timer();
+      tick();
+    });
+  }
+};
+
+UdpSocket::UdpSocket(const Endpoint& local) : asio_(std::make_unique<Asio>()) {
+  const udp::endpoint address = to_asio(local);
+  std::error_code failed;
+  asio_->socket.open(address.protocol(), failed);
+  if (!failed) asio_->socket.bind(address, failed);
+  if (failed == asio::error::address_in_use) {
+    fail_at_run_time("UDP port {} is in use; stop the other program or choose another with --listen ADDR:PORT",
+                     to_string(local));
+  }
+  if (failed) fail_at_run_time("cannot use UDP address {} ({})", to_string(local), failed.message());
+  asio_->socket.non_blocking(true);
+}
+
+UdpSocket::~UdpSocket() = default;
+
+Endpoint UdpSocket::local() const {
+  return from_asio(asio_->socket.local_endpoint());
+}
+
+void UdpSocket::run(Doorbell& doorbell, Time timer_period, const Handlers& handlers) {
+  asio_->doorbell = &doorbell;
+  asio_->period = timer_period;
+  asio_->handlers = &handlers;
+  asio_->bell.assign(doorbell.descriptor());
+  asio_->receive();
+  asio_->listen_to_bell();
+  asio_->tick();
+  asio_->context.run();
+  asio_->bell.release();  // the descriptor is the doorbell's to close
+}
+
+void UdpSocket::stop() {
+  asio_->context.stop();
+}
+
+bool UdpSocket::send(std::span<const std::byte> datagram, const Endpoint& to) noexcept {
+  std::error_code failed;
+  asio_->socket.send_to(asio::buffer(datagram.data(), datagram.size()), to_asio(to), 0, failed);
+  return !failed;
+}
+
+}  // namespace palpate::protocol

@@ -1,0 +1,50 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "common/doorbell.h"
+#include "common/time.h"
+#include "protocol/session.h"
+
+namespace palpate::protocol {
+
+/// "HOST:PORT" -> endpoint; an IPv6 host stands in brackets. Throws `Error` that says what is wrong with `text`.
+Endpoint resolve(const std::string& text);
+
+/// "1.2.3.4:567" or "[::1]:567".
+std::string to_string(const Endpoint& endpoint);
+
+/// A UDP socket with the event loop of the one thread that serves it (the only file that knows Asio).
+class UdpSocket {
+ public:
+  /// Called in the thread that runs `run`.
+  struct Handlers {
+    std::function<void(std::span<const std::byte>, const Endpoint&)> on_datagram;
+    std::function<void()> on_doorbell;  ///< `doorbell` rang: a mailbox has something to send
+    std::function<void()> on_timer;     ///< every `timer_period`
+  };
+
+  /// Binds to `local` (port 0: any). Throws `Error` (run time) naming the address when it is taken or not ours.
+  explicit UdpSocket(const Endpoint& local);
+  ~UdpSocket();
+
+  /// The address it is bound to, with the port the system chose.
+  Endpoint local() const;
+
+  /// Serves until `stop`. One thread.
+  void run(Doorbell& doorbell, Time timer_period, const Handlers& handlers);
+
+  /// Ends `run`; any thread.
+  void stop();
+
+  /// Sends without waiting; false when the system would not take it. Thread of `run`, or when none runs.
+  bool send(std::span<const std::byte> datagram, const Endpoint& to) noexcept;
+
+ private:
+  struct Asio;
+  std::unique_ptr<Asio> asio_;
+};
+
+}  // namespace palpate::protocol

@@ -1,0 +1,91 @@
+"""What the scripts share about tetrahedral meshes: reading gmsh files, small geometry."""
+
+import math
+from pathlib import Path
+from typing import NamedTuple
+
+TRIANGLE, TETRAHEDRON = 2, 4  # gmsh element types
+TETRAHEDRON_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))  # outward
+
+
+class Mesh(NamedTuple):
+    points: dict        # node tag -> (x, y, z)
+    triangles: list     # three node tags each
+    surfaces: list      # tag of the geometric surface each triangle lies on
+    tetrahedra: list    # four node tags each
+
+
+def read_msh(path):
+    """Read an ASCII MSH 4.1 file."""
+    sections, name = {}, None
+    for line in Path(path).read_text().splitlines():
+        if line.startswith("$End"):
+            name = None
+        elif line.startswith("$"):
+            name = line[1:]
+            sections[name] = []
+        elif name:
+            sections[name].append(line)
+    if not sections.get("MeshFormat", [""])[0].startswith("4.1 0 "):
+        raise ValueError(f"{path}: not an ASCII MSH 4.1 file")
+    if not sections.keys() >= {"Nodes", "Elements"}:
+        raise ValueError(f"{path}: no nodes or no elements")
+
+    points, rows = {}, iter(sections["Nodes"])
+    block_count = int(next(rows).split()[0])
+    for _ in range(block_count):
+        count = int(next(rows).split()[3])
+        tags = [int(next(rows)) for _ in range(count)]
+        points.update((tag, tuple(map(float, next(rows).split()))) for tag in tags)
+
+    cells, surfaces, rows = {TRIANGLE: [], TETRAHEDRON: []}, [], iter(sections["Elements"])
+    block_count = int(next(rows).split()[0])
+    for _ in range(block_count):
+        _, entity, kind, count = map(int, next(rows).split())
+        block = [tuple(map(int, next(rows).split()[1:])) for _ in range(count)]
+        if kind in cells:
+            cells[kind] += block
+        if kind == TRIANGLE:
+            surfaces += [entity] * count
+    return Mesh(points, cells[TRIANGLE], surfaces, cells[TETRAHEDRON])
+
+
+def skin_of(tetrahedra):
+    """The faces that belong to one tetrahedron only, turned outward."""
+    faces = {}
+    for cell in tetrahedra:
+        for corners in TETRAHEDRON_FACES:
+            face = tuple(cell[i] for i in corners)
+            key = frozenset(face)
+            if faces.pop(key, None) is None:
+                faces[key] = face
+    return list(faces.values())
+
+
+def plus(a, b):
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def minus(a, b):
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def times(factor, a):
+    return (factor * a[0], factor * a[1], factor * a[2])
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def unit(a):
+    length = math.sqrt(dot(a, a))
+    return times(1 / length, a) if length else a
+
+
+def normal_of(a, b, c):
+    return unit(cross(minus(b, a), minus(c, a)))

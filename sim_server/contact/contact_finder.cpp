@@ -1,0 +1,97 @@
+#include "sim_server/contact/contact_finder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "common/contact/simplex_distance.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kRoomFactor = 1.5;  // deformed surfaces crowd: room beyond the densest ball at rest
+
+/// Whether the triangle's bounding box comes within `reach` of p: cheap, never wrong on the safe side.
+bool may_reach(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, double reach) noexcept {
+  return ((a.cwiseMin(b).cwiseMin(c).array() - reach) <= p.array()).all() &&
+         ((a.cwiseMax(b).cwiseMax(c).array() + reach) >= p.array()).all();
+}
+
+}  // namespace
+
+ContactFinder::ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed,
+                             std::vector<Triangle> touchable, double reach)
+    : closed_(std::move(closed)), triangles_(std::move(touchable)), slot_of_vertex_(rest.size(), -1) {
+  for (const Vec3& p : rest) {
+    int near = 0;
+    for (const Triangle& t : triangles_) near += may_reach(rest[t[0]], rest[t[1]], rest[t[2]], p, reach);
+    max_triangles_ = std::max(max_triangles_, near);
+  }
+  const int all = static_cast<int>(triangles_.size());
+  max_triangles_ = std::min(all, 8 + static_cast<int>(kRoomFactor * max_triangles_));
+  max_nodes_ = std::min(static_cast<int>(rest.size()), max_triangles_ + 2);
+  vertices_.reserve(static_cast<std::size_t>(max_nodes_));
+}
+
+int ContactFinder::slot_of(int vertex) noexcept {
+  int& slot = slot_of_vertex_[vertex];
+  if (slot < 0 && static_cast<int>(vertices_.size()) < max_nodes_) {
+    slot = static_cast<int>(vertices_.size());
+    vertices_.push_back(vertex);
+  }
+  return slot;
+}
+
+bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, double reach,
+                               ContactPatch& patch) noexcept {
+  patch.triangles.clear();
+  vertices_.clear();
+  bool fits = true;
+  for (const Triangle& t : triangles_) {
+    const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
+    if (!may_reach(a, b, c, p, reach)) continue;
+    const auto w = closest_point(p, a, b, c).weight;
+    if ((p - w[0] * a - w[1] * b - w[2] * c).squaredNorm() > reach * reach) continue;
+    Triangle local;
+    for (int i = 0; i < 3; ++i) local[i] = slot_of(t[i]);
+    fits = static_cast<int>(patch.triangles.size()) < max_triangles_ && *std::min_element(local.begin(), local.end()) >= 0;
+    if (!fits) break;
+    patch.triangles.push_back(local);
+  }
+  for (const int vertex : vertices_) slot_of_vertex_[vertex] = -1;
+  return fits;
+}
+
+void ContactFinder::gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p, double reach,
+                           ContactPatch& patch) noexcept {
+  while (!try_gather(positions, p, reach, patch)) reach *= 0.9;
+  patch.free.clear();
+  for (const int vertex : vertices_) patch.free.push_back(free[vertex]);
+}
+
+bool ContactFinder::inside(std::span<const Vec3> positions, const Vec3& p) const noexcept {
+  double solid_angle = 0;
+  for (const Triangle& t : closed_) {
+    const Vec3 a = positions[t[0]] - p, b = positions[t[1]] - p, c = positions[t[2]] - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    solid_angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return solid_angle > 2 * std::numbers::pi;
+}
+
+Vec3 ContactFinder::nearest(std::span<const Vec3> positions, const Vec3& p) const noexcept {
+  double best = std::numeric_limits<double>::max();
+  Vec3 nearest = p;
+  for (const Triangle& t : triangles_) {
+    const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
+    const auto w = closest_point(p, a, b, c).weight;
+    const Vec3 q = w[0] * a + w[1] * b + w[2] * c;
+    if ((p - q).squaredNorm() >= best) continue;
+    best = (p - q).squaredNorm();
+    nearest = q;
+  }
+  return nearest;
+}
+
+}  // namespace palpate::sim

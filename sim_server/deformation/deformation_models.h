@@ -1,0 +1,34 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "sim_server/deformation/deformation_model.h"
+#include "sim_server/mesh/surface.h"
+#include "sim_server/scene.h"
+
+namespace palpate::sim {
+
+/// Told about long set-up work: what is being done, and which share of it (0 to 1).
+using Progress = std::function<void(std::string_view what, double share)>;
+
+/// What a model is built from. `fixed`: mesh vertices that never move. `reachable`: surface vertices the tool can load.
+struct ModelInputs {
+  const Scene& scene;
+  const TetMesh& mesh;
+  const Surface& surface;
+  const std::vector<int>& fixed;
+  const std::vector<int>& reachable;
+  const Progress& progress;
+};
+
+/// One row per model: a new one is one file and one row.
+struct DeformationModelRow {
+  std::string_view name;
+  std::string_view summary;
+  std::unique_ptr<DeformationModel> (*make)(const ModelInputs&);
+};
+std::span<const DeformationModelRow> deformation_models();
+
+}  // namespace palpate::sim

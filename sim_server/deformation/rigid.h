@@ -1,0 +1,22 @@
+#pragma once
+#include "sim_server/deformation/deformation_models.h"
+
+namespace palpate::sim {
+
+/// No deformation: the empirical penetration force, F = k (depth) (named by Picinbono and Lombardo 1999 as [3]). The
+/// compliance 1/k sits between the tool position and a tip that stays on the surface (the god-object of Zilles and
+/// Salisbury 1995), so several contacts share it and the force stays continuous over edges.
+class Rigid : public DeformationModel {
+ public:
+  explicit Rigid(const ModelInputs& inputs);
+  std::span<const Vec3> free_motion(double dt) noexcept override;
+  void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  std::vector<MemoryPart> memory() const override;
+
+ private:
+  std::vector<Vec3> rest_;
+  double stiffness_;  // N/m
+};
+
+}  // namespace palpate::sim

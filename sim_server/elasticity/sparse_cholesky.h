@@ -1,0 +1,29 @@
+#pragma once
+#include <memory>
+
+#include "sim_server/elasticity/assembly.h"
+
+namespace palpate::sim {
+
+/// Sparse Cholesky factorisation of a symmetric positive definite matrix, by CHOLMOD (supernodal, on one BLAS thread) or,
+/// built with PALPATE_CHOLMOD=OFF, by Eigen. This is the one file that knows which. Set-up and background threads only.
+class SparseCholesky {
+ public:
+  /// Factors the matrix whose lower triangle is given. Throws `Error` when it is not positive definite.
+  explicit SparseCholesky(const SparseMatrix& lower);
+  ~SparseCholesky();
+  SparseCholesky(SparseCholesky&&) noexcept;
+  SparseCholesky& operator=(SparseCholesky&&) noexcept;
+
+  /// X = A^-1 B for dense B (n x k); allocates X.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+
+  /// The library behind it, for reports.
+  static const char* library();
+
+ private:
+  struct Factor;
+  std::unique_ptr<Factor> factor_;
+};
+
+}  // namespace palpate::sim

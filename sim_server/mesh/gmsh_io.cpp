@@ -1,0 +1,381 @@
+#include "sim_server/mesh/gmsh_io.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/error.h"
+#include "sim_server/mesh/cursor.h"
+
+namespace palpate::sim {
+namespace {
+
+
+
+constexpr std::int64_t kTriangle = 2, kTetrahedron = 4;  // element types of Gmsh
+constexpr int kUnused = -1;
+
+/// How many nodes an element of Gmsh's `type` has; 0 for a type this reader has never heard of.
+int nodes_of_type(std::int64_t type) {
+  constexpr std::array<int, 32> kNodes{0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
+                                       8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
+  if (type == 92) return 64;
+  if (type == 93) return 125;
+  return type > 0 && type < static_cast<int>(kNodes.size()) ? kNodes[static_cast<std::size_t>(type)] : 0;
+}
+
+/// A solid element that is no tetrahedron: leaving it out would leave a hole.
+bool is_other_solid(std::int64_t type) {
+  return (type >= 5 && type <= 7) || (type >= 12 && type <= 14) || (type >= 17 && type <= 19);
+}
+
+bool is_curved_tetrahedron(std::int64_t type) {
+  return type == 11 || (type >= 29 && type <= 31);
+}
+
+/// Collects a mesh from the sections of one file.
+class MeshReader {
+ public:
+  MeshReader(const std::string& file, std::string_view bytes) : cursor_(file, bytes) {}
+
+  TetMesh read() {
+    format();
+    while (!cursor_.at_end()) {
+      const std::string name = cursor_.section();
+      if (known_section(name)) {
+        cursor_.end_section(name);
+      } else {
+        cursor_.skip_section(name);
+      }
+    }
+    if (!has_nodes_ || !has_elements_) {
+      cursor_.wrong("the file ends without ${}", has_nodes_ ? "Elements" : "Nodes");
+    }
+    return used_part();
+  }
+
+ private:
+  void format() {
+    cursor_.line();  // $MeshFormat, as the caller has seen
+    const auto version = cursor_.text<double>("the version of the format");
+    const auto binary = cursor_.text<int>("0 (text) or 1 (binary)");
+    const auto real_size = cursor_.text<int>("the size of a real number");
+    const std::string again = gmsh_command(cursor_.file());
+    is_41_ = version == 4.1;
+    if (!is_41_ && version != 2.2)
+      cursor_.wrong("a Gmsh MSH {:.1f} file; 2.2 and 4.1 are read; {}", version, again);
+    if (binary != 0 && binary != 1) cursor_.wrong("expected 0 (text) or 1 (binary), found {}", binary);
+    if (real_size != 8) cursor_.wrong("real numbers of {} bytes; only 8 are read; {}", real_size, again);
+    cursor_.end_line();
+    if (binary == 1) {
+      cursor_.set_binary(is_41_);
+      if (cursor_.integer("the byte order mark") != 1) cursor_.wrong("bytes in another order; {}", again);
+    }
+    cursor_.end_section("MeshFormat");
+  }
+
+  /// Reads the body of section `name`, or leaves it alone and says false.
+  bool known_section(const std::string& name) {
+    if (name == "PhysicalNames") {
+      physical_names();
+    } else if (name == "Entities" && is_41_) {
+      entities();
+    } else if (name == "Nodes") {
+      if (has_nodes_) cursor_.wrong("a second $Nodes");
+      is_41_ ? nodes_41() : nodes_22();
+      number_nodes();
+      has_nodes_ = true;
+    } else if (name == "Elements") {
+      if (!has_nodes_) cursor_.wrong("$Elements before $Nodes");
+      is_41_ ? elements_41() : elements_22();
+      has_elements_ = true;
+    } else if (name == "ParametricNodes") {
+      cursor_.wrong("nodes with parameters; save the mesh again without -parametric");
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  void physical_names() {
+    const auto count = cursor_.size(cursor_.text_count("the number of physical names"), 2, "physical names");
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto dimension = cursor_.text<int>("the dimension of a physical group");
+      const auto tag = cursor_.text<int>("the number of a physical group");
+      const std::string_view line = cursor_.line();
+      const std::size_t open = line.find('"'), close = line.rfind('"');
+      if (open == close) cursor_.wrong("expected the name of physical group {} in double quotes", tag);
+      if (dimension == 2) name_of_physical_[tag] = line.substr(open + 1, close - open - 1);
+    }
+  }
+
+  void entities() {
+    std::array<std::size_t, 4> counts{};  // points, curves, surfaces, volumes
+    for (std::size_t& count : counts)
+      count = cursor_.size(cursor_.number("a number of entities"), 5, "entities");
+    for (int dimension = 0; dimension < 4; ++dimension) {
+      for (std::size_t i = 0; i < counts[dimension]; ++i) {
+        const std::int64_t tag = cursor_.integer("the number of an entity");
+        std::vector<std::int64_t> physicals = entity_physicals(dimension);
+        if (dimension == 2) physicals_of_entity_[tag] = std::move(physicals);
+      }
+    }
+  }
+
+  /// The rest of an entity: where it is (a point, or a box), its physical tags, the entities around it.
+  std::vector<std::int64_t> entity_physicals(int dimension) {
+    for (int i = 0; i < (dimension == 0 ? 3 : 6); ++i) cursor_.real("a coordinate of an entity");
+    const std::int64_t count = cursor_.number("the number of physical tags of an entity");
+    std::vector<std::int64_t> tags(cursor_.size(count, 1, "physical tags"));
+    for (std::int64_t& tag : tags) tag = cursor_.integer("a physical tag");
+    if (dimension == 0) return tags;
+    const std::int64_t around = cursor_.number("the number of entities around an entity");
+    cursor_.size(around, 1, "entities");
+    for (std::int64_t i = 0; i < around; ++i) cursor_.integer("an entity around an entity");
+    return tags;
+  }
+
+  Vec3 position() {
+    Vec3 x;
+    for (double& coordinate : x) coordinate = cursor_.real("a coordinate of a node");
+    return x;
+  }
+
+  void nodes_22() {
+    const auto count = cursor_.size(cursor_.text_count("the number of nodes"), 4, "nodes");
+    for (std::size_t i = 0; i < count; ++i) {
+      node_numbers_.push_back(cursor_.number("the number of a node"));
+      all_.vertices.push_back(position());
+    }
+  }
+
+  void nodes_41() {
+    const auto [blocks, total] = header_41("nodes");
+    for (std::size_t block = 0; block < blocks; ++block) {
+      const std::int64_t dimension = cursor_.integer("the dimension of an entity");
+      if (dimension < 0 || dimension > 3) cursor_.wrong("an entity of dimension {}", dimension);
+      cursor_.integer("the number of an entity");
+      const bool parametric = cursor_.integer("0 or 1 (parametric)") != 0;
+      const auto count = cursor_.size(cursor_.number("the number of nodes of a block"), 4, "nodes");
+      for (std::size_t i = 0; i < count; ++i) node_numbers_.push_back(cursor_.number("the number of a node"));
+      for (std::size_t i = 0; i < count; ++i) {
+        all_.vertices.push_back(position());
+        for (int k = 0; parametric && k < dimension; ++k) cursor_.real("a parameter of a node");
+      }
+    }
+    check_total(node_numbers_.size(), total, "nodes");
+  }
+
+  void number_nodes() {
+    for (std::size_t i = 0; i < node_numbers_.size(); ++i) {
+      index_of_.emplace_back(node_numbers_[i], static_cast<int>(i));
+    }
+    std::sort(index_of_.begin(), index_of_.end());
+    const auto twice = std::adjacent_find(index_of_.begin(), index_of_.end(),
+                                          [](const auto& a, const auto& b) { return a.first == b.first; });
+    if (twice != index_of_.end()) cursor_.wrong("node {} is given twice", twice->first);
+  }
+
+  void elements_22() {
+    const auto total = cursor_.size(cursor_.text_count("the number of elements"), 3, "elements");
+    for (std::size_t done = 0; done < total;) {
+      // Binary elements come in runs under one header; as text each has its own, after its number.
+      if (!cursor_.binary()) cursor_.number("the number of an element");
+      const std::int64_t type = cursor_.integer("the type of an element");
+      const std::int64_t run = cursor_.binary() ? cursor_.integer("the number of elements of a run") : 1;
+      const std::int64_t tags = cursor_.integer("the number of tags of an element");
+      cursor_.size(tags, 1, "tags");
+      const auto count = cursor_.size(run, 1 + tags, "elements");
+      for (std::size_t i = 0; i < count; ++i) {
+        if (cursor_.binary()) cursor_.number("the number of an element");
+        const std::int64_t physical = tags > 0 ? cursor_.integer("a tag of an element") : 0;
+        for (std::int64_t k = 1; k < tags; ++k) cursor_.integer("a tag of an element");
+        element(type, physical);
+      }
+      done += count;
+      if (done > total) cursor_.wrong("more than the {} elements announced", total);
+    }
+  }
+
+  void elements_41() {
+    const auto [blocks, total] = header_41("elements");
+    std::size_t done = 0;
+    for (std::size_t block = 0; block < blocks; ++block) {
+      cursor_.integer("the dimension of an entity");
+      const std::int64_t entity = cursor_.integer("the number of an entity");
+      const std::int64_t type = cursor_.integer("the type of the elements");
+      const auto count = cursor_.size(cursor_.number("the number of elements of a block"), 2, "elements");
+      for (std::size_t i = 0; i < count; ++i) {
+        cursor_.number("the number of an element");
+        element(type, entity);
+      }
+      done += count;
+    }
+    check_total(done, total, "elements");
+  }
+
+  /// The numbers of blocks and of items that open $Nodes and $Elements in 4.1.
+  std::pair<std::size_t, std::size_t> header_41(const char* items) {
+    const auto blocks = cursor_.size(cursor_.number("the number of blocks"), 4, "blocks");
+    const auto total = cursor_.size(cursor_.number("the number of nodes or elements"), 2, items);
+    cursor_.number("the smallest number");
+    cursor_.number("the largest number");
+    return {blocks, total};
+  }
+
+  void check_total(std::size_t done, std::size_t total, const char* items) const {
+    if (done != total) cursor_.wrong("the blocks hold {} {}, but {} were announced", done, items, total);
+  }
+
+  /// Reads the nodes of an element and keeps what matters.
+  void element(std::int64_t type, std::int64_t group) {
+    if (is_curved_tetrahedron(type)) {
+      cursor_.wrong("tetrahedra of higher order (type {}); mesh with order 1: `gmsh -3 -order 1 MODEL.geo`",
+                    type);
+    }
+    const int count = nodes_of_type(type);
+    if (is_other_solid(type)) {
+      cursor_.wrong("hexahedra, prisms or pyramids (type {}); mesh the solid with tetrahedra only", type);
+    }
+    if (count == 0) cursor_.wrong("unknown element type {}; save tetrahedra and triangles only", type);
+    if (type == kTetrahedron) {
+      Tetrahedron t{};
+      for (int& vertex : t) vertex = node_index();
+      // Format 2.2 repeats an element for each physical group it is in.
+      if (all_.tetrahedra.empty() || all_.tetrahedra.back() != t) all_.tetrahedra.push_back(t);
+    } else if (type == kTriangle) {
+      std::vector<int>& vertices = vertices_of_group_[group];
+      for (int i = 0; i < count; ++i) vertices.push_back(node_index());
+    } else {
+      for (int i = 0; i < count; ++i) cursor_.number("a node of an element");
+    }
+  }
+
+  int node_index() {
+    const std::int64_t number = cursor_.number("a node of an element");
+    const auto at = std::lower_bound(index_of_.begin(), index_of_.end(), std::pair(number, 0));
+    if (at == index_of_.end() || at->first != number) {
+      cursor_.wrong("an element names node {}, which the file does not have", number);
+    }
+    return at->second;
+  }
+
+  /// The mesh of the vertices that tetrahedra use, with its tags.
+  TetMesh used_part() const {
+    std::vector<int> index(all_.vertices.size(), kUnused);  // the vertex in the result of each node
+    for (const Tetrahedron& t : all_.tetrahedra) {
+      for (const int vertex : t) index[vertex] = 0;
+    }
+    TetMesh mesh;
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      if (index[i] == kUnused) continue;
+      index[i] = static_cast<int>(mesh.vertices.size());
+      mesh.vertices.push_back(all_.vertices[i]);
+    }
+    mesh.tetrahedra = all_.tetrahedra;
+    for (Tetrahedron& t : mesh.tetrahedra) {
+      for (int& vertex : t) vertex = index[vertex];
+    }
+    mesh.surface_tags = surface_tags(index);
+    return mesh;
+  }
+
+  std::map<std::string, std::vector<int>> surface_tags(const std::vector<int>& index) const {
+    std::map<std::string, std::vector<int>> tags;
+    for (const auto& [group, nodes] : vertices_of_group_) {
+      for (const std::int64_t physical : physicals(group)) {
+        if (physical == 0) continue;  // Gmsh's way to say "in no physical group"
+        for (const int node : nodes) {
+          if (index[node] != kUnused) tags[tag_name(physical)].push_back(index[node]);
+        }
+      }
+    }
+    for (auto& [name, vertices] : tags) {
+      std::sort(vertices.begin(), vertices.end());
+      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    }
+    return tags;
+  }
+
+  std::vector<std::int64_t> physicals(std::int64_t group) const {
+    if (!is_41_) return {group};
+    const auto entity = physicals_of_entity_.find(group);
+    return entity == physicals_of_entity_.end() ? std::vector<std::int64_t>{} : entity->second;
+  }
+
+  std::string tag_name(std::int64_t physical) const {
+    const std::int64_t tag = std::abs(physical);  // a minus turns the normals; ours come from the tetrahedra
+    const auto name = name_of_physical_.find(tag);
+    return name == name_of_physical_.end() ? fmt::format("{}", tag) : name->second;
+  }
+
+  Cursor cursor_;
+  bool has_nodes_ = false, has_elements_ = false, is_41_ = false;
+  std::vector<std::int64_t> node_numbers_;              // of each vertex, in file order
+  std::vector<std::pair<std::int64_t, int>> index_of_;  // node number, vertex; sorted
+  TetMesh all_;                                         // every node; no tags yet
+  // Of triangles. A group is what elements name: an entity in 4.1, directly a physical tag in 2.2.
+  std::map<std::int64_t, std::vector<int>> vertices_of_group_;
+  std::map<std::int64_t, std::vector<std::int64_t>> physicals_of_entity_;
+  std::map<std::int64_t, std::string> name_of_physical_;  // of dimension 2
+};
+
+
+
+/// Says what a file that does not start with $MeshFormat is, and how to make a mesh of it.
+[[noreturn]] void fail_other_format(const std::filesystem::path& file, std::string_view bytes) {
+  const std::string path = file.string();
+  if (bytes.empty()) fail("{}: an empty file, not a mesh", path);
+  if (bytes.starts_with("$NOD")) {
+    fail("{}: a Gmsh MSH 1 file; 2.2 and 4.1 are read; {}", path, gmsh_command(path));
+  }
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string kind = extension.empty() || extension == ".msh" ? "no known format" : extension + " file";
+  if (extension == ".obj" || extension == ".stl" || extension == ".ply" || extension == ".off") {
+    fail(
+        "{}: {}, a surface without an inside; fill it with tetrahedra: `meshio convert \"{}\" OUT.stl`, then "
+        "`gmsh -3` on a .geo file of: {}",
+        path, kind, path, R"(Merge "OUT.stl"; Surface Loop(1) = {1}; Volume(1) = {1};)");
+  }
+  // gmsh22, as meshio writes 4.1 only for elements of a single type.
+  fail(
+      "{}: {}, not a Gmsh mesh (no $MeshFormat at the start); convert it: "
+      "`meshio convert \"{}\" OUT.msh --output-format gmsh22`",
+      path, kind, path);
+}
+
+std::string read_bytes(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) fail("{}: no such file", file.string());
+  if (!std::filesystem::is_regular_file(file)) fail("{}: not a file", file.string());
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(std::filesystem::file_size(file), '\0');
+  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
+    fail("{}: cannot be read; check its permissions", file.string());
+  }
+  return bytes;
+}
+
+}  // namespace
+
+TetMesh read_mesh(const std::filesystem::path& file) {
+  const std::string bytes = read_bytes(file);
+  if (!bytes.starts_with("$MeshFormat")) fail_other_format(file, bytes);
+  TetMesh mesh = MeshReader(file.string(), bytes).read();
+  validate(mesh, file.string());
+  return mesh;
+}
+
+}  // namespace palpate::sim

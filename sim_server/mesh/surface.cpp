@@ -1,0 +1,84 @@
+#include "sim_server/mesh/surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <fmt/ranges.h>
+#include <iterator>
+#include <tuple>
+
+#include "common/error.h"
+
+namespace palpate::sim {
+namespace {
+
+// The faces of a positively oriented tetrahedron, each seen counter-clockwise from outside.
+constexpr std::array<Triangle, 4> kFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+struct Face {
+  Triangle sorted;   // the vertices, ascending: equal for the two sides of one face
+  Triangle outward;  // the same vertices, outward from `tetrahedron`
+  int tetrahedron;
+};
+
+std::vector<Face> sorted_faces(const TetMesh& mesh) {
+  std::vector<Face> faces;
+  faces.reserve(4 * mesh.tetrahedra.size());
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) {
+    const Tetrahedron& t = mesh.tetrahedra[i];
+    for (const Triangle& corner : kFaces) {
+      const Triangle outward{t[corner[0]], t[corner[1]], t[corner[2]]};
+      Triangle sorted = outward;
+      std::sort(sorted.begin(), sorted.end());
+      faces.push_back({sorted, outward, static_cast<int>(i)});
+    }
+  }
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+    return std::tie(a.sorted, a.tetrahedron) < std::tie(b.sorted, b.tetrahedron);
+  });
+  return faces;
+}
+
+[[noreturn]] void fail_shared(std::vector<Face>::const_iterator first,
+                              std::vector<Face>::const_iterator last) {
+  std::vector<int> owners;
+  std::transform(first, last, std::back_inserter(owners), [](const Face& face) { return face.tetrahedron; });
+  fail(
+      "mesh: the face of vertices {} belongs to {} tetrahedra ({}), but a solid has one or two on a face; "
+      "remove the tetrahedra that overlap",
+      first->sorted, owners.size(), fmt::join(owners, ", "));
+}
+
+// Gives the vertices that `surface.triangles` names (mesh numbers) their surface numbers.
+void number_vertices(Surface& surface) {
+  std::vector<int>& vertices = surface.vertices;
+  for (const Triangle& triangle : surface.triangles) {
+    vertices.insert(vertices.end(), triangle.begin(), triangle.end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (Triangle& triangle : surface.triangles) {
+    for (int& vertex : triangle) {
+      vertex =
+          static_cast<int>(std::lower_bound(vertices.begin(), vertices.end(), vertex) - vertices.begin());
+    }
+  }
+}
+
+}  // namespace
+
+Surface boundary_surface(const TetMesh& mesh) {
+  const std::vector<Face> faces = sorted_faces(mesh);
+  Surface surface;
+  for (auto first = faces.begin(); first != faces.end();) {
+    const auto last =
+        std::find_if(first, faces.end(), [&](const Face& f) { return f.sorted != first->sorted; });
+    if (last - first > 2) fail_shared(first, last);
+    if (last - first == 1) surface.triangles.push_back(first->outward);
+    first = last;
+  }
+  number_vertices(surface);
+  return surface;
+}
+
+}  // namespace palpate::sim

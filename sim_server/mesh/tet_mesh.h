@@ -1,0 +1,44 @@
+#pragma once
+/// The solid: a tetrahedral mesh at rest, in metres.
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/types.h"
+
+namespace palpate::sim {
+
+using Tetrahedron = std::array<int, 4>;
+using Triangle = std::array<int, 3>;
+
+/// Vertices and positively oriented tetrahedra: det(x1-x0, x2-x0, x3-x0) > 0. `validate` says so.
+struct TetMesh {
+  std::vector<Vec3> vertices;           ///< (n), metres, mesh frame at rest
+  std::vector<Tetrahedron> tetrahedra;  ///< (m), indices into `vertices`
+  /// Vertices of each named (or numbered, "17") surface the file tags; empty where it tags none.
+  std::map<std::string, std::vector<int>> surface_tags;
+};
+
+/// Six times the signed volume of tetrahedron `t`, m^3.
+double six_volumes(const TetMesh& mesh, const Tetrahedron& t);
+
+/// Throws `Error` naming `source` and the first offender for: no tetrahedra, a coordinate that is not finite,
+/// a repeated or missing vertex, a flat or inverted tetrahedron, several bodies. Vertices that no tetrahedron
+/// uses must be gone before. O(n + m).
+void validate(const TetMesh& mesh, const std::string& source);
+
+/// What `sim_server mesh info` prints.
+struct MeshInfo {
+  int vertices = 0, edges = 0, tetrahedra = 0, boundary_vertices = 0, boundary_triangles = 0;
+  double volume = 0;                            ///< m^3
+  Vec3 min = Vec3::Zero(), max = Vec3::Zero();  ///< bounding box, m
+  double min_dihedral = 0, max_dihedral = 0;    ///< radians
+  double median_min_dihedral = 0;  ///< median over tetrahedra of the smallest dihedral angle, radians
+  double min_edge = 0, median_edge = 0, max_edge = 0;  ///< m
+};
+
+/// Counts, size and quality. O(m log m).
+MeshInfo describe(const TetMesh& mesh);
+
+}  // namespace palpate::sim

@@ -1,0 +1,63 @@
+#include "sim_server/net_link.h"
+
+#include "common/clock.h"
+
+namespace palpate::sim {
+using protocol::Datagram;
+using protocol::Endpoint;
+using protocol::Verdict;
+
+NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes,
+                 std::uint64_t seed)
+    : socket_(socket), sessions_(std::move(sessions)), mailboxes_(mailboxes), random_(seed) {}
+
+void NetLink::run() {
+  socket_.run(mailboxes_.bell, std::chrono::milliseconds(50),
+              {.on_datagram = [this](auto bytes, const Endpoint& from) { on_datagram(bytes, from); },
+               .on_doorbell = [this] { on_force(); },
+               .on_timer = [this] { on_timer(); }});
+  for (auto member : sessions_.members()) send({member.session, ++member.sent}, protocol::Bye{}, member.endpoint);
+}
+
+void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from) {
+  Datagram datagram;
+  if (const Verdict verdict = protocol::decode(bytes, datagram); verdict != Verdict::kAccepted) {
+    ++stats_.rejected;
+    ++stats_.rejected_by[static_cast<std::size_t>(verdict)];
+    return;
+  }
+  const std::size_t before = sessions_.members().size();
+  const auto outcome = sessions_.receive(datagram, from, now(), random_() | 1, stats_);
+  if (sessions_.members().size() > before) ++sessions_so_far;
+  members = static_cast<int>(sessions_.members().size());
+  if (outcome.answer) send(outcome.answer->first, outcome.answer->second, from);
+  if (outcome.left != nullptr) tool_is_free(outcome.left->tool);
+  if (outcome.tool_state != nullptr) mailboxes_.tool.write({datagram.header.session, *outcome.tool_state});
+}
+
+void NetLink::on_force() {
+  ForceOutput output;
+  if (!mailboxes_.force.read(output)) return;
+  auto* member = sessions_.holder(output.sample.tool);
+  if (member == nullptr || member->session != output.session) return;
+  send({member->session, ++member->sent}, output.sample, member->endpoint);
+}
+
+void NetLink::on_timer() {
+  for (const auto& gone : sessions_.expire(now())) tool_is_free(gone.tool);
+  members = static_cast<int>(sessions_.members().size());
+}
+
+void NetLink::tool_is_free(std::uint8_t tool) {
+  ToolInput nobody;
+  nobody.state.tool = tool;
+  mailboxes_.tool.write(nobody);
+}
+
+void NetLink::send(const protocol::Header& header, const protocol::Message& message, const Endpoint& to) {
+  std::array<std::byte, protocol::kMaxDatagram> bytes;
+  const std::size_t size = protocol::encode(header, message, bytes);
+  if (socket_.send({bytes.data(), size}, to)) ++stats_.sent;
+}
+
+}  // namespace palpate::sim

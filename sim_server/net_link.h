@@ -1,0 +1,40 @@
+#pragma once
+#include <atomic>
+#include <random>
+
+#include "protocol/udp_socket.h"
+#include "sim_server/sim_loop.h"
+
+namespace palpate::sim {
+
+/// The network thread of the server: datagrams in, sessions kept, forces out.
+class NetLink {
+ public:
+  /// `seed` draws the session numbers.
+  NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes, std::uint64_t seed);
+
+  /// Serves until `stop`, then says Bye to every member.
+  void run();
+  void stop() { socket_.stop(); }
+
+  /// Read when `run` has returned.
+  const protocol::LinkStats& stats() const { return stats_; }
+
+  /// For a watching thread: how many sessions there are and were.
+  std::atomic<int> members{0}, sessions_so_far{0};
+
+ private:
+  void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
+  void on_force();
+  void on_timer();
+  void tool_is_free(std::uint8_t tool);
+  void send(const protocol::Header& header, const protocol::Message& message, const protocol::Endpoint& to);
+
+  protocol::UdpSocket& socket_;
+  protocol::ServerSessions sessions_;
+  SimMailboxes& mailboxes_;
+  std::mt19937_64 random_;
+  protocol::LinkStats stats_;
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,115 @@
+#include "sim_server/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/config.h"
+#include "common/error.h"
+#include "common/text.h"
+#include "sim_server/deformation/deformation_models.h"
+
+namespace palpate::sim {
+namespace {
+
+Box read_box(const Config& config, const std::string& key) {
+  const auto [min, max] = config.box(key);
+  return {min, max};
+}
+
+FixedRegion read_fixed(const Config& config) {
+  FixedRegion region;
+  region.where = config.where();
+  if (config.has("box")) region.box = read_box(config, "box");
+  region.surface_tag = config.text("surface_tag", "");
+  if (region.box.has_value() == !region.surface_tag.empty()) {
+    fail("{}: [[fixed]] needs either `box` or `surface_tag`", region.where);
+  }
+  config.reject_unknown();
+  return region;
+}
+
+Material read_material(const Config& config) {
+  Material material;
+  const std::string law = config.text("law", "linear");
+  if (law != "linear") fail("{}: unknown law \"{}\"; known: linear", config.where("law"), law);
+  material.young_modulus = config.number("young_modulus", {1e-3, 1e12, "Pa"});
+  // Below one half by more than rounding: lambda grows without bound there.
+  material.poisson_ratio = config.number("poisson_ratio", {0, 0.499999, "below 0.5, no unit"});
+  material.density = config.number("density", {1e-3, 1e5, "kg/m3"}, material.density);
+  config.reject_unknown();
+  return material;
+}
+
+DeformationSettings read_deformation(const Config& config) {
+  DeformationSettings settings;
+  settings.where = config.where("model");
+  settings.model = config.text("model");
+  find_row(deformation_models(), settings.model, "deformation model", settings.where);
+  settings.stiffness = config.number("stiffness", {1e-3, 1e6, "N/m"}, settings.stiffness);
+  config.reject_unknown();
+  return settings;
+}
+
+ToolSettings read_tool(const Config& config) {
+  ToolSettings tool;
+  const std::string shape = config.text("shape", "sphere");
+  if (shape != "sphere") fail("{}: unknown shape \"{}\"; known: sphere", config.where("shape"), shape);
+  tool.shape.radius = config.number("radius", {1e-5, 0.1, "m"}, tool.shape.radius);
+  if (config.has("reach")) tool.reach = read_box(config, "reach");
+  config.reject_unknown();
+  return tool;
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& file) {
+  const Config config = Config::read(file);
+  Scene scene;
+  scene.source = file.string();
+  scene.title = config.text("title", file.stem().string());
+  scene.rate_hz = config.number("rate_hz", {0, 10000, "Hz"}, scene.rate_hz);
+  const auto mesh = config.table("mesh");
+  if (!mesh) fail("{}: missing section [mesh] with `file`", config.where());
+  scene.mesh_file = mesh->file("file");
+  scene.mesh_where = mesh->where("file");
+  mesh->reject_unknown();
+  for (const Config& fixed : config.tables("fixed")) scene.fixed.push_back(read_fixed(fixed));
+  if (const auto material = config.table("material")) scene.material = read_material(*material);
+  const auto deformation = config.table("deformation");
+  if (!deformation) fail("{}: missing section [deformation] with `model`", config.where());
+  scene.deformation = read_deformation(*deformation);
+  const auto tools = config.tables("tool");
+  if (tools.size() != 1) fail("{}: a scene has one [[tool]], this one has {}", config.where("tool"), tools.size());
+  scene.tool = read_tool(tools.front());
+  config.reject_unknown();
+  return scene;
+}
+
+std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh) {
+  std::vector<char> is_fixed(mesh.vertices.size(), 0);
+  for (const FixedRegion& region : scene.fixed) {
+    int count = 0;
+    const auto fix = [&](int vertex) { is_fixed[vertex] = 1, ++count; };
+    if (region.box) {
+      for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+        if (region.box->contains(mesh.vertices[v])) fix(v);
+      }
+      if (count == 0) fail("{}: no vertex of the mesh lies in this [[fixed]] box; is it in metres?", region.where);
+    } else {
+      std::vector<std::string> known;
+      for (const auto& [tag, vertices] : mesh.surface_tags) known.push_back(tag);
+      const auto found = mesh.surface_tags.find(region.surface_tag);
+      if (found == mesh.surface_tags.end()) {
+        fail_unknown_name(region.surface_tag, "surface tag", region.where, known);
+      }
+      for (const int vertex : found->second) fix(vertex);
+    }
+  }
+  std::vector<int> fixed;
+  for (int v = 0; v < static_cast<int>(is_fixed.size()); ++v) {
+    if (is_fixed[v]) fixed.push_back(v);
+  }
+  return fixed;
+}
+
+}  // namespace palpate::sim

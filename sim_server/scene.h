@@ -1,0 +1,61 @@
+#pragma once
+/// What a scene file asks for. An absent section means: not built.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/contact/tool.h"
+#include "common/types.h"
+#include "sim_server/elasticity/material.h"
+#include "sim_server/mesh/tet_mesh.h"
+
+namespace palpate::sim {
+
+/// Axis-aligned box, m, closed.
+struct Box {
+  Vec3 min, max;
+  bool contains(const Vec3& x) const {
+    return (x.array() >= min.array()).all() && (x.array() <= max.array()).all();
+  }
+};
+
+/// `[[fixed]]`: mesh vertices that never move, by a box or by a surface tag of the mesh.
+struct FixedRegion {
+  std::optional<Box> box;
+  std::string surface_tag;
+  std::string where;  ///< "FILE:LINE" for messages
+};
+
+/// `[deformation]`.
+struct DeformationSettings {
+  std::string model = "quasi_static";
+  double stiffness = 800;  ///< N/m, (0, 1e6], model "rigid" only
+  std::string where;
+};
+
+/// `[[tool]]`.
+struct ToolSettings {
+  SphereTool shape;
+  std::optional<Box> reach;  ///< places the tool's surface can get to; absent: the whole organ
+};
+
+struct Scene {
+  std::string title;
+  double rate_hz = 30;  ///< steps per second, [0, 10000]; 0 = as fast as the model allows
+  std::filesystem::path mesh_file;
+  std::string mesh_where;
+  std::vector<FixedRegion> fixed;
+  std::optional<Material> material;
+  DeformationSettings deformation;
+  ToolSettings tool;
+  std::string source;  ///< the file, for messages
+};
+
+/// Reads and checks a scene file. Throws `Error` (file, line, key, what was expected). Does not read the mesh.
+Scene read_scene(const std::filesystem::path& file);
+
+/// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an unknown tag.
+std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh);
+
+}  // namespace palpate::sim

@@ -1,0 +1,145 @@
+#include "sim_server/server.h"
+
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+
+#include "common/clock.h"
+#include "common/error.h"
+#include "common/interrupt.h"
+#include "common/log.h"
+#include "common/realtime.h"
+#include "common/report.h"
+#include "sim_server/net_link.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr int kPriority = 40;  // below the haptic loop of a client on the same machine
+
+/// Says what set-up is doing: one line a stage, and on a terminal a running percentage.
+class SetupProgress {
+ public:
+  void operator()(std::string_view what, double share) {
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    if (what != stage_) {
+      stage_ = what;
+      if (!terminal) log::info("{} ...", what);
+    }
+    if (terminal) fmt::print(stderr, "\r\033[Ksim_server: {} {:3.0f} %{}", what, 100 * share, share >= 1 ? "\n" : "");
+  }
+
+ private:
+  std::string stage_;
+};
+
+void warn_if_huge(const TetMesh& mesh, const Scene& scene) {
+  const MeshInfo info = describe(mesh);
+  const double size = (info.max - info.min).maxCoeff();
+  if (size > 2) {
+    log::warning("{}: the mesh is {:.3g} m long; if it is in millimetres, scale it by 0.001", scene.mesh_file.string(),
+                 size);
+  }
+}
+
+/// Everything known about the scene before the loop starts.
+Json describe_scene(const Scene& scene, const Simulation& simulation, Time setup) {
+  const MeshInfo info = describe(simulation.mesh());
+  Json memory = Json::object();
+  for (const MemoryPart& part : simulation.memory()) memory[part.name] = part.bytes;
+  return {{"scene", scene.source},
+          {"title", scene.title},
+          {"model", scene.deformation.model},
+          {"rate_hz", scene.rate_hz},
+          {"setup_ms", 1e3 * to_seconds(setup)},
+          {"mesh", {{"vertices", info.vertices}, {"edges", info.edges}, {"tetrahedra", info.tetrahedra}}},
+          {"memory_bytes", memory}};
+}
+
+void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simulation& simulation, Time ran) {
+  const SimLoopStats& stats = loop.stats();
+  report["seconds"] = to_seconds(ran);
+  report["steps"] = stats.step_ns.count();
+  report["step_ms"] = quantiles(stats.step_ns, 1e6);
+  report["contact_step_ms"] = quantiles(stats.contact_step_ns, 1e6);
+  report["contact_steps"] = stats.contact_step_ns.count();
+  report["late"] = stats.late;
+  report["flagged"] = stats.flagged;
+  report["max_newton"] = stats.max_newton;
+  report["sessions"] = link.sessions_so_far.load();
+  const protocol::LinkStats& net = link.stats();
+  report["link"] = {{"sent", net.sent},           {"received", net.received},     {"lost", net.lost},
+                    {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"rejected", net.rejected}};
+  report["state_hash"] = fmt::format("{:016x}", simulation.state_hash());
+}
+
+void print_summary(const Json& report) {
+  const auto ms = [&](const char* key, const char* q) { return report[key][q].get<double>(); };
+  fmt::print("sim_server: {} steps, {} in contact; a step takes {:.3f} ms (p50), {:.3f} (p99), {:.3f} (max)\n",
+             report["steps"].get<long>(), report["contact_steps"].get<long>(), ms("step_ms", "p50"), ms("step_ms", "p99"),
+             ms("step_ms", "max"));
+  fmt::print("            in contact {:.3f} ms (p50), {:.3f} (p99); {} deadlines late; largest force {:.2f} N\n",
+             ms("contact_step_ms", "p50"), ms("contact_step_ms", "p99"), report["late"].get<long>(),
+             report["max_newton"].get<double>());
+  std::fflush(stdout);
+}
+
+/// Waits for Ctrl-C or the end of `seconds`, telling who comes and goes.
+void watch(const NetLink& link, std::optional<double> seconds) {
+  const Time start = now();
+  int told = 0;
+  while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
+    if (seconds && to_seconds(now() - start) >= *seconds) return;
+    const int members = link.members;
+    if (members == told) continue;
+    log::info("{}", members > told ? "a client took the tool" : "the client is gone; the tool is free");
+    told = members;
+  }
+}
+
+std::uint64_t random_seed() {
+  std::random_device device;
+  return std::uint64_t{device()} << 32 | device();
+}
+
+}  // namespace
+
+int run_server(const ServerOptions& options) {
+  const Scene scene = read_scene(options.scene);
+  if (options.report) check_writable(*options.report);
+  protocol::UdpSocket socket(protocol::resolve(options.listen));
+  const Time begin = now();
+  SetupProgress progress;
+  Simulation simulation(scene, std::ref(progress));
+  warn_if_huge(simulation.mesh(), scene);
+  Json report = describe_scene(scene, simulation, now() - begin);
+  SimMailboxes mailboxes;
+  SimLoop loop(simulation, scene.rate_hz, mailboxes);
+  NetLink link(socket, {1, scene.rate_hz, scene.tool.shape.radius}, mailboxes, random_seed());
+  if (const std::string refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
+  const Time start = now();
+  {
+    std::string refused;
+    std::jthread net([&] { link.run(); });
+    std::jthread sim([&](const std::stop_token& stop) {
+      refused = make_realtime("palpate-sim", kPriority);
+      loop.run(stop);
+    });
+    log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
+              report["setup_ms"].get<double>() / 1e3, protocol::to_string(socket.local()));
+    watch(link, options.seconds);
+    sim.request_stop();
+    sim.join();
+    link.stop();
+    net.join();
+    if (!refused.empty()) log::warning("{}", refused);
+  }
+  add_run(report, loop, link, simulation, now() - start);
+  print_summary(report);
+  if (options.report) write_json(*options.report, report);
+  return 0;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,19 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace palpate::sim {
+
+/// What `sim_server run` was asked for.
+struct ServerOptions {
+  std::filesystem::path scene;
+  std::string listen = "127.0.0.1:45130";
+  std::optional<double> seconds;                ///< stop after so long; absent: at Ctrl-C
+  std::optional<std::filesystem::path> report;  ///< JSON written at the end
+};
+
+/// Builds the scene, serves it until Ctrl-C, writes the report. Throws `Error`. Returns the exit code.
+int run_server(const ServerOptions& options);
+
+}  // namespace palpate::sim

@@ -1,0 +1,21 @@
+#pragma once
+#include "sim_server/scene.h"
+
+namespace palpate::test {
+
+/// The scene that ships, with paths that work from anywhere.
+inline sim::Scene liver_scene() {
+  return sim::read_scene(std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver.toml");
+}
+
+/// A scene around a mesh made in memory: quasi-static unless said otherwise, fixed where `fixed` contains a vertex.
+inline sim::Scene scene_of(const sim::Material& material, const sim::Box& fixed, double tool_radius) {
+  sim::Scene scene;
+  scene.source = "test";
+  scene.material = material;
+  scene.fixed.push_back({fixed, "", "test"});
+  scene.tool.shape.radius = tool_radius;
+  return scene;
+}
+
+}  // namespace palpate::test

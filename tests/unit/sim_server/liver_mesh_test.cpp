@@ -1,0 +1,23 @@
+#include <numbers>
+
+#include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/mesh/surface.h"
+#include "tests/support/catch.h"
+
+using namespace palpate::sim;
+
+TEST_CASE("the shipped liver has the size of the paper's: 1394 vertices, 8347 edges, 6342 tetrahedra") {
+  const MeshInfo info = describe(read_mesh(std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver.msh"));
+  CHECK(info.vertices == Approx(1394).epsilon(0.03));
+  CHECK(info.edges == Approx(8347).epsilon(0.03));
+  CHECK(info.tetrahedra == Approx(6342).epsilon(0.03));
+  CHECK(info.boundary_vertices == Approx(614).epsilon(0.03));
+  CHECK(info.boundary_triangles == Approx(1224).epsilon(0.03));
+  // Euler: a ball without voids.
+  CHECK(info.vertices - info.edges + (info.boundary_triangles + 2 * info.tetrahedra) / 2 + info.boundary_triangles / 2 -
+            info.tetrahedra ==
+        1);
+  CHECK(info.volume == Approx(1.5e-3).epsilon(0.1));
+  CHECK((info.max - info.min).maxCoeff() == Approx(0.2).epsilon(0.15));
+  CHECK(info.min_dihedral >= 10 * std::numbers::pi / 180);
+}

@@ -1,0 +1,114 @@
+#include "sim_server/mesh/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <string>
+
+#include "common/error.h"
+#include "tests/support/catch.h"
+
+namespace palpate::sim {
+namespace {
+
+TetMesh two_tetrahedra() {
+  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}, {{0, 1, 2, 3}, {1, 2, 3, 4}}, {}};
+}
+
+// The unit cube in `n`^3 cells of six tetrahedra along the main diagonal of each.
+TetMesh cube(int n) {
+  TetMesh mesh;
+  const auto vertex = [n](const Triangle& at) { return (at[0] * (n + 1) + at[1]) * (n + 1) + at[2]; };
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j) {
+      for (int k = 0; k <= n; ++k) mesh.vertices.emplace_back(Vec3(i, j, k) / n);
+    }
+  }
+  for (int cell = 0; cell < n * n * n; ++cell) {
+    Triangle order{0, 1, 2};
+    do {
+      Triangle corner{cell / (n * n), cell / n % n, cell % n};
+      Tetrahedron t{vertex(corner), 0, 0, 0};
+      for (int step = 0; step < 3; ++step) {
+        ++corner[order[step]];
+        t[step + 1] = vertex(corner);
+      }
+      if (six_volumes(mesh, t) < 0) std::swap(t[1], t[2]);
+      mesh.tetrahedra.push_back(t);
+    } while (std::next_permutation(order.begin(), order.end()));
+  }
+  return mesh;
+}
+
+// By the divergence theorem: positive when the triangles look outward.
+double enclosed_volume(const TetMesh& mesh, const Surface& surface) {
+  double six_v = 0;
+  for (const Triangle& t : surface.triangles) {
+    const auto x = [&](int corner) { return mesh.vertices[surface.vertices[t[corner]]]; };
+    six_v += x(0).dot(x(1).cross(x(2)));
+  }
+  return six_v / 6;
+}
+
+TEST_CASE("a tetrahedron is all surface", "[mesh]") {
+  const TetMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}, {}};
+  const Surface surface = boundary_surface(mesh);
+  CHECK(surface.vertices == std::vector<int>{0, 1, 2, 3});
+  REQUIRE(surface.triangles.size() == 4);
+  const Vec3 centre = Vec3::Constant(0.25);
+  for (const Triangle& t : surface.triangles) {
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    CHECK((b - a).cross(c - a).dot(a - centre) > 0);
+  }
+}
+
+TEST_CASE("the face between two tetrahedra is inside", "[mesh]") {
+  const Surface surface = boundary_surface(two_tetrahedra());
+  CHECK(surface.triangles.size() == 6);
+  for (Triangle t : surface.triangles) {
+    std::sort(t.begin(), t.end());
+    CHECK(t != Triangle{1, 2, 3});
+  }
+}
+
+TEST_CASE("the surface of a cube is closed, outward and numbered without the vertices inside", "[mesh]") {
+  const int n = GENERATE(1, 2, 3);
+  const TetMesh mesh = cube(n);
+  const Surface surface = boundary_surface(mesh);
+  CHECK(surface.triangles.size() == static_cast<std::size_t>(12 * n * n));
+  CHECK(surface.vertices.size() ==
+        static_cast<std::size_t>((n + 1) * (n + 1) * (n + 1) - (n - 1) * (n - 1) * (n - 1)));
+  CHECK(std::is_sorted(surface.vertices.begin(), surface.vertices.end()));
+  CHECK(std::abs(enclosed_volume(mesh, surface) - 1) < 1e-12);
+  // Closed and consistently turned: every directed edge once, and its opposite too.
+  std::set<std::pair<int, int>> edges;
+  for (const Triangle& t : surface.triangles) {
+    for (int i = 0; i < 3; ++i) CHECK(edges.emplace(t[i], t[(i + 1) % 3]).second);
+  }
+  for (const auto& edge : edges) CHECK(edges.count({edge.second, edge.first}) == 1);
+}
+
+TEST_CASE("the surface does not depend on the run", "[mesh]") {
+  const TetMesh mesh = cube(3);
+  CHECK(boundary_surface(mesh).triangles == boundary_surface(mesh).triangles);
+}
+
+TEST_CASE("a face of three tetrahedra is an error that names them", "[mesh]") {
+  TetMesh mesh = two_tetrahedra();
+  mesh.vertices.emplace_back(2, 2, 2);
+  mesh.tetrahedra.push_back({1, 2, 3, 5});
+  std::string message;
+  try {
+    boundary_surface(mesh);
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  CHECK(message ==
+        "mesh: the face of vertices [1, 2, 3] belongs to 3 tetrahedra (0, 1, 2), but a solid has one or two "
+        "on a "
+        "face; remove the tetrahedra that overlap");
+}
+
+}  // namespace
+}  // namespace palpate::sim

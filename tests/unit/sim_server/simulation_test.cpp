@@ -1,0 +1,142 @@
+#include "sim_server/simulation.h"
+
+#include "tests/support/allocation_guard.h"
+#include "tests/support/catch.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+constexpr double kDt = 1e-3;
+
+/// Height of the liver's upper skin at (x, z), by the triangles themselves.
+double height(const Simulation& simulation, double x, double z) {
+  double top = -1;
+  const auto at = [&](int corner) -> const Vec3& {
+    return simulation.mesh().vertices[simulation.surface().vertices[corner]];
+  };
+  for (const Triangle& t : simulation.surface().triangles) {
+    const Vec3 &a = at(t[0]), &b = at(t[1]), &c = at(t[2]);
+    const double area = (b[0] - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (b[2] - a[2]);
+    const double v = ((x - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (z - a[2])) / area;
+    const double w = ((b[0] - a[0]) * (z - a[2]) - (x - a[0]) * (b[2] - a[2])) / area;
+    if (v >= 0 && w >= 0 && v + w <= 1) top = std::max(top, a[1] + v * (b[1] - a[1]) + w * (c[1] - a[1]));
+  }
+  return top;
+}
+
+Vec3 on_liver(const Simulation& simulation, double x, double z, double depth) {
+  return {x, height(simulation, x, z) + 0.005 - depth, z};
+}
+
+}  // namespace
+
+TEST_CASE("sliding over the shipped liver at 10 mm/s does not jerk: steps of at most 2 % of the mean force at 1 kHz") {
+  Simulation liver(test::liver_scene());
+  for (const double depth : {0.001, 0.003, 0.006}) {
+    double largest = 0, sum = 0;
+    int count = 0, flagged = 0;
+    Vec3 before = Vec3::Zero();
+    liver.lift_tool();
+    for (double x = -0.06; x < 0.015; x += 1e-5) {
+      const ToolForce force = liver.step(on_liver(liver, x, 0.004, depth), kDt);
+      if (count > 0) largest = std::max(largest, (force.force - before).norm());
+      before = force.force;
+      sum += force.force.norm();
+      flagged += force.flagged ? 1 : 0;
+      ++count;
+    }
+    CAPTURE(depth, largest, sum / count);
+    CHECK(sum / count > 0.1);
+    CHECK(largest <= 0.02 * sum / count);
+    CHECK(flagged == 0);
+  }
+}
+
+TEST_CASE("the tangent agrees with finite differences of the force to 1e-6") {
+  Simulation liver(test::liver_scene());
+  test::Random random(8);
+  int checked = 0;
+  for (int i = 0; i < 30; ++i) {
+    const Vec3 p = on_liver(liver, random.between(-0.05, 0.01), random.between(-0.01, 0.02), random.between(0.001, 0.004));
+    liver.lift_tool();
+    const ToolForce force = liver.step(p, kDt);
+    constexpr double kStep = 1e-7;
+    Mat3 difference;
+    bool same_contacts = force.contacts > 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const ToolForce ahead = liver.step(p + kStep * Vec3::Unit(axis), kDt);
+      const ToolForce behind = liver.step(p - kStep * Vec3::Unit(axis), kDt);
+      same_contacts = same_contacts && ahead.contacts == force.contacts && behind.contacts == force.contacts;
+      difference.col(axis) = (ahead.force - behind.force) / (2 * kStep);
+    }
+    if (!same_contacts) continue;
+    ++checked;
+    CHECK((force.tangent - difference).norm() < 1e-6 * difference.norm());
+  }
+  CHECK(checked >= 20);
+}
+
+TEST_CASE("out of contact the force is exactly zero and the tissue exactly at rest") {
+  Simulation liver(test::liver_scene());
+  const std::uint64_t rest = liver.state_hash();
+  liver.step(on_liver(liver, -0.02, 0, 0.004), kDt);
+  CHECK(liver.state_hash() != rest);
+  const ToolForce force = liver.step(on_liver(liver, -0.02, 0, -0.001), kDt);
+  CHECK(force.force == Vec3::Zero());
+  CHECK(force.contacts == 0);
+  CHECK(liver.state_hash() == rest);
+}
+
+TEST_CASE("a tool that jumps 25 mm into the organ is held as if it had been pushed there") {
+  Simulation jumped(test::liver_scene()), pushed(test::liver_scene());
+  const Vec3 above = on_liver(jumped, -0.02, 0, -0.02), within = on_liver(jumped, -0.02, 0, 0.005);
+  jumped.step(above, kDt);
+  const ToolForce at_once = jumped.step(within, kDt);
+  for (int i = 0; i <= 100; ++i) pushed.step(above + i / 100.0 * (within - above), kDt);
+  CHECK(at_once.force[1] > 0.1);
+  CHECK((at_once.force - pushed.step(within, kDt).force).norm() < 1e-6);
+}
+
+TEST_CASE("a tool that begins inside the organ is pushed out through the nearest surface") {
+  Simulation liver(test::liver_scene());
+  const ToolForce force = liver.step(on_liver(liver, -0.02, 0, 0.009), kDt);
+  CHECK(force.force.allFinite());
+  CHECK(force.force[1] > 0.3);
+}
+
+TEST_CASE("a wild position keeps the last force and says so") {
+  Simulation liver(test::liver_scene());
+  const Vec3 good = liver.step(on_liver(liver, -0.02, 0, 0.003), kDt).force;
+  for (const double wild : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+    const ToolForce held = liver.step({0, wild, 0}, kDt);
+    CHECK(held.flagged);
+    CHECK(held.force == good);
+  }
+}
+
+TEST_CASE("a step in contact does not allocate") {
+  Simulation liver(test::liver_scene());
+  liver.step(on_liver(liver, -0.02, 0, 0.003), kDt);
+  std::size_t allocations = 1;
+  const Vec3 a = on_liver(liver, -0.021, 0.001, 0.005), b = on_liver(liver, -0.021, 0.001, -0.01);
+  {
+    const test::AllocationGuard guard;
+    liver.step(a, kDt);
+    liver.step(b, kDt);
+    allocations = guard.count();
+  }
+  CHECK(allocations == 0);
+}
+
+TEST_CASE("the same path gives the same bits") {
+  Simulation one(test::liver_scene()), two(test::liver_scene());
+  for (double x = -0.04; x < -0.03; x += 1e-3) {
+    one.step(on_liver(one, x, 0, 0.004), kDt);
+    two.step(on_liver(two, x, 0, 0.004), kDt);
+  }
+  CHECK(one.state_hash() == two.state_hash());
+}
