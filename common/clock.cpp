@@ -1,8 +1,7 @@
 #include "common/clock.h"
 
-#include <time.h>
-
 #include <cerrno>
+#include <time.h>
 
 namespace palpate {
 namespace {

@@ -19,8 +19,12 @@ struct Config::Node {
     asked.insert(key);
     return table->get(key);
   }
-  std::string at(const toml::node& node) const { return fmt::format("{}:{}", file, node.source().begin.line); }
-  std::string full(const std::string& key) const { return name.empty() ? key : fmt::format("{} {}", name, key); }
+  std::string at(const toml::node& node) const {
+    return fmt::format("{}:{}", file, node.source().begin.line);
+  }
+  std::string full(const std::string& key) const {
+    return name.empty() ? key : fmt::format("{} {}", name, key);
+  }
   /// The node of `key`; null when absent and `required` is false.
   const toml::node* get(const std::string& key, bool required) {
     const toml::node* node = find(key);
@@ -42,7 +46,8 @@ struct Config::Node {
   Vec3 vector(const toml::node& node, const std::string& key, const Range& range) const {
     const toml::array* array = node.as_array();
     if (array == nullptr || array->size() != 3) {
-      wrong(node, key, fmt::format("three numbers [x, y, z]{}{}", *range.unit == 0 ? "" : " in ", range.unit));
+      wrong(node, key,
+            fmt::format("three numbers [x, y, z]{}{}", *range.unit == 0 ? "" : " in ", range.unit));
     }
     Vec3 v;
     for (std::size_t i = 0; i < 3; ++i) v[static_cast<int>(i)] = number(*array->get(i), key, range);
@@ -103,7 +108,8 @@ std::vector<std::string> Config::texts(const std::string& key, std::size_t count
       if (const auto text = entry.value<std::string>(); entry.is_string()) values.push_back(*text);
     }
   }
-  if (values.size() != count) node_->wrong(*node, key, fmt::format("{} texts in quotes, [\"...\", ...]", count));
+  if (values.size() != count)
+    node_->wrong(*node, key, fmt::format("{} texts in quotes, [\"...\", ...]", count));
   return values;
 }
 
@@ -115,7 +121,8 @@ Vec3 Config::vector(const std::string& key, const Range& range, std::optional<Ve
 std::pair<Vec3, Vec3> Config::box(const std::string& key) const {
   const toml::node* node = node_->get(key, true);
   const toml::array* corners = node->as_array();
-  if (corners == nullptr || corners->size() != 2) node_->wrong(*node, key, "two corners [[x, y, z], [x, y, z]] in m");
+  if (corners == nullptr || corners->size() != 2)
+    node_->wrong(*node, key, "two corners [[x, y, z], [x, y, z]] in m");
   const Range metres{.unit = "m"};
   const std::pair<Vec3, Vec3> box{node_->vector(*corners->get(0), key, metres),
                                   node_->vector(*corners->get(1), key, metres)};
@@ -133,8 +140,8 @@ std::optional<Config> Config::table(const std::string& key) const {
   const toml::node* node = node_->find(key);
   if (node == nullptr) return {};
   if (!node->is_table()) node_->wrong(*node, key, fmt::format("a table `[{}]`", key));
-  return Config(std::make_shared<Node>(
-      Node{node_->root, node->as_table(), node_->file, fmt::format("[{}]", key), {}}));
+  return Config(
+      std::make_shared<Node>(Node{node_->root, node->as_table(), node_->file, fmt::format("[{}]", key), {}}));
 }
 
 std::vector<Config> Config::tables(const std::string& key) const {

@@ -17,9 +17,9 @@ struct Range {
   const char* unit = "";
 };
 
-/// One table of a TOML file, read strictly: every getter checks type and range and remembers the key it was asked
-/// for, and `reject_unknown` then refuses whatever the file says beyond that. All errors are `Error`s that name
-/// file, line, key, what was expected and the nearest valid name. Set-up only.
+/// One table of a TOML file, read strictly: every getter checks type and range and remembers the key it was
+/// asked for, and `reject_unknown` then refuses whatever the file says beyond that. All errors are `Error`s
+/// that name file, line, key, what was expected and the nearest valid name. Set-up only.
 class Config {
  public:
   static Config read(const std::filesystem::path& file);
@@ -32,7 +32,8 @@ class Config {
   long integer(const std::string& key, const Range& range, std::optional<long> otherwise = {}) const;
   std::string text(const std::string& key, std::optional<std::string> otherwise = {}) const;
   /// Exactly `count` texts in an array.
-  std::vector<std::string> texts(const std::string& key, std::size_t count, std::vector<std::string> otherwise) const;
+  std::vector<std::string> texts(const std::string& key, std::size_t count,
+                                 std::vector<std::string> otherwise) const;
   Vec3 vector(const std::string& key, const Range& range, std::optional<Vec3> otherwise = {}) const;
   /// `[[x, y, z], [x, y, z]]`, minimum then maximum, each component in order.
   std::pair<Vec3, Vec3> box(const std::string& key) const;

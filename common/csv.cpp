@@ -37,8 +37,8 @@ double parse_cell(const std::string& cell, const std::string& where, const std::
   return value;
 }
 
-std::vector<std::size_t> find_columns(const std::vector<std::string>& header, std::span<const std::string> columns,
-                                      const std::string& where) {
+std::vector<std::size_t> find_columns(const std::vector<std::string>& header,
+                                      std::span<const std::string> columns, const std::string& where) {
   std::vector<std::size_t> indices;
   for (const std::string& column : columns) {
     const auto found = std::find(header.begin(), header.end(), column);

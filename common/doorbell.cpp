@@ -1,9 +1,8 @@
 #include "common/doorbell.h"
 
+#include <cstdint>
 #include <sys/eventfd.h>
 #include <unistd.h>
-
-#include <cstdint>
 
 #include "common/error.h"
 

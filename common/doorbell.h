@@ -2,8 +2,9 @@
 
 namespace palpate {
 
-/// Wakes a thread that waits in an event loop (an eventfd): a loop rings after it wrote to a mailbox, the network
-/// thread waits for `descriptor()` to become readable. Ringing never blocks; rings that nobody answered merge.
+/// Wakes a thread that waits in an event loop (an eventfd): a loop rings after it wrote to a mailbox, the
+/// network thread waits for `descriptor()` to become readable. Ringing never blocks; rings that nobody
+/// answered merge.
 class Doorbell {
  public:
   /// Throws `Error` when the system has no descriptor left.

@@ -33,7 +33,8 @@ double Histogram::quantile(double q) const noexcept {
   std::int64_t seen = 0;
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     seen += counts_[i];
-    if (seen >= wanted && seen > 0) return std::min(middle_of(static_cast<int>(i)), static_cast<double>(max_));
+    if (seen >= wanted && seen > 0)
+      return std::min(middle_of(static_cast<int>(i)), static_cast<double>(max_));
   }
   return 0;
 }

@@ -4,8 +4,8 @@
 
 namespace palpate {
 
-/// Counts of non-negative whole numbers (nanoseconds, usually) in log-linear buckets: 128 steps an octave, so a
-/// quantile is right within 0.4 %; the maximum is exact. One thread writes; read it when that thread rests.
+/// Counts of non-negative whole numbers (nanoseconds, usually) in log-linear buckets: 128 steps an octave, so
+/// a quantile is right within 0.4 %; the maximum is exact. One thread writes; read it when that thread rests.
 /// `add` is a few instructions, nothing allocates (40 KiB of counters).
 class Histogram {
  public:
@@ -19,7 +19,7 @@ class Histogram {
   double quantile(double q) const noexcept;
 
  private:
-  static constexpr int kBits = 8;       // bits of kSteps
+  static constexpr int kBits = 8;      // bits of kSteps
   static constexpr int kSteps = 128;   // buckets per octave
   static constexpr int kOctaves = 38;  // up to 2^45, about 9 hours in ns
   static int bucket_of(std::int64_t value) noexcept;

@@ -1,9 +1,8 @@
 #include "common/interrupt.h"
 
-#include <pthread.h>
-
 #include <csignal>
 #include <initializer_list>
+#include <pthread.h>
 
 namespace palpate {
 namespace {
@@ -20,7 +19,8 @@ sigset_t set_of(std::initializer_list<int> signals) {
 void block_interrupts() {
   const sigset_t set = set_of({SIGINT, SIGTERM, SIGUSR1});
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // NOLINT(bugprone-unused-return-value): `palpate | head` must not kill the loop
+  std::signal(SIGPIPE,
+              SIG_IGN);  // NOLINT(bugprone-unused-return-value): `palpate | head` must not kill the loop
 }
 
 bool wait_for_interrupt(Time timeout) {

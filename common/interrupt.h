@@ -3,8 +3,8 @@
 
 namespace palpate {
 
-/// Keeps Ctrl-C (SIGINT), SIGTERM and SIGUSR1 from ending the program at once: call first in `main`, before any thread
-/// starts, so that every thread inherits it. They then arrive only at the calls below.
+/// Keeps Ctrl-C (SIGINT), SIGTERM and SIGUSR1 from ending the program at once: call first in `main`, before
+/// any thread starts, so that every thread inherits it. They then arrive only at the calls below.
 void block_interrupts();
 
 /// Waits up to `timeout` for Ctrl-C or SIGTERM; true when one came. Main thread.

@@ -7,7 +7,8 @@ namespace palpate {
 
 /// Wait-free mailbox between one writer and one reader that keeps only the newest value (a triple buffer: one
 /// slot being written, one being read, one in between). Neither side ever waits, locks or allocates; a value
-/// that was overtaken before it was read is gone. `T` is copied whole, so keep it trivially copyable and small.
+/// that was overtaken before it was read is gone. `T` is copied whole, so keep it trivially copyable and
+/// small.
 template <class T>
 class LatestValue {
  public:

@@ -1,6 +1,5 @@
 #pragma once
 #include <fmt/core.h>
-
 #include <string_view>
 #include <utility>
 

@@ -1,12 +1,11 @@
 #include "common/realtime.h"
 
+#include <cerrno>
+#include <cstring>
 #include <fmt/core.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
-
-#include <cerrno>
-#include <cstring>
 
 namespace palpate {
 
@@ -23,9 +22,10 @@ std::string make_realtime(const char* name, int priority) {
   param.sched_priority = priority;
   const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
   if (refused == 0) return {};
-  return fmt::format("no real-time priority for the {} thread ({}): raise `ulimit -r` (rtprio in "
-                     "/etc/security/limits.conf)",
-                     name, std::strerror(refused));
+  return fmt::format(
+      "no real-time priority for the {} thread ({}): raise `ulimit -r` (rtprio in "
+      "/etc/security/limits.conf)",
+      name, std::strerror(refused));
 }
 
 }  // namespace palpate

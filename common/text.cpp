@@ -1,8 +1,7 @@
 #include "common/text.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 #include <numeric>
 
 #include "common/error.h"
@@ -26,10 +25,9 @@ int edit_distance(std::string_view a, std::string_view b) {
 
 std::string suggestion(std::string_view name, std::span<const std::string> candidates) {
   if (candidates.empty()) return {};
-  const auto nearest =
-      std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
-        return edit_distance(name, a) < edit_distance(name, b);
-      });
+  const auto nearest = std::min_element(
+      candidates.begin(), candidates.end(),
+      [&](const auto& a, const auto& b) { return edit_distance(name, a) < edit_distance(name, b); });
   const int far = std::max<int>(2, static_cast<int>(name.size()) / 2);
   if (edit_distance(name, *nearest) <= far) return fmt::format("; did you mean \"{}\"?", *nearest);
   return fmt::format("; known: {}", fmt::join(candidates, ", "));

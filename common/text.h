@@ -15,13 +15,15 @@ std::string suggestion(std::string_view name, std::span<const std::string> candi
 /// The row called `name` in a registry table (any range of structs with a `name` member). Throws `Error` that
 /// says `what` was looked up, where it was asked for, and the nearest known name.
 template <class Table>
-const auto& find_row(const Table& table, std::string_view name, std::string_view what, std::string_view where);
+const auto& find_row(const Table& table, std::string_view name, std::string_view what,
+                     std::string_view where);
 
 [[noreturn]] void fail_unknown_name(std::string_view name, std::string_view what, std::string_view where,
                                     std::span<const std::string> known);
 
 template <class Table>
-const auto& find_row(const Table& table, std::string_view name, std::string_view what, std::string_view where) {
+const auto& find_row(const Table& table, std::string_view name, std::string_view what,
+                     std::string_view where) {
   for (const auto& row : table) {
     if (row.name == name) return row;
   }

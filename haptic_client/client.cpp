@@ -1,10 +1,9 @@
 #include "haptic_client/client.h"
 
-#include <unistd.h>
-
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
+#include <unistd.h>
 
 #include "common/clock.h"
 #include "common/error.h"
@@ -39,34 +38,39 @@ bool wait_for_welcome(const NetLink& link, const std::string& server) {
     if (wait_for_interrupt(std::chrono::milliseconds(20))) return false;
     if (now() - start < kWelcomePatience) continue;
     if (link.refused == static_cast<int>(protocol::RefuseReason::kNoFreeTool)) {
-      fail_at_run_time("the server at {} has no free tool: another client holds it; end that one first", server);
+      fail_at_run_time("the server at {} has no free tool: another client holds it; end that one first",
+                       server);
     }
-    fail_at_run_time("no answer from a server at {} within 5 s; is `sim_server run` up, and UDP open there?", server);
+    fail_at_run_time("no answer from a server at {} within 5 s; is `sim_server run` up, and UDP open there?",
+                     server);
   }
   return true;
 }
 
-/// Tells, while the loop runs: a progress line, and once each the loss and the return of the server and a latched fault.
+/// Tells, while the loop runs: a progress line, and once each the loss and the return of the server and a
+/// latched fault.
 class Watcher {
  public:
   Watcher(HapticLoop& loop, const std::string& server) : loop_(loop), server_(server) {}
 
   void look(double seconds) {
     const std::int64_t age = loop_.newest_age_ns;
-    if (age > kSilentNs && !silent_) log::warning("no samples from {}: force goes to zero; asking again", server_);
+    if (age > kSilentNs && !silent_)
+      log::warning("no samples from {}: force goes to zero; asking again", server_);
     if (age >= 0 && age < kSilentNs && silent_) log::info("{} is back: soft start", server_);
     silent_ = age > kSilentNs;
     const Fault fault = loop_.fault;
     if (fault != Fault::kNone && fault_ == Fault::kNone) {
-      log::warning("force latched off ({}); when it is safe, re-arm with `kill -USR1 {}`", name_of(fault), getpid());
+      log::warning("force latched off ({}); when it is safe, re-arm with `kill -USR1 {}`", name_of(fault),
+                   getpid());
     }
     fault_ = fault;
     const bool terminal = isatty(STDOUT_FILENO) != 0;
     if (seconds < next_) return;
     next_ = seconds + (terminal ? 0.2 : 5);
-    fmt::print("{}haptic_client: {:6.1f} s  |F| {:5.2f} N  age {:5.1f} ms  ticks {} ({} missed){}", terminal ? "\r" : "",
-               seconds, loop_.newest_newton.load(), static_cast<double>(age) / 1e6, loop_.ticks.load(),
-               loop_.missed.load(), terminal ? "  " : "\n");
+    fmt::print("{}haptic_client: {:6.1f} s  |F| {:5.2f} N  age {:5.1f} ms  ticks {} ({} missed){}",
+               terminal ? "\r" : "", seconds, loop_.newest_newton.load(), static_cast<double>(age) / 1e6,
+               loop_.ticks.load(), loop_.missed.load(), terminal ? "  " : "\n");
     std::fflush(stdout);
   }
 
@@ -97,14 +101,16 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
   if (options.report) check_writable(*options.report);
   if (options.trace) check_writable(*options.trace);
   const protocol::Endpoint server = protocol::resolve(config.server);
-  const auto device = find_row(devices(), config.device.name, "device", config.device.where).make(config.device);
+  const auto device =
+      find_row(devices(), config.device.name, "device", config.device.where).make(config.device);
   Limiter::Settings limits = config.limits;
   limits.max_force = std::min(limits.max_force, device->limits().max_force);
-  Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(), config.workspace,
-                    limits);
+  Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(),
+                    config.workspace, limits);
   HapticMailboxes mailboxes;
   const double kept = options.trace ? std::min(options.seconds.value_or(kTraceSeconds), kTraceSeconds) : 0;
-  HapticLoop loop(*device, pipeline, mailboxes, config.rate_hz, static_cast<std::size_t>(kept * config.rate_hz));
+  HapticLoop loop(*device, pipeline, mailboxes, config.rate_hz,
+                  static_cast<std::size_t>(kept * config.rate_hz));
   protocol::UdpSocket socket(any_address(server));
   NetLink link(socket, server, mailboxes, random_number());
   std::string refused;
@@ -129,7 +135,8 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
   if (!refused.empty()) log::warning("{}", refused);
   const Json report = make_report(config, loop, pipeline, link);
   print_report(report);
-  if (options.trace) write_trace(*options.trace, loop.record(), {"constant", "linear_time", "linear_position"});
+  if (options.trace)
+    write_trace(*options.trace, loop.record(), {"constant", "linear_time", "linear_position"});
   if (options.report) write_json(*options.report, report);
   return 0;
 }

@@ -8,7 +8,7 @@ namespace palpate::client {
 
 /// What `haptic_client run` was asked for, beyond the configuration.
 struct ClientOptions {
-  std::optional<double> seconds;                ///< stop after so long in contact with the server; absent: at Ctrl-C
+  std::optional<double> seconds;  ///< stop after so long in contact with the server; absent: at Ctrl-C
   std::optional<std::filesystem::path> report;  ///< JSON written at the end
   std::optional<std::filesystem::path> trace;   ///< CSV of the last minute, a row a tick
 };

@@ -64,7 +64,8 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
     device->reject_unknown();
   }
   if (const auto hand = config.table("operator")) client.device.hand = read_operator(*hand);
-  if (const auto trajectory = config.table("trajectory")) client.device.trajectory = read_trajectory(*trajectory);
+  if (const auto trajectory = config.table("trajectory"))
+    client.device.trajectory = read_trajectory(*trajectory);
   if (const auto workspace = config.table("workspace")) client.workspace = read_workspace(*workspace);
   if (const auto limits = config.table("limits")) client.limits = read_limits(*limits);
   config.reject_unknown();

@@ -10,7 +10,8 @@ namespace palpate::client {
 const char* name_of(Fault fault);
 
 /// The figures of a finished run; keys in haptic_client/README.md.
-Json make_report(const ClientConfig& config, const HapticLoop& loop, const Pipeline& pipeline, const NetLink& link);
+Json make_report(const ClientConfig& config, const HapticLoop& loop, const Pipeline& pipeline,
+                 const NetLink& link);
 
 /// The same for people, on stdout.
 void print_report(const Json& report);

@@ -57,8 +57,9 @@ int run(int argc, char** argv) {
   command->add_option("--seconds", options.seconds, "Stop after so many seconds")->check(CLI::PositiveNumber);
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
   command->add_option("--trace", options.trace, "Write the last minute, a row a tick, to this CSV file");
-  command->footer("Methods:\n" + list_of(client::extrapolators()) + "Devices:\n" + list_of(client::devices()) +
-                  "Example: haptic_client run configs/clients/liver.toml --method constant --report report.json");
+  command->footer(
+      "Methods:\n" + list_of(client::extrapolators()) + "Devices:\n" + list_of(client::devices()) +
+      "Example: haptic_client run configs/clients/liver.toml --method constant --report report.json");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

@@ -6,7 +6,8 @@ namespace palpate::client {
 using protocol::Endpoint;
 using protocol::Verdict;
 
-NetLink::NetLink(protocol::UdpSocket& socket, const Endpoint& server, HapticMailboxes& mailboxes, std::uint64_t nonce)
+NetLink::NetLink(protocol::UdpSocket& socket, const Endpoint& server, HapticMailboxes& mailboxes,
+                 std::uint64_t nonce)
     : socket_(socket), server_(server), mailboxes_(mailboxes), session_(nonce) {}
 
 void NetLink::run() {

@@ -10,7 +10,8 @@ namespace palpate::client {
 class NetLink {
  public:
   /// `nonce`: a random number, drawn once per run.
-  NetLink(protocol::UdpSocket& socket, const protocol::Endpoint& server, HapticMailboxes& mailboxes, std::uint64_t nonce);
+  NetLink(protocol::UdpSocket& socket, const protocol::Endpoint& server, HapticMailboxes& mailboxes,
+          std::uint64_t nonce);
 
   /// Serves until `stop`, then says Bye.
   void run();

@@ -1,7 +1,6 @@
 #include "haptic_client/trace.h"
 
 #include <fmt/format.h>
-
 #include <iterator>
 
 #include "common/report.h"
@@ -24,8 +23,8 @@ void write_trace(const std::filesystem::path& file, const std::vector<TickRecord
   Time newest{std::numeric_limits<Time::rep>::min()};
   for (const TickRecord& tick : ticks) {
     const Vec3 &p = tick.p_W, &f = tick.f_D;
-    fmt::format_to(out, "{:.6f},{:.7f},{:.7f},{:.7f},{:.5f},{:.5f},{:.5f}", to_seconds(tick.t - start), p[0], p[1], p[2],
-                   f[0], f[1], f[2]);
+    fmt::format_to(out, "{:.6f},{:.7f},{:.7f},{:.7f},{:.5f},{:.5f},{:.5f}", to_seconds(tick.t - start), p[0],
+                   p[1], p[2], f[0], f[1], f[2]);
     const bool use = tick.fresh && tick.sample.t > newest;
     if (use) {
       newest = tick.sample.t;

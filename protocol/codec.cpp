@@ -51,15 +51,22 @@ Verdict read_as(std::span<const std::byte> payload, Message& out) noexcept {
 
 Verdict read_payload(MessageType type, std::span<const std::byte> payload, Message& out) noexcept {
   switch (type) {
-    case MessageType::kHello: return read_as<Hello>(payload, out);
-    case MessageType::kWelcome: return read_as<Welcome>(payload, out);
-    case MessageType::kRefuse: return read_as<Refuse>(payload, out);
-    case MessageType::kBye: return read_as<Bye>(payload, out);
-    case MessageType::kToolState: return read_as<ToolState>(payload, out);
-    case MessageType::kForceSample: return read_as<ForceSample>(payload, out);
+    case MessageType::kHello:
+      return read_as<Hello>(payload, out);
+    case MessageType::kWelcome:
+      return read_as<Welcome>(payload, out);
+    case MessageType::kRefuse:
+      return read_as<Refuse>(payload, out);
+    case MessageType::kBye:
+      return read_as<Bye>(payload, out);
+    case MessageType::kToolState:
+      return read_as<ToolState>(payload, out);
+    case MessageType::kForceSample:
+      return read_as<ForceSample>(payload, out);
     case MessageType::kChallenge:
     case MessageType::kTelemetry:
-    case MessageType::kPointer: break;
+    case MessageType::kPointer:
+      break;
   }
   return Verdict::kType;
 }
@@ -75,7 +82,8 @@ std::size_t encode(const Header& header, const Message& message, std::span<std::
         M::fields(m, body);
         std::size_t payload = body.size();
         if (M::kType == MessageType::kHello) {
-          std::fill(out.begin() + kHeaderBytes + payload, out.begin() + kHeaderBytes + kHelloPayload, std::byte{0});
+          std::fill(out.begin() + kHeaderBytes + payload, out.begin() + kHeaderBytes + kHelloPayload,
+                    std::byte{0});
           payload = kHelloPayload;
         }
         Writer front(out);

@@ -1,6 +1,6 @@
 #pragma once
-/// What travels. Byte layout and meaning: protocol/README.md. Each message lists its fields once, in wire order; writer
-/// and reader both walk that list.
+/// What travels. Byte layout and meaning: protocol/README.md. Each message lists its fields once, in wire
+/// order; writer and reader both walk that list.
 #include <array>
 #include <cstdint>
 #include <variant>
@@ -11,15 +11,15 @@ namespace palpate::protocol {
 
 /// Every message there is or is planned; the numbers never change.
 enum class MessageType : std::uint8_t {
-  kHello = 1,      ///< client: let me in
-  kChallenge = 2,  ///< server: prove that you receive at your address (reserved)
-  kWelcome = 3,    ///< server: you are in
-  kRefuse = 4,     ///< server: you are not, and why
-  kBye = 5,        ///< either: I am leaving
-  kToolState = 6,  ///< client: where the tool is
+  kHello = 1,        ///< client: let me in
+  kChallenge = 2,    ///< server: prove that you receive at your address (reserved)
+  kWelcome = 3,      ///< server: you are in
+  kRefuse = 4,       ///< server: you are not, and why
+  kBye = 5,          ///< either: I am leaving
+  kToolState = 6,    ///< client: where the tool is
   kForceSample = 7,  ///< server: the force computed for a tool state
-  kTelemetry = 8,  ///< client: loop, laws, safety, while a page is open (reserved)
-  kPointer = 9,    ///< server: the mouse of a page as a device (reserved)
+  kTelemetry = 8,    ///< client: loop, laws, safety, while a page is open (reserved)
+  kPointer = 9,      ///< server: the mouse of a page as a device (reserved)
 };
 
 enum class RefuseReason : std::uint8_t {
@@ -29,7 +29,7 @@ enum class RefuseReason : std::uint8_t {
 
 struct Hello {
   static constexpr MessageType kType = MessageType::kHello;
-  std::uint64_t nonce = 0;                   ///< drawn by the client once per run: tells its retries from a second client
+  std::uint64_t nonce = 0;  ///< drawn by the client once per run: tells its retries from a second client
   std::array<std::uint64_t, 2> cookie = {};  ///< copy of the Challenge's; zero before one came
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
@@ -74,7 +74,7 @@ struct ToolState {
   Vec3 p_W = Vec3::Zero();          ///< tool centre, m
   Vec3 v_W = Vec3::Zero();          ///< its velocity, m/s
   std::array<double, 4> q_W = {1, 0, 0, 0};  ///< orientation, unit quaternion w, x, y, z
-  std::uint32_t buttons = 0;        ///< one bit each
+  std::uint32_t buttons = 0;                 ///< one bit each
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.tick), v(m.newest_sample), v(m.t_ns), v(m.p_W), v(m.v_W), v(m.q_W), v(m.buttons);
@@ -85,17 +85,19 @@ struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
   static constexpr std::uint32_t kInContact = 1, kFlagged = 2;  ///< bits of `flags`
   std::uint8_t tool = 0;
-  std::uint64_t number = 0;      ///< of this sample in its session, from 1
-  std::uint64_t tool_tick = 0;   ///< echoed from the ToolState it answers, as are:
-  std::int64_t tool_t_ns = 0;    ///< the client's own time stamp, so that force age needs no clock synchronisation
-  Vec3 p_W = Vec3::Zero();       ///< the tool position the force was computed for, m
-  Vec3 f_W = Vec3::Zero();       ///< force on the tool, N
+  std::uint64_t number = 0;     ///< of this sample in its session, from 1
+  std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:
+  std::int64_t tool_t_ns =
+      0;                    ///< the client's own time stamp, so that force age needs no clock synchronisation
+  Vec3 p_W = Vec3::Zero();  ///< the tool position the force was computed for, m
+  Vec3 f_W = Vec3::Zero();  ///< force on the tool, N
   Vec3 torque_W = Vec3::Zero();  ///< torque on the tool about its centre, N m
   std::int64_t step_ns = 0;      ///< time the server spent on the step
   std::uint32_t flags = 0;
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns), v(m.flags);
+    v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
+        v(m.flags);
   }
 };
 

@@ -5,12 +5,12 @@
 
 namespace palpate::protocol {
 
-/// Sequence numbers of one sender seen so far: the highest, and which of the 64 before it (the sliding window of
-/// RFC 4303, section 3.4.3). Pure; a few instructions.
+/// Sequence numbers of one sender seen so far: the highest, and which of the 64 before it (the sliding window
+/// of RFC 4303, section 3.4.3). Pure; a few instructions.
 class ReplayWindow {
  public:
-  /// True if `sequence` (>= 1) was not seen before; counts it in `stats`. A duplicate, or a number more than 64 behind,
-  /// is refused. Sequence 0 is refused always.
+  /// True if `sequence` (>= 1) was not seen before; counts it in `stats`. A duplicate, or a number more than
+  /// 64 behind, is refused. Sequence 0 is refused always.
   bool accept(std::uint64_t sequence, LinkStats& stats) noexcept {
     if (sequence > highest_) {
       const std::uint64_t ahead = sequence - highest_;

@@ -25,15 +25,16 @@ const ForceSample* ClientSession::receive(const Datagram& datagram, Time now, Li
     return nullptr;
   }
   if (const auto* refuse = std::get_if<Refuse>(&datagram.message)) {
-    const bool to_hello = refuse->nonce == nonce_, to_session = refuse->nonce == 0 && welcomed() &&
-                                                                datagram.header.session == session_;
+    const bool to_hello = refuse->nonce == nonce_,
+               to_session = refuse->nonce == 0 && welcomed() && datagram.header.session == session_;
     if (to_hello) refused_ = refuse->reason;
     if (to_session) last_heard_.reset();  // forgotten there: ask at once
     if (!to_hello && !to_session) ++stats.rejected;
     return nullptr;
   }
   const bool mine = welcomed() && datagram.header.session == session_;
-  if (const auto* sample = std::get_if<ForceSample>(&datagram.message); sample && mine && sample->tool == welcome_.tool) {
+  if (const auto* sample = std::get_if<ForceSample>(&datagram.message);
+      sample && mine && sample->tool == welcome_.tool) {
     if (!window_.accept(datagram.header.sequence, stats)) return nullptr;
     last_heard_ = now;
     if (sample->number <= newest_sample_) return nullptr;  // overtaken on the way: the newest value wins
@@ -49,7 +50,8 @@ const ForceSample* ClientSession::receive(const Datagram& datagram, Time now, Li
 }
 
 ServerSessions::Member* ServerSessions::holder(std::uint8_t tool) noexcept {
-  const auto found = std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.tool == tool; });
+  const auto found =
+      std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.tool == tool; });
   return found == members_.end() ? nullptr : &*found;
 }
 
@@ -63,21 +65,23 @@ std::optional<std::uint8_t> ServerSessions::free_tool() noexcept {
 ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Endpoint& from, Time now,
                                               std::uint64_t fresh_id, LinkStats& stats) {
   ++stats.received;
-  auto member = std::find_if(members_.begin(), members_.end(), [&](const Member& m) {
-    return m.nonce == hello.nonce && m.endpoint == from;
-  });
+  auto member = std::find_if(members_.begin(), members_.end(),
+                             [&](const Member& m) { return m.nonce == hello.nonce && m.endpoint == from; });
   if (member == members_.end()) {
     const auto tool = free_tool();
     if (!tool) return {.answer = {{Header{}, Refuse{hello.nonce, RefuseReason::kNoFreeTool}}}};
-    member = members_.insert(member, {.session = fresh_id, .nonce = hello.nonce, .endpoint = from, .tool = *tool});
+    member =
+        members_.insert(member, {.session = fresh_id, .nonce = hello.nonce, .endpoint = from, .tool = *tool});
   }
   member->last_heard = now;
-  return {.answer = {{Header{member->session, ++member->sent}, Welcome{hello.nonce, member->tool, rate_hz_, radius_}}}};
+  return {.answer = {{Header{member->session, ++member->sent},
+                      Welcome{hello.nonce, member->tool, rate_hz_, radius_}}}};
 }
 
 ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const Endpoint& from, Time now,
                                                 std::uint64_t fresh_id, LinkStats& stats) {
-  if (const auto* hello = std::get_if<Hello>(&datagram.message)) return admit(*hello, from, now, fresh_id, stats);
+  if (const auto* hello = std::get_if<Hello>(&datagram.message))
+    return admit(*hello, from, now, fresh_id, stats);
   const auto found = std::find_if(members_.begin(), members_.end(), [&](const Member& m) {
     return m.session == datagram.header.session && m.endpoint == from;
   });

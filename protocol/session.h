@@ -1,5 +1,6 @@
 #pragma once
-/// Who talks to whom: the two ends of a session as pure state machines (protocol/STATES.md). Time is an argument.
+/// Who talks to whom: the two ends of a session as pure state machines (protocol/STATES.md). Time is an
+/// argument.
 #include <array>
 #include <compare>
 #include <optional>
@@ -19,7 +20,8 @@ struct Endpoint {
   auto operator<=>(const Endpoint&) const = default;
 };
 
-/// The client's end. Asks until welcomed; asks again, without giving up what it has, when the server falls silent.
+/// The client's end. Asks until welcomed; asks again, without giving up what it has, when the server falls
+/// silent.
 class ClientSession {
  public:
   /// `nonce`: drawn once per run of the program.
@@ -28,8 +30,8 @@ class ClientSession {
   /// A Hello to send now, if one is due. Call often (every 50 ms will do).
   std::optional<Hello> poll(Time now) noexcept;
 
-  /// A decoded datagram came. Returns the force sample in it if it is of this session and the newest so far; everything
-  /// else is taken care of here. `stats` gets what was received, lost, doubled or rejected.
+  /// A decoded datagram came. Returns the force sample in it if it is of this session and the newest so far;
+  /// everything else is taken care of here. `stats` gets what was received, lost, doubled or rejected.
   const ForceSample* receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept;
 
   /// Header of the next datagram to send in this session.
@@ -68,10 +70,12 @@ class ServerSessions {
     const Member* left = nullptr;  ///< said Bye; valid until the next call
   };
 
-  ServerSessions(int tools, double rate_hz, double tool_radius) : tools_(tools), rate_hz_(rate_hz), radius_(tool_radius) {}
+  ServerSessions(int tools, double rate_hz, double tool_radius)
+      : tools_(tools), rate_hz_(rate_hz), radius_(tool_radius) {}
 
   /// A decoded datagram came. `fresh_id`: a random number, used if this opens a session.
-  Outcome receive(const Datagram& datagram, const Endpoint& from, Time now, std::uint64_t fresh_id, LinkStats& stats);
+  Outcome receive(const Datagram& datagram, const Endpoint& from, Time now, std::uint64_t fresh_id,
+                  LinkStats& stats);
 
   /// Drops and returns members not heard for `kTimeout`.
   std::vector<Member> expire(Time now);

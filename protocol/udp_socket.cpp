@@ -48,7 +48,8 @@ Endpoint resolve(const std::string& text) {
   std::error_code failed;
   const auto found = udp::resolver(context).resolve(host, "", failed);
   if (failed || found.empty()) fail("\"{}\": host \"{}\" is not known ({})", text, host, failed.message());
-  const auto v4 = std::find_if(found.begin(), found.end(), [](const auto& e) { return e.endpoint().address().is_v4(); });
+  const auto v4 =
+      std::find_if(found.begin(), found.end(), [](const auto& e) { return e.endpoint().address().is_v4(); });
   Endpoint endpoint = from_asio(v4 != found.end() ? v4->endpoint() : found.begin()->endpoint());
   endpoint.port = static_cast<std::uint16_t>(port);
   return endpoint;
@@ -56,7 +57,8 @@ Endpoint resolve(const std::string& text) {
 
 std::string to_string(const Endpoint& endpoint) {
   const std::string host = to_asio(endpoint).address().to_string();
-  return endpoint.v6 ? fmt::format("[{}]:{}", host, endpoint.port) : fmt::format("{}:{}", host, endpoint.port);
+  return endpoint.v6 ? fmt::format("[{}]:{}", host, endpoint.port)
+                     : fmt::format("{}:{}", host, endpoint.port);
 }
 
 struct UdpSocket::Asio {
@@ -107,8 +109,9 @@ UdpSocket::UdpSocket(const Endpoint& local) : asio_(std::make_unique<Asio>()) {
   asio_->socket.open(address.protocol(), failed);
   if (!failed) asio_->socket.bind(address, failed);
   if (failed == asio::error::address_in_use) {
-    fail_at_run_time("UDP port {} is in use; stop the other program or choose another with --listen ADDR:PORT",
-                     to_string(local));
+    fail_at_run_time(
+        "UDP port {} is in use; stop the other program or choose another with --listen ADDR:PORT",
+        to_string(local));
   }
   if (failed) fail_at_run_time("cannot use UDP address {} ({})", to_string(local), failed.message());
   asio_->socket.non_blocking(true);

@@ -10,7 +10,8 @@
 
 namespace palpate::protocol {
 
-/// "HOST:PORT" -> endpoint; an IPv6 host stands in brackets. Throws `Error` that says what is wrong with `text`.
+/// "HOST:PORT" -> endpoint; an IPv6 host stands in brackets. Throws `Error` that says what is wrong with
+/// `text`.
 Endpoint resolve(const std::string& text);
 
 /// "1.2.3.4:567" or "[::1]:567".
@@ -26,7 +27,8 @@ class UdpSocket {
     std::function<void()> on_timer;     ///< every `timer_period`
   };
 
-  /// Binds to `local` (port 0: any). Throws `Error` (run time) naming the address when it is taken or not ours.
+  /// Binds to `local` (port 0: any). Throws `Error` (run time) naming the address when it is taken or not
+  /// ours.
   explicit UdpSocket(const Endpoint& local);
   ~UdpSocket();
 

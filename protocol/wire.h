@@ -18,7 +18,7 @@ class Writer {
   explicit Writer(std::span<std::byte> out) : out_(out) {}
 
   template <class T>
-    requires std::is_integral_v<T>
+  requires std::is_integral_v<T>
   void operator()(T value) noexcept {
     auto bits = static_cast<std::make_unsigned_t<T>>(value);
     for (std::size_t i = 0; i < sizeof(T); ++i) {
@@ -27,10 +27,8 @@ class Writer {
     }
   }
   template <class T>
-    requires std::is_enum_v<T>
-  void operator()(T value) noexcept {
-    (*this)(static_cast<std::underlying_type_t<T>>(value));
-  }
+  requires std::is_enum_v<T>
+  void operator()(T value) noexcept { (*this)(static_cast<std::underlying_type_t<T>>(value)); }
   void operator()(double value) noexcept { (*this)(std::bit_cast<std::uint64_t>(value)); }
   void operator()(const Vec3& v) noexcept { (*this)(v[0]), (*this)(v[1]), (*this)(v[2]); }
   template <class T, std::size_t N>
@@ -45,14 +43,14 @@ class Writer {
   std::size_t at_ = 0;
 };
 
-/// Takes fields from bytes somebody sent. Running out of bytes, or a number that is not finite, is remembered and gives
-/// zeros; ask `complete` and `finite` at the end.
+/// Takes fields from bytes somebody sent. Running out of bytes, or a number that is not finite, is remembered
+/// and gives zeros; ask `complete` and `finite` at the end.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> in) : in_(in) {}
 
   template <class T>
-    requires std::is_integral_v<T>
+  requires std::is_integral_v<T>
   void operator()(T& value) noexcept {
     value = 0;
     if (in_.size() - at_ < sizeof(T)) {
@@ -62,12 +60,13 @@ class Reader {
     std::make_unsigned_t<T> bits = 0;
     for (std::size_t i = 0; i < sizeof(T); ++i) {
       bits = static_cast<std::make_unsigned_t<T>>(
-          bits | static_cast<std::make_unsigned_t<T>>(std::uint64_t{std::to_integer<std::uint8_t>(in_[at_++])} << (8 * i)));
+          bits | static_cast<std::make_unsigned_t<T>>(std::uint64_t{std::to_integer<std::uint8_t>(in_[at_++])}
+                                                      << (8 * i)));
     }
     value = static_cast<T>(bits);
   }
   template <class T>
-    requires std::is_enum_v<T>
+  requires std::is_enum_v<T>
   void operator()(T& value) noexcept {
     std::underlying_type_t<T> number = 0;
     (*this)(number);

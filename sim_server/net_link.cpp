@@ -16,7 +16,8 @@ void NetLink::run() {
               {.on_datagram = [this](auto bytes, const Endpoint& from) { on_datagram(bytes, from); },
                .on_doorbell = [this] { on_force(); },
                .on_timer = [this] { on_timer(); }});
-  for (auto member : sessions_.members()) send({member.session, ++member.sent}, protocol::Bye{}, member.endpoint);
+  for (auto member : sessions_.members())
+    send({member.session, ++member.sent}, protocol::Bye{}, member.endpoint);
 }
 
 void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from) {

@@ -11,7 +11,8 @@ namespace palpate::sim {
 class NetLink {
  public:
   /// `seed` draws the session numbers.
-  NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes, std::uint64_t seed);
+  NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes,
+          std::uint64_t seed);
 
   /// Serves until `stop`, then says Bye to every member.
   void run();

@@ -79,7 +79,8 @@ Scene read_scene(const std::filesystem::path& file) {
   if (!deformation) fail("{}: missing section [deformation] with `model`", config.where());
   scene.deformation = read_deformation(*deformation);
   const auto tools = config.tables("tool");
-  if (tools.size() != 1) fail("{}: a scene has one [[tool]], this one has {}", config.where("tool"), tools.size());
+  if (tools.size() != 1)
+    fail("{}: a scene has one [[tool]], this one has {}", config.where("tool"), tools.size());
   scene.tool = read_tool(tools.front());
   config.reject_unknown();
   return scene;
@@ -94,7 +95,8 @@ std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh) {
       for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
         if (region.box->contains(mesh.vertices[v])) fix(v);
       }
-      if (count == 0) fail("{}: no vertex of the mesh lies in this [[fixed]] box; is it in metres?", region.where);
+      if (count == 0)
+        fail("{}: no vertex of the mesh lies in this [[fixed]] box; is it in metres?", region.where);
     } else {
       std::vector<std::string> known;
       for (const auto& [tag, vertices] : mesh.surface_tags) known.push_back(tag);

@@ -52,10 +52,12 @@ struct Scene {
   std::string source;  ///< the file, for messages
 };
 
-/// Reads and checks a scene file. Throws `Error` (file, line, key, what was expected). Does not read the mesh.
+/// Reads and checks a scene file. Throws `Error` (file, line, key, what was expected). Does not read the
+/// mesh.
 Scene read_scene(const std::filesystem::path& file);
 
-/// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an unknown tag.
+/// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an
+/// unknown tag.
 std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh);
 
 }  // namespace palpate::sim

@@ -1,10 +1,9 @@
 #include "sim_server/server.h"
 
-#include <unistd.h>
-
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
+#include <unistd.h>
 
 #include "common/clock.h"
 #include "common/error.h"
@@ -28,7 +27,8 @@ class SetupProgress {
       stage_ = what;
       if (!terminal) log::info("{} ...", what);
     }
-    if (terminal) fmt::print(stderr, "\r\033[Ksim_server: {} {:3.0f} %{}", what, 100 * share, share >= 1 ? "\n" : "");
+    if (terminal)
+      fmt::print(stderr, "\r\033[Ksim_server: {} {:3.0f} %{}", what, 100 * share, share >= 1 ? "\n" : "");
   }
 
  private:
@@ -39,8 +39,8 @@ void warn_if_huge(const TetMesh& mesh, const Scene& scene) {
   const MeshInfo info = describe(mesh);
   const double size = (info.max - info.min).maxCoeff();
   if (size > 2) {
-    log::warning("{}: the mesh is {:.3g} m long; if it is in millimetres, scale it by 0.001", scene.mesh_file.string(),
-                 size);
+    log::warning("{}: the mesh is {:.3g} m long; if it is in millimetres, scale it by 0.001",
+                 scene.mesh_file.string(), size);
   }
 }
 
@@ -77,12 +77,14 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
 
 void print_summary(const Json& report) {
   const auto ms = [&](const char* key, const char* q) { return report[key][q].get<double>(); };
-  fmt::print("sim_server: {} steps, {} in contact; a step takes {:.3f} ms (p50), {:.3f} (p99), {:.3f} (max)\n",
-             report["steps"].get<long>(), report["contact_steps"].get<long>(), ms("step_ms", "p50"), ms("step_ms", "p99"),
-             ms("step_ms", "max"));
-  fmt::print("            in contact {:.3f} ms (p50), {:.3f} (p99); {} deadlines late; largest force {:.2f} N\n",
-             ms("contact_step_ms", "p50"), ms("contact_step_ms", "p99"), report["late"].get<long>(),
-             report["max_newton"].get<double>());
+  fmt::print(
+      "sim_server: {} steps, {} in contact; a step takes {:.3f} ms (p50), {:.3f} (p99), {:.3f} (max)\n",
+      report["steps"].get<long>(), report["contact_steps"].get<long>(), ms("step_ms", "p50"),
+      ms("step_ms", "p99"), ms("step_ms", "max"));
+  fmt::print(
+      "            in contact {:.3f} ms (p50), {:.3f} (p99); {} deadlines late; largest force {:.2f} N\n",
+      ms("contact_step_ms", "p50"), ms("contact_step_ms", "p99"), report["late"].get<long>(),
+      report["max_newton"].get<double>());
   std::fflush(stdout);
 }
 

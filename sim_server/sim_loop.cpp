@@ -55,8 +55,8 @@ void SimLoop::answer(const ToolForce& force, Time took) noexcept {
     answered_session_ = tool_.session;
     samples_ = 0;
   }
-  const std::uint32_t flags = (force.contacts > 0 ? ForceSample::kInContact : 0) |
-                              (force.flagged ? ForceSample::kFlagged : 0);
+  const std::uint32_t flags =
+      (force.contacts > 0 ? ForceSample::kInContact : 0) | (force.flagged ? ForceSample::kFlagged : 0);
   mailboxes_.force.write({tool_.session,
                           {.tool = tool_.state.tool,
                            .number = ++samples_,

@@ -25,8 +25,8 @@ struct ForceOutput {
 
 /// Mailboxes between the simulation thread and the network thread. `bell` rings when a force waits.
 struct SimMailboxes {
-  LatestValue<ToolInput> tool;    // network -> simulation
-  LatestValue<ForceOutput> force; // simulation -> network
+  LatestValue<ToolInput> tool;     // network -> simulation
+  LatestValue<ForceOutput> force;  // simulation -> network
   Doorbell bell;
 };
 
@@ -38,8 +38,8 @@ struct SimLoopStats {
   double max_newton = 0;
 };
 
-/// Steps the simulation on absolute deadlines: newest tool pose in, newest force out. The only thread that touches the
-/// simulation while it runs.
+/// Steps the simulation on absolute deadlines: newest tool pose in, newest force out. The only thread that
+/// touches the simulation while it runs.
 class SimLoop {
  public:
   /// `rate_hz` 0: steps as soon as a new pose is there.

@@ -11,12 +11,13 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kStride = 0.5;    // of the tool radius: how far the tool goes between two contact solves
-constexpr double kGather = 2.0;    // of the tool radius: how far from the tip the patch extends
+constexpr double kStride = 0.5;  // of the tool radius: how far the tool goes between two contact solves
+constexpr double kGather = 2.0;  // of the tool radius: how far from the tip the patch extends
 constexpr double kMaxStrides = 256;
 
 /// Surface vertices of the triangles that come near enough to the reach box for the tool to touch them there.
-std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh, const ToolSettings& tool) {
+std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
+                                          const ToolSettings& tool) {
   if (!tool.reach) return surface.triangles;
   std::vector<Triangle> touchable;
   for (const Triangle& t : surface.triangles) {
@@ -50,10 +51,12 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   std::vector<Triangle> touchable = touchable_triangles(surface_, mesh_, scene.tool);
   if (touchable.empty()) fail("{}: no triangle of the surface lies in the tool's `reach` box", scene.source);
   const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, mesh_);
-  model_ = find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where)
-               .make({scene, mesh_, surface_, fixed, reachable, progress});
+  model_ =
+      find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where)
+          .make({scene, mesh_, surface_, fixed, reachable, progress});
   free_ = positions_ = model_->free_motion(0);
-  finder_ = std::make_unique<ContactFinder>(positions_, surface_.triangles, std::move(touchable), kGather * tool_.radius);
+  finder_ = std::make_unique<ContactFinder>(positions_, surface_.triangles, std::move(touchable),
+                                            kGather * tool_.radius);
   solver_ = std::make_unique<ContactSolver>(finder_->max_nodes(), finder_->max_triangles());
   patch_.reserve(finder_->max_nodes(), finder_->max_triangles());
   displacement_.resize(3 * (finder_->max_nodes() + 1));
@@ -92,7 +95,8 @@ void Simulation::lift_tool() noexcept {
   last_ = {};
 }
 
-/// The tool appears at `p_W`. If that is inside the organ it is taken to have come in through the nearest surface.
+/// The tool appears at `p_W`. If that is inside the organ it is taken to have come in through the nearest
+/// surface.
 void Simulation::enter(const Vec3& p_W) noexcept {
   release();
   placed_ = true;
@@ -136,9 +140,12 @@ void Simulation::release() noexcept {
 
 std::vector<MemoryPart> Simulation::memory() const {
   std::vector<MemoryPart> parts = model_->memory();
-  parts.push_back({"mesh", mesh_.vertices.size() * sizeof(Vec3) + mesh_.tetrahedra.size() * sizeof(Tetrahedron)});
-  parts.push_back({"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
-  parts.push_back({"contact", solver_->bytes() + static_cast<std::size_t>(patch_.compliance.size()) * sizeof(double)});
+  parts.push_back(
+      {"mesh", mesh_.vertices.size() * sizeof(Vec3) + mesh_.tetrahedra.size() * sizeof(Tetrahedron)});
+  parts.push_back(
+      {"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
+  parts.push_back(
+      {"contact", solver_->bytes() + static_cast<std::size_t>(patch_.compliance.size()) * sizeof(double)});
   return parts;
 }
 

@@ -11,18 +11,18 @@ namespace palpate::sim {
 
 /// What the tool feels after one step.
 struct ToolForce {
-  Vec3 force = Vec3::Zero();   ///< N, world, on the tool at its position
-  Mat3 tangent = Mat3::Zero(); ///< dF/dp, N/m, symmetric
-  int contacts = 0;            ///< touching faces, edges and vertices
-  int iterations = 0;          ///< contact linearisations, all sub-places together
-  bool flagged = false;        ///< no settled answer: a wild position keeps the last force, see also ContactForce
+  Vec3 force = Vec3::Zero();    ///< N, world, on the tool at its position
+  Mat3 tangent = Mat3::Zero();  ///< dF/dp, N/m, symmetric
+  int contacts = 0;             ///< touching faces, edges and vertices
+  int iterations = 0;           ///< contact linearisations, all sub-places together
+  bool flagged = false;  ///< no settled answer: a wild position keeps the last force, see also ContactForce
 };
-
 
 inline const Progress kSilent = [](std::string_view, double) {};
 
-/// The organ of a scene with its tool: one step, one page. Built from a scene (throws `Error`), then stepped by one
-/// thread; a step neither allocates, locks, logs nor throws, and depends on nothing but its arguments and the state.
+/// The organ of a scene with its tool: one step, one page. Built from a scene (throws `Error`), then stepped
+/// by one thread; a step neither allocates, locks, logs nor throws, and depends on nothing but its arguments
+/// and the state.
 class Simulation {
  public:
   /// With the mesh file that the scene names.
@@ -30,8 +30,8 @@ class Simulation {
   /// With a mesh made elsewhere.
   Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent);
 
-  /// Advances the tissue by `dt` (s) with the tool centre at `p_W` (m). The tool goes there on a straight line in strides
-  /// of half its radius, so a fast tool does not jump through the surface.
+  /// Advances the tissue by `dt` (s) with the tool centre at `p_W` (m). The tool goes there on a straight
+  /// line in strides of half its radius, so a fast tool does not jump through the surface.
   ToolForce step(const Vec3& p_W, double dt) noexcept;
 
   /// Takes the tool away: the tissue goes free.
@@ -58,10 +58,10 @@ class Simulation {
   std::unique_ptr<ContactSolver> solver_;
   ContactPatch patch_;
   std::span<const Vec3> free_, positions_;
-  Eigen::VectorXd displacement_;       // of the patch nodes, then of the tip
+  Eigen::VectorXd displacement_;  // of the patch nodes, then of the tip
   std::vector<NodalLoad> loads_;
-  Vec3 place_ = Vec3::Zero();          // tool centre of the last step
-  Vec3 tip_offset_ = Vec3::Zero();     // tip minus tool centre
+  Vec3 place_ = Vec3::Zero();       // tool centre of the last step
+  Vec3 tip_offset_ = Vec3::Zero();  // tip minus tool centre
   bool placed_ = false;
   ToolForce last_;
 };

@@ -1,15 +1,20 @@
 #include "common/contact/complementarity.h"
 
+#include <algorithm>
+
 #include "common/contact/dense_solve.h"
 
 namespace palpate {
 namespace {
-constexpr int kPatience = 10;  // block exchanges allowed without progress before going one index at a time
-constexpr double kNoise = 1e-13;
+constexpr int kPatience = 10;  // block exchanges allowed without progress
+constexpr double kNoise = 1e-12;
 }  // namespace
 
 ComplementaritySolver::ComplementaritySolver(int capacity)
-    : factor_(capacity, capacity), slack_(capacity), active_(static_cast<std::size_t>(capacity)) {
+    : factor_(capacity, capacity),
+      slack_(capacity),
+      feasible_(capacity),
+      active_(static_cast<std::size_t>(capacity)) {
   basis_.reserve(static_cast<std::size_t>(capacity));
 }
 
@@ -37,41 +42,89 @@ bool ComplementaritySolver::solve_on_basis(const Eigen::Ref<const Eigen::MatrixX
 bool ComplementaritySolver::solve(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
                                   const Eigen::Ref<const Eigen::VectorXd>& gap,
                                   Eigen::Ref<Eigen::VectorXd> lambda) noexcept {
-  const int n = static_cast<int>(gap.size());
   lambda.setZero();
+  if (gap.size() == 0) return true;
+  const bool solved = pivot_blocks(g_matrix, gap, lambda) || add_one_by_one(g_matrix, gap, lambda);
+  lambda = lambda.cwiseMax(0);
+  return solved;
+}
+
+bool ComplementaritySolver::pivot_blocks(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
+                                         const Eigen::Ref<const Eigen::VectorXd>& gap,
+                                         Eigen::Ref<Eigen::VectorXd> lambda) noexcept {
+  const int n = static_cast<int>(gap.size());
   for (int i = 0; i < n; ++i) active_[static_cast<std::size_t>(i)] = gap[i] < 0;
   // What rounding alone can make of a zero; without it two coinciding contacts could trade places for ever.
-  const double slack_noise = n == 0 ? 0 : kNoise * gap.cwiseAbs().maxCoeff();
-  const double force_noise = n == 0 ? 0 : slack_noise / g_matrix.diagonal().maxCoeff();
-  int fewest = n + 1, patience = kPatience;
-  for (int exchange = 0; exchange < 50 + 10 * n; ++exchange) {
-    if (!solve_on_basis(g_matrix, gap, lambda)) break;
-    auto slack = slack_.head(n);
-    slack = gap;
-    for (int i : basis_) slack += lambda[i] * g_matrix.col(i);
-    const auto infeasible = [&](int i) {
-      return active_[static_cast<std::size_t>(i)] ? lambda[i] < -force_noise : slack[i] < -slack_noise;
-    };
-    int count = 0, last = -1;
+  const double slack_noise = kNoise * gap.cwiseAbs().maxCoeff();
+  const double force_noise = slack_noise / g_matrix.diagonal().maxCoeff();
+  for (int fewest = n + 1, patience = kPatience; patience > 0; --patience) {
+    if (!solve_on_basis(g_matrix, gap, lambda)) return false;
+    compute_slack(g_matrix, gap, lambda);
+    int infeasible = 0;
     for (int i = 0; i < n; ++i) {
-      if (infeasible(i)) ++count, last = i;
+      char& active = active_[static_cast<std::size_t>(i)];
+      if (active ? lambda[i] >= -force_noise : slack_[i] >= -slack_noise) continue;
+      ++infeasible;
+      active ^= 1;
     }
-    if (count == 0) {
-      lambda = lambda.cwiseMax(0);
-      return true;
-    }
-    if (count < fewest) {
-      fewest = count;
+    if (infeasible == 0) return true;
+    if (infeasible < fewest) {
+      fewest = infeasible;
       patience = kPatience;
-    } else {
-      --patience;
-    }
-    for (int i = patience > 0 ? 0 : last; i <= last; ++i) {
-      if (infeasible(i)) active_[static_cast<std::size_t>(i)] ^= 1;
     }
   }
-  lambda = lambda.cwiseMax(0);
   return false;
+}
+
+bool ComplementaritySolver::add_one_by_one(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
+                                           const Eigen::Ref<const Eigen::VectorXd>& gap,
+                                           Eigen::Ref<Eigen::VectorXd> lambda) noexcept {
+  const int n = static_cast<int>(gap.size());
+  const double slack_noise = kNoise * gap.cwiseAbs().maxCoeff();
+  std::fill(active_.begin(), active_.end(), 0);
+  auto feasible = feasible_.head(n);
+  feasible.setZero();
+  for (int round = 0; round < 3 * n; ++round) {
+    compute_slack(g_matrix, gap, feasible);
+    int deepest = -1;
+    for (int i = 0; i < n; ++i) {
+      if (!active_[static_cast<std::size_t>(i)] && slack_[i] < (deepest < 0 ? -slack_noise : slack_[deepest]))
+        deepest = i;
+    }
+    lambda = feasible;
+    if (deepest < 0) return true;
+    active_[static_cast<std::size_t>(deepest)] = 1;
+    // Walk towards the solution on this set; whatever would turn negative on the way leaves the set.
+    while (true) {
+      if (!solve_on_basis(g_matrix, gap, lambda)) return false;
+      double share = 1;
+      for (const int i : basis_) {
+        if (lambda[i] <= 0) share = std::min(share, feasible[i] / (feasible[i] - lambda[i]));
+      }
+      if (!(share >= 0)) share = 0;  // 0 / 0: the newcomer itself would turn negative
+      feasible += share * (lambda - feasible);
+      bool left = false;
+      for (const int i : basis_) {
+        if (lambda[i] > 0 || feasible[i] > kNoise * feasible.maxCoeff()) continue;
+        feasible[i] = 0;
+        active_[static_cast<std::size_t>(i)] = 0;
+        left = true;
+      }
+      if (!left) break;
+    }
+  }
+  return false;
+}
+
+/// slack_ = G lambda + gap.
+void ComplementaritySolver::compute_slack(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
+                                          const Eigen::Ref<const Eigen::VectorXd>& gap,
+                                          const Eigen::Ref<const Eigen::VectorXd>& lambda) noexcept {
+  auto slack = slack_.head(gap.size());
+  slack = gap;
+  for (Eigen::Index i = 0; i < gap.size(); ++i) {
+    if (lambda[i] != 0) slack += lambda[i] * g_matrix.col(i);
+  }
 }
 
 }  // namespace palpate

@@ -7,9 +7,10 @@ namespace palpate {
 /// Linear complementarity problem with a symmetric positive definite matrix:
 ///   find lambda >= 0 with w = G lambda + g >= 0 and lambda . w = 0,
 /// here contact forces lambda (N), gaps g (m) and the Delassus operator G (m/N). Solved by block principal
-/// pivoting (Judice and Pires 1994, Comput. Oper. Res. 21:587, algorithm 3.1): exchange every infeasible
-/// index at once while that helps, else one at a time (Murty 1974), which ends for any P-matrix. Usually 2 to
-/// 5 small Cholesky solves. Allocates only in the constructor; one thread.
+/// pivoting (Judice and Pires 1994, Comput. Oper. Res. 21:587): exchange every infeasible index at once,
+/// usually 2 to 5 small Cholesky solves. Where that stops helping, by the active-set method of Lawson and
+/// Hanson (1974, ch. 23), which lowers the energy at every step and so ends. Allocates only in the
+/// constructor; one thread.
 class ComplementaritySolver {
  public:
   /// `capacity`: the largest problem `solve` will be given.
@@ -21,12 +22,21 @@ class ComplementaritySolver {
              Eigen::Ref<Eigen::VectorXd> lambda) noexcept;
 
  private:
+  bool pivot_blocks(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
+                    const Eigen::Ref<const Eigen::VectorXd>& gap,
+                    Eigen::Ref<Eigen::VectorXd> lambda) noexcept;
+  bool add_one_by_one(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
+                      const Eigen::Ref<const Eigen::VectorXd>& gap,
+                      Eigen::Ref<Eigen::VectorXd> lambda) noexcept;
+  void compute_slack(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
+                     const Eigen::Ref<const Eigen::VectorXd>& gap,
+                     const Eigen::Ref<const Eigen::VectorXd>& lambda) noexcept;
   bool solve_on_basis(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
                       const Eigen::Ref<const Eigen::VectorXd>& gap,
                       Eigen::Ref<Eigen::VectorXd> lambda) noexcept;
 
   Eigen::MatrixXd factor_;
-  Eigen::VectorXd slack_;
+  Eigen::VectorXd slack_, feasible_;
   std::vector<char> active_;
   std::vector<int> basis_;
 };

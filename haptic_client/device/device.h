@@ -6,20 +6,20 @@ namespace palpate::client {
 
 /// One reading of a device.
 struct DeviceReading {
-  Time t{};                    ///< when it was read, this machine's monotonic clock
-  Vec3 p_D = Vec3::Zero();     ///< position of the handle, m, device frame
-  std::uint32_t buttons = 0;   ///< one bit each
-  bool valid = true;           ///< false: nothing known (unplugged, not homed): no force may follow
+  Time t{};                   ///< when it was read, this machine's monotonic clock
+  Vec3 p_D = Vec3::Zero();    ///< position of the handle, m, device frame
+  std::uint32_t buttons = 0;  ///< one bit each
+  bool valid = true;          ///< false: nothing known (unplugged, not homed): no force may follow
 };
 
 /// What a device can take.
 struct DeviceLimits {
-  double max_force = 8;        ///< N
+  double max_force = 8;                              ///< N
   Time min_period = std::chrono::microseconds(250);  ///< shortest loop period it serves
 };
 
-/// A force-feedback device. Called by the haptic thread only; never blocks longer than its own exchange, never throws,
-/// allocates or logs.
+/// A force-feedback device. Called by the haptic thread only; never blocks longer than its own exchange,
+/// never throws, allocates or logs.
 class Device {
  public:
   virtual ~Device() = default;

@@ -12,12 +12,12 @@ namespace palpate::client {
 struct TrajectorySettings {
   std::filesystem::path file;
   std::array<std::string, 4> columns{"t_s", "x_m", "y_m", "z_m"};  ///< time (s) and position
-  double scale = 1;                 ///< metres per unit of the position columns
-  Vec3 offset = Vec3::Zero();       ///< added after scaling, m
+  double scale = 1;            ///< metres per unit of the position columns
+  Vec3 offset = Vec3::Zero();  ///< added after scaling, m
 };
 
-/// A path through space: straight between rows, at rest before the first; after the last it repeats if it ends within
-/// 1 mm of where it began, else it stays there. World frame, m, s.
+/// A path through space: straight between rows, at rest before the first; after the last it repeats if it
+/// ends within 1 mm of where it began, else it stays there. World frame, m, s.
 class Trajectory {
  public:
   /// Reads a CSV. Throws `Error` with file and line for a bad row, or times that do not increase.

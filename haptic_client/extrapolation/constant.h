@@ -3,8 +3,8 @@
 
 namespace palpate::client {
 
-/// F(t) = F_n (Picinbono and Lombardo 1999, constant extrapolation). Only forces that the model computed; rough under
-/// about 300 Hz. A few instructions.
+/// F(t) = F_n (Picinbono and Lombardo 1999, constant extrapolation). Only forces that the model computed;
+/// rough under about 300 Hz. A few instructions.
 class Constant : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override { force_ = sample.f; }

@@ -18,7 +18,8 @@ using Ratio = LinearPosition::Ratio;
 constexpr std::array kExtrapolators{
     ExtrapolatorRow{"constant", "the newest force (the paper's first law)", &make<Constant>},
     ExtrapolatorRow{"linear_time", "linear in time (the paper's second law)", &make<LinearTime>},
-    ExtrapolatorRow{"linear_position", "linear in position, as the paper prints it", &make<LinearPosition, Ratio::kPrinted>},
+    ExtrapolatorRow{"linear_position", "linear in position, as the paper prints it",
+                    &make<LinearPosition, Ratio::kPrinted>},
     ExtrapolatorRow{"linear_position_signed", "linear in position, with the sign of the motion",
                     &make<LinearPosition, Ratio::kSigned>},
 };

@@ -5,9 +5,10 @@ namespace palpate::client {
 
 /// The current position P is projected on the line through P_(n-1) and P_n, giving P', and
 ///   F = F_n + r (F_n - F_(n-1))
-/// (Picinbono and Lombardo 1999, linear extrapolation over position). As printed, r = |P' - P_n| / |P_n - P_(n-1)|: it
-/// has no sign, so on a reversal the force moves the wrong way. Signed, r = (P - P_n) . d / |d|^2 with d = P_n - P_(n-1).
-/// With one sample, or where P_n and P_(n-1) are nearer than 1 nm: F_n. A few ns.
+/// (Picinbono and Lombardo 1999, linear extrapolation over position). As printed, r = |P' - P_n| / |P_n -
+/// P_(n-1)|: it has no sign, so on a reversal the force moves the wrong way. Signed, r = (P - P_n) . d /
+/// |d|^2 with d = P_n - P_(n-1). With one sample, or where P_n and P_(n-1) are nearer than 1 nm: F_n. A few
+/// ns.
 class LinearPosition : public Extrapolator {
  public:
   enum class Ratio { kPrinted, kSigned };

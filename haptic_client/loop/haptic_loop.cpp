@@ -45,7 +45,10 @@ void HapticLoop::tick() noexcept {
   mailboxes_.tool.write(result.tool);
   mailboxes_.bell.ring();
   if (!ring_.empty()) {
-    ring_[recorded_++ % ring_.size()] = {reading.t, result.tool.p_W, result.f_D, fresh,
+    ring_[recorded_++ % ring_.size()] = {reading.t,
+                                         result.tool.p_W,
+                                         result.f_D,
+                                         fresh,
                                          {sample.number, Time{sample.tool_t_ns}, sample.p_W, sample.f_W}};
   }
   newest_newton.store(result.f_D.norm(), std::memory_order_relaxed);

@@ -22,7 +22,8 @@ TickResult Pipeline::tick(const DeviceReading& reading, const protocol::ForceSam
   }
   const Watchdog::Ruling ruling = watchdog_.rule(age, period_, dt);
   Vec3 f_W = law_->force(p_W_, ruling.may_extrapolate_in_time ? reading.t : newest_.t);
-  // A tool that the newest sample saw free feels nothing: a law that looks back would go on pulling (sticky tissue).
+  // A tool that the newest sample saw free feels nothing: a law that looks back would go on pulling (sticky
+  // tissue).
   if (newest_.f.isZero(0)) f_W.setZero();
   const Vec3 wished_D = ruling.gain * workspace_.to_device(f_W);
   const Vec3 v_D = v_W_ / workspace_.scale;
@@ -53,7 +54,8 @@ void Pipeline::follow_motion(const DeviceReading& reading, double dt) noexcept {
   p_W_ = p_W;
 }
 
-/// Uses a sample if it is newer than the newest: duplicates and latecomers would make time run backwards in the laws.
+/// Uses a sample if it is newer than the newest: duplicates and latecomers would make time run backwards in
+/// the laws.
 void Pipeline::take(const protocol::ForceSample& arrived) noexcept {
   const Sample sample{arrived.number, Time{arrived.tool_t_ns}, arrived.p_W, arrived.f_W};
   const bool first = newest_.number == 0;

@@ -14,25 +14,25 @@ namespace palpate::client {
 
 /// What one tick gives.
 struct TickResult {
-  Vec3 f_D = Vec3::Zero();       ///< to the device, N
-  protocol::ToolState tool;      ///< to the server
+  Vec3 f_D = Vec3::Zero();   ///< to the device, N
+  protocol::ToolState tool;  ///< to the server
 };
 
 /// Sums over a session, for the report.
 struct PipelineStats {
-  Histogram age_ns;              ///< of the newest sample, each tick that has one
-  std::uint64_t samples = 0;     ///< used
-  std::uint64_t overtaken = 0;   ///< dropped: not newer than what was there
-  double max_newton = 0;         ///< largest force written
-  double path_m = 0, path_s = 0; ///< of the tool, world
-  double max_speed = 0;          ///< m/s, of the filtered velocity
-  double sample_path_m = 0;      ///< sum of |P_n - P_(n-1)|
+  Histogram age_ns;               ///< of the newest sample, each tick that has one
+  std::uint64_t samples = 0;      ///< used
+  std::uint64_t overtaken = 0;    ///< dropped: not newer than what was there
+  double max_newton = 0;          ///< largest force written
+  double path_m = 0, path_s = 0;  ///< of the tool, world
+  double max_speed = 0;           ///< m/s, of the filtered velocity
+  double sample_path_m = 0;       ///< sum of |P_n - P_(n-1)|
   std::uint64_t sample_pairs = 0;
 };
 
 /// The whole tick, from device reading to device force, as a function of its arguments and its state:
-/// workspace -> extrapolator -> watchdog -> limiter. No clock, socket or device inside; nothing allocates, locks or
-/// throws. Haptic thread only.
+/// workspace -> extrapolator -> watchdog -> limiter. No clock, socket or device inside; nothing allocates,
+/// locks or throws. Haptic thread only.
 class Pipeline {
  public:
   Pipeline(std::unique_ptr<Extrapolator> law, const Workspace& workspace, const Limiter::Settings& limits)
@@ -56,8 +56,8 @@ class Pipeline {
   Workspace workspace_;
   Watchdog watchdog_;
   Limiter limiter_;
-  Sample newest_;              // number 0: none yet
-  Time period_{};              // between the two newest samples
+  Sample newest_;  // number 0: none yet
+  Time period_{};  // between the two newest samples
   std::uint64_t tick_ = 0;
   Time last_t_{};
   Vec3 p_W_ = Vec3::Zero(), v_W_ = Vec3::Zero();

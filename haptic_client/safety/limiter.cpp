@@ -2,8 +2,8 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kStormWindow = 1;    // s
-constexpr double kStormShare = 0.5;   // of the window
+constexpr double kStormWindow = 1;   // s
+constexpr double kStormShare = 0.5;  // of the window
 }  // namespace
 
 Vec3 Limiter::limit(const Vec3& f_D, const Vec3& damping_D, double dt) noexcept {
@@ -12,7 +12,8 @@ Vec3 Limiter::limit(const Vec3& f_D, const Vec3& damping_D, double dt) noexcept 
     last_.setZero();
     return last_;
   }
-  // Cut to the ball first, so that a wild wish cannot use up the slew in a wild direction. stableNorm: no overflow.
+  // Cut to the ball first, so that a wild wish cannot use up the slew in a wild direction. stableNorm: no
+  // overflow.
   Vec3 f = f_D;
   bool clamped = false;
   const auto clamp = [&](Vec3& v) {

@@ -20,8 +20,9 @@ enum class Fault : std::uint8_t {
   kDeviceLost,  ///< the device stopped answering
 };
 
-/// The last stage before the motors; there is no way around it. The force that leaves is finite, its magnitude at most
-/// `max_force`, and the part of it that is not damping changes by at most `max_slew` a second. Pure; haptic thread only.
+/// The last stage before the motors; there is no way around it. The force that leaves is finite, its
+/// magnitude at most `max_force`, and the part of it that is not damping changes by at most `max_slew` a
+/// second. Pure; haptic thread only.
 class Limiter {
  public:
   struct Settings {
@@ -30,8 +31,8 @@ class Limiter {
   };
   explicit Limiter(const Settings& settings) : settings_(settings) {}
 
-  /// `f_D`: the force wished for (N, device frame); `damping_D`: a damper's share on top of it, exempt from the slew
-  /// limit but not from the clamp. `dt` (s): since the last tick.
+  /// `f_D`: the force wished for (N, device frame); `damping_D`: a damper's share on top of it, exempt from
+  /// the slew limit but not from the clamp. `dt` (s): since the last tick.
   Vec3 limit(const Vec3& f_D, const Vec3& damping_D, double dt) noexcept;
 
   /// Switches the force off at once, until `rearm`.

@@ -19,13 +19,13 @@ class Watchdog {
 
   /// What may be done this tick.
   struct Ruling {
-    double gain = 0;             ///< [0, 1], to multiply the force with
+    double gain = 0;  ///< [0, 1], to multiply the force with
     bool may_extrapolate_in_time = false;
-    bool damper = false;         ///< brake while fading
+    bool damper = false;  ///< brake while fading
   };
 
-  /// `age`: of the newest sample, none if there is none yet. `period`: time between the two newest samples. `dt` (s):
-  /// since the last tick.
+  /// `age`: of the newest sample, none if there is none yet. `period`: time between the two newest samples.
+  /// `dt` (s): since the last tick.
   Ruling rule(std::optional<Time> age, Time period, double dt) noexcept;
 
   /// How often the force was faded.

@@ -55,7 +55,8 @@ bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, d
     if ((p - w[0] * a - w[1] * b - w[2] * c).squaredNorm() > reach * reach) continue;
     Triangle local;
     for (int i = 0; i < 3; ++i) local[i] = slot_of(t[i]);
-    fits = static_cast<int>(patch.triangles.size()) < max_triangles_ && *std::min_element(local.begin(), local.end()) >= 0;
+    fits = static_cast<int>(patch.triangles.size()) < max_triangles_ &&
+           *std::min_element(local.begin(), local.end()) >= 0;
     if (!fits) break;
     patch.triangles.push_back(local);
   }
@@ -63,8 +64,8 @@ bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, d
   return fits;
 }
 
-void ContactFinder::gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p, double reach,
-                           ContactPatch& patch) noexcept {
+void ContactFinder::gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p,
+                           double reach, ContactPatch& patch) noexcept {
   while (!try_gather(positions, p, reach, patch)) reach *= 0.9;
   patch.free.clear();
   for (const int vertex : vertices_) patch.free.push_back(free[vertex]);
@@ -75,7 +76,8 @@ bool ContactFinder::inside(std::span<const Vec3> positions, const Vec3& p) const
   for (const Triangle& t : closed_) {
     const Vec3 a = positions[t[0]] - p, b = positions[t[1]] - p, c = positions[t[2]] - p;
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    solid_angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    solid_angle +=
+        2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
   return solid_angle > 2 * std::numbers::pi;
 }

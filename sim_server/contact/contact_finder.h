@@ -11,21 +11,24 @@ namespace palpate::sim {
 /// Nothing but the constructor allocates. One thread.
 class ContactFinder {
  public:
-  /// `rest`: surface vertices at rest. `closed`: all triangles of the surface, `touchable`: those the tool may touch.
-  /// `reach`: the largest distance that `gather` will be asked for, m; the room it needs is sized by the densest such
-  /// ball at rest, with some to spare.
-  ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed, std::vector<Triangle> touchable, double reach);
+  /// `rest`: surface vertices at rest. `closed`: all triangles of the surface, `touchable`: those the tool
+  /// may touch. `reach`: the largest distance that `gather` will be asked for, m; the room it needs is sized
+  /// by the densest such ball at rest, with some to spare.
+  ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed, std::vector<Triangle> touchable,
+                double reach);
 
   int max_nodes() const { return max_nodes_; }
   int max_triangles() const { return max_triangles_; }
 
-  /// Puts the triangles of `positions` within `reach` of `p` into the patch, with their `free` positions, and lists the
-  /// surface vertex of each patch node in `vertices()`. Where there are more than fit, the nearest stay. O(triangles).
+  /// Puts the triangles of `positions` within `reach` of `p` into the patch, with their `free` positions, and
+  /// lists the surface vertex of each patch node in `vertices()`. Where there are more than fit, the nearest
+  /// stay. O(triangles).
   void gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p, double reach,
               ContactPatch& patch) noexcept;
   std::span<const int> vertices() const { return vertices_; }
 
-  /// Whether `p` lies inside the closed surface, by its winding number (Van Oosterom and Strackee 1983). O(triangles).
+  /// Whether `p` lies inside the closed surface, by its winding number (Van Oosterom and Strackee 1983).
+  /// O(triangles).
   bool inside(std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
   /// The touchable point of the surface nearest to `p`. O(triangles).

@@ -20,8 +20,9 @@ struct MemoryPart {
   std::size_t bytes;
 };
 
-/// A tissue. Every model answers the same three questions, so that one contact solver serves them all. Vertices are
-/// those of the surface (`Surface`), positions in m in the world frame. One thread; nothing allocates or throws.
+/// A tissue. Every model answers the same three questions, so that one contact solver serves them all.
+/// Vertices are those of the surface (`Surface`), positions in m in the world frame. One thread; nothing
+/// allocates or throws.
 class DeformationModel {
  public:
   virtual ~DeformationModel() = default;
@@ -29,11 +30,13 @@ class DeformationModel {
   /// Where would you go freely in `dt` (s)? The positions (n) without any contact, valid until the next call.
   virtual std::span<const Vec3> free_motion(double dt) noexcept = 0;
 
-  /// How compliant are you at these vertices? Fills the leading (3m x 3m) of `patch.compliance` (m/N: displacement at
-  /// the end of the step per force held over it; symmetric, positive semi-definite) and `patch.tool_compliance`.
+  /// How compliant are you at these vertices? Fills the leading (3m x 3m) of `patch.compliance` (m/N:
+  /// displacement at the end of the step per force held over it; symmetric, positive semi-definite) and
+  /// `patch.tool_compliance`.
   virtual void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept = 0;
 
-  /// Here are the loads: move. Positions (n) under them, valid until the next call. Replaces the loads before.
+  /// Here are the loads: move. Positions (n) under them, valid until the next call. Replaces the loads
+  /// before.
   virtual std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept = 0;
 
   /// What this model holds in memory.

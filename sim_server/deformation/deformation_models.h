@@ -13,7 +13,8 @@ namespace palpate::sim {
 /// Told about long set-up work: what is being done, and which share of it (0 to 1).
 using Progress = std::function<void(std::string_view what, double share)>;
 
-/// What a model is built from. `fixed`: mesh vertices that never move. `reachable`: surface vertices the tool can load.
+/// What a model is built from. `fixed`: mesh vertices that never move. `reachable`: surface vertices the tool
+/// can load.
 struct ModelInputs {
   const Scene& scene;
   const TetMesh& mesh;

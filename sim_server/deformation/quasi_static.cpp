@@ -7,15 +7,18 @@
 
 namespace palpate::sim {
 namespace {
-constexpr Eigen::Index kColumnsAtOnce = 48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
+constexpr Eigen::Index kColumnsAtOnce =
+    48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
 }
 
 QuasiStatic::QuasiStatic(const ModelInputs& inputs) : row_(inputs.surface.vertices.size(), -1) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"quasi_static\" needs a [material] section", scene.source);
   if (inputs.fixed.empty()) {
-    fail("{}: no fixed nodes, so nothing holds the body; add [[fixed]] with a box or a surface tag that contains some",
-         scene.source);
+    fail(
+        "{}: no fixed nodes, so nothing holds the body; add [[fixed]] with a box or a surface tag that "
+        "contains some",
+        scene.source);
   }
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
   positions_ = rest_;

@@ -3,10 +3,10 @@
 
 namespace palpate::sim {
 
-/// Linear elastic equilibrium K u = f at every step (Cotin, Delingette and Ayache 1999, IEEE TVCG 5:62: pre-computed
-/// elementary deformations). Set-up factors K over the free nodes and keeps W = J K^-1 J^T for the r reachable surface
-/// nodes: (3r x 3r) doubles, 27 MB for the paper's liver. A step then is a few columns of W: O(r x loaded nodes).
-/// Surface nodes out of reach are kept at rest; they are not computed.
+/// Linear elastic equilibrium K u = f at every step (Cotin, Delingette and Ayache 1999, IEEE TVCG 5:62:
+/// pre-computed elementary deformations). Set-up factors K over the free nodes and keeps W = J K^-1 J^T for
+/// the r reachable surface nodes: (3r x 3r) doubles, 27 MB for the paper's liver. A step then is a few
+/// columns of W: O(r x loaded nodes). Surface nodes out of reach are kept at rest; they are not computed.
 class QuasiStatic : public DeformationModel {
  public:
   /// Throws `Error` without material or fixed nodes, or when K is singular.
@@ -20,9 +20,9 @@ class QuasiStatic : public DeformationModel {
   void precompute(const ModelInputs& inputs);
 
   std::vector<Vec3> rest_, positions_;
-  std::vector<int> row_;         // per surface vertex: its first row in compliance_, or -1 (fixed or out of reach)
-  std::vector<int> reachable_;   // surface vertex of each block row
-  Eigen::MatrixXd compliance_;   // m/N
+  std::vector<int> row_;  // per surface vertex: its first row in compliance_, or -1 (fixed or out of reach)
+  std::vector<int> reachable_;  // surface vertex of each block row
+  Eigen::MatrixXd compliance_;  // m/N
 };
 
 }  // namespace palpate::sim

@@ -3,9 +3,10 @@
 
 namespace palpate::sim {
 
-/// No deformation: the empirical penetration force, F = k (depth) (named by Picinbono and Lombardo 1999 as [3]). The
-/// compliance 1/k sits between the tool position and a tip that stays on the surface (the god-object of Zilles and
-/// Salisbury 1995), so several contacts share it and the force stays continuous over edges.
+/// No deformation: the empirical penetration force, F = k (depth) (named by Picinbono and Lombardo 1999 as
+/// [3]). The compliance 1/k sits between the tool position and a tip that stays on the surface (the
+/// god-object of Zilles and Salisbury 1995), so several contacts share it and the force stays continuous over
+/// edges.
 class Rigid : public DeformationModel {
  public:
   explicit Rigid(const ModelInputs& inputs);

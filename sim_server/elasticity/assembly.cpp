@@ -4,7 +4,8 @@
 
 namespace palpate::sim {
 
-FreeDofs::FreeDofs(int vertices, const std::vector<int>& fixed) : first(static_cast<std::size_t>(vertices), 0) {
+FreeDofs::FreeDofs(int vertices, const std::vector<int>& fixed)
+    : first(static_cast<std::size_t>(vertices), 0) {
   for (const int vertex : fixed) first[vertex] = -1;
   for (int& dof : first) {
     if (dof < 0) continue;
@@ -24,7 +25,8 @@ SparseMatrix assemble_stiffness(const TetMesh& mesh, const Material& material, c
     }
   };
   for (const Tetrahedron& t : mesh.tetrahedra) {
-    const LinearTetrahedron element({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], mesh.vertices[t[3]]});
+    const LinearTetrahedron element(
+        {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], mesh.vertices[t[3]]});
     for (int i = 0; i < 4; ++i) {
       for (int j = 0; j < 4; ++j) {
         const int row = dofs.first[t[i]], column = dofs.first[t[j]];

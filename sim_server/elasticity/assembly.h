@@ -17,8 +17,8 @@ struct FreeDofs {
   FreeDofs(int vertices, const std::vector<int>& fixed);
 };
 
-/// Lower triangle of the linear elastic stiffness K (count x count, N/m, symmetric) over the free displacements.
-/// O(tetrahedra); summed in tetrahedron order, so the same mesh gives the same bits.
+/// Lower triangle of the linear elastic stiffness K (count x count, N/m, symmetric) over the free
+/// displacements. O(tetrahedra); summed in tetrahedron order, so the same mesh gives the same bits.
 SparseMatrix assemble_stiffness(const TetMesh& mesh, const Material& material, const FreeDofs& dofs);
 
 }  // namespace palpate::sim

@@ -20,14 +20,33 @@ struct SparseCholesky::Factor {
 #endif
 };
 
+namespace {
+
+constexpr double kSingular = 1e13;  // condition beyond which rounding has eaten the answer
+
+/// A load that no smooth motion balances.
+Eigen::VectorXd alternating(Eigen::Index n) {
+  return Eigen::VectorXd::NullaryExpr(n, [](Eigen::Index i) { return i % 2 == 0 ? 1.0 : -0.7; });
+}
+
+/// A singular matrix can pass as positive definite by rounding; its answers are huge then.
+bool nearly_singular(const SparseMatrix& lower, const Eigen::VectorXd& answer) {
+  const double largest = lower.diagonal().maxCoeff() * answer.cwiseAbs().maxCoeff();
+  return !(largest < kSingular);
+}
+
+}  // namespace
+
 SparseCholesky::SparseCholesky(const SparseMatrix& lower) : factor_(std::make_unique<Factor>()) {
 #ifdef PALPATE_WITH_CHOLMOD
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);  // the same bits on every machine
-  factor_->llt.cholmod().print = 0;  // errors are ours to word
+  factor_->llt.cholmod().print = 0;                                      // errors are ours to word
 #endif
   factor_->llt.compute(lower);
-  if (factor_->llt.info() != Eigen::Success) {
-    fail("the stiffness matrix is not positive definite: too few fixed nodes to hold the body, or a degenerate mesh");
+  if (factor_->llt.info() != Eigen::Success || nearly_singular(lower, solve(alternating(lower.rows())))) {
+    fail(
+        "the stiffness matrix is not positive definite: too few fixed nodes to hold the body, or a "
+        "degenerate mesh");
   }
 }
 

@@ -5,8 +5,9 @@
 
 namespace palpate::sim {
 
-/// Sparse Cholesky factorisation of a symmetric positive definite matrix, by CHOLMOD (supernodal, on one BLAS thread) or,
-/// built with PALPATE_CHOLMOD=OFF, by Eigen. This is the one file that knows which. Set-up and background threads only.
+/// Sparse Cholesky factorisation of a symmetric positive definite matrix, by CHOLMOD (supernodal, on one BLAS
+/// thread) or, built with PALPATE_CHOLMOD=OFF, by Eigen. This is the one file that knows which. Set-up and
+/// background threads only.
 class SparseCholesky {
  public:
   /// Factors the matrix whose lower triangle is given. Throws `Error` when it is not positive definite.

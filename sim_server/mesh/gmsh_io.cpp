@@ -21,8 +21,6 @@
 namespace palpate::sim {
 namespace {
 
-
-
 constexpr std::int64_t kTriangle = 2, kTetrahedron = 4;  // element types of Gmsh
 constexpr int kUnused = -1;
 
@@ -330,8 +328,6 @@ class MeshReader {
   std::map<std::int64_t, std::vector<std::int64_t>> physicals_of_entity_;
   std::map<std::int64_t, std::string> name_of_physical_;  // of dimension 2
 };
-
-
 
 /// Says what a file that does not start with $MeshFormat is, and how to make a mesh of it.
 [[noreturn]] void fail_other_format(const std::filesystem::path& file, std::string_view bytes) {

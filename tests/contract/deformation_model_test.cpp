@@ -1,8 +1,7 @@
 // What every deformation model must do, row by row of the registry.
-#include "sim_server/deformation/deformation_models.h"
-
 #include <Eigen/Eigenvalues>
 
+#include "sim_server/deformation/deformation_models.h"
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
@@ -83,7 +82,9 @@ TEST_CASE("contract: every deformation model") {
         }
         CHECK(allocations == 0);
       }
-      SECTION("it says what it holds in memory") { CHECK_FALSE(model.memory().empty()); }
+      SECTION("it says what it holds in memory") {
+        CHECK_FALSE(model.memory().empty());
+      }
     }
   }
 }

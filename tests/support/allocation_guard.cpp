@@ -3,7 +3,8 @@
 #include <cstdlib>
 #include <new>
 
-// Replaces the allocator behind `new`, and, where no sanitizer owns it, `malloc` itself (Eigen calls that directly).
+// Replaces the allocator behind `new`, and, where no sanitizer owns it, `malloc` itself (Eigen calls that
+// directly).
 namespace {
 thread_local std::size_t g_count = 0;
 thread_local bool g_counting = false;

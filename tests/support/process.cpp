@@ -1,13 +1,12 @@
 #include "tests/support/process.h"
 
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <csignal>
+#include <fcntl.h>
 #include <stdexcept>
+#include <sys/wait.h>
 #include <thread>
+#include <unistd.h>
 
 namespace palpate::test {
 namespace {
@@ -56,7 +55,8 @@ void Process::signal(int number) const {
 
 void Process::drain() {
   char buffer[4096];
-  for (ssize_t got = 0; (got = read(pipe_, buffer, sizeof buffer)) > 0;) output_.append(buffer, static_cast<std::size_t>(got));
+  for (ssize_t got = 0; (got = read(pipe_, buffer, sizeof buffer)) > 0;)
+    output_.append(buffer, static_cast<std::size_t>(got));
 }
 
 const std::string& Process::output() {

@@ -8,7 +8,8 @@ inline sim::Scene liver_scene() {
   return sim::read_scene(std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver.toml");
 }
 
-/// A scene around a mesh made in memory: quasi-static unless said otherwise, fixed where `fixed` contains a vertex.
+/// A scene around a mesh made in memory: quasi-static unless said otherwise, fixed where `fixed` contains a
+/// vertex.
 inline sim::Scene scene_of(const sim::Material& material, const sim::Box& fixed, double tool_radius) {
   sim::Scene scene;
   scene.source = "test";

@@ -35,7 +35,9 @@ std::string error_of(Use use) {
 }  // namespace
 
 TEST_CASE("values, defaults, tables and paths") {
-  const Config c = config_of("a = 1.5\nn = 3\ns = \"x\"\nv = [1, 2.5, -3]\nf = \"sub/m.msh\"\n[t]\nb = [[0,0,0],[1,2,3]]\n[[l]]\n[[l]]\n");
+  const Config c = config_of(
+      "a = 1.5\nn = 3\ns = \"x\"\nv = [1, 2.5, -3]\nf = \"sub/m.msh\"\n[t]\nb = "
+      "[[0,0,0],[1,2,3]]\n[[l]]\n[[l]]\n");
   CHECK(c.number("a", {}) == 1.5);
   CHECK(c.number("n", {}) == 3);
   CHECK(c.integer("n", {}) == 3);
@@ -51,15 +53,24 @@ TEST_CASE("values, defaults, tables and paths") {
 
 TEST_CASE("every wrong value names line, key and what was expected") {
   CHECK(error_of([] { config_of("a = 1").number("b", {}); }) == ":1: missing key `b`");
-  CHECK(error_of([] { config_of("\na = \"1\"").number("a", {.unit = "Pa"}); }) == ":2: `a` must be a number (Pa)");
-  CHECK(error_of([] { config_of("a = 7").number("a", {0, 5, "m"}); }) == ":1: `a` must be between 0 and 5 (m), not 7");
-  CHECK(error_of([] { config_of("a = nan").number("a", {0, 5, "m"}); }) == ":1: `a` must be between 0 and 5 (m), not nan");
+  CHECK(error_of([] { config_of("\na = \"1\"").number("a", {.unit = "Pa"}); }) ==
+        ":2: `a` must be a number (Pa)");
+  CHECK(error_of([] {
+          config_of("a = 7").number("a", {0, 5, "m"});
+        }) == ":1: `a` must be between 0 and 5 (m), not 7");
+  CHECK(error_of([] {
+          config_of("a = nan").number("a", {0, 5, "m"});
+        }) == ":1: `a` must be between 0 and 5 (m), not nan");
   CHECK(error_of([] { config_of("a = 1.5").integer("a", {}); }) == ":1: `a` must be a whole number");
   CHECK(error_of([] { config_of("a = 1").text("a"); }) == ":1: `a` must be text in quotes");
-  CHECK(error_of([] { config_of("a = [1, 2]").vector("a", {.unit = "m"}); }) == ":1: `a` must be three numbers [x, y, z] in m");
-  CHECK(error_of([] { config_of("[t]\nb = [[1,0,0],[0,1,1]]").table("t")->box("b"); }).starts_with(":2: `[t] b` must be [minimum"));
+  CHECK(error_of([] { config_of("a = [1, 2]").vector("a", {.unit = "m"}); }) ==
+        ":1: `a` must be three numbers [x, y, z] in m");
+  CHECK(error_of([] {
+          config_of("[t]\nb = [[1,0,0],[0,1,1]]").table("t")->box("b");
+        }).starts_with(":2: `[t] b` must be [minimum"));
   CHECK(error_of([] { config_of("t = 1").table("t"); }) == ":1: `t` must be a table `[t]`");
-  CHECK(error_of([] { config_of("[t]").tables("t"); }) == ":1: `t` must be one or more tables `[[t]]` (two brackets)");
+  CHECK(error_of([] { config_of("[t]").tables("t"); }) ==
+        ":1: `t` must be one or more tables `[[t]]` (two brackets)");
   CHECK(error_of([] { config_of("a = ["); }).starts_with(":1: not TOML: "));
   CHECK(error_of([] { Config::read(folder().path() / "none.toml"); }).ends_with("none.toml: no such file"));
 }

@@ -10,7 +10,8 @@ TEST_CASE("a histogram's quantiles are those of the counts within 0.4 %") {
   CHECK(h.count() == 100000);
   CHECK(h.max() == 100000);
   CHECK(h.mean() == Approx(50000.5));
-  for (const double q : {0.01, 0.5, 0.9, 0.99, 0.999}) CHECK(h.quantile(q) == Approx(100000 * q).epsilon(0.004));
+  for (const double q : {0.01, 0.5, 0.9, 0.99, 0.999})
+    CHECK(h.quantile(q) == Approx(100000 * q).epsilon(0.004));
   CHECK(h.quantile(1) == Approx(100000).epsilon(0.004));
 }
 

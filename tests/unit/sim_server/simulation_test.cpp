@@ -34,7 +34,9 @@ Vec3 on_liver(const Simulation& simulation, double x, double z, double depth) {
 
 }  // namespace
 
-TEST_CASE("sliding over the shipped liver at 10 mm/s does not jerk: steps of at most 2 % of the mean force at 1 kHz") {
+TEST_CASE(
+    "sliding over the shipped liver at 10 mm/s does not jerk: steps of at most 2 % of the mean force at 1 "
+    "kHz") {
   Simulation liver(test::liver_scene());
   for (const double depth : {0.001, 0.003, 0.006}) {
     double largest = 0, sum = 0;
@@ -61,7 +63,8 @@ TEST_CASE("the tangent agrees with finite differences of the force to 1e-6") {
   test::Random random(8);
   int checked = 0;
   for (int i = 0; i < 30; ++i) {
-    const Vec3 p = on_liver(liver, random.between(-0.05, 0.01), random.between(-0.01, 0.02), random.between(0.001, 0.004));
+    const Vec3 p = on_liver(liver, random.between(-0.05, 0.01), random.between(-0.01, 0.02),
+                            random.between(0.001, 0.004));
     liver.lift_tool();
     const ToolForce force = liver.step(p, kDt);
     constexpr double kStep = 1e-7;

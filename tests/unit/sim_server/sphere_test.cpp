@@ -1,4 +1,5 @@
-// The finite-element contact against closed forms: a rigid sphere pressed without friction on an elastic block.
+// The finite-element contact against closed forms: a rigid sphere pressed without friction on an elastic
+// block.
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +17,8 @@ constexpr double kSphere = 0.01, kContact = 0.002;  // m: sphere and contact rad
 constexpr double kThick = 0.06, kHalfWidth = 0.03;  // m: 60 mm thick, 60 mm wide = 30 contact radii
 const Material kTissue{10e3, 0.45, 1000};
 
-/// Depth and force at contact radius a on a half-space (Sneddon 1965, Int. J. Eng. Sci. 3:47, eqs. 6.14 and 6.15).
+/// Depth and force at contact radius a on a half-space (Sneddon 1965, Int. J. Eng. Sci. 3:47, eqs. 6.14
+/// and 6.15).
 double sneddon_depth(double a) {
   return 0.5 * a * std::log((kSphere + a) / (kSphere - a));
 }
@@ -25,8 +27,8 @@ double sneddon_force(double a) {
   return 0.5 * e * ((a * a + kSphere * kSphere) * std::log((kSphere + a) / (kSphere - a)) - 2 * a * kSphere);
 }
 
-/// By how much a bonded layer of thickness h is stiffer than the half-space (Dimitriadis et al. 2002, Biophys. J.
-/// 82:2798, eq. 12).
+/// By how much a bonded layer of thickness h is stiffer than the half-space (Dimitriadis et al. 2002,
+/// Biophys. J. 82:2798, eq. 12).
 double layer_factor(double depth) {
   constexpr double pi = std::numbers::pi;
   const double nu = kTissue.poisson_ratio, chi = std::sqrt(kSphere * depth) / kThick;
@@ -62,7 +64,9 @@ TEST_CASE("Sneddon's force goes over into Hertz' for small contacts") {
   CHECK(sneddon_force(a) == Approx(4 * e * a * a * a / (3 * kSphere)).epsilon(1e-3));
 }
 
-TEST_CASE("sphere on a graded block: within 5 % of Sneddon's force at six elements per contact radius, and converging") {
+TEST_CASE(
+    "sphere on a graded block: within 5 % of Sneddon's force at six elements per contact radius, and "
+    "converging") {
   const double coarse = force_error(2), middle = force_error(4), fine = force_error(6);
   CAPTURE(coarse, middle, fine);
   CHECK(std::abs(fine) < 0.05);

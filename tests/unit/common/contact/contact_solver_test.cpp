@@ -43,7 +43,8 @@ TEST_CASE("pressing the centroid of a face sinks it evenly: F = depth / (c / 3)"
   const ContactForce contact = solver.solve(patch, {kRadius}, {0, kRadius - depth, 0}, u);
   CHECK(contact.converged);
   CHECK(contact.contacts == 1);
-  CHECK(contact.force[1] == Approx(3 * depth / c).epsilon(1e-5));  // 1e-5: the solver's own contact compliance
+  CHECK(contact.force[1] ==
+        Approx(3 * depth / c).epsilon(1e-5));  // 1e-5: the solver's own contact compliance
   CHECK(contact.force.head<1>().norm() < 1e-9);
   CHECK(u[1] == Approx(-depth).epsilon(1e-5));
   const auto forces = solver.node_forces();
@@ -60,8 +61,8 @@ TEST_CASE("a rigid face with a soft tip is the penetration force k x depth") {
 }
 
 TEST_CASE("the tangent of a rigid vertex is that of a spring to a ball around it") {
-  // The tip rests on the sphere of radius R around the vertex: F = k (R - r) n with r the distance of the tool centre,
-  // so dF/dp = -k n n^T + k (R - r) / r (I - n n^T): closed form.
+  // The tip rests on the sphere of radius R around the vertex: F = k (R - r) n with r the distance of the
+  // tool centre, so dF/dp = -k n n^T + k (R - r) / r (I - n n^T): closed form.
   ContactPatch patch = single_triangle(0, 1.0 / 500);
   const Vec3 vertex = patch.free[2], n = Vec3(0, 0.6, 0.8);
   const double r = 0.004;
@@ -69,8 +70,8 @@ TEST_CASE("the tangent of a rigid vertex is that of a spring to a ball around it
   Eigen::VectorXd u = Eigen::VectorXd::Zero(12);
   const ContactForce contact = solver.solve(patch, {kRadius}, vertex + r * n, u);
   CHECK((contact.force - 500 * (kRadius - r) * n).norm() < 1e-5);
-  const Mat3 expected = -500 * n * n.transpose() +
-                        500 * (kRadius - r) / r * (Mat3::Identity() - n * n.transpose());
+  const Mat3 expected =
+      -500 * n * n.transpose() + 500 * (kRadius - r) / r * (Mat3::Identity() - n * n.transpose());
   CHECK((solver.tangent(patch) - expected).norm() < 1e-5 * expected.norm());
 }
 

@@ -1,8 +1,7 @@
 #include "common/contact/simplex_distance.h"
 
-#include <array>
-
 #include <Eigen/LU>
+#include <array>
 
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
@@ -34,7 +33,8 @@ TEST_CASE("the closest point of a triangle is nearer than any other of its point
 
 namespace {
 
-/// Distance from the last of `y` to the affine hull of the others, by least squares: independent of the program.
+/// Distance from the last of `y` to the affine hull of the others, by least squares: independent of the
+/// program.
 double distance_to_hull(const std::vector<Vec3>& y) {
   const auto m = static_cast<int>(y.size()) - 1;
   const Vec3 r = y.back() - y[0];
@@ -63,8 +63,9 @@ TEST_CASE("the Hessian of the distance to a point, a line and a plane agrees wit
     }
     Vec3 to = y.back();
     for (int i = 0; i < m; ++i) to -= weight[i] * y[i];
-    const SimplexHessian h = distance_hessian({y.data(), static_cast<std::size_t>(m)},
-                                              {weight.data(), static_cast<std::size_t>(m)}, to.normalized(), to.norm());
+    const SimplexHessian h =
+        distance_hessian({y.data(), static_cast<std::size_t>(m)},
+                         {weight.data(), static_cast<std::size_t>(m)}, to.normalized(), to.norm());
     constexpr double kStep = 1e-4;
     for (int r = 0; r < 3 * (m + 1); ++r) {
       for (int c = 0; c < 3 * (m + 1); ++c) {
@@ -74,8 +75,9 @@ TEST_CASE("the Hessian of the distance to a point, a line and a plane agrees wit
           moved[c / 3][c % 3] += dc;
           return distance_to_hull(moved);
         };
-        const double difference = (at(kStep, kStep) - at(kStep, -kStep) - at(-kStep, kStep) + at(-kStep, -kStep)) /
-                                  (4 * kStep * kStep);
+        const double difference =
+            (at(kStep, kStep) - at(kStep, -kStep) - at(-kStep, kStep) + at(-kStep, -kStep)) /
+            (4 * kStep * kStep);
         CHECK(h(r, c) == Approx(difference).margin(1e-5).epsilon(1e-5));
       }
     }

@@ -1,0 +1,69 @@
+// The paper's laws on sequences worked out by hand.
+#include "common/text.h"
+#include "haptic_client/extrapolation/extrapolator.h"
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::client;
+using namespace std::chrono_literals;
+
+namespace {
+
+std::unique_ptr<Extrapolator> law(const char* name) {
+  return find_row(extrapolators(), name, "method", "test").make();
+}
+
+/// P goes 0, 2 mm along x while F goes 1, 2 N along y, 40 ms apart.
+std::unique_ptr<Extrapolator> after_two_samples(const char* name) {
+  auto l = law(name);
+  l->update({1, 0ms, {0, 0, 0}, {0, 1, 0}});
+  l->update({2, 40ms, {0.002, 0, 0}, {0, 2, 0}});
+  return l;
+}
+
+}  // namespace
+
+TEST_CASE("constant is exact to the bit") {
+  const Vec3 f(0.1, 1.0 / 3, 1e-300);
+  auto l = law("constant");
+  CHECK(l->force({1, 2, 3}, 5ms) == Vec3::Zero());
+  l->update({1, 0ms, {0, 0, 0}, f});
+  CHECK(l->force({1, 2, 3}, 500ms) == f);
+}
+
+TEST_CASE("linear in time: F_n + (t - t_n) / (t_n - t_(n-1)) (F_n - F_(n-1))") {
+  auto l = after_two_samples("linear_time");
+  CHECK(l->force({9, 9, 9}, 40ms)[1] == Approx(2));
+  CHECK(l->force({9, 9, 9}, 60ms)[1] == Approx(2.5));
+  CHECK(l->force({9, 9, 9}, 80ms)[1] == Approx(3));
+}
+
+TEST_CASE("linear in position: onward, across, at rest and back") {
+  auto printed = after_two_samples("linear_position"),
+       with_sign = after_two_samples("linear_position_signed");
+  const Vec3 onward(0.003, 0, 0), across(0.002, 0.005, 0.001), oblique(0.003, 0.004, 0), back(0.001, 0, 0);
+  for (const auto& l : {printed.get(), with_sign.get()}) {
+    CHECK(l->force(onward, 50ms)[1] == Approx(2.5));   // half a step on
+    CHECK(l->force(across, 50ms)[1] == Approx(2));     // the projection does not move
+    CHECK(l->force(oblique, 50ms)[1] == Approx(2.5));  // only what lies along the line counts
+  }
+  CHECK(printed->force(back, 50ms)[1] == Approx(2.5));  // as printed: no sign, the wrong way on a reversal
+  CHECK(with_sign->force(back, 50ms)[1] == Approx(1.5));
+}
+
+TEST_CASE("with one sample, or two at the same place or time, the answer is F_n") {
+  for (const char* name : {"linear_time", "linear_position", "linear_position_signed"}) {
+    CAPTURE(name);
+    auto l = law(name);
+    CHECK(l->force({1, 1, 1}, 10ms) == Vec3::Zero());
+    l->update({1, 0ms, {0, 0, 0}, {0, 1, 0}});
+    CHECK(l->force({1, 1, 1}, 10ms) == Vec3(0, 1, 0));
+  }
+  for (const char* name : {"linear_position", "linear_position_signed"}) {
+    auto l = law(name);
+    l->update({1, 0ms, {0, 0, 0}, {0, 1, 0}});
+    l->update({2, 40ms, {0, 0, 0}, {0, 3, 0}});
+    CHECK(l->force({1, 0, 0}, 50ms) == Vec3(0, 3, 0));
+  }
+}

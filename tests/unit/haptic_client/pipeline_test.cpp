@@ -1,0 +1,144 @@
+#include "haptic_client/loop/pipeline.h"
+
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/catch.h"
+#include "tests/support/random.h"
+
+using namespace palpate;
+using namespace palpate::client;
+using protocol::ForceSample;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr Time kTick = 2ms;
+
+Pipeline make(std::size_t law = 0, const Workspace& workspace = {}) {
+  return {extrapolators()[law].make(), workspace, {.max_force = 3, .max_slew = 500}};
+}
+
+ForceSample sample_at(std::uint64_t number, Time t, const Vec3& p, const Vec3& f) {
+  return {.number = number, .tool_t_ns = t.count(), .p_W = p, .f_W = f};
+}
+
+/// Runs ticks with a fresh sample of force `f` every 33 ms until the soft start is over.
+Time warm_up(Pipeline& pipeline, const Vec3& f) {
+  Time t = 1s;
+  std::uint64_t number = 0;
+  for (int tick = 0; tick < 600; ++tick, t += kTick) {
+    const ForceSample sample = sample_at(++number, t, {0, 0, 0}, f);
+    pipeline.tick({.t = t}, tick % 16 == 0 ? &sample : nullptr);
+  }
+  return t;
+}
+
+}  // namespace
+
+TEST_CASE("no sample, no force") {
+  Pipeline pipeline = make();
+  for (int tick = 0; tick < 10; ++tick)
+    CHECK(pipeline.tick({.t = tick * kTick}, nullptr).f_D == Vec3::Zero());
+}
+
+TEST_CASE("after the soft start the sample's force comes through; the workspace turns it into device force") {
+  Pipeline plain = make();
+  const Time t = warm_up(plain, {0, 1, 0});
+  CHECK((plain.tick({.t = t}, nullptr).f_D - Vec3(0, 1, 0)).norm() < 1e-12);
+  Pipeline scaled = make(0, {.scale = 2, .offset_W = {0.1, 0, 0}});
+  warm_up(scaled, {0, 1, 0});
+  const TickResult result = scaled.tick({.t = t, .p_D = {0.01, 0, 0}}, nullptr);
+  CHECK((result.f_D - Vec3(0, 2, 0)).norm() < 1e-12);
+  CHECK((result.tool.p_W - Vec3(0.12, 0, 0)).norm() < 1e-15);
+}
+
+TEST_CASE("exactly zero out of contact, for every law, though they look back at a contact") {
+  for (std::size_t law = 0; law < extrapolators().size(); ++law) {
+    Pipeline pipeline = make(law);
+    Time t = warm_up(pipeline, {0, 1, 0});
+    const ForceSample free = sample_at(900, t, {0, 0.01, 0}, {0, 0, 0});
+    pipeline.tick({.t = t, .p_D = {0, 0.01, 0}}, &free);
+    TickResult result;
+    for (int tick = 1; tick < 5; ++tick)
+      result = pipeline.tick({.t = t += kTick, .p_D = {0, 0.012, 0}}, nullptr);
+    CHECK(result.f_D == Vec3::Zero());
+  }
+}
+
+TEST_CASE("the link dies: force is exactly zero 400 ms after the last sample, and comes back softly") {
+  Pipeline pipeline = make();
+  Time t = warm_up(pipeline, {0, 1, 0});
+  const Time last = t;
+  const ForceSample newest = sample_at(900, last, {0, 0, 0}, {0, 1, 0});
+  pipeline.tick({.t = t}, &newest);
+  TickResult result;
+  while (t < last + 300ms) result = pipeline.tick({.t = t += kTick}, nullptr);
+  CHECK(result.f_D[1] == Approx(1));
+  while (t < last + 400ms) result = pipeline.tick({.t = t += kTick}, nullptr);
+  CHECK(result.f_D.norm() < 1e-12);
+  result = pipeline.tick({.t = t += kTick}, nullptr);
+  CHECK(result.f_D == Vec3::Zero());
+  const ForceSample back = sample_at(901, t, {0, 0, 0}, {0, 1, 0});
+  CHECK(pipeline.tick({.t = t += kTick}, &back).f_D[1] == Approx(0.002));
+  CHECK(pipeline.watchdog().ramped() == 1);
+}
+
+TEST_CASE("duplicates and latecomers do not reach the law") {
+  Pipeline pipeline = make(1);  // linear in time: two equal times would divide by zero
+  Time t = warm_up(pipeline, {0, 1, 0});
+  const ForceSample newest = sample_at(900, t, {0, 0, 0}, {0, 1.5, 0}),
+                    late = sample_at(899, t - 5ms, {0, 0, 0}, {0, 9, 0}),
+                    future = sample_at(901, t + 1s, {0, 0, 0}, {0, 9, 0});
+  pipeline.tick({.t = t}, &newest);
+  const Vec3 before = pipeline.tick({.t = t += kTick}, nullptr).f_D;
+  const auto overtaken = pipeline.stats().overtaken;
+  for (const ForceSample* again : {&newest, &late, &future}) {
+    CHECK((pipeline.tick({.t = t}, again).f_D - before).norm() < 0.2);
+  }
+  CHECK(pipeline.stats().overtaken == overtaken + 3);
+}
+
+TEST_CASE("a device that gives nothing usable latches the force off") {
+  Pipeline pipeline = make();
+  const Time t = warm_up(pipeline, {0, 1, 0});
+  CHECK(pipeline.tick({.t = t, .valid = false}, nullptr).f_D == Vec3::Zero());
+  CHECK(pipeline.limiter().fault() == Fault::kDeviceLost);
+  CHECK(pipeline.tick({.t = t + kTick}, nullptr).f_D == Vec3::Zero());
+}
+
+TEST_CASE("whatever comes from the wire and the device, the force is finite and within its limits") {
+  test::Random random(13);
+  for (std::size_t law = 0; law < extrapolators().size(); ++law) {
+    Pipeline pipeline = make(law);
+    Time t = 1s;
+    Vec3 last = Vec3::Zero();
+    for (int tick = 0; tick < 20000; ++tick) {
+      const double sizes[] = {0, 1e-9, 1e-3, 1, 1e9, 1e-320};
+      const ForceSample sample =
+          sample_at(random.bits() % 1000 + 1, t - Time{static_cast<Time::rep>(random.bits() % 400'000'000)},
+                    random.vector(sizes[random.bits() % 6]), random.vector(sizes[random.bits() % 6]));
+      DeviceReading reading{.t = t, .p_D = random.vector(sizes[random.bits() % 4])};
+      if (tick % 997 == 0) reading.p_D[0] = std::nan("");
+      const Vec3 f = pipeline.tick(reading, random.bits() % 4 == 0 ? &sample : nullptr).f_D;
+      REQUIRE(f.allFinite());
+      REQUIRE(f.norm() <= 3 * (1 + 1e-12));
+      last = f;
+      pipeline.rearm();
+      t += Time{static_cast<Time::rep>(random.bits() % 4'000'000)};
+    }
+  }
+}
+
+TEST_CASE("a tick does not allocate") {
+  Pipeline pipeline = make(2);
+  const Time t = warm_up(pipeline, {0, 1, 0});
+  const ForceSample sample = sample_at(900, t, {0, 0, 0}, {0, 1, 0});
+  std::size_t allocations = 1;
+  {
+    const test::AllocationGuard guard;
+    pipeline.tick({.t = t}, &sample);
+    pipeline.tick({.t = t + kTick}, nullptr);
+    allocations = guard.count();
+  }
+  CHECK(allocations == 0);
+}

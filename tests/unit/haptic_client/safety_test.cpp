@@ -1,0 +1,107 @@
+#include "haptic_client/safety/limiter.h"
+#include "haptic_client/safety/watchdog.h"
+#include "tests/support/catch.h"
+#include "tests/support/random.h"
+
+using namespace palpate;
+using namespace palpate::client;
+using namespace std::chrono_literals;
+
+namespace {
+constexpr double kDt = 0.002;
+const Vec3 kNone = Vec3::Zero();
+}  // namespace
+
+TEST_CASE("a force within the limits passes unchanged") {
+  Limiter limiter({.max_force = 8, .max_slew = 160});
+  CHECK(limiter.limit({0.1, -0.2, 0.1}, kNone, kDt) == Vec3(0.1, -0.2, 0.1));
+  CHECK(limiter.counts().clamped + limiter.counts().slewed == 0);
+}
+
+TEST_CASE("magnitude is clamped along the direction, change is slewed") {
+  Limiter limiter({.max_force = 1, .max_slew = 100});
+  Vec3 f = kNone;
+  int ticks = 0;
+  for (; ticks < 20; ++ticks) {
+    const Vec3 next = limiter.limit({30, 40, 0}, kNone, kDt);
+    CHECK((next - f).norm() <= 100 * kDt * (1 + 1e-12));
+    f = next;
+  }
+  CHECK((f - Vec3(0.6, 0.8, 0)).norm() < 1e-12);
+  CHECK(limiter.counts().clamped == 20);
+  CHECK(limiter.counts().slewed == 4);  // 1 N at 0.2 N a tick: four cut, the fifth arrives
+}
+
+TEST_CASE("damping is exempt from the slew limit, not from the clamp") {
+  Limiter limiter({.max_force = 1, .max_slew = 1});
+  CHECK(limiter.limit(kNone, {0.5, 0, 0}, kDt) == Vec3(0.5, 0, 0));
+  CHECK(limiter.limit(kNone, {5, 0, 0}, kDt).norm() == Approx(1));
+}
+
+TEST_CASE("anything at all goes in, and within the limits it comes out") {
+  test::Random random(12);
+  Limiter limiter({.max_force = 3, .max_slew = 200});
+  Vec3 last = kNone;
+  const double wild[] = {0, 1e-320, 1e30, 1e308, -1e308, 5, -0.1};
+  for (int tick = 0; tick < 20000; ++tick) {
+    Vec3 f = random.vector(10);
+    if (tick % 3 == 0) f[tick % 2] = wild[random.bits() % 7];
+    const Vec3 out = limiter.limit(f, kNone, kDt);
+    REQUIRE(out.allFinite());
+    REQUIRE(out.norm() <= 3 * (1 + 1e-12));
+    REQUIRE((out - last).norm() <= 200 * kDt * (1 + 1e-9) + (limiter.fault() == Fault::kNone ? 0 : 3));
+    last = out;
+    limiter.rearm();
+  }
+}
+
+TEST_CASE("a force that is not finite latches until re-armed") {
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Limiter limiter({});
+    limiter.limit({0.1, 0, 0}, kNone, kDt);
+    CHECK(limiter.limit({bad, 0, 0}, kNone, kDt) == kNone);
+    CHECK(limiter.fault() == Fault::kNotFinite);
+    CHECK(limiter.limit({0.1, 0, 0}, kNone, kDt) == kNone);
+    CHECK(limiter.counts().latched == 1);
+    limiter.rearm();
+    CHECK(limiter.limit({0.1, 0, 0}, kNone, kDt) == Vec3(0.1, 0, 0));
+  }
+}
+
+TEST_CASE("a storm of slew cuts latches; a long steady clamp does not") {
+  Limiter pressed({.max_force = 1, .max_slew = 100}), shaken({.max_force = 1, .max_slew = 100});
+  for (int tick = 0; tick < 5000; ++tick) {
+    pressed.limit({5, 0, 0}, kNone, kDt);
+    shaken.limit({tick % 2 == 0 ? 1.0 : -1.0, 0, 0}, kNone, kDt);
+  }
+  CHECK(pressed.fault() == Fault::kNone);
+  CHECK(shaken.fault() == Fault::kStorm);
+}
+
+TEST_CASE("the ladder: three periods, 300 ms, 400 ms, and back over a second") {
+  Watchdog watchdog;
+  const Time period = 33ms;
+  double gain = 0;
+  for (int tick = 0; tick < 499; ++tick) gain = watchdog.rule(10ms, period, kDt).gain;
+  CHECK(gain == Approx(0.998));
+  CHECK(watchdog.rule(10ms, period, kDt).gain == Approx(1));
+  CHECK(watchdog.rule(99ms, period, kDt).may_extrapolate_in_time);
+  CHECK_FALSE(watchdog.rule(100ms, period, kDt).may_extrapolate_in_time);
+  CHECK(watchdog.rule(300ms, period, kDt).gain == Approx(1));
+  double age_ms = 300;
+  Watchdog::Ruling ruling;
+  while (age_ms < 399) {
+    age_ms += 2;
+    ruling = watchdog.rule(from_seconds(age_ms / 1e3), period, kDt);
+    if (age_ms < 399) CHECK(ruling.damper);
+  }
+  CHECK(ruling.gain == Approx(0).margin(1e-12));
+  CHECK(watchdog.ramped() == 1);
+  CHECK(watchdog.rule(10ms, period, kDt).gain == Approx(kDt));
+}
+
+TEST_CASE("no force before there is a sample") {
+  Watchdog watchdog;
+  for (int tick = 0; tick < 100; ++tick) CHECK(watchdog.rule({}, 0ms, kDt).gain == 0);
+  CHECK(watchdog.ramped() == 0);
+}

@@ -1,0 +1,227 @@
+#include "protocol/codec.h"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tests/support/allocation_guard.h"
+#include "tests/support/catch.h"
+#include "tests/support/random.h"
+
+using namespace palpate;
+using namespace palpate::protocol;
+
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+Bytes encoded(const Header& header, const Message& message) {
+  Bytes bytes(kMaxDatagram);
+  bytes.resize(encode(header, message, bytes));
+  return bytes;
+}
+
+std::string hex(const Bytes& bytes) {
+  std::string text;
+  for (const std::byte b : bytes) text += fmt::format("{:02x}", std::to_integer<int>(b));
+  return text;
+}
+
+const Header kHeader{0x1122334455667788, 7};
+
+std::vector<Message> one_of_each() {
+  ToolState tool{
+      .tool = 1, .tick = 9, .newest_sample = 8, .t_ns = 123456789, .p_W = {0.5, -1, 2}, .v_W = {0, 0.25, 0}};
+  tool.buttons = 5;
+  ForceSample force{.tool = 1,
+                    .number = 3,
+                    .tool_tick = 9,
+                    .tool_t_ns = 123456789,
+                    .p_W = {0.5, -1, 2},
+                    .f_W = {0, 1.5, 0}};
+  force.step_ns = 70000;
+  force.flags = ForceSample::kInContact;
+  return {Hello{.nonce = 42},
+          Welcome{42, 1, 30, 0.005},
+          Refuse{42, RefuseReason::kNoFreeTool},
+          Bye{},
+          tool,
+          force};
+}
+
+}  // namespace
+
+TEST_CASE("golden bytes: written down by hand from protocol/README.md") {
+  const auto front = [](const char* type, const char* payload) {
+    return std::string("504c5054") + "01" + type + payload +
+           "00"
+           "000000"
+           "8877665544332211"
+           "0700000000000000";
+  };
+  const auto messages = one_of_each();
+  CHECK(hex(encoded(kHeader, messages[0])) ==
+        front("01", "0001") + "2a00000000000000" + std::string(2 * 248, '0'));
+  CHECK(hex(encoded(kHeader, messages[1])) == front("03", "1900") +
+                                                  "2a00000000000000"
+                                                  "01"
+                                                  "0000000000003e40"
+                                                  "7b14ae47e17a743f");
+  CHECK(hex(encoded(kHeader, messages[2])) == front("04", "0900") +
+                                                  "2a00000000000000"
+                                                  "01");
+  CHECK(hex(encoded(kHeader, messages[3])) == front("05", "0000"));
+  CHECK(hex(encoded(kHeader, messages[4])) == front("06", "6d00") +
+                                                  "01"
+                                                  "0900000000000000"
+                                                  "0800000000000000"
+                                                  "15cd5b0700000000"
+                                                  "000000000000e03f"
+                                                  "000000000000f0bf"
+                                                  "0000000000000040"
+                                                  "0000000000000000"
+                                                  "000000000000d03f"
+                                                  "0000000000000000"
+                                                  "000000000000f03f"
+                                                  "0000000000000000"
+                                                  "0000000000000000"
+                                                  "0000000000000000"
+                                                  "05000000");
+  CHECK(hex(encoded(kHeader, messages[5])) == front("07", "6d00") +
+                                                  "01"
+                                                  "0300000000000000"
+                                                  "0900000000000000"
+                                                  "15cd5b0700000000"
+                                                  "000000000000e03f"
+                                                  "000000000000f0bf"
+                                                  "0000000000000040"
+                                                  "0000000000000000"
+                                                  "000000000000f83f"
+                                                  "0000000000000000"
+                                                  "0000000000000000"
+                                                  "0000000000000000"
+                                                  "0000000000000000"
+                                                  "7011010000000000"
+                                                  "01000000");
+}
+
+TEST_CASE("what is encoded decodes to the same bytes again") {
+  for (const Message& message : one_of_each()) {
+    const Bytes bytes = encoded(kHeader, message);
+    Datagram datagram;
+    REQUIRE(decode(bytes, datagram) == Verdict::kAccepted);
+    CHECK(datagram.header.session == kHeader.session);
+    CHECK(datagram.header.sequence == kHeader.sequence);
+    CHECK(datagram.message.index() == message.index());
+    CHECK(encoded(datagram.header, datagram.message) == bytes);
+  }
+}
+
+TEST_CASE("every truncation is refused cleanly; Hello's padding alone may be missing only with its length") {
+  for (const Message& message : one_of_each()) {
+    const Bytes bytes = encoded(kHeader, message);
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      // A copy of exactly this size, so that a sanitizer sees a read beyond it.
+      const Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+      Datagram datagram;
+      const Verdict verdict = decode(cut, datagram);
+      REQUIRE(verdict == (size < kHeaderBytes ? Verdict::kTooShort : Verdict::kLength));
+    }
+  }
+}
+
+TEST_CASE("every change of one byte is refused or gives a valid message, which encodes") {
+  int accepted = 0, refused = 0;
+  for (const Message& message : one_of_each()) {
+    const Bytes bytes = encoded(kHeader, message);
+    for (std::size_t at = 0; at < bytes.size(); ++at) {
+      for (int value = 0; value < 256; ++value) {
+        Bytes changed = bytes;
+        changed[at] = static_cast<std::byte>(value);
+        Datagram datagram;
+        if (decode(changed, datagram) != Verdict::kAccepted) {
+          ++refused;
+          continue;
+        }
+        ++accepted;
+        REQUIRE_FALSE(encoded(datagram.header, datagram.message).empty());
+      }
+    }
+  }
+  CHECK(accepted > 10000);
+  CHECK(refused > 10000);
+}
+
+TEST_CASE("each reason of refusal") {
+  const auto verdict_of = [](Bytes bytes, auto change) {
+    change(bytes);
+    Datagram datagram;
+    return decode(bytes, datagram);
+  };
+  const Bytes force = encoded(kHeader, one_of_each()[5]);
+  CHECK(verdict_of(force, [](Bytes& b) { b[0] = std::byte{'Q'}; }) == Verdict::kNotOurs);
+  CHECK(verdict_of(force, [](Bytes& b) { b[4] = std::byte{2}; }) == Verdict::kVersion);
+  CHECK(verdict_of(force, [](Bytes& b) { b[5] = std::byte{99}; }) == Verdict::kType);
+  CHECK(verdict_of(force, [](Bytes& b) { b[5] = static_cast<std::byte>(MessageType::kTelemetry); }) ==
+        Verdict::kType);
+  CHECK(verdict_of(force, [](Bytes& b) { b.push_back(std::byte{0}); }) == Verdict::kLength);
+  CHECK(verdict_of(force, [](Bytes& b) { b[8] = std::byte{16}; }) ==
+        Verdict::kLength);  // announces a tag that is not there
+  CHECK(verdict_of(force, [](Bytes& b) { b.resize(4000); }) == Verdict::kLength);
+  const auto with_f = [&](double f) {
+    ForceSample sample = std::get<ForceSample>(one_of_each()[5]);
+    sample.f_W[1] = f;
+    return encoded(kHeader, sample);
+  };
+  Datagram untouched{{1, 2}, Bye{}};
+  CHECK(decode(with_f(std::nan("")), untouched) == Verdict::kNotFinite);
+  CHECK(decode(with_f(std::numeric_limits<double>::infinity()), untouched) == Verdict::kNotFinite);
+  CHECK(decode(with_f(1e30), untouched) == Verdict::kValue);
+  CHECK(untouched.header.session == 1);
+}
+
+TEST_CASE("a tag behind the payload, and fields a later version adds, do not disturb a reader") {
+  Bytes bytes = encoded(kHeader, one_of_each()[5]);
+  bytes[8] = std::byte{16};
+  bytes.resize(bytes.size() + 16, std::byte{0xab});
+  Datagram datagram;
+  CHECK(decode(bytes, datagram) == Verdict::kAccepted);
+  Bytes longer = encoded(kHeader, one_of_each()[5]);
+  longer[6] = static_cast<std::byte>(std::to_integer<int>(longer[6]) + 3);
+  longer.resize(longer.size() + 3);
+  CHECK(decode(longer, datagram) == Verdict::kAccepted);
+}
+
+TEST_CASE("no reply is larger than the Hello that asked for it") {
+  const std::size_t hello = encoded({}, Hello{}).size();
+  for (const std::size_t reply : {1u, 2u, 3u}) CHECK(encoded(kHeader, one_of_each()[reply]).size() < hello);
+}
+
+TEST_CASE("random bytes never crash the decoder") {
+  test::Random random(9);
+  Bytes bytes(300);
+  for (int trial = 0; trial < 20000; ++trial) {
+    for (std::byte& b : bytes) b = static_cast<std::byte>(random.bits() & 0xff);
+    const Bytes valid = encoded(kHeader, one_of_each()[static_cast<std::size_t>(trial % 6)]);
+    if (trial % 2 == 0) std::copy_n(valid.begin(), std::min<std::size_t>(28, valid.size()), bytes.begin());
+    Datagram datagram;
+    const auto verdict = decode({bytes.data(), random.bits() % 300}, datagram);
+    REQUIRE(static_cast<std::size_t>(verdict) < kVerdicts);
+  }
+}
+
+TEST_CASE("encode and decode do not allocate") {
+  const auto messages = one_of_each();
+  Bytes bytes(kMaxDatagram);
+  Datagram datagram;
+  std::size_t allocations = 1;
+  {
+    const test::AllocationGuard guard;
+    for (const Message& message : messages) {
+      const std::size_t size = encode(kHeader, message, bytes);
+      decode({bytes.data(), size}, datagram);
+    }
+    allocations = guard.count();
+  }
+  CHECK(allocations == 0);
+}
