@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fmt/core.h>
-#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 
@@ -16,11 +15,11 @@ std::string lock_memory() {
                      std::strerror(errno));
 }
 
-std::string make_realtime(const char* name, int priority) {
-  pthread_setname_np(pthread_self(), name);
+std::string make_realtime(pthread_t thread, const char* name, int priority) {
+  pthread_setname_np(thread, name);
   sched_param param{};
   param.sched_priority = priority;
-  const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
+  const int refused = pthread_setschedparam(thread, SCHED_FIFO, &param);
   if (refused == 0) return {};
   return fmt::format(
       "no real-time priority for the {} thread ({}): raise `ulimit -r` (rtprio in "

@@ -1,4 +1,5 @@
 #pragma once
+#include <pthread.h>
 #include <string>
 
 namespace palpate {
@@ -7,8 +8,9 @@ namespace palpate {
 /// sentence that says what the system refused and what to change. Call once, after set-up.
 std::string lock_memory();
 
-/// Gives the calling thread real-time priority (SCHED_FIFO `priority`, 1..99) and the name `name` (at most 15
-/// characters, shown by `top -H`). Returns an empty text, or what was refused and what to change.
-std::string make_realtime(const char* name, int priority);
+/// Gives a thread real-time priority (SCHED_FIFO `priority`, 1..99) and the name `name` (at most 15
+/// characters, shown by `top -H`). Returns an empty text, or one sentence that says what was refused and what
+/// to change.
+std::string make_realtime(pthread_t thread, const char* name, int priority);
 
 }  // namespace palpate

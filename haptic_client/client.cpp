@@ -27,6 +27,10 @@ protocol::Endpoint any_address(const protocol::Endpoint& server) {
   return {.v6 = server.v6};
 }
 
+void warn_if_refused(const std::string& refused) {
+  if (!refused.empty()) log::warning("{}", refused);
+}
+
 std::uint64_t random_number() {
   std::random_device device;
   return (std::uint64_t{device()} << 32 | device()) | 1;
@@ -69,8 +73,9 @@ class Watcher {
     if (seconds < next_) return;
     next_ = seconds + (terminal ? 0.2 : 5);
     fmt::print("{}haptic_client: {:6.1f} s  |F| {:5.2f} N  age {:5.1f} ms  ticks {} ({} missed){}",
-               terminal ? "\r" : "", seconds, loop_.newest_newton.load(), static_cast<double>(age) / 1e6,
-               loop_.ticks.load(), loop_.missed.load(), terminal ? "  " : "\n");
+               terminal ? "\r" : "", seconds, loop_.newest_newton.load(),
+               static_cast<double>(std::max<std::int64_t>(age, 0)) / 1e6, loop_.ticks.load(),
+               loop_.missed.load(), terminal ? "  " : "\n");
     std::fflush(stdout);
   }
 
@@ -113,7 +118,6 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
                   static_cast<std::size_t>(kept * config.rate_hz));
   protocol::UdpSocket socket(any_address(server));
   NetLink link(socket, server, mailboxes, random_number());
-  std::string refused;
   {
     std::jthread net([&] { link.run(); });
     const struct StopNet {  // also when waiting throws
@@ -123,16 +127,13 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
     if (!wait_for_welcome(link, config.server)) return 0;
     log::info("connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", config.server, config.device.name,
               config.rate_hz, config.method);
-    if (const std::string no_lock = lock_memory(); !no_lock.empty()) log::warning("{}", no_lock);
-    std::jthread haptic([&](const std::stop_token& stop) {
-      refused = make_realtime("palpate-haptic", kPriority);
-      loop.run(stop);
-    });
+    warn_if_refused(lock_memory());
+    std::jthread haptic([&](const std::stop_token& stop) { loop.run(stop); });
+    warn_if_refused(make_realtime(haptic.native_handle(), "palpate-haptic", kPriority));
     watch(loop, config.server, options.seconds);
     haptic.request_stop();
     haptic.join();
   }
-  if (!refused.empty()) log::warning("{}", refused);
   const Json report = make_report(config, loop, pipeline, link);
   print_report(report);
   if (options.trace)

@@ -18,22 +18,26 @@ namespace {
 
 constexpr int kPriority = 40;  // below the haptic loop of a client on the same machine
 
-/// Says what set-up is doing: one line a stage, and on a terminal a running percentage.
+/// Says on stdout what set-up is doing: one line a stage, and on a terminal a running percentage.
 class SetupProgress {
  public:
   void operator()(std::string_view what, double share) {
-    const bool terminal = isatty(STDERR_FILENO) != 0;
-    if (what != stage_) {
-      stage_ = what;
-      if (!terminal) log::info("{} ...", what);
+    if (isatty(STDOUT_FILENO) != 0) {
+      fmt::print("\r\033[Ksim_server: {} {:3.0f} %{}", what, 100 * share, share >= 1 ? "\n" : "");
+    } else if (what != stage_) {
+      fmt::print("sim_server: {} ...\n", what);
     }
-    if (terminal)
-      fmt::print(stderr, "\r\033[Ksim_server: {} {:3.0f} %{}", what, 100 * share, share >= 1 ? "\n" : "");
+    stage_ = what;
+    std::fflush(stdout);
   }
 
  private:
   std::string stage_;
 };
+
+void warn_if_refused(const std::string& refused) {
+  if (!refused.empty()) log::warning("{}", refused);
+}
 
 void warn_if_huge(const TetMesh& mesh, const Scene& scene) {
   const MeshInfo info = describe(mesh);
@@ -120,15 +124,12 @@ int run_server(const ServerOptions& options) {
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes);
   NetLink link(socket, {1, scene.rate_hz, scene.tool.shape.radius}, mailboxes, random_seed());
-  if (const std::string refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
+  warn_if_refused(lock_memory());
   const Time start = now();
   {
-    std::string refused;
     std::jthread net([&] { link.run(); });
-    std::jthread sim([&](const std::stop_token& stop) {
-      refused = make_realtime("palpate-sim", kPriority);
-      loop.run(stop);
-    });
+    std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
+    warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kPriority));
     log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
               report["setup_ms"].get<double>() / 1e3, protocol::to_string(socket.local()));
     watch(link, options.seconds);
@@ -136,7 +137,6 @@ int run_server(const ServerOptions& options) {
     sim.join();
     link.stop();
     net.join();
-    if (!refused.empty()) log::warning("{}", refused);
   }
   add_run(report, loop, link, simulation, now() - start);
   print_summary(report);

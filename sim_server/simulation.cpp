@@ -44,7 +44,7 @@ std::vector<int> vertices_of(const std::vector<Triangle>& triangles) {
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, const Progress& progress)
-    : Simulation(scene, (progress("reading the mesh", 0), read_mesh(scene.mesh_file)), progress) {}
+    : Simulation(scene, read_mesh(scene.mesh_file), progress) {}
 
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress)
     : tool_(scene.tool.shape), mesh_(std::move(mesh)), surface_(boundary_surface(mesh_)) {

@@ -14,7 +14,7 @@ struct DeviceSettings {
   std::string name = "simulated";
   std::string where = "default";
   OperatorSettings hand;
-  std::optional<TrajectorySettings> trajectory;  ///< absent: the simulated hand holds still at the origin
+  std::optional<TrajectorySettings> trajectory;  ///< absent: the simulated hand holds still at (0, 0.1, 0)
 };
 
 /// One row per device: a new one is one file and one row.

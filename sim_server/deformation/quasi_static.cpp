@@ -36,7 +36,8 @@ void QuasiStatic::precompute(const ModelInputs& inputs) {
     for (int axis = 0; axis < 3; ++axis) dof_of_row.push_back(first + axis);
   }
   inputs.progress("factoring the stiffness matrix", 0);
-  const SparseCholesky factor(assemble_stiffness(inputs.mesh, *inputs.scene.material, dofs));
+  const SparseCholesky factor(assemble_stiffness(inputs.mesh, *inputs.scene.material, dofs),
+                              inputs.scene.source);
   const auto rows = static_cast<Eigen::Index>(dof_of_row.size());
   compliance_.resize(rows, rows);
   for (Eigen::Index from = 0; from < rows; from += kColumnsAtOnce) {

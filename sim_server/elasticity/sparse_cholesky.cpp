@@ -37,7 +37,8 @@ bool nearly_singular(const SparseMatrix& lower, const Eigen::VectorXd& answer) {
 
 }  // namespace
 
-SparseCholesky::SparseCholesky(const SparseMatrix& lower) : factor_(std::make_unique<Factor>()) {
+SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& where)
+    : factor_(std::make_unique<Factor>()) {
 #ifdef PALPATE_WITH_CHOLMOD
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);  // the same bits on every machine
   factor_->llt.cholmod().print = 0;                                      // errors are ours to word
@@ -45,8 +46,9 @@ SparseCholesky::SparseCholesky(const SparseMatrix& lower) : factor_(std::make_un
   factor_->llt.compute(lower);
   if (factor_->llt.info() != Eigen::Success || nearly_singular(lower, solve(alternating(lower.rows())))) {
     fail(
-        "the stiffness matrix is not positive definite: too few fixed nodes to hold the body, or a "
-        "degenerate mesh");
+        "{}: the stiffness matrix is singular: the fixed nodes do not hold the body (three that are not in "
+        "line would)",
+        where);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <string>
 
 #include "sim_server/elasticity/assembly.h"
 
@@ -10,8 +11,9 @@ namespace palpate::sim {
 /// background threads only.
 class SparseCholesky {
  public:
-  /// Factors the matrix whose lower triangle is given. Throws `Error` when it is not positive definite.
-  explicit SparseCholesky(const SparseMatrix& lower);
+  /// Factors the matrix whose lower triangle is given. Throws `Error`, beginning with `where`, when it is not
+  /// positive definite, or singular but for rounding.
+  SparseCholesky(const SparseMatrix& lower, const std::string& where);
   ~SparseCholesky();
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;

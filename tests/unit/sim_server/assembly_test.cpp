@@ -47,7 +47,7 @@ TEST_CASE("patch test: prescribing a linear field on the boundary gives it insid
   REQUIRE(inner.size() == 8);
   // Solve K_ii u_i = -K_io u_o with the program's own dofs and Cholesky.
   const FreeDofs dofs(n, outer);
-  const SparseCholesky factor(assemble_stiffness(mesh, material, dofs));
+  const SparseCholesky factor(assemble_stiffness(mesh, material, dofs), "test");
   Eigen::VectorXd load = Eigen::VectorXd::Zero(dofs.count);
   for (const int i : inner) {
     for (const int o : outer) {
@@ -79,5 +79,5 @@ TEST_CASE("the stiffness is symmetric, positive, blind to rigid motion; energy i
 TEST_CASE("a body that nothing holds is refused") {
   const TetMesh mesh = shaken_block();
   const int n = static_cast<int>(mesh.vertices.size());
-  CHECK_THROWS_AS(SparseCholesky(assemble_stiffness(mesh, {}, FreeDofs(n, {0}))), Error);
+  CHECK_THROWS_AS(SparseCholesky(assemble_stiffness(mesh, {}, FreeDofs(n, {0})), "test"), Error);
 }
