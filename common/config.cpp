@@ -124,8 +124,8 @@ std::pair<Vec3, Vec3> Config::box(const std::string& key) const {
   if (corners == nullptr || corners->size() != 2)
     node_->wrong(*node, key, "two corners [[x, y, z], [x, y, z]] in m");
   const Range metres{.unit = "m"};
-  const std::pair<Vec3, Vec3> box{node_->vector(*corners->get(0), key, metres),
-                                  node_->vector(*corners->get(1), key, metres)};
+  std::pair<Vec3, Vec3> box{node_->vector(*corners->get(0), key, metres),
+                            node_->vector(*corners->get(1), key, metres)};
   if ((box.first.array() > box.second.array()).any()) {
     node_->wrong(*node, key, "[minimum corner, maximum corner]; a minimum is larger than its maximum");
   }

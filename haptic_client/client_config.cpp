@@ -47,6 +47,12 @@ Limiter::Settings read_limits(const Config& config) {
   return limits;
 }
 
+/// The file tells the motion in the world; the simulated hand moves in the device frame.
+void put_in_device_frame(TrajectorySettings& trajectory, const Workspace& workspace) {
+  trajectory.scale /= workspace.scale;
+  trajectory.offset = (trajectory.offset - workspace.offset_W) / workspace.scale;
+}
+
 }  // namespace
 
 ClientConfig read_client_config(const std::filesystem::path& file) {
@@ -67,6 +73,7 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   if (const auto trajectory = config.table("trajectory"))
     client.device.trajectory = read_trajectory(*trajectory);
   if (const auto workspace = config.table("workspace")) client.workspace = read_workspace(*workspace);
+  if (client.device.trajectory) put_in_device_frame(*client.device.trajectory, client.workspace);
   if (const auto limits = config.table("limits")) client.limits = read_limits(*limits);
   config.reject_unknown();
   return client;

@@ -52,7 +52,9 @@ Verdict read_as(std::span<const std::byte> payload, Message& out) noexcept {
 Verdict read_payload(MessageType type, std::span<const std::byte> payload, Message& out) noexcept {
   switch (type) {
     case MessageType::kHello:
-      return read_as<Hello>(payload, out);
+      // Unpadded, it could be answered with more bytes than it has: a lever for a stranger who forges
+      // addresses.
+      return payload.size() < kHelloPayload ? Verdict::kLength : read_as<Hello>(payload, out);
     case MessageType::kWelcome:
       return read_as<Welcome>(payload, out);
     case MessageType::kRefuse:

@@ -5,7 +5,7 @@
 
 namespace palpate::protocol {
 
-/// Sequence numbers of one sender seen so far: the highest, and which of the 64 before it (the sliding window
+/// Sequence numbers of one sender seen so far: the highest, and which of the 63 before it (the sliding window
 /// of RFC 4303, section 3.4.3). Pure; a few instructions.
 class ReplayWindow {
  public:

@@ -13,9 +13,11 @@ std::optional<Hello> ClientSession::poll(Time now) noexcept {
 
 const ForceSample* ClientSession::receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept {
   if (const auto* welcome = std::get_if<Welcome>(&datagram.message); welcome && welcome->nonce == nonce_) {
+    if (datagram.header.session == left_session_) return nullptr;  // late, from a server that is gone
     last_heard_ = now;
     refused_.reset();
     if (datagram.header.session != session_) {  // a new server, or the first
+      left_session_ = session_;
       session_ = datagram.header.session;
       sent_ = newest_sample_ = 0;
       window_ = {};

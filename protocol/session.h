@@ -46,7 +46,7 @@ class ClientSession {
   static constexpr Time kSilence = std::chrono::milliseconds(300);  ///< without a sample: ask again
 
  private:
-  std::uint64_t nonce_, session_ = 0, sent_ = 0, newest_sample_ = 0;
+  std::uint64_t nonce_, session_ = 0, left_session_ = 0, sent_ = 0, newest_sample_ = 0;
   Welcome welcome_;
   ReplayWindow window_;
   std::optional<RefuseReason> refused_;

@@ -110,7 +110,7 @@ UdpSocket::UdpSocket(const Endpoint& local) : asio_(std::make_unique<Asio>()) {
   if (!failed) asio_->socket.bind(address, failed);
   if (failed == asio::error::address_in_use) {
     fail_at_run_time(
-        "UDP port {} is in use; stop the other program or choose another with --listen ADDR:PORT",
+        "UDP address {} is in use; stop the other program or choose another with --listen ADDR:PORT",
         to_string(local));
   }
   if (failed) fail_at_run_time("cannot use UDP address {} ({})", to_string(local), failed.message());

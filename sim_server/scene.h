@@ -29,7 +29,7 @@ struct FixedRegion {
 
 /// `[deformation]`.
 struct DeformationSettings {
-  std::string model = "quasi_static";
+  std::string model;       ///< a name of `deformation_models()`
   double stiffness = 800;  ///< N/m, (0, 1e6], model "rigid" only
   std::string where;
 };

@@ -39,6 +39,14 @@ void warn_if_refused(const std::string& refused) {
   if (!refused.empty()) log::warning("{}", refused);
 }
 
+/// Clients let go of a force that is older than 300 ms.
+void warn_if_slow(const Scene& scene) {
+  if (scene.rate_hz > 0 && scene.rate_hz < 5) {
+    log::warning("{}: at {} steps per second the force fades between samples; 5 or more keep it",
+                 scene.source, scene.rate_hz);
+  }
+}
+
 void warn_if_huge(const TetMesh& mesh, const Scene& scene) {
   const MeshInfo info = describe(mesh);
   const double size = (info.max - info.min).maxCoeff();
@@ -120,6 +128,7 @@ int run_server(const ServerOptions& options) {
   SetupProgress progress;
   Simulation simulation(scene, std::ref(progress));
   warn_if_huge(simulation.mesh(), scene);
+  warn_if_slow(scene);
   Json report = describe_scene(scene, simulation, now() - begin);
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes);

@@ -33,10 +33,13 @@ void SimLoop::run(const std::stop_token& stop) noexcept {
 }
 
 void SimLoop::step(double dt) noexcept {
-  if (tool_.session == 0) {
+  if (tool_.session !=
+      session_) {  // in another hand, or nobody's: it does not travel from the one to the other
     simulation_.lift_tool();
-    return;
+    session_ = tool_.session;
+    samples_ = 0;
   }
+  if (session_ == 0) return;
   const Time start = now();
   const ToolForce force = simulation_.step(tool_.state.p_W, dt);
   const Time took = now() - start;
@@ -51,10 +54,6 @@ void SimLoop::step(double dt) noexcept {
 
 void SimLoop::answer(const ToolForce& force, Time took) noexcept {
   using protocol::ForceSample;
-  if (tool_.session != answered_session_) {
-    answered_session_ = tool_.session;
-    samples_ = 0;
-  }
   const std::uint32_t flags =
       (force.contacts > 0 ? ForceSample::kInContact : 0) | (force.flagged ? ForceSample::kFlagged : 0);
   mailboxes_.force.write({tool_.session,

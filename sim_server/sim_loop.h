@@ -62,7 +62,7 @@ class SimLoop {
   SimMailboxes& mailboxes_;
   Time period_;
   ToolInput tool_;
-  std::uint64_t answered_session_ = 0, samples_ = 0;
+  std::uint64_t session_ = 0, samples_ = 0;
   bool fresh_ = false;
   SimLoopStats stats_;
 };

@@ -16,15 +16,15 @@ Trajectory::Trajectory(const TrajectorySettings& settings) {
   t_ = std::move(columns[0]);
   for (std::size_t i = 0; i < t_.size(); ++i) {
     if (i > 0 && t_[i] <= t_[i - 1]) {
-      fail("{}: column {} must increase; row {} has {} after {}", settings.file.string(), settings.columns[0],
-           i + 1, t_[i], t_[i - 1]);
+      fail("{}: column {} must increase, but data row {} has {} after {}", settings.file.string(),
+           settings.columns[0], i + 1, t_[i], t_[i - 1]);
     }
     p_.push_back(settings.offset + settings.scale * Vec3(columns[1][i], columns[2][i], columns[3][i]));
   }
 }
 
-Trajectory::Trajectory(std::vector<double> t_s, std::vector<Vec3> p_W)
-    : t_(std::move(t_s)), p_(std::move(p_W)) {}
+Trajectory::Trajectory(std::vector<double> t_s, std::vector<Vec3> p_D)
+    : t_(std::move(t_s)), p_(std::move(p_D)) {}
 
 Vec3 Trajectory::at(double t) const noexcept {
   if (t <= 0 || t_.size() == 1) return p_.front();

@@ -17,13 +17,14 @@ struct TrajectorySettings {
 };
 
 /// A path through space: straight between rows, at rest before the first; after the last it repeats if it
-/// ends within 1 mm of where it began, else it stays there. World frame, m, s.
+/// ends within 1 mm of where it began, else it stays there. Device frame (the client file tells it in the
+/// world and client_config converts), m, s.
 class Trajectory {
  public:
-  /// Reads a CSV. Throws `Error` with file and line for a bad row, or times that do not increase.
+  /// Reads a CSV. Throws `Error` for a bad row (file and line) or times that do not increase (file and row).
   explicit Trajectory(const TrajectorySettings& settings);
   /// From rows, times increasing; for tests and for a hand that holds still (one row).
-  Trajectory(std::vector<double> t_s, std::vector<Vec3> p_W);
+  Trajectory(std::vector<double> t_s, std::vector<Vec3> p_D);
 
   /// Position at `t` seconds after the start. O(log rows), no allocation.
   Vec3 at(double t) const noexcept;

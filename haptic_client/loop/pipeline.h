@@ -41,7 +41,11 @@ class Pipeline {
   /// One tick. `arrived`: the newest sample, if one came since the last tick, else null.
   TickResult tick(const DeviceReading& reading, const protocol::ForceSample* arrived) noexcept;
 
-  void rearm() noexcept { limiter_.rearm(); }
+  /// Clears a latched fault; the force rises again over a soft start.
+  void rearm() noexcept {
+    limiter_.rearm();
+    watchdog_.restart();
+  }
   /// Age of the newest sample at the last tick, ns; -1 before there is one.
   std::int64_t age_ns() const noexcept { return newest_.number == 0 ? -1 : (last_t_ - newest_.t).count(); }
   const Limiter& limiter() const noexcept { return limiter_; }

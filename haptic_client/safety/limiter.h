@@ -16,7 +16,7 @@ struct LimiterCounts {
 enum class Fault : std::uint8_t {
   kNone,
   kNotFinite,   ///< some stage produced a NaN or an infinity
-  kStorm,       ///< the slew limit cut more than half of the ticks of a second: something oscillates
+  kStorm,       ///< the slew limit cut for more than half of a second's time: something oscillates
   kDeviceLost,  ///< the device stopped answering
 };
 

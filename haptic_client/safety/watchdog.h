@@ -28,6 +28,9 @@ class Watchdog {
   /// `dt` (s): since the last tick.
   Ruling rule(std::optional<Time> age, Time period, double dt) noexcept;
 
+  /// Force from none again, over a soft start.
+  void restart() noexcept { gain_ = 0; }
+
   /// How often the force was faded.
   std::uint64_t ramped() const noexcept { return ramped_; }
 

@@ -21,8 +21,8 @@ struct MemoryPart {
 };
 
 /// A tissue. Every model answers the same three questions, so that one contact solver serves them all.
-/// Vertices are those of the surface (`Surface`), positions in m in the world frame. One thread; nothing
-/// allocates or throws.
+/// Vertices are those of the surface (`Surface`), positions in m in the world frame. One thread; the three
+/// neither allocate nor throw.
 class DeformationModel {
  public:
   virtual ~DeformationModel() = default;

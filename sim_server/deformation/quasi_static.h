@@ -5,7 +5,7 @@ namespace palpate::sim {
 
 /// Linear elastic equilibrium K u = f at every step (Cotin, Delingette and Ayache 1999, IEEE TVCG 5:62:
 /// pre-computed elementary deformations). Set-up factors K over the free nodes and keeps W = J K^-1 J^T for
-/// the r reachable surface nodes: (3r x 3r) doubles, 27 MB for the paper's liver. A step then is a few
+/// the r reachable surface nodes: (3r x 3r) doubles, 27 MB for 614 of them. A step then is a few
 /// columns of W: O(r x loaded nodes). Surface nodes out of reach are kept at rest; they are not computed.
 class QuasiStatic : public DeformationModel {
  public:

@@ -2,7 +2,6 @@
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <thread>
 
 #include "protocol/udp_socket.h"
@@ -28,9 +27,9 @@ struct Server {
   explicit Server(const std::vector<std::string>& more = {}, const std::string& listen = "127.0.0.1:0")
       : process("sim_server", arguments(listen, more)) {
     if (!process.wait_for("listening on ")) throw std::runtime_error("no server: " + process.output());
-    std::smatch match;
-    std::regex_search(process.output(), match, std::regex("listening on ([0-9.]+:[0-9]+)"));
-    address = match[1];
+    const std::string& said = process.output();
+    const std::size_t begin = said.find("listening on ") + 13;
+    address = said.substr(begin, said.find(' ', begin) - begin);
   }
   static std::vector<std::string> arguments(const std::string& listen, const std::vector<std::string>& more) {
     std::vector<std::string> all{"run", kScene, "--listen", listen};
@@ -218,7 +217,7 @@ TEST_CASE("Ctrl-C while waiting for a server ends the client, exit 0") {
   CHECK(client.wait() == 0);
 }
 
-TEST_CASE("no server: exit 1 after 5 s with what to look at; port in use: exit 1") {
+TEST_CASE("no server: exit 1 after 5 s with what to look at, port in use: exit 1") {
   CHECK(output_of("haptic_client", client_arguments("127.0.0.1:9", {}), 1)
             .find("no answer from a server at 127.0.0.1:9") != std::string::npos);
   Server server;
@@ -243,7 +242,7 @@ TEST_CASE("garbage on the server's port is counted, and changes nothing") {
   CHECK(read_json(theirs)["link"]["rejected"] == 86);
 }
 
-TEST_CASE("wrong input: one line that says what, where and what to do; exit 2; nothing left behind") {
+TEST_CASE("wrong input: one line that says what, where and what to do, exit 2; nothing left behind") {
   const TemporaryFolder folder;
   const std::string mesh = "[mesh]\nfile = \"" + kSource + "/configs/meshes/liver.msh\"\n";
   const std::string fixed = "[[fixed]]\nbox = [[-1, -1, -1], [1, 1, -0.06]]\n";

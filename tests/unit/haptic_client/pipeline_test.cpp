@@ -41,7 +41,7 @@ TEST_CASE("no sample, no force") {
     CHECK(pipeline.tick({.t = tick * kTick}, nullptr).f_D == Vec3::Zero());
 }
 
-TEST_CASE("after the soft start the sample's force comes through; the workspace turns it into device force") {
+TEST_CASE("after the soft start the sample's force comes through, the workspace turns it into device force") {
   Pipeline plain = make();
   const Time t = warm_up(plain, {0, 1, 0});
   CHECK((plain.tick({.t = t}, nullptr).f_D - Vec3(0, 1, 0)).norm() < 1e-12);
@@ -104,6 +104,14 @@ TEST_CASE("a device that gives nothing usable latches the force off") {
   CHECK(pipeline.tick({.t = t, .valid = false}, nullptr).f_D == Vec3::Zero());
   CHECK(pipeline.limiter().fault() == Fault::kDeviceLost);
   CHECK(pipeline.tick({.t = t + kTick}, nullptr).f_D == Vec3::Zero());
+}
+
+TEST_CASE("re-armed after a fault, the force rises softly") {
+  Pipeline pipeline = make();
+  Time t = warm_up(pipeline, {0, 1, 0});
+  pipeline.tick({.t = t, .valid = false}, nullptr);
+  pipeline.rearm();
+  CHECK(pipeline.tick({.t = t += kTick}, nullptr).f_D[1] == Approx(0.002));
 }
 
 TEST_CASE("whatever comes from the wire and the device, the force is finite and within its limits") {

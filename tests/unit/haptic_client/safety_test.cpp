@@ -68,7 +68,7 @@ TEST_CASE("a force that is not finite latches until re-armed") {
   }
 }
 
-TEST_CASE("a storm of slew cuts latches; a long steady clamp does not") {
+TEST_CASE("a storm of slew cuts latches, a long steady clamp does not") {
   Limiter pressed({.max_force = 1, .max_slew = 100}), shaken({.max_force = 1, .max_slew = 100});
   for (int tick = 0; tick < 5000; ++tick) {
     pressed.limit({5, 0, 0}, kNone, kDt);

@@ -18,7 +18,7 @@ TEST_CASE("against a steady force the hand settles where the arm's spring balanc
   CHECK((reading.p_D - Vec3(0.1, 0.2 + 1.5 / 300, 0.3)).norm() < 1e-6);
 }
 
-TEST_CASE("without force it follows a slow path; the same times give the same bits") {
+TEST_CASE("without force it follows a slow path, the same times give the same bits") {
   const Trajectory path({0, 1, 2}, {Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0, 0, 0)});
   SimulatedOperator one({}, path), two({}, path);
   Vec3 p = Vec3::Zero();

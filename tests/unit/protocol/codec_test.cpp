@@ -117,7 +117,7 @@ TEST_CASE("what is encoded decodes to the same bytes again") {
   }
 }
 
-TEST_CASE("every truncation is refused cleanly; Hello's padding alone may be missing only with its length") {
+TEST_CASE("every truncation is refused cleanly, Hello's padding alone may be missing only with its length") {
   for (const Message& message : one_of_each()) {
     const Bytes bytes = encoded(kHeader, message);
     for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -190,6 +190,15 @@ TEST_CASE("a tag behind the payload, and fields a later version adds, do not dis
   longer[6] = static_cast<std::byte>(std::to_integer<int>(longer[6]) + 3);
   longer.resize(longer.size() + 3);
   CHECK(decode(longer, datagram) == Verdict::kAccepted);
+}
+
+TEST_CASE("a Hello without its padding is refused: it could be answered with more bytes than it has") {
+  Bytes bytes = encoded({}, Hello{.nonce = 1});
+  bytes.resize(kHeaderBytes + 24);
+  bytes[6] = std::byte{24};
+  bytes[7] = std::byte{0};
+  Datagram datagram;
+  CHECK(decode(bytes, datagram) == Verdict::kLength);
 }
 
 TEST_CASE("no reply is larger than the Hello that asked for it") {

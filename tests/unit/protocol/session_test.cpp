@@ -122,7 +122,7 @@ TEST_CASE("overtaken values are dropped: the newest wins") {
   CHECK(pair.client_stats.reordered == 1);
 }
 
-TEST_CASE("Bye frees the tool at once; strangers' datagrams are counted, not obeyed") {
+TEST_CASE("Bye frees the tool at once, strangers' datagrams are counted, not obeyed") {
   Pair pair;
   pair.shake_hands();
   const Header theirs{77, 1};
@@ -136,4 +136,16 @@ TEST_CASE("Bye frees the tool at once; strangers' datagrams are counted, not obe
   CHECK(pair.server.members().empty());
   CHECK(pair.client.receive({{5, 1}, ForceSample{.number = 1}}, pair.now, pair.client_stats) == nullptr);
   CHECK(pair.client_stats.rejected == 1);
+}
+
+TEST_CASE("a late Welcome of a session that was left does not bring it back") {
+  Pair pair;
+  const auto hello = pair.client.poll(pair.now);
+  const auto first = pair.server.receive({{}, *hello}, kClient, pair.now, 77, pair.server_stats);
+  pair.client.receive({first.answer->first, first.answer->second}, pair.now, pair.client_stats);
+  pair.server = ServerSessions(1, 30, 0.005);  // restarted
+  pair.now += 400ms;
+  pair.shake_hands(88);
+  pair.client.receive({first.answer->first, first.answer->second}, pair.now, pair.client_stats);
+  CHECK(pair.send_tool(1).tool_state != nullptr);
 }

@@ -60,7 +60,7 @@ TEST_CASE("patch test: prescribing a linear field on the boundary gives it insid
   }
 }
 
-TEST_CASE("the stiffness is symmetric, positive, blind to rigid motion; energy is that of uniform strain") {
+TEST_CASE("the stiffness is symmetric, positive, blind to rigid motion, energy is that of uniform strain") {
   const TetMesh mesh = shaken_block();
   const Material material{1e4, 0.3, 1000};
   const int n = static_cast<int>(mesh.vertices.size());

@@ -1,0 +1,28 @@
+#include "haptic_client/client_config.h"
+
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::client;
+
+TEST_CASE("an empty client file means the defaults, and the file that ships is read") {
+  const test::TemporaryFolder folder;
+  const ClientConfig config = read_client_config(folder.write("c.toml", ""));
+  CHECK(config.server == "127.0.0.1:45130");
+  CHECK(config.rate_hz == 500);
+  CHECK_FALSE(config.device.trajectory);
+  CHECK(
+      read_client_config(std::string(PALPATE_SOURCE_DIR) + "/configs/clients/liver.toml").device.trajectory);
+}
+
+TEST_CASE("a motion told in the world reaches the same place through any workspace") {
+  const test::TemporaryFolder folder;
+  folder.write("m.csv", "t_s,x_m,y_m,z_m\n0,10,20,30\n1,10,20,30\n");
+  const ClientConfig config =
+      read_client_config(folder.write("c.toml",
+                                      "[trajectory]\nfile = \"m.csv\"\nscale = 0.001\noffset = [1, 0, "
+                                      "0]\n[workspace]\nscale = 2\noffset = [0, 5, 0]\n"));
+  const Vec3 p_D = Trajectory(*config.device.trajectory).at(0.5);
+  CHECK((config.workspace.to_world(p_D) - Vec3(1.010, 0.020, 0.030)).norm() < 1e-12);
+}
