@@ -14,6 +14,7 @@ inline sim::Scene scene_of(const sim::Material& material, const sim::Box& fixed,
   sim::Scene scene;
   scene.source = "test";
   scene.material = material;
+  scene.deformation.model = "quasi_static";
   scene.fixed.push_back({fixed, "", "test"});
   scene.tool.shape.radius = tool_radius;
   return scene;

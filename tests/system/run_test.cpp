@@ -242,7 +242,7 @@ TEST_CASE("garbage on the server's port is counted, and changes nothing") {
   CHECK(read_json(theirs)["link"]["rejected"] == 86);
 }
 
-TEST_CASE("wrong input: one line that says what, where and what to do, exit 2; nothing left behind") {
+TEST_CASE("wrong input: one line that says what, where and what to do, exit 2, nothing left behind") {
   const TemporaryFolder folder;
   const std::string mesh = "[mesh]\nfile = \"" + kSource + "/configs/meshes/liver.msh\"\n";
   const std::string fixed = "[[fixed]]\nbox = [[-1, -1, -1], [1, 1, -0.06]]\n";
