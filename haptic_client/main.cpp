@@ -1,8 +1,7 @@
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
-#include "common/error.h"
-#include "common/interrupt.h"
-#include "common/log.h"
+#include "common/program.h"
 #include "common/text.h"
 #include "haptic_client/client.h"
 #include "haptic_client/extrapolation/extrapolators.h"
@@ -41,7 +40,6 @@ void apply(const Overrides& o, client::ClientConfig& config) {
 int run(int argc, char** argv) {
   CLI::App app{"Drives a force-feedback device at haptic rate from forces computed by sim_server."};
   app.require_subcommand(1);
-  app.set_version_flag("--version", "palpate 0.1.0");
   app.footer("Example: haptic_client run configs/clients/liver.toml --seconds 20");
 
   std::string file;
@@ -60,14 +58,7 @@ int run(int argc, char** argv) {
   command->footer(
       "Methods:\n" + list_of(client::extrapolators()) + "Devices:\n" + list_of(client::devices()) +
       "Example: haptic_client run configs/clients/liver.toml --method constant --report report.json");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app.exit(e);
-  } catch (const CLI::ParseError& e) {
-    log::error("{}; try --help", e.what());
-    return 2;
-  }
+  if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   client::ClientConfig config = file.empty() ? client::ClientConfig{} : client::read_client_config(file);
   apply(overrides, config);
   return client::run_client(config, options);
@@ -76,15 +67,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  palpate::log::start("haptic_client");
-  palpate::block_interrupts();
-  try {
-    return run(argc, argv);
-  } catch (const palpate::Error& e) {
-    palpate::log::error("{}", e.what());
-    return e.exit_code();
-  } catch (const std::exception& e) {
-    palpate::log::error("{}", e.what());
-    return 1;
-  }
+  return palpate::run_program("haptic_client", argc, argv, &run);
 }

@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 #include <numbers>
 
-#include "common/error.h"
-#include "common/interrupt.h"
 #include "common/log.h"
+#include "common/program.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/server.h"
 
@@ -36,7 +36,6 @@ int print_mesh_info(const std::string& file) {
 int run(int argc, char** argv) {
   CLI::App app{"Deforms an organ and answers a haptic client with forces, over UDP."};
   app.require_subcommand(1);
-  app.set_version_flag("--version", "palpate 0.1.0");
   app.footer("Example: sim_server run configs/scenes/liver.toml");
 
   sim::ServerOptions options;
@@ -60,29 +59,12 @@ int run(int argc, char** argv) {
   info->add_option("FILE", mesh_file, "Mesh file, metres")->required();
   info->footer("Example: sim_server mesh info configs/meshes/liver.msh");
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app.exit(e);
-  } catch (const CLI::ParseError& e) {
-    log::error("{}; try --help", e.what());
-    return 2;
-  }
+  if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   return *info ? print_mesh_info(mesh_file) : sim::run_server(options);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  palpate::log::start("sim_server");
-  palpate::block_interrupts();
-  try {
-    return run(argc, argv);
-  } catch (const palpate::Error& e) {
-    palpate::log::error("{}", e.what());
-    return e.exit_code();
-  } catch (const std::exception& e) {
-    palpate::log::error("{}", e.what());
-    return 1;
-  }
+  return palpate::run_program("sim_server", argc, argv, &run);
 }

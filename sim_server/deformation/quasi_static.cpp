@@ -7,9 +7,10 @@
 
 namespace palpate::sim {
 namespace {
+constexpr double kMostBytes = 4e9;  // of compliance
 constexpr Eigen::Index kColumnsAtOnce =
     48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
-}
+}  // namespace
 
 QuasiStatic::QuasiStatic(const ModelInputs& inputs) : row_(inputs.surface.vertices.size(), -1) {
   const Scene& scene = inputs.scene;
@@ -34,6 +35,14 @@ void QuasiStatic::precompute(const ModelInputs& inputs) {
     row_[vertex] = static_cast<int>(dof_of_row.size());
     reachable_.push_back(vertex);
     for (int axis = 0; axis < 3; ++axis) dof_of_row.push_back(first + axis);
+  }
+  const double bytes = static_cast<double>(dof_of_row.size() * dof_of_row.size() * sizeof(double));
+  if (bytes > kMostBytes) {
+    fail(
+        "{}: the compliance of {} reachable surface nodes would take {:.1f} GB; give [[tool]] a `reach` box "
+        "around "
+        "the part it touches",
+        inputs.scene.source, reachable_.size(), bytes / 1e9);
   }
   inputs.progress("factoring the stiffness matrix", 0);
   const SparseCholesky factor(assemble_stiffness(inputs.mesh, *inputs.scene.material, dofs),

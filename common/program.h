@@ -1,0 +1,19 @@
+#pragma once
+#include <optional>
+
+namespace CLI {
+class App;
+}
+
+namespace palpate {
+
+/// What both programs do around their own work: name the log, hold back Ctrl-C, and turn an `Error` that
+/// escapes `body` into one line on stderr and its exit code. Call from `main` and return the result.
+int run_program(const char* name, int argc, char** argv, int (*body)(int argc, char** argv));
+
+/// Parses the command line, after adding `--version`. Returns the exit code if the program should end now: 0
+/// after
+/// --help or --version, 2 after a wrong use, said in one line.
+std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv);
+
+}  // namespace palpate
