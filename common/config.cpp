@@ -1,6 +1,7 @@
 #include "common/config.h"
 
 #include <cmath>
+#include <fstream>
 #include <set>
 #include <toml++/toml.h>
 
@@ -58,7 +59,9 @@ struct Config::Node {
 Config::Config(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
 Config Config::read(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) fail("{}: no such file", file.string());
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) fail("{}: no such file", file.string());
+  if (!std::ifstream(file)) fail("{}: cannot be read; check its permissions", file.string());
   try {
     auto root = std::make_shared<toml::table>(toml::parse_file(file.string()));
     const toml::table* table = root.get();

@@ -52,12 +52,15 @@ std::vector<std::size_t> find_columns(const std::vector<std::string>& header,
 
 std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& file,
                                                   std::span<const std::string> columns) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) fail("{}: no such file", file.string());
   std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file)) fail("{}: cannot be read", file.string());
+  if (!in) fail("{}: cannot be read; check its permissions", file.string());
   std::vector<std::vector<double>> values(columns.size());
   std::vector<std::size_t> indices;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
+    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a byte order mark
     if (trimmed(line).empty() || line.front() == '#') continue;
     const std::string where = fmt::format("{}:{}", file.string(), number);
     const std::vector<std::string> cells = split(line);

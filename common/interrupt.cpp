@@ -17,14 +17,14 @@ sigset_t set_of(std::initializer_list<int> signals) {
 }  // namespace
 
 void block_interrupts() {
-  const sigset_t set = set_of({SIGINT, SIGTERM, SIGUSR1});
+  const sigset_t set = set_of({SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1});
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   std::signal(SIGPIPE,
               SIG_IGN);  // NOLINT(bugprone-unused-return-value): `palpate | head` must not kill the loop
 }
 
 bool wait_for_interrupt(Time timeout) {
-  const sigset_t set = set_of({SIGINT, SIGTERM});
+  const sigset_t set = set_of({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
   const timespec t{timeout.count() / 1'000'000'000, timeout.count() % 1'000'000'000};
   return sigtimedwait(&set, nullptr, &t) > 0;
 }

@@ -3,11 +3,12 @@
 
 namespace palpate {
 
-/// Keeps Ctrl-C (SIGINT), SIGTERM and SIGUSR1 from ending the program at once: call first in `main`, before
-/// any thread starts, so that every thread inherits it. They then arrive only at the calls below.
+/// Keeps Ctrl-C (SIGINT), SIGTERM, SIGHUP, SIGQUIT and SIGUSR1 from ending the program at once: call first in
+/// `main`, before any thread starts, so that every thread inherits it. They then arrive only at the calls
+/// below.
 void block_interrupts();
 
-/// Waits up to `timeout` for Ctrl-C or SIGTERM; true when one came. Main thread.
+/// Waits up to `timeout` for Ctrl-C, SIGTERM, SIGHUP or SIGQUIT; true when one came. Main thread.
 bool wait_for_interrupt(Time timeout);
 
 /// Whether SIGUSR1 (the request to re-arm a latched force) came since the last call. Main thread.

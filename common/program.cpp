@@ -1,6 +1,7 @@
 #include "common/program.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 
 #include "common/error.h"
 #include "common/interrupt.h"
@@ -33,6 +34,11 @@ std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
     log::error("{}; try --help", e.what());
     return 2;
   }
+}
+
+void require_at_least(double value, double least, const char* option, const char* unit) {
+  if (!std::isfinite(value) || value < least)
+    fail("{}: expected at least {} {}, not {}", option, least, unit, value);
 }
 
 }  // namespace palpate

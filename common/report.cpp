@@ -3,6 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <unistd.h>
 
 #include "common/error.h"
 
@@ -19,15 +20,15 @@ Json quantiles(const Histogram& histogram, double unit_ns) {
 namespace {
 fs::path temporary_beside(const fs::path& file) {
   fs::path temporary = file;
-  temporary += ".part";
+  temporary += fmt::format(".{}.part", getpid());
   return temporary;
 }
 }  // namespace
 
 void check_writable(const fs::path& file) {
   const fs::path temporary = temporary_beside(file);
-  const bool usable = !fs::is_directory(file) && std::ofstream(temporary).good();
   std::error_code ignored;
+  const bool usable = !fs::is_directory(file, ignored) && std::ofstream(temporary).good();
   fs::remove(temporary, ignored);
   if (!usable) fail("{}: cannot be written; name a file in a folder that exists and is yours", file.string());
 }
@@ -48,7 +49,7 @@ void write_whole(const fs::path& file, const std::string& text) {
 }
 
 void write_json(const fs::path& file, const Json& json) {
-  write_whole(file, json.dump(2) + "\n");
+  write_whole(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace palpate

@@ -127,9 +127,9 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
     if (!wait_for_welcome(link, config.server)) return 0;
     log::info("connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", config.server, config.device.name,
               config.rate_hz, config.method);
-    warn_if_refused(lock_memory());
     std::jthread haptic([&](const std::stop_token& stop) { loop.run(stop); });
     warn_if_refused(make_realtime(haptic.native_handle(), "palpate-haptic", kPriority));
+    warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
     watch(loop, config.server, options.seconds);
     haptic.request_stop();
     haptic.join();

@@ -20,7 +20,7 @@ std::string list_of(const Table& table) {
 
 struct Overrides {
   std::string server, device, method;
-  double rate_hz = 0;
+  std::optional<double> rate_hz;
 };
 
 /// What the command line says goes over what the file says.
@@ -34,7 +34,10 @@ void apply(const Overrides& o, client::ClientConfig& config) {
     find_row(client::extrapolators(), o.method, "method", "--method");
     config.method = o.method;
   }
-  if (o.rate_hz != 0) config.rate_hz = o.rate_hz;
+  if (o.rate_hz) {
+    require_at_least(*o.rate_hz, client::kMinRate, "--rate", "Hz");
+    config.rate_hz = std::min(*o.rate_hz, client::kMaxRate);
+  }
 }
 
 int run(int argc, char** argv) {
@@ -52,13 +55,14 @@ int run(int argc, char** argv) {
   command->add_option("--method", overrides.method, "How to extrapolate the force, see below");
   command->add_option("--rate", overrides.rate_hz, "Haptic ticks per second, 100 to 4000 (default 500)")
       ->check(CLI::Range(client::kMinRate, client::kMaxRate));
-  command->add_option("--seconds", options.seconds, "Stop after so many seconds")->check(CLI::PositiveNumber);
+  command->add_option("--seconds", options.seconds, "Stop after so many seconds");
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
   command->add_option("--trace", options.trace, "Write the last minute, a row a tick, to this CSV file");
   command->footer(
       "Methods:\n" + list_of(client::extrapolators()) + "Devices:\n" + list_of(client::devices()) +
       "Example: haptic_client run configs/clients/liver.toml --method constant --report report.json");
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
+  if (options.seconds) require_at_least(*options.seconds, 1e-3, "--seconds", "s");
   client::ClientConfig config = file.empty() ? client::ClientConfig{} : client::read_client_config(file);
   apply(overrides, config);
   return client::run_client(config, options);

@@ -73,7 +73,7 @@ struct UdpSocket::Asio {
 
   void receive() {
     socket.async_wait(udp::socket::wait_read, [this](std::error_code failed) {
-      if (failed) return;
+      if (failed == asio::error::operation_aborted) return;
       // Take all that waits, so that the newest is what the mailboxes hold when this returns.
       for (int i = 0; i < 256; ++i) {
         udp::endpoint from;

@@ -45,8 +45,7 @@ int run(int argc, char** argv) {
       ->add_option("--listen", options.listen,
                    "ADDR:PORT to listen on (UDP); 0.0.0.0:45130 for other machines")
       ->capture_default_str();
-  run_command->add_option("--seconds", options.seconds, "Stop after so many seconds")
-      ->check(CLI::PositiveNumber);
+  run_command->add_option("--seconds", options.seconds, "Stop after so many seconds");
   run_command->add_option("--report", options.report, "Write figures of the run to this JSON file");
   run_command->footer(
       "Example: sim_server run configs/scenes/liver.toml --listen 0.0.0.0:45130 --report server.json");
@@ -60,6 +59,7 @@ int run(int argc, char** argv) {
   info->footer("Example: sim_server mesh info configs/meshes/liver.msh");
 
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
+  if (options.seconds) require_at_least(*options.seconds, 1e-3, "--seconds", "s");
   return *info ? print_mesh_info(mesh_file) : sim::run_server(options);
 }
 

@@ -42,9 +42,8 @@ struct ToolSettings {
 
 struct Scene {
   std::string title;
-  double rate_hz = 30;  ///< steps per second, [0, 10000]; 0 = as fast as the model allows
+  double rate_hz = 30;  ///< steps per second, 0 or [1, 10000]; 0 = as fast as the model allows
   std::filesystem::path mesh_file;
-  std::string mesh_where;
   std::vector<FixedRegion> fixed;
   std::optional<Material> material;
   DeformationSettings deformation;

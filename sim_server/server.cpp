@@ -133,12 +133,12 @@ int run_server(const ServerOptions& options) {
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes);
   NetLink link(socket, {1, scene.rate_hz, scene.tool.shape.radius}, mailboxes, random_seed());
-  warn_if_refused(lock_memory());
   const Time start = now();
   {
     std::jthread net([&] { link.run(); });
     std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
     warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kPriority));
+    warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
     log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
               report["setup_ms"].get<double>() / 1e3, protocol::to_string(socket.local()));
     watch(link, options.seconds);

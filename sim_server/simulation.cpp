@@ -14,6 +14,10 @@ namespace {
 constexpr double kStride = 0.5;  // of the tool radius: how far the tool goes between two contact solves
 constexpr double kGather = 2.0;  // of the tool radius: how far from the tip the patch extends
 constexpr double kMaxStrides = 256;
+constexpr double kEscape = 3.0;  // of the tool radius: how far outside the organ at rest contact may go on
+constexpr int kMaxIterations =
+    400;  // contact linearisations a step may use before it answers from where it got to
+constexpr double kFarthest = 1e3;  // m
 
 /// Surface vertices of the triangles that come near enough to the reach box for the tool to touch them there.
 std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
@@ -65,28 +69,37 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
 
 ToolForce Simulation::step(const Vec3& p_W, double dt) noexcept {
   free_ = model_->free_motion(dt);
-  if (!p_W.allFinite() || p_W.cwiseAbs().maxCoeff() > 1e3) {
-    last_.flagged = true;
-    return last_;
-  }
+  if (!p_W.allFinite() || p_W.cwiseAbs().maxCoeff() > kFarthest) return give_up();
   const double stride = kStride * tool_.radius;
-  if (!placed_ || (p_W - place_).norm() > kMaxStrides * stride) enter(p_W);
+  if (!placed_ || (p_W - place_).norm() > kMaxStrides * stride || escaped(p_W)) enter(p_W);
   const Vec3 way = p_W - place_, from = place_;
   const double strides = std::clamp(std::ceil(way.norm() / stride), 1.0, kMaxStrides);
   ContactForce contact;
   int iterations = 0;
-  for (double i = 1; i <= strides; ++i) {
-    contact = touch(i == strides ? p_W : Vec3(from + (i / strides) * way));
+  for (double i = 1; i <= strides && iterations < kMaxIterations; ++i) {
+    place_ = i == strides ? p_W : Vec3(from + (i / strides) * way);
+    contact = touch(place_);
     iterations += contact.iterations;
   }
-  place_ = p_W;
-  if (!contact.force.allFinite()) {
-    release();
-    last_.flagged = true;
-    return last_;
-  }
-  last_ = {contact.force, solver_->tangent(patch_), contact.contacts, iterations, !contact.converged};
+  if (!contact.force.allFinite()) return give_up();
+  const bool arrived = place_ == p_W;  // else the next step goes on from here
+  last_ = {contact.force, solver_->tangent(patch_), contact.contacts, iterations,
+           !contact.converged || !arrived};
   return last_;
+}
+
+/// No answer: the tool is taken away, and enters afresh with the next step.
+ToolForce Simulation::give_up() noexcept {
+  lift_tool();
+  last_.flagged = true;
+  return last_;
+}
+
+/// Whether a tool in contact has left the organ at rest so far behind that it only drags the surface along
+/// with it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
+bool Simulation::escaped(const Vec3& p_W) const noexcept {
+  if (last_.contacts == 0) return false;
+  return (finder_->nearest(free_, p_W) - p_W).norm() > kEscape * tool_.radius && !finder_->inside(free_, p_W);
 }
 
 void Simulation::lift_tool() noexcept {

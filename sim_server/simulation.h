@@ -15,7 +15,9 @@ struct ToolForce {
   Mat3 tangent = Mat3::Zero();  ///< dF/dp, N/m, symmetric
   int contacts = 0;             ///< touching faces, edges and vertices
   int iterations = 0;           ///< contact linearisations, all sub-places together
-  bool flagged = false;  ///< no settled answer: a wild position keeps the last force, see also ContactForce
+  /// No settled answer: a wild position (then there is no force), contact that did not converge, or a way too
+  /// long for one step (then the force belongs to the place the tool got to).
+  bool flagged = false;
 };
 
 inline const Progress kSilent = [](std::string_view, double) {};
@@ -46,6 +48,8 @@ class Simulation {
   std::uint64_t state_hash() const noexcept;
 
  private:
+  ToolForce give_up() noexcept;
+  bool escaped(const Vec3& p_W) const noexcept;
   void enter(const Vec3& p_W) noexcept;
   ContactForce touch(const Vec3& p_W) noexcept;
   void release() noexcept;

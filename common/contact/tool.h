@@ -4,7 +4,7 @@ namespace palpate {
 
 /// The rigid tip that touches: a sphere whose centre is the tool position.
 struct SphereTool {
-  double radius = 0.005;  ///< m, (0, 0.1]
+  double radius = 0.005;  ///< m, [1e-5, 0.05]
 };
 
 }  // namespace palpate

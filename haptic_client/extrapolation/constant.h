@@ -8,6 +8,7 @@ namespace palpate::client {
 class Constant : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override { force_ = sample.f; }
+  void restart() noexcept override { force_.setZero(); }
   Vec3 force(const Vec3&, Time) const noexcept override { return force_; }
 
  private:

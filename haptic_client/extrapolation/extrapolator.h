@@ -20,6 +20,8 @@ class Extrapolator {
   virtual ~Extrapolator() = default;
   /// A new sample; its time is later than that of the one before (the pipeline sees to it).
   virtual void update(const Sample& sample) noexcept = 0;
+  /// Forgets all samples: what came before is too long ago to look back at.
+  virtual void restart() noexcept = 0;
   /// Force (N, world) with the tool at `p` at time `t` >= that of the newest sample. Zero before the first
   /// sample.
   virtual Vec3 force(const Vec3& p, Time t) const noexcept = 0;

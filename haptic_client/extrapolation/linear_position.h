@@ -14,6 +14,7 @@ class LinearPosition : public Extrapolator {
   enum class Ratio { kPrinted, kSigned };
   explicit LinearPosition(Ratio ratio) : ratio_(ratio) {}
   void update(const Sample& sample) noexcept override { samples_.push(sample); }
+  void restart() noexcept override { samples_ = {}; }
   Vec3 force(const Vec3& p, Time t) const noexcept override;
 
  private:

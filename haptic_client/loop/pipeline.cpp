@@ -25,7 +25,7 @@ TickResult Pipeline::tick(const DeviceReading& reading, const protocol::ForceSam
   // A tool that the newest sample saw free feels nothing: a law that looks back would go on pulling (sticky
   // tissue).
   if (newest_.f.isZero(0)) f_W.setZero();
-  const Vec3 wished_D = ruling.gain * workspace_.to_device(f_W);
+  const Vec3 wished_D = ruling.gain * limiter_.within_magnitude(workspace_.to_device(f_W));
   const Vec3 v_D = v_W_ / workspace_.scale;
   const Vec3 damping_D = ruling.damper ? Vec3(-ruling.gain * kFadeDamping * v_D) : Vec3(Vec3::Zero());
   TickResult result;
@@ -63,7 +63,10 @@ void Pipeline::take(const protocol::ForceSample& arrived) noexcept {
     ++stats_.overtaken;
     return;
   }
-  if (!first) {
+  if (!first && sample.t - newest_.t > Watchdog::kStale) {
+    law_->restart();  // an outage, or another tool in another hand: no line leads from there to here
+    period_ = Time::zero();
+  } else if (!first) {
     period_ = sample.t - newest_.t;
     stats_.sample_path_m += (sample.p - newest_.p).norm();
     ++stats_.sample_pairs;

@@ -32,8 +32,12 @@ class Limiter {
   explicit Limiter(const Settings& settings) : settings_(settings) {}
 
   /// `f_D`: the force wished for (N, device frame); `damping_D`: a damper's share on top of it, exempt from
-  /// the slew limit but not from the clamp. `dt` (s): since the last tick.
+  /// the slew limit but not from the clamp. `dt` (s): since the last tick; more than 10 ms count as 10, so
+  /// that a stalled loop does not come back with a blow.
   Vec3 limit(const Vec3& f_D, const Vec3& damping_D, double dt) noexcept;
+
+  /// `f` cut to the largest force, direction kept; finite for any finite `f`.
+  Vec3 within_magnitude(const Vec3& f) const noexcept;
 
   /// Switches the force off at once, until `rearm`.
   void latch(Fault fault) noexcept;

@@ -36,6 +36,10 @@ void QuasiStatic::precompute(const ModelInputs& inputs) {
     reachable_.push_back(vertex);
     for (int axis = 0; axis < 3; ++axis) dof_of_row.push_back(first + axis);
   }
+  if (reachable_.empty()) {
+    fail("{}: every vertex the tool can reach is fixed; make the [[fixed]] regions smaller",
+         inputs.scene.source);
+  }
   const double bytes = static_cast<double>(dof_of_row.size() * dof_of_row.size() * sizeof(double));
   if (bytes > kMostBytes) {
     fail(
@@ -66,6 +70,7 @@ void QuasiStatic::precompute(const ModelInputs& inputs) {
       compliance_(r, c) = compliance_(c, r) = mean;
     }
   }
+  held_compliance_ = compliance_.diagonal().minCoeff();
   inputs.progress("computing compliance", 1);
 }
 
@@ -81,7 +86,7 @@ void QuasiStatic::compliance(std::span<const int> vertices, ContactPatch& patch)
       const int row = row_[vertices[i]], column = row_[vertices[j]];
       auto block = patch.compliance.block<3, 3>(3 * i, 3 * j);
       if (row < 0 || column < 0) {
-        block.setZero();
+        block = (i == j ? held_compliance_ : 0.0) * Mat3::Identity();
       } else {
         block = compliance_.block<3, 3>(row, column);
       }
@@ -90,10 +95,13 @@ void QuasiStatic::compliance(std::span<const int> vertices, ContactPatch& patch)
 }
 
 std::span<const Vec3> QuasiStatic::apply(std::span<const NodalLoad> loads) noexcept {
-  for (const int vertex : reachable_) positions_[vertex] = rest_[vertex];
+  std::copy(rest_.begin(), rest_.end(), positions_.begin());
   for (const NodalLoad& load : loads) {
     const int column = row_[load.vertex];
-    if (column < 0) continue;
+    if (column < 0) {
+      positions_[load.vertex] += held_compliance_ * load.force;
+      continue;
+    }
     for (int axis = 0; axis < 3; ++axis) {
       const double* moved = compliance_.col(column + axis).data();
       for (std::size_t k = 0; k < reachable_.size(); ++k) {

@@ -7,6 +7,8 @@ namespace palpate::sim {
 /// pre-computed elementary deformations). Set-up factors K over the free nodes and keeps W = J K^-1 J^T for
 /// the r reachable surface nodes: (3r x 3r) doubles, 27 MB for 614 of them. A step then is a few
 /// columns of W: O(r x loaded nodes). Surface nodes out of reach are kept at rest; they are not computed.
+/// A fixed vertex does not move with the tissue, but where the tool presses on it, it gives way like the
+/// stiffest free vertex: an infinitely hard wall in soft tissue would be neither true nor safe.
 class QuasiStatic : public DeformationModel {
  public:
   /// Throws `Error` without material or fixed nodes, or when K is singular.
@@ -22,6 +24,7 @@ class QuasiStatic : public DeformationModel {
   std::vector<Vec3> rest_, positions_;
   std::vector<int> row_;  // per surface vertex: its first row in compliance_, or -1 (fixed or out of reach)
   std::vector<int> reachable_;  // surface vertex of each block row
+  double held_compliance_ = 0;  // m/N, of a fixed vertex under the tool itself: that of the stiffest free one
   Eigen::MatrixXd compliance_;  // m/N
 };
 

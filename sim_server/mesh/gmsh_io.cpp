@@ -354,8 +354,9 @@ class MeshReader {
 }
 
 std::string read_bytes(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) fail("{}: no such file", file.string());
-  if (!std::filesystem::is_regular_file(file)) fail("{}: not a file", file.string());
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) fail("{}: no such file", file.string());
+  if (!std::filesystem::is_regular_file(file, ignored)) fail("{}: not a file", file.string());
   std::ifstream in(file, std::ios::binary);
   std::string bytes(std::filesystem::file_size(file), '\0');
   if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {

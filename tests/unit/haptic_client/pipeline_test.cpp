@@ -83,6 +83,23 @@ TEST_CASE("the link dies: force is exactly zero 400 ms after the last sample, an
   CHECK(pipeline.watchdog().ramped() == 1);
 }
 
+TEST_CASE("after an outage the laws do not draw a line from before it") {
+  Pipeline pipeline = make(2);  // linear in position
+  Time t = warm_up(pipeline, {0, 0.5, 0});
+  t += 1s;
+  // Two samples 1 um and one second apart: the old line would have a slope of 1 N per um.
+  const ForceSample back = sample_at(901, t, {0, 1e-6, 0}, {0, 1.5, 0});
+  pipeline.tick({.t = t}, nullptr);
+  Vec3 last = Vec3::Zero();
+  for (int tick = 0; tick < 20; ++tick) {
+    const Vec3 f =
+        pipeline.tick({.t = t += kTick, .p_D = {0, 0.001 * tick, 0}}, tick == 0 ? &back : nullptr).f_D;
+    CHECK(f.norm() <= 1.5 * 0.002 * (tick + 1) + 1e-12);
+    last = f;
+  }
+  CHECK(last.norm() > 0);
+}
+
 TEST_CASE("duplicates and latecomers do not reach the law") {
   Pipeline pipeline = make(1);  // linear in time: two equal times would divide by zero
   Time t = warm_up(pipeline, {0, 1, 0});

@@ -32,6 +32,13 @@ TEST_CASE("magnitude is clamped along the direction, change is slewed") {
   CHECK(limiter.counts().slewed == 4);  // 1 N at 0.2 N a tick: four cut, the fifth arrives
 }
 
+TEST_CASE("a stalled loop does not come back with a blow") {
+  Limiter limiter({.max_force = 8, .max_slew = 160});
+  CHECK(limiter.limit({8, 0, 0}, kNone, 0.2).norm() == Approx(1.6));  // ten milliseconds' worth
+  Watchdog watchdog;
+  CHECK(watchdog.rule(10ms, 33ms, 0.5).gain == Approx(0.01));
+}
+
 TEST_CASE("damping is exempt from the slew limit, not from the clamp") {
   Limiter limiter({.max_force = 1, .max_slew = 1});
   CHECK(limiter.limit(kNone, {0.5, 0, 0}, kDt) == Vec3(0.5, 0, 0));

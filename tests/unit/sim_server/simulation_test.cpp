@@ -111,14 +111,50 @@ TEST_CASE("a tool that begins inside the organ is pushed out through the nearest
   CHECK(force.force[1] > 0.3);
 }
 
-TEST_CASE("a wild position keeps the last force and says so") {
+TEST_CASE("a wild position gives no force and says so, and the tool enters afresh") {
   Simulation liver(test::liver_scene());
-  const Vec3 good = liver.step(on_liver(liver, -0.02, 0, 0.003), kDt).force;
+  const Vec3 place = on_liver(liver, -0.02, 0, 0.003), good = liver.step(place, kDt).force;
   for (const double wild : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
-    const ToolForce held = liver.step({0, wild, 0}, kDt);
-    CHECK(held.flagged);
-    CHECK(held.force == good);
+    const ToolForce given_up = liver.step({0, wild, 0}, kDt);
+    CHECK(given_up.flagged);
+    CHECK(given_up.force == Vec3::Zero());
+    CHECK((liver.step(place, kDt).force - good).norm() < 1e-9);
   }
+}
+
+TEST_CASE("the tool on a fixed vertex feels a wall no harder than the stiffest tissue around") {
+  Simulation liver(test::liver_scene());
+  // The lowest, rearmost vertex is fixed; push it from behind.
+  Vec3 fixed = liver.mesh().vertices.front();
+  for (const int v : liver.surface().vertices) {
+    if (liver.mesh().vertices[v][2] < fixed[2]) fixed = liver.mesh().vertices[v];
+  }
+  liver.step(fixed - Vec3(0, 0, 0.0051), kDt);
+  const ToolForce force = liver.step(fixed - Vec3(0, 0, 0.004), kDt);
+  CHECK(force.force[2] < -0.01);
+  CHECK(force.force.norm() < 2);
+  CHECK(liver.step(fixed - Vec3(0, 0, 0.006), kDt).force == Vec3::Zero());
+}
+
+TEST_CASE("a tool that tears through and away leaves the tissue behind") {
+  Simulation liver(test::liver_scene());
+  const Vec3 from(-0.13, 0, 0.02), to(0.3, 0.3, 0.3);
+  for (int i = 0; i <= 60; ++i) liver.step(from + i / 60.0 * (Vec3(0.12, 0, 0.03) - from), kDt);
+  liver.step(to, kDt);
+  CHECK(liver.step(to, kDt).force == Vec3::Zero());
+}
+
+TEST_CASE("any path at all gives finite forces within a bounded number of iterations") {
+  Simulation liver(test::liver_scene());
+  test::Random random(14);
+  int most = 0;
+  for (int i = 0; i < 200; ++i) {
+    const ToolForce force = liver.step(random.vector(0.1), kDt);
+    REQUIRE(force.force.allFinite());
+    REQUIRE(force.tangent.allFinite());
+    most = std::max(most, force.iterations);
+  }
+  CHECK(most <= 600);
 }
 
 TEST_CASE("a step in contact does not allocate") {
