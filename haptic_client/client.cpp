@@ -100,12 +100,24 @@ void watch(HapticLoop& loop, const std::string& server, std::optional<double> se
   if (isatty(STDOUT_FILENO) != 0) fmt::print("\n");
 }
 
+/// Runs the haptic loop in a thread of its own until Ctrl-C or the end of the time.
+void drive(HapticLoop& loop, const ClientConfig& config, const ClientOptions& options) {
+  log::info("connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", config.server, config.device.name,
+            config.rate_hz, config.method);
+  std::jthread haptic([&](const std::stop_token& stop) { loop.run(stop); });
+  warn_if_refused(make_realtime(haptic.native_handle(), "palpate-haptic", kPriority));
+  warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
+  watch(loop, config.server, options.seconds);
+}
+
 }  // namespace
 
 int run_client(const ClientConfig& config, const ClientOptions& options) {
   if (options.report) check_writable(*options.report);
   if (options.trace) check_writable(*options.trace);
-  const protocol::Endpoint server = protocol::resolve(config.server);
+  const protocol::Endpoint server = protocol::resolve(config.server, config.server_where);
+  if (server.port == 0)
+    fail("{}: \"{}\": a server has a port from 1 to 65535", config.server_where, config.server);
   const auto device =
       find_row(devices(), config.device.name, "device", config.device.where).make(config.device);
   Limiter::Settings limits = config.limits;
@@ -124,15 +136,7 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
       NetLink& link;
       ~StopNet() { link.stop(); }
     } stop_net{link};
-    if (!wait_for_welcome(link, config.server)) return 0;
-    log::info("connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", config.server, config.device.name,
-              config.rate_hz, config.method);
-    std::jthread haptic([&](const std::stop_token& stop) { loop.run(stop); });
-    warn_if_refused(make_realtime(haptic.native_handle(), "palpate-haptic", kPriority));
-    warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
-    watch(loop, config.server, options.seconds);
-    haptic.request_stop();
-    haptic.join();
+    if (wait_for_welcome(link, config.server)) drive(loop, config, options);
   }
   const Json report = make_report(config, loop, pipeline, link);
   print_report(report);

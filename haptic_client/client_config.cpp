@@ -59,6 +59,7 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   const Config config = Config::read(file);
   ClientConfig client;
   client.server = config.text("server", client.server);
+  client.server_where = config.where("server");
   client.rate_hz = config.number("rate_hz", {kMinRate, kMaxRate, "Hz"}, client.rate_hz);
   client.method = config.text("method", client.method);
   client.method_where = config.where("method");

@@ -25,7 +25,10 @@ struct Overrides {
 
 /// What the command line says goes over what the file says.
 void apply(const Overrides& o, client::ClientConfig& config) {
-  if (!o.server.empty()) config.server = o.server;
+  if (!o.server.empty()) {
+    config.server = o.server;
+    config.server_where = "--server";
+  }
   if (!o.device.empty()) {
     find_row(client::devices(), o.device, "device", "--device");
     config.device.name = o.device;

@@ -31,7 +31,7 @@ Endpoint from_asio(const udp::endpoint& endpoint) {
 
 }  // namespace
 
-Endpoint resolve(const std::string& text) {
+Endpoint resolve(const std::string& text, const std::string& where) {
   const std::size_t colon = text.rfind(':');
   std::string host = text.substr(0, colon);
   int port = -1;
@@ -42,12 +42,13 @@ Endpoint resolve(const std::string& text) {
   }
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
   if (port < 0 || host.empty()) {
-    fail("\"{}\" is no address; expected HOST:PORT such as 127.0.0.1:45130 or [::1]:45130", text);
+    fail("{}: \"{}\" is no address; expected HOST:PORT such as 127.0.0.1:45130 or [::1]:45130", where, text);
   }
   asio::io_context context;
   std::error_code failed;
   const auto found = udp::resolver(context).resolve(host, "", failed);
-  if (failed || found.empty()) fail("\"{}\": host \"{}\" is not known ({})", text, host, failed.message());
+  if (failed || found.empty())
+    fail("{}: \"{}\": host \"{}\" is not known ({})", where, text, host, failed.message());
   const auto v4 =
       std::find_if(found.begin(), found.end(), [](const auto& e) { return e.endpoint().address().is_v4(); });
   Endpoint endpoint = from_asio(v4 != found.end() ? v4->endpoint() : found.begin()->endpoint());

@@ -10,9 +10,10 @@
 
 namespace palpate::protocol {
 
-/// "HOST:PORT" -> endpoint; an IPv6 host stands in brackets. Throws `Error` that says what is wrong with
+/// "HOST:PORT" -> endpoint; an IPv6 host stands in brackets. `where` (an option, or FILE:LINE) begins the
+/// `Error` that says what is wrong with
 /// `text`.
-Endpoint resolve(const std::string& text);
+Endpoint resolve(const std::string& text, const std::string& where);
 
 /// "1.2.3.4:567" or "[::1]:567".
 std::string to_string(const Endpoint& endpoint);

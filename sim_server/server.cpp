@@ -123,7 +123,7 @@ std::uint64_t random_seed() {
 int run_server(const ServerOptions& options) {
   const Scene scene = read_scene(options.scene);
   if (options.report) check_writable(*options.report);
-  protocol::UdpSocket socket(protocol::resolve(options.listen));
+  protocol::UdpSocket socket(protocol::resolve(options.listen, "--listen"));
   const Time begin = now();
   SetupProgress progress;
   Simulation simulation(scene, std::ref(progress));

@@ -39,12 +39,18 @@ std::vector<Face> sorted_faces(const TetMesh& mesh) {
   return faces;
 }
 
+/// Which way round the face is, against its sorted vertices.
+bool is_even(const Triangle& t) {
+  return (t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0]) == 2;
+}
+
 [[noreturn]] void fail_shared(std::vector<Face>::const_iterator first,
                               std::vector<Face>::const_iterator last) {
   std::vector<int> owners;
   std::transform(first, last, std::back_inserter(owners), [](const Face& face) { return face.tetrahedron; });
   fail(
-      "mesh: the face of vertices {} belongs to {} tetrahedra ({}), but a solid has one or two on a face; "
+      "mesh: the face of vertices {} belongs to {} tetrahedra ({}), but a solid has one on each side of a "
+      "face; "
       "remove the tetrahedra that overlap",
       first->sorted, owners.size(), fmt::join(owners, ", "));
 }
@@ -74,6 +80,9 @@ Surface boundary_surface(const TetMesh& mesh) {
     const auto last =
         std::find_if(first, faces.end(), [&](const Face& f) { return f.sorted != first->sorted; });
     if (last - first > 2) fail_shared(first, last);
+    // Two tetrahedra on a face lie on its two sides, so they see it turned the other way round.
+    if (last - first == 2 && is_even(first->outward) == is_even((first + 1)->outward))
+      fail_shared(first, last);
     if (last - first == 1) surface.triangles.push_back(first->outward);
     first = last;
   }

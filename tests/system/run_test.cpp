@@ -210,11 +210,14 @@ TEST_CASE("Ctrl-C on either side leaves cleanly with its report") {
   CHECK(read_json(theirs).contains("state_hash"));
 }
 
-TEST_CASE("Ctrl-C while waiting for a server ends the client, exit 0") {
-  Process client("haptic_client", client_arguments("127.0.0.1:9", {}));
+TEST_CASE("Ctrl-C while waiting for a server ends the client, exit 0, with its report") {
+  const TemporaryFolder folder;
+  const std::string report = (folder.path() / "report.json").string();
+  Process client("haptic_client", client_arguments("127.0.0.1:9", {"--report", report}));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   client.signal(SIGINT);
   CHECK(client.wait() == 0);
+  CHECK(read_json(report)["tools"][0]["loop"]["ticks"] == 0);
 }
 
 TEST_CASE("no server: exit 1 after 5 s with what to look at, port in use: exit 1") {
@@ -230,8 +233,8 @@ TEST_CASE("garbage on the server's port is counted, and changes nothing") {
   const std::string theirs = (folder.path() / "server.json").string();
   Server server({"--report", theirs});
   {
-    palpate::protocol::UdpSocket stranger(palpate::protocol::resolve("127.0.0.1:0"));
-    const auto to = palpate::protocol::resolve(server.address);
+    palpate::protocol::UdpSocket stranger(palpate::protocol::resolve("127.0.0.1:0", "test"));
+    const auto to = palpate::protocol::resolve(server.address, "test");
     std::array<std::byte, 600> bytes{};
     for (std::size_t size = 0; size < bytes.size(); size += 7) stranger.send({bytes.data(), size}, to);
   }
@@ -295,6 +298,7 @@ TEST_CASE("wrong input: one line that says what, where and what to do, exit 2, n
   says(client_error("[device]\nname = \"falkon\""), "client.toml:2: unknown device \"falkon\"");
   folder.write("bad.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,zero,0\n");
   says(client_error("[trajectory]\nfile = \"bad.csv\""), "bad.csv:3: column y_m holds \"zero\"");
+  says(client_error("\nserver = \"nohost\""), "client.toml:2: \"nohost\" is no address");
   says(client_error("rate_hz = 50"), "must be between 100 and 4000 (Hz), not 50");
   says(output_of("haptic_client", {"run", "--method", "constnat"}, 2), "did you mean \"constant\"?");
   says(output_of("haptic_client", {"run", "--server", "nowhere"}, 2), "expected HOST:PORT");

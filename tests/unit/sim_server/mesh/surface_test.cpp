@@ -105,10 +105,17 @@ TEST_CASE("a face of three tetrahedra is an error that names them", "[mesh]") {
     message = error.what();
   }
   CHECK(message ==
-        "mesh: the face of vertices [1, 2, 3] belongs to 3 tetrahedra (0, 1, 2), but a solid has one or two "
-        "on a "
-        "face; remove the tetrahedra that overlap");
+        "mesh: the face of vertices [1, 2, 3] belongs to 3 tetrahedra (0, 1, 2), but a solid has one on each "
+        "side "
+        "of a face; remove the tetrahedra that overlap");
 }
 
 }  // namespace
+TEST_CASE("two tetrahedra on the same side of a face overlap, and are refused") {
+  palpate::sim::TetMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 0.1, 2}};
+  mesh.tetrahedra = {{0, 1, 2, 3}, {0, 1, 2, 4}};
+  CHECK_THROWS_AS(palpate::sim::boundary_surface(mesh), palpate::Error);
+}
+
 }  // namespace palpate::sim
