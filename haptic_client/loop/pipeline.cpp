@@ -25,11 +25,10 @@ TickResult Pipeline::tick(const DeviceReading& reading, const protocol::ForceSam
   // A tool that the newest sample saw free feels nothing: a law that looks back would go on pulling (sticky
   // tissue).
   if (newest_.f.isZero(0)) f_W.setZero();
-  const Vec3 wished_D = ruling.gain * limiter_.within_magnitude(workspace_.to_device(f_W));
   const Vec3 v_D = v_W_ / workspace_.scale;
   const Vec3 damping_D = ruling.damper ? Vec3(-ruling.gain * kFadeDamping * v_D) : Vec3(Vec3::Zero());
   TickResult result;
-  result.f_D = limiter_.limit(wished_D, damping_D, dt);
+  result.f_D = limiter_.limit(workspace_.to_device(f_W), damping_D, dt, ruling.gain);
   stats_.max_newton = std::max(stats_.max_newton, result.f_D.norm());
   result.tool = {.tick = tick_,
                  .newest_sample = newest_.number,

@@ -9,7 +9,7 @@ constexpr double kStormWindow = 1;     // s
 constexpr double kStormShare = 0.5;    // of the window
 }  // namespace
 
-Vec3 Limiter::limit(const Vec3& f_D, const Vec3& damping_D, double dt) noexcept {
+Vec3 Limiter::limit(const Vec3& f_D, const Vec3& damping_D, double dt, double gain) noexcept {
   if (!f_D.allFinite() || !damping_D.allFinite()) latch(Fault::kNotFinite);
   if (fault_ != Fault::kNone) {
     last_.setZero();
@@ -18,6 +18,7 @@ Vec3 Limiter::limit(const Vec3& f_D, const Vec3& damping_D, double dt) noexcept 
   // Cut to the ball first, so that a wild wish cannot use up the slew in a wild direction.
   Vec3 f = within_magnitude(f_D);
   bool clamped = f != f_D;
+  f *= gain;
   const Vec3 change = f - last_;
   const double most = settings_.max_slew * std::clamp(dt, 0.0, kLongestTick);
   const bool slewed = change.norm() > most;

@@ -34,10 +34,8 @@ class Limiter {
   /// `f_D`: the force wished for (N, device frame); `damping_D`: a damper's share on top of it, exempt from
   /// the slew limit but not from the clamp. `dt` (s): since the last tick; more than 10 ms count as 10, so
   /// that a stalled loop does not come back with a blow.
-  Vec3 limit(const Vec3& f_D, const Vec3& damping_D, double dt) noexcept;
-
-  /// `f` cut to the largest force, direction kept; finite for any finite `f`.
-  Vec3 within_magnitude(const Vec3& f) const noexcept;
+  /// `gain` in [0, 1] fades the force after the clamp, so that a wild one fades as a full one does.
+  Vec3 limit(const Vec3& f_D, const Vec3& damping_D, double dt, double gain = 1) noexcept;
 
   /// Switches the force off at once, until `rearm`.
   void latch(Fault fault) noexcept;
@@ -46,6 +44,8 @@ class Limiter {
   const LimiterCounts& counts() const noexcept { return counts_; }
 
  private:
+  /// `f` cut to the largest force, direction kept; finite for any finite `f`.
+  Vec3 within_magnitude(const Vec3& f) const noexcept;
   void watch_for_storm(bool slewed, double dt) noexcept;
 
   Settings settings_;

@@ -83,6 +83,13 @@ TEST_CASE("the link dies: force is exactly zero 400 ms after the last sample, an
   CHECK(pipeline.watchdog().ramped() == 1);
 }
 
+TEST_CASE("a force beyond the limit is clamped and counted, also while it fades in") {
+  Pipeline pipeline = make();
+  const Time t = warm_up(pipeline, {0, 100, 0});
+  CHECK((pipeline.tick({.t = t}, nullptr).f_D - Vec3(0, 3, 0)).norm() < 1e-12);
+  CHECK(pipeline.limiter().counts().clamped == 601);
+}
+
 TEST_CASE("after an outage the laws do not draw a line from before it") {
   Pipeline pipeline = make(2);  // linear in position
   Time t = warm_up(pipeline, {0, 0.5, 0});
