@@ -100,7 +100,7 @@ std::string Config::text(const std::string& key, std::optional<std::string> othe
   return *node->value<std::string>();
 }
 
-std::vector<std::string> Config::texts(const std::string& key, std::size_t count,
+std::vector<std::string> Config::texts(const std::string& key, std::optional<std::size_t> count,
                                        std::vector<std::string> otherwise) const {
   const toml::node* node = node_->get(key, false);
   if (node == nullptr) return otherwise;
@@ -111,8 +111,10 @@ std::vector<std::string> Config::texts(const std::string& key, std::size_t count
       if (const auto text = entry.value<std::string>(); entry.is_string()) values.push_back(*text);
     }
   }
-  if (values.size() != count)
-    node_->wrong(*node, key, fmt::format("{} texts in quotes, [\"...\", ...]", count));
+  if (array == nullptr || values.size() != count.value_or(array->size())) {
+    node_->wrong(*node, key,
+                 fmt::format("{}texts in quotes, [\"...\", ...]", count ? fmt::format("{} ", *count) : ""));
+  }
   return values;
 }
 

@@ -31,8 +31,8 @@ class Config {
   double number(const std::string& key, const Range& range, std::optional<double> otherwise = {}) const;
   long integer(const std::string& key, const Range& range, std::optional<long> otherwise = {}) const;
   std::string text(const std::string& key, std::optional<std::string> otherwise = {}) const;
-  /// Exactly `count` texts in an array.
-  std::vector<std::string> texts(const std::string& key, std::size_t count,
+  /// Texts in an array: exactly `count` of them, or any number.
+  std::vector<std::string> texts(const std::string& key, std::optional<std::size_t> count,
                                  std::vector<std::string> otherwise) const;
   Vec3 vector(const std::string& key, const Range& range, std::optional<Vec3> otherwise = {}) const;
   /// `[[x, y, z], [x, y, z]]`, minimum then maximum, each component in order.

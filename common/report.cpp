@@ -17,35 +17,36 @@ Json quantiles(const Histogram& histogram, double unit_ns) {
           {"max", static_cast<double>(histogram.max()) / unit_ns}};
 }
 
-namespace {
-fs::path temporary_beside(const fs::path& file) {
-  fs::path temporary = file;
-  temporary += fmt::format(".{}.part", getpid());
-  return temporary;
+WholeFile::WholeFile(const fs::path& file) : file_(file), part_(file) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  if (!fs::exists(status) || fs::is_regular_file(status)) part_ += fmt::format(".{}.part", getpid());
+  if (fs::is_directory(status) || !std::ofstream(part_).good()) {
+    fail("{}: cannot be written; name a file in a folder that exists and is yours", file.string());
+  }
 }
-}  // namespace
+
+WholeFile::~WholeFile() {
+  std::error_code ignored;
+  if (part_ != file_) fs::remove(part_, ignored);
+}
+
+void WholeFile::commit() {
+  std::error_code failed;
+  if (part_ != file_) fs::rename(part_, file_, failed);
+  if (failed) fail_at_run_time("{}: could not be written ({})", file_.string(), failed.message());
+}
 
 void check_writable(const fs::path& file) {
-  const fs::path temporary = temporary_beside(file);
-  std::error_code ignored;
-  const bool usable = !fs::is_directory(file, ignored) && std::ofstream(temporary).good();
-  fs::remove(temporary, ignored);
-  if (!usable) fail("{}: cannot be written; name a file in a folder that exists and is yours", file.string());
+  const WholeFile probe(file);
 }
 
 void write_whole(const fs::path& file, const std::string& text) {
-  const fs::path temporary = temporary_beside(file);
-  std::error_code failed;
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text << std::flush;
-    if (!out) failed = std::make_error_code(std::errc::io_error);
-  }
-  if (!failed) fs::rename(temporary, file, failed);
-  if (!failed) return;
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  fail_at_run_time("{}: could not be written ({}); is the disk full?", file.string(), failed.message());
+  WholeFile whole(file);
+  std::ofstream out(whole.path(), std::ios::binary);
+  out << text << std::flush;
+  if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
+  whole.commit();
 }
 
 void write_json(const fs::path& file, const Json& json) {

@@ -13,10 +13,29 @@ using Json = nlohmann::ordered_json;
 /// (1e3 for microseconds, 1e6 for milliseconds).
 Json quantiles(const Histogram& histogram, double unit_ns);
 
+/// A file that appears whole or not at all: what is written goes to `path()` beside it; `commit` gives it its
+/// name; going out of scope without that removes it. What is no regular file (a device, a pipe) is written
+/// directly.
+class WholeFile {
+ public:
+  /// Throws `Error` (input) if it cannot be written.
+  explicit WholeFile(const std::filesystem::path& file);
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  const std::filesystem::path& path() const { return part_; }
+  /// Throws `Error` (run time).
+  void commit();
+
+ private:
+  std::filesystem::path file_, part_;
+};
+
 /// Throws `Error` now, rather than after the run, if `file` could not be written.
 void check_writable(const std::filesystem::path& file);
 
-/// Writes `text` whole or not at all (a temporary file beside it, then rename). Throws `Error` (run time).
+/// Writes `text` whole or not at all. Throws `Error`.
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
 /// `write_whole` of a JSON document, indented.

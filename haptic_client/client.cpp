@@ -13,6 +13,7 @@
 #include "common/text.h"
 #include "haptic_client/client_report.h"
 #include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/net_link.h"
 #include "haptic_client/trace.h"
 
 namespace palpate::client {
@@ -110,6 +111,12 @@ void drive(HapticLoop& loop, const ClientConfig& config, const ClientOptions& op
   watch(loop, config.server, options.seconds);
 }
 
+void write_trace(const std::filesystem::path& file, const Observation& observation) {
+  TraceWriter trace(file, observation.scoring().names());
+  for (const TickRecord& tick : observation.record()) trace.add(tick);
+  trace.finish();
+}
+
 }  // namespace
 
 int run_client(const ClientConfig& config, const ClientOptions& options) {
@@ -118,16 +125,16 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
   const protocol::Endpoint server = protocol::resolve(config.server, config.server_where);
   if (server.port == 0)
     fail("{}: \"{}\": a server has a port from 1 to 65535", config.server_where, config.server);
-  const auto device =
-      find_row(devices(), config.device.name, "device", config.device.where).make(config.device);
-  Limiter::Settings limits = config.limits;
-  limits.max_force = std::min(limits.max_force, device->limits().max_force);
+  const DeviceRow& row = find_row(devices(), config.device.name, "device", config.device.where);
+  const auto device = row.make(config.device);
   Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(),
-                    config.workspace, limits);
+                    config.workspace, config.device_limits());
   HapticMailboxes mailboxes;
   const double kept = options.trace ? std::min(options.seconds.value_or(kTraceSeconds), kTraceSeconds) : 0;
-  HapticLoop loop(*device, pipeline, mailboxes, config.rate_hz,
-                  static_cast<std::size_t>(kept * config.rate_hz));
+  Observation observation(config.scored_laws(), config.rate_hz, config.score_where,
+                          static_cast<std::size_t>(kept * config.rate_hz));
+  const Time period = std::max(from_seconds(1 / config.rate_hz), row.limits(config.device).min_period);
+  HapticLoop loop(*device, pipeline, mailboxes, observation, period);
   protocol::UdpSocket socket(any_address(server));
   NetLink link(socket, server, mailboxes, random_number());
   {
@@ -138,10 +145,12 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
     } stop_net{link};
     if (wait_for_welcome(link, config.server)) drive(loop, config, options);
   }
-  const Json report = make_report(config, loop, pipeline, link);
+  Json tool = tool_report(config, pipeline, observation);
+  tool["loop"] = loop_report(config.rate_hz, loop.stats());
+  const Json report = {
+      {"server", config.server}, {"tools", Json::array({tool})}, {"link", link_report(link.stats())}};
   print_report(report);
-  if (options.trace)
-    write_trace(*options.trace, loop.record(), {"constant", "linear_time", "linear_position"});
+  if (options.trace) write_trace(*options.trace, observation);
   if (options.report) write_json(*options.report, report);
   return 0;
 }

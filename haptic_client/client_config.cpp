@@ -1,5 +1,7 @@
 #include "haptic_client/client_config.h"
 
+#include <algorithm>
+
 #include "common/config.h"
 #include "common/text.h"
 #include "haptic_client/extrapolation/extrapolators.h"
@@ -18,17 +20,6 @@ OperatorSettings read_operator(const Config& config) {
   hand.max_force = config.number("max_force", {0.01, 100, "N"}, hand.max_force);
   config.reject_unknown();
   return hand;
-}
-
-TrajectorySettings read_trajectory(const Config& config) {
-  TrajectorySettings trajectory;
-  trajectory.file = config.file("file");
-  const auto names = config.texts("columns", 4, {trajectory.columns.begin(), trajectory.columns.end()});
-  std::copy(names.begin(), names.end(), trajectory.columns.begin());
-  trajectory.scale = config.number("scale", {1e-9, 1e9, "m per unit"}, trajectory.scale);
-  trajectory.offset = config.vector("offset", {-kFar, kFar, "m"}, trajectory.offset);
-  config.reject_unknown();
-  return trajectory;
 }
 
 Workspace read_workspace(const Config& config) {
@@ -55,6 +46,22 @@ void put_in_device_frame(TrajectorySettings& trajectory, const Workspace& worksp
 
 }  // namespace
 
+std::vector<std::string> ClientConfig::scored_laws() const {
+  std::vector<std::string> laws;
+  for (const std::string& law :
+       score.value_or(std::vector<std::string>{"constant", "linear_time", "linear_position", method})) {
+    if (std::find(laws.begin(), laws.end(), law) == laws.end()) laws.push_back(law);
+  }
+  return laws;
+}
+
+Limiter::Settings ClientConfig::device_limits() const {
+  Limiter::Settings settings = limits;
+  const DeviceLimits most = find_row(devices(), device.name, "device", device.where).limits(device);
+  settings.max_force = std::min(settings.max_force, most.max_force);
+  return settings;
+}
+
 ClientConfig read_client_config(const std::filesystem::path& file) {
   const Config config = Config::read(file);
   ClientConfig client;
@@ -64,6 +71,10 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   client.method = config.text("method", client.method);
   client.method_where = config.where("method");
   find_row(extrapolators(), client.method, "method", client.method_where);
+  client.score_where = config.where("score");
+  if (config.has("score")) client.score = config.texts("score", {}, {});
+  for (const std::string& law : client.scored_laws())
+    find_row(extrapolators(), law, "method", client.score_where);
   if (const auto device = config.table("device")) {
     client.device.name = device->text("name", client.device.name);
     client.device.where = device->where("name");
@@ -72,7 +83,7 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   }
   if (const auto hand = config.table("operator")) client.device.hand = read_operator(*hand);
   if (const auto trajectory = config.table("trajectory"))
-    client.device.trajectory = read_trajectory(*trajectory);
+    client.device.trajectory = read_trajectory_settings(*trajectory);
   if (const auto workspace = config.table("workspace")) client.workspace = read_workspace(*workspace);
   if (client.device.trajectory) put_in_device_frame(*client.device.trajectory, client.workspace);
   if (const auto limits = config.table("limits")) client.limits = read_limits(*limits);

@@ -1,6 +1,8 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "haptic_client/device/devices.h"
 #include "haptic_client/loop/workspace.h"
@@ -14,9 +16,17 @@ struct ClientConfig {
   double rate_hz = 500;                    ///< haptic ticks per second, [100, 4000]
   std::string method = "linear_position";  ///< a name of `extrapolators()`
   std::string method_where = "default";
+  /// Laws that run beside it and are scored; absent: the paper's three and the chosen one; empty: none.
+  std::optional<std::vector<std::string>> score;
+  std::string score_where = "default";
   DeviceSettings device;
   Workspace workspace;
   Limiter::Settings limits;
+
+  /// The laws to score, each once.
+  std::vector<std::string> scored_laws() const;
+  /// What the limiter may let through: as asked for, or what the device can take if that is less.
+  Limiter::Settings device_limits() const;
 };
 
 constexpr double kMinRate = 100, kMaxRate = 4000;  // Hz

@@ -1,19 +1,25 @@
 #pragma once
 #include "common/report.h"
 #include "haptic_client/client_config.h"
+#include "haptic_client/evaluation/observation.h"
 #include "haptic_client/loop/haptic_loop.h"
-#include "haptic_client/net_link.h"
+#include "protocol/link_stats.h"
 
 namespace palpate::client {
 
 /// Why a force is latched off, in words.
 const char* name_of(Fault fault);
 
-/// The figures of a finished run; keys in haptic_client/README.md.
-Json make_report(const ClientConfig& config, const HapticLoop& loop, const Pipeline& pipeline,
-                 const NetLink& link);
+/// What a session, live or replayed, says about one tool; keys in haptic_client/README.md. Measures what a
+/// tick of each scored law costs, which takes a few milliseconds.
+Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Observation& observation);
 
-/// The same for people, on stdout.
+/// What only a live loop has.
+Json loop_report(double rate_hz, const HapticLoopStats& stats);
+
+Json link_report(const protocol::LinkStats& stats);
+
+/// A whole report for people, on stdout; parts that are absent are left out.
 void print_report(const Json& report);
 
 }  // namespace palpate::client

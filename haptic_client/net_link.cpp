@@ -14,7 +14,7 @@ void NetLink::run() {
   on_timer();
   socket_.run(mailboxes_.bell, std::chrono::milliseconds(50),
               {.on_datagram = [this](auto bytes, const Endpoint& from) { on_datagram(bytes, from); },
-               .on_doorbell = [this] { on_tool_state(); },
+               .on_doorbell = [this] { on_tool_states(); },
                .on_timer = [this] { on_timer(); }});
   if (session_.welcomed()) send(session_.next_header(), protocol::Bye{});
 }
@@ -32,11 +32,12 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
 }
 
-void NetLink::on_tool_state() {
-  protocol::ToolState state;
-  if (!mailboxes_.tool.read(state) || !session_.welcomed()) return;
-  state.tool = session_.welcome().tool;
-  send(session_.next_header(), state);
+void NetLink::on_tool_states() {
+  for (protocol::ToolState state; mailboxes_.tool.pop(state);) {
+    if (!session_.welcomed()) continue;
+    state.tool = session_.welcome().tool;
+    send(session_.next_header(), state);
+  }
 }
 
 void NetLink::on_timer() {

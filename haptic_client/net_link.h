@@ -27,7 +27,7 @@ class NetLink {
 
  private:
   void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
-  void on_tool_state();
+  void on_tool_states();
   void on_timer();
   void send(const protocol::Header& header, const protocol::Message& message);
 

@@ -1,16 +1,34 @@
 #pragma once
 #include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "haptic_client/loop/haptic_loop.h"
+#include "common/report.h"
+#include "haptic_client/evaluation/observation.h"
 
 namespace palpate::client {
 
-/// Writes recorded ticks as CSV, a row a tick: `t_s`, `p{x,y,z}_m` (world), `f{x,y,z}_n` (written, device
-/// frame), `sample_n` (|F_n| where a sample arrived, at its own time `sample_t_s`; empty elsewhere), then
-/// `<law>_n`, the magnitude each of `laws` gives on the same samples and motion. Whole file or none; throws
-/// `Error`. Not for a running loop.
-void write_trace(const std::filesystem::path& file, const std::vector<TickRecord>& ticks,
-                 const std::vector<std::string>& laws);
+/// A CSV with a row a tick, live or replayed: the columns are in haptic_client/README.md. Numbers are written
+/// so that reading them gives the same bits back: equal files mean equal forces. Not for a running loop.
+class TraceWriter {
+ public:
+  /// `laws`: names of the scored laws, a column each. Throws `Error`.
+  TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws);
+  void add(const TickRecord& tick);
+  /// The file appears. Throws `Error` when it could not be written.
+  void finish();
+
+ private:
+  void flush();
+
+  std::filesystem::path name_;
+  WholeFile file_;
+  std::ofstream out_;
+  std::string text_;
+  std::size_t laws_;
+  std::optional<Time> start_;
+};
 
 }  // namespace palpate::client

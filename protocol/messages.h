@@ -67,6 +67,7 @@ struct Bye {
 
 struct ToolState {
   static constexpr MessageType kType = MessageType::kToolState;
+  static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2;  ///< bits of `flags`
   std::uint8_t tool = 0;
   std::uint64_t tick = 0;           ///< haptic tick, from 1
   std::uint64_t newest_sample = 0;  ///< number of the newest ForceSample this tick used; 0 = none yet
@@ -74,10 +75,12 @@ struct ToolState {
   Vec3 p_W = Vec3::Zero();          ///< tool centre, m
   Vec3 v_W = Vec3::Zero();          ///< its velocity, m/s
   std::array<double, 4> q_W = {1, 0, 0, 0};  ///< orientation, unit quaternion w, x, y, z
-  std::uint32_t buttons = 0;                 ///< one bit each
+  std::uint16_t buttons = 0;                 ///< one bit each
+  std::uint16_t flags = 0;                   ///< what else this tick saw
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.tool), v(m.tick), v(m.newest_sample), v(m.t_ns), v(m.p_W), v(m.v_W), v(m.q_W), v(m.buttons);
+    v(m.tool), v(m.tick), v(m.newest_sample), v(m.t_ns), v(m.p_W), v(m.v_W), v(m.q_W), v(m.buttons),
+        v(m.flags);
   }
 };
 

@@ -8,11 +8,11 @@ namespace palpate::client {
 struct DeviceReading {
   Time t{};                   ///< when it was read, this machine's monotonic clock
   Vec3 p_D = Vec3::Zero();    ///< position of the handle, m, device frame
-  std::uint32_t buttons = 0;  ///< one bit each
+  std::uint16_t buttons = 0;  ///< one bit each
   bool valid = true;          ///< false: nothing known (unplugged, not homed): no force may follow
 };
 
-/// What a device can take.
+/// What a device can take; known from its settings, before (and without) opening it.
 struct DeviceLimits {
   double max_force = 8;                              ///< N
   Time min_period = std::chrono::microseconds(250);  ///< shortest loop period it serves
@@ -26,7 +26,6 @@ class Device {
   virtual DeviceReading read(Time now) noexcept = 0;
   /// Sets the force on the hand (N, device frame) until the next call.
   virtual void write(const Vec3& f_D) noexcept = 0;
-  virtual DeviceLimits limits() const noexcept = 0;
 };
 
 }  // namespace palpate::client

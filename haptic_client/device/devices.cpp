@@ -12,8 +12,13 @@ std::unique_ptr<Device> make_simulated(const DeviceSettings& settings) {
   return std::make_unique<SimulatedOperator>(settings.hand, std::move(path));
 }
 
+DeviceLimits limits_of_simulated(const DeviceSettings& settings) {
+  return {.max_force = settings.hand.max_force};
+}
+
 constexpr std::array kDevices{
-    DeviceRow{"simulated", "a hand (mass, spring, damper) that follows a recorded motion", &make_simulated},
+    DeviceRow{"simulated", "a hand (mass, spring, damper) that follows a recorded motion",
+              &limits_of_simulated, &make_simulated},
 };
 
 }  // namespace

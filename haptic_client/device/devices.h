@@ -21,6 +21,7 @@ struct DeviceSettings {
 struct DeviceRow {
   std::string_view name;
   std::string_view summary;
+  DeviceLimits (*limits)(const DeviceSettings&);
   std::unique_ptr<Device> (*make)(const DeviceSettings&);
 };
 std::span<const DeviceRow> devices();

@@ -33,8 +33,4 @@ void SimulatedOperator::write(const Vec3& f_D) noexcept {
   force_ = f_D;
 }
 
-DeviceLimits SimulatedOperator::limits() const noexcept {
-  return {.max_force = settings_.max_force};
-}
-
 }  // namespace palpate::client

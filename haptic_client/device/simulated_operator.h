@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "haptic_client/device/device.h"
-#include "haptic_client/device/trajectory.h"
+#include "common/trajectory.h"
 
 namespace palpate::client {
 
@@ -26,7 +26,6 @@ class SimulatedOperator : public Device {
   /// than 0.1 s the hand is taken to have paused too.
   DeviceReading read(Time now) noexcept override;
   void write(const Vec3& f_D) noexcept override;
-  DeviceLimits limits() const noexcept override;
 
  private:
   void advance(double dt) noexcept;

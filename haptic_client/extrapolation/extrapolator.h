@@ -14,24 +14,33 @@ struct Sample {
   Vec3 f = Vec3::Zero();     ///< force on the tool there, N, world
 };
 
-/// Estimates the force between two samples. Haptic thread only; no allocation, lock or exception.
+/// Whether a law may look at the sample at all: its vectors are finite.
+inline bool usable(const Sample& sample) noexcept {
+  return sample.p.allFinite() && sample.f.allFinite();
+}
+
+/// Estimates the force between two samples. Haptic thread only; no allocation, lock or exception. Whatever
+/// it is given, the answer is finite; each law's header says what it is where the formula has none.
 class Extrapolator {
  public:
   virtual ~Extrapolator() = default;
-  /// A new sample; its time is later than that of the one before (the pipeline sees to it).
+  /// A new sample, usually later than the one before (`ForceEstimate` sees to it). One that is not `usable`
+  /// changes nothing.
   virtual void update(const Sample& sample) noexcept = 0;
   /// Forgets all samples: what came before is too long ago to look back at.
   virtual void restart() noexcept = 0;
   /// Force (N, world) with the tool at `p` at time `t` >= that of the newest sample. Zero before the first
-  /// sample.
+  /// sample. |p| and |f| up to 1e30 give a finite answer; times are from 0 to 2^62 ns.
   virtual Vec3 force(const Vec3& p, Time t) const noexcept = 0;
 };
 
-/// The two newest samples, which is all that the paper's laws know.
+/// The two newest samples, which is all that the paper's laws know. A sample that is not `usable`, or not
+/// later than the newest, changes nothing.
 struct LastTwo {
   Sample newest, before;
   int count = 0;
   void push(const Sample& sample) noexcept {
+    if (!usable(sample) || (count > 0 && sample.t <= newest.t)) return;
     before = newest;
     newest = sample;
     if (count < 2) ++count;

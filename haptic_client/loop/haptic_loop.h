@@ -1,34 +1,27 @@
 #pragma once
 #include <atomic>
 #include <stop_token>
-#include <vector>
 
 #include "common/doorbell.h"
 #include "common/histogram.h"
 #include "common/latest_value.h"
-#include "haptic_client/loop/pipeline.h"
+#include "common/spsc_ring.h"
+#include "haptic_client/evaluation/observation.h"
 
 namespace palpate::client {
 
-/// Mailboxes between the haptic thread and the network thread. `bell` rings when a tool state waits.
+/// Between the haptic thread and the network thread. Every pose goes out, so that what travels can be replayed
+/// tick by tick; of the forces only the newest counts. `bell` rings when a pose waits.
 struct HapticMailboxes {
-  LatestValue<protocol::ToolState> tool;     // haptic -> network
+  SpscRing<protocol::ToolState> tool{512};   // haptic -> network
   LatestValue<protocol::ForceSample> force;  // network -> haptic
   Doorbell bell;
-};
-
-/// One tick as it was, for plots and for replay.
-struct TickRecord {
-  Time t{};
-  Vec3 p_W = Vec3::Zero();
-  Vec3 f_D = Vec3::Zero();
-  bool fresh = false;  ///< `sample` arrived before this tick
-  Sample sample;
 };
 
 /// What the loop measured; read it when the loop has ended.
 struct HapticLoopStats {
   std::uint64_t ticks = 0, missed = 0;
+  std::uint64_t unsent = 0;  ///< poses the network thread had no room for
   Histogram period_ns, tick_ns;
 };
 
@@ -36,17 +29,15 @@ struct HapticLoopStats {
 /// deadline and all others already past are given up, so there are no catch-up bursts.
 class HapticLoop {
  public:
-  /// `rate_hz` in [100, 4000]. `record_ticks`: how many of the last ticks to keep (0: none; 200 B each).
-  HapticLoop(Device& device, Pipeline& pipeline, HapticMailboxes& mailboxes, double rate_hz,
-             std::size_t record_ticks);
+  /// `period`: between two ticks, 0.25 to 10 ms.
+  HapticLoop(Device& device, Pipeline& pipeline, HapticMailboxes& mailboxes, Observation& observation,
+             Time period);
 
   /// Runs until asked to stop; writes zero force last. Haptic thread: allocates, locks, logs and throws
   /// nothing.
   void run(const std::stop_token& stop) noexcept;
 
   const HapticLoopStats& stats() const { return stats_; }
-  /// The recorded ticks, oldest first.
-  std::vector<TickRecord> record() const;
 
   /// For a watching thread.
   std::atomic<double> newest_newton{0};
@@ -56,15 +47,15 @@ class HapticLoop {
   std::atomic<bool> rearm{false};  ///< set it to clear a latched fault
 
  private:
-  void tick() noexcept;
+  TickResult tick() noexcept;
+  void tell(const TickResult& result) noexcept;
 
   Device& device_;
   Pipeline& pipeline_;
   HapticMailboxes& mailboxes_;
+  Observation& observation_;
   Time period_;
   HapticLoopStats stats_;
-  std::vector<TickRecord> ring_;
-  std::uint64_t recorded_ = 0;
 };
 
 }  // namespace palpate::client

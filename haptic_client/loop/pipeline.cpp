@@ -3,76 +3,93 @@
 #include <algorithm>
 
 namespace palpate::client {
+using protocol::ForceSample;
+using protocol::ToolState;
+
 namespace {
+
 constexpr double kVelocityFilter = 0.005;  // s, time constant of the velocity estimate
 constexpr double kFadeDamping = 2;         // N s/m, in the device frame, while the force fades
+
+double seconds_between(const ToolState& before, Time t) {
+  return before.tick == 0 ? 0 : to_seconds(t - Time{before.t_ns});
+}
+
 }  // namespace
 
-TickResult Pipeline::tick(const DeviceReading& reading, const protocol::ForceSample* arrived) noexcept {
-  const double dt = tick_++ == 0 ? 0 : to_seconds(reading.t - last_t_);
-  last_t_ = reading.t;
-  if (!reading.valid || !reading.p_D.allFinite()) limiter_.latch(Fault::kDeviceLost);
-  follow_motion(reading, dt);
-  if (arrived != nullptr) take(*arrived);
+ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
+  const double dt = seconds_between(sensed_, reading.t);
+  ++sensed_.tick;
+  sensed_.t_ns = reading.t.count();
+  sensed_.buttons = reading.buttons;
+  sensed_.flags = rearm_asked_ ? ToolState::kRearmed : 0;
+  rearm_asked_ = false;
+  if (!reading.valid || !reading.p_D.allFinite()) {
+    sensed_.flags |= ToolState::kDeviceLost;
+    return sensed_;
+  }
+  const Vec3 p_W = workspace_.to_world(reading.p_D);
+  if (dt > 0) sensed_.v_W += dt / (dt + kVelocityFilter) * ((p_W - sensed_.p_W) / dt - sensed_.v_W);
+  sensed_.p_W = p_W;
+  return sensed_;
+}
+
+TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived) noexcept {
+  const Time now{tool.t_ns};
+  const double dt = seconds_between(felt_, now);
+  if ((tool.flags & ToolState::kRearmed) != 0) {
+    limiter_.rearm();
+    watchdog_.restart();
+  }
+  if ((tool.flags & ToolState::kDeviceLost) != 0) limiter_.latch(Fault::kDeviceLost);
+  follow_path(tool, dt);
+  TickResult result{.tool = tool};
+  if (arrived != nullptr && take(*arrived, now)) {
+    result.used = true;
+    result.sample = estimate_.newest();
+    result.step = Time{arrived->step_ns};
+  }
+  result.tool.newest_sample = estimate_.newest().number;
+  felt_ = tool;
 
   std::optional<Time> age;
-  if (newest_.number > 0) {
-    age = reading.t - newest_.t;
+  if (estimate_.newest().number > 0) {
+    age = now - estimate_.newest().t;
     stats_.age_ns.add(age->count());
   }
-  const Watchdog::Ruling ruling = watchdog_.rule(age, period_, dt);
-  Vec3 f_W = law_->force(p_W_, ruling.may_extrapolate_in_time ? reading.t : newest_.t);
-  // A tool that the newest sample saw free feels nothing: a law that looks back would go on pulling (sticky
-  // tissue).
-  if (newest_.f.isZero(0)) f_W.setZero();
-  const Vec3 v_D = v_W_ / workspace_.scale;
+  const Watchdog::Ruling ruling = watchdog_.rule(age, dt);
+  const Vec3 f_W = estimate_.force(tool.p_W, now);
+  const Vec3 v_D = tool.v_W / workspace_.scale;
   const Vec3 damping_D = ruling.damper ? Vec3(-ruling.gain * kFadeDamping * v_D) : Vec3(Vec3::Zero());
-  TickResult result;
   result.f_D = limiter_.limit(workspace_.to_device(f_W), damping_D, dt, ruling.gain);
   stats_.max_newton = std::max(stats_.max_newton, result.f_D.norm());
-  result.tool = {.tick = tick_,
-                 .newest_sample = newest_.number,
-                 .t_ns = reading.t.count(),
-                 .p_W = p_W_,
-                 .v_W = v_W_,
-                 .buttons = reading.buttons};
   return result;
 }
 
-/// Position and filtered velocity in the world; both stay as they were while the device gives nothing usable.
-void Pipeline::follow_motion(const DeviceReading& reading, double dt) noexcept {
-  if (!reading.valid || !reading.p_D.allFinite()) return;
-  const Vec3 p_W = workspace_.to_world(reading.p_D);
-  if (dt > 0) {
-    const Vec3 moved = p_W - p_W_;
-    v_W_ += dt / (dt + kVelocityFilter) * (moved / dt - v_W_);
-    stats_.path_m += moved.norm();
-    stats_.path_s += dt;
-    stats_.max_speed = std::max(stats_.max_speed, v_W_.norm());
-  }
-  p_W_ = p_W;
+std::int64_t Pipeline::age_ns() const noexcept {
+  return estimate_.newest().number == 0 ? -1 : felt_.t_ns - estimate_.newest().t.count();
 }
 
-/// Uses a sample if it is newer than the newest: duplicates and latecomers would make time run backwards in
-/// the laws.
-void Pipeline::take(const protocol::ForceSample& arrived) noexcept {
-  const Sample sample{arrived.number, Time{arrived.tool_t_ns}, arrived.p_W, arrived.f_W};
-  const bool first = newest_.number == 0;
-  if ((!first && sample.t <= newest_.t) || sample.t > last_t_) {
+void Pipeline::follow_path(const ToolState& tool, double dt) noexcept {
+  if (dt <= 0) return;
+  stats_.path_m += (tool.p_W - felt_.p_W).norm();
+  stats_.path_s += dt;
+  stats_.max_speed = std::max(stats_.max_speed, tool.v_W.norm());
+}
+
+bool Pipeline::take(const ForceSample& arrived, Time now) noexcept {
+  const Vec3 before = estimate_.newest().p;
+  if (!estimate_.take({arrived.number, Time{arrived.tool_t_ns}, arrived.p_W, arrived.f_W}, now)) {
     ++stats_.overtaken;
-    return;
+    return false;
   }
-  if (!first && sample.t - newest_.t > Watchdog::kStale) {
-    law_->restart();  // an outage, or another tool in another hand: no line leads from there to here
-    period_ = Time::zero();
-  } else if (!first) {
-    period_ = sample.t - newest_.t;
-    stats_.sample_path_m += (sample.p - newest_.p).norm();
+  ++stats_.samples;
+  if (estimate_.period() > Time::zero()) {
+    stats_.sample_path_m += (arrived.p_W - before).norm();
+    stats_.sample_path_s += to_seconds(estimate_.period());
     ++stats_.sample_pairs;
   }
-  newest_ = sample;
-  ++stats_.samples;
-  law_->update(sample);
+  return true;
 }
 
 }  // namespace palpate::client

@@ -1,10 +1,9 @@
 #pragma once
 #include <memory>
-#include <optional>
 
 #include "common/histogram.h"
 #include "haptic_client/device/device.h"
-#include "haptic_client/extrapolation/extrapolator.h"
+#include "haptic_client/extrapolation/force_estimate.h"
 #include "haptic_client/loop/workspace.h"
 #include "haptic_client/safety/limiter.h"
 #include "haptic_client/safety/watchdog.h"
@@ -16,6 +15,9 @@ namespace palpate::client {
 struct TickResult {
   Vec3 f_D = Vec3::Zero();   ///< to the device, N
   protocol::ToolState tool;  ///< to the server
+  bool used = false;         ///< `sample` arrived, was newer, and is the newest now
+  Sample sample{};
+  Time step{};  ///< that the server spent on it
 };
 
 /// Sums over a session, for the report.
@@ -27,44 +29,52 @@ struct PipelineStats {
   double path_m = 0, path_s = 0;  ///< of the tool, world
   double max_speed = 0;           ///< m/s, of the filtered velocity
   double sample_path_m = 0;       ///< sum of |P_n - P_(n-1)|
+  double sample_path_s = 0;       ///< and of t_n - t_(n-1)
   std::uint64_t sample_pairs = 0;
 };
 
 /// The whole tick, from device reading to device force, as a function of its arguments and its state:
 /// workspace -> extrapolator -> watchdog -> limiter. No clock, socket or device inside; nothing allocates,
 /// locks or throws. Haptic thread only.
+///
+/// A tick has two halves. `sense` makes the tool state that travels; `feel` makes the force from nothing but
+/// that tool state and the samples. So a capture, which holds both, replays to the same forces.
 class Pipeline {
  public:
   Pipeline(std::unique_ptr<Extrapolator> law, const Workspace& workspace, const Limiter::Settings& limits)
-      : law_(std::move(law)), workspace_(workspace), limiter_(limits) {}
+      : estimate_(std::move(law)), workspace_(workspace), limiter_(limits) {}
 
   /// One tick. `arrived`: the newest sample, if one came since the last tick, else null.
-  TickResult tick(const DeviceReading& reading, const protocol::ForceSample* arrived) noexcept;
-
-  /// Clears a latched fault; the force rises again over a soft start.
-  void rearm() noexcept {
-    limiter_.rearm();
-    watchdog_.restart();
+  TickResult tick(const DeviceReading& reading, const protocol::ForceSample* arrived) noexcept {
+    return feel(sense(reading), arrived);
   }
+
+  /// Device -> world. Position and filtered velocity stay as they were while the device gives nothing usable.
+  protocol::ToolState sense(const DeviceReading& reading) noexcept;
+
+  /// The force for a tool there. Of `tool`, everything but `newest_sample` (which the result holds) is used.
+  TickResult feel(const protocol::ToolState& tool, const protocol::ForceSample* arrived) noexcept;
+
+  /// Asks the next tick to clear a latched fault; the force then rises again over a soft start.
+  void rearm() noexcept { rearm_asked_ = true; }
+
   /// Age of the newest sample at the last tick, ns; -1 before there is one.
-  std::int64_t age_ns() const noexcept { return newest_.number == 0 ? -1 : (last_t_ - newest_.t).count(); }
+  std::int64_t age_ns() const noexcept;
   const Limiter& limiter() const noexcept { return limiter_; }
   const Watchdog& watchdog() const noexcept { return watchdog_; }
   const PipelineStats& stats() const noexcept { return stats_; }
 
  private:
-  void take(const protocol::ForceSample& arrived) noexcept;
-  void follow_motion(const DeviceReading& reading, double dt) noexcept;
+  bool take(const protocol::ForceSample& arrived, Time now) noexcept;
+  void follow_path(const protocol::ToolState& tool, double dt) noexcept;
 
-  std::unique_ptr<Extrapolator> law_;
+  ForceEstimate estimate_;
   Workspace workspace_;
   Watchdog watchdog_;
   Limiter limiter_;
-  Sample newest_;  // number 0: none yet
-  Time period_{};  // between the two newest samples
-  std::uint64_t tick_ = 0;
-  Time last_t_{};
-  Vec3 p_W_ = Vec3::Zero(), v_W_ = Vec3::Zero();
+  protocol::ToolState sensed_;  // tick 0: none yet
+  protocol::ToolState felt_;    // likewise
+  bool rearm_asked_ = false;
   PipelineStats stats_;
 };
 

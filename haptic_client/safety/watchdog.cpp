@@ -7,12 +7,12 @@ namespace {
 constexpr double kLongestTick = 0.01;  // s: a stalled loop does not shorten the soft start
 }
 
-Watchdog::Ruling Watchdog::rule(std::optional<Time> age, Time period, double dt) noexcept {
+Watchdog::Ruling Watchdog::rule(std::optional<Time> age, double dt) noexcept {
   const bool stale = !age || *age > kStale;
   if (stale && !fading_ && gain_ > 0) ++ramped_;
   fading_ = stale && gain_ > 0;
   gain_ = std::clamp(gain_ + (stale ? -dt / kFade : std::min(dt, kLongestTick) / kSoftStart), 0.0, 1.0);
-  return {.gain = gain_, .may_extrapolate_in_time = age && *age <= 3 * period, .damper = stale && gain_ > 0};
+  return {.gain = gain_, .damper = stale && gain_ > 0};
 }
 
 }  // namespace palpate::client

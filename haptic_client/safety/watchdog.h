@@ -2,31 +2,29 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/time.h"
+#include "haptic_client/extrapolation/force_estimate.h"
 
 namespace palpate::client {
 
 /// The safety ladder for old forces (one policy everywhere): by the age of the newest sample,
 ///   up to 3 periods   everything
-///   up to 300 ms      no extrapolation in time; laws of position stay, they are still springs
+///   up to 300 ms      no extrapolation in time (`ForceEstimate`); laws of position are still springs
 ///   beyond            the force fades to zero within 100 ms, a damper on while it does
 /// and when samples come again, or for the first time, it rises over 1 s. Pure; haptic thread only.
 class Watchdog {
  public:
-  static constexpr Time kStale = std::chrono::milliseconds(300);
+  static constexpr Time kStale = kOutage;
   static constexpr double kFade = 0.1;       ///< s, from full force to none
   static constexpr double kSoftStart = 1.0;  ///< s, from none to full force
 
   /// What may be done this tick.
   struct Ruling {
     double gain = 0;  ///< [0, 1], to multiply the force with
-    bool may_extrapolate_in_time = false;
     bool damper = false;  ///< brake while fading
   };
 
-  /// `age`: of the newest sample, none if there is none yet. `period`: time between the two newest samples.
-  /// `dt` (s): since the last tick.
-  Ruling rule(std::optional<Time> age, Time period, double dt) noexcept;
+  /// `age`: of the newest sample, none if there is none yet. `dt` (s): since the last tick.
+  Ruling rule(std::optional<Time> age, double dt) noexcept;
 
   /// Force from none again, over a soft start.
   void restart() noexcept { gain_ = 0; }

@@ -6,7 +6,11 @@
 
 #include "common/types.h"
 
-namespace palpate::client {
+namespace palpate {
+class Config;
+}
+
+namespace palpate {
 
 /// Where to find a recorded motion, and how to read it.
 struct TrajectorySettings {
@@ -16,15 +20,17 @@ struct TrajectorySettings {
   Vec3 offset = Vec3::Zero();  ///< added after scaling, m
 };
 
+/// Reads a `[trajectory]` section: file, columns, scale, offset. Throws `Error`.
+TrajectorySettings read_trajectory_settings(const Config& section);
+
 /// A path through space: straight between rows, at rest before the first; after the last it repeats if it
-/// ends within 1 mm of where it began, else it stays there. Device frame (the client file tells it in the
-/// world and client_config converts), m, s.
+/// ends within 1 mm of where it began, else it stays there. m, s, in the frame of the settings.
 class Trajectory {
  public:
   /// Reads a CSV. Throws `Error` for a bad row (file and line) or times that do not increase (file and row).
   explicit Trajectory(const TrajectorySettings& settings);
   /// From rows, times increasing; for tests and for a hand that holds still (one row).
-  Trajectory(std::vector<double> t_s, std::vector<Vec3> p_D);
+  Trajectory(std::vector<double> t_s, std::vector<Vec3> p);
 
   /// Position at `t` seconds after the start. O(log rows), no allocation.
   Vec3 at(double t) const noexcept;
@@ -35,4 +41,4 @@ class Trajectory {
   std::vector<Vec3> p_;
 };
 
-}  // namespace palpate::client
+}  // namespace palpate

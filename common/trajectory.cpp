@@ -1,14 +1,27 @@
-#include "haptic_client/device/trajectory.h"
+#include "common/trajectory.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "common/config.h"
 #include "common/csv.h"
 #include "common/error.h"
 
-namespace palpate::client {
+namespace palpate {
 namespace {
 constexpr double kClosed = 1e-3;  // m: an end this near the start means the motion repeats
+constexpr double kFar = 1e3;      // m
+}  // namespace
+
+TrajectorySettings read_trajectory_settings(const Config& section) {
+  TrajectorySettings trajectory;
+  trajectory.file = section.file("file");
+  const auto names = section.texts("columns", 4, {trajectory.columns.begin(), trajectory.columns.end()});
+  std::copy(names.begin(), names.end(), trajectory.columns.begin());
+  trajectory.scale = section.number("scale", {1e-9, 1e9, "m per unit"}, trajectory.scale);
+  trajectory.offset = section.vector("offset", {-kFar, kFar, "m"}, trajectory.offset);
+  section.reject_unknown();
+  return trajectory;
 }
 
 Trajectory::Trajectory(const TrajectorySettings& settings) {
@@ -23,8 +36,7 @@ Trajectory::Trajectory(const TrajectorySettings& settings) {
   }
 }
 
-Trajectory::Trajectory(std::vector<double> t_s, std::vector<Vec3> p_D)
-    : t_(std::move(t_s)), p_(std::move(p_D)) {}
+Trajectory::Trajectory(std::vector<double> t_s, std::vector<Vec3> p) : t_(std::move(t_s)), p_(std::move(p)) {}
 
 Vec3 Trajectory::at(double t) const noexcept {
   if (t <= 0 || t_.size() == 1) return p_.front();
@@ -40,4 +52,4 @@ Vec3 Trajectory::at(double t) const noexcept {
   return p_[i - 1] + share * (p_[i] - p_[i - 1]);
 }
 
-}  // namespace palpate::client
+}  // namespace palpate

@@ -1,0 +1,48 @@
+#include "haptic_client/evaluation/observation.h"
+
+#include <algorithm>
+
+namespace palpate::client {
+
+SessionCell& SessionCell::operator+=(const SessionCell& other) noexcept {
+  errors += other.errors;
+  ticks += other.ticks;
+  missed += other.missed;
+  tick_ns_sum += other.tick_ns_sum;
+  tick_ns_max = std::max(tick_ns_max, other.tick_ns_max);
+  samples += other.samples;
+  step_ns_sum += other.step_ns_sum;
+  step_ns_max = std::max(step_ns_max, other.step_ns_max);
+  return *this;
+}
+
+Observation::Observation(const std::vector<std::string>& laws, double rate_hz, const std::string& where,
+                         std::size_t keep)
+    : scoring_(laws, rate_hz, where), ring_(keep) {}
+
+void Observation::tick(const TickResult& result, Time took, std::uint64_t missed) noexcept {
+  const Time t{result.tool.t_ns};
+  SessionCell& cell = timeline_.at(t);
+  const auto tick_ns = static_cast<double>(took.count());
+  ++cell.ticks;
+  cell.missed += static_cast<double>(missed);
+  cell.tick_ns_sum += tick_ns;
+  cell.tick_ns_max = std::max(cell.tick_ns_max, tick_ns);
+  if (result.used) {
+    const auto step_ns = static_cast<double>(result.step.count());
+    ++cell.samples;
+    cell.step_ns_sum += step_ns;
+    cell.step_ns_max = std::max(cell.step_ns_max, step_ns);
+  }
+  scoring_.tick(result.tool.p_W, t, result.used ? &result.sample : nullptr, cell.errors);
+  if (!ring_.empty()) ring_[recorded_++ % ring_.size()] = {result, scoring_.forces()};
+}
+
+std::vector<TickRecord> Observation::record() const {
+  std::vector<TickRecord> all;
+  const std::uint64_t size = ring_.size(), first = recorded_ > size ? recorded_ - size : 0;
+  for (std::uint64_t i = first; i < recorded_; ++i) all.push_back(ring_[i % size]);
+  return all;
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,48 @@
+#pragma once
+#include <vector>
+
+#include "common/timeline.h"
+#include "haptic_client/evaluation/scoring.h"
+#include "haptic_client/loop/pipeline.h"
+
+namespace palpate::client {
+
+/// One tick as it was, with what the scored laws gave.
+struct TickRecord {
+  TickResult result;
+  std::array<Vec3, kMaxLaws> laws;  ///< N, world
+};
+
+/// One stretch of a session.
+struct SessionCell {
+  ErrorSums errors;
+  double ticks = 0, missed = 0, tick_ns_sum = 0, tick_ns_max = 0;
+  double samples = 0, step_ns_sum = 0, step_ns_max = 0;  ///< of the server
+  SessionCell& operator+=(const SessionCell& other) noexcept;
+};
+using SessionTimeline = Timeline<SessionCell>;
+
+/// What is written down about the ticks of a session, live or replayed: scores, a coarse time line, the last
+/// ticks. Memory is taken at the beginning and stays. Haptic thread, after the force was written.
+class Observation {
+ public:
+  /// `laws`, `where`: see `Scoring`. `keep`: how many of the last ticks to keep (0: none; 0.6 kB each).
+  Observation(const std::vector<std::string>& laws, double rate_hz, const std::string& where,
+              std::size_t keep);
+
+  /// One tick gave `result`; it took `took`, and `missed` deadlines were given up before it.
+  void tick(const TickResult& result, Time took, std::uint64_t missed) noexcept;
+
+  const Scoring& scoring() const noexcept { return scoring_; }
+  const SessionTimeline& timeline() const noexcept { return timeline_; }
+  /// The kept ticks, oldest first.
+  std::vector<TickRecord> record() const;
+
+ private:
+  Scoring scoring_;
+  SessionTimeline timeline_;
+  std::vector<TickRecord> ring_;
+  std::uint64_t recorded_ = 0;
+};
+
+}  // namespace palpate::client

@@ -1,0 +1,58 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "haptic_client/evaluation/error_table.h"
+#include "haptic_client/extrapolation/force_estimate.h"
+
+namespace palpate::client {
+
+constexpr std::size_t kMaxLaws = 8;  ///< scored side by side
+
+/// Errors of all scored laws in one stretch of time. Adds up, for `Timeline`.
+struct ErrorSums {
+  double ticks = 0, reference_squared = 0;  ///< N^2, sum
+  std::array<double, kMaxLaws> error{};     ///< N, sum of |e| per law
+  ErrorSums& operator+=(const ErrorSums& other) noexcept;
+};
+
+/// Runs laws in the shadow of the one that is felt, on the same samples and motion, and scores each when the
+/// next sample arrives: the reference is the straight line in time between two samples (the reference of
+/// Picinbono and Lombardo 1999, section 4), compared with what the law gave at each tick t_n <= t < t_(n+1), with the
+/// samples it had then. So the latency of the link counts, as it does for the hand; a capture without latency
+/// gives the paper's own protocol. Nothing is scored across an outage. Haptic thread, after the force was
+/// written; no allocation.
+class Scoring {
+ public:
+  /// `laws`: at most `kMaxLaws` names of `extrapolators()`; none: nothing is done. `where`: for the `Error`
+  /// about a name.
+  Scoring(const std::vector<std::string>& laws, double rate_hz, const std::string& where);
+
+  /// One tick with the tool at `p_W` (m) at `t`; `taken`: the sample that the pipeline took in this tick, or
+  /// null. What gets scored is added to `sums`.
+  void tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums) noexcept;
+
+  const std::vector<std::string>& names() const noexcept { return names_; }
+  ErrorMetrics metrics(std::size_t law) const noexcept { return tables_[law].metrics(); }
+  std::uint64_t scored() const noexcept { return scored_; }      ///< ticks
+  /// What the laws give at the newest tick, N, world.
+  const std::array<Vec3, kMaxLaws>& forces() const noexcept { return force_; }
+
+ private:
+  struct Pending {
+    Time t{};
+    std::array<Vec3, kMaxLaws> force;
+  };
+  void take(const Sample& sample, const Vec3& p_W, Time t, ErrorSums& sums) noexcept;
+  void score(const Pending& tick, const Sample& before, const Sample& after, ErrorSums& sums) noexcept;
+
+  std::vector<std::string> names_;
+  std::vector<ForceEstimate> laws_;
+  std::vector<ErrorTable> tables_;
+  std::array<Vec3, kMaxLaws> force_;
+  std::vector<Pending> pending_;  // a ring: ticks that wait for the sample after them
+  std::size_t first_ = 0, waiting_ = 0;
+  std::uint64_t scored_ = 0;
+};
+
+}  // namespace palpate::client

@@ -1,0 +1,39 @@
+#pragma once
+#include <memory>
+
+#include "haptic_client/extrapolation/extrapolator.h"
+
+namespace palpate::client {
+
+/// Samples further apart than this, or older, say nothing about each other: an outage.
+constexpr Time kOutage = std::chrono::milliseconds(300);
+
+/// An extrapolation law with what stands around every law alike, so that the law that is felt and those that
+/// only run beside it are treated the same: it sees each sample once and in order; time stands still for it
+/// when the newest sample is older than three periods; it starts afresh after an outage; and where the newest
+/// sample saw the tool free, there is no force (a law that looks back would go on pulling: sticky tissue).
+/// Pure; haptic thread only; no allocation.
+class ForceEstimate {
+ public:
+  explicit ForceEstimate(std::unique_ptr<Extrapolator> law) : law_(std::move(law)) {}
+
+  /// A sample is here at time `now`. False, and nothing changes, unless it is finite, later than the newest
+  /// and not from before the clock began or from the future.
+  bool take(const Sample& sample, Time now) noexcept;
+
+  /// Force (N, world) on a tool at `p` (m) at time `t` >= that of the newest sample.
+  Vec3 force(const Vec3& p, Time t) const noexcept;
+
+  /// Number 0: none yet.
+  const Sample& newest() const noexcept { return newest_; }
+  /// Between the two newest samples; 0 with less than two since the last outage.
+  Time period() const noexcept { return period_; }
+
+ private:
+  static constexpr int kPatience = 3;  // periods
+  std::unique_ptr<Extrapolator> law_;
+  Sample newest_;
+  Time period_{};
+};
+
+}  // namespace palpate::client
