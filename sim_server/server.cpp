@@ -9,6 +9,7 @@
 #include "common/error.h"
 #include "common/interrupt.h"
 #include "common/log.h"
+#include "common/progress.h"
 #include "common/realtime.h"
 #include "common/report.h"
 #include "sim_server/net_link.h"
@@ -17,23 +18,6 @@ namespace palpate::sim {
 namespace {
 
 constexpr int kPriority = 40;  // below the haptic loop of a client on the same machine
-
-/// Says on stdout what set-up is doing: one line a stage, and on a terminal a running percentage.
-class SetupProgress {
- public:
-  void operator()(std::string_view what, double share) {
-    if (isatty(STDOUT_FILENO) != 0) {
-      fmt::print("\r\033[Ksim_server: {} {:3.0f} %{}", what, 100 * share, share >= 1 ? "\n" : "");
-    } else if (what != stage_) {
-      fmt::print("sim_server: {} ...\n", what);
-    }
-    stage_ = what;
-    std::fflush(stdout);
-  }
-
- private:
-  std::string stage_;
-};
 
 void warn_if_refused(const std::string& refused) {
   if (!refused.empty()) log::warning("{}", refused);
@@ -125,7 +109,7 @@ int run_server(const ServerOptions& options) {
   if (options.report) check_writable(*options.report);
   protocol::UdpSocket socket(protocol::resolve(options.listen, "--listen"));
   const Time begin = now();
-  SetupProgress progress;
+  ProgressLine progress;
   Simulation simulation(scene, std::ref(progress));
   warn_if_huge(simulation.mesh(), scene);
   warn_if_slow(scene);

@@ -6,16 +6,10 @@
 #include "common/histogram.h"
 #include "common/latest_value.h"
 #include "common/time.h"
-#include "protocol/messages.h"
-#include "sim_server/simulation.h"
+#include "common/timeline.h"
+#include "sim_server/served_tool.h"
 
 namespace palpate::sim {
-
-/// The newest pose of a tool, and in whose session; session 0: nobody holds it.
-struct ToolInput {
-  std::uint64_t session = 0;
-  protocol::ToolState state;
-};
 
 /// The newest force, and for whose session.
 struct ForceOutput {
@@ -30,8 +24,15 @@ struct SimMailboxes {
   Doorbell bell;
 };
 
+/// One stretch of a session.
+struct StepCell {
+  double steps = 0, step_ns_sum = 0, step_ns_max = 0, late = 0;
+  StepCell& operator+=(const StepCell& other) noexcept;
+};
+
 /// What the loop measured; read it when the loop has ended.
 struct SimLoopStats {
+  Timeline<StepCell> timeline;
   Histogram step_ns, contact_step_ns;  ///< all steps, and those in contact
   std::uint64_t late = 0;              ///< deadlines passed over because a step took too long
   std::uint64_t flagged = 0;           ///< steps without a settled answer
@@ -56,13 +57,12 @@ class SimLoop {
 
  private:
   void step(double dt) noexcept;
-  void answer(const ToolForce& force, Time took) noexcept;
+  void count(const ToolForce& force, Time start, Time took) noexcept;
 
-  Simulation& simulation_;
+  ServedTool served_;
   SimMailboxes& mailboxes_;
   Time period_;
   ToolInput tool_;
-  std::uint64_t session_ = 0, samples_ = 0;
   bool fresh_ = false;
   SimLoopStats stats_;
 };

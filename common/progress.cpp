@@ -1,0 +1,24 @@
+#include "common/progress.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fmt/core.h>
+#include <unistd.h>
+
+namespace palpate {
+
+void ProgressLine::operator()(std::string_view stage, double share) {
+  const int percent = static_cast<int>(100 * std::clamp(share, 0.0, 1.0));
+  const bool new_stage = stage != stage_;
+  if (!new_stage && percent == shown_) return;
+  if (isatty(STDOUT_FILENO) != 0) {
+    fmt::print("\r\033[K{} {:3} %{}", stage, percent, percent == 100 ? "\n" : "");
+  } else if (new_stage) {
+    fmt::print("{} ...\n", stage);
+  }
+  std::fflush(stdout);
+  stage_ = stage;
+  shown_ = percent;
+}
+
+}  // namespace palpate
