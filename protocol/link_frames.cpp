@@ -1,0 +1,243 @@
+#include "protocol/link_frames.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace palpate::protocol {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+constexpr std::uint16_t kEtherIpv4 = 0x0800, kEtherIpv6 = 0x86dd, kEtherNone = 0;
+constexpr std::uint8_t kUdp = 17;
+constexpr std::size_t kIpv4Header = 20, kIpv6Header = 40, kUdpHeader = 8, kMaxLengthField = 65535;
+// IPv6 extension headers that stand in front of what is carried.
+constexpr std::uint8_t kHopByHop = 0, kRouting = 43, kFragmentHeader = 44, kDestinationOptions = 60;
+
+std::uint8_t u8(Bytes bytes, std::size_t at) {
+  return std::to_integer<std::uint8_t>(bytes[at]);
+}
+std::uint16_t u16(Bytes bytes, std::size_t at) {
+  return static_cast<std::uint16_t>(u8(bytes, at) << 8 | u8(bytes, at + 1));
+}
+void put_u16(std::span<std::byte> out, std::size_t at, std::size_t value) {
+  out[at] = static_cast<std::byte>(value >> 8 & 0xff);
+  out[at + 1] = static_cast<std::byte>(value & 0xff);
+}
+
+/// What a link header carries: an EtherType and the bytes behind the header.
+struct Carried {
+  std::uint16_t type;
+  Bytes bytes;
+};
+
+/// A header of `size` bytes with the EtherType at `type_at`; nothing when the frame is shorter.
+std::optional<Carried> behind_header(Bytes frame, std::size_t type_at, std::size_t size) {
+  if (frame.size() < size) return {};
+  return Carried{u16(frame, type_at), frame.subspan(size)};
+}
+
+std::optional<Carried> behind_loopback(Bytes frame) {
+  if (frame.size() < 4) return {};
+  // One of the two halves of a small number is 0, whatever the order of bytes.
+  const std::uint32_t high = u16(frame, 0), low = u16(frame, 2);
+  const std::uint32_t family = high == 0 ? low : low == 0 ? high >> 8 | (high & 0xff) << 8 : 0;
+  const bool v6 = family == 10 || family == 24 || family == 28 || family == 30;
+  return Carried{family == 2 ? kEtherIpv4 : v6 ? kEtherIpv6 : kEtherNone, frame.subspan(4)};
+}
+
+std::optional<Carried> by_version(Bytes frame) {
+  if (frame.empty()) return {};
+  const int version = u8(frame, 0) >> 4;
+  return Carried{version == 4 ? kEtherIpv4 : version == 6 ? kEtherIpv6 : kEtherNone, frame};
+}
+
+std::optional<Carried> behind_link(LinkType link, Bytes frame) {
+  switch (link) {
+    case LinkType::kEthernet:
+      return behind_header(frame, 12, 14);
+    case LinkType::kCooked:
+      return behind_header(frame, 14, 16);
+    case LinkType::kCooked2:
+      return behind_header(frame, 0, 20);
+    case LinkType::kNull:
+    case LinkType::kLoop:
+      return behind_loopback(frame);
+    case LinkType::kRaw:
+    case LinkType::kRawLinux:
+    case LinkType::kRawOpenBsd:
+      return by_version(frame);
+    case LinkType::kIpv4:
+      return Carried{kEtherIpv4, frame};
+    case LinkType::kIpv6:
+      return Carried{kEtherIpv6, frame};
+  }
+  return Carried{kEtherNone, frame};
+}
+
+bool is_vlan(std::uint16_t type) {
+  return type == 0x8100 || type == 0x88a8 || type == 0x9100;  // 802.1Q, 802.1ad, QinQ before 802.1ad
+}
+
+/// `captured`: what there is of the IP payload; `declared`: its length as sent.
+FrameVerdict parse_udp(Bytes captured, std::size_t declared, UdpFrame& out) {
+  if (captured.size() < kUdpHeader) return FrameVerdict::kMalformed;
+  const std::size_t length = u16(captured, 4);
+  if (length < kUdpHeader || length > declared) return FrameVerdict::kMalformed;
+  out.from.port = u16(captured, 0);
+  out.to.port = u16(captured, 2);
+  out.length = length - kUdpHeader;
+  out.payload = captured.subspan(kUdpHeader);
+  out.payload = out.payload.first(std::min(out.payload.size(), out.length));
+  return FrameVerdict::kDatagram;
+}
+
+FrameVerdict parse_ipv4(Bytes packet, UdpFrame& out) {
+  if (packet.size() < kIpv4Header) return FrameVerdict::kMalformed;
+  const std::size_t header = 4 * (u8(packet, 0) & 0xfu), total = u16(packet, 2);
+  if (u8(packet, 0) >> 4 != 4 || header < kIpv4Header) return FrameVerdict::kMalformed;
+  if (u8(packet, 9) != kUdp) return FrameVerdict::kOtherTraffic;
+  if (total < header || packet.size() < header) return FrameVerdict::kMalformed;
+  if ((u16(packet, 6) & 0x3fff) != 0) return FrameVerdict::kFragment;  // more fragments, or an offset
+  std::copy_n(packet.begin() + 12, 4, reinterpret_cast<std::byte*>(out.from.address.data()));
+  std::copy_n(packet.begin() + 16, 4, reinterpret_cast<std::byte*>(out.to.address.data()));
+  return parse_udp(packet.first(std::min(packet.size(), total)).subspan(header), total - header, out);
+}
+
+bool is_extension(std::uint8_t header) {
+  return header == kHopByHop || header == kRouting || header == kFragmentHeader ||
+         header == kDestinationOptions;
+}
+
+/// Moves `at` behind the extension headers and `next` to what they carry. `kDatagram`: it is UDP.
+FrameVerdict skip_extensions(Bytes packet, std::uint8_t& next, std::size_t& at) {
+  while (is_extension(next)) {
+    if (packet.size() - at < 8) return FrameVerdict::kMalformed;
+    const bool fragment = next == kFragmentHeader;
+    const std::size_t size = fragment ? 8 : 8 * (u8(packet, at + 1) + std::size_t{1});
+    if (packet.size() - at < size) return FrameVerdict::kMalformed;
+    next = u8(packet, at);
+    if (fragment && (u16(packet, at + 2) & 0xfff9) != 0 && (next == kUdp || is_extension(next))) {
+      return FrameVerdict::kFragment;
+    }
+    at += size;
+  }
+  return next == kUdp ? FrameVerdict::kDatagram : FrameVerdict::kOtherTraffic;
+}
+
+FrameVerdict parse_ipv6(Bytes packet, UdpFrame& out) {
+  if (packet.size() < kIpv6Header || u8(packet, 0) >> 4 != 6) return FrameVerdict::kMalformed;
+  const std::size_t total = kIpv6Header + u16(packet, 4);
+  packet = packet.first(std::min(packet.size(), total));
+  std::uint8_t next = u8(packet, 6);
+  std::size_t at = kIpv6Header;
+  const FrameVerdict verdict = skip_extensions(packet, next, at);
+  if (verdict != FrameVerdict::kDatagram) return verdict;
+  std::copy_n(packet.begin() + 8, 16, reinterpret_cast<std::byte*>(out.from.address.data()));
+  std::copy_n(packet.begin() + 24, 16, reinterpret_cast<std::byte*>(out.to.address.data()));
+  out.from.v6 = out.to.v6 = true;
+  return parse_udp(packet.subspan(at), total - at, out);
+}
+
+/// Adds 16-bit words in network order to a one's-complement sum (RFC 1071). A frame's worth cannot overflow
+/// it.
+std::uint32_t add_words(Bytes bytes, std::uint32_t sum) {
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) sum += u16(bytes, i);
+  if (bytes.size() % 2 == 1) sum += std::uint32_t{u8(bytes, bytes.size() - 1)} << 8;
+  return sum;
+}
+
+std::size_t checksum(std::uint32_t sum) {
+  while (sum > 0xffff) sum = (sum & 0xffff) + (sum >> 16);
+  return ~sum & 0xffff;
+}
+
+/// `out`: zeros, the header's 20 bytes.
+void put_ipv4(const Endpoint& from, const Endpoint& to, std::size_t total, std::span<std::byte> out) {
+  put_u16(out, 0, 0x4500);  // version 4, five words of header
+  put_u16(out, 2, total);
+  put_u16(out, 6, 0x4000);  // do not fragment
+  put_u16(out, 8, 64 << 8 | kUdp);
+  std::copy_n(reinterpret_cast<const std::byte*>(from.address.data()), 4, out.begin() + 12);
+  std::copy_n(reinterpret_cast<const std::byte*>(to.address.data()), 4, out.begin() + 16);
+  put_u16(out, 10, checksum(add_words(out, 0)));
+}
+
+/// `out`: zeros, the header's 40 bytes.
+void put_ipv6(const Endpoint& from, const Endpoint& to, std::size_t carried, std::span<std::byte> out) {
+  put_u16(out, 0, 0x6000);  // version 6
+  put_u16(out, 4, carried);
+  put_u16(out, 6, kUdp << 8 | 64);
+  std::copy_n(reinterpret_cast<const std::byte*>(from.address.data()), 16, out.begin() + 8);
+  std::copy_n(reinterpret_cast<const std::byte*>(to.address.data()), 16, out.begin() + 24);
+}
+
+Endpoint as_v6(const Endpoint& endpoint) {
+  if (endpoint.v6) return endpoint;
+  Endpoint mapped{.port = endpoint.port, .v6 = true};
+  mapped.address[10] = mapped.address[11] = 0xff;
+  std::copy_n(endpoint.address.begin(), 4, mapped.address.begin() + 12);
+  return mapped;
+}
+
+}  // namespace
+
+bool supported(LinkType link) noexcept {
+  switch (link) {
+    case LinkType::kNull:
+    case LinkType::kEthernet:
+    case LinkType::kRawLinux:
+    case LinkType::kRawOpenBsd:
+    case LinkType::kRaw:
+    case LinkType::kLoop:
+    case LinkType::kCooked:
+    case LinkType::kIpv4:
+    case LinkType::kIpv6:
+    case LinkType::kCooked2:
+      return true;
+  }
+  return false;
+}
+
+FrameVerdict parse_frame(LinkType link, std::span<const std::byte> frame, UdpFrame& out) noexcept {
+  std::optional<Carried> carried = behind_link(link, frame);
+  for (int tags = 0; tags < kMaxVlanTags && carried && is_vlan(carried->type); ++tags) {
+    carried = behind_header(carried->bytes, 2, 4);
+  }
+  if (!carried) return FrameVerdict::kMalformed;
+  UdpFrame found;
+  FrameVerdict verdict = FrameVerdict::kOtherTraffic;
+  if (carried->type == kEtherIpv4) verdict = parse_ipv4(carried->bytes, found);
+  if (carried->type == kEtherIpv6) verdict = parse_ipv6(carried->bytes, found);
+  if (verdict == FrameVerdict::kDatagram) out = found;
+  return verdict;
+}
+
+std::size_t build_frame(const Endpoint& from, const Endpoint& to, std::span<const std::byte> payload,
+                        std::size_t length, std::span<std::byte> out) noexcept {
+  if (from.v6 != to.v6) return build_frame(as_v6(from), as_v6(to), payload, length, out);
+  const std::size_t ip = from.v6 ? kIpv6Header : kIpv4Header, headers = ip + kUdpHeader;
+  const std::size_t longest = kMaxLengthField - kUdpHeader - (from.v6 ? 0 : kIpv4Header);
+  if (length > longest || payload.size() > length || out.size() < headers + payload.size()) return 0;
+  std::fill_n(out.begin(), headers, std::byte{0});
+  std::copy(payload.begin(), payload.end(), out.begin() + static_cast<std::ptrdiff_t>(headers));
+  if (from.v6) {
+    put_ipv6(from, to, kUdpHeader + length, out.first(ip));
+  } else {
+    put_ipv4(from, to, headers + length, out.first(ip));
+  }
+  const std::span<std::byte> udp = out.subspan(ip, kUdpHeader + payload.size());
+  put_u16(udp, 0, from.port);
+  put_u16(udp, 2, to.port);
+  put_u16(udp, 4, kUdpHeader + length);
+  if (payload.size() == length) {
+    // The pseudo header: both addresses, the protocol and the length.
+    const Bytes addresses = from.v6 ? out.subspan(8, 32) : out.subspan(12, 8);
+    const auto rest = static_cast<std::uint32_t>(kUdp + kUdpHeader + length);
+    const std::size_t sum = checksum(add_words(udp, add_words(addresses, rest)));
+    put_u16(udp, 6, sum == 0 ? 0xffff : sum);  // 0 would say that there is none
+  }
+  return headers + payload.size();
+}
+
+}  // namespace palpate::protocol
