@@ -6,12 +6,21 @@
 namespace palpate {
 namespace {
 constexpr long kNanosecondsPerSecond = 1'000'000'000;
+
+Time read(clockid_t clock) noexcept {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return Time{t.tv_sec * kNanosecondsPerSecond + t.tv_nsec};
 }
 
+}  // namespace
+
 Time now() noexcept {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return Time{t.tv_sec * kNanosecondsPerSecond + t.tv_nsec};
+  return read(CLOCK_MONOTONIC);
+}
+
+Time monotonic_epoch() noexcept {
+  return read(CLOCK_REALTIME) - now();
 }
 
 void sleep_until(Time deadline) noexcept {

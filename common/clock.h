@@ -7,6 +7,9 @@ namespace palpate {
 /// Monotonic time of this machine (CLOCK_MONOTONIC). Any thread, no allocation, about 25 ns.
 Time now() noexcept;
 
+/// Where the monotonic clock began on the calendar: add it to `now()` for nanoseconds since 1970 (UTC).
+Time monotonic_epoch() noexcept;
+
 /// Sleeps until the absolute monotonic time `deadline`; returns at once when it has passed. Any thread.
 void sleep_until(Time deadline) noexcept;
 

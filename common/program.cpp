@@ -36,6 +36,11 @@ std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
   }
 }
 
+void require_within(double value, double least, double most, const char* option, const char* unit) {
+  if (!(value >= least && value <= most))
+    fail("{}: expected {} to {} {}, not {}", option, least, most, unit, value);
+}
+
 void require_at_least(double value, double least, const char* option, const char* unit) {
   if (!std::isfinite(value) || value < least)
     fail("{}: expected at least {} {}, not {}", option, least, unit, value);

@@ -16,6 +16,9 @@ int run_program(const char* name, int argc, char** argv, int (*body)(int argc, c
 /// --help or --version, 2 after a wrong use, said in one line.
 std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv);
 
+/// Throws `Error` unless `value` lies in [least, most].
+void require_within(double value, double least, double most, const char* option, const char* unit);
+
 /// Throws `Error` unless `value` is finite and at least `least`; `option` and `unit` are for the message.
 void require_at_least(double value, double least, const char* option, const char* unit);
 

@@ -34,6 +34,10 @@ class Trajectory {
 
   /// Position at `t` seconds after the start. O(log rows), no allocation.
   Vec3 at(double t) const noexcept;
+  /// Rows a second, on average; 0 with one row.
+  double rate_hz() const noexcept {
+    return duration() > 0 ? static_cast<double>(t_.size() - 1) / duration() : 0;
+  }
   double duration() const noexcept { return t_.back() - t_.front(); }
 
  private:

@@ -15,6 +15,7 @@
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/net_link.h"
 #include "haptic_client/trace.h"
+#include "protocol/recording_report.h"
 
 namespace palpate::client {
 namespace {
@@ -56,7 +57,8 @@ bool wait_for_welcome(const NetLink& link, const std::string& server) {
 /// latched fault.
 class Watcher {
  public:
-  Watcher(HapticLoop& loop, const std::string& server) : loop_(loop), server_(server) {}
+  Watcher(HapticLoop& loop, const protocol::Recorder* recorder, const std::string& server)
+      : loop_(loop), recording_(recorder), server_(server) {}
 
   void look(double seconds) {
     const std::int64_t age = loop_.newest_age_ns;
@@ -70,6 +72,7 @@ class Watcher {
                    getpid());
     }
     fault_ = fault;
+    recording_.look();
     const bool terminal = isatty(STDOUT_FILENO) != 0;
     if (seconds < next_) return;
     next_ = seconds + (terminal ? 0.2 : 5);
@@ -82,14 +85,15 @@ class Watcher {
 
  private:
   HapticLoop& loop_;
+  protocol::RecordingWatcher recording_;
   std::string server_;
   bool silent_ = false;
   Fault fault_ = Fault::kNone;
   double next_ = 0;
 };
 
-void watch(HapticLoop& loop, const std::string& server, std::optional<double> seconds) {
-  Watcher watcher(loop, server);
+void watch(HapticLoop& loop, const protocol::Recorder* recorder, const std::string& server, std::optional<double> seconds) {
+  Watcher watcher(loop, recorder, server);
   for (const Time start = now();;) {
     const double elapsed = to_seconds(now() - start);
     if (seconds && elapsed >= *seconds) break;
@@ -102,13 +106,13 @@ void watch(HapticLoop& loop, const std::string& server, std::optional<double> se
 }
 
 /// Runs the haptic loop in a thread of its own until Ctrl-C or the end of the time.
-void drive(HapticLoop& loop, const ClientConfig& config, const ClientOptions& options) {
+void drive(HapticLoop& loop, const protocol::Recorder* recorder, const ClientConfig& config, const ClientOptions& options) {
   log::info("connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", config.server, config.device.name,
             config.rate_hz, config.method);
   std::jthread haptic([&](const std::stop_token& stop) { loop.run(stop); });
   warn_if_refused(make_realtime(haptic.native_handle(), "palpate-haptic", kPriority));
   warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
-  watch(loop, config.server, options.seconds);
+  watch(loop, recorder, config.server, options.seconds);
 }
 
 void write_trace(const std::filesystem::path& file, const Observation& observation) {
@@ -136,19 +140,23 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
   const Time period = std::max(from_seconds(1 / config.rate_hz), row.limits(config.device).min_period);
   HapticLoop loop(*device, pipeline, mailboxes, observation, period);
   protocol::UdpSocket socket(any_address(server));
-  NetLink link(socket, server, mailboxes, random_number());
+  const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;
+  NetLink link(socket, server, mailboxes, random_number(), recorder.get());
   {
+    std::jthread recording;
+    if (recorder) recording = std::jthread([&](const std::stop_token& stop) { recorder->run(stop); });
     std::jthread net([&] { link.run(); });
     const struct StopNet {  // also when waiting throws
       NetLink& link;
       ~StopNet() { link.stop(); }
     } stop_net{link};
-    if (wait_for_welcome(link, config.server)) drive(loop, config, options);
+    if (wait_for_welcome(link, config.server)) drive(loop, recorder.get(), config, options);
   }
   Json tool = tool_report(config, pipeline, observation);
   tool["loop"] = loop_report(config.rate_hz, loop.stats());
-  const Json report = {
+  Json report = {
       {"server", config.server}, {"tools", Json::array({tool})}, {"link", link_report(link.stats())}};
+  if (recorder) report["recording"] = protocol::recording_report(*recorder);
   print_report(report);
   if (options.trace) write_trace(*options.trace, observation);
   if (options.report) write_json(*options.report, report);

@@ -11,6 +11,7 @@ struct ClientOptions {
   std::optional<double> seconds;  ///< stop after so long in contact with the server; absent: at Ctrl-C
   std::optional<std::filesystem::path> report;  ///< JSON written at the end
   std::optional<std::filesystem::path> trace;   ///< CSV of the last minute, a row a tick
+  std::optional<std::filesystem::path> record;  ///< capture of every datagram
 };
 
 /// Connects, runs the haptic loop until Ctrl-C or `seconds`, reports. Throws `Error`. Returns the exit code.

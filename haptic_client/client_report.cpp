@@ -205,6 +205,11 @@ void print_report(const Json& report) {
     }
     fmt::print("\n");
   }
+  if (report.contains("recording")) {
+    const Json& recording = report["recording"];
+    fmt::print("  record  {} packets in {}, {} dropped\n", recording["packets"].get<long>(),
+               recording["file"].get<std::string>(), recording["dropped"].get<long>());
+  }
   std::fflush(stdout);
 }
 

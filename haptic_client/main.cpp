@@ -5,6 +5,7 @@
 #include "common/text.h"
 #include "haptic_client/client.h"
 #include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/replay.h"
 
 namespace {
 
@@ -61,13 +62,35 @@ int run(int argc, char** argv) {
   command->add_option("--seconds", options.seconds, "Stop after so many seconds");
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
   command->add_option("--trace", options.trace, "Write the last minute, a row a tick, to this CSV file");
+  command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
   command->footer(
       "Methods:\n" + list_of(client::extrapolators()) + "Devices:\n" + list_of(client::devices()) +
       "Example: haptic_client run configs/clients/liver.toml --method constant --report report.json");
+
+  std::string replay_file;
+  client::ReplayOptions replaying;
+  auto* replay = app.add_subcommand("replay", "Run a captured session again, offline: the same forces, bit by bit");
+  replay->add_option("CAPTURE", replaying.capture, "pcap or pcapng: of --record, sim_server record, tcpdump ...")
+      ->required();
+  replay->add_option("--client", replay_file,
+                     "Client file of the session: workspace, limits and laws to score (default: all defaults)");
+  replay->add_option("--method", overrides.method, "How to extrapolate the force, see below");
+  replay->add_option("--rate", replaying.rate_hz,
+                     "Ticks per second, 1 to 20000 (default, or within 2 %: the capture's own ticks)");
+  replay->add_option("--out", replaying.out, "CSV to write, a row a tick");
+  replay->add_option("--session", replaying.session, "Which session, where the capture has several");
+  replay->add_option("--report", replaying.report, "Write figures to this JSON file");
+  replay->footer("Methods:\n" + list_of(client::extrapolators()) +
+                 "Example: haptic_client replay liver.pcap --method constant --out forces.csv");
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (options.seconds) require_at_least(*options.seconds, 1e-3, "--seconds", "s");
+  if (*replay) file = replay_file;
   client::ClientConfig config = file.empty() ? client::ClientConfig{} : client::read_client_config(file);
   apply(overrides, config);
+  if (*replay) {
+    if (replaying.rate_hz) require_within(*replaying.rate_hz, 1, 20000, "--rate", "Hz");
+    return client::replay(config, replaying);
+  }
   return client::run_client(config, options);
 }
 

@@ -7,8 +7,13 @@ using protocol::Endpoint;
 using protocol::Verdict;
 
 NetLink::NetLink(protocol::UdpSocket& socket, const Endpoint& server, HapticMailboxes& mailboxes,
-                 std::uint64_t nonce)
-    : socket_(socket), server_(server), mailboxes_(mailboxes), session_(nonce) {}
+                 std::uint64_t nonce, protocol::Recorder* recorder)
+    : socket_(socket),
+      server_(server),
+      own_(socket.local_towards(server)),
+      recorder_(recorder),
+      mailboxes_(mailboxes),
+      session_(nonce) {}
 
 void NetLink::run() {
   on_timer();
@@ -20,6 +25,8 @@ void NetLink::run() {
 }
 
 void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from) {
+  const Time t = now();
+  if (recorder_ != nullptr) recorder_->note(t, from, own_, bytes);
   protocol::Datagram datagram;
   const Verdict verdict = from == server_ ? protocol::decode(bytes, datagram) : Verdict::kNotOurs;
   if (verdict != Verdict::kAccepted) {
@@ -27,7 +34,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
     ++stats_.rejected_by[static_cast<std::size_t>(verdict)];
     return;
   }
-  if (const auto* sample = session_.receive(datagram, now(), stats_)) mailboxes_.force.write(*sample);
+  if (const auto* sample = session_.receive(datagram, t, stats_)) mailboxes_.force.write(*sample);
   welcomed = session_.welcomed();
   refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
 }
@@ -47,6 +54,7 @@ void NetLink::on_timer() {
 void NetLink::send(const protocol::Header& header, const protocol::Message& message) {
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   const std::size_t size = protocol::encode(header, message, bytes);
+  if (recorder_ != nullptr) recorder_->note(now(), own_, server_, {bytes.data(), size});
   if (socket_.send({bytes.data(), size}, server_)) ++stats_.sent;
 }
 

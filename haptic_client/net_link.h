@@ -2,6 +2,7 @@
 #include <atomic>
 
 #include "haptic_client/loop/haptic_loop.h"
+#include "protocol/recorder.h"
 #include "protocol/udp_socket.h"
 
 namespace palpate::client {
@@ -9,9 +10,9 @@ namespace palpate::client {
 /// The network thread of the client: tool states out, force samples in, the session kept alive.
 class NetLink {
  public:
-  /// `nonce`: a random number, drawn once per run.
+  /// `nonce`: a random number, drawn once per run. `recorder`: gets every datagram; may be null.
   NetLink(protocol::UdpSocket& socket, const protocol::Endpoint& server, HapticMailboxes& mailboxes,
-          std::uint64_t nonce);
+          std::uint64_t nonce, protocol::Recorder* recorder);
 
   /// Serves until `stop`, then says Bye.
   void run();
@@ -32,7 +33,8 @@ class NetLink {
   void send(const protocol::Header& header, const protocol::Message& message);
 
   protocol::UdpSocket& socket_;
-  protocol::Endpoint server_;
+  protocol::Endpoint server_, own_;
+  protocol::Recorder* recorder_;
   HapticMailboxes& mailboxes_;
   protocol::ClientSession session_;
   protocol::LinkStats stats_;

@@ -124,6 +124,17 @@ Endpoint UdpSocket::local() const {
   return from_asio(asio_->socket.local_endpoint());
 }
 
+Endpoint UdpSocket::local_towards(const Endpoint& peer) const {
+  Endpoint own = local();
+  if (own.address != Endpoint{}.address) return own;
+  udp::socket probe(asio_->context);
+  std::error_code failed;
+  probe.connect(to_asio(peer), failed);
+  const udp::endpoint towards = probe.local_endpoint(failed);
+  if (!failed) own.address = from_asio(towards).address;
+  return own;
+}
+
 void UdpSocket::run(Doorbell& doorbell, Time timer_period, const Handlers& handlers) {
   asio_->doorbell = &doorbell;
   asio_->period = timer_period;

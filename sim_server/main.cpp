@@ -5,6 +5,7 @@
 #include "common/log.h"
 #include "common/program.h"
 #include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/record.h"
 #include "sim_server/server.h"
 
 namespace {
@@ -47,8 +48,34 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   run_command->add_option("--seconds", options.seconds, "Stop after so many seconds");
   run_command->add_option("--report", options.report, "Write figures of the run to this JSON file");
+  run_command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
   run_command->footer(
       "Example: sim_server run configs/scenes/liver.toml --listen 0.0.0.0:45130 --report server.json");
+
+  sim::RecordOptions recording;
+  auto* record = app.add_subcommand("record", "Run a scene along a motion in virtual time, into a capture");
+  record->add_option("SCENE", recording.scene, "Scene file (TOML)")->required();
+  record
+      ->add_option("--trajectory", recording.trajectory,
+                   "Motion of the tool: a CSV (t_s, x_m, y_m, z_m), or a client file with a [trajectory]")
+      ->required();
+  record->add_option("--rate", recording.rate_hz, "Steps a second, 1 to 20000 Hz; 2000 is the truth")
+      ->required();
+  record->add_option("--out", recording.out, "Capture to write (pcap)")->required();
+  record
+      ->add_option("--delay-ms", recording.delay_ms,
+                   "From reading the tool to having its force in the client, ms, 0 to 10000")
+      ->capture_default_str();
+  record->add_option("--ticks", recording.ticks_hz,
+                     "Tool states a second, at least --rate (default: 500, or --rate if that is more)");
+  record->add_option("--seconds", recording.seconds, "Virtual time (default: the motion once)");
+  record->add_option("--report", recording.report, "Write figures of the recording to this JSON file");
+  record->footer(
+      "Examples:\n"
+      "  sim_server record configs/scenes/liver.toml --trajectory configs/clients/liver.toml --rate 33.3 "
+      "--delay-ms 35 --out liver.pcap\n"
+      "  sim_server record configs/scenes/liver.toml --trajectory configs/clients/liver.toml --rate 2000 --out "
+      "truth.pcap");
 
   std::string mesh_file;
   auto* mesh = app.add_subcommand("mesh", "Look at meshes");
@@ -60,6 +87,13 @@ int run(int argc, char** argv) {
 
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (options.seconds) require_at_least(*options.seconds, 1e-3, "--seconds", "s");
+  if (*record) {
+    require_within(recording.rate_hz, 1, 20000, "--rate", "Hz");
+    require_within(recording.delay_ms, 0, 10000, "--delay-ms", "ms");
+    if (recording.ticks_hz) require_within(*recording.ticks_hz, 1, 20000, "--ticks", "Hz");
+    if (recording.seconds) require_within(*recording.seconds, 1e-3, 1e5, "--seconds", "s");
+    return sim::record(recording);
+  }
   return *info ? print_mesh_info(mesh_file) : sim::run_server(options);
 }
 

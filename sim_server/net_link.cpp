@@ -8,8 +8,8 @@ using protocol::Endpoint;
 using protocol::Verdict;
 
 NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes,
-                 std::uint64_t seed)
-    : socket_(socket), sessions_(std::move(sessions)), mailboxes_(mailboxes), random_(seed) {}
+                 std::uint64_t seed, protocol::Recorder* recorder)
+    : socket_(socket), recorder_(recorder), sessions_(std::move(sessions)), mailboxes_(mailboxes), random_(seed) {}
 
 void NetLink::run() {
   socket_.run(mailboxes_.bell, std::chrono::milliseconds(50),
@@ -21,6 +21,8 @@ void NetLink::run() {
 }
 
 void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from) {
+  const Time t = now();
+  if (recorder_ != nullptr) recorder_->note(t, from, own_towards(from), bytes);
   Datagram datagram;
   if (const Verdict verdict = protocol::decode(bytes, datagram); verdict != Verdict::kAccepted) {
     ++stats_.rejected;
@@ -28,7 +30,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
     return;
   }
   const std::size_t before = sessions_.members().size();
-  const auto outcome = sessions_.receive(datagram, from, now(), random_() | 1, stats_);
+  const auto outcome = sessions_.receive(datagram, from, t, random_() | 1, stats_);
   if (sessions_.members().size() > before) ++sessions_so_far;
   members = static_cast<int>(sessions_.members().size());
   if (outcome.answer) send(outcome.answer->first, outcome.answer->second, from);
@@ -55,9 +57,18 @@ void NetLink::tool_is_free(std::uint8_t tool) {
   mailboxes_.tool.write(nobody);
 }
 
+const Endpoint& NetLink::own_towards(const Endpoint& peer) {
+  if (peer != peer_) {
+    own_ = socket_.local_towards(peer);
+    peer_ = peer;
+  }
+  return own_;
+}
+
 void NetLink::send(const protocol::Header& header, const protocol::Message& message, const Endpoint& to) {
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   const std::size_t size = protocol::encode(header, message, bytes);
+  if (recorder_ != nullptr) recorder_->note(now(), own_towards(to), to, {bytes.data(), size});
   if (socket_.send({bytes.data(), size}, to)) ++stats_.sent;
 }
 

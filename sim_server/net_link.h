@@ -2,6 +2,7 @@
 #include <atomic>
 #include <random>
 
+#include "protocol/recorder.h"
 #include "protocol/udp_socket.h"
 #include "sim_server/sim_loop.h"
 
@@ -10,9 +11,9 @@ namespace palpate::sim {
 /// The network thread of the server: datagrams in, sessions kept, forces out.
 class NetLink {
  public:
-  /// `seed` draws the session numbers.
+  /// `seed` draws the session numbers. `recorder`: gets every datagram; may be null.
   NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes,
-          std::uint64_t seed);
+          std::uint64_t seed, protocol::Recorder* recorder);
 
   /// Serves until `stop`, then says Bye to every member.
   void run();
@@ -31,7 +32,11 @@ class NetLink {
   void tool_is_free(std::uint8_t tool);
   void send(const protocol::Header& header, const protocol::Message& message, const protocol::Endpoint& to);
 
+  const protocol::Endpoint& own_towards(const protocol::Endpoint& peer);
+
   protocol::UdpSocket& socket_;
+  protocol::Recorder* recorder_;
+  protocol::Endpoint peer_, own_;  // whom we last talked to, and how he sees us
   protocol::ServerSessions sessions_;
   SimMailboxes& mailboxes_;
   std::mt19937_64 random_;

@@ -12,6 +12,7 @@
 #include "common/progress.h"
 #include "common/realtime.h"
 #include "common/report.h"
+#include "protocol/recording_report.h"
 #include "sim_server/net_link.h"
 
 namespace palpate::sim {
@@ -54,6 +55,19 @@ Json describe_scene(const Scene& scene, const Simulation& simulation, Time setup
           {"memory_bytes", memory}};
 }
 
+Json timeline_report(const Timeline<StepCell>& timeline) {
+  Json cells = Json::array();
+  for (std::size_t i = 0; i < timeline.size(); ++i) {
+    const StepCell& cell = timeline[i];
+    cells.push_back({{"t_s", static_cast<double>(i) * to_seconds(timeline.width())},
+                     {"steps", cell.steps},
+                     {"step_ms_mean", cell.steps > 0 ? 1e-6 * cell.step_ns_sum / cell.steps : 0},
+                     {"step_ms_max", 1e-6 * cell.step_ns_max},
+                     {"late", cell.late}});
+  }
+  return {{"cell_s", to_seconds(timeline.width())}, {"cells", cells}};
+}
+
 void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simulation& simulation, Time ran) {
   const SimLoopStats& stats = loop.stats();
   report["seconds"] = to_seconds(ran);
@@ -61,6 +75,7 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["step_ms"] = quantiles(stats.step_ns, 1e6);
   report["contact_step_ms"] = quantiles(stats.contact_step_ns, 1e6);
   report["contact_steps"] = stats.contact_step_ns.count();
+  report["timeline"] = timeline_report(stats.timeline);
   report["late"] = stats.late;
   report["flagged"] = stats.flagged;
   report["max_newton"] = stats.max_newton;
@@ -85,11 +100,13 @@ void print_summary(const Json& report) {
 }
 
 /// Waits for Ctrl-C or the end of `seconds`, telling who comes and goes.
-void watch(const NetLink& link, std::optional<double> seconds) {
+void watch(const NetLink& link, const protocol::Recorder* recorder, std::optional<double> seconds) {
+  protocol::RecordingWatcher recording(recorder);
   const Time start = now();
   int told = 0;
   while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
     if (seconds && to_seconds(now() - start) >= *seconds) return;
+    recording.look();
     const int members = link.members;
     if (members == told) continue;
     log::info("{}", members > told ? "a client took the tool" : "the client is gone; the tool is free");
@@ -116,22 +133,26 @@ int run_server(const ServerOptions& options) {
   Json report = describe_scene(scene, simulation, now() - begin);
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes);
-  NetLink link(socket, {1, scene.rate_hz, scene.tool.shape.radius}, mailboxes, random_seed());
+  const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;
+  NetLink link(socket, {1, scene.rate_hz, scene.tool.shape.radius}, mailboxes, random_seed(), recorder.get());
   const Time start = now();
   {
+    std::jthread recording;
+    if (recorder) recording = std::jthread([&](const std::stop_token& stop) { recorder->run(stop); });
     std::jthread net([&] { link.run(); });
     std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
     warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kPriority));
     warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
     log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
               report["setup_ms"].get<double>() / 1e3, protocol::to_string(socket.local()));
-    watch(link, options.seconds);
+    watch(link, recorder.get(), options.seconds);
     sim.request_stop();
     sim.join();
     link.stop();
     net.join();
   }
   add_run(report, loop, link, simulation, now() - start);
+  if (recorder) report["recording"] = protocol::recording_report(*recorder);
   print_summary(report);
   if (options.report) write_json(*options.report, report);
   return 0;

@@ -11,6 +11,7 @@ struct ServerOptions {
   std::string listen = "127.0.0.1:45130";
   std::optional<double> seconds;                ///< stop after so long; absent: at Ctrl-C
   std::optional<std::filesystem::path> report;  ///< JSON written at the end
+  std::optional<std::filesystem::path> record;  ///< capture of every datagram
 };
 
 /// Builds the scene, serves it until Ctrl-C, writes the report. Throws `Error`. Returns the exit code.

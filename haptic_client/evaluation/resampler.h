@@ -1,0 +1,26 @@
+#pragma once
+#include "haptic_client/evaluation/captured_session.h"
+
+namespace palpate::client {
+
+/// The ticks of a captured session at another rate: tick k stands at t_0 + k / rate, its pose on the line
+/// between the captured poses around it, and it knows the samples that the captured tick before it knew.
+class Resampler {
+ public:
+  Resampler(CapturedSession& session, double rate_hz) : session_(session), rate_hz_(rate_hz) {}
+  /// False at the end.
+  bool next(CapturedTick& out);
+
+ private:
+  /// Goes on to the next captured tick; false when there is none.
+  bool pass();
+
+  CapturedSession& session_;
+  double rate_hz_;
+  std::uint64_t k_ = 0;
+  std::optional<CapturedTick> before_, after_;     // around the tick to give
+  std::optional<protocol::ForceSample> arrived_;  // known since the last tick given
+  Time start_{};
+};
+
+}  // namespace palpate::client

@@ -1,0 +1,51 @@
+#include "protocol/recorder.h"
+
+#include <algorithm>
+
+#include "common/clock.h"
+
+namespace palpate::protocol {
+namespace {
+constexpr std::size_t kRoom = 8192;                                // datagrams
+constexpr Time kWritePeriod = std::chrono::milliseconds(20);
+}  // namespace
+
+Recorder::Recorder(const std::filesystem::path& file)
+    : path_(file), capture_(file), ring_(kRoom), epoch_(monotonic_epoch()) {}
+
+void Recorder::note(Time t, const Endpoint& from, const Endpoint& to,
+                    std::span<const std::byte> bytes) noexcept {
+  ++noted_;
+  Packet* const packet = ring_.claim();
+  if (packet == nullptr) return;
+  packet->t = t;
+  packet->from = from;
+  packet->to = to;
+  packet->length = bytes.size();
+  packet->kept = std::min(bytes.size(), packet->bytes.size());
+  std::copy_n(bytes.begin(), packet->kept, packet->bytes.begin());
+  ring_.publish();
+}
+
+void Recorder::run(const std::stop_token& stop) noexcept {
+  while (!stop.stop_requested()) {
+    write_all();
+    sleep_until(now() + kWritePeriod);
+  }
+  write_all();
+}
+
+void Recorder::write_all() noexcept {
+  while (const Packet* const packet = ring_.front()) {
+    capture_.write(epoch_ + packet->t, packet->from, packet->to, {packet->bytes.data(), packet->kept},
+                   packet->length);
+    ring_.release();
+  }
+  if (!capture_.flush()) failed.store(true, std::memory_order_relaxed);
+}
+
+Recorder::Stats Recorder::stats() const {
+  return {capture_.packets(), capture_.bytes(), noted_ - capture_.packets()};
+}
+
+}  // namespace palpate::protocol

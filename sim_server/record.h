@@ -1,0 +1,24 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+
+namespace palpate::sim {
+
+/// What `sim_server record` was asked for.
+struct RecordOptions {
+  std::filesystem::path scene, trajectory, out;
+  double rate_hz = 30;  ///< steps a second, [1, 20000]
+  double delay_ms = 0;  ///< from reading the tool to having its force in the client, ms, [0, 10000]
+  std::optional<double> ticks_hz;  ///< tool states a second, at least `rate_hz`; absent: 500 or `rate_hz`
+  std::optional<double> seconds;   ///< absent: the motion once
+  std::optional<std::filesystem::path> report;
+};
+
+/// Runs a scene in virtual time along a recorded motion and writes what would have travelled as a capture: the
+/// same simulation, sessions and bytes as `run`, without sockets and clock, as fast as they go. Virtual time
+/// begins at 0; step n answers the newest tool state at n / rate, and its sample is in the client `delay`
+/// after that tool state was read. The same arguments give the same bytes. Throws `Error`. Returns the exit
+/// code.
+int record(const RecordOptions& options);
+
+}  // namespace palpate::sim

@@ -1,0 +1,99 @@
+#include "sim_server/virtual_session.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::sim {
+using namespace protocol;
+
+namespace {
+
+constexpr std::uint64_t kSessionId = 1;
+constexpr double kNow = 1e-9;  // s: rounding of tick and step times
+
+Endpoint documentation_address(std::uint8_t last, std::uint16_t port) {
+  return {.address = {192, 0, 2, last}, .port = port};
+}
+const Endpoint kClient = documentation_address(1, 45131), kServer = documentation_address(2, 45130);
+
+}  // namespace
+
+VirtualSession::VirtualSession(Simulation& simulation, const Trajectory& motion, double tool_radius,
+                               const VirtualLink& link, CaptureWriter& capture)
+    : served_(simulation),
+      motion_(motion),
+      link_(link),
+      capture_(capture),
+      server_(1, link.rate_hz, tool_radius) {}
+
+Time VirtualSession::time_of(std::uint64_t k) const {
+  return from_seconds(static_cast<double>(k) / link_.ticks_hz);
+}
+
+void VirtualSession::tick(std::uint64_t k) {
+  const Time t = now_ = time_of(k);
+  keep_session(t);
+  ToolState state{.tool = client_.welcome().tool, .tick = k + 1, .t_ns = t.count()};
+  state.p_W = motion_.at(to_seconds(t));
+  if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motion_.at(to_seconds(time_of(k - 1))));
+  step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
+  // What arrives in this very tick (no delay) is named by its tool state, though it stands behind it.
+  for (const OnTheWay& next : on_the_way_) {
+    if (next.ready <= t) newest_ = next.sample.number;
+  }
+  state.newest_sample = newest_;
+  to_server(client_.next_header(), state, t);
+  ++stats_.tool_states;
+  deliver(t);
+}
+
+/// Step n is due at n / rate, and answers the newest tool state there is then.
+void VirtualSession::step(const ToolState& state, double steps_due) {
+  if (static_cast<double>(steps_) >= steps_due - kNow * link_.rate_hz) return;
+  ++steps_;
+  const auto outcome = served_.step({kSessionId, state}, true, 1 / link_.rate_hz);
+  if (!outcome || !outcome->answer) return;
+  stats_.in_contact += outcome->force.contacts > 0 ? 1 : 0;
+  stats_.flagged += outcome->force.flagged ? 1 : 0;
+  stats_.max_newton = std::max(stats_.max_newton, outcome->force.force.norm());
+  auto* const member = server_.holder(state.tool);
+  on_the_way_.push_back({Time{state.t_ns} + link_.delay, {kSessionId, ++member->sent}, *outcome->answer});
+}
+
+void VirtualSession::deliver(Time t) {
+  while (!on_the_way_.empty() && on_the_way_.front().ready <= t) {
+    const OnTheWay next = on_the_way_.front();
+    on_the_way_.pop_front();
+    to_client(next.header, next.sample, std::max(next.ready, Time{next.sample.tool_t_ns}));
+    ++stats_.force_samples;
+  }
+}
+
+void VirtualSession::keep_session(Time t) {
+  if (const auto hello = client_.poll(t)) to_server({}, *hello, t);
+}
+
+void VirtualSession::leave() {
+  to_server(client_.next_header(), Bye{}, now_);
+}
+
+void VirtualSession::to_server(const Header& header, const Message& message, Time t) {
+  std::array<std::byte, kMaxDatagram> bytes;
+  const std::size_t size = encode(header, message, bytes);
+  capture_.write(t, kClient, kServer, {bytes.data(), size}, size);
+  Datagram datagram;
+  if (decode({bytes.data(), size}, datagram) != Verdict::kAccepted) return;
+  const auto outcome = server_.receive(datagram, kClient, t, kSessionId, server_stats_);
+  if (outcome.answer) to_client(outcome.answer->first, outcome.answer->second, t);
+}
+
+void VirtualSession::to_client(const Header& header, const Message& message, Time t) {
+  std::array<std::byte, kMaxDatagram> bytes;
+  const std::size_t size = encode(header, message, bytes);
+  capture_.write(t, kServer, kClient, {bytes.data(), size}, size);
+  Datagram datagram;
+  if (decode({bytes.data(), size}, datagram) != Verdict::kAccepted) return;
+  client_.receive(datagram, t, client_stats_);
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,65 @@
+#pragma once
+#include <deque>
+
+#include "common/trajectory.h"
+#include "protocol/capture.h"
+#include "protocol/session.h"
+#include "sim_server/served_tool.h"
+
+namespace palpate::sim {
+
+/// How a session in virtual time runs. Hz and s.
+struct VirtualLink {
+  double rate_hz, ticks_hz;
+  Time delay{};  ///< from reading the tool to having its force in the client
+};
+
+/// Sums over a virtual session.
+struct VirtualSessionStats {
+  std::uint64_t tool_states = 0, force_samples = 0, in_contact = 0, flagged = 0;
+  double max_newton = 0;
+};
+
+/// A client and a server that talk without sockets and clock: the two ends of a session, a served tool that
+/// follows a motion exactly, and a capture of every datagram between them. Client and server stand at
+/// 192.0.2.1:45131 and 192.0.2.2:45130 (addresses for documentation, RFC 5737).
+class VirtualSession {
+ public:
+  VirtualSession(Simulation& simulation, const Trajectory& motion, double tool_radius,
+                 const VirtualLink& link, protocol::CaptureWriter& capture);
+
+  /// Tick number `k` from 0, in order: client reads the tool, server steps if a step is due, samples arrive.
+  void tick(std::uint64_t k);
+  /// The client says Bye.
+  void leave();
+
+  /// The time of tick `k`.
+  Time time_of(std::uint64_t k) const;
+  const VirtualSessionStats& stats() const { return stats_; }
+
+ private:
+  struct OnTheWay {
+    Time ready;
+    protocol::Header header;
+    protocol::ForceSample sample;
+  };
+  void keep_session(Time t);
+  void step(const protocol::ToolState& state, double steps_due);
+  void deliver(Time t);
+  void to_server(const protocol::Header& header, const protocol::Message& message, Time t);
+  void to_client(const protocol::Header& header, const protocol::Message& message, Time t);
+
+  ServedTool served_;
+  const Trajectory& motion_;
+  VirtualLink link_;
+  protocol::CaptureWriter& capture_;
+  protocol::ServerSessions server_;
+  protocol::ClientSession client_{1};
+  protocol::LinkStats server_stats_, client_stats_;
+  std::deque<OnTheWay> on_the_way_;
+  std::uint64_t steps_ = 0, newest_ = 0;
+  Time now_{};
+  VirtualSessionStats stats_;
+};
+
+}  // namespace palpate::sim
