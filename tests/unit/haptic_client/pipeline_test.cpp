@@ -145,7 +145,7 @@ TEST_CASE("whatever comes from the wire and the device, the force is finite and 
     Time t = 1s;
     Vec3 last = Vec3::Zero();
     for (int tick = 0; tick < 20000; ++tick) {
-      const double sizes[] = {0, 1e-9, 1e-3, 1, 1e9, 1e-320};
+      const double sizes[] = {0, 1e-9, 1e-3, 1, 1e30, 1e-320};
       const ForceSample sample =
           sample_at(random.bits() % 1000 + 1, t - Time{static_cast<Time::rep>(random.bits() % 400'000'000)},
                     random.vector(sizes[random.bits() % 6]), random.vector(sizes[random.bits() % 6]));
@@ -173,4 +173,29 @@ TEST_CASE("a tick does not allocate") {
     allocations = guard.count();
   }
   CHECK(allocations == 0);
+}
+
+TEST_CASE("what a tick tells the server is enough to feel the same force again, bit by bit") {
+  Pipeline live = make(2, {.scale = 1.5, .offset_W = {0.01, 0, 0}}),
+           again = make(2, {.scale = 1.5, .offset_W = {0.01, 0, 0}});
+  test::Random random(21);
+  Time t = 1s;
+  bool lost = false;
+  for (std::uint64_t tick = 1; tick <= 5000; ++tick) {
+    t += Time{static_cast<std::int64_t>(random.between(1.9e6, 2.2e6))};
+    if (tick == 3000) t += 700ms;  // an outage: the force fades, the damper brakes
+    lost = tick >= 4000 && tick < 4010;
+    if (tick == 4300) live.rearm();
+    const ForceSample sample = sample_at(tick, t - 20ms, random.vector(0.01), random.vector(2));
+    const bool fresh = tick % 16 == 0 && !(tick > 2900 && tick < 3000);
+    const DeviceReading reading{.t = t, .p_D = random.vector(0.01), .buttons = 3, .valid = !lost};
+    const TickResult felt = live.tick(reading, fresh ? &sample : nullptr);
+    CHECK(felt.used == fresh);
+    const TickResult replayed = again.feel(felt.tool, felt.used ? &sample : nullptr);
+    CHECK(replayed.f_D == felt.f_D);
+    CHECK(replayed.tool.newest_sample == felt.tool.newest_sample);
+  }
+  CHECK(again.limiter().fault() == Fault::kNone);
+  CHECK(again.limiter().counts().latched == live.limiter().counts().latched);
+  CHECK(again.limiter().counts().latched > 0);
 }

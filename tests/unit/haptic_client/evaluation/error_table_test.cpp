@@ -1,0 +1,103 @@
+#include "haptic_client/evaluation/error_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tests/support/catch.h"
+#include "tests/support/random.h"
+
+using namespace palpate;
+using namespace palpate::client;
+
+TEST_CASE("no contact, no errors") {
+  ErrorTable table(500);
+  for (int i = 0; i < 10; ++i) table.add(Vec3::Zero(), Reference(Vec3::Zero()));
+  CHECK(table.metrics().mean_percent == 0);
+  CHECK(table.metrics().max_percent == 0);
+}
+
+TEST_CASE("errors of one tick in ten, by hand") {
+  // The reference is 2 N along y, always. One tick in ten is 0.5 N too much: 25 % of the peak, of the RMS and
+  // of the reference itself.
+  ErrorTable table(500);
+  for (int i = 0; i < 1000; ++i) table.add({0, i % 10 == 0 ? 2.5 : 2.0, 0}, Reference({0, 2, 0}));
+  const ErrorMetrics m = table.metrics();
+  CHECK(m.mean_percent == Approx(2.5));
+  CHECK(m.p99_percent == Approx(25).epsilon(0.004));
+  CHECK(m.max_percent == Approx(25));
+  CHECK(m.exceed_percent == Approx(10));
+  CHECK(m.paper_mean_percent == Approx(2.5));
+  CHECK(m.paper_max_percent == Approx(25));
+  CHECK(m.paper_max_force_percent == Approx(125));
+  CHECK(m.jump_percent == 0);
+  table.add_jump(0.1);
+  table.add_jump(0.05);
+  CHECK(table.metrics().jump_percent == Approx(5));
+}
+
+TEST_CASE("an error across the force counts like one along it") {
+  ErrorTable table(500);
+  table.add({0.3, 2, 0.4}, Reference({0, 2, 0}));
+  CHECK(table.metrics().paper_max_percent == Approx(25));
+  CHECK(table.metrics().paper_max_force_percent == Approx(100 * std::sqrt(4.25) / 2));
+}
+
+TEST_CASE("a force where there should be none counts, but is no part of the paper's quotient") {
+  ErrorTable table(500);
+  for (int i = 0; i < 3; ++i) table.add({0, 1, 0}, Reference({0, 1, 0}));
+  table.add({0, 0.5, 0}, Reference(Vec3::Zero()));
+  const ErrorMetrics m = table.metrics();
+  CHECK(m.max_percent == Approx(50));
+  CHECK(m.mean_percent == Approx(100 * 0.5 / 4));
+  CHECK(m.paper_max_percent == 0);
+}
+
+TEST_CASE("in one pass the same as all at once, whatever the order of small and large forces") {
+  test::Random random(31);
+  std::vector<double> reference, force;
+  ErrorTable table(500);
+  for (int i = 0; i < 20000; ++i) {
+    const double r = std::exp(random.between(-9, 1)), f = r * random.between(0.2, 2.5);
+    reference.push_back(r);
+    force.push_back(f);
+    table.add({0, 0, f}, Reference({0, 0, r}));
+  }
+  const double peak = *std::max_element(reference.begin(), reference.end()), floor = 0.1 * peak;
+  double sum = 0, squares = 0, paper = 0, paper_max = 0, paper_force = 0;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    const double e = std::abs(force[i] - reference[i]), quotient = std::max(reference[i], floor);
+    errors.push_back(e);
+    sum += e, squares += reference[i] * reference[i], paper += e / quotient;
+    paper_max = std::max(paper_max, e / quotient);
+    paper_force = std::max(paper_force, force[i] / quotient);
+  }
+  std::sort(errors.begin(), errors.end());
+  const auto n = static_cast<double>(reference.size());
+  const ErrorMetrics m = table.metrics();
+  CHECK(m.mean_percent == Approx(100 * (sum / n) / std::sqrt(squares / n)));
+  CHECK(m.p99_percent == Approx(100 * errors[static_cast<std::size_t>(0.99 * n) - 1] / peak).epsilon(0.008));
+  CHECK(m.max_percent == Approx(100 * errors.back() / peak));
+  CHECK(m.paper_mean_percent == Approx(100 * paper / n).epsilon(0.01));  // one bin of 9 % straddles the floor
+  CHECK(m.paper_max_percent == Approx(100 * paper_max).epsilon(0.1));
+  CHECK(m.paper_max_force_percent == Approx(100 * paper_force).epsilon(0.1));
+}
+
+TEST_CASE("roughness is what lies above 30 Hz") {
+  const auto rough_at = [](double hz) {
+    ErrorTable table(500);
+    constexpr int kTicks = 50000;
+    for (int i = 0; i < kTicks; ++i) {
+      const double e = 0.1 * std::sin(2 * std::numbers::pi * hz * i / 500);
+      table.add({0, 2 + e, 0}, Reference({0, 2, 0}));
+    }
+    return table.metrics().rough_percent;
+  };
+  const double rms = 100 * 0.1 / std::numbers::sqrt2 / 2;
+  CHECK(rough_at(120) == Approx(rms).epsilon(0.01));
+  CHECK(rough_at(30) == Approx(rms / std::numbers::sqrt2).epsilon(0.01));  // the corner: 3 dB down
+  // Second order: at 3 Hz the analogue filter passes (3/30)^2 = 1 %.
+  CHECK(rough_at(3) == Approx(0.01 * rms).epsilon(0.05));
+}
