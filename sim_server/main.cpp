@@ -4,6 +4,7 @@
 
 #include "common/log.h"
 #include "common/program.h"
+#include "sim_server/explain.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/server.h"
 
@@ -50,6 +51,13 @@ int run(int argc, char** argv) {
   run_command->footer(
       "Example: sim_server run configs/scenes/liver.toml --listen 0.0.0.0:45130 --report server.json");
 
+  sim::ExplainOptions explain_options;
+  auto* explain =
+      app.add_subcommand("explain", "What a scene builds, what it leaves out, and what that saves");
+  explain->add_option("SCENE", explain_options.scene, "Scene file (TOML)")->required();
+  explain->add_option("--json", explain_options.json, "Write the same to this JSON file");
+  explain->footer("Example: sim_server explain configs/scenes/liver.toml --json explain.json");
+
   std::string mesh_file;
   auto* mesh = app.add_subcommand("mesh", "Look at meshes");
   mesh->require_subcommand(1);
@@ -60,6 +68,7 @@ int run(int argc, char** argv) {
 
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (options.seconds) require_at_least(*options.seconds, 1e-3, "--seconds", "s");
+  if (*explain) return sim::run_explain(explain_options);
   return *info ? print_mesh_info(mesh_file) : sim::run_server(options);
 }
 
