@@ -145,11 +145,11 @@ LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
 LeftOut beyond_reach(const Own& own) {
   Scene variant = own.scene;
   variant.tool.reach.reset();
-  return compare({"the surface out of reach", own.scene.tool.reach_where, {}, {}, {}, {}}, variant, own);
+  return compare({.what = "the surface out of reach", .why = own.scene.tool.reach_where}, variant, own);
 }
 
 LeftOut elasticity(const Own& own) {
-  LeftOut row{"elasticity (quasi_static)", own.scene.deformation.where, {}, {}, {}, {}};
+  LeftOut row{.what = "elasticity (quasi_static)", .why = own.scene.deformation.where};
   if (!own.scene.material || own.scene.fixed.empty()) {
     row.why = own.scene.material
                   ? "no [[fixed]] section"
@@ -167,12 +167,10 @@ LeftOut whole_compliance(const Own& own) {
   const TetMesh& mesh = own.simulation.mesh();
   const std::size_t free = mesh.vertices.size() - fixed_vertices(own.scene, mesh).size();
   const auto n = static_cast<double>(free);
-  return {"compliance of the other free vertices",
-          own.scene.deformation.where,
-          kBytesPerPair * n * n - compliance_bytes(own.scene, own.simulation),
-          {},
-          {},
-          fmt::format("computed: 72 n^2 for all {} free vertices, less what is kept", free)};
+  return {.what = "compliance of the other free vertices",
+          .why = own.scene.deformation.where,
+          .bytes = kBytesPerPair * n * n - compliance_bytes(own.scene, own.simulation),
+          .note = fmt::format("computed: 72 n^2 for all {} free vertices, less what is kept", free)};
 }
 
 std::vector<LeftOut> left_out(const Own& own) {
@@ -180,17 +178,30 @@ std::vector<LeftOut> left_out(const Own& own) {
   if (own.scene.tool.reach) rows.push_back(beyond_reach(own));
   if (own.scene.deformation.model == "rigid") rows.push_back(elasticity(own));
   if (is_quasi_static(own.scene)) rows.push_back(whole_compliance(own));
-  rows.push_back({"recording", "haptic_client --trace only", {}, {}, {}, "no thread and no memory here"});
+  rows.push_back(
+      {.what = "recording", .why = "haptic_client --trace only", .note = "no thread and no memory here"});
   return rows;
 }
 
-/// What is being built, on a terminal: one line that goes again.
-void tell_terminal(std::string_view what, double share) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "\r\033[Ksim_server: {} {:3.0f} %", what, 100 * share);
-  if (what == kStageParts.back().stage && share >= 1) fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
-}
+/// Says on a terminal what is being built: one line, which goes when this goes.
+class ProgressLine {
+ public:
+  ProgressLine() = default;
+  ~ProgressLine() { write("\r\033[K"); }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void operator()(std::string_view what, double share) const {
+    write(fmt::format("\r\033[Ksim_server: {} {:3.0f} %", what, 100 * share));
+  }
+
+ private:
+  static void write(const std::string& text) {
+    if (isatty(STDERR_FILENO) == 0) return;
+    fmt::print(stderr, "{}", text);
+    std::fflush(stderr);
+  }
+};
 
 }  // namespace
 
@@ -211,7 +222,10 @@ Explanation explain(const Scene& scene, const Progress& progress) {
 int run_explain(const ExplainOptions& options) {
   const Scene scene = read_scene(options.scene);
   if (options.json) check_writable(*options.json);
-  const Explanation explanation = explain(scene, tell_terminal);
+  const auto explanation = [&] {
+    const ProgressLine line;
+    return explain(scene, std::cref(line));
+  }();
   fmt::print("{}", to_text(explanation));
   if (options.json) write_json(*options.json, to_json(explanation));
   return 0;

@@ -27,9 +27,11 @@ struct BuiltPart {
 /// Something a scene does not build, and what it would cost more: absent where that was not measured.
 struct LeftOut {
   std::string what;
-  std::string why;                                   ///< "FILE:LINE", or the section that is not there
-  std::optional<double> bytes, setup_ms, step_ms{};  ///< `step_ms`: medians of steps in contact
-  std::string note;                                  ///< measured, computed, or why neither
+  std::string why;                   ///< "FILE:LINE", or the section that is not there
+  std::optional<double> bytes{};     ///< of all parts together
+  std::optional<double> setup_ms{};  ///< without reading the mesh, which all variants share
+  std::optional<double> step_ms{};   ///< between medians in contact
+  std::string note{};                ///< measured, computed, or why neither
 };
 
 /// What a scene pays for on this machine.

@@ -103,9 +103,11 @@ std::string steps_text(const Explanation& explanation) {
                         wanted, steps.flagged);
   }
   const Scene& scene = explanation.scene;
-  text += fmt::format("\n  1 / p99 in contact: up to {:.0f} Hz; asked for: {:g} Hz ({})\n",
-                      possible_rate_hz(steps), scene.rate_hz,
-                      scene.rate_where.empty() ? "default" : scene.rate_where);
+  const std::string asked =
+      scene.rate_hz > 0 ? fmt::format("{:g} Hz", scene.rate_hz) : "a step per tool state";
+  text +=
+      fmt::format("\n  1 / p99 in contact: up to {:.0f} Hz; asked for: {} ({})\n", possible_rate_hz(steps),
+                  asked, scene.rate_where.empty() ? "default" : scene.rate_where);
   return text + fmt::format("  state hash after these steps: {:016x}\n", explanation.state_hash);
 }
 
