@@ -19,7 +19,9 @@ void SetupTimes::operator()(std::string_view what, double share) {
 SetupTimes::Stage& SetupTimes::stage(std::string_view what) {
   const auto found =
       std::find_if(stages_.begin(), stages_.end(), [&](const Stage& s) { return s.name == what; });
-  return found != stages_.end() ? *found : stages_.emplace_back(std::string(what), Time::zero());
+  if (found != stages_.end()) return *found;
+  stages_.push_back({std::string(what), Time::zero()});
+  return stages_.back();
 }
 
 Time SetupTimes::of(std::string_view what) const {

@@ -1,4 +1,5 @@
 // `sim_server explain` and the set-up times of `run`, by the real program.
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
