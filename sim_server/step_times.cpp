@@ -61,7 +61,7 @@ ToolForce approach(const Scene& scene, Simulation& simulation, const Press& pres
 
 ToolForce timed_step(Simulation& simulation, const Vec3& p_W, double dt, Histogram& ns) {
   const Time start = now();
-  const ToolForce force = simulation.step(p_W, dt);
+  ToolForce force = simulation.step(p_W, dt);
   ns.add((now() - start).count());
   return force;
 }
@@ -73,7 +73,7 @@ Press find_press(const Scene& scene, Simulation& simulation) {
   std::vector<Press> unsettled;
   for (const int vertex : candidates(scene, simulation)) {
     const Vec3& normal = normals[vertex];
-    const Press press{at(simulation, vertex) + (1 - kDepth) * scene.tool.shape.radius * normal, normal};
+    Press press{at(simulation, vertex) + (1 - kDepth) * scene.tool.shape.radius * normal, normal};
     const ToolForce force = approach(scene, simulation, press);
     simulation.lift_tool();
     if (force.contacts > 0 && !force.flagged) return press;

@@ -1,6 +1,7 @@
 #include "sim_server/explain.h"
 
 #include <algorithm>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 #include <set>
 
