@@ -11,12 +11,12 @@ void ProgressLine::operator()(std::string_view stage, double share) {
   const int percent = static_cast<int>(100 * std::clamp(share, 0.0, 1.0));
   const bool new_stage = stage != stage_;
   if (!new_stage && percent == shown_) return;
-  if (isatty(STDOUT_FILENO) != 0) {
-    fmt::print("\r\033[K{} {:3} %{}", stage, percent, percent == 100 ? "\n" : "");
+  if (isatty(STDERR_FILENO) != 0) {
+    fmt::print(stderr, "\r\033[K{} {:3} %{}", stage, percent, percent == 100 ? "\n" : "");
   } else if (new_stage) {
-    fmt::print("{} ...\n", stage);
+    fmt::print(stderr, "{} ...\n", stage);
   }
-  std::fflush(stdout);
+  std::fflush(stderr);
   stage_ = stage;
   shown_ = percent;
 }

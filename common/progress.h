@@ -4,7 +4,7 @@
 
 namespace palpate {
 
-/// Tells on stdout how long work goes on: on a terminal one running line with a percentage, elsewhere one
+/// Tells on stderr how long work goes on: on a terminal one running line with a percentage, elsewhere one
 /// line a stage. Call it with the name of the stage and the share of it that is done (0 to 1), as often as
 /// you like; 1 ends a stage.
 class ProgressLine {

@@ -6,7 +6,6 @@
 
 namespace palpate::protocol {
 namespace {
-constexpr std::size_t kRoom = 8192;                                // datagrams
 constexpr Time kWritePeriod = std::chrono::milliseconds(20);
 }  // namespace
 

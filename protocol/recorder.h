@@ -31,6 +31,9 @@ class Recorder {
     std::uint64_t bytes = 0;    ///< of the file
     std::uint64_t dropped = 0;  ///< noted, but not in the file
   };
+  /// What a recording takes while it runs.
+  static constexpr std::size_t memory_bytes() { return kRoom * sizeof(Packet); }
+
   /// When `run` has returned.
   Stats stats() const;
   const std::filesystem::path& file() const { return path_; }
@@ -42,6 +45,7 @@ class Recorder {
     std::size_t length = 0, kept = 0;
     std::array<std::byte, kMaxDatagram> bytes;
   };
+  static constexpr std::size_t kRoom = 8192;  // datagrams
   void write_all() noexcept;
 
   std::filesystem::path path_;

@@ -4,6 +4,7 @@
 
 #include "common/log.h"
 #include "common/program.h"
+#include "sim_server/explain.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/record.h"
 #include "sim_server/server.h"
@@ -34,67 +35,94 @@ int print_mesh_info(const std::string& file) {
   return 0;
 }
 
-int run(int argc, char** argv) {
-  CLI::App app{"Deforms an organ and answers a haptic client with forces, over UDP."};
-  app.require_subcommand(1);
-  app.footer("Example: sim_server run configs/scenes/liver.toml");
-
-  sim::ServerOptions options;
-  auto* run_command = app.add_subcommand("run", "Serve a scene until Ctrl-C");
-  run_command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
-  run_command
+CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
+  auto* command = app.add_subcommand("run", "Serve a scene until Ctrl-C");
+  command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
+  command
       ->add_option("--listen", options.listen,
                    "ADDR:PORT to listen on (UDP); 0.0.0.0:45130 for other machines")
       ->capture_default_str();
-  run_command->add_option("--seconds", options.seconds, "Stop after so many seconds");
-  run_command->add_option("--report", options.report, "Write figures of the run to this JSON file");
-  run_command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
-  run_command->footer(
+  command->add_option("--seconds", options.seconds, "Stop after so many seconds");
+  command->add_option("--report", options.report, "Write figures of the run to this JSON file");
+  command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
+  command->footer(
       "Example: sim_server run configs/scenes/liver.toml --listen 0.0.0.0:45130 --report server.json");
+  return command;
+}
 
-  sim::RecordOptions recording;
-  auto* record = app.add_subcommand("record", "Run a scene along a motion in virtual time, into a capture");
-  record->add_option("SCENE", recording.scene, "Scene file (TOML)")->required();
-  record
-      ->add_option("--trajectory", recording.trajectory,
+CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
+  auto* command = app.add_subcommand("record", "Run a scene along a motion in virtual time, into a capture");
+  command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
+  command
+      ->add_option("--trajectory", options.trajectory,
                    "Motion of the tool: a CSV (t_s, x_m, y_m, z_m), or a client file with a [trajectory]")
       ->required();
-  record->add_option("--rate", recording.rate_hz, "Steps a second, 1 to 20000 Hz; 2000 is the truth")
+  command->add_option("--rate", options.rate_hz, "Steps a second, 1 to 20000 Hz; 2000 is the truth")
       ->required();
-  record->add_option("--out", recording.out, "Capture to write (pcap)")->required();
-  record
-      ->add_option("--delay-ms", recording.delay_ms,
+  command->add_option("--out", options.out, "Capture to write (pcap)")->required();
+  command
+      ->add_option("--delay-ms", options.delay_ms,
                    "From reading the tool to having its force in the client, ms, 0 to 10000")
       ->capture_default_str();
-  record->add_option("--ticks", recording.ticks_hz,
-                     "Tool states a second, at least --rate (default: 500, or --rate if that is more)");
-  record->add_option("--seconds", recording.seconds, "Virtual time (default: the motion once)");
-  record->add_option("--report", recording.report, "Write figures of the recording to this JSON file");
-  record->footer(
+  command->add_option("--ticks", options.ticks_hz,
+                      "Tool states a second, at least --rate (default: 500, or --rate if that is more)");
+  command->add_option("--seconds", options.seconds, "Virtual time (default: the motion once)");
+  command->add_option("--report", options.report, "Write figures of the recording to this JSON file");
+  command->footer(
       "Examples:\n"
       "  sim_server record configs/scenes/liver.toml --trajectory configs/clients/liver.toml --rate 33.3 "
       "--delay-ms 35 --out liver.pcap\n"
       "  sim_server record configs/scenes/liver.toml --trajectory configs/clients/liver.toml --rate 2000 --out "
       "truth.pcap");
+  return command;
+}
 
-  std::string mesh_file;
+CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
+  auto* command = app.add_subcommand("explain", "What a scene builds, what it leaves out, and what that saves");
+  command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
+  command->add_option("--json", options.json, "Write the same to this JSON file");
+  command->footer("Example: sim_server explain configs/scenes/liver.toml --json explain.json");
+  return command;
+}
+
+CLI::App* add_mesh_info(CLI::App& app, std::string& file) {
   auto* mesh = app.add_subcommand("mesh", "Look at meshes");
   mesh->require_subcommand(1);
   auto* info =
       mesh->add_subcommand("info", "Counts, volume, size and quality of a Gmsh file (MSH 2.2 or 4.1)");
-  info->add_option("FILE", mesh_file, "Mesh file, metres")->required();
+  info->add_option("FILE", file, "Mesh file, metres")->required();
   info->footer("Example: sim_server mesh info configs/meshes/liver.msh");
+  return info;
+}
 
+void check(const sim::RecordOptions& options) {
+  require_within(options.rate_hz, 1, 20000, "--rate", "Hz");
+  require_within(options.delay_ms, 0, 10000, "--delay-ms", "ms");
+  if (options.ticks_hz) require_within(*options.ticks_hz, 1, 20000, "--ticks", "Hz");
+  if (options.seconds) require_within(*options.seconds, 1e-3, 1e5, "--seconds", "s");
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Deforms an organ and answers a haptic client with forces, over UDP."};
+  app.require_subcommand(1);
+  app.footer("Example: sim_server run configs/scenes/liver.toml");
+  sim::ServerOptions serving;
+  sim::RecordOptions recording;
+  sim::ExplainOptions explaining;
+  std::string mesh_file;
+  add_run(app, serving);
+  const auto* record = add_record(app, recording);
+  const auto* explain = add_explain(app, explaining);
+  const auto* mesh_info = add_mesh_info(app, mesh_file);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
-  if (options.seconds) require_at_least(*options.seconds, 1e-3, "--seconds", "s");
+  if (*mesh_info) return print_mesh_info(mesh_file);
+  if (*explain) return sim::run_explain(explaining);
   if (*record) {
-    require_within(recording.rate_hz, 1, 20000, "--rate", "Hz");
-    require_within(recording.delay_ms, 0, 10000, "--delay-ms", "ms");
-    if (recording.ticks_hz) require_within(*recording.ticks_hz, 1, 20000, "--ticks", "Hz");
-    if (recording.seconds) require_within(*recording.seconds, 1e-3, 1e5, "--seconds", "s");
+    check(recording);
     return sim::record(recording);
   }
-  return *info ? print_mesh_info(mesh_file) : sim::run_server(options);
+  if (serving.seconds) require_at_least(*serving.seconds, 1e-3, "--seconds", "s");
+  return sim::run_server(serving);
 }
 
 }  // namespace

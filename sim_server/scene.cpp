@@ -52,10 +52,14 @@ DeformationSettings read_deformation(const Config& config) {
 
 ToolSettings read_tool(const Config& config) {
   ToolSettings tool;
+  tool.where = config.where();
   const std::string shape = config.text("shape", "sphere");
   if (shape != "sphere") fail("{}: unknown shape \"{}\"; known: sphere", config.where("shape"), shape);
   tool.shape.radius = config.number("radius", {1e-5, 0.05, "m"}, tool.shape.radius);
-  if (config.has("reach")) tool.reach = read_box(config, "reach");
+  if (config.has("reach")) {
+    tool.reach = read_box(config, "reach");
+    tool.reach_where = config.where("reach");
+  }
   config.reject_unknown();
   return tool;
 }
@@ -68,18 +72,23 @@ Scene read_scene(const std::filesystem::path& file) {
   scene.source = file.string();
   scene.title = config.text("title", file.stem().string());
   scene.rate_hz = config.number("rate_hz", {0, 10000, "Hz"}, scene.rate_hz);
+  if (config.has("rate_hz")) scene.rate_where = config.where("rate_hz");
   if (scene.rate_hz > 0 && scene.rate_hz < 1)
     fail("{}: `rate_hz` must be 0 or from 1 to 10000 Hz", config.where("rate_hz"));
   const auto mesh = config.table("mesh");
   if (!mesh) fail("{}: missing section [mesh] with `file`", config.where());
   scene.mesh_file = mesh->file("file");
+  scene.mesh_where = mesh->where("file");
   mesh->reject_unknown();
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(scene.mesh_file, ignored)) {
     fail("{}: `[mesh] file`: {}: no such file", mesh->where("file"), scene.mesh_file.string());
   }
   for (const Config& fixed : config.tables("fixed")) scene.fixed.push_back(read_fixed(fixed));
-  if (const auto material = config.table("material")) scene.material = read_material(*material);
+  if (const auto material = config.table("material")) {
+    scene.material = read_material(*material);
+    scene.material_where = material->where();
+  }
   const auto deformation = config.table("deformation");
   if (!deformation) fail("{}: missing section [deformation] with `model`", config.where());
   scene.deformation = read_deformation(*deformation);

@@ -24,28 +24,33 @@ struct Box {
 struct FixedRegion {
   std::optional<Box> box;
   std::string surface_tag;
-  std::string where;  ///< "FILE:LINE" for messages
+  std::string where;  ///< "FILE:LINE" of this section
 };
 
 /// `[deformation]`.
 struct DeformationSettings {
   std::string model;       ///< a name of `deformation_models()`
   double stiffness = 800;  ///< N/m, (0, 1e6], model "rigid" only
-  std::string where;
+  std::string where;       ///< "FILE:LINE" of `model`
 };
 
 /// `[[tool]]`.
 struct ToolSettings {
   SphereTool shape;
   std::optional<Box> reach;  ///< places the tool's surface can get to; absent: the whole organ
+  std::string where;         ///< "FILE:LINE" of this section
+  std::string reach_where;   ///< "FILE:LINE" of `reach`; empty where it is absent
 };
 
 struct Scene {
   std::string title;
-  double rate_hz = 30;  ///< steps per second, 0 or [1, 10000]; 0 = as fast as the model allows
+  double rate_hz = 30;     ///< steps per second, 0 or [1, 10000]; 0 = as fast as the model allows
+  std::string rate_where;  ///< "FILE:LINE" of `rate_hz`; empty where it is absent
   std::filesystem::path mesh_file;
+  std::string mesh_where;  ///< "FILE:LINE" of `[mesh] file`
   std::vector<FixedRegion> fixed;
   std::optional<Material> material;
+  std::string material_where;  ///< "FILE:LINE" of `[material]`; empty where it is absent
   DeformationSettings deformation;
   ToolSettings tool;
   std::string source;  ///< the file, for messages

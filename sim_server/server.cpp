@@ -14,6 +14,7 @@
 #include "common/report.h"
 #include "protocol/recording_report.h"
 #include "sim_server/net_link.h"
+#include "sim_server/setup_times.h"
 
 namespace palpate::sim {
 namespace {
@@ -42,7 +43,7 @@ void warn_if_huge(const TetMesh& mesh, const Scene& scene) {
 }
 
 /// Everything known about the scene before the loop starts.
-Json describe_scene(const Scene& scene, const Simulation& simulation, Time setup) {
+Json describe_scene(const Scene& scene, const Simulation& simulation, Time setup, const SetupTimes& parts) {
   const MeshInfo info = describe(simulation.mesh());
   Json memory = Json::object();
   for (const MemoryPart& part : simulation.memory()) memory[part.name] = part.bytes;
@@ -51,6 +52,7 @@ Json describe_scene(const Scene& scene, const Simulation& simulation, Time setup
           {"model", scene.deformation.model},
           {"rate_hz", scene.rate_hz},
           {"setup_ms", 1e3 * to_seconds(setup)},
+          {"setup_parts_ms", parts.to_json()},
           {"mesh", {{"vertices", info.vertices}, {"edges", info.edges}, {"tetrahedra", info.tetrahedra}}},
           {"memory_bytes", memory}};
 }
@@ -126,11 +128,11 @@ int run_server(const ServerOptions& options) {
   if (options.report) check_writable(*options.report);
   protocol::UdpSocket socket(protocol::resolve(options.listen, "--listen"));
   const Time begin = now();
-  ProgressLine progress;
+  SetupTimes progress{ProgressLine()};
   Simulation simulation(scene, std::ref(progress));
   warn_if_huge(simulation.mesh(), scene);
   warn_if_slow(scene);
-  Json report = describe_scene(scene, simulation, now() - begin);
+  Json report = describe_scene(scene, simulation, now() - begin, progress);
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes);
   const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;

@@ -45,19 +45,32 @@ std::vector<int> vertices_of(const std::vector<Triangle>& triangles) {
   return vertices;
 }
 
+/// `read_mesh`, told to `progress`.
+TetMesh read_mesh_of(const Scene& scene, const Progress& progress) {
+  progress("reading the mesh", 0);
+  return read_mesh(scene.mesh_file);
+}
+
 }  // namespace
 
+std::vector<int> reachable_vertices(const Surface& surface, const TetMesh& mesh, const ToolSettings& tool) {
+  return vertices_of(touchable_triangles(surface, mesh, tool));
+}
+
 Simulation::Simulation(const Scene& scene, const Progress& progress)
-    : Simulation(scene, read_mesh(scene.mesh_file), progress) {}
+    : Simulation(scene, read_mesh_of(scene, progress), progress) {}
 
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress)
-    : tool_(scene.tool.shape), mesh_(std::move(mesh)), surface_(boundary_surface(mesh_)) {
+    : tool_(scene.tool.shape), mesh_(std::move(mesh)) {
+  progress("extracting the surface", 0);
+  surface_ = boundary_surface(mesh_);
   std::vector<Triangle> touchable = touchable_triangles(surface_, mesh_, scene.tool);
   if (touchable.empty()) fail("{}: no triangle of the surface lies in the tool's `reach` box", scene.source);
   const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, mesh_);
   model_ =
       find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where)
           .make({scene, mesh_, surface_, fixed, reachable, progress});
+  progress("preparing contact", 0);
   free_ = positions_ = model_->free_motion(0);
   finder_ = std::make_unique<ContactFinder>(positions_, surface_.triangles, std::move(touchable),
                                             kGather * tool_.radius);
@@ -65,6 +78,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   patch_.reserve(finder_->max_nodes(), finder_->max_triangles());
   displacement_.resize(3 * (finder_->max_nodes() + 1));
   loads_.reserve(static_cast<std::size_t>(finder_->max_nodes()));
+  progress("preparing contact", 1);
 }
 
 ToolForce Simulation::step(const Vec3& p_W, double dt) noexcept {

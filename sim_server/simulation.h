@@ -22,6 +22,9 @@ struct ToolForce {
 
 inline const Progress kSilent = [](std::string_view, double) {};
 
+/// Surface vertices that the tool can touch, ascending: the corners of the triangles whose box meets `reach`.
+std::vector<int> reachable_vertices(const Surface& surface, const TetMesh& mesh, const ToolSettings& tool);
+
 /// The organ of a scene with its tool: one step, one page. Built from a scene (throws `Error`), then stepped
 /// by one thread; a step neither allocates, locks, logs nor throws, and depends on nothing but its arguments
 /// and the state.

@@ -10,7 +10,8 @@
 
 namespace palpate::sim {
 
-/// Told about long set-up work: what is being done, and which share of it (0 to 1).
+/// Told about set-up work: what is being done, and which share of it (0 to 1). Called at the beginning of
+/// each stage at least; with 1 at the end of the last, so that stages cover the whole set-up (`SetupTimes`).
 using Progress = std::function<void(std::string_view what, double share)>;
 
 /// What a model is built from. `fixed`: mesh vertices that never move. `reachable`: surface vertices the tool

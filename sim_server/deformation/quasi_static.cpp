@@ -10,6 +10,13 @@ namespace {
 constexpr double kMostBytes = 4e9;  // of compliance
 constexpr Eigen::Index kColumnsAtOnce =
     48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
+
+SparseCholesky factor_stiffness(const ModelInputs& inputs, const FreeDofs& dofs) {
+  inputs.progress("assembling the stiffness matrix", 0);
+  const SparseMatrix stiffness = assemble_stiffness(inputs.mesh, *inputs.scene.material, dofs);
+  inputs.progress("factoring the stiffness matrix", 0);
+  return {stiffness, inputs.scene.source};
+}
 }  // namespace
 
 QuasiStatic::QuasiStatic(const ModelInputs& inputs) : row_(inputs.surface.vertices.size(), -1) {
@@ -48,9 +55,7 @@ void QuasiStatic::precompute(const ModelInputs& inputs) {
         "the part it touches",
         inputs.scene.source, reachable_.size(), bytes / 1e9);
   }
-  inputs.progress("factoring the stiffness matrix", 0);
-  const SparseCholesky factor(assemble_stiffness(inputs.mesh, *inputs.scene.material, dofs),
-                              inputs.scene.source);
+  const SparseCholesky factor = factor_stiffness(inputs, dofs);
   const auto rows = static_cast<Eigen::Index>(dof_of_row.size());
   compliance_.resize(rows, rows);
   for (Eigen::Index from = 0; from < rows; from += kColumnsAtOnce) {

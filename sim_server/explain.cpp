@@ -1,0 +1,214 @@
+#include "sim_server/explain.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/error.h"
+#include "common/progress.h"
+#include "protocol/recorder.h"
+#include "sim_server/setup_times.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr int kSteps = 200;           // timed free, and in contact
+constexpr double kMostVariant = 2e9;  // bytes of compliance that a variant is built with
+constexpr double kBytesPerPair = 72;  // of two nodes' compliance: 3 x 3 doubles
+constexpr std::string_view kReading = "reading the mesh";
+
+/// Which part each stage of set-up builds; a stage that is not here is a part of its own.
+struct StagePart {
+  std::string_view stage, part;
+};
+constexpr std::array kStageParts{
+    StagePart{kReading, "mesh"},
+    StagePart{"extracting the surface", "surface"},
+    StagePart{"assembling the stiffness matrix", "stiffness matrix"},
+    StagePart{"factoring the stiffness matrix", "its factor"},
+    StagePart{"computing compliance", "compliance"},
+    StagePart{"preparing contact", "contact"},
+};
+
+/// What a variant is compared by. `setup_ms` is without reading the mesh, which all share.
+struct Cost {
+  double bytes = 0, setup_ms = 0, step_ms = 0;
+};
+
+double ms(Time t) {
+  return 1e3 * to_seconds(t);
+}
+
+Cost cost_of(const Simulation& simulation, const SetupTimes& times, const StepTimes& steps) {
+  Cost cost{0, ms(times.total() - times.of(kReading)), steps.contact_ns.quantile(0.5) / 1e6};
+  for (const MemoryPart& part : simulation.memory()) cost.bytes += static_cast<double>(part.bytes);
+  return cost;
+}
+
+/// Surface vertices whose compliance the quasi-static model of this scene keeps.
+std::size_t loaded_nodes(const Scene& scene, const Simulation& simulation) {
+  const std::vector<int> fixed = fixed_vertices(scene, simulation.mesh());
+  const std::vector<int> all = reachable_vertices(simulation.surface(), simulation.mesh(), scene.tool);
+  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](int v) {
+    return !std::binary_search(fixed.begin(), fixed.end(), simulation.surface().vertices[v]);
+  }));
+}
+
+bool is_quasi_static(const Scene& scene) {
+  return scene.deformation.model == "quasi_static";
+}
+
+/// By formula; what no quasi-static scene has is nothing.
+double compliance_bytes(const Scene& scene, const Simulation& simulation) {
+  if (!is_quasi_static(scene)) return 0;
+  const auto nodes = static_cast<double>(loaded_nodes(scene, simulation));
+  return kBytesPerPair * nodes * nodes;
+}
+
+std::string where_of(const Scene& scene, const std::string& part) {
+  if (part == "mesh") return scene.mesh_where;
+  if (part == "surface") return "always";
+  if (part == "contact") return scene.tool.where;
+  return scene.deformation.where;
+}
+
+std::string detail_of(const Scene& scene, const Simulation& simulation, const std::string& part) {
+  const TetMesh& mesh = simulation.mesh();
+  const Surface& surface = simulation.surface();
+  if (part == "mesh")
+    return fmt::format("{} vertices, {} tetrahedra", mesh.vertices.size(), mesh.tetrahedra.size());
+  if (part == "surface")
+    return fmt::format("{} vertices, {} triangles", surface.vertices.size(), surface.triangles.size());
+  if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
+  if (part == "stiffness matrix" || part == "its factor") return "freed after set-up";
+  return {};
+}
+
+/// The row called `name`, new at the end if it is not there yet.
+BuiltPart& row_of(std::vector<BuiltPart>& rows, const std::string& name, const Scene& scene,
+                  const Simulation& simulation) {
+  const auto found =
+      std::find_if(rows.begin(), rows.end(), [&](const BuiltPart& r) { return r.part == name; });
+  if (found != rows.end()) return *found;
+  return rows.emplace_back(BuiltPart{name, detail_of(scene, simulation, name), where_of(scene, name)});
+}
+
+/// Parts in the order in which they are set up, then those that take no time of their own.
+std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulation,
+                                   const SetupTimes& times) {
+  std::vector<BuiltPart> rows;
+  for (const SetupTimes::Stage& stage : times.stages()) {
+    const auto known = std::find_if(kStageParts.begin(), kStageParts.end(),
+                                    [&](const StagePart& p) { return p.stage == stage.name; });
+    const std::string part = known == kStageParts.end() ? stage.name : std::string(known->part);
+    row_of(rows, part, scene, simulation).setup_ms += ms(stage.took);
+  }
+  for (const MemoryPart& part : simulation.memory())
+    row_of(rows, part.name, scene, simulation).bytes = part.bytes;
+  for (const FixedRegion& region : scene.fixed) rows.push_back({"fixed", "nothing kept", region.where});
+  if (scene.material)
+    rows.push_back({"material", is_quasi_static(scene) ? "nothing kept" : "not used", scene.material_where});
+  return rows;
+}
+
+/// The scene as it is, built and stepped: what its variants are compared with.
+struct Own {
+  const Scene& scene;
+  const Progress& progress;
+  Simulation simulation;
+  Press press;
+  Cost cost;
+};
+
+/// What `variant` costs more, built and stepped in the same way.
+LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
+  const double compliance = compliance_bytes(variant, own.simulation);
+  if (compliance > kMostVariant) {
+    row.bytes = compliance - compliance_bytes(own.scene, own.simulation);
+    row.note = "not built: too large (bytes: computed, 72 r^2)";
+    return row;
+  }
+  try {
+    SetupTimes times(own.progress);
+    Simulation simulation(variant, own.simulation.mesh(), std::ref(times));
+    const Cost cost = cost_of(simulation, times, time_steps(variant, simulation, own.press, kSteps));
+    row.bytes = cost.bytes - own.cost.bytes;
+    row.setup_ms = cost.setup_ms - own.cost.setup_ms;
+    row.step_ms = cost.step_ms - own.cost.step_ms;
+    row.note = "measured";
+  } catch (const Error& error) {
+    row.note = fmt::format("cannot be built: {}", error.what());
+  }
+  return row;
+}
+
+LeftOut beyond_reach(const Own& own) {
+  Scene variant = own.scene;
+  variant.tool.reach.reset();
+  return compare({.what = "the surface out of reach", .why = own.scene.tool.reach_where}, variant, own);
+}
+
+LeftOut elasticity(const Own& own) {
+  LeftOut row{.what = "elasticity (quasi_static)", .why = own.scene.deformation.where};
+  if (!own.scene.material || own.scene.fixed.empty()) {
+    row.why = own.scene.material
+                  ? "no [[fixed]] section"
+                  : fmt::format("no [material]{} section", own.scene.fixed.empty() ? ", no [[fixed]]" : "");
+    row.note = "not built: needs [material] and [[fixed]]";
+    return row;
+  }
+  Scene variant = own.scene;
+  variant.deformation.model = "quasi_static";
+  return compare(row, variant, own);
+}
+
+/// The compliance of all free vertices, inside the organ and out of reach too.
+LeftOut whole_compliance(const Own& own) {
+  const TetMesh& mesh = own.simulation.mesh();
+  const std::size_t free = mesh.vertices.size() - fixed_vertices(own.scene, mesh).size();
+  const auto n = static_cast<double>(free);
+  return {.what = "compliance of the other free vertices",
+          .why = own.scene.deformation.where,
+          .bytes = kBytesPerPair * n * n - compliance_bytes(own.scene, own.simulation),
+          .note = fmt::format("computed: 72 n^2 for all {} free vertices, less what is kept", free)};
+}
+
+std::vector<LeftOut> left_out(const Own& own) {
+  std::vector<LeftOut> rows;
+  if (own.scene.tool.reach) rows.push_back(beyond_reach(own));
+  if (own.scene.deformation.model == "rigid") rows.push_back(elasticity(own));
+  if (is_quasi_static(own.scene)) rows.push_back(whole_compliance(own));
+  rows.push_back({.what = "recording",
+                  .why = "sim_server run --record",
+                  .bytes = static_cast<double>(protocol::Recorder::memory_bytes()),
+                  .note = "computed; and a thread"});
+  return rows;
+}
+
+}  // namespace
+
+Explanation explain(const Scene& scene, const Progress& progress) {
+  SetupTimes times(progress);
+  Own own{scene, progress, Simulation(scene, std::ref(times)), {}, {}};
+  own.press = find_press(scene, own.simulation);
+  Explanation explanation{.scene = scene,
+                          .built = built_parts(scene, own.simulation, times),
+                          .left_out = {},
+                          .steps = time_steps(scene, own.simulation, own.press, kSteps),
+                          .state_hash = own.simulation.state_hash()};
+  own.cost = cost_of(own.simulation, times, explanation.steps);
+  explanation.left_out = left_out(own);
+  return explanation;
+}
+
+int run_explain(const ExplainOptions& options) {
+  const Scene scene = read_scene(options.scene);
+  if (options.json) check_writable(*options.json);
+  const Explanation explanation = explain(scene, ProgressLine());
+  fmt::print("{}", to_text(explanation));
+  if (options.json) write_json(*options.json, to_json(explanation));
+  return 0;
+}
+
+}  // namespace palpate::sim

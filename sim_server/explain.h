@@ -1,0 +1,57 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/report.h"
+#include "sim_server/simulation.h"
+#include "sim_server/step_times.h"
+
+namespace palpate::sim {
+
+/// What `sim_server explain` was asked for.
+struct ExplainOptions {
+  std::filesystem::path scene;
+  std::optional<std::filesystem::path> json;
+};
+
+/// Something a scene builds.
+struct BuiltPart {
+  std::string part, detail;  ///< its name; counts
+  std::string where;         ///< "FILE:LINE" that asks for it, or "always"
+  std::size_t bytes = 0;     ///< held while the scene is served
+  double setup_ms = 0;
+};
+
+/// Something a scene does not build, and what it would cost more: absent where that was not measured.
+struct LeftOut {
+  std::string what;
+  std::string why;                   ///< "FILE:LINE", or the section that is not there
+  std::optional<double> bytes{};     ///< of all parts together
+  std::optional<double> setup_ms{};  ///< without reading the mesh, which all variants share
+  std::optional<double> step_ms{};   ///< between medians in contact
+  std::string note{};                ///< measured, computed, or why neither
+};
+
+/// What a scene pays for on this machine.
+struct Explanation {
+  Scene scene;
+  std::vector<BuiltPart> built;
+  std::vector<LeftOut> left_out;
+  StepTimes steps;
+  std::uint64_t state_hash = 0;  ///< after the steps in contact
+};
+
+/// Builds the scene and a variant for each thing it leaves out, and steps them all. Throws `Error` where the
+/// scene itself cannot be built. Takes as long as all those set-ups, and the memory of two of them.
+Explanation explain(const Scene& scene, const Progress& progress = kSilent);
+
+/// The three tables of it, in kB and ms, and the same in plain units (`bytes`, `setup_ms`, `step_ms`).
+std::string to_text(const Explanation& explanation);
+Json to_json(const Explanation& explanation);
+
+/// Explains a scene on stdout, and in a file if asked. Throws `Error`. Returns the exit code.
+int run_explain(const ExplainOptions& options);
+
+}  // namespace palpate::sim

@@ -1,0 +1,76 @@
+// `sim_server explain` and the set-up times of `run`, by the real program.
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/catch.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+using palpate::test::Process;
+using palpate::test::TemporaryFolder;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string kScene = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver.toml";
+
+/// "FILE:LINE" of the first line of the liver scene that begins with `start`.
+std::string line(const std::string& start) {
+  std::ifstream in(kScene);
+  std::string text;
+  for (int number = 1; std::getline(in, text); ++number) {
+    if (text.rfind(start, 0) == 0) return kScene + ":" + std::to_string(number);
+  }
+  throw std::runtime_error("no such line: " + start);
+}
+
+Json read_json(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return Json::parse(in);
+}
+
+}  // namespace
+
+TEST_CASE("explain names the lines of the liver scene that ask for what it builds") {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "explain.json").string();
+  Process process("sim_server", {"explain", kScene, "--json", file});
+  CHECK(process.wait() == 0);
+  const std::string& said = process.output();
+  CAPTURE(said);
+  for (const char* start : {"file", "[[fixed]]", "[material]", "model", "[[tool]]", "rate_hz"}) {
+    CHECK(said.find(line(start)) != std::string::npos);
+  }
+  for (const char* part : {"compliance", "stiffness matrix", "left out", "in contact", "state hash"}) {
+    CHECK(said.find(part) != std::string::npos);
+  }
+  const Json json = read_json(file);
+  CHECK(json["bytes"].get<long>() > 1000000);
+  CHECK(said.find(json["state_hash"].get<std::string>()) != std::string::npos);
+}
+
+TEST_CASE("explain of a file that is not there: one line, exit 2") {
+  Process process("sim_server", {"explain", "/nowhere/scene.toml"});
+  CHECK(process.wait() == 2);
+  const std::string& said = process.output();
+  CHECK(said.find("/nowhere/scene.toml: no such file") != std::string::npos);
+  CHECK(std::count(said.begin(), said.end(), '\n') == 1);
+}
+
+TEST_CASE("the report of a run tells set-up by stage, and the stages fit into the whole") {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "server.json").string();
+  Process process("sim_server",
+                  {"run", kScene, "--listen", "127.0.0.1:0", "--seconds", "0.2", "--report", file});
+  CHECK(process.wait() == 0);
+  const Json json = read_json(file);
+  double sum = 0;
+  for (const char* stage : {"reading the mesh", "extracting the surface", "assembling the stiffness matrix",
+                            "factoring the stiffness matrix", "computing compliance", "preparing contact"}) {
+    REQUIRE(json["setup_parts_ms"].contains(stage));
+    sum += json["setup_parts_ms"][stage].get<double>();
+  }
+  CHECK(json["setup_parts_ms"].size() == 6);
+  CHECK(sum <= json["setup_ms"].get<double>());
+}
