@@ -92,7 +92,8 @@ class Watcher {
   double next_ = 0;
 };
 
-void watch(HapticLoop& loop, const protocol::Recorder* recorder, const std::string& server, std::optional<double> seconds) {
+void watch(HapticLoop& loop, const protocol::Recorder* recorder, const std::string& server,
+           std::optional<double> seconds) {
   Watcher watcher(loop, recorder, server);
   for (const Time start = now();;) {
     const double elapsed = to_seconds(now() - start);
@@ -106,7 +107,8 @@ void watch(HapticLoop& loop, const protocol::Recorder* recorder, const std::stri
 }
 
 /// Runs the haptic loop in a thread of its own until Ctrl-C or the end of the time.
-void drive(HapticLoop& loop, const protocol::Recorder* recorder, const ClientConfig& config, const ClientOptions& options) {
+void drive(HapticLoop& loop, const protocol::Recorder* recorder, const ClientConfig& config,
+           const ClientOptions& options) {
   log::info("connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", config.server, config.device.name,
             config.rate_hz, config.method);
   std::jthread haptic([&](const std::stop_token& stop) { loop.run(stop); });

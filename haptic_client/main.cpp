@@ -69,11 +69,15 @@ int run(int argc, char** argv) {
 
   std::string replay_file;
   client::ReplayOptions replaying;
-  auto* replay = app.add_subcommand("replay", "Run a captured session again, offline: the same forces, bit by bit");
-  replay->add_option("CAPTURE", replaying.capture, "pcap or pcapng: of --record, sim_server record, tcpdump ...")
+  auto* replay =
+      app.add_subcommand("replay", "Run a captured session again, offline: the same forces, bit by bit");
+  replay
+      ->add_option("CAPTURE", replaying.capture,
+                   "pcap or pcapng: of --record, sim_server record, tcpdump ...")
       ->required();
-  replay->add_option("--client", replay_file,
-                     "Client file of the session: workspace, limits and laws to score (default: all defaults)");
+  replay->add_option(
+      "--client", replay_file,
+      "Client file of the session: workspace, limits and laws to score (default: all defaults)");
   replay->add_option("--method", overrides.method, "How to extrapolate the force, see below");
   replay->add_option("--rate", replaying.rate_hz,
                      "Ticks per second, 1 to 20000 (default, or within 2 %: the capture's own ticks)");

@@ -18,7 +18,7 @@
 namespace palpate::client {
 namespace {
 
-constexpr double kSameRate = 0.02;        // of the rate
+constexpr double kSameRate = 0.02;           // of the rate
 constexpr std::uint64_t kLookAround = 4096;  // ticks between two looks at the keyboard and the progress line
 
 std::string describe(const CapturedRun& run, std::size_t index) {
@@ -37,8 +37,8 @@ std::size_t choose(const CaptureSurvey& found, const ReplayOptions& options) {
     fail("--session: {} has {} session{}, there is no number {}", options.capture.string(), count,
          count == 1 ? "" : "s", *options.session);
   if (count > 1) {
-    log::info("{} holds {} sessions; replaying number {}, --session chooses another", options.capture.string(),
-              count, chosen + 1);
+    log::info("{} holds {} sessions; replaying number {}, --session chooses another",
+              options.capture.string(), count, chosen + 1);
     for (std::size_t i = 0; i < found.runs.size(); ++i) log::info("  {}", describe(found.runs[i], i));
   }
   if (found.runs[chosen].ticks == 0)
@@ -72,7 +72,8 @@ std::uint64_t run_ticks(CapturedSession& session, std::optional<double> rate_hz,
     if (++ticks % kLookAround != 0) continue;
     progress("replaying", session.share());
     if (wait_for_interrupt(Time::zero()))
-      fail_at_run_time("interrupted; {}", trace != nullptr ? options.out->string() + " was not written" : "nothing was written");
+      fail_at_run_time("interrupted; {}",
+                       trace != nullptr ? options.out->string() + " was not written" : "nothing was written");
   }
   progress("replaying", 1);
   return ticks;
@@ -137,9 +138,8 @@ int replay(const ClientConfig& config, const ReplayOptions& options) {
   CapturedSession session(options.capture, index);
   std::optional<TraceWriter> trace;
   if (options.out) trace.emplace(*options.out, observation.scoring().names());
-  const std::uint64_t ticks =
-      run_ticks(session, exact ? std::nullopt : std::optional(rate_hz), pipeline, observation,
-                trace ? &*trace : nullptr, options);
+  const std::uint64_t ticks = run_ticks(session, exact ? std::nullopt : std::optional(rate_hz), pipeline,
+                                        observation, trace ? &*trace : nullptr, options);
   if (trace) trace->finish();
 
   const Json report = {{"capture", describe_capture(found, run, session, ticks, ticks_hz, exact)},

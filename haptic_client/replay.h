@@ -16,8 +16,8 @@ struct ReplayOptions {
   std::optional<std::filesystem::path> report;  ///< JSON
 };
 
-/// Runs the ticks of a captured session through law, watchdog and limiter again, offline: the same forces, bit
-/// by bit, whenever it is done. Throws `Error`. Returns the exit code.
+/// Runs the ticks of a captured session through law, watchdog and limiter again, offline: the same forces,
+/// bit by bit, whenever it is done. Throws `Error`. Returns the exit code.
 int replay(const ClientConfig& config, const ReplayOptions& options);
 
 }  // namespace palpate::client

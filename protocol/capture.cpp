@@ -104,7 +104,7 @@ bool CaptureWriter::give_up() noexcept {
   failed_ = true;
   written_ = flushed_;
   std::FILE* stream = pcap_dump_file(file_->dumper.get());
-  __fpurge(stream);  // closing would try again
+  __fpurge(stream);  // so that closing does not try again, whatever the C library
   if (file_->regular && ftruncate(fileno(stream), static_cast<off_t>(flushed_.bytes)) != 0) {
     // Then the file ends in the middle of a packet, which readers can live with.
   }

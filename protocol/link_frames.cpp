@@ -79,7 +79,7 @@ bool is_vlan(std::uint16_t type) {
   return type == 0x8100 || type == 0x88a8 || type == 0x9100;  // 802.1Q, 802.1ad, QinQ before 802.1ad
 }
 
-/// `captured`: what there is of the IP payload; `declared`: its length as sent.
+/// `captured`: what there is of the IP payload, perhaps with padding; `declared`: its length as sent.
 FrameVerdict parse_udp(Bytes captured, std::size_t declared, UdpFrame& out) {
   if (captured.size() < kUdpHeader) return FrameVerdict::kMalformed;
   const std::size_t length = u16(captured, 4);
@@ -101,7 +101,7 @@ FrameVerdict parse_ipv4(Bytes packet, UdpFrame& out) {
   if ((u16(packet, 6) & 0x3fff) != 0) return FrameVerdict::kFragment;  // more fragments, or an offset
   std::copy_n(packet.begin() + 12, 4, reinterpret_cast<std::byte*>(out.from.address.data()));
   std::copy_n(packet.begin() + 16, 4, reinterpret_cast<std::byte*>(out.to.address.data()));
-  return parse_udp(packet.first(std::min(packet.size(), total)).subspan(header), total - header, out);
+  return parse_udp(packet.subspan(header), total - header, out);
 }
 
 bool is_extension(std::uint8_t header) {

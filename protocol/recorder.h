@@ -9,8 +9,8 @@
 namespace palpate::protocol {
 
 /// Writes the datagrams of a running program to a capture, without holding up whoever sends and receives
-/// them: the network thread notes them in a ring, a thread of its own writes them to disk. A disk that is full
-/// or too slow stops or thins the recording, never the session.
+/// them: the network thread notes them in a ring, a thread of its own writes them to disk. A disk that is
+/// full or too slow stops or thins the recording, never the session.
 class Recorder {
  public:
   /// Makes the capture. Throws `Error`. Takes 10 MB: room for four seconds at 2000 datagrams a second.

@@ -36,8 +36,8 @@ class UdpSocket {
   /// The address it is bound to, with the port the system chose.
   Endpoint local() const;
 
-  /// The address of this machine that `peer` sees: `local`, with the interface the system would send from where
-  /// it is bound to all of them. Asks the routing table; sends nothing.
+  /// The address of this machine that `peer` sees: `local`, with the interface the system would send from
+  /// where it is bound to all of them. Asks the routing table; sends nothing.
   Endpoint local_towards(const Endpoint& peer) const;
 
   /// Serves until `stop`. One thread.

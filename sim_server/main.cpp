@@ -72,13 +72,15 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
       "Examples:\n"
       "  sim_server record configs/scenes/liver.toml --trajectory configs/clients/liver.toml --rate 33.3 "
       "--delay-ms 35 --out liver.pcap\n"
-      "  sim_server record configs/scenes/liver.toml --trajectory configs/clients/liver.toml --rate 2000 --out "
+      "  sim_server record configs/scenes/liver.toml --trajectory configs/clients/liver.toml --rate 2000 "
+      "--out "
       "truth.pcap");
   return command;
 }
 
 CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
-  auto* command = app.add_subcommand("explain", "What a scene builds, what it leaves out, and what that saves");
+  auto* command =
+      app.add_subcommand("explain", "What a scene builds, what it leaves out, and what that saves");
   command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
   command->add_option("--json", options.json, "Write the same to this JSON file");
   command->footer("Example: sim_server explain configs/scenes/liver.toml --json explain.json");

@@ -9,7 +9,11 @@ using protocol::Verdict;
 
 NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes,
                  std::uint64_t seed, protocol::Recorder* recorder)
-    : socket_(socket), recorder_(recorder), sessions_(std::move(sessions)), mailboxes_(mailboxes), random_(seed) {}
+    : socket_(socket),
+      recorder_(recorder),
+      sessions_(std::move(sessions)),
+      mailboxes_(mailboxes),
+      random_(seed) {}
 
 void NetLink::run() {
   socket_.run(mailboxes_.bell, std::chrono::milliseconds(50),

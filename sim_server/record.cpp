@@ -15,7 +15,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kUsualTicks = 500;  // Hz
+constexpr double kUsualTicks = 500;         // Hz
 constexpr std::uint64_t kLookAround = 256;  // ticks between two looks at the keyboard and the progress line
 
 /// A CSV (t_s, x_m, y_m, z_m, world), or a client file whose [trajectory] says how to read one.
@@ -47,28 +47,21 @@ void run_session(VirtualSession& session, std::uint64_t ticks, protocol::Capture
       fail_at_run_time("interrupted; {} was not written", options.out.string());
   }
   session.leave();
-  if (!capture.flush())
-    fail_at_run_time("{}: could not be written; is the disk full?", options.out.string());
+  if (!capture.flush()) fail_at_run_time("{}: could not be written; is the disk full?", options.out.string());
   progress("recording", 1);
 }
 
 Json make_report(const RecordOptions& options, const VirtualSession& session, double ticks_hz,
                  const protocol::CaptureWriter& capture, const Simulation& simulation, double virtual_s) {
   const VirtualSessionStats& stats = session.stats();
-  return {{"scene", options.scene.string()},
-          {"trajectory", options.trajectory.string()},
-          {"rate_hz", options.rate_hz},
-          {"ticks_hz", ticks_hz},
-          {"delay_ms", options.delay_ms},
-          {"virtual_seconds", virtual_s},
-          {"packets", capture.packets()},
-          {"bytes", capture.bytes()},
-          {"tool_states", stats.tool_states},
-          {"force_samples", stats.force_samples},
-          {"contact_steps", stats.in_contact},
-          {"flagged", stats.flagged},
-          {"max_newton", stats.max_newton},
-          {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
+  return {
+      {"scene", options.scene.string()},   {"trajectory", options.trajectory.string()},
+      {"rate_hz", options.rate_hz},        {"ticks_hz", ticks_hz},
+      {"delay_ms", options.delay_ms},      {"virtual_seconds", virtual_s},
+      {"packets", capture.packets()},      {"bytes", capture.bytes()},
+      {"tool_states", stats.tool_states},  {"force_samples", stats.force_samples},
+      {"contact_steps", stats.in_contact}, {"flagged", stats.flagged},
+      {"max_newton", stats.max_newton},    {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
 }
 
 }  // namespace

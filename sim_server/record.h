@@ -14,11 +14,11 @@ struct RecordOptions {
   std::optional<std::filesystem::path> report;
 };
 
-/// Runs a scene in virtual time along a recorded motion and writes what would have travelled as a capture: the
-/// same simulation, sessions and bytes as `run`, without sockets and clock, as fast as they go. Virtual time
-/// begins at 0; step n answers the newest tool state at n / rate, and its sample is in the client `delay`
-/// after that tool state was read. The same arguments give the same bytes. Throws `Error`. Returns the exit
-/// code.
+/// Runs a scene in virtual time along a recorded motion and writes what would have travelled as a capture:
+/// the same simulation, sessions and bytes as `run`, without sockets and clock, as fast as they go. Virtual
+/// time begins at 0; step n answers the newest tool state at n / rate, and its sample is in the client
+/// `delay` after that tool state was read. The same arguments give the same bytes. Throws `Error`. Returns
+/// the exit code.
 int record(const RecordOptions& options);
 
 }  // namespace palpate::sim

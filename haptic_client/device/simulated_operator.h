@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "haptic_client/device/device.h"
 #include "common/trajectory.h"
+#include "haptic_client/device/device.h"
 
 namespace palpate::client {
 

@@ -10,7 +10,7 @@ using namespace protocol;
 namespace {
 
 constexpr std::size_t kMostRuns = 1000;
-constexpr std::size_t kShuffled = 64;     // ticks: how far out of order they may stand
+constexpr std::size_t kShuffled = 64;  // ticks: how far out of order they may stand
 constexpr std::size_t kKeptSamples = 2048;
 constexpr Time kLatest{Time::rep{1} << 61};
 constexpr std::size_t kVersionByte = 4;
@@ -94,12 +94,17 @@ CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& p
                                [](const CapturedRun& run) { return run.ticks > 0; });
   if (!any) {
     fail(
-        "{}: holds no tool states of Palpate, so there is nothing to replay ({} packets, {} of them ours); was "
+        "{}: holds no tool states of Palpate, so there is nothing to replay ({} packets, {} of them ours); "
+        "was "
         "it captured at the server's UDP port (45130, if you did not choose another)?",
         file.string(), reader.packets(), sorter.ours());
   }
-  return {sorter.runs(), reader.packets(), sorter.ours(), sorter.refused(),
-          reader.packets() - sorter.ours() - sorter.refused(), reader.trouble()};
+  return {sorter.runs(),
+          reader.packets(),
+          sorter.ours(),
+          sorter.refused(),
+          reader.packets() - sorter.ours() - sorter.refused(),
+          reader.trouble()};
 }
 
 CapturedSession::CapturedSession(const std::filesystem::path& file, std::size_t run)
@@ -154,8 +159,8 @@ bool CapturedSession::next(CapturedTick& out) {
   return false;
 }
 
-/// Numbers start again with a new session: the newest before `place` in the file is meant. Where the capturing
-/// machine is not the client, or there was no latency, it may also stand a little behind.
+/// Numbers start again with a new session: the newest before `place` in the file is meant. Where the
+/// capturing machine is not the client, or there was no latency, it may also stand a little behind.
 const ForceSample* CapturedSession::find_sample(std::uint64_t number, std::uint64_t place) const {
   const ForceSample* behind = nullptr;
   for (auto it = samples_.rbegin(); it != samples_.rend(); ++it) {

@@ -15,11 +15,11 @@ namespace palpate::client {
 /// One run of a client, through all its sessions (a server that was started again gives a new one).
 struct CapturedRun {
   protocol::Endpoint client;
-  std::uint64_t session = 0;                             ///< the last one
-  std::uint64_t ticks = 0, samples = 0;                  ///< tool states and force samples, without duplicates
-  std::uint64_t first_tick = 0, newest_tick = 0;         ///< numbers
-  Time first{}, newest{};                                ///< client clock
-  protocol::LinkStats up{}, down{};                      ///< as the capturing machine saw them
+  std::uint64_t session = 0;                      ///< the last one
+  std::uint64_t ticks = 0, samples = 0;           ///< tool states and force samples, without duplicates
+  std::uint64_t first_tick = 0, newest_tick = 0;  ///< numbers
+  Time first{}, newest{};                         ///< client clock
+  protocol::LinkStats up{}, down{};               ///< as the capturing machine saw them
   protocol::ReplayWindow up_window{}, down_window{};
 
   /// Ticks a second; 0 with less than two.
@@ -31,13 +31,13 @@ struct CapturedRun {
 /// twice). Memory: a few hundred bytes a run, at most 1000 runs.
 class CaptureSorter {
  public:
-  /// Which run (from 0) a datagram belongs to, if it is a tool state or force sample of ours that did not come
-  /// before; `datagram` is decoded into.
+  /// Which run (from 0) a datagram belongs to, if it is a tool state or force sample of ours that did not
+  /// come before; `datagram` is decoded into.
   std::optional<std::size_t> sort(const protocol::CapturedDatagram& captured, protocol::Datagram& datagram);
 
   const std::vector<CapturedRun>& runs() const { return runs_; }
-  std::uint64_t ours() const { return ours_; }          ///< accepted datagrams of any kind
-  std::uint64_t refused() const { return refused_; }    ///< with our magic, but not acceptable
+  std::uint64_t ours() const { return ours_; }        ///< accepted datagrams of any kind
+  std::uint64_t refused() const { return refused_; }  ///< with our magic, but not acceptable
   std::optional<int> other_version() const { return other_version_; }
 
  private:
@@ -102,8 +102,8 @@ class CapturedSession {
   protocol::CaptureReader reader_;
   CaptureSorter sorter_;
   std::size_t run_;
-  std::vector<Numbered> waiting_;        // by tick, newest first
-  std::deque<NumberedSample> samples_;   // the last ones, oldest first
+  std::vector<Numbered> waiting_;       // by tick, newest first
+  std::deque<NumberedSample> samples_;  // the last ones, oldest first
   std::uint64_t place_ = 0, newest_tick_ = 0, newest_sample_ = 0;
   Time newest_t_{-1};
   bool ended_ = false;

@@ -16,8 +16,8 @@ struct ErrorMetrics {
   double jump_percent = 0;    ///< largest |F after - F before| when a sample arrived, same place / peak
   double rough_percent = 0;   ///< RMS of e above 30 Hz / peak
   /// Picinbono and Lombardo 1999, section 4: |e| in percent of |F_ref|, mean and largest, and the largest |F|
-  /// in percent of |F_ref|. As a quotient of two small numbers explodes at the onset of contact, |F_ref| counts
-  /// as at least 10 % of the peak here.
+  /// in percent of |F_ref|. As a quotient of two small numbers explodes at the onset of contact, |F_ref|
+  /// counts as at least 10 % of the peak here.
   double paper_mean_percent = 0, paper_max_percent = 0, paper_max_force_percent = 0;
 };
 
@@ -52,7 +52,7 @@ class ErrorTable {
 
   /// Ticks whose |F_ref| is of one size.
   struct Bin {
-    double count = 0, error_sum = 0, error_max = 0, force_max = 0;     // N
+    double count = 0, error_sum = 0, error_max = 0, force_max = 0;         // N
     double error_ratio_sum = 0, error_ratio_max = 0, force_ratio_max = 0;  // of |F_ref|
   };
   struct Paper {

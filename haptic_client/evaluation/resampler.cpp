@@ -23,7 +23,8 @@ bool Resampler::next(CapturedTick& out) {
   const protocol::ToolState& a = before_->state;
   if (!after_ && t.count() > a.t_ns) return false;
   const protocol::ToolState& b = after_ ? after_->state : a;
-  const double share = after_ ? static_cast<double>(t.count() - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns) : 0;
+  const double share =
+      after_ ? static_cast<double>(t.count() - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns) : 0;
   out.state = a;
   out.state.tick = ++k_;
   out.state.t_ns = t.count();

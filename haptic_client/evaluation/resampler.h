@@ -18,7 +18,7 @@ class Resampler {
   CapturedSession& session_;
   double rate_hz_;
   std::uint64_t k_ = 0;
-  std::optional<CapturedTick> before_, after_;     // around the tick to give
+  std::optional<CapturedTick> before_, after_;    // around the tick to give
   std::optional<protocol::ForceSample> arrived_;  // known since the last tick given
   Time start_{};
 };

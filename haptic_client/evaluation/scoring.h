@@ -18,10 +18,10 @@ struct ErrorSums {
 
 /// Runs laws in the shadow of the one that is felt, on the same samples and motion, and scores each when the
 /// next sample arrives: the reference is the straight line in time between two samples (the reference of
-/// Picinbono and Lombardo 1999, section 4), compared with what the law gave at each tick t_n <= t < t_(n+1), with the
-/// samples it had then. So the latency of the link counts, as it does for the hand; a capture without latency
-/// gives the paper's own protocol. Nothing is scored across an outage. Haptic thread, after the force was
-/// written; no allocation.
+/// Picinbono and Lombardo 1999, section 4), compared with what the law gave at each tick t_n <= t < t_(n+1),
+/// with the samples it had then. So the latency of the link counts, as it does for the hand; a capture
+/// without latency gives the paper's own protocol. Nothing is scored across an outage. Haptic thread, after
+/// the force was written; no allocation.
 class Scoring {
  public:
   /// `laws`: at most `kMaxLaws` names of `extrapolators()`; none: nothing is done. `where`: for the `Error`
@@ -34,7 +34,7 @@ class Scoring {
 
   const std::vector<std::string>& names() const noexcept { return names_; }
   ErrorMetrics metrics(std::size_t law) const noexcept { return tables_[law].metrics(); }
-  std::uint64_t scored() const noexcept { return scored_; }      ///< ticks
+  std::uint64_t scored() const noexcept { return scored_; }  ///< ticks
   /// What the laws give at the newest tick, N, world.
   const std::array<Vec3, kMaxLaws>& forces() const noexcept { return force_; }
 

@@ -10,8 +10,8 @@
 
 namespace palpate::client {
 
-/// Between the haptic thread and the network thread. Every pose goes out, so that what travels can be replayed
-/// tick by tick; of the forces only the newest counts. `bell` rings when a pose waits.
+/// Between the haptic thread and the network thread. Every pose goes out, so that what travels can be
+/// replayed tick by tick; of the forces only the newest counts. `bell` rings when a pose waits.
 struct HapticMailboxes {
   SpscRing<protocol::ToolState> tool{512};   // haptic -> network
   LatestValue<protocol::ForceSample> force;  // network -> haptic

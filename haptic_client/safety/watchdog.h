@@ -19,7 +19,7 @@ class Watchdog {
 
   /// What may be done this tick.
   struct Ruling {
-    double gain = 0;  ///< [0, 1], to multiply the force with
+    double gain = 0;      ///< [0, 1], to multiply the force with
     bool damper = false;  ///< brake while fading
   };
 

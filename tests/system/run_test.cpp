@@ -57,7 +57,8 @@ std::vector<std::pair<double, double>> written_force(const std::filesystem::path
   std::vector<std::pair<double, double>> rows;
   while (std::getline(in, line)) {
     double t = 0, p[3], f[3];
-    if (std::sscanf(line.c_str(), "%*d,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &t, p, p + 1, p + 2, f, f + 1, f + 2) == 7) {
+    if (std::sscanf(line.c_str(), "%*d,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &t, p, p + 1, p + 2, f, f + 1, f + 2) ==
+        7) {
       rows.emplace_back(t, std::hypot(f[0], f[1], f[2]));
     }
   }

@@ -28,7 +28,7 @@ bool pal(CaptureWriter& writer, Time t) {
 
 }  // namespace
 
-TEST_CASE("golden bytes of a capture of one datagram", "[capture]") {
+TEST_CASE("golden bytes of a capture: a whole datagram and a cut one", "[capture]") {
   const TemporaryFolder folder;
   const auto path = folder.path() / "one.pcap";
   {
@@ -36,8 +36,12 @@ TEST_CASE("golden bytes of a capture of one datagram", "[capture]") {
     CHECK(pal(writer, kNano));
     CHECK(writer.packets() == 1);
     CHECK(writer.bytes() == 71);
+    CHECK(writer.write(kNano, kFrom, kTo, bytes("70"), 3));
   }
-  CHECK(hex(read_file(path)) == hex(bytes(kNanoLittle + "00f15365 15cd5b07 1f000000 1f000000" + kPal)));
+  CHECK(hex(read_file(path)) ==
+        hex(bytes(kNanoLittle + "00f15365 15cd5b07 1f000000 1f000000" + kPal +
+                  "00f15365 15cd5b07 1d000000 1f000000" +
+                  "4500001f 00004000 4011b8b5 c0a80001 c0a800c7 1234b04a 000b0000 70")));
 }
 
 TEST_CASE("seconds past 2038 are written, and what the format cannot hold is clamped", "[capture]") {
@@ -161,6 +165,7 @@ TEST_CASE("what no datagram can be is not written, and what came before stays", 
   CHECK(pal(writer, kNano));
   CHECK_FALSE(writer.write(kNano, kFrom, kTo, Bytes(3), 2));
   CHECK_FALSE(pal(writer, kNano));
+  CHECK_FALSE(writer.flush());
   CHECK(writer.packets() == 1);
   CHECK(read_all(path).payloads.size() == 1);
 }
