@@ -136,7 +136,8 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
   Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(),
                     config.workspace, config.device_limits());
   HapticMailboxes mailboxes;
-  const double kept = options.trace ? std::min(options.seconds.value_or(kTraceSeconds), kTraceSeconds) : 0;
+  const double kept =
+      options.trace ? std::min(options.seconds.value_or(kTraceSeconds) + 1, kTraceSeconds) : 0;
   Observation observation(config.scored_laws(), config.rate_hz, config.score_where,
                           static_cast<std::size_t>(kept * config.rate_hz));
   const Time period = std::max(from_seconds(1 / config.rate_hz), row.limits(config.device).min_period);

@@ -4,16 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/catch.h"
-#include "tests/support/process.h"
+#include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
-using palpate::test::Process;
-using palpate::test::TemporaryFolder;
+using namespace palpate::test;
 using Json = nlohmann::json;
 
 namespace {
-
-const std::string kScene = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver.toml";
 
 /// "FILE:LINE" of the first line of the liver scene that begins with `start`.
 std::string line(const std::string& start) {
@@ -23,11 +20,6 @@ std::string line(const std::string& start) {
     if (text.rfind(start, 0) == 0) return kScene + ":" + std::to_string(number);
   }
   throw std::runtime_error("no such line: " + start);
-}
-
-Json read_json(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return Json::parse(in);
 }
 
 }  // namespace

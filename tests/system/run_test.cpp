@@ -6,48 +6,13 @@
 
 #include "protocol/udp_socket.h"
 #include "tests/support/catch.h"
-#include "tests/support/process.h"
+#include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
-using palpate::test::Process;
-using palpate::test::TemporaryFolder;
+using namespace palpate::test;
 using Json = nlohmann::json;
 
 namespace {
-
-const std::string kSource = PALPATE_SOURCE_DIR;
-const std::string kScene = kSource + "/configs/scenes/liver.toml";
-const std::string kClient = kSource + "/configs/clients/liver.toml";
-
-/// A server on a port of its own (or a given one), ready.
-struct Server {
-  Process process;
-  std::string address;
-
-  explicit Server(const std::vector<std::string>& more = {}, const std::string& listen = "127.0.0.1:0")
-      : process("sim_server", arguments(listen, more)) {
-    if (!process.wait_for("listening on ")) throw std::runtime_error("no server: " + process.output());
-    const std::string& said = process.output();
-    const std::size_t begin = said.find("listening on ") + 13;
-    address = said.substr(begin, said.find(' ', begin) - begin);
-  }
-  static std::vector<std::string> arguments(const std::string& listen, const std::vector<std::string>& more) {
-    std::vector<std::string> all{"run", kScene, "--listen", listen};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-};
-
-std::vector<std::string> client_arguments(const std::string& server, const std::vector<std::string>& more) {
-  std::vector<std::string> all{"run", kClient, "--server", server};
-  all.insert(all.end(), more.begin(), more.end());
-  return all;
-}
-
-Json read_json(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return Json::parse(in);
-}
 
 /// Columns of a trace: time, and the magnitude of the written force.
 std::vector<std::pair<double, double>> written_force(const std::filesystem::path& trace) {
@@ -63,15 +28,6 @@ std::vector<std::pair<double, double>> written_force(const std::filesystem::path
     }
   }
   return rows;
-}
-
-std::string output_of(const std::string& program, const std::vector<std::string>& arguments,
-                      int expected_code) {
-  Process process(program, arguments);
-  const int code = process.wait();
-  CAPTURE(program, arguments, process.output());
-  CHECK(code == expected_code);
-  return process.output();
 }
 
 }  // namespace
@@ -248,7 +204,8 @@ TEST_CASE("garbage on the server's port is counted, and changes nothing") {
 
 TEST_CASE("wrong input: one line that says what, where and what to do, exit 2, nothing left behind") {
   const TemporaryFolder folder;
-  const std::string mesh = "[mesh]\nfile = \"" + kSource + "/configs/meshes/liver.msh\"\n";
+  const std::string mesh =
+      "[mesh]\nfile = \"" + std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver.msh\"\n";
   const std::string fixed = "[[fixed]]\nbox = [[-1, -1, -1], [1, 1, -0.06]]\n";
   const std::string rest =
       "[material]\nyoung_modulus = 1e4\npoisson_ratio = 0.45\n[deformation]\nmodel = "
