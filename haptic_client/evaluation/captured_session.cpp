@@ -48,12 +48,13 @@ std::optional<std::size_t> CaptureSorter::sort_state(const ToolState& state, con
   const std::size_t index = run_of(client, header.session, state.tick);
   CapturedRun& run = runs_[index];
   if (!run.up_window.accept(header.sequence, run.up)) return {};
+  ++run.ticks;
   const Time t{state.t_ns};
-  if (run.ticks++ == 0) {
+  if (t < Time::zero() || t > kLatest) return index;
+  if (run.newest_tick == 0) {
     run.first_tick = run.newest_tick = state.tick;
     run.first = run.newest = t;
-  }
-  if (state.tick > run.newest_tick && t > run.newest && t < kLatest) {
+  } else if (state.tick > run.newest_tick && t > run.newest) {
     run.newest_tick = state.tick;
     run.newest = t;
   }

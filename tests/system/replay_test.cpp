@@ -1,3 +1,4 @@
+#ifdef PALPATE_WITH_CAPTURE
 // Recording and replaying with the real programs.
 #include <csignal>
 
@@ -151,3 +152,4 @@ TEST_CASE("captures that are none, or broken, and wrong motions: one line, exit 
   says(record_error({"--trajectory", kScene, "--rate", "30"}), "has no [trajectory] section");
   CHECK_FALSE(std::filesystem::exists(file("r.pcap")));
 }
+#endif

@@ -1,10 +1,11 @@
+#ifdef PALPATE_WITH_CAPTURE
 #include "haptic_client/evaluation/captured_session.h"
 
 #include <map>
 
 #include "common/error.h"
 #include "haptic_client/evaluation/resampler.h"
-#include "tests/support/captured.h"
+#include "tests/support/session_capture.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 #include "tests/support/temporary_folder.h"
@@ -227,3 +228,4 @@ TEST_CASE(
     CHECK(k == static_cast<std::uint64_t>(0.2 * rate + 1e-6) + 1);
   }
 }
+#endif
