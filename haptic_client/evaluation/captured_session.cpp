@@ -36,18 +36,18 @@ std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured,
     return sort_state(*state, header, captured.from);
   const auto* sample = std::get_if<ForceSample>(&datagram.message);
   if (sample == nullptr) return {};
-  const std::size_t index = run_of(captured.to, header.session, sample->tool_tick);
-  CapturedRun& run = runs_[index];
-  if (!run.down_window.accept(header.sequence, run.down)) return {};
-  ++run.samples;
-  return index;
+  CapturedRun* const run = run_of(captured.to, header.session, sample->tool_tick);
+  if (run == nullptr || !run->down_window.accept(header.sequence, run->down)) return {};
+  ++run->samples;
+  return run - runs_.data();
 }
 
 std::optional<std::size_t> CaptureSorter::sort_state(const ToolState& state, const Header& header,
                                                      const Endpoint& client) {
-  const std::size_t index = run_of(client, header.session, state.tick);
-  CapturedRun& run = runs_[index];
-  if (!run.up_window.accept(header.sequence, run.up)) return {};
+  CapturedRun* const found = run_of(client, header.session, state.tick);
+  if (found == nullptr || !found->up_window.accept(header.sequence, found->up)) return {};
+  CapturedRun& run = *found;
+  const std::size_t index = found - runs_.data();
   ++run.ticks;
   const Time t{state.t_ns};
   if (t < Time::zero() || t > kLatest) return index;
@@ -62,19 +62,19 @@ std::optional<std::size_t> CaptureSorter::sort_state(const ToolState& state, con
 }
 
 /// The newest run of this client goes on, unless a new session counts its ticks from the beginning.
-std::size_t CaptureSorter::run_of(const Endpoint& client, std::uint64_t session, std::uint64_t tick) {
+CapturedRun* CaptureSorter::run_of(const Endpoint& client, std::uint64_t session, std::uint64_t tick) {
   for (std::size_t i = runs_.size(); i-- > 0;) {
     CapturedRun& run = runs_[i];
     if (run.client != client) continue;
-    if (run.session == session) return i;
+    if (run.session == session) return &run;
     if (tick + kShuffled < run.newest_tick) break;
     run.session = session;
     run.up_window = run.down_window = {};
-    return i;
+    return &run;
   }
-  if (runs_.size() == kMostRuns) return runs_.size() - 1;
+  if (runs_.size() == kMostRuns) return nullptr;
   runs_.push_back({.client = client, .session = session});
-  return runs_.size() - 1;
+  return &runs_.back();
 }
 
 CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& progress) {

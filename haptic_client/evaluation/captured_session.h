@@ -28,7 +28,7 @@ struct CapturedRun {
 
 /// Sorts datagrams of a capture into runs: by the address of the client, and within one address by tick
 /// numbers that start again in a new session. Drops what the capture holds twice (`-i any` sees loopback
-/// twice). Memory: a few hundred bytes a run, at most 1000 runs.
+/// twice). Memory: a few hundred bytes a run; what comes after 1000 runs is left out.
 class CaptureSorter {
  public:
   /// Which run (from 0) a datagram belongs to, if it is a tool state or force sample of ours that did not
@@ -41,7 +41,8 @@ class CaptureSorter {
   std::optional<int> other_version() const { return other_version_; }
 
  private:
-  std::size_t run_of(const protocol::Endpoint& client, std::uint64_t session, std::uint64_t tick);
+  /// Null when there are too many.
+  CapturedRun* run_of(const protocol::Endpoint& client, std::uint64_t session, std::uint64_t tick);
   std::optional<std::size_t> sort_state(const protocol::ToolState& state, const protocol::Header& header,
                                         const protocol::Endpoint& client);
 

@@ -15,6 +15,7 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void signal(int number) const;
+  pid_t id() const { return pid_; }
   bool running();
   /// Waits for the end and returns the exit code, or -signal. Fails the test after `seconds`.
   int wait(double seconds = 20);
