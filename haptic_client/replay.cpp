@@ -96,9 +96,9 @@ Json describe_capture(const CaptureSurvey& found, const CapturedRun& run, const 
           {"missing_ticks", missing.ticks},
           {"missing_samples", missing.samples},
           {"backward_ticks", missing.backwards},
-          {"link_lost", run.up.lost + run.down.lost},
-          {"link_reordered", run.up.reordered + run.down.reordered},
-          {"link_duplicated", run.up.duplicated + run.down.duplicated}};
+          {"link_lost", run.up.lost() + run.down.lost()},
+          {"link_reordered", run.up.stats.reordered + run.down.stats.reordered},
+          {"link_duplicated", run.up.stats.duplicated + run.down.stats.duplicated}};
 }
 
 /// Whether these are the forces the client wrote, or what keeps them from being.

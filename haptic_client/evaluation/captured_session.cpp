@@ -17,6 +17,22 @@ constexpr std::size_t kVersionByte = 4;
 
 }  // namespace
 
+bool CapturedDirection::accept(std::uint64_t sequence) {
+  if (!window.accept(sequence, stats)) return false;
+  lowest = lowest == 0 ? sequence : std::min(lowest, sequence);
+  return true;
+}
+
+void CapturedDirection::begin_session() {
+  not_captured += lowest > 0 ? lowest - 1 : 0;
+  lowest = 0;
+  window = {};
+}
+
+std::uint64_t CapturedDirection::lost() const {
+  return stats.lost - not_captured - (lowest > 0 ? lowest - 1 : 0);
+}
+
 double CapturedRun::ticks_hz() const {
   const double seconds = to_seconds(newest - first);
   return seconds > 0 ? static_cast<double>(newest_tick - first_tick) / seconds : 0;
@@ -37,7 +53,7 @@ std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured,
   const auto* sample = std::get_if<ForceSample>(&datagram.message);
   if (sample == nullptr) return {};
   CapturedRun* const run = run_of(captured.to, header.session, sample->tool_tick);
-  if (run == nullptr || !run->down_window.accept(header.sequence, run->down)) return {};
+  if (run == nullptr || !run->down.accept(header.sequence)) return {};
   ++run->samples;
   return run - runs_.data();
 }
@@ -45,7 +61,7 @@ std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured,
 std::optional<std::size_t> CaptureSorter::sort_state(const ToolState& state, const Header& header,
                                                      const Endpoint& client) {
   CapturedRun* const found = run_of(client, header.session, state.tick);
-  if (found == nullptr || !found->up_window.accept(header.sequence, found->up)) return {};
+  if (found == nullptr || !found->up.accept(header.sequence)) return {};
   CapturedRun& run = *found;
   const std::size_t index = found - runs_.data();
   ++run.ticks;
@@ -69,7 +85,8 @@ CapturedRun* CaptureSorter::run_of(const Endpoint& client, std::uint64_t session
     if (run.session == session) return &run;
     if (tick + kShuffled < run.newest_tick) break;
     run.session = session;
-    run.up_window = run.down_window = {};
+    run.up.begin_session();
+    run.down.begin_session();
     return &run;
   }
   if (runs_.size() == kMostRuns) return nullptr;

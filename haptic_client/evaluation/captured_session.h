@@ -12,6 +12,20 @@
 
 namespace palpate::client {
 
+/// The datagrams of one direction, by their sequence numbers.
+struct CapturedDirection {
+  protocol::LinkStats stats{};
+  protocol::ReplayWindow window{};
+  std::uint64_t lowest = 0;        ///< number seen in the newest session; 0: none
+  std::uint64_t not_captured = 0;  ///< numbers before the lowest, in the sessions before
+
+  /// False for one that the capture holds already.
+  bool accept(std::uint64_t sequence);
+  void begin_session();
+  /// Between those that were captured: what came before the capture began is not lost.
+  std::uint64_t lost() const;
+};
+
 /// One run of a client, through all its sessions (a server that was started again gives a new one).
 struct CapturedRun {
   protocol::Endpoint client;
@@ -19,8 +33,7 @@ struct CapturedRun {
   std::uint64_t ticks = 0, samples = 0;           ///< tool states and force samples, without duplicates
   std::uint64_t first_tick = 0, newest_tick = 0;  ///< numbers
   Time first{}, newest{};                         ///< client clock
-  protocol::LinkStats up{}, down{};               ///< as the capturing machine saw them
-  protocol::ReplayWindow up_window{}, down_window{};
+  CapturedDirection up{}, down{};                 ///< as the capturing machine saw them
 
   /// Ticks a second; 0 with less than two.
   double ticks_hz() const;

@@ -70,7 +70,7 @@ TEST_CASE(
   REQUIRE(found.runs.size() == 1);
   CHECK(found.runs[0].ticks == 200);
   CHECK(found.runs[0].samples == 19);
-  CHECK(found.runs[0].up.duplicated == 200);
+  CHECK(found.runs[0].up.stats.duplicated == 200);
   CHECK(found.runs[0].ticks_hz() == Approx(500));
   CapturedSession::Missing missing;
   const auto ticks = all_ticks(file, 0, &missing);
@@ -98,6 +98,8 @@ TEST_CASE("a capture begun in mid-session and with holes says what is missing") 
   }
   const CaptureSurvey found = survey(file, kQuiet);
   CHECK(found.runs[0].first_tick == 1000);
+  CHECK(found.runs[0].up.lost() == 7);  // those in the hole, not the 999 before the capture
+  CHECK(found.runs[0].down.lost() == 1);
   CapturedSession::Missing missing;
   const auto ticks = all_ticks(file, 0, &missing);
   CHECK(ticks.size() == 93);
