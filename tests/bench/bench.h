@@ -2,7 +2,10 @@
 /// What the benchmarks share. A row shows, as its label, the hash of what it computes in a fixed sequence
 /// before the clock runs: two builds that agree in it did the same work, however often they were timed.
 #include <benchmark/benchmark.h>
+#include <filesystem>
 #include <fmt/core.h>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include "common/error.h"
@@ -31,6 +34,15 @@ auto add(const std::string& name, Run run) {
 
 inline void show(benchmark::State& state, std::uint64_t hash) {
   state.SetLabel(fmt::format("{:016x}", hash));
+}
+
+/// Of the bytes of a file.
+inline std::uint64_t hash_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(in), {}};
+  Fnv1a hash;
+  hash.add(content.data(), content.size());
+  return hash.value();
 }
 
 /// Times `work`, which goes on from call to call; its first `count` calls give the hash, untimed, of what it

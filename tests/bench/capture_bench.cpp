@@ -4,7 +4,6 @@
 #include "haptic_client/evaluation/captured_session.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/palpation.h"
-#include "tests/support/captured.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palpate::bench {
@@ -14,6 +13,16 @@ namespace {
 
 constexpr std::uint64_t kTicks = 8192;  // 16 s
 
+const Endpoint kClient{.address = {10, 0, 0, 1}, .port = 5000},
+    kServer{.address = {10, 0, 0, 2}, .port = 45130};
+
+struct Encoded {
+  std::array<std::byte, kMaxDatagram> bytes;
+  std::size_t size;
+  Encoded(std::uint64_t sequence, const Message& message) : size(encode({7, sequence}, message, bytes)) {}
+  std::span<const std::byte> used() const { return {bytes.data(), size}; }
+};
+
 /// A capture of a palpation; made once, gone with the program.
 struct Recorded {
   test::TemporaryFolder folder;
@@ -21,15 +30,19 @@ struct Recorded {
   std::int64_t bytes = 0;
 
   Recorded() {
-    test::CaptureOf capture(file);
+    CaptureWriter capture(file);
     Palpation hand;
     for (std::uint64_t i = 1; i <= kTicks; ++i) {
       hand.next();
-      capture.state(hand.tool(), i);
-      if (hand.arrived() != nullptr) capture.sample(*hand.arrived(), hand.arrived()->number);
+      const Time t{hand.tool().t_ns};
+      const Encoded up(i, hand.tool());
+      capture.write(t, kClient, kServer, up.used(), up.size);
+      if (hand.arrived() == nullptr) continue;
+      const Encoded down(hand.arrived()->number, *hand.arrived());
+      capture.write(t, kServer, kClient, down.used(), down.size);
     }
-    capture.close();
-    bytes = static_cast<std::int64_t>(std::filesystem::file_size(file));
+    if (!capture.flush()) fail_at_run_time("{}: could not be written", file.string());
+    bytes = static_cast<std::int64_t>(capture.bytes());
   }
 };
 const Recorded& recorded() {
@@ -76,20 +89,16 @@ void run_survey(benchmark::State& state) {
   state.SetBytesProcessed(state.iterations() * capture.bytes);
 }
 
-/// One datagram at a time, to where bytes go to die.
+/// One datagram at a time, to where bytes go to die. The label is the hash of a whole capture.
 void run_write(benchmark::State& state) {
+  show(state, hash_of(recorded().file));
   Palpation hand;
   hand.next();
-  std::array<std::byte, kMaxDatagram> bytes;
-  const std::size_t size = encode({7, 1}, hand.tool(), bytes);
-  Fnv1a hash;
-  hash.add(bytes.data(), size);
-  show(state, hash.value());
+  const Encoded datagram(1, hand.tool());
   CaptureWriter capture("/dev/null");
-  const Endpoint client = test::CaptureOf::client(5000), server = test::CaptureOf::server();
   std::int64_t t = 0;
   for (auto _ : state) {
-    bool written = capture.write(Time{++t}, client, server, {bytes.data(), size}, size);
+    bool written = capture.write(Time{++t}, kClient, kServer, datagram.used(), datagram.size);
     benchmark::DoNotOptimize(written);
   }
   state.SetBytesProcessed(static_cast<std::int64_t>(capture.bytes()));

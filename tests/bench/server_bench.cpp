@@ -2,8 +2,6 @@
 // time.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <numbers>
 
@@ -123,14 +121,6 @@ void run_contact_alone(benchmark::State& state) {
              [&] { return solver.solve(patch, kTool, places[i++ % kSlideSteps], u).force; });
 }
 
-std::uint64_t hash_of_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(in), {}};
-  Fnv1a hash;
-  hash.add(content.data(), content.size());
-  return hash.value();
-}
-
 /// The first seconds of the motion that ships, recorded to where bytes go to die. The label is the hash of
 /// the capture.
 void run_virtual_session(benchmark::State& state) {
@@ -149,7 +139,7 @@ void run_virtual_session(benchmark::State& state) {
   };
   const test::TemporaryFolder folder;
   record(folder.path() / "session.pcap");
-  show(state, hash_of_file(folder.path() / "session.pcap"));
+  show(state, hash_of(folder.path() / "session.pcap"));
   for (auto _ : state) record("/dev/null");
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kTicks));
 }
