@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "common/error.h"
+#include "common/hash.h"
 #include "common/text.h"
 #include "sim_server/mesh/gmsh_io.h"
 
@@ -177,14 +178,10 @@ std::vector<MemoryPart> Simulation::memory() const {
 }
 
 std::uint64_t Simulation::state_hash() const noexcept {
-  std::uint64_t hash = 14695981039346656037u;
-  const auto add = [&](const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 1099511628211u;
-  };
-  add(positions_.data(), positions_.size_bytes());
-  add(last_.force.data(), sizeof(Vec3));
-  return hash;
+  Fnv1a hash;
+  hash.add(positions_.data(), positions_.size_bytes());
+  hash.add(last_.force);
+  return hash.value();
 }
 
 }  // namespace palpate::sim

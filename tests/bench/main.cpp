@@ -1,0 +1,22 @@
+#include <cstdio>
+
+#include "tests/bench/bench.h"
+
+int main(int argc, char** argv) {
+  using namespace palpate;
+  using namespace palpate::bench;
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  try {
+    add_law_rows();
+    add_protocol_rows();
+    add_capture_rows();
+    add_server_rows();
+    add_setup_rows();
+  } catch (const Error& e) {
+    fmt::print(stderr, "bench: {}\n", e.what());
+    return e.exit_code();
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

@@ -1,0 +1,159 @@
+// A step of the liver that ships with every model, free and in contact; contact alone; a session in virtual
+// time.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "sim_server/virtual_session.h"
+#include "tests/bench/bench.h"
+#include "tests/bench/liver.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate::bench {
+using namespace sim;
+
+namespace {
+
+constexpr std::size_t kSlideSteps = 40;  // of one turn of the slide
+constexpr double kPeriod = 1.0 / 30;     // s
+
+/// To and fro, a tenth of the radius; `place` + `slide` along `along`.
+std::array<Vec3, kSlideSteps> slide(const Vec3& place, const Vec3& along, double radius) {
+  std::array<Vec3, kSlideSteps> places;
+  for (std::size_t i = 0; i < kSlideSteps; ++i) {
+    const double phi = 2 * std::numbers::pi * static_cast<double>(i + 1) / kSlideSteps;
+    places[i] = place + 0.1 * radius * std::sin(phi) * along;
+  }
+  return places;
+}
+
+/// A liver with a place to press on, built when a row first needs it.
+struct Liver {
+  explicit Liver(std::string_view model) : scene(liver_scene_with(model)), simulation(scene) {
+    press = find_press(scene, simulation);
+    hash = contact_hash(scene, simulation, press);
+    simulation.lift_tool();
+    above = press.place;
+    for (const Vec3& x : simulation.positions()) above[1] = std::max(above[1], x[1] + 10 * radius());
+    simulation.step(above, kPeriod);
+    free_hash = simulation.state_hash();
+  }
+  double radius() const { return scene.tool.shape.radius; }
+
+  Scene scene;
+  Simulation simulation;
+  Press press;
+  Vec3 above;
+  std::uint64_t hash = 0, free_hash = 0;
+};
+
+/// The liver with a model; null, and the row says so, where the scene lacks what the model needs.
+Liver* liver(benchmark::State& state, std::string_view model) {
+  static std::map<std::string_view, Liver> built;
+  try {
+    return &built.try_emplace(model, model).first->second;
+  } catch (const Error& e) {
+    state.SkipWithError(fmt::format("left out: {}", e.what()).c_str());
+    return nullptr;
+  }
+}
+
+void time_steps_at(benchmark::State& state, Simulation& simulation,
+                   const std::array<Vec3, kSlideSteps>& places) {
+  std::size_t i = 0;
+  for (auto _ : state) {
+    ToolForce force = simulation.step(places[i++ % kSlideSteps], kPeriod);
+    benchmark::DoNotOptimize(force);
+  }
+}
+
+void run_free(benchmark::State& state, std::string_view model) {
+  Liver* const on = liver(state, model);
+  if (on == nullptr) return;
+  show(state, on->free_hash);
+  on->simulation.lift_tool();
+  time_steps_at(state, on->simulation, slide(on->above, Vec3::UnitX(), on->radius()));
+}
+
+void run_contact(benchmark::State& state, std::string_view model) {
+  Liver* const on = liver(state, model);
+  if (on == nullptr) return;
+  show(state, on->hash);
+  on->simulation.lift_tool();
+  on->simulation.step(on->press.place + 2 * on->radius() * on->press.normal, kPeriod);
+  const ToolForce first = on->simulation.step(on->press.place, kPeriod);
+  if (first.contacts == 0 || first.flagged) return state.SkipWithError("no settled contact to time");
+  time_steps_at(state, on->simulation,
+                slide(on->press.place, on->press.normal.unitOrthogonal(), on->radius()));
+}
+
+/// A flat patch of `side` x `side` nodes, 3 mm apart, that gives way where it is pressed and near it.
+ContactPatch flat_patch(int side) {
+  ContactPatch patch;
+  patch.reserve(side * side, 2 * (side - 1) * (side - 1));
+  for (int i = 0; i < side * side; ++i)
+    patch.free.emplace_back(0.003 * (i % side - side / 2), 0, 0.003 * (i / side - side / 2));
+  for (int i = 0; i + side < side * side; ++i) {
+    if (i % side == side - 1) continue;
+    patch.triangles.push_back({i, i + side, i + 1});
+    patch.triangles.push_back({i + 1, i + side, i + side + 1});
+  }
+  patch.compliance.setZero();
+  for (int i = 0; i < side * side; ++i) {
+    for (int k = 0; k < side * side; ++k) {
+      const double c = 3e-3 * std::exp(-(patch.free[i] - patch.free[k]).norm() / 0.005);  // m/N
+      patch.compliance.block<3, 3>(3 * i, 3 * k) = c * Mat3::Identity();
+    }
+  }
+  return patch;
+}
+
+void run_contact_alone(benchmark::State& state) {
+  constexpr int kSide = 7;
+  constexpr SphereTool kTool{0.005};
+  const ContactPatch patch = flat_patch(kSide);
+  ContactSolver solver(kSide * kSide, static_cast<int>(patch.triangles.size()));
+  const auto places = slide({0.0004, 0.6 * kTool.radius, 0.0007}, Vec3::UnitX(), kTool.radius);
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * (kSide * kSide + 1));
+  std::size_t i = 0;
+  time_calls(state, kHashedSteps,
+             [&] { return solver.solve(patch, kTool, places[i++ % kSlideSteps], u).force; });
+}
+
+/// The first seconds of the motion that ships, recorded to where bytes go to die. The label is the hash of
+/// the capture.
+void run_virtual_session(benchmark::State& state) {
+  constexpr VirtualLink kLink{.rate_hz = 30, .ticks_hz = 500, .delay = std::chrono::milliseconds(35)};
+  constexpr std::uint64_t kTicks = 5 * 500;
+  Liver* const on = liver(state, "quasi_static");
+  if (on == nullptr) return;
+  const Trajectory motion(
+      TrajectorySettings{.file = PALPATE_SOURCE_DIR "/configs/trajectories/liver_palpation.csv"});
+  const auto record = [&](const std::filesystem::path& file) {
+    on->simulation.lift_tool();
+    protocol::CaptureWriter capture(file);
+    VirtualSession session(on->simulation, motion, on->radius(), kLink, capture);
+    for (std::uint64_t k = 0; k < kTicks; ++k) session.tick(k);
+    session.leave();
+  };
+  const test::TemporaryFolder folder;
+  record(folder.path() / "session.pcap");
+  show(state, hash_of(folder.path() / "session.pcap"));
+  for (auto _ : state) record("/dev/null");
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kTicks));
+}
+
+}  // namespace
+
+void add_server_rows() {
+  for (const DeformationModelRow& row : deformation_models()) {
+    const std::string_view name = row.name;
+    add(fmt::format("step/{}/free", name), [name](benchmark::State& state) { run_free(state, name); });
+    add(fmt::format("step/{}/contact", name), [name](benchmark::State& state) { run_contact(state, name); });
+  }
+  add("contact/flat_patch", run_contact_alone);
+  add("virtual_session/5_s", run_virtual_session);
+}
+
+}  // namespace palpate::bench
