@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/error.h"
+
 namespace palpate::sim {
 using namespace protocol;
 
@@ -34,7 +36,7 @@ void VirtualSession::tick(std::uint64_t k) {
   const Time t = now_ = time_of(k);
   keep_session(t);
   ToolState state{.tool = client_.welcome().tool, .tick = k + 1, .t_ns = t.count()};
-  state.p_W = motion_.at(to_seconds(t));
+  state.p_W = newest_p_W_ = motion_.at(to_seconds(t));
   if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motion_.at(to_seconds(time_of(k - 1))));
   step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
   // What arrives in this very tick (no delay) is named by its tool state, though it stands behind it.
@@ -77,23 +79,26 @@ void VirtualSession::leave() {
   to_server(client_.next_header(), Bye{}, now_);
 }
 
-void VirtualSession::to_server(const Header& header, const Message& message, Time t) {
+/// Over the wire and into the capture, as bytes.
+Datagram VirtualSession::travel(const Endpoint& from, const Endpoint& to, const Header& header,
+                                const Message& message, Time t) {
   std::array<std::byte, kMaxDatagram> bytes;
   const std::size_t size = encode(header, message, bytes);
-  capture_.write(t, kClient, kServer, {bytes.data(), size}, size);
+  capture_.write(t, from, to, {bytes.data(), size}, size);
   Datagram datagram;
-  if (decode({bytes.data(), size}, datagram) != Verdict::kAccepted) return;
-  const auto outcome = server_.receive(datagram, kClient, t, kSessionId, server_stats_);
+  if (decode({bytes.data(), size}, datagram) != Verdict::kAccepted)
+    fail("the motion leads to {} m, farther than the protocol carries", newest_p_W_.norm());
+  return datagram;
+}
+
+void VirtualSession::to_server(const Header& header, const Message& message, Time t) {
+  const auto outcome =
+      server_.receive(travel(kClient, kServer, header, message, t), kClient, t, kSessionId, server_stats_);
   if (outcome.answer) to_client(outcome.answer->first, outcome.answer->second, t);
 }
 
 void VirtualSession::to_client(const Header& header, const Message& message, Time t) {
-  std::array<std::byte, kMaxDatagram> bytes;
-  const std::size_t size = encode(header, message, bytes);
-  capture_.write(t, kServer, kClient, {bytes.data(), size}, size);
-  Datagram datagram;
-  if (decode({bytes.data(), size}, datagram) != Verdict::kAccepted) return;
-  client_.receive(datagram, t, client_stats_);
+  client_.receive(travel(kServer, kClient, header, message, t), t, client_stats_);
 }
 
 }  // namespace palpate::sim

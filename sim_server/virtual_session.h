@@ -29,6 +29,7 @@ class VirtualSession {
                  const VirtualLink& link, protocol::CaptureWriter& capture);
 
   /// Tick number `k` from 0, in order: client reads the tool, server steps if a step is due, samples arrive.
+  /// Throws `Error` for a motion or speed beyond what the protocol carries (1e9 m, m/s).
   void tick(std::uint64_t k);
   /// The client says Bye.
   void leave();
@@ -46,6 +47,8 @@ class VirtualSession {
   void keep_session(Time t);
   void step(const protocol::ToolState& state, double steps_due);
   void deliver(Time t);
+  protocol::Datagram travel(const protocol::Endpoint& from, const protocol::Endpoint& to,
+                            const protocol::Header& header, const protocol::Message& message, Time t);
   void to_server(const protocol::Header& header, const protocol::Message& message, Time t);
   void to_client(const protocol::Header& header, const protocol::Message& message, Time t);
 
@@ -59,6 +62,7 @@ class VirtualSession {
   std::deque<OnTheWay> on_the_way_;
   std::uint64_t steps_ = 0, newest_ = 0;
   Time now_{};
+  Vec3 newest_p_W_ = Vec3::Zero();
   VirtualSessionStats stats_;
 };
 

@@ -1,0 +1,70 @@
+#pragma once
+/// Which datagrams of a capture belong together.
+#include <optional>
+#include <vector>
+
+#include "protocol/capture.h"
+#include "protocol/replay_window.h"
+
+namespace palpate::client {
+
+/// How far out of order the datagrams of a capture may stand.
+constexpr std::size_t kShuffled = 64;
+/// Times of a client's clock that make sense: from 0 to 73 years.
+constexpr bool sensible(Time t) {
+  return t >= Time::zero() && t <= Time{Time::rep{1} << 61};
+}
+
+/// The datagrams of one direction, by their sequence numbers.
+struct CapturedDirection {
+  protocol::LinkStats stats{};
+  protocol::ReplayWindow window{};
+  std::uint64_t lowest = 0;        ///< number seen in the newest session; 0: none
+  std::uint64_t not_captured = 0;  ///< numbers before the lowest, in the sessions before
+
+  /// False for one that the capture holds already.
+  bool accept(std::uint64_t sequence);
+  void begin_session();
+  /// Between those that were captured: what came before the capture began is not lost.
+  std::uint64_t lost() const;
+};
+
+/// One run of a client, through all its sessions (a server that was started again gives a new one).
+struct CapturedRun {
+  protocol::Endpoint client;
+  std::uint64_t session = 0;                      ///< the last one
+  std::uint64_t ticks = 0, samples = 0;           ///< tool states and force samples, without duplicates
+  std::uint64_t first_tick = 0, newest_tick = 0;  ///< numbers
+  Time first{}, newest{};                         ///< client clock
+  CapturedDirection up{}, down{};                 ///< as the capturing machine saw them
+
+  /// Ticks a second; 0 with less than two.
+  double ticks_hz() const;
+};
+
+/// Sorts datagrams of a capture into runs: by the address of the client, and within one address by tick
+/// numbers that start again in a new session. Drops what the capture holds twice (`-i any` sees loopback
+/// twice). Memory: a few hundred bytes a run; what comes after 1000 runs is left out.
+class CaptureSorter {
+ public:
+  /// Which run (from 0) a datagram belongs to, if it is a tool state or force sample of ours that did not
+  /// come before; `datagram` is decoded into.
+  std::optional<std::size_t> sort(const protocol::CapturedDatagram& captured, protocol::Datagram& datagram);
+
+  const std::vector<CapturedRun>& runs() const { return runs_; }
+  std::uint64_t ours() const { return ours_; }        ///< accepted datagrams of any kind
+  std::uint64_t refused() const { return refused_; }  ///< with our magic, but not acceptable
+  std::optional<int> other_version() const { return other_version_; }
+
+ private:
+  /// Null when there are too many.
+  CapturedRun* run_of(const protocol::Endpoint& client, std::uint64_t session, std::uint64_t tick);
+  std::optional<std::size_t> sort_state(const protocol::ToolState& state, const protocol::Header& header,
+                                        const protocol::Endpoint& client);
+
+  std::vector<CapturedRun> runs_;
+  std::uint64_t ours_ = 0, refused_ = 0;
+  std::optional<int> other_version_;
+};
+
+}  // namespace palpate::client
