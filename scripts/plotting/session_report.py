@@ -1,0 +1,174 @@
+"""Reads a report of haptic_client, and one of sim_server, for session.py; says where one is wrong."""
+
+import json
+import math
+import statistics
+from dataclasses import dataclass, field
+from pathlib import Path
+
+LONGEST_NAME = 60  # characters of a scene in the title
+
+# Key, heading, decimals.
+PAPER_SCORES = (("paper_mean_percent", "average", 3), ("paper_max_percent", "maximal", 1),
+                ("paper_max_force_percent", "maximal force", 1))
+SCORES = (("mean_percent", "mean, % of RMS", 3), ("p99_percent", "p99, % of peak", 3),
+          ("max_percent", "max, % of peak", 2))
+
+
+class Unusable(Exception):
+    """A report or the arguments cannot be used; the text is for the user."""
+
+
+class Node:
+    """A value of a JSON file that knows where it stands."""
+
+    def __init__(self, value, file, path=""):
+        self.value, self.file, self.path = value, file, path
+
+    def of(self, kind, name):
+        if not isinstance(self.value, kind) or isinstance(self.value, bool):
+            raise Unusable(f"{self.file}: {self.path or 'the file'} is not {name}")
+        return self.value
+
+    def __contains__(self, key):
+        return key in self.of(dict, "an object")
+
+    def __getitem__(self, key):
+        path = f"{self.path}.{key}" if self.path else key
+        if key not in self:
+            raise Unusable(f"{self.file}: missing key {path}")
+        return Node(self.value[key], self.file, path)
+
+    def items(self):
+        return [Node(value, self.file, f"{self.path}[{i}]")
+                for i, value in enumerate(self.of(list, "a list"))]
+
+    def keys(self):
+        return list(self.of(dict, "an object"))
+
+    def text(self):
+        return self.of(str, "a text")
+
+    def number(self, or_null=False):
+        if or_null and self.value is None:
+            return math.nan
+        try:
+            number = float(self.of((int, float), "a number"))
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number) or number < 0:
+            raise Unusable(f"{self.file}: {self.path} is {number:g}")
+        return number
+
+
+def read_json(path):
+    try:
+        return Node(json.loads(path.read_text(encoding="utf-8")), path)
+    except OSError as error:
+        raise Unusable(f"{path}: {error.strerror or error}") from None
+    except (ValueError, RecursionError) as error:
+        raise Unusable(f"{path}: not JSON: {error}") from None
+
+
+@dataclass
+class Timeline:
+    """Cells side by side; {column: [number]}, nan where there is nothing."""
+    edges: list  # s, one more than cells
+    columns: dict
+
+    @classmethod
+    def read(cls, node, columns, counts):
+        """`counts`: columns that say together how much of a cell was lived through."""
+        width, cells = node["cell_s"].number(), node["cells"].items()
+        if width <= 0:
+            raise Unusable(f"{node.file}: {node.path}.cell_s is 0")
+        read = {name: [cell[name].number() for cell in cells] for name in columns}
+        begins = [cell["t_s"].number() for cell in cells]
+        if any(after <= before for before, after in zip(begins, begins[1:])):
+            raise Unusable(f"{node.file}: {node.path}.cells: t_s does not grow")
+        if not cells:
+            return cls([], read)
+        # The last cell may have been cut short by the end; it must not look like a whole one.
+        lived = [sum(parts) for parts in zip(*(read[name] for name in counts))]
+        whole = statistics.median(lived[:-1]) if len(lived) > 1 else 0
+        share = min(1.0, lived[-1] / whole) if whole > 0 else 1.0
+        return cls(begins + [begins[-1] + share * width], read)
+
+    def times(self, name):
+        """A duration is never 0: that is nothing measured."""
+        return [value if value > 0 else math.nan for value in self.columns[name]]
+
+
+@dataclass
+class Tool:
+    """What a picture shows."""
+    file: Path
+    heading: str
+    felt: str
+    timeline: Timeline
+    errors: dict                 # {law: [% per cell]}
+    scores: dict                 # {law: {key: %}}
+    rate_hz: float = 0           # 0: not known
+    server: Timeline = None
+    server_rate_hz: float = 0
+    notes: list = field(default_factory=list)
+
+
+def errors_of(node, laws):
+    """{law: [% per cell]}; nan in cells where no law was wrong at all: nothing was scored there."""
+    cells = [cell["error_percent"] for cell in node["cells"].items()]
+    rows = [[cell[law].number(or_null=True) for law in laws] for cell in cells]
+    rows = [row if any(value > 0 for value in row) else [math.nan] * len(laws) for row in rows]
+    return {law: [row[i] for row in rows] for i, law in enumerate(laws)}
+
+
+def read_tools(report, server):
+    tools = report["tools"].items()
+    if not tools:
+        raise Unusable(f"{report.file}: tools is empty")
+    return [read_tool(report, server, node, i, len(tools)) for i, node in enumerate(tools)]
+
+
+def read_tool(report, server, node, index, count):
+    method, methods, line = node["method"].text(), node["methods"], node["timeline"]
+    laws = methods.keys()
+    scores = {law: {key: methods[law][key].number() for key, _, _ in PAPER_SCORES + SCORES}
+              for law in laws}
+    timeline = Timeline.read(line, ("ticks", "missed", "tick_us_mean", "tick_us_max", "samples",
+                                    "step_ms_mean", "step_ms_max"), ("ticks", "missed"))
+    if not timeline.edges:
+        raise Unusable(f"{report.file}: {line.path}.cells is empty: no session to draw")
+    tool = Tool(report.file, "", method, timeline, errors_of(line, laws), scores)
+    for place in (node["loop"] if "loop" in node else None,
+                  report["capture"] if "capture" in report else None):
+        if place and "rate_hz" in place:
+            tool.rate_hz = place["rate_hz"].number()
+            break
+
+    scene = "replay" if "capture" in report else "session"
+    if "server" in report:
+        scene += f" with {report['server'].text()}"
+    if server:
+        tool.server = Timeline.read(server["timeline"], ("steps", "step_ms_mean", "step_ms_max", "late"),
+                                    ("steps",))
+        tool.server_rate_hz = server["rate_hz"].number()
+        scene = server["title"].text() if "title" in server else scene
+        if "sessions" in server and server["sessions"].number() > 1:
+            tool.notes.append("SERVER.json tells of several sessions; its time begins with the first")
+    scene = " ".join(scene.split()) or "session"
+    if len(scene) > LONGEST_NAME:
+        scene = scene[:LONGEST_NAME - 1] + "\N{HORIZONTAL ELLIPSIS}"
+    parts = [scene, f"felt: {method}", f"{tool.rate_hz:g} Hz" if tool.rate_hz else "",
+             duration(timeline.edges[-1] - timeline.edges[0]),
+             f"tool {index + 1} of {count}" if count > 1 else ""]
+    tool.heading = "   \N{MIDDLE DOT}   ".join(part for part in parts if part)
+    return tool
+
+
+def duration(seconds):
+    if seconds < 120:
+        return f"{seconds:.3g} s"
+    minutes = round(seconds / 60)
+    if minutes < 120:
+        return f"{int(seconds // 60)} min {int(seconds % 60)} s"
+    return f"{minutes // 60} h {minutes % 60} min"
