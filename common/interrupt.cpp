@@ -30,8 +30,8 @@ void block_interrupts() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1}) std::signal(signal, note);
   const sigset_t set = set_of({SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1});
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  std::signal(SIGPIPE,
-              SIG_IGN);  // NOLINT(bugprone-unused-return-value): `palpate | head` must not kill the loop
+  // Neither `haptic_client | head` nor a file that grows beyond its limit may kill a loop.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 bool wait_for_interrupt(Time timeout) {

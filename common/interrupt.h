@@ -5,7 +5,7 @@ namespace palpate {
 
 /// Keeps Ctrl-C (SIGINT), SIGTERM, SIGHUP, SIGQUIT and SIGUSR1 from ending the program at once: call first in
 /// `main`, before any thread starts, so that every thread inherits it. They then arrive only at the calls
-/// below.
+/// below. A closed pipe or a full quota (SIGPIPE, SIGXFSZ) becomes an error of the write.
 void block_interrupts();
 
 /// Waits up to `timeout` for Ctrl-C, SIGTERM, SIGHUP or SIGQUIT; true when one came. Main thread.

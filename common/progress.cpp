@@ -5,9 +5,13 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include "common/error.h"
+#include "common/interrupt.h"
+
 namespace palpate {
 
 void ProgressLine::operator()(std::string_view stage, double share) {
+  if (wait_for_interrupt(Time::zero())) fail_at_run_time("interrupted while {}; nothing was written", stage);
   const int percent = static_cast<int>(100 * std::clamp(share, 0.0, 1.0));
   const bool new_stage = stage != stage_;
   if (!new_stage && percent == shown_) return;

@@ -17,13 +17,34 @@ Json quantiles(const Histogram& histogram, double unit_ns) {
           {"max", static_cast<double>(histogram.max()) / unit_ns}};
 }
 
-WholeFile::WholeFile(const fs::path& file) : file_(file), part_(file) {
+namespace {
+
+fs::path without_links(const fs::path& file) {
+  std::error_code failed;
+  const fs::path target = fs::weakly_canonical(file, failed);
+  return failed ? file : target;
+}
+
+/// Devices and pipes; also /dev/stdout, which is a link to whatever the output goes to.
+bool written_directly(const fs::path& file) {
   std::error_code ignored;
   const fs::file_status status = fs::status(file, ignored);
-  if (!fs::exists(status) || fs::is_regular_file(status)) part_ += fmt::format(".{}.part", getpid());
-  if (fs::is_directory(status) || !std::ofstream(part_).good()) {
-    fail("{}: cannot be written; name a file in a folder that exists and is yours", file.string());
-  }
+  const std::string place = fs::absolute(file, ignored).lexically_normal().string();
+  const bool of_the_system = place.rfind("/dev/", 0) == 0 || place.rfind("/proc/", 0) == 0;
+  return (of_the_system && fs::is_symlink(fs::symlink_status(file, ignored))) ||
+         (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status));
+}
+
+}  // namespace
+
+WholeFile::WholeFile(const fs::path& file)
+    : file_(written_directly(file) ? file : without_links(file)), part_(file_) {
+  const bool direct = written_directly(file);
+  if (!direct) part_ += fmt::format(".{}.part", getpid());
+  std::error_code ignored;
+  const bool usable = direct ? access(file_.c_str(), W_OK) == 0
+                             : !fs::is_directory(file_, ignored) && std::ofstream(part_).good();
+  if (!usable) fail("{}: cannot be written; name a file in a folder that exists and is yours", file.string());
 }
 
 WholeFile::~WholeFile() {
@@ -35,6 +56,16 @@ void WholeFile::commit() {
   std::error_code failed;
   if (part_ != file_) fs::rename(part_, file_, failed);
   if (failed) fail_at_run_time("{}: could not be written ({})", file_.string(), failed.message());
+}
+
+void require_distinct(std::initializer_list<NamedFile> files) {
+  for (const NamedFile* a = files.begin(); a != files.end(); ++a) {
+    for (const NamedFile* b = files.begin(); b != a; ++b) {
+      if (!a->file || !b->file || written_directly(*a->file)) continue;
+      if (without_links(*a->file) == without_links(*b->file))
+        fail("{} and {} name the same file {}; give each its own", b->option, a->option, a->file->string());
+    }
+  }
 }
 
 void check_writable(const fs::path& file) {

@@ -1,6 +1,8 @@
 #pragma once
 #include <filesystem>
+#include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "common/histogram.h"
@@ -14,11 +16,12 @@ using Json = nlohmann::ordered_json;
 Json quantiles(const Histogram& histogram, double unit_ns);
 
 /// A file that appears whole or not at all: what is written goes to `path()` beside it; `commit` gives it its
-/// name; going out of scope without that removes it. What is no regular file (a device, a pipe) is written
-/// directly.
+/// name; going out of scope without that removes it. A link stays a link: what it points to is replaced. What
+/// is no regular file (a device, a pipe, /dev/stdout) is written directly.
 class WholeFile {
  public:
-  /// Throws `Error` (input) if it cannot be written.
+  /// Throws `Error` (input) if it cannot be written. Does not open what is written directly: a pipe is opened
+  /// once, by whoever writes.
   explicit WholeFile(const std::filesystem::path& file);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
@@ -31,6 +34,15 @@ class WholeFile {
  private:
   std::filesystem::path file_, part_;
 };
+
+/// A file that a command line names, and the option that names it.
+struct NamedFile {
+  const char* option;
+  std::optional<std::filesystem::path> file;
+};
+
+/// Throws `Error` (input) when two of them are the same regular file: one would overwrite the other.
+void require_distinct(std::initializer_list<NamedFile> files);
 
 /// Throws `Error` now, rather than after the run, if `file` could not be written.
 void check_writable(const std::filesystem::path& file);

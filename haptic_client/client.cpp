@@ -126,6 +126,7 @@ void write_trace(const std::filesystem::path& file, const Observation& observati
 }  // namespace
 
 int run_client(const ClientConfig& config, const ClientOptions& options) {
+  require_distinct({{"--report", options.report}, {"--trace", options.trace}, {"--record", options.record}});
   if (options.report) check_writable(*options.report);
   if (options.trace) check_writable(*options.trace);
   const protocol::Endpoint server = protocol::resolve(config.server, config.server_where);

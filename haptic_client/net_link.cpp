@@ -21,6 +21,7 @@ void NetLink::run() {
               {.on_datagram = [this](auto bytes, const Endpoint& from) { on_datagram(bytes, from); },
                .on_doorbell = [this] { on_tool_states(); },
                .on_timer = [this] { on_timer(); }});
+  on_tool_states();  // of the last ticks, whose bell nobody answered
   if (session_.welcomed()) send(session_.next_header(), protocol::Bye{});
 }
 

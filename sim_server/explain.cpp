@@ -204,6 +204,7 @@ Explanation explain(const Scene& scene, const Progress& progress) {
 
 int run_explain(const ExplainOptions& options) {
   const Scene scene = read_scene(options.scene);
+  require_distinct({{"SCENE", options.scene}, {"--json", options.json}});
   if (options.json) check_writable(*options.json);
   const Explanation explanation = explain(scene, ProgressLine());
   fmt::print("{}", to_text(explanation));

@@ -6,7 +6,6 @@
 #include "common/clock.h"
 #include "common/config.h"
 #include "common/error.h"
-#include "common/interrupt.h"
 #include "common/log.h"
 #include "common/progress.h"
 #include "common/report.h"
@@ -16,7 +15,8 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kUsualTicks = 500;         // Hz
-constexpr std::uint64_t kLookAround = 256;  // ticks between two looks at the keyboard and the progress line
+constexpr std::uint64_t kLookAround = 256;  // ticks between two looks at the progress line
+constexpr double kLongest = 1e5;            // s
 
 /// A CSV (t_s, x_m, y_m, z_m, world), or a client file whose [trajectory] says how to read one.
 Trajectory read_motion(const std::filesystem::path& file) {
@@ -34,6 +34,9 @@ void say_what_is_lost(const Trajectory& motion, const RecordOptions& options, do
 }
 
 std::uint64_t ticks_of(const Trajectory& motion, const RecordOptions& options, double ticks_hz) {
+  if (!options.seconds && motion.duration() > kLongest)
+    fail("{}: lasts {:g} s; `--seconds` says how much of it to record, up to {:g}",
+         options.trajectory.string(), motion.duration(), kLongest);
   return static_cast<std::uint64_t>(options.seconds.value_or(motion.duration()) * ticks_hz + 1e-6) + 1;
 }
 
@@ -43,8 +46,6 @@ void run_session(VirtualSession& session, std::uint64_t ticks, protocol::Capture
     session.tick(k);
     if (k % kLookAround != 0) continue;
     progress("recording", static_cast<double>(k) / static_cast<double>(ticks));
-    if (wait_for_interrupt(Time::zero()))
-      fail_at_run_time("interrupted; {} was not written", options.out.string());
   }
   session.leave();
   if (!capture.flush()) fail_at_run_time("{}: could not be written; is the disk full?", options.out.string());
@@ -74,6 +75,10 @@ int record(const RecordOptions& options) {
          options.rate_hz);
   const Trajectory motion = read_motion(options.trajectory);
   const std::uint64_t ticks = ticks_of(motion, options, ticks_hz);
+  require_distinct({{"SCENE", options.scene},
+                    {"--trajectory", options.trajectory},
+                    {"--out", options.out},
+                    {"--report", options.report}});
   if (options.report) check_writable(*options.report);
   WholeFile out(options.out);
   protocol::CaptureWriter capture(out.path());

@@ -125,8 +125,10 @@ std::uint64_t random_seed() {
 
 int run_server(const ServerOptions& options) {
   const Scene scene = read_scene(options.scene);
+  require_distinct({{"SCENE", options.scene}, {"--report", options.report}, {"--record", options.record}});
   if (options.report) check_writable(*options.report);
   protocol::UdpSocket socket(protocol::resolve(options.listen, "--listen"));
+  const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;
   const Time begin = now();
   SetupTimes progress{ProgressLine()};
   Simulation simulation(scene, std::ref(progress));
@@ -135,7 +137,6 @@ int run_server(const ServerOptions& options) {
   Json report = describe_scene(scene, simulation, now() - begin, progress);
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes);
-  const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;
   NetLink link(socket, {1, scene.rate_hz, scene.tool.shape.radius}, mailboxes, random_seed(), recorder.get());
   const Time start = now();
   {

@@ -41,7 +41,8 @@ void VirtualSession::tick(std::uint64_t k) {
   step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
   // What arrives in this very tick (no delay) is named by its tool state, though it stands behind it.
   for (const OnTheWay& next : on_the_way_) {
-    if (next.ready <= t) newest_ = next.sample.number;
+    if (next.ready > t) break;
+    newest_ = next.sample.number;
   }
   state.newest_sample = newest_;
   to_server(client_.next_header(), state, t);

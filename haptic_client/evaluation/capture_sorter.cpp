@@ -6,8 +6,17 @@ namespace palpate::client {
 using namespace protocol;
 
 namespace {
-constexpr std::size_t kMostRuns = 1000;
+
+constexpr std::size_t kMost = 1000;  // runs, and sessions of one
 constexpr std::size_t kVersionByte = 4;
+
+template <class Count>
+std::uint64_t sum(const std::vector<CapturedLink>& links, Count count) {
+  std::uint64_t all = 0;
+  for (const CapturedLink& link : links) all += count(link.up) + count(link.down);
+  return all;
+}
+
 }  // namespace
 
 bool CapturedDirection::accept(std::uint64_t sequence) {
@@ -16,19 +25,18 @@ bool CapturedDirection::accept(std::uint64_t sequence) {
   return true;
 }
 
-void CapturedDirection::begin_session() {
-  not_captured += lowest > 0 ? lowest - 1 : 0;
-  lowest = 0;
-  window = {};
-}
-
-std::uint64_t CapturedDirection::lost() const {
-  return stats.lost - not_captured - (lowest > 0 ? lowest - 1 : 0);
-}
-
 double CapturedRun::ticks_hz() const {
   const double seconds = to_seconds(newest - first);
   return seconds > 0 ? static_cast<double>(newest_tick - first_tick) / seconds : 0;
+}
+std::uint64_t CapturedRun::lost() const {
+  return sum(links, [](const CapturedDirection& d) { return d.lost(); });
+}
+std::uint64_t CapturedRun::reordered() const {
+  return sum(links, [](const CapturedDirection& d) { return d.stats.reordered; });
+}
+std::uint64_t CapturedRun::duplicated() const {
+  return sum(links, [](const CapturedDirection& d) { return d.stats.duplicated; });
 }
 
 std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured, Datagram& datagram) {
@@ -43,47 +51,81 @@ std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured,
   const Header& header = datagram.header;
   if (const auto* state = std::get_if<ToolState>(&datagram.message))
     return sort_state(*state, header, captured.from);
-  const auto* sample = std::get_if<ForceSample>(&datagram.message);
-  if (sample == nullptr) return {};
-  CapturedRun* const run = run_of(captured.to, header.session, sample->tool_tick);
-  if (run == nullptr || !run->down.accept(header.sequence)) return {};
-  ++run->samples;
-  return run - runs_.data();
+  if (std::holds_alternative<ForceSample>(datagram.message)) return sort_sample(header, captured.to);
+  if (std::holds_alternative<Welcome>(datagram.message)) {  // again, in mid-session: it has a number, too
+    if (const Place place = known(captured.to, header.session); place.link != nullptr)
+      place.link->down.accept(header.sequence);
+  }
+  return {};
 }
 
 std::optional<std::size_t> CaptureSorter::sort_state(const ToolState& state, const Header& header,
                                                      const Endpoint& client) {
-  CapturedRun* const found = run_of(client, header.session, state.tick);
-  if (found == nullptr || !found->up.accept(header.sequence)) return {};
-  CapturedRun& run = *found;
-  const std::size_t index = found - runs_.data();
-  ++run.ticks;
+  const auto [run, link] = place_of(state, client, header.session);
+  if (link == nullptr) {
+    ++left_out_;
+    return {};
+  }
+  if (!link->up.accept(header.sequence)) return {};
+  ++run->ticks;
+  const std::size_t index = run - runs_.data();
   const Time t{state.t_ns};
   if (!sensible(t)) return index;
-  if (run.newest_tick == 0) {
-    run.first_tick = run.newest_tick = state.tick;
-    run.first = run.newest = t;
-  } else if (state.tick > run.newest_tick && t > run.newest) {
-    run.newest_tick = state.tick;
-    run.newest = t;
+  if (run->newest_tick == 0) {
+    run->first_tick = run->newest_tick = state.tick;
+    run->first = run->newest = t;
+  } else if (state.tick > run->newest_tick && t > run->newest) {
+    run->newest_tick = state.tick;
+    run->newest = t;
   }
   return index;
 }
 
-/// The newest run of this client goes on, unless a new session counts its ticks from the beginning.
-CapturedRun* CaptureSorter::run_of(const Endpoint& client, std::uint64_t session, std::uint64_t tick) {
-  for (std::size_t i = runs_.size(); i-- > 0;) {
-    CapturedRun& run = runs_[i];
-    if (run.client != client) continue;
-    if (run.session == session) return &run;
-    if (tick + kShuffled < run.newest_tick) break;
-    run.session = session;
-    run.up.begin_session();
-    run.down.begin_session();
-    return &run;
+/// A sample tells a session from another, but not a run: it never begins a session where there is a run.
+std::optional<std::size_t> CaptureSorter::sort_sample(const Header& header, const Endpoint& client) {
+  auto [run, link] = known(client, header.session);
+  if (run == nullptr) run = newest_run(client);
+  if (run == nullptr) {  // a capture that begins between a tool state and its answer
+    run = begin_run(client);
+    if (run == nullptr) return {};
+    run->links.push_back({.session = header.session});
+    link = &run->links.back();
   }
-  if (runs_.size() == kMostRuns) return nullptr;
-  runs_.push_back({.client = client, .session = session});
+  if (link != nullptr && !link->down.accept(header.sequence)) return {};
+  ++run->samples;
+  return run - runs_.data();
+}
+
+/// The newest run of this client goes on, unless a new session counts its ticks from the beginning.
+CaptureSorter::Place CaptureSorter::place_of(const ToolState& state, const Endpoint& client,
+                                             std::uint64_t session) {
+  if (const Place place = known(client, session); place.run != nullptr) return place;
+  CapturedRun* run = newest_run(client);
+  if (run == nullptr || state.tick + kShuffled < run->newest_tick) run = begin_run(client);
+  if (run == nullptr || run->links.size() == kMost) return {};
+  run->links.push_back({.session = session});
+  return {run, &run->links.back()};
+}
+
+CaptureSorter::Place CaptureSorter::known(const Endpoint& client, std::uint64_t session) {
+  for (auto run = runs_.rbegin(); run != runs_.rend(); ++run) {
+    if (run->client != client) continue;
+    for (auto link = run->links.rbegin(); link != run->links.rend(); ++link) {
+      if (link->session == session) return {&*run, &*link};
+    }
+  }
+  return {};
+}
+
+CapturedRun* CaptureSorter::newest_run(const Endpoint& client) {
+  const auto found = std::find_if(runs_.rbegin(), runs_.rend(),
+                                  [&](const CapturedRun& run) { return run.client == client; });
+  return found == runs_.rend() ? nullptr : &*found;
+}
+
+CapturedRun* CaptureSorter::begin_run(const Endpoint& client) {
+  if (runs_.size() == kMost) return nullptr;
+  runs_.push_back({.client = client});
   return &runs_.back();
 }
 

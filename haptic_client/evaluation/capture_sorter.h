@@ -15,36 +15,41 @@ constexpr bool sensible(Time t) {
   return t >= Time::zero() && t <= Time{Time::rep{1} << 61};
 }
 
-/// The datagrams of one direction, by their sequence numbers.
+/// The datagrams of one direction of a session, by their sequence numbers.
 struct CapturedDirection {
   protocol::LinkStats stats{};
   protocol::ReplayWindow window{};
-  std::uint64_t lowest = 0;        ///< number seen in the newest session; 0: none
-  std::uint64_t not_captured = 0;  ///< numbers before the lowest, in the sessions before
+  std::uint64_t lowest = 0;  ///< number seen; 0: none
 
   /// False for one that the capture holds already.
   bool accept(std::uint64_t sequence);
-  void begin_session();
   /// Between those that were captured: what came before the capture began is not lost.
-  std::uint64_t lost() const;
+  std::uint64_t lost() const { return lowest == 0 ? 0 : stats.lost - (lowest - 1); }
+};
+
+/// One session of a run, as the capturing machine saw it.
+struct CapturedLink {
+  std::uint64_t session = 0;
+  CapturedDirection up{}, down{};
 };
 
 /// One run of a client, through all its sessions (a server that was started again gives a new one).
 struct CapturedRun {
   protocol::Endpoint client;
-  std::uint64_t session = 0;                      ///< the last one
+  std::vector<CapturedLink> links{};
   std::uint64_t ticks = 0, samples = 0;           ///< tool states and force samples, without duplicates
-  std::uint64_t first_tick = 0, newest_tick = 0;  ///< numbers
+  std::uint64_t first_tick = 0, newest_tick = 0;  ///< numbers; 0: none yet
   Time first{}, newest{};                         ///< client clock
-  CapturedDirection up{}, down{};                 ///< as the capturing machine saw them
 
   /// Ticks a second; 0 with less than two.
   double ticks_hz() const;
+  std::uint64_t lost() const, reordered() const, duplicated() const;
 };
 
 /// Sorts datagrams of a capture into runs: by the address of the client, and within one address by tick
 /// numbers that start again in a new session. Drops what the capture holds twice (`-i any` sees loopback
-/// twice). Memory: a few hundred bytes a run; what comes after 1000 runs is left out.
+/// twice). Memory: some hundred bytes a session; what comes after 1000 runs, or 1000 sessions of one, is left
+/// out.
 class CaptureSorter {
  public:
   /// Which run (from 0) a datagram belongs to, if it is a tool state or force sample of ours that did not
@@ -52,18 +57,26 @@ class CaptureSorter {
   std::optional<std::size_t> sort(const protocol::CapturedDatagram& captured, protocol::Datagram& datagram);
 
   const std::vector<CapturedRun>& runs() const { return runs_; }
-  std::uint64_t ours() const { return ours_; }        ///< accepted datagrams of any kind
-  std::uint64_t refused() const { return refused_; }  ///< with our magic, but not acceptable
+  std::uint64_t ours() const { return ours_; }          ///< accepted datagrams of any kind
+  std::uint64_t refused() const { return refused_; }    ///< with our magic, but not acceptable
+  std::uint64_t left_out() const { return left_out_; }  ///< of too many runs or sessions
   std::optional<int> other_version() const { return other_version_; }
 
  private:
-  /// Null when there are too many.
-  CapturedRun* run_of(const protocol::Endpoint& client, std::uint64_t session, std::uint64_t tick);
+  struct Place {
+    CapturedRun* run = nullptr;
+    CapturedLink* link = nullptr;
+  };
+  Place known(const protocol::Endpoint& client, std::uint64_t session);
+  CapturedRun* newest_run(const protocol::Endpoint& client);
+  CapturedRun* begin_run(const protocol::Endpoint& client);
+  Place place_of(const protocol::ToolState& state, const protocol::Endpoint& client, std::uint64_t session);
   std::optional<std::size_t> sort_state(const protocol::ToolState& state, const protocol::Header& header,
                                         const protocol::Endpoint& client);
+  std::optional<std::size_t> sort_sample(const protocol::Header& header, const protocol::Endpoint& client);
 
   std::vector<CapturedRun> runs_;
-  std::uint64_t ours_ = 0, refused_ = 0;
+  std::uint64_t ours_ = 0, refused_ = 0, left_out_ = 0;
   std::optional<int> other_version_;
 };
 

@@ -34,11 +34,8 @@ CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& p
         "it captured at the server's UDP port (45130, if you did not choose another)?",
         file.string(), reader.packets(), sorter.ours());
   }
-  return {sorter.runs(),
-          reader.packets(),
-          sorter.ours(),
-          sorter.refused(),
-          reader.packets() - sorter.ours() - sorter.refused(),
+  return {sorter.runs(),    reader.packets(),  sorter.ours(),
+          sorter.refused(), sorter.left_out(), reader.packets() - sorter.ours() - sorter.refused(),
           reader.trouble()};
 }
 
@@ -72,7 +69,7 @@ bool CapturedSession::next(CapturedTick& out) {
     const Numbered tick = waiting_.back();
     waiting_.pop_back();
     const Time t{tick.state.t_ns};
-    if (t <= newest_t_ || !sensible(t)) {
+    if (out_of_row(t)) {
       ++missing_.backwards;
       continue;
     }
@@ -92,6 +89,14 @@ bool CapturedSession::next(CapturedTick& out) {
     return true;
   }
   return false;
+}
+
+/// Not after the tick before; or so far ahead that the tick after it lies between the two.
+bool CapturedSession::out_of_row(Time t) const {
+  if (!sensible(t) || t <= newest_t_) return true;
+  if (waiting_.empty()) return false;
+  const Time after{waiting_.back().state.t_ns};
+  return after > newest_t_ && after <= t;
 }
 
 /// Numbers start again with a new session: the newest before `place` in the file is meant. Where the

@@ -14,7 +14,7 @@ namespace palpate::client {
 /// What a first reading of a capture found.
 struct CaptureSurvey {
   std::vector<CapturedRun> runs;
-  std::uint64_t packets = 0, ours = 0, refused = 0, other = 0;
+  std::uint64_t packets = 0, ours = 0, refused = 0, left_out = 0, other = 0;
   std::string trouble;  ///< why the reading ended early; empty if it did not
 };
 
@@ -43,7 +43,7 @@ class CapturedSession {
   struct Missing {
     std::uint64_t ticks = 0;      ///< numbers skipped
     std::uint64_t samples = 0;    ///< used by a tick, but not in the file
-    std::uint64_t backwards = 0;  ///< ticks left out: their time is not after the one before
+    std::uint64_t backwards = 0;  ///< ticks left out: their time jumps out of the row, back or ahead
   };
   const Missing& missing() const { return missing_; }
   double share() const { return reader_.share(); }
@@ -58,6 +58,7 @@ class CapturedSession {
     protocol::ForceSample sample;
   };
   void fill();
+  bool out_of_row(Time t) const;
   const protocol::ForceSample* find_sample(std::uint64_t number, std::uint64_t place) const;
 
   protocol::CaptureReader reader_;

@@ -3,10 +3,14 @@
 #include <utility>
 
 namespace palpate::client {
+namespace {
+constexpr Time kGap = std::chrono::seconds(1);
+}
 
 bool Resampler::pass() {
   before_ = after_;
   if (before_ && before_->arrived) arrived_ = before_->arrived;
+  if (before_) flags_ |= before_->state.flags;
   CapturedTick tick;
   after_ = session_.next(tick) ? std::optional(tick) : std::nullopt;
   return before_.has_value();
@@ -18,7 +22,11 @@ bool Resampler::next(CapturedTick& out) {
     if (!pass()) return false;
     start_ = Time{before_->state.t_ns};
   }
-  const Time t = start_ + from_seconds(static_cast<double>(k_) / rate_hz_);
+  Time t = start_ + from_seconds(static_cast<double>(k_ - start_k_) / rate_hz_);
+  if (after_ && t < Time{after_->state.t_ns} && after_->state.t_ns - before_->state.t_ns > kGap.count()) {
+    t = start_ = Time{after_->state.t_ns};
+    start_k_ = k_;
+  }
   while (after_ && Time{after_->state.t_ns} <= t) pass();
   const protocol::ToolState& a = before_->state;
   if (!after_ && t.count() > a.t_ns) return false;
@@ -26,6 +34,7 @@ bool Resampler::next(CapturedTick& out) {
   const double share =
       after_ ? static_cast<double>(t.count() - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns) : 0;
   out.state = a;
+  out.state.flags = std::exchange(flags_, std::uint16_t{0});
   out.state.tick = ++k_;
   out.state.t_ns = t.count();
   out.state.p_W = a.p_W + share * (b.p_W - a.p_W);

@@ -4,7 +4,8 @@
 namespace palpate::client {
 
 /// The ticks of a captured session at another rate: tick k stands at t_0 + k / rate, its pose on the line
-/// between the captured poses around it, and it knows the samples that the captured tick before it knew.
+/// between the captured poses around it, and it knows the samples and events that the captured tick before it
+/// knew. After a gap of more than a second the count of time begins again at the tick behind it.
 class Resampler {
  public:
   Resampler(CapturedSession& session, double rate_hz) : session_(session), rate_hz_(rate_hz) {}
@@ -20,7 +21,9 @@ class Resampler {
   std::uint64_t k_ = 0;
   std::optional<CapturedTick> before_, after_;    // around the tick to give
   std::optional<protocol::ForceSample> arrived_;  // known since the last tick given
-  Time start_{};
+  std::uint16_t flags_ = 0;                       // likewise
+  Time start_{};                                  // of the grid
+  std::uint64_t start_k_ = 0;                     // the tick there
 };
 
 }  // namespace palpate::client

@@ -5,9 +5,9 @@
 
 #include "common/error.h"
 #include "haptic_client/evaluation/resampler.h"
-#include "tests/support/session_capture.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
+#include "tests/support/session_capture.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace palpate;
@@ -70,7 +70,7 @@ TEST_CASE(
   REQUIRE(found.runs.size() == 1);
   CHECK(found.runs[0].ticks == 200);
   CHECK(found.runs[0].samples == 19);
-  CHECK(found.runs[0].up.stats.duplicated == 200);
+  CHECK(found.runs[0].duplicated() == 200);
   CHECK(found.runs[0].ticks_hz() == Approx(500));
   CapturedSession::Missing missing;
   const auto ticks = all_ticks(file, 0, &missing);
@@ -98,8 +98,7 @@ TEST_CASE("a capture begun in mid-session and with holes says what is missing") 
   }
   const CaptureSurvey found = survey(file, kQuiet);
   CHECK(found.runs[0].first_tick == 1000);
-  CHECK(found.runs[0].up.lost() == 7);  // those in the hole, not the 999 before the capture
-  CHECK(found.runs[0].down.lost() == 1);
+  CHECK(found.runs[0].lost() == 7 + 1);  // those in the hole, not the 999 before the capture
   CapturedSession::Missing missing;
   const auto ticks = all_ticks(file, 0, &missing);
   CHECK(ticks.size() == 93);
@@ -126,6 +125,43 @@ TEST_CASE("ticks whose times jump back, or lie before time began, are left out a
   CHECK(all_ticks(file, 0, &missing).size() == 47);
   CHECK(missing.backwards == 3);
   CHECK(survey(file, kQuiet).runs[0].ticks_hz() == Approx(500));
+}
+
+TEST_CASE("a tick whose time jumps ahead is left out, not all that follow") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.pcap";
+  {
+    CaptureOf capture(file);
+    for (std::uint64_t tick = 1; tick <= 50; ++tick) {
+      ToolState state = state_at(tick, 0);
+      if (tick == 20) state.t_ns = std::int64_t{1} << 60;
+      capture.state(state, tick);
+    }
+    capture.close();
+  }
+  CapturedSession::Missing missing;
+  CHECK(all_ticks(file, 0, &missing).size() == 49);
+  CHECK(missing.backwards == 1);
+}
+
+TEST_CASE("stragglers of a session that is over stay with their run") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.pcap";
+  {
+    CaptureOf capture(file);
+    for (std::uint64_t tick = 1; tick <= 500; ++tick) {
+      const bool old = tick <= 300;
+      capture.state(state_at(tick, 0), old ? tick : tick - 300, old ? 7 : 8);
+      if (tick == 305) capture.sample(sample_of(30), 31, 7);
+      if (tick == 306) capture.state(state_at(299, 0), 299, 7);  // a copy
+    }
+    capture.close();
+  }
+  const CaptureSurvey found = survey(file, kQuiet);
+  REQUIRE(found.runs.size() == 1);
+  CHECK(found.runs[0].ticks == 500);
+  CHECK(found.runs[0].samples == 1);
+  CHECK(found.runs[0].duplicated() == 1);
 }
 
 TEST_CASE("two clients in one capture are two sessions; a restarted server is the same one") {
@@ -228,6 +264,33 @@ TEST_CASE(
       CHECK(newest == known);
     }
     CHECK(k == static_cast<std::uint64_t>(0.2 * rate + 1e-6) + 1);
+  }
+}
+
+TEST_CASE("at another rate no event of a tick is lost or doubled, and a long gap is not filled") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.pcap";
+  {
+    CaptureOf capture(file);
+    for (std::uint64_t tick = 1; tick <= 100; ++tick) {
+      ToolState state = state_at(tick, 0);
+      if (tick == 30) state.flags = ToolState::kDeviceLost;
+      if (tick == 63) state.flags = ToolState::kRearmed;
+      if (tick > 80) state.t_ns += 3600'000'000'000;
+      capture.state(state, tick);
+    }
+    capture.close();
+  }
+  for (const double rate : {2000.0, 500.0, 100.0}) {
+    CAPTURE(rate);
+    CapturedSession session(file, 0);
+    Resampler resampler(session, rate);
+    std::map<int, int> events;
+    std::size_t ticks = 0;
+    for (CapturedTick tick; resampler.next(tick); ++ticks) ++events[tick.state.flags];
+    CHECK(events[ToolState::kDeviceLost] == 1);
+    CHECK(events[ToolState::kRearmed] == 1);
+    CHECK(static_cast<double>(ticks) == Approx(0.2 * rate).margin(3 + 0.002 * rate));
   }
 }
 #endif
