@@ -19,8 +19,12 @@ Json quantiles(const Histogram& histogram, double unit_ns) {
 
 namespace {
 
-fs::path without_links(const fs::path& file) {
+/// What a path leads to, also where the last link dangles.
+fs::path without_links(fs::path file) {
+  constexpr int kMostLinks = 40;
   std::error_code failed;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(file, failed)); ++i)
+    file = file.parent_path() / fs::read_symlink(file, failed);
   const fs::path target = fs::weakly_canonical(file, failed);
   return failed ? file : target;
 }

@@ -74,15 +74,19 @@ void print_drift(const Json& tool) {
   const auto column = [](const char* key) {
     return [key](const Json& cell) { return cell[key].get<double>(); };
   };
-  fmt::print("  drift   first to last quarter: tick {} us, step {} ms",
-             drift("ticks", column("tick_us_mean")), drift("samples", column("step_ms_mean")));
+  std::string text;
+  const auto add = [&](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
+  if (mean_over(cells, 0, n, "ticks", column("tick_us_mean")) > 0)
+    add(fmt::format("tick {} us", drift("ticks", column("tick_us_mean"))));
+  if (mean_over(cells, 0, n, "samples", column("step_ms_mean")) > 0)
+    add(fmt::format("step {} ms", drift("samples", column("step_ms_mean"))));
   const auto method = tool["method"].get<std::string>();
   if (tool["methods"].contains(method)) {
-    fmt::print(", error {} %", drift("samples", [&](const Json& cell) {
-                 return cell["error_percent"][method].get<double>();
-               }));
+    add(fmt::format("error {} %", drift("samples", [&](const Json& cell) {
+                      return cell["error_percent"][method].get<double>();
+                    })));
   }
-  fmt::print("\n");
+  if (!text.empty()) fmt::print("  drift   first to last quarter: {}\n", text);
 }
 
 void print_scores(const Json& tool) {

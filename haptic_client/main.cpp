@@ -44,14 +44,7 @@ void apply(const Overrides& o, client::ClientConfig& config) {
   }
 }
 
-int run(int argc, char** argv) {
-  CLI::App app{"Drives a force-feedback device at haptic rate from forces computed by sim_server."};
-  app.require_subcommand(1);
-  app.footer("Example: haptic_client run configs/clients/liver.toml --seconds 20");
-
-  std::string file;
-  Overrides overrides;
-  client::ClientOptions options;
+CLI::App* add_run(CLI::App& app, std::string& file, Overrides& overrides, client::ClientOptions& options) {
   auto* command = app.add_subcommand("run", "Connect to a server and run the haptic loop until Ctrl-C");
   command->add_option("CLIENT", file, "Client file (TOML); without one, a hand that holds still");
   command->add_option("--server", overrides.server, "ADDR:PORT of sim_server (default 127.0.0.1:45130)");
@@ -66,36 +59,52 @@ int run(int argc, char** argv) {
   command->footer(
       "Methods:\n" + list_of(client::extrapolators()) + "Devices:\n" + list_of(client::devices()) +
       "Example: haptic_client run configs/clients/liver.toml --method constant --report report.json");
+  return command;
+}
 
-  std::string replay_file;
-  client::ReplayOptions replaying;
-  auto* replay =
+CLI::App* add_replay(CLI::App& app, std::string& file, Overrides& overrides, client::ReplayOptions& options) {
+  auto* command =
       app.add_subcommand("replay", "Run a captured session again, offline: the same forces, bit by bit");
-  replay
-      ->add_option("CAPTURE", replaying.capture,
-                   "pcap or pcapng: of --record, sim_server record, tcpdump ...")
+  command
+      ->add_option("CAPTURE", options.capture, "pcap or pcapng: of --record, sim_server record, tcpdump ...")
       ->required();
-  replay->add_option(
-      "--client", replay_file,
+  command->add_option(
+      "--client", file,
       "Client file of the session: workspace, limits and laws to score (default: all defaults)");
-  replay->add_option("--method", overrides.method, "How to extrapolate the force, see below");
-  replay->add_option("--rate", replaying.rate_hz,
-                     "Ticks per second, 1 to 20000 (default, or within 2 %: the capture's own ticks)");
-  replay->add_option("--out", replaying.out, "CSV to write, a row a tick");
-  replay->add_option("--session", replaying.session, "Which session, where the capture has several");
-  replay->add_option("--report", replaying.report, "Write figures to this JSON file");
-  replay->footer("Methods:\n" + list_of(client::extrapolators()) +
-                 "Example: haptic_client replay liver.pcap --method constant --out forces.csv");
-  if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
-  if (options.seconds) require_at_least(*options.seconds, 1e-3, "--seconds", "s");
-  if (*replay) file = replay_file;
+  command->add_option("--method", overrides.method, "How to extrapolate the force, see below");
+  command->add_option("--rate", options.rate_hz,
+                      "Ticks per second, 1 to 20000 (default, or within 2 %: the capture's own ticks)");
+  command->add_option("--out", options.out, "CSV to write, a row a tick");
+  command->add_option("--session", options.session, "Which session, where the capture has several");
+  command->add_option("--report", options.report, "Write figures to this JSON file");
+  command->footer("Methods:\n" + list_of(client::extrapolators()) +
+                  "Example: haptic_client replay liver.pcap --method constant --out forces.csv");
+  return command;
+}
+
+client::ClientConfig read_config(const std::string& file, const Overrides& overrides) {
   client::ClientConfig config = file.empty() ? client::ClientConfig{} : client::read_client_config(file);
   apply(overrides, config);
+  return config;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Drives a force-feedback device at haptic rate from forces computed by sim_server."};
+  app.require_subcommand(1);
+  app.footer("Example: haptic_client run configs/clients/liver.toml --seconds 20");
+  std::string file;
+  Overrides overrides;
+  client::ClientOptions running;
+  client::ReplayOptions replaying;
+  add_run(app, file, overrides, running);
+  const auto* replay = add_replay(app, file, overrides, replaying);
+  if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*replay) {
     if (replaying.rate_hz) require_within(*replaying.rate_hz, 1, 20000, "--rate", "Hz");
-    return client::replay(config, replaying);
+    return client::replay(read_config(file, overrides), replaying);
   }
-  return client::run_client(config, options);
+  if (running.seconds) require_at_least(*running.seconds, 1e-3, "--seconds", "s");
+  return client::run_client(read_config(file, overrides), running);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/clock.h"
+#include "common/error.h"
 
 namespace palpate::protocol {
 namespace {
@@ -10,7 +11,7 @@ constexpr Time kWritePeriod = std::chrono::milliseconds(20);
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& file)
-    : path_(file), capture_(file), ring_(kRoom), epoch_(monotonic_epoch()) {}
+    : path_(file), file_(file), capture_(file_.path()), ring_(kRoom), epoch_(monotonic_epoch()) {}
 
 void Recorder::note(Time t, const Endpoint& from, const Endpoint& to,
                     std::span<const std::byte> bytes) noexcept {
@@ -38,9 +39,23 @@ void Recorder::write_all() noexcept {
   while (const Packet* const packet = ring_.front()) {
     capture_.write(epoch_ + packet->t, packet->from, packet->to, {packet->bytes.data(), packet->kept},
                    packet->length);
+    if (!named_) name_it(*packet);
     ring_.release();
   }
   if (!capture_.flush()) failed.store(true, std::memory_order_relaxed);
+}
+
+void Recorder::name_it(const Packet& packet) noexcept {
+  Datagram datagram;
+  if (decode({packet.bytes.data(), packet.kept}, datagram) != Verdict::kAccepted ||
+      datagram.header.session == 0)
+    return;
+  named_ = true;
+  try {
+    file_.commit();
+  } catch (const Error&) {
+    failed.store(true, std::memory_order_relaxed);
+  }
 }
 
 Recorder::Stats Recorder::stats() const {

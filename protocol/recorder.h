@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <stop_token>
 
+#include "common/report.h"
 #include "common/spsc_ring.h"
 #include "protocol/capture.h"
 
@@ -13,7 +14,9 @@ namespace palpate::protocol {
 /// full or too slow stops or thins the recording, never the session.
 class Recorder {
  public:
-  /// Makes the capture. Throws `Error`. Takes 10 MB: room for four seconds at 2000 datagrams a second.
+  /// Makes the capture, beside `file`; it takes its name, and the place of a file that was there, with the
+  /// first datagram of a session, so that a run that nobody answers destroys nothing. Throws `Error`. Takes
+  /// 10 MB: room for four seconds at 2000 datagrams a second.
   explicit Recorder(const std::filesystem::path& file);
 
   /// Notes one datagram that was sent or received at `t` (monotonic clock of this machine). Network thread
@@ -47,8 +50,11 @@ class Recorder {
   };
   static constexpr std::size_t kRoom = 8192;  // datagrams
   void write_all() noexcept;
+  void name_it(const Packet& packet) noexcept;
 
   std::filesystem::path path_;
+  WholeFile file_;
+  bool named_ = false;
   CaptureWriter capture_;
   SpscRing<Packet> ring_;
   Time epoch_;  // monotonic 0, since 1970

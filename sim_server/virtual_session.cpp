@@ -4,18 +4,32 @@
 #include <cmath>
 
 #include "common/error.h"
+#include "common/hash.h"
 
 namespace palpate::sim {
 using namespace protocol;
 
 namespace {
 
-constexpr std::uint64_t kSessionId = 1;
 constexpr double kNow = 1e-9;  // s: rounding of tick and step times
 
 Endpoint documentation_address(std::uint8_t last, std::uint16_t port) {
   return {.address = {192, 0, 2, last}, .port = port};
 }
+/// Captures of different motions or links are different sessions.
+std::uint64_t session_number(const Trajectory& motion, const VirtualLink& link) {
+  constexpr int kPlaces = 64;
+  Fnv1a hash;
+  hash.add(&link.rate_hz, sizeof link.rate_hz);
+  hash.add(&link.ticks_hz, sizeof link.ticks_hz);
+  hash.add(&link.delay, sizeof link.delay);
+  for (int i = 0; i <= kPlaces; ++i) {
+    const Vec3 p = motion.at(i * motion.duration() / kPlaces);
+    hash.add(p.data(), sizeof p);
+  }
+  return hash.value() | 1;
+}
+
 const Endpoint kClient = documentation_address(1, 45131), kServer = documentation_address(2, 45130);
 
 }  // namespace
@@ -26,7 +40,8 @@ VirtualSession::VirtualSession(Simulation& simulation, const Trajectory& motion,
       motion_(motion),
       link_(link),
       capture_(capture),
-      server_(1, link.rate_hz, tool_radius) {}
+      server_(1, link.rate_hz, tool_radius),
+      session_(session_number(motion, link)) {}
 
 Time VirtualSession::time_of(std::uint64_t k) const {
   return from_seconds(static_cast<double>(k) / link_.ticks_hz);
@@ -54,13 +69,13 @@ void VirtualSession::tick(std::uint64_t k) {
 void VirtualSession::step(const ToolState& state, double steps_due) {
   if (static_cast<double>(steps_) >= steps_due - kNow * link_.rate_hz) return;
   ++steps_;
-  const auto outcome = served_.step({kSessionId, state}, true, 1 / link_.rate_hz);
+  const auto outcome = served_.step({session_, state}, true, 1 / link_.rate_hz);
   if (!outcome || !outcome->answer) return;
   stats_.in_contact += outcome->force.contacts > 0 ? 1 : 0;
   stats_.flagged += outcome->force.flagged ? 1 : 0;
   stats_.max_newton = std::max(stats_.max_newton, outcome->force.force.norm());
   auto* const member = server_.holder(state.tool);
-  on_the_way_.push_back({Time{state.t_ns} + link_.delay, {kSessionId, ++member->sent}, *outcome->answer});
+  on_the_way_.push_back({Time{state.t_ns} + link_.delay, {session_, ++member->sent}, *outcome->answer});
 }
 
 void VirtualSession::deliver(Time t) {
@@ -94,7 +109,7 @@ Datagram VirtualSession::travel(const Endpoint& from, const Endpoint& to, const 
 
 void VirtualSession::to_server(const Header& header, const Message& message, Time t) {
   const auto outcome =
-      server_.receive(travel(kClient, kServer, header, message, t), kClient, t, kSessionId, server_stats_);
+      server_.receive(travel(kClient, kServer, header, message, t), kClient, t, session_, server_stats_);
   if (outcome.answer) to_client(outcome.answer->first, outcome.answer->second, t);
 }
 

@@ -57,6 +57,7 @@ class VirtualSession {
   VirtualLink link_;
   protocol::CaptureWriter& capture_;
   protocol::ServerSessions server_;
+  std::uint64_t session_;
   protocol::ClientSession client_{1};
   protocol::LinkStats server_stats_, client_stats_;
   std::deque<OnTheWay> on_the_way_;

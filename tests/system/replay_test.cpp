@@ -1,6 +1,7 @@
 #ifdef PALPATE_WITH_CAPTURE
 // Recording and replaying with the real programs.
 #include <csignal>
+#include <sys/resource.h>
 
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
@@ -151,5 +152,60 @@ TEST_CASE("captures that are none, or broken, and wrong motions: one line, exit 
        "--ticks: 500 Hz is less");
   says(record_error({"--trajectory", kScene, "--rate", "30"}), "has no [trajectory] section");
   CHECK_FALSE(std::filesystem::exists(file("r.pcap")));
+}
+
+TEST_CASE("the last tick of a session is in its recording, whenever it ends") {
+  const TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return (folder.path() / name).string(); };
+  Server server;
+  for (int i = 0; i < 8; ++i) {
+    output_of("haptic_client",
+              client_arguments(server.address, {"--seconds", "0.1", "--rate", "2000", "--record",
+                                                file("a.pcap"), "--trace", file("a.csv")}),
+              0);
+    replay(file("a.pcap"), {"--client", kClient, "--out", file("b.csv")});
+    const bool same = bytes_of(file("a.csv")) == bytes_of(file("b.csv"));
+    CHECK(same);
+  }
+}
+
+TEST_CASE("a recording that hits its quota stops, the session goes on") {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "a.pcap").string();
+  Server server;
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  const rlimit small{100'000, limit.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  Process client("haptic_client", client_arguments(server.address, {"--seconds", "3", "--record", file}));
+  setrlimit(RLIMIT_FSIZE, &limit);
+  CHECK(client.wait() == 0);
+  CHECK(client.output().find("The recording stopped, the session goes on") != std::string::npos);
+  CHECK(replay(file, {}).find("ticks at") != std::string::npos);  // what there was room for
+}
+
+TEST_CASE("no output overwrites an input, another output, a link or an earlier recording") {
+  const TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return (folder.path() / name).string(); };
+  record(file("a.pcap"));
+  const std::string whole = bytes_of(file("a.pcap"));
+  CHECK(replay(file("a.pcap"), {"--out", file("a.pcap")}, 2).find("name the same file") != std::string::npos);
+  CHECK(replay(file("a.pcap"), {"--out", file("x"), "--report", file("./x")}, 2).find("name the same file") !=
+        std::string::npos);
+  std::filesystem::create_symlink("a.pcap", file("link"));
+  CHECK(replay(file("a.pcap"), {"--out", file("link")}, 2).find("name the same file") != std::string::npos);
+  const bool untouched = bytes_of(file("a.pcap")) == whole;
+  CHECK(untouched);
+  std::filesystem::create_symlink("there.csv", file("link.csv"));
+  replay(file("a.pcap"), {"--out", file("link.csv")});
+  CHECK(std::filesystem::is_symlink(file("link.csv")));
+  CHECK(std::filesystem::is_regular_file(file("there.csv")));
+  const std::string said =
+      output_of("haptic_client", client_arguments("127.0.0.1:9", {"--record", file("a.pcap")}), 1);
+  CHECK(said.find("no answer") != std::string::npos);
+  const bool still_there = bytes_of(file("a.pcap")) == whole;
+  CHECK(still_there);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) ==
+        4);  // nothing half-written left
 }
 #endif
