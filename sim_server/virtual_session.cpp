@@ -74,15 +74,16 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
   stats_.in_contact += outcome->force.contacts > 0 ? 1 : 0;
   stats_.flagged += outcome->force.flagged ? 1 : 0;
   stats_.max_newton = std::max(stats_.max_newton, outcome->force.force.norm());
-  auto* const member = server_.holder(state.tool);
-  on_the_way_.push_back({Time{state.t_ns} + link_.delay, {session_, ++member->sent}, *outcome->answer});
+  on_the_way_.push_back({Time{state.t_ns} + link_.delay, *outcome->answer});
 }
 
 void VirtualSession::deliver(Time t) {
   while (!on_the_way_.empty() && on_the_way_.front().ready <= t) {
     const OnTheWay next = on_the_way_.front();
     on_the_way_.pop_front();
-    to_client(next.header, next.sample, std::max(next.ready, Time{next.sample.tool_t_ns}));
+    // Numbered only now: a Welcome in between does not overtake it.
+    auto* const member = server_.holder(next.sample.tool);
+    to_client({session_, ++member->sent}, next.sample, next.ready);
     ++stats_.force_samples;
   }
 }

@@ -41,7 +41,6 @@ class VirtualSession {
  private:
   struct OnTheWay {
     Time ready;
-    protocol::Header header;
     protocol::ForceSample sample;
   };
   void keep_session(Time t);
