@@ -20,16 +20,16 @@ long resident_kb(const Process& process) {
   return -1;
 }
 
+}  // namespace
+
+#ifdef PALPATE_WITH_CAPTURE
 /// The most any child of this process that has ended ever held, MB.
-long children_peak_mb() {
+static long children_peak_mb() {
   rusage usage{};
   getrusage(RUSAGE_CHILDREN, &usage);
   return usage.ru_maxrss / 1024;
 }
 
-}  // namespace
-
-#ifdef PALPATE_WITH_CAPTURE
 TEST_CASE("a capture of 4 GB is replayed in flat memory", "[.long]") {
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "big.pcap").string();
