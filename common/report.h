@@ -15,9 +15,10 @@ using Json = nlohmann::ordered_json;
 /// (1e3 for microseconds, 1e6 for milliseconds).
 Json quantiles(const Histogram& histogram, double unit_ns);
 
-/// A file that appears whole, or when it is worth a name, or not at all: what is written goes to `path()` beside it; `commit` gives it its
-/// name; going out of scope without that removes it. A link stays a link: what it points to is replaced. What
-/// is no regular file (a device, a pipe, /dev/stdout) is written directly.
+/// A file that appears whole, or when it is worth a name, or not at all: what is written goes to `path()`
+/// beside it; `commit` gives it its name; going out of scope without that removes it. A link stays a link:
+/// what it points to is replaced. What is no regular file (a device, a pipe, /dev/stdout) is written
+/// directly.
 class WholeFile {
  public:
   /// Throws `Error` (input) if it cannot be written. Does not open what is written directly: a pipe is opened
