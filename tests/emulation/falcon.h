@@ -17,7 +17,7 @@ class Falcon : public UsbDevice {
     double packet_time = 1e-3;  ///< s, [1e-4, 0.1]
     bool loaded = false;        ///< firmware in place at the start
     bool homed = false;         ///< references found at the start
-    FalconMechanics::Settings mechanics;
+    FalconMechanics::Settings mechanics = {};
   };
   explicit Falcon(const Settings& settings);
 

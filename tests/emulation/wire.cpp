@@ -29,13 +29,18 @@ void attach(msghdr& message, Ancillary& ancillary, int descriptor) {
 
 }  // namespace
 
-bool send(int fd, const Frame& frame, int descriptor) {
+Bytes encode(const Frame& frame) {
   Header header = frame.header;
   header.length = static_cast<std::uint32_t>(frame.payload.size());
   Bytes bytes(sizeof header + frame.payload.size());
   std::memcpy(bytes.data(), &header, sizeof header);
   if (!frame.payload.empty())
     std::memcpy(bytes.data() + sizeof header, frame.payload.data(), frame.payload.size());
+  return bytes;
+}
+
+bool send(int fd, const Frame& frame, int descriptor) {
+  Bytes bytes = encode(frame);
   for (std::size_t sent = 0; sent < bytes.size();) {
     iovec piece{bytes.data() + sent, bytes.size() - sent};
     msghdr message{};

@@ -62,6 +62,8 @@ struct Frame {
 };
 constexpr std::uint32_t kLargestPayload = 1 << 20;  ///< bytes; more is no frame
 
+/// A frame as it stands on the wire; its `length` is set from the payload.
+Bytes encode(const Frame& frame);
 /// Sends a frame, waiting for room if need be; with it a file descriptor unless that is -1. False: the other
 /// side is gone.
 bool send(int fd, const Frame& frame, int descriptor = -1);
