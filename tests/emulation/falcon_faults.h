@@ -7,7 +7,7 @@ namespace palpate::emulation {
 struct FalconFaults {
   int loader_silent = 0, loader_fails = 0, echo_corrupt = 0, loader_zero = 0, loader_xoff = 0;
   int split = 0, join = 0, status_flood = 0, garbage = 0, zero_in = 0, stale = 0, stall = 0;
-  int latency = 0, mute = 0, freeze = 0;
+  int latency = 0, mute = 0, hang = 0, freeze = 0;
 };
 
 struct FalconFault {
@@ -16,7 +16,7 @@ struct FalconFault {
   const char* meaning;
 };
 
-inline constexpr std::array<FalconFault, 15> kFalconFaults{{
+inline constexpr std::array<FalconFault, 16> kFalconFaults{{
     {"loader_silent", &FalconFaults::loader_silent,
      "the next N greetings of the boot loader are not answered"},
     {"loader_fails", &FalconFaults::loader_fails, "in the next N loads the echo stops after 1000 bytes"},
@@ -33,7 +33,8 @@ inline constexpr std::array<FalconFault, 15> kFalconFaults{{
     {"stale", &FalconFaults::stale, "N bytes of an old reply wait when the device is opened, until a purge"},
     {"stall", &FalconFaults::stall, "the next N control requests of the chip stall"},
     {"latency", &FalconFaults::latency, "every answer comes N ms late (of the wall clock)"},
-    {"mute", &FalconFaults::mute, "1: the microcontroller does not answer"},
+    {"mute", &FalconFaults::mute, "1: the microcontroller does not answer; the chip still sends its status"},
+    {"hang", &FalconFaults::hang, "1: IN transfers never end, not even by a status"},
     {"freeze", &FalconFaults::freeze, "1: the encoders stand still in every reply"},
 }};
 

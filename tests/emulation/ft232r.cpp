@@ -120,6 +120,7 @@ void Ft232r::append_packet(Bytes& transfer, double now) {
 }
 
 std::optional<UsbResult> Ft232r::read(std::size_t size, double now) {
+  if (faults_.hang != 0) return std::nullopt;
   if (faults_.zero_in > 0) {
     --faults_.zero_in;
     return UsbResult{};
@@ -149,6 +150,7 @@ std::optional<UsbResult> Ft232r::read(std::size_t size, double now) {
 }
 
 double Ft232r::wake_at() const {
+  if (faults_.hang != 0) return UsbDevice::kNever;
   const double timer = last_sent_ + latency_;
   if (latency_ > kFrame || fifo_.empty()) return timer;
   return std::min(timer, fifo_.front().ready);

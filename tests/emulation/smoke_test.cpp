@@ -148,6 +148,42 @@ TEST_CASE("permission denied, busy, stalled, silent: libusb's own errors") {
   CHECK_THROWS(emulator.command("unplug 9-9"));
 }
 
+TEST_CASE("a device that hangs: transfers time out and are cancelled, and the next ones work") {
+  const Emulator emulator({"falcon:2-1"});
+  emulator.command("fault 2-1 hang");
+  const std::string said = smoke(emulator, {"timeouts"});
+  CHECK(contains(said, "timeout LIBUSB_ERROR_TIMEOUT\ntimeout LIBUSB_ERROR_TIMEOUT\n"));
+  emulator.command("fault 2-1 hang 0");
+  CHECK(contains(smoke(emulator, {"timeouts"}), "timeout LIBUSB_SUCCESS"));
+}
+
+TEST_CASE("64 transfers under way at once: none is lost, none ends twice") {
+  const Emulator emulator({"falcon:2-1"});
+  CHECK(contains(smoke(emulator, {"storm", "20000"}), "storm_over 0\n"));
+}
+
+TEST_CASE("an interface belongs to one program at a time, two devices to two") {
+  const Emulator emulator({"falcon:2-1", "spacemouse:3-1"});
+  const auto holder = emulator.start("usb_smoke", {"hotplug"});
+  REQUIRE(holder->wait_for("waiting"));
+  CHECK(contains(smoke(emulator, {"falcon", "1"}, 1), "error claim LIBUSB_ERROR_BUSY"));
+  emulator.command("mouse 3-1 1 1 1 1 1 1");
+  CHECK(contains(smoke(emulator, {"mouse", "2"}), "report 02"));
+  holder->signal(SIGKILL);
+  holder->wait();
+  CHECK(contains(smoke(emulator, {"timeouts"}), "timeout"));
+}
+
+TEST_CASE("on the wall clock: the same session, at the pace of the hardware") {
+  const Emulator emulator({"falcon:2-1"}, {"--clock", "wall"});
+  const auto client = emulator.start("usb_smoke", {"falcon", "300"});
+  CHECK(client->wait_for("loaded 8192"));
+  emulator.command("homing 2-1 home");
+  CHECK(client->wait(60) == 0);
+  std::cout << "wall clock: " << client->output().substr(client->output().find("round_trips"));
+  CHECK(emulator.state("2-1")["homed"] == 7);
+}
+
 TEST_CASE("nothing is left behind: no process, no socket, no folder") {
   std::string folder;
   pid_t id = 0;

@@ -46,6 +46,9 @@ struct Port {
   const Link* claimed = nullptr;  // by this program
 };
 
+/// A kDevice, kAttached or kDetached.
+wire::Frame description_of(const Port& port, wire::Kind kind);
+
 /// The devices, and what programs do to them over their links. Times: seconds of the wall clock since the
 /// start.
 class UsbBus {

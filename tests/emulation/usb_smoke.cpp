@@ -156,7 +156,6 @@ void falcon(const Context& context, int packets) {
 int LIBUSB_CALL on_hotplug(libusb_context*, libusb_device* device, libusb_hotplug_event event, void* count) {
   std::printf("%s %d-%d\n", event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED ? "arrived" : "left",
               libusb_get_bus_number(device), libusb_get_port_number(device));
-  std::fflush(stdout);
   ++*static_cast<int*>(count);
   return 0;
 }
@@ -184,20 +183,64 @@ void hotplug(const Context& context) {
       ended = 0;
       checked(libusb_submit_transfer(transfer), "submit");
       std::printf("waiting\n");
-      std::fflush(stdout);
-      while (ended == 0) libusb_handle_events_completed(context.usb, &ended);
+          while (ended == 0) libusb_handle_events_completed(context.usb, &ended);
     }
     std::printf("transfer_status %d\n", ended - 1);
     libusb_free_transfer(transfer);
     int moved = 0;
     std::printf("after %s\n",
                 libusb_error_name(libusb_bulk_transfer(device.usb, kOut, buffer, 1, &moved, 100)));
-    std::fflush(stdout);
-  }
+    }
   while (events < 2) libusb_handle_events_completed(context.usb, nullptr);
   const Handle again(context, 0x0403, 0xcb48);
   again.claim();
   std::printf("open_again 1\n");
+}
+
+/// Two transfers that time out, and with them are cancelled.
+void timeouts(const Context& context) {
+  const Handle device(context, 0x0403, 0xcb48);
+  device.claim();
+  for (int i = 0; i < 2; ++i) {
+    std::uint8_t packet[64];
+    int moved = 0;
+    std::printf("timeout %s\n",
+                libusb_error_name(libusb_bulk_transfer(device.usb, kIn, packet, sizeof packet, &moved, 50)));
+  }
+}
+
+/// Keeps 64 transfers under way, more than libusb reaps at once, until `count` have ended; then cancels the
+/// rest.
+struct Storm {
+  int left, running = 0;
+  static void LIBUSB_CALL on_end(libusb_transfer* transfer) {
+    auto& storm = *static_cast<Storm*>(transfer->user_data);
+    --storm.running;
+    if (transfer->status != LIBUSB_TRANSFER_COMPLETED || storm.left <= 0) return;
+    --storm.left;
+    if (libusb_submit_transfer(transfer) == 0) ++storm.running;
+  }
+};
+
+void storm(const Context& context, int count) {
+  const Handle device(context, 0x0403, 0xcb48);
+  device.claim();
+  ftdi(device, 9, 1);
+  Storm storm{count};
+  std::vector<Bytes> buffers(64, Bytes(64));
+  std::vector<libusb_transfer*> transfers;
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    transfers.push_back(libusb_alloc_transfer(0));
+    libusb_fill_bulk_transfer(transfers[i], device.usb, i % 8 == 0 ? kIn : kOut, buffers[i].data(), 64,
+                              Storm::on_end, &storm, 0);
+    storm.running += libusb_submit_transfer(transfers[i]) == 0 ? 1 : 0;
+  }
+  timeval second{1, 0};
+  while (storm.left > 0) libusb_handle_events_timeout(context.usb, &second);
+  for (libusb_transfer* transfer : transfers) libusb_cancel_transfer(transfer);
+  while (storm.running > 0) libusb_handle_events_timeout(context.usb, &second);
+  for (libusb_transfer* transfer : transfers) libusb_free_transfer(transfer);
+  std::printf("storm_over %d\n", storm.running);
 }
 
 void mouse(const Context& context, std::uint16_t vendor, std::uint16_t product, int reports) {
@@ -221,6 +264,7 @@ void mouse(const Context& context, std::uint16_t vendor, std::uint16_t product, 
 }  // namespace
 
 int main(int count, char** words) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // who started this reads along
   const std::string what = count > 1 ? words[1] : "";
   try {
     const Context context;
@@ -231,12 +275,16 @@ int main(int count, char** words) {
       falcon(context, number);
     } else if (what == "hotplug") {
       hotplug(context);
+    } else if (what == "timeouts") {
+      timeouts(context);
+    } else if (what == "storm") {
+      storm(context, number);
     } else if (what == "mouse") {
       mouse(context, 0x046d, 0xc626, number);
     } else if (what == "mouse13") {
       mouse(context, 0x256f, 0xc62e, number);
     } else {
-      std::fprintf(stderr, "usage: usb_smoke list|falcon|hotplug|mouse|mouse13 [N]\n");
+      std::fprintf(stderr, "usage: usb_smoke list|falcon|hotplug|timeouts|storm|mouse|mouse13 [N]\n");
       return 2;
     }
     return 0;
