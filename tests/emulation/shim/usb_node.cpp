@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -76,9 +77,10 @@ UsbNode::~UsbNode() {
   if (poll_socket_ >= 0) close(poll_socket_);
 }
 
-void UsbNode::fill() const {
+bool UsbNode::fill() const {
   static const char block[2048] = {};
-  ::send(poll_socket_, block, sizeof block, MSG_DONTWAIT | MSG_NOSIGNAL);  // fails if it is full already
+  const ssize_t sent = ::send(poll_socket_, block, sizeof block, MSG_DONTWAIT | MSG_NOSIGNAL);
+  return sent > 0 || errno == EAGAIN;  // it is full already
 }
 
 void UsbNode::leave() {
@@ -86,6 +88,13 @@ void UsbNode::leave() {
   fill();
   if (link_ >= 0) close(link_);
   link_ = -1;
+  // Whatever became of the emulator's end: from here on this number polls as a device that is gone.
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) return;
+  ::send(ends[0], "", 1, MSG_NOSIGNAL);
+  close(ends[1]);  // with that unread: POLLERR and POLLHUP
+  dup3(ends[0], poll_socket_, O_CLOEXEC);
+  close(ends[0]);
 }
 
 void UsbNode::pump(bool wait) {
@@ -148,8 +157,8 @@ int UsbNode::discard(const usbdevfs_urb* urb) {
 int UsbNode::reap(void** urb) {
   if (completed_.empty()) pump(false);
   if (completed_.empty() && !gone_) {
-    fill();
-    pump(false);  // what came before the filling found nothing to empty
+    if (!fill()) leave();  // an emulator that was killed
+    pump(false);           // what came before the filling found nothing to empty
     Frame drain;
     drain.header.kind = Kind::kDrain;
     if (!completed_.empty() && !gone_) wire::send(link_, drain);

@@ -38,7 +38,7 @@ class UsbNode {
   void pump(bool wait);
   void complete(const wire::Frame& frame);
   void finish(std::uint64_t id, usbdevfs_urb* urb, int status);
-  void fill() const;
+  bool fill() const;
   void leave();
 
   std::mutex mutex_;
