@@ -34,9 +34,11 @@ bool contains(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("libusb lists the emulated devices, and only those") {
-  const Emulator emulator({"falcon:2-1", "spacemouse:3-2", "spacemouse13:3-4"});
+  const Emulator emulator({"falcon:2-1", "spacemouse:3-2", "spacemouse13:3-4", "falcon:3-1.2"});
   const std::string said = smoke(emulator, {"list"});
-  CHECK(contains(said, "devices 3\n"));
+  CHECK(contains(said, "devices 7\n"));  // with two root hubs and the hub at 3-1
+  CHECK(contains(said, "device 3-0 address 1 id 1d6b:0002 class 09 endpoints 1 speed 2 product Root hub\n"));
+  CHECK(contains(said, "device 3-1.2 address 5 id 0403:cb48 class ff"));
   CHECK(contains(said,
                  "device 2-1 address 2 id 0403:cb48 class ff endpoints 2 speed 2 product FALCON HAPTIC\n"));
   CHECK(contains(said,

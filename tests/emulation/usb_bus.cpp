@@ -5,6 +5,8 @@
 #include <sstream>
 #include <sys/socket.h>
 
+#include "tests/emulation/hub.h"
+
 namespace palpate::emulation {
 
 void UsbBus::add(const std::string& name, std::unique_ptr<UsbDevice> device) {
@@ -12,17 +14,30 @@ void UsbBus::add(const std::string& name, std::unique_ptr<UsbDevice> device) {
   std::smatch parts;
   if (!std::regex_match(name, parts, form))
     throw CommandError("\"" + name + "\" is no port; expected BUS-PORT, as 2-1");
-  for (const auto& port : ports_) {
-    if (port->name == name) throw CommandError("port " + name + " is taken");
+  if (has(name)) throw CommandError("port " + name + " is taken");
+  const auto bus = static_cast<std::uint8_t>(std::stoi(parts[1]));
+  const std::string root = "usb" + parts[1].str();
+  if (!has(root)) put(root, bus, std::make_unique<Hub>(true));
+  for (std::size_t dot = name.find('.'); dot != std::string::npos; dot = name.find('.', dot + 1)) {
+    const std::string above = name.substr(0, dot);
+    if (!has(above)) put(above, bus, std::make_unique<Hub>(false));
+    if (!find(above).device->is_hub()) throw CommandError("the device at " + above + " is no hub");
   }
+  put(name, bus, std::move(device));
+}
+
+void UsbBus::put(const std::string& name, std::uint8_t bus, std::unique_ptr<UsbDevice> device) {
   auto port = std::make_unique<Port>();
   port->name = name;
-  port->bus = static_cast<std::uint8_t>(std::stoi(parts[1]));
+  port->bus = bus;
   port->device = std::move(device);
   port->kernel_owns = !port->device->kernel_driver().empty();
-  last_address_.try_emplace(port->bus, std::uint8_t{1});  // 1 is the root hub
-  port->address = ++last_address_[port->bus];
+  port->address = ++last_address_[bus];
   ports_.push_back(std::move(port));
+}
+
+bool UsbBus::has(const std::string& name) const {
+  return std::any_of(ports_.begin(), ports_.end(), [&](const auto& port) { return port->name == name; });
 }
 
 void UsbBus::closed(const Link& link) {
@@ -76,7 +91,10 @@ std::string UsbBus::command(const std::string& line, double now) {
   try {
     if (verb == "devices") {
       std::string names;
-      for (const auto& port : ports_) names += " " + port->name + (port->plugged ? "" : "(unplugged)");
+      for (const auto& port : ports_) {
+        if (port->device->is_hub()) continue;
+        names += " " + port->name + (port->plugged ? "" : "(unplugged)");
+      }
       return "ok" + names;
     }
     Port& port = find(name);

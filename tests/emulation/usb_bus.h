@@ -53,7 +53,8 @@ wire::Frame description_of(const Port& port, wire::Kind kind);
 /// start.
 class UsbBus {
  public:
-  /// `name` as in sysfs: bus, '-', ports joined by '.'. Throws `CommandError` if it is not, or is taken.
+  /// `name` as in sysfs: bus, '-', ports joined by '.'; hubs above it come by themselves. Throws
+  /// `CommandError` if it is no such name, or is taken.
   void add(const std::string& name, std::unique_ptr<UsbDevice> device);
   /// One frame of a program. False: the link is to be closed.
   bool handle(Link& link, const wire::Frame& frame, double now);
@@ -69,6 +70,8 @@ class UsbBus {
   std::vector<Link*> links;  ///< all that are open; who owns them keeps this
 
  private:
+  void put(const std::string& name, std::uint8_t bus, std::unique_ptr<UsbDevice> device);
+  bool has(const std::string& name) const;
   void list(const Link& link) const;
   void open(Link& link, const wire::Header& header, double now);
   void submit(Link& link, const wire::Frame& frame, double now);

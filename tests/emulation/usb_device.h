@@ -42,6 +42,8 @@ class UsbDevice {
   /// The kernel's driver that owns the interface before anybody detaches it; empty: none.
   virtual std::string kernel_driver() const { return {}; }
 
+  virtual bool is_hub() const { return false; }
+
   /// A control request that is not one of the standard ones `control` answers.
   virtual UsbResult request(const UsbSetup& setup, const Bytes& data, double now) = 0;
   /// Data for an OUT endpoint; 0 or a negative errno.

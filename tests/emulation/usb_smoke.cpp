@@ -121,15 +121,18 @@ void list(const Context& context) {
     const auto& interface = config->interface[0].altsetting[0];
     std::uint8_t ports[8] = {};
     const int depth = libusb_get_port_numbers(all[i], ports, sizeof ports);
+    std::string path;
+    for (int k = 0; k < depth; ++k) path.append(k > 0 ? "." : "").append(std::to_string(ports[k]));
+    if (depth <= 0) path = "0";
     unsigned char product[64] = "?";
     libusb_device_handle* handle = nullptr;
     if (libusb_open(all[i], &handle) == 0) {
       libusb_get_string_descriptor_ascii(handle, d.iProduct, product, sizeof product);
       libusb_close(handle);
     }
-    std::printf("device %d-%d address %d id %04x:%04x class %02x endpoints %d speed %d product %s\n",
-                libusb_get_bus_number(all[i]), depth > 0 ? ports[0] : 0, libusb_get_device_address(all[i]),
-                d.idVendor, d.idProduct, interface.bInterfaceClass, interface.bNumEndpoints,
+    std::printf("device %d-%s address %d id %04x:%04x class %02x endpoints %d speed %d product %s\n",
+                libusb_get_bus_number(all[i]), path.c_str(), libusb_get_device_address(all[i]), d.idVendor,
+                d.idProduct, interface.bInterfaceClass, interface.bNumEndpoints,
                 libusb_get_device_speed(all[i]), reinterpret_cast<const char*>(product));
     libusb_free_config_descriptor(config);
   }
@@ -183,14 +186,14 @@ void hotplug(const Context& context) {
       ended = 0;
       checked(libusb_submit_transfer(transfer), "submit");
       std::printf("waiting\n");
-          while (ended == 0) libusb_handle_events_completed(context.usb, &ended);
+      while (ended == 0) libusb_handle_events_completed(context.usb, &ended);
     }
     std::printf("transfer_status %d\n", ended - 1);
     libusb_free_transfer(transfer);
     int moved = 0;
     std::printf("after %s\n",
                 libusb_error_name(libusb_bulk_transfer(device.usb, kOut, buffer, 1, &moved, 100)));
-    }
+  }
   while (events < 2) libusb_handle_events_completed(context.usb, nullptr);
   const Handle again(context, 0x0403, 0xcb48);
   again.claim();
