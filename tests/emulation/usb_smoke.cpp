@@ -1,53 +1,13 @@
 // usb_smoke: an ordinary program on libusb, to be run against emulated (or real) devices. It says what it
 // sees, a line `key value` each. Exit code 0: everything went as it should.
+#include "tests/emulation/usb_smoke.h"
+
 #include <chrono>
-#include <cstdint>
-#include <cstdio>
-#include <cstring>
-#include <libusb-1.0/libusb.h>
-#include <stdexcept>
-#include <string>
-#include <vector>
+#include <cstdlib>
+
+using namespace palpate::usb_smoke;
 
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
-constexpr unsigned kTimeout = 1000;  // ms
-constexpr std::uint8_t kIn = 0x81, kOut = 0x02;
-
-int checked(int result, const char* what) {
-  if (result < 0) throw std::runtime_error(std::string(what) + " " + libusb_error_name(result));
-  return result;
-}
-
-struct Context {
-  libusb_context* usb = nullptr;
-  Context() { checked(libusb_init(&usb), "init"); }
-  ~Context() { libusb_exit(usb); }
-};
-
-struct Handle {
-  libusb_device_handle* usb = nullptr;
-  Handle(const Context& context, std::uint16_t vendor, std::uint16_t product) {
-    libusb_device** all = nullptr;
-    const auto count = libusb_get_device_list(context.usb, &all);
-    int result = LIBUSB_ERROR_NOT_FOUND;
-    for (ssize_t i = 0; i < count && usb == nullptr; ++i) {
-      libusb_device_descriptor d{};
-      libusb_get_device_descriptor(all[i], &d);
-      if (d.idVendor == vendor && d.idProduct == product) result = libusb_open(all[i], &usb);
-    }
-    libusb_free_device_list(all, 1);
-    checked(usb == nullptr ? result : 0, "open");
-    libusb_set_auto_detach_kernel_driver(usb, 1);
-  }
-  ~Handle() { libusb_close(usb); }
-  void claim() const { checked(libusb_claim_interface(usb, 0), "claim"); }
-};
-
-void ftdi(const Handle& device, std::uint8_t request, std::uint16_t value) {
-  checked(libusb_control_transfer(device.usb, 0x40, request, value, 0, nullptr, 0, kTimeout), "control");
-}
 
 void send(const Handle& device, const Bytes& bytes) {
   int moved = 0;
@@ -121,9 +81,8 @@ void list(const Context& context) {
     const auto& interface = config->interface[0].altsetting[0];
     std::uint8_t ports[8] = {};
     const int depth = libusb_get_port_numbers(all[i], ports, sizeof ports);
-    std::string path;
+    std::string path(depth > 0 ? 0 : 1, '0');
     for (int k = 0; k < depth; ++k) path.append(k > 0 ? "." : "").append(std::to_string(ports[k]));
-    if (depth <= 0) path = "0";
     unsigned char product[64] = "?";
     libusb_device_handle* handle = nullptr;
     if (libusb_open(all[i], &handle) == 0) {
@@ -154,96 +113,6 @@ void falcon(const Context& context, int packets) {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   std::printf("round_trips_per_second %.0f\n", packets / took.count());
   checked(libusb_release_interface(device.usb, 0), "release");
-}
-
-int LIBUSB_CALL on_hotplug(libusb_context*, libusb_device* device, libusb_hotplug_event event, void* count) {
-  std::printf("%s %d-%d\n", event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED ? "arrived" : "left",
-              libusb_get_bus_number(device), libusb_get_port_number(device));
-  ++*static_cast<int*>(count);
-  return 0;
-}
-
-void LIBUSB_CALL on_transfer(libusb_transfer* transfer) {
-  *static_cast<int*>(transfer->user_data) = 1 + transfer->status;
-}
-
-/// Opens the Falcon, waits for its unplugging with a transfer under way, and for its return.
-void hotplug(const Context& context) {
-  int events = 0, ended = 0;
-  libusb_hotplug_callback_handle callback = 0;
-  checked(libusb_hotplug_register_callback(
-              context.usb, LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT, 0, 0x0403,
-              0xcb48, LIBUSB_HOTPLUG_MATCH_ANY, on_hotplug, &events, &callback),
-          "hotplug");
-  {
-    const Handle device(context, 0x0403, 0xcb48);
-    device.claim();
-    ftdi(device, 9, 255);
-    std::uint8_t buffer[64];
-    libusb_transfer* transfer = libusb_alloc_transfer(0);
-    libusb_fill_bulk_transfer(transfer, device.usb, kIn, buffer, sizeof buffer, on_transfer, &ended, 0);
-    for (ended = 1; ended == 1;) {  // status only: again
-      ended = 0;
-      checked(libusb_submit_transfer(transfer), "submit");
-      std::printf("waiting\n");
-      while (ended == 0) libusb_handle_events_completed(context.usb, &ended);
-    }
-    std::printf("transfer_status %d\n", ended - 1);
-    libusb_free_transfer(transfer);
-    int moved = 0;
-    std::printf("after %s\n",
-                libusb_error_name(libusb_bulk_transfer(device.usb, kOut, buffer, 1, &moved, 100)));
-  }
-  while (events < 2) libusb_handle_events_completed(context.usb, nullptr);
-  const Handle again(context, 0x0403, 0xcb48);
-  again.claim();
-  std::printf("open_again 1\n");
-}
-
-/// Two transfers that time out, and with them are cancelled.
-void timeouts(const Context& context) {
-  const Handle device(context, 0x0403, 0xcb48);
-  device.claim();
-  for (int i = 0; i < 2; ++i) {
-    std::uint8_t packet[64];
-    int moved = 0;
-    std::printf("timeout %s\n",
-                libusb_error_name(libusb_bulk_transfer(device.usb, kIn, packet, sizeof packet, &moved, 50)));
-  }
-}
-
-/// Keeps 64 transfers under way, more than libusb reaps at once, until `count` have ended; then cancels the
-/// rest.
-struct Storm {
-  int left, running = 0;
-  static void LIBUSB_CALL on_end(libusb_transfer* transfer) {
-    auto& storm = *static_cast<Storm*>(transfer->user_data);
-    --storm.running;
-    if (transfer->status != LIBUSB_TRANSFER_COMPLETED || storm.left <= 0) return;
-    --storm.left;
-    if (libusb_submit_transfer(transfer) == 0) ++storm.running;
-  }
-};
-
-void storm(const Context& context, int count) {
-  const Handle device(context, 0x0403, 0xcb48);
-  device.claim();
-  ftdi(device, 9, 1);
-  Storm storm{count};
-  std::vector<Bytes> buffers(64, Bytes(64));
-  std::vector<libusb_transfer*> transfers;
-  for (std::size_t i = 0; i < buffers.size(); ++i) {
-    transfers.push_back(libusb_alloc_transfer(0));
-    libusb_fill_bulk_transfer(transfers[i], device.usb, i % 8 == 0 ? kIn : kOut, buffers[i].data(), 64,
-                              Storm::on_end, &storm, 0);
-    storm.running += libusb_submit_transfer(transfers[i]) == 0 ? 1 : 0;
-  }
-  timeval second{1, 0};
-  while (storm.left > 0) libusb_handle_events_timeout(context.usb, &second);
-  for (libusb_transfer* transfer : transfers) libusb_cancel_transfer(transfer);
-  while (storm.running > 0) libusb_handle_events_timeout(context.usb, &second);
-  for (libusb_transfer* transfer : transfers) libusb_free_transfer(transfer);
-  std::printf("storm_over %d\n", storm.running);
 }
 
 void mouse(const Context& context, std::uint16_t vendor, std::uint16_t product, int reports) {
