@@ -1,5 +1,6 @@
 #include "tests/emulation/wire.h"
 
+#include <cerrno>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -98,4 +99,23 @@ TEST_CASE("usb bus: ports, names, and commands that are wrong") {
   CHECK(bus.command("", 0).rfind("error", 0) == 0);
   CHECK(bus.command("mouse 2-1 1 2 3 4 5 six", 0).rfind("error \"six\" is no number", 0) == 0);
   CHECK(bus.command("state 2-1", 0).rfind("ok {\"axes\":[", 0) == 0);
+}
+
+TEST_CASE("usb bus: a link without a device is told so, whatever it asks") {
+  int ends[2];
+  REQUIRE(socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0);
+  UsbBus bus;
+  Link link(ends[0]);
+  wire::FrameReader reader;
+  const auto answer = [&](wire::Kind kind) {
+    CHECK(bus.handle(link, frame(kind, 1), 0));
+    CHECK(reader.fill(ends[1], true));
+    return reader.next()->header.status;
+  };
+  CHECK(answer(wire::Kind::kOpen) == -ENODEV);
+  for (const auto kind : {wire::Kind::kClaim, wire::Kind::kRelease, wire::Kind::kGetDriver})
+    CHECK(answer(kind) == -ENODEV);
+  CHECK(bus.handle(link, frame(wire::Kind::kSubmit, 2), 0));
+  CHECK_FALSE(bus.handle(link, frame(wire::Kind::kAttached, 3), 0));
+  close(ends[1]);
 }
