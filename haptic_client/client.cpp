@@ -57,8 +57,9 @@ bool wait_for_welcome(const NetLink& link, const std::string& server) {
 /// latched fault.
 class Watcher {
  public:
-  Watcher(HapticLoop& loop, const protocol::Recorder* recorder, const std::string& server)
-      : loop_(loop), recording_(recorder), server_(server) {}
+  Watcher(HapticLoop& loop, const Device& device, const protocol::Recorder* recorder,
+          const std::string& server)
+      : loop_(loop), device_(device), recording_(recorder), server_(server) {}
 
   void look(double seconds) {
     const std::int64_t age = loop_.newest_age_ns;
@@ -73,6 +74,10 @@ class Watcher {
     }
     fault_ = fault;
     recording_.look();
+    if (const char* status = device_.status(); status != device_status_) {
+      if (status[0] != 0) log::info("{}", status);
+      device_status_ = status;
+    }
     const bool terminal = isatty(STDOUT_FILENO) != 0;
     if (seconds < next_) return;
     next_ = seconds + (terminal ? 0.2 : 5);
@@ -85,6 +90,8 @@ class Watcher {
 
  private:
   HapticLoop& loop_;
+  const Device& device_;
+  const char* device_status_ = "";
   protocol::RecordingWatcher recording_;
   std::string server_;
   bool silent_ = false;
@@ -92,9 +99,9 @@ class Watcher {
   double next_ = 0;
 };
 
-void watch(HapticLoop& loop, const protocol::Recorder* recorder, const std::string& server,
-           std::optional<double> seconds) {
-  Watcher watcher(loop, recorder, server);
+void watch(HapticLoop& loop, const Device& device, const protocol::Recorder* recorder,
+           const std::string& server, std::optional<double> seconds) {
+  Watcher watcher(loop, device, recorder, server);
   for (const Time start = now();;) {
     const double elapsed = to_seconds(now() - start);
     if (seconds && elapsed >= *seconds) break;
@@ -107,14 +114,14 @@ void watch(HapticLoop& loop, const protocol::Recorder* recorder, const std::stri
 }
 
 /// Runs the haptic loop in a thread of its own until Ctrl-C or the end of the time.
-void drive(HapticLoop& loop, const protocol::Recorder* recorder, const ClientConfig& config,
-           const ClientOptions& options) {
+void drive(HapticLoop& loop, const Device& device, const protocol::Recorder* recorder,
+           const ClientConfig& config, const ClientOptions& options) {
   log::info("connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", config.server, config.device.name,
             config.rate_hz, config.method);
   std::jthread haptic([&](const std::stop_token& stop) { loop.run(stop); });
   warn_if_refused(make_realtime(haptic.native_handle(), "palpate-haptic", kPriority));
   warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
-  watch(loop, recorder, config.server, options.seconds);
+  watch(loop, device, recorder, config.server, options.seconds);
 }
 
 void write_trace(const std::filesystem::path& file, const Observation& observation) {
@@ -154,7 +161,7 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
       NetLink& link;
       ~StopNet() { link.stop(); }
     } stop_net{link};
-    if (wait_for_welcome(link, config.server)) drive(loop, recorder.get(), config, options);
+    if (wait_for_welcome(link, config.server)) drive(loop, *device, recorder.get(), config, options);
   }
   Json tool = tool_report(config, pipeline, observation);
   tool["loop"] = loop_report(config.rate_hz, loop.stats());

@@ -22,6 +22,15 @@ OperatorSettings read_operator(const Config& config) {
   return hand;
 }
 
+FalconSettings read_falcon(const Config& config) {
+  FalconSettings falcon;
+  if (config.has("firmware")) falcon.firmware = config.file("firmware");
+  falcon.torque_constant =
+      config.number("torque_constant", {100, 50000, "DAC units per N m"}, falcon.torque_constant);
+  config.reject_unknown();
+  return falcon;
+}
+
 Workspace read_workspace(const Config& config) {
   Workspace workspace;
   workspace.scale = config.number("scale", {0.01, 100, "world m per device m"}, workspace.scale);
@@ -76,12 +85,11 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   for (const std::string& law : client.scored_laws())
     find_row(extrapolators(), law, "method", client.score_where);
   if (const auto device = config.table("device")) {
-    client.device.name = device->text("name", client.device.name);
-    client.device.where = device->where("name");
-    find_row(devices(), client.device.name, "device", client.device.where);
+    choose_device(client.device, device->text("name", client.device.name), device->where("name"));
     device->reject_unknown();
   }
   if (const auto hand = config.table("operator")) client.device.hand = read_operator(*hand);
+  if (const auto falcon = config.table("falcon")) client.device.falcon = read_falcon(*falcon);
   if (const auto trajectory = config.table("trajectory"))
     client.device.trajectory = read_trajectory_settings(*trajectory);
   if (const auto workspace = config.table("workspace")) client.workspace = read_workspace(*workspace);

@@ -146,8 +146,6 @@ const char* name_of(Fault fault) {
       return "a force was not finite";
     case Fault::kStorm:
       return "the force oscillated against the slew limit";
-    case Fault::kDeviceLost:
-      return "the device was lost";
   }
   return "unknown";
 }

@@ -20,7 +20,7 @@ std::string list_of(const Table& table) {
 }
 
 struct Overrides {
-  std::string server, device, method;
+  std::string server, device, method, firmware;
   std::optional<double> rate_hz;
 };
 
@@ -30,10 +30,8 @@ void apply(const Overrides& o, client::ClientConfig& config) {
     config.server = o.server;
     config.server_where = "--server";
   }
-  if (!o.device.empty()) {
-    find_row(client::devices(), o.device, "device", "--device");
-    config.device.name = o.device;
-  }
+  if (!o.device.empty()) client::choose_device(config.device, o.device, "--device");
+  if (!o.firmware.empty()) config.device.falcon.firmware = o.firmware;
   if (!o.method.empty()) {
     find_row(client::extrapolators(), o.method, "method", "--method");
     config.method = o.method;
@@ -49,6 +47,8 @@ CLI::App* add_run(CLI::App& app, std::string& file, Overrides& overrides, client
   command->add_option("CLIENT", file, "Client file (TOML); without one, a hand that holds still");
   command->add_option("--server", overrides.server, "ADDR:PORT of sim_server (default 127.0.0.1:45130)");
   command->add_option("--device", overrides.device, "Device, see below");
+  command->add_option("--falcon-firmware", overrides.firmware,
+                      "Image for a Falcon that has none since power-up");
   command->add_option("--method", overrides.method, "How to extrapolate the force, see below");
   command->add_option("--rate", overrides.rate_hz, "Haptic ticks per second, 100 to 4000 (default 500)")
       ->check(CLI::Range(client::kMinRate, client::kMaxRate));

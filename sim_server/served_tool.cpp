@@ -10,7 +10,9 @@ std::optional<ServedTool::Outcome> ServedTool::step(const ToolInput& input, bool
     samples_ = 0;
   }
   if (session_ == 0) return {};
-  const ToolForce force = simulation_.step(input.state.p_W, dt);
+  const bool lost = (input.state.flags & protocol::ToolState::kDeviceLost) != 0;
+  if (lost) simulation_.lift_tool();  // its pose is the last one known, or none: it touches nothing
+  const ToolForce force = lost ? ToolForce{} : simulation_.step(input.state.p_W, dt);
   if (!fresh) return Outcome{force, {}};
   const std::uint32_t flags =
       (force.contacts > 0 ? ForceSample::kInContact : 0) | (force.flagged ? ForceSample::kFlagged : 0);

@@ -2,6 +2,10 @@
 
 #include <array>
 
+#include "common/error.h"
+#include "common/text.h"
+#include "haptic_client/device/usb_port.h"
+
 namespace palpate::client {
 namespace {
 
@@ -16,12 +20,40 @@ DeviceLimits limits_of_simulated(const DeviceSettings& settings) {
   return {.max_force = settings.hand.max_force};
 }
 
+std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
+#ifdef PALPATE_WITH_USB
+  std::vector<std::byte> firmware;
+  if (!settings.falcon.firmware.empty()) firmware = read_firmware(settings.falcon.firmware);
+  return std::make_unique<Falcon>(std::make_unique<UsbPort>(kFalconVendor, kFalconProduct, settings.port),
+                                  std::move(firmware), settings.falcon.torque_constant);
+#else
+  fail(
+      "{}: device \"falcon\" was left out of this build (PALPATE_USB=OFF); build with it, and "
+      "libusb-1.0-0-dev",
+      settings.where);
+#endif
+}
+
+DeviceLimits limits_of_falcon(const DeviceSettings&) {
+  return {.max_force = 8, .min_period = std::chrono::milliseconds(1)};
+}
+
 constexpr std::array kDevices{
     DeviceRow{"simulated", "a hand (mass, spring, damper) that follows a recorded motion",
               &limits_of_simulated, &make_simulated},
+    DeviceRow{"falcon", "Novint Falcon over libusb; falcon:2-1 is the one at bus 2, port 1",
+              &limits_of_falcon, &make_falcon},
 };
 
 }  // namespace
+
+void choose_device(DeviceSettings& settings, const std::string& text, const std::string& where) {
+  const std::size_t colon = text.find(':');
+  settings.name = text.substr(0, colon);
+  settings.port = colon == std::string::npos ? "" : text.substr(colon + 1);
+  settings.where = where;
+  find_row(devices(), settings.name, "device", where);
+}
 
 std::span<const DeviceRow> devices() {
   return kDevices;

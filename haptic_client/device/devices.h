@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "haptic_client/device/device.h"
+#include "haptic_client/device/falcon.h"
 #include "haptic_client/device/simulated_operator.h"
 
 namespace palpate::client {
@@ -13,9 +14,14 @@ namespace palpate::client {
 struct DeviceSettings {
   std::string name = "simulated";
   std::string where = "default";
+  std::string port;  ///< "2-1": bus and ports; empty: the first there is
+  FalconSettings falcon;
   OperatorSettings hand;
   std::optional<TrajectorySettings> trajectory;  ///< absent: the simulated hand holds still at (0, 0.1, 0)
 };
+
+/// Takes "NAME" or "NAME:PORT". Throws `Error` for a name that is none.
+void choose_device(DeviceSettings& settings, const std::string& text, const std::string& where);
 
 /// One row per device: a new one is one file and one row.
 struct DeviceRow {

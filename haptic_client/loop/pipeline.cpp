@@ -19,6 +19,7 @@ double seconds_between(const ToolState& before, Time t) {
 
 ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   const double dt = seconds_between(sensed_, reading.t);
+  const bool was_lost = sensed_.tick == 0 || (sensed_.flags & ToolState::kDeviceLost) != 0;
   ++sensed_.tick;
   sensed_.t_ns = reading.t.count();
   sensed_.buttons = reading.buttons;
@@ -29,7 +30,11 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
     return sensed_;
   }
   const Vec3 p_W = workspace_.to_world(reading.p_D);
-  if (dt > 0) sensed_.v_W += dt / (dt + kVelocityFilter) * ((p_W - sensed_.p_W) / dt - sensed_.v_W);
+  if (was_lost) {
+    sensed_.v_W.setZero();  // it may have gone anywhere meanwhile
+  } else if (dt > 0) {
+    sensed_.v_W += dt / (dt + kVelocityFilter) * ((p_W - sensed_.p_W) / dt - sensed_.v_W);
+  }
   sensed_.p_W = p_W;
   return sensed_;
 }
@@ -41,7 +46,7 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived) noe
     limiter_.rearm();
     watchdog_.restart();
   }
-  if ((tool.flags & ToolState::kDeviceLost) != 0) limiter_.latch(Fault::kDeviceLost);
+  const bool lost = (tool.flags & ToolState::kDeviceLost) != 0;
   follow_path(tool, dt);
   TickResult result{.tool = tool};
   if (arrived != nullptr && take(*arrived, now)) {
@@ -58,10 +63,11 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived) noe
     stats_.age_ns.add(age->count());
   }
   const Watchdog::Ruling ruling = watchdog_.rule(age, dt);
+  if (lost) watchdog_.restart();  // so that it comes back softly
   const Vec3 f_W = estimate_.force(tool.p_W, now);
   const Vec3 v_D = tool.v_W / workspace_.scale;
   const Vec3 damping_D = ruling.damper ? Vec3(-ruling.gain * kFadeDamping * v_D) : Vec3(Vec3::Zero());
-  result.f_D = limiter_.limit(workspace_.to_device(f_W), damping_D, dt, ruling.gain);
+  result.f_D = lost ? limiter_.drop() : limiter_.limit(workspace_.to_device(f_W), damping_D, dt, ruling.gain);
   stats_.max_newton = std::max(stats_.max_newton, result.f_D.norm());
   return result;
 }
@@ -71,7 +77,8 @@ std::int64_t Pipeline::age_ns() const noexcept {
 }
 
 void Pipeline::follow_path(const ToolState& tool, double dt) noexcept {
-  if (dt <= 0) return;
+  const bool known = ((tool.flags | felt_.flags) & ToolState::kDeviceLost) == 0;
+  if (dt <= 0 || !known) return;
   stats_.path_m += (tool.p_W - felt_.p_W).norm();
   stats_.path_s += dt;
   stats_.max_speed = std::max(stats_.max_speed, tool.v_W.norm());

@@ -15,9 +15,8 @@ struct LimiterCounts {
 /// Why the force is latched off.
 enum class Fault : std::uint8_t {
   kNone,
-  kNotFinite,   ///< some stage produced a NaN or an infinity
-  kStorm,       ///< the slew limit cut for more than half of a second's time: something oscillates
-  kDeviceLost,  ///< the device stopped answering
+  kNotFinite,  ///< some stage produced a NaN or an infinity
+  kStorm,      ///< the slew limit cut for more than half of a second's time: something oscillates
 };
 
 /// The last stage before the motors; there is no way around it. The force that leaves is finite, its
@@ -37,6 +36,11 @@ class Limiter {
   /// `gain` in [0, 1] fades the force after the clamp, so that a wild one fades as a full one does.
   Vec3 limit(const Vec3& f_D, const Vec3& damping_D, double dt, double gain = 1) noexcept;
 
+  /// No force at once, and none to slew from: the device gives nothing usable. Returns zero.
+  Vec3 drop() noexcept {
+    last_.setZero();
+    return last_;
+  }
   /// Switches the force off at once, until `rearm`.
   void latch(Fault fault) noexcept;
   void rearm() noexcept { fault_ = Fault::kNone; }

@@ -1,0 +1,71 @@
+#include "haptic_client/device/falcon.h"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "common/clock.h"
+#include "common/error.h"
+#include "haptic_client/device/falcon_kinematics.h"
+
+namespace palpate::client {
+
+std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
+  constexpr std::size_t kLeast = 1024, kMost = 65536;
+  std::ifstream in(file, std::ios::binary);
+  if (!in || std::filesystem::is_directory(file))
+    fail("{}: no such firmware image; Palpate ships none, it belongs to the maker of the device",
+         file.string());
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
+  if (bytes.size() < kLeast || bytes.size() > kMost)
+    fail("{}: has {} bytes; a firmware image of the Falcon has {} to {}", file.string(), bytes.size(), kLeast,
+         kMost);
+  std::vector<std::byte> image;
+  for (const char byte : bytes) image.push_back(static_cast<std::byte>(byte));
+  return image;
+}
+
+Falcon::Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmware, double torque_constant)
+    : port_(std::move(port)),
+      machine_(std::move(firmware)),
+      torque_constant_(torque_constant),
+      p_D_(falcon::kCentre) {}
+
+Falcon::~Falcon() {
+  constexpr int kRounds = 100;
+  const Time round = std::chrono::milliseconds(5);
+  std::array<std::byte, 64> ignored;
+  for (int i = 0; i < kRounds && port_->state() == UsbTransport::State::kBusy; ++i) {
+    while (port_->read(ignored) > 0) {
+    }
+    sleep_until(now() + round);
+  }
+  machine_.command(*port_, {0, 0, 0});
+  port_->close();
+}
+
+DeviceReading Falcon::read(Time now) noexcept {
+  machine_.poll(*port_, now);
+  DeviceReading reading{.t = now, .p_D = p_D_, .valid = false};
+  valid_ = false;
+  const auto status = machine_.status(now);
+  if (!status) return reading;
+  Vec3 angles;
+  for (int i = 0; i < 3; ++i) angles[i] = falcon::angle_of(status->encoder[static_cast<std::size_t>(i)]);
+  auto p = falcon::grip_position(angles, p_D_);
+  if (!p) p = falcon::grip_position(angles, falcon::kCentre);  // too far from the last place
+  if (!p) return reading;
+  p_D_ = *p;
+  valid_ = true;
+  return {.t = now, .p_D = p_D_, .buttons = status->buttons, .valid = true};
+}
+
+void Falcon::write(const Vec3& f_D) noexcept {
+  const Vec3 dac = valid_ ? falcon::motor_commands(f_D, p_D_, torque_constant_) : Vec3(Vec3::Zero());
+  std::array<std::int16_t, 3> torque{};
+  for (int i = 0; i < 3; ++i)
+    torque[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(std::lround(dac[i]));
+  machine_.command(*port_, torque);
+}
+
+}  // namespace palpate::client

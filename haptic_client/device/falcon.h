@@ -1,0 +1,44 @@
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "haptic_client/device/device.h"
+#include "haptic_client/device/falcon_machine.h"
+
+namespace palpate::client {
+
+/// `[falcon]` of the client file.
+struct FalconSettings {
+  std::filesystem::path firmware;  ///< image for the boot loader; empty: the device must have one already
+  /// DAC units per N m of leg torque, [100, 50000]. Uncertain by 2 to 4 times from device to device: begin
+  /// low.
+  double torque_constant = 2300;
+};
+
+/// Bytes of a firmware image. Throws `Error` when it cannot be read or cannot be one (1 kB to 64 kB).
+std::vector<std::byte> read_firmware(const std::filesystem::path& file);
+
+constexpr std::uint16_t kFalconVendor = 0x0403, kFalconProduct = 0xcb48;
+
+/// A Novint Falcon: grip position in m in its own frame (x right, y up, z out towards the user), force of its
+/// three motors. No force before it is homed. One USB exchange a tick, which overlaps the tick: the position
+/// is what answered the command of the tick before.
+class Falcon : public Device {
+ public:
+  Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmware, double torque_constant);
+  /// Sends zero torque and waits until it went, half a second at most.
+  ~Falcon() override;
+  DeviceReading read(Time now) noexcept override;
+  void write(const Vec3& f_D) noexcept override;
+  const char* status() const noexcept override { return machine_.message(); }
+
+ private:
+  std::unique_ptr<UsbTransport> port_;
+  FalconMachine machine_;
+  double torque_constant_;
+  Vec3 p_D_;
+  bool valid_ = false;
+};
+
+}  // namespace palpate::client

@@ -1,0 +1,220 @@
+#include "haptic_client/device/falcon_machine.h"
+
+#include <algorithm>
+
+namespace palpate::client {
+namespace {
+
+using namespace std::chrono_literals;
+using Bytes = std::span<const std::byte>;
+
+// FTDI vendor requests and their values (baud rate = 3 MHz / divisor).
+constexpr std::uint8_t kReset = 0, kModem = 1, kFlow = 2, kBaud = 3, kLine = 4, kLatency = 9;
+constexpr std::uint16_t kPurgeIn = 1, kPurgeOut = 2, kDtrLow = 0x0100, kDtrHigh = 0x0101, kRtsLow = 0x0200;
+constexpr std::uint16_t kBaud9600 = 0x4138, kBaud140k = 0x0015, kBaud1500k = 0x0002, k8N1 = 0x0008;
+constexpr std::uint16_t kLatencyBoot = 16, kLatencyRun = 1;  // ms
+
+constexpr std::array kAreYouThere{std::byte{0x0a}, std::byte{0x43}, std::byte{0x0d}};
+constexpr std::array kIAm{std::byte{0x0a}, std::byte{0x44}, std::byte{0x2c}, std::byte{0x0d}};
+constexpr std::array kReadyForImage{std::byte{0x41}};
+
+constexpr Time kProbePeriod = 20ms, kBootPeriod = 60ms, kHandshakePatience = 300ms, kEchoPatience = 500ms;
+constexpr Time kSilence = 1s, kFresh = 50ms, kLookAgain = 500ms, kLoadAgain = 2s;
+constexpr int kProbes = 25, kBootTries = 100, kLoads = 10;
+
+}  // namespace
+
+void FalconMachine::enter(FalconPhase phase, Time now) noexcept {
+  phase_ = phase;
+  entered_ = heard_ = now;
+  asked_ = false;
+  tries_ = 0;
+  answered_ = 0;
+  stream_.clear();
+  status_.reset();
+}
+
+void FalconMachine::poll(UsbTransport& port, Time now) noexcept {
+  if (phase_ != FalconPhase::kClosed && port.state() == UsbTransport::State::kLost)
+    return give_up(port, now, kLookAgain, "the Falcon was unplugged; plug it in again");
+  take(port, now);
+  switch (phase_) {
+    case FalconPhase::kClosed:
+      return begin(port, now);
+    case FalconPhase::kProbe:
+      return probe(port, now);
+    case FalconPhase::kBoot:
+      return boot(port, now);
+    case FalconPhase::kHandshake:
+      return handshake(port, now);
+    case FalconPhase::kUpload:
+      return upload(port, now);
+    case FalconPhase::kUnhomed:
+    case FalconPhase::kReady:
+      return run(port, now);
+  }
+}
+
+/// Packets while firmware runs, raw bytes while the boot loader does.
+void FalconMachine::take(UsbTransport& port, Time now) noexcept {
+  if (phase_ == FalconPhase::kClosed) return;
+  const bool packets =
+      phase_ == FalconPhase::kProbe || phase_ == FalconPhase::kUnhomed || phase_ == FalconPhase::kReady;
+  std::array<std::byte, 256> bytes;
+  while (const std::size_t size = port.read(bytes)) {
+    const Bytes came(bytes.data(), size);
+    if (packets) {
+      stream_.push(came, [&](const FalconStatus& status) {
+        status_ = status;
+        heard_ = now;
+      });
+    } else {
+      const std::size_t room = std::min(size, answer_.size() - answered_);
+      std::copy_n(came.begin(), room, answer_.begin() + static_cast<std::ptrdiff_t>(answered_));
+      answered_ += room;
+    }
+  }
+}
+
+void FalconMachine::begin(UsbTransport& port, Time now) noexcept {
+  if (now < retry_at_) return;
+  if (!port.open()) {
+    retry_at_ = now + kLookAgain;
+    if (port.trouble()[0] != 0) message_ = port.trouble();
+    return;
+  }
+  normal_mode(port);
+  loads_ = 0;
+  message_ = "a Falcon is there";
+  enter(FalconPhase::kProbe, now);
+}
+
+void FalconMachine::normal_mode(UsbTransport& port) noexcept {
+  port.control(kLatency, kLatencyRun);
+  port.control(kBaud, kBaud1500k);
+  port.control(kReset, kPurgeIn);
+  port.control(kReset, kPurgeOut);
+}
+
+/// The edge of DTR resets the microcontroller into its boot loader.
+void FalconMachine::boot_mode(UsbTransport& port, Time now) noexcept {
+  if (++loads_ > kLoads)
+    return give_up(port, now, kLoadAgain,
+                   "the Falcon does not take its firmware; try another USB port, or a powered hub");
+  port.control(kReset, kPurgeIn);
+  port.control(kReset, kPurgeOut);
+  port.control(kLatency, kLatencyBoot);
+  port.control(kBaud, kBaud9600);
+  port.control(kLine, k8N1);
+  port.control(kFlow, 0);
+  port.control(kModem, kRtsLow);
+  port.control(kModem, kDtrLow);
+  port.control(kModem, kDtrHigh);
+  message_ = "loading the Falcon's firmware";
+  enter(FalconPhase::kBoot, now);
+}
+
+void FalconMachine::probe(UsbTransport& port, Time now) noexcept {
+  if (status_) {
+    message_ = "Falcon: pull the grip fully out, then push it fully in (red light), to home it";
+    return enter(FalconPhase::kUnhomed, now);
+  }
+  if (asked_ && now - sent_ < kProbePeriod) return;
+  if (tries_ < kProbes) {
+    if (send(port, encode_falcon({}), now)) ++tries_;
+    return;
+  }
+  if (firmware_.empty())
+    return give_up(port, now, kLoadAgain,
+                   "the Falcon has no firmware yet; give one with --falcon-firmware PATH");
+  boot_mode(port, now);
+}
+
+void FalconMachine::boot(UsbTransport& port, Time now) noexcept {
+  const auto end = answer_.begin() + static_cast<std::ptrdiff_t>(answered_);
+  if (std::search(answer_.begin(), end, kIAm.begin(), kIAm.end()) != end) {
+    port.control(kModem, kDtrLow);
+    port.control(kBaud, kBaud140k);
+    return enter(FalconPhase::kHandshake, now);
+  }
+  if (asked_ && now - sent_ < kBootPeriod) return;
+  if (tries_ == kBootTries) return boot_mode(port, now);
+  answered_ = 0;
+  if (send(port, kAreYouThere, now)) ++tries_;
+}
+
+void FalconMachine::handshake(UsbTransport& port, Time now) noexcept {
+  const auto end = answer_.begin() + static_cast<std::ptrdiff_t>(answered_);
+  if (asked_ && std::find(answer_.begin(), end, kReadyForImage[0]) != end) {
+    uploaded_ = 0;
+    return enter(FalconPhase::kUpload, now);
+  }
+  if (!asked_) {
+    answered_ = 0;
+    send(port, kReadyForImage, now);
+  }
+  if (now - entered_ > kHandshakePatience) boot_mode(port, now);
+}
+
+void FalconMachine::upload(UsbTransport& port, Time now) noexcept {
+  const std::size_t size = std::min(kChunk, firmware_.size() - uploaded_);
+  const Bytes chunk(firmware_.data() + uploaded_, size);
+  if (asked_ && answered_ >= size) {
+    if (answered_ > size || !std::equal(chunk.begin(), chunk.end(), answer_.begin()))
+      return boot_mode(port, now);
+    uploaded_ += size;
+    answered_ = 0;
+    asked_ = false;
+    if (uploaded_ == firmware_.size()) {
+      normal_mode(port);
+      return enter(FalconPhase::kProbe, now);
+    }
+    return upload(port, now);
+  }
+  if (asked_ && now - sent_ > kEchoPatience) return boot_mode(port, now);
+  if (!asked_) send(port, chunk, now);
+}
+
+void FalconMachine::run(UsbTransport& port, Time now) noexcept {
+  if (now - heard_ > kSilence)
+    return give_up(port, now, kLookAgain, "the Falcon stopped answering; trying again");
+  if (!status_) return;
+  if (phase_ == FalconPhase::kUnhomed && status_->all_homed()) {
+    message_ = "Falcon homed: ready";
+    phase_ = FalconPhase::kReady;
+  } else if (phase_ == FalconPhase::kReady && !status_->all_homed()) {
+    message_ = "the Falcon lost its home: pull the grip fully out, then push it fully in";
+    phase_ = FalconPhase::kUnhomed;
+  }
+}
+
+void FalconMachine::command(UsbTransport& port, const std::array<std::int16_t, 3>& torque) noexcept {
+  const bool ready = phase_ == FalconPhase::kReady;
+  if (!ready && phase_ != FalconPhase::kUnhomed) return;
+  if (port.state() != UsbTransport::State::kIdle) return;  // the last one is still on the way
+  FalconCommand command{.green = ready, .red = !ready};
+  if (ready) command.torque = torque;
+  port.write(encode_falcon(command));
+}
+
+std::optional<FalconStatus> FalconMachine::status(Time now) const noexcept {
+  if (phase_ != FalconPhase::kReady || now - heard_ > kFresh) return {};
+  return status_;
+}
+
+void FalconMachine::give_up(UsbTransport& port, Time now, Time wait, const char* message) noexcept {
+  port.close();
+  message_ = message;
+  enter(FalconPhase::kClosed, now);
+  retry_at_ = now + wait;
+}
+
+/// Once requests and bytes before it are through, so that nothing overtakes a change of the line.
+bool FalconMachine::send(UsbTransport& port, std::span<const std::byte> bytes, Time now) noexcept {
+  if (port.state() != UsbTransport::State::kIdle || !port.write(bytes)) return false;
+  asked_ = true;
+  sent_ = now;
+  return true;
+}
+
+}  // namespace palpate::client

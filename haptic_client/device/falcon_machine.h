@@ -1,0 +1,69 @@
+#pragma once
+#include <atomic>
+#include <optional>
+#include <vector>
+
+#include "common/time.h"
+#include "haptic_client/device/falcon_packets.h"
+#include "haptic_client/device/usb_transport.h"
+
+namespace palpate::client {
+
+/// Where a Falcon is on its way from the plug to the hand.
+enum class FalconPhase : std::uint8_t {
+  kClosed,     ///< not there, or not ours: looked for twice a second
+  kProbe,      ///< open: does firmware answer?
+  kBoot,       ///< the boot loader was reset and is asked for its sign of life
+  kHandshake,  ///< it answered: ready for the image?
+  kUpload,     ///< the image goes, echoed byte for byte
+  kUnhomed,    ///< firmware runs; the grip must be pulled out and pushed in. No torque
+  kReady,      ///< homed: positions are right, torques go
+};
+
+/// The states of a Novint Falcon and what is said to it in each; pure: time is an argument, the transport one
+/// too. Never waits: call it every tick. Torques leave it only in kReady.
+class FalconMachine {
+ public:
+  /// `firmware`: image for the boot loader; empty: only a device that has one already can be used.
+  explicit FalconMachine(std::vector<std::byte> firmware) : firmware_(std::move(firmware)) {}
+
+  /// Takes what came from the device and goes on.
+  void poll(UsbTransport& port, Time now) noexcept;
+  /// Sends the motors' command (DAC units); zero where the device is not ready.
+  void command(UsbTransport& port, const std::array<std::int16_t, 3>& torque) noexcept;
+
+  FalconPhase phase() const noexcept { return phase_; }
+  /// The newest status of a ready device, if it came in the last 50 ms.
+  std::optional<FalconStatus> status(Time now) const noexcept;
+  /// What to tell the user, a static text. Any thread.
+  const char* message() const noexcept { return message_; }
+
+ private:
+  static constexpr std::size_t kChunk = 62;  // bytes of an image at once
+  void enter(FalconPhase phase, Time now) noexcept;
+  void take(UsbTransport& port, Time now) noexcept;
+  void begin(UsbTransport& port, Time now) noexcept;
+  void normal_mode(UsbTransport& port) noexcept;
+  void boot_mode(UsbTransport& port, Time now) noexcept;
+  void probe(UsbTransport& port, Time now) noexcept;
+  void boot(UsbTransport& port, Time now) noexcept;
+  void handshake(UsbTransport& port, Time now) noexcept;
+  void upload(UsbTransport& port, Time now) noexcept;
+  void run(UsbTransport& port, Time now) noexcept;
+  void give_up(UsbTransport& port, Time now, Time wait, const char* message) noexcept;
+  bool send(UsbTransport& port, std::span<const std::byte> bytes, Time now) noexcept;
+
+  std::vector<std::byte> firmware_;
+  FalconPhase phase_ = FalconPhase::kClosed;
+  std::atomic<const char*> message_{"looking for a Falcon"};
+  Time entered_{}, sent_{}, heard_{}, retry_at_{};
+  bool asked_ = false;         // something was sent in this phase and its answer is due
+  int tries_ = 0, loads_ = 0;  // of the phase; of the image
+  std::size_t uploaded_ = 0;   // bytes
+  std::array<std::byte, 512> answer_{};
+  std::size_t answered_ = 0;
+  FalconStream stream_;
+  std::optional<FalconStatus> status_;
+};
+
+}  // namespace palpate::client

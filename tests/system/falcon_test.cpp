@@ -1,0 +1,166 @@
+// An emulated Novint Falcon in the hand, through the real libusb and both real programs.
+#include <csignal>
+
+#include "tests/emulation/emulator.h"
+#include "tests/support/programs.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate::test;
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr double kGoodCount = 4096;
+
+/// A folder with a dummy image, a scene whose wall meets the grip at z = 120 mm, and a client file for the
+/// Falcon.
+struct Bench {
+  TemporaryFolder folder;
+  std::string scene, client, firmware;
+
+  Bench() {
+    std::string image;
+    for (unsigned i = 0, x = 1; i < 8000; ++i)
+      image += static_cast<char>((x = x * 1103515245u + 12345u) >> 16);
+    firmware = folder.write("firmware.bin", image).string();
+    folder.write("wall.msh",
+                 "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 -0.1 -0.1 0.015\n2 0.1 -0.1 0.015\n3 "
+                 "0.1 0.1 0.015\n"
+                 "4 -0.1 0.1 0.015\n5 -0.1 -0.1 0.115\n6 0.1 -0.1 0.115\n7 0.1 0.1 0.115\n8 -0.1 0.1 "
+                 "0.115\n$EndNodes\n"
+                 "$Elements\n5\n1 4 2 0 0 1 2 4 5\n2 4 2 0 0 3 4 2 7\n3 4 2 0 0 6 5 7 2\n4 4 2 0 0 8 7 5 4\n"
+                 "5 4 2 0 0 2 4 5 7\n$EndElements\n");
+    scene = folder
+                .write("wall.toml",
+                       "rate_hz = 0\n[mesh]\nfile = \"wall.msh\"\n[deformation]\nmodel = "
+                       "\"rigid\"\nstiffness = 800\n"
+                       "[[tool]]\nradius = 0.005\n")
+                .string();
+    client = folder
+                 .write("client.toml",
+                        "rate_hz = 1000\nmethod = \"constant\"\n[device]\nname = \"falcon:2-1\"\n[falcon]\n"
+                        "firmware = \"firmware.bin\"\ntorque_constant = 10000\n")
+                 .string();
+  }
+};
+
+/// The server of a scene, ready.
+struct Wall {
+  Process process;
+  std::string address;
+  explicit Wall(const Bench& bench) : process("sim_server", {"run", bench.scene, "--listen", "127.0.0.1:0"}) {
+    if (!process.wait_for("listening on ")) throw std::runtime_error(process.output());
+    const std::string& said = process.output();
+    const std::size_t begin = said.find("listening on ") + 13;
+    address = said.substr(begin, said.find(' ', begin) - begin);
+  }
+};
+
+bool homed(const Json& state) {
+  return state["homed"] == 7;
+}
+
+}  // namespace
+
+TEST_CASE("Falcon: firmware, homing, then a wall of 800 N/m under a hand of 400 N/m") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcon({"falcon:2-1"});
+  falcon.command("hand 2-1 stiffness 400 damping 8 mass 0.2");
+  falcon.command("hand 2-1 target 0 0 0.13");
+  const std::string report = (bench.folder.path() / "report.json").string();
+  auto client = falcon.start("haptic_client", {"run", bench.client, "--server", wall.address, "--seconds",
+                                               "25", "--report", report});
+  REQUIRE(client->wait_for("pull the grip fully out"));
+  CHECK(falcon.state("2-1")["loaded"] == true);
+  CHECK(falcon.state("2-1")["red"] == true);
+  falcon.command("homing 2-1 home");
+  REQUIRE(client->wait_for("Falcon homed: ready"));
+  REQUIRE(
+      falcon.wait_for("2-1", [](const Json& s) { return s["hand_at_rest"] == true && s["green"] == true; }));
+  CHECK(falcon.state("2-1")["largest_dac_unhomed"] == 0);
+  // 20 mm into the wall: 400 (20 mm - x) = 800 x, so x = 6.67 mm and F = 5.33 N.
+  falcon.command("hand 2-1 target 0 0 0.10 3");
+  double depth = 0, force = 0;
+  const bool settled = falcon.wait_for(
+      "2-1",
+      [&](const Json& s) {
+        depth = 0.120 - s["position"][2].get<double>();
+        force = s["force"][2].get<double>();
+        return std::abs(depth / 0.0066667 - 1) < 0.01 && std::abs(force / 5.3333 - 1) < 0.01 &&
+               std::abs(s["velocity"][2].get<double>()) < 1e-3;
+      },
+      12);
+  CAPTURE(depth, force);
+  CHECK(settled);
+  client->signal(SIGINT);
+  CHECK(client->wait() == 0);
+  const Json state = falcon.state("2-1");
+  CHECK(state["dac"] == Json({0, 0, 0}));  // the last word is zero
+  CHECK(state["largest_dac"] <= kGoodCount);
+  const Json tool = read_json(report)["tools"][0];
+  CHECK(tool["safety"]["latched"] == 0);
+  CHECK(tool["force"]["max_newton"].get<double>() <= 8);
+}
+
+TEST_CASE("Falcon: a loader that needs three tries, spoilt echoes, split replies and rubbish are got over") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcon({"falcon:2-1"});
+  for (const char* fault :
+       {"loader_silent 3", "loader_xoff", "echo_corrupt 2", "split", "garbage 5", "status_flood 3"})
+    falcon.command(std::string("fault 2-1 ") + fault);
+  auto client = falcon.start("haptic_client", {"run", bench.client, "--server", wall.address});
+  REQUIRE(client->wait_for("pull the grip fully out"));
+  falcon.command("homing 2-1 now");
+  REQUIRE(client->wait_for("Falcon homed: ready"));
+  CHECK(falcon.state("2-1")["resets"].get<int>() >= 3);
+  CHECK(falcon.state("2-1")["largest_dac_unhomed"] == 0);
+  client->signal(SIGINT);
+  CHECK(client->wait() == 0);
+}
+
+TEST_CASE(
+    "Falcon: unplugged, silent, and back: no force meanwhile, said once, home again before any torque") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcon({"falcon:2-1"});
+  auto client = falcon.start("haptic_client", {"run", bench.client, "--server", wall.address});
+  REQUIRE(client->wait_for("pull the grip fully out"));
+  falcon.command("unplug 2-1");  // before it is homed
+  REQUIRE(client->wait_for("the Falcon was unplugged"));
+  falcon.command("plug 2-1");
+  REQUIRE(falcon.wait_for("2-1", [](const Json& s) { return s["red"] == true; }));
+  falcon.command("homing 2-1 now");
+  REQUIRE(client->wait_for("Falcon homed: ready"));
+  falcon.command("unplug 2-1");  // in the hand
+  falcon.command("plug 2-1");
+  REQUIRE(falcon.wait_for("2-1", [](const Json& s) { return s["red"] == true && !homed(s); }));
+  falcon.command("homing 2-1 now");
+  REQUIRE(falcon.wait_for("2-1", [](const Json& s) { return s["green"] == true; }));
+  falcon.command("fault 2-1 mute");
+  REQUIRE(client->wait_for("stopped answering"));
+  falcon.command("fault 2-1 mute 0");
+  REQUIRE(falcon.wait_for("2-1", [](const Json& s) { return s["green"] == true || s["red"] == true; }));
+  CHECK(falcon.state("2-1")["largest_dac_unhomed"] == 0);
+  CHECK(client->running());
+  client->signal(SIGINT);
+  CHECK(client->wait() == 0);
+}
+
+TEST_CASE("Falcon: no firmware, no permission, no image: each says what to do") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcon({"falcon:2-1"});
+  auto bare = falcon.start("haptic_client", {"run", "--device", "falcon", "--server", wall.address});
+  CHECK(bare->wait_for("--falcon-firmware PATH"));
+  bare->signal(SIGINT);
+  CHECK(bare->wait() == 0);
+  falcon.command("fault 2-1 permission");
+  auto locked = falcon.start("haptic_client", {"run", bench.client, "--server", wall.address});
+  CHECK(locked->wait_for("no permission for the USB device"));
+  locked->signal(SIGINT);
+  CHECK(locked->wait() == 0);
+  CHECK(output_of("haptic_client", {"run", "--device", "falcon", "--falcon-firmware", "none.bin"}, 2)
+            .find("none.bin: no such firmware") != std::string::npos);
+}
