@@ -98,7 +98,10 @@ int run(int argc, char** argv) {
   client::ReplayOptions replaying;
   add_run(app, file, overrides, running);
   const auto* replay = add_replay(app, file, overrides, replaying);
+  const auto* list =
+      app.add_subcommand("devices", "List the devices that are plugged in, and whether they can be used");
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
+  if (*list) return client::print_plugged_in();
   if (*replay) {
     if (replaying.rate_hz) require_within(*replaying.rate_hz, 1, 20000, "--rate", "Hz");
     return client::replay(read_config(file, overrides), replaying);

@@ -1,6 +1,7 @@
 #include "haptic_client/device/devices.h"
 
 #include <array>
+#include <fmt/core.h>
 
 #include "common/error.h"
 #include "common/text.h"
@@ -57,6 +58,33 @@ void choose_device(DeviceSettings& settings, const std::string& text, const std:
 
 std::span<const DeviceRow> devices() {
   return kDevices;
+}
+
+int print_plugged_in() {
+#ifdef PALPATE_WITH_USB
+  const std::vector<UsbDevice> found = find_usb(kFalconVendor, kFalconProduct);
+  if (found.empty())
+    fmt::print("no device that Palpate knows is plugged in; known: Novint Falcon ({:04x}:{:04x})\n",
+               kFalconVendor, kFalconProduct);
+  bool locked = false;
+  for (const UsbDevice& device : found) {
+    fmt::print("{:10} Novint Falcon    --device falcon:{}    {}\n", device.path, device.path,
+               device.access.empty() ? "ready to use" : device.access);
+    locked = locked || device.access.find("permission") != std::string::npos;
+  }
+  if (locked) {
+    fmt::print(
+        "this rule in /etc/udev/rules.d/70-palpate.rules gives access (scripts/setup --udev puts it there); "
+        "then "
+        "plug the device in again:\n"
+        "SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{:04x}\", MODE=\"0660\", "
+        "GROUP=\"plugdev\", TAG+=\"uaccess\"\n",
+        kFalconVendor, kFalconProduct);
+  }
+  return 0;
+#else
+  fail("USB devices were left out of this build (PALPATE_USB=OFF); build with it, and libusb-1.0-0-dev");
+#endif
 }
 
 }  // namespace palpate::client

@@ -164,3 +164,31 @@ TEST_CASE("Falcon: no firmware, no permission, no image: each says what to do") 
   CHECK(output_of("haptic_client", {"run", "--device", "falcon", "--falcon-firmware", "none.bin"}, 2)
             .find("none.bin: no such firmware") != std::string::npos);
 }
+
+TEST_CASE("devices: what is plugged in, and the rule that gives access where it is missing") {
+  Emulator falcons({"falcon:2-1", "falcon:3-2", "spacemouse:1-1"});
+  falcons.command("fault 3-2 permission");
+  auto list = falcons.start("haptic_client", {"devices"});
+  CHECK(list->wait() == 0);
+  const std::string said = list->output();
+  CAPTURE(said);
+  CHECK(said.find("--device falcon:2-1    ready to use") != std::string::npos);
+  CHECK(said.find("--device falcon:3-2    no permission") != std::string::npos);
+  // The rule that is printed is the one that ships.
+  const std::string rules = bytes_of(std::string(PALPATE_SOURCE_DIR) + "/configs/udev/70-palpate.rules");
+  const std::size_t rule = rules.find("SUBSYSTEM");
+  CHECK(said.find(rules.substr(rule, rules.find('\n', rule) - rule)) != std::string::npos);
+}
+
+TEST_CASE("Falcon: of two, the one that was asked for") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcons({"falcon:2-1", "falcon:3-2"}, {"--loaded", "--homed"});
+  auto client = falcons.start("haptic_client",
+                              {"run", bench.client, "--device", "falcon:3-2", "--server", wall.address});
+  REQUIRE(client->wait_for("Falcon homed: ready"));
+  CHECK(falcons.state("3-2")["green"] == true);
+  CHECK(falcons.state("2-1")["opens"] == 0);
+  client->signal(SIGINT);
+  CHECK(client->wait() == 0);
+}
