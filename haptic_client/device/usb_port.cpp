@@ -91,7 +91,7 @@ struct UsbPort::Libusb {
   std::array<Incoming, kPending> incoming{};
   SpscRing<std::byte> received{kReceived};
   int outgoing = 0;  // control and OUT transfers on the way
-  bool lost = false;
+  bool lost = false, closing = false;
   const char* trouble = "";
 
   bool submit(libusb_transfer* transfer) {
@@ -110,7 +110,7 @@ struct UsbPort::Libusb {
       const std::size_t size =
           strip_ftdi_status({begin, static_cast<std::size_t>(transfer->actual_length)}, payload);
       for (std::size_t i = 0; i < size; ++i) self.received.push(payload[i]);
-      in.flying = !self.lost && self.submit(transfer);
+      in.flying = !self.lost && !self.closing && self.submit(transfer);
     } else if (transfer->status != LIBUSB_TRANSFER_CANCELLED) {
       self.lost = true;
     }
@@ -177,6 +177,7 @@ void UsbPort::close() noexcept {
   Libusb& u = *usb_;
   constexpr int kRounds = 100;
   constexpr long kRound = 10'000;  // us
+  u.closing = true;                // what completes now is not asked for again
   for (auto& in : u.incoming) {
     if (in.flying) libusb_cancel_transfer(in.transfer);
   }
@@ -192,7 +193,7 @@ void UsbPort::close() noexcept {
   }
   u.handle = nullptr;
   u.outgoing = 0;
-  u.lost = false;
+  u.lost = u.closing = false;
   for (std::byte b; u.received.pop(b);) {
   }
 }
