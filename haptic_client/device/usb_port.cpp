@@ -90,7 +90,10 @@ struct UsbPort::Libusb {
   libusb_device_handle* handle = nullptr;
   std::array<Incoming, kPending> incoming{};
   SpscRing<std::byte> received{kReceived};
-  int outgoing = 0;  // control and OUT transfers on the way
+  libusb_transfer* out = nullptr;  // one at a time, made once: a tick does not allocate
+  std::array<unsigned char, kFtdiUsbPacket> out_bytes{};
+  bool out_flying = false;
+  int controls = 0;  // requests on the way
   bool lost = false, closing = false;
   const char* trouble = "";
 
@@ -116,10 +119,14 @@ struct UsbPort::Libusb {
     }
   }
 
-  /// OUT and control: `user_data` is the owner; libusb frees the transfer and its buffer.
+  /// OUT and control: `user_data` is the owner; libusb frees the transfer and the buffer of a request.
   static void on_out(libusb_transfer* transfer) {
     auto& self = *static_cast<Libusb*>(transfer->user_data);
-    --self.outgoing;
+    if (transfer == self.out) {
+      self.out_flying = false;
+    } else {
+      --self.controls;
+    }
     const bool done = transfer->status == LIBUSB_TRANSFER_COMPLETED;
     if (!done && transfer->status != LIBUSB_TRANSFER_CANCELLED) self.lost = true;
   }
@@ -130,7 +137,7 @@ struct UsbPort::Libusb {
   }
 
   bool flying() const {
-    return outgoing > 0 ||
+    return out_flying || controls > 0 ||
            std::any_of(incoming.begin(), incoming.end(), [](const Incoming& in) { return in.flying; });
   }
 };
@@ -162,6 +169,7 @@ bool UsbPort::open() noexcept {
     close();
     return false;
   }
+  u.out = libusb_alloc_transfer(0);
   for (auto& in : u.incoming) {
     in.owner = &u;
     in.transfer = libusb_alloc_transfer(0);
@@ -187,12 +195,15 @@ void UsbPort::close() noexcept {
     in.transfer = nullptr;
     in.flying = false;
   }
+  if (u.out != nullptr && !u.out_flying) libusb_free_transfer(u.out);
+  u.out = nullptr;
   if (u.handle != nullptr) {
     libusb_release_interface(u.handle, kInterface);
     libusb_close(u.handle);
   }
   u.handle = nullptr;
-  u.outgoing = 0;
+  u.controls = 0;
+  u.out_flying = false;
   u.lost = u.closing = false;
   for (std::byte b; u.received.pop(b);) {
   }
@@ -206,21 +217,17 @@ void UsbPort::control(std::uint8_t request, std::uint16_t value) noexcept {
   libusb_fill_control_setup(setup, kVendorOut, request, value, 0, 0);
   libusb_fill_control_transfer(transfer, u.handle, setup, &Libusb::on_out, &u, kTimeout);
   transfer->flags = LIBUSB_TRANSFER_FREE_BUFFER | LIBUSB_TRANSFER_FREE_TRANSFER;
-  if (u.submit(transfer)) ++u.outgoing;
+  if (u.submit(transfer)) ++u.controls;
 }
 
 bool UsbPort::write(std::span<const std::byte> bytes) noexcept {
   Libusb& u = *usb_;
-  if (u.handle == nullptr || u.lost) return false;
-  auto* copy = static_cast<unsigned char*>(std::malloc(bytes.size()));
-  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<std::byte*>(copy));
-  libusb_transfer* transfer = libusb_alloc_transfer(0);
-  libusb_fill_bulk_transfer(transfer, u.handle, kOut, copy, static_cast<int>(bytes.size()), &Libusb::on_out,
-                            &u, kTimeout);
-  transfer->flags = LIBUSB_TRANSFER_FREE_BUFFER | LIBUSB_TRANSFER_FREE_TRANSFER;
-  if (!u.submit(transfer)) return false;
-  ++u.outgoing;
-  return true;
+  if (u.handle == nullptr || u.lost || u.out_flying || bytes.size() > u.out_bytes.size()) return false;
+  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<std::byte*>(u.out_bytes.data()));
+  libusb_fill_bulk_transfer(u.out, u.handle, kOut, u.out_bytes.data(), static_cast<int>(bytes.size()),
+                            &Libusb::on_out, &u, kTimeout);
+  u.out_flying = u.submit(u.out);
+  return u.out_flying;
 }
 
 std::size_t UsbPort::read(std::span<std::byte> out) noexcept {
@@ -236,7 +243,7 @@ UsbTransport::State UsbPort::state() const noexcept {
   const Libusb& u = *usb_;
   if (u.handle == nullptr) return State::kClosed;
   if (u.lost) return State::kLost;
-  return u.outgoing > 0 ? State::kBusy : State::kIdle;
+  return u.out_flying || u.controls > 0 ? State::kBusy : State::kIdle;
 }
 
 const char* UsbPort::trouble() const noexcept {
