@@ -93,6 +93,13 @@ long Config::integer(const std::string& key, const Range& range, std::optional<l
   return *node->value<long>();
 }
 
+bool Config::flag(const std::string& key, bool otherwise) const {
+  const toml::node* node = node_->get(key, false);
+  if (node == nullptr) return otherwise;
+  if (!node->is_boolean()) node_->wrong(*node, key, "true or false");
+  return *node->value<bool>();
+}
+
 std::string Config::text(const std::string& key, std::optional<std::string> otherwise) const {
   const toml::node* node = node_->get(key, !otherwise);
   if (node == nullptr) return *otherwise;

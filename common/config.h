@@ -30,6 +30,7 @@ class Config {
   bool has(const std::string& key) const;
   double number(const std::string& key, const Range& range, std::optional<double> otherwise = {}) const;
   long integer(const std::string& key, const Range& range, std::optional<long> otherwise = {}) const;
+  bool flag(const std::string& key, bool otherwise) const;
   std::string text(const std::string& key, std::optional<std::string> otherwise = {}) const;
   /// Texts in an array: exactly `count` of them, or any number.
   std::vector<std::string> texts(const std::string& key, std::optional<std::size_t> count,

@@ -32,7 +32,8 @@ Trajectory::Trajectory(const TrajectorySettings& settings) {
       fail("{}: column {} must increase, but data row {} has {} after {}", settings.file.string(),
            settings.columns[0], i + 1, t_[i], t_[i - 1]);
     }
-    p_.push_back(settings.offset + settings.scale * Vec3(columns[1][i], columns[2][i], columns[3][i]));
+    p_.push_back(settings.offset +
+                 settings.scale * settings.axes * Vec3(columns[1][i], columns[2][i], columns[3][i]));
   }
 }
 

@@ -16,8 +16,9 @@ namespace palpate {
 struct TrajectorySettings {
   std::filesystem::path file;
   std::array<std::string, 4> columns{"t_s", "x_m", "y_m", "z_m"};  ///< time (s) and position
-  double scale = 1;            ///< metres per unit of the position columns
-  Vec3 offset = Vec3::Zero();  ///< added after scaling, m
+  double scale = 1;              ///< metres per unit of the position columns
+  Vec3 offset = Vec3::Zero();    ///< added after scaling, m
+  Mat3 axes = Mat3::Identity();  ///< turns the columns; not a key of the file
 };
 
 /// Reads a `[trajectory]` section: file, columns, scale, offset. Throws `Error`.

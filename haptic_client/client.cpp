@@ -142,7 +142,7 @@ int run_client(const ClientConfig& config, const ClientOptions& options) {
   const DeviceRow& row = find_row(devices(), config.device.name, "device", config.device.where);
   const auto device = row.make(config.device);
   Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(),
-                    config.workspace, config.device_limits());
+                    config.workspace, config.device_limits(), config.passivity);
   HapticMailboxes mailboxes;
   const double kept =
       options.trace ? std::min(options.seconds.value_or(kTraceSeconds) + 1, kTraceSeconds) : 0;

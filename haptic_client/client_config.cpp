@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/config.h"
+#include "common/error.h"
 #include "common/text.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 
@@ -31,10 +32,30 @@ FalconSettings read_falcon(const Config& config) {
   return falcon;
 }
 
+/// Which device axis each axis of the world is, such as ["x", "-z", "y"].
+Mat3 read_axes(const Config& config) {
+  Mat3 axes = Mat3::Zero();
+  const auto names = config.texts("axes", 3, {"x", "y", "z"});
+  for (int i = 0; i < 3; ++i) {
+    const std::string& name = names[static_cast<std::size_t>(i)];
+    const bool minus = name.starts_with('-');
+    const std::size_t axis = std::string("xyz").find(name.substr(minus ? 1 : 0));
+    if (name.size() != (minus ? 2 : 1) || axis == std::string::npos)
+      fail("{}: `axes`: \"{}\" is no axis; known: x, y, z, -x, -y, -z", config.where("axes"), name);
+    axes(i, static_cast<int>(axis)) = minus ? -1 : 1;
+  }
+  if (axes.determinant() == 0) fail("{}: `axes` must name x, y and z once each", config.where("axes"));
+  if (axes.determinant() < 0)
+    fail("{}: `axes` would mirror the world; change one sign or swap two", config.where("axes"));
+  return axes;
+}
+
 Workspace read_workspace(const Config& config) {
   Workspace workspace;
   workspace.scale = config.number("scale", {0.01, 100, "world m per device m"}, workspace.scale);
   workspace.offset_W = config.vector("offset", {-kFar, kFar, "m"}, workspace.offset_W);
+  workspace.axes = read_axes(config);
+  workspace.clutch = static_cast<std::uint16_t>(config.integer("clutch", {0, 0xffff, "button bits"}, 0));
   config.reject_unknown();
   return workspace;
 }
@@ -47,10 +68,20 @@ Limiter::Settings read_limits(const Config& config) {
   return limits;
 }
 
+Passivity::Settings read_passivity(const Config& config) {
+  Passivity::Settings passivity;
+  passivity.enabled = config.flag("enabled", passivity.enabled);
+  passivity.allowance = config.number("allowance", {0, 10, "W"}, passivity.allowance);
+  passivity.debt = config.number("debt", {1e-6, 10, "J"}, passivity.debt);
+  config.reject_unknown();
+  return passivity;
+}
+
 /// The file tells the motion in the world; the simulated hand moves in the device frame.
 void put_in_device_frame(TrajectorySettings& trajectory, const Workspace& workspace) {
   trajectory.scale /= workspace.scale;
-  trajectory.offset = (trajectory.offset - workspace.offset_W) / workspace.scale;
+  trajectory.offset = workspace.motion_to_device(trajectory.offset - workspace.offset_W);
+  trajectory.axes = workspace.axes.transpose();
 }
 
 }  // namespace
@@ -95,6 +126,7 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   if (const auto workspace = config.table("workspace")) client.workspace = read_workspace(*workspace);
   if (client.device.trajectory) put_in_device_frame(*client.device.trajectory, client.workspace);
   if (const auto limits = config.table("limits")) client.limits = read_limits(*limits);
+  if (const auto passivity = config.table("passivity")) client.passivity = read_passivity(*passivity);
   config.reject_unknown();
   return client;
 }

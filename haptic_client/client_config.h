@@ -7,6 +7,7 @@
 #include "haptic_client/device/devices.h"
 #include "haptic_client/loop/workspace.h"
 #include "haptic_client/safety/limiter.h"
+#include "haptic_client/safety/passivity.h"
 
 namespace palpate::client {
 
@@ -22,6 +23,7 @@ struct ClientConfig {
   DeviceSettings device;
   Workspace workspace;
   Limiter::Settings limits;
+  Passivity::Settings passivity;
 
   /// The laws to score, each once.
   std::vector<std::string> scored_laws() const;

@@ -131,9 +131,12 @@ void print_tool(const Json& tool) {
   fmt::print("  motion  {:.4f} m/s mean, {:.4f} max; {:.2f} mm between samples\n",
              number(motion, "mean_speed_m_s"), number(motion, "max_speed_m_s"),
              number(motion, "spatial_sampling_mm"));
-  fmt::print("  safety  {:.0f} ticks clamped, {:.0f} slewed; {:.0f} fades, {:.0f} latched faults\n",
-             number(safety, "clamped"), number(safety, "slewed"), number(safety, "ramped"),
-             number(safety, "latched"));
+  fmt::print(
+      "  safety  ticks: {:.0f} clamped, {:.0f} slewed, {:.0f} made passive, {:.0f} without device, {:.0f} "
+      "clutched; times: {:.0f} faded, {:.0f} not finite, {:.0f} storms\n",
+      number(safety, "clamped"), number(safety, "slewed"), number(safety, "passive"), number(safety, "lost"),
+      number(safety, "clutched"), number(safety, "ramped"), number(safety, "not_finite"),
+      number(safety, "storms"));
 }
 
 }  // namespace
@@ -169,8 +172,13 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
           {"safety",
            {{"clamped", limiter.clamped},
             {"slewed", limiter.slewed},
+            {"passive", pipeline.passivity().counts().reduced},
+            {"largest_debt_mj", 1e3 * pipeline.passivity().counts().largest_debt_j},
             {"ramped", pipeline.watchdog().ramped()},
-            {"latched", limiter.latched}}},
+            {"lost", stats.lost},
+            {"clutched", stats.clutched},
+            {"not_finite", limiter.not_finite},
+            {"storms", limiter.storms}}},
           {"scored_ticks", observation.scoring().scored()},
           {"methods", methods_report(observation.scoring())},
           {"timeline", timeline_report(observation.timeline(), observation.scoring())}};

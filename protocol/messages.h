@@ -67,7 +67,7 @@ struct Bye {
 
 struct ToolState {
   static constexpr MessageType kType = MessageType::kToolState;
-  static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2;  ///< bits of `flags`
+  static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2, kClutched = 4;  ///< bits of `flags`
   std::uint8_t tool = 0;
   std::uint64_t tick = 0;           ///< haptic tick, from 1
   std::uint64_t newest_sample = 0;  ///< number of the newest ForceSample this tick used; 0 = none yet

@@ -25,10 +25,13 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   sensed_.buttons = reading.buttons;
   sensed_.flags = rearm_asked_ ? ToolState::kRearmed : 0;
   rearm_asked_ = false;
+  if ((reading.buttons & workspace_.clutch) != 0) sensed_.flags |= ToolState::kClutched;
   if (!reading.valid || !reading.p_D.allFinite()) {
     sensed_.flags |= ToolState::kDeviceLost;
     return sensed_;
   }
+  if ((sensed_.flags & ToolState::kClutched) != 0 && !was_lost)  // the world moves with the hand
+    workspace_.offset_W += sensed_.p_W - workspace_.to_world(reading.p_D);
   const Vec3 p_W = workspace_.to_world(reading.p_D);
   if (was_lost) {
     sensed_.v_W.setZero();  // it may have gone anywhere meanwhile
@@ -46,7 +49,6 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived) noe
     limiter_.rearm();
     watchdog_.restart();
   }
-  const bool lost = (tool.flags & ToolState::kDeviceLost) != 0;
   follow_path(tool, dt);
   TickResult result{.tool = tool};
   if (arrived != nullptr && take(*arrived, now)) {
@@ -55,21 +57,37 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived) noe
     result.step = Time{arrived->step_ns};
   }
   result.tool.newest_sample = estimate_.newest().number;
+  result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
   felt_ = tool;
+  return result;
+}
 
+/// What of the force `f_W` (N, world) may go to the motors: passivity, watchdog, limiter.
+Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept {
+  const bool lost = (tool.flags & ToolState::kDeviceLost) != 0,
+             clutched = (tool.flags & ToolState::kClutched) != 0, off = lost || clutched;
+  stats_.lost += lost ? 1 : 0;
+  stats_.clutched += clutched ? 1 : 0;
+  if (felt_.tick > 0) passivity_.moved(workspace_.motion_to_device(tool.p_W - felt_.p_W), dt);
   std::optional<Time> age;
   if (estimate_.newest().number > 0) {
-    age = now - estimate_.newest().t;
+    age = Time{tool.t_ns} - estimate_.newest().t;
     stats_.age_ns.add(age->count());
   }
   const Watchdog::Ruling ruling = watchdog_.rule(age, dt);
-  if (lost) watchdog_.restart();  // so that it comes back softly
-  const Vec3 f_W = estimate_.force(tool.p_W, now);
-  const Vec3 v_D = tool.v_W / workspace_.scale;
-  const Vec3 damping_D = ruling.damper ? Vec3(-ruling.gain * kFadeDamping * v_D) : Vec3(Vec3::Zero());
-  result.f_D = lost ? limiter_.drop() : limiter_.limit(workspace_.to_device(f_W), damping_D, dt, ruling.gain);
-  stats_.max_newton = std::max(stats_.max_newton, result.f_D.norm());
-  return result;
+  if (off) watchdog_.restart();  // so that it comes back softly
+  if (ruling.gain < 1) passivity_.forgive();
+  const Limiter::Shares shares{.fade = ruling.gain, .passive = passivity_.share(dt)};
+  if (off) {
+    limiter_.drop();
+  } else {
+    limiter_.push(workspace_.to_device(f_W), dt, shares);
+  }
+  const double damping = ruling.damper && !off ? ruling.gain * kFadeDamping : 0;
+  const Vec3 f_D = limiter_.finish(-damping * workspace_.motion_to_device(tool.v_W));
+  passivity_.wrote(f_D);
+  stats_.max_newton = std::max(stats_.max_newton, f_D.norm());
+  return f_D;
 }
 
 std::int64_t Pipeline::age_ns() const noexcept {

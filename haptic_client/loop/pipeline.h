@@ -6,6 +6,7 @@
 #include "haptic_client/extrapolation/force_estimate.h"
 #include "haptic_client/loop/workspace.h"
 #include "haptic_client/safety/limiter.h"
+#include "haptic_client/safety/passivity.h"
 #include "haptic_client/safety/watchdog.h"
 #include "protocol/messages.h"
 
@@ -25,6 +26,8 @@ struct PipelineStats {
   Histogram age_ns;               ///< of the newest sample, each tick that has one
   std::uint64_t samples = 0;      ///< used
   std::uint64_t overtaken = 0;    ///< dropped: not newer than what was there
+  std::uint64_t lost = 0;         ///< ticks in which the device gave nothing usable
+  std::uint64_t clutched = 0;     ///< ticks
   double max_newton = 0;          ///< largest force written
   double path_m = 0, path_s = 0;  ///< of the tool, world
   double max_speed = 0;           ///< m/s, of the filtered velocity
@@ -34,15 +37,16 @@ struct PipelineStats {
 };
 
 /// The whole tick, from device reading to device force, as a function of its arguments and its state:
-/// workspace -> extrapolator -> watchdog -> limiter. No clock, socket or device inside; nothing allocates,
-/// locks or throws. Haptic thread only.
+/// workspace -> extrapolator -> passivity -> watchdog -> limiter. No clock, socket or device inside; nothing
+/// allocates, locks or throws. Haptic thread only.
 ///
 /// A tick has two halves. `sense` makes the tool state that travels; `feel` makes the force from nothing but
 /// that tool state and the samples. So a capture, which holds both, replays to the same forces.
 class Pipeline {
  public:
-  Pipeline(std::unique_ptr<Extrapolator> law, const Workspace& workspace, const Limiter::Settings& limits)
-      : estimate_(std::move(law)), workspace_(workspace), limiter_(limits) {}
+  Pipeline(std::unique_ptr<Extrapolator> law, const Workspace& workspace, const Limiter::Settings& limits,
+           const Passivity::Settings& passivity = {})
+      : estimate_(std::move(law)), workspace_(workspace), passivity_(passivity), limiter_(limits) {}
 
   /// One tick. `arrived`: the newest sample, if one came since the last tick, else null.
   TickResult tick(const DeviceReading& reading, const protocol::ForceSample* arrived) noexcept {
@@ -62,14 +66,17 @@ class Pipeline {
   std::int64_t age_ns() const noexcept;
   const Limiter& limiter() const noexcept { return limiter_; }
   const Watchdog& watchdog() const noexcept { return watchdog_; }
+  const Passivity& passivity() const noexcept { return passivity_; }
   const PipelineStats& stats() const noexcept { return stats_; }
 
  private:
   bool take(const protocol::ForceSample& arrived, Time now) noexcept;
+  Vec3 safe(const Vec3& f_W, const protocol::ToolState& tool, double dt) noexcept;
   void follow_path(const protocol::ToolState& tool, double dt) noexcept;
 
   ForceEstimate estimate_;
   Workspace workspace_;
+  Passivity passivity_;
   Watchdog watchdog_;
   Limiter limiter_;
   protocol::ToolState sensed_;  // tick 0: none yet

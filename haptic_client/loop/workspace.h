@@ -3,14 +3,19 @@
 
 namespace palpate::client {
 
-/// Where the device's workspace lies in the world: p_W = offset + scale p_D, axes alike. The force goes back
-/// by virtual work, f_D = scale f_W, so that enlarging the motion neither makes nor loses energy.
+/// Where the device's workspace lies in the world: p_W = offset + scale R p_D. The force goes back by virtual
+/// work, f_D = scale R^T f_W, so that enlarging the motion neither makes nor loses energy.
 struct Workspace {
   double scale = 1;              ///< world metres per device metre, (0, 100]
   Vec3 offset_W = Vec3::Zero();  ///< m
+  Mat3 axes = Mat3::Identity();  ///< R: rows are the world's axes in the device frame; a rotation
+  std::uint16_t clutch = 0;      ///< buttons; while one of them is held, the tool stays and the hand is free
 
-  Vec3 to_world(const Vec3& p_D) const noexcept { return offset_W + scale * p_D; }
-  Vec3 to_device(const Vec3& f_W) const noexcept { return scale * f_W; }
+  Vec3 to_world(const Vec3& p_D) const noexcept { return offset_W + scale * axes * p_D; }
+  /// Of a force.
+  Vec3 to_device(const Vec3& f_W) const noexcept { return scale * axes.transpose() * f_W; }
+  /// Of a displacement or a velocity.
+  Vec3 motion_to_device(const Vec3& d_W) const noexcept { return axes.transpose() * d_W / scale; }
 };
 
 }  // namespace palpate::client

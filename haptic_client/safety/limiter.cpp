@@ -9,28 +9,30 @@ constexpr double kStormWindow = 1;     // s
 constexpr double kStormShare = 0.5;    // of the window
 }  // namespace
 
-Vec3 Limiter::limit(const Vec3& f_D, const Vec3& damping_D, double dt, double gain) noexcept {
-  if (!f_D.allFinite() || !damping_D.allFinite()) latch(Fault::kNotFinite);
-  if (fault_ != Fault::kNone) {
-    last_.setZero();
-    return last_;
-  }
+Vec3 Limiter::push(const Vec3& f_D, double dt, const Shares& shares) noexcept {
+  clamped_ = false;
+  if (!f_D.allFinite()) latch(Fault::kNotFinite);
+  if (fault_ != Fault::kNone) return drop();
   // Cut to the ball first, so that a wild wish cannot use up the slew in a wild direction.
-  Vec3 f = within_magnitude(f_D);
-  bool clamped = f != f_D;
-  f *= gain;
-  const Vec3 change = f - last_;
+  const Vec3 within = within_magnitude(f_D);
+  clamped_ = within != f_D;
+  if (shares.passive < passive_) push_ *= shares.passive / passive_;
+  passive_ = shares.passive;
+  const Vec3 wish = shares.fade * shares.passive * within, change = wish - push_;
   const double most = settings_.max_slew * std::clamp(dt, 0.0, kLongestTick);
   const bool slewed = change.norm() > most;
-  if (slewed) f = last_ + most / change.norm() * change;
-  last_ = f;
-  const Vec3 damped = f + damping_D;
-  f = within_magnitude(damped);
-  clamped = clamped || f != damped;
-  counts_.clamped += clamped ? 1 : 0;
+  push_ = slewed ? Vec3(push_ + most / change.norm() * change) : wish;
   counts_.slewed += slewed ? 1 : 0;
   watch_for_storm(slewed, dt);
-  return fault_ == Fault::kNone ? f : Vec3(Vec3::Zero());
+  return push_;
+}
+
+Vec3 Limiter::finish(const Vec3& damping_D) noexcept {
+  if (!damping_D.allFinite()) latch(Fault::kNotFinite);
+  if (fault_ != Fault::kNone) return drop();
+  const Vec3 damped = push_ + damping_D, f = within_magnitude(damped);
+  counts_.clamped += clamped_ || f != damped ? 1 : 0;
+  return f;
 }
 
 Vec3 Limiter::within_magnitude(const Vec3& f) const noexcept {
@@ -47,10 +49,10 @@ void Limiter::watch_for_storm(bool slewed, double dt) noexcept {
 }
 
 void Limiter::latch(Fault fault) noexcept {
-  last_.setZero();
+  push_.setZero();
   if (fault_ != Fault::kNone) return;
   fault_ = fault;
-  ++counts_.latched;
+  ++(fault == Fault::kStorm ? counts_.storms : counts_.not_finite);
 }
 
 }  // namespace palpate::client

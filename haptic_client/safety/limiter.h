@@ -5,11 +5,11 @@
 
 namespace palpate::client {
 
-/// What the last stage before the motors did, in ticks (latched: times).
+/// What the last stage before the motors did: ticks; for the faults, how often they switched the force off.
 struct LimiterCounts {
   std::uint64_t clamped = 0;  ///< magnitude cut to the limit
   std::uint64_t slewed = 0;   ///< change per tick cut to the limit
-  std::uint64_t latched = 0;  ///< a fault switched the force off until re-armed
+  std::uint64_t not_finite = 0, storms = 0;
 };
 
 /// Why the force is latched off.
@@ -20,8 +20,8 @@ enum class Fault : std::uint8_t {
 };
 
 /// The last stage before the motors; there is no way around it. The force that leaves is finite, its
-/// magnitude at most `max_force`, and the part of it that is not damping changes by at most `max_slew` a
-/// second. Pure; haptic thread only.
+/// magnitude at most `max_force`, and what pushes changes by at most `max_slew` a second; only taking force
+/// away and braking are quicker. Pure; haptic thread only.
 class Limiter {
  public:
   struct Settings {
@@ -30,16 +30,23 @@ class Limiter {
   };
   explicit Limiter(const Settings& settings) : settings_(settings) {}
 
-  /// `f_D`: the force wished for (N, device frame); `damping_D`: a damper's share on top of it, exempt from
-  /// the slew limit but not from the clamp. `dt` (s): since the last tick; more than 10 ms count as 10, so
-  /// that a stalled loop does not come back with a blow.
-  /// `gain` in [0, 1] fades the force after the clamp, so that a wild one fades as a full one does.
-  Vec3 limit(const Vec3& f_D, const Vec3& damping_D, double dt, double gain = 1) noexcept;
+  /// How much of the force the stages before let through, [0, 1] each.
+  struct Shares {
+    double fade = 1;     ///< of the watchdog; slewed
+    double passive = 1;  ///< of the passivity controller: what it takes away goes at once
+  };
+  /// `f_D`, the force wished for (N, device frame), clamped, then reduced to its share, then slewed. `dt`
+  /// (s): since the last tick; more than 10 ms count as 10, so that a stalled loop does not come back with a
+  /// blow.
+  Vec3 push(const Vec3& f_D, double dt, const Shares& shares) noexcept;
+  /// What leaves: the last `push` and a damper on top of it, which is exempt from the slew limit but not from
+  /// the clamp.
+  Vec3 finish(const Vec3& damping_D) noexcept;
 
   /// No force at once, and none to slew from: the device gives nothing usable. Returns zero.
   Vec3 drop() noexcept {
-    last_.setZero();
-    return last_;
+    push_.setZero();
+    return push_;
   }
   /// Switches the force off at once, until `rearm`.
   void latch(Fault fault) noexcept;
@@ -53,7 +60,9 @@ class Limiter {
   void watch_for_storm(bool slewed, double dt) noexcept;
 
   Settings settings_;
-  Vec3 last_ = Vec3::Zero();
+  Vec3 push_ = Vec3::Zero();
+  double passive_ = 1;    // share of the last tick
+  bool clamped_ = false;  // this tick
   Fault fault_ = Fault::kNone;
   LimiterCounts counts_;
   double window_ = 0, slewed_time_ = 0;  // s

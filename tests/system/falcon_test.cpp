@@ -99,7 +99,9 @@ TEST_CASE("Falcon: firmware, homing, then a wall of 800 N/m under a hand of 400 
   CHECK(state["dac"] == Json({0, 0, 0}));  // the last word is zero
   CHECK(state["largest_dac"] <= kGoodCount);
   const Json tool = read_json(report)["tools"][0];
-  CHECK(tool["safety"]["latched"] == 0);
+  CHECK(tool["safety"]["not_finite"] == 0);
+  CHECK(tool["safety"]["storms"] == 0);
+  CHECK(tool["safety"]["lost"] > 0);  // until it was homed
   CHECK(tool["force"]["max_newton"].get<double>() <= 8);
 }
 

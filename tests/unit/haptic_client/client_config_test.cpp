@@ -26,3 +26,27 @@ TEST_CASE("a motion told in the world reaches the same place through any workspa
   const Vec3 p_D = Trajectory(*config.device.trajectory).at(0.5);
   CHECK((config.workspace.to_world(p_D) - Vec3(1.010, 0.020, 0.030)).norm() < 1e-12);
 }
+
+TEST_CASE("axes of the workspace: a rotation, and nothing else") {
+  const test::TemporaryFolder folder;
+  const auto axes = [&](const std::string& names) {
+    return read_client_config(folder.write("c.toml", "[workspace]\naxes = [" + names + "]\n")).workspace.axes;
+  };
+  Mat3 expected;
+  expected << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  CHECK(axes("\"x\", \"-z\", \"y\"") == expected);
+  CHECK_THROWS_WITH(axes("\"x\", \"y\", \"-z\""), Catch::Contains("c.toml:2") && Catch::Contains("mirror"));
+  CHECK_THROWS_WITH(axes("\"x\", \"y\", \"y\""), Catch::Contains("once each"));
+  CHECK_THROWS_WITH(axes("\"x\", \"y\", \"up\""), Catch::Contains("\"up\" is no axis"));
+}
+
+TEST_CASE("a motion told in the world reaches the same place through turned axes") {
+  const test::TemporaryFolder folder;
+  folder.write("m.csv", "t_s,x_m,y_m,z_m\n0,0.01,0.02,0.03\n1,0.01,0.02,0.03\n");
+  const ClientConfig config = read_client_config(folder.write(
+      "c.toml",
+      "[trajectory]\nfile = \"m.csv\"\n[workspace]\naxes = [\"x\", \"-z\", \"y\"]\noffset = [0, 5, "
+      "0]\n"));
+  const Vec3 p_D = Trajectory(*config.device.trajectory).at(0.5);
+  CHECK((config.workspace.to_world(p_D) - Vec3(0.01, 0.02, 0.03)).norm() < 1e-12);
+}

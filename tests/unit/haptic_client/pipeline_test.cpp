@@ -133,6 +133,35 @@ TEST_CASE("a device that gives nothing usable gets no force, and comes back soft
   CHECK(pipeline.tick({.t = t += kTick}, nullptr).f_D[1] == Approx(0.002));
 }
 
+TEST_CASE(
+    "clutched, the tool stays where it is and nothing is felt; let go, it moves on from there, softly") {
+  Pipeline pipeline = make(0, {.scale = 2, .clutch = 4});
+  Time t = warm_up(pipeline, {0, 1, 0});
+  const auto tick = [&](double x, std::uint16_t buttons) {
+    return pipeline.tick({.t = t += kTick, .p_D = {x, 0, 0}, .buttons = buttons}, nullptr);
+  };
+  CHECK(tick(0.001, 3).f_D[1] == Approx(2));  // other buttons are no clutch
+  for (const double x : {0.002, 0.03, 0.05}) {
+    const TickResult held = tick(x, 4);
+    CHECK(held.tool.p_W[0] == Approx(0.002));
+    CHECK(held.tool.flags == protocol::ToolState::kClutched);
+    CHECK(held.f_D == Vec3::Zero());
+  }
+  const TickResult released = tick(0.051, 0);
+  CHECK(released.tool.p_W[0] == Approx(0.004));
+  CHECK(released.f_D[1] == Approx(2 * 0.002));  // the first tick of a soft start of one second
+}
+
+TEST_CASE("with turned axes the force does the same work in both frames") {
+  Mat3 axes;
+  axes << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // world x is the device's z, and so on
+  Pipeline pipeline = make(0, {.scale = 2, .offset_W = {0.1, 0, 0}, .axes = axes});
+  Time t = warm_up(pipeline, {0.25, 0.5, 1});
+  CHECK((pipeline.tick({.t = t}, nullptr).f_D - Vec3(1, 2, 0.5)).norm() < 1e-12);
+  const TickResult moved = pipeline.tick({.t = t + kTick, .p_D = {0.01, 0.02, 0.03}}, nullptr);
+  CHECK((moved.tool.p_W - Vec3(0.16, 0.02, 0.04)).norm() < 1e-15);
+}
+
 TEST_CASE("a device that is found somewhere else did not fly there") {
   Pipeline pipeline = make();
   pipeline.tick({.t = 0ms, .valid = false}, nullptr);
@@ -161,26 +190,45 @@ TEST_CASE("re-armed after a fault, the force rises softly") {
   CHECK(pipeline.tick({.t = t += kTick}, nullptr).f_D.norm() == Approx(0.006));
 }
 
-TEST_CASE("whatever comes from the wire and the device, the force is finite and within its limits") {
+TEST_CASE("whatever comes from the wire and the device, force and its change stay within their limits") {
+  constexpr double kForce = 3, kSlew = 500;  // N, N/s
   test::Random random(13);
+  const double sizes[] = {0, 1e-9, 1e-3, 1, 1e30, 1e-320}, wild[] = {0, 1e308, -1e308, 1e-320};
+  const auto any = [&](std::size_t kinds) {
+    Vec3 v = random.vector(sizes[random.bits() % kinds]);
+    if (random.bits() % 50 == 0) v[0] = wild[random.bits() % 4];
+    if (random.bits() % 97 == 0) v[1] = std::nan("");
+    if (random.bits() % 97 == 0) v[2] = std::numeric_limits<double>::infinity();
+    return v;
+  };
   for (std::size_t law = 0; law < extrapolators().size(); ++law) {
     Pipeline pipeline = make(law);
     Time t = 1s;
     Vec3 last = Vec3::Zero();
-    for (int tick = 0; tick < 20000; ++tick) {
-      const double sizes[] = {0, 1e-9, 1e-3, 1, 1e30, 1e-320};
-      const ForceSample sample =
-          sample_at(random.bits() % 1000 + 1, t - Time{static_cast<Time::rep>(random.bits() % 400'000'000)},
-                    random.vector(sizes[random.bits() % 6]), random.vector(sizes[random.bits() % 6]));
-      DeviceReading reading{.t = t, .p_D = random.vector(sizes[random.bits() % 4])};
-      if (tick % 997 == 0) reading.p_D[0] = std::nan("");
-      const Vec3 f = pipeline.tick(reading, random.bits() % 4 == 0 ? &sample : nullptr).f_D;
+    double largest = 0;
+    bool braked = false;
+    for (int tick = 0; tick < 40000; ++tick) {
+      const Time dt{static_cast<Time::rep>(random.bits() % 4'000'000)};
+      t += dt;
+      const Time stamp = t - Time{static_cast<Time::rep>(random.bits() % 400'000'000)};
+      const ForceSample sample = sample_at(random.bits() % 1000 + 1, stamp, any(6), any(6));
+      const DeviceReading reading{.t = t, .p_D = any(4)};
+      const bool fresh = random.bits() % 4 == 0;
+      const Vec3 f = pipeline.tick(reading, fresh ? &sample : nullptr).f_D;
       REQUIRE(f.allFinite());
-      REQUIRE(f.norm() <= 3 * (1 + 1e-12));
+      REQUIRE(f.norm() <= kForce * (1 + 1e-12));
+      // Taking force away along its line is free, and so is the damper of an old sample; nothing else is.
+      const double kept =
+          last.norm() < 1e-12 ? 0 : std::clamp(f.dot(last.normalized()) / last.norm(), 0.0, 1.0);
+      const bool brakes = pipeline.age_ns() > 300'000'000;
+      if (!brakes && !braked)
+        REQUIRE((f - kept * last).norm() <= kSlew * to_seconds(dt) * (1 + 1e-9) + 1e-12);
+      braked = brakes;
       last = f;
-      pipeline.rearm();
-      t += Time{static_cast<Time::rep>(random.bits() % 4'000'000)};
+      largest = std::max(largest, f.norm());
+      if (random.bits() % 8 == 0) pipeline.rearm();
     }
+    CHECK(largest > 0);
   }
 }
 
