@@ -25,7 +25,7 @@ std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
 #ifdef PALPATE_WITH_USB
   std::vector<std::byte> firmware;
   if (!settings.falcon.firmware.empty()) firmware = read_firmware(settings.falcon.firmware);
-  return std::make_unique<Falcon>(std::make_unique<UsbPort>(kFalconVendor, kFalconProduct, settings.port),
+  return std::make_unique<Falcon>(std::make_unique<UsbPort>(UsbKind{kFalconIds}, settings.port),
                                   std::move(firmware), settings.falcon.torque_constant);
 #else
   fail(
@@ -62,15 +62,15 @@ std::span<const DeviceRow> devices() {
 
 int print_plugged_in() {
 #ifdef PALPATE_WITH_USB
-  const std::vector<UsbDevice> found = find_usb(kFalconVendor, kFalconProduct);
+  const std::vector<UsbDevice> found = find_usb(kFalconIds);
   if (found.empty())
     fmt::print("no device that Palpate knows is plugged in; known: Novint Falcon ({:04x}:{:04x})\n",
-               kFalconVendor, kFalconProduct);
+               kFalconIds[0].vendor, kFalconIds[0].product);
   bool locked = false;
   for (const UsbDevice& device : found) {
     fmt::print("{:10} Novint Falcon    --device falcon:{}    {}\n", device.path, device.path,
                device.access.empty() ? "ready to use" : device.access);
-    locked = locked || device.access.find("permission") != std::string::npos;
+    locked = locked || device.locked;
   }
   if (locked) {
     fmt::print(
@@ -79,7 +79,7 @@ int print_plugged_in() {
         "plug the device in again:\n"
         "SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{:04x}\", MODE=\"0660\", "
         "GROUP=\"plugdev\", TAG+=\"uaccess\"\n",
-        kFalconVendor, kFalconProduct);
+        kFalconIds[0].vendor, kFalconIds[0].product);
   }
   return 0;
 #else

@@ -192,3 +192,17 @@ TEST_CASE("Falcon: of two, the one that was asked for") {
   client->signal(SIGINT);
   CHECK(client->wait() == 0);
 }
+
+TEST_CASE("Falcon: of three, the first that is neither locked nor held by another program") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcons({"falcon:2-1", "falcon:3-2", "falcon:4-3"}, {"--loaded", "--homed"});
+  falcons.command("fault 2-1 permission");
+  falcons.command("fault 3-2 busy");
+  auto client =
+      falcons.start("haptic_client", {"run", bench.client, "--device", "falcon", "--server", wall.address});
+  REQUIRE(client->wait_for("Falcon homed: ready"));
+  CHECK(falcons.state("4-3")["green"] == true);
+  client->signal(SIGINT);
+  CHECK(client->wait() == 0);
+}
