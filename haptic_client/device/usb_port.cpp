@@ -44,10 +44,12 @@ const char* in_words(int error) {
   }
 }
 
+/// In the order of their paths.
 template <class Use>
 void for_each(libusb_context* context, std::span<const UsbId> ids, Use use) {
   libusb_device** list = nullptr;
   const auto count = libusb_get_device_list(context, &list);
+  if (count > 0) std::sort(list, list + count, [](auto* a, auto* b) { return path_of(a) < path_of(b); });
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     libusb_device_descriptor descriptor{};
     if (libusb_get_device_descriptor(list[i], &descriptor) != 0) continue;
@@ -119,7 +121,6 @@ std::vector<UsbDevice> find_usb(std::span<const UsbId> ids) {
         {path_of(device).data(), id, error == 0 ? "" : in_words(error), error == LIBUSB_ERROR_ACCESS});
   });
   libusb_exit(context);
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
   return found;
 }
 
