@@ -84,8 +84,7 @@ void FalconMachine::take(UsbTransport& port, Time now) noexcept {
 
 void FalconMachine::begin(UsbTransport& port, Time now) noexcept {
   if (now < retry_at_) return;
-  if (!port.open()) {
-    retry_at_ = now + kLookAgain;
+  if (!port.open(now)) {
     if (port.trouble()[0] != 0) message_ = port.trouble();
     return;
   }

@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "common/spsc_ring.h"
+#include "haptic_client/device/usb_lookout.h"
 
 namespace palpate::client {
 namespace {
@@ -147,6 +148,7 @@ struct UsbPort::Libusb {
   Transfer out{};
   std::array<Transfer, kRequests> requests{};
   SpscRing<Packet> received{kReceived};
+  UsbLookout lookout{false};
   bool lost = false, closing = false;
   const char* trouble = "";
 
@@ -165,6 +167,25 @@ struct UsbPort::Libusb {
     }
     interface = *chosen;
     path = path_of(device);
+    return 0;
+  }
+
+  void listen() {
+    constexpr int kBoth = LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT;
+    constexpr int kAny = LIBUSB_HOTPLUG_MATCH_ANY;
+    const int error =
+        libusb_hotplug_register_callback(context, kBoth, 0, kAny, kAny, kAny, &on_hotplug, this, nullptr);
+    lookout = UsbLookout(error == 0);
+  }
+
+  /// Called while events are handled, in the haptic thread; may not open anything.
+  static int on_hotplug(libusb_context*, libusb_device* device, libusb_hotplug_event event, void* owner) {
+    auto& self = *static_cast<Libusb*>(owner);
+    if (event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED) {
+      self.lookout.look();
+    } else if (self.handle != nullptr && libusb_get_device(self.handle) == device) {
+      self.lost = true;
+    }
     return 0;
   }
 
@@ -231,6 +252,7 @@ struct UsbPort::Libusb {
 
 UsbPort::UsbPort(UsbKind kind, std::string path) : usb_(new Libusb{.kind = kind, .wanted = std::move(path)}) {
   usb_->context = begin_usb();
+  usb_->listen();
 }
 
 UsbPort::~UsbPort() {
@@ -238,16 +260,21 @@ UsbPort::~UsbPort() {
   libusb_exit(usb_->context);
 }
 
-bool UsbPort::open() noexcept {
+bool UsbPort::open(Time now) noexcept {
   Libusb& u = *usb_;
   close();
+  u.handle_events(0);  // tells what was plugged in
+  if (!u.lookout.due(now)) return false;
   int error = LIBUSB_ERROR_NO_DEVICE;
   for_each(u.context, u.kind.ids, [&](libusb_device* device, const UsbId&) {
     if (u.handle == nullptr && (u.wanted.empty() || path_of(device).data() == u.wanted))
       error = u.claim(device);
   });
   u.trouble = error == 0 ? "" : in_words(error);
-  if (error != 0) return false;
+  if (error != 0) {
+    u.lookout.failed(now, error == LIBUSB_ERROR_NO_DEVICE);
+    return false;
+  }
   u.for_each_transfer([&](Libusb::Transfer& transfer) {
     transfer.owner = &u;
     transfer.libusb = libusb_alloc_transfer(0);
@@ -262,6 +289,7 @@ bool UsbPort::open() noexcept {
 /// Whatever is on the way is called back, within a second.
 void UsbPort::close() noexcept {
   Libusb& u = *usb_;
+  if (u.handle == nullptr) return;
   constexpr int kRounds = 100;
   constexpr long kRound = 10'000;  // us
   u.closing = true;                // what completes now is not asked for again
@@ -274,11 +302,10 @@ void UsbPort::close() noexcept {
     transfer.libusb = nullptr;
     transfer.flying = false;
   });
-  if (u.handle != nullptr) {
-    libusb_release_interface(u.handle, u.interface.number);
-    libusb_close(u.handle);
-  }
+  libusb_release_interface(u.handle, u.interface.number);
+  libusb_close(u.handle);
   u.handle = nullptr;
+  u.lookout.look();
   u.path = {};
   u.lost = u.closing = false;
   while (u.received.front() != nullptr) u.received.release();

@@ -29,7 +29,8 @@ std::vector<UsbDevice> find_usb(std::span<const UsbId> ids);
 
 /// An interface of a device through libusb, asynchronously (the only file that knows libusb): two IN
 /// transfers of a packet each are always pending, OUT and control transfers go without waiting, unplugging is
-/// NO_DEVICE. `open` may take some milliseconds; nothing else waits. The kernel's driver gives way while it
+/// NO_DEVICE. `open` takes a few us while nothing was
+/// plugged in, some milliseconds when it opens; nothing else waits. The kernel's driver gives way while it
 /// is open.
 class UsbPort : public UsbTransport {
  public:
@@ -37,7 +38,7 @@ class UsbPort : public UsbTransport {
   /// USB at all.
   UsbPort(UsbKind kind, std::string path);
   ~UsbPort() override;
-  bool open() noexcept override;
+  bool open(Time now) noexcept override;
   void close() noexcept override;
   void control(const UsbRequest& request) noexcept override;
   bool write(std::span<const std::byte> bytes) noexcept override;

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <span>
 
+#include "common/time.h"
+
 namespace palpate::client {
 
 /// What a kind of device calls itself.
@@ -25,9 +27,9 @@ struct UsbRequest {
 class UsbTransport {
  public:
   virtual ~UsbTransport() = default;
-  /// Looks for the device and claims it; false when there is none, or it may not be used (`trouble` says
-  /// why).
-  virtual bool open() noexcept = 0;
+  /// Claims the device; false when there is none, or it may not be used (`trouble` says why). Call it every
+  /// tick: it looks for the device only when that can be of use.
+  virtual bool open(Time now) noexcept = 0;
   virtual void close() noexcept = 0;
   /// A request to the device, after those before it.
   virtual void control(const UsbRequest& request) noexcept = 0;

@@ -206,3 +206,19 @@ TEST_CASE("Falcon: of three, the first that is neither locked nor held by anothe
   client->signal(SIGINT);
   CHECK(client->wait() == 0);
 }
+
+TEST_CASE("Falcon: found when it is plugged in later, and when the program that held it lets it go") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcon({"falcon:2-1"}, {"--loaded", "--homed"});
+  falcon.command("unplug 2-1");
+  falcon.command("fault 2-1 busy");
+  auto client = falcon.start("haptic_client", {"run", bench.client, "--server", wall.address});
+  REQUIRE(client->wait_for("looking for a Falcon"));
+  falcon.command("plug 2-1");
+  REQUIRE(client->wait_for("another program holds the USB device"));
+  falcon.command("fault 2-1 busy 0");
+  REQUIRE(falcon.wait_for("2-1", [](const Json& s) { return s["red"] == true || s["green"] == true; }));
+  client->signal(SIGINT);
+  CHECK(client->wait() == 0);
+}
