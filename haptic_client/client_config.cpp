@@ -50,6 +50,14 @@ Mat3 read_axes(const Config& config) {
   return axes;
 }
 
+SpaceMouseSettings read_spacemouse(const Config& config) {
+  SpaceMouseSettings mouse;
+  mouse.speed = config.number("speed", {0.001, 1, "m/s"}, mouse.speed);
+  mouse.reach = config.number("reach", {0.001, 1, "m"}, mouse.reach);
+  config.reject_unknown();
+  return mouse;
+}
+
 Workspace read_workspace(const Config& config) {
   Workspace workspace;
   workspace.scale = config.number("scale", {0.01, 100, "world m per device m"}, workspace.scale);
@@ -121,6 +129,7 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   }
   if (const auto hand = config.table("operator")) client.device.hand = read_operator(*hand);
   if (const auto falcon = config.table("falcon")) client.device.falcon = read_falcon(*falcon);
+  if (const auto mouse = config.table("spacemouse")) client.device.spacemouse = read_spacemouse(*mouse);
   if (const auto trajectory = config.table("trajectory"))
     client.device.trajectory = read_trajectory_settings(*trajectory);
   if (const auto workspace = config.table("workspace")) client.workspace = read_workspace(*workspace);

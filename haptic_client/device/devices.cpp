@@ -1,7 +1,9 @@
 #include "haptic_client/device/devices.h"
 
+#include <algorithm>
 #include <array>
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <set>
 
 #include "common/error.h"
 #include "common/text.h"
@@ -21,22 +23,34 @@ DeviceLimits limits_of_simulated(const DeviceSettings& settings) {
   return {.max_force = settings.hand.max_force};
 }
 
-std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
 #ifdef PALPATE_WITH_USB
+std::unique_ptr<UsbTransport> usb_port(const DeviceSettings& settings, const UsbKind& kind) {
+  return std::make_unique<UsbPort>(kind, settings.port);
+}
+#else
+std::unique_ptr<UsbTransport> usb_port(const DeviceSettings& settings, const UsbKind&) {
+  fail("{}: device \"{}\" was left out of this build (PALPATE_USB=OFF); build with it, and libusb-1.0-0-dev",
+       settings.where, settings.name);
+}
+#endif
+
+std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
   std::vector<std::byte> firmware;
   if (!settings.falcon.firmware.empty()) firmware = read_firmware(settings.falcon.firmware);
-  return std::make_unique<Falcon>(std::make_unique<UsbPort>(kFalconVendor, kFalconProduct, settings.port),
-                                  std::move(firmware), settings.falcon.torque_constant);
-#else
-  fail(
-      "{}: device \"falcon\" was left out of this build (PALPATE_USB=OFF); build with it, and "
-      "libusb-1.0-0-dev",
-      settings.where);
-#endif
+  return std::make_unique<Falcon>(usb_port(settings, {kFalconIds}), std::move(firmware),
+                                  settings.falcon.torque_constant);
 }
 
 DeviceLimits limits_of_falcon(const DeviceSettings&) {
   return {.max_force = 8, .min_period = std::chrono::milliseconds(1)};
+}
+
+std::unique_ptr<Device> make_spacemouse(const DeviceSettings& settings) {
+  return std::make_unique<SpaceMouse>(usb_port(settings, {spacemouse_ids(), true}), settings.spacemouse);
+}
+
+DeviceLimits limits_of_spacemouse(const DeviceSettings&) {
+  return {};
 }
 
 constexpr std::array kDevices{
@@ -44,7 +58,28 @@ constexpr std::array kDevices{
               &limits_of_simulated, &make_simulated},
     DeviceRow{"falcon", "Novint Falcon over libusb; falcon:2-1 is the one at bus 2, port 1",
               &limits_of_falcon, &make_falcon},
+    DeviceRow{"spacemouse",
+              "3Dconnexion 6-DoF mouse over libusb: moves the tool, gives no force; also spacemouse:PORT",
+              &limits_of_spacemouse, &make_spacemouse},
 };
+
+#ifdef PALPATE_WITH_USB
+bool is_falcon(const UsbId& id) {
+  return std::find(kFalconIds.begin(), kFalconIds.end(), id) != kFalconIds.end();
+}
+
+/// One for all products of this vendor that we know, as in configs/udev/70-palpate.rules.
+std::string udev_rule(std::uint16_t vendor, std::span<const UsbId> known) {
+  std::string products;
+  for (const UsbId& id : known) {
+    if (id.vendor == vendor) products += fmt::format("{}{:04x}", products.empty() ? "" : "|", id.product);
+  }
+  return fmt::format(
+      "SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{}\", MODE=\"0660\", "
+      "GROUP=\"plugdev\", TAG+=\"uaccess\"",
+      vendor, products);
+}
+#endif
 
 }  // namespace
 
@@ -62,24 +97,24 @@ std::span<const DeviceRow> devices() {
 
 int print_plugged_in() {
 #ifdef PALPATE_WITH_USB
-  const std::vector<UsbDevice> found = find_usb(kFalconVendor, kFalconProduct);
+  std::vector<UsbId> known(kFalconIds.begin(), kFalconIds.end());
+  known.insert(known.end(), spacemouse_ids().begin(), spacemouse_ids().end());
+  const std::vector<UsbDevice> found = find_usb(known);
   if (found.empty())
-    fmt::print("no device that Palpate knows is plugged in; known: Novint Falcon ({:04x}:{:04x})\n",
-               kFalconVendor, kFalconProduct);
-  bool locked = false;
+    fmt::print("no device that Palpate knows is plugged in; known: Novint Falcon, 3Dconnexion 6-DoF mice\n");
+  std::set<std::string> rules;
   for (const UsbDevice& device : found) {
-    fmt::print("{:10} Novint Falcon    --device falcon:{}    {}\n", device.path, device.path,
-               device.access.empty() ? "ready to use" : device.access);
-    locked = locked || device.access.find("permission") != std::string::npos;
+    const bool falcon = is_falcon(device.id);
+    const char* const model = falcon ? "Novint Falcon" : spacemouse_name(device.id);
+    fmt::print("{:10} {:30} --device {}:{}    {}\n", device.path, model, falcon ? "falcon" : "spacemouse",
+               device.path, device.access.empty() ? "ready to use" : device.access);
+    if (device.locked) rules.insert(udev_rule(device.id.vendor, known));
   }
-  if (locked) {
+  if (!rules.empty()) {
     fmt::print(
-        "this rule in /etc/udev/rules.d/70-palpate.rules gives access (scripts/setup --udev puts it there); "
-        "then "
-        "plug the device in again:\n"
-        "SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{:04x}\", MODE=\"0660\", "
-        "GROUP=\"plugdev\", TAG+=\"uaccess\"\n",
-        kFalconVendor, kFalconProduct);
+        "what follows, in /etc/udev/rules.d/70-palpate.rules, gives access (scripts/setup --udev puts it "
+        "there); then plug the device in again:\n{}\n",
+        fmt::join(rules, "\n"));
   }
   return 0;
 #else

@@ -7,6 +7,7 @@
 #include "haptic_client/device/device.h"
 #include "haptic_client/device/falcon.h"
 #include "haptic_client/device/simulated_operator.h"
+#include "haptic_client/device/spacemouse.h"
 
 namespace palpate::client {
 
@@ -16,6 +17,7 @@ struct DeviceSettings {
   std::string where = "default";
   std::string port;  ///< "2-1": bus and ports; empty: the first there is
   FalconSettings falcon;
+  SpaceMouseSettings spacemouse;
   OperatorSettings hand;
   std::optional<TrajectorySettings> trajectory;  ///< absent: the simulated hand holds still at (0, 0.1, 0)
 };
@@ -32,9 +34,9 @@ struct DeviceRow {
 };
 std::span<const DeviceRow> devices();
 
-/// What is plugged in and known to us, a line each, on stdout: bus-port path, name, driver, access; where
-/// access is missing, the udev rule that gives it. Throws `Error` when there is no USB. Returns the exit
-/// code.
+/// What is plugged in and known to us, a line each, on stdout: bus-port path, model, how to ask for it,
+/// access; where access is missing, the udev rule that gives it. Throws `Error` when there is no USB. Returns
+/// the exit code.
 int print_plugged_in();
 
 }  // namespace palpate::client

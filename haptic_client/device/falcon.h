@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -19,7 +20,7 @@ struct FalconSettings {
 /// Bytes of a firmware image. Throws `Error` when it cannot be read or cannot be one (1 kB to 64 kB).
 std::vector<std::byte> read_firmware(const std::filesystem::path& file);
 
-constexpr std::uint16_t kFalconVendor = 0x0403, kFalconProduct = 0xcb48;
+inline constexpr std::array kFalconIds{UsbId{0x0403, 0xcb48}};
 
 /// A Novint Falcon: grip position in m in its own frame (x right, y up, z out towards the user), force of its
 /// three motors. No force before it is homed. One USB exchange a tick, which overlaps the tick: the position

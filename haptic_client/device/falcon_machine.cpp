@@ -18,6 +18,12 @@ constexpr std::array kAreYouThere{std::byte{0x0a}, std::byte{0x43}, std::byte{0x
 constexpr std::array kIAm{std::byte{0x0a}, std::byte{0x44}, std::byte{0x2c}, std::byte{0x0d}};
 constexpr std::array kReadyForImage{std::byte{0x41}};
 
+constexpr std::uint8_t kVendor = 0x40;  // bmRequestType
+
+void ftdi(UsbTransport& port, std::uint8_t request, std::uint16_t value) {
+  port.control({.type = kVendor, .request = request, .value = value});
+}
+
 constexpr Time kProbePeriod = 20ms, kBootPeriod = 60ms, kHandshakePatience = 300ms, kEchoPatience = 500ms;
 constexpr Time kSilence = 1s, kFresh = 50ms, kLookAgain = 500ms, kLoadAgain = 2s;
 constexpr int kProbes = 25, kBootTries = 100, kLoads = 10;
@@ -60,16 +66,16 @@ void FalconMachine::take(UsbTransport& port, Time now) noexcept {
   if (phase_ == FalconPhase::kClosed) return;
   const bool packets =
       phase_ == FalconPhase::kProbe || phase_ == FalconPhase::kUnhomed || phase_ == FalconPhase::kReady;
-  std::array<std::byte, 256> bytes;
-  while (const std::size_t size = port.read(bytes)) {
-    const Bytes came(bytes.data(), size);
+  std::array<std::byte, kFtdiUsbPacket> packet, bytes;
+  while (const std::size_t size = port.read(packet)) {
+    const Bytes came(bytes.data(), strip_ftdi_status({packet.data(), size}, bytes));
     if (packets) {
       stream_.push(came, [&](const FalconStatus& status) {
         status_ = status;
         heard_ = now;
       });
     } else {
-      const std::size_t room = std::min(size, answer_.size() - answered_);
+      const std::size_t room = std::min(came.size(), answer_.size() - answered_);
       std::copy_n(came.begin(), room, answer_.begin() + static_cast<std::ptrdiff_t>(answered_));
       answered_ += room;
     }
@@ -78,8 +84,7 @@ void FalconMachine::take(UsbTransport& port, Time now) noexcept {
 
 void FalconMachine::begin(UsbTransport& port, Time now) noexcept {
   if (now < retry_at_) return;
-  if (!port.open()) {
-    retry_at_ = now + kLookAgain;
+  if (!port.open(now)) {
     if (port.trouble()[0] != 0) message_ = port.trouble();
     return;
   }
@@ -90,10 +95,10 @@ void FalconMachine::begin(UsbTransport& port, Time now) noexcept {
 }
 
 void FalconMachine::normal_mode(UsbTransport& port) noexcept {
-  port.control(kLatency, kLatencyRun);
-  port.control(kBaud, kBaud1500k);
-  port.control(kReset, kPurgeIn);
-  port.control(kReset, kPurgeOut);
+  ftdi(port, kLatency, kLatencyRun);
+  ftdi(port, kBaud, kBaud1500k);
+  ftdi(port, kReset, kPurgeIn);
+  ftdi(port, kReset, kPurgeOut);
 }
 
 /// The edge of DTR resets the microcontroller into its boot loader.
@@ -101,15 +106,15 @@ void FalconMachine::boot_mode(UsbTransport& port, Time now) noexcept {
   if (++loads_ > kLoads)
     return give_up(port, now, kLoadAgain,
                    "the Falcon does not take its firmware; try another USB port, or a powered hub");
-  port.control(kReset, kPurgeIn);
-  port.control(kReset, kPurgeOut);
-  port.control(kLatency, kLatencyBoot);
-  port.control(kBaud, kBaud9600);
-  port.control(kLine, k8N1);
-  port.control(kFlow, 0);
-  port.control(kModem, kRtsLow);
-  port.control(kModem, kDtrLow);
-  port.control(kModem, kDtrHigh);
+  ftdi(port, kReset, kPurgeIn);
+  ftdi(port, kReset, kPurgeOut);
+  ftdi(port, kLatency, kLatencyBoot);
+  ftdi(port, kBaud, kBaud9600);
+  ftdi(port, kLine, k8N1);
+  ftdi(port, kFlow, 0);
+  ftdi(port, kModem, kRtsLow);
+  ftdi(port, kModem, kDtrLow);
+  ftdi(port, kModem, kDtrHigh);
   message_ = "loading the Falcon's firmware";
   enter(FalconPhase::kBoot, now);
 }
@@ -133,8 +138,8 @@ void FalconMachine::probe(UsbTransport& port, Time now) noexcept {
 void FalconMachine::boot(UsbTransport& port, Time now) noexcept {
   const auto end = answer_.begin() + static_cast<std::ptrdiff_t>(answered_);
   if (std::search(answer_.begin(), end, kIAm.begin(), kIAm.end()) != end) {
-    port.control(kModem, kDtrLow);
-    port.control(kBaud, kBaud140k);
+    ftdi(port, kModem, kDtrLow);
+    ftdi(port, kBaud, kBaud140k);
     return enter(FalconPhase::kHandshake, now);
   }
   if (asked_ && now - sent_ < kBootPeriod) return;

@@ -11,7 +11,7 @@ namespace palpate::client {
 
 /// Where a Falcon is on its way from the plug to the hand.
 enum class FalconPhase : std::uint8_t {
-  kClosed,     ///< not there, or not ours: looked for twice a second
+  kClosed,     ///< not there, or not ours
   kProbe,      ///< open: does firmware answer?
   kBoot,       ///< the boot loader was reset and is asked for its sign of life
   kHandshake,  ///< it answered: ready for the image?

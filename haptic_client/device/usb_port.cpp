@@ -4,26 +4,31 @@
 #include <array>
 #include <fmt/format.h>
 #include <libusb-1.0/libusb.h>
+#include <optional>
 
 #include "common/error.h"
 #include "common/spsc_ring.h"
-#include "haptic_client/device/falcon_packets.h"
+#include "haptic_client/device/usb_lookout.h"
 
 namespace palpate::client {
 namespace {
 
-constexpr int kInterface = 0;
-constexpr std::uint8_t kIn = 0x81, kOut = 0x02;
-constexpr std::uint8_t kVendorOut = 0x40;  // bmRequestType
-constexpr unsigned kTimeout = 1000;        // ms, of OUT and control
-constexpr std::size_t kInSize = 512, kPending = 2, kReceived = 4096;
+constexpr unsigned kTimeout = 1000;                          // ms, of OUT and control
+constexpr std::size_t kMostIn = 512, kMostOut = 64;          // bytes of a packet
+constexpr std::size_t kPending = 2, kReceived = 64;          // IN transfers; packets that wait to be read
+constexpr std::size_t kRequests = 16;                        // on the way at once
+constexpr std::uint8_t kToInterface = 1, kRecipient = 0x1f;  // of bmRequestType
 
-std::string path_of(libusb_device* device) {
-  std::array<std::uint8_t, 8> ports{};
+using Path = std::array<char, 32>;  // "2-1.4", zero at the end
+
+Path path_of(libusb_device* device) {
+  std::array<std::uint8_t, 7> ports{};
   const int count = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
-  std::string path = fmt::format("{}", libusb_get_bus_number(device));
+  Path path{};
+  const auto last = path.end() - 1;
+  auto at = fmt::format_to_n(path.begin(), last - path.begin(), "{}", libusb_get_bus_number(device)).out;
   for (int i = 0; i < count; ++i)
-    path += fmt::format("{}{}", i == 0 ? '-' : '.', ports[static_cast<std::size_t>(i)]);
+    at = fmt::format_to_n(at, last - at, "{}{}", i == 0 ? '-' : '.', ports[static_cast<std::size_t>(i)]).out;
   return path;
 }
 
@@ -40,14 +45,17 @@ const char* in_words(int error) {
   }
 }
 
+/// In the order of their paths.
 template <class Use>
-void for_each(libusb_context* context, std::uint16_t vendor, std::uint16_t product, Use use) {
+void for_each(libusb_context* context, std::span<const UsbId> ids, Use use) {
   libusb_device** list = nullptr;
   const auto count = libusb_get_device_list(context, &list);
+  if (count > 0) std::sort(list, list + count, [](auto* a, auto* b) { return path_of(a) < path_of(b); });
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     libusb_device_descriptor descriptor{};
     if (libusb_get_device_descriptor(list[i], &descriptor) != 0) continue;
-    if (descriptor.idVendor == vendor && descriptor.idProduct == product) use(list[i]);
+    const UsbId id{descriptor.idVendor, descriptor.idProduct};
+    if (std::find(ids.begin(), ids.end(), id) != ids.end()) use(list[i], id);
   }
   if (list != nullptr) libusb_free_device_list(list, 1);
 }
@@ -59,76 +67,173 @@ libusb_context* begin_usb() {
   return context;
 }
 
+/// Where packets go.
+struct Endpoint {
+  std::uint8_t address = 0;  // 0: there is none
+  std::uint8_t type = 0;     // libusb_endpoint_transfer_type
+  std::size_t size = 0;      // bytes of its largest packet
+};
+
+struct Interface {
+  int number = 0;
+  Endpoint in, out;
+};
+
+/// The first endpoint of a direction that carries bulk or interrupt transfers.
+Endpoint first_endpoint(const libusb_interface_descriptor& setting, std::uint8_t direction, bool bulk_too) {
+  for (int i = 0; i < setting.bNumEndpoints; ++i) {
+    const auto& e = setting.endpoint[i];
+    const auto type = static_cast<std::uint8_t>(e.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK);
+    const std::size_t size = e.wMaxPacketSize & 0x7ffu;
+    const bool fits =
+        type == LIBUSB_TRANSFER_TYPE_INTERRUPT || (bulk_too && type == LIBUSB_TRANSFER_TYPE_BULK);
+    if ((e.bEndpointAddress & LIBUSB_ENDPOINT_DIR_MASK) == direction && fits && size > 0)
+      return {e.bEndpointAddress, type, size};
+  }
+  return {};
+}
+
+std::optional<Interface> choose_interface(libusb_device* device, bool hid) {
+  libusb_config_descriptor* config = nullptr;
+  if (libusb_get_active_config_descriptor(device, &config) != 0) return {};
+  std::optional<Interface> chosen;
+  for (int i = 0; i < config->bNumInterfaces && !chosen; ++i) {
+    if (config->interface[i].num_altsetting < 1) continue;
+    const auto& setting = config->interface[i].altsetting[0];
+    if (hid && setting.bInterfaceClass != LIBUSB_CLASS_HID) continue;
+    const Endpoint in = first_endpoint(setting, LIBUSB_ENDPOINT_IN, !hid);
+    if (in.address == 0 || in.size > kMostIn) continue;
+    chosen = {setting.bInterfaceNumber, in, first_endpoint(setting, LIBUSB_ENDPOINT_OUT, true)};
+  }
+  libusb_free_config_descriptor(config);
+  return chosen;
+}
+
 }  // namespace
 
-std::vector<UsbDevice> find_usb(std::uint16_t vendor, std::uint16_t product) {
+std::vector<UsbDevice> find_usb(std::span<const UsbId> ids) {
   libusb_context* context = begin_usb();
   std::vector<UsbDevice> found;
-  for_each(context, vendor, product, [&](libusb_device* device) {
-    UsbDevice row{path_of(device), vendor, product, ""};
+  for_each(context, ids, [&](libusb_device* device, const UsbId& id) {
     libusb_device_handle* handle = nullptr;
-    if (const int error = libusb_open(device, &handle); error != 0) row.access = in_words(error);
+    const int error = libusb_open(device, &handle);
     if (handle != nullptr) libusb_close(handle);
-    found.push_back(row);
+    found.push_back(
+        {path_of(device).data(), id, error == 0 ? "" : in_words(error), error == LIBUSB_ERROR_ACCESS});
   });
   libusb_exit(context);
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.path < b.path; });
   return found;
 }
 
 struct UsbPort::Libusb {
-  struct Incoming {
+  /// A transfer and its bytes, made once an opening: a tick does not allocate.
+  struct Transfer {
     Libusb* owner = nullptr;
-    libusb_transfer* transfer = nullptr;
-    bool flying = false;
-    std::array<unsigned char, kInSize> bytes{};
+    libusb_transfer* libusb = nullptr;
+    bool flying = false, optional = false;
+    std::array<unsigned char, kMostIn> bytes{};
+  };
+  struct Packet {
+    std::size_t size = 0;
+    std::array<std::byte, kMostIn> bytes{};
   };
 
-  std::uint16_t vendor, product;
-  std::string path;
+  UsbKind kind;
+  std::string wanted;  // path
   libusb_context* context = nullptr;
   libusb_device_handle* handle = nullptr;
-  std::array<Incoming, kPending> incoming{};
-  SpscRing<std::byte> received{kReceived};
-  libusb_transfer* out = nullptr;  // one at a time, made once: a tick does not allocate
-  std::array<unsigned char, kFtdiUsbPacket> out_bytes{};
-  bool out_flying = false;
-  int controls = 0;  // requests on the way
+  Path path{};
+  Interface interface {};
+  std::array<Transfer, kPending> incoming{};
+  Transfer out{};
+  std::array<Transfer, kRequests> requests{};
+  SpscRing<Packet> received{kReceived};
+  UsbLookout lookout{false};
   bool lost = false, closing = false;
   const char* trouble = "";
 
-  bool submit(libusb_transfer* transfer) {
-    if (libusb_submit_transfer(transfer) == 0) return true;
-    lost = true;
-    return false;
+  /// Opens this device and claims its interface; 0 or libusb's error.
+  int claim(libusb_device* device) {
+    const auto chosen = choose_interface(device, kind.hid);
+    if (!chosen) return LIBUSB_ERROR_NOT_SUPPORTED;
+    int error = libusb_open(device, &handle);
+    if (error != 0) return error;
+    libusb_set_auto_detach_kernel_driver(handle, 1);
+    error = libusb_claim_interface(handle, chosen->number);
+    if (error != 0) {
+      libusb_close(handle);
+      handle = nullptr;
+      return error;
+    }
+    interface = *chosen;
+    path = path_of(device);
+    return 0;
+  }
+
+  void listen() {
+    constexpr int kBoth = LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT;
+    constexpr int kAny = LIBUSB_HOTPLUG_MATCH_ANY;
+    const int error =
+        libusb_hotplug_register_callback(context, kBoth, 0, kAny, kAny, kAny, &on_hotplug, this, nullptr);
+    lookout = UsbLookout(error == 0);
+  }
+
+  /// Called while events are handled, in the haptic thread; may not open anything.
+  static int on_hotplug(libusb_context*, libusb_device* device, libusb_hotplug_event event, void* owner) {
+    auto& self = *static_cast<Libusb*>(owner);
+    if (event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED) {
+      self.lookout.look();
+    } else if (self.handle != nullptr && libusb_get_device(self.handle) == device) {
+      self.lost = true;
+    }
+    return 0;
+  }
+
+  bool submit(Transfer& transfer) {
+    transfer.flying = libusb_submit_transfer(transfer.libusb) == 0;
+    if (!transfer.flying) lost = true;
+    return transfer.flying;
   }
 
   static void on_in(libusb_transfer* transfer) {
-    auto& in = *static_cast<Incoming*>(transfer->user_data);
+    auto& in = *static_cast<Transfer*>(transfer->user_data);
     Libusb& self = *in.owner;
     in.flying = false;
     if (transfer->status == LIBUSB_TRANSFER_COMPLETED) {
-      std::array<std::byte, kInSize> payload;
-      const auto* begin = reinterpret_cast<const std::byte*>(in.bytes.data());
-      const std::size_t size =
-          strip_ftdi_status({begin, static_cast<std::size_t>(transfer->actual_length)}, payload);
-      for (std::size_t i = 0; i < size; ++i) self.received.push(payload[i]);
-      in.flying = !self.lost && !self.closing && self.submit(transfer);
+      Packet* const packet = transfer->actual_length > 0 ? self.received.claim() : nullptr;
+      if (packet != nullptr) {
+        packet->size = static_cast<std::size_t>(transfer->actual_length);
+        std::copy_n(reinterpret_cast<const std::byte*>(in.bytes.data()), packet->size, packet->bytes.begin());
+        self.received.publish();
+      }
+      if (!self.lost && !self.closing) self.submit(in);
     } else if (transfer->status != LIBUSB_TRANSFER_CANCELLED) {
       self.lost = true;
     }
   }
 
-  /// OUT and control: `user_data` is the owner; libusb frees the transfer and the buffer of a request.
+  /// OUT and control.
   static void on_out(libusb_transfer* transfer) {
-    auto& self = *static_cast<Libusb*>(transfer->user_data);
-    if (transfer == self.out) {
-      self.out_flying = false;
-    } else {
-      --self.controls;
-    }
-    const bool done = transfer->status == LIBUSB_TRANSFER_COMPLETED;
-    if (!done && transfer->status != LIBUSB_TRANSFER_CANCELLED) self.lost = true;
+    auto& out = *static_cast<Transfer*>(transfer->user_data);
+    out.flying = false;
+    const bool refused = out.optional && transfer->status == LIBUSB_TRANSFER_STALL;
+    const bool done = transfer->status == LIBUSB_TRANSFER_COMPLETED || refused;
+    if (!done && transfer->status != LIBUSB_TRANSFER_CANCELLED) out.owner->lost = true;
+  }
+
+  /// Bulk or interrupt, as the endpoint is.
+  void fill(Transfer& transfer, const Endpoint& endpoint, std::size_t size, libusb_transfer_cb_fn done,
+            unsigned timeout) {
+    libusb_fill_bulk_transfer(transfer.libusb, handle, endpoint.address, transfer.bytes.data(),
+                              static_cast<int>(size), done, &transfer, timeout);
+    transfer.libusb->type = endpoint.type;
+  }
+
+  template <class Use>
+  void for_each_transfer(Use use) {
+    for (Transfer& transfer : incoming) use(transfer);
+    use(out);
+    for (Transfer& transfer : requests) use(transfer);
   }
 
   void handle_events(long microseconds) {
@@ -136,15 +241,18 @@ struct UsbPort::Libusb {
     libusb_handle_events_timeout_completed(context, &wait, nullptr);
   }
 
+  bool sending() const {
+    return out.flying ||
+           std::any_of(requests.begin(), requests.end(), [](const auto& t) { return t.flying; });
+  }
   bool flying() const {
-    return out_flying || controls > 0 ||
-           std::any_of(incoming.begin(), incoming.end(), [](const Incoming& in) { return in.flying; });
+    return sending() || std::any_of(incoming.begin(), incoming.end(), [](const auto& t) { return t.flying; });
   }
 };
 
-UsbPort::UsbPort(std::uint16_t vendor, std::uint16_t product, std::string path)
-    : usb_(new Libusb{.vendor = vendor, .product = product, .path = std::move(path)}) {
+UsbPort::UsbPort(UsbKind kind, std::string path) : usb_(new Libusb{.kind = kind, .wanted = std::move(path)}) {
   usb_->context = begin_usb();
+  usb_->listen();
 }
 
 UsbPort::~UsbPort() {
@@ -152,30 +260,28 @@ UsbPort::~UsbPort() {
   libusb_exit(usb_->context);
 }
 
-bool UsbPort::open() noexcept {
+bool UsbPort::open(Time now) noexcept {
   Libusb& u = *usb_;
   close();
+  u.handle_events(0);  // tells what was plugged in
+  if (!u.lookout.due(now)) return false;
   int error = LIBUSB_ERROR_NO_DEVICE;
-  for_each(u.context, u.vendor, u.product, [&](libusb_device* device) {
-    if (u.handle == nullptr && (u.path.empty() || path_of(device) == u.path))
-      error = libusb_open(device, &u.handle);
+  for_each(u.context, u.kind.ids, [&](libusb_device* device, const UsbId&) {
+    if (u.handle == nullptr && (u.wanted.empty() || path_of(device).data() == u.wanted))
+      error = u.claim(device);
   });
-  if (error == 0) {
-    libusb_set_auto_detach_kernel_driver(u.handle, 1);
-    error = libusb_claim_interface(u.handle, kInterface);
-  }
   u.trouble = error == 0 ? "" : in_words(error);
   if (error != 0) {
-    close();
+    u.lookout.failed(now, error == LIBUSB_ERROR_NO_DEVICE);
     return false;
   }
-  u.out = libusb_alloc_transfer(0);
+  u.for_each_transfer([&](Libusb::Transfer& transfer) {
+    transfer.owner = &u;
+    transfer.libusb = libusb_alloc_transfer(0);
+  });
   for (auto& in : u.incoming) {
-    in.owner = &u;
-    in.transfer = libusb_alloc_transfer(0);
-    libusb_fill_bulk_transfer(in.transfer, u.handle, kIn, in.bytes.data(), static_cast<int>(in.bytes.size()),
-                              &Libusb::on_in, &in, 0);
-    in.flying = u.submit(in.transfer);
+    u.fill(in, u.interface.in, u.interface.in.size, &Libusb::on_in, 0);
+    u.submit(in);
   }
   return !u.lost;
 }
@@ -183,59 +289,67 @@ bool UsbPort::open() noexcept {
 /// Whatever is on the way is called back, within a second.
 void UsbPort::close() noexcept {
   Libusb& u = *usb_;
+  if (u.handle == nullptr) return;
   constexpr int kRounds = 100;
   constexpr long kRound = 10'000;  // us
   u.closing = true;                // what completes now is not asked for again
   for (auto& in : u.incoming) {
-    if (in.flying) libusb_cancel_transfer(in.transfer);
+    if (in.flying) libusb_cancel_transfer(in.libusb);
   }
   for (int i = 0; i < kRounds && u.flying(); ++i) u.handle_events(kRound);
-  for (auto& in : u.incoming) {
-    if (in.transfer != nullptr && !in.flying) libusb_free_transfer(in.transfer);
-    in.transfer = nullptr;
-    in.flying = false;
-  }
-  if (u.out != nullptr && !u.out_flying) libusb_free_transfer(u.out);
-  u.out = nullptr;
-  if (u.handle != nullptr) {
-    libusb_release_interface(u.handle, kInterface);
-    libusb_close(u.handle);
-  }
+  u.for_each_transfer([](Libusb::Transfer& transfer) {
+    if (!transfer.flying) libusb_free_transfer(transfer.libusb);
+    transfer.libusb = nullptr;
+    transfer.flying = false;
+  });
+  libusb_release_interface(u.handle, u.interface.number);
+  libusb_close(u.handle);
   u.handle = nullptr;
-  u.controls = 0;
-  u.out_flying = false;
+  u.lookout.look();
+  u.path = {};
   u.lost = u.closing = false;
-  for (std::byte b; u.received.pop(b);) {
-  }
+  while (u.received.front() != nullptr) u.received.release();
 }
 
-void UsbPort::control(std::uint8_t request, std::uint16_t value) noexcept {
+void UsbPort::control(const UsbRequest& request) noexcept {
   Libusb& u = *usb_;
   if (u.handle == nullptr || u.lost) return;
-  auto* setup = static_cast<unsigned char*>(std::malloc(LIBUSB_CONTROL_SETUP_SIZE));
-  libusb_transfer* transfer = libusb_alloc_transfer(0);
-  libusb_fill_control_setup(setup, kVendorOut, request, value, 0, 0);
-  libusb_fill_control_transfer(transfer, u.handle, setup, &Libusb::on_out, &u, kTimeout);
-  transfer->flags = LIBUSB_TRANSFER_FREE_BUFFER | LIBUSB_TRANSFER_FREE_TRANSFER;
-  if (u.submit(transfer)) ++u.controls;
+  const auto free =
+      std::find_if(u.requests.begin(), u.requests.end(), [](const auto& t) { return !t.flying; });
+  if (free == u.requests.end() || request.data.size() > kMostOut) {
+    u.lost = true;
+    return;
+  }
+  const bool to_interface = (request.type & kRecipient) == kToInterface;
+  const auto index = to_interface ? static_cast<std::uint16_t>(u.interface.number) : request.index;
+  unsigned char* const bytes = free->bytes.data();
+  libusb_fill_control_setup(bytes, request.type, request.request, request.value, index,
+                            static_cast<std::uint16_t>(request.data.size()));
+  std::copy(request.data.begin(), request.data.end(),
+            reinterpret_cast<std::byte*>(bytes + LIBUSB_CONTROL_SETUP_SIZE));
+  libusb_fill_control_transfer(free->libusb, u.handle, bytes, &Libusb::on_out, &*free, kTimeout);
+  free->optional = request.optional;
+  u.submit(*free);
 }
 
 bool UsbPort::write(std::span<const std::byte> bytes) noexcept {
   Libusb& u = *usb_;
-  if (u.handle == nullptr || u.lost || u.out_flying || bytes.size() > u.out_bytes.size()) return false;
-  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<std::byte*>(u.out_bytes.data()));
-  libusb_fill_bulk_transfer(u.out, u.handle, kOut, u.out_bytes.data(), static_cast<int>(bytes.size()),
-                            &Libusb::on_out, &u, kTimeout);
-  u.out_flying = u.submit(u.out);
-  return u.out_flying;
+  if (u.handle == nullptr || u.lost || u.out.flying) return false;
+  if (u.interface.out.address == 0 || bytes.size() > kMostOut) return false;
+  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<std::byte*>(u.out.bytes.data()));
+  u.fill(u.out, u.interface.out, bytes.size(), &Libusb::on_out, kTimeout);
+  return u.submit(u.out);
 }
 
 std::size_t UsbPort::read(std::span<std::byte> out) noexcept {
   Libusb& u = *usb_;
   if (u.handle == nullptr) return 0;
   u.handle_events(0);
-  std::size_t size = 0;
-  while (size < out.size() && u.received.pop(out[size])) ++size;
+  const Libusb::Packet* const packet = u.received.front();
+  if (packet == nullptr) return 0;
+  const std::size_t size = std::min(packet->size, out.size());
+  std::copy_n(packet->bytes.begin(), size, out.begin());
+  u.received.release();
   return size;
 }
 
@@ -243,11 +357,15 @@ UsbTransport::State UsbPort::state() const noexcept {
   const Libusb& u = *usb_;
   if (u.handle == nullptr) return State::kClosed;
   if (u.lost) return State::kLost;
-  return u.out_flying || u.controls > 0 ? State::kBusy : State::kIdle;
+  return u.sending() ? State::kBusy : State::kIdle;
 }
 
 const char* UsbPort::trouble() const noexcept {
   return usb_->trouble;
+}
+
+const char* UsbPort::path() const noexcept {
+  return usb_->path.data();
 }
 
 }  // namespace palpate::client

@@ -3,21 +3,40 @@
 #include <cstdint>
 #include <span>
 
+#include "common/time.h"
+
 namespace palpate::client {
 
-/// A UART bridge on a USB bus, as a driver needs it: nothing waits. One thread (the haptic one).
+/// What a kind of device calls itself.
+struct UsbId {
+  std::uint16_t vendor = 0, product = 0;
+  bool operator==(const UsbId&) const = default;
+};
+
+/// A control request to a device: the four numbers of its set-up packet, and its data.
+struct UsbRequest {
+  std::uint8_t type = 0;     ///< bmRequestType, host to device: 0x40 vendor, 0x21 class and interface
+  std::uint8_t request = 0;  ///< bRequest
+  std::uint16_t value = 0;   ///< wValue
+  std::uint16_t index = 0;   ///< wIndex; of a request to the interface: the one that was claimed goes there
+  bool optional = false;     ///< a device that refuses it can still be used
+  std::span<const std::byte> data = {};  ///< at most 64 bytes
+};
+
+/// One interface of a device on a USB bus, as a driver needs it: nothing waits. One thread (the haptic one).
 class UsbTransport {
  public:
   virtual ~UsbTransport() = default;
-  /// Looks for the device and claims it; false when there is none, or it may not be used (`trouble` says
-  /// why).
-  virtual bool open() noexcept = 0;
+  /// Claims the device; false when there is none, or it may not be used (`trouble` says why). Call it every
+  /// tick: it looks for the device only when that can be of use.
+  virtual bool open(Time now) noexcept = 0;
   virtual void close() noexcept = 0;
-  /// A vendor request without data to the device, after those before it.
-  virtual void control(std::uint8_t request, std::uint16_t value) noexcept = 0;
-  /// Bulk bytes to the device, at most 64; false when too many are on the way.
+  /// A request to the device, after those before it.
+  virtual void control(const UsbRequest& request) noexcept = 0;
+  /// Bytes to the OUT endpoint, at most 64; false when there is none, or too many are on the way.
   virtual bool write(std::span<const std::byte> bytes) noexcept = 0;
-  /// What came, without the bridge's status bytes; at most `out.size()` bytes a call.
+  /// One packet of the IN endpoint as it came from the wire, in order; returns its size, 0: no packet. Bytes
+  /// beyond `out.size()` are lost (no device has more than 512).
   virtual std::size_t read(std::span<std::byte> out) noexcept = 0;
 
   /// How a transport is.

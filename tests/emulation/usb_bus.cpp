@@ -102,6 +102,8 @@ std::string UsbBus::command(const std::string& line, double now) {
       unplug(port);
     } else if (verb == "plug") {
       plug(port, now);
+    } else if (verb == "driver") {
+      return "ok " + driver_of(port);
     } else {
       const std::string answer = port.device->command(verb, arguments, now);
       return answer.empty() ? "ok" : "ok " + answer;

@@ -46,6 +46,9 @@ struct Port {
   const Link* claimed = nullptr;  // by this program
 };
 
+/// Who holds the interface: "usbfs", the kernel's driver, or nobody.
+std::string driver_of(const Port& port);
+
 /// A kDevice, kAttached or kDetached.
 wire::Frame description_of(const Port& port, wire::Kind kind);
 

@@ -31,6 +31,11 @@ Frame plain(Kind kind) {
 
 }  // namespace
 
+std::string driver_of(const Port& port) {
+  if (port.claimed != nullptr) return "usbfs";
+  return port.kernel_owns ? port.device->kernel_driver() : "";
+}
+
 wire::Frame description_of(const Port& port, wire::Kind kind) {
   Frame frame;
   frame.header.kind = kind;
@@ -154,8 +159,8 @@ Frame UsbBus::ownership(Link& link, const Frame& frame) {
   const bool claims = frame.header.kind == Kind::kClaim || frame.header.kind == Kind::kDetachAndClaim;
   if (frame.header.status != 0) return reply(-ENOENT);  // there is interface 0 only
   if (frame.header.kind == Kind::kGetDriver) {
-    if (port.claimed != nullptr) return reply(0, "usbfs");
-    return port.kernel_owns ? reply(0, port.device->kernel_driver()) : reply(-ENODATA);
+    const std::string driver = driver_of(port);
+    return reply(driver.empty() ? -ENODATA : 0, driver);
   }
   if (frame.header.kind == Kind::kRelease) {
     if (port.claimed != &link) return reply(-EINVAL);

@@ -194,3 +194,33 @@ TEST_CASE("Falcon: of two, the one that was asked for") {
   client->signal(SIGINT);
   CHECK(client->wait() == 0);
 }
+
+TEST_CASE("Falcon: of three, the first that is neither locked nor held by another program") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcons({"falcon:2-1", "falcon:3-2", "falcon:4-3"}, {"--loaded", "--homed"});
+  falcons.command("fault 2-1 permission");
+  falcons.command("fault 3-2 busy");
+  auto client =
+      falcons.start("haptic_client", {"run", bench.client, "--device", "falcon", "--server", wall.address});
+  REQUIRE(client->wait_for("Falcon homed: ready"));
+  CHECK(falcons.state("4-3")["green"] == true);
+  client->signal(SIGINT);
+  CHECK(client->wait() == 0);
+}
+
+TEST_CASE("Falcon: found when it is plugged in later, and when the program that held it lets it go") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcon({"falcon:2-1"}, {"--loaded", "--homed"});
+  falcon.command("unplug 2-1");
+  falcon.command("fault 2-1 busy");
+  auto client = falcon.start("haptic_client", {"run", bench.client, "--server", wall.address});
+  REQUIRE(client->wait_for("looking for a Falcon"));
+  falcon.command("plug 2-1");
+  REQUIRE(client->wait_for("another program holds the USB device"));
+  falcon.command("fault 2-1 busy 0");
+  REQUIRE(falcon.wait_for("2-1", [](const Json& s) { return s["red"] == true || s["green"] == true; }));
+  client->signal(SIGINT);
+  CHECK(client->wait() == 0);
+}

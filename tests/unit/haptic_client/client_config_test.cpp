@@ -1,5 +1,6 @@
 #include "haptic_client/client_config.h"
 
+#include "common/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
@@ -14,6 +15,20 @@ TEST_CASE("an empty client file means the defaults, and the file that ships is r
   CHECK_FALSE(config.device.trajectory);
   CHECK(
       read_client_config(std::string(PALPATE_SOURCE_DIR) + "/configs/clients/liver.toml").device.trajectory);
+}
+
+TEST_CASE("a SpaceMouse: its table is read, and the file that ships begins above the liver") {
+  const test::TemporaryFolder folder;
+  const ClientConfig config =
+      read_client_config(folder.write("c.toml", "[spacemouse]\nspeed = 0.001\nreach = 1\n"));
+  CHECK(config.device.spacemouse.speed == 0.001);
+  CHECK(config.device.spacemouse.reach == 1);
+  for (const char* wrong : {"speed = 2", "speed = 0", "reach = 1.1", "force = 1"})
+    CHECK_THROWS_AS(read_client_config(folder.write("c.toml", std::string("[spacemouse]\n") + wrong)), Error);
+  const ClientConfig shipped =
+      read_client_config(std::string(PALPATE_SOURCE_DIR) + "/configs/clients/spacemouse.toml");
+  CHECK(shipped.device.name == "spacemouse");
+  CHECK(shipped.workspace.to_world(Vec3::Zero()) == Vec3(-0.03, 0.09, 0.01));
 }
 
 TEST_CASE("a motion told in the world reaches the same place through any workspace") {
