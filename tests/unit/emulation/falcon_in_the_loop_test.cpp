@@ -1,0 +1,133 @@
+// The Falcon's driver and the whole tick against the emulated mechanism, over a transport in memory: virtual
+// time, so that everything is exact and repeatable.
+#include <nlohmann/json.hpp>
+
+#include "common/text.h"
+#include "haptic_client/device/falcon.h"
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "tests/emulation/falcon.h"
+#include "tests/support/catch.h"
+#include "tests/support/closed_loop.h"
+#include "tests/support/emulated_port.h"
+
+using namespace palpate;
+using namespace palpate::client;
+
+namespace {
+
+constexpr double kTorqueConstant = 10000;  // DAC per N m, of both
+
+struct Hand {
+  const char* name;
+  double mass, stiffness, damping;  // kg, N/m, N s/m
+};
+constexpr Hand kHands[] = {{"light", 0.1, 200, 5}, {"typical", 0.3, 300, 10}, {"heavy, loose", 0.6, 100, 5}};
+
+/// Wall at z = 120 mm of the device, which is the world's y = 0.
+Workspace towards_the_wall() {
+  Workspace workspace;
+  workspace.axes << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  workspace.offset_W = {0, -0.12, 0};
+  return workspace;
+}
+
+/// An emulated Falcon in a hand, the driver on top of it, and a wall.
+class Rig {
+ public:
+  Rig(const emulation::Falcon::Settings& device, const Hand& hand, const char* law, double wall,
+      const test::ClosedLoopSettings& link)
+      : emulated_(device),
+        falcon_(own_port(), std::vector<std::byte>(5000, std::byte{7}), kTorqueConstant),
+        pipeline_(find_row(extrapolators(), law, "method", "test").make(), towards_the_wall(), {}),
+        loop_(falcon_, pipeline_, test::wall(wall), link) {
+    command("hand mass " + std::to_string(hand.mass) + " stiffness " + std::to_string(hand.stiffness) +
+            " damping " + std::to_string(hand.damping));
+  }
+
+  void command(const std::string& line) {
+    emulation::Words words;
+    std::istringstream in(line);
+    for (std::string word; in >> word;) words.push_back(word);
+    const std::string verb = words.front();
+    words.erase(words.begin());
+    emulated_.command(verb, words, 0);
+  }
+  nlohmann::json state() { return nlohmann::json::parse(emulated_.state(0)); }
+
+  void run(double seconds) {
+    for (const double end = loop_.seconds() + seconds; loop_.seconds() < end;) {
+      port_->advance(from_seconds(1 + loop_.seconds()));
+      const TickResult result = loop_.tick();
+      for (const Vec3& v : {result.tool.p_W, result.f_D})
+        for (int i = 0; i < 3; ++i) trace_.push_back(v[i]);
+    }
+  }
+  /// Position and force of every tick.
+  const std::vector<double>& trace() const { return trace_; }
+  const Pipeline& pipeline() const { return pipeline_; }
+
+ private:
+  std::unique_ptr<test::EmulatedPort> own_port() {
+    auto port = std::make_unique<test::EmulatedPort>(emulated_);
+    port_ = port.get();
+    return port;
+  }
+
+  emulation::Falcon emulated_;
+  test::EmulatedPort* port_ = nullptr;
+  Falcon falcon_;
+  Pipeline pipeline_;
+  test::ClosedLoop loop_;
+  std::vector<double> trace_;
+};
+
+/// From the plug to the wall: firmware, homing, a press of 20 mm.
+std::vector<double> whole_session() {
+  Rig rig({}, {"", 0.2, 400, 8}, "constant", 800, {.sim_hz = 1000, .delay_s = 0.001});
+  rig.command("hand target 0 0 0.13");
+  rig.run(2);
+  rig.command("homing home");
+  rig.run(4);
+  rig.command("hand target 0 0 0.10 3");
+  rig.run(8);
+  const auto state = rig.state();
+  CHECK(state["homed"] == 7);
+  CHECK(state["largest_dac_unhomed"] == 0);
+  // 400 N/m (20 mm - x) = 800 N/m x: x = 6.67 mm, 5.33 N. Friction in the joints takes a little.
+  CHECK(0.12 - state["position"][2].get<double>() == Approx(0.02 / 3).epsilon(0.01));
+  CHECK(state["force"][2].get<double>() == Approx(16.0 / 3).epsilon(0.01));
+  return rig.trace();
+}
+
+}  // namespace
+
+TEST_CASE("a session with the Falcon, from firmware to wall, gives the same trace every time, bit by bit") {
+  const std::vector<double> once = whole_session(), again = whole_session();
+  CHECK(once == again);
+}
+
+TEST_CASE(
+    "a Falcon at walls of 100 N/m to 20 kN/m, 30 Hz and 35 ms, in three hands: the ledger of the motors") {
+  const Passivity::Settings passivity;
+  constexpr double kSeconds = 10;
+  for (const Hand& hand : kHands) {
+    for (const char* law : {"constant", "linear_time", "linear_position", "linear_position_signed"}) {
+      for (const double stiffness : {100.0, 800.0, 3000.0, 20000.0}) {
+        CAPTURE(hand.name, law, stiffness);
+        Rig rig({.loaded = true, .homed = true}, hand, law, stiffness, {.sim_hz = 30, .delay_s = 0.035});
+        rig.command("hand target 0 0 0.13");
+        rig.run(2);
+        const double before = rig.state()["work_motors"].get<double>();
+        const double target = 0.12 - 1.5 / stiffness - 1.5 / hand.stiffness;
+        rig.command("hand target 0 0 " + std::to_string(target) + " 0.5");
+        rig.run(kSeconds);
+        const auto state = rig.state();
+        CHECK(state["work_motors"].get<double>() - before <=
+              passivity.allowance * kSeconds + 3 * passivity.debt);
+        CHECK(std::abs(state["position"][2].get<double>() - target) < 0.02);  // nor thrown out of the wall
+        CHECK(state["largest_dac"] <= 4096);
+        CHECK(rig.pipeline().stats().max_newton <= 8);
+      }
+    }
+  }
+}
