@@ -62,9 +62,9 @@ void WholeFile::commit() {
   if (failed) fail_at_run_time("{}: could not be written ({})", file_.string(), failed.message());
 }
 
-void require_distinct(std::initializer_list<NamedFile> files) {
-  for (const NamedFile* a = files.begin(); a != files.end(); ++a) {
-    for (const NamedFile* b = files.begin(); b != a; ++b) {
+void require_distinct(const std::vector<NamedFile>& files) {
+  for (auto a = files.begin(); a != files.end(); ++a) {
+    for (auto b = files.begin(); b != a; ++b) {
       if (!a->file || !b->file || written_directly(*a->file)) continue;
       if (without_links(*a->file) == without_links(*b->file))
         fail("{} and {} name the same file {}; give each its own", b->option, a->option, a->file->string());

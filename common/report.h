@@ -1,9 +1,9 @@
 #pragma once
 #include <filesystem>
-#include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/histogram.h"
 
@@ -43,7 +43,7 @@ struct NamedFile {
 };
 
 /// Throws `Error` (input) when two of them are the same regular file: one would overwrite the other.
-void require_distinct(std::initializer_list<NamedFile> files);
+void require_distinct(const std::vector<NamedFile>& files);
 
 /// Throws `Error` now, rather than after the run, if `file` could not be written.
 void check_writable(const std::filesystem::path& file);

@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "haptic_client/client_config.h"
 
@@ -10,11 +11,12 @@ namespace palpate::client {
 struct ClientOptions {
   std::optional<double> seconds;  ///< stop after so long in contact with the server; absent: at Ctrl-C
   std::optional<std::filesystem::path> report;  ///< JSON written at the end
-  std::optional<std::filesystem::path> trace;   ///< CSV of the last minute, a row a tick
-  std::optional<std::filesystem::path> record;  ///< capture of every datagram
+  std::optional<std::filesystem::path> trace;   ///< CSV of the last minute, a row a tick; a file each tool
+  std::optional<std::filesystem::path> record;  ///< capture of every datagram; a file each tool
 };
 
-/// Connects, runs the haptic loop until Ctrl-C or `seconds`, reports. Throws `Error`. Returns the exit code.
-int run_client(const ClientConfig& config, const ClientOptions& options);
+/// One tool for each of `configs` (at least one): connects, runs the haptic loops until Ctrl-C or `seconds`,
+/// reports. Throws `Error`. Returns the exit code.
+int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& options);
 
 }  // namespace palpate::client

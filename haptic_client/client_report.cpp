@@ -139,6 +139,16 @@ void print_tool(const Json& tool) {
       number(safety, "storms"));
 }
 
+void print_link(const Json& link) {
+  fmt::print("  link   ");
+  const char* separator = " ";
+  for (const auto& [name, count] : link.items()) {
+    fmt::print("{}{} {}", separator, count.get<long>(), name);
+    separator = ", ";
+  }
+  fmt::print("\n");
+}
+
 }  // namespace
 
 const char* name_of(Fault fault) {
@@ -158,6 +168,7 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
   const LimiterCounts& limiter = pipeline.limiter().counts();
   const auto pairs = static_cast<double>(stats.sample_pairs);
   return {{"device", config.device.name},
+          {"port", config.device.port},
           {"method", config.method},
           {"force",
            {{"samples", stats.samples},
@@ -199,26 +210,19 @@ Json link_report(const protocol::LinkStats& net) {
 }
 
 void print_report(const Json& report) {
-  const Json& tool = report["tools"][0];
-  fmt::print("haptic_client: {} with {}\n", tool["device"].get<std::string>(),
-             tool["method"].get<std::string>());
-  if (tool.contains("loop")) print_loop(tool["loop"]);
-  print_tool(tool);
-  print_scores(tool);
-  print_drift(tool);
-  if (report.contains("link")) {
-    fmt::print("  link   ");
-    const char* separator = " ";
-    for (const auto& [name, count] : report["link"].items()) {
-      fmt::print("{}{} {}", separator, count.get<long>(), name);
-      separator = ", ";
+  for (const Json& tool : report["tools"]) {
+    fmt::print("haptic_client: {} with {}\n", tool["device"].get<std::string>(),
+               tool["method"].get<std::string>());
+    if (tool.contains("loop")) print_loop(tool["loop"]);
+    print_tool(tool);
+    print_scores(tool);
+    print_drift(tool);
+    if (tool.contains("link")) print_link(tool["link"]);
+    if (tool.contains("recording")) {
+      const Json& recording = tool["recording"];
+      fmt::print("  record  {} packets in {}, {} dropped\n", recording["packets"].get<long>(),
+                 recording["file"].get<std::string>(), recording["dropped"].get<long>());
     }
-    fmt::print("\n");
-  }
-  if (report.contains("recording")) {
-    const Json& recording = report["recording"];
-    fmt::print("  record  {} packets in {}, {} dropped\n", recording["packets"].get<long>(),
-               recording["file"].get<std::string>(), recording["dropped"].get<long>());
   }
   std::fflush(stdout);
 }

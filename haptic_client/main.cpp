@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "common/error.h"
 #include "common/program.h"
 #include "common/text.h"
 #include "haptic_client/client.h"
@@ -20,7 +21,8 @@ std::string list_of(const Table& table) {
 }
 
 struct Overrides {
-  std::string server, device, method, firmware;
+  std::string server, method, firmware;
+  std::vector<std::string> devices;
   std::optional<double> rate_hz;
 };
 
@@ -30,7 +32,6 @@ void apply(const Overrides& o, client::ClientConfig& config) {
     config.server = o.server;
     config.server_where = "--server";
   }
-  if (!o.device.empty()) client::choose_device(config.device, o.device, "--device");
   if (!o.firmware.empty()) config.device.falcon.firmware = o.firmware;
   if (!o.method.empty()) {
     find_row(client::extrapolators(), o.method, "method", "--method");
@@ -42,11 +43,14 @@ void apply(const Overrides& o, client::ClientConfig& config) {
   }
 }
 
-CLI::App* add_run(CLI::App& app, std::string& file, Overrides& overrides, client::ClientOptions& options) {
+CLI::App* add_run(CLI::App& app, std::vector<std::string>& files, Overrides& overrides,
+                  client::ClientOptions& options) {
   auto* command = app.add_subcommand("run", "Connect to a server and run the haptic loop until Ctrl-C");
-  command->add_option("CLIENT", file, "Client file (TOML); without one, a hand that holds still");
+  command->add_option("CLIENT", files,
+                      "Client file (TOML), one for each tool; without one, a hand that holds still");
   command->add_option("--server", overrides.server, "ADDR:PORT of sim_server (default 127.0.0.1:45130)");
-  command->add_option("--device", overrides.device, "Device, see below");
+  command->add_option("--device", overrides.devices, "Device, see below; once for each tool")
+      ->allow_extra_args(false);
   command->add_option("--falcon-firmware", overrides.firmware,
                       "Image for a Falcon that has none since power-up");
   command->add_option("--method", overrides.method, "How to extrapolate the force, see below");
@@ -58,7 +62,8 @@ CLI::App* add_run(CLI::App& app, std::string& file, Overrides& overrides, client
   command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
   command->footer(
       "Methods:\n" + list_of(client::extrapolators()) + "Devices:\n" + list_of(client::devices()) +
-      "Example: haptic_client run configs/clients/liver.toml --method constant --report report.json");
+      "Examples: haptic_client run configs/clients/liver.toml --method constant --report report.json\n"
+      "          haptic_client run left.toml right.toml          two devices, each with a tool of its own");
   return command;
 }
 
@@ -88,15 +93,34 @@ client::ClientConfig read_config(const std::string& file, const Overrides& overr
   return config;
 }
 
+/// A configuration for each tool: of each file, with the device of the same place on the command line; where
+/// there are more devices than files, the last file serves the rest.
+std::vector<client::ClientConfig> read_configs(const std::vector<std::string>& files,
+                                               const Overrides& overrides) {
+  const std::size_t tools = std::max({files.size(), overrides.devices.size(), std::size_t{1}});
+  if (!overrides.devices.empty() && overrides.devices.size() < tools)
+    fail("{} client files, but {} --device; give one for each, or none", files.size(),
+         overrides.devices.size());
+  std::vector<client::ClientConfig> configs;
+  for (std::size_t i = 0; i < tools; ++i) {
+    const std::string file = files.empty() ? "" : files[std::min(i, files.size() - 1)];
+    configs.push_back(read_config(file, overrides));
+    if (!overrides.devices.empty())
+      client::choose_device(configs.back().device, overrides.devices[i], "--device");
+  }
+  return configs;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Drives a force-feedback device at haptic rate from forces computed by sim_server."};
   app.require_subcommand(1);
   app.footer("Example: haptic_client run configs/clients/liver.toml --seconds 20");
+  std::vector<std::string> files;
   std::string file;
   Overrides overrides;
   client::ClientOptions running;
   client::ReplayOptions replaying;
-  add_run(app, file, overrides, running);
+  add_run(app, files, overrides, running);
   const auto* replay = add_replay(app, file, overrides, replaying);
   const auto* list =
       app.add_subcommand("devices", "List the devices that are plugged in, and whether they can be used");
@@ -107,7 +131,7 @@ int run(int argc, char** argv) {
     return client::replay(read_config(file, overrides), replaying);
   }
   if (running.seconds) require_at_least(*running.seconds, 1e-3, "--seconds", "s");
-  return client::run_client(read_config(file, overrides), running);
+  return client::run_client(read_configs(files, overrides), running);
 }
 
 }  // namespace

@@ -67,9 +67,9 @@ TEST_CASE(
   server.process.signal(SIGINT);
   CHECK(server.process.wait() == 0);
   const Json report = read_json(file("report.json"));
-  CHECK(report["recording"]["packets"] ==
-        report["link"]["sent"].get<int>() + report["link"]["received"].get<int>());
-  CHECK(report["recording"]["dropped"] == 0);
+  const Json& link = report["tools"][0]["link"];
+  CHECK(report["tools"][0]["recording"]["packets"] == link["sent"].get<int>() + link["received"].get<int>());
+  CHECK(report["tools"][0]["recording"]["dropped"] == 0);
   const Json methods = report["tools"][0]["methods"];
   for (const char* law : {"constant", "linear_time", "linear_position"}) {
     for (const char* key :

@@ -60,8 +60,8 @@ TEST_CASE("a session: force in contact, zero out of it, nothing above the clamp,
   for (const char* key : {"clamped", "slewed", "passive", "ramped", "storms"})
     CHECK(tool["safety"].contains(key));
   for (const char* key : {"sent", "received", "lost", "reordered", "duplicated", "rejected"})
-    CHECK(report["link"].contains(key));
-  CHECK(report["link"]["rejected"] == 0);
+    CHECK(tool["link"].contains(key));
+  CHECK(tool["link"]["rejected"] == 0);
 
   const Json sim = read_json(file("server.json"));
   CHECK(sim["rate_hz"] == 30);
