@@ -13,6 +13,7 @@
 #include "common/log.h"
 #include "common/realtime.h"
 #include "haptic_client/client_report.h"
+#include "haptic_client/guardian.h"
 #include "haptic_client/held_tool.h"
 
 namespace palpate::client {
@@ -96,6 +97,7 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   for (const ToolFiles& tool : files) {
     if (tool.trace) check_writable(*tool.trace);
   }
+  const Guardian guardian(configs);  // before any thread; goes after the tools
   std::list<HeldTool> tools;
   for (std::size_t i = 0; i < configs.size(); ++i)
     tools.emplace_back(configs[i], files[i], name_of_tool(configs[i], i + 1, configs.size()),

@@ -22,6 +22,7 @@ constexpr int kPriority = 80;
 constexpr double kTraceSeconds = 60;
 constexpr Time kWelcomePatience = std::chrono::seconds(5);
 constexpr std::int64_t kSilentNs = 300'000'000;
+constexpr int kPatience = 30;  // looks of 100 ms
 
 std::uint64_t random_number() {
   std::random_device device;
@@ -110,7 +111,18 @@ void HeldTool::stop() {
   recording_thread_ = {};
 }
 
+/// A loop that stands still leaves its last force on the motors, and may never come back.
+void HeldTool::end_if_stuck() {
+  const std::uint64_t ticks = loop_.ticks;
+  standstills_ = ticks == ticks_ ? standstills_ + 1 : 0;
+  ticks_ = ticks;
+  if (standstills_ < kPatience) return;
+  log::error("{}the haptic loop stands still; the guardian takes the device over", name_);
+  std::abort();
+}
+
 void HeldTool::look() {
+  end_if_stuck();
   const std::int64_t age = loop_.newest_age_ns;
   if (age > kSilentNs && !silent_)
     log::warning("{}no samples from {}: force goes to zero; asking again", name_, config_.server);

@@ -35,7 +35,8 @@ class HeldTool {
   void stop();
   void rearm() { loop_.rearm = true; }
 
-  /// Tells, once each: the loss and the return of the server, a latched fault, what the device wants.
+  /// To be called ten times a second. Tells, once each: the loss and the return of the server, a latched
+  /// fault, what the device wants.
   void look();
   /// Force, age and ticks, for a line of progress.
   std::string progress() const;
@@ -46,6 +47,8 @@ class HeldTool {
   void write_files() const;
 
  private:
+  void end_if_stuck();
+
   ClientConfig config_;
   ToolFiles files_;
   std::string name_;
@@ -60,6 +63,8 @@ class HeldTool {
   protocol::RecordingWatcher recording_;
   NetLink link_;
   const char* device_status_ = "";
+  std::uint64_t ticks_ = 0;  // when looked at last
+  int standstills_ = 0;      // looks since then
   bool silent_ = false;
   Fault fault_ = Fault::kNone;
   std::jthread recording_thread_, net_thread_, haptic_thread_;

@@ -41,6 +41,21 @@ std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
                                   settings.falcon.torque_constant);
 }
 
+/// All that are there, if no port was asked for: which one the dead process had is not known.
+int make_falcon_safe(const DeviceSettings& settings) {
+  int stopped = 0;
+#ifdef PALPATE_WITH_USB
+  for (const UsbDevice& device : find_usb(kFalconIds)) {
+    if (!settings.port.empty() && device.path != settings.port) continue;
+    UsbPort port({kFalconIds}, device.path);
+    stopped += silence_falcon(port) ? 1 : 0;
+  }
+#else
+  (void)settings;
+#endif
+  return stopped;
+}
+
 DeviceLimits limits_of_falcon(const DeviceSettings&) {
   return {.max_force = 8, .min_period = std::chrono::milliseconds(1)};
 }
@@ -55,12 +70,12 @@ DeviceLimits limits_of_spacemouse(const DeviceSettings&) {
 
 constexpr std::array kDevices{
     DeviceRow{"simulated", "a hand (mass, spring, damper) that follows a recorded motion",
-              &limits_of_simulated, &make_simulated},
+              &limits_of_simulated, &make_simulated, nullptr},
     DeviceRow{"falcon", "Novint Falcon over libusb; falcon:2-1 is the one at bus 2, port 1",
-              &limits_of_falcon, &make_falcon},
+              &limits_of_falcon, &make_falcon, &make_falcon_safe},
     DeviceRow{"spacemouse",
               "3Dconnexion 6-DoF mouse over libusb: moves the tool, gives no force; also spacemouse:PORT",
-              &limits_of_spacemouse, &make_spacemouse},
+              &limits_of_spacemouse, &make_spacemouse, nullptr},
 };
 
 #ifdef PALPATE_WITH_USB

@@ -31,6 +31,9 @@ struct DeviceRow {
   std::string_view summary;
   DeviceLimits (*limits)(const DeviceSettings&);
   std::unique_ptr<Device> (*make)(const DeviceSettings&);
+  /// Takes the device over from a process that died, and sends it zero force; returns how many there were.
+  /// May take a second. Throws `Error`. Null: it has no motors, or they end with the process.
+  int (*make_safe)(const DeviceSettings&);
 };
 std::span<const DeviceRow> devices();
 

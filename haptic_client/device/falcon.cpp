@@ -9,6 +9,21 @@
 #include "haptic_client/device/falcon_kinematics.h"
 
 namespace palpate::client {
+namespace {
+
+/// Waits until everything is through, half a second at most.
+void drain(UsbTransport& port) {
+  constexpr int kRounds = 250;
+  const Time round = std::chrono::milliseconds(2);
+  std::array<std::byte, 64> ignored;
+  for (int i = 0; i < kRounds && port.state() == UsbTransport::State::kBusy; ++i) {
+    while (port.read(ignored) > 0) {
+    }
+    sleep_until(now() + round);
+  }
+}
+
+}  // namespace
 
 std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
   constexpr std::size_t kLeast = 1024, kMost = 65536;
@@ -25,6 +40,25 @@ std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
   return image;
 }
 
+bool silence_falcon(UsbTransport& port) {
+  constexpr int kTries = 100, kTimes = 3;
+  bool open = false;
+  for (int i = 0; i < kTries && !open; ++i) {
+    open = port.open(now());
+    if (!open) sleep_until(now() + std::chrono::milliseconds(10));
+  }
+  if (!open) return false;
+  FalconMachine::normal_mode(port);
+  for (int i = 0; i < kTimes; ++i) {
+    drain(port);
+    port.write(encode_falcon({.red = true}));
+  }
+  drain(port);
+  const bool sent = port.state() == UsbTransport::State::kIdle;
+  port.close();
+  return sent;
+}
+
 Falcon::Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmware, double torque_constant)
     : port_(std::move(port)),
       machine_(std::move(firmware)),
@@ -32,14 +66,7 @@ Falcon::Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmwa
       p_D_(falcon::kCentre) {}
 
 Falcon::~Falcon() {
-  constexpr int kRounds = 100;
-  const Time round = std::chrono::milliseconds(5);
-  std::array<std::byte, 64> ignored;
-  for (int i = 0; i < kRounds && port_->state() == UsbTransport::State::kBusy; ++i) {
-    while (port_->read(ignored) > 0) {
-    }
-    sleep_until(now() + round);
-  }
+  drain(*port_);
   machine_.command(*port_, {0, 0, 0});
   port_->close();
 }

@@ -22,6 +22,10 @@ std::vector<std::byte> read_firmware(const std::filesystem::path& file);
 
 inline constexpr std::array kFalconIds{UsbId{0x0403, 0xcb48}};
 
+/// Opens a Falcon that another process may just have left, and sends it zero torque. Waits for it, a second
+/// at most; false when it did not come free. Closes it again.
+bool silence_falcon(UsbTransport& port);
+
 /// A Novint Falcon: grip position in m in its own frame (x right, y up, z out towards the user), force of its
 /// three motors. No force before it is homed. One USB exchange a tick, which overlaps the tick: the position
 /// is what answered the command of the tick before.

@@ -32,6 +32,9 @@ class FalconMachine {
   /// Sends the motors' command (DAC units); zero where the device is not ready.
   void command(UsbTransport& port, const std::array<std::int16_t, 3>& torque) noexcept;
 
+  /// Sets the line as running firmware wants it.
+  static void normal_mode(UsbTransport& port) noexcept;
+
   FalconPhase phase() const noexcept { return phase_; }
   /// The newest status of a ready device, if it came in the last 50 ms.
   std::optional<FalconStatus> status(Time now) const noexcept;
@@ -43,7 +46,6 @@ class FalconMachine {
   void enter(FalconPhase phase, Time now) noexcept;
   void take(UsbTransport& port, Time now) noexcept;
   void begin(UsbTransport& port, Time now) noexcept;
-  void normal_mode(UsbTransport& port) noexcept;
   void boot_mode(UsbTransport& port, Time now) noexcept;
   void probe(UsbTransport& port, Time now) noexcept;
   void boot(UsbTransport& port, Time now) noexcept;
