@@ -34,13 +34,13 @@ void guard(int pipe, std::span<const ClientConfig> configs) {
   if (said_goodbye(pipe)) return;
   for (const ClientConfig& config : configs) {
     if (row_of(config).make_safe == nullptr) continue;
+    const std::string name =
+        config.device.name + (config.device.port.empty() ? "" : ":") + config.device.port;
     try {
-      const int stopped = row_of(config).make_safe(config.device);
-      log::warning("the client died; {} of device {}{}{}: zero force sent", stopped, config.device.name,
-                   config.device.port.empty() ? "" : ":", config.device.port);
+      if (row_of(config).make_safe(config.device) == 0) fail_at_run_time("it does not answer");
+      log::warning("the client died; zero force sent to {}", name);
     } catch (const std::exception& e) {
-      log::error("the client died, and its device {} could not be taken over ({}): switch it off",
-                 config.device.name, e.what());
+      log::error("the client died, and {} could not be taken over ({}): switch it off", name, e.what());
     }
   }
 }

@@ -45,9 +45,14 @@ std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
 int make_falcon_safe(const DeviceSettings& settings) {
   int stopped = 0;
 #ifdef PALPATE_WITH_USB
-  for (const UsbDevice& device : find_usb(kFalconIds)) {
-    if (!settings.port.empty() && device.path != settings.port) continue;
-    UsbPort port({kFalconIds}, device.path);
+  std::vector<std::string> paths;
+  if (settings.port.empty()) {
+    for (const UsbDevice& device : find_usb(kFalconIds)) paths.push_back(device.path);
+  } else {
+    paths.push_back(settings.port);
+  }
+  for (const std::string& path : paths) {
+    UsbPort port({kFalconIds}, path);
     stopped += silence_falcon(port) ? 1 : 0;
   }
 #else

@@ -1,0 +1,80 @@
+// The client dies with force on the motors: somebody must switch it off.
+#include <csignal>
+#include <thread>
+
+#include "tests/support/falcon_bench.h"
+
+using namespace palpate::test;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A hand that leans on a wall, held by a client that is ready to die.
+struct Leaning {
+  Bench bench;
+  Wall wall{bench};
+  Emulator falcon{{"falcon:2-1", "falcon:3-2"}, {"--loaded", "--homed"}};
+  std::unique_ptr<Process> client;
+
+  explicit Leaning(const std::string& device) {
+    falcon.command("hand 2-1 target 0 0 0.13");
+    client =
+        falcon.start("haptic_client", {"run", bench.client, "--device", device, "--server", wall.address});
+    if (!client->wait_for("Falcon homed: ready")) throw std::runtime_error(client->output());
+    falcon.command("hand 2-1 target 0 0 0.105 1");
+    const bool pushes = falcon.wait_for("2-1", [](const Json& s) { return s["force"][2].get<double>() > 2; });
+    if (!pushes) throw std::runtime_error("no force: " + falcon.state("2-1").dump());
+  }
+  bool falls_silent() const {
+    return falcon.wait_for(
+        "2-1",
+        [](const Json& s) {
+          return s["dac"] == Json({0, 0, 0});
+        },
+        2);
+  }
+  /// By the client, or by its guardian when it is dead.
+  bool said(const std::string& text) const {
+    for (int i = 0; i < 400 && client->output().find(text) == std::string::npos; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return client->output().find(text) != std::string::npos;
+  }
+};
+
+}  // namespace
+
+TEST_CASE(
+    "guardian: the client is killed, crashes, aborts: zero torque within two seconds, once, by port or not") {
+  for (const int signal : {SIGKILL, SIGSEGV, SIGABRT}) {
+    for (const std::string device : {"falcon:2-1", "falcon"}) {
+      CAPTURE(signal, device);
+      Leaning hand(device);
+      hand.client->signal(signal);
+      CHECK(hand.falls_silent());
+      CHECK(hand.said("zero force sent to " + device));
+      CHECK(hand.client->wait() == -signal);
+      CHECK(hand.falcon.state("2-1")["red"] == true);
+      CHECK(hand.falcon.state("2-1")["homed"] == 7);  // the next client need not home it again
+    }
+  }
+}
+
+TEST_CASE("guardian: a client that ends well, or is told to, needs none") {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    Leaning hand("falcon:2-1");
+    hand.client->signal(signal);
+    CHECK(hand.client->wait() == 0);
+    const Json state = hand.falcon.state("2-1");
+    CHECK(state["dac"] == Json({0, 0, 0}));
+    CHECK(state["opens"] == 1);
+    CHECK(hand.client->output().find("the client died") == std::string::npos);
+  }
+}
+
+TEST_CASE("guardian: with a port, another Falcon is left alone") {
+  Leaning hand("falcon:2-1");
+  hand.client->signal(SIGKILL);
+  CHECK(hand.falls_silent());
+  CHECK(hand.said("zero force sent to falcon:2-1"));
+  CHECK(hand.falcon.state("3-2")["opens"] == 0);
+}
