@@ -6,6 +6,7 @@
 #include <libusb-1.0/libusb.h>
 #include <optional>
 
+#include "common/clock.h"
 #include "common/error.h"
 #include "common/spsc_ring.h"
 #include "haptic_client/device/usb_lookout.h"
@@ -290,13 +291,13 @@ bool UsbPort::open(Time now) noexcept {
 void UsbPort::close() noexcept {
   Libusb& u = *usb_;
   if (u.handle == nullptr) return;
-  constexpr int kRounds = 100;
+  constexpr Time kPatience = std::chrono::seconds(1);
   constexpr long kRound = 10'000;  // us
   u.closing = true;                // what completes now is not asked for again
   for (auto& in : u.incoming) {
     if (in.flying) libusb_cancel_transfer(in.libusb);
   }
-  for (int i = 0; i < kRounds && u.flying(); ++i) u.handle_events(kRound);
+  for (const Time end = now() + kPatience; u.flying() && now() < end;) u.handle_events(kRound);
   u.for_each_transfer([](Libusb::Transfer& transfer) {
     if (!transfer.flying) libusb_free_transfer(transfer.libusb);
     transfer.libusb = nullptr;

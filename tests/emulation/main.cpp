@@ -21,7 +21,8 @@ Emulates USB devices for programs that run with LD_PRELOAD=libusb_vhci_shim.so U
 Commands are read from PATH.ctl; tests/emulation/README.md lists them. Ends on SIGTERM or SIGINT.
 
   --socket PATH           unix socket, at most 103 characters
-  --device MODEL:PORT     falcon, spacemouse (7-byte reports) or spacemouse13 (13-byte); PORT as 2-1 or 2-1.4
+  --device MODEL:PORT     falcon, spacemouse (7-byte reports), spacemouse13 (13-byte) or
+                          spacemouse_receiver (13-byte, second interface); PORT as 2-1 or 2-1.4
   --clock virtual|wall    virtual (default): the mechanism moves on by --packet-time with every I/O packet
   --packet-time S         seconds, 0.0001 to 0.1; default 0.001
   --torque-constant K     motor command per torque, DAC units per N m; default 10000
@@ -95,8 +96,11 @@ void add_device(UsbBus& bus, const std::string& what, const Falcon::Settings& fa
     bus.add(port, std::make_unique<SpaceMouse>(SpaceMouse::Layout::kTwoReports));
   } else if (model == "spacemouse13") {
     bus.add(port, std::make_unique<SpaceMouse>(SpaceMouse::Layout::kOneReport));
+  } else if (model == "spacemouse_receiver") {
+    bus.add(port, std::make_unique<SpaceMouse>(SpaceMouse::Layout::kReceiver));
   } else {
-    throw CommandError("unknown model " + model + "; known are falcon, spacemouse, spacemouse13");
+    throw CommandError("unknown model " + model +
+                       "; known are falcon, spacemouse, spacemouse13, spacemouse_receiver");
   }
 }
 

@@ -9,7 +9,17 @@ namespace palpate::emulation {
 namespace {
 
 constexpr std::uint8_t kIn = 0x81;
-constexpr double kInterval = 0.008;  // s
+constexpr std::uint8_t kOwnIn = 0x82;  // of a receiver's other interface: never has data
+constexpr double kInterval = 0.008;    // s
+
+struct UsbId {
+  int vendor, product;
+};
+
+void put_two(Bytes& bytes, int number) {
+  bytes.push_back(static_cast<std::uint8_t>(number & 0xff));
+  bytes.push_back(static_cast<std::uint8_t>(number >> 8));
+}
 
 /// A report descriptor: a multi-axis controller (page 1, usage 8) with two input reports of three axes, or
 /// one of six, buttons in report 3 and the LED in output report 4.
@@ -30,34 +40,47 @@ Bytes report_descriptor(bool one_report) {
 }  // namespace
 
 Bytes SpaceMouse::descriptors() const {
-  const bool one = layout_ == Layout::kOneReport;
-  const auto id = [one](std::uint8_t a, std::uint8_t b) { return one ? a : b; };
-  const auto size = static_cast<std::uint8_t>(report_descriptor(one).size());
-  return {18,   1,    0x00, 0x02, 0,  0, 0,    8,    id(0x6f, 0x6d), id(0x25, 0x04), id(0x2e, 0x26),
-          0xc6, 0x31, 0x04, 1,    2,  0,
-          1,  // device
-          9,    2,    34,   0,    1,  1, 0,    0x80,
-          50,  // configuration
-          9,    4,    0,    0,    1,  3, 0,    0,
-          0,  // interface: HID
-          9,    0x21, 0x10, 0x01, 0,  1, 0x22, size,
-          0,                                  // HID
-          7,    5,    kIn,  3,    16, 0, 8};  // interrupt endpoint, 8 ms
+  const bool one = layout_ != Layout::kTwoReports, receiver = layout_ == Layout::kReceiver;
+  const UsbId id = one ? UsbId{0x256f, receiver ? 0xc62f : 0xc62e} : UsbId{0x046d, 0xc626};
+  Bytes bytes{18, 1, 0x00, 0x02, 0, 0, 0, 8};  // device
+  for (const int number : {id.vendor, id.product, 0x0431}) put_two(bytes, number);
+  bytes.insert(bytes.end(), {1, 2, 0, 1});
+  bytes.insert(bytes.end(), {9, 2});  // configuration
+  put_two(bytes, receiver ? 50 : 34);
+  bytes.insert(bytes.end(), {static_cast<std::uint8_t>(receiver ? 2 : 1), 1, 0, 0x80, 50});
+  if (receiver) {  // an interface of the maker's own, with an interrupt endpoint
+    bytes.insert(bytes.end(), {9, 4, 0, 0, 1, 0xff, 0, 0, 0});
+    bytes.insert(bytes.end(), {7, 5, kOwnIn, 3, 16, 0, 8});
+  }
+  const auto number = static_cast<std::uint8_t>(interface()),
+             size = static_cast<std::uint8_t>(report_descriptor(one).size());
+  bytes.insert(bytes.end(), {9, 4, number, 0, 1, 3, 0, 0, 0});            // interface: HID
+  bytes.insert(bytes.end(), {9, 0x21, 0x10, 0x01, 0, 1, 0x22, size, 0});  // HID
+  bytes.insert(bytes.end(), {7, 5, kIn, 3, 16, 0, 8});                    // interrupt endpoint, 8 ms
+  return bytes;
 }
 
 std::string SpaceMouse::text(int index) const {
   if (index == 1) return "3Dconnexion";
   if (index != 2) return "";
-  return layout_ == Layout::kOneReport ? "SpaceMouse Wireless" : "SpaceNavigator";
+  switch (layout_) {
+    case Layout::kTwoReports:
+      return "SpaceNavigator";
+    case Layout::kOneReport:
+      return "SpaceMouse Wireless";
+    case Layout::kReceiver:
+      return "SpaceMouse Wireless Receiver";
+  }
+  return "";
 }
 
 UsbResult SpaceMouse::request(const UsbSetup& setup, const Bytes& data, double) {
   constexpr std::uint8_t kGetDescriptor = 6, kSetReport = 9, kSetIdle = 10;
   if (setup.type == 0x81 && setup.request == kGetDescriptor && setup.value >> 8 == 0x22)
-    return {0, report_descriptor(layout_ == Layout::kOneReport)};
+    return {0, report_descriptor(layout_ != Layout::kTwoReports)};
   if (setup.type == 0x21 && setup.request == kSetIdle) return {};
   if (setup.type != 0x21 || setup.request != kSetReport || setup.value != 0x0204) return {-EPIPE, {}};
-  if (data.empty()) return {-EPIPE, {}};
+  if (data.empty() || setup.index != interface()) return {-EPIPE, {}};
   led_ = data.back() != 0;  // with or without the report's number before it
   return {};
 }
@@ -83,7 +106,7 @@ Bytes SpaceMouse::axes_report(std::uint8_t id, std::size_t first, std::size_t co
 void SpaceMouse::sample() {
   if (!deflected() && released_) return;
   released_ = !deflected();
-  if (layout_ == Layout::kOneReport) {
+  if (layout_ != Layout::kTwoReports) {
     reports_.push_back(axes_report(1, 0, 6));
   } else {
     reports_.push_back(axes_report(1, 0, 3));
@@ -92,6 +115,7 @@ void SpaceMouse::sample() {
 }
 
 std::optional<UsbResult> SpaceMouse::read(std::uint8_t endpoint, std::size_t size, double now) {
+  if (endpoint == kOwnIn) return std::nullopt;
   if (endpoint != kIn) return UsbResult{-EPIPE, {}};
   if (now < next_sample_) return std::nullopt;
   if (reports_.empty()) sample();

@@ -42,6 +42,9 @@ class UsbDevice {
   /// The kernel's driver that owns the interface before anybody detaches it; empty: none.
   virtual std::string kernel_driver() const { return {}; }
 
+  /// Number of the interface that programs use; there may be others before it, which do nothing.
+  virtual int interface() const { return 0; }
+
   virtual bool is_hub() const { return false; }
 
   /// A control request that is not one of the standard ones `control` answers.

@@ -157,7 +157,7 @@ Frame UsbBus::ownership(Link& link, const Frame& frame) {
   Port& port = *link.port;
   const bool detaches = frame.header.kind == Kind::kDetach || frame.header.kind == Kind::kDetachAndClaim;
   const bool claims = frame.header.kind == Kind::kClaim || frame.header.kind == Kind::kDetachAndClaim;
-  if (frame.header.status != 0) return reply(-ENOENT);  // there is interface 0 only
+  if (frame.header.status != port.device->interface()) return reply(-ENOENT);
   if (frame.header.kind == Kind::kGetDriver) {
     const std::string driver = driver_of(port);
     return reply(driver.empty() ? -ENODATA : 0, driver);

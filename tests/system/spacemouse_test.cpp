@@ -51,10 +51,12 @@ struct Session {
 
 }  // namespace
 
-TEST_CASE("SpaceMouse: reports of 7 and of 13 bytes move the tool; the light is on meanwhile") {
+TEST_CASE(
+    "SpaceMouse: reports of 7 and of 13 bytes, and of a second interface, move the tool; the light is on "
+    "meanwhile") {
   Server server;
-  Emulator mice({"spacemouse:1-1", "spacemouse13:1-2"});
-  for (const std::string port : {"1-1", "1-2"}) {
+  Emulator mice({"spacemouse:1-1", "spacemouse13:1-2", "spacemouse_receiver:1-3"});
+  for (const std::string port : {"1-1", "1-2", "1-3"}) {
     CAPTURE(port);
     const std::string other = port == "1-1" ? "1-2" : "1-1";
     const Session session;

@@ -34,9 +34,10 @@ bool holds(const std::string& text, const std::string& part) {
 
 TEST_CASE("usb device: standard requests come from the descriptors, all lengths are right") {
   Falcon falcon({});
-  SpaceMouse two(SpaceMouse::Layout::kTwoReports), one(SpaceMouse::Layout::kOneReport);
-  for (UsbDevice* device :
-       {static_cast<UsbDevice*>(&falcon), static_cast<UsbDevice*>(&two), static_cast<UsbDevice*>(&one)}) {
+  SpaceMouse two(SpaceMouse::Layout::kTwoReports), one(SpaceMouse::Layout::kOneReport),
+      receiver(SpaceMouse::Layout::kReceiver);
+  for (UsbDevice* device : {static_cast<UsbDevice*>(&falcon), static_cast<UsbDevice*>(&two),
+                            static_cast<UsbDevice*>(&one), static_cast<UsbDevice*>(&receiver)}) {
     const Bytes all = device->descriptors();
     std::size_t end = 0;
     while (end < all.size()) end += all[end];
