@@ -137,7 +137,8 @@ int run_server(const ServerOptions& options) {
   Json report = describe_scene(scene, simulation, now() - begin, progress);
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes);
-  NetLink link(socket, {1, scene.rate_hz, scene.tool.shape.radius}, mailboxes, random_seed(), recorder.get());
+  NetLink link(socket, {1, scene.rate_hz, scene.tools.front().shape.radius}, mailboxes, random_seed(),
+               recorder.get());
   const Time start = now();
   {
     std::jthread recording;

@@ -139,7 +139,7 @@ TEST_CASE("explain: what a quasi-static scene with a reach builds, by line, and 
   CHECK(reach->why == bench.line("reach = "));
   CHECK(reach->note == "measured");
   Scene unbounded = bench.explanation.scene;
-  unbounded.tool.reach.reset();
+  unbounded.tools[0].reach.reset();
   const double others = other_bytes(unbounded) - other_bytes(bench.explanation.scene);
   CHECK(reach->bytes.value() == 72 * (all * all - r * r) + others);
   CHECK(reach->setup_ms.has_value());
