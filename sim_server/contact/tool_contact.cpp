@@ -10,8 +10,9 @@ constexpr double kStride = 0.5;  // of the tool radius: how far the tool goes be
 constexpr double kGather = 2.0;  // of the tool radius: how far from the tip the patch extends
 constexpr double kMaxStrides = 256;
 constexpr double kEscape = 3.0;  // of the tool radius: how far outside its free organ contact may go on
-constexpr int kMaxIterations =
-    400;  // contact linearisations a step may use before it answers from where it got to
+// Contact linearisations a step may use, on the way and to settle with other tools, before it answers from
+// where it got to.
+constexpr int kMaxIterations = 400, kMaxSettling = 400;
 constexpr double kFarthest = 1e3;  // m
 constexpr double kStill = 1e-8;    // of the tool radius: a surface that moved less did not move
 
@@ -110,7 +111,7 @@ void ToolContact::conclude(const ContactForce& contact, int iterations, Tissue& 
 }
 
 bool ToolContact::exhausted() const {
-  return force_.iterations >= kMaxIterations;
+  return force_.iterations >= kMaxIterations + kMaxSettling;
 }
 
 /// No answer: the tool is taken away, and enters afresh with the next step.

@@ -205,8 +205,8 @@ TEST_CASE("any paths of two tools give finite forces, in settled answers but for
   Vec3 a = press(-0.01, 0), b = press(0.01, 0);
   for (int i = 0; i < 400; ++i) {
     a += random.vector(0.002), b += random.vector(0.002);
-    a = a.cwiseMax(Vec3(-0.03, -0.002, -0.01)).cwiseMin(Vec3(0.03, 0.01, 0.01));
-    b = b.cwiseMax(Vec3(-0.03, -0.002, -0.01)).cwiseMin(Vec3(0.03, 0.01, 0.01));
+    a = a.cwiseMax(Vec3(-0.03, 0.0005, -0.01)).cwiseMin(Vec3(0.03, 0.01, 0.01));
+    b = b.cwiseMax(Vec3(-0.03, 0.0005, -0.01)).cwiseMin(Vec3(0.03, 0.01, 0.01));
     const auto forces = two.at({a, b});
     for (const ToolForce& force : forces) {
       REQUIRE(force.force.allFinite());
@@ -217,8 +217,8 @@ TEST_CASE("any paths of two tools give finite forces, in settled answers but for
   }
   CAPTURE(most, flagged, both);
   CHECK(both > 50);
-  CHECK(flagged < 20);
-  CHECK(most <= 800);
+  CHECK(flagged < 8);
+  CHECK(most <= 1000);
 }
 
 TEST_CASE("a step of two tools in contact does not allocate, and leaves the tissue at rest when both go") {
