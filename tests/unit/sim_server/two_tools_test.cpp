@@ -1,5 +1,7 @@
 #include <optional>
 
+#include "common/contact/simplex_distance.h"
+#include "sim_server/elasticity/assembly.h"
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/simulation.h"
 #include "tests/support/allocation_guard.h"
@@ -63,7 +65,75 @@ double top_near(const Simulation& block, double x) {
   return height;
 }
 
+/// The forces (N, 3 per vertex) that hold the surface where it is: from the stiffness of the whole body, the
+/// vertices inside it free of load. Nothing of compliance or contact.
+Eigen::VectorXd holding_forces(const Simulation& block) {
+  const TetMesh& mesh = block.mesh();
+  const Scene made = scene(1);
+  const FreeDofs dofs(static_cast<int>(mesh.vertices.size()), fixed_vertices(made, mesh));
+  const Eigen::MatrixXd lower = assemble_stiffness(mesh, *made.material, dofs);
+  const Eigen::MatrixXd stiffness = lower.selfadjointView<Eigen::Lower>();
+  std::vector<int> surface, inside;
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.count);
+  std::vector<char> on_surface(static_cast<std::size_t>(dofs.count), 0);
+  for (std::size_t i = 0; i < block.positions().size(); ++i) {
+    const int vertex = block.surface().vertices[i], first = dofs.first[vertex];
+    if (first < 0) continue;
+    u.segment<3>(first) = block.positions()[i] - mesh.vertices[vertex];
+    for (int axis = 0; axis < 3; ++axis) on_surface[first + axis] = 1;
+  }
+  for (int dof = 0; dof < dofs.count; ++dof) (on_surface[dof] ? surface : inside).push_back(dof);
+  const Eigen::VectorXd known = stiffness(inside, surface) * u(surface);
+  u(inside) = -stiffness(inside, inside).llt().solve(known);
+  const Eigen::VectorXd forces = stiffness * u;
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(mesh.vertices.size()));
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (dofs.first[v] >= 0)
+      all.segment<3>(3 * static_cast<Eigen::Index>(v)) = forces.segment<3>(dofs.first[v]);
+  }
+  return all;
+}
+
+/// How far tool centre p is from the deformed surface, m.
+double distance(const Simulation& block, const Vec3& p) {
+  double nearest = 1;
+  for (const Triangle& t : block.surface().triangles) {
+    const Vec3 &a = block.positions()[t[0]], &b = block.positions()[t[1]], &c = block.positions()[t[2]];
+    const auto w = closest_point(p, a, b, c).weight;
+    nearest = std::min(nearest, (p - w[0] * a - w[1] * b - w[2] * c).norm());
+  }
+  return nearest;
+}
+
 }  // namespace
+
+TEST_CASE("two tools: where they come to rest, all contacts together are in equilibrium") {
+  // By the stiffness matrix: the tissue is held by the forces that the tools report, near them and nowhere
+  // else, both tools touch and neither is in the tissue: the conditions of the joint problem.
+  const Vec3 a = press(-0.0065, 0.0025), b = press(0.0065, 0.002);
+  Block two(2);
+  const auto forces = two.at({a, b});
+  const Eigen::VectorXd held = holding_forces(two);
+  Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
+  double elsewhere = 0;
+  for (std::size_t v = 0; v < two.mesh().vertices.size(); ++v) {
+    const Vec3& x = two.mesh().vertices[v];
+    const Vec3 force = held.segment<3>(3 * static_cast<Eigen::Index>(v));
+    if ((x - a).norm() < 0.0125 && x[0] < -1e-6) {
+      on_a += force;
+    } else if ((x - b).norm() < 0.0125 && x[0] > 1e-6) {
+      on_b += force;
+    } else {
+      elsewhere = std::max(elsewhere, force.norm());
+    }
+  }
+  CHECK(relative(-on_a, forces[0].force) < 1e-6);
+  CHECK(relative(-on_b, forces[1].force) < 1e-6);
+  CHECK(elsewhere < 1e-6 * forces[0].force.norm());
+  // 1e-9 m/N stand in series with every contact (ContactSolver::kContactCompliance).
+  CHECK(distance(two, a) == Approx(kRadius).margin(2e-9));
+  CHECK(distance(two, b) == Approx(kRadius).margin(2e-9));
+}
 
 TEST_CASE("two tools: one that is lifted, or only near, leaves the other as if it were alone, bit by bit") {
   Block alone(1), two(2);
