@@ -291,21 +291,26 @@ TEST_CASE("any paths of two tools give finite forces, in settled answers but for
   CHECK(most <= 1000);
 }
 
-TEST_CASE("a step of two tools in contact does not allocate, and leaves the tissue at rest when both go") {
-  Block two(2);
-  const std::uint64_t rest = two.state_hash();
-  two.at({press(-0.006, 0.002), press(0.006, 0.002)});
-  const Places together{press(-0.004, 0.003), press(0.005, 0.003)}, one{press(-0.004, 0.003), {}};
+TEST_CASE("steps of eight tools in contact do not allocate, and leave the tissue at rest when all go") {
+  Block eight(8);
+  const std::uint64_t rest = eight.state_hash();
+  Places all(8), some(8), none(8);
+  for (int i = 0; i < 8; ++i) {
+    all[i] = press(0.009 * i - 0.0315, 0.004);
+    if (i % 3 == 0) some[i] = press(0.009 * i - 0.0305, 0.003);
+  }
   std::size_t allocations = 1;
+  int contacts = 0;
   {
     const test::AllocationGuard guard;
-    two.step(together, kDt);
-    two.step(one, kDt);
-    two.step(together, kDt);
+    for (const ToolForce& force : eight.step(all, kDt)) contacts += force.contacts > 0 ? 1 : 0;
+    eight.step(some, kDt);
+    eight.step(all, kDt);
     allocations = guard.count();
   }
   CHECK(allocations == 0);
-  two.step(Places{{}, press(0.005, 0.003)}, kDt);
-  two.step(Places{{}, {}}, kDt);
-  CHECK(two.state_hash() == rest);
+  CHECK(contacts == 8);
+  eight.step(some, kDt);
+  eight.step(none, kDt);
+  CHECK(eight.state_hash() == rest);
 }
