@@ -58,7 +58,7 @@ ServerSessions::Member* ServerSessions::holder(std::uint8_t tool) noexcept {
 }
 
 std::optional<std::uint8_t> ServerSessions::free_tool() noexcept {
-  for (int tool = 0; tool < tools_; ++tool) {
+  for (int tool = 0; tool < static_cast<int>(radii_.size()); ++tool) {
     if (holder(static_cast<std::uint8_t>(tool)) == nullptr) return static_cast<std::uint8_t>(tool);
   }
   return {};
@@ -77,7 +77,7 @@ ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Endpoint
   }
   member->last_heard = now;
   return {.answer = {{Header{member->session, ++member->sent},
-                      Welcome{hello.nonce, member->tool, rate_hz_, radius_}}}};
+                      Welcome{hello.nonce, member->tool, rate_hz_, radii_[member->tool]}}}};
 }
 
 ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const Endpoint& from, Time now,

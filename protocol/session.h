@@ -53,7 +53,8 @@ class ClientSession {
   std::optional<Time> last_hello_, last_heard_;
 };
 
-/// The server's end: who holds which tool.
+/// The server's end: who holds which tool. A client program holds one tool per session; sessions from one
+/// address differ in their nonces.
 class ServerSessions {
  public:
   struct Member {
@@ -70,8 +71,9 @@ class ServerSessions {
     const Member* left = nullptr;  ///< said Bye; valid until the next call
   };
 
-  ServerSessions(int tools, double rate_hz, double tool_radius)
-      : tools_(tools), rate_hz_(rate_hz), radius_(tool_radius) {}
+  /// `tool_radii`: of each tool of the scene, m.
+  ServerSessions(double rate_hz, std::vector<double> tool_radii)
+      : rate_hz_(rate_hz), radii_(std::move(tool_radii)) {}
 
   /// A decoded datagram came. `fresh_id`: a random number, used if this opens a session.
   Outcome receive(const Datagram& datagram, const Endpoint& from, Time now, std::uint64_t fresh_id,
@@ -90,8 +92,8 @@ class ServerSessions {
   Outcome admit(const Hello& hello, const Endpoint& from, Time now, std::uint64_t fresh_id, LinkStats& stats);
   std::optional<std::uint8_t> free_tool() noexcept;
 
-  int tools_;
-  double rate_hz_, radius_;
+  double rate_hz_;
+  std::vector<double> radii_;
   std::vector<Member> members_;
   Member left_;
 };

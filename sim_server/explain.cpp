@@ -22,13 +22,13 @@ constexpr std::string_view kReading = "reading the mesh";
 struct StagePart {
   std::string_view stage, part;
 };
+constexpr std::string_view kPreparing = "preparing ";  // and the part's own name
 constexpr std::array kStageParts{
     StagePart{kReading, "mesh"},
     StagePart{"extracting the surface", "surface"},
     StagePart{"assembling the stiffness matrix", "stiffness matrix"},
     StagePart{"factoring the stiffness matrix", "its factor"},
     StagePart{"computing compliance", "compliance"},
-    StagePart{"preparing contact", "contact"},
 };
 
 /// What a variant is compared by. `setup_ms` is without reading the mesh, which all share.
@@ -49,7 +49,7 @@ Cost cost_of(const Simulation& simulation, const SetupTimes& times, const StepTi
 /// Surface vertices whose compliance the quasi-static model of this scene keeps.
 std::size_t loaded_nodes(const Scene& scene, const Simulation& simulation) {
   const std::vector<int> fixed = fixed_vertices(scene, simulation.mesh());
-  const std::vector<int> all = reachable_vertices(simulation.surface(), simulation.mesh(), scene.tool);
+  const std::vector<int> all = reachable_vertices(simulation.surface(), simulation.mesh(), scene.tools);
   return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](int v) {
     return !std::binary_search(fixed.begin(), fixed.end(), simulation.surface().vertices[v]);
   }));
@@ -66,10 +66,18 @@ double compliance_bytes(const Scene& scene, const Simulation& simulation) {
   return kBytesPerPair * nodes * nodes;
 }
 
+/// The tool whose contact is called `part`, or null.
+const ToolSettings* tool_of(const Scene& scene, const std::string& part) {
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    if (part == contact_part(i, scene.tools.size())) return &scene.tools[i];
+  }
+  return nullptr;
+}
+
 std::string where_of(const Scene& scene, const std::string& part) {
+  if (const ToolSettings* tool = tool_of(scene, part)) return tool->where;
   if (part == "mesh") return scene.mesh_where;
   if (part == "surface") return "always";
-  if (part == "contact") return scene.tool.where;
   return scene.deformation.where;
 }
 
@@ -82,7 +90,17 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
     return fmt::format("{} vertices, {} triangles", surface.vertices.size(), surface.triangles.size());
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
   if (part == "stiffness matrix" || part == "its factor") return "freed after set-up";
+  if (const ToolSettings* tool = tool_of(scene, part))
+    return fmt::format("sphere, radius {:g} mm, reaches {} nodes{}", 1e3 * tool->shape.radius,
+                       reachable_vertices(surface, mesh, {tool, 1}).size(), tool->reach ? "" : ": all");
   return {};
+}
+
+std::string part_of(const std::string& stage) {
+  if (stage.starts_with(kPreparing)) return stage.substr(kPreparing.size());
+  const auto known = std::find_if(kStageParts.begin(), kStageParts.end(),
+                                  [&](const StagePart& p) { return p.stage == stage; });
+  return known == kStageParts.end() ? stage : std::string(known->part);
 }
 
 /// The row called `name`, new at the end if it is not there yet.
@@ -99,10 +117,7 @@ std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulat
                                    const SetupTimes& times) {
   std::vector<BuiltPart> rows;
   for (const SetupTimes::Stage& stage : times.stages()) {
-    const auto known = std::find_if(kStageParts.begin(), kStageParts.end(),
-                                    [&](const StagePart& p) { return p.stage == stage.name; });
-    const std::string part = known == kStageParts.end() ? stage.name : std::string(known->part);
-    row_of(rows, part, scene, simulation).setup_ms += ms(stage.took);
+    row_of(rows, part_of(stage.name), scene, simulation).setup_ms += ms(stage.took);
   }
   for (const MemoryPart& part : simulation.memory())
     row_of(rows, part.name, scene, simulation).bytes = part.bytes;
@@ -143,10 +158,14 @@ LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
   return row;
 }
 
-LeftOut beyond_reach(const Own& own) {
+/// What no tool reaches; nothing where a tool reaches everything.
+std::optional<LeftOut> beyond_reach(const Own& own) {
+  const auto& tools = own.scene.tools;
+  if (!std::all_of(tools.begin(), tools.end(), [](const ToolSettings& tool) { return tool.reach; }))
+    return {};
   Scene variant = own.scene;
-  variant.tool.reach.reset();
-  return compare({.what = "the surface out of reach", .why = own.scene.tool.reach_where}, variant, own);
+  for (ToolSettings& tool : variant.tools) tool.reach.reset();
+  return compare({.what = "the surface out of reach", .why = tools.front().reach_where}, variant, own);
 }
 
 LeftOut elasticity(const Own& own) {
@@ -176,7 +195,7 @@ LeftOut whole_compliance(const Own& own) {
 
 std::vector<LeftOut> left_out(const Own& own) {
   std::vector<LeftOut> rows;
-  if (own.scene.tool.reach) rows.push_back(beyond_reach(own));
+  if (const auto row = beyond_reach(own)) rows.push_back(*row);
   if (own.scene.deformation.model == "rigid") rows.push_back(elasticity(own));
   if (is_quasi_static(own.scene)) rows.push_back(whole_compliance(own));
   rows.push_back({.what = "recording",

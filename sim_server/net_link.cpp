@@ -18,7 +18,7 @@ NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions,
 void NetLink::run() {
   socket_.run(mailboxes_.bell, std::chrono::milliseconds(50),
               {.on_datagram = [this](auto bytes, const Endpoint& from) { on_datagram(bytes, from); },
-               .on_doorbell = [this] { on_force(); },
+               .on_doorbell = [this] { on_forces(); },
                .on_timer = [this] { on_timer(); }});
   for (auto member : sessions_.members())
     send({member.session, ++member.sent}, protocol::Bye{}, member.endpoint);
@@ -35,30 +35,39 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   }
   const std::size_t before = sessions_.members().size();
   const auto outcome = sessions_.receive(datagram, from, t, random_() | 1, stats_);
-  if (sessions_.members().size() > before) ++sessions_so_far;
-  members = static_cast<int>(sessions_.members().size());
+  // A new member stands at the end.
+  if (sessions_.members().size() > before) ++tools[sessions_.members().back().tool].so_far;
+  note_holders();
   if (outcome.answer) send(outcome.answer->first, outcome.answer->second, from);
   if (outcome.left != nullptr) tool_is_free(outcome.left->tool);
-  if (outcome.tool_state != nullptr) mailboxes_.tool.write({datagram.header.session, *outcome.tool_state});
+  if (outcome.tool_state != nullptr)
+    mailboxes_.tools[outcome.tool_state->tool].input.write({datagram.header.session, *outcome.tool_state});
 }
 
-void NetLink::on_force() {
-  ForceOutput output;
-  if (!mailboxes_.force.read(output)) return;
-  auto* member = sessions_.holder(output.sample.tool);
-  if (member == nullptr || member->session != output.session) return;
-  send({member->session, ++member->sent}, output.sample, member->endpoint);
+void NetLink::on_forces() {
+  for (ToolMailboxes& mailboxes : mailboxes_.tools) {
+    ForceOutput output;
+    if (!mailboxes.force.read(output)) continue;
+    auto* member = sessions_.holder(output.sample.tool);
+    if (member == nullptr || member->session != output.session) continue;
+    send({member->session, ++member->sent}, output.sample, member->endpoint);
+  }
 }
 
 void NetLink::on_timer() {
   for (const auto& gone : sessions_.expire(now())) tool_is_free(gone.tool);
-  members = static_cast<int>(sessions_.members().size());
+  note_holders();
+}
+
+void NetLink::note_holders() {
+  for (std::size_t i = 0; i < tools.size(); ++i)
+    tools[i].held = sessions_.holder(static_cast<std::uint8_t>(i)) != nullptr;
 }
 
 void NetLink::tool_is_free(std::uint8_t tool) {
   ToolInput nobody;
   nobody.state.tool = tool;
-  mailboxes_.tool.write(nobody);
+  mailboxes_.tools[tool].input.write(nobody);
 }
 
 const Endpoint& NetLink::own_towards(const Endpoint& peer) {

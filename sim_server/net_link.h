@@ -22,12 +22,17 @@ class NetLink {
   /// Read when `run` has returned.
   const protocol::LinkStats& stats() const { return stats_; }
 
-  /// For a watching thread: how many sessions there are and were.
-  std::atomic<int> members{0}, sessions_so_far{0};
+  /// For a watching thread: whether somebody holds each tool, and how many sessions held it so far.
+  struct ToolSessions {
+    std::atomic<bool> held{false};
+    std::atomic<int> so_far{0};
+  };
+  std::array<ToolSessions, kMaxTools> tools;
 
  private:
   void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
-  void on_force();
+  void on_forces();
+  void note_holders();
   void on_timer();
   void tool_is_free(std::uint8_t tool);
   void send(const protocol::Header& header, const protocol::Message& message, const protocol::Endpoint& to);

@@ -85,7 +85,7 @@ int record(const RecordOptions& options) {
   say_what_is_lost(motion, options, ticks_hz);
   ProgressLine progress;
   Simulation simulation(scene, std::ref(progress));
-  VirtualSession session(simulation, motion, scene.tool.shape.radius,
+  VirtualSession session(simulation, motion, scene.tools.front().shape.radius,
                          {options.rate_hz, ticks_hz, from_seconds(options.delay_ms / 1e3)}, capture);
   const Time start = now();
   run_session(session, ticks, capture, options, progress);

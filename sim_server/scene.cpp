@@ -64,6 +64,17 @@ ToolSettings read_tool(const Config& config) {
   return tool;
 }
 
+std::vector<ToolSettings> read_tools(const Config& config) {
+  const auto sections = config.tables("tool");
+  if (sections.empty()) fail("{}: a scene needs a [[tool]]; add one with its `radius`", config.where());
+  if (sections.size() > kMaxTools)
+    fail("{}: a scene has at most {} [[tool]], this one has {}; remove some", sections[kMaxTools].where(),
+         kMaxTools, sections.size());
+  std::vector<ToolSettings> tools;
+  for (const Config& section : sections) tools.push_back(read_tool(section));
+  return tools;
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file) {
@@ -92,10 +103,7 @@ Scene read_scene(const std::filesystem::path& file) {
   const auto deformation = config.table("deformation");
   if (!deformation) fail("{}: missing section [deformation] with `model`", config.where());
   scene.deformation = read_deformation(*deformation);
-  const auto tools = config.tables("tool");
-  if (tools.size() != 1)
-    fail("{}: a scene has one [[tool]], this one has {}", config.where("tool"), tools.size());
-  scene.tool = read_tool(tools.front());
+  scene.tools = read_tools(config);
   config.reject_unknown();
   return scene;
 }

@@ -34,13 +34,16 @@ struct DeformationSettings {
   std::string where;       ///< "FILE:LINE" of `model`
 };
 
-/// `[[tool]]`.
+/// One `[[tool]]`.
 struct ToolSettings {
   SphereTool shape;
   std::optional<Box> reach;  ///< places the tool's surface can get to; absent: the whole organ
   std::string where;         ///< "FILE:LINE" of this section
   std::string reach_where;   ///< "FILE:LINE" of `reach`; empty where it is absent
 };
+
+/// The most `[[tool]]` a scene may have.
+constexpr std::size_t kMaxTools = 8;
 
 struct Scene {
   std::string title;
@@ -52,8 +55,8 @@ struct Scene {
   std::optional<Material> material;
   std::string material_where;  ///< "FILE:LINE" of `[material]`; empty where it is absent
   DeformationSettings deformation;
-  ToolSettings tool;
-  std::string source;  ///< the file, for messages
+  std::vector<ToolSettings> tools = std::vector<ToolSettings>(1);  ///< 1 to `kMaxTools`
+  std::string source;                                              ///< the file, for messages
 };
 
 /// Reads and checks a scene file. Throws `Error` (file, line, key, what was expected). Does not read the

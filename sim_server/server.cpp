@@ -70,7 +70,19 @@ Json timeline_report(const Timeline<StepCell>& timeline) {
   return {{"cell_s", to_seconds(timeline.width())}, {"cells", cells}};
 }
 
-void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simulation& simulation, Time ran) {
+Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& scene) {
+  Json tools = Json::array();
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    tools.push_back({{"radius_m", scene.tools[i].shape.radius},
+                     {"max_newton", stats.tools[i].max_newton},
+                     {"contact_steps", stats.tools[i].contact_steps},
+                     {"sessions", link.tools[i].so_far.load()}});
+  }
+  return tools;
+}
+
+void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simulation& simulation,
+             const Scene& scene, Time ran) {
   const SimLoopStats& stats = loop.stats();
   report["seconds"] = to_seconds(ran);
   report["steps"] = stats.step_ns.count();
@@ -80,8 +92,11 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["timeline"] = timeline_report(stats.timeline);
   report["late"] = stats.late;
   report["flagged"] = stats.flagged;
-  report["max_newton"] = stats.max_newton;
-  report["sessions"] = link.sessions_so_far.load();
+  report["max_newton"] = stats.max_newton();
+  report["tools"] = tools_report(stats, link, scene);
+  int sessions = 0;
+  for (const auto& tool : link.tools) sessions += tool.so_far;
+  report["sessions"] = sessions;
   const protocol::LinkStats& net = link.stats();
   report["link"] = {{"sent", net.sent},           {"received", net.received},     {"lost", net.lost},
                     {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"rejected", net.rejected}};
@@ -101,18 +116,28 @@ void print_summary(const Json& report) {
   std::fflush(stdout);
 }
 
+/// Says which tools were taken and left since the last look.
+void tell_holders(const NetLink& link, std::vector<bool>& told) {
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const bool held = link.tools[i].held;
+    if (held == told[i]) continue;
+    const std::string tool = told.size() == 1 ? "the tool" : fmt::format("tool {} of {}", i + 1, told.size());
+    log::info("{}", held ? fmt::format("a client took {}", tool)
+                         : fmt::format("the client is gone; {} is free", tool));
+    told[i] = held;
+  }
+}
+
 /// Waits for Ctrl-C or the end of `seconds`, telling who comes and goes.
-void watch(const NetLink& link, const protocol::Recorder* recorder, std::optional<double> seconds) {
+void watch(const NetLink& link, std::size_t tools, const protocol::Recorder* recorder,
+           std::optional<double> seconds) {
   protocol::RecordingWatcher recording(recorder);
   const Time start = now();
-  int told = 0;
+  std::vector<bool> told(tools, false);
   while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
     if (seconds && to_seconds(now() - start) >= *seconds) return;
     recording.look();
-    const int members = link.members;
-    if (members == told) continue;
-    log::info("{}", members > told ? "a client took the tool" : "the client is gone; the tool is free");
-    told = members;
+    tell_holders(link, told);
   }
 }
 
@@ -135,9 +160,11 @@ int run_server(const ServerOptions& options) {
   warn_if_huge(simulation.mesh(), scene);
   warn_if_slow(scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);
+  std::vector<double> radii;
+  for (const ToolSettings& tool : scene.tools) radii.push_back(tool.shape.radius);
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes);
-  NetLink link(socket, {1, scene.rate_hz, scene.tool.shape.radius}, mailboxes, random_seed(), recorder.get());
+  NetLink link(socket, {scene.rate_hz, radii}, mailboxes, random_seed(), recorder.get());
   const Time start = now();
   {
     std::jthread recording;
@@ -148,13 +175,13 @@ int run_server(const ServerOptions& options) {
     warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
     log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
               report["setup_ms"].get<double>() / 1e3, protocol::to_string(socket.local()));
-    watch(link, recorder.get(), options.seconds);
+    watch(link, scene.tools.size(), recorder.get(), options.seconds);
     sim.request_stop();
     sim.join();
     link.stop();
     net.join();
   }
-  add_run(report, loop, link, simulation, now() - start);
+  add_run(report, loop, link, simulation, scene, now() - start);
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
   print_summary(report);
   if (options.report) write_json(*options.report, report);

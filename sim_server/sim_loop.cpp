@@ -20,14 +20,23 @@ StepCell& StepCell::operator+=(const StepCell& other) noexcept {
 SimLoop::SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes)
     : served_(simulation),
       mailboxes_(mailboxes),
-      period_(rate_hz > 0 ? from_seconds(1 / rate_hz) : Time::zero()) {}
+      period_(rate_hz > 0 ? from_seconds(1 / rate_hz) : Time::zero()),
+      inputs_(simulation.tools()) {
+  stats_.tools.resize(simulation.tools());
+}
+
+double SimLoopStats::max_newton() const noexcept {
+  double most = 0;
+  for (const ToolStats& tool : tools) most = std::max(most, tool.max_newton);
+  return most;
+}
 
 void SimLoop::run(const std::stop_token& stop) noexcept {
   Time deadline = now(), last = deadline;
   while (!stop.stop_requested()) {
-    fresh_ = mailboxes_.tool.read(tool_);
+    const bool fresh = read_inputs();
     const Time start = now();
-    if (period_ > Time::zero() || fresh_) {
+    if (period_ > Time::zero() || fresh) {
       step(to_seconds(period_ > Time::zero() ? period_ : start - last));
       last = start;
     }
@@ -44,27 +53,52 @@ void SimLoop::run(const std::stop_token& stop) noexcept {
   }
 }
 
-void SimLoop::step(double dt) noexcept {
-  const Time start = now();
-  const auto outcome = served_.step(tool_, fresh_, dt);
-  if (!outcome) return;
-  const Time took = now() - start;
-  count(outcome->force, start, took);
-  if (!outcome->answer) return;
-  ForceOutput output{tool_.session, *outcome->answer};
-  output.sample.step_ns = took.count();
-  mailboxes_.force.write(output);
-  mailboxes_.bell.ring();
+/// Whether any of them is new.
+bool SimLoop::read_inputs() noexcept {
+  bool any = false;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    inputs_[i].fresh = mailboxes_.tools[i].input.read(inputs_[i]);
+    any = any || inputs_[i].fresh;
+  }
+  return any;
 }
 
-void SimLoop::count(const ToolForce& force, Time start, Time took) noexcept {
+void SimLoop::step(double dt) noexcept {
+  const Time start = now();
+  const auto outcomes = served_.step(inputs_, dt);
+  if (outcomes.empty()) return;
+  const Time took = now() - start;
+  count(outcomes, start, took);
+  bool answered = false;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (!outcomes[i].answer) continue;
+    ForceOutput output{inputs_[i].session, *outcomes[i].answer};
+    output.sample.step_ns = took.count();
+    mailboxes_.tools[i].force.write(output);
+    answered = true;
+  }
+  if (answered) mailboxes_.bell.ring();
+}
+
+void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept {
   const auto took_ns = static_cast<double>(took.count());
+  bool contact = false, flagged = false;
+  double largest = 0;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const ToolForce& force = outcomes[i].force;
+    const double newton = force.force.norm();
+    ToolStats& tool = stats_.tools[i];
+    tool.contact_steps += force.contacts > 0 ? 1 : 0;
+    tool.max_newton = std::max(tool.max_newton, newton);
+    contact = contact || force.contacts > 0;
+    flagged = flagged || force.flagged;
+    largest = std::max(largest, newton);
+  }
   stats_.step_ns.add(took.count());
   stats_.timeline.at(start) += {1, took_ns, took_ns, 0};
-  if (force.contacts > 0) stats_.contact_step_ns.add(took.count());
-  stats_.flagged += force.flagged ? 1 : 0;
-  stats_.max_newton = std::max(stats_.max_newton, force.force.norm());
-  newest_newton.store(force.force.norm(), std::memory_order_relaxed);
+  if (contact) stats_.contact_step_ns.add(took.count());
+  stats_.flagged += flagged ? 1 : 0;
+  newest_newton.store(largest, std::memory_order_relaxed);
   steps_done.fetch_add(1, std::memory_order_relaxed);
 }
 

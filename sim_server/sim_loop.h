@@ -1,13 +1,15 @@
 #pragma once
+#include <array>
 #include <atomic>
 #include <stop_token>
+#include <vector>
 
 #include "common/doorbell.h"
 #include "common/histogram.h"
 #include "common/latest_value.h"
 #include "common/time.h"
 #include "common/timeline.h"
-#include "sim_server/served_tool.h"
+#include "sim_server/served_tools.h"
 
 namespace palpate::sim {
 
@@ -17,10 +19,15 @@ struct ForceOutput {
   protocol::ForceSample sample;
 };
 
-/// Mailboxes between the simulation thread and the network thread. `bell` rings when a force waits.
-struct SimMailboxes {
-  LatestValue<ToolInput> tool;     // network -> simulation
+/// The mailboxes of one tool, so that none overtakes what is meant for another.
+struct ToolMailboxes {
+  LatestValue<ToolInput> input;    // network -> simulation
   LatestValue<ForceOutput> force;  // simulation -> network
+};
+
+/// Between the simulation thread and the network thread. `bell` rings when forces wait.
+struct SimMailboxes {
+  std::array<ToolMailboxes, kMaxTools> tools;  // the first ones, as many as the scene has
   Doorbell bell;
 };
 
@@ -30,20 +37,29 @@ struct StepCell {
   StepCell& operator+=(const StepCell& other) noexcept;
 };
 
-/// What the loop measured; read it when the loop has ended.
-struct SimLoopStats {
-  Timeline<StepCell> timeline;
-  Histogram step_ns, contact_step_ns;  ///< all steps, and those in contact
-  std::uint64_t late = 0;              ///< deadlines passed over because a step took too long
-  std::uint64_t flagged = 0;           ///< steps without a settled answer
+/// What one tool did.
+struct ToolStats {
+  std::uint64_t contact_steps = 0;
   double max_newton = 0;
 };
 
-/// Steps the simulation on absolute deadlines: newest tool pose in, newest force out. The only thread that
+/// What the loop measured; read it when the loop has ended.
+struct SimLoopStats {
+  Timeline<StepCell> timeline;
+  Histogram step_ns, contact_step_ns;  ///< all steps, and those with a tool in contact
+  std::uint64_t late = 0;              ///< deadlines passed over because a step took too long
+  std::uint64_t flagged = 0;           ///< steps without a settled answer
+  std::vector<ToolStats> tools;
+
+  /// Largest force on any tool, N.
+  double max_newton() const noexcept;
+};
+
+/// Steps the simulation on absolute deadlines: newest tool poses in, newest forces out. The only thread that
 /// touches the simulation while it runs.
 class SimLoop {
  public:
-  /// `rate_hz` 0: steps as soon as a new pose is there.
+  /// `rate_hz` 0: steps as soon as a new pose of any tool is there.
   SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes);
 
   /// Runs until asked to stop.
@@ -51,19 +67,19 @@ class SimLoop {
 
   const SimLoopStats& stats() const { return stats_; }
 
-  /// Progress for a watching thread: steps done, and the magnitude of the newest force (N).
+  /// Progress for a watching thread: steps done, and the largest force of the newest (N).
   std::atomic<std::uint64_t> steps_done{0};
   std::atomic<double> newest_newton{0};
 
  private:
+  bool read_inputs() noexcept;
   void step(double dt) noexcept;
-  void count(const ToolForce& force, Time start, Time took) noexcept;
+  void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
 
-  ServedTool served_;
+  ServedTools served_;
   SimMailboxes& mailboxes_;
   Time period_;
-  ToolInput tool_;
-  bool fresh_ = false;
+  std::vector<ToolInput> inputs_;
   SimLoopStats stats_;
 };
 

@@ -1,8 +1,7 @@
 #include "sim_server/simulation.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <cassert>
 
 #include "common/error.h"
 #include "common/hash.h"
@@ -12,38 +11,24 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kStride = 0.5;  // of the tool radius: how far the tool goes between two contact solves
-constexpr double kGather = 2.0;  // of the tool radius: how far from the tip the patch extends
-constexpr double kMaxStrides = 256;
-constexpr double kEscape = 3.0;  // of the tool radius: how far outside the organ at rest contact may go on
-constexpr int kMaxIterations =
-    400;  // contact linearisations a step may use before it answers from where it got to
-constexpr double kFarthest = 1e3;  // m
+constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
 
-/// Surface vertices of the triangles that come near enough to the reach box for the tool to touch them there.
-std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
-                                          const ToolSettings& tool) {
-  if (!tool.reach) return surface.triangles;
-  std::vector<Triangle> touchable;
-  for (const Triangle& t : surface.triangles) {
-    Vec3 min = mesh.vertices[surface.vertices[t[0]]], max = min;
-    for (const int corner : t) {
-      min = min.cwiseMin(mesh.vertices[surface.vertices[corner]]);
-      max = max.cwiseMax(mesh.vertices[surface.vertices[corner]]);
-    }
-    if ((max.array() >= tool.reach->min.array()).all() && (min.array() <= tool.reach->max.array()).all()) {
-      touchable.push_back(t);
-    }
-  }
-  return touchable;
-}
-
-std::vector<int> vertices_of(const std::vector<Triangle>& triangles) {
+std::vector<int> vertices_of(const std::vector<std::vector<Triangle>>& lists) {
   std::vector<int> vertices;
-  for (const Triangle& t : triangles) vertices.insert(vertices.end(), t.begin(), t.end());
+  for (const auto& triangles : lists) {
+    for (const Triangle& t : triangles) vertices.insert(vertices.end(), t.begin(), t.end());
+  }
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;
+}
+
+/// Of each tool.
+std::vector<std::vector<Triangle>> touchable_by(std::span<const ToolSettings> tools, const Surface& surface,
+                                                const TetMesh& mesh) {
+  std::vector<std::vector<Triangle>> lists;
+  for (const ToolSettings& tool : tools) lists.push_back(touchable_triangles(surface, mesh, tool));
+  return lists;
 }
 
 /// `read_mesh`, told to `progress`.
@@ -54,133 +39,109 @@ TetMesh read_mesh_of(const Scene& scene, const Progress& progress) {
 
 }  // namespace
 
-std::vector<int> reachable_vertices(const Surface& surface, const TetMesh& mesh, const ToolSettings& tool) {
-  return vertices_of(touchable_triangles(surface, mesh, tool));
+std::vector<int> reachable_vertices(const Surface& surface, const TetMesh& mesh,
+                                    std::span<const ToolSettings> tools) {
+  return vertices_of(touchable_by(tools, surface, mesh));
+}
+
+std::string contact_part(std::size_t tool, std::size_t tools) {
+  return tools == 1 ? "contact" : fmt::format("contact of tool {}", tool + 1);
 }
 
 Simulation::Simulation(const Scene& scene, const Progress& progress)
     : Simulation(scene, read_mesh_of(scene, progress), progress) {}
 
-Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress)
-    : tool_(scene.tool.shape), mesh_(std::move(mesh)) {
+Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
   progress("extracting the surface", 0);
   surface_ = boundary_surface(mesh_);
-  std::vector<Triangle> touchable = touchable_triangles(surface_, mesh_, scene.tool);
-  if (touchable.empty()) fail("{}: no triangle of the surface lies in the tool's `reach` box", scene.source);
+  auto touchable = touchable_by(scene.tools, surface_, mesh_);
+  for (std::size_t i = 0; i < touchable.size(); ++i) {
+    if (touchable[i].empty())
+      fail("{}: no triangle of the surface lies in the tool's `reach` box", scene.tools[i].reach_where);
+  }
   const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, mesh_);
-  model_ =
+  tissue_.model =
       find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where)
           .make({scene, mesh_, surface_, fixed, reachable, progress});
-  progress("preparing contact", 0);
-  free_ = positions_ = model_->free_motion(0);
-  finder_ = std::make_unique<ContactFinder>(positions_, surface_.triangles, std::move(touchable),
-                                            kGather * tool_.radius);
-  solver_ = std::make_unique<ContactSolver>(finder_->max_nodes(), finder_->max_triangles());
-  patch_.reserve(finder_->max_nodes(), finder_->max_triangles());
-  displacement_.resize(3 * (finder_->max_nodes() + 1));
-  loads_.reserve(static_cast<std::size_t>(finder_->max_nodes()));
-  progress("preparing contact", 1);
+  tissue_.free = tissue_.positions = tissue_.model->free_motion(0);
+  std::size_t loads = 0;
+  tools_.reserve(scene.tools.size());
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    const std::string stage = "preparing " + contact_part(i, scene.tools.size());
+    progress(stage, 0);
+    tools_.emplace_back(scene.tools[i], tissue_.free, surface_, std::move(touchable[i]));
+    loads += static_cast<std::size_t>(tools_.back().max_nodes());
+    progress(stage, 1);
+  }
+  if (tools_.size() > 1) {
+    for (ToolContact& tool : tools_) tool.reserve(loads);
+  }
+  places_.resize(tools_.size());
+  forces_.resize(tools_.size());
+}
+
+std::span<const ToolForce> Simulation::step(std::span<const std::optional<Vec3>> places_W,
+                                            double dt) noexcept {
+  assert(places_W.size() == tools_.size());
+  tissue_.free = tissue_.model->free_motion(dt);
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (!places_W[i]) lift_tool(i);
+  }
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (!places_W[i]) continue;
+    tools_[i].share(tools_, tissue_);
+    tools_[i].walk(*places_W[i], tissue_);
+  }
+  settle();
+  for (std::size_t i = 0; i < tools_.size(); ++i) forces_[i] = tools_[i].force();
+  return forces_;
 }
 
 ToolForce Simulation::step(const Vec3& p_W, double dt) noexcept {
-  free_ = model_->free_motion(dt);
-  if (!p_W.allFinite() || p_W.cwiseAbs().maxCoeff() > kFarthest) return give_up();
-  const double stride = kStride * tool_.radius;
-  if (!placed_ || (p_W - place_).norm() > kMaxStrides * stride || escaped(p_W)) enter(p_W);
-  const Vec3 way = p_W - place_, from = place_;
-  const double strides = std::clamp(std::ceil(way.norm() / stride), 1.0, kMaxStrides);
-  ContactForce contact;
-  int iterations = 0;
-  for (double i = 1; i <= strides && iterations < kMaxIterations; ++i) {
-    place_ = i == strides ? p_W : Vec3(from + (i / strides) * way);
-    contact = touch(place_);
-    iterations += contact.iterations;
+  places_.front() = p_W;
+  return step(places_, dt).front();
+}
+
+/// Block Gauss-Seidel over the tools (for a linear tissue: on the complementarity problem of all contacts
+/// together, which is convex): each in turn solves its own contact on the surface that the others have
+/// pushed, until it stands still for all of them.
+void Simulation::settle() noexcept {
+  std::size_t still = 1;  // tools in a row that need nothing; the last one has just been solved
+  for (std::size_t turn = 0; still < tools_.size(); ++turn) {
+    ToolContact& tool = tools_[turn % tools_.size()];
+    ++still;
+    if (!tool.placed() || !tool.share(tools_, tissue_)) continue;
+    if (tool.exhausted() || turn >= kMaxSweeps * tools_.size()) {
+      for (ToolContact& any : tools_) {
+        if (any.force().contacts > 0) any.flag();
+      }
+      return;
+    }
+    tool.settle(tissue_);
+    still = 1;
   }
-  if (!contact.force.allFinite()) return give_up();
-  const bool arrived = place_ == p_W;  // else the next step goes on from here
-  last_ = {contact.force, solver_->tangent(patch_), contact.contacts, iterations,
-           !contact.converged || !arrived};
-  return last_;
 }
 
-/// No answer: the tool is taken away, and enters afresh with the next step.
-ToolForce Simulation::give_up() noexcept {
-  lift_tool();
-  last_.flagged = true;
-  return last_;
-}
-
-/// Whether a tool in contact has left the organ at rest so far behind that it only drags the surface along
-/// with it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
-bool Simulation::escaped(const Vec3& p_W) const noexcept {
-  if (last_.contacts == 0) return false;
-  return (finder_->nearest(free_, p_W) - p_W).norm() > kEscape * tool_.radius && !finder_->inside(free_, p_W);
-}
-
-void Simulation::lift_tool() noexcept {
-  release();
-  placed_ = false;
-  last_ = {};
-}
-
-/// The tool appears at `p_W`. If that is inside the organ it is taken to have come in through the nearest
-/// surface.
-void Simulation::enter(const Vec3& p_W) noexcept {
-  release();
-  placed_ = true;
-  place_ = p_W;
-  if (!finder_->inside(positions_, p_W)) return;
-  const Vec3 door = finder_->nearest(positions_, p_W);
-  const Vec3 outward = (door - p_W).normalized();
-  place_ = door + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
-}
-
-ContactForce Simulation::touch(const Vec3& p_W) noexcept {
-  finder_->gather(positions_, free_, p_W + tip_offset_, kGather * tool_.radius, patch_);
-  if (patch_.triangles.empty()) {
-    release();
-    return {};
-  }
-  const std::span<const int> vertices = finder_->vertices();
-  model_->compliance(vertices, patch_);
-  const int m = patch_.nodes();
-  auto u = displacement_.head(3 * (m + 1));
-  for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = positions_[vertices[i]] - patch_.free[i];
-  u.tail<3>() = tip_offset_;
-  const ContactForce contact = solver_->solve(patch_, tool_, p_W, u);
-  tip_offset_ = u.tail<3>();
-  loads_.clear();
-  const auto forces = solver_->node_forces();
-  for (int i = 0; i < m; ++i) {
-    if (!forces.segment<3>(3 * i).isZero(0)) loads_.push_back({vertices[i], forces.segment<3>(3 * i)});
-  }
-  positions_ = model_->apply(loads_);
-  return contact;
-}
-
-void Simulation::release() noexcept {
-  tip_offset_.setZero();
-  if (!loads_.empty()) {
-    loads_.clear();
-    positions_ = model_->apply(loads_);
-  }
+void Simulation::lift_tool(std::size_t tool) noexcept {
+  if (tools_[tool].placed()) tools_[tool].share(tools_, tissue_);
+  tools_[tool].lift(tissue_);
 }
 
 std::vector<MemoryPart> Simulation::memory() const {
-  std::vector<MemoryPart> parts = model_->memory();
+  std::vector<MemoryPart> parts = tissue_.model->memory();
   parts.push_back(
       {"mesh", mesh_.vertices.size() * sizeof(Vec3) + mesh_.tetrahedra.size() * sizeof(Tetrahedron)});
   parts.push_back(
       {"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
-  parts.push_back(
-      {"contact", solver_->bytes() + static_cast<std::size_t>(patch_.compliance.size()) * sizeof(double)});
+  for (std::size_t i = 0; i < tools_.size(); ++i)
+    parts.push_back({contact_part(i, tools_.size()), tools_[i].bytes()});
   return parts;
 }
 
 std::uint64_t Simulation::state_hash() const noexcept {
   Fnv1a hash;
-  hash.add(positions_.data(), positions_.size_bytes());
-  hash.add(last_.force);
+  hash.add(tissue_.positions.data(), tissue_.positions.size_bytes());
+  for (const ToolContact& tool : tools_) hash.add(tool.force().force);
   return hash.value();
 }
 

@@ -1,31 +1,21 @@
 #pragma once
 #include <cstdint>
-#include <memory>
+#include <optional>
 
-#include "sim_server/contact/contact_finder.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/contact/tool_contact.h"
 #include "sim_server/mesh/tet_mesh.h"
 #include "sim_server/scene.h"
 
 namespace palpate::sim {
 
-/// What the tool feels after one step.
-struct ToolForce {
-  Vec3 force = Vec3::Zero();    ///< N, world, on the tool at its position
-  Mat3 tangent = Mat3::Zero();  ///< dF/dp, N/m, symmetric
-  int contacts = 0;             ///< touching faces, edges and vertices
-  int iterations = 0;           ///< contact linearisations, all sub-places together
-  /// No settled answer: a wild position (then there is no force), contact that did not converge, or a way too
-  /// long for one step (then the force belongs to the place the tool got to).
-  bool flagged = false;
-};
-
 inline const Progress kSilent = [](std::string_view, double) {};
 
-/// Surface vertices that the tool can touch, ascending: the corners of the triangles whose box meets `reach`.
-std::vector<int> reachable_vertices(const Surface& surface, const TetMesh& mesh, const ToolSettings& tool);
+/// Surface vertices that any of the tools can touch, ascending: the corners of the triangles whose box meets
+/// `reach`.
+std::vector<int> reachable_vertices(const Surface& surface, const TetMesh& mesh,
+                                    std::span<const ToolSettings> tools);
 
-/// The organ of a scene with its tool: one step, one page. Built from a scene (throws `Error`), then stepped
+/// The organ of a scene with its tools: one step, one page. Built from a scene (throws `Error`), then stepped
 /// by one thread; a step neither allocates, locks, logs nor throws, and depends on nothing but its arguments
 /// and the state.
 class Simulation {
@@ -35,42 +25,37 @@ class Simulation {
   /// With a mesh made elsewhere.
   Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent);
 
-  /// Advances the tissue by `dt` (s) with the tool centre at `p_W` (m). The tool goes there on a straight
-  /// line in strides of half its radius, so a fast tool does not jump through the surface.
+  /// Advances the tissue by `dt` (s) with the tool centres at `places_W` (m), one for each tool; where there
+  /// is none, that tool is lifted. The forces, one for each tool, stay valid until the next step.
+  std::span<const ToolForce> step(std::span<const std::optional<Vec3>> places_W, double dt) noexcept;
+  /// The same with tool 0 alone, the others lifted.
   ToolForce step(const Vec3& p_W, double dt) noexcept;
 
-  /// Takes the tool away: the tissue goes free.
-  void lift_tool() noexcept;
+  /// Takes a tool away: the tissue goes free of it.
+  void lift_tool(std::size_t tool = 0) noexcept;
 
+  std::size_t tools() const { return tools_.size(); }
   const TetMesh& mesh() const { return mesh_; }
   const Surface& surface() const { return surface_; }
-  std::span<const Vec3> positions() const { return positions_; }
+  std::span<const Vec3> positions() const { return tissue_.positions; }
   std::vector<MemoryPart> memory() const;
 
-  /// FNV-1a hash of the surface positions and the last force, bit by bit: equal runs have equal hashes.
+  /// FNV-1a hash of the surface positions and the last forces, bit by bit: equal runs have equal hashes.
   std::uint64_t state_hash() const noexcept;
 
  private:
-  ToolForce give_up() noexcept;
-  bool escaped(const Vec3& p_W) const noexcept;
-  void enter(const Vec3& p_W) noexcept;
-  ContactForce touch(const Vec3& p_W) noexcept;
-  void release() noexcept;
+  void settle() noexcept;
 
-  SphereTool tool_;
   TetMesh mesh_;
   Surface surface_;
-  std::unique_ptr<DeformationModel> model_;
-  std::unique_ptr<ContactFinder> finder_;
-  std::unique_ptr<ContactSolver> solver_;
-  ContactPatch patch_;
-  std::span<const Vec3> free_, positions_;
-  Eigen::VectorXd displacement_;  // of the patch nodes, then of the tip
-  std::vector<NodalLoad> loads_;
-  Vec3 place_ = Vec3::Zero();       // tool centre of the last step
-  Vec3 tip_offset_ = Vec3::Zero();  // tip minus tool centre
-  bool placed_ = false;
-  ToolForce last_;
+  Tissue tissue_;
+  std::vector<ToolContact> tools_;
+  std::vector<std::optional<Vec3>> places_;  // for the step of tool 0 alone
+  std::vector<ToolForce> forces_;
 };
+
+/// "contact", or "contact of tool 2" where there are several: the name of a tool's part in reports, and,
+/// after "preparing ", of the stage of set-up that makes it.
+std::string contact_part(std::size_t tool, std::size_t tools);
 
 }  // namespace palpate::sim

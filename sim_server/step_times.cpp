@@ -37,7 +37,9 @@ std::vector<Vec3> vertex_normals(const Simulation& simulation) {
 
 /// Reachable vertices, the fixed ones only if there are no others, from the middle outwards.
 std::vector<int> candidates(const Scene& scene, const Simulation& simulation) {
-  std::vector<int> all = reachable_vertices(simulation.surface(), simulation.mesh(), scene.tool), free;
+  std::vector<int> all = reachable_vertices(simulation.surface(), simulation.mesh(),
+                                            std::span(scene.tools).first(1)),
+                   free;
   const std::vector<int> fixed = fixed_vertices(scene, simulation.mesh());
   std::copy_if(all.begin(), all.end(), std::back_inserter(free), [&](int v) {
     return !std::binary_search(fixed.begin(), fixed.end(), simulation.surface().vertices[v]);
@@ -55,7 +57,7 @@ std::vector<int> candidates(const Scene& scene, const Simulation& simulation) {
 /// Comes from outside to `press`.
 ToolForce approach(const Scene& scene, Simulation& simulation, const Press& press) {
   simulation.lift_tool();
-  simulation.step(press.place + 2 * scene.tool.shape.radius * press.normal, period_of(scene));
+  simulation.step(press.place + 2 * scene.tools.front().shape.radius * press.normal, period_of(scene));
   return simulation.step(press.place, period_of(scene));
 }
 
@@ -73,7 +75,7 @@ Press find_press(const Scene& scene, Simulation& simulation) {
   std::vector<Press> unsettled;
   for (const int vertex : candidates(scene, simulation)) {
     const Vec3& normal = normals[vertex];
-    Press press{at(simulation, vertex) + (1 - kDepth) * scene.tool.shape.radius * normal, normal};
+    Press press{at(simulation, vertex) + (1 - kDepth) * scene.tools.front().shape.radius * normal, normal};
     const ToolForce force = approach(scene, simulation, press);
     simulation.lift_tool();
     if (force.contacts > 0 && !force.flagged) return press;
@@ -83,7 +85,7 @@ Press find_press(const Scene& scene, Simulation& simulation) {
 }
 
 StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& press, int steps) {
-  const double radius = scene.tool.shape.radius, dt = period_of(scene);
+  const double radius = scene.tools.front().shape.radius, dt = period_of(scene);
   const auto slide = [&](int i) {
     return kSlide * radius * std::sin(2 * std::numbers::pi * i / kSlideSteps);
   };

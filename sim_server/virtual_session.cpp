@@ -37,10 +37,11 @@ const Endpoint kClient = documentation_address(1, 45131), kServer = documentatio
 VirtualSession::VirtualSession(Simulation& simulation, const Trajectory& motion, double tool_radius,
                                const VirtualLink& link, CaptureWriter& capture)
     : served_(simulation),
+      inputs_(simulation.tools()),
       motion_(motion),
       link_(link),
       capture_(capture),
-      server_(1, link.rate_hz, tool_radius),
+      server_(link.rate_hz, {tool_radius}),
       session_(session_number(motion, link)) {}
 
 Time VirtualSession::time_of(std::uint64_t k) const {
@@ -69,12 +70,12 @@ void VirtualSession::tick(std::uint64_t k) {
 void VirtualSession::step(const ToolState& state, double steps_due) {
   if (static_cast<double>(steps_) >= steps_due - kNow * link_.rate_hz) return;
   ++steps_;
-  const auto outcome = served_.step({session_, state}, true, 1 / link_.rate_hz);
-  if (!outcome || !outcome->answer) return;
-  stats_.in_contact += outcome->force.contacts > 0 ? 1 : 0;
-  stats_.flagged += outcome->force.flagged ? 1 : 0;
-  stats_.max_newton = std::max(stats_.max_newton, outcome->force.force.norm());
-  on_the_way_.push_back({Time{state.t_ns} + link_.delay, *outcome->answer});
+  inputs_.front() = {session_, state, true};
+  const auto& outcome = served_.step(inputs_, 1 / link_.rate_hz).front();
+  stats_.in_contact += outcome.force.contacts > 0 ? 1 : 0;
+  stats_.flagged += outcome.force.flagged ? 1 : 0;
+  stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
+  on_the_way_.push_back({Time{state.t_ns} + link_.delay, *outcome.answer});
 }
 
 void VirtualSession::deliver(Time t) {

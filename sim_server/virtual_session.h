@@ -4,7 +4,7 @@
 #include "common/trajectory.h"
 #include "protocol/capture.h"
 #include "protocol/session.h"
-#include "sim_server/served_tool.h"
+#include "sim_server/served_tools.h"
 
 namespace palpate::sim {
 
@@ -20,8 +20,8 @@ struct VirtualSessionStats {
   double max_newton = 0;
 };
 
-/// A client and a server that talk without sockets and clock: the two ends of a session, a served tool that
-/// follows a motion exactly, and a capture of every datagram between them. Client and server stand at
+/// A client and a server that talk without sockets and clock: the two ends of a session, tool 0 of the scene,
+/// which follows a motion exactly, and a capture of every datagram between them. Client and server stand at
 /// 192.0.2.1:45131 and 192.0.2.2:45130 (addresses for documentation, RFC 5737).
 class VirtualSession {
  public:
@@ -51,7 +51,8 @@ class VirtualSession {
   void to_server(const protocol::Header& header, const protocol::Message& message, Time t);
   void to_client(const protocol::Header& header, const protocol::Message& message, Time t);
 
-  ServedTool served_;
+  ServedTools served_;
+  std::vector<ToolInput> inputs_;  // the first is ours, nobody holds the others
   const Trajectory& motion_;
   VirtualLink link_;
   protocol::CaptureWriter& capture_;

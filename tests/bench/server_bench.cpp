@@ -39,7 +39,7 @@ struct Liver {
     simulation.step(above, kPeriod);
     free_hash = simulation.state_hash();
   }
-  double radius() const { return scene.tool.shape.radius; }
+  double radius() const { return scene.tools[0].shape.radius; }
 
   Scene scene;
   Simulation simulation;

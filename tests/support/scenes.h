@@ -16,7 +16,7 @@ inline sim::Scene scene_of(const sim::Material& material, const sim::Box& fixed,
   scene.material = material;
   scene.deformation.model = "quasi_static";
   scene.fixed.push_back({fixed, "", "test"});
-  scene.tool.shape.radius = tool_radius;
+  scene.tools[0].shape.radius = tool_radius;
   return scene;
 }
 

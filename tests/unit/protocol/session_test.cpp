@@ -13,7 +13,7 @@ const Endpoint kClient{.port = 1000}, kOther{.port = 2000};
 /// Both ends joined by hand, in virtual time.
 struct Pair {
   ClientSession client{42};
-  ServerSessions server{1, 30, 0.005};
+  ServerSessions server{30, {0.005}};
   LinkStats client_stats, server_stats;
   Time now = 10s;
 
@@ -99,7 +99,7 @@ TEST_CASE("a restarted server does not know the session, says so, and welcomes a
   pair.shake_hands();
   Datagram datagram;
   REQUIRE(pair.send_force(5, datagram) != nullptr);
-  pair.server = ServerSessions(1, 30, 0.005);
+  pair.server = ServerSessions(30, {0.005});
   const auto outcome = pair.send_tool(1);
   REQUIRE(outcome.answer);
   CHECK(std::get<Refuse>(outcome.answer->second).reason == RefuseReason::kUnknownSession);
@@ -143,9 +143,62 @@ TEST_CASE("a late Welcome of a session that was left does not bring it back") {
   const auto hello = pair.client.poll(pair.now);
   const auto first = pair.server.receive({{}, *hello}, kClient, pair.now, 77, pair.server_stats);
   pair.client.receive({first.answer->first, first.answer->second}, pair.now, pair.client_stats);
-  pair.server = ServerSessions(1, 30, 0.005);  // restarted
+  pair.server = ServerSessions(30, {0.005});  // restarted
   pair.now += 400ms;
   pair.shake_hands(88);
   pair.client.receive({first.answer->first, first.answer->second}, pair.now, pair.client_stats);
   CHECK(pair.send_tool(1).tool_state != nullptr);
+}
+
+TEST_CASE("two sessions from one address hold a tool each, with its radius, apart from each other") {
+  ServerSessions server(30, {0.005, 0.003});
+  ClientSession left(1), right(2);
+  LinkStats of_left, of_right, stats;
+  Time now = 10s;
+  const auto join = [&](ClientSession& client, LinkStats& of_client, std::uint64_t id) {
+    const auto outcome = server.receive({{}, *client.poll(now)}, kClient, now, id, stats);
+    REQUIRE(outcome.answer);
+    client.receive({outcome.answer->first, outcome.answer->second}, now, of_client);
+  };
+  join(left, of_left, 77);
+  join(right, of_right, 88);
+  CHECK(server.members().size() == 2);
+  CHECK(left.welcome().tool == 0);
+  CHECK(left.welcome().tool_radius == 0.005);
+  CHECK(right.welcome().tool == 1);
+  CHECK(right.welcome().tool_radius == 0.003);
+  // A third device there is refused; asking again with a known nonce is not.
+  const auto third = server.receive({{}, Hello{.nonce = 3}}, kClient, now, 99, stats);
+  CHECK(std::get<Refuse>(third.answer->second).reason == RefuseReason::kNoFreeTool);
+  now += 400ms;
+  join(right, of_right, 111);
+  CHECK(server.holder(1)->session == 88);
+
+  // Sequences and ticks are each session's own, and nobody speaks for the other's tool.
+  for (ClientSession* client : {&left, &right}) {
+    const ToolState state{.tool = client->welcome().tool, .tick = 1};
+    CHECK(server.receive({client->next_header(), state}, kClient, now, 0, stats).tool_state != nullptr);
+  }
+  CHECK(server.receive({left.next_header(), ToolState{.tool = 1, .tick = 2}}, kClient, now, 0, stats)
+            .tool_state == nullptr);
+  CHECK(stats.rejected == 1);
+
+  // One leaves: the other stays, and the free tool goes to who asks next.
+  const auto outcome = server.receive({left.next_header(), Bye{}}, kClient, now, 0, stats);
+  REQUIRE(outcome.left != nullptr);
+  CHECK(outcome.left->tool == 0);
+  CHECK(server.holder(1)->session == 88);
+  CHECK(server.receive({right.next_header(), ToolState{.tool = 1, .tick = 2}}, kClient, now, 0, stats)
+            .tool_state != nullptr);
+  const auto next = server.receive({{}, Hello{.nonce = 3}}, kClient, now, 99, stats);
+  CHECK(std::get<Welcome>(next.answer->second).tool == 0);
+
+  // One falls silent: only that one is given up.
+  now += 799ms;
+  server.receive({right.next_header(), ToolState{.tool = 1, .tick = 3}}, kClient, now, 0, stats);
+  now += 1ms;
+  const auto gone = server.expire(now);
+  REQUIRE(gone.size() == 1);
+  CHECK(gone[0].tool == 0);
+  CHECK(server.holder(1) != nullptr);
 }

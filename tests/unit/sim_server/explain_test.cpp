@@ -139,7 +139,7 @@ TEST_CASE("explain: what a quasi-static scene with a reach builds, by line, and 
   CHECK(reach->why == bench.line("reach = "));
   CHECK(reach->note == "measured");
   Scene unbounded = bench.explanation.scene;
-  unbounded.tool.reach.reset();
+  unbounded.tools[0].reach.reset();
   const double others = other_bytes(unbounded) - other_bytes(bench.explanation.scene);
   CHECK(reach->bytes.value() == 72 * (all * all - r * r) + others);
   CHECK(reach->setup_ms.has_value());
@@ -232,6 +232,27 @@ TEST_CASE(
   CHECK(vertex[2] > 0.001);
   CHECK(simulation.step(press.place + 0.41 * 0.004 * press.normal, 1e-3).force == Vec3::Zero());
   CHECK(simulation.step(press.place, 1e-3).force.norm() > 0.001);
+}
+
+TEST_CASE("explain: each of several tools with its radius, what it reaches, and its own contact memory") {
+  const std::string second = "[[tool]]  # the second\nradius = 0.003\n";
+  const Bench both(kMesh + kFixed + kMaterial + model("quasi_static") + kTool + kReach + second + kReach);
+  const BuiltPart &one = both.built("contact of tool 1"), &two = both.built("contact of tool 2");
+  CHECK(one.where == both.line("[[tool]]\n"));
+  CHECK(two.where == both.line("[[tool]]  # the second"));
+  const Bench alone(kMesh + kFixed + kMaterial + model("quasi_static") + kTool + kReach);
+  CHECK(one.bytes >= alone.built("contact").bytes);  // the surface that the other pushes is its own, too
+  CHECK(two.bytes > 0);
+  CHECK(one.detail.starts_with("sphere, radius 4 mm, reaches "));
+  CHECK(two.detail.starts_with("sphere, radius 3 mm, reaches "));
+  CHECK_FALSE(both.has("contact"));
+  const double r = reachable_free(0.029), all = reachable_free(0);
+  CHECK(static_cast<double>(both.built("compliance").bytes) == 72 * r * r);
+  REQUIRE(both.left_out("out of reach") != nullptr);
+  // One that reaches everything: nothing is out of reach.
+  const Bench wide(kMesh + kFixed + kMaterial + model("quasi_static") + kTool + kReach + second);
+  CHECK(wide.left_out("out of reach") == nullptr);
+  CHECK(static_cast<double>(wide.built("compliance").bytes) == 72 * all * all);
 }
 
 TEST_CASE("explain: JSON in plain units, a table that says the same") {

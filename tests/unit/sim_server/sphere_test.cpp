@@ -49,7 +49,7 @@ double force_error(int elements) {
   }
   Scene scene = test::scene_of(kTissue, {Vec3(-1, -1, -kThick), Vec3(1, 1, -kThick)}, kSphere);
   const double reach = 1.15 * kContact;
-  scene.tool.reach = Box{Vec3(-reach, -reach, -1e-9), Vec3(reach, reach, 1)};
+  scene.tools[0].reach = Box{Vec3(-reach, -reach, -1e-9), Vec3(reach, reach, 1)};
   Simulation block(scene, grid_block(across, across, down));
   const double depth = sneddon_depth(kContact);
   const ToolForce force = block.step({0, 0, kSphere - depth}, 1);

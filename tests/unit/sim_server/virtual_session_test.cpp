@@ -31,7 +31,7 @@ struct Press {
     Scene scene;
     scene.source = "test";
     scene.deformation = {.model = "rigid", .stiffness = 1000, .where = "test"};
-    scene.tool.shape.radius = 0.005;
+    scene.tools[0].shape.radius = 0.005;
     return scene;
   }
 };

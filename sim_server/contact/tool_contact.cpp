@@ -1,0 +1,184 @@
+#include "sim_server/contact/tool_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kStride = 0.5;  // of the tool radius: how far the tool goes between two contact solves
+constexpr double kGather = 2.0;  // of the tool radius: how far from the tip the patch extends
+constexpr double kMaxStrides = 256;
+constexpr double kEscape = 3.0;  // of the tool radius: how far outside its free organ contact may go on
+// Contact linearisations a step may use, on the way and to settle with other tools, before it answers from
+// where it got to.
+constexpr int kMaxIterations = 400, kMaxSettling = 400;
+constexpr double kFarthest = 1e3;  // m
+constexpr double kStill = 1e-8;    // of the tool radius: a surface that moved less did not move
+
+double largest_move(std::span<const Vec3> from, std::span<const Vec3> to) noexcept {
+  double largest = 0;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    largest = std::max(largest, (to[i] - from[i]).cwiseAbs().maxCoeff());
+  return largest;
+}
+
+}  // namespace
+
+std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
+                                          const ToolSettings& tool) {
+  if (!tool.reach) return surface.triangles;
+  std::vector<Triangle> touchable;
+  for (const Triangle& t : surface.triangles) {
+    Vec3 min = mesh.vertices[surface.vertices[t[0]]], max = min;
+    for (const int corner : t) {
+      min = min.cwiseMin(mesh.vertices[surface.vertices[corner]]);
+      max = max.cwiseMax(mesh.vertices[surface.vertices[corner]]);
+    }
+    if ((max.array() >= tool.reach->min.array()).all() && (min.array() <= tool.reach->max.array()).all()) {
+      touchable.push_back(t);
+    }
+  }
+  return touchable;
+}
+
+ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
+                         std::vector<Triangle> touchable)
+    : tool_(tool.shape),
+      finder_(rest, surface.triangles, std::move(touchable), kGather * tool.shape.radius),
+      solver_(finder_.max_nodes(), finder_.max_triangles()),
+      free_(rest) {
+  patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
+  displacement_.resize(3 * (finder_.max_nodes() + 1));
+  loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+}
+
+void ToolContact::reserve(std::size_t loads) {
+  loads_.reserve(loads);
+  pushed_.assign(free_.begin(), free_.end());
+}
+
+bool ToolContact::share(std::span<const ToolContact> tools, Tissue& tissue) noexcept {
+  const auto loaded = [&](const ToolContact& tool) { return &tool != this && !tool.own_loads().empty(); };
+  if (others_ == 0 && std::none_of(tools.begin(), tools.end(), loaded)) {
+    free_ = tissue.free;
+    return false;
+  }
+  loads_.erase(loads_.begin(), loads_.begin() + static_cast<long>(others_));
+  const std::size_t own = loads_.size();
+  for (const ToolContact& tool : tools) {
+    if (!loaded(tool)) continue;
+    const auto theirs = tool.own_loads();
+    loads_.insert(loads_.end(), theirs.begin(), theirs.end());
+  }
+  others_ = loads_.size() - own;
+  std::rotate(loads_.begin(), loads_.begin() + static_cast<long>(own), loads_.end());
+  tissue.positions = tissue.model->apply(std::span(loads_).first(others_));
+  const bool moved = largest_move(free_, tissue.positions) > kStill * tool_.radius;
+  if (moved || free_.data() != pushed_.data())
+    std::copy(tissue.positions.begin(), tissue.positions.end(), pushed_.begin());
+  free_ = pushed_;
+  if (own > 0) tissue.positions = tissue.model->apply(loads_);
+  return moved;
+}
+
+void ToolContact::walk(const Vec3& p_W, Tissue& tissue) noexcept {
+  if (!p_W.allFinite() || p_W.cwiseAbs().maxCoeff() > kFarthest) return give_up(tissue);
+  const double stride = kStride * tool_.radius;
+  if (!placed_ || (p_W - place_).norm() > kMaxStrides * stride || escaped(p_W)) enter(p_W, tissue);
+  const Vec3 way = p_W - place_, from = place_;
+  const double strides = std::clamp(std::ceil(way.norm() / stride), 1.0, kMaxStrides);
+  ContactForce contact;
+  int iterations = 0;
+  for (double i = 1; i <= strides && iterations < kMaxIterations; ++i) {
+    place_ = i == strides ? p_W : Vec3(from + (i / strides) * way);
+    contact = touch(place_, tissue);
+    iterations += contact.iterations;
+  }
+  arrived_ = place_ == p_W;  // else the next step goes on from here
+  conclude(contact, iterations, tissue);
+}
+
+void ToolContact::settle(Tissue& tissue) noexcept {
+  const ContactForce contact = touch(place_, tissue);
+  conclude(contact, force_.iterations + contact.iterations, tissue);
+}
+
+void ToolContact::conclude(const ContactForce& contact, int iterations, Tissue& tissue) noexcept {
+  if (!contact.force.allFinite()) return give_up(tissue);
+  force_ = {contact.force, solver_.tangent(patch_), contact.contacts, iterations,
+            !contact.converged || !arrived_};
+}
+
+bool ToolContact::exhausted() const {
+  return force_.iterations >= kMaxIterations + kMaxSettling;
+}
+
+/// No answer: the tool is taken away, and enters afresh with the next step.
+void ToolContact::give_up(Tissue& tissue) noexcept {
+  lift(tissue);
+  flag();
+}
+
+void ToolContact::lift(Tissue& tissue) noexcept {
+  release(tissue);
+  placed_ = false;
+  force_ = {};
+}
+
+/// Whether a tool in contact has left the free organ so far behind that it only drags the surface along with
+/// it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
+bool ToolContact::escaped(const Vec3& p_W) const noexcept {
+  if (force_.contacts == 0) return false;
+  return (finder_.nearest(free_, p_W) - p_W).norm() > kEscape * tool_.radius && !finder_.inside(free_, p_W);
+}
+
+/// The tool appears at `p_W`. If that is inside the organ it is taken to have come in through the nearest
+/// surface.
+void ToolContact::enter(const Vec3& p_W, Tissue& tissue) noexcept {
+  release(tissue);
+  placed_ = true;
+  place_ = p_W;
+  if (!finder_.inside(tissue.positions, p_W)) return;
+  const Vec3 door = finder_.nearest(tissue.positions, p_W);
+  const Vec3 outward = (door - p_W).normalized();
+  place_ = door + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
+}
+
+ContactForce ToolContact::touch(const Vec3& p_W, Tissue& tissue) noexcept {
+  finder_.gather(tissue.positions, free_, p_W + tip_offset_, kGather * tool_.radius, patch_);
+  if (patch_.triangles.empty()) {
+    release(tissue);
+    return {};
+  }
+  const std::span<const int> vertices = finder_.vertices();
+  tissue.model->compliance(vertices, patch_);
+  const int m = patch_.nodes();
+  auto u = displacement_.head(3 * (m + 1));
+  for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = tissue.positions[vertices[i]] - patch_.free[i];
+  u.tail<3>() = tip_offset_;
+  const ContactForce contact = solver_.solve(patch_, tool_, p_W, u);
+  tip_offset_ = u.tail<3>();
+  drop_own_loads();
+  const auto forces = solver_.node_forces();
+  for (int i = 0; i < m; ++i) {
+    if (!forces.segment<3>(3 * i).isZero(0)) loads_.push_back({vertices[i], forces.segment<3>(3 * i)});
+  }
+  tissue.positions = tissue.model->apply(loads_);
+  return contact;
+}
+
+void ToolContact::release(Tissue& tissue) noexcept {
+  tip_offset_.setZero();
+  if (!own_loads().empty()) {
+    drop_own_loads();
+    tissue.positions = tissue.model->apply(loads_);
+  }
+}
+
+std::size_t ToolContact::bytes() const {
+  return solver_.bytes() + static_cast<std::size_t>(patch_.compliance.size()) * sizeof(double) +
+         pushed_.size() * sizeof(Vec3);
+}
+
+}  // namespace palpate::sim

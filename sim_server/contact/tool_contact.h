@@ -1,0 +1,92 @@
+#pragma once
+#include <memory>
+
+#include "sim_server/contact/contact_finder.h"
+#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/scene.h"
+
+namespace palpate::sim {
+
+/// What a tool feels after one step.
+struct ToolForce {
+  Vec3 force = Vec3::Zero();    ///< N, world, on the tool at its position
+  Mat3 tangent = Mat3::Zero();  ///< dF/dp, N/m, symmetric; the loads of other tools held
+  int contacts = 0;             ///< touching faces, edges and vertices
+  int iterations = 0;           ///< contact linearisations, all sub-places together
+  /// No settled answer: a wild position (then there is no force), contact that did not converge, several
+  /// tools that did not come to an equilibrium, or a way too long for one step (then the force belongs to the
+  /// place the tool got to).
+  bool flagged = false;
+};
+
+/// The tissue as all tools share it. Positions are those of the surface vertices, m, world.
+struct Tissue {
+  std::unique_ptr<DeformationModel> model;
+  std::span<const Vec3> free;       ///< in this step, without any contact
+  std::span<const Vec3> positions;  ///< now, under the loads of all tools
+};
+
+/// Triangles of the surface that come near enough to the reach box of the tool to be touched there.
+std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
+                                          const ToolSettings& tool);
+
+/// One tool and its contact with the tissue: where it is, what it feels, how it loads the surface. What is
+/// free to it is the tissue under the loads of all other tools. Only set-up allocates, nothing throws. One
+/// thread.
+class ToolContact {
+ public:
+  /// `rest`: surface vertices at rest.
+  ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
+              std::vector<Triangle> touchable);
+
+  /// For a tool that is not alone: makes room for the loads of all tools. Set-up only.
+  void reserve(std::size_t loads);
+
+  /// Takes over the loads that the other ones of `tools` put on the tissue by now; before anything below.
+  /// Returns whether that moved what is free to this tool by more than 1e-8 of its radius. Two `apply` of the
+  /// model, and none while the others load nothing.
+  bool share(std::span<const ToolContact> tools, Tissue& tissue) noexcept;
+
+  /// Goes to `p_W` (m) on a straight line in strides of half the tool's radius, so that a fast tool does not
+  /// jump through the surface.
+  void walk(const Vec3& p_W, Tissue& tissue) noexcept;
+  /// Solves again at the place it stands, on the surface as it is free by now.
+  void settle(Tissue& tissue) noexcept;
+  /// Away from the tissue: no loads, no force.
+  void lift(Tissue& tissue) noexcept;
+  /// Says that `force` is not settled.
+  void flag() noexcept { force_.flagged = true; }
+
+  bool placed() const { return placed_; }
+  /// Whether this step has used up its contact linearisations.
+  bool exhausted() const;
+  const ToolForce& force() const { return force_; }
+  int max_nodes() const { return finder_.max_nodes(); }
+  std::size_t bytes() const;
+
+ private:
+  void give_up(Tissue& tissue) noexcept;
+  bool escaped(const Vec3& p_W) const noexcept;
+  void enter(const Vec3& p_W, Tissue& tissue) noexcept;
+  ContactForce touch(const Vec3& p_W, Tissue& tissue) noexcept;
+  void release(Tissue& tissue) noexcept;
+  void conclude(const ContactForce& contact, int iterations, Tissue& tissue) noexcept;
+  std::span<const NodalLoad> own_loads() const { return std::span(loads_).subspan(others_); }
+  void drop_own_loads() noexcept { loads_.erase(loads_.begin() + static_cast<long>(others_), loads_.end()); }
+
+  SphereTool tool_;
+  ContactFinder finder_;
+  ContactSolver solver_;
+  ContactPatch patch_;
+  std::span<const Vec3> free_;      // the tissue's, or pushed_
+  std::vector<Vec3> pushed_;        // free under the loads of the other tools; empty where there are none
+  std::vector<NodalLoad> loads_;    // of the other tools, then its own
+  std::size_t others_ = 0;          // how many of them are the others'
+  Eigen::VectorXd displacement_;    // of the patch nodes, then of the tip
+  Vec3 place_ = Vec3::Zero();       // tool centre of the last step
+  Vec3 tip_offset_ = Vec3::Zero();  // tip minus tool centre
+  bool placed_ = false, arrived_ = false;
+  ToolForce force_;
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,64 @@
+#include "sim_server/scene.h"
+
+#include <fmt/format.h>
+
+#include "common/error.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+/// A scene file of six lines, then `tools`; read.
+struct SceneFile {
+  test::TemporaryFolder folder;
+  std::string file;
+
+  explicit SceneFile(const std::string& tools) {
+    folder.write("organ.msh", "");
+    file = folder
+               .write("scene.toml",
+                      "[mesh]\nfile = \"organ.msh\"\n[[fixed]]\nbox = [[0, 0, 0], [1, 1, 1]]\n[deformation]\n"
+                      "model = \"rigid\"\n" +
+                          tools)
+               .string();
+  }
+  std::string error() const {
+    try {
+      read_scene(file);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "none";
+  }
+};
+
+std::string tool_sections(int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += fmt::format("[[tool]]\nradius = 0.00{}\n", i + 1);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a scene has one to eight tools, each with its own radius and reach") {
+  const Scene scene = read_scene(
+      SceneFile(tool_sections(7) + "[[tool]]\nradius = 0.009\nreach = [[0, 0, 0], [1, 1, 1]]\n").file);
+  REQUIRE(scene.tools.size() == 8);
+  CHECK(scene.tools[1].shape.radius == 0.002);
+  CHECK(scene.tools[7].shape.radius == 0.009);
+  CHECK_FALSE(scene.tools[6].reach);
+  CHECK(scene.tools[7].reach);
+  CHECK(scene.tools[7].where.ends_with("scene.toml:21"));
+  CHECK(test::liver_scene().tools.size() == 1);
+}
+
+TEST_CASE("a scene without a tool, or with too many, is refused with what to do") {
+  const SceneFile none(""), nine(tool_sections(9)), wrong(tool_sections(2) + "radius_m = 1\n");
+  CHECK(none.error() == none.file + ":1: a scene needs a [[tool]]; add one with its `radius`");
+  CHECK(nine.error() == nine.file + ":23: a scene has at most 8 [[tool]], this one has 9; remove some");
+  CHECK(wrong.error().starts_with(wrong.file + ":11: unknown key"));
+}
