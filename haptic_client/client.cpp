@@ -1,6 +1,7 @@
 #include "haptic_client/client.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/core.h>
 #include <list>
 #include <nlohmann/json.hpp>
@@ -60,13 +61,14 @@ void check_together(const std::vector<ClientConfig>& configs) {
 
 void watch(std::list<HeldTool>& tools, std::optional<double> seconds) {
   const bool terminal = isatty(STDOUT_FILENO) != 0;
+  const double period = terminal ? 0.2 : 5;  // s
   double next = 0;
   for (const Time start = now();;) {
     const double elapsed = to_seconds(now() - start);
     if (seconds && elapsed >= *seconds) break;
     for (HeldTool& tool : tools) tool.look();
     if (elapsed >= next) {
-      next = elapsed + (terminal ? 0.2 : 5);
+      next = (std::floor(elapsed / period) + 1) * period;
       fmt::print("{}haptic_client: {:6.1f} s", terminal ? "\r" : "", elapsed);
       for (const HeldTool& tool : tools) fmt::print("  {}", tool.progress());
       fmt::print("{}", terminal ? "  " : "\n");

@@ -44,7 +44,8 @@ struct Bench {
 struct Wall {
   Process process;
   std::string address;
-  explicit Wall(const Bench& bench) : process("sim_server", {"run", bench.scene, "--listen", "127.0.0.1:0"}) {
+  explicit Wall(const Bench& bench) : Wall(bench.scene) {}
+  explicit Wall(const std::string& scene) : process("sim_server", {"run", scene, "--listen", "127.0.0.1:0"}) {
     if (!process.wait_for("listening on ")) throw std::runtime_error(process.output());
     const std::string& said = process.output();
     const std::size_t begin = said.find("listening on ") + 13;

@@ -49,9 +49,9 @@ TEST_CASE("a session of ten minutes: memory stays flat, the paper's table is pri
   const std::string report = (folder.path() / "report.json").string();
   Server server;
   Process client("haptic_client", client_arguments(server.address, {"--seconds", "600", "--report", report}));
-  REQUIRE(client.wait_for("30.0 s", 60));
+  REQUIRE(client.wait_for(" 30.", 60));
   const long client_early = resident_kb(client), server_early = resident_kb(server.process);
-  REQUIRE(client.wait_for("595.0 s", 620));
+  REQUIRE(client.wait_for(" 595.", 620));
   CHECK(resident_kb(client) <= client_early + 256);
   CHECK(resident_kb(server.process) <= server_early + 256);
   CHECK(client.wait() == 0);
