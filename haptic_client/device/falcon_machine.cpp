@@ -26,7 +26,16 @@ void ftdi(UsbTransport& port, std::uint8_t request, std::uint16_t value) {
 
 constexpr Time kProbePeriod = 20ms, kBootPeriod = 60ms, kHandshakePatience = 300ms, kEchoPatience = 500ms;
 constexpr Time kSilence = 1s, kFresh = 50ms, kLookAgain = 500ms, kLoadAgain = 2s;
-constexpr int kProbes = 25, kBootTries = 100, kLoads = 10;
+constexpr int kProbes = 25, kBootTries = 100, kLoads = 5;
+constexpr const char* kHomeIt =
+    "Falcon: pull the grip fully out, then push it fully in, to home it; if its light stays red, check that "
+    "its mains adaptor is plugged in";
+constexpr const char* kUnplugged = "the Falcon was unplugged; plug it in again";
+constexpr const char* kFrozen =
+    "no encoder of the Falcon moved for 3 s under force; if the hand did, unplug it and plug it in again";
+constexpr int kPacketsATick = 64;       // more than the bus carries in a tick: a flood does not hold it up
+constexpr Time kStill = 3s;             // a hand that holds against a force is never so still
+constexpr std::int16_t kPushing = 200;  // DAC units: more than what friction holds
 
 }  // namespace
 
@@ -41,8 +50,7 @@ void FalconMachine::enter(FalconPhase phase, Time now) noexcept {
 }
 
 void FalconMachine::poll(UsbTransport& port, Time now) noexcept {
-  if (phase_ != FalconPhase::kClosed && port.state() == UsbTransport::State::kLost)
-    return give_up(port, now, kLookAgain, "the Falcon was unplugged; plug it in again");
+  if (phase_ != FalconPhase::kClosed && port.state() == UsbTransport::State::kLost) return lose(port, now);
   take(port, now);
   switch (phase_) {
     case FalconPhase::kClosed:
@@ -67,10 +75,13 @@ void FalconMachine::take(UsbTransport& port, Time now) noexcept {
   const bool packets =
       phase_ == FalconPhase::kProbe || phase_ == FalconPhase::kUnhomed || phase_ == FalconPhase::kReady;
   std::array<std::byte, kFtdiUsbPacket> packet, bytes;
-  while (const std::size_t size = port.read(packet)) {
+  for (int i = 0; i < kPacketsATick; ++i) {
+    const std::size_t size = port.read(packet);
+    if (size == 0) return;
     const Bytes came(bytes.data(), strip_ftdi_status({packet.data(), size}, bytes));
     if (packets) {
       stream_.push(came, [&](const FalconStatus& status) {
+        if (!status_ || status.encoder != status_->encoder) moved_ = now;
         status_ = status;
         heard_ = now;
       });
@@ -85,12 +96,16 @@ void FalconMachine::take(UsbTransport& port, Time now) noexcept {
 void FalconMachine::begin(UsbTransport& port, Time now) noexcept {
   if (now < retry_at_) return;
   if (!port.open(now)) {
-    if (port.trouble()[0] != 0) message_ = port.trouble();
+    if (port.trouble()[0] != 0) {
+      message_ = port.trouble();
+    } else if (known_) {
+      message_ = kUnplugged;
+    }
     return;
   }
-  normal_mode(port);
+  known_ = true;
   loads_ = 0;
-  message_ = "a Falcon is there";
+  normal_mode(port);
   enter(FalconPhase::kProbe, now);
 }
 
@@ -103,9 +118,13 @@ void FalconMachine::normal_mode(UsbTransport& port) noexcept {
 
 /// The edge of DTR resets the microcontroller into its boot loader.
 void FalconMachine::boot_mode(UsbTransport& port, Time now) noexcept {
-  if (++loads_ > kLoads)
-    return give_up(port, now, kLoadAgain,
-                   "the Falcon does not take its firmware; try another USB port, or a powered hub");
+  if (++loads_ > kLoads) {
+    failing_ = true;
+    return give_up(
+        port, now, kLoadAgain,
+        "the Falcon does not take its firmware; trying again: is the image the right file? Else try "
+        "another USB port, or a powered hub");
+  }
   ftdi(port, kReset, kPurgeIn);
   ftdi(port, kReset, kPurgeOut);
   ftdi(port, kLatency, kLatencyBoot);
@@ -115,13 +134,18 @@ void FalconMachine::boot_mode(UsbTransport& port, Time now) noexcept {
   ftdi(port, kModem, kRtsLow);
   ftdi(port, kModem, kDtrLow);
   ftdi(port, kModem, kDtrHigh);
-  message_ = "loading the Falcon's firmware";
+  if (!failing_) message_ = "loading the Falcon's firmware";
   enter(FalconPhase::kBoot, now);
 }
 
 void FalconMachine::probe(UsbTransport& port, Time now) noexcept {
+  if (!asked_) {  // what came before the first question is of another session
+    stream_.clear();
+    status_.reset();
+  }
   if (status_) {
-    message_ = "Falcon: pull the grip fully out, then push it fully in (red light), to home it";
+    failing_ = false;
+    if (!status_->all_homed()) message_ = kHomeIt;
     return enter(FalconPhase::kUnhomed, now);
   }
   if (asked_ && now - sent_ < kProbePeriod) return;
@@ -191,6 +215,8 @@ void FalconMachine::run(UsbTransport& port, Time now) noexcept {
     message_ = "the Falcon lost its home: pull the grip fully out, then push it fully in";
     phase_ = FalconPhase::kUnhomed;
   }
+  if (!pushes_) moved_ = now;
+  if (now - moved_ > kStill) message_ = kFrozen;
 }
 
 void FalconMachine::command(UsbTransport& port, const std::array<std::int16_t, 3>& torque) noexcept {
@@ -199,12 +225,20 @@ void FalconMachine::command(UsbTransport& port, const std::array<std::int16_t, 3
   if (port.state() != UsbTransport::State::kIdle) return;  // the last one is still on the way
   FalconCommand command{.green = ready, .red = !ready};
   if (ready) command.torque = torque;
+  pushes_ = std::any_of(command.torque.begin(), command.torque.end(),
+                        [](std::int16_t t) { return t >= kPushing || t <= -kPushing; });
   port.write(encode_falcon(command));
 }
 
 std::optional<FalconStatus> FalconMachine::status(Time now) const noexcept {
   if (phase_ != FalconPhase::kReady || now - heard_ > kFresh) return {};
   return status_;
+}
+
+void FalconMachine::lose(UsbTransport& port, Time now) noexcept {
+  const char* const why = port.trouble();
+  failing_ = false;
+  give_up(port, now, kLookAgain, why[0] != 0 ? why : kUnplugged);
 }
 
 void FalconMachine::give_up(UsbTransport& port, Time now, Time wait, const char* message) noexcept {

@@ -52,13 +52,17 @@ class FalconMachine {
   void handshake(UsbTransport& port, Time now) noexcept;
   void upload(UsbTransport& port, Time now) noexcept;
   void run(UsbTransport& port, Time now) noexcept;
+  void lose(UsbTransport& port, Time now) noexcept;
   void give_up(UsbTransport& port, Time now, Time wait, const char* message) noexcept;
   bool send(UsbTransport& port, std::span<const std::byte> bytes, Time now) noexcept;
 
   std::vector<std::byte> firmware_;
   FalconPhase phase_ = FalconPhase::kClosed;
   std::atomic<const char*> message_{"looking for a Falcon"};
-  Time entered_{}, sent_{}, heard_{}, retry_at_{};
+  Time entered_{}, sent_{}, heard_{}, moved_{}, retry_at_{};
+  bool known_ = false;         // it was there once
+  bool failing_ = false;       // it refused its firmware, and was told so
+  bool pushes_ = false;        // a torque that a hand feels
   bool asked_ = false;         // something was sent in this phase and its answer is due
   int tries_ = 0, loads_ = 0;  // of the phase; of the image
   std::size_t uploaded_ = 0;   // bytes

@@ -44,10 +44,11 @@ void SpaceMouse::advance(Time now) noexcept {
 
 bool SpaceMouse::keep_open(Time now) noexcept {
   if (port_->state() == UsbTransport::State::kLost) {
+    const char* const why = port_->trouble();
+    message_ = why[0] != 0 ? why : "the SpaceMouse was unplugged; plug it in again";
     port_->close();
     state_ = {};
     retry_at_ = now + kOpenAgain;
-    message_ = "the SpaceMouse was unplugged; plug it in again";
   }
   if (port_->state() != UsbTransport::State::kClosed) return true;
   if (now < retry_at_) return false;

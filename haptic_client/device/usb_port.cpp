@@ -16,7 +16,7 @@ namespace {
 
 constexpr unsigned kTimeout = 1000;                          // ms, of OUT and control
 constexpr std::size_t kMostIn = 512, kMostOut = 64;          // bytes of a packet
-constexpr std::size_t kPending = 2, kReceived = 64;          // IN transfers; packets that wait to be read
+constexpr std::size_t kPending = 4, kReceived = 64;          // IN transfers; packets that wait to be read
 constexpr std::size_t kRequests = 16;                        // on the way at once
 constexpr std::uint8_t kToInterface = 1, kRecipient = 0x1f;  // of bmRequestType
 
@@ -45,6 +45,8 @@ const char* in_words(int error) {
       return "the USB device cannot be opened; unplug it and plug it in again";
   }
 }
+
+constexpr const char* kFailed = "a USB transfer failed (cable, hub?); opening the device again";
 
 /// In the order of their paths.
 template <class Use>
@@ -186,14 +188,26 @@ struct UsbPort::Libusb {
       self.lookout.look();
     } else if (self.handle != nullptr && libusb_get_device(self.handle) == device) {
       self.lost = true;
+      self.trouble = "";
     }
     return 0;
   }
 
+  void lose(const char* why) {
+    if (!lost) trouble = why;
+    lost = true;
+  }
+
   bool submit(Transfer& transfer) {
-    transfer.flying = libusb_submit_transfer(transfer.libusb) == 0;
-    if (!transfer.flying) lost = true;
+    const int error = libusb_submit_transfer(transfer.libusb);
+    transfer.flying = error == 0;
+    if (error != 0) lose(error == LIBUSB_ERROR_NO_DEVICE ? "" : kFailed);
     return transfer.flying;
+  }
+
+  void lose_with(const libusb_transfer& ended) {
+    if (ended.status != LIBUSB_TRANSFER_CANCELLED)
+      lose(ended.status == LIBUSB_TRANSFER_NO_DEVICE ? "" : kFailed);
   }
 
   static void on_in(libusb_transfer* transfer) {
@@ -208,8 +222,8 @@ struct UsbPort::Libusb {
         self.received.publish();
       }
       if (!self.lost && !self.closing) self.submit(in);
-    } else if (transfer->status != LIBUSB_TRANSFER_CANCELLED) {
-      self.lost = true;
+    } else {
+      self.lose_with(*transfer);
     }
   }
 
@@ -219,7 +233,7 @@ struct UsbPort::Libusb {
     out.flying = false;
     const bool refused = out.optional && transfer->status == LIBUSB_TRANSFER_STALL;
     const bool done = transfer->status == LIBUSB_TRANSFER_COMPLETED || refused;
-    if (!done && transfer->status != LIBUSB_TRANSFER_CANCELLED) out.owner->lost = true;
+    if (!done) out.owner->lose_with(*transfer);
   }
 
   /// Bulk or interrupt, as the endpoint is.
@@ -317,10 +331,7 @@ void UsbPort::control(const UsbRequest& request) noexcept {
   if (u.handle == nullptr || u.lost) return;
   const auto free =
       std::find_if(u.requests.begin(), u.requests.end(), [](const auto& t) { return !t.flying; });
-  if (free == u.requests.end() || request.data.size() > kMostOut) {
-    u.lost = true;
-    return;
-  }
+  if (free == u.requests.end() || request.data.size() > kMostOut) return u.lose(kFailed);
   const bool to_interface = (request.type & kRecipient) == kToInterface;
   const auto index = to_interface ? static_cast<std::uint16_t>(u.interface.number) : request.index;
   unsigned char* const bytes = free->bytes.data();

@@ -27,11 +27,10 @@ struct UsbDevice {
 /// Throws `Error` when there is no USB at all.
 std::vector<UsbDevice> find_usb(std::span<const UsbId> ids);
 
-/// An interface of a device through libusb, asynchronously (the only file that knows libusb): two IN
+/// An interface of a device through libusb, asynchronously (the only file that knows libusb): four IN
 /// transfers of a packet each are always pending, OUT and control transfers go without waiting, unplugging is
-/// NO_DEVICE. `open` takes a few us while nothing was
-/// plugged in, some milliseconds when it opens; nothing else waits. The kernel's driver gives way while it
-/// is open.
+/// NO_DEVICE. `open` takes a few us while nothing was plugged in, some milliseconds when it opens; nothing
+/// else waits. The kernel's driver gives way while it is open.
 class UsbPort : public UsbTransport {
  public:
   /// `path`: as in `UsbDevice`; empty: the first there is that nobody holds. Throws `Error` when there is no

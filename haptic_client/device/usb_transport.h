@@ -43,7 +43,8 @@ class UsbTransport {
   enum class State : std::uint8_t { kClosed, kIdle, kBusy, kLost };
   /// kBusy: requests or bytes are on the way; kLost: unplugged, or a transfer failed.
   virtual State state() const noexcept = 0;
-  /// Why `open` failed last, a static text; empty when there was simply no device.
+  /// Why `open` failed last, or why it is lost, a static text; empty when there is simply no device (any
+  /// more).
   virtual const char* trouble() const noexcept = 0;
 };
 

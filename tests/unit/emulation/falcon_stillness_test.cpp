@@ -1,0 +1,59 @@
+// When a Falcon whose encoders stand still is told of, over a transport in memory.
+#include <sstream>
+
+#include "haptic_client/device/falcon.h"
+#include "tests/emulation/falcon.h"
+#include "tests/support/catch.h"
+#include "tests/support/emulated_port.h"
+
+using namespace palpate;
+using namespace palpate::client;
+
+namespace {
+
+/// A homed Falcon in a hand, under a steady force.
+struct Rig {
+  emulation::Falcon emulated{{.loaded = true, .homed = true}};
+  test::EmulatedPort* port = nullptr;
+  std::unique_ptr<Falcon> falcon;
+  int tick = 0;
+
+  Rig() {
+    auto own = std::make_unique<test::EmulatedPort>(emulated);
+    port = own.get();
+    falcon = std::make_unique<Falcon>(std::move(own), std::vector<std::byte>{}, 10000);
+    command("hand place 0 0 0.12");
+  }
+  void command(const std::string& line) {
+    emulation::Words words;
+    std::istringstream in(line);
+    for (std::string word; in >> word;) words.push_back(word);
+    emulated.command(words.front(), {words.begin() + 1, words.end()}, 0);
+  }
+  /// What it says after so many seconds under `newton`.
+  std::string run(double seconds, double newton) {
+    for (const int end = tick + static_cast<int>(seconds * 1000); tick < end; ++tick) {
+      const Time now = from_seconds(1 + tick * 1e-3);
+      port->advance(now);
+      falcon->read(now);
+      falcon->write({0, 0, newton});
+    }
+    return falcon->status();
+  }
+};
+
+const std::string kReady = "Falcon homed: ready";
+
+}  // namespace
+
+TEST_CASE("a Falcon that stands still is told of under force only, and not when a hand trembles") {
+  Rig rig;
+  CHECK(rig.run(10, 0) == kReady);
+  rig.command("hand tremor 0.0001 tremor_rate 9");
+  CHECK(rig.run(10, 3) == kReady);
+  rig.command("fault freeze");
+  CHECK(rig.run(2.9, 3) == kReady);
+  CHECK(rig.run(0.3, 3).find("no encoder of the Falcon moved for 3 s") == 0);
+  rig.command("fault freeze 0");
+  CHECK(rig.run(10, 3).find("no encoder of the Falcon moved for 3 s") == 0);  // said once
+}
