@@ -22,6 +22,7 @@ UNITS = (("s", 1e9), ("ms", 1e6), ("us", 1e3), ("ns", 1))
 BASE_LAW = "constant"
 LEFT_OUT = "left out: "  # what a row says that the scene has no use for
 FRAME_NS, TICK_NS = 1e9 / 30, 1e9 / 4000  # the scene's rate, and the quickest a client may ask for
+COUNTERS = (("p50", " us"), ("p99", " us"), ("rate", "/s"))  # what a row counts beside its time
 SESSION = re.compile(r"virtual_session/(\d+)_s$")
 
 
@@ -86,7 +87,7 @@ def run(program, pattern, quick):
 
 
 def rows_of(result):
-    """{name: {"ns": median, "cv": percent, "hash": text}} and {name: why it was skipped}."""
+    """{name: {"ns": median, "cv": percent, "hash": text, "also": text}} and {name: why it was skipped}."""
     rows, skipped = {}, {}
     for entry in result["benchmarks"]:
         name = plain(entry["run_name"])
@@ -95,9 +96,10 @@ def rows_of(result):
             continue
         kind = entry.get("aggregate_name")
         key = "real_time" if "manual_time" in entry["run_name"] else "cpu_time"
-        row = rows.setdefault(name, {"hash": entry.get("label", "")})
+        row = rows.setdefault(name, {"hash": entry.get("label", ""), "also": ""})
         if kind == "median":
             row["ns"] = entry[key]
+            row["also"] = ", ".join(f"{what} {entry[what]:.0f}{unit}" for what, unit in COUNTERS if what in entry)
         elif kind == "cv":
             row["cv"] = 100 * entry[key]
     return rows, skipped
@@ -142,7 +144,7 @@ def print_tables(rows, skipped, ratios):
     width = max(map(len, [*rows, *skipped, *ratios, "name"]))
     print(f"{'name':<{width}}  {'median':>8}  {'cv %':>5}  hash")
     for name, row in rows.items():
-        print(f"{name:<{width}}  {time_text(row['ns']):>8}  {row['cv']:>5.1f}  {row['hash']}")
+        print(f"{name:<{width}}  {time_text(row['ns']):>8}  {row['cv']:>5.1f}  {row['hash']}{row['also']}")
     for name, why in skipped.items():
         print(f"{name:<{width}}  {why if why.startswith(LEFT_OUT) else 'failed: ' + why}")
     if ratios:

@@ -19,6 +19,7 @@ void add_protocol_rows();
 void add_capture_rows();
 void add_server_rows();
 void add_setup_rows();
+void add_falcon_rows();
 
 /// Adds a row called `name`. `run` takes the state; an `Error` of it skips the row and says why.
 template <class Run>

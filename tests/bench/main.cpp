@@ -13,6 +13,9 @@ int main(int argc, char** argv) {
     add_capture_rows();
     add_server_rows();
     add_setup_rows();
+#ifdef PALPATE_WITH_USB
+    add_falcon_rows();
+#endif
   } catch (const Error& e) {
     fmt::print(stderr, "bench: {}\n", e.what());
     return e.exit_code();

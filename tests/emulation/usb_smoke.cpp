@@ -2,6 +2,7 @@
 // sees, a line `key value` each. Exit code 0: everything went as it should.
 #include "tests/emulation/usb_smoke.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 
@@ -115,6 +116,27 @@ void falcon(const Context& context, int packets) {
   checked(libusb_release_interface(device.usb, 0), "release");
 }
 
+/// Times packets there and back, of a Falcon that has its firmware.
+void round_trips(const Context& context, int packets) {
+  const Handle device(context, 0x0403, 0xcb48);
+  device.claim();
+  run_mode(device);
+  std::vector<double> us;
+  exchange(device, 3);
+  const auto start = std::chrono::steady_clock::now();
+  for (auto before = start; us.size() < static_cast<std::size_t>(packets);) {
+    exchange(device, 3);
+    const auto after = std::chrono::steady_clock::now();
+    us.push_back(std::chrono::duration<double, std::micro>(after - before).count());
+    before = after;
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  std::sort(us.begin(), us.end());
+  std::printf("p50_us %.2f\np99_us %.2f\nround_trips_per_second %.0f\n", us[us.size() / 2],
+              us[us.size() * 99 / 100], static_cast<double>(us.size()) / took.count());
+  checked(libusb_release_interface(device.usb, 0), "release");
+}
+
 void mouse(const Context& context, std::uint16_t vendor, std::uint16_t product, int reports) {
   const Handle device(context, vendor, product);
   std::printf("kernel_driver %d\n", libusb_kernel_driver_active(device.usb, 0));
@@ -140,11 +162,13 @@ int main(int count, char** words) {
   const std::string what = count > 1 ? words[1] : "";
   try {
     const Context context;
-    const int number = count > 2 ? std::atoi(words[2]) : 2000;
+    const int number = std::max(count > 2 ? std::atoi(words[2]) : 2000, 1);
     if (what == "list") {
       list(context);
     } else if (what == "falcon") {
       falcon(context, number);
+    } else if (what == "round_trips") {
+      round_trips(context, number);
     } else if (what == "hotplug") {
       hotplug(context);
     } else if (what == "timeouts") {
@@ -156,7 +180,8 @@ int main(int count, char** words) {
     } else if (what == "mouse13") {
       mouse(context, 0x256f, 0xc62e, number);
     } else {
-      std::fprintf(stderr, "usage: usb_smoke list|falcon|hotplug|timeouts|storm|mouse|mouse13 [N]\n");
+      std::fprintf(stderr,
+                   "usage: usb_smoke list|falcon|round_trips|hotplug|timeouts|storm|mouse|mouse13 [N]\n");
       return 2;
     }
     return 0;
