@@ -41,12 +41,19 @@ TEST_CASE("Falcon faults: an image that is too short or too long is refused, hal
   check_lines(session.said(), {"loading the Falcon's firmware", "is the image the right file?"});
 }
 
-TEST_CASE("Falcon faults: a control request stalls: told as such, then it works") {
-  Session session(kHomedAlready, {"stall 1"});
+TEST_CASE("Falcon faults: a control request stalls: told as such, and not as unplugged, then it works") {
+  Session session(kHomedAlready);
   REQUIRE(session.client->wait_for("Falcon homed: ready"));
-  CHECK(session.count("opens") == 2);
+  session.usb.command("unplug 2-1");
+  REQUIRE(session.client->wait_for("the Falcon was unplugged"));
+  session.fault("stall 1");
+  session.usb.command("plug 2-1");
+  REQUIRE(session.client->wait_for("a USB transfer failed"));
+  REQUIRE(session.client->wait_for("pull the grip fully out"));
+  CHECK(session.count("opens") == 3);
   session.end();
-  check_lines(session.said(), {"a USB transfer failed", "homed: ready"});
+  check_lines(session.said(), {"homed: ready", "unplugged", "a USB transfer failed", "loading the Falcon's",
+                               "pull the grip"});
 }
 
 TEST_CASE(
