@@ -75,7 +75,9 @@ struct Session {
   /// Ends the client; what must hold after every fault. Returns its report of the tool.
   nlohmann::json end() {
     client->signal(SIGINT);
-    CHECK(client->wait() == 0);
+    const int code = client->wait();
+    CAPTURE(client->output());
+    CHECK(code == 0);
     const nlohmann::json last = state();
     CHECK(last["dac"] == nlohmann::json({0, 0, 0}));
     CHECK(last["largest_dac_unhomed"] == 0);

@@ -56,23 +56,21 @@ TEST_CASE("Falcon faults: a control request stalls: told as such, and not as unp
                                "pull the grip"});
 }
 
-TEST_CASE(
-    "Falcon faults: split, joined, flooded and spoilt replies: no tick without a place, no more force") {
+TEST_CASE("Falcon faults: split, joined, flooded and spoilt replies: nothing lost, never more force") {
   Session session(kHomedAlready);
   REQUIRE(session.client->wait_for("Falcon homed: ready"));
   REQUIRE(session.press());
+  // Places come late, and the wall may go softer.
   for (const std::string fault : {"split", "join", "status_flood 12", "garbage 40", "zero_in 40"}) {
     CAPTURE(fault);
     session.fault(fault);
     CHECK(session.ticks_go_on(200));
-    CHECK(session.newton() > 1);  // places come late: the wall may go softer
     session.fault(fault.substr(0, fault.find(' ')) + " 0");
   }
   CHECK(session.press_again());
   CHECK(session.count("opens") == 1);
   CHECK(session.end()["force"]["max_newton"].get<double>() < 1.2 * kPush);
   check_lines(session.said(), {"homed: ready"});
-  check_soft_starts(session.trace, 2, 2);
 }
 
 TEST_CASE("Falcon faults: a flood without end does not hold the loop; told once, and over when it ends") {
