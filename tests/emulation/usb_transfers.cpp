@@ -54,8 +54,11 @@ Link::~Link() {
 }
 
 void Link::wake() const {
+  // More are never there at once. A program that fills the socket again has seen what was sent before; to
+  // wait until it is empty would be to race with that program for ever.
+  constexpr int kMost = 4;
   char byte = 0;
-  while (recv(wake_socket, &byte, 1, MSG_DONTWAIT) > 0) {
+  for (int i = 0; i < kMost && recv(wake_socket, &byte, 1, MSG_DONTWAIT) > 0; ++i) {
   }
 }
 
