@@ -68,7 +68,9 @@ HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::stri
       socket_(protocol::Endpoint{.v6 = server_.v6}),
       recorder_(files.record ? std::make_unique<protocol::Recorder>(*files.record) : nullptr),
       recording_(recorder_.get()),
-      link_(socket_, server_, mailboxes_, random_number(), recorder_.get()) {}
+      link_(socket_, server_, mailboxes_, random_number(), recorder_.get()) {
+  pipeline_.ask_for(observation_.scoring().wants());
+}
 
 HeldTool::~HeldTool() {
   stop();

@@ -28,6 +28,12 @@ Scoring::Scoring(const std::vector<std::string>& laws, double rate_hz, const std
   if (!laws.empty()) pending_.resize(static_cast<std::size_t>(kLongestWait * rate_hz) + 1);
 }
 
+Wants Scoring::wants() const noexcept {
+  Wants all;
+  for (const ForceEstimate& law : laws_) all |= law.wants();
+  return all;
+}
+
 void Scoring::tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums) noexcept {
   if (laws_.empty()) return;
   if (taken != nullptr) take(*taken, p_W, t, sums);

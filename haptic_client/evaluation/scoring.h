@@ -32,6 +32,8 @@ class Scoring {
   /// null. What gets scored is added to `sums`.
   void tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums) noexcept;
 
+  /// What the laws use beyond the triplet.
+  Wants wants() const noexcept;
   const std::vector<std::string>& names() const noexcept { return names_; }
   ErrorMetrics metrics(std::size_t law) const noexcept { return tables_[law].metrics(); }
   std::uint64_t scored() const noexcept { return scored_; }  ///< ticks

@@ -3,8 +3,11 @@
 #include <array>
 
 #include "haptic_client/extrapolation/constant.h"
+#include "haptic_client/extrapolation/learned_stiffness.h"
 #include "haptic_client/extrapolation/linear_position.h"
 #include "haptic_client/extrapolation/linear_time.h"
+#include "haptic_client/extrapolation/tangent.h"
+#include "haptic_client/extrapolation/two_tangents.h"
 
 namespace palpate::client {
 namespace {
@@ -22,6 +25,12 @@ constexpr std::array kExtrapolators{
                     &make<LinearPosition, Ratio::kPrinted>},
     ExtrapolatorRow{"linear_position_signed", "linear in position, with the sign of the motion",
                     &make<LinearPosition, Ratio::kSigned>},
+    ExtrapolatorRow{"learned_stiffness", "a symmetric stiffness learned from the samples",
+                    &make<LearnedStiffness>},
+    ExtrapolatorRow{"tangent", "the server's tangent stiffness, and its surface before contact",
+                    &make<Tangent>},
+    ExtrapolatorRow{"two_tangents", "tangents where the tool was and where it was expected",
+                    &make<TwoTangents>},
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ bool ForceEstimate::take(const Sample& sample, Time now) noexcept {
 }
 
 Vec3 ForceEstimate::force(const Vec3& p, Time t) const noexcept {
-  if (newest_.f.isZero(0)) return Vec3::Zero();
+  if (newest_.f.isZero(0) && !sees_surface_) return Vec3::Zero();
   return law_->force(p, t - newest_.t <= kPatience * period_ ? t : newest_.t);
 }
 

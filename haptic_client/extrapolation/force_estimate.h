@@ -11,11 +11,13 @@ constexpr Time kOutage = std::chrono::milliseconds(300);
 /// An extrapolation law with what stands around every law alike, so that the law that is felt and those that
 /// only run beside it are treated the same: it sees each sample once and in order; time stands still for it
 /// when the newest sample is older than three periods; it starts afresh after an outage; and where the newest
-/// sample saw the tool free, there is no force (a law that looks back would go on pulling: sticky tissue).
+/// sample saw the tool free, there is no force (a law that looks back would go on pulling: sticky tissue),
+/// unless the law knows where the surface is.
 /// Pure; haptic thread only; no allocation.
 class ForceEstimate {
  public:
-  explicit ForceEstimate(std::unique_ptr<Extrapolator> law) : law_(std::move(law)) {}
+  explicit ForceEstimate(std::unique_ptr<Extrapolator> law)
+      : law_(std::move(law)), sees_surface_(law_->wants().here || law_->wants().ahead) {}
 
   /// A sample is here at time `now`. False, and nothing changes, unless it is finite, later than the newest
   /// and not from before the clock began or from the future.
@@ -24,6 +26,7 @@ class ForceEstimate {
   /// Force (N, world) on a tool at `p` (m) at time `t` >= that of the newest sample.
   Vec3 force(const Vec3& p, Time t) const noexcept;
 
+  Wants wants() const noexcept { return law_->wants(); }
   /// Number 0: none yet.
   const Sample& newest() const noexcept { return newest_; }
   /// Between the two newest samples; 0 with less than two since the last outage.
@@ -32,6 +35,7 @@ class ForceEstimate {
  private:
   static constexpr int kPatience = 3;  // periods
   std::unique_ptr<Extrapolator> law_;
+  bool sees_surface_;
   Sample newest_;
   Time period_{};
 };

@@ -46,7 +46,14 @@ class Pipeline {
  public:
   Pipeline(std::unique_ptr<Extrapolator> law, const Workspace& workspace, const Limiter::Settings& limits,
            const Passivity::Settings& passivity = {})
-      : estimate_(std::move(law)), workspace_(workspace), passivity_(passivity), limiter_(limits) {}
+      : estimate_(std::move(law)),
+        wants_(estimate_.wants()),
+        workspace_(workspace),
+        passivity_(passivity),
+        limiter_(limits) {}
+
+  /// Asks the server for these parts of a sample, too: laws in the shadow use them. Before the first tick.
+  void ask_for(const Wants& wants) noexcept { wants_ |= wants; }
 
   /// One tick. `arrived`: the newest sample, if one came since the last tick, else null.
   TickResult tick(const DeviceReading& reading, const protocol::ForceSample* arrived) noexcept {
@@ -75,6 +82,8 @@ class Pipeline {
   void follow_path(const protocol::ToolState& tool, double dt) noexcept;
 
   ForceEstimate estimate_;
+  Wants wants_;
+  Time lead_{};  // from reading the device to the middle of the use of its force
   Workspace workspace_;
   Passivity passivity_;
   Watchdog watchdog_;
