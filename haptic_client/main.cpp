@@ -5,6 +5,7 @@
 #include "common/program.h"
 #include "common/text.h"
 #include "haptic_client/client.h"
+#include "haptic_client/evaluate.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/replay.h"
 
@@ -93,6 +94,21 @@ client::ClientConfig read_config(const std::string& file, const Overrides& overr
   return config;
 }
 
+CLI::App* add_evaluate(CLI::App& app, client::EvaluateOptions& options) {
+  auto* command = app.add_subcommand("evaluate", "Score every law on captures, against the true force");
+  command->add_option("CAPTURE", options.captures, "Captures, best of sim_server record")->required();
+  command->add_option(
+      "--truth", options.truth,
+      "Capture of the same motion at 200 samples a second or more: `sim_server record ... --rate "
+      "2000 --plain` (default: the line between the samples)");
+  command->add_option("--out", options.out, "Folder for summary.json and summary.csv")->required();
+  command->add_option("--method", options.methods, "Laws (default: all)")->allow_extra_args(false);
+  command->add_option("--world", options.world, "Name for the first column (default: the capture's)");
+  command->add_option("--blend-ms", options.blend_ms, "Time constant of the blended rows (default 10 ms)");
+  command->footer("Example: haptic_client evaluate liver.pcap --truth truth.pcap --out out/evaluation");
+  return command;
+}
+
 /// A configuration for each tool: of each file, with the device of the same place on the command line; where
 /// there are more devices than files, the last file serves the rest.
 std::vector<client::ClientConfig> read_configs(const std::vector<std::string>& files,
@@ -124,8 +140,14 @@ int run(int argc, char** argv) {
   const auto* replay = add_replay(app, file, overrides, replaying);
   const auto* list =
       app.add_subcommand("devices", "List the devices that are plugged in, and whether they can be used");
+  client::EvaluateOptions evaluating;
+  const auto* score = add_evaluate(app, evaluating);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*list) return client::print_plugged_in();
+  if (*score) {
+    require_within(evaluating.blend_ms, 0.1, 100, "--blend-ms", "ms");
+    return client::evaluate(evaluating);
+  }
   if (*replay) {
     if (replaying.rate_hz) require_within(*replaying.rate_hz, 1, 20000, "--rate", "Hz");
     return client::replay(read_config(file, overrides), replaying);

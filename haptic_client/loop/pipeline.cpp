@@ -19,18 +19,18 @@ Linearised linearised(const Vec3& p, const Vec3& f, const protocol::Linearisatio
   return out;
 }
 
+double seconds_between(const ToolState& before, Time t) {
+  return before.tick == 0 ? 0 : to_seconds(t - Time{before.t_ns});
+}
+
+}  // namespace
+
 Sample sample_of(const ForceSample& s) noexcept {
   Sample sample{s.number, Time{s.tool_t_ns}, s.p_W, s.f_W, s.surface_v_W};
   if ((s.flags & ForceSample::kHasHere) != 0) sample.here = linearised(s.p_W, s.f_W, s.here);
   if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = linearised(s.ahead_p_W, s.ahead_f_W, s.ahead);
   return sample;
 }
-
-double seconds_between(const ToolState& before, Time t) {
-  return before.tick == 0 ? 0 : to_seconds(t - Time{before.t_ns});
-}
-
-}  // namespace
 
 ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   const double dt = seconds_between(sensed_, reading.t);
@@ -69,7 +69,7 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived) noe
   }
   follow_path(tool, dt);
   TickResult result{.tool = tool};
-  if (arrived != nullptr && take(*arrived, now)) {
+  if (arrived != nullptr && take(*arrived, tool.p_W, now)) {
     result.used = true;
     result.sample = estimate_.newest();
     result.step = Time{arrived->step_ns};
@@ -120,9 +120,9 @@ void Pipeline::follow_path(const ToolState& tool, double dt) noexcept {
   stats_.max_speed = std::max(stats_.max_speed, tool.v_W.norm());
 }
 
-bool Pipeline::take(const ForceSample& arrived, Time now) noexcept {
+bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexcept {
   const Vec3 before = estimate_.newest().p;
-  if (!estimate_.take(sample_of(arrived), now)) {
+  if (!estimate_.take(sample_of(arrived), p_W, now)) {
     ++stats_.overtaken;
     return false;
   }

@@ -88,10 +88,10 @@ TEST_CASE("restoring part: symmetric, without what pushes away") {
 TEST_CASE("tangent: exact at a wall, in contact, out of it, and at a first contact between two samples") {
   for (const char* name : {"tangent", "two_tangents"}) {
     ForceEstimate estimate(law(name));
-    estimate.take(at_the_wall(1, {0, 0.001, 0}), 33ms);
+    estimate.take(at_the_wall(1, {0, 0.001, 0}), {0, 0.001, 0}, 33ms);
     CHECK(estimate.force({0, 0.0005, 0}, 40ms) == Vec3::Zero());
     CHECK((estimate.force({0, -0.002, 0}, 50ms) - Vec3(0, 2, 0)).norm() < 1e-12);  // the sample was free
-    estimate.take(at_the_wall(2, {0, -0.001, 0}), 66ms);
+    estimate.take(at_the_wall(2, {0, -0.001, 0}), {0, -0.001, 0}, 66ms);
     CHECK((estimate.force({0.001, -0.003, 0}, 70ms) - Vec3(0, 3, 0)).norm() < 1e-12);
     CHECK(estimate.force({0, 0.0001, 0}, 80ms) == Vec3::Zero());
   }
