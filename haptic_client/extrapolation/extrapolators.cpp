@@ -3,6 +3,8 @@
 #include <array>
 
 #include "haptic_client/extrapolation/constant.h"
+#include "haptic_client/extrapolation/interpolate_with_delay.h"
+#include "haptic_client/extrapolation/kalman.h"
 #include "haptic_client/extrapolation/learned_stiffness.h"
 #include "haptic_client/extrapolation/linear_position.h"
 #include "haptic_client/extrapolation/linear_time.h"
@@ -31,6 +33,9 @@ constexpr std::array kExtrapolators{
                     &make<Tangent>},
     ExtrapolatorRow{"two_tangents", "tangents where the tool was and where it was expected",
                     &make<TwoTangents>},
+    ExtrapolatorRow{"kalman", "a Kalman filter on the force (the paper turns it down)", &make<Kalman>, false},
+    ExtrapolatorRow{"interpolate_with_delay", "the line between samples, two periods late (likewise)",
+                    &make<InterpolateWithDelay>, false},
 };
 
 }  // namespace
