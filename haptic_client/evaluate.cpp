@@ -1,8 +1,8 @@
 #include "haptic_client/evaluate.h"
 
 #include <algorithm>
-#include <fmt/format.h>
-#include <fstream>
+#include <cmath>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
@@ -115,21 +115,6 @@ void add_rows(Json& rows, const std::string& world, const Evaluation& e, bool wi
       }
     }
   }
-}
-
-std::string csv_of(const Json& rows) {
-  std::vector<std::string> lines(1);
-  for (const auto& [key, value] : rows.front().items())
-    lines[0] += fmt::format("{}{}", lines[0].empty() ? "" : ",", key);
-  for (const Json& row : rows) {
-    std::string line;
-    for (const auto& [key, value] : row.items()) {
-      const std::string cell = value.is_string() ? value.get<std::string>() : value.dump();
-      line += fmt::format("{}{}", line.empty() ? "" : ",", cell);
-    }
-    lines.push_back(line);
-  }
-  return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
 void print(const Json& rows) {
