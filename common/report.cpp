@@ -1,5 +1,6 @@
 #include "common/report.h"
 
+#include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -86,6 +87,21 @@ void write_whole(const fs::path& file, const std::string& text) {
 
 void write_json(const fs::path& file, const Json& json) {
   write_whole(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::string csv_of(const Json& rows) {
+  std::vector<std::string> lines(1);
+  for (const auto& [key, value] : rows.front().items())
+    lines[0] += fmt::format("{}{}", lines[0].empty() ? "" : ",", key);
+  for (const Json& row : rows) {
+    std::string line;
+    for (const auto& [key, value] : row.items()) {
+      const std::string cell = value.is_string() ? value.get<std::string>() : value.dump();
+      line += fmt::format("{}{}", line.empty() ? "" : ",", cell);
+    }
+    lines.push_back(line);
+  }
+  return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
 }  // namespace palpate

@@ -54,4 +54,7 @@ void write_whole(const std::filesystem::path& file, const std::string& text);
 /// `write_whole` of a JSON document, indented.
 void write_json(const std::filesystem::path& file, const Json& json);
 
+/// An array of flat objects with the same keys as CSV: a line of keys, then a line an object.
+std::string csv_of(const Json& rows);
+
 }  // namespace palpate

@@ -119,6 +119,7 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   client.method = config.text("method", client.method);
   client.method_where = config.where("method");
   find_row(extrapolators(), client.method, "method", client.method_where);
+  client.blend = 1e-3 * config.number("blend_ms", {0, 100, "ms"}, 1e3 * client.blend);
   client.score_where = config.where("score");
   if (config.has("score")) client.score = config.texts("score", {}, {});
   for (const std::string& law : client.scored_laws())

@@ -20,6 +20,7 @@ struct ClientConfig {
   /// Laws that run beside it and are scored; absent: the paper's three and the chosen one; empty: none.
   std::optional<std::vector<std::string>> score;
   std::string score_where = "default";
+  double blend = 0;  ///< s, [0, 0.1]: time constant of what a new sample changes, of all laws; 0: at once
   DeviceSettings device;
   Workspace workspace;
   Limiter::Settings limits;

@@ -25,7 +25,7 @@ Json methods_report(const Scoring& scoring) {
                                    {"paper_mean_percent", m.paper_mean_percent},
                                    {"paper_max_percent", m.paper_max_percent},
                                    {"paper_max_force_percent", m.paper_max_force_percent},
-                                   {"ns_per_tick", ns_per_tick(scoring.names()[i])}};
+                                   {"ns_per_tick", cost_of(scoring.names()[i]).tick_ns}};
   }
   return methods;
 }

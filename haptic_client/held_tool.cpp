@@ -60,15 +60,17 @@ HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::stri
       name_(std::move(name)),
       device_(row_of(config).make(config.device)),
       pipeline_(find_row(extrapolators(), config.method, "method", config.method_where).make(),
-                config.workspace, config.device_limits(), config.passivity),
+                config.workspace, config.device_limits(), config.passivity, config.blend),
       observation_(config.scored_laws(), rate_of(config), config.score_where,
-                   kept_ticks(config, files, seconds)),
+                   kept_ticks(config, files, seconds), config.blend),
       loop_(*device_, pipeline_, mailboxes_, observation_, from_seconds(1 / rate_of(config))),
       server_(server_of(config)),
       socket_(protocol::Endpoint{.v6 = server_.v6}),
       recorder_(files.record ? std::make_unique<protocol::Recorder>(*files.record) : nullptr),
       recording_(recorder_.get()),
-      link_(socket_, server_, mailboxes_, random_number(), recorder_.get()) {}
+      link_(socket_, server_, mailboxes_, random_number(), recorder_.get()) {
+  pipeline_.ask_for(observation_.scoring().wants());
+}
 
 HeldTool::~HeldTool() {
   stop();

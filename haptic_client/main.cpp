@@ -4,7 +4,9 @@
 #include "common/error.h"
 #include "common/program.h"
 #include "common/text.h"
+#include "haptic_client/calibrate.h"
 #include "haptic_client/client.h"
+#include "haptic_client/evaluate.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/replay.h"
 
@@ -87,10 +89,42 @@ CLI::App* add_replay(CLI::App& app, std::string& file, Overrides& overrides, cli
   return command;
 }
 
+CLI::App* add_calibrate(CLI::App& app, std::string& device, std::string& file, Overrides& overrides,
+                        double& mass) {
+  auto* command = app.add_subcommand(
+      "calibrate", "Find the torque constant of a Falcon with a known weight hung on its grip; no server");
+  command->add_option("DEVICE", device, "falcon, or falcon:PORT; stands upright on a table")->required();
+  command->add_option("--mass", mass, "Of the weight, kg, 0.05 to 0.5; 0.1 does for most")->required();
+  command->add_option("--client", file, "Client file: firmware and limits (default: all defaults)");
+  command->add_option("--falcon-firmware", overrides.firmware,
+                      "Image for a Falcon that has none since power-up");
+  command->footer(
+      "It says what to do: home the device, let go of the grip, hang the weight on it, wait. It takes a "
+      "minute\n"
+      "and ends with the line for [falcon] of the client file, which it does not change.\n"
+      "Example: haptic_client calibrate falcon --mass 0.1 --falcon-firmware PATH");
+  return command;
+}
+
 client::ClientConfig read_config(const std::string& file, const Overrides& overrides) {
   client::ClientConfig config = file.empty() ? client::ClientConfig{} : client::read_client_config(file);
   apply(overrides, config);
   return config;
+}
+
+CLI::App* add_evaluate(CLI::App& app, client::EvaluateOptions& options) {
+  auto* command = app.add_subcommand("evaluate", "Score every law on captures, against the true force");
+  command->add_option("CAPTURE", options.captures, "Captures, best of sim_server record")->required();
+  command->add_option(
+      "--truth", options.truth,
+      "Capture of the same motion at 200 samples a second or more: `sim_server record ... --rate "
+      "2000 --plain` (default: the line between the samples)");
+  command->add_option("--out", options.out, "Folder for summary.json and summary.csv")->required();
+  command->add_option("--method", options.methods, "Laws (default: all)")->allow_extra_args(false);
+  command->add_option("--world", options.world, "Name for the first column (default: the capture's)");
+  command->add_option("--blend-ms", options.blend_ms, "Time constant of the blended rows (default 10 ms)");
+  command->footer("Example: haptic_client evaluate liver.pcap --truth truth.pcap --out out/evaluation");
+  return command;
 }
 
 /// A configuration for each tool: of each file, with the device of the same place on the command line; where
@@ -120,12 +154,26 @@ int run(int argc, char** argv) {
   Overrides overrides;
   client::ClientOptions running;
   client::ReplayOptions replaying;
+  std::string device;
+  double mass = 0;
   add_run(app, files, overrides, running);
   const auto* replay = add_replay(app, file, overrides, replaying);
+  const auto* calibrate = add_calibrate(app, device, file, overrides, mass);
   const auto* list =
       app.add_subcommand("devices", "List the devices that are plugged in, and whether they can be used");
+  client::EvaluateOptions evaluating;
+  const auto* score = add_evaluate(app, evaluating);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*list) return client::print_plugged_in();
+  if (*score) {
+    require_within(evaluating.blend_ms, 0.1, 100, "--blend-ms", "ms");
+    return client::evaluate(evaluating);
+  }
+  if (*calibrate) {
+    client::ClientConfig config = read_config(file, overrides);
+    client::choose_device(config.device, device, "DEVICE");
+    return client::calibrate(config, mass);
+  }
   if (*replay) {
     if (replaying.rate_hz) require_within(*replaying.rate_hz, 1, 20000, "--rate", "Hz");
     return client::replay(read_config(file, overrides), replaying);

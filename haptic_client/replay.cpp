@@ -142,7 +142,7 @@ int replay(const ClientConfig& config, const ReplayOptions& options) {
   const double ticks_hz = exact ? nominal_rate(captured_hz, config.rate_hz) : rate_hz;
 
   Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(),
-                    config.workspace, config.device_limits(), config.passivity);
+                    config.workspace, config.device_limits(), config.passivity, config.blend);
   Observation observation(config.scored_laws(), ticks_hz, config.score_where, 0);
   CapturedSession session(options.capture, index);
   std::optional<TraceWriter> trace;

@@ -12,6 +12,7 @@ constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
 constexpr std::array<std::uint8_t, 3> kReserved{};
 constexpr std::uint8_t kMaxTools = 16;
 constexpr double kMaxMagnitude = 1e9;  // of any position, speed or force: beyond is a bug or an attack
+constexpr std::int64_t kMaxLead = 10'000'000'000;  // ns
 
 bool small(const Vec3& v) noexcept {
   return v.cwiseAbs().maxCoeff() <= kMaxMagnitude;
@@ -31,10 +32,18 @@ bool valid(const Bye&) noexcept {
 bool valid(const ToolState& m) noexcept {
   const auto& q = m.q_W;
   const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  return m.tool < kMaxTools && m.tick > 0 && small(m.p_W) && small(m.v_W) && std::abs(norm - 1) < 1e-6;
+  return m.tool < kMaxTools && m.tick > 0 && small(m.p_W) && small(m.v_W) && std::abs(norm - 1) < 1e-6 &&
+         m.lead_ns >= 0 && m.lead_ns <= kMaxLead;
+}
+bool valid(const Linearisation& m) noexcept {
+  const bool tangent =
+      std::all_of(m.tangent.begin(), m.tangent.end(), [](double k) { return std::abs(k) <= kMaxMagnitude; });
+  const double size = m.normal_W.squaredNorm();
+  return tangent && (size == 0 || std::abs(size - 1) < 1e-6) && m.gap >= 0 && m.gap <= kMaxMagnitude;
 }
 bool valid(const ForceSample& m) noexcept {
-  return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W);
+  return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W) &&
+         small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) && small(m.ahead_f_W) && valid(m.ahead);
 }
 
 template <class M>

@@ -67,7 +67,9 @@ struct Bye {
 
 struct ToolState {
   static constexpr MessageType kType = MessageType::kToolState;
-  static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2, kClutched = 4;  ///< bits of `flags`
+  /// Bits of `flags`: what this tick saw, and which parts of the answer it asks for.
+  static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2, kClutched = 4, kWantsHere = 8,
+                                 kWantsAhead = 16;
   std::uint8_t tool = 0;
   std::uint64_t tick = 0;           ///< haptic tick, from 1
   std::uint64_t newest_sample = 0;  ///< number of the newest ForceSample this tick used; 0 = none yet
@@ -76,17 +78,32 @@ struct ToolState {
   Vec3 v_W = Vec3::Zero();          ///< its velocity, m/s
   std::array<double, 4> q_W = {1, 0, 0, 0};  ///< orientation, unit quaternion w, x, y, z
   std::uint16_t buttons = 0;                 ///< one bit each
-  std::uint16_t flags = 0;                   ///< what else this tick saw
+  std::uint16_t flags = 0;
+  std::int64_t lead_ns = 0;  ///< with kWantsAhead: how much later the middle of the answer's use will be
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.tick), v(m.newest_sample), v(m.t_ns), v(m.p_W), v(m.v_W), v(m.q_W), v(m.buttons),
         v(m.flags);
+    if ((m.flags & kWantsAhead) != 0) v(m.lead_ns);
+  }
+};
+
+/// The force near a place, to first order: F(p) = f + K (p - place) in contact; free of it, the nearest
+/// surface and how stiff it will be.
+struct Linearisation {
+  std::array<double, 6> tangent = {};  ///< K = dF/dp, N/m, symmetric: xx, xy, xz, yy, yz, zz
+  Vec3 normal_W = Vec3::Zero();        ///< outward, unit; zero: no surface near
+  double gap = 0;                      ///< m from tool to surface; 0 in contact
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.tangent), v(m.normal_W), v(m.gap);
   }
 };
 
 struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
-  static constexpr std::uint32_t kInContact = 1, kFlagged = 2;  ///< bits of `flags`
+  /// Bits of `flags`; the last two: which parts follow.
+  static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8;
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
   std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:
@@ -97,10 +114,17 @@ struct ForceSample {
   Vec3 torque_W = Vec3::Zero();  ///< torque on the tool about its centre, N m
   std::int64_t step_ns = 0;      ///< time the server spent on the step
   std::uint32_t flags = 0;
+  Vec3 surface_v_W = Vec3::Zero();  ///< kHasHere: of the organ's surface near the tool, m/s
+  Linearisation here{};             ///< kHasHere: at p_W
+  Vec3 ahead_p_W = Vec3::Zero();    ///< kHasAhead: where the tool was expected `lead` later, m
+  Vec3 ahead_f_W = Vec3::Zero();    ///< kHasAhead: the force there, N
+  Linearisation ahead{};            ///< kHasAhead: at that place
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
         v(m.flags);
+    if ((m.flags & kHasHere) != 0) v(m.surface_v_W), Linearisation::fields(m.here, v);
+    if ((m.flags & kHasAhead) != 0) v(m.ahead_p_W), v(m.ahead_f_W), Linearisation::fields(m.ahead, v);
   }
 };
 

@@ -67,6 +67,8 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
   command->add_option("--ticks", options.ticks_hz,
                       "Tool states a second, at least --rate (default: 500, or --rate if that is more)");
   command->add_option("--seconds", options.seconds, "Virtual time (default: the motion once)");
+  command->add_flag("!--plain", options.parts,
+                    "Forces only: no tangents and surfaces, which some laws use (smaller)");
   command->add_option("--report", options.report, "Write figures of the recording to this JSON file");
   command->footer(
       "Examples:\n"

@@ -86,7 +86,8 @@ int record(const RecordOptions& options) {
   ProgressLine progress;
   Simulation simulation(scene, std::ref(progress));
   VirtualSession session(simulation, motion, scene.tools.front().shape.radius,
-                         {options.rate_hz, ticks_hz, from_seconds(options.delay_ms / 1e3)}, capture);
+                         {options.rate_hz, ticks_hz, from_seconds(options.delay_ms / 1e3), options.parts},
+                         capture);
   const Time start = now();
   run_session(session, ticks, capture, options, progress);
   out.commit();

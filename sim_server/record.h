@@ -11,6 +11,7 @@ struct RecordOptions {
   double delay_ms = 0;  ///< from reading the tool to having its force in the client, ms, [0, 10000]
   std::optional<double> ticks_hz;  ///< tool states a second, at least `rate_hz`; absent: 500 or `rate_hz`
   std::optional<double> seconds;   ///< absent: the motion once
+  bool parts = true;  ///< whether the samples carry all they can: tangents, surface, a second place
   std::optional<std::filesystem::path> report;
 };
 

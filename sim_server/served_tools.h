@@ -36,6 +36,8 @@ class ServedTools {
   struct Holder {
     std::uint64_t session = 0, samples = 0;
   };
+  void add_parts(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
+                 protocol::ForceSample& sample) noexcept;
   std::optional<protocol::ForceSample> answer(std::size_t tool, const ToolInput& input,
                                               const ToolForce& force) noexcept;
 

@@ -11,6 +11,8 @@
 namespace palpate::sim {
 namespace {
 
+constexpr double kNear = 2;              // of the tool radius: how far off a surface is told
+constexpr double kTouch = 0.04;          // of the tool radius: how deep to ask how stiff it is
 constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
 
 std::vector<int> vertices_of(const std::vector<std::vector<Triangle>>& lists) {
@@ -120,6 +122,24 @@ void Simulation::settle() noexcept {
     tool.settle(tissue_);
     still = 1;
   }
+}
+
+Simulation::Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W,
+                                             const ToolForce* felt) noexcept {
+  ToolContact& contact = tools_[tool];
+  if (!contact.placed()) return {};
+  contact.share(tools_, tissue_);
+  const ToolForce there = felt != nullptr ? *felt : contact.probe(p_W, tissue_);
+  if (there.contacts > 0) {
+    const double size = there.force.norm();
+    return {there.force, there.tangent, {size > 0 ? Vec3(there.force / size) : Vec3(Vec3::Zero()), 0}};
+  }
+  Linearised linearised{.plane = contact.nearest(p_W, tissue_)};
+  if (linearised.plane.gap > kNear * contact.radius()) return {};
+  // A little beyond the first touch, so that it is known how stiff the surface is.
+  const double beyond = linearised.plane.gap + kTouch * contact.radius();
+  linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue_).tangent;
+  return linearised;
 }
 
 void Simulation::lift_tool(std::size_t tool) noexcept {

@@ -31,6 +31,15 @@ class Simulation {
   /// The same with tool 0 alone, the others lifted.
   ToolForce step(const Vec3& p_W, double dt) noexcept;
 
+  /// The force on a tool at `p_W` (m), near where it stands, to first order; without effect on anything.
+  struct Linearised {
+    Vec3 force = Vec3::Zero();    ///< N
+    Mat3 tangent = Mat3::Zero();  ///< N/m; free of contact: what it will be when it touches
+    SurfacePlane plane;           ///< of contact, or the nearest; no normal: none within twice the radius
+  };
+  /// `felt`: what `step` gave for that place; null: to be found out. At most two contact solves.
+  Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) noexcept;
+
   /// Takes a tool away: the tissue goes free of it.
   void lift_tool(std::size_t tool = 0) noexcept;
 

@@ -54,6 +54,10 @@ void VirtualSession::tick(std::uint64_t k) {
   ToolState state{.tool = client_.welcome().tool, .tick = k + 1, .t_ns = t.count()};
   state.p_W = newest_p_W_ = motion_.at(to_seconds(t));
   if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motion_.at(to_seconds(time_of(k - 1))));
+  if (link_.parts) {
+    state.flags |= ToolState::kWantsHere | ToolState::kWantsAhead;
+    state.lead_ns = (link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
+  }
   step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
   // What arrives in this very tick (no delay) is named by its tool state, though it stands behind it.
   for (const OnTheWay& next : on_the_way_) {

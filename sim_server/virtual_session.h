@@ -11,7 +11,8 @@ namespace palpate::sim {
 /// How a session in virtual time runs. Hz and s.
 struct VirtualLink {
   double rate_hz, ticks_hz;
-  Time delay{};  ///< from reading the tool to having its force in the client
+  Time delay{};        ///< from reading the tool to having its force in the client
+  bool parts = false;  ///< whether the client asks for all that a sample can carry
 };
 
 /// Sums over a virtual session.

@@ -3,9 +3,13 @@
 
 namespace palpate::client {
 
-/// Nanoseconds that one tick of a law takes on this machine (name of `extrapolators()`): its force, asked
-/// through `ForceEstimate` with a moving tool; median of nine rounds of 20 000 ticks. Takes a few
-/// milliseconds: not for a running loop.
-double ns_per_tick(const std::string& law);
+/// What a law costs, ns, medians of several rounds.
+struct LawCost {
+  double tick_ns = 0;     ///< a force
+  double arrival_ns = 0;  ///< taking a sample
+};
+
+/// Measured here and now, in a few milliseconds, on samples that carry all there is.
+LawCost cost_of(const std::string& law);
 
 }  // namespace palpate::client

@@ -17,8 +17,8 @@ SessionCell& SessionCell::operator+=(const SessionCell& other) noexcept {
 }
 
 Observation::Observation(const std::vector<std::string>& laws, double rate_hz, const std::string& where,
-                         std::size_t keep)
-    : scoring_(laws, rate_hz, where), ring_(keep) {}
+                         std::size_t keep, double blend, const Truth* truth)
+    : scoring_(laws, rate_hz, where, blend, truth), ring_(keep) {}
 
 void Observation::tick(const TickResult& result, Time took, std::uint64_t missed) noexcept {
   const Time t{result.tool.t_ns};

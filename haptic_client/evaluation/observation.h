@@ -28,7 +28,7 @@ class Observation {
  public:
   /// `laws`, `where`: see `Scoring`. `keep`: how many of the last ticks to keep (0: none; 0.6 kB each).
   Observation(const std::vector<std::string>& laws, double rate_hz, const std::string& where,
-              std::size_t keep);
+              std::size_t keep, double blend = 0, const Truth* truth = nullptr);
 
   /// One tick gave `result`; it took `took`, and `missed` deadlines were given up before it.
   void tick(const TickResult& result, Time took, std::uint64_t missed) noexcept;

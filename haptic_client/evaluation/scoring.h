@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "haptic_client/evaluation/error_table.h"
+#include "haptic_client/evaluation/truth.h"
 #include "haptic_client/extrapolation/force_estimate.h"
 
 namespace palpate::client {
@@ -26,14 +27,23 @@ class Scoring {
  public:
   /// `laws`: at most `kMaxLaws` names of `extrapolators()`; none: nothing is done. `where`: for the `Error`
   /// about a name.
-  Scoring(const std::vector<std::string>& laws, double rate_hz, const std::string& where);
+  /// `blend` (s): see `ForceEstimate`. `truth`: the reference instead of the line; must outlive this.
+  Scoring(const std::vector<std::string>& laws, double rate_hz, const std::string& where, double blend = 0,
+          const Truth* truth = nullptr);
 
   /// One tick with the tool at `p_W` (m) at `t`; `taken`: the sample that the pipeline took in this tick, or
   /// null. What gets scored is added to `sums`.
   void tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums) noexcept;
 
+  /// What the laws use beyond the triplet.
+  Wants wants() const noexcept;
   const std::vector<std::string>& names() const noexcept { return names_; }
   ErrorMetrics metrics(std::size_t law) const noexcept { return tables_[law].metrics(); }
+  /// Work that the law did on the tool beyond that of the reference, in percent of what the reference
+  /// exchanged with it both ways; on a closed path in an elastic tissue that energy comes from nowhere.
+  double energy_percent(std::size_t law) const noexcept {
+    return exchanged_ > 0 ? 100 * excess_[law] / (exchanged_ / 2) : 0;
+  }
   std::uint64_t scored() const noexcept { return scored_; }  ///< ticks
   /// What the laws give at the newest tick, N, world.
   const std::array<Vec3, kMaxLaws>& forces() const noexcept { return force_; }
@@ -41,10 +51,12 @@ class Scoring {
  private:
   struct Pending {
     Time t{};
+    Vec3 moved;  // until the next tick, m
     std::array<Vec3, kMaxLaws> force;
   };
   void take(const Sample& sample, const Vec3& p_W, Time t, ErrorSums& sums) noexcept;
-  void score(const Pending& tick, const Sample& before, const Sample& after, ErrorSums& sums) noexcept;
+  void score(const Pending& tick, const Vec3& reference, ErrorSums& sums) noexcept;
+  void wait(const Pending& tick) noexcept;
 
   std::vector<std::string> names_;
   std::vector<ForceEstimate> laws_;
@@ -53,6 +65,12 @@ class Scoring {
   std::vector<Pending> pending_;  // a ring: ticks that wait for the sample after them
   std::size_t first_ = 0, waiting_ = 0;
   std::uint64_t scored_ = 0;
+  const Truth* truth_;
+  std::array<double, kMaxLaws> excess_{};  // J
+  double exchanged_ = 0;                   // J
+  Pending newest_{};                       // not waiting yet: how far it moves is known at the next tick
+  Vec3 place_ = Vec3::Zero();
+  bool ticked_ = false;
 };
 
 }  // namespace palpate::client

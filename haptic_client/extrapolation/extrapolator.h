@@ -1,23 +1,47 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "common/time.h"
 #include "common/types.h"
 
 namespace palpate::client {
 
-/// What the simulation says, the triplet (t_n, P_n, F_n) of Picinbono and Lombardo (1999).
+/// The force near a place, to first order, as the server sees it.
+struct Linearised {
+  Vec3 p = Vec3::Zero();       ///< the place, m, world
+  Vec3 f = Vec3::Zero();       ///< force there, N; zero: free
+  Mat3 k = Mat3::Zero();       ///< dF/dp, N/m, symmetric; free: as it will be when the tool touches
+  Vec3 normal = Vec3::Zero();  ///< of the surface, towards the tool; zero: none near
+  double gap = 0;              ///< between surface and tool, m; 0 in contact
+};
+
+/// What the simulation says: the triplet (t_n, P_n, F_n) of Picinbono and Lombardo (1999), and what a law
+/// asked for beyond it.
 struct Sample {
-  std::uint64_t number = 0;  ///< of the sample, from 1
-  Time t{};                  ///< when the tool was at `p`, client clock
-  Vec3 p = Vec3::Zero();     ///< tool position, m, world
-  Vec3 f = Vec3::Zero();     ///< force on the tool there, N, world
+  std::uint64_t number = 0;              ///< of the sample, from 1
+  Time t{};                              ///< when the tool was at `p`, client clock
+  Vec3 p = Vec3::Zero();                 ///< tool position, m, world
+  Vec3 f = Vec3::Zero();                 ///< force on the tool there, N, world
+  Vec3 surface_v = Vec3::Zero();         ///< of the organ there, m/s, world
+  std::optional<Linearised> here = {};   ///< at `p`
+  std::optional<Linearised> ahead = {};  ///< where the tool was expected by now
 };
 
 /// Whether a law may look at the sample at all: its vectors are finite.
 inline bool usable(const Sample& sample) noexcept {
   return sample.p.allFinite() && sample.f.allFinite();
 }
+
+/// Parts of a sample that a law can use.
+struct Wants {
+  bool here = false, ahead = false;
+  Wants& operator|=(const Wants& other) {
+    here = here || other.here;
+    ahead = ahead || other.ahead;
+    return *this;
+  }
+};
 
 /// Estimates the force between two samples. Haptic thread only; no allocation, lock or exception. Whatever
 /// it is given, the answer is finite; each law's header says what it is where the formula has none.
@@ -32,6 +56,8 @@ class Extrapolator {
   /// Force (N, world) with the tool at `p` at time `t` >= that of the newest sample. Zero before the first
   /// sample. |p| and |f| up to 1e30 give a finite answer; times are from 0 to 2^62 ns.
   virtual Vec3 force(const Vec3& p, Time t) const noexcept = 0;
+  /// What it uses beyond the triplet. A law that uses something knows a free surface from one that pulls.
+  virtual Wants wants() const noexcept { return {}; }
 };
 
 /// The two newest samples, which is all that the paper's laws know. A sample that is not `usable`, or not

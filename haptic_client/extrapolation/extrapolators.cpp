@@ -3,8 +3,13 @@
 #include <array>
 
 #include "haptic_client/extrapolation/constant.h"
+#include "haptic_client/extrapolation/interpolate_with_delay.h"
+#include "haptic_client/extrapolation/kalman.h"
+#include "haptic_client/extrapolation/learned_stiffness.h"
 #include "haptic_client/extrapolation/linear_position.h"
 #include "haptic_client/extrapolation/linear_time.h"
+#include "haptic_client/extrapolation/tangent.h"
+#include "haptic_client/extrapolation/two_tangents.h"
 
 namespace palpate::client {
 namespace {
@@ -22,6 +27,15 @@ constexpr std::array kExtrapolators{
                     &make<LinearPosition, Ratio::kPrinted>},
     ExtrapolatorRow{"linear_position_signed", "linear in position, with the sign of the motion",
                     &make<LinearPosition, Ratio::kSigned>},
+    ExtrapolatorRow{"learned_stiffness", "a symmetric stiffness learned from the samples",
+                    &make<LearnedStiffness>},
+    ExtrapolatorRow{"tangent", "the server's tangent stiffness, and its surface before contact",
+                    &make<Tangent>},
+    ExtrapolatorRow{"two_tangents", "tangents where the tool was and where it was expected",
+                    &make<TwoTangents>},
+    ExtrapolatorRow{"kalman", "a Kalman filter on the force (the paper turns it down)", &make<Kalman>, false},
+    ExtrapolatorRow{"interpolate_with_delay", "the line between samples, two periods late (likewise)",
+                    &make<InterpolateWithDelay>, false},
 };
 
 }  // namespace

@@ -12,6 +12,7 @@ struct ExtrapolatorRow {
   std::string_view name;
   std::string_view summary;
   std::unique_ptr<Extrapolator> (*make)();
+  bool exact = true;  ///< gives the sample's force at the sample's place and time
 };
 std::span<const ExtrapolatorRow> extrapolators();
 

@@ -1,11 +1,14 @@
 #include "haptic_client/extrapolation/force_estimate.h"
 
+#include <cmath>
+
 namespace palpate::client {
 
-bool ForceEstimate::take(const Sample& sample, Time now) noexcept {
+bool ForceEstimate::take(const Sample& sample, const Vec3& p, Time now) noexcept {
   const bool first = newest_.number == 0;
   const bool in_order = sample.t >= Time::zero() && sample.t <= now && (first || sample.t > newest_.t);
   if (!in_order || !usable(sample)) return false;
+  const Vec3 before = blend_ > 0 ? force(p, now) : Vec3(Vec3::Zero());
   period_ = first ? Time::zero() : sample.t - newest_.t;
   if (period_ > kOutage) {
     law_->restart();  // no line leads from before it to here
@@ -13,11 +16,21 @@ bool ForceEstimate::take(const Sample& sample, Time now) noexcept {
   }
   newest_ = sample;
   law_->update(sample);
+  if (blend_ > 0) {
+    offset_ = before - law_force(p, now);
+    arrived_ = now;
+  }
   return true;
 }
 
 Vec3 ForceEstimate::force(const Vec3& p, Time t) const noexcept {
-  if (newest_.f.isZero(0)) return Vec3::Zero();
+  const Vec3 f = law_force(p, t);
+  if (!(blend_ > 0) || f.isZero(0)) return f;  // free is free at once
+  return f + std::exp(-to_seconds(t - arrived_) / blend_) * offset_;
+}
+
+Vec3 ForceEstimate::law_force(const Vec3& p, Time t) const noexcept {
+  if (newest_.f.isZero(0) && !sees_surface_) return Vec3::Zero();
   return law_->force(p, t - newest_.t <= kPatience * period_ ? t : newest_.t);
 }
 

@@ -11,19 +11,23 @@ constexpr Time kOutage = std::chrono::milliseconds(300);
 /// An extrapolation law with what stands around every law alike, so that the law that is felt and those that
 /// only run beside it are treated the same: it sees each sample once and in order; time stands still for it
 /// when the newest sample is older than three periods; it starts afresh after an outage; and where the newest
-/// sample saw the tool free, there is no force (a law that looks back would go on pulling: sticky tissue).
+/// sample saw the tool free, there is no force (a law that looks back would go on pulling: sticky tissue),
+/// unless the law knows where the surface is.
 /// Pure; haptic thread only; no allocation.
 class ForceEstimate {
  public:
-  explicit ForceEstimate(std::unique_ptr<Extrapolator> law) : law_(std::move(law)) {}
+  /// `blend`: how long what a new sample changes takes to come in (time constant, s, 0 to 0.1); 0: at once.
+  explicit ForceEstimate(std::unique_ptr<Extrapolator> law, double blend = 0)
+      : law_(std::move(law)), sees_surface_(law_->wants().here || law_->wants().ahead), blend_(blend) {}
 
-  /// A sample is here at time `now`. False, and nothing changes, unless it is finite, later than the newest
-  /// and not from before the clock began or from the future.
-  bool take(const Sample& sample, Time now) noexcept;
+  /// A sample is here at time `now`, with the tool at `p` (m). False, and nothing changes, unless it is
+  /// finite, later than the newest and not from before the clock began or from the future.
+  bool take(const Sample& sample, const Vec3& p, Time now) noexcept;
 
   /// Force (N, world) on a tool at `p` (m) at time `t` >= that of the newest sample.
   Vec3 force(const Vec3& p, Time t) const noexcept;
 
+  Wants wants() const noexcept { return law_->wants(); }
   /// Number 0: none yet.
   const Sample& newest() const noexcept { return newest_; }
   /// Between the two newest samples; 0 with less than two since the last outage.
@@ -32,6 +36,12 @@ class ForceEstimate {
  private:
   static constexpr int kPatience = 3;  // periods
   std::unique_ptr<Extrapolator> law_;
+  Vec3 law_force(const Vec3& p, Time t) const noexcept;
+
+  bool sees_surface_;
+  double blend_;                // s
+  Vec3 offset_ = Vec3::Zero();  // what the newest sample took away, N
+  Time arrived_{};              // when it did
   Sample newest_;
   Time period_{};
 };

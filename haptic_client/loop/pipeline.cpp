@@ -9,13 +9,28 @@ using protocol::ToolState;
 namespace {
 
 constexpr double kVelocityFilter = 0.005;  // s, time constant of the velocity estimate
+constexpr int kLeadFilter = 8;             // samples
 constexpr double kFadeDamping = 2;         // N s/m, in the device frame, while the force fades
+
+Linearised linearised(const Vec3& p, const Vec3& f, const protocol::Linearisation& l) noexcept {
+  const auto& k = l.tangent;
+  Linearised out{.p = p, .f = f, .normal = l.normal_W, .gap = l.gap};
+  out.k << k[0], k[1], k[2], k[1], k[3], k[4], k[2], k[4], k[5];
+  return out;
+}
 
 double seconds_between(const ToolState& before, Time t) {
   return before.tick == 0 ? 0 : to_seconds(t - Time{before.t_ns});
 }
 
 }  // namespace
+
+Sample sample_of(const ForceSample& s) noexcept {
+  Sample sample{s.number, Time{s.tool_t_ns}, s.p_W, s.f_W, s.surface_v_W};
+  if ((s.flags & ForceSample::kHasHere) != 0) sample.here = linearised(s.p_W, s.f_W, s.here);
+  if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = linearised(s.ahead_p_W, s.ahead_f_W, s.ahead);
+  return sample;
+}
 
 ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   const double dt = seconds_between(sensed_, reading.t);
@@ -25,6 +40,9 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   sensed_.buttons = reading.buttons;
   sensed_.flags = rearm_asked_ ? ToolState::kRearmed : 0;
   rearm_asked_ = false;
+  if (wants_.here) sensed_.flags |= ToolState::kWantsHere;
+  if (wants_.ahead) sensed_.flags |= ToolState::kWantsAhead;
+  sensed_.lead_ns = wants_.ahead ? lead_.count() : 0;
   if ((reading.buttons & workspace_.clutch) != 0) sensed_.flags |= ToolState::kClutched;
   if (!reading.valid || !reading.p_D.allFinite()) {
     sensed_.flags |= ToolState::kDeviceLost;
@@ -51,7 +69,7 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived) noe
   }
   follow_path(tool, dt);
   TickResult result{.tool = tool};
-  if (arrived != nullptr && take(*arrived, now)) {
+  if (arrived != nullptr && take(*arrived, tool.p_W, now)) {
     result.used = true;
     result.sample = estimate_.newest();
     result.step = Time{arrived->step_ns};
@@ -102,12 +120,14 @@ void Pipeline::follow_path(const ToolState& tool, double dt) noexcept {
   stats_.max_speed = std::max(stats_.max_speed, tool.v_W.norm());
 }
 
-bool Pipeline::take(const ForceSample& arrived, Time now) noexcept {
+bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexcept {
   const Vec3 before = estimate_.newest().p;
-  if (!estimate_.take({arrived.number, Time{arrived.tool_t_ns}, arrived.p_W, arrived.f_W}, now)) {
+  if (!estimate_.take(sample_of(arrived), p_W, now)) {
     ++stats_.overtaken;
     return false;
   }
+  const Time lead = now - estimate_.newest().t + estimate_.period() / 2;
+  lead_ += (std::min(lead, kOutage) - lead_) / kLeadFilter;
   ++stats_.samples;
   if (estimate_.period() > Time::zero()) {
     stats_.sample_path_m += (arrived.p_W - before).norm();

@@ -12,6 +12,9 @@
 
 namespace palpate::client {
 
+/// What of a message a law may see.
+Sample sample_of(const protocol::ForceSample& message) noexcept;
+
 /// What one tick gives.
 struct TickResult {
   Vec3 f_D = Vec3::Zero();   ///< to the device, N
@@ -44,9 +47,17 @@ struct PipelineStats {
 /// that tool state and the samples. So a capture, which holds both, replays to the same forces.
 class Pipeline {
  public:
+  /// `blend`: see `ForceEstimate`.
   Pipeline(std::unique_ptr<Extrapolator> law, const Workspace& workspace, const Limiter::Settings& limits,
-           const Passivity::Settings& passivity = {})
-      : estimate_(std::move(law)), workspace_(workspace), passivity_(passivity), limiter_(limits) {}
+           const Passivity::Settings& passivity = {}, double blend = 0)
+      : estimate_(std::move(law), blend),
+        wants_(estimate_.wants()),
+        workspace_(workspace),
+        passivity_(passivity),
+        limiter_(limits) {}
+
+  /// Asks the server for these parts of a sample, too: laws in the shadow use them. Before the first tick.
+  void ask_for(const Wants& wants) noexcept { wants_ |= wants; }
 
   /// One tick. `arrived`: the newest sample, if one came since the last tick, else null.
   TickResult tick(const DeviceReading& reading, const protocol::ForceSample* arrived) noexcept {
@@ -70,11 +81,13 @@ class Pipeline {
   const PipelineStats& stats() const noexcept { return stats_; }
 
  private:
-  bool take(const protocol::ForceSample& arrived, Time now) noexcept;
+  bool take(const protocol::ForceSample& arrived, const Vec3& p_W, Time now) noexcept;
   Vec3 safe(const Vec3& f_W, const protocol::ToolState& tool, double dt) noexcept;
   void follow_path(const protocol::ToolState& tool, double dt) noexcept;
 
   ForceEstimate estimate_;
+  Wants wants_;
+  Time lead_{};  // from reading the device to the middle of the use of its force
   Workspace workspace_;
   Passivity passivity_;
   Watchdog watchdog_;

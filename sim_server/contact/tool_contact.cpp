@@ -51,6 +51,7 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   displacement_.resize(3 * (finder_.max_nodes() + 1));
   loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+  kept_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
 }
 
 void ToolContact::reserve(std::size_t loads) {
@@ -112,6 +113,31 @@ void ToolContact::conclude(const ContactForce& contact, int iterations, Tissue& 
 
 bool ToolContact::exhausted() const {
   return force_.iterations >= kMaxIterations + kMaxSettling;
+}
+
+ToolForce ToolContact::probe(const Vec3& p_W, Tissue& tissue) noexcept {
+  const ToolForce force = force_;
+  const Vec3 place = place_, tip_offset = tip_offset_;
+  const bool placed = placed_, arrived = arrived_;
+  kept_.assign(own_loads().begin(), own_loads().end());
+  walk(p_W, tissue);
+  const ToolForce there = force_;
+  force_ = force;
+  place_ = place;
+  tip_offset_ = tip_offset;
+  placed_ = placed;
+  arrived_ = arrived;
+  drop_own_loads();
+  loads_.insert(loads_.end(), kept_.begin(), kept_.end());
+  tissue.positions = tissue.model->apply(loads_);
+  return there;
+}
+
+SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const noexcept {
+  const Vec3 way = p_W - finder_.nearest(tissue.positions, p_W);
+  const double distance = way.norm();
+  if (!(distance > 0)) return {};
+  return {way / distance, std::max(distance - tool_.radius, 0.0)};
 }
 
 /// No answer: the tool is taken away, and enters afresh with the next step.

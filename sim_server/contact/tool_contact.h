@@ -19,6 +19,12 @@ struct ToolForce {
   bool flagged = false;
 };
 
+/// The touchable surface nearest to a tool.
+struct SurfacePlane {
+  Vec3 normal_W = Vec3::Zero();  ///< towards the tool, unit
+  double gap = 0;                ///< between surface and tool, m; 0 where it touches
+};
+
 /// The tissue as all tools share it. Positions are those of the surface vertices, m, world.
 struct Tissue {
   std::unique_ptr<DeformationModel> model;
@@ -52,6 +58,10 @@ class ToolContact {
   void walk(const Vec3& p_W, Tissue& tissue) noexcept;
   /// Solves again at the place it stands, on the surface as it is free by now.
   void settle(Tissue& tissue) noexcept;
+  /// What it would feel at `p_W` (m); then it stands where it stood, and nothing has changed, bit by bit.
+  ToolForce probe(const Vec3& p_W, Tissue& tissue) noexcept;
+  /// The surface nearest to a tool that stands at `p_W` outside the tissue, as it is now. O(triangles).
+  SurfacePlane nearest(const Vec3& p_W, const Tissue& tissue) const noexcept;
   /// Away from the tissue: no loads, no force.
   void lift(Tissue& tissue) noexcept;
   /// Says that `force` is not settled.
@@ -61,6 +71,8 @@ class ToolContact {
   /// Whether this step has used up its contact linearisations.
   bool exhausted() const;
   const ToolForce& force() const { return force_; }
+  const Vec3& place() const { return place_; }
+  double radius() const { return tool_.radius; }
   int max_nodes() const { return finder_.max_nodes(); }
   std::size_t bytes() const;
 
@@ -82,6 +94,7 @@ class ToolContact {
   std::vector<Vec3> pushed_;        // free under the loads of the other tools; empty where there are none
   std::vector<NodalLoad> loads_;    // of the other tools, then its own
   std::size_t others_ = 0;          // how many of them are the others'
+  std::vector<NodalLoad> kept_;     // its own, while it probes
   Eigen::VectorXd displacement_;    // of the patch nodes, then of the tip
   Vec3 place_ = Vec3::Zero();       // tool centre of the last step
   Vec3 tip_offset_ = Vec3::Zero();  // tip minus tool centre

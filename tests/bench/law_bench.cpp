@@ -27,7 +27,7 @@ void run_law(benchmark::State& state, const ExtrapolatorRow& row) {
   time_calls(state, kFixed, [&] {
     hand.next();
     const Time t{hand.tool().t_ns};
-    if (const auto* s = hand.arrived()) estimate.take({s->number, Time{s->tool_t_ns}, s->p_W, s->f_W}, t);
+    if (const auto* s = hand.arrived()) estimate.take(sample_of(*s), hand.tool().p_W, t);
     return estimate.force(hand.tool().p_W, t);
   });
 }

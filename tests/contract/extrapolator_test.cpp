@@ -23,7 +23,7 @@ TEST_CASE("contract: every extrapolation law") {
           const Sample sample{static_cast<std::uint64_t>(n), Time{n * 33'000'000}, random.vector(0.01),
                               random.vector(2)};
           law->update(sample);
-          CHECK((law->force(sample.p, sample.t) - sample.f).norm() < 1e-12);
+          if (row.exact) CHECK((law->force(sample.p, sample.t) - sample.f).norm() < 1e-12);
         }
       }
       SECTION("a constant force stays constant, wherever and whenever") {

@@ -57,7 +57,8 @@ void Falcon::run_due() {
 
 void Falcon::move_hand(const Words& words) {
   constexpr const char* kForm =
-      "hand DEVICE target|then|place X Y Z [SECONDS], or stiffness|damping|mass|tremor|tremor_rate VALUE ...";
+      "hand DEVICE target|then|place X Y Z [SECONDS], or stiffness|damping|mass|weight|tremor|tremor_rate "
+      "VALUE ...";
   need(words, 2, 99, kForm);
   const std::string& what = words[0];
   if (what == "place" && words.size() == 4) {
@@ -83,6 +84,8 @@ void Falcon::set_hand(const std::string& key, double value) {
     mechanics_.hand.damping = std::min(value, 200.0);
   } else if (key == "mass") {
     mechanics_.mass = std::clamp(value, 0.02, 5.0);
+  } else if (key == "weight") {
+    mechanics_.weight = std::min(value, 2.0);
   } else if (key == "tremor") {
     mechanics_.hand.tremor = std::min(value, 0.01);
   } else if (key == "tremor_rate") {
@@ -127,6 +130,7 @@ std::string Falcon::state(double now) {
   json.add("work_motors", mechanics_.work().motors);
   json.add("work_friction", mechanics_.work().friction);
   json.add("work_stops", mechanics_.work().stops);
+  json.add("work_weight", mechanics_.work().weight);
   json.add("kinetic", mechanics_.kinetic_energy());
   json.add("packets", static_cast<double>(packets_));
   json.add("opens", static_cast<double>(opens_));

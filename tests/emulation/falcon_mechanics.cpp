@@ -13,6 +13,7 @@ constexpr int kPulledOut = 600;                                 // counts: z of 
 constexpr std::array<int, 3> kReference{-600, -650, -700};      // counts: z of about 105 to 101 mm
 constexpr double kInner = 0.072, kOuter = 0.177, kRim = 0.065;  // m: hard stops in z, and around the axis
 constexpr double kStopStiffness = 2e4, kStopDamping = 50;       // N/m, N s/m
+constexpr double kGravity = 9.80665;                            // m/s2, along -y
 constexpr double kSlip = 0.05;                                  // rad/s: Coulomb friction is full from here
 
 /// One-sided spring and damper of a stop that is `depth` (m) deep and pushes along `out`.
@@ -105,14 +106,16 @@ Vec FalconMechanics::friction_force() const {
 void FalconMechanics::step(double dt) {
   hand.advance(dt);
   const Vec by_hand = hand.force(position(), velocity_), by_motors = motor_force(),
-            by_friction = friction_force(), by_stops = stop_force(position(), velocity_);
+            by_friction = friction_force(), by_stops = stop_force(position(), velocity_),
+            by_weight = {0, -weight * kGravity, 0};
   const Vec before = velocity_;
-  velocity_ += dt / mass * (by_hand + by_motors + by_friction + by_stops);
+  velocity_ += dt / (mass + weight) * (by_hand + by_motors + by_friction + by_stops + by_weight);
   const Vec mean = 0.5 * (before + velocity_);  // with it the work is the change of kinetic energy, exactly
   work_.hand += dt * dot(by_hand, mean);
   work_.motors += dt * dot(by_motors, mean);
   work_.friction += dt * dot(by_friction, mean);
   work_.stops += dt * dot(by_stops, mean);
+  work_.weight += dt * dot(by_weight, mean);
   if (!mechanism_.move_to(position() + dt * velocity_)) {
     work_.stops -= kinetic_energy();  // the links are stretched: the hardest stop of all
     velocity_ = {};

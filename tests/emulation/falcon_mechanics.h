@@ -14,7 +14,7 @@ double counts_of(double thigh);
 
 /// Work on the grip since the start (J), each by the force named. Their sum is the kinetic energy.
 struct Work {
-  double hand = 0, motors = 0, friction = 0, stops = 0;
+  double hand = 0, motors = 0, friction = 0, stops = 0, weight = 0;
 };
 
 /// The Falcon's mechanism with a hand on it: a mass that the motors, the hand, friction in the joints and the
@@ -31,7 +31,8 @@ class FalconMechanics {
   explicit FalconMechanics(const Settings& settings);
 
   Hand hand;
-  double mass = 0.2;  ///< kg at the grip, hand included, [0.02, 5]
+  double mass = 0.2;  ///< kg at the grip, hand included, [0.02, 5]; balanced: gravity does not pull at it
+  double weight = 0;  ///< kg hung on the grip, [0, 2]: gravity pulls at it along -y; it moves with the grip
 
   /// Motor commands in DAC units; more than +-4096 is cut. Positive turns the thigh back and pulls the grip
   /// in.
@@ -57,7 +58,7 @@ class FalconMechanics {
   Vec motor_force() const;
   bool mains() const { return mains_; }
   const Work& work() const { return work_; }
-  double kinetic_energy() const { return mass * dot(velocity_, velocity_) / 2; }
+  double kinetic_energy() const { return (mass + weight) * dot(velocity_, velocity_) / 2; }
   double time() const { return time_; }
 
  private:

@@ -11,7 +11,7 @@ using palpate::test::Random;
 namespace {
 
 double sum(const Work& work) {
-  return work.hand + work.motors + work.friction + work.stops;
+  return work.hand + work.motors + work.friction + work.stops + work.weight;
 }
 
 /// Pulls out and pushes in, as the user does for homing.
@@ -28,6 +28,7 @@ TEST_CASE("falcon mechanics: the work of all forces is the kinetic energy") {
   Random random(3);
   FalconMechanics falcon({});
   falcon.hand.tremor = 0.001;
+  falcon.weight = 0.2;
   for (int i = 0; i < 100; ++i) {
     const auto dac = [&] { return static_cast<int>(random.between(-6000, 6000)); };
     falcon.set_dac({dac(), dac(), dac()});
@@ -67,6 +68,19 @@ TEST_CASE("falcon mechanics: at rest hand and motors are in balance, within the 
   const Vec by_hand = falcon.hand.force(falcon.position(), falcon.velocity());
   CHECK(norm(by_hand + falcon.motor_force()) < 1e-3);
   CHECK(by_hand.z > 1);
+}
+
+TEST_CASE("falcon mechanics: a weight pulls down, and swings slower than the grip alone") {
+  FalconMechanics falcon({.coulomb = 0});
+  falcon.weight = 0.2;
+  falcon.advance(3);
+  CHECK(falcon.hand.stiffness * falcon.position().y == Approx(-0.2 * 9.80665).epsilon(1e-6));
+  falcon.hand.stiffness = falcon.hand.damping = falcon.weight = 0;
+  CHECK(falcon.place({0, 0, 0.11}));
+  falcon.weight = 0.2;
+  falcon.advance(0.01);
+  // Half of the mass is balanced: it falls at half of g, less what the joints take.
+  CHECK(falcon.velocity().y == Approx(-0.01 * 9.80665 / 2).epsilon(0.02));
 }
 
 TEST_CASE("falcon mechanics: the hard stops hold the grip, and give back no more than they took") {

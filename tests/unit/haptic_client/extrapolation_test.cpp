@@ -1,7 +1,9 @@
-// The paper's laws on sequences worked out by hand.
+// Laws on sequences worked out by hand.
 #include "common/text.h"
 #include "haptic_client/extrapolation/extrapolator.h"
 #include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/extrapolation/interpolate_with_delay.h"
+#include "haptic_client/extrapolation/kalman.h"
 #include "tests/support/catch.h"
 
 using namespace palpate;
@@ -66,4 +68,23 @@ TEST_CASE("with one sample, or two at the same place or time, the answer is F_n"
     l->update({2, 40ms, {0, 0, 0}, {0, 3, 0}});
     CHECK(l->force({1, 0, 0}, 50ms) == Vec3(0, 3, 0));
   }
+}
+
+TEST_CASE("kalman: on a straight ramp without noise it is linear in time, from a few samples on") {
+  Kalman kalman;
+  const auto ramp = [](double t) { return Vec3(1 + 2 * t, -t, 0.5); };
+  for (int n = 1; n <= 10; ++n) {
+    const double t = 0.033 * n;
+    kalman.update({static_cast<std::uint64_t>(n), from_seconds(t), Vec3::Zero(), ramp(t)});
+  }
+  CHECK((kalman.force(Vec3::Zero(), from_seconds(0.36)) - ramp(0.36)).norm() < 1e-4);
+}
+
+TEST_CASE("interpolate with delay: the force of two periods ago, on the line between samples") {
+  InterpolateWithDelay late;
+  for (int n = 1; n <= 6; ++n)
+    late.update({static_cast<std::uint64_t>(n), Time{n * 40'000'000}, Vec3::Zero(), Vec3(n * n, 0, 0)});
+  // 250 - 80 = 170 ms lies a quarter of the way from sample 4 (160 ms) to 5.
+  CHECK(late.force(Vec3::Zero(), Time{250'000'000})[0] == Approx(16 + 0.25 * 9));
+  CHECK(late.force(Vec3::Zero(), Time{900'000'000})[0] == 36);  // the newest, when all are old
 }

@@ -14,8 +14,8 @@ namespace {
 /// 1 N, then 2 N, 40 ms apart: linear in time, 25 N/s.
 ForceEstimate rising() {
   ForceEstimate estimate(std::make_unique<LinearTime>());
-  REQUIRE(estimate.take({1, 0ms, {0, 0, 0}, {0, 1, 0}}, 1ms));
-  REQUIRE(estimate.take({2, 40ms, {0, 0, 0}, {0, 2, 0}}, 41ms));
+  REQUIRE(estimate.take({1, 0ms, {0, 0, 0}, {0, 1, 0}}, Vec3::Zero(), 1ms));
+  REQUIRE(estimate.take({2, 40ms, {0, 0, 0}, {0, 2, 0}}, Vec3::Zero(), 41ms));
   return estimate;
 }
 
@@ -36,7 +36,7 @@ TEST_CASE("a sample that is not later, from the future, from before time, or not
        {Sample{3, 40ms, {0, 0, 0}, {0, 9, 0}}, Sample{3, 39ms, {0, 0, 0}, {0, 9, 0}},
         Sample{3, 90ms, {0, 0, 0}, {0, 9, 0}}, Sample{3, least, {0, 0, 0}, {0, 9, 0}},
         Sample{3, 60ms, {kNan, 0, 0}, {0, 9, 0}}, Sample{3, 60ms, {0, 0, 0}, {0, kInf, 0}}}) {
-    CHECK_FALSE(estimate.take(wrong, 80ms));
+    CHECK_FALSE(estimate.take(wrong, Vec3::Zero(), 80ms));
     CHECK(estimate.newest().number == 2);
     CHECK(estimate.force({0, 0, 0}, 60ms)[1] == Approx(2.5));
   }
@@ -44,16 +44,16 @@ TEST_CASE("a sample that is not later, from the future, from before time, or not
 
 TEST_CASE("after an outage a law starts afresh") {
   ForceEstimate estimate = rising();
-  REQUIRE(estimate.take({3, 341ms, {0, 0, 0}, {0, 9, 0}}, 341ms));
+  REQUIRE(estimate.take({3, 341ms, {0, 0, 0}, {0, 9, 0}}, Vec3::Zero(), 341ms));
   CHECK(estimate.period() == 0ms);
   CHECK(estimate.force({0, 0, 0}, 341ms)[1] == 9);
-  REQUIRE(estimate.take({4, 641ms, {0, 0, 0}, {0, 3, 0}}, 641ms));  // 300 ms: just no outage
+  REQUIRE(estimate.take({4, 641ms, {0, 0, 0}, {0, 3, 0}}, Vec3::Zero(), 641ms));  // 300 ms: just no outage
   CHECK(estimate.period() == 300ms);
   CHECK(estimate.force({0, 0, 0}, 741ms)[1] == Approx(1));
 }
 
 TEST_CASE("a tool that the newest sample saw free feels nothing") {
   ForceEstimate estimate = rising();
-  REQUIRE(estimate.take({3, 80ms, {0, 0, 0}, {0, 0, 0}}, 80ms));
+  REQUIRE(estimate.take({3, 80ms, {0, 0, 0}, {0, 0, 0}}, Vec3::Zero(), 80ms));
   CHECK(estimate.force({0, 0, 0}, 100ms) == Vec3::Zero());
 }

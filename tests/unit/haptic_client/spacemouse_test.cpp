@@ -62,7 +62,10 @@ class MemoryPort : public UsbTransport {
     return report.size();
   }
   State state() const noexcept override { return line_.state; }
-  const char* trouble() const noexcept override { return line_.plugged ? "" : "no permission"; }
+  /// Lost: unplugged, then; and where it is closed, somebody has locked it.
+  const char* trouble() const noexcept override {
+    return line_.plugged || line_.state == State::kLost ? "" : "no permission";
+  }
 
  private:
   Line& line_;

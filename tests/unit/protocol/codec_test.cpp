@@ -41,12 +41,24 @@ std::vector<Message> one_of_each() {
                     .f_W = {0, 1.5, 0}};
   force.step_ns = 70000;
   force.flags = ForceSample::kInContact;
+  ToolState asking = tool;
+  asking.flags = ToolState::kWantsHere | ToolState::kWantsAhead;
+  asking.lead_ns = 0x0102030;
+  ForceSample whole = force;
+  whole.flags = ForceSample::kHasHere | ForceSample::kHasAhead;
+  whole.surface_v_W = {0.25, 0, -0.5};
+  whole.here = {{-1, -2, -3, -4, -5, -6}, {0, 1, 0}, 0.5};
+  whole.ahead_p_W = {0.5, -1, 2};
+  whole.ahead_f_W = {0, 1.5, 0};
+  whole.ahead = {{-8, 0, 0, -16, 0, -32}, {0, 0, 0}, 0};
   return {Hello{.nonce = 42},
           Welcome{42, 1, 30, 0.005},
           Refuse{42, RefuseReason::kNoFreeTool},
           Bye{},
           tool,
-          force};
+          force,
+          asking,
+          whole};
 }
 
 }  // namespace
@@ -103,6 +115,41 @@ TEST_CASE("golden bytes: written down by hand from protocol/README.md") {
                                                   "0000000000000000"
                                                   "7011010000000000"
                                                   "01000000");
+  CHECK(hex(encoded(kHeader, messages[6])).substr(2 * (28 + 107)) ==
+        "1800"
+        "3020100000000000");
+  CHECK(hex(encoded(kHeader, messages[7])).substr(2 * (28 + 105)) ==
+        "0c000000"  // flags, then: surface velocity, tangent, normal, gap
+        "000000000000d03f"
+        "0000000000000000"
+        "000000000000e0bf"
+        "000000000000f0bf"
+        "00000000000000c0"
+        "00000000000008c0"
+        "00000000000010c0"
+        "00000000000014c0"
+        "00000000000018c0"
+        "0000000000000000"
+        "000000000000f03f"
+        "0000000000000000"
+        "000000000000e03f"
+        // place ahead, force there, tangent, normal, gap
+        "000000000000e03f"
+        "000000000000f0bf"
+        "0000000000000040"
+        "0000000000000000"
+        "000000000000f83f"
+        "0000000000000000"
+        "00000000000020c0"
+        "0000000000000000"
+        "0000000000000000"
+        "00000000000030c0"
+        "0000000000000000"
+        "00000000000040c0"
+        "0000000000000000"
+        "0000000000000000"
+        "0000000000000000"
+        "0000000000000000");
 }
 
 TEST_CASE("what is encoded decodes to the same bytes again") {

@@ -1,0 +1,24 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpate::client {
+
+/// What `haptic_client evaluate` was asked for.
+struct EvaluateOptions {
+  std::vector<std::filesystem::path> captures;
+  std::optional<std::filesystem::path> truth;  ///< absent: the line between the samples is the reference
+  std::filesystem::path out;                   ///< folder; made if it is not there
+  std::vector<std::string> methods;            ///< empty: every law there is
+  std::string world;                           ///< name of what was touched; empty: the name of the capture
+  double blend_ms = 10;                        ///< of the blended rows, (0, 100]
+};
+
+/// Runs every law on the captures (the longest session of each), as it is and blended, and scores it at the
+/// ticks against the truth: a row each in `summary.json` and `summary.csv`. The same input gives the same
+/// bytes but for the timing columns. Throws `Error`. Returns the exit code.
+int evaluate(const EvaluateOptions& options);
+
+}  // namespace palpate::client

@@ -1,0 +1,35 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "common/time.h"
+#include "common/types.h"
+
+namespace palpate::client {
+
+/// The force that would have been right at any time: the samples of a capture that was made at a high rate on
+/// the same motion (`sim_server record --rate 2000 --plain`). 56 bytes a sample.
+class Truth {
+ public:
+  /// Reads the longest session. Throws `Error` when the capture cannot be read or has less than 200 samples a
+  /// second.
+  Truth(const std::filesystem::path& file, const std::function<void(double share)>& progress);
+
+  /// Force (N, world) at `t` (client clock), on the line between the samples around it; none outside them.
+  /// Times that grow are found at once.
+  std::optional<Vec3> at(Time t) const noexcept;
+  double rate_hz() const noexcept { return rate_hz_; }
+
+ private:
+  struct Point {
+    Time t;
+    Vec3 f;
+  };
+  std::vector<Point> points_;
+  mutable std::size_t hint_ = 0;
+  double rate_hz_ = 0;
+};
+
+}  // namespace palpate::client

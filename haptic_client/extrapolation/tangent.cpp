@@ -1,0 +1,48 @@
+#include "haptic_client/extrapolation/tangent.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace palpate::client {
+namespace {
+constexpr double kFarthest = 1e3;  // m
+}
+
+Mat3 restoring_part(const Mat3& k) noexcept {
+  const Mat3 symmetric = 0.5 * (k + k.transpose());
+  Eigen::SelfAdjointEigenSolver<Mat3> solver;
+  solver.compute(symmetric);
+  if (solver.info() != Eigen::Success) return Mat3::Zero();
+  const Mat3& v = solver.eigenvectors();
+  const Mat3 part = v * solver.eigenvalues().cwiseMin(0).asDiagonal() * v.transpose();
+  return part.allFinite() ? part : Mat3(Mat3::Zero());
+}
+
+Vec3 force_at(const Linearised& l, const Vec3& p) noexcept {
+  const Vec3 x = p - l.p;
+  if (!(x.cwiseAbs().maxCoeff() < kFarthest)) return l.f;
+  if (l.f.isZero(0)) {
+    const double depth = l.gap + l.normal.dot(x);
+    return depth < 0 ? Vec3(depth * (l.k * l.normal)) : Vec3(Vec3::Zero());
+  }
+  const Vec3 f = l.f + l.k * x;
+  return f.dot(l.f) > 0 ? f : Vec3(Vec3::Zero());
+}
+
+void Tangent::update(const Sample& sample) noexcept {
+  learned_.update(sample);
+  if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
+  newest_ = sample;
+  if (newest_.here) newest_.here->k = restoring_part(newest_.here->k);
+}
+
+void Tangent::restart() noexcept {
+  learned_.restart();
+  newest_ = {};
+}
+
+Vec3 Tangent::force(const Vec3& p, Time t) const noexcept {
+  if (!newest_.here) return learned_.force(p, t);
+  return force_at(*newest_.here, p - to_seconds(t - newest_.t) * newest_.surface_v);
+}
+
+}  // namespace palpate::client

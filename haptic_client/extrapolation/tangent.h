@@ -1,0 +1,30 @@
+#pragma once
+#include "haptic_client/extrapolation/learned_stiffness.h"
+
+namespace palpate::client {
+
+/// The part of a stiffness that a law may use: symmetric, and without its positive eigenvalues (they push a
+/// tool sideways the further it is: true of a bent surface, unstable in the hand). About 0.3 us.
+Mat3 restoring_part(const Mat3& k) noexcept;
+
+/// A linearisation at `p`: in contact f + K (p - place), zero where it would pull; free of it the surface's
+/// plane, as stiff as the server says it is: K n (gap + n . (p - place)) beyond it. Zero where no surface is
+/// near.
+Vec3 force_at(const Linearised& l, const Vec3& p) noexcept;
+
+/// F = F_n + K_n (P - P_n - v_s (t - t_n)), K_n = dF/dP the server's own tangent at P_n, v_s the velocity of
+/// the organ's surface. The first contact comes at the plane that the sample tells, not a sample late. Where
+/// a sample has no tangent: `LearnedStiffness`. About 10 ns.
+class Tangent : public Extrapolator {
+ public:
+  void update(const Sample& sample) noexcept override;
+  void restart() noexcept override;
+  Vec3 force(const Vec3& p, Time t) const noexcept override;
+  Wants wants() const noexcept override { return {.here = true}; }
+
+ private:
+  LearnedStiffness learned_;
+  Sample newest_;
+};
+
+}  // namespace palpate::client

@@ -1,0 +1,262 @@
+// Up to which stiffness a wall stays stable in a hand: operators x laws x walls x rates x latencies, closed
+// loop in virtual time. Run by `scripts/study stability`; the same arguments give the same bytes.
+#include <atomic>
+#include <cstdio>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "common/error.h"
+#include "common/report.h"
+#include "common/text.h"
+#include "haptic_client/device/simulated_operator.h"
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "tests/support/closed_loop.h"
+
+using namespace palpate;
+using namespace palpate::client;
+using test::ClosedLoop;
+
+namespace {
+
+constexpr double kHapticHz = 1000;
+constexpr double kPress = 1.5;                                            // N, that the hand settles at
+constexpr double kEncoder = 20e-6;                                        // m
+constexpr double kFree = 1.3, kApproach = 0.5, kWatch = 4.0, kEnd = 6.0;  // s
+constexpr double kSwing = 0.15e-3;                                        // m, beyond which, together with
+constexpr double kSpeed = 2e-3;  // m/s RMS, a loop counts as unstable
+constexpr double kSoftest = 20, kStiffest = 51200, kStep = 1.19, kPrecision = 1.05;  // N/m; ratios
+constexpr double kClamp = 12;                                                        // N
+constexpr int kSeeds = 5;
+const std::string kDirect = "direct";
+
+struct Person {
+  const char* name;
+  OperatorSettings hand;
+};
+const std::vector<Person> kPersons{
+    {"light", {.mass = 0.1, .device_damping = 1, .hand_stiffness = 200, .hand_damping = 5}},
+    {"typical", {.mass = 0.3, .device_damping = 2, .hand_stiffness = 300, .hand_damping = 10}},
+    {"heavy_loose", {.mass = 0.6, .device_damping = 1, .hand_stiffness = 100, .hand_damping = 5}}};
+
+struct Link {
+  double rate_hz, delay_ms;
+};
+
+struct Cell {
+  const Person* person;
+  std::string law, world;
+  bool passivity;
+  Link link;
+};
+
+/// What the encoder tells of a hand.
+class Encoder : public Device {
+ public:
+  Encoder(Device& hand, double offset) : hand_(hand), offset_(offset) {}
+  DeviceReading read(Time now) noexcept override {
+    DeviceReading reading = hand_.read(now);
+    place_ = reading.p_D;
+    for (double& x : reading.p_D) x = kEncoder * std::round((x - offset_) / kEncoder) + offset_;
+    return reading;
+  }
+  void write(const Vec3& f_D) noexcept override { hand_.write(f_D); }
+  const Vec3& place() const { return place_; }
+
+ private:
+  Device& hand_;
+  double offset_;
+  Vec3 place_ = Vec3::Zero();
+};
+
+ClosedLoop::Organ organ_of(const std::string& world, double stiffness) {
+  return world == "linear" ? test::wall(stiffness) : test::hertz_wall(stiffness, kPress);
+}
+
+/// How deep the press is, m.
+double depth_of(const std::string& world, double stiffness) {
+  return world == "linear" ? kPress / stiffness : 1.5 * kPress / stiffness;
+}
+
+struct Run {
+  bool stable = false;
+  double force_error = 0;  // RMS, of the RMS of the true force
+};
+
+/// What is seen of a hand that presses.
+class Watch {
+ public:
+  void see(double t, double start, const Vec3& place, const Vec3& felt, const Vec3& right) {
+    if (t > start) {
+      error2_ += (felt - right).squaredNorm();
+      force2_ += right.squaredNorm();
+    }
+    if (t >= kWatch) {
+      ++watched_;
+      low_ = std::min(low_, place[1]);
+      high_ = std::max(high_, place[1]);
+      speed2_ += ((place - place_) * kHapticHz).squaredNorm();
+    }
+    place_ = place;
+  }
+  Run result(bool latched) const {
+    const bool moves = high_ - low_ > kSwing && std::sqrt(speed2_ / watched_) > kSpeed;
+    return {!moves && !latched, force2_ > 0 ? std::sqrt(error2_ / force2_) : 0};
+  }
+
+ private:
+  Vec3 place_ = Vec3::Zero();
+  double low_ = 1, high_ = -1, speed2_ = 0, error2_ = 0, force2_ = 0;
+  int watched_ = 0;
+};
+
+/// The true force at the haptic rate, without a law or a link: what no law can beat by much.
+Run run_direct(Encoder& device, const ClosedLoop::Organ& organ, double start) {
+  Watch watch;
+  for (int tick = 0; tick < kEnd * kHapticHz; ++tick) {
+    const double t = tick / kHapticHz;
+    Vec3 f = organ(device.read(from_seconds(1 + t)).p_D).f;
+    if (f.norm() > kClamp) f *= kClamp / f.norm();
+    device.write(f);
+    watch.see(t, start, device.place(), f, organ(device.place()).f);
+  }
+  return watch.result(false);
+}
+
+Run run(const Cell& cell, double stiffness, int seed) {
+  test::Random random(static_cast<std::uint64_t>(seed) + 17);
+  const double start = kFree + random.between(0, 1 / cell.link.rate_hz);
+  const double target = -depth_of(cell.world, stiffness) - kPress / cell.person->hand.hand_stiffness;
+  SimulatedOperator hand(
+      cell.person->hand,
+      Trajectory({0, start, start + kApproach}, {Vec3(0, 0.005, 0), Vec3(0, 0.005, 0), Vec3(0, target, 0)}));
+  Encoder device(hand, random.between(0, kEncoder));
+  const ClosedLoop::Organ organ = organ_of(cell.world, stiffness);
+  if (cell.law == kDirect) return run_direct(device, organ, start);
+  Pipeline pipeline(find_row(extrapolators(), cell.law, "law", "study").make(), {},
+                    {.max_force = kClamp, .max_slew = 1e5}, {.enabled = cell.passivity});
+  ClosedLoop loop(device, pipeline, organ,
+                  {.haptic_hz = kHapticHz,
+                   .sim_hz = cell.link.rate_hz,
+                   .delay_s = cell.link.delay_ms / 1e3,
+                   .seed = static_cast<std::uint64_t>(seed)});
+  Watch watch;
+  while (loop.seconds() < kEnd) {
+    const Vec3 felt = loop.tick().f_D;
+    watch.see(loop.seconds(), start, device.place(), felt, organ(device.place()).f);
+  }
+  return watch.result(pipeline.limiter().fault() != Fault::kNone);
+}
+
+bool stable(const Cell& cell, double stiffness) {
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    if (!run(cell, stiffness, seed).stable) return false;
+  }
+  return true;
+}
+
+/// The stiffness below the first unstable one, within 5 %; the end of the axis if there is none.
+double threshold(const Cell& cell) {
+  double good = 0, bad = kSoftest;
+  while (bad < kStiffest && stable(cell, bad)) {
+    good = bad;
+    bad *= kStep;
+  }
+  if (bad >= kStiffest) return kStiffest;
+  while (good > 0 && bad / good > kPrecision) {
+    const double middle = std::sqrt(good * bad);
+    (stable(cell, middle) ? good : bad) = middle;
+  }
+  return good;
+}
+
+Json row_of(const Cell& cell, double direct) {
+  const double limit = threshold(cell);
+  double error = 0;
+  for (int seed = 1; seed <= kSeeds && limit > 0; ++seed)
+    error += run(cell, limit / 2, seed).force_error / kSeeds;
+  return {{"operator", cell.person->name},
+          {"method", cell.law},
+          {"passivity", cell.passivity},
+          {"rate_hz", cell.link.rate_hz},
+          {"delay_ms", cell.link.delay_ms},
+          {"world", cell.world},
+          {"stable_to_n_m", limit},
+          {"direct_limit_n_m", direct},
+          {"force_error_percent", 100 * error}};
+}
+
+std::vector<Cell> cells(bool quick) {
+  const std::vector<Link> links = quick
+                                      ? std::vector<Link>{{30, 38}}
+                                      : std::vector<Link>{{30, 0}, {30, 38}, {30, 83}, {10, 105}, {100, 15}};
+  std::vector<Cell> all;
+  for (const char* world : {"linear", "hertz"}) {
+    for (const Person& person : kPersons) {
+      for (const Link& link : links) {
+        for (const ExtrapolatorRow& row : extrapolators()) {
+          for (const bool passivity : {false, true})
+            all.push_back({&person, std::string(row.name), world, passivity, link});
+        }
+      }
+    }
+  }
+  return all;
+}
+
+/// Does `work(k)` for each k below `count` on all cores.
+template <class Work>
+void for_all(std::size_t count, const char* what, Work work) {
+  std::atomic<std::size_t> next{0}, done{0};
+  std::vector<std::jthread> workers;
+  for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i) {
+    workers.emplace_back([&] {
+      for (std::size_t k; (k = next++) < count;) {
+        work(k);
+        fmt::print(stderr, "{}: {} of {}\n", what, ++done, count);
+      }
+    });
+  }
+}
+
+void study(bool quick, const std::filesystem::path& out) {
+  std::filesystem::create_directories(out);
+  const std::vector<Cell> all = cells(quick);
+  std::vector<Cell> walls;  // one for each operator and world
+  for (const Cell& cell : all) {
+    const bool known = std::any_of(walls.begin(), walls.end(), [&](const Cell& wall) {
+      return wall.person == cell.person && wall.world == cell.world;
+    });
+    if (!known) walls.push_back({cell.person, kDirect, cell.world, false, cell.link});
+  }
+  std::vector<double> limits(walls.size());
+  for_all(walls.size(), "direct limits", [&](std::size_t k) { limits[k] = threshold(walls[k]); });
+  const auto direct = [&](const Cell& cell) {
+    const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Cell& w) {
+      return w.person == cell.person && w.world == cell.world;
+    });
+    return limits[static_cast<std::size_t>(wall - walls.begin())];
+  };
+  std::vector<Json> rows(all.size());
+  for_all(all.size(), "laws", [&](std::size_t k) { rows[k] = row_of(all[k], direct(all[k])); });
+  write_whole(out / "stability.csv", csv_of(Json(rows)));
+  write_json(out / "summary.json", rows);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  const bool quick = !arguments.empty() && arguments.front() == "--quick";
+  if (arguments.size() != (quick ? 2u : 1u)) {
+    fmt::print(stderr, "usage: stability_study [--quick] DIR\n");
+    return 2;
+  }
+  try {
+    study(quick, arguments.back());
+  } catch (const Error& e) {
+    fmt::print(stderr, "stability_study: {}\n", e.what());
+    return e.exit_code();
+  }
+  return 0;
+}

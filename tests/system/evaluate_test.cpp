@@ -1,0 +1,79 @@
+// Laws against the truth, offline: the real programs, virtual time.
+#include "tests/support/programs.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate::test;
+using Json = nlohmann::json;
+
+namespace {
+
+struct Study {
+  TemporaryFolder folder;
+  std::string file(const std::string& name) const { return (folder.path() / name).string(); }
+  void record(const std::string& out, const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"record", kScene,    "--trajectory", kClient,
+                                       "--out",  file(out), "--seconds",    "20"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    output_of("sim_server", arguments, 0);
+  }
+};
+
+const Json& row(const Json& rows, const std::string& method, bool blended) {
+  for (const Json& r : rows) {
+    if (r["method"] == method && r["blended"] == blended) return r;
+  }
+  throw std::runtime_error("no row of " + method);
+}
+
+Json without_timings(Json rows) {
+  for (Json& r : rows) {
+    r.erase("ns_per_tick");
+    r.erase("ns_per_arrival");
+  }
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("evaluate: on the liver, 33 Hz and 35 ms, two tangents are far ahead of the paper's laws") {
+  const Study study;
+  study.record("truth.pcap", {"--rate", "2000", "--plain"});
+  study.record("slow.pcap", {"--rate", "33.3", "--delay-ms", "35"});
+  const auto evaluate = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"evaluate", study.file("slow.pcap"), "--out", study.file(out)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    output_of("haptic_client", arguments, 0);
+    return read_json(study.folder.path() / out / "summary.json");
+  };
+  const Json rows = evaluate("a", {"--truth", study.file("truth.pcap"), "--world", "liver"});
+  CHECK(without_timings(rows) ==
+        without_timings(evaluate("b", {"--truth", study.file("truth.pcap"), "--world", "liver"})));
+  const auto mean = [&](const char* law) { return row(rows, law, false)["mean_percent"].get<double>(); };
+  CHECK(mean("constant") > mean("linear_position"));
+  CHECK(mean("linear_position") > 4 * mean("two_tangents"));
+  const Json& one = row(rows, "two_tangents", true);
+  CHECK(one["world"] == "liver");
+  CHECK(one["reference"] == "truth");
+  CHECK(one["rate_hz"].get<double>() == Approx(33.3).epsilon(0.01));
+  CHECK(one["delay_ms"].get<double>() == Approx(36).margin(1.1));  // seen at the next tick
+  CHECK(one["jump_percent"].get<double>() < 1e-6);                 // blended
+  CHECK(one["bytes_per_sample"].get<double>() == Approx(28 + 341).epsilon(0.2));
+  // Without a truth the line between the samples is the reference: as in a replay.
+  const Json lines = evaluate("c", {"--method", "constant"});
+  CHECK(lines.size() == 2);
+  CHECK(lines[0]["reference"] == "line");
+}
+
+TEST_CASE("evaluate: wrong input") {
+  const Study study;
+  study.record("slow.pcap", {"--rate", "33.3"});
+  const auto refused = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"evaluate", study.file("slow.pcap"), "--out", study.file("out")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return output_of("haptic_client", arguments, 2);
+  };
+  CHECK(refused({"--truth", study.file("slow.pcap")}).find("--rate 2000 --plain") != std::string::npos);
+  CHECK(refused({"--method", "linear_tim"}).find("linear_time") != std::string::npos);
+  CHECK(refused({"--truth", study.file("none.pcap")}).find("none.pcap") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(study.folder.path() / "out" / "summary.json"));
+}
