@@ -60,12 +60,16 @@ def values(rows, key):
 
 
 def average(rows):
-    """Over motions: mean of means and quantiles, worst of maxima; None without rows."""
+    """Over motions: the mean, but the worst of maxima and the median of times; None without rows."""
     if not rows:
         return None
-    return {key: (max if key in ("max_percent", "paper_max_percent", "paper_max_force_percent", "jump_percent")
-                  else statistics.fmean)(row[key] for row in rows)
-            for key in rows[0] if key not in TEXTS and key != "blended"}
+
+    def of(key):
+        if "_max_" in f"_{key}" or key == "jump_percent":
+            return max
+        return statistics.median if key.startswith("ns_") else statistics.fmean
+
+    return {key: of(key)(row[key] for row in rows) for key in rows[0] if key not in TEXTS and key != "blended"}
 
 
 def write_table(folder, name, title, header, lines):
