@@ -28,6 +28,7 @@ PAPER_KEYS = ("paper_mean_percent", "paper_max_percent", "paper_max_force_percen
 TEXTS = ("world", "motion", "reference", "method")
 COMPONENTS = ((0, "along x"), (1, "upwards"))  # of the polar drawings
 AXES = ("fx_n", "fy_n", "fz_n")
+TRUE_COLOUR = "#BBBBBB"
 
 
 class Unusable(Exception):
@@ -135,7 +136,7 @@ def plain_numbers(panel):
     from matplotlib import ticker
     for axis in (panel.xaxis, panel.yaxis):
         if axis.get_scale() == "log":
-            axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+            axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 3, 5)))
             axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_formatter(ticker.NullFormatter())
 
@@ -199,7 +200,7 @@ def draw_cost(rows, styles, folder):
                                ha="right" if left else "left", fontsize=10, weight="bold" if on else "normal")
             panel.set(xscale="log", yscale="log", xlabel=cost_name,
                       ylabel=f"{key.removesuffix('_percent')} error (% of {unit} force)")
-            panel.margins(x=0.35, y=0.1)
+            panel.margins(x=0.45, y=0.1)
             plain_numbers(panel)
             panel.grid(alpha=0.3, which="both")
             panel.legend(loc="lower left")
@@ -236,14 +237,14 @@ def draw_figure3(trace, what, folder):
     from matplotlib import pyplot
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(16, 6), dpi=DPI, layout="constrained", width_ratios=(2, 1))
     true = forces_of(trace, "true")
-    left.plot([row["t_s"] for row in trace], norms(true), color="#56B4E9", linewidth=2.5, label="true force")
+    left.plot([row["t_s"] for row in trace], norms(true), color=TRUE_COLOUR, linewidth=4, label="true force")
     samples = draw_samples(left, trace)
     left.plot(*zip(*samples), color="#D55E00", linewidth=1.2, label="the line between samples, the paper's reference")
     left.set(xlabel="time (s)", ylabel="|F| (N)", title=f"Figure 3: the reference; {what}")
     left.set_ylim(top=1.3 * max(norms(true)))  # room for the legend
     left.grid(alpha=0.3)
     left.legend(loc="upper right")
-    polar(right, true, color="#56B4E9", linewidth=1.5)
+    polar(right, true, color="#333333", linewidth=1)
     right.set_title("the same, as a curve of the force")
     save(figure, folder / "figure3.png")
 
@@ -256,10 +257,10 @@ def draw_figure4(traces, law, colour, folder):
     for (what, trace), (left, right) in zip(traces.items(), panels):
         times, true, mine = [row["t_s"] for row in trace], forces_of(trace, "true"), forces_of(trace, law)
         off = [[a - b for a, b in zip(*pair)] for pair in zip(mine, true)]
-        left.plot(times, norms(true), color="#56B4E9", linewidth=2.5, label="reference: the true force")
+        left.plot(times, norms(true), color=TRUE_COLOUR, linewidth=4, label="reference: the true force")
         draw_samples(left, trace)
         left.plot(times, norms(mine), color=colour, linewidth=1.3, label=law)
-        left.plot(times, norms(off), color="#7F7F7F", linewidth=1, label="difference")
+        left.plot(times, norms(off), color="#332288", linewidth=0.8, label="difference")
         left.set(xlabel="time (s)", ylabel="|F| (N)", title=f"{law}; {what}")
         left.set_ylim(top=1.5 * max(norms(true)))  # room for the legend
         left.grid(alpha=0.3)
