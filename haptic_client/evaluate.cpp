@@ -20,7 +20,8 @@ namespace {
 
 /// What a capture was like, and what the laws made of it, plain and blended.
 struct Evaluation {
-  double ticks_hz = 0, path = 0, seconds = 0, age = 0, bytes = 0;  // Hz, m, s, s, B: sums over samples
+  double ticks_hz = 0, path = 0, seconds = 0, age = 0;  // Hz, m, s, s: a sum over samples
+  std::vector<double> bytes;                            // of each law: a sum over samples
   std::uint64_t samples = 0;
   std::vector<Scoring> plain, blended;  // at most kMaxLaws laws each
 };
@@ -41,12 +42,22 @@ double ticks_per_second(const CapturedRun& run) {
   return std::clamp(std::round(run.ticks_hz()), 1.0, 20000.0);
 }
 
+/// Of a sample without the parts that the law has no use for.
+double bytes_for(const std::string& law, protocol::ForceSample sample) {
+  const Wants wants = find_row(extrapolators(), law, "method", "--method").make()->wants();
+  if (!wants.here) sample.flags &= ~protocol::ForceSample::kHasHere;
+  if (!wants.ahead) sample.flags &= ~protocol::ForceSample::kHasAhead;
+  std::array<std::byte, protocol::kMaxDatagram> bytes;
+  return static_cast<double>(protocol::encode({}, sample, bytes));
+}
+
 Evaluation run(const std::filesystem::path& file, const std::vector<std::string>& laws, double blend,
                const Truth* truth, ProgressLine& progress) {
   const CaptureSurvey found = survey(file, [](double) {});
   const auto longest = std::max_element(found.runs.begin(), found.runs.end(),
                                         [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
   Evaluation e;
+  e.bytes.resize(laws.size());
   e.ticks_hz = ticks_per_second(*longest);
   e.plain = scorings(laws, e.ticks_hz, 0, truth);
   e.blended = scorings(laws, e.ticks_hz, blend, truth);
@@ -57,11 +68,10 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
     const Time t{tick.state.t_ns};
     std::optional<Sample> sample;
     if (tick.arrived) {
-      std::array<std::byte, protocol::kMaxDatagram> bytes;
       sample = sample_of(*tick.arrived);
       ++e.samples;
       e.age += to_seconds(t - sample->t);
-      e.bytes += static_cast<double>(protocol::encode({}, *tick.arrived, bytes));
+      for (std::size_t i = 0; i < laws.size(); ++i) e.bytes[i] += bytes_for(laws[i], *tick.arrived);
     }
     for (auto* all : {&e.plain, &e.blended}) {
       for (Scoring& scoring : *all) scoring.tick(tick.state.p_W, t, sample ? &*sample : nullptr, ignored);
@@ -109,8 +119,8 @@ void add_rows(Json& rows, const std::string& world, const Evaluation& e, bool wi
                     {"reference", with_truth ? "truth" : "line"},
                     {"method", scoring.names()[law]},
                     {"blended", blended}};
-        row.update(row_of(scoring, law, costs[number++]));
-        row["bytes_per_sample"] = e.bytes / samples;
+        row.update(row_of(scoring, law, costs[number]));
+        row["bytes_per_sample"] = e.bytes[number++] / samples;
         rows.push_back(row);
       }
     }

@@ -1,4 +1,4 @@
-"""What the scripts share about tetrahedral meshes: reading gmsh files, small geometry."""
+"""What the scripts share about tetrahedral meshes: gmsh files, small geometry."""
 
 import math
 from pathlib import Path
@@ -48,6 +48,21 @@ def read_msh(path):
         if kind == TRIANGLE:
             surfaces += [entity] * count
     return Mesh(points, cells[TRIANGLE], surfaces, cells[TETRAHEDRON])
+
+
+def write_msh(path, points, tetrahedra):
+    """Write an ASCII MSH 4.1 file of one body; nodes count from 1, m."""
+    box = " ".join(f"{bound(axis):.9g}" for bound in (min, max) for axis in zip(*points))
+    lines = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat",
+             "$Entities", "0 0 0 1", f"1 {box} 0 0", "$EndEntities",
+             "$Nodes", f"1 {len(points)} 1 {len(points)}", f"3 1 0 {len(points)}"]
+    lines += map(str, range(1, len(points) + 1))
+    lines += (f"{x:.9g} {y:.9g} {z:.9g}" for x, y, z in points)
+    lines += ["$EndNodes", "$Elements", f"1 {len(tetrahedra)} 1 {len(tetrahedra)}",
+              f"3 1 {TETRAHEDRON} {len(tetrahedra)}"]
+    lines += (f"{tag} {a} {b} {c} {d}" for tag, (a, b, c, d) in enumerate(tetrahedra, 1))
+    lines.append("$EndElements")
+    Path(path).write_text("\n".join(lines) + "\n", encoding="ascii")
 
 
 def skin_of(tetrahedra):

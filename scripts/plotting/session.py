@@ -36,7 +36,8 @@ LAW_STYLES = {
     "linear_position": ("#D55E00", "-"),
     "linear_position_signed": ("#000000", (0, (2, 1.5))),
 }
-OTHER_STYLES = (("#009E73", "-"), ("#CC79A7", "-"), ("#56B4E9", "-"), ("#7F7F7F", "-"))
+OTHER_STYLES = (("#009E73", "-"), ("#CC79A7", "-"), ("#56B4E9", "-"), ("#7F7F7F", "-"), ("#332288", "--"),
+                ("#AA4499", "--"), ("#999933", "--"))
 TICK_COLOUR, STEP_COLOUR, SERVER_COLOUR = "#0072B2", "#009E73", "#000000"
 MISSED_COLOUR, PERIOD_COLOUR = "#882255", "#7F7F7F"
 

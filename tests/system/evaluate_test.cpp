@@ -58,6 +58,7 @@ TEST_CASE("evaluate: on the liver, 33 Hz and 35 ms, two tangents are far ahead o
   CHECK(one["delay_ms"].get<double>() == Approx(36).margin(1.1));  // seen at the next tick
   CHECK(one["jump_percent"].get<double>() < 1e-6);                 // blended
   CHECK(one["bytes_per_sample"].get<double>() == Approx(28 + 341).epsilon(0.2));
+  CHECK(row(rows, "constant", true)["bytes_per_sample"].get<double>() < 160);  // uses none of the tangents
   // Without a truth the line between the samples is the reference: as in a replay.
   const Json lines = evaluate("c", {"--method", "constant"});
   CHECK(lines.size() == 2);

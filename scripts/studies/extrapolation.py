@@ -1,0 +1,216 @@
+#!/usr/bin/python3
+"""Score every extrapolation law against the true force, in every configuration of the study.
+
+Called by scripts/study, which builds the programs first. A cell is a world, a motion and
+a mean speed: its truth is recorded once (a step every 0.5 ms), then a capture for each
+rate and delay, all scored by haptic_client evaluate. The captures are deleted.
+
+The block as stiff as block_stiff.toml is not run: its tissue is linear and the motion is
+given, so that all percentages are those of block.toml.
+
+Writes into --out: summary.json and summary.csv (a row for each configuration and law),
+figures_*.csv (forces of all laws over a few seconds, for the drawings). The same each
+time but for ns_per_tick and ns_per_arrival.
+
+Exit status: 0 done, 1 a program failed, 2 wrong use.
+"""
+
+import argparse
+import csv
+import json
+import sys
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+from workers import Failed, Workers, run_program
+
+ROOT = Path(__file__).resolve().parents[2]
+BIN = ROOT / "build" / "release" / "bin"
+MAKE_MOTIONS = ROOT / "scripts" / "trajectories" / "make_block_motions"
+
+MOTIONS = ("palpation", "slide", "stop_and_go", "curve", "mix")
+TRUTH_HZ = 2000
+SPEED, RATE = 0.017, 33.3  # of the paper's long run
+SPEEDS = (0.01, 0.017, 0.05, 0.1)
+RATES = (80, 40, 33.3, 26.7, 20)
+DELAYS = (0, 35, 80)  # ms
+QUICK_DELAYS, QUICK_SECONDS = (0, 35), 6
+FIGURES = ((20, 0), (RATE, 35))  # rate, delay of the drawings: the paper's, and one with a link
+FIGURES_MOTION, FIGURES_SECONDS, FIGURES_FROM = "mix", 5.5, 1.5
+
+KEYS = ("world", "motion", "speed_m_s", "rate_hz", "delay_ms", "reference", "method", "blended", "mean_percent",
+        "p99_percent", "max_percent", "jump_percent", "rough_percent", "exceed_percent", "paper_mean_percent",
+        "paper_max_percent", "paper_max_force_percent", "energy_percent", "ns_per_tick", "ns_per_arrival",
+        "bytes_per_sample")
+
+# The laws alone: nothing between them and the drawing.
+FIGURES_CLIENT = """score = []
+[passivity]
+enabled = false
+[limits]
+force = 100
+slew = 1e5
+"""
+
+
+class Cell(NamedTuple):
+    world: str
+    motion: str
+    speed: float       # m/s, nominal
+    trajectory: Path
+    seconds: float     # recorded
+    captures: tuple    # (rate in Hz, delay in ms)
+    line: bool         # whether also against the line between samples, the paper's reference
+
+    @property
+    def scene(self):
+        return ROOT / "configs" / "scenes" / f"{self.world}.toml"
+
+
+def cells_of(quick, motions):
+    """`motions`: {speed: folder of CSV files}."""
+    delays = QUICK_DELAYS if quick else DELAYS
+    cells = []
+    for speed, folder in motions.items():
+        for motion in MOTIONS:
+            file = folder / f"block_{motion}.csv"
+            seconds = QUICK_SECONDS if quick else float(file.read_text().split("\n")[-2].split(",")[0])
+            rates = RATES if speed == SPEED and not quick else (RATE,)
+            captures = tuple((rate, delay) for rate in rates for delay in delays)
+            cells.append(Cell("block", motion, speed, file, seconds, captures, speed == SPEED))
+    cells.append(Cell("liver", "palpation", SPEED, ROOT / "configs" / "clients" / "liver.toml",
+                      QUICK_SECONDS if quick else 60, tuple((RATE, delay) for delay in delays), True))
+    return cells
+
+
+def weights_of(cell):
+    """Of truth, one capture, evaluation: about the steps each is worth."""
+    return cell.seconds * TRUTH_HZ, 3000 + 50 * cell.seconds, 1000 * len(cell.captures)
+
+
+def weight_of(cell):
+    truth, capture, scoring = weights_of(cell)
+    return truth + len(cell.captures) * capture + scoring * (2 if cell.line else 1)
+
+
+class Study:
+    def __init__(self, folder, workers):
+        self.folder, self.workers = folder, workers
+
+    def record(self, weight, cell, rate, out, *more):
+        self.workers.command(weight, BIN / "sim_server", "record", cell.scene, "--trajectory", cell.trajectory,
+                             "--rate", rate, "--seconds", cell.seconds, "--out", out, *more)
+
+    def evaluate(self, weight, cell, captures, folder, *more):
+        """Rows, with the nominal speed, rate and delay; `captures`: {(rate, delay): file}."""
+        self.workers.command(weight, BIN / "haptic_client", "evaluate", *captures.values(), "--world", cell.world,
+                             "--out", folder, *more)
+        rows = json.loads((folder / "summary.json").read_text())
+        each = len(rows) // len(captures)
+        for i, row in enumerate(rows):
+            rate, delay = list(captures)[i // each]
+            row.update(motion=cell.motion, speed_m_s=cell.speed, rate_hz=rate, delay_ms=delay)
+        return [{key: row[key] for key in KEYS} for row in rows]
+
+    def run(self, cell):
+        truth_weight, capture_weight, scoring_weight = weights_of(cell)
+        with tempfile.TemporaryDirectory(dir=self.folder) as name:
+            folder = Path(name)
+            self.record(truth_weight, cell, TRUTH_HZ, folder / "truth.pcap", "--plain")
+            captures = {}
+            for rate, delay in cell.captures:
+                captures[rate, delay] = folder / f"{rate}_{delay}.pcap"
+                self.record(capture_weight, cell, rate, captures[rate, delay], "--delay-ms", delay)
+            rows = self.evaluate(scoring_weight, cell, captures, folder, "--truth", folder / "truth.pcap")
+            if cell.line:
+                paper = {(RATE, 0): captures[RATE, 0]}
+                rows += self.evaluate(scoring_weight, cell, paper, folder)
+        return rows
+
+    def replay(self, capture, law):
+        """[{column: text}], a row a tick at 500 Hz."""
+        client, out = self.folder / "figures.toml", capture.with_suffix(".csv")
+        self.workers.command(0, BIN / "haptic_client", "replay", capture, "--client", client, "--method", law,
+                             "--rate", 500, "--out", out)
+        with open(out, newline="", encoding="ascii") as file:
+            return [row for row in csv.DictReader(file) if float(row["t_s"]) >= FIGURES_FROM]
+
+    def figures(self, cell, laws, out):
+        """The force that each law gives, beside the true one, over a few seconds."""
+        (self.folder / "figures.toml").write_text(FIGURES_CLIENT)
+        axes = ("fx_n", "fy_n", "fz_n")
+        truth = self.folder / "figures_truth.pcap"
+        self.record(weights_of(cell)[0], cell, TRUTH_HZ, truth, "--plain")
+        true = {row["t_s"]: row for row in self.replay(truth, "constant")}
+        for rate, delay in cell.captures:
+            capture = self.folder / "figures.pcap"
+            self.record(weights_of(cell)[1], cell, rate, capture, "--delay-ms", delay)
+            forces = {law: self.replay(capture, law) for law in laws}
+            with open(out / f"figures_{rate:g}hz_{delay:g}ms.csv", "w", newline="", encoding="ascii") as file:
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow(["t_s", "sample_t_s", "sample_n", *(f"true_{axis}" for axis in axes),
+                                 *(f"{law}_{axis}" for law in laws for axis in axes)])
+                for i, first in enumerate(forces[laws[0]]):
+                    if first["t_s"] not in true:
+                        continue
+                    writer.writerow([first["t_s"], first["sample_t_s"], first["sample_n"],
+                                     *(f"{float(true[first['t_s']][axis]):.6f}" for axis in axes),
+                                     *(f"{float(forces[law][i][axis]):.6f}" for law in laws for axis in axes)])
+
+
+def make_motions(folder, speeds):
+    made = {}
+    for speed in speeds:
+        made[speed] = folder / f"{speed:g}"
+        made[speed].mkdir()
+        run_program(sys.executable, MAKE_MOTIONS, "--speed", speed, "--output", made[speed])
+    return made
+
+
+def write_summary(rows, out):
+    (out / "summary.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="ascii")
+    with open(out / "summary.csv", "w", newline="", encoding="ascii") as file:
+        writer = csv.DictWriter(file, KEYS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def run(quick, out):
+    with tempfile.TemporaryDirectory(dir=out, prefix="captures.") as name:
+        folder = Path(name)
+        motions = make_motions(folder, (SPEED,) if quick else SPEEDS)
+        cells = cells_of(quick, motions)
+        drawn = Cell("block", FIGURES_MOTION, SPEED, motions[SPEED] / f"block_{FIGURES_MOTION}.csv", FIGURES_SECONDS,
+                     FIGURES, False)
+        workers = Workers("study", 0)
+        study = Study(folder, workers)
+        workers.total = sum(map(weight_of, cells)) + weight_of(drawn)
+        # The longest first, so that no worker is left alone with one at the end.
+        order = sorted(range(len(cells)), key=lambda i: -weight_of(cells[i]))
+        rows_of = dict(zip(order, workers.run(lambda i: study.run(cells[i]), order)))
+        rows = [row for i in range(len(cells)) for row in rows_of[i]]
+        study.figures(drawn, list(dict.fromkeys(row["method"] for row in rows)), out)
+        workers.finish()
+    write_summary(rows, out)
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="an existing folder")
+    parser.add_argument("--quick", action="store_true",
+                        help="one speed, one rate, two delays, 6 s: whether all of it runs")
+    arguments = parser.parse_args()
+    try:
+        run(arguments.quick, arguments.out)
+    except (Failed, OSError) as problem:
+        print(f"study: {problem}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
