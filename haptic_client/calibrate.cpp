@@ -32,14 +32,15 @@ constexpr int kPatience = 30;                         // looks of 100 ms
 
 /// Haptic thread: ticks until the calibration has ended or is asked to stop; writes zero force last.
 void run_loop(const std::stop_token& stop, Device& device, Calibration& calibration, Time period,
-              LatestValue<CalibrationProgress>& progress) noexcept {
+              LatestValue<CalibrationProgress>& progress, std::atomic<std::uint64_t>* heartbeat) noexcept {
   for (Time deadline = now(); !stop.stop_requested() && !calibration.ended();) {
     sleep_until(deadline);
     device.write(calibration.tick(device.read(now())));
     progress.write(calibration.progress());
+    if (heartbeat != nullptr) heartbeat->fetch_add(1, std::memory_order_relaxed);
     deadline = std::max(deadline + period, now());  // what is late is given up
   }
-  device.write(Vec3::Zero());
+  device.stop();
 }
 
 std::string what_to_do(const CalibrationProgress& progress, double mass) {
@@ -152,7 +153,7 @@ int calibrate(ClientConfig config, double mass) {
   require_within(mass, kLeastMass, kMostMass, "--mass", "kg");
   FalconSettings& falcon = config.device.falcon;
   falcon.torque_constant = std::min(falcon.torque_constant, kLowestTorqueConstant);
-  const Guardian guardian({&config, 1});  // before any thread; goes after the device
+  Guardian guardian({&config, 1});  // before any thread; goes after the device
   const DeviceRow& row = find_row(devices(), config.device.name, "device", config.device.where);
   const std::unique_ptr<Device> device = row.make(config.device);
   Calibration calibration(
@@ -161,7 +162,8 @@ int calibrate(ClientConfig config, double mass) {
   bool interrupted = false;
   {
     std::jthread loop([&](const std::stop_token& stop) {
-      run_loop(stop, *device, calibration, row.limits(config.device).min_period, progress);
+      run_loop(stop, *device, calibration, row.limits(config.device).min_period, progress,
+               guardian.heartbeat());
     });
     if (const auto refused = make_realtime(loop.native_handle(), "palpate-haptic", kPriority);
         !refused.empty())

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <list>
 #include <nlohmann/json.hpp>
+#include <poll.h>
 #include <set>
 #include <unistd.h>
 
@@ -59,6 +60,12 @@ void check_together(const std::vector<ClientConfig>& configs) {
   }
 }
 
+/// Whether a line can be printed without waiting: nobody who reads slowly may keep us from Ctrl-C.
+bool takes_output() {
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&out, 1, 0) > 0 && (out.revents & POLLOUT) != 0;
+}
+
 void watch(std::list<HeldTool>& tools, std::optional<double> seconds) {
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   const double period = terminal ? 0.2 : 5;  // s
@@ -67,7 +74,7 @@ void watch(std::list<HeldTool>& tools, std::optional<double> seconds) {
     const double elapsed = to_seconds(now() - start);
     if (seconds && elapsed >= *seconds) break;
     for (HeldTool& tool : tools) tool.look();
-    if (elapsed >= next) {
+    if (elapsed >= next && takes_output()) {
       next = (std::floor(elapsed / period) + 1) * period;
       fmt::print("{}haptic_client: {:6.1f} s", terminal ? "\r" : "", elapsed);
       for (const HeldTool& tool : tools) fmt::print("  {}", tool.progress());
@@ -99,19 +106,20 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   for (const ToolFiles& tool : files) {
     if (tool.trace) check_writable(*tool.trace);
   }
-  const Guardian guardian(configs);  // before any thread; goes after the tools
+  Guardian guardian(configs);  // before any thread; goes after the tools
   std::list<HeldTool> tools;
   for (std::size_t i = 0; i < configs.size(); ++i)
     tools.emplace_back(configs[i], files[i], name_of_tool(configs[i], i + 1, configs.size()),
                        options.seconds);
   // One after the other, so that the first tool of the scene is the first one here.
   if (std::all_of(tools.begin(), tools.end(), [](HeldTool& tool) { return tool.connect(); })) {
-    for (HeldTool& tool : tools) tool.start();
+    for (HeldTool& tool : tools) tool.start(guardian.heartbeat());
     // After the threads, whose stacks a small limit would not hold.
     if (const std::string refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
     watch(tools, options.seconds);
   }
   for (HeldTool& tool : tools) tool.stop();
+  guardian.dismiss();
   Json report = {{"server", configs.front().server}, {"tools", Json::array()}};
   for (const HeldTool& tool : tools) report["tools"].push_back(tool.report());
   print_report(report);

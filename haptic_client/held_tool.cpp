@@ -98,7 +98,8 @@ bool HeldTool::connect() {
   return true;
 }
 
-void HeldTool::start() {
+void HeldTool::start(std::atomic<std::uint64_t>* heartbeat) {
+  loop_.heartbeat = heartbeat;
   haptic_thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
   if (const auto refused = make_realtime(haptic_thread_.native_handle(), "palpate-haptic", kPriority);
       !refused.empty())

@@ -30,8 +30,8 @@ class HeldTool {
 
   /// Asks the server for a tool. Throws when there is none within five seconds; false on Ctrl-C.
   bool connect();
-  /// The haptic loop runs from here on.
-  void start();
+  /// The haptic loop runs from here on, and beats for the guardian (null: there is none).
+  void start(std::atomic<std::uint64_t>* heartbeat);
   void stop();
   void rearm() { loop_.rearm = true; }
 

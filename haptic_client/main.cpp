@@ -160,7 +160,8 @@ int run(int argc, char** argv) {
   const auto* replay = add_replay(app, file, overrides, replaying);
   const auto* calibrate = add_calibrate(app, device, file, overrides, mass);
   const auto* list =
-      app.add_subcommand("devices", "List the devices that are plugged in, and whether they can be used");
+      app.add_subcommand("devices", "List the devices that are plugged in, and whether they can be used")
+          ->footer("Example: haptic_client devices");
   client::EvaluateOptions evaluating;
   const auto* score = add_evaluate(app, evaluating);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;

@@ -26,6 +26,8 @@ class Device {
   virtual DeviceReading read(Time now) noexcept = 0;
   /// Sets the force on the hand (N, device frame) until the next call.
   virtual void write(const Vec3& f_D) noexcept = 0;
+  /// The last call: zero force, and it has left when this returns (half a second at most).
+  virtual void stop() noexcept { write(Vec3::Zero()); }
   /// What the user should know or do, a static text; empty where there is nothing to say. Any thread.
   virtual const char* status() const noexcept { return ""; }
 };

@@ -12,7 +12,7 @@ namespace palpate::client {
 namespace {
 
 /// Waits until everything is through, half a second at most.
-void drain(UsbTransport& port) {
+void drain(UsbTransport& port) noexcept {
   constexpr int kRounds = 250;
   const Time round = std::chrono::milliseconds(2);
   std::array<std::byte, 64> ignored;
@@ -44,7 +44,7 @@ bool silence_falcon(UsbTransport& port) {
   constexpr int kTries = 100, kTimes = 3;
   bool open = false;
   for (int i = 0; i < kTries && !open; ++i) {
-    open = port.open(now());
+    open = port.open(now() + i * std::chrono::seconds(1));  // it looks each time, not twice a second
     if (!open) sleep_until(now() + std::chrono::milliseconds(10));
   }
   if (!open) return false;
@@ -66,9 +66,15 @@ Falcon::Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmwa
       p_D_(falcon::kCentre) {}
 
 Falcon::~Falcon() {
+  stop();
+  port_->close();
+}
+
+/// What is on the way goes first: a port takes one transfer at a time.
+void Falcon::stop() noexcept {
   drain(*port_);
   machine_.command(*port_, {0, 0, 0});
-  port_->close();
+  drain(*port_);
 }
 
 DeviceReading Falcon::read(Time now) noexcept {

@@ -32,10 +32,10 @@ bool silence_falcon(UsbTransport& port);
 class Falcon : public Device {
  public:
   Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmware, double torque_constant);
-  /// Sends zero torque and waits until it went, half a second at most.
   ~Falcon() override;
   DeviceReading read(Time now) noexcept override;
   void write(const Vec3& f_D) noexcept override;
+  void stop() noexcept override;
   const char* status() const noexcept override { return machine_.message(); }
 
  private:

@@ -238,7 +238,10 @@ std::optional<FalconStatus> FalconMachine::status(Time now) const noexcept {
 void FalconMachine::lose(UsbTransport& port, Time now) noexcept {
   const char* const why = port.trouble();
   failing_ = false;
-  give_up(port, now, kLookAgain, why[0] != 0 ? why : kUnplugged);
+  // One that is still there may still push: it is taken up again soon, the first time.
+  const bool soon = why[0] != 0 && (lost_ == Time::zero() || now - lost_ > kLoadAgain);
+  lost_ = now;
+  give_up(port, now, soon ? kProbePeriod : kLookAgain, why[0] != 0 ? why : kUnplugged);
 }
 
 void FalconMachine::give_up(UsbTransport& port, Time now, Time wait, const char* message) noexcept {

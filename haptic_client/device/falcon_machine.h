@@ -59,7 +59,7 @@ class FalconMachine {
   std::vector<std::byte> firmware_;
   FalconPhase phase_ = FalconPhase::kClosed;
   std::atomic<const char*> message_{"looking for a Falcon"};
-  Time entered_{}, sent_{}, heard_{}, moved_{}, retry_at_{};
+  Time entered_{}, sent_{}, heard_{}, moved_{}, retry_at_{}, lost_{};
   bool known_ = false;         // it was there once
   bool failing_ = false;       // it refused its firmware, and was told so
   bool pushes_ = false;        // a torque that a hand feels

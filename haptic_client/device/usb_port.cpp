@@ -298,7 +298,10 @@ bool UsbPort::open(Time now) noexcept {
     u.fill(in, u.interface.in, u.interface.in.size, &Libusb::on_in, 0);
     u.submit(in);
   }
-  return !u.lost;
+  if (!u.lost) return true;
+  close();
+  u.lookout.failed(now, false);
+  return false;
 }
 
 /// Whatever is on the way is called back, within a second.

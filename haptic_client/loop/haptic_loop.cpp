@@ -32,7 +32,7 @@ void HapticLoop::run(const std::stop_token& stop) noexcept {
     tell(result);
     deadline += period_;
   }
-  device_.write(Vec3::Zero());
+  device_.stop();
 }
 
 TickResult HapticLoop::tick() noexcept {
@@ -52,6 +52,7 @@ void HapticLoop::tell(const TickResult& result) noexcept {
   missed.store(stats_.missed, std::memory_order_relaxed);
   newest_newton.store(result.f_D.norm(), std::memory_order_relaxed);
   newest_age_ns.store(pipeline_.age_ns(), std::memory_order_relaxed);
+  if (heartbeat != nullptr) heartbeat->fetch_add(1, std::memory_order_relaxed);
   fault.store(pipeline_.limiter().fault(), std::memory_order_relaxed);
 }
 

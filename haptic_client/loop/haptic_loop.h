@@ -44,7 +44,8 @@ class HapticLoop {
   std::atomic<std::int64_t> newest_age_ns{-1};  ///< -1: no sample yet
   std::atomic<std::uint64_t> ticks{0}, missed{0};
   std::atomic<Fault> fault{Fault::kNone};
-  std::atomic<bool> rearm{false};  ///< set it to clear a latched fault
+  std::atomic<bool> rearm{false};                   ///< set it to clear a latched fault
+  std::atomic<std::uint64_t>* heartbeat = nullptr;  ///< gets one more at every tick; set it before `run`
 
  private:
   TickResult tick() noexcept;

@@ -63,7 +63,7 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
 TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived) noexcept {
   const Time now{tool.t_ns};
   const double dt = seconds_between(felt_, now);
-  if ((tool.flags & ToolState::kRearmed) != 0) {
+  if ((tool.flags & ToolState::kRearmed) != 0 && limiter_.fault() != Fault::kNone) {
     limiter_.rearm();
     watchdog_.restart();
   }

@@ -78,3 +78,49 @@ TEST_CASE("guardian: with a port, another Falcon is left alone") {
   CHECK(hand.said("zero force sent to falcon:2-1"));
   CHECK(hand.falcon.state("3-2")["opens"] == 0);
 }
+
+TEST_CASE("guardian: a client that was stopped is ended, and its device switched off") {
+  Leaning hand("falcon:2-1");
+  hand.client->signal(SIGSTOP);
+  CHECK(hand.falcon.wait_for(
+      "2-1",
+      [](const Json& s) {
+        return s["dac"] == Json({0, 0, 0});
+      },
+      4));
+  CHECK(hand.said("the client stands still"));
+  CHECK(hand.client->wait() == -SIGKILL);
+}
+
+TEST_CASE("guardian: a device that is gone does not keep the other waiting") {
+  const Bench bench;
+  Wall wall(bench.folder.write("two.toml", bytes_of(bench.scene) + "[[tool]]\nradius = 0.005\n").string());
+  Emulator falcons({"falcon:2-1", "falcon:3-2"}, {"--loaded", "--homed"});
+  falcons.command("hand 3-2 place 0 0 0.13");
+  auto client = falcons.start("haptic_client", {"run", bench.client, "--device", "falcon:2-1", "--device",
+                                                "falcon:3-2", "--server", wall.address});
+  REQUIRE(client->wait_for("tool 2 (falcon:3-2): Falcon homed"));
+  falcons.command("hand 3-2 target 0 0 0.105 1");
+  REQUIRE(falcons.wait_for("3-2", [](const Json& s) { return s["force"][2].get<double>() > 2; }));
+  falcons.command("unplug 2-1");
+  REQUIRE(client->wait_for("unplugged"));
+  client->signal(SIGKILL);
+  CHECK(falcons.wait_for(
+      "3-2",
+      [](const Json& s) {
+        return s["dac"] == Json({0, 0, 0});
+      },
+      0.8));
+}
+
+TEST_CASE("Ctrl-C: the force is off before anything is reported") {
+  Leaning hand("falcon:2-1");
+  hand.client->signal(SIGINT);
+  CHECK(hand.falcon.wait_for(
+      "2-1",
+      [](const Json& s) {
+        return s["dac"] == Json({0, 0, 0});
+      },
+      0.5));
+  CHECK(hand.client->wait() == 0);
+}

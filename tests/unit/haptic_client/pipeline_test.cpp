@@ -173,6 +173,13 @@ TEST_CASE("a device that is found somewhere else did not fly there") {
   CHECK(pipeline.stats().path_m == Approx(0.001));
 }
 
+TEST_CASE("re-arming disturbs no tool without a fault") {
+  Pipeline pipeline = make();
+  const Time t = warm_up(pipeline, {0, 1, 0});
+  pipeline.rearm();
+  CHECK(pipeline.tick({.t = t}, nullptr).f_D[1] == Approx(1));
+}
+
 TEST_CASE("re-armed after a fault, the force rises softly") {
   // A force that flips every tick is a storm: it latches off.
   Pipeline pipeline = make();
