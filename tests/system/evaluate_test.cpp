@@ -1,3 +1,4 @@
+#ifdef PALPATE_WITH_CAPTURE
 // Laws against the truth, offline: the real programs, virtual time.
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
@@ -78,3 +79,4 @@ TEST_CASE("evaluate: wrong input") {
   CHECK(refused({"--truth", study.file("none.pcap")}).find("none.pcap") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(study.folder.path() / "out" / "summary.json"));
 }
+#endif
