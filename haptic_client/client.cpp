@@ -118,8 +118,9 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
     if (const std::string refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
     watch(tools, options.seconds);
   }
-  for (HeldTool& tool : tools) tool.stop();
+  for (HeldTool& tool : tools) tool.halt();
   guardian.dismiss();
+  for (HeldTool& tool : tools) tool.stop();
   Json report = {{"server", configs.front().server}, {"tools", Json::array()}};
   for (const HeldTool& tool : tools) report["tools"].push_back(tool.report());
   print_report(report);

@@ -64,9 +64,11 @@ void guard(int pipe, pid_t client, const std::atomic<std::uint64_t>& beats,
     kill(client, SIGKILL);
   }
   for (const ClientConfig& config : configs) {  // at the same time: one must not wait for another
-    if (row_of(config).make_safe == nullptr || fork() != 0) continue;
-    make_safe(config);
-    _exit(0);
+    if (row_of(config).make_safe == nullptr) continue;
+    const pid_t child = fork();
+    if (child > 0) continue;
+    make_safe(config);  // here, where there can be no other process
+    if (child == 0) _exit(0);
   }
   while (wait(nullptr) > 0) {
   }

@@ -108,7 +108,7 @@ void HeldTool::start(std::atomic<std::uint64_t>* heartbeat) {
 
 /// The device first, then the link, so that its last poses still travel, then the recording of them.
 void HeldTool::stop() {
-  haptic_thread_ = {};
+  halt();
   if (net_thread_.joinable()) link_.stop();
   net_thread_ = {};
   recording_thread_ = {};

@@ -32,6 +32,9 @@ class HeldTool {
   bool connect();
   /// The haptic loop runs from here on, and beats for the guardian (null: there is none).
   void start(std::atomic<std::uint64_t>* heartbeat);
+  /// The haptic loop ends; zero force has left.
+  void halt() { haptic_thread_ = {}; }
+  /// The link and the recording end, too, which may take as long as the disk does.
   void stop();
   void rearm() { loop_.rearm = true; }
 
