@@ -56,6 +56,7 @@ Simulation::Simulation(const Scene& scene, const Progress& progress)
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
   progress("extracting the surface", 0);
   surface_ = boundary_surface(mesh_);
+  for (const int vertex : surface_.vertices) rest_.push_back(mesh_.vertices[vertex]);
   auto touchable = touchable_by(scene.tools, surface_, mesh_);
   for (std::size_t i = 0; i < touchable.size(); ++i) {
     if (touchable[i].empty())
@@ -140,6 +141,13 @@ Simulation::Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W,
   const double beyond = linearised.plane.gap + kTouch * contact.radius();
   linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue_).tangent;
   return linearised;
+}
+
+Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) noexcept {
+  ToolContact& contact = tools_[tool];
+  contact.share(tools_, tissue_);
+  const int vertex = contact.nearest_vertex(p_W, tissue_);
+  return contact.free()[vertex] - rest_[vertex];
 }
 
 void Simulation::lift_tool(std::size_t tool) noexcept {

@@ -62,6 +62,8 @@ class ToolContact {
   ToolForce probe(const Vec3& p_W, Tissue& tissue) noexcept;
   /// The surface nearest to a tool that stands at `p_W` outside the tissue, as it is now. O(triangles).
   SurfacePlane nearest(const Vec3& p_W, const Tissue& tissue) const noexcept;
+  /// The touchable vertex nearest to `p_W`, as the surface is now. O(triangles).
+  int nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept;
   /// Away from the tissue: no loads, no force.
   void lift(Tissue& tissue) noexcept;
   /// Says that `force` is not settled.
@@ -73,6 +75,9 @@ class ToolContact {
   const ToolForce& force() const { return force_; }
   const Vec3& place() const { return place_; }
   double radius() const { return tool_.radius; }
+  std::span<const Triangle> touchable() const { return finder_.touchable(); }
+  /// Surface vertices without this tool, after `share`, m.
+  std::span<const Vec3> free() const { return free_; }
   int max_nodes() const { return finder_.max_nodes(); }
   std::size_t bytes() const;
 
