@@ -79,6 +79,8 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   if (tools_.size() > 1) {
     for (ToolContact& tool : tools_) tool.reserve(loads);
   }
+  if (std::any_of(tools_.begin(), tools_.end(), [](const ToolContact& tool) { return tool.has_friction(); }))
+    tissue_.before.assign(tissue_.positions.begin(), tissue_.positions.end());
   places_.resize(tools_.size());
   forces_.resize(tools_.size());
 }
@@ -96,6 +98,8 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<Vec3>>
     tools_[i].walk(*places_W[i], tissue_);
   }
   settle();
+  if (!tissue_.before.empty())
+    std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
   for (std::size_t i = 0; i < tools_.size(); ++i) forces_[i] = tools_[i].force();
   return forces_;
 }
