@@ -15,12 +15,12 @@ namespace palpate::client {
 struct ClientConfig {
   std::string server = "127.0.0.1:45130", server_where = "default";
   double rate_hz = 500;                    ///< haptic ticks per second, [100, 4000]
-  std::string method = "linear_position";  ///< a name of `extrapolators()`
+  std::string method = "local_contact";  ///< a name of `extrapolators()`
   std::string method_where = "default";
   /// Laws that run beside it and are scored; absent: the paper's three and the chosen one; empty: none.
   std::optional<std::vector<std::string>> score;
   std::string score_where = "default";
-  double blend = 0;  ///< s, [0, 0.1]: time constant of what a new sample changes, of all laws; 0: at once
+  double blend = 0.01;  ///< s, [0, 0.1]: time constant of what a new sample changes, of all laws; 0: at once
   DeviceSettings device;
   Workspace workspace;
   Limiter::Settings limits;

@@ -118,7 +118,7 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const SphereTool& t
   ContactForce result;
   result.converged = false;
   auto next = next_.head(3 * (m + 1)), way = way_.head(3 * (m + 1));
-  double change = tool.radius, last_change = tool.radius, step = kFirstStep;
+  double change = effort.expected * tool.radius, last_change = tool.radius, step = kFirstStep;
   int newton_failures = 0, plain_left = 0, onward_run = 0;
   bool newton_worked = false;
   while (true) {

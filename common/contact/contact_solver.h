@@ -63,6 +63,7 @@ class ContactSolver {
   struct Effort {
     int max_iterations = 200;
     double tolerance = 1e-11;  ///< of the tool radius: what still moves at the end
+    double expected = 1;       ///< of the tool radius: how far things may have moved since `u` was right
   };
 
   /// Solves for the tool centre `p_W` (m). `u` (3 (m + 1): nodes, then tip; m) holds the displacement to look

@@ -14,8 +14,9 @@ constexpr int kMostNodes = 96, kMostTriangles = 160;
 // may go on it, as what it presses may move as far again.
 constexpr double kMargin = 0.25, kStride = 0.12;
 constexpr double kMostStrides = 16;  // a tick
-constexpr ContactSolver::Effort kEffort{.max_iterations = 30, .tolerance = 1e-6};
-constexpr double kNear = 0.015;  // of the tool radius: from a solved place on, the force follows its tangent
+constexpr ContactSolver::Effort kEffort{.max_iterations = 30, .tolerance = 1e-6, .expected = 0.004};
+// Of the tool radius: how far from a solved place the force follows its tangent; friction follows the path.
+constexpr double kNear = 0.015, kNearWithFriction = 0.004;
 
 }  // namespace
 
@@ -47,7 +48,8 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) no
     return {};
   }
   if (!state_.placed) enter(surface, p);
-  if (const Vec3 way = p - state_.place; state_.touching && way.norm() <= kNear * surface.tool.radius) {
+  const double near = surface.tool.friction > 0 ? kNearWithFriction : kNear;
+  if (const Vec3 way = p - state_.place; state_.touching && way.norm() <= near * surface.tool.radius) {
     const Vec3 force = state_.force + state_.tangent * way;
     return force.dot(state_.force) > 0 ? force : Vec3(Vec3::Zero());
   }
