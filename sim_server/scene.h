@@ -20,11 +20,23 @@ struct Box {
   }
 };
 
-/// `[[fixed]]`: mesh vertices that never move, by a box or by a surface tag of the mesh.
+/// `[[fixed.motion]]`: the displacement direction x amplitude x sin(2 pi t / period + phase), t the time of
+/// the simulation, which begins at 0.
+struct SupportMotion {
+  Vec3 direction;    ///< unit, world
+  double amplitude;  ///< m, [0, 1]
+  double period;     ///< s, [0.01, 1e4]
+  double phase = 0;  ///< rad, [-1e3, 1e3]
+};
+
+/// `[[fixed]]`: mesh vertices that the tissue does not move, by a box or by a surface tag of the mesh.
 struct FixedRegion {
   std::optional<Box> box;
   std::string surface_tag;
-  std::string where;  ///< "FILE:LINE" of this section
+  std::string where;                     ///< "FILE:LINE" of this section
+  std::vector<SupportMotion> motions{};  ///< prescribed, added up; none: they rest
+
+  bool moves() const { return !motions.empty(); }
 };
 
 /// `[deformation]`.
@@ -62,6 +74,9 @@ struct Scene {
 /// Reads and checks a scene file. Throws `Error` (file, line, key, what was expected). Does not read the
 /// mesh.
 Scene read_scene(const std::filesystem::path& file);
+
+/// Mesh vertices of one `[[fixed]]`. Throws `Error` as `fixed_vertices`.
+std::vector<int> vertices_in(const FixedRegion& region, const TetMesh& mesh);
 
 /// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an
 /// unknown tag.

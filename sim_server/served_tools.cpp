@@ -67,12 +67,16 @@ std::optional<ForceSample> ServedTools::answer(std::size_t tool, const ToolInput
 /// What this tool state asked for beyond the force; nothing is computed that nobody asked for.
 void ServedTools::add_parts(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
                             ForceSample& sample) noexcept {
+  if ((state.flags & (protocol::ToolState::kWantsHere | protocol::ToolState::kWantsAhead)) == 0) return;
+  const Vec3 surface_v_W = simulation_.surface_velocity(tool, state.p_W);
   if ((state.flags & protocol::ToolState::kWantsHere) != 0) {
+    sample.surface_v_W = surface_v_W;
     sample.here = on_the_wire(simulation_.linearise(tool, state.p_W, &force));
     sample.flags |= ForceSample::kHasHere;
   }
   if ((state.flags & protocol::ToolState::kWantsAhead) != 0) {
-    const Vec3 way = to_seconds(Time{state.lead_ns}) * state.v_W;
+    const Vec3 way =
+        to_seconds(Time{state.lead_ns}) * (state.v_W - surface_v_W);  // on the organ as it stands
     sample.ahead_p_W = state.p_W + std::min(1.0, kFarthestAhead / way.norm()) * way;
     if (!sample.ahead_p_W.allFinite()) sample.ahead_p_W = state.p_W;
     const Simulation::Linearised there = simulation_.linearise(tool, sample.ahead_p_W, nullptr);

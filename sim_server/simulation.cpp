@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
 
 #include "common/error.h"
 #include "common/hash.h"
@@ -78,14 +79,16 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   if (tools_.size() > 1) {
     for (ToolContact& tool : tools_) tool.reserve(loads);
   }
+  moves_ = std::any_of(scene.fixed.begin(), scene.fixed.end(), std::mem_fn(&FixedRegion::moves));
   places_.resize(tools_.size());
+  ways_.resize(tools_.size(), Vec3::Zero());
   forces_.resize(tools_.size());
 }
 
 std::span<const ToolForce> Simulation::step(std::span<const std::optional<Vec3>> places_W,
                                             double dt) noexcept {
   assert(places_W.size() == tools_.size());
-  tissue_.free = tissue_.model->free_motion(dt);
+  move_organ(dt);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!places_W[i]) lift_tool(i);
   }
@@ -97,6 +100,22 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<Vec3>>
   settle();
   for (std::size_t i = 0; i < tools_.size(); ++i) forces_[i] = tools_[i].force();
   return forces_;
+}
+
+/// The tools stay where they were on the organ, as far as it goes by its velocity: one that stands on a
+/// surface coming towards it is not left behind inside. From there they walk to where they are now.
+void Simulation::move_organ(double dt) noexcept {
+  if (moves_) {
+    for (std::size_t i = 0; i < tools_.size(); ++i)
+      ways_[i] = dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
+  }
+  tissue_.free = tissue_.model->free_motion(dt);
+  if (!moves_) return;
+  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].carry(ways_[i], tissue_);
+}
+
+Vec3 Simulation::surface_velocity(std::size_t tool, const Vec3& p_W) const noexcept {
+  return moves_ ? tools_[tool].surface_velocity(p_W, tissue_) : Vec3(Vec3::Zero());
 }
 
 ToolForce Simulation::step(const Vec3& p_W, double dt) noexcept {

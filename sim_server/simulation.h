@@ -25,8 +25,9 @@ class Simulation {
   /// With a mesh made elsewhere.
   Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent);
 
-  /// Advances the tissue by `dt` (s) with the tool centres at `places_W` (m), one for each tool; where there
-  /// is none, that tool is lifted. The forces, one for each tool, stay valid until the next step.
+  /// Advances the tissue by `dt` (s >= 0; the run begins at time 0) with the tool centres at `places_W` (m),
+  /// one for each tool; where there is none, that tool is lifted. The forces, one for each tool, stay valid
+  /// until the next step.
   std::span<const ToolForce> step(std::span<const std::optional<Vec3>> places_W, double dt) noexcept;
   /// The same with tool 0 alone, the others lifted.
   ToolForce step(const Vec3& p_W, double dt) noexcept;
@@ -39,6 +40,10 @@ class Simulation {
   };
   /// `felt`: what `step` gave for that place; null: to be found out. At most two contact solves.
   Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) noexcept;
+
+  /// How fast the organ's surface moves by itself where that tool touches it at `p_W` (m), or else nearest to
+  /// there: m/s, world; zero where all supports rest.
+  Vec3 surface_velocity(std::size_t tool, const Vec3& p_W) const noexcept;
 
   /// Takes a tool away: the tissue goes free of it.
   void lift_tool(std::size_t tool = 0) noexcept;
@@ -53,12 +58,15 @@ class Simulation {
   std::uint64_t state_hash() const noexcept;
 
  private:
+  void move_organ(double dt) noexcept;
   void settle() noexcept;
 
   TetMesh mesh_;
   Surface surface_;
   Tissue tissue_;
   std::vector<ToolContact> tools_;
+  bool moves_ = false;                       // the organ, with its supports
+  std::vector<Vec3> ways_;                   // of the surface at each tool in this step, m
   std::vector<std::optional<Vec3>> places_;  // for the step of tool 0 alone
   std::vector<ToolForce> forces_;
 };

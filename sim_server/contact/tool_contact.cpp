@@ -100,6 +100,25 @@ void ToolContact::walk(const Vec3& p_W, Tissue& tissue) noexcept {
   conclude(contact, iterations, tissue);
 }
 
+void ToolContact::carry(const Vec3& way, Tissue& tissue) noexcept {
+  if (placed_) place_ += way;
+  tissue.positions = tissue.model->apply(loads_);
+}
+
+Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue) const noexcept {
+  Vec3 sum = Vec3::Zero();
+  double weights = 0;
+  for (const NodalLoad& load : own_loads()) {
+    const double weight = load.force.norm();
+    sum += weight * tissue.model->free_velocity(load.vertex);
+    weights += weight;
+  }
+  if (weights > 0) return sum / weights;
+  const ContactFinder::Foot foot = finder_.foot(tissue.positions, p_W);
+  for (int i = 0; i < 3; ++i) sum += foot.weight[i] * tissue.model->free_velocity(foot.triangle[i]);
+  return sum;
+}
+
 void ToolContact::settle(Tissue& tissue) noexcept {
   const ContactForce contact = touch(place_, tissue);
   conclude(contact, force_.iterations + contact.iterations, tissue);

@@ -56,6 +56,12 @@ class ToolContact {
   /// Goes to `p_W` (m) on a straight line in strides of half the tool's radius, so that a fast tool does not
   /// jump through the surface.
   void walk(const Vec3& p_W, Tissue& tissue) noexcept;
+  /// The organ has moved under it: the tool goes along by `way` (m) with its loads, so that it stands on the
+  /// surface as before.
+  void carry(const Vec3& way, Tissue& tissue) noexcept;
+  /// How fast the organ's surface moves by itself where the tool touches (the mean by force), or else at the
+  /// point nearest to `p_W`; m/s, world.
+  Vec3 surface_velocity(const Vec3& p_W, const Tissue& tissue) const noexcept;
   /// Solves again at the place it stands, on the surface as it is free by now.
   void settle(Tissue& tissue) noexcept;
   /// What it would feel at `p_W` (m); then it stands where it stood, and nothing has changed, bit by bit.

@@ -16,7 +16,7 @@ std::unique_ptr<DeformationModel> make(const ModelInputs& inputs) {
 constexpr std::array kModels{
     DeformationModelRow{"rigid", "no deformation; force = stiffness x penetration depth", &make<Rigid>},
     DeformationModelRow{"quasi_static", "linear elastic equilibrium by pre-computed compliance",
-                        &make<QuasiStatic>},
+                        &make<QuasiStatic>, true},
 };
 
 }  // namespace
