@@ -60,6 +60,10 @@ DeformationSettings read_deformation(const Config& config) {
   settings.model = config.text("model");
   find_row(deformation_models(), settings.model, "deformation model", settings.where);
   settings.stiffness = config.number("stiffness", {1e-3, 1e6, "N/m"}, settings.stiffness);
+  if (config.has("spring_stiffness"))
+    settings.spring_stiffness = config.vector("spring_stiffness", {1e-3, 1e6, "N/m"});
+  if (config.has("hardening_length"))
+    settings.hardening_length = config.number("hardening_length", {1e-4, 10, "m"});
   config.reject_unknown();
   return settings;
 }
@@ -76,6 +80,20 @@ void require_followed(const Scene& scene) {
   }
 }
 
+void read_grasp(const Config& config, ToolSettings& tool) {
+  if (config.has("grasp_buttons")) {
+    tool.grasp_buttons =
+        static_cast<std::uint16_t>(config.integer("grasp_buttons", {1, 65535, "button bits"}));
+    tool.grasp_where = config.where("grasp_buttons");
+  }
+  if (!config.has("grasp_place")) return;
+  tool.grasp_place = config.vector("grasp_place", {.unit = "m"});
+  if (tool.grasp_buttons != 0)
+    fail("{}: a tool grasps by `grasp_buttons` or always, from `grasp_place` on; remove one",
+         config.where("grasp_place"));
+  tool.grasp_where = config.where("grasp_place");
+}
+
 ToolSettings read_tool(const Config& config) {
   ToolSettings tool;
   tool.where = config.where();
@@ -86,6 +104,7 @@ ToolSettings read_tool(const Config& config) {
     tool.reach = read_box(config, "reach");
     tool.reach_where = config.where("reach");
   }
+  read_grasp(config, tool);
   config.reject_unknown();
   return tool;
 }

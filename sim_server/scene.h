@@ -1,5 +1,6 @@
 #pragma once
 /// What a scene file asks for. An absent section means: not built.
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -41,9 +42,11 @@ struct FixedRegion {
 
 /// `[deformation]`.
 struct DeformationSettings {
-  std::string model;       ///< a name of `deformation_models()`
-  double stiffness = 800;  ///< N/m, (0, 1e6], model "rigid" only
-  std::string where;       ///< "FILE:LINE" of `model`
+  std::string model;                         ///< a name of `deformation_models()`
+  double stiffness = 800;                    ///< N/m, (0, 1e6], model "rigid" only
+  std::optional<Vec3> spring_stiffness{};    ///< along x, y, z, N/m, [1e-3, 1e6], model "spring" only
+  std::optional<double> hardening_length{};  ///< m, [1e-4, 10], likewise; absent: linear
+  std::string where;                         ///< "FILE:LINE" of `model`
 };
 
 /// One `[[tool]]`.
@@ -52,6 +55,11 @@ struct ToolSettings {
   std::optional<Box> reach;  ///< places the tool's surface can get to; absent: the whole organ
   std::string where;         ///< "FILE:LINE" of this section
   std::string reach_where;   ///< "FILE:LINE" of `reach`; empty where it is absent
+  /// Buttons of which any, while pressed, makes it hold the surface near it; 0: none does, [0, 65535].
+  std::uint16_t grasp_buttons = 0;
+  std::optional<Vec3> grasp_place{};  ///< tool centre, m, from where it holds the resting surface always
+  std::string grasp_where{};          ///< "FILE:LINE" of either; empty where both are absent
+  bool grasps() const { return grasp_buttons != 0 || grasp_place.has_value(); }
 };
 
 /// The most `[[tool]]` a scene may have.

@@ -37,6 +37,7 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const ToolInpu
     }
     // The pose of a lost device is the last one known, or none: it touches nothing.
     const bool lost = (inputs[i].state.flags & protocol::ToolState::kDeviceLost) != 0;
+    simulation_.press_buttons(i, inputs[i].state.buttons);
     places_[i].reset();
     if (inputs[i].session != 0 && !lost) places_[i] = inputs[i].state.p_W;
   }

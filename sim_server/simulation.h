@@ -32,6 +32,11 @@ class Simulation {
   /// The same with tool 0 alone, the others lifted.
   ToolForce step(const Vec3& p_W, double dt) noexcept;
 
+  /// What of its device's buttons is pressed, from the next step on: some tools grasp by it.
+  void press_buttons(std::size_t tool, std::uint16_t buttons) noexcept {
+    tools_[tool].press_buttons(buttons);
+  }
+
   /// The force on a tool at `p_W` (m), near where it stands, to first order; without effect on anything.
   struct Linearised {
     Vec3 force = Vec3::Zero();    ///< N

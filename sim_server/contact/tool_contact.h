@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "sim_server/contact/contact_finder.h"
+#include "sim_server/contact/grip.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene.h"
 
@@ -11,7 +12,7 @@ namespace palpate::sim {
 struct ToolForce {
   Vec3 force = Vec3::Zero();    ///< N, world, on the tool at its position
   Mat3 tangent = Mat3::Zero();  ///< dF/dp, N/m, symmetric; the loads of other tools held
-  int contacts = 0;             ///< touching faces, edges and vertices
+  int contacts = 0;             ///< touching faces, edges and vertices; or vertices that it grasps
   int iterations = 0;           ///< contact linearisations, all sub-places together
   /// No settled answer: a wild position (then there is no force), contact that did not converge, several
   /// tools that did not come to an equilibrium, or a way too long for one step (then the force belongs to the
@@ -53,6 +54,10 @@ class ToolContact {
   /// model, and none while the others load nothing.
   bool share(std::span<const ToolContact> tools, Tissue& tissue) noexcept;
 
+  /// What of the device's buttons is pressed: the next `walk` grasps, or lets go.
+  void press_buttons(std::uint16_t buttons) noexcept {
+    if (grip_) grip_->press(buttons);
+  }
   /// Goes to `p_W` (m) on a straight line in strides of half the tool's radius, so that a fast tool does not
   /// jump through the surface.
   void walk(const Vec3& p_W, Tissue& tissue) noexcept;
@@ -83,6 +88,9 @@ class ToolContact {
   std::size_t bytes() const;
 
  private:
+  bool holds() const { return grip_ && grip_->holds(); }
+  void go(const Vec3& p_W, Tissue& tissue) noexcept;
+  void pull(const Vec3& p_W, Tissue& tissue) noexcept;
   void give_up(Tissue& tissue) noexcept;
   bool escaped(const Vec3& p_W) const noexcept;
   void enter(const Vec3& p_W, Tissue& tissue) noexcept;
@@ -96,6 +104,7 @@ class ToolContact {
   ContactFinder finder_;
   ContactSolver solver_;
   ContactPatch patch_;
+  std::optional<Grip> grip_;        // for a tool that grasps
   std::span<const Vec3> free_;      // the tissue's, or pushed_
   std::vector<Vec3> pushed_;        // free under the loads of the other tools; empty where there are none
   std::vector<NodalLoad> loads_;    // of the other tools, then its own
