@@ -12,6 +12,7 @@ namespace {
 constexpr double kReach = 1.25;   // of the tool radius: tissue that touches, and a little around it
 constexpr double kStill = 1e-10;  // of the tool radius
 constexpr int kMaxRounds = 30;
+constexpr int kMaxVertices = 128;
 
 std::vector<int> corners_of(std::span<const Triangle> triangles) {
   std::vector<int> all;
@@ -27,13 +28,13 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
            int max_nodes)
     : buttons_(tool.grasp_buttons),
       reach_(kReach * tool.shape.radius),
-      max_nodes_(static_cast<std::size_t>(max_nodes)),
+      max_nodes_(static_cast<std::size_t>(std::min(max_nodes, kMaxVertices))),
       touchable_(corners_of(touchable)) {
   vertices_.reserve(max_nodes_);
   offsets_.reserve(max_nodes_);
-  patch_.reserve(max_nodes, 1);
-  misfit_.resize(3 * max_nodes);
-  spread_.resize(3 * max_nodes, 3);
+  patch_.reserve(static_cast<int>(max_nodes_), 1);
+  misfit_.resize(3 * static_cast<Eigen::Index>(max_nodes_));
+  spread_.resize(3 * static_cast<Eigen::Index>(max_nodes_), 3);
   if (!tool.grasp_place) return;
   close(*tool.grasp_place, rest);
   if (!holds()) {

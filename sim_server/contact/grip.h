@@ -17,8 +17,8 @@ struct Tissue;
 /// one round where the tissue is linear. Only set-up allocates, nothing throws. One thread.
 class Grip {
  public:
-  /// `rest`: surface vertices, m. At most `max_nodes` are held. Throws `Error` where there is nothing at
-  /// `grasp_place`.
+  /// `rest`: surface vertices, m. At most `max_nodes`, and 128, are held. Throws `Error` where there is
+  /// nothing at `grasp_place`.
   Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const std::array<int, 3>> touchable,
        int max_nodes);
 
