@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "common/time.h"
+#include "sim_server/surface_pager.h"
 
 namespace palpate::sim {
 using protocol::ForceSample;
@@ -25,7 +26,10 @@ ServedTools::ServedTools(Simulation& simulation)
     : simulation_(simulation),
       holders_(simulation.tools()),
       places_(simulation.tools()),
-      outcomes_(simulation.tools()) {}
+      outcomes_(simulation.tools()) {
+  for (std::size_t i = 0; i < simulation.tools(); ++i)
+    surfaces_.push_back(SurfacePager(simulation, i).state());
+}
 
 std::span<const ServedTools::Outcome> ServedTools::step(std::span<const ToolInput> inputs,
                                                         double dt) noexcept {
@@ -84,6 +88,12 @@ void ServedTools::add_parts(std::size_t tool, const protocol::ToolState& state, 
     sample.ahead_f_W = there.force;
     sample.ahead = on_the_wire(there);
     sample.flags |= ForceSample::kHasAhead;
+  }
+  if ((state.flags & protocol::ToolState::kWantsSurface) != 0 && surfaces_[tool].version != 0 &&
+      !simulation_.tool(tool).holds()) {  // what is grasped is no matter of contact
+    sample.surface = surfaces_[tool];
+    sample.surface.shift_W = simulation_.surface_shift(tool, state.p_W);
+    sample.flags |= ForceSample::kHasSurface;
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <functional>
 
 #include "common/error.h"
 #include "common/hash.h"
@@ -57,6 +56,7 @@ Simulation::Simulation(const Scene& scene, const Progress& progress)
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
   progress("extracting the surface", 0);
   surface_ = boundary_surface(mesh_);
+  for (const int vertex : surface_.vertices) rest_.push_back(mesh_.vertices[vertex]);
   auto touchable = touchable_by(scene.tools, surface_, mesh_);
   for (std::size_t i = 0; i < touchable.size(); ++i) {
     if (touchable[i].empty())
@@ -66,7 +66,9 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   tissue_.model =
       find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where)
           .make({scene, mesh_, surface_, fixed, reachable, progress});
-  tissue_.free = tissue_.positions = tissue_.model->free_motion(0);
+  const FreeMotion motion = tissue_.model->free_motion(0);
+  tissue_.free = tissue_.positions = motion.positions;
+  tissue_.velocities = motion.velocities;
   std::size_t loads = 0;
   tools_.reserve(scene.tools.size());
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
@@ -79,7 +81,6 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   if (tools_.size() > 1) {
     for (ToolContact& tool : tools_) tool.reserve(loads);
   }
-  moves_ = std::any_of(scene.fixed.begin(), scene.fixed.end(), std::mem_fn(&FixedRegion::moves));
   places_.resize(tools_.size());
   ways_.resize(tools_.size(), Vec3::Zero());
   forces_.resize(tools_.size());
@@ -105,17 +106,17 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<Vec3>>
 /// The tools stay where they were on the organ, as far as it goes by its velocity: one that stands on a
 /// surface coming towards it is not left behind inside. From there they walk to where they are now.
 void Simulation::move_organ(double dt) noexcept {
-  if (moves_) {
-    for (std::size_t i = 0; i < tools_.size(); ++i)
-      ways_[i] = dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
-  }
-  tissue_.free = tissue_.model->free_motion(dt);
-  if (!moves_) return;
-  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].carry(ways_[i], tissue_);
+  const bool moves = !tissue_.velocities.empty();
+  for (std::size_t i = 0; moves && i < tools_.size(); ++i)
+    ways_[i] = dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
+  const FreeMotion motion = tissue_.model->free_motion(dt);
+  tissue_.free = motion.positions;
+  tissue_.velocities = motion.velocities;
+  for (std::size_t i = 0; moves && i < tools_.size(); ++i) tools_[i].carry(ways_[i], tissue_);
 }
 
 Vec3 Simulation::surface_velocity(std::size_t tool, const Vec3& p_W) const noexcept {
-  return moves_ ? tools_[tool].surface_velocity(p_W, tissue_) : Vec3(Vec3::Zero());
+  return tools_[tool].surface_velocity(p_W, tissue_);
 }
 
 ToolForce Simulation::step(const Vec3& p_W, double dt) noexcept {
@@ -159,6 +160,13 @@ Simulation::Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W,
   const double beyond = linearised.plane.gap + kTouch * contact.radius();
   linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue_).tangent;
   return linearised;
+}
+
+Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) noexcept {
+  ToolContact& contact = tools_[tool];
+  contact.share(tools_, tissue_);
+  const int vertex = contact.nearest_vertex(p_W, tissue_);
+  return contact.free()[vertex] - rest_[vertex];
 }
 
 void Simulation::lift_tool(std::size_t tool) noexcept {

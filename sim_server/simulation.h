@@ -50,10 +50,20 @@ class Simulation {
   /// there: m/s, world; zero where all supports rest.
   Vec3 surface_velocity(std::size_t tool, const Vec3& p_W) const noexcept;
 
+  /// How far the surface nearest to a tool at `p_W` (m) is from its place at rest, free of that tool but
+  /// under all others, m. O(vertices).
+  Vec3 surface_shift(std::size_t tool, const Vec3& p_W) noexcept;
+
   /// Takes a tool away: the tissue goes free of it.
   void lift_tool(std::size_t tool = 0) noexcept;
 
   std::size_t tools() const { return tools_.size(); }
+  const ToolContact& tool(std::size_t i) const { return tools_[i]; }
+  /// Triangles that a tool can touch; corners: surface vertices.
+  std::span<const Triangle> touchable(std::size_t tool) const { return tools_[tool].touchable(); }
+  const DeformationModel& model() const { return *tissue_.model; }
+  /// Surface vertices at rest, m, world.
+  const std::vector<Vec3>& rest() const { return rest_; }
   const TetMesh& mesh() const { return mesh_; }
   const Surface& surface() const { return surface_; }
   std::span<const Vec3> positions() const { return tissue_.positions; }
@@ -68,9 +78,9 @@ class Simulation {
 
   TetMesh mesh_;
   Surface surface_;
+  std::vector<Vec3> rest_;
   Tissue tissue_;
   std::vector<ToolContact> tools_;
-  bool moves_ = false;                       // the organ, with its supports
   std::vector<Vec3> ways_;                   // of the surface at each tool in this step, m
   std::vector<std::optional<Vec3>> places_;  // for the step of tool 0 alone
   std::vector<ToolForce> forces_;

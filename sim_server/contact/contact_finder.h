@@ -17,6 +17,7 @@ class ContactFinder {
   ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed, std::vector<Triangle> touchable,
                 double reach);
 
+  std::span<const Triangle> touchable() const { return triangles_; }
   int max_nodes() const { return max_nodes_; }
   int max_triangles() const { return max_triangles_; }
 

@@ -126,17 +126,16 @@ void ToolContact::carry(const Vec3& way, Tissue& tissue) noexcept {
 }
 
 Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue) const noexcept {
+  if (tissue.velocities.empty()) return Vec3::Zero();
   Vec3 sum = Vec3::Zero();
   double weights = 0;
   for (const NodalLoad& load : own_loads()) {
     const double weight = load.force.norm();
-    sum += weight * tissue.model->free_velocity(load.vertex);
+    sum += weight * tissue.velocities[load.vertex];
     weights += weight;
   }
   if (weights > 0) return sum / weights;
-  const ContactFinder::Foot foot = finder_.foot(tissue.positions, p_W);
-  for (int i = 0; i < 3; ++i) sum += foot.weight[i] * tissue.model->free_velocity(foot.triangle[i]);
-  return sum;
+  return finder_.foot(tissue.positions, p_W).of(tissue.velocities);
 }
 
 void ToolContact::settle(Tissue& tissue) noexcept {
@@ -178,6 +177,20 @@ SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const n
   const double distance = way.norm();
   if (!(distance > 0)) return {};
   return {way / distance, std::max(distance - tool_.radius, 0.0)};
+}
+
+int ToolContact::nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept {
+  int nearest = touchable().front()[0];
+  double best = (tissue.positions[nearest] - p_W).squaredNorm();
+  for (const Triangle& t : touchable()) {
+    for (const int vertex : t) {
+      const double distance = (tissue.positions[vertex] - p_W).squaredNorm();
+      if (distance >= best) continue;
+      best = distance;
+      nearest = vertex;
+    }
+  }
+  return nearest;
 }
 
 /// No answer: the tool is taken away, and enters afresh with the next step.

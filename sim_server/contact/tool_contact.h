@@ -29,8 +29,9 @@ struct SurfacePlane {
 /// The tissue as all tools share it. Positions are those of the surface vertices, m, world.
 struct Tissue {
   std::unique_ptr<DeformationModel> model;
-  std::span<const Vec3> free;       ///< in this step, without any contact
-  std::span<const Vec3> positions;  ///< now, under the loads of all tools
+  std::span<const Vec3> free;        ///< in this step, without any contact
+  std::span<const Vec3> velocities;  ///< of that, m/s; empty: it rests
+  std::span<const Vec3> positions;   ///< now, under the loads of all tools
 };
 
 /// Triangles of the surface that come near enough to the reach box of the tool to be touched there.
@@ -73,22 +74,28 @@ class ToolContact {
   ToolForce probe(const Vec3& p_W, Tissue& tissue) noexcept;
   /// The surface nearest to a tool that stands at `p_W` outside the tissue, as it is now. O(triangles).
   SurfacePlane nearest(const Vec3& p_W, const Tissue& tissue) const noexcept;
+  /// The touchable vertex nearest to `p_W`, as the surface is now. O(triangles).
+  int nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept;
   /// Away from the tissue: no loads, no force.
   void lift(Tissue& tissue) noexcept;
   /// Says that `force` is not settled.
   void flag() noexcept { force_.flagged = true; }
 
   bool placed() const { return placed_; }
+  /// Whether it has tissue in its jaws.
+  bool holds() const { return grip_ && grip_->holds(); }
   /// Whether this step has used up its contact linearisations.
   bool exhausted() const;
   const ToolForce& force() const { return force_; }
   const Vec3& place() const { return place_; }
   double radius() const { return tool_.radius; }
+  std::span<const Triangle> touchable() const { return finder_.touchable(); }
+  /// Surface vertices without this tool, after `share`, m.
+  std::span<const Vec3> free() const { return free_; }
   int max_nodes() const { return finder_.max_nodes(); }
   std::size_t bytes() const;
 
  private:
-  bool holds() const { return grip_ && grip_->holds(); }
   void go(const Vec3& p_W, Tissue& tissue) noexcept;
   void pull(const Vec3& p_W, Tissue& tissue) noexcept;
   void give_up(Tissue& tissue) noexcept;

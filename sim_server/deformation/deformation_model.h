@@ -14,6 +14,12 @@ struct NodalLoad {
   Vec3 force;  ///< N, world
 };
 
+/// A tissue free of contact; valid until it is asked again.
+struct FreeMotion {
+  std::span<const Vec3> positions;        ///< (n)
+  std::span<const Vec3> velocities = {};  ///< (n), m/s, at the end of the step; empty: it rests
+};
+
 /// Bytes that a part of the program holds, for reports.
 struct MemoryPart {
   std::string name;
@@ -27,16 +33,17 @@ class DeformationModel {
  public:
   virtual ~DeformationModel() = default;
 
-  /// Where would you go freely in `dt` (s)? The positions (n) without any contact, valid until the next call.
-  virtual std::span<const Vec3> free_motion(double dt) noexcept = 0;
-
-  /// How fast does this vertex move in that free motion, at its end? m/s.
-  virtual Vec3 free_velocity(int) const noexcept { return Vec3::Zero(); }
+  /// Where would you go freely in `dt` (s), without any contact?
+  virtual FreeMotion free_motion(double dt) noexcept = 0;
 
   /// How compliant are you at these vertices? Fills the leading (3m x 3m) of `patch.compliance` (m/N:
   /// displacement at the end of the step per force held over it; symmetric, positive semi-definite) and
   /// `patch.tool_compliance`.
   virtual void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept = 0;
+
+  /// Whether `compliance` always gives the same, whatever was done before; then any thread may ask for it at
+  /// any time, into a patch of its own.
+  virtual bool compliance_is_constant() const noexcept = 0;
 
   /// Here are the loads: move. Positions (n) under them, valid until the next call. Replaces the loads
   /// before.

@@ -42,6 +42,9 @@ Eigen::VectorXd load_of(const ModelInputs& inputs, const FreeDofs& dofs, const s
 MovingSupports::MovingSupports(const ModelInputs& inputs, const FreeDofs& dofs,
                                const SparseCholesky& factor) {
   const auto region_of = region_of_vertices(inputs.scene, inputs.mesh);
+  for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
+  positions_ = rest_;
+  velocities_.resize(rest_.size(), Vec3::Zero());
   for (std::size_t r = 0; r < inputs.scene.fixed.size(); ++r) {
     for (const SupportMotion& motion : inputs.scene.fixed[r].motions) {
       inputs.progress("computing moving supports", 0);
@@ -60,26 +63,24 @@ MovingSupports::MovingSupports(const ModelInputs& inputs, const FreeDofs& dofs,
   }
 }
 
-void MovingSupports::advance(double dt, std::span<const Vec3> rest, std::span<Vec3> free) noexcept {
+FreeMotion MovingSupports::advance(double dt) noexcept {
   time_ += dt;
-  std::copy(rest.begin(), rest.end(), free.begin());
-  for (Column& column : columns_) {
-    const double omega = 2 * std::numbers::pi / column.motion.period,
-                 angle = omega * time_ + column.motion.phase;
-    const double way = column.motion.amplitude * std::sin(angle);
-    column.speed = column.motion.amplitude * omega * std::cos(angle);
-    for (std::size_t v = 0; v < free.size(); ++v) free[v] += way * column.moved[v];
+  std::copy(rest_.begin(), rest_.end(), positions_.begin());
+  std::fill(velocities_.begin(), velocities_.end(), Vec3::Zero());
+  for (const Column& column : columns_) {
+    const auto& [direction, amplitude, period, phase] = column.motion;
+    const double omega = 2 * std::numbers::pi / period, angle = omega * time_ + phase;
+    const double way = amplitude * std::sin(angle), speed = amplitude * omega * std::cos(angle);
+    for (std::size_t v = 0; v < rest_.size(); ++v) {
+      positions_[v] += way * column.moved[v];
+      velocities_[v] += speed * column.moved[v];
+    }
   }
-}
-
-Vec3 MovingSupports::velocity(int vertex) const noexcept {
-  Vec3 velocity = Vec3::Zero();
-  for (const Column& column : columns_) velocity += column.speed * column.moved[vertex];
-  return velocity;
+  return {positions_, velocities_};
 }
 
 std::size_t MovingSupports::bytes() const {
-  return columns_.size() * (columns_.empty() ? 0 : columns_.front().moved.size()) * sizeof(Vec3);
+  return (columns_.size() + 3) * rest_.size() * sizeof(Vec3);
 }
 
 }  // namespace palpate::sim

@@ -17,11 +17,10 @@ class MovingSupports {
   /// several [[fixed]] belongs to the first.
   MovingSupports(const ModelInputs& inputs, const FreeDofs& dofs, const SparseCholesky& factor);
 
-  /// Goes on by `dt` (s) from time 0 and writes rest + motion into `free`, (surface vertices), m. No
-  /// allocation.
-  void advance(double dt, std::span<const Vec3> rest, std::span<Vec3> free) noexcept;
-  /// Of a surface vertex, m/s.
-  Vec3 velocity(int vertex) const noexcept;
+  /// Goes on by `dt` (s) from time 0. No allocation.
+  FreeMotion advance(double dt) noexcept;
+  /// Where that led the surface, m.
+  std::span<const Vec3> positions() const { return positions_; }
 
   bool any() const { return !columns_.empty(); }
   std::size_t bytes() const;
@@ -30,8 +29,8 @@ class MovingSupports {
   struct Column {
     SupportMotion motion;
     std::vector<Vec3> moved;  // of each surface vertex per unit displacement, no unit
-    double speed = 0;         // of the support now, m/s
   };
+  std::vector<Vec3> rest_, positions_, velocities_;
   std::vector<Column> columns_;
   double time_ = 0;  // s
 };

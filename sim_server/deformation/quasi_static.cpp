@@ -76,20 +76,12 @@ void QuasiStatic::precompute(const ModelInputs& inputs) {
     }
   }
   held_compliance_ = compliance_.diagonal().minCoeff();
-  if (MovingSupports supports(inputs, dofs, factor); supports.any()) {
-    supports_ = std::move(supports);
-    free_ = rest_;
-  }
+  if (MovingSupports supports(inputs, dofs, factor); supports.any()) supports_ = std::move(supports);
   inputs.progress("computing compliance", 1);
 }
 
-std::span<const Vec3> QuasiStatic::free_motion(double dt) noexcept {
-  if (supports_) supports_->advance(dt, rest_, free_);
-  return free();
-}
-
-Vec3 QuasiStatic::free_velocity(int vertex) const noexcept {
-  return supports_ ? supports_->velocity(vertex) : Vec3(Vec3::Zero());
+FreeMotion QuasiStatic::free_motion(double dt) noexcept {
+  return supports_ ? supports_->advance(dt) : FreeMotion{rest_};
 }
 
 void QuasiStatic::compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
@@ -109,7 +101,8 @@ void QuasiStatic::compliance(std::span<const int> vertices, ContactPatch& patch)
 }
 
 std::span<const Vec3> QuasiStatic::apply(std::span<const NodalLoad> loads) noexcept {
-  std::copy(free().begin(), free().end(), positions_.begin());
+  const std::span<const Vec3> free = supports_ ? supports_->positions() : rest_;
+  std::copy(free.begin(), free.end(), positions_.begin());
   for (const NodalLoad& load : loads) {
     const int column = row_[load.vertex];
     if (column < 0) {
@@ -127,10 +120,9 @@ std::span<const Vec3> QuasiStatic::apply(std::span<const NodalLoad> loads) noexc
 }
 
 std::vector<MemoryPart> QuasiStatic::memory() const {
-  std::vector<MemoryPart> parts{
-      {"compliance", static_cast<std::size_t>(compliance_.size()) * sizeof(double)},
-      {"positions", (rest_.size() + free_.size() + positions_.size()) * sizeof(Vec3) +
-                        (row_.size() + reachable_.size()) * sizeof(int)}};
+  std::vector<MemoryPart> parts{{"compliance", static_cast<std::size_t>(compliance_.size()) * sizeof(double)},
+                                {"positions", (rest_.size() + positions_.size()) * sizeof(Vec3) +
+                                                  (row_.size() + reachable_.size()) * sizeof(int)}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
   return parts;
 }

@@ -14,22 +14,21 @@ class QuasiStatic : public DeformationModel {
  public:
   /// Throws `Error` without material or fixed nodes, or when K is singular.
   explicit QuasiStatic(const ModelInputs& inputs);
-  std::span<const Vec3> free_motion(double dt) noexcept override;
-  Vec3 free_velocity(int vertex) const noexcept override;
+  FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  bool compliance_is_constant() const noexcept override { return true; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::vector<MemoryPart> memory() const override;
 
  private:
   void precompute(const ModelInputs& inputs);
-  std::span<const Vec3> free() const noexcept { return free_.empty() ? rest_ : free_; }
 
-  std::vector<Vec3> rest_, free_, positions_;  // free_: empty where all supports rest
+  std::vector<Vec3> rest_, positions_;
   std::vector<int> row_;  // per surface vertex: its first row in compliance_, or -1 (fixed or out of reach)
   std::vector<int> reachable_;  // surface vertex of each block row
   double held_compliance_ = 0;  // m/N, of a fixed vertex under the tool itself: that of the stiffest free one
   Eigen::MatrixXd compliance_;  // m/N
-  std::optional<MovingSupports> supports_;
+  std::optional<MovingSupports> supports_;  // where some move
 };
 
 }  // namespace palpate::sim

@@ -33,8 +33,8 @@ Spring::Spring(const ModelInputs& inputs) : held_(inputs.surface.vertices.size()
   positions_ = rest_;
 }
 
-std::span<const Vec3> Spring::free_motion(double) noexcept {
-  return rest_;
+FreeMotion Spring::free_motion(double) noexcept {
+  return {rest_};
 }
 
 double Spring::stretch_ratio() const noexcept {

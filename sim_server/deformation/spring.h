@@ -13,9 +13,10 @@ class Spring : public DeformationModel {
  public:
   /// Throws `Error` without a `spring_stiffness`.
   explicit Spring(const ModelInputs& inputs);
-  std::span<const Vec3> free_motion(double dt) noexcept override;
+  FreeMotion free_motion(double dt) noexcept override;
   /// T^-1 for every pair of free vertices, under the loads of now.
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  bool compliance_is_constant() const noexcept override { return per_length2_ == 0; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::vector<MemoryPart> memory() const override;
 
