@@ -12,6 +12,7 @@
 #include "haptic_client/device/simulated_operator.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "tests/support/closed_loop.h"
+#include "tests/support/random.h"
 
 using namespace palpate;
 using namespace palpate::client;
@@ -69,7 +70,7 @@ class Encoder : public Device {
   Vec3 place_ = Vec3::Zero();
 };
 
-ClosedLoop::Organ organ_of(const std::string& world, double stiffness) {
+test::Organ organ_of(const std::string& world, double stiffness) {
   return world == "linear" ? test::wall(stiffness) : test::hertz_wall(stiffness, kPress);
 }
 
@@ -111,7 +112,7 @@ class Watch {
 };
 
 /// The true force at the haptic rate, without a law or a link: what no law can beat by much.
-Run run_direct(Encoder& device, const ClosedLoop::Organ& organ, double start) {
+Run run_direct(Encoder& device, const test::Organ& organ, double start) {
   Watch watch;
   for (int tick = 0; tick < kEnd * kHapticHz; ++tick) {
     const double t = tick / kHapticHz;
@@ -131,14 +132,14 @@ Run run(const Cell& cell, double stiffness, int seed) {
       cell.person->hand,
       Trajectory({0, start, start + kApproach}, {Vec3(0, 0.005, 0), Vec3(0, 0.005, 0), Vec3(0, target, 0)}));
   Encoder device(hand, random.between(0, kEncoder));
-  const ClosedLoop::Organ organ = organ_of(cell.world, stiffness);
+  const test::Organ organ = organ_of(cell.world, stiffness);
   if (cell.law == kDirect) return run_direct(device, organ, start);
   Pipeline pipeline(find_row(extrapolators(), cell.law, "law", "study").make(), {},
                     {.max_force = kClamp, .max_slew = 1e5}, {.enabled = cell.passivity});
-  ClosedLoop loop(device, pipeline, organ,
+  ClosedLoop loop(device, pipeline, test::served(organ),
                   {.haptic_hz = kHapticHz,
                    .sim_hz = cell.link.rate_hz,
-                   .delay_s = cell.link.delay_ms / 1e3,
+                   .link = {.delay = cell.link.delay_ms / 1e3},
                    .seed = static_cast<std::uint64_t>(seed)});
   Watch watch;
   while (loop.seconds() < kEnd) {
