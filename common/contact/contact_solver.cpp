@@ -5,10 +5,8 @@
 namespace palpate {
 namespace {
 
-constexpr int kMaxIterations = 200;
 constexpr double kLongestMove = 0.2;  // of the tool radius, per iteration
 constexpr double kFirstStep = 2.0 / 3;
-constexpr double kTolerance = 1e-11;  // of the tool radius
 // How far beyond the radius features are considered: a multiple of what moved last, within shares of the
 // radius.
 constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
@@ -21,6 +19,8 @@ double along(const Contact& c, int tip, const Eigen::Ref<const Eigen::VectorXd>&
 }
 
 }  // namespace
+
+const ContactSolver::Effort ContactSolver::kUsualEffort{};
 
 void ContactPatch::reserve(int max_nodes, int max_triangles) {
   free.reserve(static_cast<std::size_t>(max_nodes));
@@ -73,7 +73,7 @@ void ContactSolver::linearise(const ContactPatch& patch, const SphereTool& tool,
 }
 
 ContactForce ContactSolver::solve(const ContactPatch& patch, const SphereTool& tool, const Vec3& p_W,
-                                  Eigen::Ref<Eigen::VectorXd> u) noexcept {
+                                  Eigen::Ref<Eigen::VectorXd> u, const Effort& effort) noexcept {
   const int m = patch.nodes();
   ContactForce result;
   result.converged = false;
@@ -92,8 +92,8 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const SphereTool& t
     linearise(patch, tool, u);
     solve_linearised(m, next);
     change = (next - u).cwiseAbs().maxCoeff();
-    result.converged = change <= kTolerance * tool.radius;
-    if (result.converged || result.iterations == kMaxIterations) break;
+    result.converged = change <= effort.tolerance * tool.radius;
+    if (result.converged || result.iterations == effort.max_iterations) break;
     // Plain iteration, where Newton fails (ever longer, each time it does): shorter steps where it swings,
     // longer ones where it creeps (towards a snap-through, say), never so long that the surface could pass
     // the tip.
@@ -103,7 +103,7 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const SphereTool& t
     way = std::min(step, kLongestMove * tool.radius / change) * (next - u);
     if (newton_worked && change > last_change) plain_left = 2 << ++newton_failures;
     last_change = change;
-    newton_worked = --plain_left < 0 && newton_step(patch, u, next) &&
+    newton_worked = effort.newton && --plain_left < 0 && newton_step(patch, u, next) &&
                     (next - u).cwiseAbs().maxCoeff() < kLongestMove * tool.radius;
     if (newton_worked) {
       u = next;

@@ -44,11 +44,19 @@ class ContactSolver {
   /// Largest patch it will be given.
   ContactSolver(int max_nodes, int max_triangles);
 
+  /// How hard to try.
+  struct Effort {
+    int max_iterations = 200;
+    double tolerance = 1e-11;  ///< of the tool radius: what still moves at the end
+    bool newton = true;
+  };
+
   /// Solves for the tool centre `p_W` (m). `u` (3 (m + 1): nodes, then tip; m) holds the starting
   /// displacement and gets the solution. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful
   /// of contacts.
   ContactForce solve(const ContactPatch& patch, const SphereTool& tool, const Vec3& p_W,
-                     Eigen::Ref<Eigen::VectorXd> u) noexcept;
+                     Eigen::Ref<Eigen::VectorXd> u, const Effort& effort = kUsualEffort) noexcept;
+  static const Effort kUsualEffort;
 
   /// Nodal forces on the patch nodes (3m, N) of the last solve; the tissue feels minus what the tool feels.
   Eigen::Ref<const Eigen::VectorXd> node_forces() const { return node_force_.head(force_size_); }

@@ -13,7 +13,7 @@ void LocalContact::update(const Sample& sample) noexcept {
   newest_ = sample;
   known_ = false;
   if (!newest_.surface) return;
-  const auto local = local_force(at_rest(sample.p, sample.t));
+  const auto local = contact_.probe(*newest_.surface, at_rest(sample.p, sample.t));
   known_ = local.has_value();
   if (known_) local_ = *local;
 }
@@ -27,7 +27,7 @@ void LocalContact::restart() noexcept {
 
 Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
   if (known_) {
-    const auto local = local_force(at_rest(p, t));
+    const auto local = contact_.go(*newest_.surface, at_rest(p, t));
     if (local) {
       const double size = local_.norm();
       const double share = size > 0 ? std::min(kMostCorrection, local->norm() / size) : 0;
@@ -41,11 +41,6 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
 /// Where `p` is when the organ is at rest.
 Vec3 LocalContact::at_rest(const Vec3& p, Time t) const noexcept {
   return p - newest_.surface->shift - to_seconds(t - newest_.t) * newest_.surface_v;
-}
-
-std::optional<Vec3> LocalContact::local_force(const Vec3& p_rest) noexcept {
-  const Surface& surface = *newest_.surface;
-  return contact_.go(*surface.model, surface.tool, surface.tool_compliance, p_rest);
 }
 
 }  // namespace palpate::client

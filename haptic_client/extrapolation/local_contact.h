@@ -21,7 +21,6 @@ class LocalContact : public Extrapolator {
 
  private:
   Vec3 at_rest(const Vec3& p, Time t) const noexcept;
-  std::optional<Vec3> local_force(const Vec3& p_rest) noexcept;
 
   TwoTangents without_;
   ContactOnPatch contact_;

@@ -106,13 +106,18 @@ void SurfaceModel::take_tile(const SurfacePage& page) noexcept {
   next_slot_ = (next_slot_ + 1) % tiles_.size();
 }
 
-SurfaceModel::Block SurfaceModel::compliance(int i, int j) const noexcept {
+std::optional<Mat3> SurfaceModel::compliance(int i, int j) const noexcept {
   constexpr int kCluster = SurfacePages::kCluster;
   const auto a = static_cast<std::uint32_t>(i / kCluster), b = static_cast<std::uint32_t>(j / kCluster);
+  if (a < b) {
+    const auto other = compliance(j, i);
+    return other ? std::optional<Mat3>(other->transpose()) : std::nullopt;
+  }
   const std::uint16_t slot = slot_of_tile_[pages_.tile(a, b) - pages_.first_tile()];
   if (slot == kNoSlot) return {};
-  const int row = 3 * ((a < b ? j : i) % kCluster), column = 3 * ((a < b ? i : j) % kCluster);
-  return {&tiles_[slot].values[row * kTileStride + column], a < b};
+  using Block = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
+  const float* const first = &tiles_[slot].values[3 * (i % kCluster) * 3 * kCluster + 3 * (j % kCluster)];
+  return Eigen::Map<const Block, 0, Eigen::OuterStride<3 * kCluster>>(first).cast<double>();
 }
 
 /// Collects pages to ask for.

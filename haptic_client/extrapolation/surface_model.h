@@ -17,7 +17,6 @@ class SurfaceModel {
  public:
   static constexpr std::size_t kMostVertices = 4000;  ///< of a model that it takes
   static constexpr std::size_t kRoom = 8192;          ///< tiles of compliance, 900 bytes each
-  static constexpr int kTileStride = 3 * protocol::SurfacePages::kCluster;
 
   SurfaceModel();
 
@@ -38,13 +37,8 @@ class SurfaceModel {
   bool has_shape() const noexcept { return version_ != 0 && shape_missing_ == 0; }
   std::span<const Vec3> rest() const noexcept { return rest_; }
   std::span<const std::array<int, 3>> triangles() const noexcept { return triangles_; }
-  /// The compliance of vertices i and j to each other, m/N: a row-major 3 x 3 at `data` with the stride of a
-  /// tile, to be transposed where `transposed`; null data: not known.
-  struct Block {
-    const float* data = nullptr;
-    bool transposed = false;
-  };
-  Block compliance(int i, int j) const noexcept;
+  /// How vertex i moves per force on vertex j, m/N; nothing where that is not known.
+  std::optional<Mat3> compliance(int i, int j) const noexcept;
 
  private:
   struct Tile {
