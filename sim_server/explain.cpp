@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kSteps = 200;           // timed free, and in contact
 constexpr double kMostVariant = 2e9;  // bytes of compliance that a variant is built with
+constexpr double kUsualFriction = 0.3;
 constexpr double kBytesPerPair = 72;  // of two nodes' compliance: 3 x 3 doubles
 constexpr std::string_view kReading = "reading the mesh";
 
@@ -92,7 +93,8 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
   if (part == "stiffness matrix" || part == "its factor") return "freed after set-up";
   if (const ToolSettings* tool = tool_of(scene, part))
-    return fmt::format("sphere, radius {:g} mm, reaches {} nodes{}", 1e3 * tool->shape.radius,
+    return fmt::format("sphere, radius {:g} mm{}, reaches {} nodes{}", 1e3 * tool->shape.radius,
+                       tool->shape.friction > 0 ? fmt::format(", friction {:g}", tool->shape.friction) : "",
                        reachable_vertices(surface, mesh, {tool, 1}).size(), tool->reach ? "" : ": all");
   return {};
 }
@@ -183,6 +185,17 @@ LeftOut elasticity(const Own& own) {
   return compare(row, variant, own);
 }
 
+/// Of all tools; nothing where one has some.
+std::optional<LeftOut> friction(const Own& own) {
+  Scene variant = own.scene;
+  for (ToolSettings& tool : variant.tools) {
+    if (tool.shape.friction > 0) return {};
+    tool.shape.friction = kUsualFriction;
+  }
+  return compare({.what = fmt::format("friction ({:g})", kUsualFriction), .why = variant.tools.front().where},
+                 variant, own);
+}
+
 /// The compliance of all free vertices, inside the organ and out of reach too.
 LeftOut whole_compliance(const Own& own) {
   const TetMesh& mesh = own.simulation.mesh();
@@ -197,6 +210,7 @@ LeftOut whole_compliance(const Own& own) {
 std::vector<LeftOut> left_out(const Own& own) {
   std::vector<LeftOut> rows;
   if (const auto row = beyond_reach(own)) rows.push_back(*row);
+  if (const auto row = friction(own)) rows.push_back(*row);
   if (own.scene.deformation.model == "rigid") rows.push_back(elasticity(own));
   if (is_quasi_static(own.scene)) rows.push_back(whole_compliance(own));
   rows.push_back({.what = "recording",

@@ -100,6 +100,7 @@ ToolSettings read_tool(const Config& config) {
   const std::string shape = config.text("shape", "sphere");
   if (shape != "sphere") fail("{}: unknown shape \"{}\"; known: sphere", config.where("shape"), shape);
   tool.shape.radius = config.number("radius", {1e-5, 0.05, "m"}, tool.shape.radius);
+  tool.shape.friction = config.number("friction", {0, 2, "no unit"}, tool.shape.friction);
   if (config.has("reach")) {
     tool.reach = read_box(config, "reach");
     tool.reach_where = config.where("reach");

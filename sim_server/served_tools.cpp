@@ -14,7 +14,7 @@ namespace {
 constexpr double kFarthestAhead = 2e-3;  // m; facts of the study: without a cap, fast tools fare worse
 
 protocol::Linearisation on_the_wire(const Simulation::Linearised& l) noexcept {
-  const Mat3& k = l.tangent;
+  const Mat3 k = 0.5 * (l.tangent + l.tangent.transpose());  // of friction, the part that stores energy
   return {.tangent = {k(0, 0), k(0, 1), k(0, 2), k(1, 1), k(1, 2), k(2, 2)},
           .normal_W = l.plane.normal_W,
           .gap = l.plane.gap};

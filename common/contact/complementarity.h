@@ -21,6 +21,8 @@ class ComplementaritySolver {
   bool solve(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix, const Eigen::Ref<const Eigen::VectorXd>& gap,
              Eigen::Ref<Eigen::VectorXd> lambda) noexcept;
 
+  std::size_t bytes() const { return sizeof(double) * static_cast<std::size_t>(factor_.size()); }
+
  private:
   bool pivot_blocks(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
                     const Eigen::Ref<const Eigen::VectorXd>& gap,

@@ -1,12 +1,14 @@
 // Second-order work of ContactSolver on the features that touch: Newton steps, and the tangent dF/dp.
 //
-// With y = (nodes, tip) and gap_k(y), a solved state obeys u = C sum_k lambda_k J_k^T and gap_k = -eps
-// lambda_k. Write S = sum_k lambda_k Hess(gap_k) for the curvature of the gaps and C~ = (I - C S)^-1 C for
-// the compliance it leaves.
-//   Newton    u+ = C~ (J^T lambda+ - S u),   0 <= lambda+ _|_ (gap - J u - J C~ S u) + (J C~ J^T + eps)
-//   lambda+ >= 0 tangent   moving the tool by dP moves the tip coordinate by E dP:
-//             (J C~ J^T + eps) dlambda = -J (E + C~ S E) dP,     du = C~ (J^T dlambda + S E dP)
-//             dF = E^T (J^T dlambda + S (E dP + du))
+// With y = (nodes, tip), z the forces in the rows of the contacts (lambda, and with friction the components
+// of t across the normal) and w(y) their gaps and slips, a solved state obeys u = C A z with A = W^T (n,
+// across), and w = -eps z or what friction says. Write B = dw/dy, S = d(A z)/dy at fixed z, and C~ = (I - C
+// S)^-1 C for the compliance that this curvature leaves. Without friction A = B^T, and S is symmetric.
+//   Newton    u+ = C~ (A z+ - S u),   z+ and w+ = (w - B u - B C~ S u) + (B C~ A + eps) z+ in contact
+//   tangent   moving the tool by dP moves the tip coordinate by E dP:
+//             dw = B (E + C~ S E) dP + (B C~ A + eps) dz, and dz as contact then says;
+//             du = C~ (A dz + S E dP),   dF = E^T (A dz + S (E dP + du))
+// A direction d across the normal turns with it and no more: dd = -n (d . dn).
 #include <algorithm>
 
 #include "common/contact/contact_solver.h"
@@ -18,7 +20,8 @@ namespace palpate {
 Mat3 ContactSolver::tangent(const ContactPatch& patch) noexcept {
   if (considered_.empty()) return Mat3::Zero();
   const Mat3 k = tangent_of_considered(patch);
-  return k.allFinite() ? Mat3(0.5 * (k + k.transpose())) : Mat3::Zero();
+  if (!k.allFinite()) return Mat3::Zero();
+  return friction_ > 0 ? k : Mat3(0.5 * (k + k.transpose()));
 }
 
 void ContactSolver::collect_nodes(int tip) noexcept {
@@ -35,15 +38,18 @@ void ContactSolver::collect_nodes(int tip) noexcept {
   add(tip);
 }
 
-void ContactSolver::differentiate_gaps(int tip) noexcept {
-  const auto n = static_cast<Eigen::Index>(considered_.size()),
+void ContactSolver::differentiate_contacts(int tip) noexcept {
+  const int rows = rows_of_contact();
+  const auto n = rows * static_cast<Eigen::Index>(considered_.size()),
              size = 3 * static_cast<Eigen::Index>(nodes_.size());
   auto curvature = curvature_.topLeftCorner(size, size);
   auto jacobian = jacobian_.topLeftCorner(n, size);
   curvature.setZero();
   jacobian.setZero();
-  for (Eigen::Index row = 0; row < n; ++row) {
-    const Contact& c = contacts_[considered_[row]];
+  if (rows > 1) spread_.topLeftCorner(size, n).setZero();
+  for (Eigen::Index row = 0; row < n; row += rows) {
+    const int k = considered_[static_cast<std::size_t>(row / rows)];
+    const Contact& c = contacts_[k];
     std::array<Vec3, 3> x;
     std::array<int, 4> slot;
     for (int i = 0; i < c.size; ++i) {
@@ -53,7 +59,11 @@ void ContactSolver::differentiate_gaps(int tip) noexcept {
     }
     slot[c.size] = slot_of_node_[tip];
     jacobian.block<1, 3>(row, 3 * slot[c.size]) = c.normal.transpose();
-    const double force = lambda_[considered_[row]];
+    if (rows > 1) {
+      differentiate_friction(k, row, {slot.data(), static_cast<std::size_t>(c.size) + 1});
+      continue;
+    }
+    const double force = lambda_[k];
     if (force == 0) continue;
     const SimplexHessian h =
         distance_hessian({x.data(), static_cast<std::size_t>(c.size)},
@@ -62,6 +72,42 @@ void ContactSolver::differentiate_gaps(int tip) noexcept {
       for (int j = 0; j <= c.size; ++j) {
         curvature.block<3, 3>(3 * slot[i], 3 * slot[j]) += force * h.block<3, 3>(3 * i, 3 * j);
       }
+    }
+  }
+}
+
+/// What a contact with friction adds to A, to the rows of B across the normal, and to S. `slot`: of its
+/// nodes, then of the tip.
+void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
+                                           std::span<const int> slot) noexcept {
+  const Contact& c = contacts_[contact];
+  const Mat3& frame = frames_[contact];
+  std::array<Vec3, 3> x, moved;
+  for (int i = 0; i < c.size; ++i) {
+    x[i] = deformed_[c.node[i]];
+    moved[i] = x[i] - was_[c.node[i]];
+  }
+  WeightGradient weights;
+  const SimplexHessian h =
+      distance_hessian({x.data(), static_cast<std::size_t>(c.size)},
+                       {c.weight.data(), static_cast<std::size_t>(c.size)}, c.normal, c.distance, &weights);
+  const Eigen::Matrix<double, 3, 12> turn = h.middleRows<3>(3 * c.size);  // dn
+  const Vec3 force = frame * lambda_.segment<3>(3 * contact);
+  // d travel - (normal . travel) dn, without what the nodes and the tip themselves do; and d force.
+  Eigen::Matrix<double, 3, 12> slip = -c.normal.dot(travel(c)) * turn, bend;
+  for (int i = 0; i < c.size; ++i) slip -= moved[i] * weights.row(i);
+  bend =
+      lambda_[3 * contact] * turn - c.normal * ((force - lambda_[3 * contact] * c.normal).transpose() * turn);
+  for (int j = 0; j <= c.size; ++j) {
+    const double share = j == c.size ? 1 : -c.weight[j];
+    const int at = 3 * slot[j];
+    spread_.block<3, 3>(at, row) = share * frame;
+    jacobian_.block<2, 3>(row + 1, at) =
+        frame.rightCols<2>().transpose() * (share * Mat3::Identity() + slip.middleCols<3>(3 * j));
+    for (int i = 0; i <= c.size; ++i) {
+      Mat3 block = (i == c.size ? 1 : -c.weight[i]) * bend.middleCols<3>(3 * j);
+      if (i < c.size) block -= force * weights.row(i).segment<3>(3 * j);
+      curvature_.block<3, 3>(3 * slot[i], at) += block;
     }
   }
 }
@@ -84,16 +130,22 @@ bool ContactSolver::compute_effective_compliance(const ContactPatch& patch) noex
 
 bool ContactSolver::prepare_considered(const ContactPatch& patch) noexcept {
   collect_nodes(patch.nodes());
-  differentiate_gaps(patch.nodes());
+  differentiate_contacts(patch.nodes());
   if (!compute_effective_compliance(patch)) return false;
-  const auto n = static_cast<Eigen::Index>(considered_.size()),
+  const int rows = rows_of_contact();
+  const auto n = rows * static_cast<Eigen::Index>(considered_.size()),
              size = 3 * static_cast<Eigen::Index>(nodes_.size());
   const auto jacobian = jacobian_.topLeftCorner(n, size);
-  auto response = response_.topLeftCorner(size, n);  // C~ J^T; the columns of the solve are no longer needed
-  response.noalias() = effective_.topLeftCorner(size, size) * jacobian.transpose();
+  auto response = response_.topLeftCorner(size, n);  // C~ A; the columns of the solve are no longer needed
+  if (rows > 1) {
+    response.noalias() = effective_.topLeftCorner(size, size) * spread_.topLeftCorner(size, n);
+  } else {
+    response.noalias() = effective_.topLeftCorner(size, size) * jacobian.transpose();
+  }
   auto delassus = delassus_.topLeftCorner(n, n);
   delassus.noalias() = jacobian * response;
-  delassus.diagonal().array() += kContactCompliance;
+  for (Eigen::Index row = 0; row < n; ++row)
+    delassus(row, row) += row % rows == 0 ? kContactCompliance : kFrictionCompliance;
   return true;
 }
 
@@ -102,7 +154,7 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
   considered_.clear();
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) considered_.push_back(k);
   if (considered_.empty() || !prepare_considered(patch)) return false;
-  const auto n = static_cast<Eigen::Index>(considered_.size()),
+  const auto n = rows_of_contact() * static_cast<Eigen::Index>(considered_.size()),
              size = 3 * static_cast<Eigen::Index>(nodes_.size());
   const auto jacobian = jacobian_.topLeftCorner(n, size);
   auto local = moved_.col(0).head(size), load = moved_.col(1).head(size), bent = moved_.col(2).head(size);
@@ -112,15 +164,24 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
   load.noalias() = curvature_.topLeftCorner(size, size) * local;
   bent.noalias() = effective_.topLeftCorner(size, size) * load;  // C~ S u
   auto gap = rhs_.col(0).head(n), lambda = rhs_.col(1).head(n);
-  gap = gap_.head(n);  // which is gap - J u already
+  gap = gap_.head(n);  // which is w - A^T u already
   gap.noalias() -= jacobian * bent;
-  if (!complementarity_.solve(delassus_.topLeftCorner(n, n), gap, lambda)) return false;
-  // Force at the new geometry, to first order: J^T lambda+ + S (u+ - u).
+  if (friction_ > 0) {
+    gap.noalias() += spread_.topLeftCorner(size, n).transpose() * local;
+    gap.noalias() -= jacobian * local;
+  }
+  if (!solve_contacts(gap, lambda)) return false;
+  remember(lambda);
+  // Force at the new geometry, to first order: A z+ + S (u+ - u).
   const auto response = response_.topLeftCorner(size, n);
   bent = -bent - local;  // becomes u+ - u
   bent.noalias() += response * lambda;
   load.noalias() = curvature_.topLeftCorner(size, size) * bent;
-  load.noalias() += jacobian.transpose() * lambda;
+  if (friction_ > 0) {
+    load.noalias() += spread_.topLeftCorner(size, n) * lambda;
+  } else {
+    load.noalias() += jacobian.transpose() * lambda;
+  }
   next.setZero();
   const auto rows = 3 * static_cast<Eigen::Index>(patch.nodes());
   for (Eigen::Index i = 0; i + 1 < static_cast<Eigen::Index>(nodes_.size()); ++i) {
@@ -132,20 +193,44 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
   return next.allFinite();
 }
 
+/// Contact forces that follow where gaps and slips are about to change by `change`, which they overwrite.
+bool ContactSolver::differentiate_forces(
+    Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept {
+  const auto n = change.rows();
+  if (friction_ == 0) {
+    change = -change;
+    return gauss_solve(delassus_.topLeftCorner(n, n), change);
+  }
+  auto force = gap_.head(n), slack = slack_.head(n);
+  for (Eigen::Index i = 0; i < n; i += 3) {
+    const int k = considered_[static_cast<std::size_t>(i / 3)];
+    force.segment<3>(i) = lambda_.segment<3>(3 * k);
+    slack.segment<3>(i) = kFrictionCompliance * force.segment<3>(i);
+    slack.segment<2>(i + 1) += frames_[k].rightCols<2>().transpose() * travel(contacts_[k]);
+    slack[i] = 0;
+  }
+  return coulomb_.differentiate(delassus_.topLeftCorner(n, n), force, slack, friction_, change);
+}
+
 Mat3 ContactSolver::tangent_of_considered(const ContactPatch& patch) noexcept {
   if (!prepare_considered(patch)) return Mat3::Zero();
-  const auto n = static_cast<Eigen::Index>(considered_.size()),
+  const auto n = rows_of_contact() * static_cast<Eigen::Index>(considered_.size()),
              size = 3 * static_cast<Eigen::Index>(nodes_.size());
   const auto jacobian = jacobian_.topLeftCorner(n, size);
   const auto curvature = curvature_.topLeftCorner(size, size);
-  auto moved = moved_.topRows(size);  // E + C~ S E: how the geometry follows the tool at fixed lambda
+  auto moved = moved_.topRows(size);  // E + C~ S E: how the geometry follows the tool at fixed forces
   moved.noalias() = effective_.topLeftCorner(size, size) * curvature.rightCols<3>();
   moved.bottomRows<3>() += Mat3::Identity();
   auto force_change = rhs_.topRows(n);
-  force_change.noalias() = -jacobian * moved;
-  if (!gauss_solve(delassus_.topLeftCorner(n, n), force_change)) return Mat3::Zero();
+  force_change.noalias() = jacobian * moved;
+  if (!differentiate_forces(force_change)) return Mat3::Zero();
   moved.noalias() += response_.topLeftCorner(size, n) * force_change;
-  Mat3 k = jacobian.rightCols<3>().transpose() * force_change;
+  Mat3 k;
+  if (friction_ > 0) {
+    k.noalias() = spread_.block(size - 3, 0, 3, n) * force_change;
+  } else {
+    k = jacobian.rightCols<3>().transpose() * force_change;
+  }
   k.noalias() += curvature.bottomRows<3>() * moved;
   return k;
 }

@@ -11,11 +11,11 @@ constexpr double kFirstStep = 2.0 / 3;
 // radius.
 constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
 
-/// Displacement difference tip minus surface along the normal: J_k u.
-double along(const Contact& c, int tip, const Eigen::Ref<const Eigen::VectorXd>& u) {
+/// Displacement difference tip minus surface along a direction: a row of W u.
+double along(const Contact& c, const Vec3& direction, int tip, const Eigen::Ref<const Eigen::VectorXd>& u) {
   Vec3 relative = u.segment<3>(3 * tip);
   for (int i = 0; i < c.size; ++i) relative -= c.weight[i] * u.segment<3>(3 * c.node[i]);
-  return c.normal.dot(relative);
+  return direction.dot(relative);
 }
 
 }  // namespace
@@ -28,52 +28,92 @@ void ContactPatch::reserve(int max_nodes, int max_triangles) {
   compliance.resize(3 * max_nodes, 3 * max_nodes);
 }
 
-ContactSolver::ContactSolver(int max_nodes, int max_triangles)
+ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
     : complementarity_(max_triangles),
-      response_(3 * (max_nodes + 1), max_triangles),
-      delassus_(max_triangles, max_triangles),
-      gap_(max_triangles),
-      lambda_(max_triangles),
-      next_(3 * (max_nodes + 1)),
-      way_(3 * (max_nodes + 1)),
-      node_force_(3 * max_nodes),
-      slot_of_node_(static_cast<std::size_t>(max_nodes + 1)),
-      curvature_(3 * (max_nodes + 1), 3 * (max_nodes + 1)),
-      effective_(3 * (max_nodes + 1), 3 * (max_nodes + 1)),
-      system_(3 * (max_nodes + 1), 3 * (max_nodes + 1)),
-      jacobian_(max_triangles, 3 * (max_nodes + 1)),
-      moved_(3 * (max_nodes + 1), 3),
-      rhs_(max_triangles, 3) {
+      coulomb_(friction ? max_triangles : 0),
+      slot_of_node_(static_cast<std::size_t>(max_nodes + 1)) {
+  const int unknowns = 3 * (max_nodes + 1), rows = friction ? 3 * max_triangles : max_triangles;
+  for (Eigen::MatrixXd* square : {&curvature_, &effective_, &system_}) square->resize(unknowns, unknowns);
+  response_.resize(unknowns, rows);
+  jacobian_.resize(rows, unknowns);
+  if (friction) spread_.resize(unknowns, rows);
+  delassus_.resize(rows, rows);
+  gap_.resize(rows);
+  lambda_.resize(rows);
+  next_.resize(unknowns);
+  way_.resize(unknowns);
+  node_force_.resize(3 * max_nodes);
+  moved_.resize(unknowns, 3);
+  rhs_.resize(rows, 3);
   contacts_.reserve(static_cast<std::size_t>(max_triangles));
-  deformed_.reserve(static_cast<std::size_t>(max_nodes));
   considered_.reserve(static_cast<std::size_t>(max_triangles));
+  deformed_.reserve(static_cast<std::size_t>(max_nodes));
   nodes_.reserve(static_cast<std::size_t>(max_nodes + 1));
+  if (!friction) return;
+  felt_.reserve(static_cast<std::size_t>(max_triangles));
+  slack_.resize(rows);
+  frames_.reserve(static_cast<std::size_t>(max_triangles));
+  was_.reserve(static_cast<std::size_t>(max_nodes));
 }
 
-void ContactSolver::linearise(const ContactPatch& patch, const SphereTool& tool,
-                              const Eigen::Ref<const Eigen::VectorXd>& u) {
-  const int m = patch.nodes(), n = static_cast<int>(contacts_.size());
+Vec3 ContactSolver::direction(int contact, int row) const {
+  return row == 0 ? contacts_[contact].normal : Vec3(frames_[contact].col(row));
+}
+
+/// How far the tip went over the surface at a contact in this stride.
+Vec3 ContactSolver::travel(const Contact& c) const {
+  Vec3 travel = tip_ - tip_was_;
+  for (int i = 0; i < c.size; ++i) travel -= c.weight[i] * (deformed_[c.node[i]] - was_[c.node[i]]);
+  return travel;
+}
+
+void ContactSolver::start_stride(const ContactPatch& patch, const SphereTool& tool,
+                                 const StrideStart& start) noexcept {
+  friction_ = tool.friction;
+  felt_.clear();
+  if (friction_ == 0) return;
+  was_.assign(start.nodes.begin(), start.nodes.begin() + patch.nodes());
+  tip_was_ = start.tip;
+}
+
+void ContactSolver::linearise(const ContactPatch& patch, const SphereTool& tool, const Vec3& p_W,
+                              const Eigen::Ref<const Eigen::VectorXd>& u) noexcept {
+  const int m = patch.nodes(), n = static_cast<int>(contacts_.size()), rows = rows_of_contact();
+  tip_ = p_W + u.tail<3>();
+  frames_.clear();
   for (int k = 0; k < n; ++k) {
     const Contact& c = contacts_[k];
-    auto column = response_.col(k).head(3 * (m + 1));
-    column.setZero();
-    for (int i = 0; i < c.size; ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const double load = -c.weight[i] * c.normal[axis];
-        column.head(3 * m) += load * patch.compliance.col(3 * c.node[i] + axis).head(3 * m);
-      }
+    if (rows > 1) {
+      const Vec3 across = c.normal.unitOrthogonal();
+      frames_.emplace_back() << c.normal, across, c.normal.cross(across);
     }
-    column.tail<3>() = patch.tool_compliance * c.normal;
-    gap_[k] = c.distance - tool.radius - along(c, m, u);
+    for (int row = 0; row < rows; ++row) {
+      const Vec3 d = direction(k, row);
+      auto column = response_.col(rows * k + row).head(3 * (m + 1));
+      column.setZero();
+      for (int i = 0; i < c.size; ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const double load = -c.weight[i] * d[axis];
+          column.head(3 * m) += load * patch.compliance.col(3 * c.node[i] + axis).head(3 * m);
+        }
+      }
+      column.tail<3>() = patch.tool_compliance * d;
+      const double now = row == 0 ? c.distance - tool.radius : d.dot(travel(c));
+      gap_[rows * k + row] = now - along(c, d, m, u);
+    }
   }
-  for (int k = 0; k < n; ++k) {
-    for (int l = 0; l < n; ++l) delassus_(l, k) = along(contacts_[l], m, response_.col(k).head(3 * (m + 1)));
-    delassus_(k, k) += kContactCompliance;
+  for (int column = 0; column < rows * n; ++column) {
+    const auto response = response_.col(column).head(3 * (m + 1));
+    for (int row = 0; row < rows * n; ++row)
+      delassus_(row, column) = along(contacts_[row / rows], direction(row / rows, row % rows), m, response);
+    delassus_(column, column) += column % rows == 0 ? kContactCompliance : kFrictionCompliance;
   }
 }
 
 ContactForce ContactSolver::solve(const ContactPatch& patch, const SphereTool& tool, const Vec3& p_W,
-                                  Eigen::Ref<Eigen::VectorXd> u, const Effort& effort) noexcept {
+                                  Eigen::Ref<Eigen::VectorXd> u, const StrideStart& start,
+                                  const Effort& effort) noexcept {
+  start_stride(patch, tool, start);
   const int m = patch.nodes();
   ContactForce result;
   result.converged = false;
@@ -89,7 +129,7 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const SphereTool& t
     const double reach =
         tool.radius + std::clamp(kMargin * change, kMinReach * tool.radius, kMaxReach * tool.radius);
     find_contacts_on_patch(deformed_, patch.triangles, p_W + u.tail<3>(), reach, contacts_);
-    linearise(patch, tool, u);
+    linearise(patch, tool, p_W, u);
     solve_linearised(m, next);
     change = (next - u).cwiseAbs().maxCoeff();
     result.converged = change <= effort.tolerance * tool.radius;
@@ -103,7 +143,7 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const SphereTool& t
     way = std::min(step, kLongestMove * tool.radius / change) * (next - u);
     if (newton_worked && change > last_change) plain_left = 2 << ++newton_failures;
     last_change = change;
-    newton_worked = effort.newton && --plain_left < 0 && newton_step(patch, u, next) &&
+    newton_worked = --plain_left < 0 && newton_step(patch, u, next) &&
                     (next - u).cwiseAbs().maxCoeff() < kLongestMove * tool.radius;
     if (newton_worked) {
       u = next;
@@ -116,36 +156,69 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const SphereTool& t
   return result;
 }
 
+/// Forces in the rows of the contacts, on the Delassus operator as it stands.
+bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
+                                   Eigen::Ref<Eigen::VectorXd> force) noexcept {
+  const auto n = gap.size();
+  if (friction_ == 0) return complementarity_.solve(delassus_.topLeftCorner(n, n), gap, force);
+  recall(force);
+  return coulomb_.solve(delassus_.topLeftCorner(n, n), gap, friction_, force);
+}
+
+/// Keeps the forces of this iteration, as what to start from in the next, whose contacts are not all the
+/// same.
+void ContactSolver::remember(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept {
+  felt_.clear();
+  for (int k = 0; k < static_cast<int>(frames_.size()); ++k) {
+    if (force[3 * k] > 0) felt_.push_back({contacts_[k].node, frames_[k] * force.segment<3>(3 * k)});
+  }
+}
+
+void ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
+  force.setZero();
+  for (int k = 0; k < static_cast<int>(frames_.size()); ++k) {
+    const auto same = [&](const Felt& felt) { return felt.node == contacts_[k].node; };
+    const auto felt = std::find_if(felt_.begin(), felt_.end(), same);
+    if (felt != felt_.end()) force.segment<3>(3 * k) = frames_[k].transpose() * felt->force;
+  }
+}
+
 /// Contact forces of the linearised problem, and the displacements they give.
 void ContactSolver::solve_linearised(int nodes, Eigen::Ref<Eigen::VectorXd> next) noexcept {
-  const auto n = static_cast<Eigen::Index>(contacts_.size());
+  const auto n = static_cast<Eigen::Index>(contacts_.size()) * rows_of_contact();
   auto lambda = lambda_.head(n);
-  complementarity_.solve(delassus_.topLeftCorner(n, n), gap_.head(n), lambda);
+  solve_contacts(gap_.head(n), lambda);
+  remember(lambda);
   next.setZero();
   for (Eigen::Index k = 0; k < n; ++k) {
-    if (lambda[k] > 0) next += lambda[k] * response_.col(k).head(3 * (nodes + 1));
+    if (lambda[k] != 0) next += lambda[k] * response_.col(k).head(3 * (nodes + 1));
   }
 }
 
 void ContactSolver::collect_result(int nodes, ContactForce& result) noexcept {
+  const int rows = rows_of_contact();
   force_size_ = 3 * nodes;
   node_force_.head(force_size_).setZero();
   considered_.clear();
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
-    if (!(lambda_[k] > 0)) continue;
+    if (!(lambda_[rows * k] > 0)) continue;
     considered_.push_back(k);
     const Contact& c = contacts_[k];
-    result.force += lambda_[k] * c.normal;
-    for (int i = 0; i < c.size; ++i)
-      node_force_.segment<3>(3 * c.node[i]) -= lambda_[k] * c.weight[i] * c.normal;
+    for (int row = 0; row < rows; ++row) {
+      const double size = lambda_[rows * k + row];
+      const Vec3 d = direction(k, row);
+      result.force += size * d;
+      for (int i = 0; i < c.size; ++i) node_force_.segment<3>(3 * c.node[i]) -= size * c.weight[i] * d;
+    }
   }
   result.contacts = static_cast<int>(considered_.size());
 }
 
 std::size_t ContactSolver::bytes() const {
-  return sizeof(double) *
-         static_cast<std::size_t>(2 * delassus_.size() + response_.size() + curvature_.size() +
-                                  effective_.size() + system_.size() + jacobian_.size());
+  const auto dense = [](const Eigen::MatrixXd& m) { return static_cast<std::size_t>(m.size()); };
+  return coulomb_.bytes() + complementarity_.bytes() +
+         sizeof(double) * (dense(delassus_) + dense(response_) + dense(curvature_) + dense(effective_) +
+                           dense(system_) + dense(jacobian_) + dense(spread_));
 }
 
 }  // namespace palpate

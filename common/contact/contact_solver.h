@@ -1,8 +1,10 @@
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "common/contact/complementarity.h"
+#include "common/contact/coulomb.h"
 #include "common/contact/narrow_phase.h"
 #include "common/contact/tool.h"
 
@@ -30,72 +32,112 @@ struct ContactForce {
       true;  ///< false: the answer is finite, the geometry still moved by more than the tolerance
 };
 
-/// Frictionless unilateral contact of a sphere with an elastic triangle patch. Finds displacements u of the
-/// nodes and of the tool tip, and forces lambda, with
-///   u = C J^T lambda,   lambda >= 0,   gap(x + u) >= 0,   lambda . gap = 0,
-/// gap = distance to each feature minus radius, J = d gap / d u, C the compliance of patch and tip together.
-/// The gap is that of the *deformed* surface: each iteration linearises it, solves a ComplementaritySolver
-/// problem on the Delassus operator G = J C J^T, and repeats until nothing moves, so force is a function of
-/// place and not of step size. Newton steps, the same problem with the compliance that the curvature of the
-/// gaps leaves, make that quick. The tip must start outside the surface and within half a radius of a solved
-/// place; Simulation takes care of that. Allocates only in the constructor; one thread.
+/// Where a stride began; slip is measured from there, and there is no other memory of friction: a node
+/// without contact carries none. What `solve` found is the start of the next stride: nodes at `free` + u, the
+/// tip at p_W + u_tip. So a path is a chain of solves, on the server and wherever it is replayed.
+struct StrideStart {
+  std::span<const Vec3> nodes;  ///< (m) the patch nodes, m, world; more do no harm
+  Vec3 tip = Vec3::Zero();      ///< the tool's tip, m, world
+};
+
+/// Unilateral contact of a sphere with an elastic triangle patch, with Coulomb friction where the tool has
+/// some. Finds displacements u of the nodes and of the tool tip, and forces f = lambda n + t, with
+///   u = C W^T f,   lambda >= 0,   gap(x + u) >= 0,   lambda . gap = 0,
+///   |t| <= mu lambda,   t = -mu lambda s / |s| where it slips by s in the stride, s = 0 where it sticks,
+/// gap = distance to each feature minus radius, W = tip minus the contact point's share of each node, C the
+/// compliance of patch and tip together, s the part of W (position - position at the start) across the normal
+/// n (Duriez et al. 2006: backward Euler of Coulomb's law). The gap is that of the *deformed* surface: each
+/// iteration linearises it, solves the small problem on the Delassus operator G = W C W^T (normals only, by a
+/// ComplementaritySolver, where there is no friction; else a CoulombSolver), and repeats until nothing moves:
+/// without friction force is a function of place and not of step size. Newton steps, the same problem with
+/// the compliance that the curvature of the gaps leaves, make that quick. The tip must start outside the
+/// surface and within half a radius of a solved place; Simulation takes care of that. Allocates only in the
+/// constructor; one thread.
 class ContactSolver {
  public:
-  /// Largest patch it will be given.
-  ContactSolver(int max_nodes, int max_triangles);
+  /// Largest patch it will be given; whether tools with friction will come, which takes nine times the memory
+  /// per pair of contacts.
+  ContactSolver(int max_nodes, int max_triangles, bool friction = false);
 
   /// How hard to try.
   struct Effort {
     int max_iterations = 200;
     double tolerance = 1e-11;  ///< of the tool radius: what still moves at the end
-    bool newton = true;
   };
 
-  /// Solves for the tool centre `p_W` (m). `u` (3 (m + 1): nodes, then tip; m) holds the starting
-  /// displacement and gets the solution. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful
-  /// of contacts.
+  /// Solves for the tool centre `p_W` (m). `u` (3 (m + 1): nodes, then tip; m) holds the displacement to look
+  /// from and gets the solution, which does not depend on it but by rounding. `start` is read where the tool
+  /// has friction, and only then. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful of
+  /// contacts, with friction some ten times that.
   ContactForce solve(const ContactPatch& patch, const SphereTool& tool, const Vec3& p_W,
-                     Eigen::Ref<Eigen::VectorXd> u, const Effort& effort = kUsualEffort) noexcept;
+                     Eigen::Ref<Eigen::VectorXd> u, const StrideStart& start = {},
+                     const Effort& effort = kUsualEffort) noexcept;
   static const Effort kUsualEffort;
 
   /// Nodal forces on the patch nodes (3m, N) of the last solve; the tissue feels minus what the tool feels.
   Eigen::Ref<const Eigen::VectorXd> node_forces() const { return node_force_.head(force_size_); }
 
-  /// Tangent dF/dp of the last solve (N/m, symmetric), by the implicit function theorem on the touching
-  /// features, with the curvature of their gaps. Zero when nothing touches or where it is not defined.
+  /// Tangent dF/dp of the last solve (N/m), by the implicit function theorem on the touching features, with
+  /// the curvature of their gaps. Symmetric without friction. With it: how F follows the end of this same
+  /// stride; where contacts slip it is not symmetric, as friction turns with the slide and grows with the
+  /// pressure, and where they slip by little it is steep across the slide. Zero when nothing touches or where
+  /// it is not defined.
   Mat3 tangent(const ContactPatch& patch) noexcept;
 
   /// What its matrices hold, bytes.
   std::size_t bytes() const;
 
   /// Compliance in series with every contact (m/N): ten thousand times stiffer than a liver's contact, it
-  /// keeps the Delassus operator positive definite where contacts coincide or nodes are fixed.
-  static constexpr double kContactCompliance = 1e-9;
+  /// keeps the Delassus operator positive definite where contacts coincide or nodes are fixed. Across the
+  /// normal a thousandth of it, as there it is a creep, by that much per N and stride.
+  static constexpr double kContactCompliance = 1e-9, kFrictionCompliance = 1e-10;
 
  private:
-  void linearise(const ContactPatch& patch, const SphereTool& tool,
-                 const Eigen::Ref<const Eigen::VectorXd>& u);
+  int rows_of_contact() const { return friction_ > 0 ? 3 : 1; }
+  Vec3 direction(int contact, int row) const;
+  Vec3 travel(const Contact& c) const;
+  void start_stride(const ContactPatch& patch, const SphereTool& tool, const StrideStart& start) noexcept;
+  void linearise(const ContactPatch& patch, const SphereTool& tool, const Vec3& p_W,
+                 const Eigen::Ref<const Eigen::VectorXd>& u) noexcept;
+  bool solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
+                      Eigen::Ref<Eigen::VectorXd> force) noexcept;
+  void remember(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept;
+  void recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept;
   void solve_linearised(int nodes, Eigen::Ref<Eigen::VectorXd> next) noexcept;
   void collect_result(int nodes, ContactForce& result) noexcept;
   // Second order, in contact_derivatives.cpp:
   void collect_nodes(int tip) noexcept;
-  void differentiate_gaps(int tip) noexcept;
+  void differentiate_contacts(int tip) noexcept;
+  void differentiate_friction(int contact, Eigen::Index row, std::span<const int> slot) noexcept;
   bool compute_effective_compliance(const ContactPatch& patch) noexcept;
   bool prepare_considered(const ContactPatch& patch) noexcept;
   bool newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
                    Eigen::Ref<Eigen::VectorXd> next) noexcept;
+  bool differentiate_forces(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
   Mat3 tangent_of_considered(const ContactPatch& patch) noexcept;
 
+  // Rows are those of the contacts in turn: one each, along the normal; with friction two more, across it.
   ComplementaritySolver complementarity_;
+  CoulombSolver coulomb_;
   std::vector<Contact> contacts_;
+  std::vector<Mat3> frames_;  // with friction: normal and the two directions across it, as columns
+  struct Felt {
+    std::array<int, 3> node;
+    Vec3 force;
+  };
+  std::vector<Felt> felt_;  // with friction: what touched in the iteration before
   std::vector<Vec3> deformed_;
-  Eigen::MatrixXd response_;  // C J^T, (3 (m + 1) x contacts)
+  Eigen::MatrixXd response_;  // C W^T, (3 (m + 1) x rows)
   Eigen::MatrixXd delassus_;
-  Eigen::VectorXd gap_, lambda_, next_, way_, node_force_;
+  Eigen::VectorXd gap_, lambda_, slack_, next_, way_, node_force_;
   int force_size_ = 0;
+  // The stride: friction coefficient, where its nodes and the tip began, and where the tip is.
+  double friction_ = 0;
+  std::vector<Vec3> was_;
+  Vec3 tip_was_ = Vec3::Zero(), tip_ = Vec3::Zero();
   // Second order: the contacts considered, their nodes (the tip last), and matrices over those nodes.
   std::vector<int> considered_, nodes_, slot_of_node_;
-  Eigen::MatrixXd curvature_, effective_, system_, jacobian_;
+  Eigen::MatrixXd curvature_, effective_, system_, jacobian_, spread_;  // spread: W^T, only with friction
   Eigen::Matrix<double, Eigen::Dynamic, 3> moved_, rhs_;
 };
 

@@ -46,7 +46,7 @@ ClosestPoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Ve
 }
 
 SimplexHessian distance_hessian(std::span<const Vec3> x, std::span<const double> weight, const Vec3& normal,
-                                double distance) noexcept {
+                                double distance, WeightGradient* weights) noexcept {
   const int m = static_cast<int>(x.size());
   const Mat3 across = (Mat3::Identity() - normal * normal.transpose()) / distance;
   // rho = sum_j a_j y_j = distance * normal, with y = (x_0 .. x_(m-1), p).
@@ -55,6 +55,7 @@ SimplexHessian distance_hessian(std::span<const Vec3> x, std::span<const double>
   for (int j = 0; j <= m; ++j) {
     for (int l = 0; l <= m; ++l) h.block<3, 3>(3 * j, 3 * l) = a(j) * a(l) * across;
   }
+  if (weights != nullptr) weights->setZero();
   if (m == 1) return h;
   // Free weights b_1 .. b_(m-1), b_0 = 1 - their sum: edges e_l = x_l - x_0 are at right angles to the
   // normal.
@@ -70,6 +71,10 @@ SimplexHessian distance_hessian(std::span<const Vec3> x, std::span<const double>
     }
   }
   h -= mixed * curvature.inverse() * mixed.transpose();
+  if (weights != nullptr) {
+    weights->bottomRows<2>() = -curvature.inverse() * mixed.transpose();
+    weights->row(0) = -weights->row(1) - weights->row(2);
+  }
   return h;
 }
 

@@ -20,12 +20,14 @@ ClosestPoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Ve
 /// Second derivative of the distance d(x_0 .. x_(m-1), p) between the point p and the affine hull of m = 1..3
 /// points, in the order (x_0, .., x_(m-1), p): the first 3 (m + 1) rows and columns are filled.
 using SimplexHessian = Eigen::Matrix<double, 12, 12>;
+/// First derivative of the weights b (rows) of the closest point of that hull, in the same order.
+using WeightGradient = Eigen::Matrix<double, 3, 12>;
 
 /// With q = sum b_i x_i the closest point of the hull, d = |p - q| > 0 and n = (p - q) / d, the first
 /// derivatives are d_p = n and d_xi = -b_i n (b is optimal, so its variation drops out). The second come from
 /// eliminating b from |p - sum b_i x_i|: H = phi_yy - phi_yb phi_bb^-1 phi_by. All lengths in one unit; H in
-/// 1/length. About 1 us.
+/// 1/length. b itself moves by -phi_bb^-1 phi_by, which `weights` gets where it is asked for. About 1 us.
 SimplexHessian distance_hessian(std::span<const Vec3> x, std::span<const double> weight, const Vec3& normal,
-                                double distance) noexcept;
+                                double distance, WeightGradient* weights = nullptr) noexcept;
 
 }  // namespace palpate

@@ -78,7 +78,7 @@ bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
   state_.touching = false;
   if (patch_.triangles.empty()) return true;
   patch_.tool_compliance = surface.tool_compliance;
-  const ContactForce contact = solver_.solve(patch_, surface.tool, p, displacement(), kEffort);
+  const ContactForce contact = solver_.solve(patch_, surface.tool, p, displacement(), {}, kEffort);
   note_loads();
   state_.force = contact.force;
   state_.touching = contact.contacts > 0;

@@ -11,7 +11,7 @@ each, from the fixed seeds of scripts/trajectories; the mean speed is a study's 
   block     soft, five motions; all speeds, rates and delays
   stiff     the same 33 times as stiff, at one speed and rate; as the tissue is linear and
             the motion given, it must give the percentages of the block
-  friction  the same with friction, likewise (where that scene is there)
+  friction  the same with friction, likewise with 35 ms (its steps take long)
   moving    the block breathes and the tool follows it, likewise
   grasp     a grasped organ, 60 s: the paper's regime; its motion is known at the samples
             only, as in the paper, and its rate is 100/3 Hz
@@ -48,6 +48,7 @@ SPEEDS = (0.01, 0.017, 0.05, 0.1)
 RATES = (80, 40, 33.3, 26.7, 20)
 DELAYS = (0, 35, 80)  # ms
 QUICK_DELAYS, QUICK_SECONDS = (0, 35), 6
+SLOW_DELAYS = (35,)        # where a step takes long
 FIGURES = ((20, 0), (RATE, 35))  # rate, delay of the drawings: the paper's, and one with a link
 FIGURES_MOTION, FIGURES_SECONDS, FIGURES_FROM = "mix", 5.5, 1.5
 
@@ -88,7 +89,7 @@ def cells_of(quick, motions):
     def add(world, motion, speed, folder, rates=(RATE,)):
         file = folder / f"block_{motion}.csv"
         seconds = QUICK_SECONDS if quick else float(file.read_text().split("\n")[-2].split(",")[0])
-        captures = tuple((rate, delay) for rate in rates for delay in delays)
+        captures = tuple((rate, delay) for rate in rates for delay in (delays if world != "friction" else SLOW_DELAYS))
         cells.append(Cell(world, motion, speed, file, seconds, captures, world == "block" and speed == SPEED))
 
     for speed in (s for s in motions if s != "moving"):
@@ -96,8 +97,7 @@ def cells_of(quick, motions):
             add("block", motion, speed, motions[speed], RATES if speed == SPEED and not quick else (RATE,))
     for world in ("stiff", "friction", "moving"):
         for motion in MOTIONS if not quick else ("mix",):
-            if (SCENES / f"block_{world}.toml").exists():
-                add(world, motion, SPEED, motions.get(world, motions[SPEED]))
+            add(world, motion, SPEED, motions.get(world, motions[SPEED]))
     for world, motion, rate in (("grasp", "manipulation", GRASP_RATE), ("liver", "palpation", RATE)):
         cells.append(Cell(world, motion, SPEED, ROOT / "configs" / "clients" / f"{world}.toml",
                           QUICK_SECONDS if quick else 60, tuple((rate, delay) for delay in delays), True))

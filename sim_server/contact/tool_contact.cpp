@@ -7,6 +7,8 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kStride = 0.5;  // of the tool radius: how far the tool goes between two contact solves
+// With friction, which follows the path: shorter, as many as a step has time for.
+constexpr double kFrictionStride = 0.01, kFrictionStrides = 16;
 constexpr double kGather = 2.0;  // of the tool radius: how far from the tip the patch extends
 constexpr double kMaxStrides = 256;
 constexpr double kEscape = 3.0;  // of the tool radius: how far outside its free organ contact may go on
@@ -46,13 +48,16 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
                          std::vector<Triangle> touchable)
     : tool_(tool.shape),
       finder_(rest, surface.triangles, touchable, kGather * tool.shape.radius),
-      solver_(finder_.max_nodes(), finder_.max_triangles()),
+      solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0),
       free_(rest) {
   if (tool.grasps()) grip_.emplace(tool, rest, touchable, finder_.max_nodes());
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   displacement_.resize(3 * (finder_.max_nodes() + 1));
   loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   kept_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+  if (!has_friction()) return;
+  surface_was_.assign(rest.begin(), rest.end());
+  nodes_were_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
 }
 
 void ToolContact::reserve(std::size_t loads) {
@@ -108,10 +113,15 @@ void ToolContact::go(const Vec3& p_W, Tissue& tissue) noexcept {
   const double stride = kStride * tool_.radius;
   if (!placed_ || (p_W - place_).norm() > kMaxStrides * stride || escaped(p_W)) enter(p_W, tissue);
   const Vec3 way = p_W - place_, from = place_;
-  const double strides = std::clamp(std::ceil(way.norm() / stride), 1.0, kMaxStrides);
+  double strides = std::clamp(std::ceil(way.norm() / stride), 1.0, kMaxStrides);
+  if (has_friction()) {
+    const double wanted = std::ceil(way.norm() / (kFrictionStride * tool_.radius));
+    strides = std::max(strides, std::min(wanted, kFrictionStrides));
+  }
   ContactForce contact;
   int iterations = 0;
   for (double i = 1; i <= strides && iterations < kMaxIterations; ++i) {
+    start_stride(i == 1, tissue);
     place_ = i == strides ? p_W : Vec3(from + (i / strides) * way);
     contact = touch(place_, tissue);
     iterations += contact.iterations;
@@ -225,6 +235,15 @@ void ToolContact::enter(const Vec3& p_W, Tissue& tissue) noexcept {
   place_ = door + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
 }
 
+void ToolContact::start_stride(bool first, const Tissue& tissue) noexcept {
+  if (!has_friction()) return;
+  tip_was_ = place_ + tip_offset_;
+  stride_from_ = tissue.before;
+  if (first) return;
+  std::copy(tissue.positions.begin(), tissue.positions.end(), surface_was_.begin());
+  stride_from_ = surface_was_;
+}
+
 ContactForce ToolContact::touch(const Vec3& p_W, Tissue& tissue) noexcept {
   finder_.gather(tissue.positions, free_, p_W + tip_offset_, kGather * tool_.radius, patch_);
   if (patch_.triangles.empty()) {
@@ -237,7 +256,11 @@ ContactForce ToolContact::touch(const Vec3& p_W, Tissue& tissue) noexcept {
   auto u = displacement_.head(3 * (m + 1));
   for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = tissue.positions[vertices[i]] - patch_.free[i];
   u.tail<3>() = tip_offset_;
-  const ContactForce contact = solver_.solve(patch_, tool_, p_W, u);
+  nodes_were_.clear();
+  if (has_friction()) {
+    for (const int vertex : vertices) nodes_were_.push_back(stride_from_[vertex]);
+  }
+  const ContactForce contact = solver_.solve(patch_, tool_, p_W, u, {nodes_were_, tip_was_});
   tip_offset_ = u.tail<3>();
   drop_own_loads();
   const auto forces = solver_.node_forces();
@@ -258,7 +281,7 @@ void ToolContact::release(Tissue& tissue) noexcept {
 
 std::size_t ToolContact::bytes() const {
   return solver_.bytes() + static_cast<std::size_t>(patch_.compliance.size()) * sizeof(double) +
-         pushed_.size() * sizeof(Vec3) + (grip_ ? grip_->bytes() : 0);
+         (pushed_.size() + surface_was_.size()) * sizeof(Vec3) + (grip_ ? grip_->bytes() : 0);
 }
 
 }  // namespace palpate::sim

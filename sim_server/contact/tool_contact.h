@@ -11,7 +11,7 @@ namespace palpate::sim {
 /// What a tool feels after one step.
 struct ToolForce {
   Vec3 force = Vec3::Zero();    ///< N, world, on the tool at its position
-  Mat3 tangent = Mat3::Zero();  ///< dF/dp, N/m, symmetric; the loads of other tools held
+  Mat3 tangent = Mat3::Zero();  ///< dF/dp, N/m, symmetric without friction; the loads of other tools held
   int contacts = 0;             ///< touching faces, edges and vertices; or vertices that it grasps
   int iterations = 0;           ///< contact linearisations, all sub-places together
   /// No settled answer: a wild position (then there is no force), contact that did not converge, several
@@ -32,6 +32,7 @@ struct Tissue {
   std::span<const Vec3> free;        ///< in this step, without any contact
   std::span<const Vec3> velocities;  ///< of that, m/s; empty: it rests
   std::span<const Vec3> positions;   ///< now, under the loads of all tools
+  std::vector<Vec3> before;          ///< at the end of the last step; empty where no tool has friction
 };
 
 /// Triangles of the surface that come near enough to the reach box of the tool to be touched there.
@@ -60,7 +61,8 @@ class ToolContact {
     if (grip_) grip_->press(buttons);
   }
   /// Goes to `p_W` (m) on a straight line in strides of half the tool's radius, so that a fast tool does not
-  /// jump through the surface.
+  /// jump through the surface; shorter ones with friction, which follows the path. Slip is measured from
+  /// where the tissue really was: at the end of the last step, then of each stride.
   void walk(const Vec3& p_W, Tissue& tissue) noexcept;
   /// The organ has moved under it: the tool goes along by `way` (m) with its loads, so that it stands on the
   /// surface as before.
@@ -68,7 +70,7 @@ class ToolContact {
   /// How fast the organ's surface moves by itself where the tool touches (the mean by force), or else at the
   /// point nearest to `p_W`; m/s, world.
   Vec3 surface_velocity(const Vec3& p_W, const Tissue& tissue) const noexcept;
-  /// Solves again at the place it stands, on the surface as it is free by now.
+  /// Solves its last stride again, on the surface as it is free by now.
   void settle(Tissue& tissue) noexcept;
   /// What it would feel at `p_W` (m); then it stands where it stood, and nothing has changed, bit by bit.
   ToolForce probe(const Vec3& p_W, Tissue& tissue) noexcept;
@@ -92,6 +94,7 @@ class ToolContact {
   std::span<const Triangle> touchable() const { return finder_.touchable(); }
   /// Surface vertices without this tool, after `share`, m.
   std::span<const Vec3> free() const { return free_; }
+  bool has_friction() const { return tool_.friction > 0; }
   int max_nodes() const { return finder_.max_nodes(); }
   std::size_t bytes() const;
 
@@ -101,6 +104,7 @@ class ToolContact {
   void give_up(Tissue& tissue) noexcept;
   bool escaped(const Vec3& p_W) const noexcept;
   void enter(const Vec3& p_W, Tissue& tissue) noexcept;
+  void start_stride(bool first, const Tissue& tissue) noexcept;
   ContactForce touch(const Vec3& p_W, Tissue& tissue) noexcept;
   void release(Tissue& tissue) noexcept;
   void conclude(const ContactForce& contact, int iterations, Tissue& tissue) noexcept;
@@ -120,6 +124,10 @@ class ToolContact {
   Eigen::VectorXd displacement_;    // of the patch nodes, then of the tip
   Vec3 place_ = Vec3::Zero();       // tool centre of the last step
   Vec3 tip_offset_ = Vec3::Zero();  // tip minus tool centre
+  // Where the last stride began; only with friction: the tissue's `before`, or surface_was_, and the tip.
+  std::span<const Vec3> stride_from_;
+  std::vector<Vec3> surface_was_, nodes_were_;
+  Vec3 tip_was_ = Vec3::Zero();
   bool placed_ = false, arrived_ = false;
   ToolForce force_;
 };

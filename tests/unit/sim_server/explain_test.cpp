@@ -162,6 +162,18 @@ TEST_CASE("explain: without a reach none is left out; elasticity is not left out
   CHECK(bench.left_out("recording") != nullptr);
 }
 
+TEST_CASE("explain: friction is left out, and what it would cost is measured, unless a tool has some") {
+  const std::string scene = kMesh + kFixed + kMaterial + model("quasi_static") + kTool;
+  const Bench without(scene), with(scene + "friction = 0.2\n");
+  const LeftOut* row = without.left_out("friction");
+  REQUIRE(row != nullptr);
+  CHECK(row->why == without.line("[[tool]]"));
+  CHECK(row->note == "measured");
+  CHECK(row->bytes.value() > 0);
+  CHECK(with.left_out("friction") == nullptr);
+  CHECK(with.built("contact").detail.find("friction 0.2") != std::string::npos);
+}
+
 TEST_CASE("explain: a rigid scene leaves elasticity out, measured where it could be built") {
   const Bench bench(kMesh + kFixed + kMaterial + model("rigid") + kTool);
   const double all = reachable_free(0);

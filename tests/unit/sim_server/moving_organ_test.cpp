@@ -100,6 +100,18 @@ TEST_CASE("a tool that moves with the organ feels what it felt at rest; a restin
   }
 }
 
+TEST_CASE("friction does not feel a tool and an organ that go along together") {
+  Scene scene = block_scene({kBreath});
+  scene.tools[0].shape.friction = 0.3;
+  Simulation organ(scene, block());
+  const ToolForce first = organ.step(kPressed, 0);
+  REQUIRE(first.force[1] > 0.1);
+  for (double t = 0.05; t < 2; t += 0.05) {
+    const ToolForce felt = organ.step(kPressed + at(kBreath, t), 0.05);
+    CHECK((felt.force - first.force).norm() < 0.01 * first.force.norm());
+  }
+}
+
 TEST_CASE("a surface that comes up 6 mm in one step takes the tool in front of it along") {
   const SupportMotion fast{Vec3::UnitY(), 0.03, 1.0};
   Simulation resting(block_scene({}), block()), moving(block_scene({fast}), block());

@@ -1,0 +1,66 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace palpate {
+
+/// Unilateral contact with Coulomb friction on a small dense operator. For each of n contacts there are three
+/// force components z = (lambda, beta_1, beta_2), N, and three slacks w = G z + g, m: the gap, and the slip
+/// of the tool over the surface during a stride. Finds z with
+///   lambda >= 0, w_n >= 0, lambda w_n = 0    and    |beta| <= mu lambda, beta = -mu lambda w_t / |w_t| where
+///   w_t != 0
+/// (Duriez, Dubois, Kheddar and Andriot 2006, IEEE TVCG 12:36, eq. 4 and 5: slip over the stride stands for
+/// velocity, which is backward Euler). G need not be symmetric. Solved by semismooth Newton steps on the
+/// augmented Lagrangian form (Alart and Curnier 1991, Comput. Methods Appl. Mech. Eng. 92:353), usually 2 to
+/// 6 solves of a dense system of the closed contacts; where that does not end, from a better place, which
+/// block Gauss-Seidel sweeps find. Allocates only in the constructor; one thread; the same input gives the
+/// same output, bit by bit.
+class CoulombSolver {
+ public:
+  /// `capacity`: the most contacts `solve` will be given.
+  explicit CoulombSolver(int capacity);
+
+  /// `z` (3n): where to start, overwritten by the solution, which obeys the conditions to 1e-12 of the
+  /// largest force. False where the bound on iterations was reached: z then lies in the friction cones, no
+  /// more.
+  bool solve(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix, const Eigen::Ref<const Eigen::VectorXd>& g,
+             double mu, Eigen::Ref<Eigen::VectorXd> z) noexcept;
+
+  /// How a solution z, with its slack w (both 3n), follows when w changes by `change` (3n x 3, at fixed z):
+  /// `change` is overwritten by that of z. Implicit function theorem on the contacts as they are: those that
+  /// touch stay, what sticks sticks, what slips slips and turns with its slip. False where that is singular.
+  bool differentiate(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
+                     const Eigen::Ref<const Eigen::VectorXd>& z, const Eigen::Ref<const Eigen::VectorXd>& w,
+                     double mu, Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
+
+  std::size_t bytes() const { return sizeof(double) * static_cast<std::size_t>(system_.size()); }
+
+ private:
+  using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
+  using Vector = Eigen::Ref<const Eigen::VectorXd>;
+  /// What a contact does, by the augmented force z - rho w.
+  struct Status {
+    enum { kOpen, kSticks, kSlips } is = kOpen;
+    Eigen::Vector2d direction = Eigen::Vector2d::Zero();  // of beta, where it slips
+    double share = 0;  // kappa = mu lambda / |beta - rho w_t|, [0, 1), where it slips
+  };
+  void scale(const Matrix& g_matrix) noexcept;
+  void compute_slack(const Matrix& g_matrix, const Vector& g, const Vector& z) noexcept;
+  double residual(const Vector& g, double mu, const Vector& z) const noexcept;
+  void classify(const Vector& z, const Vector& w, double mu) noexcept;
+  void assemble(const Matrix& g_matrix, double mu) noexcept;
+  bool newton(const Matrix& g_matrix, const Vector& g, double mu, Eigen::Ref<Eigen::VectorXd> z) noexcept;
+  void relax(const Matrix& g_matrix, const Vector& g, double mu, int sweeps,
+             Eigen::Ref<Eigen::VectorXd> z) noexcept;
+  template <class Source, class Target>
+  bool solve_closed(const Source& constant, Target&& z) noexcept;
+
+  Eigen::MatrixXd system_;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> rhs_;
+  Eigen::VectorXd slack_, trial_, way_, from_,
+      rho_;  // rho: two per contact, N/m, along the normal and across it
+  std::vector<Status> status_;
+  std::vector<int> closed_;
+};
+
+}  // namespace palpate
