@@ -91,6 +91,7 @@ class ToolContact {
   const ToolForce& force() const { return force_; }
   const Vec3& place() const { return place_; }
   double radius() const { return tool_.radius; }
+  const SphereTool& shape() const { return tool_; }
   std::span<const Triangle> touchable() const { return finder_.touchable(); }
   /// Surface vertices without this tool, after `share`, m.
   std::span<const Vec3> free() const { return free_; }
