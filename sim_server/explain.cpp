@@ -30,6 +30,7 @@ constexpr std::array kStageParts{
     StagePart{"assembling the stiffness matrix", "stiffness matrix"},
     StagePart{"factoring the stiffness matrix", "its factor"},
     StagePart{"computing compliance", "compliance"},
+    StagePart{"computing moving supports", "moving supports"},
 };
 
 /// What a variant is compared by. `setup_ms` is without reading the mesh, which all share.

@@ -16,6 +16,19 @@ Box read_box(const Config& config, const std::string& key) {
   return {min, max};
 }
 
+SupportMotion read_motion(const Config& config) {
+  SupportMotion motion{};
+  motion.direction = config.vector("direction", {-1e3, 1e3, "any length but 0"});
+  if (!(motion.direction.norm() > 1e-6))
+    fail("{}: `direction` needs a length above 0", config.where("direction"));
+  motion.direction.normalize();
+  motion.amplitude = config.number("amplitude", {0, 1, "m"});
+  motion.period = config.number("period", {0.01, 1e4, "s"});
+  motion.phase = config.number("phase", {-1e3, 1e3, "rad"}, motion.phase);
+  config.reject_unknown();
+  return motion;
+}
+
 FixedRegion read_fixed(const Config& config) {
   FixedRegion region;
   region.where = config.where();
@@ -24,6 +37,7 @@ FixedRegion read_fixed(const Config& config) {
   if (region.box.has_value() == !region.surface_tag.empty()) {
     fail("{}: [[fixed]] needs either `box` or `surface_tag`", region.where);
   }
+  for (const Config& motion : config.tables("motion")) region.motions.push_back(read_motion(motion));
   config.reject_unknown();
   return region;
 }
@@ -46,8 +60,38 @@ DeformationSettings read_deformation(const Config& config) {
   settings.model = config.text("model");
   find_row(deformation_models(), settings.model, "deformation model", settings.where);
   settings.stiffness = config.number("stiffness", {1e-3, 1e6, "N/m"}, settings.stiffness);
+  if (config.has("spring_stiffness"))
+    settings.spring_stiffness = config.vector("spring_stiffness", {1e-3, 1e6, "N/m"});
+  if (config.has("hardening_length"))
+    settings.hardening_length = config.number("hardening_length", {1e-4, 10, "m"});
   config.reject_unknown();
   return settings;
+}
+
+/// That the model moves with its supports, where they move.
+void require_followed(const Scene& scene) {
+  const auto& settings = scene.deformation;
+  if (find_row(deformation_models(), settings.model, "deformation model", settings.where).follows_supports)
+    return;
+  for (const FixedRegion& region : scene.fixed) {
+    if (region.moves())
+      fail("{}: [[fixed.motion]]: model \"{}\" does not move with its supports; quasi_static does",
+           region.where, settings.model);
+  }
+}
+
+void read_grasp(const Config& config, ToolSettings& tool) {
+  if (config.has("grasp_buttons")) {
+    tool.grasp_buttons =
+        static_cast<std::uint16_t>(config.integer("grasp_buttons", {1, 65535, "button bits"}));
+    tool.grasp_where = config.where("grasp_buttons");
+  }
+  if (!config.has("grasp_place")) return;
+  tool.grasp_place = config.vector("grasp_place", {.unit = "m"});
+  if (tool.grasp_buttons != 0)
+    fail("{}: a tool grasps by `grasp_buttons` or always, from `grasp_place` on; remove one",
+         config.where("grasp_place"));
+  tool.grasp_where = config.where("grasp_place");
 }
 
 ToolSettings read_tool(const Config& config) {
@@ -61,6 +105,7 @@ ToolSettings read_tool(const Config& config) {
     tool.reach = read_box(config, "reach");
     tool.reach_where = config.where("reach");
   }
+  read_grasp(config, tool);
   config.reject_unknown();
   return tool;
 }
@@ -104,31 +149,34 @@ Scene read_scene(const std::filesystem::path& file) {
   const auto deformation = config.table("deformation");
   if (!deformation) fail("{}: missing section [deformation] with `model`", config.where());
   scene.deformation = read_deformation(*deformation);
+  require_followed(scene);
   scene.tools = read_tools(config);
   config.reject_unknown();
   return scene;
 }
 
+std::vector<int> vertices_in(const FixedRegion& region, const TetMesh& mesh) {
+  if (!region.box) {
+    std::vector<std::string> known;
+    for (const auto& [tag, vertices] : mesh.surface_tags) known.push_back(tag);
+    const auto found = mesh.surface_tags.find(region.surface_tag);
+    if (found == mesh.surface_tags.end())
+      fail_unknown_name(region.surface_tag, "surface tag", region.where, known);
+    return found->second;
+  }
+  std::vector<int> inside;
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+    if (region.box->contains(mesh.vertices[v])) inside.push_back(v);
+  }
+  if (inside.empty())
+    fail("{}: no vertex of the mesh lies in this [[fixed]] box; is it in metres?", region.where);
+  return inside;
+}
+
 std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh) {
   std::vector<char> is_fixed(mesh.vertices.size(), 0);
   for (const FixedRegion& region : scene.fixed) {
-    int count = 0;
-    const auto fix = [&](int vertex) { is_fixed[vertex] = 1, ++count; };
-    if (region.box) {
-      for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
-        if (region.box->contains(mesh.vertices[v])) fix(v);
-      }
-      if (count == 0)
-        fail("{}: no vertex of the mesh lies in this [[fixed]] box; is it in metres?", region.where);
-    } else {
-      std::vector<std::string> known;
-      for (const auto& [tag, vertices] : mesh.surface_tags) known.push_back(tag);
-      const auto found = mesh.surface_tags.find(region.surface_tag);
-      if (found == mesh.surface_tags.end()) {
-        fail_unknown_name(region.surface_tag, "surface tag", region.where, known);
-      }
-      for (const int vertex : found->second) fix(vertex);
-    }
+    for (const int vertex : vertices_in(region, mesh)) is_fixed[vertex] = 1;
   }
   std::vector<int> fixed;
   for (int v = 0; v < static_cast<int>(is_fixed.size()); ++v) {

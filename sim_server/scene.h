@@ -1,5 +1,6 @@
 #pragma once
 /// What a scene file asks for. An absent section means: not built.
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,18 +21,32 @@ struct Box {
   }
 };
 
-/// `[[fixed]]`: mesh vertices that never move, by a box or by a surface tag of the mesh.
+/// `[[fixed.motion]]`: the displacement direction x amplitude x sin(2 pi t / period + phase), t the time of
+/// the simulation, which begins at 0.
+struct SupportMotion {
+  Vec3 direction;    ///< unit, world
+  double amplitude;  ///< m, [0, 1]
+  double period;     ///< s, [0.01, 1e4]
+  double phase = 0;  ///< rad, [-1e3, 1e3]
+};
+
+/// `[[fixed]]`: mesh vertices that the tissue does not move, by a box or by a surface tag of the mesh.
 struct FixedRegion {
   std::optional<Box> box;
   std::string surface_tag;
-  std::string where;  ///< "FILE:LINE" of this section
+  std::string where;                     ///< "FILE:LINE" of this section
+  std::vector<SupportMotion> motions{};  ///< prescribed, added up; none: they rest
+
+  bool moves() const { return !motions.empty(); }
 };
 
 /// `[deformation]`.
 struct DeformationSettings {
-  std::string model;       ///< a name of `deformation_models()`
-  double stiffness = 800;  ///< N/m, (0, 1e6], model "rigid" only
-  std::string where;       ///< "FILE:LINE" of `model`
+  std::string model;                         ///< a name of `deformation_models()`
+  double stiffness = 800;                    ///< N/m, (0, 1e6], model "rigid" only
+  std::optional<Vec3> spring_stiffness{};    ///< along x, y, z, N/m, [1e-3, 1e6], model "spring" only
+  std::optional<double> hardening_length{};  ///< m, [1e-4, 10], likewise; absent: linear
+  std::string where;                         ///< "FILE:LINE" of `model`
 };
 
 /// One `[[tool]]`.
@@ -40,6 +55,11 @@ struct ToolSettings {
   std::optional<Box> reach;  ///< places the tool's surface can get to; absent: the whole organ
   std::string where;         ///< "FILE:LINE" of this section
   std::string reach_where;   ///< "FILE:LINE" of `reach`; empty where it is absent
+  /// Buttons of which any, while pressed, makes it hold the surface near it; 0: none does, [0, 65535].
+  std::uint16_t grasp_buttons = 0;
+  std::optional<Vec3> grasp_place{};  ///< tool centre, m, from where it holds the resting surface always
+  std::string grasp_where{};          ///< "FILE:LINE" of either; empty where both are absent
+  bool grasps() const { return grasp_buttons != 0 || grasp_place.has_value(); }
 };
 
 /// The most `[[tool]]` a scene may have.
@@ -62,6 +82,9 @@ struct Scene {
 /// Reads and checks a scene file. Throws `Error` (file, line, key, what was expected). Does not read the
 /// mesh.
 Scene read_scene(const std::filesystem::path& file);
+
+/// Mesh vertices of one `[[fixed]]`. Throws `Error` as `fixed_vertices`.
+std::vector<int> vertices_in(const FixedRegion& region, const TetMesh& mesh);
 
 /// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an
 /// unknown tag.

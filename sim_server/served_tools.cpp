@@ -41,6 +41,7 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const ToolInpu
     }
     // The pose of a lost device is the last one known, or none: it touches nothing.
     const bool lost = (inputs[i].state.flags & protocol::ToolState::kDeviceLost) != 0;
+    simulation_.press_buttons(i, inputs[i].state.buttons);
     places_[i].reset();
     if (inputs[i].session != 0 && !lost) places_[i] = inputs[i].state.p_W;
   }
@@ -71,12 +72,16 @@ std::optional<ForceSample> ServedTools::answer(std::size_t tool, const ToolInput
 /// What this tool state asked for beyond the force; nothing is computed that nobody asked for.
 void ServedTools::add_parts(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
                             ForceSample& sample) noexcept {
+  if ((state.flags & (protocol::ToolState::kWantsHere | protocol::ToolState::kWantsAhead)) == 0) return;
+  const Vec3 surface_v_W = simulation_.surface_velocity(tool, state.p_W);
   if ((state.flags & protocol::ToolState::kWantsHere) != 0) {
+    sample.surface_v_W = surface_v_W;
     sample.here = on_the_wire(simulation_.linearise(tool, state.p_W, &force));
     sample.flags |= ForceSample::kHasHere;
   }
   if ((state.flags & protocol::ToolState::kWantsAhead) != 0) {
-    const Vec3 way = to_seconds(Time{state.lead_ns}) * state.v_W;
+    const Vec3 way =
+        to_seconds(Time{state.lead_ns}) * (state.v_W - surface_v_W);  // on the organ as it stands
     sample.ahead_p_W = state.p_W + std::min(1.0, kFarthestAhead / way.norm()) * way;
     if (!sample.ahead_p_W.allFinite()) sample.ahead_p_W = state.p_W;
     const Simulation::Linearised there = simulation_.linearise(tool, sample.ahead_p_W, nullptr);
@@ -84,7 +89,8 @@ void ServedTools::add_parts(std::size_t tool, const protocol::ToolState& state, 
     sample.ahead = on_the_wire(there);
     sample.flags |= ForceSample::kHasAhead;
   }
-  if ((state.flags & protocol::ToolState::kWantsSurface) != 0 && surfaces_[tool].version != 0) {
+  if ((state.flags & protocol::ToolState::kWantsSurface) != 0 && surfaces_[tool].version != 0 &&
+      !simulation_.tool(tool).holds()) {  // what is grasped is no matter of contact
     sample.surface = surfaces_[tool];
     sample.surface.shift_W = simulation_.surface_shift(tool, state.p_W);
     sample.flags |= ForceSample::kHasSurface;

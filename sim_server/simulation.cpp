@@ -66,7 +66,9 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   tissue_.model =
       find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where)
           .make({scene, mesh_, surface_, fixed, reachable, progress});
-  tissue_.free = tissue_.positions = tissue_.model->free_motion(0);
+  const FreeMotion motion = tissue_.model->free_motion(0);
+  tissue_.free = tissue_.positions = motion.positions;
+  tissue_.velocities = motion.velocities;
   std::size_t loads = 0;
   tools_.reserve(scene.tools.size());
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
@@ -82,13 +84,14 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   if (std::any_of(tools_.begin(), tools_.end(), [](const ToolContact& tool) { return tool.has_friction(); }))
     tissue_.before.assign(tissue_.positions.begin(), tissue_.positions.end());
   places_.resize(tools_.size());
+  ways_.resize(tools_.size(), Vec3::Zero());
   forces_.resize(tools_.size());
 }
 
 std::span<const ToolForce> Simulation::step(std::span<const std::optional<Vec3>> places_W,
                                             double dt) noexcept {
   assert(places_W.size() == tools_.size());
-  tissue_.free = tissue_.model->free_motion(dt);
+  move_organ(dt);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!places_W[i]) lift_tool(i);
   }
@@ -102,6 +105,27 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<Vec3>>
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
   for (std::size_t i = 0; i < tools_.size(); ++i) forces_[i] = tools_[i].force();
   return forces_;
+}
+
+/// The tools stay where they were on the organ, which goes by the mean of its velocities before and after
+/// (exact to the third order in `dt`): one that stands on a surface coming towards it is not left behind
+/// inside. From there they walk to where they are now.
+void Simulation::move_organ(double dt) noexcept {
+  const bool moves = !tissue_.velocities.empty();
+  for (std::size_t i = 0; moves && i < tools_.size(); ++i)
+    ways_[i] = 0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
+  const FreeMotion motion = tissue_.model->free_motion(dt);
+  tissue_.free = motion.positions;
+  tissue_.velocities = motion.velocities;
+  for (std::size_t i = 0; moves && i < tools_.size(); ++i)
+    ways_[i] += 0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
+  for (std::size_t i = 0; moves && i < tools_.size(); ++i) tools_[i].carry(ways_[i], tissue_);
+  if (moves && !tissue_.before.empty())  // gone along, nothing has slipped
+    std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
+}
+
+Vec3 Simulation::surface_velocity(std::size_t tool, const Vec3& p_W) const noexcept {
+  return tools_[tool].surface_velocity(p_W, tissue_);
 }
 
 ToolForce Simulation::step(const Vec3& p_W, double dt) noexcept {

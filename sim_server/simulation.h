@@ -25,11 +25,17 @@ class Simulation {
   /// With a mesh made elsewhere.
   Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent);
 
-  /// Advances the tissue by `dt` (s) with the tool centres at `places_W` (m), one for each tool; where there
-  /// is none, that tool is lifted. The forces, one for each tool, stay valid until the next step.
+  /// Advances the tissue by `dt` (s >= 0; the run begins at time 0) with the tool centres at `places_W` (m),
+  /// one for each tool; where there is none, that tool is lifted. The forces, one for each tool, stay valid
+  /// until the next step.
   std::span<const ToolForce> step(std::span<const std::optional<Vec3>> places_W, double dt) noexcept;
   /// The same with tool 0 alone, the others lifted.
   ToolForce step(const Vec3& p_W, double dt) noexcept;
+
+  /// What of its device's buttons is pressed, from the next step on: some tools grasp by it.
+  void press_buttons(std::size_t tool, std::uint16_t buttons) noexcept {
+    tools_[tool].press_buttons(buttons);
+  }
 
   /// The force on a tool at `p_W` (m), near where it stands, to first order; without effect on anything.
   struct Linearised {
@@ -39,6 +45,10 @@ class Simulation {
   };
   /// `felt`: what `step` gave for that place; null: to be found out. At most two contact solves.
   Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) noexcept;
+
+  /// How fast the organ's surface moves by itself where that tool touches it at `p_W` (m), or else nearest to
+  /// there: m/s, world; zero where all supports rest.
+  Vec3 surface_velocity(std::size_t tool, const Vec3& p_W) const noexcept;
 
   /// How far the surface nearest to a tool at `p_W` (m) is from its place at rest, free of that tool but
   /// under all others, m. O(vertices).
@@ -63,6 +73,7 @@ class Simulation {
   std::uint64_t state_hash() const noexcept;
 
  private:
+  void move_organ(double dt) noexcept;
   void settle() noexcept;
 
   TetMesh mesh_;
@@ -70,6 +81,7 @@ class Simulation {
   std::vector<Vec3> rest_;
   Tissue tissue_;
   std::vector<ToolContact> tools_;
+  std::vector<Vec3> ways_;                   // of the surface at each tool in this step, m
   std::vector<std::optional<Vec3>> places_;  // for the step of tool 0 alone
   std::vector<ToolForce> forces_;
 };

@@ -76,8 +76,11 @@ void VirtualSession::tick(std::uint64_t k) {
 void VirtualSession::step(const ToolState& state, double steps_due) {
   if (static_cast<double>(steps_) >= steps_due - kNow * link_.rate_hz) return;
   ++steps_;
+  // The organ stands as it does when the tool was read, so it moves from one answered tool state to the next.
+  const double dt = to_seconds(Time{state.t_ns} - answered_);
+  answered_ = Time{state.t_ns};
   inputs_.front() = {session_, state, true};
-  const auto& outcome = served_.step(inputs_, 1 / link_.rate_hz).front();
+  const auto& outcome = served_.step(inputs_, dt).front();
   stats_.in_contact += outcome.force.contacts > 0 ? 1 : 0;
   stats_.flagged += outcome.force.flagged ? 1 : 0;
   stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());

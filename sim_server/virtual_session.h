@@ -67,7 +67,7 @@ class VirtualSession {
   std::deque<OnTheWay> on_the_way_;
   SurfacePager pager_;
   std::uint64_t steps_ = 0, newest_ = 0, pages_ = 0;
-  Time now_{};
+  Time now_{}, answered_{};  // of the newest tool state, and of the newest that a step answered
   Vec3 newest_p_W_ = Vec3::Zero();
   VirtualSessionStats stats_;
 };

@@ -3,7 +3,7 @@
 
 DIR holds summary.csv and figures_*.csv. Written beside them: paper_table.csv and .txt
 (the paper's table, next to what it published), laws.csv and .txt (mean over the motions,
-in the contact of the block), figure3.png and figure4_LAW.png (the paper's, redrawn for
+in the contact of the block), worlds.csv and .txt (in every world), figure3.png and figure4_LAW.png (the paper's, redrawn for
 each law), error_rate.png, error_speed.png, error_delay.png, error_spacing.png (error
 against each, means over the motions) and error_cost.png (against run time and bytes, with
 the Pareto front). Needs Debian's python3-matplotlib.
@@ -91,12 +91,12 @@ def paper_table(rows, folder):
     """% of the force on the line between the samples, 33.3 Hz, no delay."""
     rows = chosen(rows, reference="line", blended=False)
     header, lines = ["law"], []
-    for who in ("published", "liver", "block"):
+    for who in ("published", "grasp", "liver", "block"):
         header += [f"{who} average %", f"{who} maximal %", f"{who} max-force %"]
     for law in values(rows, "method"):
         line = [law, *(float(x) for x in PUBLISHED.get(law, ()))]
         line += [""] * (4 - len(line))
-        for world in ("liver", "block"):
+        for world in ("grasp", "liver", "block"):
             found = average(chosen(rows, world=world, method=law))
             line += [found[key] if found else "" for key in PAPER_KEYS]
         lines.append(line)
@@ -120,6 +120,19 @@ def law_table(rows, folder):
     write_table(folder, "laws",
                 f"Against the true force: block, {RATE:g} Hz, {SPEED:g} m/s; mean in % of RMS, p99 and max in % of "
                 "peak\n(average of five motions; max: the worst of them)", header, lines)
+
+
+def world_table(rows, folder):
+    rows = chosen(rows, reference="truth", speed_m_s=SPEED, rate_hz=RATE, blended=False)
+    delay = min(values(rows, "delay_ms"), key=lambda d: abs(d - 35))
+    worlds = values(rows, "world")
+    lines = []
+    for law in values(rows, "method"):
+        found = [average(chosen(rows, method=law, world=world, delay_ms=delay)) for world in worlds]
+        lines.append([law, *(row[key] for row in found for key in ("mean_percent", "max_percent"))])
+    header = ["law"] + [f"{world} {what} %" for world in worlds for what in ("mean", "max")]
+    write_table(folder, "worlds", f"Against the true force in every world: {RATE:g} Hz, {SPEED:g} m/s, {delay:g} ms\n"
+                "(average of the motions; max: the worst of them)", header, lines)
 
 
 def save(figure, path):
@@ -282,6 +295,7 @@ def draw(folder):
     styles = style_of_laws(values(rows, "method"))
     paper_table(rows, folder)
     law_table(rows, folder)
+    world_table(rows, folder)
     rows = chosen(rows, world="block", reference="truth", blended=False)
     draw_errors(chosen(rows, speed_m_s=SPEED), styles, lambda row: row["rate_hz"], "simulation rate (Hz)",
                 "error_rate", folder)

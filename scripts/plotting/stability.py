@@ -43,7 +43,7 @@ def draw(rows, world, file):
     axes.set_xticks(range(len(columns)), [f"{o}\n{r:g} Hz, {d:g} ms" for o, r, d in columns], fontsize=7, rotation=45,
                     ha="right")
     axes.set_yticks(range(len(laws)), laws, fontsize=8)
-    axes.set_title(f"{world} wall: stable up to (N/m), without passivity, below with it", fontsize=10)
+    axes.set_title(f"{world.replace('_', ' ')}: stable up to (N/m), without passivity, below with it", fontsize=10)
     bar = figure.colorbar(image, ticks=[math.log10(x) for x in (0.003, 0.01, 0.03, 0.1, 0.3, 1)])
     bar.ax.set_yticklabels(["0.3 %", "1 %", "3 %", "10 %", "30 %", "100 %"])
     bar.set_label("of the direct limit, without passivity", fontsize=8)

@@ -5,8 +5,17 @@ Called by scripts/study, which builds the programs first. A cell is a world, a m
 a mean speed: its truth is recorded once (a step every 0.5 ms), then a capture for each
 rate and delay, all scored by haptic_client evaluate. The captures are deleted.
 
-The block as stiff as block_stiff.toml is not run: its tissue is linear and the motion is
-given, so that all percentages are those of block.toml.
+The worlds (their scenes say mesh, E, nu and tool; the motions go up to 3 mm deep, 12 s
+each, from the fixed seeds of scripts/trajectories; the mean speed is a study's choice):
+
+  block     soft, five motions; all speeds, rates and delays
+  stiff     the same 33 times as stiff, at one speed and rate; as the tissue is linear and
+            the motion given, it must give the percentages of the block
+  friction  the same with friction, likewise with 35 ms (its steps take long)
+  moving    the block breathes and the tool follows it, likewise
+  grasp     a grasped organ, 60 s: the paper's regime; its motion is known at the samples
+            only, as in the paper, and its rate is 100/3 Hz
+  liver     the paper's liver, 60 s of palpation
 
 Writes into --out: summary.json and summary.csv (a row for each configuration and law),
 figures_*.csv (forces of all laws over a few seconds, for the drawings). The same each
@@ -27,15 +36,19 @@ from workers import Failed, Workers, run_program
 
 ROOT = Path(__file__).resolve().parents[2]
 BIN = ROOT / "build" / "release" / "bin"
+SCENES = ROOT / "configs" / "scenes"
+OWN_SCENES = ("block", "grasp", "liver")  # the others are variants of the block
 MAKE_MOTIONS = ROOT / "scripts" / "trajectories" / "make_block_motions"
 
 MOTIONS = ("palpation", "slide", "stop_and_go", "curve", "mix")
 TRUTH_HZ = 2000
 SPEED, RATE = 0.017, 33.3  # of the paper's long run
+GRASP_RATE = 100 / 3       # the rows of grasp.csv
 SPEEDS = (0.01, 0.017, 0.05, 0.1)
 RATES = (80, 40, 33.3, 26.7, 20)
 DELAYS = (0, 35, 80)  # ms
 QUICK_DELAYS, QUICK_SECONDS = (0, 35), 6
+SLOW_DELAYS = (35,)        # where a step takes long
 FIGURES = ((20, 0), (RATE, 35))  # rate, delay of the drawings: the paper's, and one with a link
 FIGURES_MOTION, FIGURES_SECONDS, FIGURES_FROM = "mix", 5.5, 1.5
 
@@ -65,22 +78,29 @@ class Cell(NamedTuple):
 
     @property
     def scene(self):
-        return ROOT / "configs" / "scenes" / f"{self.world}.toml"
+        return SCENES / f"{self.world if self.world in OWN_SCENES else 'block_' + self.world}.toml"
 
 
 def cells_of(quick, motions):
-    """`motions`: {speed: folder of CSV files}."""
+    """`motions`: {speed: folder of CSV files}; and "moving", at SPEED."""
     delays = QUICK_DELAYS if quick else DELAYS
     cells = []
-    for speed, folder in motions.items():
+
+    def add(world, motion, speed, folder, rates=(RATE,)):
+        file = folder / f"block_{motion}.csv"
+        seconds = QUICK_SECONDS if quick else float(file.read_text().split("\n")[-2].split(",")[0])
+        captures = tuple((rate, delay) for rate in rates for delay in (delays if world != "friction" else SLOW_DELAYS))
+        cells.append(Cell(world, motion, speed, file, seconds, captures, world == "block" and speed == SPEED))
+
+    for speed in (s for s in motions if s != "moving"):
         for motion in MOTIONS:
-            file = folder / f"block_{motion}.csv"
-            seconds = QUICK_SECONDS if quick else float(file.read_text().split("\n")[-2].split(",")[0])
-            rates = RATES if speed == SPEED and not quick else (RATE,)
-            captures = tuple((rate, delay) for rate in rates for delay in delays)
-            cells.append(Cell("block", motion, speed, file, seconds, captures, speed == SPEED))
-    cells.append(Cell("liver", "palpation", SPEED, ROOT / "configs" / "clients" / "liver.toml",
-                      QUICK_SECONDS if quick else 60, tuple((RATE, delay) for delay in delays), True))
+            add("block", motion, speed, motions[speed], RATES if speed == SPEED and not quick else (RATE,))
+    for world in ("stiff", "friction", "moving"):
+        for motion in MOTIONS if not quick else ("mix",):
+            add(world, motion, SPEED, motions.get(world, motions[SPEED]))
+    for world, motion, rate in (("grasp", "manipulation", GRASP_RATE), ("liver", "palpation", RATE)):
+        cells.append(Cell(world, motion, SPEED, ROOT / "configs" / "clients" / f"{world}.toml",
+                          QUICK_SECONDS if quick else 60, tuple((rate, delay) for delay in delays), True))
     return cells
 
 
@@ -110,7 +130,7 @@ class Study:
         each = len(rows) // len(captures)
         for i, row in enumerate(rows):
             rate, delay = list(captures)[i // each]
-            row.update(motion=cell.motion, speed_m_s=cell.speed, rate_hz=rate, delay_ms=delay)
+            row.update(motion=cell.motion, speed_m_s=cell.speed, rate_hz=round(rate, 1), delay_ms=delay)
         return [{key: row[key] for key in KEYS} for row in rows]
 
     def run(self, cell):
@@ -124,7 +144,7 @@ class Study:
                 self.record(capture_weight, cell, rate, captures[rate, delay], "--delay-ms", delay)
             rows = self.evaluate(scoring_weight, cell, captures, folder, "--truth", folder / "truth.pcap")
             if cell.line:
-                paper = {(RATE, 0): captures[RATE, 0]}
+                paper = {key: captures[key] for key in captures if round(key[0], 1) == RATE and key[1] == 0}
                 rows += self.evaluate(scoring_weight, cell, paper, folder)
         return rows
 
@@ -165,6 +185,10 @@ def make_motions(folder, speeds):
         made[speed] = folder / f"{speed:g}"
         made[speed].mkdir()
         run_program(sys.executable, MAKE_MOTIONS, "--speed", speed, "--output", made[speed])
+    made["moving"] = folder / "moving"
+    made["moving"].mkdir()
+    run_program(sys.executable, MAKE_MOTIONS, "--speed", SPEED, "--follow", SCENES / "block_moving.toml", "--output",
+                made["moving"])
     return made
 
 

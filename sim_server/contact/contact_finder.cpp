@@ -82,18 +82,23 @@ bool ContactFinder::inside(std::span<const Vec3> positions, const Vec3& p) const
   return solid_angle > 2 * std::numbers::pi;
 }
 
-Vec3 ContactFinder::nearest(std::span<const Vec3> positions, const Vec3& p) const noexcept {
+Vec3 ContactFinder::Foot::of(std::span<const Vec3> at_vertices) const noexcept {
+  const Vec3 &a = at_vertices[triangle[0]], &b = at_vertices[triangle[1]], &c = at_vertices[triangle[2]];
+  return weight[0] * a + weight[1] * b + weight[2] * c;
+}
+
+ContactFinder::Foot ContactFinder::foot(std::span<const Vec3> positions, const Vec3& p) const noexcept {
   double best = std::numeric_limits<double>::max();
-  Vec3 nearest = p;
+  Foot foot;
   for (const Triangle& t : triangles_) {
     const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
     const auto w = closest_point(p, a, b, c).weight;
     const Vec3 q = w[0] * a + w[1] * b + w[2] * c;
     if ((p - q).squaredNorm() >= best) continue;
     best = (p - q).squaredNorm();
-    nearest = q;
+    foot = {t, {w[0], w[1], w[2]}};
   }
-  return nearest;
+  return foot;
 }
 
 }  // namespace palpate::sim

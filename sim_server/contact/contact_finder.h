@@ -32,8 +32,18 @@ class ContactFinder {
   /// O(triangles).
   bool inside(std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
-  /// The touchable point of the surface nearest to `p`. O(triangles).
-  Vec3 nearest(std::span<const Vec3> positions, const Vec3& p) const noexcept;
+  /// A point of the surface, on one of its triangles.
+  struct Foot {
+    Triangle triangle{};
+    std::array<double, 3> weight{};  ///< of its corners, sum 1; all 0: there is no surface
+    Vec3 of(std::span<const Vec3> at_vertices) const noexcept;
+  };
+  /// The touchable one nearest to `p`. O(triangles).
+  Foot foot(std::span<const Vec3> positions, const Vec3& p) const noexcept;
+  /// Its place, m.
+  Vec3 nearest(std::span<const Vec3> positions, const Vec3& p) const noexcept {
+    return foot(positions, p).of(positions);
+  }
 
  private:
   /// Patch node of a surface vertex, given one if it has none yet; -1 when there is no room.

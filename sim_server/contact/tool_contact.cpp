@@ -47,9 +47,10 @@ std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh&
 ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
                          std::vector<Triangle> touchable)
     : tool_(tool.shape),
-      finder_(rest, surface.triangles, std::move(touchable), kGather * tool.shape.radius),
+      finder_(rest, surface.triangles, touchable, kGather * tool.shape.radius),
       solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0),
       free_(rest) {
+  if (tool.grasps()) grip_.emplace(tool, rest, touchable, finder_.max_nodes());
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   displacement_.resize(3 * (finder_.max_nodes() + 1));
   loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
@@ -89,7 +90,26 @@ bool ToolContact::share(std::span<const ToolContact> tools, Tissue& tissue) noex
 }
 
 void ToolContact::walk(const Vec3& p_W, Tissue& tissue) noexcept {
+  if (grip_ && grip_->opens()) lift(tissue);
+  go(p_W, tissue);
+  if (!grip_ || !grip_->closes() || !placed_ || !arrived_) return;
+  grip_->close(place_, tissue.positions);
+  if (holds()) pull(place_, tissue);
+}
+
+/// What it holds comes with it, straight to `p_W`.
+void ToolContact::pull(const Vec3& p_W, Tissue& tissue) noexcept {
+  placed_ = arrived_ = true;
+  place_ = p_W;
+  tip_offset_.setZero();
+  const Grip::Pull pull = grip_->pull(p_W, tissue, loads_, others_);
+  if (!pull.force.allFinite()) return give_up(tissue);
+  force_ = {pull.force, pull.tangent, pull.vertices, pull.rounds, !pull.converged};
+}
+
+void ToolContact::go(const Vec3& p_W, Tissue& tissue) noexcept {
   if (!p_W.allFinite() || p_W.cwiseAbs().maxCoeff() > kFarthest) return give_up(tissue);
+  if (holds()) return pull(p_W, tissue);
   const double stride = kStride * tool_.radius;
   if (!placed_ || (p_W - place_).norm() > kMaxStrides * stride || escaped(p_W)) enter(p_W, tissue);
   const Vec3 way = p_W - place_, from = place_;
@@ -110,7 +130,26 @@ void ToolContact::walk(const Vec3& p_W, Tissue& tissue) noexcept {
   conclude(contact, iterations, tissue);
 }
 
+void ToolContact::carry(const Vec3& way, Tissue& tissue) noexcept {
+  if (placed_) place_ += way;
+  tissue.positions = tissue.model->apply(loads_);
+}
+
+Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue) const noexcept {
+  if (tissue.velocities.empty()) return Vec3::Zero();
+  Vec3 sum = Vec3::Zero();
+  double weights = 0;
+  for (const NodalLoad& load : own_loads()) {
+    const double weight = load.force.norm();
+    sum += weight * tissue.velocities[load.vertex];
+    weights += weight;
+  }
+  if (weights > 0) return sum / weights;
+  return finder_.foot(tissue.positions, p_W).of(tissue.velocities);
+}
+
 void ToolContact::settle(Tissue& tissue) noexcept {
+  if (holds()) return pull(place_, tissue);
   const ContactForce contact = touch(place_, tissue);
   conclude(contact, force_.iterations + contact.iterations, tissue);
 }
@@ -130,7 +169,7 @@ ToolForce ToolContact::probe(const Vec3& p_W, Tissue& tissue) noexcept {
   const Vec3 place = place_, tip_offset = tip_offset_;
   const bool placed = placed_, arrived = arrived_;
   kept_.assign(own_loads().begin(), own_loads().end());
-  walk(p_W, tissue);
+  go(p_W, tissue);
   const ToolForce there = force_;
   force_ = force;
   place_ = place;
@@ -174,6 +213,7 @@ void ToolContact::lift(Tissue& tissue) noexcept {
   release(tissue);
   placed_ = false;
   force_ = {};
+  if (grip_) grip_->open();
 }
 
 /// Whether a tool in contact has left the free organ so far behind that it only drags the surface along with
@@ -241,7 +281,7 @@ void ToolContact::release(Tissue& tissue) noexcept {
 
 std::size_t ToolContact::bytes() const {
   return solver_.bytes() + static_cast<std::size_t>(patch_.compliance.size()) * sizeof(double) +
-         (pushed_.size() + surface_was_.size()) * sizeof(Vec3);
+         (pushed_.size() + surface_was_.size()) * sizeof(Vec3) + (grip_ ? grip_->bytes() : 0);
 }
 
 }  // namespace palpate::sim

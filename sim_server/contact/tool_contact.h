@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "sim_server/contact/contact_finder.h"
+#include "sim_server/contact/grip.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene.h"
 
@@ -11,7 +12,7 @@ namespace palpate::sim {
 struct ToolForce {
   Vec3 force = Vec3::Zero();    ///< N, world, on the tool at its position
   Mat3 tangent = Mat3::Zero();  ///< dF/dp, N/m, symmetric without friction; the loads of other tools held
-  int contacts = 0;             ///< touching faces, edges and vertices
+  int contacts = 0;             ///< touching faces, edges and vertices; or vertices that it grasps
   int iterations = 0;           ///< contact linearisations, all sub-places together
   /// No settled answer: a wild position (then there is no force), contact that did not converge, several
   /// tools that did not come to an equilibrium, or a way too long for one step (then the force belongs to the
@@ -28,9 +29,10 @@ struct SurfacePlane {
 /// The tissue as all tools share it. Positions are those of the surface vertices, m, world.
 struct Tissue {
   std::unique_ptr<DeformationModel> model;
-  std::span<const Vec3> free;       ///< in this step, without any contact
-  std::span<const Vec3> positions;  ///< now, under the loads of all tools
-  std::vector<Vec3> before;         ///< at the end of the last step; empty where no tool has friction
+  std::span<const Vec3> free;        ///< in this step, without any contact
+  std::span<const Vec3> velocities;  ///< of that, m/s; empty: it rests
+  std::span<const Vec3> positions;   ///< now, under the loads of all tools
+  std::vector<Vec3> before;          ///< at the end of the last step; empty where no tool has friction
 };
 
 /// Triangles of the surface that come near enough to the reach box of the tool to be touched there.
@@ -54,10 +56,20 @@ class ToolContact {
   /// model, and none while the others load nothing.
   bool share(std::span<const ToolContact> tools, Tissue& tissue) noexcept;
 
+  /// What of the device's buttons is pressed: the next `walk` grasps, or lets go.
+  void press_buttons(std::uint16_t buttons) noexcept {
+    if (grip_) grip_->press(buttons);
+  }
   /// Goes to `p_W` (m) on a straight line in strides of half the tool's radius, so that a fast tool does not
   /// jump through the surface; shorter ones with friction, which follows the path. Slip is measured from
   /// where the tissue really was: at the end of the last step, then of each stride.
   void walk(const Vec3& p_W, Tissue& tissue) noexcept;
+  /// The organ has moved under it: the tool goes along by `way` (m) with its loads, so that it stands on the
+  /// surface as before.
+  void carry(const Vec3& way, Tissue& tissue) noexcept;
+  /// How fast the organ's surface moves by itself where the tool touches (the mean by force), or else at the
+  /// point nearest to `p_W`; m/s, world.
+  Vec3 surface_velocity(const Vec3& p_W, const Tissue& tissue) const noexcept;
   /// Solves its last stride again, on the surface as it is free by now.
   void settle(Tissue& tissue) noexcept;
   /// What it would feel at `p_W` (m); then it stands where it stood, and nothing has changed, bit by bit.
@@ -72,6 +84,8 @@ class ToolContact {
   void flag() noexcept { force_.flagged = true; }
 
   bool placed() const { return placed_; }
+  /// Whether it has tissue in its jaws.
+  bool holds() const { return grip_ && grip_->holds(); }
   /// Whether this step has used up its contact linearisations.
   bool exhausted() const;
   const ToolForce& force() const { return force_; }
@@ -86,6 +100,8 @@ class ToolContact {
   std::size_t bytes() const;
 
  private:
+  void go(const Vec3& p_W, Tissue& tissue) noexcept;
+  void pull(const Vec3& p_W, Tissue& tissue) noexcept;
   void give_up(Tissue& tissue) noexcept;
   bool escaped(const Vec3& p_W) const noexcept;
   void enter(const Vec3& p_W, Tissue& tissue) noexcept;
@@ -100,6 +116,7 @@ class ToolContact {
   ContactFinder finder_;
   ContactSolver solver_;
   ContactPatch patch_;
+  std::optional<Grip> grip_;        // for a tool that grasps
   std::span<const Vec3> free_;      // the tissue's, or pushed_
   std::vector<Vec3> pushed_;        // free under the loads of the other tools; empty where there are none
   std::vector<NodalLoad> loads_;    // of the other tools, then its own

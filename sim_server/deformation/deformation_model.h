@@ -14,21 +14,27 @@ struct NodalLoad {
   Vec3 force;  ///< N, world
 };
 
+/// A tissue free of contact; valid until it is asked again.
+struct FreeMotion {
+  std::span<const Vec3> positions;        ///< (n)
+  std::span<const Vec3> velocities = {};  ///< (n), m/s, at the end of the step; empty: it rests
+};
+
 /// Bytes that a part of the program holds, for reports.
 struct MemoryPart {
   std::string name;
   std::size_t bytes;
 };
 
-/// A tissue. Every model answers the same three questions, so that one contact solver serves them all.
-/// Vertices are those of the surface (`Surface`), positions in m in the world frame. One thread; the three
-/// neither allocate nor throw.
+/// A tissue. Every model answers the same questions (where would you go, how compliant are you, here are the
+/// loads: move), so that one contact solver serves them all. Vertices are those of the surface (`Surface`),
+/// positions in m in the world frame. One thread; no answer allocates or throws.
 class DeformationModel {
  public:
   virtual ~DeformationModel() = default;
 
-  /// Where would you go freely in `dt` (s)? The positions (n) without any contact, valid until the next call.
-  virtual std::span<const Vec3> free_motion(double dt) noexcept = 0;
+  /// Where would you go freely in `dt` (s), without any contact?
+  virtual FreeMotion free_motion(double dt) noexcept = 0;
 
   /// How compliant are you at these vertices? Fills the leading (3m x 3m) of `patch.compliance` (m/N:
   /// displacement at the end of the step per force held over it; symmetric, positive semi-definite) and

@@ -4,6 +4,7 @@
 
 #include "sim_server/deformation/quasi_static.h"
 #include "sim_server/deformation/rigid.h"
+#include "sim_server/deformation/spring.h"
 
 namespace palpate::sim {
 namespace {
@@ -16,7 +17,8 @@ std::unique_ptr<DeformationModel> make(const ModelInputs& inputs) {
 constexpr std::array kModels{
     DeformationModelRow{"rigid", "no deformation; force = stiffness x penetration depth", &make<Rigid>},
     DeformationModelRow{"quasi_static", "linear elastic equilibrium by pre-computed compliance",
-                        &make<QuasiStatic>},
+                        &make<QuasiStatic>, true},
+    DeformationModelRow{"spring", "no deformation; the organ hangs on a spring that hardens", &make<Spring>},
 };
 
 }  // namespace

@@ -30,6 +30,7 @@ struct DeformationModelRow {
   std::string_view name;
   std::string_view summary;
   std::unique_ptr<DeformationModel> (*make)(const ModelInputs&);
+  bool follows_supports = false;  ///< it moves with a [[fixed.motion]]
 };
 std::span<const DeformationModelRow> deformation_models();
 

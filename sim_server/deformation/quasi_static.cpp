@@ -76,11 +76,12 @@ void QuasiStatic::precompute(const ModelInputs& inputs) {
     }
   }
   held_compliance_ = compliance_.diagonal().minCoeff();
+  if (MovingSupports supports(inputs, dofs, factor); supports.any()) supports_ = std::move(supports);
   inputs.progress("computing compliance", 1);
 }
 
-std::span<const Vec3> QuasiStatic::free_motion(double) noexcept {
-  return rest_;
+FreeMotion QuasiStatic::free_motion(double dt) noexcept {
+  return supports_ ? supports_->advance(dt) : FreeMotion{rest_};
 }
 
 void QuasiStatic::compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
@@ -100,7 +101,8 @@ void QuasiStatic::compliance(std::span<const int> vertices, ContactPatch& patch)
 }
 
 std::span<const Vec3> QuasiStatic::apply(std::span<const NodalLoad> loads) noexcept {
-  std::copy(rest_.begin(), rest_.end(), positions_.begin());
+  const std::span<const Vec3> free = supports_ ? supports_->positions() : rest_;
+  std::copy(free.begin(), free.end(), positions_.begin());
   for (const NodalLoad& load : loads) {
     const int column = row_[load.vertex];
     if (column < 0) {
@@ -118,9 +120,11 @@ std::span<const Vec3> QuasiStatic::apply(std::span<const NodalLoad> loads) noexc
 }
 
 std::vector<MemoryPart> QuasiStatic::memory() const {
-  return {{"compliance", static_cast<std::size_t>(compliance_.size()) * sizeof(double)},
-          {"positions", (rest_.size() + positions_.size()) * sizeof(Vec3) +
-                            (row_.size() + reachable_.size()) * sizeof(int)}};
+  std::vector<MemoryPart> parts{{"compliance", static_cast<std::size_t>(compliance_.size()) * sizeof(double)},
+                                {"positions", (rest_.size() + positions_.size()) * sizeof(Vec3) +
+                                                  (row_.size() + reachable_.size()) * sizeof(int)}};
+  if (supports_) parts.push_back({"moving supports", supports_->bytes()});
+  return parts;
 }
 
 }  // namespace palpate::sim

@@ -6,8 +6,8 @@ Rigid::Rigid(const ModelInputs& inputs) : stiffness_(inputs.scene.deformation.st
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
 }
 
-std::span<const Vec3> Rigid::free_motion(double) noexcept {
-  return rest_;
+FreeMotion Rigid::free_motion(double) noexcept {
+  return {rest_};
 }
 
 void Rigid::compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {

@@ -9,67 +9,28 @@
 #include "common/error.h"
 #include "common/report.h"
 #include "common/text.h"
-#include "haptic_client/device/simulated_operator.h"
 #include "haptic_client/extrapolation/extrapolators.h"
-#include "tests/support/closed_loop.h"
+#include "tests/studies/press_and_slide.h"
+#include "tests/support/random.h"
 
 using namespace palpate;
 using namespace palpate::client;
-using test::ClosedLoop;
+using namespace palpate::studies;
 
 namespace {
 
-constexpr double kHapticHz = 1000;
-constexpr double kPress = 1.5;                                            // N, that the hand settles at
-constexpr double kEncoder = 20e-6;                                        // m
 constexpr double kFree = 1.3, kApproach = 0.5, kWatch = 4.0, kEnd = 6.0;  // s
 constexpr double kSwing = 0.15e-3;                                        // m, beyond which, together with
 constexpr double kSpeed = 2e-3;  // m/s RMS, a loop counts as unstable
 constexpr double kSoftest = 20, kStiffest = 51200, kStep = 1.19, kPrecision = 1.05;  // N/m; ratios
-constexpr double kClamp = 12;                                                        // N
-constexpr int kSeeds = 5;
-const std::string kDirect = "direct";
+const std::string kSlides = "press_and_slide";  // a world; the others are walls
 
-struct Person {
-  const char* name;
-  OperatorSettings hand;
-};
 const std::vector<Person> kPersons{
     {"light", {.mass = 0.1, .device_damping = 1, .hand_stiffness = 200, .hand_damping = 5}},
     {"typical", {.mass = 0.3, .device_damping = 2, .hand_stiffness = 300, .hand_damping = 10}},
     {"heavy_loose", {.mass = 0.6, .device_damping = 1, .hand_stiffness = 100, .hand_damping = 5}}};
 
-struct Link {
-  double rate_hz, delay_ms;
-};
-
-struct Cell {
-  const Person* person;
-  std::string law, world;
-  bool passivity;
-  Link link;
-};
-
-/// What the encoder tells of a hand.
-class Encoder : public Device {
- public:
-  Encoder(Device& hand, double offset) : hand_(hand), offset_(offset) {}
-  DeviceReading read(Time now) noexcept override {
-    DeviceReading reading = hand_.read(now);
-    place_ = reading.p_D;
-    for (double& x : reading.p_D) x = kEncoder * std::round((x - offset_) / kEncoder) + offset_;
-    return reading;
-  }
-  void write(const Vec3& f_D) noexcept override { hand_.write(f_D); }
-  const Vec3& place() const { return place_; }
-
- private:
-  Device& hand_;
-  double offset_;
-  Vec3 place_ = Vec3::Zero();
-};
-
-ClosedLoop::Organ organ_of(const std::string& world, double stiffness) {
+test::Organ organ_of(const std::string& world, double stiffness) {
   return world == "linear" ? test::wall(stiffness) : test::hertz_wall(stiffness, kPress);
 }
 
@@ -77,11 +38,6 @@ ClosedLoop::Organ organ_of(const std::string& world, double stiffness) {
 double depth_of(const std::string& world, double stiffness) {
   return world == "linear" ? kPress / stiffness : 1.5 * kPress / stiffness;
 }
-
-struct Run {
-  bool stable = false;
-  double force_error = 0;  // RMS, of the RMS of the true force
-};
 
 /// What is seen of a hand that presses.
 class Watch {
@@ -111,18 +67,18 @@ class Watch {
 };
 
 /// The true force at the haptic rate, without a law or a link: what no law can beat by much.
-Run run_direct(Encoder& device, const ClosedLoop::Organ& organ, double start) {
+Run run_direct(Encoder& device, const test::Organ& organ, double start) {
   Watch watch;
   for (int tick = 0; tick < kEnd * kHapticHz; ++tick) {
     const double t = tick / kHapticHz;
-    Vec3 f = organ(device.read(from_seconds(1 + t)).p_D).f;
-    if (f.norm() > kClamp) f *= kClamp / f.norm();
+    const Vec3 f = clamped(organ(device.read(from_seconds(1 + t)).p_D).f);
     device.write(f);
     watch.see(t, start, device.place(), f, organ(device.place()).f);
   }
   return watch.result(false);
 }
 
+/// Against a wall.
 Run run(const Cell& cell, double stiffness, int seed) {
   test::Random random(static_cast<std::uint64_t>(seed) + 17);
   const double start = kFree + random.between(0, 1 / cell.link.rate_hz);
@@ -131,15 +87,10 @@ Run run(const Cell& cell, double stiffness, int seed) {
       cell.person->hand,
       Trajectory({0, start, start + kApproach}, {Vec3(0, 0.005, 0), Vec3(0, 0.005, 0), Vec3(0, target, 0)}));
   Encoder device(hand, random.between(0, kEncoder));
-  const ClosedLoop::Organ organ = organ_of(cell.world, stiffness);
+  const test::Organ organ = organ_of(cell.world, stiffness);
   if (cell.law == kDirect) return run_direct(device, organ, start);
-  Pipeline pipeline(find_row(extrapolators(), cell.law, "law", "study").make(), {},
-                    {.max_force = kClamp, .max_slew = 1e5}, {.enabled = cell.passivity});
-  ClosedLoop loop(device, pipeline, organ,
-                  {.haptic_hz = kHapticHz,
-                   .sim_hz = cell.link.rate_hz,
-                   .delay_s = cell.link.delay_ms / 1e3,
-                   .seed = static_cast<std::uint64_t>(seed)});
+  Pipeline pipeline = pipeline_of(cell);
+  test::ClosedLoop loop(device, pipeline, test::served(organ), loop_of(cell.link, seed));
   Watch watch;
   while (loop.seconds() < kEnd) {
     const Vec3 felt = loop.tick().f_D;
@@ -170,11 +121,13 @@ double threshold(const Cell& cell) {
   return good;
 }
 
-Json row_of(const Cell& cell, double direct) {
-  const double limit = threshold(cell);
+/// `slides`: of this thread.
+Json row_of(const Cell& cell, double direct, PressAndSlide& slides) {
+  const bool slide = cell.world == kSlides;
+  const double limit = slide ? slides.threshold(cell) : threshold(cell);
   double error = 0;
   for (int seed = 1; seed <= kSeeds && limit > 0; ++seed)
-    error += run(cell, limit / 2, seed).force_error / kSeeds;
+    error += (slide ? slides.run(cell, limit, seed, true) : run(cell, limit / 2, seed)).force_error / kSeeds;
   return {{"operator", cell.person->name},
           {"method", cell.law},
           {"passivity", cell.passivity},
@@ -191,9 +144,11 @@ std::vector<Cell> cells(bool quick) {
                                       ? std::vector<Link>{{30, 38}}
                                       : std::vector<Link>{{30, 0}, {30, 38}, {30, 83}, {10, 105}, {100, 15}};
   std::vector<Cell> all;
-  for (const char* world : {"linear", "hertz"}) {
+  for (const std::string& world : {std::string("linear"), std::string("hertz"), kSlides}) {
     for (const Person& person : kPersons) {
       for (const Link& link : links) {
+        // Rates that a simulation of elements has; and the quick study has no time for all hands.
+        if (world == kSlides && (link.rate_hz > 30 || (quick && &person != &kPersons[1]))) continue;
         for (const ExtrapolatorRow& row : extrapolators()) {
           for (const bool passivity : {false, true})
             all.push_back({&person, std::string(row.name), world, passivity, link});
@@ -204,15 +159,16 @@ std::vector<Cell> cells(bool quick) {
   return all;
 }
 
-/// Does `work(k)` for each k below `count` on all cores.
+/// Does `work(k, slides)` for each k below `count` on all cores.
 template <class Work>
 void for_all(std::size_t count, const char* what, Work work) {
   std::atomic<std::size_t> next{0}, done{0};
   std::vector<std::jthread> workers;
   for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i) {
     workers.emplace_back([&] {
+      PressAndSlide slides;
       for (std::size_t k; (k = next++) < count;) {
-        work(k);
+        work(k, slides);
         fmt::print(stderr, "{}: {} of {}\n", what, ++done, count);
       }
     });
@@ -230,7 +186,9 @@ void study(bool quick, const std::filesystem::path& out) {
     if (!known) walls.push_back({cell.person, kDirect, cell.world, false, cell.link});
   }
   std::vector<double> limits(walls.size());
-  for_all(walls.size(), "direct limits", [&](std::size_t k) { limits[k] = threshold(walls[k]); });
+  for_all(walls.size(), "direct limits", [&](std::size_t k, PressAndSlide&) {
+    limits[k] = walls[k].world == kSlides ? PressAndSlide::stiffnesses().back() : threshold(walls[k]);
+  });
   const auto direct = [&](const Cell& cell) {
     const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Cell& w) {
       return w.person == cell.person && w.world == cell.world;
@@ -238,12 +196,20 @@ void study(bool quick, const std::filesystem::path& out) {
     return limits[static_cast<std::size_t>(wall - walls.begin())];
   };
   std::vector<Json> rows(all.size());
-  for_all(all.size(), "laws", [&](std::size_t k) { rows[k] = row_of(all[k], direct(all[k])); });
+  for_all(all.size(), "laws",
+          [&](std::size_t k, PressAndSlide& slides) { rows[k] = row_of(all[k], direct(all[k]), slides); });
   write_whole(out / "stability.csv", csv_of(Json(rows)));
   write_json(out / "summary.json", rows);
 }
 
 }  // namespace
+
+Pipeline palpate::studies::pipeline_of(const Cell& cell) {
+  return {find_row(extrapolators(), cell.law, "law", "study").make(),
+          {},
+          {.max_force = kClamp, .max_slew = 1e5},
+          {.enabled = cell.passivity}};
+}
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);

@@ -9,66 +9,40 @@
 
 #include "haptic_client/device/device.h"
 #include "haptic_client/loop/pipeline.h"
-#include "tests/support/random.h"
+#include "protocol/codec.h"
+#include "protocol/link_simulator.h"
+#include "protocol/replay_window.h"
 
 namespace palpate::test {
 
-/// How the loop runs.
+/// How the loop runs. `link`: from reading the tool to having its force, as one way.
 struct ClosedLoopSettings {
   double haptic_hz = 1000, sim_hz = 30;
-  double delay_s = 0.035;  ///< from reading the tool to having its force
-  double jitter_s = 0;     ///< of the delay: between nothing and so much more, seeded
-  double loss = 0;         ///< share of samples that never arrive
-  std::uint64_t seed = 1;
+  protocol::LinkConditions link = {.delay = 0.035};
+  std::uint64_t seed = 1;  ///< of the link
 };
 
-/// The organ is a function of the tool's place, with its tangent, and its surface out of contact.
-class ClosedLoop {
- public:
-  using Organ = std::function<client::Linearised(const Vec3& p_W)>;
-  ClosedLoop(client::Device& device, client::Pipeline& pipeline, Organ organ,
-             const ClosedLoopSettings& settings)
-      : device_(device),
-        pipeline_(pipeline),
-        organ_(std::move(organ)),
-        settings_(settings),
-        random_(settings.seed) {}
+/// An organ that is a function of the tool's place: with its tangent, and its surface out of contact.
+using Organ = std::function<client::Linearised(const Vec3& p_W)>;
 
-  /// One tick; returns what was written.
-  client::TickResult tick() {
-    const double t = seconds();
-    const Time now = from_seconds(1 + t);
-    const client::DeviceReading reading = device_.read(now);
-    const auto ready = std::find_if(on_the_way_.begin(), on_the_way_.end(),
-                                    [&](const OnTheWay& next) { return next.ready <= now; });
-    std::optional<protocol::ForceSample> arrived;
-    if (ready != on_the_way_.end()) {
-      arrived = ready->sample;
-      on_the_way_.erase(ready);
-    }
-    const client::TickResult result = pipeline_.tick(reading, arrived ? &*arrived : nullptr);
-    device_.write(result.f_D);
-    if (static_cast<double>(steps_) / settings_.sim_hz <= t + 1e-9) {
-      ++steps_;
-      const double delay = settings_.delay_s + settings_.jitter_s * random_.between(0, 1);
-      if (random_.between(0, 1) >= settings_.loss)
-        on_the_way_.push_back({now + from_seconds(delay), answer(result.tool)});
-    }
-    ++ticks_;
-    return result;
-  }
+/// What the loop asks at the other end of the link.
+struct Server {
+  /// A step for the newest tool state.
+  std::function<std::optional<protocol::ForceSample>(const protocol::ToolState&)> step;
+  /// The pages of the surface that a tool state asks for; asked every tick.
+  std::function<std::vector<protocol::SurfacePage>(const protocol::ToolState&)> pages = {};
+};
 
-  double seconds() const { return static_cast<double>(ticks_) / settings_.haptic_hz; }
-
- private:
-  struct OnTheWay {
-    Time ready;
-    protocol::ForceSample sample;
+/// A server with that organ.
+inline Server served(Organ organ) {
+  const auto on_the_wire = [](const client::Linearised& l) {
+    const Mat3& k = l.k;
+    return protocol::Linearisation{{k(0, 0), k(0, 1), k(0, 2), k(1, 1), k(1, 2), k(2, 2)}, l.normal, l.gap};
   };
-  protocol::ForceSample answer(const protocol::ToolState& tool) const {
+  const auto step = [=, number = std::uint64_t{0}](const protocol::ToolState& tool) mutable {
     using protocol::ForceSample;
-    protocol::ForceSample sample{.number = steps_, .tool_t_ns = tool.t_ns, .p_W = tool.p_W};
-    const client::Linearised here = organ_(tool.p_W);
+    ForceSample sample{.number = ++number, .tool_t_ns = tool.t_ns, .p_W = tool.p_W};
+    const client::Linearised here = organ(tool.p_W);
     sample.f_W = here.f;
     if ((tool.flags & protocol::ToolState::kWantsHere) != 0) {
       sample.flags |= ForceSample::kHasHere;
@@ -78,28 +52,81 @@ class ClosedLoop {
       const Vec3 way = to_seconds(Time{tool.lead_ns}) * tool.v_W;
       sample.flags |= ForceSample::kHasAhead;
       sample.ahead_p_W = tool.p_W + (way.norm() > 2e-3 ? Vec3(2e-3 * way.normalized()) : way);
-      const client::Linearised ahead = organ_(sample.ahead_p_W);
+      const client::Linearised ahead = organ(sample.ahead_p_W);
       sample.ahead_f_W = ahead.f;
       sample.ahead = on_the_wire(ahead);
     }
-    return sample;
+    return std::optional(sample);
+  };
+  return {.step = step};
+}
+
+/// A device and the whole tick at one end of a link, a server at the other; what it sends travels as bytes.
+class ClosedLoop {
+ public:
+  ClosedLoop(client::Device& device, client::Pipeline& pipeline, Server server,
+             const ClosedLoopSettings& settings)
+      : device_(device),
+        pipeline_(pipeline),
+        server_(std::move(server)),
+        settings_(settings),
+        link_(settings.link, settings.seed) {}
+
+  /// One tick; returns what was written.
+  client::TickResult tick() {
+    const double t = seconds();
+    const Time now = from_seconds(1 + t);
+    const client::DeviceReading reading = device_.read(now);
+    receive(now);
+    const client::TickResult result = pipeline_.tick(reading, arrived_ ? &*arrived_ : nullptr, pages_);
+    device_.write(result.f_D);
+    if (server_.pages) {
+      for (const protocol::SurfacePage& page : server_.pages(result.tool)) send(page, now);
+    }
+    if (static_cast<double>(steps_) / settings_.sim_hz <= t + 1e-9) {
+      ++steps_;
+      if (const auto sample = server_.step(result.tool)) send(*sample, now);
+    }
+    ++ticks_;
+    return result;
   }
-  static protocol::Linearisation on_the_wire(const client::Linearised& l) {
-    const Mat3& k = l.k;
-    return {{k(0, 0), k(0, 1), k(0, 2), k(1, 1), k(1, 2), k(2, 2)}, l.normal, l.gap};
+
+  double seconds() const { return static_cast<double>(ticks_) / settings_.haptic_hz; }
+  const protocol::LinkCounts& link() const { return link_.counts(); }
+
+ private:
+  /// As the network thread does: of several force samples since the last tick, the one that came last.
+  void receive(Time now) {
+    arrived_.reset();
+    pages_.clear();
+    while (const auto bytes = link_.receive(now)) {
+      protocol::Datagram datagram;
+      if (protocol::decode(*bytes, datagram) != protocol::Verdict::kAccepted) continue;
+      if (!window_.accept(datagram.header.sequence, stats_)) continue;
+      if (const auto* sample = std::get_if<protocol::ForceSample>(&datagram.message)) arrived_ = *sample;
+      if (const auto* page = std::get_if<protocol::SurfacePage>(&datagram.message)) pages_.push_back(*page);
+    }
+  }
+  void send(const protocol::Message& message, Time now) {
+    std::array<std::byte, protocol::kMaxDatagram> bytes;
+    const std::size_t size = protocol::encode({1, ++sent_}, message, bytes);
+    link_.send({bytes.data(), size}, now);
   }
 
   client::Device& device_;
   client::Pipeline& pipeline_;
-  Organ organ_;
+  Server server_;
   ClosedLoopSettings settings_;
-  Random random_;
-  std::uint64_t ticks_ = 0, steps_ = 0;
-  std::vector<OnTheWay> on_the_way_;
+  protocol::LinkSimulator link_;
+  protocol::ReplayWindow window_;
+  protocol::LinkStats stats_;
+  std::uint64_t ticks_ = 0, steps_ = 0, sent_ = 0;
+  std::optional<protocol::ForceSample> arrived_;
+  std::vector<protocol::SurfacePage> pages_;
 };
 
 /// A wall that begins at y = 0 and pushes upwards (N/m).
-inline ClosedLoop::Organ wall(double stiffness) {
+inline Organ wall(double stiffness) {
   return [stiffness](const Vec3& p_W) {
     client::Linearised l{.p = p_W, .normal = {0, 1, 0}, .gap = std::max(p_W[1], 0.0)};
     l.f[1] = stiffness * std::max(-p_W[1], 0.0);
@@ -110,7 +137,7 @@ inline ClosedLoop::Organ wall(double stiffness) {
 
 /// A wall as a sphere feels it on an elastic half-space (Hertz 1882): F = c depth^(3/2), with the c that
 /// makes its slope `stiffness` (N/m) at `force` (N): F' = 3/2 c^(2/3) F^(1/3).
-inline ClosedLoop::Organ hertz_wall(double stiffness, double force) {
+inline Organ hertz_wall(double stiffness, double force) {
   const double c = std::pow(stiffness / (1.5 * std::cbrt(force)), 1.5);
   return [c](const Vec3& p_W) {
     client::Linearised l{.p = p_W, .normal = {0, 1, 0}, .gap = std::max(p_W[1], 0.0)};

@@ -36,6 +36,27 @@ Json without_timings(Json rows) {
 
 }  // namespace
 
+TEST_CASE("evaluate: on a grasped organ, the paper's protocol gives the paper's table") {
+  const Study study;
+  const std::string root = PALPATE_SOURCE_DIR;
+  output_of(
+      "sim_server",
+      {"record", root + "/configs/scenes/grasp.toml", "--trajectory", root + "/configs/clients/grasp.toml",
+       "--rate", "33.333333333333336", "--out", study.file("grasp.pcap")},
+      0);
+  output_of("haptic_client", {"evaluate", study.file("grasp.pcap"), "--out", study.file("out")}, 0);
+  const Json rows = read_json(study.folder.path() / "out" / "summary.json");
+  const auto mean = [&](const char* law) {
+    return row(rows, law, false)["paper_mean_percent"].get<double>();
+  };
+  // Picinbono and Lombardo (1999): 1.1, 0.3 and 0.1 %.
+  CHECK(mean("constant") == Approx(1.1).epsilon(0.35));
+  CHECK(mean("linear_time") == Approx(0.3).epsilon(0.35));
+  CHECK(mean("linear_position") == Approx(0.1).epsilon(0.35));
+  CHECK(mean("learned_stiffness") <= 0.03);
+  CHECK(mean("tangent") <= 0.015);
+}
+
 TEST_CASE("evaluate: on the liver, 33 Hz and 35 ms, two tangents are far ahead of the paper's laws") {
   const Study study;
   study.record("truth.pcap", {"--rate", "2000", "--plain"});

@@ -39,7 +39,7 @@ class Rig {
       : emulated_(device),
         falcon_(own_port(), std::vector<std::byte>(5000, std::byte{7}), kTorqueConstant),
         pipeline_(find_row(extrapolators(), law, "method", "test").make(), towards_the_wall(), {}),
-        loop_(falcon_, pipeline_, test::wall(wall), link) {
+        loop_(falcon_, pipeline_, test::served(test::wall(wall)), link) {
     command("hand mass " + std::to_string(hand.mass) + " stiffness " + std::to_string(hand.stiffness) +
             " damping " + std::to_string(hand.damping));
   }
@@ -83,7 +83,7 @@ class Rig {
 
 /// From the plug to the wall: firmware, homing, a press of 20 mm.
 std::vector<double> whole_session() {
-  Rig rig({}, {"", 0.2, 400, 8}, "constant", 800, {.sim_hz = 1000, .delay_s = 0.001});
+  Rig rig({}, {"", 0.2, 400, 8}, "constant", 800, {.sim_hz = 1000, .link = {.delay = 0.001}});
   rig.command("hand target 0 0 0.13");
   rig.run(2);
   rig.command("homing home");
@@ -114,7 +114,7 @@ TEST_CASE(
     for (const char* law : {"constant", "linear_time", "linear_position", "linear_position_signed"}) {
       for (const double stiffness : {100.0, 800.0, 3000.0, 20000.0}) {
         CAPTURE(hand.name, law, stiffness);
-        Rig rig({.loaded = true, .homed = true}, hand, law, stiffness, {.sim_hz = 30, .delay_s = 0.035});
+        Rig rig({.loaded = true, .homed = true}, hand, law, stiffness, {.sim_hz = 30, .link = {.delay = 0.035}});
         rig.command("hand target 0 0 0.13");
         rig.run(2);
         const double before = rig.state()["work_motors"].get<double>();

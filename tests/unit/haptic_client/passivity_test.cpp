@@ -58,7 +58,7 @@ Press press(const OperatorSettings& hand, const char* law, double stiffness, boo
                            Trajectory({0, 2, 3}, {Vec3(0, 0.01, 0), Vec3(0, 0.01, 0), Vec3(0, target, 0)}));
   Ledger ledger(person);
   Pipeline pipeline(find_row(extrapolators(), law, "method", "test").make(), {}, {}, {.enabled = passivity});
-  test::ClosedLoop loop(ledger, pipeline, test::wall(stiffness), {});
+  test::ClosedLoop loop(ledger, pipeline, test::served(test::wall(stiffness)), {});
   double squares = 0;
   int count = 0;
   while (loop.seconds() < 8) {

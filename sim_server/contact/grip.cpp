@@ -1,0 +1,129 @@
+#include "sim_server/contact/grip.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "common/error.h"
+#include "sim_server/contact/tool_contact.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kReach = 1.25;   // of the tool radius: tissue that touches, and a little around it
+constexpr double kStill = 1e-10;  // of the tool radius
+constexpr int kMaxRounds = 30;
+constexpr int kMaxVertices = 128;
+
+std::vector<int> corners_of(std::span<const Triangle> triangles) {
+  std::vector<int> all;
+  for (const Triangle& t : triangles) all.insert(all.end(), t.begin(), t.end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+}  // namespace
+
+Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const Triangle> touchable,
+           int max_nodes)
+    : buttons_(tool.grasp_buttons),
+      reach_(kReach * tool.shape.radius),
+      max_nodes_(static_cast<std::size_t>(std::min(max_nodes, kMaxVertices))),
+      touchable_(corners_of(touchable)) {
+  vertices_.reserve(max_nodes_);
+  offsets_.reserve(max_nodes_);
+  patch_.reserve(static_cast<int>(max_nodes_), 1);
+  misfit_.resize(3 * static_cast<Eigen::Index>(max_nodes_));
+  spread_.resize(3 * static_cast<Eigen::Index>(max_nodes_), 3);
+  if (!tool.grasp_place) return;
+  close(*tool.grasp_place, rest);
+  if (!holds()) {
+    fail("{}: no vertex of the surface that the tool may touch lies within {:g} mm of `grasp_place`",
+         tool.grasp_where, 1e3 * reach_);
+  }
+}
+
+void Grip::close(const Vec3& p_W, std::span<const Vec3> positions) noexcept {
+  closed_ = true;
+  for (const int vertex : touchable_) {
+    const Vec3 offset = positions[vertex] - p_W;
+    if (offset.norm() > reach_ || vertices_.size() == max_nodes_) continue;
+    vertices_.push_back(vertex);
+    offsets_.push_back(offset);
+  }
+}
+
+void Grip::open() noexcept {
+  if (buttons_ == 0) return;
+  closed_ = false;
+  vertices_.clear();
+  offsets_.clear();
+}
+
+/// What is missing to the place of each vertex, into `misfit_`; the largest component.
+double Grip::misfit(const Vec3& p_W, const Tissue& tissue, std::span<const NodalLoad> own) noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (const NodalLoad& load : own) sum += load.force;
+  const Vec3 tip = p_W - patch_.tool_compliance * sum;
+  double largest = 0;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const Vec3 missing =
+        tip + offsets_[i] - tissue.positions[vertices_[i]] - ContactSolver::kContactCompliance * own[i].force;
+    misfit_.segment<3>(3 * static_cast<Eigen::Index>(i)) = missing;
+    largest = std::max(largest, missing.cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+/// The compliance under the loads of now, as its Cholesky factor.
+bool Grip::factor(const Tissue& tissue) noexcept {
+  tissue.model->compliance(vertices_, patch_);
+  const auto m = static_cast<Eigen::Index>(vertices_.size());
+  auto system = patch_.compliance.topLeftCorner(3 * m, 3 * m);
+  for (Eigen::Index j = 0; j < m; ++j) {
+    for (Eigen::Index i = 0; i < m; ++i)
+      system.block<3, 3>(3 * i, 3 * j).diagonal().array() += patch_.tool_compliance;
+  }
+  system.diagonal().array() += ContactSolver::kContactCompliance;
+  Eigen::Ref<Eigen::MatrixXd> in_place(system);
+  return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(in_place).info() == Eigen::Success;
+}
+
+Grip::Pull Grip::pull(const Vec3& p_W, Tissue& tissue, std::vector<NodalLoad>& loads,
+                      std::size_t others) noexcept {
+  const std::size_t held = vertices_.size();
+  const auto size = 3 * static_cast<Eigen::Index>(held);
+  const auto same = [](const NodalLoad& load, int vertex) { return load.vertex == vertex; };
+  if (!std::equal(loads.begin() + static_cast<long>(others), loads.end(), vertices_.begin(), vertices_.end(),
+                  same)) {
+    loads.erase(loads.begin() + static_cast<long>(others), loads.end());
+    for (const int vertex : vertices_) loads.push_back({vertex, Vec3::Zero()});
+  }
+  const std::span<NodalLoad> own(loads.data() + others, held);
+  const auto lower = patch_.compliance.topLeftCorner(size, size).triangularView<Eigen::Lower>();
+  Pull pull{.vertices = static_cast<int>(held)};
+  for (bool still = false; !still; ++pull.rounds) {
+    tissue.positions = tissue.model->apply(loads);
+    still = misfit(p_W, tissue, own) <= kStill * reach_;
+    pull.converged = factor(tissue) && (still || pull.rounds < kMaxRounds);
+    if (still || !pull.converged) break;
+    auto change = misfit_.head(size);
+    lower.solveInPlace(change);
+    lower.adjoint().solveInPlace(change);
+    for (std::size_t i = 0; i < held; ++i)
+      own[i].force += change.segment<3>(3 * static_cast<Eigen::Index>(i));
+  }
+  for (const NodalLoad& load : own) pull.force -= load.force;
+  if (!pull.converged) return pull;
+  auto spread = spread_.topRows(size);  // L^-1 E
+  for (Eigen::Index i = 0; i < size; i += 3) spread.middleRows<3>(i).setIdentity();
+  lower.solveInPlace(spread);
+  pull.tangent.noalias() = -spread.transpose() * spread;
+  return pull;
+}
+
+std::size_t Grip::bytes() const {
+  return static_cast<std::size_t>(patch_.compliance.size()) * sizeof(double);
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,64 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "sim_server/deformation/deformation_model.h"
+#include "sim_server/scene.h"
+
+namespace palpate::sim {
+
+struct Tissue;
+
+/// Tissue in the jaws of a tool: vertices of the surface attached to it both ways, each at the offset from
+/// the tool centre that it had when the jaws closed. With C the model's compliance at these m vertices, c_t
+/// the tool's, and E = (I ... I)^T, the loads f on the tissue hold
+///   free + C f = E p + offsets - c_t E E^T f
+/// and the tool feels F = -E^T f, with the exact tangent dF/dp = -E^T (C + c_t E E^T)^-1 E. Newton's method:
+/// one round where the tissue is linear. Only set-up allocates, nothing throws. One thread.
+class Grip {
+ public:
+  /// `rest`: surface vertices, m. At most `max_nodes`, and 128, are held. Throws `Error` where there is
+  /// nothing at `grasp_place`.
+  Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const std::array<int, 3>> touchable,
+       int max_nodes);
+
+  /// What of the device's buttons is pressed.
+  void press(std::uint16_t buttons) noexcept { pressed_ = (buttons & buttons_) != 0; }
+  /// Whether the jaws are to be opened, or closed, now.
+  bool opens() const { return closed_ && buttons_ != 0 && !pressed_; }
+  bool closes() const { return !closed_ && pressed_; }
+  /// Around what is there of the surface with the tool centre at `p_W`; perhaps nothing.
+  void close(const Vec3& p_W, std::span<const Vec3> positions) noexcept;
+  /// Jaws without a button stay closed.
+  void open() noexcept;
+  bool holds() const { return !vertices_.empty(); }
+
+  /// What the tool feels, N, and how that changes, N/m; `vertices` 0: it holds nothing.
+  struct Pull {
+    Vec3 force = Vec3::Zero();
+    Mat3 tangent = Mat3::Zero();
+    int vertices = 0, rounds = 0;
+    bool converged = true;
+  };
+  /// With the tool centre at `p_W`. `loads`: the first `others` are held, those behind are replaced by its
+  /// own; the tissue is left under all of them.
+  Pull pull(const Vec3& p_W, Tissue& tissue, std::vector<NodalLoad>& loads, std::size_t others) noexcept;
+
+  std::size_t bytes() const;
+
+ private:
+  double misfit(const Vec3& p_W, const Tissue& tissue, std::span<const NodalLoad> own) noexcept;
+  bool factor(const Tissue& tissue) noexcept;
+
+  std::uint16_t buttons_;
+  double reach_;  // m from the tool centre
+  std::size_t max_nodes_;
+  bool pressed_ = false, closed_ = false;
+  std::vector<int> touchable_, vertices_;
+  std::vector<Vec3> offsets_;
+  ContactPatch patch_;      // its compliance, factored in place
+  Eigen::VectorXd misfit_;  // (3m), m
+  Eigen::Matrix<double, Eigen::Dynamic, 3> spread_;
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,33 @@
+#pragma once
+#include "sim_server/deformation/deformation_models.h"
+
+namespace palpate::sim {
+
+/// No deformation: the organ hangs as one piece on a spring that is stiffer along some axes and hardens with
+/// the stretch s; it does not turn. With K diagonal, k its mean, d the hardening length,
+///   F = g K x,   g = 1 + s^2 / d^2,   s^2 = x . K x / k,
+/// the gradient of k (s^2 / 2 + s^4 / (4 d^2)): conservative, with the tangent T = g K + 2 / (k d^2) K x (K
+/// x)^T. Backwards, g is the root of g^3 - g^2 = F . K^-1 F / (k d^2). Where a tool grasps it, it stands for
+/// an organ whose force changes over a known length: no mesh, no contact set. Vertices of a [[fixed]] stay.
+class Spring : public DeformationModel {
+ public:
+  /// Throws `Error` without a `spring_stiffness`.
+  explicit Spring(const ModelInputs& inputs);
+  FreeMotion free_motion(double dt) noexcept override;
+  /// T^-1 for every pair of free vertices, under the loads of now.
+  void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  bool compliance_is_constant() const noexcept override { return per_length2_ == 0; }
+  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  std::vector<MemoryPart> memory() const override;
+
+ private:
+  double stretch_ratio() const noexcept;  // s^2 / d^2
+
+  std::vector<Vec3> rest_, positions_;
+  std::vector<char> held_;     // per surface vertex: whether it is fixed
+  Vec3 stiffness_;             // K, N/m
+  double per_length2_ = 0;     // 1 / d^2, 1/m^2; 0: linear
+  Vec3 moved_ = Vec3::Zero();  // x, m
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,201 @@
+#include "tests/studies/press_and_slide.h"
+
+#include <numbers>
+
+#include "sim_server/mesh/shapes.h"
+#include "tests/support/random.h"
+
+namespace palpate::studies {
+using client::DeviceReading;
+
+namespace {
+
+constexpr double kRadius = 0.006, kHalfLength = 0.030, kHeight = 0.024, kHalfWidth = 0.020;   // m
+constexpr double kFine = 0.002, kFineLength = 0.014, kFineWidth = 0.008, kFineDepth = 0.006;  // m, edges
+constexpr double kSoft = 50e3;                    // Pa, that of the first block built
+constexpr double kSlide = 0.006, kSlideHz = 0.4;  // m, Hz
+constexpr double kFree = 0.5, kApproach = 0.5, kBegin = 1.2, kWatch = 2.0, kEnd = 5.0;  // s
+constexpr double kWindow = 0.1;              // s to either side: what moves slower than that is meant
+constexpr double kTimes = 3, kMore = 30e-6;  // of the direct motion; m
+constexpr double kSettled = 1.5,
+                 kThrown = 1e-3;  // s; m: who is off the surface then, or as far too deep, is thrown
+constexpr int kCompared = 10;     // ticks between two looks at the true force
+
+std::vector<double> depths() {
+  auto depths = sim::graded_axis(kHeight, kFineDepth, kFine, 1.5);
+  std::erase_if(depths, [](double y) { return y > 1e-9; });
+  return depths;
+}
+
+sim::Scene scene_of(double young_modulus) {
+  sim::Scene scene;
+  scene.source = "study";
+  scene.material = sim::Material{.young_modulus = young_modulus, .poisson_ratio = 0.45};
+  scene.deformation.model = "quasi_static";
+  scene.fixed.push_back({sim::Box{Vec3(-1, -1, -1), Vec3(1, -kHeight + 1e-6, 1)}, "", "study"});
+  scene.tools[0].shape.radius = kRadius;
+  scene.tools[0].reach =
+      sim::Box{Vec3(-kFineLength, -1e-3, -kFineWidth), Vec3(kFineLength, 1e-3, kFineWidth)};
+  return scene;
+}
+
+sim::TetMesh mesh() {
+  return sim::grid_block(sim::graded_axis(kHalfLength, kFineLength, kFine, 1.5), depths(),
+                         sim::graded_axis(kHalfWidth, kFineWidth, kFine, 1.5));
+}
+
+Vec3 pressed(double depth) {
+  return {0.0003, kRadius - depth, 0.0002};
+}
+
+/// Depth (m) at which slope / force is `ratio` (1/m), on any of these blocks: their tissue is linear. By
+/// bisection, as the ratio falls with depth.
+double depth_of(sim::Simulation& block, double ratio) {
+  double low = 1e-4, high = 0.9 * kRadius;
+  while (high - low > 1e-7) {
+    const double middle = 0.5 * (low + high);
+    const sim::ToolForce felt = block.step(pressed(middle), 1e-3);
+    (-felt.tangent(1, 1) > ratio * felt.force[1] ? low : high) = middle;
+  }
+  return low;
+}
+
+/// Where the hand wants to be so that it presses with `kPress`: down, then to and fro.
+Trajectory motion(const client::OperatorSettings& hand, double depth, double start) {
+  const double y = kRadius - depth - kPress / hand.hand_stiffness;
+  std::vector<double> t{0, start, start + kApproach};
+  std::vector<Vec3> p{pressed(-0.005), pressed(-0.005), pressed(0)};
+  p.back()[1] = y;
+  for (double s = 0; start + kBegin + s < kEnd + 0.1; s += 0.01) {
+    t.push_back(start + kBegin + s);
+    p.emplace_back(p[1][0] + kSlide * std::sin(2 * std::numbers::pi * kSlideHz * s), y, p[1][2]);
+  }
+  return Trajectory(std::move(t), std::move(p));
+}
+
+/// RMS of a path without its mean over a window around each point, from `kWatch` on, m.
+double quick_motion(const std::vector<Vec3>& path) {
+  const auto half = static_cast<std::size_t>(kWindow * kHapticHz),
+             from = static_cast<std::size_t>(kWatch * kHapticHz);
+  std::vector<Vec3> sums{Vec3::Zero()};
+  for (const Vec3& p : path) sums.push_back(sums.back() + p);
+  double squares = 0;
+  std::size_t count = 0;
+  for (std::size_t i = from; i + half < path.size(); ++i, ++count) {
+    const Vec3 mean = (sums[i + half + 1] - sums[i - half]) / static_cast<double>(2 * half + 1);
+    squares += (path[i] - mean).squaredNorm();
+  }
+  return std::sqrt(squares / static_cast<double>(count));
+}
+
+/// Whether the tool has left its press so far that there is no need to go on.
+bool thrown(double y, double depth) {
+  return std::abs(y - (kRadius - depth)) > depth + kThrown;
+}
+
+/// A hand with its draws of one run.
+struct Hand {
+  test::Random random;
+  double start;
+  client::SimulatedOperator person;
+  Encoder encoder;
+  Hand(const Person& who, double depth, int seed)
+      : random(static_cast<std::uint64_t>(seed) + 17),
+        start(kFree + random.between(0, 0.03)),
+        person(who.hand, motion(who.hand, depth, start)),
+        encoder(person, random.between(0, kEncoder)) {}
+};
+
+}  // namespace
+
+/// One stiffness: the block, and how deep 1.5 N presses into it.
+struct PressAndSlide::Block {
+  explicit Block(double stiffness, sim::Simulation& soft)
+      : depth(depth_of(soft, stiffness / kPress)),
+        simulation(scene_of(kSoft * kPress / soft.step(pressed(depth), 1e-3).force[1]), mesh()) {}
+  /// A server that begins afresh.
+  test::Server server() {
+    simulation.lift_tool();
+    auto tools = std::make_shared<sim::ServedTools>(simulation);
+    auto pager = std::make_shared<sim::SurfacePager>(simulation, 0);
+    const auto step = [tools](const protocol::ToolState& state) {
+      const std::vector<sim::ToolInput> inputs{{1, state, true}};
+      return tools->step(inputs, 0.03).front().answer;  // the tissue has no memory: any time step does
+    };
+    const auto pages = [pager](const protocol::ToolState& state) {
+      std::vector<protocol::SurfacePage> found;
+      if ((state.flags & protocol::ToolState::kAsksPages) == 0) return found;
+      for (const std::uint32_t number : state.pages) {
+        if (protocol::SurfacePage page; pager->page(number, page)) found.push_back(page);
+      }
+      return found;
+    };
+    return {.step = step, .pages = pages};
+  }
+
+  double depth;  // m
+  sim::Simulation simulation;
+};
+
+const std::vector<double>& PressAndSlide::stiffnesses() {
+  static const std::vector<double> all{835, 1431, 2428, 3651, 6413};
+  return all;
+}
+
+PressAndSlide::Block& PressAndSlide::block_of(double stiffness) {
+  if (blocks_.empty()) {
+    sim::Simulation soft(scene_of(kSoft), mesh());
+    for (const double each : stiffnesses()) blocks_[each] = std::make_shared<Block>(each, soft);
+  }
+  return *blocks_.at(stiffness);
+}
+
+double PressAndSlide::direct_motion(const Person& person, double stiffness) {
+  const auto [found, missing] = direct_.try_emplace({&person, stiffness}, 0.0);
+  if (!missing) return found->second;
+  Block& block = block_of(stiffness);
+  Hand hand(person, block.depth, 1);
+  block.simulation.lift_tool();
+  std::vector<Vec3> path;
+  for (int tick = 0; tick < kEnd * kHapticHz; ++tick) {
+    const Vec3 p = hand.encoder.read(from_seconds(1 + tick / kHapticHz)).p_D;
+    hand.encoder.write(clamped(block.simulation.step(p, 1e-3).force));
+    path.push_back(hand.encoder.place());
+  }
+  return found->second = quick_motion(path);
+}
+
+Run PressAndSlide::run(const Cell& cell, double stiffness, int seed, bool compare) {
+  const double direct = direct_motion(*cell.person, stiffness);
+  Block& block = block_of(stiffness);
+  Hand hand(*cell.person, block.depth, seed);
+  client::Pipeline pipeline = pipeline_of(cell);
+  test::ClosedLoop loop(hand.encoder, pipeline, block.server(), loop_of(cell.link, seed));
+  std::vector<Vec3> path;
+  double error2 = 0, force2 = 0;
+  while (loop.seconds() < kEnd) {
+    const Vec3 felt = loop.tick().f_D;
+    path.push_back(hand.encoder.place());
+    if (loop.seconds() > kSettled && thrown(path.back()[1], block.depth)) return {};
+    if (!compare || path.size() % kCompared != 0 || loop.seconds() < kWatch) continue;
+    const Vec3 right = block.simulation.linearise(0, path.back(), nullptr).force;
+    error2 += (felt - right).squaredNorm();
+    force2 += right.squaredNorm();
+  }
+  const bool quiet = quick_motion(path) <= kTimes * direct + kMore;
+  return {quiet && pipeline.limiter().fault() == client::Fault::kNone,
+          force2 > 0 ? std::sqrt(error2 / force2) : 0};
+}
+
+double PressAndSlide::threshold(const Cell& cell) {
+  double good = 0;
+  for (const double stiffness : stiffnesses()) {
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      if (!run(cell, stiffness, seed, false).stable) return good;
+    }
+    good = stiffness;
+  }
+  return good;
+}
+
+}  // namespace palpate::studies
