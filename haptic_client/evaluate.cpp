@@ -47,6 +47,7 @@ double bytes_for(const std::string& law, protocol::ForceSample sample) {
   const Wants wants = find_row(extrapolators(), law, "method", "--method").make()->wants();
   if (!wants.here) sample.flags &= ~protocol::ForceSample::kHasHere;
   if (!wants.ahead) sample.flags &= ~protocol::ForceSample::kHasAhead;
+  if (!wants.surface) sample.flags &= ~protocol::ForceSample::kHasSurface;
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   return static_cast<double>(protocol::encode({}, sample, bytes));
 }
@@ -64,11 +65,13 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   CapturedSession session(file, static_cast<std::size_t>(longest - found.runs.begin()));
   std::optional<protocol::ToolState> before;
   ErrorSums ignored;
+  SurfaceModel model;
   for (CapturedTick tick; session.next(tick);) {
     const Time t{tick.state.t_ns};
     std::optional<Sample> sample;
+    for (const protocol::SurfacePage& page : tick.pages) model.take(page);
     if (tick.arrived) {
-      sample = sample_of(*tick.arrived);
+      sample = sample_of(*tick.arrived, &model);
       ++e.samples;
       e.age += to_seconds(t - sample->t);
       for (std::size_t i = 0; i < laws.size(); ++i) e.bytes[i] += bytes_for(laws[i], *tick.arrived);

@@ -35,7 +35,10 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
     ++stats_.rejected_by[static_cast<std::size_t>(verdict)];
     return;
   }
-  if (const auto* sample = session_.receive(datagram, t, stats_)) mailboxes_.force.write(*sample);
+  if (const protocol::Message* message = session_.receive(datagram, t, stats_)) {
+    if (const auto* sample = std::get_if<protocol::ForceSample>(message)) mailboxes_.force.write(*sample);
+    if (const auto* page = std::get_if<protocol::SurfacePage>(message)) mailboxes_.pages.push(*page);
+  }
   welcomed = session_.welcomed();
   refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
 }

@@ -66,7 +66,7 @@ std::uint64_t run_ticks(CapturedSession& session, std::optional<double> rate_hz,
   CapturedTick tick;
   std::uint64_t ticks = 0;
   while (source.next(tick)) {
-    const TickResult result = pipeline.feel(tick.state, tick.arrived ? &*tick.arrived : nullptr);
+    const TickResult result = pipeline.feel(tick.state, tick.arrived ? &*tick.arrived : nullptr, tick.pages);
     observation.tick(result, Time::zero(), 0);
     if (trace != nullptr) trace->add({result, observation.scoring().forces()});
     if (++ticks % kLookAround == 0) progress("replaying", session.share());
@@ -92,6 +92,7 @@ Json describe_capture(const CaptureSurvey& found, const CapturedRun& run, const 
           {"own_ticks", exact},
           {"missing_ticks", missing.ticks},
           {"missing_samples", missing.samples},
+          {"missing_pages", missing.pages},
           {"backward_ticks", missing.backwards},
           {"link_lost", run.lost()},
           {"link_reordered", run.reordered()},
@@ -111,11 +112,14 @@ void say_how_exact(const Json& capture, const CapturedRun& run, const std::strin
   if (count("left_out") > 0)
     log::warning("{}: holds more sessions than can be told apart; {} datagrams were left out", file,
                  count("left_out"));
-  if (count("missing_ticks") > 0 || count("missing_samples") > 0 || count("backward_ticks") > 0) {
+  if (count("missing_ticks") + count("missing_samples") + count("missing_pages") + count("backward_ticks") >
+      0) {
     log::warning(
-        "{}: {} ticks and {} samples are missing, {} ticks have times that jump: the forces differ from "
-        "those felt there",
-        file, count("missing_ticks"), count("missing_samples"), count("backward_ticks"));
+        "{}: {} ticks, {} samples and {} pages of the surface are missing, {} ticks have times that jump: "
+        "the "
+        "forces differ from those felt there",
+        file, count("missing_ticks"), count("missing_samples"), count("missing_pages"),
+        count("backward_ticks"));
   }
 }
 

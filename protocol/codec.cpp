@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "protocol/surface_pages.h"
 #include "protocol/wire.h"
 
 namespace palpate::protocol {
@@ -41,9 +42,20 @@ bool valid(const Linearisation& m) noexcept {
   const double size = m.normal_W.squaredNorm();
   return tangent && (size == 0 || std::abs(size - 1) < 1e-6) && m.gap >= 0 && m.gap <= kMaxMagnitude;
 }
+/// Says nothing of a radius of 0 where there is no surface.
+bool valid(const SurfaceState& m) noexcept {
+  return m.vertices <= kMostSurfaceVertices && m.triangles <= 2 * kMostSurfaceVertices &&
+         m.tool_radius >= 0 && m.tool_radius <= 1 && m.tool_compliance >= 0 && m.tool_compliance <= 1e6 &&
+         small(m.shift_W);
+}
 bool valid(const ForceSample& m) noexcept {
   return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W) &&
-         small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) && small(m.ahead_f_W) && valid(m.ahead);
+         small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) && small(m.ahead_f_W) &&
+         valid(m.ahead) && valid(m.surface);
+}
+bool valid(const SurfacePage& m) noexcept {
+  return m.tool < kMaxTools && m.page != ToolState::kNoPage &&
+         std::all_of(m.values.begin(), m.values.end(), [](float x) { return std::abs(x) <= 1e9f; });
 }
 
 template <class M>
@@ -74,6 +86,8 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
       return read_as<ToolState>(payload, out);
     case MessageType::kForceSample:
       return read_as<ForceSample>(payload, out);
+    case MessageType::kSurfacePage:
+      return read_as<SurfacePage>(payload, out);
     case MessageType::kChallenge:
     case MessageType::kTelemetry:
     case MessageType::kPointer:

@@ -11,15 +11,16 @@ namespace palpate::protocol {
 
 /// Every message there is or is planned; the numbers never change.
 enum class MessageType : std::uint8_t {
-  kHello = 1,        ///< client: let me in
-  kChallenge = 2,    ///< server: prove that you receive at your address (reserved)
-  kWelcome = 3,      ///< server: you are in
-  kRefuse = 4,       ///< server: you are not, and why
-  kBye = 5,          ///< either: I am leaving
-  kToolState = 6,    ///< client: where the tool is
-  kForceSample = 7,  ///< server: the force computed for a tool state
-  kTelemetry = 8,    ///< client: loop, laws, safety, while a page is open (reserved)
-  kPointer = 9,      ///< server: the mouse of a page as a device (reserved)
+  kHello = 1,         ///< client: let me in
+  kChallenge = 2,     ///< server: prove that you receive at your address (reserved)
+  kWelcome = 3,       ///< server: you are in
+  kRefuse = 4,        ///< server: you are not, and why
+  kBye = 5,           ///< either: I am leaving
+  kToolState = 6,     ///< client: where the tool is
+  kForceSample = 7,   ///< server: the force computed for a tool state
+  kTelemetry = 8,     ///< client: loop, laws, safety, while a page is open (reserved)
+  kPointer = 9,       ///< server: the mouse of a page as a device (reserved)
+  kSurfacePage = 10,  ///< server: a page of the surface model
 };
 
 enum class RefuseReason : std::uint8_t {
@@ -69,7 +70,8 @@ struct ToolState {
   static constexpr MessageType kType = MessageType::kToolState;
   /// Bits of `flags`: what this tick saw, and which parts of the answer it asks for.
   static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2, kClutched = 4, kWantsHere = 8,
-                                 kWantsAhead = 16;
+                                 kWantsAhead = 16, kWantsSurface = 32, kAsksPages = 64;
+  static constexpr std::uint32_t kNoPage = 0xffffffff;
   std::uint8_t tool = 0;
   std::uint64_t tick = 0;           ///< haptic tick, from 1
   std::uint64_t newest_sample = 0;  ///< number of the newest ForceSample this tick used; 0 = none yet
@@ -79,12 +81,17 @@ struct ToolState {
   std::array<double, 4> q_W = {1, 0, 0, 0};  ///< orientation, unit quaternion w, x, y, z
   std::uint16_t buttons = 0;                 ///< one bit each
   std::uint16_t flags = 0;
-  std::int64_t lead_ns = 0;  ///< with kWantsAhead: how much later the middle of the answer's use will be
+  std::int64_t lead_ns = 0;       ///< with kWantsAhead: how much later the middle of the answer's use will be
+  std::uint64_t pages_taken = 0;  ///< kWantsSurface: pages that this tick and those before took
+  std::uint32_t surface_version = 0;        ///< kAsksPages: of the model that is asked for, and
+  std::array<std::uint32_t, 8> pages = {};  ///< which of its pages; kNoPage: none
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.tick), v(m.newest_sample), v(m.t_ns), v(m.p_W), v(m.v_W), v(m.q_W), v(m.buttons),
         v(m.flags);
     if ((m.flags & kWantsAhead) != 0) v(m.lead_ns);
+    if ((m.flags & kWantsSurface) != 0) v(m.pages_taken);
+    if ((m.flags & kAsksPages) != 0) v(m.surface_version), v(m.pages);
   }
 };
 
@@ -100,10 +107,23 @@ struct Linearisation {
   }
 };
 
+/// Which model of the surface the tool can touch there is (its pages: `SurfacePage`), and where it stands.
+struct SurfaceState {
+  std::uint32_t version = 0;  ///< of the model; another number is another model
+  std::uint32_t vertices = 0, triangles = 0;
+  double tool_radius = 0;       ///< m
+  double tool_compliance = 0;   ///< m/N, isotropic, between the tool and its tip; 0 = rigid
+  Vec3 shift_W = Vec3::Zero();  ///< from rest to where the surface near the tool is free of it, m
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.version), v(m.vertices), v(m.triangles), v(m.tool_radius), v(m.tool_compliance), v(m.shift_W);
+  }
+};
+
 struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
-  /// Bits of `flags`; the last two: which parts follow.
-  static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8;
+  /// Bits of `flags`; the last three: which parts follow.
+  static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8, kHasSurface = 16;
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
   std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:
@@ -119,15 +139,32 @@ struct ForceSample {
   Vec3 ahead_p_W = Vec3::Zero();    ///< kHasAhead: where the tool was expected `lead` later, m
   Vec3 ahead_f_W = Vec3::Zero();    ///< kHasAhead: the force there, N
   Linearisation ahead{};            ///< kHasAhead: at that place
+  SurfaceState surface{};           ///< kHasSurface
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
         v(m.flags);
     if ((m.flags & kHasHere) != 0) v(m.surface_v_W), Linearisation::fields(m.here, v);
     if ((m.flags & kHasAhead) != 0) v(m.ahead_p_W), v(m.ahead_f_W), Linearisation::fields(m.ahead, v);
+    if ((m.flags & kHasSurface) != 0) SurfaceState::fields(m.surface, v);
   }
 };
 
-using Message = std::variant<Hello, Welcome, Refuse, Bye, ToolState, ForceSample>;
+/// A page of the model of a surface, for a client that solves contact itself; what its numbers are:
+/// protocol/surface_pages.h. Sent once per request, and never changes.
+struct SurfacePage {
+  static constexpr MessageType kType = MessageType::kSurfacePage;
+  static constexpr std::size_t kValues = 225;
+  std::uint8_t tool = 0;
+  std::uint32_t version = 0;  ///< of the model
+  std::uint32_t page = 0;     ///< which
+  std::array<float, kValues> values = {};
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.tool), v(m.version), v(m.page), v(m.values);
+  }
+};
+
+using Message = std::variant<Hello, Welcome, Refuse, Bye, ToolState, ForceSample, SurfacePage>;
 
 }  // namespace palpate::protocol

@@ -11,7 +11,7 @@ std::optional<Hello> ClientSession::poll(Time now) noexcept {
   return Hello{.nonce = nonce_};
 }
 
-const ForceSample* ClientSession::receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept {
+const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept {
   if (const auto* welcome = std::get_if<Welcome>(&datagram.message); welcome && welcome->nonce == nonce_) {
     if (datagram.header.session == left_session_) return nullptr;  // late, from a server that is gone
     last_heard_ = now;
@@ -41,7 +41,11 @@ const ForceSample* ClientSession::receive(const Datagram& datagram, Time now, Li
     last_heard_ = now;
     if (sample->number <= newest_sample_) return nullptr;  // overtaken on the way: the newest value wins
     newest_sample_ = sample->number;
-    return sample;
+    return &datagram.message;
+  }
+  if (const auto* page = std::get_if<SurfacePage>(&datagram.message);
+      page && mine && page->tool == welcome_.tool) {
+    return window_.accept(datagram.header.sequence, stats) ? &datagram.message : nullptr;
   }
   if (std::holds_alternative<Bye>(datagram.message) && mine) {
     last_heard_.reset();

@@ -30,9 +30,10 @@ class ClientSession {
   /// A Hello to send now, if one is due. Call often (every 50 ms will do).
   std::optional<Hello> poll(Time now) noexcept;
 
-  /// A decoded datagram came. Returns the force sample in it if it is of this session and the newest so far;
-  /// everything else is taken care of here. `stats` gets what was received, lost, doubled or rejected.
-  const ForceSample* receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept;
+  /// A decoded datagram came. Returns its message if that is a force sample of this session and the newest so
+  /// far, or a page of the surface for it; everything else is taken care of here. `stats` gets what was
+  /// received, lost, doubled or rejected.
+  const Message* receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept;
 
   /// Header of the next datagram to send in this session.
   Header next_header() noexcept { return {session_, ++sent_}; }

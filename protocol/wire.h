@@ -30,6 +30,7 @@ class Writer {
   requires std::is_enum_v<T>
   void operator()(T value) noexcept { (*this)(static_cast<std::underlying_type_t<T>>(value)); }
   void operator()(double value) noexcept { (*this)(std::bit_cast<std::uint64_t>(value)); }
+  void operator()(float value) noexcept { (*this)(std::bit_cast<std::uint32_t>(value)); }
   void operator()(const Vec3& v) noexcept { (*this)(v[0]), (*this)(v[1]), (*this)(v[2]); }
   template <class T, std::size_t N>
   void operator()(const std::array<T, N>& values) noexcept {
@@ -72,15 +73,8 @@ class Reader {
     (*this)(number);
     value = static_cast<T>(number);
   }
-  void operator()(double& value) noexcept {
-    std::uint64_t bits = 0;
-    (*this)(bits);
-    value = std::bit_cast<double>(bits);
-    if (!std::isfinite(value)) {
-      value = 0;
-      finite_ = false;
-    }
-  }
+  void operator()(double& value) noexcept { read_real<std::uint64_t>(value); }
+  void operator()(float& value) noexcept { read_real<std::uint32_t>(value); }
   void operator()(Vec3& v) noexcept { (*this)(v[0]), (*this)(v[1]), (*this)(v[2]); }
   template <class T, std::size_t N>
   void operator()(std::array<T, N>& values) noexcept {
@@ -91,6 +85,17 @@ class Reader {
   bool finite() const noexcept { return finite_; }
 
  private:
+  template <class Bits, class Real>
+  void read_real(Real& value) noexcept {
+    Bits bits = 0;
+    (*this)(bits);
+    value = std::bit_cast<Real>(bits);
+    if (!std::isfinite(value)) {
+      value = 0;
+      finite_ = false;
+    }
+  }
+
   std::span<const std::byte> in_;
   std::size_t at_ = 0;
   bool complete_ = true, finite_ = true;

@@ -7,11 +7,13 @@ using protocol::Datagram;
 using protocol::Endpoint;
 using protocol::Verdict;
 
-NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes,
-                 std::uint64_t seed, protocol::Recorder* recorder)
+NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions,
+                 std::vector<SurfacePager> pagers, SimMailboxes& mailboxes, std::uint64_t seed,
+                 protocol::Recorder* recorder)
     : socket_(socket),
       recorder_(recorder),
       sessions_(std::move(sessions)),
+      pagers_(std::move(pagers)),
       mailboxes_(mailboxes),
       random_(seed) {}
 
@@ -40,8 +42,21 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   note_holders();
   if (outcome.answer) send(outcome.answer->first, outcome.answer->second, from);
   if (outcome.left != nullptr) tool_is_free(outcome.left->tool);
-  if (outcome.tool_state != nullptr)
-    mailboxes_.tools[outcome.tool_state->tool].input.write({datagram.header.session, *outcome.tool_state});
+  if (outcome.tool_state == nullptr) return;
+  mailboxes_.tools[outcome.tool_state->tool].input.write({datagram.header.session, *outcome.tool_state});
+  send_pages(*outcome.tool_state);
+}
+
+/// The pages it asks for, if they are of the surface that we have; what is lost will be asked for again.
+void NetLink::send_pages(const protocol::ToolState& state) {
+  SurfacePager& pager = pagers_[state.tool];
+  if ((state.flags & protocol::ToolState::kAsksPages) == 0 || state.surface_version != pager.state().version)
+    return;
+  auto* const member = sessions_.holder(state.tool);
+  protocol::SurfacePage page;
+  for (const std::uint32_t number : state.pages) {
+    if (pager.page(number, page)) send({member->session, ++member->sent}, page, member->endpoint);
+  }
 }
 
 void NetLink::on_forces() {

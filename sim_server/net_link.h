@@ -5,15 +5,16 @@
 #include "protocol/recorder.h"
 #include "protocol/udp_socket.h"
 #include "sim_server/sim_loop.h"
+#include "sim_server/surface_pager.h"
 
 namespace palpate::sim {
 
 /// The network thread of the server: datagrams in, sessions kept, forces out.
 class NetLink {
  public:
-  /// `seed` draws the session numbers. `recorder`: gets every datagram; may be null.
-  NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes,
-          std::uint64_t seed, protocol::Recorder* recorder);
+  /// `pagers`: of each tool. `seed` draws the session numbers. `recorder`: gets every datagram; may be null.
+  NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, std::vector<SurfacePager> pagers,
+          SimMailboxes& mailboxes, std::uint64_t seed, protocol::Recorder* recorder);
 
   /// Serves until `stop`, then says Bye to every member.
   void run();
@@ -32,6 +33,7 @@ class NetLink {
  private:
   void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
   void on_forces();
+  void send_pages(const protocol::ToolState& state);
   void note_holders();
   void on_timer();
   void tool_is_free(std::uint8_t tool);
@@ -43,6 +45,7 @@ class NetLink {
   protocol::Recorder* recorder_;
   protocol::Endpoint peer_, own_;  // whom we last talked to, and how he sees us
   protocol::ServerSessions sessions_;
+  std::vector<SurfacePager> pagers_;
   SimMailboxes& mailboxes_;
   std::mt19937_64 random_;
   protocol::LinkStats stats_;

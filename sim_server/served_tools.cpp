@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "common/time.h"
+#include "sim_server/surface_pager.h"
 
 namespace palpate::sim {
 using protocol::ForceSample;
@@ -19,13 +20,24 @@ protocol::Linearisation on_the_wire(const Simulation::Linearised& l) noexcept {
           .gap = l.plane.gap};
 }
 
+/// Of what came over the wire; an orientation that is none is taken for no turn.
+ToolPose pose_of(const protocol::ToolState& state) noexcept {
+  const auto& [w, x, y, z] = state.q_W;
+  const Quat q(w, x, y, z);
+  const double size = q.norm();
+  return {state.p_W, size > 0.5 && size < 2 ? q.normalized() : Quat::Identity()};
+}
+
 }  // namespace
 
 ServedTools::ServedTools(Simulation& simulation)
     : simulation_(simulation),
       holders_(simulation.tools()),
       places_(simulation.tools()),
-      outcomes_(simulation.tools()) {}
+      outcomes_(simulation.tools()) {
+  for (std::size_t i = 0; i < simulation.tools(); ++i)
+    surfaces_.push_back(SurfacePager(simulation, i).state());
+}
 
 std::span<const ServedTools::Outcome> ServedTools::step(std::span<const ToolInput> inputs,
                                                         double dt) noexcept {
@@ -38,7 +50,7 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const ToolInpu
     // The pose of a lost device is the last one known, or none: it touches nothing.
     const bool lost = (inputs[i].state.flags & protocol::ToolState::kDeviceLost) != 0;
     places_[i].reset();
-    if (inputs[i].session != 0 && !lost) places_[i] = inputs[i].state.p_W;
+    if (inputs[i].session != 0 && !lost) places_[i] = pose_of(inputs[i].state);
   }
   if (std::all_of(holders_.begin(), holders_.end(), [](const Holder& h) { return h.session == 0; }))
     return {};
@@ -58,7 +70,7 @@ std::optional<ForceSample> ServedTools::answer(std::size_t tool, const ToolInput
                      .tool_t_ns = input.state.t_ns,
                      .p_W = input.state.p_W,
                      .f_W = force.force,
-                     .torque_W = Vec3::Zero(),  // every normal passes through the centre of a sphere
+                     .torque_W = force.torque,
                      .flags = flags};
   if (places_[tool] && !force.flagged) add_parts(tool, input.state, force, sample);
   return sample;
@@ -79,6 +91,11 @@ void ServedTools::add_parts(std::size_t tool, const protocol::ToolState& state, 
     sample.ahead_f_W = there.force;
     sample.ahead = on_the_wire(there);
     sample.flags |= ForceSample::kHasAhead;
+  }
+  if ((state.flags & protocol::ToolState::kWantsSurface) != 0 && surfaces_[tool].version != 0) {
+    sample.surface = surfaces_[tool];
+    sample.surface.shift_W = simulation_.surface_shift(tool, state.p_W);
+    sample.flags |= ForceSample::kHasSurface;
   }
 }
 

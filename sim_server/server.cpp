@@ -161,10 +161,14 @@ int run_server(const ServerOptions& options) {
   warn_if_slow(scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);
   std::vector<double> radii;
-  for (const ToolSettings& tool : scene.tools) radii.push_back(tool.shape.radius);
+  std::vector<SurfacePager> pagers;
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    radii.push_back(scene.tools[i].shape.radius);
+    pagers.emplace_back(simulation, i);
+  }
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes);
-  NetLink link(socket, {scene.rate_hz, radii}, mailboxes, random_seed(), recorder.get());
+  NetLink link(socket, {scene.rate_hz, radii}, std::move(pagers), mailboxes, random_seed(), recorder.get());
   const Time start = now();
   {
     std::jthread recording;

@@ -56,6 +56,7 @@ Simulation::Simulation(const Scene& scene, const Progress& progress)
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
   progress("extracting the surface", 0);
   surface_ = boundary_surface(mesh_);
+  for (const int vertex : surface_.vertices) rest_.push_back(mesh_.vertices[vertex]);
   auto touchable = touchable_by(scene.tools, surface_, mesh_);
   for (std::size_t i = 0; i < touchable.size(); ++i) {
     if (touchable[i].empty())
@@ -84,7 +85,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   forces_.resize(tools_.size());
 }
 
-std::span<const ToolForce> Simulation::step(std::span<const std::optional<Vec3>> places_W,
+std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPose>> places_W,
                                             double dt) noexcept {
   assert(places_W.size() == tools_.size());
   tissue_.free = tissue_.model->free_motion(dt);
@@ -103,8 +104,8 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<Vec3>>
   return forces_;
 }
 
-ToolForce Simulation::step(const Vec3& p_W, double dt) noexcept {
-  places_.front() = p_W;
+ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
+  places_.front() = pose;
   return step(places_, dt).front();
 }
 
@@ -144,6 +145,13 @@ Simulation::Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W,
   const double beyond = linearised.plane.gap + kTouch * contact.radius();
   linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue_).tangent;
   return linearised;
+}
+
+Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) noexcept {
+  ToolContact& contact = tools_[tool];
+  contact.share(tools_, tissue_);
+  const int vertex = contact.nearest_vertex(p_W, tissue_);
+  return contact.free()[vertex] - rest_[vertex];
 }
 
 void Simulation::lift_tool(std::size_t tool) noexcept {

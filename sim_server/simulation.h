@@ -25,11 +25,11 @@ class Simulation {
   /// With a mesh made elsewhere.
   Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent);
 
-  /// Advances the tissue by `dt` (s) with the tool centres at `places_W` (m), one for each tool; where there
+  /// Advances the tissue by `dt` (s) with the tools at `places_W`, one for each tool; where there
   /// is none, that tool is lifted. The forces, one for each tool, stay valid until the next step.
-  std::span<const ToolForce> step(std::span<const std::optional<Vec3>> places_W, double dt) noexcept;
+  std::span<const ToolForce> step(std::span<const std::optional<ToolPose>> places_W, double dt) noexcept;
   /// The same with tool 0 alone, the others lifted.
-  ToolForce step(const Vec3& p_W, double dt) noexcept;
+  ToolForce step(const ToolPose& pose, double dt) noexcept;
 
   /// The force on a tool at `p_W` (m), near where it stands, to first order; without effect on anything.
   struct Linearised {
@@ -40,10 +40,20 @@ class Simulation {
   /// `felt`: what `step` gave for that place; null: to be found out. At most two contact solves.
   Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) noexcept;
 
+  /// How far the surface nearest to a tool at `p_W` (m) is from its place at rest, free of that tool but
+  /// under all others, m. O(vertices).
+  Vec3 surface_shift(std::size_t tool, const Vec3& p_W) noexcept;
+
   /// Takes a tool away: the tissue goes free of it.
   void lift_tool(std::size_t tool = 0) noexcept;
 
   std::size_t tools() const { return tools_.size(); }
+  const ToolContact& tool(std::size_t i) const { return tools_[i]; }
+  /// Triangles that a tool can touch; corners: surface vertices.
+  std::span<const Triangle> touchable(std::size_t tool) const { return tools_[tool].touchable(); }
+  const DeformationModel& model() const { return *tissue_.model; }
+  /// Surface vertices at rest, m, world.
+  const std::vector<Vec3>& rest() const { return rest_; }
   const TetMesh& mesh() const { return mesh_; }
   const Surface& surface() const { return surface_; }
   std::span<const Vec3> positions() const { return tissue_.positions; }
@@ -57,9 +67,10 @@ class Simulation {
 
   TetMesh mesh_;
   Surface surface_;
+  std::vector<Vec3> rest_;
   Tissue tissue_;
   std::vector<ToolContact> tools_;
-  std::vector<std::optional<Vec3>> places_;  // for the step of tool 0 alone
+  std::vector<std::optional<ToolPose>> places_;  // for the step of tool 0 alone
   std::vector<ToolForce> forces_;
 };
 

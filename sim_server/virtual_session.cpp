@@ -42,7 +42,8 @@ VirtualSession::VirtualSession(Simulation& simulation, const Trajectory& motion,
       link_(link),
       capture_(capture),
       server_(link.rate_hz, {tool_radius}),
-      session_(session_number(motion, link)) {}
+      session_(session_number(motion, link)),
+      pager_(simulation, 0) {}
 
 Time VirtualSession::time_of(std::uint64_t k) const {
   return from_seconds(static_cast<double>(k) / link_.ticks_hz);
@@ -55,7 +56,8 @@ void VirtualSession::tick(std::uint64_t k) {
   state.p_W = newest_p_W_ = motion_.at(to_seconds(t));
   if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motion_.at(to_seconds(time_of(k - 1))));
   if (link_.parts) {
-    state.flags |= ToolState::kWantsHere | ToolState::kWantsAhead;
+    state.flags |= ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface;
+    state.pages_taken = pages_;
     state.lead_ns = (link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
   }
   step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
@@ -89,12 +91,19 @@ void VirtualSession::deliver(Time t) {
     // Numbered only now: a Welcome in between does not overtake it.
     auto* const member = server_.holder(next.sample.tool);
     to_client({session_, ++member->sent}, next.sample, next.ready);
-    ++stats_.force_samples;
+    if (++stats_.force_samples == 1 && link_.parts) send_surface(next.ready);
   }
 }
 
 void VirtualSession::keep_session(Time t) {
   if (const auto hello = client_.poll(t)) to_server({}, *hello, t);
+}
+
+/// All of it at once, as soon as the client knows that there is one.
+void VirtualSession::send_surface(Time t) {
+  auto* const member = server_.holder(client_.welcome().tool);
+  for (SurfacePage page; pager_.page(static_cast<std::uint32_t>(pages_), page); ++pages_)
+    to_client({session_, ++member->sent}, page, t);
 }
 
 void VirtualSession::leave() {

@@ -5,6 +5,7 @@
 #include "protocol/capture.h"
 #include "protocol/session.h"
 #include "sim_server/served_tools.h"
+#include "sim_server/surface_pager.h"
 
 namespace palpate::sim {
 
@@ -22,7 +23,8 @@ struct VirtualSessionStats {
 };
 
 /// A client and a server that talk without sockets and clock: the two ends of a session, tool 0 of the scene,
-/// which follows a motion exactly, and a capture of every datagram between them. Client and server stand at
+/// which follows a motion exactly, and a capture of every datagram between them. With `parts`, the client
+/// gets the whole model of the surface right after its first sample. Client and server stand at
 /// 192.0.2.1:45131 and 192.0.2.2:45130 (addresses for documentation, RFC 5737).
 class VirtualSession {
  public:
@@ -45,6 +47,7 @@ class VirtualSession {
     protocol::ForceSample sample;
   };
   void keep_session(Time t);
+  void send_surface(Time t);
   void step(const protocol::ToolState& state, double steps_due);
   void deliver(Time t);
   protocol::Datagram travel(const protocol::Endpoint& from, const protocol::Endpoint& to,
@@ -62,7 +65,8 @@ class VirtualSession {
   protocol::ClientSession client_{1};
   protocol::LinkStats server_stats_, client_stats_;
   std::deque<OnTheWay> on_the_way_;
-  std::uint64_t steps_ = 0, newest_ = 0;
+  SurfacePager pager_;
+  std::uint64_t steps_ = 0, newest_ = 0, pages_ = 0;
   Time now_{};
   Vec3 newest_p_W_ = Vec3::Zero();
   VirtualSessionStats stats_;

@@ -51,7 +51,8 @@ std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured,
   const Header& header = datagram.header;
   if (const auto* state = std::get_if<ToolState>(&datagram.message))
     return sort_state(*state, header, captured.from);
-  if (std::holds_alternative<ForceSample>(datagram.message)) return sort_sample(header, captured.to);
+  if (std::holds_alternative<ForceSample>(datagram.message)) return sort_sample(header, captured.to, true);
+  if (std::holds_alternative<SurfacePage>(datagram.message)) return sort_sample(header, captured.to, false);
   if (std::holds_alternative<Welcome>(datagram.message)) {  // again, in mid-session: it has a number, too
     if (const Place place = known(captured.to, header.session); place.link != nullptr)
       place.link->down.accept(header.sequence);
@@ -81,8 +82,10 @@ std::optional<std::size_t> CaptureSorter::sort_state(const ToolState& state, con
   return index;
 }
 
-/// A sample tells a session from another, but not a run: it never begins a session where there is a run.
-std::optional<std::size_t> CaptureSorter::sort_sample(const Header& header, const Endpoint& client) {
+/// What comes from the server tells a session from another, but not a run: it never begins a session where
+/// there is a run.
+std::optional<std::size_t> CaptureSorter::sort_sample(const Header& header, const Endpoint& client,
+                                                      bool is_sample) {
   auto [run, link] = known(client, header.session);
   if (run == nullptr) run = newest_run(client);
   if (run == nullptr) {  // a capture that begins between a tool state and its answer
@@ -92,7 +95,7 @@ std::optional<std::size_t> CaptureSorter::sort_sample(const Header& header, cons
     link = &run->links.back();
   }
   if (link != nullptr && !link->down.accept(header.sequence)) return {};
-  ++run->samples;
+  run->samples += is_sample ? 1 : 0;
   return run - runs_.data();
 }
 

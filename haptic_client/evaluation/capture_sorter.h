@@ -52,8 +52,8 @@ struct CapturedRun {
 /// out.
 class CaptureSorter {
  public:
-  /// Which run (from 0) a datagram belongs to, if it is a tool state or force sample of ours that did not
-  /// come before; `datagram` is decoded into.
+  /// Which run (from 0) a datagram belongs to, if it is a tool state, force sample or page of a surface of
+  /// ours that did not come before; `datagram` is decoded into.
   std::optional<std::size_t> sort(const protocol::CapturedDatagram& captured, protocol::Datagram& datagram);
 
   const std::vector<CapturedRun>& runs() const { return runs_; }
@@ -73,7 +73,8 @@ class CaptureSorter {
   Place place_of(const protocol::ToolState& state, const protocol::Endpoint& client, std::uint64_t session);
   std::optional<std::size_t> sort_state(const protocol::ToolState& state, const protocol::Header& header,
                                         const protocol::Endpoint& client);
-  std::optional<std::size_t> sort_sample(const protocol::Header& header, const protocol::Endpoint& client);
+  std::optional<std::size_t> sort_sample(const protocol::Header& header, const protocol::Endpoint& client,
+                                         bool is_sample);
 
   std::vector<CapturedRun> runs_;
   std::uint64_t ours_ = 0, refused_ = 0, left_out_ = 0;

@@ -56,6 +56,8 @@ void CapturedSession::fill() {
     if (const auto* sample = std::get_if<ForceSample>(&datagram.message)) {
       samples_.push_back({place_, *sample});
       if (samples_.size() > kKeptSamples) samples_.pop_front();
+    } else if (const auto* page = std::get_if<SurfacePage>(&datagram.message)) {
+      pages_.push_back(*page);
     } else if (const auto* state = std::get_if<ToolState>(&datagram.message)) {
       const auto after = std::find_if(waiting_.begin(), waiting_.end(),
                                       [&](const Numbered& n) { return n.state.tick < state->tick; });
@@ -77,7 +79,8 @@ bool CapturedSession::next(CapturedTick& out) {
       missing_.ticks += tick.state.tick - newest_tick_ - 1;
     newest_tick_ = tick.state.tick;
     newest_t_ = t;
-    out = {tick.state, {}};
+    out = {tick.state, {}, {}};
+    hand_over_pages(tick.state.pages_taken, out);
     if (tick.state.newest_sample == newest_sample_) return true;
     newest_sample_ = tick.state.newest_sample;
     const ForceSample* const sample = find_sample(newest_sample_, tick.place);
@@ -89,6 +92,17 @@ bool CapturedSession::next(CapturedTick& out) {
     return true;
   }
   return false;
+}
+
+/// Pages are taken in the order in which they came.
+void CapturedSession::hand_over_pages(std::uint64_t taken, CapturedTick& out) {
+  for (; pages_taken_ < taken && !pages_.empty(); ++pages_taken_) {
+    out.pages.push_back(pages_.front());
+    pages_.pop_front();
+  }
+  if (pages_taken_ >= taken) return;
+  missing_.pages += taken - pages_taken_;
+  pages_taken_ = taken;
 }
 
 /// Not after the tick before; or so far ahead that the tick after it lies between the two.

@@ -28,6 +28,7 @@ CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& p
 struct CapturedTick {
   protocol::ToolState state;
   std::optional<protocol::ForceSample> arrived;  ///< the sample this tick was the first to use
+  std::vector<protocol::SurfacePage> pages;      ///< of the surface, that this tick was the first to have
 };
 
 /// Reads the ticks of one run in their own order, though the network may have shuffled them.
@@ -43,6 +44,7 @@ class CapturedSession {
   struct Missing {
     std::uint64_t ticks = 0;      ///< numbers skipped
     std::uint64_t samples = 0;    ///< used by a tick, but not in the file
+    std::uint64_t pages = 0;      ///< likewise
     std::uint64_t backwards = 0;  ///< ticks left out: their time jumps out of the row, back or ahead
   };
   const Missing& missing() const { return missing_; }
@@ -59,14 +61,16 @@ class CapturedSession {
   };
   void fill();
   bool out_of_row(Time t) const;
+  void hand_over_pages(std::uint64_t taken, CapturedTick& out);
   const protocol::ForceSample* find_sample(std::uint64_t number, std::uint64_t place) const;
 
   protocol::CaptureReader reader_;
   CaptureSorter sorter_;
   std::size_t run_;
-  std::vector<Numbered> waiting_;       // by tick, newest first
-  std::deque<NumberedSample> samples_;  // the last ones, oldest first
-  std::uint64_t place_ = 0, newest_tick_ = 0, newest_sample_ = 0;
+  std::vector<Numbered> waiting_;            // by tick, newest first
+  std::deque<NumberedSample> samples_;       // the last ones, oldest first
+  std::deque<protocol::SurfacePage> pages_;  // that no tick has had, oldest first
+  std::uint64_t place_ = 0, newest_tick_ = 0, newest_sample_ = 0, pages_taken_ = 0;
   Time newest_t_{-1};
   bool ended_ = false;
   Missing missing_;

@@ -10,7 +10,10 @@ constexpr Time kGap = std::chrono::seconds(1);
 bool Resampler::pass() {
   before_ = after_;
   if (before_ && before_->arrived) arrived_ = before_->arrived;
-  if (before_) flags_ |= before_->state.flags;
+  if (before_) {
+    flags_ |= before_->state.flags;
+    pages_.insert(pages_.end(), before_->pages.begin(), before_->pages.end());
+  }
   CapturedTick tick;
   after_ = session_.next(tick) ? std::optional(tick) : std::nullopt;
   return before_.has_value();
@@ -40,6 +43,7 @@ bool Resampler::next(CapturedTick& out) {
   out.state.p_W = a.p_W + share * (b.p_W - a.p_W);
   out.state.v_W = a.v_W + share * (b.v_W - a.v_W);
   out.arrived = std::exchange(arrived_, std::nullopt);
+  out.pages = std::exchange(pages_, {});
   return true;
 }
 

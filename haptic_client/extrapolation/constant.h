@@ -12,7 +12,7 @@ class Constant : public Extrapolator {
     if (usable(sample)) force_ = sample.f;
   }
   void restart() noexcept override { force_.setZero(); }
-  Vec3 force(const Vec3&, Time) const noexcept override { return force_; }
+  Vec3 force(const Vec3&, Time) noexcept override { return force_; }
 
  private:
   Vec3 force_ = Vec3::Zero();

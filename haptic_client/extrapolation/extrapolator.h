@@ -2,10 +2,13 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/contact/tool.h"
 #include "common/time.h"
 #include "common/types.h"
 
 namespace palpate::client {
+
+class SurfaceModel;
 
 /// The force near a place, to first order, as the server sees it.
 struct Linearised {
@@ -14,6 +17,14 @@ struct Linearised {
   Mat3 k = Mat3::Zero();       ///< dF/dp, N/m, symmetric; free: as it will be when the tool touches
   Vec3 normal = Vec3::Zero();  ///< of the surface, towards the tool; zero: none near
   double gap = 0;              ///< between surface and tool, m; 0 in contact
+};
+
+/// What is known of the surface near the tool.
+struct Surface {
+  const SurfaceModel* model = nullptr;  ///< never null; learns between samples
+  Vec3 shift = Vec3::Zero();            ///< from rest to where it is, free of the tool, m
+  Tool tool;
+  double tool_compliance = 0;  ///< m/N
 };
 
 /// What the simulation says: the triplet (t_n, P_n, F_n) of Picinbono and Lombardo (1999), and what a law
@@ -26,6 +37,7 @@ struct Sample {
   Vec3 surface_v = Vec3::Zero();         ///< of the organ there, m/s, world
   std::optional<Linearised> here = {};   ///< at `p`
   std::optional<Linearised> ahead = {};  ///< where the tool was expected by now
+  std::optional<Surface> surface = {};
 };
 
 /// Whether a law may look at the sample at all: its vectors are finite.
@@ -35,10 +47,11 @@ inline bool usable(const Sample& sample) noexcept {
 
 /// Parts of a sample that a law can use.
 struct Wants {
-  bool here = false, ahead = false;
+  bool here = false, ahead = false, surface = false;
   Wants& operator|=(const Wants& other) {
     here = here || other.here;
     ahead = ahead || other.ahead;
+    surface = surface || other.surface;
     return *this;
   }
 };
@@ -55,7 +68,8 @@ class Extrapolator {
   virtual void restart() noexcept = 0;
   /// Force (N, world) with the tool at `p` at time `t` >= that of the newest sample. Zero before the first
   /// sample. |p| and |f| up to 1e30 give a finite answer; times are from 0 to 2^62 ns.
-  virtual Vec3 force(const Vec3& p, Time t) const noexcept = 0;
+  /// Called in the order of time: a law may go along with the tool.
+  virtual Vec3 force(const Vec3& p, Time t) noexcept = 0;
   /// What it uses beyond the triplet. A law that uses something knows a free surface from one that pulls.
   virtual Wants wants() const noexcept { return {}; }
 };

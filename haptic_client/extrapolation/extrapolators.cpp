@@ -8,6 +8,7 @@
 #include "haptic_client/extrapolation/learned_stiffness.h"
 #include "haptic_client/extrapolation/linear_position.h"
 #include "haptic_client/extrapolation/linear_time.h"
+#include "haptic_client/extrapolation/local_contact.h"
 #include "haptic_client/extrapolation/tangent.h"
 #include "haptic_client/extrapolation/two_tangents.h"
 
@@ -33,6 +34,8 @@ constexpr std::array kExtrapolators{
                     &make<Tangent>},
     ExtrapolatorRow{"two_tangents", "tangents where the tool was and where it was expected",
                     &make<TwoTangents>},
+    ExtrapolatorRow{"local_contact", "the contact solved here, on the server's model of the surface",
+                    &make<LocalContact>},
     ExtrapolatorRow{"kalman", "a Kalman filter on the force (the paper turns it down)", &make<Kalman>, false},
     ExtrapolatorRow{"interpolate_with_delay", "the line between samples, two periods late (likewise)",
                     &make<InterpolateWithDelay>, false},

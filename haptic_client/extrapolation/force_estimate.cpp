@@ -23,13 +23,13 @@ bool ForceEstimate::take(const Sample& sample, const Vec3& p, Time now) noexcept
   return true;
 }
 
-Vec3 ForceEstimate::force(const Vec3& p, Time t) const noexcept {
+Vec3 ForceEstimate::force(const Vec3& p, Time t) noexcept {
   const Vec3 f = law_force(p, t);
   if (!(blend_ > 0) || f.isZero(0)) return f;  // free is free at once
   return f + std::exp(-to_seconds(t - arrived_) / blend_) * offset_;
 }
 
-Vec3 ForceEstimate::law_force(const Vec3& p, Time t) const noexcept {
+Vec3 ForceEstimate::law_force(const Vec3& p, Time t) noexcept {
   if (newest_.f.isZero(0) && !sees_surface_) return Vec3::Zero();
   return law_->force(p, t - newest_.t <= kPatience * period_ ? t : newest_.t);
 }

@@ -18,14 +18,16 @@ class ForceEstimate {
  public:
   /// `blend`: how long what a new sample changes takes to come in (time constant, s, 0 to 0.1); 0: at once.
   explicit ForceEstimate(std::unique_ptr<Extrapolator> law, double blend = 0)
-      : law_(std::move(law)), sees_surface_(law_->wants().here || law_->wants().ahead), blend_(blend) {}
+      : law_(std::move(law)),
+        sees_surface_(law_->wants().here || law_->wants().ahead || law_->wants().surface),
+        blend_(blend) {}
 
   /// A sample is here at time `now`, with the tool at `p` (m). False, and nothing changes, unless it is
   /// finite, later than the newest and not from before the clock began or from the future.
   bool take(const Sample& sample, const Vec3& p, Time now) noexcept;
 
   /// Force (N, world) on a tool at `p` (m) at time `t` >= that of the newest sample.
-  Vec3 force(const Vec3& p, Time t) const noexcept;
+  Vec3 force(const Vec3& p, Time t) noexcept;
 
   Wants wants() const noexcept { return law_->wants(); }
   /// Number 0: none yet.
@@ -36,7 +38,7 @@ class ForceEstimate {
  private:
   static constexpr int kPatience = 3;  // periods
   std::unique_ptr<Extrapolator> law_;
-  Vec3 law_force(const Vec3& p, Time t) const noexcept;
+  Vec3 law_force(const Vec3& p, Time t) noexcept;
 
   bool sees_surface_;
   double blend_;                // s

@@ -11,7 +11,7 @@ void InterpolateWithDelay::update(const Sample& sample) noexcept {
   count_ = std::min(count_ + 1, kDepth);
 }
 
-Vec3 InterpolateWithDelay::force(const Vec3&, Time t) const noexcept {
+Vec3 InterpolateWithDelay::force(const Vec3&, Time t) noexcept {
   if (count_ == 0) return Vec3::Zero();
   if (count_ < kDepth) return samples_[0].f;
   const Time then = t - 2 * (samples_[0].t - samples_[1].t);

@@ -14,7 +14,7 @@ class InterpolateWithDelay : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override { count_ = 0; }
-  Vec3 force(const Vec3& p, Time t) const noexcept override;
+  Vec3 force(const Vec3& p, Time t) noexcept override;
 
  private:
   static constexpr std::size_t kDepth = 4;

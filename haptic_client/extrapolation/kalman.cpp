@@ -39,7 +39,7 @@ void Kalman::update(const Sample& sample) noexcept {
   }
 }
 
-Vec3 Kalman::force(const Vec3&, Time t) const noexcept {
+Vec3 Kalman::force(const Vec3&, Time t) noexcept {
   return f_ + to_seconds(t - t_) * rate_;
 }
 

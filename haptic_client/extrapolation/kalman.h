@@ -13,7 +13,7 @@ class Kalman : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override { *this = {}; }
-  Vec3 force(const Vec3& p, Time t) const noexcept override;
+  Vec3 force(const Vec3& p, Time t) noexcept override;
 
  private:
   bool any_ = false;

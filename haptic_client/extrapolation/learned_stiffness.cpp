@@ -30,7 +30,7 @@ void LearnedStiffness::restart() noexcept {
   b_.setZero();
 }
 
-Vec3 LearnedStiffness::force(const Vec3& p, Time) const noexcept {
+Vec3 LearnedStiffness::force(const Vec3& p, Time) noexcept {
   const Sample& newest = samples_.newest;
   if (samples_.count == 0) return Vec3::Zero();
   const Vec3 x = p - newest.p;

@@ -14,7 +14,7 @@ class LearnedStiffness : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
-  Vec3 force(const Vec3& p, Time t) const noexcept override;
+  Vec3 force(const Vec3& p, Time t) noexcept override;
 
  private:
   LastTwo samples_;

@@ -7,7 +7,7 @@ namespace {
 constexpr double kSamePlace = 1e-9;  // m
 }
 
-Vec3 LinearPosition::force(const Vec3& p, Time) const noexcept {
+Vec3 LinearPosition::force(const Vec3& p, Time) noexcept {
   const auto& [newest, before, count] = samples_;
   const Vec3 d = newest.p - before.p;
   if (count < 2 || d.squaredNorm() < kSamePlace * kSamePlace || !p.allFinite()) return newest.f;

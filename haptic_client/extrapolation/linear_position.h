@@ -15,7 +15,7 @@ class LinearPosition : public Extrapolator {
   explicit LinearPosition(Ratio ratio) : ratio_(ratio) {}
   void update(const Sample& sample) noexcept override { samples_.push(sample); }
   void restart() noexcept override { samples_ = {}; }
-  Vec3 force(const Vec3& p, Time t) const noexcept override;
+  Vec3 force(const Vec3& p, Time t) noexcept override;
 
  private:
   Ratio ratio_;

@@ -2,7 +2,7 @@
 
 namespace palpate::client {
 
-Vec3 LinearTime::force(const Vec3&, Time t) const noexcept {
+Vec3 LinearTime::force(const Vec3&, Time t) noexcept {
   const auto& [newest, before, count] = samples_;
   if (count < 2) return newest.f;
   const Time period = newest.t - before.t;

@@ -11,7 +11,7 @@ class LinearTime : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override { samples_.push(sample); }
   void restart() noexcept override { samples_ = {}; }
-  Vec3 force(const Vec3& p, Time t) const noexcept override;
+  Vec3 force(const Vec3& p, Time t) noexcept override;
 
  private:
   LastTwo samples_;

@@ -40,7 +40,7 @@ void Tangent::restart() noexcept {
   newest_ = {};
 }
 
-Vec3 Tangent::force(const Vec3& p, Time t) const noexcept {
+Vec3 Tangent::force(const Vec3& p, Time t) noexcept {
   if (!newest_.here) return learned_.force(p, t);
   return force_at(*newest_.here, p - to_seconds(t - newest_.t) * newest_.surface_v);
 }

@@ -19,7 +19,7 @@ class Tangent : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
-  Vec3 force(const Vec3& p, Time t) const noexcept override;
+  Vec3 force(const Vec3& p, Time t) noexcept override;
   Wants wants() const noexcept override { return {.here = true}; }
 
  private:

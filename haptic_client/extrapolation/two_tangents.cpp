@@ -19,7 +19,7 @@ void TwoTangents::restart() noexcept {
   newest_ = {};
 }
 
-Vec3 TwoTangents::force(const Vec3& p, Time t) const noexcept {
+Vec3 TwoTangents::force(const Vec3& p, Time t) noexcept {
   const Vec3 here = first_.force(p, t);
   if (!newest_.ahead || !newest_.here) return here;
   const Vec3 still = p - to_seconds(t - newest_.t) * newest_.surface_v;  // where the organ stood at t_n

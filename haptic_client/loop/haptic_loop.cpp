@@ -40,7 +40,10 @@ TickResult HapticLoop::tick() noexcept {
   const DeviceReading reading = device_.read(now());
   protocol::ForceSample sample;
   const bool fresh = mailboxes_.force.read(sample);
-  const TickResult result = pipeline_.tick(reading, fresh ? &sample : nullptr);
+  std::size_t pages = 0;
+  while (pages < pages_.size() && mailboxes_.pages.pop(pages_[pages])) ++pages;
+  const TickResult result =
+      pipeline_.tick(reading, fresh ? &sample : nullptr, std::span(pages_).first(pages));
   device_.write(result.f_D);
   if (!mailboxes_.tool.push(result.tool)) ++stats_.unsent;
   mailboxes_.bell.ring();

@@ -11,10 +11,12 @@
 namespace palpate::client {
 
 /// Between the haptic thread and the network thread. Every pose goes out, so that what travels can be
-/// replayed tick by tick; of the forces only the newest counts. `bell` rings when a pose waits.
+/// replayed tick by tick; of the forces only the newest counts. Pages are asked for by the haptic thread,
+/// fewer than there is room for. `bell` rings when a pose waits.
 struct HapticMailboxes {
-  SpscRing<protocol::ToolState> tool{512};   // haptic -> network
-  LatestValue<protocol::ForceSample> force;  // network -> haptic
+  SpscRing<protocol::ToolState> tool{512};     // haptic -> network
+  LatestValue<protocol::ForceSample> force;    // network -> haptic
+  SpscRing<protocol::SurfacePage> pages{128};  // network -> haptic
   Doorbell bell;
 };
 
@@ -56,6 +58,7 @@ class HapticLoop {
   HapticMailboxes& mailboxes_;
   Observation& observation_;
   Time period_;
+  std::array<protocol::SurfacePage, 32> pages_;  // of one tick
   HapticLoopStats stats_;
 };
 

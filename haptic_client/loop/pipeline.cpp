@@ -8,9 +8,12 @@ using protocol::ToolState;
 
 namespace {
 
-constexpr double kVelocityFilter = 0.005;  // s, time constant of the velocity estimate
-constexpr int kLeadFilter = 8;             // samples
-constexpr double kFadeDamping = 2;         // N s/m, in the device frame, while the force fades
+constexpr double kVelocityFilter = 0.005;                  // s, time constant of the velocity estimate
+constexpr int kLeadFilter = 8;                             // samples
+constexpr Time kAskPeriod = std::chrono::milliseconds(8);  // a thousand pages a second at most
+constexpr double kCovered = 3;                             // of the tool radius: what is asked for first
+constexpr Time kForesight = std::chrono::milliseconds(200);
+constexpr double kFadeDamping = 2;  // N s/m, in the device frame, while the force fades
 
 Linearised linearised(const Vec3& p, const Vec3& f, const protocol::Linearisation& l) noexcept {
   const auto& k = l.tangent;
@@ -25,11 +28,20 @@ double seconds_between(const ToolState& before, Time t) {
 
 }  // namespace
 
-Sample sample_of(const ForceSample& s) noexcept {
+Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
   Sample sample{s.number, Time{s.tool_t_ns}, s.p_W, s.f_W, s.surface_v_W};
   if ((s.flags & ForceSample::kHasHere) != 0) sample.here = linearised(s.p_W, s.f_W, s.here);
   if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = linearised(s.ahead_p_W, s.ahead_f_W, s.ahead);
+  if ((s.flags & ForceSample::kHasSurface) != 0 && model != nullptr) {
+    model->announce(s.surface);
+    sample.surface = Surface{model, s.surface.shift_W, {s.surface.tool_radius}, s.surface.tool_compliance};
+  }
   return sample;
+}
+
+void Pipeline::ask_for(const Wants& wants) {
+  wants_ |= wants;
+  if (wants_.surface && !model_) model_ = std::make_unique<SurfaceModel>();
 }
 
 ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
@@ -42,6 +54,7 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   rearm_asked_ = false;
   if (wants_.here) sensed_.flags |= ToolState::kWantsHere;
   if (wants_.ahead) sensed_.flags |= ToolState::kWantsAhead;
+  if (wants_.surface) sensed_.flags |= ToolState::kWantsSurface;
   sensed_.lead_ns = wants_.ahead ? lead_.count() : 0;
   if ((reading.buttons & workspace_.clutch) != 0) sensed_.flags |= ToolState::kClutched;
   if (!reading.valid || !reading.p_D.allFinite()) {
@@ -60,7 +73,8 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   return sensed_;
 }
 
-TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived) noexcept {
+TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
+                          std::span<const protocol::SurfacePage> pages) noexcept {
   const Time now{tool.t_ns};
   const double dt = seconds_between(felt_, now);
   if ((tool.flags & ToolState::kRearmed) != 0 && limiter_.fault() != Fault::kNone) {
@@ -69,15 +83,33 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived) noe
   }
   follow_path(tool, dt);
   TickResult result{.tool = tool};
+  if (model_) {
+    for (const protocol::SurfacePage& page : pages) model_->take(page);
+  }
+  pages_taken_ += pages.size();
   if (arrived != nullptr && take(*arrived, tool.p_W, now)) {
     result.used = true;
     result.sample = estimate_.newest();
     result.step = Time{arrived->step_ns};
   }
   result.tool.newest_sample = estimate_.newest().number;
+  if (model_) ask_for_pages(result.tool, now);
   result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
   felt_ = tool;
   return result;
+}
+
+void Pipeline::ask_for_pages(ToolState& tool, Time now) noexcept {
+  tool.pages_taken = pages_taken_;
+  tool.flags &= static_cast<std::uint16_t>(~ToolState::kAsksPages);
+  const auto& surface = estimate_.newest().surface;
+  if (!surface || model_->version() == 0 || now - asked_ < kAskPeriod) return;
+  asked_ = now;
+  const Vec3 p_rest = tool.p_W - surface->shift;
+  const double reach = kCovered * surface->tool.radius + to_seconds(kForesight) * tool.v_W.norm();
+  if (!model_->choose_missing(p_rest, reach, now, tool.pages)) return;
+  tool.flags |= ToolState::kAsksPages;
+  tool.surface_version = model_->version();
 }
 
 /// What of the force `f_W` (N, world) may go to the motors: passivity, watchdog, limiter.
@@ -122,7 +154,7 @@ void Pipeline::follow_path(const ToolState& tool, double dt) noexcept {
 
 bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexcept {
   const Vec3 before = estimate_.newest().p;
-  if (!estimate_.take(sample_of(arrived), p_W, now)) {
+  if (!estimate_.take(sample_of(arrived, model_.get()), p_W, now)) {
     ++stats_.overtaken;
     return false;
   }

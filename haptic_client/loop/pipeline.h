@@ -4,6 +4,7 @@
 #include "common/histogram.h"
 #include "haptic_client/device/device.h"
 #include "haptic_client/extrapolation/force_estimate.h"
+#include "haptic_client/extrapolation/surface_model.h"
 #include "haptic_client/loop/workspace.h"
 #include "haptic_client/safety/limiter.h"
 #include "haptic_client/safety/passivity.h"
@@ -12,8 +13,9 @@
 
 namespace palpate::client {
 
-/// What of a message a law may see.
-Sample sample_of(const protocol::ForceSample& message) noexcept;
+/// What of a message a law may see. `model`: of the surface, told by the message which one the server has;
+/// may be null.
+Sample sample_of(const protocol::ForceSample& message, SurfaceModel* model = nullptr) noexcept;
 
 /// What one tick gives.
 struct TickResult {
@@ -50,25 +52,27 @@ class Pipeline {
   /// `blend`: see `ForceEstimate`.
   Pipeline(std::unique_ptr<Extrapolator> law, const Workspace& workspace, const Limiter::Settings& limits,
            const Passivity::Settings& passivity = {}, double blend = 0)
-      : estimate_(std::move(law), blend),
-        wants_(estimate_.wants()),
-        workspace_(workspace),
-        passivity_(passivity),
-        limiter_(limits) {}
+      : estimate_(std::move(law), blend), workspace_(workspace), passivity_(passivity), limiter_(limits) {
+    ask_for(estimate_.wants());
+  }
 
   /// Asks the server for these parts of a sample, too: laws in the shadow use them. Before the first tick.
-  void ask_for(const Wants& wants) noexcept { wants_ |= wants; }
+  void ask_for(const Wants& wants);
 
-  /// One tick. `arrived`: the newest sample, if one came since the last tick, else null.
-  TickResult tick(const DeviceReading& reading, const protocol::ForceSample* arrived) noexcept {
-    return feel(sense(reading), arrived);
+  /// One tick. `arrived`: the newest sample, if one came since the last tick, else null; `pages` of the
+  /// surface that came since.
+  TickResult tick(const DeviceReading& reading, const protocol::ForceSample* arrived,
+                  std::span<const protocol::SurfacePage> pages = {}) noexcept {
+    return feel(sense(reading), arrived, pages);
   }
 
   /// Device -> world. Position and filtered velocity stay as they were while the device gives nothing usable.
   protocol::ToolState sense(const DeviceReading& reading) noexcept;
 
-  /// The force for a tool there. Of `tool`, everything but `newest_sample` (which the result holds) is used.
-  TickResult feel(const protocol::ToolState& tool, const protocol::ForceSample* arrived) noexcept;
+  /// The force for a tool there. Of `tool`, everything is used but `newest_sample`, `pages_taken` and what is
+  /// asked for (which the result holds).
+  TickResult feel(const protocol::ToolState& tool, const protocol::ForceSample* arrived,
+                  std::span<const protocol::SurfacePage> pages = {}) noexcept;
 
   /// Asks the next tick to clear a latched fault; the force then rises again over a soft start.
   void rearm() noexcept { rearm_asked_ = true; }
@@ -83,11 +87,15 @@ class Pipeline {
  private:
   bool take(const protocol::ForceSample& arrived, const Vec3& p_W, Time now) noexcept;
   Vec3 safe(const Vec3& f_W, const protocol::ToolState& tool, double dt) noexcept;
+  void ask_for_pages(protocol::ToolState& tool, Time now) noexcept;
   void follow_path(const protocol::ToolState& tool, double dt) noexcept;
 
   ForceEstimate estimate_;
   Wants wants_;
-  Time lead_{};  // from reading the device to the middle of the use of its force
+  std::unique_ptr<SurfaceModel> model_;  // null: no law wants it
+  std::uint64_t pages_taken_ = 0;
+  Time asked_{};  // for pages
+  Time lead_{};   // from reading the device to the middle of the use of its force
   Workspace workspace_;
   Passivity passivity_;
   Watchdog watchdog_;

@@ -35,6 +35,10 @@ class DeformationModel {
   /// `patch.tool_compliance`.
   virtual void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept = 0;
 
+  /// Whether `compliance` always gives the same, whatever was done before; then any thread may ask for it at
+  /// any time, into a patch of its own.
+  virtual bool compliance_is_constant() const noexcept = 0;
+
   /// Here are the loads: move. Positions (n) under them, valid until the next call. Replaces the loads
   /// before.
   virtual std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept = 0;

@@ -15,6 +15,7 @@ class QuasiStatic : public DeformationModel {
   explicit QuasiStatic(const ModelInputs& inputs);
   std::span<const Vec3> free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  bool compliance_is_constant() const noexcept override { return true; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::vector<MemoryPart> memory() const override;
 

@@ -12,6 +12,7 @@ class Rigid : public DeformationModel {
   explicit Rigid(const ModelInputs& inputs);
   std::span<const Vec3> free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  bool compliance_is_constant() const noexcept override { return true; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::vector<MemoryPart> memory() const override;
 

@@ -22,7 +22,7 @@ ForceEstimate rising() {
 }  // namespace
 
 TEST_CASE("time stands still for a law when the newest sample is older than three periods") {
-  const ForceEstimate estimate = rising();
+  ForceEstimate estimate = rising();
   CHECK(estimate.force({0, 0, 0}, 160ms)[1] == Approx(5));
   CHECK(estimate.force({0, 0, 0}, 161ms)[1] == Approx(2));
 }

@@ -29,7 +29,7 @@ struct Pair {
     return server.receive(Datagram{client.next_header(), ToolState{.tick = tick}}, kClient, now, 0,
                           server_stats);
   }
-  const ForceSample* send_force(std::uint64_t number, Datagram& datagram) {
+  const Message* send_force(std::uint64_t number, Datagram& datagram) {
     auto* member = server.holder(0);
     datagram = {{member->session, ++member->sent}, ForceSample{.number = number}};
     return client.receive(datagram, now, client_stats);

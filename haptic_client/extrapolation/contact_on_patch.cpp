@@ -1,0 +1,212 @@
+#include "haptic_client/extrapolation/contact_on_patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/contact/simplex_distance.h"
+
+namespace palpate::client {
+namespace {
+
+constexpr int kMostNodes = 96, kMostTriangles = 160;
+// Of the tool radius: how far from the tool a patch reaches, on the deformed surface; and how far the tool
+// may go on it, as what it presses may move as far again.
+constexpr double kMargin = 0.25, kStride = 0.12;
+constexpr double kMostStrides = 16;  // a tick
+constexpr ContactSolver::Effort kEffort{.max_iterations = 30, .tolerance = 1e-6};
+constexpr double kNear = 0.015;  // of the tool radius: from a solved place on, the force follows its tangent
+
+}  // namespace
+
+ContactOnPatch::ContactOnPatch()
+    : solver_(kMostNodes, kMostTriangles),
+      slot_of_vertex_(SurfaceModel::kMostVertices, -1),
+      moved_(SurfaceModel::kMostVertices),
+      near_(SurfaceModel::kMostVertices),
+      u_(3 * (kMostNodes + 1)) {
+  patch_.reserve(kMostNodes, kMostTriangles);
+  vertices_.reserve(kMostNodes);
+  loads_.reserve(kMostNodes);
+  kept_loads_.reserve(kMostNodes);
+}
+
+void ContactOnPatch::lift() noexcept {
+  state_.placed = state_.touching = false;
+  loads_.clear();
+  state_.tip_offset.setZero();
+}
+
+std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) noexcept {
+  const double longest = kStride * surface.tool.radius;
+  if (version_ != surface.model->version() || (p - state_.place).norm() > kMostStrides * longest) lift();
+  if (!surface.model->has_shape() || !p.allFinite()) {
+    lift();
+    return {};
+  }
+  if (!state_.placed) enter(surface, p);
+  if (const Vec3 way = p - state_.place; state_.touching && way.norm() <= kNear * surface.tool.radius) {
+    const Vec3 force = state_.force + state_.tangent * way;
+    return force.dot(state_.force) > 0 ? force : Vec3(Vec3::Zero());
+  }
+  const Vec3 from = state_.place, way = p - state_.place;
+  const double strides = std::max(std::ceil(way.norm() / longest), 1.0);
+  for (double i = 1; i <= strides; ++i) {
+    const Vec3 next = i == strides ? p : Vec3(from + (i / strides) * way);
+    if (stride(surface, next)) continue;
+    lift();
+    return {};
+  }
+  if (state_.touching) state_.tangent = solver_.tangent(patch_);
+  return state_.force;
+}
+
+std::optional<Vec3> ContactOnPatch::probe(const Surface& surface, const Vec3& p) noexcept {
+  const State kept = state_;
+  kept_loads_ = loads_;
+  const auto force = go(surface, p);
+  loads_ = kept_loads_;
+  state_ = kept;
+  if (state_.placed && !take_patch(surface, state_.place)) lift();
+  return force;
+}
+
+bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
+  if ((p - center_).norm() > kStride * surface.tool.radius && !take_patch(surface, p)) return false;
+  state_.place = p;
+  state_.force.setZero();
+  state_.touching = false;
+  if (patch_.triangles.empty()) return true;
+  patch_.tool_compliance = surface.tool_compliance;
+  const ContactForce contact = solver_.solve(patch_, surface.tool, p, displacement(), kEffort);
+  note_loads();
+  state_.force = contact.force;
+  state_.touching = contact.contacts > 0;
+  return state_.force.allFinite() && displacement().allFinite();
+}
+
+/// What the patch nodes carry now, which is all that is needed to go on from here.
+void ContactOnPatch::note_loads() noexcept {
+  const auto forces = solver_.node_forces();
+  loads_.clear();
+  for (int i = 0; i < patch_.nodes(); ++i) {
+    if (!forces.segment<3>(3 * i).isZero(0)) loads_.push_back({vertices_[i], forces.segment<3>(3 * i)});
+  }
+  state_.tip_offset = u_.segment<3>(3 * patch_.nodes());
+}
+
+/// The patch around a tool at `p`, under the loads that are on the surface.
+bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept {
+  version_ = surface.model->version();
+  center_ = p;
+  if (!displace_near(surface, p) || !take_triangles(surface, p) || !take_compliance(*surface.model))
+    return false;
+  for (int i = 0; i < patch_.nodes(); ++i) u_.segment<3>(3 * i) = moved_[vertices_[i]];
+  u_.segment<3>(3 * patch_.nodes()) = state_.tip_offset;
+  return std::all_of(loads_.begin(), loads_.end(),
+                     [&](const Load& load) { return slot_of_vertex_[load.vertex] >= 0; });
+}
+
+/// Where the loads have moved what may be near the tool; nothing moves farther than what they press.
+bool ContactOnPatch::displace_near(const Surface& surface, const Vec3& p) noexcept {
+  const SurfaceModel& model = *surface.model;
+  const auto rest = model.rest();
+  std::fill_n(near_.begin(), rest.size(), 0);
+  const auto displace = [&](int vertex) {
+    Vec3 u = Vec3::Zero();
+    for (const Load& load : loads_) {
+      const auto c = model.compliance(vertex, load.vertex);
+      if (!c) return false;
+      u += *c * load.force;
+    }
+    moved_[vertex] = u;
+    near_[vertex] = 1;
+    return true;
+  };
+  double largest = 0;
+  for (const Load& load : loads_) {
+    if (!displace(load.vertex)) return false;
+    largest = std::max(largest, moved_[load.vertex].norm());
+  }
+  const double reach = (1 + 2 * kMargin) * surface.tool.radius + largest;
+  for (const auto& t : model.triangles()) {
+    if (near_[t[0]] != 0 && near_[t[1]] != 0 && near_[t[2]] != 0) continue;
+    const auto w = closest_point(p, rest[t[0]], rest[t[1]], rest[t[2]]).weight;
+    if ((w[0] * rest[t[0]] + w[1] * rest[t[1]] + w[2] * rest[t[2]] - p).squaredNorm() > reach * reach)
+      continue;
+    for (const int vertex : t) {
+      if (near_[vertex] == 0 && !displace(vertex)) return false;
+    }
+  }
+  return true;
+}
+
+/// Those near the tool on the deformed surface.
+bool ContactOnPatch::take_triangles(const Surface& surface, const Vec3& p) noexcept {
+  const auto rest = surface.model->rest();
+  const double reach = (1 + kMargin) * surface.tool.radius;
+  const Vec3 tip = p + state_.tip_offset;
+  for (const int vertex : vertices_) slot_of_vertex_[vertex] = -1;
+  vertices_.clear();
+  patch_.triangles.clear();
+  patch_.free.clear();
+  for (const auto& t : surface.model->triangles()) {
+    if (near_[t[0]] == 0 || near_[t[1]] == 0 || near_[t[2]] == 0) continue;
+    const Vec3 a = rest[t[0]] + moved_[t[0]], b = rest[t[1]] + moved_[t[1]], c = rest[t[2]] + moved_[t[2]];
+    const auto w = closest_point(tip, a, b, c).weight;
+    if ((w[0] * a + w[1] * b + w[2] * c - tip).squaredNorm() > reach * reach) continue;
+    if (patch_.triangles.size() == kMostTriangles || vertices_.size() + 3 > kMostNodes) return false;
+    std::array<int, 3> local;
+    for (int i = 0; i < 3; ++i) {
+      int& slot = slot_of_vertex_[t[i]];
+      if (slot < 0) {
+        slot = static_cast<int>(vertices_.size());
+        vertices_.push_back(t[i]);
+        patch_.free.push_back(rest[t[i]]);
+      }
+      local[i] = slot;
+    }
+    patch_.triangles.push_back(local);
+  }
+  return true;
+}
+
+bool ContactOnPatch::take_compliance(const SurfaceModel& model) noexcept {
+  for (int j = 0; j < patch_.nodes(); ++j) {
+    for (int i = 0; i <= j; ++i) {
+      const auto block = model.compliance(vertices_[i], vertices_[j]);
+      if (!block) return false;
+      patch_.compliance.block<3, 3>(3 * i, 3 * j) = *block;
+      patch_.compliance.block<3, 3>(3 * j, 3 * i) = block->transpose();
+    }
+  }
+  return true;
+}
+
+/// The tool appears at `p`. If that is inside the surface it is taken to have come in through the nearest
+/// part of it.
+void ContactOnPatch::enter(const Surface& surface, const Vec3& p) noexcept {
+  const auto rest = surface.model->rest();
+  state_.placed = true;
+  state_.place = p;
+  center_.setConstant(std::numeric_limits<double>::max());  // no patch yet
+  double best = std::numeric_limits<double>::max(), side = 0;
+  Vec3 door = p;
+  for (const auto& t : surface.model->triangles()) {
+    const Vec3 &a = rest[t[0]], &b = rest[t[1]], &c = rest[t[2]];
+    const auto w = closest_point(p, a, b, c).weight;
+    const Vec3 q = w[0] * a + w[1] * b + w[2] * c;
+    const double distance = (p - q).norm(), out = (p - q).dot((b - a).cross(c - a).normalized());
+    // Of triangles that share the closest point, the one that faces it most says on which side it is.
+    const bool same = std::abs(distance - best) < 1e-9;
+    if (same ? std::abs(out) <= std::abs(side) : distance > best) continue;
+    best = std::min(distance, best);
+    side = out;
+    door = q;
+  }
+  if (!(side < 0)) return;
+  state_.place = door + surface.tool.radius * (door - p).normalized();
+  if (!state_.place.allFinite()) state_.place = p;
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,59 @@
+#pragma once
+#include <optional>
+
+#include "common/contact/contact_solver.h"
+#include "haptic_client/extrapolation/extrapolator.h"
+#include "haptic_client/extrapolation/surface_model.h"
+
+namespace palpate::client {
+
+/// The contact of a tool with the surface near it, solved with the server's own solver: goes with the tool,
+/// place by place, on the patch of triangles that it may touch next, which it takes out of the model as it
+/// goes. All in the frame of the surface at rest. Haptic thread; only the constructor allocates (about 2 MB).
+class ContactOnPatch {
+ public:
+  ContactOnPatch();
+
+  /// Goes to `p` (m) and gives the force on the tool there (N); nothing where the model does not know all
+  /// that may be touched on the way, or the way is too long for one tick: then it stands nowhere. In contact
+  /// it solves anew where the tool has gone 1.5 % of its radius, and follows the tangent in between.
+  std::optional<Vec3> go(const Surface& surface, const Vec3& p) noexcept;
+  /// The force at `p`; then it stands where it stood, on a patch around that.
+  std::optional<Vec3> probe(const Surface& surface, const Vec3& p) noexcept;
+  /// It stands nowhere.
+  void lift() noexcept;
+
+ private:
+  struct Load {
+    int vertex;  // of the model
+    Vec3 force;  // N
+  };
+  bool stride(const Surface& surface, const Vec3& p) noexcept;
+  bool take_patch(const Surface& surface, const Vec3& p) noexcept;
+  bool displace_near(const Surface& surface, const Vec3& p) noexcept;
+  bool take_triangles(const Surface& surface, const Vec3& p) noexcept;
+  bool take_compliance(const SurfaceModel& model) noexcept;
+  void note_loads() noexcept;
+  void enter(const Surface& surface, const Vec3& p) noexcept;
+  Eigen::Ref<Eigen::VectorXd> displacement() noexcept { return u_.head(3 * (patch_.nodes() + 1)); }
+
+  ContactSolver solver_;
+  ContactPatch patch_;
+  std::vector<int> vertices_;        // of the model, of each patch node
+  std::vector<int> slot_of_vertex_;  // and back; -1: none
+  std::vector<Load> loads_, kept_loads_;
+  std::vector<Vec3> moved_;     // displacement of vertices, m; where near_ says so
+  std::vector<char> near_;      // whether a vertex is near enough to be looked at
+  Eigen::VectorXd u_;           // of the patch nodes, then of the tip
+  std::uint32_t version_ = 0;   // of the model that the patch is of
+  Vec3 center_ = Vec3::Zero();  // of the patch
+  struct State {
+    bool placed = false, touching = false;
+    Vec3 place = Vec3::Zero(), tip_offset = Vec3::Zero();  // solved for; tip minus place
+    Vec3 force = Vec3::Zero();                             // there
+    Mat3 tangent = Mat3::Zero();
+  };
+  State state_;
+};
+
+}  // namespace palpate::client

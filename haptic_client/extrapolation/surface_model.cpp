@@ -1,0 +1,180 @@
+#include "haptic_client/extrapolation/surface_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::client {
+using protocol::SurfacePage;
+using protocol::SurfacePages;
+using protocol::ToolState;
+
+namespace {
+
+constexpr SurfacePages kLargest{SurfaceModel::kMostVertices, 2 * SurfaceModel::kMostVertices};
+constexpr std::uint16_t kNoSlot = 0xffff;
+constexpr std::size_t kMostClusters = 120;  // around the tool: all pairs of them have room
+static_assert(kMostClusters * (kMostClusters + 1) / 2 <= SurfaceModel::kRoom);
+constexpr double kStillComplete = 2e-3;  // m
+constexpr std::uint32_t kPatienceMs = 200;
+
+}  // namespace
+
+SurfaceModel::SurfaceModel()
+    : shape_known_(kLargest.first_tile()),
+      slot_of_tile_(kLargest.count() - kLargest.first_tile(), kNoSlot),
+      tiles_(kRoom),
+      asked_ms_(kLargest.count()) {
+  rest_.reserve(kLargest.vertices);
+  triangles_.reserve(kLargest.triangles);
+  center_.reserve(kLargest.clusters());
+  radius_.reserve(kLargest.clusters());
+  near_.reserve(kLargest.clusters());
+}
+
+void SurfaceModel::announce(const protocol::SurfaceState& state) noexcept {
+  if (state.version == version_) return;
+  version_ = 0;
+  if (state.vertices == 0 || state.vertices > kLargest.vertices || state.triangles > kLargest.triangles)
+    return;
+  version_ = state.version;
+  pages_ = {state.vertices, state.triangles};
+  rest_.assign(state.vertices, Vec3::Zero());
+  triangles_.assign(state.triangles, {});
+  shape_missing_ = pages_.first_tile();
+  std::fill(shape_known_.begin(), shape_known_.end(), 0);
+  std::fill(slot_of_tile_.begin(), slot_of_tile_.end(), kNoSlot);
+  std::fill(asked_ms_.begin(), asked_ms_.end(), 0);
+  for (Tile& tile : tiles_) tile.page = 0;
+  complete_at_.reset();
+}
+
+void SurfaceModel::take(const SurfacePage& page) noexcept {
+  if (version_ == 0 || page.version != version_ || page.page >= pages_.count()) return;
+  if (page.page >= pages_.first_tile()) {
+    take_tile(page);
+  } else if (shape_known_[page.page] == 0) {
+    take_shape(page);
+  }
+}
+
+void SurfaceModel::take_shape(const SurfacePage& page) noexcept {
+  const bool positions = page.page < pages_.first_triangle_page();
+  const std::size_t first =
+      (positions ? page.page : page.page - pages_.first_triangle_page()) * SurfacePages::kPerPage;
+  const std::size_t size = positions ? rest_.size() : triangles_.size();
+  for (std::size_t i = 0; i < SurfacePages::kPerPage && first + i < size; ++i) {
+    const float* const three = &page.values[3 * i];
+    if (positions) {
+      rest_[first + i] = Vec3(three[0], three[1], three[2]);
+      continue;
+    }
+    for (int corner = 0; corner < 3; ++corner) {
+      if (!(three[corner] >= 0 && three[corner] < static_cast<float>(rest_.size())))
+        return;  // no such vertex
+      triangles_[first + i][corner] = static_cast<int>(three[corner]);
+    }
+  }
+  shape_known_[page.page] = 1;
+  if (--shape_missing_ == 0) find_clusters();
+}
+
+/// The balls around the clusters, when all positions are known.
+void SurfaceModel::find_clusters() noexcept {
+  center_.clear();
+  radius_.clear();
+  for (std::size_t first = 0; first < rest_.size(); first += SurfacePages::kCluster) {
+    const auto members =
+        std::span(rest_).subspan(first, std::min<std::size_t>(SurfacePages::kCluster, rest_.size() - first));
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& x : members) sum += x;
+    const Vec3 center = sum / static_cast<double>(members.size());
+    double radius = 0;
+    for (const Vec3& x : members) radius = std::max(radius, (x - center).norm());
+    center_.push_back(center);
+    radius_.push_back(radius);
+  }
+}
+
+void SurfaceModel::take_tile(const SurfacePage& page) noexcept {
+  std::uint16_t& slot = slot_of_tile_[page.page - pages_.first_tile()];
+  if (slot != kNoSlot) return;
+  Tile& tile = tiles_[next_slot_];
+  if (tile.page != 0) slot_of_tile_[tile.page - pages_.first_tile()] = kNoSlot;
+  tile.page = page.page;
+  tile.values = page.values;
+  slot = static_cast<std::uint16_t>(next_slot_);
+  next_slot_ = (next_slot_ + 1) % tiles_.size();
+}
+
+std::optional<Mat3> SurfaceModel::compliance(int i, int j) const noexcept {
+  constexpr int kCluster = SurfacePages::kCluster;
+  const auto a = static_cast<std::uint32_t>(i / kCluster), b = static_cast<std::uint32_t>(j / kCluster);
+  if (a < b) {
+    const auto other = compliance(j, i);
+    return other ? std::optional<Mat3>(other->transpose()) : std::nullopt;
+  }
+  const std::uint16_t slot = slot_of_tile_[pages_.tile(a, b) - pages_.first_tile()];
+  if (slot == kNoSlot) return {};
+  using Block = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
+  const float* const first = &tiles_[slot].values[3 * (i % kCluster) * 3 * kCluster + 3 * (j % kCluster)];
+  return Eigen::Map<const Block, 0, Eigen::OuterStride<3 * kCluster>>(first).cast<double>();
+}
+
+/// Collects pages to ask for.
+class SurfaceModel::Wishes {
+ public:
+  Wishes(std::span<std::uint32_t> pages, std::vector<std::uint32_t>& asked_ms, Time now)
+      : pages_(pages), asked_ms_(asked_ms), now_ms_(static_cast<std::uint32_t>(now.count() / 1'000'000) + 1) {
+    std::fill(pages.begin(), pages.end(), ToolState::kNoPage);
+  }
+  bool full() const { return count_ == pages_.size(); }
+  bool any() const { return count_ > 0; }
+  /// Whether this page, which is missing, has been asked for.
+  void add(std::uint32_t page) {
+    missing = true;
+    std::uint32_t& asked = asked_ms_[page];
+    if (full() || (asked != 0 && now_ms_ - asked < kPatienceMs)) return;
+    asked = now_ms_;
+    pages_[count_++] = page;
+  }
+  bool missing = false;  ///< something is, asked for or not
+
+ private:
+  std::span<std::uint32_t> pages_;
+  std::vector<std::uint32_t>& asked_ms_;
+  std::uint32_t now_ms_;
+  std::size_t count_ = 0;
+};
+
+void SurfaceModel::find_near_clusters(const Vec3& p) noexcept {
+  near_.clear();
+  for (std::uint32_t c = 0; c < center_.size(); ++c)
+    near_.emplace_back((center_[c] - p).norm() - radius_[c], c);
+  const std::size_t most = std::min(kMostClusters, near_.size());
+  std::partial_sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(most), near_.end());
+  near_.resize(most);
+}
+
+bool SurfaceModel::choose_missing(const Vec3& p, double reach, Time now,
+                                  std::span<std::uint32_t> pages) noexcept {
+  Wishes wishes(pages, asked_ms_, now);
+  if (version_ == 0 || !p.allFinite()) return false;
+  for (std::uint32_t page = 0; shape_missing_ > 0 && page < pages_.first_tile(); ++page) {
+    if (shape_known_[page] == 0) wishes.add(page);
+  }
+  if (shape_missing_ > 0) return wishes.any();
+  if (complete_at_ && (*complete_at_ - p).norm() < kStillComplete) return false;
+  find_near_clusters(p);
+  for (std::size_t i = 0; i < near_.size() && !wishes.full(); ++i) {
+    for (std::size_t j = 0; j <= i && !wishes.full(); ++j) {
+      const auto [a, b] = std::pair(near_[i].second, near_[j].second);
+      const bool far = (center_[a] - center_[b]).norm() > 2 * reach + radius_[a] + radius_[b];
+      const std::uint32_t page = pages_.tile(a, b);
+      if (!far && slot_of_tile_[page - pages_.first_tile()] == kNoSlot) wishes.add(page);
+    }
+  }
+  if (!wishes.missing) complete_at_ = p;
+  return wishes.any();
+}
+
+}  // namespace palpate::client

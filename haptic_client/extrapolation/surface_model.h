@@ -1,0 +1,69 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/time.h"
+#include "common/types.h"
+#include "protocol/surface_pages.h"
+
+namespace palpate::client {
+
+/// What is known here of the surface that the tool can touch: its shape at rest and how compliant it is, as
+/// it comes in pages from the server (protocol/surface_pages.h). Knows which pages it lacks, the nearest
+/// first; of a surface larger than it has room for it forgets the oldest. Nothing but the constructor
+/// allocates. Haptic thread.
+class SurfaceModel {
+ public:
+  static constexpr std::size_t kMostVertices = 4000;  ///< of a model that it takes
+  static constexpr std::size_t kRoom = 8192;          ///< tiles of compliance, 900 bytes each
+
+  SurfaceModel();
+
+  /// What the server has; another version forgets all. Call it with every sample that tells.
+  void announce(const protocol::SurfaceState& state) noexcept;
+  /// A page came; one of another version changes nothing.
+  void take(const protocol::SurfacePage& page) noexcept;
+
+  /// Writes into `pages` what to ask for at time `now`, for a tool at `p` (m, at rest): the shape, then the
+  /// compliance between all that lies within `reach` (m) of it, then farther around. What was asked for in
+  /// the last 200 ms is not asked for again. Entries without a wish are `ToolState::kNoPage`; false when all
+  /// are. About 15 us where the tool has come to something new, else nothing.
+  bool choose_missing(const Vec3& p, double reach, Time now, std::span<std::uint32_t> pages) noexcept;
+
+  /// Version 0: none is known.
+  std::uint32_t version() const noexcept { return version_; }
+  /// Whether it knows the shape of the whole surface.
+  bool has_shape() const noexcept { return version_ != 0 && shape_missing_ == 0; }
+  std::span<const Vec3> rest() const noexcept { return rest_; }
+  std::span<const std::array<int, 3>> triangles() const noexcept { return triangles_; }
+  /// How vertex i moves per force on vertex j, m/N; nothing where that is not known.
+  std::optional<Mat3> compliance(int i, int j) const noexcept;
+
+ private:
+  struct Tile {
+    std::uint32_t page = 0;  // 0: empty; that page is one of the shape
+    std::array<float, protocol::SurfacePage::kValues> values{};
+  };
+  void take_shape(const protocol::SurfacePage& page) noexcept;
+  void take_tile(const protocol::SurfacePage& page) noexcept;
+  void find_clusters() noexcept;
+  void find_near_clusters(const Vec3& p) noexcept;
+  class Wishes;
+
+  protocol::SurfacePages pages_;
+  std::uint32_t version_ = 0, shape_missing_ = 0;
+  std::vector<Vec3> rest_;
+  std::vector<std::array<int, 3>> triangles_;
+  std::vector<char> shape_known_;            // by page
+  std::vector<Vec3> center_;                 // of each cluster, m
+  std::vector<double> radius_;               // likewise
+  std::vector<std::uint16_t> slot_of_tile_;  // by page from first_tile()
+  std::vector<Tile> tiles_;
+  std::size_t next_slot_ = 0;
+  std::vector<std::uint32_t> asked_ms_;                 // by page: when it was asked for last
+  std::vector<std::pair<double, std::uint32_t>> near_;  // distance (m) of clusters, the nearest first
+  std::optional<Vec3> complete_at_;                     // a place for which nothing was missing
+};
+
+}  // namespace palpate::client

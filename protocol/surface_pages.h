@@ -1,0 +1,51 @@
+#pragma once
+/// How the model of a surface is cut into pages (`SurfacePage`), each one datagram. Both ends count alike.
+///
+/// The model: rest positions of n vertices (m, world), triangles (corners: vertex numbers, outward), and the
+/// static compliance of the vertices to each other, 3 x 3 blocks C(i, j) = dx_i / df_j (m/N), symmetric. The
+/// server orders vertices so that neighbours have near numbers; each `kCluster` of them in a row are a
+/// cluster. Pages, in this order, every number a float32:
+///   positions   `kPerPage` vertices a page: x y z each
+///   triangles   `kPerPage` triangles a page: three vertex numbers each
+///   tiles       one page for each pair of clusters (a, b), b <= a, in the order (0,0) (1,0) (1,1) (2,0) ..:
+///               C(kCluster a + i, kCluster b + j) as a (3 kCluster x 3 kCluster) matrix, row by row
+/// Numbers beyond the last vertex or triangle are 0.
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "protocol/messages.h"
+
+namespace palpate::protocol {
+
+constexpr std::uint32_t kMostSurfaceVertices = 20'000;
+
+/// The pages of a model of so many vertices and triangles.
+struct SurfacePages {
+  static constexpr std::uint32_t kCluster = 5, kPerPage = SurfacePage::kValues / 3;
+  static_assert(3 * kCluster * 3 * kCluster == SurfacePage::kValues);
+  std::uint32_t vertices = 0, triangles = 0;
+
+  std::uint32_t clusters() const noexcept { return (vertices + kCluster - 1) / kCluster; }
+  std::uint32_t first_triangle_page() const noexcept { return (vertices + kPerPage - 1) / kPerPage; }
+  std::uint32_t first_tile() const noexcept {
+    return first_triangle_page() + (triangles + kPerPage - 1) / kPerPage;
+  }
+  std::uint32_t count() const noexcept { return first_tile() + clusters() * (clusters() + 1) / 2; }
+
+  /// Page of the clusters a and b, in any order.
+  std::uint32_t tile(std::uint32_t a, std::uint32_t b) const noexcept {
+    if (a < b) std::swap(a, b);
+    return first_tile() + a * (a + 1) / 2 + b;
+  }
+  /// Clusters (a, b), b <= a, of a tile's page.
+  std::pair<std::uint32_t, std::uint32_t> clusters_of(std::uint32_t page) const noexcept {
+    const std::uint32_t k = page - first_tile();
+    auto a = static_cast<std::uint32_t>((std::sqrt(8.0 * k + 1) - 1) / 2);
+    while (a * (a + 1) / 2 > k) --a;
+    while ((a + 1) * (a + 2) / 2 <= k) ++a;
+    return {a, k - a * (a + 1) / 2};
+  }
+};
+
+}  // namespace palpate::protocol

@@ -1,0 +1,235 @@
+// The law that solves contact itself, against the simulation it stands for: what both say of the same places.
+#include "haptic_client/extrapolation/local_contact.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/allocation_guard.h"
+#include "tests/support/catch.h"
+#include "tests/support/random.h"
+#include "tests/support/served_block.h"
+
+using namespace palpate;
+using namespace palpate::client;
+using namespace palpate::test;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr Time kTick = 2ms;
+const auto kWholeModel = [](protocol::SurfacePage&) { return true; };
+
+/// Slides over the block, 1 to 2 mm deep, turning at its ends; leaves it once in each 0.8 s.
+Vec3 slide(Time t) {
+  const double s = to_seconds(t), turn = 2 * std::numbers::pi / 0.8;
+  const double height = 0.0035 + 0.0045 * std::max(std::cos(turn * s) - 0.6, 0.0) + 0.0005 * std::sin(7 * s);
+  return {0.006 * std::sin(4 * s), height, 0.004 * std::cos(3 * s)};
+}
+
+/// A law that listens to the block with a tool that moves.
+struct Listener {
+  explicit Listener(Time delay = 35ms, std::size_t tools = 1) : block(delay, tools) {}
+
+  /// Gives the model to the law, each page as `change` leaves it; false leaves it out.
+  template <class Change>
+  void learn(Change change) {
+    model.announce(sim::SurfacePager(block.simulation, 0).state());
+    for (protocol::SurfacePage page : all_pages(block.simulation)) {
+      if (change(page)) model.take(page);
+    }
+  }
+  Vec3 tick(const Vec3& p) {
+    const Vec3 v = (p - place) / to_seconds(kTick);
+    place = p;
+    t += kTick;
+    if (const auto sample = block.exchange(t, p, v)) {
+      law.take(sample_of(*sample, &model), p, t);
+      newest = *sample;
+    }
+    return law.force(p, t);
+  }
+
+  ServedBlock block;
+  SurfaceModel model;
+  ForceEstimate law{std::make_unique<LocalContact>()};
+  protocol::ForceSample newest;
+  Time t = 1s;
+  Vec3 place = slide(1s);
+};
+
+std::uint32_t first_tile(const Listener& listener) {
+  const auto state = sim::SurfacePager(listener.block.simulation, 0).state();
+  return protocol::SurfacePages{state.vertices, state.triangles}.first_tile();
+}
+
+/// Error of a law over 3 s of the slide, against the simulation at every tick, as a share of the peak force.
+struct Errors {
+  double mean = 0, largest = 0;
+};
+Errors follow(Listener& listener, Time duration = 3s) {
+  sim::Simulation truth(block_scene(), block_mesh());
+  double sum = 0, largest = 0, peak = 0;
+  int ticks = 0;
+  for (const Time end = listener.t + duration; listener.t < end; ++ticks) {
+    const Vec3 p = slide(listener.t + kTick);
+    const Vec3 right = truth.step(p, 0.002).force, given = listener.tick(p);
+    peak = std::max(peak, right.norm());
+    if (listener.newest.number < 3) continue;
+    sum += (given - right).norm();
+    largest = std::max(largest, (given - right).norm());
+  }
+  return {sum / ticks / peak, largest / peak};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "local contact: on the server's model it is the server's force, in and out of contact, whatever the "
+    "delay") {
+  for (const Time delay : {0ms, 35ms, 80ms}) {
+    Listener listener(delay);
+    listener.learn(kWholeModel);
+    const Errors errors = follow(listener);
+    CAPTURE(delay.count(), errors.mean, errors.largest);
+    CHECK(errors.mean < 5e-4);
+    CHECK(errors.largest < 0.01);
+  }
+}
+
+TEST_CASE(
+    "local contact: a compliance wrong by 30 % is made up for, so that the sample's place has its force") {
+  for (const float factor : {0.7f, 1.3f}) {
+    Listener listener;
+    const std::uint32_t tiles = first_tile(listener);
+    listener.learn([&](protocol::SurfacePage& page) {
+      if (page.page < tiles) return true;
+      for (float& value : page.values) value *= factor;
+      return true;
+    });
+    const Errors errors = follow(listener);
+    CAPTURE(factor, errors.mean, errors.largest);
+    CHECK(errors.mean < 1e-3);
+    CHECK(errors.largest < 0.02);
+    const Vec3 f_n = listener.newest.f_W;
+    CHECK((listener.law.force(listener.newest.p_W, listener.t) - f_n).norm() < 1e-3 * f_n.norm() + 1e-9);
+  }
+}
+
+TEST_CASE("local contact: without the compliance it is two tangents") {
+  Listener listener;
+  const std::uint32_t tiles = first_tile(listener);
+  listener.learn([&](const protocol::SurfacePage& page) { return page.page < tiles; });
+  ForceEstimate other(std::make_unique<TwoTangents>());
+  for (int i = 0; i < 1000; ++i) {
+    const auto number = listener.newest.number;
+    const Vec3 given = listener.tick(slide(listener.t + kTick));
+    if (listener.newest.number != number)
+      other.take(sample_of(listener.newest, &listener.model), listener.place, listener.t);
+    CHECK(given == other.force(listener.place, listener.t));
+  }
+}
+
+TEST_CASE("local contact: where pages are missing it steps down and up again, no worse than two tangents") {
+  Listener holes, none;
+  holes.learn([&](const protocol::SurfacePage& page) { return page.page % 40 != 39; });
+  const Errors with = follow(holes), without = follow(none);
+  CAPTURE(with.mean, without.mean, with.largest, without.largest);
+  CHECK(with.mean < without.mean);
+  CHECK(with.largest < 1.5 * without.largest);
+}
+
+TEST_CASE("local contact: pages that come while the tool presses help from the next sample on") {
+  Listener listener;
+  listener.learn([](const protocol::SurfacePage& page) { return page.page < 100; });
+  follow(listener, 600ms);
+  listener.learn(kWholeModel);
+  follow(listener, 100ms);
+  CHECK(follow(listener, 1s).mean < 5e-4);
+}
+
+TEST_CASE("local contact: what the other tool presses is felt through the tissue") {
+  Listener listener(35ms, 2);
+  listener.learn(kWholeModel);
+  sim::Simulation truth(block_scene(2), block_mesh());
+  const Vec3 other(0.008, 0.0025, 0);
+  listener.block.hold_second_tool(other);
+  double peak = 0, sum = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const Vec3 p(-0.004 + 0.002 * std::sin(0.004 * i), 0.0035, 0);
+    const std::array<std::optional<ToolPose>, 2> places{p, other};
+    const Vec3 right = truth.step(places, 0.002)[0].force, given = listener.tick(p);
+    peak = std::max(peak, right.norm());
+    if (i > 100) sum += (given - right).norm() / 1400;
+  }
+  CHECK(sum < 0.01 * peak);
+}
+
+TEST_CASE(
+    "local contact: at rest for a minute it holds its force, and lets go at once when the tool leaves") {
+  Listener listener;
+  listener.learn(kWholeModel);
+  const Vec3 deep(0.001, 0.0035, 0.0005), out(0.001, 0.006, 0.0005);
+  for (double share = 0; share < 1; share += 0.005) listener.tick(out + share * (deep - out));
+  const Vec3 first = listener.tick(deep);
+  Vec3 last = first;
+  for (int i = 0; i < 30000; ++i) last = listener.tick(deep);
+  CHECK((last - first).norm() < 1e-4 * first.norm());
+  CHECK(listener.tick(out) == Vec3::Zero());
+}
+
+TEST_CASE(
+    "local contact: jumps, wild places and a compliance that is not positive: finite, and no more than a "
+    "blow") {
+  for (const bool broken : {false, true}) {
+    CAPTURE(broken);
+    Listener listener;
+    Random random(4);
+    const std::uint32_t tiles = first_tile(listener);
+    listener.learn([&](protocol::SurfacePage& page) {
+      if (broken && page.page >= tiles) {
+        for (float& value : page.values) value = -value;
+      }
+      return true;
+    });
+    double largest = 0, served = 0;
+    for (int i = 0; i < 3000; ++i) {
+      Vec3 p = slide(listener.t);
+      if (i % 97 == 0) p += random.vector(0.1);
+      if (i % 501 == 0) p = random.vector(1e6);
+      const Vec3 f = listener.tick(p);
+      REQUIRE(f.allFinite());
+      if (i % 97 > 30 && i % 501 > 30) largest = std::max(largest, f.norm());
+      served = std::max(served, listener.newest.f_W.norm());
+    }
+    CHECK(largest < 3 * served);
+  }
+}
+
+TEST_CASE("local contact: a delay that jumps from 5 to 200 ms changes nothing that is felt") {
+  Listener listener(5ms);
+  listener.learn(kWholeModel);
+  follow(listener, 500ms);
+  listener.block.set_delay(200ms);
+  CHECK(follow(listener, 2s).largest < 0.01);
+}
+
+TEST_CASE("local contact: ticks and arrivals do not allocate") {
+  Listener listener;
+  listener.learn(kWholeModel);
+  follow(listener, 600ms);
+  std::vector<std::pair<Vec3, std::optional<protocol::ForceSample>>> ticks;
+  for (int i = 0; i < 400; ++i) {
+    const Vec3 p = slide(listener.t += kTick);
+    ticks.emplace_back(p, listener.block.exchange(listener.t, p, Vec3::Zero()));
+  }
+  std::size_t allocations = 1;
+  {
+    const AllocationGuard guard;
+    for (const auto& [p, sample] : ticks) {
+      if (sample) listener.law.take(sample_of(*sample, &listener.model), p, listener.t);
+      listener.law.force(p, listener.t);
+    }
+    allocations = guard.count();
+  }
+  CHECK(allocations == 0);
+}
