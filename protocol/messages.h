@@ -112,11 +112,13 @@ struct SurfaceState {
   std::uint32_t version = 0;  ///< of the model; another number is another model
   std::uint32_t vertices = 0, triangles = 0;
   double tool_radius = 0;       ///< m
+  double tool_friction = 0;     ///< Coulomb's coefficient; 0 = slips freely
   double tool_compliance = 0;   ///< m/N, isotropic, between the tool and its tip; 0 = rigid
   Vec3 shift_W = Vec3::Zero();  ///< from rest to where the surface near the tool is free of it, m
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.version), v(m.vertices), v(m.triangles), v(m.tool_radius), v(m.tool_compliance), v(m.shift_W);
+    v(m.version), v(m.vertices), v(m.triangles), v(m.tool_radius), v(m.tool_friction), v(m.tool_compliance),
+        v(m.shift_W);
   }
 };
 

@@ -48,7 +48,8 @@ SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
   simulation_.model().compliance(std::span(vertices_).first(1), patch_);
   state_ = {.vertices = static_cast<std::uint32_t>(vertices_.size()),
             .triangles = static_cast<std::uint32_t>(triangles_.size()),
-            .tool_radius = simulation.tool(tool).radius(),
+            .tool_radius = simulation.tool(tool).shape().radius,
+            .tool_friction = simulation.tool(tool).shape().friction,
             .tool_compliance = patch_.tool_compliance};
   state_.version = hash();
 }

@@ -118,8 +118,8 @@ void ContactSolver::linearise(const ContactPatch& patch, const Vec3& p_W,
 }
 
 ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
-                                  Eigen::Ref<Eigen::VectorXd> u, const Effort& effort,
-                                  const StrideStart& start) noexcept {
+                                  Eigen::Ref<Eigen::VectorXd> u, const StrideStart& start,
+                                  const Effort& effort) noexcept {
   start_stride(patch, tool, pose, start);
   const int m = patch.nodes();
   ContactForce result;
@@ -150,7 +150,7 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, c
     way = std::min(step, kLongestMove * tool.radius / change) * (next - u);
     if (newton_worked && change > last_change) plain_left = 2 << ++newton_failures;
     last_change = change;
-    newton_worked = effort.newton && --plain_left < 0 && newton_step(patch, u, next) &&
+    newton_worked = --plain_left < 0 && newton_step(patch, u, next) &&
                     (next - u).cwiseAbs().maxCoeff() < kLongestMove * tool.radius;
     if (newton_worked) {
       u = next;

@@ -65,16 +65,15 @@ class ContactSolver {
   struct Effort {
     int max_iterations = 200;
     double tolerance = 1e-11;  ///< of the tool radius: what still moves at the end
-    bool newton = true;
   };
 
-  /// Solves for a tool at `pose`. `u` (3 (m + 1): nodes, then tip; m) holds the displacement to look
-  /// from and gets the solution, which does not depend on it but by rounding. `start` is read where the tool
-  /// has friction, and only then. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful of
-  /// contacts, with friction some ten times that.
+  /// Solves for a tool at `pose`. `u` (3 (m + 1): nodes, then tip; m) holds the displacement to look from and
+  /// gets the solution, which does not depend on it but by rounding. `start` is read where the tool has
+  /// friction, and only then. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful of contacts,
+  /// with friction some ten times that.
   ContactForce solve(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
-                     Eigen::Ref<Eigen::VectorXd> u, const Effort& effort = kUsualEffort,
-                     const StrideStart& start = {}) noexcept;
+                     Eigen::Ref<Eigen::VectorXd> u, const StrideStart& start = {},
+                     const Effort& effort = kUsualEffort) noexcept;
   static const Effort kUsualEffort;
 
   /// Nodal forces on the patch nodes (3m, N) of the last solve; the tissue feels minus what the tool feels.

@@ -20,13 +20,15 @@ constexpr double kNear = 0.015;  // of the tool radius: from a solved place on, 
 }  // namespace
 
 ContactOnPatch::ContactOnPatch()
-    : solver_(kMostNodes, kMostTriangles),
+    : without_friction_(kMostNodes, kMostTriangles),
+      with_friction_(kMostNodes, kMostTriangles, true),
       slot_of_vertex_(SurfaceModel::kMostVertices, -1),
       moved_(SurfaceModel::kMostVertices),
       near_(SurfaceModel::kMostVertices),
       u_(3 * (kMostNodes + 1)) {
   patch_.reserve(kMostNodes, kMostTriangles);
   vertices_.reserve(kMostNodes);
+  begin_.reserve(kMostNodes);
   loads_.reserve(kMostNodes);
   kept_loads_.reserve(kMostNodes);
 }
@@ -57,7 +59,7 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) no
     lift();
     return {};
   }
-  if (state_.touching) state_.tangent = solver_.tangent(patch_);
+  if (state_.touching) state_.tangent = solver(surface).tangent(patch_);
   return state_.force;
 }
 
@@ -73,21 +75,25 @@ std::optional<Vec3> ContactOnPatch::probe(const Surface& surface, const Vec3& p)
 
 bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
   if ((p - center_).norm() > kStride * surface.tool.radius && !take_patch(surface, p)) return false;
+  const Vec3 tip = state_.place + state_.tip_offset;
   state_.place = p;
   state_.force.setZero();
   state_.touching = false;
   if (patch_.triangles.empty()) return true;
   patch_.tool_compliance = surface.tool_compliance;
-  const ContactForce contact = solver_.solve(patch_, surface.tool, p, displacement(), kEffort);
-  note_loads();
+  begin_.clear();
+  for (int i = 0; i < patch_.nodes(); ++i) begin_.push_back(patch_.free[i] + u_.segment<3>(3 * i));
+  ContactSolver& solving = solver(surface);
+  const ContactForce contact = solving.solve(patch_, surface.tool, p, displacement(), {begin_, tip}, kEffort);
+  note_loads(solving);
   state_.force = contact.force;
   state_.touching = contact.contacts > 0;
   return state_.force.allFinite() && displacement().allFinite();
 }
 
 /// What the patch nodes carry now, which is all that is needed to go on from here.
-void ContactOnPatch::note_loads() noexcept {
-  const auto forces = solver_.node_forces();
+void ContactOnPatch::note_loads(const ContactSolver& solved) noexcept {
+  const auto forces = solved.node_forces();
   loads_.clear();
   for (int i = 0; i < patch_.nodes(); ++i) {
     if (!forces.segment<3>(3 * i).isZero(0)) loads_.push_back({vertices_[i], forces.segment<3>(3 * i)});

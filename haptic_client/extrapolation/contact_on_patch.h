@@ -33,14 +33,19 @@ class ContactOnPatch {
   bool displace_near(const Surface& surface, const Vec3& p) noexcept;
   bool take_triangles(const Surface& surface, const Vec3& p) noexcept;
   bool take_compliance(const SurfaceModel& model) noexcept;
-  void note_loads() noexcept;
+  void note_loads(const ContactSolver& solved) noexcept;
   void enter(const Surface& surface, const Vec3& p) noexcept;
   Eigen::Ref<Eigen::VectorXd> displacement() noexcept { return u_.head(3 * (patch_.nodes() + 1)); }
 
-  ContactSolver solver_;
+  ContactSolver& solver(const Surface& surface) noexcept {
+    return surface.tool.friction > 0 ? with_friction_ : without_friction_;
+  }
+
+  ContactSolver without_friction_, with_friction_;
   ContactPatch patch_;
   std::vector<int> vertices_;        // of the model, of each patch node
   std::vector<int> slot_of_vertex_;  // and back; -1: none
+  std::vector<Vec3> begin_;          // where the patch nodes were when the stride began, m
   std::vector<Load> loads_, kept_loads_;
   std::vector<Vec3> moved_;     // displacement of vertices, m; where near_ says so
   std::vector<char> near_;      // whether a vertex is near enough to be looked at

@@ -5,6 +5,8 @@
 namespace palpate::client {
 namespace {
 constexpr double kMostCorrection = 3;
+constexpr std::size_t kRemembered = 1024;             // ticks: a quarter of a second at 4 kHz
+constexpr Time kGap = std::chrono::milliseconds(20);  // between ticks on whose line something may lie
 // How far the model may be off at the sample, of the larger force and at all, to be believed elsewhere.
 constexpr double kBelievable = 0.5, kAlways = 0.1;  // -, N
 
@@ -13,15 +15,45 @@ bool believable(const Vec3& local, const Vec3& right) noexcept {
 }
 }  // namespace
 
+LocalContact::LocalContact() : felt_(kRemembered) {}
+
 void LocalContact::update(const Sample& sample) noexcept {
   without_.update(sample);
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = sample;
   known_ = false;
   if (!newest_.surface) return;
-  const auto local = contact_.probe(*newest_.surface, at_rest(sample.p, sample.t));
+  const bool follows_path = newest_.surface->tool.friction > 0;
+  const auto local =
+      follows_path ? remembered(sample.t) : contact_.probe(*newest_.surface, at_rest(sample.p, sample.t));
+  if (follows_path && !local) {  // it begins to follow
+    local_size_ = 0;
+    known_ = true;
+    return;
+  }
   known_ = local && believable(*local, sample.f);
   if (known_) compare(*local);
+}
+
+void LocalContact::remember(Time t, const Vec3& local) noexcept {
+  if (felts_ > 0 && felt_[(felts_ - 1) % kRemembered].t >= t) return;
+  felt_[felts_++ % kRemembered] = {t, local};
+}
+
+/// What was felt at `t`, or on the line between two ticks around it.
+std::optional<Vec3> LocalContact::remembered(Time t) const noexcept {
+  const Felt* after = nullptr;
+  for (std::size_t back = 1; back <= std::min(felts_, kRemembered); ++back) {
+    const Felt& felt = felt_[(felts_ - back) % kRemembered];
+    if (felt.t == t) return felt.force;
+    if (felt.t < t) {
+      if (after == nullptr || after->t - felt.t > kGap) return {};
+      const double share = to_seconds(t - felt.t) / to_seconds(after->t - felt.t);
+      return felt.force + share * (after->force - felt.force);
+    }
+    after = &felt;
+  }
+  return {};
 }
 
 void LocalContact::compare(const Vec3& local) noexcept {
@@ -35,6 +67,7 @@ void LocalContact::compare(const Vec3& local) noexcept {
 void LocalContact::restart() noexcept {
   without_.restart();
   contact_.lift();
+  felts_ = 0;
   newest_ = {};
   known_ = false;
   kappa_ = 1;
@@ -44,6 +77,7 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
   if (known_) {
     const auto local = contact_.go(*newest_.surface, at_rest(p, t));
     if (local) {
+      remember(t, *local);
       if (!(local_size_ > 0)) return kappa_ * *local;
       return kappa_ * *local + std::min(kMostCorrection, local->norm() / local_size_) * across_;
     }

@@ -12,10 +12,13 @@ namespace palpate::client {
 /// with s and v how far and how fast the organ moves. So a tissue that is stiffer or softer than its model by
 /// a factor is met exactly, and what is missing fades with the contact; kappa stays as it was while a sample
 /// is free. Where the model is not known around the tool (yet), a sample brings none, or F_loc(P_n') is not
-/// even half right: `TwoTangents`, from one sample to the next. About 0.1 us a tick, and each 1.5 % of the
-/// tool's radius a contact solve.
+/// even half right: `TwoTangents`, from one sample to the next. With friction, where force depends on the
+/// path, F_loc(P_n') is the one that was felt at t_n: the contact here has followed the path tick by tick, so
+/// there is no state of the server's to take over, and nothing to replay. About 0.1 us a tick, and each 1.5 %
+/// of the tool's radius a contact solve.
 class LocalContact : public Extrapolator {
  public:
+  LocalContact();
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
   Vec3 force(const Vec3& p, Time t) noexcept override;
@@ -23,7 +26,15 @@ class LocalContact : public Extrapolator {
 
  private:
   void compare(const Vec3& local) noexcept;
+  void remember(Time t, const Vec3& local) noexcept;
+  std::optional<Vec3> remembered(Time t) const noexcept;
   Vec3 at_rest(const Vec3& p, Time t) const noexcept;
+
+  /// F_loc as it was felt.
+  struct Felt {
+    Time t;
+    Vec3 force;  // N
+  };
 
   TwoTangents without_;
   ContactOnPatch contact_;
@@ -31,6 +42,8 @@ class LocalContact : public Extrapolator {
   double local_size_ = 0;  // |F_loc(P_n')|, N
   double kappa_ = 1;
   Vec3 across_ = Vec3::Zero();  // r, N
+  std::vector<Felt> felt_;      // a ring
+  std::size_t felts_ = 0;       // so far
   bool known_ = false;          // whether the model says what is felt, since the newest sample
 };
 

@@ -245,8 +245,8 @@ ContactForce ToolContact::touch(Tissue& tissue) noexcept {
   if (has_friction()) {
     for (const int vertex : vertices) nodes_were_.push_back(stride_from_[vertex]);
   }
-  const ContactForce contact = solver_.solve(patch_, tool_, place_, u, ContactSolver::kUsualEffort,
-                                             {nodes_were_, tip_was_.p_W, tip_was_.q_W});
+  const ContactForce contact =
+      solver_.solve(patch_, tool_, place_, u, {nodes_were_, tip_was_.p_W, tip_was_.q_W});
   tip_offset_ = u.tail<3>();
   drop_own_loads();
   const auto forces = solver_.node_forces();

@@ -80,10 +80,11 @@ class ToolContact {
   const ToolForce& force() const { return force_; }
   const Vec3& place() const { return place_.p_W; }
   double radius() const { return tool_.radius; }
-  bool has_friction() const { return tool_.friction > 0; }
+  const Tool& shape() const { return tool_; }
   std::span<const Triangle> touchable() const { return finder_.touchable(); }
   /// Surface vertices without this tool, after `share`, m.
   std::span<const Vec3> free() const { return free_; }
+  bool has_friction() const { return tool_.friction > 0; }
   int max_nodes() const { return finder_.max_nodes(); }
   std::size_t bytes() const;
 

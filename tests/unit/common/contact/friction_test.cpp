@@ -67,12 +67,12 @@ struct Path {
   /// What it would feel at p; nothing changes.
   ContactForce look(const Vec3& p) {
     Eigen::VectorXd there = u;
-    return solver.solve(patch, tool, p, there, ContactSolver::kUsualEffort, {nodes, tip});
+    return solver.solve(patch, tool, p, there, {nodes, tip});
   }
   ContactForce go(const Vec3& p) {
     if (!placed) tip = p;
     placed = true;
-    const ContactForce force = solver.solve(patch, tool, p, u, ContactSolver::kUsualEffort, {nodes, tip});
+    const ContactForce force = solver.solve(patch, tool, p, u, {nodes, tip});
     for (int i = 0; i < patch.nodes(); ++i) nodes[i] = patch.free[i] + u.segment<3>(3 * i);
     tip = p + u.tail<3>();
     return force;
@@ -325,8 +325,7 @@ TEST_CASE("friction: a solve and its tangent do not allocate") {
   std::size_t allocations = 1;
   {
     const test::AllocationGuard guard;
-    path.solver.solve(path.patch, path.tool, pressed(4e-4) + 1e-4 * Vec3::UnitX(), path.u,
-                      ContactSolver::kUsualEffort, start);
+    path.solver.solve(path.patch, path.tool, pressed(4e-4) + 1e-4 * Vec3::UnitX(), path.u, start);
     path.solver.tangent(path.patch);
     allocations = guard.count();
   }

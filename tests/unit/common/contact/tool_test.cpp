@@ -50,7 +50,7 @@ struct Bench {
         u(Eigen::VectorXd::Zero(3 * (patch.nodes() + 1))) {}
   ContactForce at(const ToolPose& pose, const ToolPose& from) {
     u.setZero();
-    return solver.solve(patch, tool, pose, u, ContactSolver::kUsualEffort, {patch.free, from.p_W, from.q_W});
+    return solver.solve(patch, tool, pose, u, {patch.free, from.p_W, from.q_W});
   }
   ContactForce at(const ToolPose& pose) { return at(pose, pose); }
   double energy() const {
