@@ -147,7 +147,7 @@ int replay(const ClientConfig& config, const ReplayOptions& options) {
 
   Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(),
                     config.workspace, config.device_limits(), config.passivity, config.blend);
-  Observation observation(config.scored_laws(), ticks_hz, config.score_where, 0);
+  Observation observation(config.scored_laws(), ticks_hz, config.score_where, 0, config.blend);
   CapturedSession session(options.capture, index);
   std::optional<TraceWriter> trace;
   if (options.out) trace.emplace(*options.out, observation.scoring().names());

@@ -83,6 +83,11 @@ std::string where_of(const Scene& scene, const std::string& part) {
   return scene.deformation.where;
 }
 
+std::string shape_of(const Tool& tool) {
+  if (tool.trocar) return fmt::format("trocar, shaft radius {:g} mm", 1e3 * tool.trocar->shaft_radius);
+  return tool.is_sphere() ? "sphere" : fmt::format("capsule, length {:g} mm", 1e3 * tool.length);
+}
+
 std::string detail_of(const Scene& scene, const Simulation& simulation, const std::string& part) {
   const TetMesh& mesh = simulation.mesh();
   const Surface& surface = simulation.surface();
@@ -93,7 +98,8 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
   if (part == "stiffness matrix" || part == "its factor") return "freed after set-up";
   if (const ToolSettings* tool = tool_of(scene, part))
-    return fmt::format("sphere, radius {:g} mm{}, reaches {} nodes{}", 1e3 * tool->shape.radius,
+    return fmt::format("{}, radius {:g} mm{}, reaches {} nodes{}", shape_of(tool->shape),
+                       1e3 * tool->shape.radius,
                        tool->shape.friction > 0 ? fmt::format(", friction {:g}", tool->shape.friction) : "",
                        reachable_vertices(surface, mesh, {tool, 1}).size(), tool->reach ? "" : ": all");
   return {};

@@ -94,13 +94,32 @@ void read_grasp(const Config& config, ToolSettings& tool) {
   tool.grasp_where = config.where("grasp_place");
 }
 
+/// What else a shape needs; what belongs to another is an unknown key.
+void read_shape(const Config& config, Tool& tool) {
+  const std::string shape = config.text("shape", "sphere");
+  if (shape == "sphere") return;
+  if (shape == "capsule") {
+    tool.length = config.number("length", {1e-4, 0.5, "m"});
+  } else if (shape == "trocar") {
+    Tool::Trocar trocar;
+    trocar.pivot_W = config.vector("pivot", {-1e3, 1e3, "m"});
+    trocar.shaft_radius =
+        config.number("shaft_radius", {1e-5, 0.05, "m"}, std::min(trocar.shaft_radius, tool.radius));
+    if (trocar.shaft_radius > tool.radius)
+      fail("{}: `shaft_radius` {:g} is more than `radius` {:g}, that of the tip",
+           config.where("shaft_radius"), trocar.shaft_radius, tool.radius);
+    tool.trocar = trocar;
+  } else {
+    fail("{}: unknown shape \"{}\"; known: sphere, capsule, trocar", config.where("shape"), shape);
+  }
+}
+
 ToolSettings read_tool(const Config& config) {
   ToolSettings tool;
   tool.where = config.where();
-  const std::string shape = config.text("shape", "sphere");
-  if (shape != "sphere") fail("{}: unknown shape \"{}\"; known: sphere", config.where("shape"), shape);
   tool.shape.radius = config.number("radius", {1e-5, 0.05, "m"}, tool.shape.radius);
   tool.shape.friction = config.number("friction", {0, 2, "no unit"}, tool.shape.friction);
+  read_shape(config, tool.shape);
   if (config.has("reach")) {
     tool.reach = read_box(config, "reach");
     tool.reach_where = config.where("reach");

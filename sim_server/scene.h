@@ -51,7 +51,7 @@ struct DeformationSettings {
 
 /// One `[[tool]]`.
 struct ToolSettings {
-  SphereTool shape;
+  Tool shape;
   std::optional<Box> reach;  ///< places the tool's surface can get to; absent: the whole organ
   std::string where;         ///< "FILE:LINE" of this section
   std::string reach_where;   ///< "FILE:LINE" of `reach`; empty where it is absent

@@ -20,6 +20,14 @@ protocol::Linearisation on_the_wire(const Simulation::Linearised& l) noexcept {
           .gap = l.plane.gap};
 }
 
+/// Of what came over the wire; an orientation that is none is taken for no turn.
+ToolPose pose_of(const protocol::ToolState& state) noexcept {
+  const auto& [w, x, y, z] = state.q_W;
+  const Quat q(w, x, y, z);
+  const double size = q.norm();
+  return {state.p_W, size > 0.5 && size < 2 ? q.normalized() : Quat::Identity()};
+}
+
 }  // namespace
 
 ServedTools::ServedTools(Simulation& simulation)
@@ -43,7 +51,7 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const ToolInpu
     const bool lost = (inputs[i].state.flags & protocol::ToolState::kDeviceLost) != 0;
     simulation_.press_buttons(i, inputs[i].state.buttons);
     places_[i].reset();
-    if (inputs[i].session != 0 && !lost) places_[i] = inputs[i].state.p_W;
+    if (inputs[i].session != 0 && !lost) places_[i] = pose_of(inputs[i].state);
   }
   if (std::all_of(holders_.begin(), holders_.end(), [](const Holder& h) { return h.session == 0; }))
     return {};
@@ -63,7 +71,7 @@ std::optional<ForceSample> ServedTools::answer(std::size_t tool, const ToolInput
                      .tool_t_ns = input.state.t_ns,
                      .p_W = input.state.p_W,
                      .f_W = force.force,
-                     .torque_W = Vec3::Zero(),  // every normal passes through the centre of a sphere
+                     .torque_W = force.torque,
                      .flags = flags};
   if (places_[tool] && !force.flagged) add_parts(tool, input.state, force, sample);
   return sample;

@@ -44,7 +44,7 @@ class ServedTools {
   Simulation& simulation_;
   std::vector<protocol::SurfaceState> surfaces_;  // of each tool; version 0: none
   std::vector<Holder> holders_;
-  std::vector<std::optional<Vec3>> places_;
+  std::vector<std::optional<ToolPose>> places_;
   std::vector<Outcome> outcomes_;
 };
 

@@ -88,7 +88,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   forces_.resize(tools_.size());
 }
 
-std::span<const ToolForce> Simulation::step(std::span<const std::optional<Vec3>> places_W,
+std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPose>> places_W,
                                             double dt) noexcept {
   assert(places_W.size() == tools_.size());
   move_organ(dt);
@@ -128,8 +128,8 @@ Vec3 Simulation::surface_velocity(std::size_t tool, const Vec3& p_W) const noexc
   return tools_[tool].surface_velocity(p_W, tissue_);
 }
 
-ToolForce Simulation::step(const Vec3& p_W, double dt) noexcept {
-  places_.front() = p_W;
+ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
+  places_.front() = pose;
   return step(places_, dt).front();
 }
 

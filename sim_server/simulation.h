@@ -25,12 +25,12 @@ class Simulation {
   /// With a mesh made elsewhere.
   Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent);
 
-  /// Advances the tissue by `dt` (s >= 0; the run begins at time 0) with the tool centres at `places_W` (m),
-  /// one for each tool; where there is none, that tool is lifted. The forces, one for each tool, stay valid
-  /// until the next step.
-  std::span<const ToolForce> step(std::span<const std::optional<Vec3>> places_W, double dt) noexcept;
+  /// Advances the tissue by `dt` (s >= 0; the run begins at time 0) with the tools at `places_W`, one for each
+  /// tool; where there is none, that tool is lifted. The forces, one for each tool, stay valid until the next
+  /// step.
+  std::span<const ToolForce> step(std::span<const std::optional<ToolPose>> places_W, double dt) noexcept;
   /// The same with tool 0 alone, the others lifted.
-  ToolForce step(const Vec3& p_W, double dt) noexcept;
+  ToolForce step(const ToolPose& pose, double dt) noexcept;
 
   /// What of its device's buttons is pressed, from the next step on: some tools grasp by it.
   void press_buttons(std::size_t tool, std::uint16_t buttons) noexcept {
@@ -81,8 +81,8 @@ class Simulation {
   std::vector<Vec3> rest_;
   Tissue tissue_;
   std::vector<ToolContact> tools_;
-  std::vector<Vec3> ways_;                   // of the surface at each tool in this step, m
-  std::vector<std::optional<Vec3>> places_;  // for the step of tool 0 alone
+  std::vector<Vec3> ways_;                       // of the surface at each tool in this step, m
+  std::vector<std::optional<ToolPose>> places_;  // for the step of tool 0 alone
   std::vector<ToolForce> forces_;
 };
 

@@ -40,6 +40,7 @@ SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
   for (const Triangle& t : touchable) vertices_.insert(vertices_.end(), t.begin(), t.end());
   std::sort(vertices_.begin(), vertices_.end());
   vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+  if (!simulation.tool(tool).shape().is_sphere()) return;  // the only shape that clients know
   if (!simulation.model().compliance_is_constant() || vertices_.size() > protocol::kMostSurfaceVertices)
     return;
   put_in_order();

@@ -12,7 +12,8 @@ class SurfacePager {
   /// O(n log n) for n vertices. Allocates; nothing else here does.
   SurfacePager(const Simulation& simulation, std::size_t tool);
 
-  /// Version 0: none, because the compliance of this tissue changes while it deforms, or it is too large.
+  /// Version 0: none, because the compliance of this tissue changes while it deforms, it is too large, or
+  /// the tool is no sphere.
   /// `shift_W` is not filled in.
   const protocol::SurfaceState& state() const { return state_; }
 

@@ -17,6 +17,17 @@
 
 namespace palpate {
 
+namespace {
+
+/// Second derivative of the gap of a contact whose corners are at `x`.
+SimplexHessian hessian_of(const Contact& c, bool pivots, std::span<const Vec3> x, WeightGradient* weights) {
+  const SlidingPoint sliding{c.axis, c.share, pivots};
+  return distance_hessian(x, {c.weight.data(), x.size()}, c.normal, c.distance, weights,
+                          c.part == Contact::kShaft ? &sliding : nullptr);
+}
+
+}  // namespace
+
 Mat3 ContactSolver::tangent(const ContactPatch& patch) noexcept {
   if (considered_.empty()) return Mat3::Zero();
   const Mat3 k = tangent_of_considered(patch);
@@ -58,16 +69,14 @@ void ContactSolver::differentiate_contacts(int tip) noexcept {
       jacobian.block<1, 3>(row, 3 * slot[i]) = -c.weight[i] * c.normal.transpose();
     }
     slot[c.size] = slot_of_node_[tip];
-    jacobian.block<1, 3>(row, 3 * slot[c.size]) = c.normal.transpose();
+    jacobian.block<1, 3>(row, 3 * slot[c.size]) = c.at_tip(c.normal).transpose();
     if (rows > 1) {
       differentiate_friction(k, row, {slot.data(), static_cast<std::size_t>(c.size) + 1});
       continue;
     }
     const double force = lambda_[k];
     if (force == 0) continue;
-    const SimplexHessian h =
-        distance_hessian({x.data(), static_cast<std::size_t>(c.size)},
-                         {c.weight.data(), static_cast<std::size_t>(c.size)}, c.normal, c.distance);
+    const SimplexHessian h = hessian_of(c, pivots_, {x.data(), static_cast<std::size_t>(c.size)}, nullptr);
     for (int i = 0; i <= c.size; ++i) {
       for (int j = 0; j <= c.size; ++j) {
         curvature.block<3, 3>(3 * slot[i], 3 * slot[j]) += force * h.block<3, 3>(3 * i, 3 * j);
@@ -88,10 +97,12 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
     moved[i] = x[i] - was_[c.node[i]];
   }
   WeightGradient weights;
-  const SimplexHessian h =
-      distance_hessian({x.data(), static_cast<std::size_t>(c.size)},
-                       {c.weight.data(), static_cast<std::size_t>(c.size)}, c.normal, c.distance, &weights);
-  const Eigen::Matrix<double, 3, 12> turn = h.middleRows<3>(3 * c.size);  // dn
+  const SimplexHessian h = hessian_of(c, pivots_, {x.data(), static_cast<std::size_t>(c.size)}, &weights);
+  // dn, as d gap / dx_i = -b_i n and the b_i sum to one.
+  Eigen::Matrix<double, 3, 12> turn = Eigen::Matrix<double, 3, 12>::Zero();
+  for (int i = 0; i < c.size; ++i) turn -= h.middleRows<3>(3 * i);
+  Mat3 lever;  // M^T, where the tip's motion moves the tool at the contact by M
+  for (int axis = 0; axis < 3; ++axis) lever.col(axis) = c.at_tip(Vec3::Unit(axis));
   const Vec3 force = frame * lambda_.segment<3>(3 * contact);
   // d travel - (normal . travel) dn, without what the nodes and the tip themselves do; and d force.
   Eigen::Matrix<double, 3, 12> slip = -c.normal.dot(travel(c)) * turn, bend;
@@ -99,13 +110,19 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
   bend =
       lambda_[3 * contact] * turn - c.normal * ((force - lambda_[3 * contact] * c.normal).transpose() * turn);
   for (int j = 0; j <= c.size; ++j) {
-    const double share = j == c.size ? 1 : -c.weight[j];
+    // M is symmetric.
+    const Mat3 share = j == c.size ? lever : Mat3(-c.weight[j] * Mat3::Identity());
     const int at = 3 * slot[j];
     spread_.block<3, 3>(at, row) = share * frame;
     jacobian_.block<2, 3>(row + 1, at) =
-        frame.rightCols<2>().transpose() * (share * Mat3::Identity() + slip.middleCols<3>(3 * j));
+        frame.rightCols<2>().transpose() * (share + slip.middleCols<3>(3 * j));
     for (int i = 0; i <= c.size; ++i) {
-      Mat3 block = (i == c.size ? 1 : -c.weight[i]) * bend.middleCols<3>(3 * j);
+      Mat3 block = bend.middleCols<3>(3 * j);
+      if (i == c.size) {
+        block = lever * block;
+      } else {
+        block *= -c.weight[i];
+      }
       if (i < c.size) block -= force * weights.row(i).segment<3>(3 * j);
       curvature_.block<3, 3>(3 * slot[i], at) += block;
     }

@@ -1,6 +1,7 @@
 #include "common/contact/contact_solver.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace palpate {
 namespace {
@@ -15,7 +16,8 @@ constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
 double along(const Contact& c, const Vec3& direction, int tip, const Eigen::Ref<const Eigen::VectorXd>& u) {
   Vec3 relative = u.segment<3>(3 * tip);
   for (int i = 0; i < c.size; ++i) relative -= c.weight[i] * u.segment<3>(3 * c.node[i]);
-  return direction.dot(relative);
+  if (c.share == 1) return direction.dot(relative);
+  return direction.dot(relative) + (c.at_tip(direction) - direction).dot(u.segment<3>(3 * tip));
 }
 
 }  // namespace
@@ -62,21 +64,26 @@ Vec3 ContactSolver::direction(int contact, int row) const {
 
 /// How far the tip went over the surface at a contact in this stride.
 Vec3 ContactSolver::travel(const Contact& c) const {
-  Vec3 travel = tip_ - tip_was_;
+  Vec3 travel = c.at_tip(tip_ - tip_was_) + turned_ * c.arm;
   for (int i = 0; i < c.size; ++i) travel -= c.weight[i] * (deformed_[c.node[i]] - was_[c.node[i]]);
   return travel;
 }
 
-void ContactSolver::start_stride(const ContactPatch& patch, const SphereTool& tool,
+void ContactSolver::start_stride(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
                                  const StrideStart& start) noexcept {
   friction_ = tool.friction;
+  pivots_ = tool.trocar.has_value();
   felt_.clear();
   if (friction_ == 0) return;
+  assert(spread_.size() > 0);  // it was made for friction
   was_.assign(start.nodes.begin(), start.nodes.begin() + patch.nodes());
   tip_was_ = start.tip;
+  turned_.setZero();  // a sphere may spin, a pivoting shaft turns by its tip
+  if (tool.length > 0 && !tool.trocar)
+    turned_ = Mat3::Identity() - (start.q_W * pose.q_W.conjugate()).toRotationMatrix();
 }
 
-void ContactSolver::linearise(const ContactPatch& patch, const SphereTool& tool, const Vec3& p_W,
+void ContactSolver::linearise(const ContactPatch& patch, const Vec3& p_W,
                               const Eigen::Ref<const Eigen::VectorXd>& u) noexcept {
   const int m = patch.nodes(), n = static_cast<int>(contacts_.size()), rows = rows_of_contact();
   tip_ = p_W + u.tail<3>();
@@ -97,8 +104,8 @@ void ContactSolver::linearise(const ContactPatch& patch, const SphereTool& tool,
           column.head(3 * m) += load * patch.compliance.col(3 * c.node[i] + axis).head(3 * m);
         }
       }
-      column.tail<3>() = patch.tool_compliance * d;
-      const double now = row == 0 ? c.distance - tool.radius : d.dot(travel(c));
+      column.tail<3>() = patch.tool_compliance * c.at_tip(d);
+      const double now = row == 0 ? c.distance - c.radius : d.dot(travel(c));
       gap_[rows * k + row] = now - along(c, d, m, u);
     }
   }
@@ -110,10 +117,10 @@ void ContactSolver::linearise(const ContactPatch& patch, const SphereTool& tool,
   }
 }
 
-ContactForce ContactSolver::solve(const ContactPatch& patch, const SphereTool& tool, const Vec3& p_W,
+ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
                                   Eigen::Ref<Eigen::VectorXd> u, const StrideStart& start,
                                   const Effort& effort) noexcept {
-  start_stride(patch, tool, start);
+  start_stride(patch, tool, pose, start);
   const int m = patch.nodes();
   ContactForce result;
   result.converged = false;
@@ -126,10 +133,10 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const SphereTool& t
     deformed_.assign(patch.free.begin(), patch.free.end());
     for (int i = 0; i < m; ++i) deformed_[i] += u.segment<3>(3 * i);
     // Features farther than what still moves cannot touch in this iteration; the next one looks again.
-    const double reach =
-        tool.radius + std::clamp(kMargin * change, kMinReach * tool.radius, kMaxReach * tool.radius);
-    find_contacts_on_patch(deformed_, patch.triangles, p_W + u.tail<3>(), reach, contacts_);
-    linearise(patch, tool, p_W, u);
+    const double margin = std::clamp(kMargin * change, kMinReach * tool.radius, kMaxReach * tool.radius);
+    find_contacts_on_patch(deformed_, patch.triangles, tool, {pose.p_W + u.tail<3>(), pose.q_W}, margin,
+                           contacts_);
+    linearise(patch, pose.p_W, u);
     solve_linearised(m, next);
     change = (next - u).cwiseAbs().maxCoeff();
     result.converged = change <= effort.tolerance * tool.radius;
@@ -170,14 +177,17 @@ bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
 void ContactSolver::remember(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept {
   felt_.clear();
   for (int k = 0; k < static_cast<int>(frames_.size()); ++k) {
-    if (force[3 * k] > 0) felt_.push_back({contacts_[k].node, frames_[k] * force.segment<3>(3 * k)});
+    if (force[3 * k] > 0)
+      felt_.push_back({contacts_[k].node, contacts_[k].part, frames_[k] * force.segment<3>(3 * k)});
   }
 }
 
 void ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
   force.setZero();
   for (int k = 0; k < static_cast<int>(frames_.size()); ++k) {
-    const auto same = [&](const Felt& felt) { return felt.node == contacts_[k].node; };
+    const auto same = [&](const Felt& felt) {
+      return felt.node == contacts_[k].node && felt.part == contacts_[k].part;
+    };
     const auto felt = std::find_if(felt_.begin(), felt_.end(), same);
     if (felt != felt_.end()) force.segment<3>(3 * k) = frames_[k].transpose() * felt->force;
   }
@@ -207,7 +217,9 @@ void ContactSolver::collect_result(int nodes, ContactForce& result) noexcept {
     for (int row = 0; row < rows; ++row) {
       const double size = lambda_[rows * k + row];
       const Vec3 d = direction(k, row);
-      result.force += size * d;
+      result.force += size * c.at_tip(d);
+      // The tip's normals pass through its centre; and what a pivot carries is not felt.
+      if ((row > 0 || c.part != Contact::kTip) && !pivots_) result.torque += c.arm.cross(size * d);
       for (int i = 0; i < c.size; ++i) node_force_.segment<3>(3 * c.node[i]) -= size * c.weight[i] * d;
     }
   }

@@ -25,22 +25,24 @@ struct ContactPatch {
 
 /// Outcome of one contact solve.
 struct ContactForce {
-  Vec3 force = Vec3::Zero();  ///< on the tool, N, world
-  int contacts = 0;           ///< touching features
-  int iterations = 0;         ///< linearisations used
+  Vec3 force = Vec3::Zero();   ///< on the tool at its tip, N, world: of equal work on a pivoting shaft
+  Vec3 torque = Vec3::Zero();  ///< on the tool about its tip, N m; 0 for a shaft that pivots
+  int contacts = 0;            ///< touching features
+  int iterations = 0;          ///< linearisations used
   bool converged =
       true;  ///< false: the answer is finite, the geometry still moved by more than the tolerance
 };
 
 /// Where a stride began; slip is measured from there, and there is no other memory of friction: a node
 /// without contact carries none. What `solve` found is the start of the next stride: nodes at `free` + u, the
-/// tip at p_W + u_tip. So a path is a chain of solves, on the server and wherever it is replayed.
+/// tip at the pose + u_tip. So a path is a chain of solves, on the server and wherever it is replayed.
 struct StrideStart {
   std::span<const Vec3> nodes;  ///< (m) the patch nodes, m, world; more do no harm
   Vec3 tip = Vec3::Zero();      ///< the tool's tip, m, world
+  Quat q_W = Quat::Identity();  ///< the tool's orientation
 };
 
-/// Unilateral contact of a sphere with an elastic triangle patch, with Coulomb friction where the tool has
+/// Unilateral contact of a tool with an elastic triangle patch, with Coulomb friction where the tool has
 /// some. Finds displacements u of the nodes and of the tool tip, and forces f = lambda n + t, with
 ///   u = C W^T f,   lambda >= 0,   gap(x + u) >= 0,   lambda . gap = 0,
 ///   |t| <= mu lambda,   t = -mu lambda s / |s| where it slips by s in the stride, s = 0 where it sticks,
@@ -66,11 +68,11 @@ class ContactSolver {
     double expected = 1;       ///< of the tool radius: how far things may have moved since `u` was right
   };
 
-  /// Solves for the tool centre `p_W` (m). `u` (3 (m + 1): nodes, then tip; m) holds the displacement to look
-  /// from and gets the solution, which does not depend on it but by rounding. `start` is read where the tool
-  /// has friction, and only then. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful of
-  /// contacts, with friction some ten times that.
-  ContactForce solve(const ContactPatch& patch, const SphereTool& tool, const Vec3& p_W,
+  /// Solves for a tool at `pose`. `u` (3 (m + 1): nodes, then tip; m) holds the displacement to look from and
+  /// gets the solution, which does not depend on it but by rounding. `start` is read where the tool has
+  /// friction, and only then. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful of contacts,
+  /// with friction some ten times that.
+  ContactForce solve(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
                      Eigen::Ref<Eigen::VectorXd> u, const StrideStart& start = {},
                      const Effort& effort = kUsualEffort) noexcept;
   static const Effort kUsualEffort;
@@ -97,8 +99,9 @@ class ContactSolver {
   int rows_of_contact() const { return friction_ > 0 ? 3 : 1; }
   Vec3 direction(int contact, int row) const;
   Vec3 travel(const Contact& c) const;
-  void start_stride(const ContactPatch& patch, const SphereTool& tool, const StrideStart& start) noexcept;
-  void linearise(const ContactPatch& patch, const SphereTool& tool, const Vec3& p_W,
+  void start_stride(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
+                    const StrideStart& start) noexcept;
+  void linearise(const ContactPatch& patch, const Vec3& p_W,
                  const Eigen::Ref<const Eigen::VectorXd>& u) noexcept;
   bool solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                       Eigen::Ref<Eigen::VectorXd> force) noexcept;
@@ -124,6 +127,7 @@ class ContactSolver {
   std::vector<Mat3> frames_;  // with friction: normal and the two directions across it, as columns
   struct Felt {
     std::array<int, 3> node;
+    Contact::Part part;
     Vec3 force;
   };
   std::vector<Felt> felt_;  // with friction: what touched in the iteration before
@@ -134,8 +138,10 @@ class ContactSolver {
   int force_size_ = 0;
   // The stride: friction coefficient, where its nodes and the tip began, and where the tip is.
   double friction_ = 0;
+  bool pivots_ = false;
   std::vector<Vec3> was_;
   Vec3 tip_was_ = Vec3::Zero(), tip_ = Vec3::Zero();
+  Mat3 turned_ = Mat3::Zero();  // what the tool's turn in the stride did to an arm of now
   // Second order: the contacts considered, their nodes (the tip last), and matrices over those nodes.
   std::vector<int> considered_, nodes_, slot_of_node_;
   Eigen::MatrixXd curvature_, effective_, system_, jacobian_, spread_;  // spread: W^T, only with friction

@@ -2,9 +2,12 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 
 namespace palpate {
 namespace {
+
+constexpr double kParallel = 1e-12;
 
 ClosestPoint corner(int i) noexcept {
   ClosestPoint point{{0, 0, 0}, 1};
@@ -45,34 +48,81 @@ ClosestPoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Ve
   return {{va / sum, vb / sum, vc / sum}, 3};
 }
 
+ClosestPair closest_pair(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) noexcept {
+  const auto share = [](double part, double whole) {
+    return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0;
+  };
+  const Vec3 first = q - p, second = b - a, r = p - a;
+  const double f = first.squaredNorm(), e = second.squaredNorm(), mixed = first.dot(second);
+  const double along_first = first.dot(r), along_second = second.dot(r), denominator = f * e - mixed * mixed;
+  double s = 0;
+  if (denominator > kParallel * f * e) {
+    s = share(mixed * along_second - along_first * e, denominator);
+  } else {
+    s = 0.5 * (share(-along_first, f) + share(mixed - along_first, f));
+  }
+  const double t = share(mixed * s + along_second, e);
+  return {share(mixed * t - along_first, f), t};
+}
+
+double segment_triangle_distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                                 const Vec3& c) noexcept {
+  const Vec3 normal = (b - a).cross(c - a);
+  const double from = normal.dot(p - a), to = normal.dot(q - a);
+  if (from * to < 0) {
+    const Vec3 x = p + from / (from - to) * (q - p);
+    if (closest_point(x, a, b, c).feature_size == 3) return 0;
+  }
+  const auto of_end = [&](const Vec3& end) {
+    const auto w = closest_point(end, a, b, c).weight;
+    return (end - w[0] * a - w[1] * b - w[2] * c).norm();
+  };
+  const auto of_edge = [&](const Vec3& u, const Vec3& v) {
+    const ClosestPair pair = closest_pair(p, q, u, v);
+    return (p + pair.on_first * (q - p) - u - pair.on_second * (v - u)).norm();
+  };
+  return std::min({of_end(p), of_end(q), of_edge(a, b), of_edge(b, c), of_edge(c, a)});
+}
+
 SimplexHessian distance_hessian(std::span<const Vec3> x, std::span<const double> weight, const Vec3& normal,
-                                double distance, WeightGradient* weights) noexcept {
+                                double distance, WeightGradient* weights,
+                                const SlidingPoint* sliding) noexcept {
   const int m = static_cast<int>(x.size());
   const Mat3 across = (Mat3::Identity() - normal * normal.transpose()) / distance;
   // rho = sum_j a_j y_j = distance * normal, with y = (x_0 .. x_(m-1), p).
-  const auto a = [&](int j) { return j == m ? 1.0 : -weight[static_cast<std::size_t>(j)]; };
+  const double share = sliding != nullptr ? sliding->share : 1.0;
+  const auto a = [&](int j) { return j == m ? share : -weight[static_cast<std::size_t>(j)]; };
   SimplexHessian h = SimplexHessian::Zero();
   for (int j = 0; j <= m; ++j) {
     for (int l = 0; l <= m; ++l) h.block<3, 3>(3 * j, 3 * l) = a(j) * a(l) * across;
   }
   if (weights != nullptr) weights->setZero();
-  if (m == 1) return h;
-  // Free weights b_1 .. b_(m-1), b_0 = 1 - their sum: edges e_l = x_l - x_0 are at right angles to the
-  // normal.
+  if (m == 1 && sliding == nullptr) return h;
+  // Free weights b_1 .. b_(m-1), b_0 = 1 - their sum, and last the way of the sliding point: d rho = -e_l
+  // db_l, with edges e_l = x_l - x_0 at right angles to the normal, as minus the axis is.
+  std::array<Vec3, 2> e;
+  int free = 0;
   Eigen::Matrix<double, 12, 2> mixed = Eigen::Matrix<double, 12, 2>::Zero();
+  for (int l = 1; l < m; ++l, ++free) {
+    e[free] = x[static_cast<std::size_t>(l)] - x[0];
+    for (int j = 0; j <= m; ++j) mixed.block<3, 1>(3 * j, free) = -a(j) * (across * e[free]);
+    mixed.block<3, 1>(3 * l, free) -= normal;
+    mixed.block<3, 1>(0, free) += normal;
+  }
+  if (sliding != nullptr) {
+    e[free] = -sliding->axis;
+    for (int j = 0; j <= m; ++j) mixed.block<3, 1>(3 * j, free) = -a(j) * (across * e[free]);
+    if (sliding->pivots) mixed.block<3, 1>(3 * m, free) += normal;
+    ++free;
+  }
   Eigen::Matrix2d curvature = Eigen::Matrix2d::Identity();
-  for (int l = 1; l < m; ++l) {
-    const Vec3 e = x[static_cast<std::size_t>(l)] - x[0];
-    for (int j = 0; j <= m; ++j) mixed.block<3, 1>(3 * j, l - 1) = -a(j) * (across * e);
-    mixed.block<3, 1>(3 * l, l - 1) -= normal;
-    mixed.block<3, 1>(0, l - 1) += normal;
-    for (int k = 1; k < m; ++k) {
-      curvature(l - 1, k - 1) = e.dot(across * (x[static_cast<std::size_t>(k)] - x[0]));
-    }
+  for (int l = 0; l < free; ++l) {
+    for (int k = 0; k < free; ++k) curvature(l, k) = e[l].dot(across * e[k]);
   }
   h -= mixed * curvature.inverse() * mixed.transpose();
   if (weights != nullptr) {
-    weights->bottomRows<2>() = -curvature.inverse() * mixed.transpose();
+    const Eigen::Matrix<double, 2, 12> follow = -curvature.inverse() * mixed.transpose();
+    for (int l = 1; l < m; ++l) weights->row(l) = follow.row(l - 1);
     weights->row(0) = -weights->row(1) - weights->row(2);
   }
   return h;

@@ -23,7 +23,7 @@ struct Linearised {
 struct Surface {
   const SurfaceModel* model = nullptr;  ///< never null; learns between samples
   Vec3 shift = Vec3::Zero();            ///< from rest to where it is, free of the tool, m
-  SphereTool tool;
+  Tool tool;
   double tool_compliance = 0;  ///< m/N
 };
 

@@ -10,26 +10,39 @@
 namespace palpate::sim {
 namespace {
 
+constexpr double kMostBalls = 3;
 constexpr double kRoomFactor = 1.5;  // deformed surfaces crowd: room beyond the densest ball at rest
 
-/// Whether the triangle's bounding box comes within `reach` of p: cheap, never wrong on the safe side.
-bool may_reach(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, double reach) noexcept {
-  return ((a.cwiseMin(b).cwiseMin(c).array() - reach) <= p.array()).all() &&
-         ((a.cwiseMax(b).cwiseMax(c).array() + reach) >= p.array()).all();
+/// Whether the triangle's bounding box comes within `reach` of that of p and q: cheap, never wrong on the
+/// safe side.
+bool may_reach(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& q,
+               double reach) noexcept {
+  return ((a.cwiseMin(b).cwiseMin(c).array() - reach) <= p.cwiseMax(q).array()).all() &&
+         ((a.cwiseMax(b).cwiseMax(c).array() + reach) >= p.cwiseMin(q).array()).all();
+}
+
+/// Whether the axis from p to q comes within `reach` of the triangle.
+bool reaches(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& q,
+             double reach) noexcept {
+  if (p != q) return segment_triangle_distance(p, q, a, b, c) <= reach;
+  const auto w = closest_point(p, a, b, c).weight;
+  return (p - w[0] * a - w[1] * b - w[2] * c).squaredNorm() <= reach * reach;
 }
 
 }  // namespace
 
 ContactFinder::ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed,
-                             std::vector<Triangle> touchable, double reach)
+                             std::vector<Triangle> touchable, double reach, double length)
     : closed_(std::move(closed)), triangles_(std::move(touchable)), slot_of_vertex_(rest.size(), -1) {
   for (const Vec3& p : rest) {
     int near = 0;
-    for (const Triangle& t : triangles_) near += may_reach(rest[t[0]], rest[t[1]], rest[t[2]], p, reach);
+    for (const Triangle& t : triangles_) near += may_reach(rest[t[0]], rest[t[1]], rest[t[2]], p, p, reach);
     max_triangles_ = std::max(max_triangles_, near);
   }
   const int all = static_cast<int>(triangles_.size());
-  max_triangles_ = std::min(all, 8 + static_cast<int>(kRoomFactor * max_triangles_));
+  // An axis may lie along a part as dense as that, but hardly all of it.
+  const double balls = std::min(kMostBalls, 1 + length / (2 * reach));
+  max_triangles_ = std::min(all, 8 + static_cast<int>(kRoomFactor * balls * max_triangles_));
   max_nodes_ = std::min(static_cast<int>(rest.size()), max_triangles_ + 2);
   vertices_.reserve(static_cast<std::size_t>(max_nodes_));
 }
@@ -43,16 +56,14 @@ int ContactFinder::slot_of(int vertex) noexcept {
   return slot;
 }
 
-bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, double reach,
+bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, const Vec3& q, double reach,
                                ContactPatch& patch) noexcept {
   patch.triangles.clear();
   vertices_.clear();
   bool fits = true;
   for (const Triangle& t : triangles_) {
     const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
-    if (!may_reach(a, b, c, p, reach)) continue;
-    const auto w = closest_point(p, a, b, c).weight;
-    if ((p - w[0] * a - w[1] * b - w[2] * c).squaredNorm() > reach * reach) continue;
+    if (!may_reach(a, b, c, p, q, reach) || !reaches(a, b, c, p, q, reach)) continue;
     Triangle local;
     for (int i = 0; i < 3; ++i) local[i] = slot_of(t[i]);
     fits = static_cast<int>(patch.triangles.size()) < max_triangles_ &&
@@ -65,8 +76,8 @@ bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, d
 }
 
 void ContactFinder::gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p,
-                           double reach, ContactPatch& patch) noexcept {
-  while (!try_gather(positions, p, reach, patch)) reach *= 0.9;
+                           const Vec3& q, double reach, ContactPatch& patch) noexcept {
+  while (!try_gather(positions, p, q, reach, patch)) reach *= 0.9;
   patch.free.clear();
   for (const int vertex : vertices_) patch.free.push_back(free[vertex]);
 }

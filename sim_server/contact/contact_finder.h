@@ -12,20 +12,21 @@ namespace palpate::sim {
 class ContactFinder {
  public:
   /// `rest`: surface vertices at rest. `closed`: all triangles of the surface, `touchable`: those the tool
-  /// may touch. `reach`: the largest distance that `gather` will be asked for, m; the room it needs is sized
-  /// by the densest such ball at rest, with some to spare.
+  /// may touch. `reach`, `length`: the largest distance and axis that `gather` will be asked for, m; the room
+  /// it needs is sized by the densest such ball at rest, for an axis by as many of them as it is long, with
+  /// some to spare.
   ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed, std::vector<Triangle> touchable,
-                double reach);
+                double reach, double length = 0);
 
   std::span<const Triangle> touchable() const { return triangles_; }
   int max_nodes() const { return max_nodes_; }
   int max_triangles() const { return max_triangles_; }
 
-  /// Puts the triangles of `positions` within `reach` of `p` into the patch, with their `free` positions, and
-  /// lists the surface vertex of each patch node in `vertices()`. Where there are more than fit, the nearest
-  /// stay. O(triangles).
-  void gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p, double reach,
-              ContactPatch& patch) noexcept;
+  /// Puts the triangles of `positions` within `reach` of the axis from `p` to `q` (the same: a point) into
+  /// the patch, with their `free` positions, and lists the surface vertex of each patch node in `vertices()`.
+  /// Where there are more than fit, the nearest stay. O(triangles).
+  void gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p, const Vec3& q,
+              double reach, ContactPatch& patch) noexcept;
   std::span<const int> vertices() const { return vertices_; }
 
   /// Whether `p` lies inside the closed surface, by its winding number (Van Oosterom and Strackee 1983).
@@ -48,7 +49,8 @@ class ContactFinder {
  private:
   /// Patch node of a surface vertex, given one if it has none yet; -1 when there is no room.
   int slot_of(int vertex) noexcept;
-  bool try_gather(std::span<const Vec3> positions, const Vec3& p, double reach, ContactPatch& patch) noexcept;
+  bool try_gather(std::span<const Vec3> positions, const Vec3& p, const Vec3& q, double reach,
+                  ContactPatch& patch) noexcept;
 
   std::vector<Triangle> closed_, triangles_;
   std::vector<int> vertices_, slot_of_vertex_;

@@ -25,6 +25,14 @@ double largest_move(std::span<const Vec3> from, std::span<const Vec3> to) noexce
   return largest;
 }
 
+/// How much of the tool's axis can be near the organ, m.
+double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
+  if (!tool.trocar) return tool.length;
+  double longest = 0;
+  for (const Vec3& x : rest) longest = std::max(longest, (x - tool.trocar->pivot_W).norm());
+  return longest;
+}
+
 }  // namespace
 
 std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
@@ -47,7 +55,8 @@ std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh&
 ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
                          std::vector<Triangle> touchable)
     : tool_(tool.shape),
-      finder_(rest, surface.triangles, touchable, kGather * tool.shape.radius),
+      finder_(rest, surface.triangles, touchable, kGather * tool.shape.radius,
+              longest_axis(tool.shape, rest)),
       solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0),
       free_(rest) {
   if (tool.grasps()) grip_.emplace(tool, rest, touchable, finder_.max_nodes());
@@ -89,49 +98,62 @@ bool ToolContact::share(std::span<const ToolContact> tools, Tissue& tissue) noex
   return moved;
 }
 
-void ToolContact::walk(const Vec3& p_W, Tissue& tissue) noexcept {
+void ToolContact::walk(const ToolPose& pose, Tissue& tissue) noexcept {
   if (grip_ && grip_->opens()) lift(tissue);
-  go(p_W, tissue);
+  go(pose, tissue);
   if (!grip_ || !grip_->closes() || !placed_ || !arrived_) return;
-  grip_->close(place_, tissue.positions);
+  grip_->close(place_.p_W, tissue.positions);
   if (holds()) pull(place_, tissue);
 }
 
-/// What it holds comes with it, straight to `p_W`.
-void ToolContact::pull(const Vec3& p_W, Tissue& tissue) noexcept {
+/// What it holds comes with it, straight to `pose`.
+void ToolContact::pull(const ToolPose& pose, Tissue& tissue) noexcept {
   placed_ = arrived_ = true;
-  place_ = p_W;
+  place_ = pose;
   tip_offset_.setZero();
-  const Grip::Pull pull = grip_->pull(p_W, tissue, loads_, others_);
+  const Grip::Pull pull = grip_->pull(pose.p_W, tissue, loads_, others_);
   if (!pull.force.allFinite()) return give_up(tissue);
-  force_ = {pull.force, pull.tangent, pull.vertices, pull.rounds, !pull.converged};
+  force_ = {.force = pull.force,
+            .tangent = pull.tangent,
+            .contacts = pull.vertices,
+            .iterations = pull.rounds,
+            .flagged = !pull.converged};
 }
 
-void ToolContact::go(const Vec3& p_W, Tissue& tissue) noexcept {
-  if (!p_W.allFinite() || p_W.cwiseAbs().maxCoeff() > kFarthest) return give_up(tissue);
-  if (holds()) return pull(p_W, tissue);
-  const double stride = kStride * tool_.radius;
-  if (!placed_ || (p_W - place_).norm() > kMaxStrides * stride || escaped(p_W)) enter(p_W, tissue);
-  const Vec3 way = p_W - place_, from = place_;
-  double strides = std::clamp(std::ceil(way.norm() / stride), 1.0, kMaxStrides);
-  if (has_friction()) {
-    const double wanted = std::ceil(way.norm() / (kFrictionStride * tool_.radius));
-    strides = std::max(strides, std::min(wanted, kFrictionStrides));
-  }
+void ToolContact::go(const ToolPose& pose, Tissue& tissue) noexcept {
+  if (!pose.p_W.allFinite() || pose.p_W.cwiseAbs().maxCoeff() > kFarthest || !pose.q_W.coeffs().allFinite())
+    return give_up(tissue);
+  if (holds()) return pull(pose, tissue);
+  if (!placed_ || (pose.p_W - place_.p_W).norm() > kMaxStrides * kStride * tool_.radius || escaped(pose))
+    enter(pose, tissue);
+  const Vec3 way = pose.p_W - place_.p_W;
+  const ToolPose from = place_;
+  const double strides = strides_to(pose);
   ContactForce contact;
   int iterations = 0;
   for (double i = 1; i <= strides && iterations < kMaxIterations; ++i) {
     start_stride(i == 1, tissue);
-    place_ = i == strides ? p_W : Vec3(from + (i / strides) * way);
-    contact = touch(place_, tissue);
+    place_ =
+        i == strides ? pose : ToolPose(from.p_W + (i / strides) * way, from.q_W.slerp(i / strides, pose.q_W));
+    contact = touch(tissue);
     iterations += contact.iterations;
   }
-  arrived_ = place_ == p_W;  // else the next step goes on from here
+  arrived_ = place_.p_W == pose.p_W;  // else the next step goes on from here
   conclude(contact, iterations, tissue);
 }
 
+double ToolContact::strides_to(const ToolPose& pose) const noexcept {
+  const double tip = (pose.p_W - place_.p_W).norm();
+  const double far = (far_end(tool_, pose) - far_end(tool_, place_)).norm();
+  const double way = std::max(tip, far);
+  const double strides = std::clamp(std::ceil(way / (kStride * tool_.radius)), 1.0, kMaxStrides);
+  if (!has_friction()) return strides;
+  const double wanted = std::ceil(way / (kFrictionStride * tool_.radius));
+  return std::max(strides, std::min(wanted, kFrictionStrides));
+}
+
 void ToolContact::carry(const Vec3& way, Tissue& tissue) noexcept {
-  if (placed_) place_ += way;
+  if (placed_) place_.p_W += way;
   tissue.positions = tissue.model->apply(loads_);
 }
 
@@ -150,14 +172,14 @@ Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue) const 
 
 void ToolContact::settle(Tissue& tissue) noexcept {
   if (holds()) return pull(place_, tissue);
-  const ContactForce contact = touch(place_, tissue);
+  const ContactForce contact = touch(tissue);
   conclude(contact, force_.iterations + contact.iterations, tissue);
 }
 
 void ToolContact::conclude(const ContactForce& contact, int iterations, Tissue& tissue) noexcept {
   if (!contact.force.allFinite()) return give_up(tissue);
-  force_ = {contact.force, solver_.tangent(patch_), contact.contacts, iterations,
-            !contact.converged || !arrived_};
+  force_ = {contact.force,    contact.torque, solver_.tangent(patch_),
+            contact.contacts, iterations,     !contact.converged || !arrived_};
 }
 
 bool ToolContact::exhausted() const {
@@ -166,10 +188,11 @@ bool ToolContact::exhausted() const {
 
 ToolForce ToolContact::probe(const Vec3& p_W, Tissue& tissue) noexcept {
   const ToolForce force = force_;
-  const Vec3 place = place_, tip_offset = tip_offset_;
+  const Vec3 tip_offset = tip_offset_;
+  const ToolPose place = place_;
   const bool placed = placed_, arrived = arrived_;
   kept_.assign(own_loads().begin(), own_loads().end());
-  go(p_W, tissue);
+  go({p_W, place_.q_W}, tissue);
   const ToolForce there = force_;
   force_ = force;
   place_ = place;
@@ -218,34 +241,40 @@ void ToolContact::lift(Tissue& tissue) noexcept {
 
 /// Whether a tool in contact has left the free organ so far behind that it only drags the surface along with
 /// it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
-bool ToolContact::escaped(const Vec3& p_W) const noexcept {
-  if (force_.contacts == 0) return false;
-  return (finder_.nearest(free_, p_W) - p_W).norm() > kEscape * tool_.radius && !finder_.inside(free_, p_W);
+bool ToolContact::escaped(const ToolPose& pose) const noexcept {
+  if (force_.contacts == 0 || !tool_.is_sphere()) return false;
+  const Vec3& p = pose.p_W;
+  return (finder_.nearest(free_, p) - p).norm() > kEscape * tool_.radius && !finder_.inside(free_, p);
 }
 
-/// The tool appears at `p_W`. If that is inside the organ it is taken to have come in through the nearest
-/// surface.
-void ToolContact::enter(const Vec3& p_W, Tissue& tissue) noexcept {
+/// The tool appears at `pose`. If an end of its axis is inside the organ it is taken to have come in through
+/// the surface nearest to that end, as it is turned now.
+void ToolContact::enter(const ToolPose& pose, Tissue& tissue) noexcept {
   release(tissue);
   placed_ = true;
-  place_ = p_W;
-  if (!finder_.inside(tissue.positions, p_W)) return;
-  const Vec3 door = finder_.nearest(tissue.positions, p_W);
-  const Vec3 outward = (door - p_W).normalized();
-  place_ = door + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
+  place_ = pose;
+  for (const Vec3& end : {pose.p_W, tool_.trocar ? pose.p_W : far_end(tool_, pose)}) {
+    if (!finder_.inside(tissue.positions, end)) continue;
+    const Vec3 door = finder_.nearest(tissue.positions, end);
+    const Vec3 outward = (door - end).normalized();
+    place_.p_W = door + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
+    if (end != pose.p_W) place_.p_W += pose.p_W - end;
+    return;
+  }
 }
 
 void ToolContact::start_stride(bool first, const Tissue& tissue) noexcept {
   if (!has_friction()) return;
-  tip_was_ = place_ + tip_offset_;
+  tip_was_ = {place_.p_W + tip_offset_, place_.q_W};
   stride_from_ = tissue.before;
   if (first) return;
   std::copy(tissue.positions.begin(), tissue.positions.end(), surface_was_.begin());
   stride_from_ = surface_was_;
 }
 
-ContactForce ToolContact::touch(const Vec3& p_W, Tissue& tissue) noexcept {
-  finder_.gather(tissue.positions, free_, p_W + tip_offset_, kGather * tool_.radius, patch_);
+ContactForce ToolContact::touch(Tissue& tissue) noexcept {
+  const ToolPose tip(place_.p_W + tip_offset_, place_.q_W);
+  finder_.gather(tissue.positions, free_, tip.p_W, far_end(tool_, tip), kGather * tool_.radius, patch_);
   if (patch_.triangles.empty()) {
     release(tissue);
     return {};
@@ -260,7 +289,8 @@ ContactForce ToolContact::touch(const Vec3& p_W, Tissue& tissue) noexcept {
   if (has_friction()) {
     for (const int vertex : vertices) nodes_were_.push_back(stride_from_[vertex]);
   }
-  const ContactForce contact = solver_.solve(patch_, tool_, p_W, u, {nodes_were_, tip_was_});
+  const ContactForce contact =
+      solver_.solve(patch_, tool_, place_, u, {nodes_were_, tip_was_.p_W, tip_was_.q_W});
   tip_offset_ = u.tail<3>();
   drop_own_loads();
   const auto forces = solver_.node_forces();

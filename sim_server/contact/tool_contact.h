@@ -10,7 +10,8 @@ namespace palpate::sim {
 
 /// What a tool feels after one step.
 struct ToolForce {
-  Vec3 force = Vec3::Zero();    ///< N, world, on the tool at its position
+  Vec3 force = Vec3::Zero();    ///< N, world, on the tool at its tip: what the device renders
+  Vec3 torque = Vec3::Zero();   ///< N m, world, on the tool about its tip; 0 for a shaft that pivots
   Mat3 tangent = Mat3::Zero();  ///< dF/dp, N/m, symmetric without friction; the loads of other tools held
   int contacts = 0;             ///< touching faces, edges and vertices; or vertices that it grasps
   int iterations = 0;           ///< contact linearisations, all sub-places together
@@ -60,10 +61,11 @@ class ToolContact {
   void press_buttons(std::uint16_t buttons) noexcept {
     if (grip_) grip_->press(buttons);
   }
-  /// Goes to `p_W` (m) on a straight line in strides of half the tool's radius, so that a fast tool does not
-  /// jump through the surface; shorter ones with friction, which follows the path. Slip is measured from
-  /// where the tissue really was: at the end of the last step, then of each stride.
-  void walk(const Vec3& p_W, Tissue& tissue) noexcept;
+  /// Goes to `pose` on a straight line, turning evenly, in strides on which no point of its axis goes farther
+  /// than half its radius, so that a fast tool does not jump through the surface; shorter ones with friction,
+  /// which follows the path. Slip is measured from where the tissue really was: at the end of the last step,
+  /// then of each stride.
+  void walk(const ToolPose& pose, Tissue& tissue) noexcept;
   /// The organ has moved under it: the tool goes along by `way` (m) with its loads, so that it stands on the
   /// surface as before.
   void carry(const Vec3& way, Tissue& tissue) noexcept;
@@ -72,7 +74,8 @@ class ToolContact {
   Vec3 surface_velocity(const Vec3& p_W, const Tissue& tissue) const noexcept;
   /// Solves its last stride again, on the surface as it is free by now.
   void settle(Tissue& tissue) noexcept;
-  /// What it would feel at `p_W` (m); then it stands where it stood, and nothing has changed, bit by bit.
+  /// What it would feel at `p_W` (m), turned as it is; then it stands where it stood, and nothing has
+  /// changed, bit by bit.
   ToolForce probe(const Vec3& p_W, Tissue& tissue) noexcept;
   /// The surface nearest to a tool that stands at `p_W` outside the tissue, as it is now. O(triangles).
   SurfacePlane nearest(const Vec3& p_W, const Tissue& tissue) const noexcept;
@@ -89,9 +92,9 @@ class ToolContact {
   /// Whether this step has used up its contact linearisations.
   bool exhausted() const;
   const ToolForce& force() const { return force_; }
-  const Vec3& place() const { return place_; }
+  const Vec3& place() const { return place_.p_W; }
   double radius() const { return tool_.radius; }
-  const SphereTool& shape() const { return tool_; }
+  const Tool& shape() const { return tool_; }
   std::span<const Triangle> touchable() const { return finder_.touchable(); }
   /// Surface vertices without this tool, after `share`, m.
   std::span<const Vec3> free() const { return free_; }
@@ -100,19 +103,20 @@ class ToolContact {
   std::size_t bytes() const;
 
  private:
-  void go(const Vec3& p_W, Tissue& tissue) noexcept;
-  void pull(const Vec3& p_W, Tissue& tissue) noexcept;
+  void go(const ToolPose& pose, Tissue& tissue) noexcept;
+  void pull(const ToolPose& pose, Tissue& tissue) noexcept;
   void give_up(Tissue& tissue) noexcept;
-  bool escaped(const Vec3& p_W) const noexcept;
-  void enter(const Vec3& p_W, Tissue& tissue) noexcept;
+  bool escaped(const ToolPose& pose) const noexcept;
+  void enter(const ToolPose& pose, Tissue& tissue) noexcept;
   void start_stride(bool first, const Tissue& tissue) noexcept;
-  ContactForce touch(const Vec3& p_W, Tissue& tissue) noexcept;
+  double strides_to(const ToolPose& pose) const noexcept;
+  ContactForce touch(Tissue& tissue) noexcept;
   void release(Tissue& tissue) noexcept;
   void conclude(const ContactForce& contact, int iterations, Tissue& tissue) noexcept;
   std::span<const NodalLoad> own_loads() const { return std::span(loads_).subspan(others_); }
   void drop_own_loads() noexcept { loads_.erase(loads_.begin() + static_cast<long>(others_), loads_.end()); }
 
-  SphereTool tool_;
+  Tool tool_;
   ContactFinder finder_;
   ContactSolver solver_;
   ContactPatch patch_;
@@ -123,12 +127,12 @@ class ToolContact {
   std::size_t others_ = 0;          // how many of them are the others'
   std::vector<NodalLoad> kept_;     // its own, while it probes
   Eigen::VectorXd displacement_;    // of the patch nodes, then of the tip
-  Vec3 place_ = Vec3::Zero();       // tool centre of the last step
-  Vec3 tip_offset_ = Vec3::Zero();  // tip minus tool centre
+  ToolPose place_;                  // of the last step
+  Vec3 tip_offset_ = Vec3::Zero();  // where the tip is, minus place_
   // Where the last stride began; only with friction: the tissue's `before`, or surface_was_, and the tip.
   std::span<const Vec3> stride_from_;
   std::vector<Vec3> surface_was_, nodes_were_;
-  Vec3 tip_was_ = Vec3::Zero();
+  ToolPose tip_was_;
   bool placed_ = false, arrived_ = false;
   ToolForce force_;
 };

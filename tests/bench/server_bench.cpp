@@ -111,7 +111,7 @@ ContactPatch flat_patch(int side) {
 
 void run_contact_alone(benchmark::State& state) {
   constexpr int kSide = 7;
-  constexpr SphereTool kTool{0.005};
+  constexpr Tool kTool{0.005};
   const ContactPatch patch = flat_patch(kSide);
   ContactSolver solver(kSide * kSide, static_cast<int>(patch.triangles.size()));
   const auto places = slide({0.0004, 0.6 * kTool.radius, 0.0007}, Vec3::UnitX(), kTool.radius);

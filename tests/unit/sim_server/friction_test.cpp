@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kDt = 0.03, kRadius = 0.005, kMu = 0.3;
 
-using Places = std::vector<std::optional<Vec3>>;
+using Places = std::vector<std::optional<ToolPose>>;
 
 /// A block of soft tissue, 80 x 30 x 40 mm, top at y = 0, held at the bottom, nodes 5 mm apart.
 TetMesh block() {
@@ -167,7 +167,7 @@ TEST_CASE("friction: steps and looks ahead do not allocate, with two tools") {
   std::size_t allocations = 1;
   {
     const test::AllocationGuard guard;
-    const std::array<std::optional<Vec3>, 2> here{press(-0.006, 0.002), press(0.006, 0.002)},
+    const std::array<std::optional<ToolPose>, 2> here{press(-0.006, 0.002), press(0.006, 0.002)},
         there{press(-0.009, 0.002), press(0.004, 0.003)};
     two.step(here, kDt);
     two.step(there, kDt);

@@ -17,7 +17,7 @@ double touching(Simulation& liver) {
   while (high - low > 1e-9) {
     const double y = 0.5 * (low + high);
     liver.lift_tool();
-    (liver.step({kAbove[0], y, kAbove[2]}, kDt).contacts > 0 ? low : high) = y;
+    (liver.step(Vec3(kAbove[0], y, kAbove[2]), kDt).contacts > 0 ? low : high) = y;
   }
   return high;
 }

@@ -60,7 +60,7 @@ TEST_CASE("moving supports: a bar pulled at one end stretches evenly; the other 
   double t = 0;
   for (const double dt : {0.0, 0.01, 0.4, 0.033}) {
     t += dt;
-    bar.step({0, 1, 0}, dt);
+    bar.step(Vec3(0, 1, 0), dt);
     const double left = at(scene.fixed[0].motions[0], t)[0];
     const double right = at(scene.fixed[1].motions[0], t)[0] + at(scene.fixed[1].motions[1], t)[0];
     for (std::size_t v = 0; v < bar.positions().size(); ++v) {
@@ -75,7 +75,7 @@ TEST_CASE("moving supports: a common translation moves the body as one, at the v
   Simulation organ(block_scene({kBreath}), block());
   double t = 0;
   for (int i = 0; i < 20; ++i) {
-    organ.step({0, 1, 0}, 0.11);
+    organ.step(Vec3(0, 1, 0), 0.11);
     t += 0.11;
     for (std::size_t v = 0; v < organ.positions().size(); ++v) {
       const Vec3 rest = organ.mesh().vertices[organ.surface().vertices[v]];
@@ -121,8 +121,8 @@ TEST_CASE("a surface that comes up 6 mm in one step takes the tool in front of i
   CHECK((felt.force - right.force).norm() < 1e-6 * right.force.norm());
   // And a tool that stays is pushed, not passed.
   Simulation staying(block_scene({fast}), block());
-  staying.step({0.001, 0.0049, 0.002}, 0);
-  CHECK(staying.step({0.001, 0.0049, 0.002}, 0.02).force[1] > 0.2);
+  staying.step(Vec3(0.001, 0.0049, 0.002), 0);
+  CHECK(staying.step(Vec3(0.001, 0.0049, 0.002), 0.02).force[1] > 0.2);
 }
 
 TEST_CASE(

@@ -69,3 +69,20 @@ TEST_CASE("a tool slips freely unless the scene gives it friction") {
   const SceneFile wild(tool_sections(1) + "friction = 3\n");
   CHECK(wild.error().starts_with(wild.file + ":9: "));
 }
+
+TEST_CASE("a capsule needs a length, a trocar a pivot and a shaft no thicker than the tip") {
+  const auto tool = [](const std::string& keys) { return SceneFile("[[tool]]\n" + keys); };
+  const Tool capsule =
+      read_scene(tool("shape = \"capsule\"\nradius = 0.004\nlength = 0.02\n").file).tools[0].shape;
+  CHECK(capsule.length == 0.02);
+  CHECK_FALSE(capsule.is_sphere());
+  const Tool trocar = read_scene(tool("shape = \"trocar\"\npivot = [0, 0.1, 0]\n").file).tools[0].shape;
+  REQUIRE(trocar.trocar);
+  CHECK(trocar.trocar->pivot_W == Vec3(0, 0.1, 0));
+  CHECK(trocar.trocar->shaft_radius == 0.003);
+  const SceneFile thick = tool("shape = \"trocar\"\npivot = [0, 0.1, 0]\nshaft_radius = 0.006\n"),
+                  stray = tool("length = 0.02\n"), unknown = tool("shape = \"cone\"\n");
+  CHECK(thick.error().starts_with(thick.file + ":10: `shaft_radius`"));
+  CHECK(stray.error().starts_with(stray.file + ":8: unknown key"));
+  CHECK(unknown.error().starts_with(unknown.file + ":8: unknown shape"));
+}

@@ -52,7 +52,7 @@ double force_error(int elements) {
   scene.tools[0].reach = Box{Vec3(-reach, -reach, -1e-9), Vec3(reach, reach, 1)};
   Simulation block(scene, grid_block(across, across, down));
   const double depth = sneddon_depth(kContact);
-  const ToolForce force = block.step({0, 0, kSphere - depth}, 1);
+  const ToolForce force = block.step(Vec3(0, 0, kSphere - depth), 1);
   CHECK_FALSE(force.flagged);
   return force.force[2] / (sneddon_force(kContact) * layer_factor(depth)) - 1;
 }

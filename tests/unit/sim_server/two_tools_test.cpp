@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDt = 0.03, kRadius = 0.005;
 
-using Places = std::vector<std::optional<Vec3>>;
+using Places = std::vector<std::optional<ToolPose>>;
 
 /// A block of soft tissue, 80 x 30 x 40 mm around x = z = 0, top at y = 0, held at the bottom, nodes 5 mm
 /// apart.

@@ -27,7 +27,7 @@ TEST_CASE("out of reach: no force, nothing moves") {
   const ContactPatch patch = single_triangle(1e-3);
   ContactSolver solver(3, 1);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(12);
-  const ContactForce contact = solver.solve(patch, {kRadius}, {0, kRadius + 1e-6, 0}, u);
+  const ContactForce contact = solver.solve(patch, {kRadius}, Vec3(0, kRadius + 1e-6, 0), u);
   CHECK(contact.force == Vec3::Zero());
   CHECK(contact.contacts == 0);
   CHECK(u.isZero(0));
@@ -40,7 +40,7 @@ TEST_CASE("pressing the centroid of a face sinks it evenly: F = depth / (c / 3)"
   const ContactPatch patch = single_triangle(c);
   ContactSolver solver(3, 1);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(12);
-  const ContactForce contact = solver.solve(patch, {kRadius}, {0, kRadius - depth, 0}, u);
+  const ContactForce contact = solver.solve(patch, {kRadius}, Vec3(0, kRadius - depth, 0), u);
   CHECK(contact.converged);
   CHECK(contact.contacts == 1);
   CHECK(contact.force[1] ==
@@ -55,7 +55,7 @@ TEST_CASE("a rigid face with a soft tip is the penetration force k x depth") {
   const ContactPatch patch = single_triangle(0, 1.0 / 800);
   ContactSolver solver(3, 1);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(12);
-  const ContactForce contact = solver.solve(patch, {kRadius}, {0.001, kRadius - 0.002, 0.001}, u);
+  const ContactForce contact = solver.solve(patch, {kRadius}, Vec3(0.001, kRadius - 0.002, 0.001), u);
   CHECK(contact.force[1] == Approx(1.6).epsilon(1e-5));
   CHECK(solver.tangent(patch)(1, 1) == Approx(-800).epsilon(1e-5));
 }
@@ -82,7 +82,7 @@ TEST_CASE("a solve and its tangent do not allocate") {
   std::size_t allocations = 1;
   {
     const test::AllocationGuard guard;
-    solver.solve(patch, {kRadius}, {0.002, kRadius - 0.003, 0.001}, u);
+    solver.solve(patch, {kRadius}, Vec3(0.002, kRadius - 0.003, 0.001), u);
     solver.tangent(patch);
     allocations = guard.count();
   }

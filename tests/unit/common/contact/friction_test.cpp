@@ -11,7 +11,7 @@ using namespace palpate;
 namespace {
 
 constexpr double kRadius = 0.005, kMu = 0.3;
-constexpr SphereTool kTool{kRadius, kMu};
+constexpr Tool kTool{kRadius, kMu};
 
 /// One large triangle in the plane y = 0: corners of compliance `c` in all directions, uncoupled.
 ContactPatch single_triangle(double c, double tool_compliance) {
@@ -57,7 +57,7 @@ ContactPatch half_space(int n, double h, double young) {
 
 /// A tool on a path: the caller of the solver as server and client are.
 struct Path {
-  explicit Path(ContactPatch on, const SphereTool& with = kTool)
+  explicit Path(ContactPatch on, const Tool& with = kTool)
       : patch(std::move(on)),
         tool(with),
         solver(patch.nodes(), static_cast<int>(patch.triangles.size()), with.friction > 0),
@@ -84,7 +84,7 @@ struct Path {
   }
 
   ContactPatch patch;
-  SphereTool tool;
+  Tool tool;
   ContactSolver solver;
   Eigen::VectorXd u;
   std::vector<Vec3> nodes;
@@ -172,7 +172,7 @@ TEST_CASE("friction: a small push sideways meets the stiffness of bonded contact
   const ContactForce before = path.go(pressed(kDepth));
   std::vector<Contact> contacts;
   contacts.reserve(path.patch.triangles.size());
-  find_contacts_on_patch(path.nodes, path.patch.triangles, path.tip, kRadius + 1e-12, contacts);
+  find_contacts_on_patch(path.nodes, path.patch.triangles, kTool, path.tip, 1e-12, contacts);
   REQUIRE(static_cast<int>(contacts.size()) == before.contacts);
   const auto n = static_cast<Eigen::Index>(contacts.size());
   Eigen::MatrixXd w = Eigen::MatrixXd::Zero(3 * n, 3 * path.patch.nodes()), all(3 * n, 3);
