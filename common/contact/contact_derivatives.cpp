@@ -35,17 +35,31 @@ Mat3 ContactSolver::tangent(const ContactPatch& patch) noexcept {
   return friction_ > 0 ? k : Mat3(0.5 * (k + k.transpose()));
 }
 
+/// The nodes of the contacts considered: first those that no contact with a force is on, for which there is
+/// no curvature; the tip last.
 void ContactSolver::collect_nodes(int tip) noexcept {
+  constexpr int kUnseen = -1, kLoaded = -2;
   nodes_.clear();
-  std::fill_n(slot_of_node_.begin(), tip + 1, -1);
+  std::fill_n(slot_of_node_.begin(), tip + 1, kUnseen);
+  const auto for_each_node = [&](auto&& visit) {
+    for (const int k : considered_) {
+      for (int i = 0; i < contacts_[k].size; ++i) visit(k, contacts_[k].node[i]);
+    }
+  };
   const auto add = [&](int node) {
-    if (slot_of_node_[node] >= 0) return;
     slot_of_node_[node] = static_cast<int>(nodes_.size());
     nodes_.push_back(node);
   };
-  for (const int k : considered_) {
-    for (int i = 0; i < contacts_[k].size; ++i) add(contacts_[k].node[i]);
-  }
+  for_each_node([&](int k, int node) {
+    if (lambda_[rows_of_contact() * k] != 0) slot_of_node_[node] = kLoaded;
+  });
+  for_each_node([&](int, int node) {
+    if (slot_of_node_[node] == kUnseen) add(node);
+  });
+  unloaded_ = static_cast<int>(nodes_.size());
+  for_each_node([&](int, int node) {
+    if (slot_of_node_[node] == kLoaded) add(node);
+  });
   add(tip);
 }
 
@@ -129,7 +143,8 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
   }
 }
 
-/// C over the nodes considered, and I - C S.
+/// C over the nodes considered; and I - C S over the loaded ones, as elsewhere it is C S to their right and
+/// I.
 void ContactSolver::assemble_system(const ContactPatch& patch) noexcept {
   const auto count = static_cast<Eigen::Index>(nodes_.size()), size = 3 * count;
   auto compliance = compliance_.topLeftCorner(size, size);
@@ -140,9 +155,11 @@ void ContactSolver::assemble_system(const ContactPatch& patch) noexcept {
     }
   }
   compliance.bottomRightCorner<3, 3>().diagonal().setConstant(patch.tool_compliance);
-  auto system = system_.topLeftCorner(size, size);
+  const Eigen::Index first = 3 * unloaded_, loaded = size - first;
+  auto system = system_.topLeftCorner(loaded, loaded);
   system.setIdentity();
-  system.noalias() -= compliance * curvature_.topLeftCorner(size, size);
+  system.noalias() -=
+      compliance.bottomRightCorner(loaded, loaded) * curvature_.block(first, first, loaded, loaded);
 }
 
 void ContactSolver::differentiate_considered(const ContactPatch& patch) noexcept {
@@ -165,8 +182,14 @@ bool ContactSolver::respond(const ContactPatch& patch,
     response.noalias() = compliance * jacobian.transpose();
   }
   response_.block(0, n, size, loads.cols()).noalias() = compliance * loads;
-  if (!gauss_solve(system_.topLeftCorner(size, size), response_.topLeftCorner(size, n + loads.cols())))
-    return false;
+  const Eigen::Index first = 3 * unloaded_, loaded = size - first, columns = n + loads.cols();
+  auto at_loads = response_.block(first, 0, loaded, columns);
+  if (!gauss_solve(system_.topLeftCorner(loaded, loaded), at_loads)) return false;
+  if (first > 0) {
+    auto bent = bent_.topLeftCorner(loaded, columns);
+    bent.noalias() = curvature_.block(first, first, loaded, loaded) * at_loads;
+    response_.topLeftCorner(first, columns).noalias() += compliance.topRightCorner(first, loaded) * bent;
+  }
   auto delassus = delassus_.topLeftCorner(n, n);
   delassus.noalias() = jacobian * response;
   for (Eigen::Index row = 0; row < n; ++row)

@@ -145,7 +145,9 @@ class ContactSolver {
   Mat3 turned_ = Mat3::Zero();  // what the tool's turn in the stride did to an arm of now
   // Second order: the contacts considered, their nodes (the tip last), and matrices over those nodes.
   std::vector<int> considered_, nodes_, slot_of_node_;
-  Eigen::MatrixXd curvature_, compliance_, system_, jacobian_, spread_;  // spread: W^T, only with friction
+  int unloaded_ = 0;  // of nodes_, the first ones
+  Eigen::MatrixXd curvature_, compliance_, bent_, system_, jacobian_,
+      spread_;  // spread: W^T, only with friction
   Eigen::Matrix<double, Eigen::Dynamic, 3> moved_, rhs_;
 };
 
