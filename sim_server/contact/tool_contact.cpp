@@ -212,20 +212,6 @@ SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const n
   return {way / distance, std::max(distance - tool_.radius, 0.0)};
 }
 
-int ToolContact::nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept {
-  int nearest = touchable().front()[0];
-  double best = (tissue.positions[nearest] - p_W).squaredNorm();
-  for (const Triangle& t : touchable()) {
-    for (const int vertex : t) {
-      const double distance = (tissue.positions[vertex] - p_W).squaredNorm();
-      if (distance >= best) continue;
-      best = distance;
-      nearest = vertex;
-    }
-  }
-  return nearest;
-}
-
 /// No answer: the tool is taken away, and enters afresh with the next step.
 void ToolContact::give_up(Tissue& tissue) noexcept {
   lift(tissue);

@@ -77,10 +77,12 @@ class ToolContact {
   /// What it would feel at `p_W` (m), turned as it is; then it stands where it stood, and nothing has
   /// changed, bit by bit.
   ToolForce probe(const Vec3& p_W, Tissue& tissue) noexcept;
-  /// The surface nearest to a tool that stands at `p_W` outside the tissue, as it is now. O(triangles).
+  /// The surface nearest to a tool that stands at `p_W` outside the tissue, as it is now. O(vertices).
   SurfacePlane nearest(const Vec3& p_W, const Tissue& tissue) const noexcept;
-  /// The touchable vertex nearest to `p_W`, as the surface is now. O(triangles).
-  int nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept;
+  /// The touchable vertex nearest to `p_W`, as the surface is now. O(vertices).
+  int nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept {
+    return finder_.nearest_vertex(tissue.positions, p_W);
+  }
   /// Away from the tissue: no loads, no force.
   void lift(Tissue& tissue) noexcept;
   /// Says that `force` is not settled.
