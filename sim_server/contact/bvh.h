@@ -24,10 +24,10 @@ class Bvh {
   /// All triangles whose own box meets `box`, and some neighbours; ascending. Valid until the next call.
   std::span<const int> near(const Eigen::AlignedBox3d& box) noexcept;
 
-  /// The triangle that `squared_distance` (of a triangle, from `p`, m^2; at least that of its box) says is
-  /// nearest to `p`, of equals the first in the list; -1: there is none.
+  /// The triangle that `squared_distance` (of a triangle, m^2; at least that of its box) says is
+  /// nearest to `to`, of equals the first in the list; -1: there is none.
   template <class SquaredDistance>
-  int nearest(const Vec3& p, SquaredDistance squared_distance) const noexcept;
+  int nearest(const Eigen::AlignedBox3d& to, SquaredDistance squared_distance) const noexcept;
 
  private:
   /// Of the tree in depth-first order: its first child comes next, its second where the first one ends.
@@ -46,7 +46,7 @@ class Bvh {
 };
 
 template <class SquaredDistance>
-int Bvh::nearest(const Vec3& p, SquaredDistance squared_distance) const noexcept {
+int Bvh::nearest(const Eigen::AlignedBox3d& to, SquaredDistance squared_distance) const noexcept {
   double best = std::numeric_limits<double>::max();
   int nearest = -1;
   const auto look = [&](const Node& group) {
@@ -58,17 +58,17 @@ int Bvh::nearest(const Vec3& p, SquaredDistance squared_distance) const noexcept
       nearest = triangle;
     }
   };
-  const auto to = [&](int node) { return nodes_[node].box.squaredExteriorDistance(p); };
+  const auto away = [&](int node) { return nodes_[node].box.squaredExteriorDistance(to); };
   const int end = static_cast<int>(nodes_.size());
   if (end == 0) return -1;
   int likely = 0;  // first, so that the rest is soon seen to be farther
   while (!is_group(nodes_[likely])) {
     const int first = likely + 1, second = nodes_[first].end;
-    likely = to(first) <= to(second) ? first : second;
+    likely = away(first) <= away(second) ? first : second;
   }
   look(nodes_[likely]);
   for (int i = 0; i < end;) {
-    if (to(i) > best) {
+    if (away(i) > best) {
       i = nodes_[i].end;
       continue;
     }

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
-
-#include "common/contact/simplex_distance.h"
 
 namespace palpate::sim {
 namespace {
@@ -117,8 +116,23 @@ ContactFinder::Foot ContactFinder::foot(std::span<const Vec3> positions, const V
     return Foot{t, {w[0], w[1], w[2]}};
   };
   bvh_.refit(positions);
-  const int i = bvh_.nearest(p, [&](int k) { return (p - closest(k).of(positions)).squaredNorm(); });
+  const int i =
+      bvh_.nearest(box_around(p, p, 0), [&](int k) { return (p - closest(k).of(positions)).squaredNorm(); });
   return i < 0 ? Foot{} : closest(i);
+}
+
+NearestOnSegment ContactFinder::nearest(std::span<const Vec3> positions, const Vec3& p,
+                                        const Vec3& q) const noexcept {
+  const auto of = [&](int i) {
+    const Triangle& t = triangles_[i];
+    return nearest_on_segment(p, q, positions[t[0]], positions[t[1]], positions[t[2]]);
+  };
+  bvh_.refit(positions);
+  const int i = bvh_.nearest(box_around(p, q, 0), [&](int k) {
+    const double distance = of(k).distance;
+    return distance * distance;
+  });
+  return i < 0 ? NearestOnSegment{std::numeric_limits<double>::max(), 0, p} : of(i);
 }
 
 int ContactFinder::nearest_vertex(std::span<const Vec3> positions, const Vec3& p) const noexcept {
@@ -129,7 +143,8 @@ int ContactFinder::nearest_vertex(std::span<const Vec3> positions, const Vec3& p
     return *std::min_element(triangles_[i].begin(), triangles_[i].end(), closer);
   };
   bvh_.refit(positions);
-  return corner(bvh_.nearest(p, [&](int i) { return (positions[corner(i)] - p).squaredNorm(); }));
+  return corner(
+      bvh_.nearest(box_around(p, p, 0), [&](int i) { return (positions[corner(i)] - p).squaredNorm(); }));
 }
 
 }  // namespace palpate::sim

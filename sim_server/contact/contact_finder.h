@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/contact/contact_solver.h"
+#include "common/contact/simplex_distance.h"
 #include "sim_server/contact/bvh.h"
 
 namespace palpate::sim {
@@ -46,6 +47,8 @@ class ContactFinder {
   Vec3 nearest(std::span<const Vec3> positions, const Vec3& p) const noexcept {
     return foot(positions, p).of(positions);
   }
+  /// Where the axis from `p` to `q` and what is touchable come nearest to each other. O(vertices).
+  NearestOnSegment nearest(std::span<const Vec3> positions, const Vec3& p, const Vec3& q) const noexcept;
   /// The corner of touchable triangles nearest to `p`. There must be one. O(vertices).
   int nearest_vertex(std::span<const Vec3> positions, const Vec3& p) const noexcept;
 

@@ -88,7 +88,8 @@ void add_rows(const std::string& mesh, const Skin& skin) {
       [skin, bvh = Bvh(skin.rest, skin.triangles)](benchmark::State& state) mutable {
         time_calls(state, kHashed, [&] {
           bvh.refit(skin.now);
-          return bvh.nearest(skin.place, [&](int i) { return skin.squared_distance(skin.triangles[i]); });
+          return bvh.nearest(Eigen::AlignedBox3d(skin.place),
+                             [&](int i) { return skin.squared_distance(skin.triangles[i]); });
         });
       });
 }
