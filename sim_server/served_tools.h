@@ -35,6 +35,7 @@ class ServedTools {
  private:
   struct Holder {
     std::uint64_t session = 0, samples = 0;
+    protocol::ToolState before{};  // of the step before
   };
   void add_parts(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
                  protocol::ForceSample& sample) noexcept;

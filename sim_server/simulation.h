@@ -25,9 +25,9 @@ class Simulation {
   /// With a mesh made elsewhere.
   Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent);
 
-  /// Advances the tissue by `dt` (s >= 0; the run begins at time 0) with the tools at `places_W`, one for each
-  /// tool; where there is none, that tool is lifted. The forces, one for each tool, stay valid until the next
-  /// step.
+  /// Advances the tissue by `dt` (s >= 0; the run begins at time 0) with the tools at `places_W`, one for
+  /// each tool; where there is none, that tool is lifted. The forces, one for each tool, stay valid until the
+  /// next step.
   std::span<const ToolForce> step(std::span<const std::optional<ToolPose>> places_W, double dt) noexcept;
   /// The same with tool 0 alone, the others lifted.
   ToolForce step(const ToolPose& pose, double dt) noexcept;
@@ -36,6 +36,9 @@ class Simulation {
   void press_buttons(std::size_t tool, std::uint16_t buttons) noexcept {
     tools_[tool].press_buttons(buttons);
   }
+
+  /// How that tool's way bends in the next step.
+  void bend_way(std::size_t tool, const Bend& way) noexcept { tools_[tool].bend(way); }
 
   /// The force on a tool at `p_W` (m), near where it stands, to first order; without effect on anything.
   struct Linearised {

@@ -65,23 +65,31 @@ ClosestPair closest_pair(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3
   return {share(mixed * t - along_first, f), t};
 }
 
-double segment_triangle_distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
-                                 const Vec3& c) noexcept {
+NearestOnSegment nearest_on_segment(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                                    const Vec3& c) noexcept {
   const Vec3 normal = (b - a).cross(c - a);
   const double from = normal.dot(p - a), to = normal.dot(q - a);
   if (from * to < 0) {
-    const Vec3 x = p + from / (from - to) * (q - p);
-    if (closest_point(x, a, b, c).feature_size == 3) return 0;
+    const double share = from / (from - to);
+    const Vec3 x = p + share * (q - p);
+    if (closest_point(x, a, b, c).feature_size == 3) return {0, share, x};
   }
-  const auto of_end = [&](const Vec3& end) {
+  const auto of_end = [&](const Vec3& end, double share) -> NearestOnSegment {
     const auto w = closest_point(end, a, b, c).weight;
-    return (end - w[0] * a - w[1] * b - w[2] * c).norm();
+    return {(end - w[0] * a - w[1] * b - w[2] * c).norm(), share, w[0] * a + w[1] * b + w[2] * c};
   };
-  const auto of_edge = [&](const Vec3& u, const Vec3& v) {
+  const auto of_edge = [&](const Vec3& u, const Vec3& v) -> NearestOnSegment {
     const ClosestPair pair = closest_pair(p, q, u, v);
-    return (p + pair.on_first * (q - p) - u - pair.on_second * (v - u)).norm();
+    return {(p + pair.on_first * (q - p) - u - pair.on_second * (v - u)).norm(), pair.on_first,
+            u + pair.on_second * (v - u)};
   };
-  return std::min({of_end(p), of_end(q), of_edge(a, b), of_edge(b, c), of_edge(c, a)});
+  return std::min({of_end(p, 0), of_end(q, 1), of_edge(a, b), of_edge(b, c), of_edge(c, a)},
+                  [](const auto& one, const auto& other) { return one.distance < other.distance; });
+}
+
+double segment_triangle_distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                                 const Vec3& c) noexcept {
+  return nearest_on_segment(p, q, a, b, c).distance;
 }
 
 SimplexHessian distance_hessian(std::span<const Vec3> x, std::span<const double> weight, const Vec3& normal,

@@ -26,6 +26,15 @@ struct ClosestPair {
 /// other: there alone it is not continuous.
 ClosestPair closest_pair(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) noexcept;
 
+/// Where a segment (p, q) comes nearest to a triangle.
+struct NearestOnSegment {
+  double distance;    ///< m; 0 where they cross
+  double on_segment;  ///< share of its length from p
+  Vec3 on_triangle;   ///< m
+};
+NearestOnSegment nearest_on_segment(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
+                                    const Vec3& c) noexcept;
+
 /// Distance between the segment (p, q) and the triangle (a, b, c), m; 0 where they cross.
 double segment_triangle_distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                  const Vec3& c) noexcept;

@@ -5,8 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "common/contact/simplex_distance.h"
-
 namespace palpate::sim {
 namespace {
 
@@ -21,6 +19,11 @@ bool may_reach(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const
          ((a.cwiseMax(b).cwiseMax(c).array() + reach) >= p.cwiseMin(q).array()).all();
 }
 
+/// Around what lies within `reach` of p or q, or between.
+Eigen::AlignedBox3d box_around(const Vec3& p, const Vec3& q, double reach) noexcept {
+  return {p.cwiseMin(q).array() - reach, p.cwiseMax(q).array() + reach};
+}
+
 /// Whether the axis from p to q comes within `reach` of the triangle.
 bool reaches(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& q,
              double reach) noexcept {
@@ -33,10 +36,16 @@ bool reaches(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const V
 
 ContactFinder::ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed,
                              std::vector<Triangle> touchable, double reach, double length)
-    : closed_(std::move(closed)), triangles_(std::move(touchable)), slot_of_vertex_(rest.size(), -1) {
+    : closed_(std::move(closed)),
+      triangles_(std::move(touchable)),
+      bvh_(rest, triangles_),
+      slot_of_vertex_(rest.size(), -1) {
   for (const Vec3& p : rest) {
     int near = 0;
-    for (const Triangle& t : triangles_) near += may_reach(rest[t[0]], rest[t[1]], rest[t[2]], p, p, reach);
+    for (const int i : bvh_.near(box_around(p, p, reach))) {
+      const Triangle& t = triangles_[i];
+      near += may_reach(rest[t[0]], rest[t[1]], rest[t[2]], p, p, reach);
+    }
     max_triangles_ = std::max(max_triangles_, near);
   }
   const int all = static_cast<int>(triangles_.size());
@@ -61,7 +70,8 @@ bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, c
   patch.triangles.clear();
   vertices_.clear();
   bool fits = true;
-  for (const Triangle& t : triangles_) {
+  for (const int near : bvh_.near(box_around(p, q, reach))) {
+    const Triangle& t = triangles_[near];
     const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
     if (!may_reach(a, b, c, p, q, reach) || !reaches(a, b, c, p, q, reach)) continue;
     Triangle local;
@@ -77,6 +87,7 @@ bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, c
 
 void ContactFinder::gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p,
                            const Vec3& q, double reach, ContactPatch& patch) noexcept {
+  bvh_.refit(positions);
   while (!try_gather(positions, p, q, reach, patch)) reach *= 0.9;
   patch.free.clear();
   for (const int vertex : vertices_) patch.free.push_back(free[vertex]);
@@ -99,17 +110,41 @@ Vec3 ContactFinder::Foot::of(std::span<const Vec3> at_vertices) const noexcept {
 }
 
 ContactFinder::Foot ContactFinder::foot(std::span<const Vec3> positions, const Vec3& p) const noexcept {
-  double best = std::numeric_limits<double>::max();
-  Foot foot;
-  for (const Triangle& t : triangles_) {
-    const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
-    const auto w = closest_point(p, a, b, c).weight;
-    const Vec3 q = w[0] * a + w[1] * b + w[2] * c;
-    if ((p - q).squaredNorm() >= best) continue;
-    best = (p - q).squaredNorm();
-    foot = {t, {w[0], w[1], w[2]}};
-  }
-  return foot;
+  const auto closest = [&](int i) {
+    const Triangle& t = triangles_[i];
+    const auto w = closest_point(p, positions[t[0]], positions[t[1]], positions[t[2]]).weight;
+    return Foot{t, {w[0], w[1], w[2]}};
+  };
+  bvh_.refit(positions);
+  const int i =
+      bvh_.nearest(box_around(p, p, 0), [&](int k) { return (p - closest(k).of(positions)).squaredNorm(); });
+  return i < 0 ? Foot{} : closest(i);
+}
+
+NearestOnSegment ContactFinder::nearest(std::span<const Vec3> positions, const Vec3& p,
+                                        const Vec3& q) const noexcept {
+  const auto of = [&](int i) {
+    const Triangle& t = triangles_[i];
+    return nearest_on_segment(p, q, positions[t[0]], positions[t[1]], positions[t[2]]);
+  };
+  bvh_.refit(positions);
+  const int i = bvh_.nearest(box_around(p, q, 0), [&](int k) {
+    const double distance = of(k).distance;
+    return distance * distance;
+  });
+  return i < 0 ? NearestOnSegment{std::numeric_limits<double>::max(), 0, p} : of(i);
+}
+
+int ContactFinder::nearest_vertex(std::span<const Vec3> positions, const Vec3& p) const noexcept {
+  const auto closer = [&](int a, int b) {
+    return (positions[a] - p).squaredNorm() < (positions[b] - p).squaredNorm();
+  };
+  const auto corner = [&](int i) {
+    return *std::min_element(triangles_[i].begin(), triangles_[i].end(), closer);
+  };
+  bvh_.refit(positions);
+  return corner(
+      bvh_.nearest(box_around(p, p, 0), [&](int i) { return (positions[corner(i)] - p).squaredNorm(); }));
 }
 
 }  // namespace palpate::sim

@@ -3,7 +3,8 @@
 #include <vector>
 
 #include "common/contact/contact_solver.h"
-#include "sim_server/mesh/surface.h"
+#include "common/contact/simplex_distance.h"
+#include "sim_server/contact/bvh.h"
 
 namespace palpate::sim {
 
@@ -24,7 +25,8 @@ class ContactFinder {
 
   /// Puts the triangles of `positions` within `reach` of the axis from `p` to `q` (the same: a point) into
   /// the patch, with their `free` positions, and lists the surface vertex of each patch node in `vertices()`.
-  /// Where there are more than fit, the nearest stay. O(triangles).
+  /// Where there are more than fit, the nearest stay. O(vertices), to fit the boxes; a few triangles are
+  /// looked at.
   void gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p, const Vec3& q,
               double reach, ContactPatch& patch) noexcept;
   std::span<const int> vertices() const { return vertices_; }
@@ -39,12 +41,16 @@ class ContactFinder {
     std::array<double, 3> weight{};  ///< of its corners, sum 1; all 0: there is no surface
     Vec3 of(std::span<const Vec3> at_vertices) const noexcept;
   };
-  /// The touchable one nearest to `p`. O(triangles).
+  /// The touchable one nearest to `p`. O(vertices).
   Foot foot(std::span<const Vec3> positions, const Vec3& p) const noexcept;
   /// Its place, m.
   Vec3 nearest(std::span<const Vec3> positions, const Vec3& p) const noexcept {
     return foot(positions, p).of(positions);
   }
+  /// Where the axis from `p` to `q` and what is touchable come nearest to each other. O(vertices).
+  NearestOnSegment nearest(std::span<const Vec3> positions, const Vec3& p, const Vec3& q) const noexcept;
+  /// The corner of touchable triangles nearest to `p`. There must be one. O(vertices).
+  int nearest_vertex(std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
  private:
   /// Patch node of a surface vertex, given one if it has none yet; -1 when there is no room.
@@ -53,6 +59,7 @@ class ContactFinder {
                   ContactPatch& patch) noexcept;
 
   std::vector<Triangle> closed_, triangles_;
+  mutable Bvh bvh_;  // of triangles_; fitted anew for each question, as the surface is another each time
   std::vector<int> vertices_, slot_of_vertex_;
   int max_nodes_ = 0, max_triangles_ = 0;
 };

@@ -15,8 +15,10 @@ constexpr double kEscape = 3.0;  // of the tool radius: how far outside its free
 // Contact linearisations a step may use, on the way and to settle with other tools, before it answers from
 // where it got to.
 constexpr int kMaxIterations = 400, kMaxSettling = 400;
-constexpr double kFarthest = 1e3;  // m
-constexpr double kStill = 1e-8;    // of the tool radius: a surface that moved less did not move
+constexpr double kFarthest = 1e3;   // m
+constexpr double kMaxPlaces = 64;   // on the axis of a tool that appears: whether they are inside
+constexpr double kNearPivot = 0.1;  // share of the shaft next to the pivot that hardly moves with the tip
+constexpr double kStill = 1e-8;     // of the tool radius: a surface that moved less did not move
 
 double largest_move(std::span<const Vec3> from, std::span<const Vec3> to) noexcept {
   double largest = 0;
@@ -101,6 +103,7 @@ bool ToolContact::share(std::span<const ToolContact> tools, Tissue& tissue) noex
 void ToolContact::walk(const ToolPose& pose, Tissue& tissue) noexcept {
   if (grip_ && grip_->opens()) lift(tissue);
   go(pose, tissue);
+  bend_ = {};
   if (!grip_ || !grip_->closes() || !placed_ || !arrived_) return;
   grip_->close(place_.p_W, tissue.positions);
   if (holds()) pull(place_, tissue);
@@ -124,8 +127,10 @@ void ToolContact::go(const ToolPose& pose, Tissue& tissue) noexcept {
   if (!pose.p_W.allFinite() || pose.p_W.cwiseAbs().maxCoeff() > kFarthest || !pose.q_W.coeffs().allFinite())
     return give_up(tissue);
   if (holds()) return pull(pose, tissue);
-  if (!placed_ || (pose.p_W - place_.p_W).norm() > kMaxStrides * kStride * tool_.radius || escaped(pose))
-    enter(pose, tissue);
+  const bool anew =
+      !placed_ || (pose.p_W - place_.p_W).norm() > kMaxStrides * kStride * tool_.radius || escaped(pose);
+  if (anew || !arrived_) bend_ = {};
+  if (anew) enter(pose, tissue);
   const Vec3 way = pose.p_W - place_.p_W;
   const ToolPose from = place_;
   const double strides = strides_to(pose);
@@ -133,23 +138,39 @@ void ToolContact::go(const ToolPose& pose, Tissue& tissue) noexcept {
   int iterations = 0;
   for (double i = 1; i <= strides && iterations < kMaxIterations; ++i) {
     start_stride(i == 1, tissue);
-    place_ =
-        i == strides ? pose : ToolPose(from.p_W + (i / strides) * way, from.q_W.slerp(i / strides, pose.q_W));
+    const double share = i / strides;
+    place_ = i == strides
+                 ? pose
+                 : ToolPose(from.p_W + share * way + aside(share, way), from.q_W.slerp(share, pose.q_W));
     contact = touch(tissue);
     iterations += contact.iterations;
   }
-  arrived_ = place_.p_W == pose.p_W;  // else the next step goes on from here
+  // Else the next step goes on from here.
+  arrived_ = place_.p_W == pose.p_W && place_.q_W.coeffs() == pose.q_W.coeffs();
   conclude(contact, iterations, tissue);
 }
 
 double ToolContact::strides_to(const ToolPose& pose) const noexcept {
-  const double tip = (pose.p_W - place_.p_W).norm();
-  const double far = (far_end(tool_, pose) - far_end(tool_, place_)).norm();
-  const double way = std::max(tip, far);
+  // A far end goes around the tip on an arc, which is longer than its chord.
+  const double turn = tool_.length > 0 ? tool_.length * place_.q_W.angularDistance(pose.q_W) : 0;
+  const double way = (pose.p_W - place_.p_W).norm() + turn;
   const double strides = std::clamp(std::ceil(way / (kStride * tool_.radius)), 1.0, kMaxStrides);
   if (!has_friction()) return strides;
   const double wanted = std::ceil(way / (kFrictionStride * tool_.radius));
   return std::max(strides, std::min(wanted, kFrictionStrides));
+}
+
+/// At a share of the way: how far the cubic through both poses and velocities is from the line (Hermite).
+/// Never farther than a quarter of the way, or of a stride without friction, whatever the velocities.
+Vec3 ToolContact::aside(double share, const Vec3& way) const noexcept {
+  if (!has_friction()) return Vec3::Zero();
+  const double most = std::min(way.norm(), kStride * tool_.radius);
+  const auto bounded = [most](const Vec3& bend) -> Vec3 {
+    const double size = bend.norm();
+    if (!std::isfinite(size)) return Vec3::Zero();
+    return size <= most ? bend : most / size * bend;
+  };
+  return share * (1 - share) * ((1 - share) * bounded(bend_.begin) - share * bounded(bend_.end));
 }
 
 void ToolContact::carry(const Vec3& way, Tissue& tissue) noexcept {
@@ -209,21 +230,18 @@ SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const n
   const Vec3 way = p_W - finder_.nearest(tissue.positions, p_W);
   const double distance = way.norm();
   if (!(distance > 0)) return {};
-  return {way / distance, std::max(distance - tool_.radius, 0.0)};
-}
-
-int ToolContact::nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept {
-  int nearest = touchable().front()[0];
-  double best = (tissue.positions[nearest] - p_W).squaredNorm();
-  for (const Triangle& t : touchable()) {
-    for (const int vertex : t) {
-      const double distance = (tissue.positions[vertex] - p_W).squaredNorm();
-      if (distance >= best) continue;
-      best = distance;
-      nearest = vertex;
-    }
-  }
-  return nearest;
+  const SurfacePlane tip{way / distance, std::max(distance - tool_.radius, 0.0)};
+  if (tool_.is_sphere()) return tip;
+  const Vec3 far = far_end(tool_, {p_W, place_.q_W});
+  const NearestOnSegment axis = finder_.nearest(tissue.positions, p_W, far);
+  if (!(axis.distance > 0)) return {};
+  const double radius = tool_.trocar ? tool_.trocar->shaft_radius : tool_.radius;
+  // A tip that turns a shaft about its pivot has farther to go than the shaft.
+  const double share = tool_.trocar ? std::max(1 - axis.on_segment, kNearPivot) : 1;
+  const double gap = std::max(axis.distance - radius, 0.0) / share;
+  if (gap >= tip.gap) return tip;
+  const Vec3 on_axis = p_W + axis.on_segment * (far - p_W);
+  return {(on_axis - axis.on_triangle) / axis.distance, gap};
 }
 
 /// No answer: the tool is taken away, and enters afresh with the next step.
@@ -242,25 +260,41 @@ void ToolContact::lift(Tissue& tissue) noexcept {
 /// Whether a tool in contact has left the free organ so far behind that it only drags the surface along with
 /// it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
 bool ToolContact::escaped(const ToolPose& pose) const noexcept {
-  if (force_.contacts == 0 || !tool_.is_sphere()) return false;
-  const Vec3& p = pose.p_W;
-  return (finder_.nearest(free_, p) - p).norm() > kEscape * tool_.radius && !finder_.inside(free_, p);
+  if (force_.contacts == 0) return false;
+  const Vec3 &p = pose.p_W, far = far_end(tool_, pose);
+  const double distance =
+      tool_.is_sphere() ? (finder_.nearest(free_, p) - p).norm() : finder_.nearest(free_, p, far).distance;
+  return distance > kEscape * tool_.radius && !finder_.inside(free_, p);
 }
 
-/// The tool appears at `pose`. If an end of its axis is inside the organ it is taken to have come in through
-/// the surface nearest to that end, as it is turned now.
+/// The tool appears at `pose`. If part of its axis is inside the organ, it is taken to have come in through
+/// the surface nearest to the deepest place of the axis, as it is turned now.
 void ToolContact::enter(const ToolPose& pose, Tissue& tissue) noexcept {
   release(tissue);
   placed_ = true;
   place_ = pose;
-  for (const Vec3& end : {pose.p_W, tool_.trocar ? pose.p_W : far_end(tool_, pose)}) {
-    if (!finder_.inside(tissue.positions, end)) continue;
-    const Vec3 door = finder_.nearest(tissue.positions, end);
-    const Vec3 outward = (door - end).normalized();
-    place_.p_W = door + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
-    if (end != pose.p_W) place_.p_W += pose.p_W - end;
-    return;
+  const Vec3 axis = far_end(tool_, pose) - pose.p_W;
+  const double pieces = std::min(std::ceil(axis.norm() / tool_.radius), kMaxPlaces);
+  double deepest = -1;
+  for (double i = 0; i <= pieces; ++i) {
+    const double share = pieces > 0 ? i / pieces : 0;
+    const Vec3 x = pose.p_W + share * axis;
+    if ((tool_.trocar && 1 - share < kNearPivot) || !finder_.inside(tissue.positions, x)) continue;
+    const Vec3 door = finder_.nearest(tissue.positions, x);
+    if ((door - x).norm() <= deepest) continue;
+    deepest = (door - x).norm();
+    place_.p_W = place_before(pose, x, share, door);
   }
+}
+
+/// Where the tip was when the place `inside` on the axis, at that share of it, stood before `door`.
+Vec3 ToolContact::place_before(const ToolPose& pose, const Vec3& inside, double share,
+                               const Vec3& door) const noexcept {
+  const Vec3 outward = (door - inside).normalized();
+  const Vec3 outside = door + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
+  if (tool_.trocar && share > 0)
+    return tool_.trocar->pivot_W + (outside - tool_.trocar->pivot_W) / (1 - share);
+  return outside + (pose.p_W - inside);
 }
 
 void ToolContact::start_stride(bool first, const Tissue& tissue) noexcept {

@@ -24,7 +24,13 @@ struct ToolForce {
 /// The touchable surface nearest to a tool.
 struct SurfacePlane {
   Vec3 normal_W = Vec3::Zero();  ///< towards the tool, unit
-  double gap = 0;                ///< between surface and tool, m; 0 where it touches
+  double gap = 0;                ///< how far the tip can go against the normal, m; 0 where the tool touches
+};
+
+/// How the way of a tool from one pose to the next departs from a straight line: how much farther it would
+/// have come at the velocity that it had at the beginning, and at the end, m.
+struct Bend {
+  Vec3 begin = Vec3::Zero(), end = Vec3::Zero();
 };
 
 /// The tissue as all tools share it. Positions are those of the surface vertices, m, world.
@@ -61,10 +67,12 @@ class ToolContact {
   void press_buttons(std::uint16_t buttons) noexcept {
     if (grip_) grip_->press(buttons);
   }
-  /// Goes to `pose` on a straight line, turning evenly, in strides on which no point of its axis goes farther
-  /// than half its radius, so that a fast tool does not jump through the surface; shorter ones with friction,
-  /// which follows the path. Slip is measured from where the tissue really was: at the end of the last step,
-  /// then of each stride.
+  /// How the way of the next `walk` bends; only friction asks for it.
+  void bend(const Bend& way) noexcept { bend_ = way; }
+  /// Goes to `pose` on a straight line (with friction: as `bend` said), turning evenly, in strides on which
+  /// no point of its axis goes farther than half its radius, so that a fast tool does not jump through the
+  /// surface; shorter ones with friction, which follows the path. Slip is measured from where the tissue
+  /// really was: at the end of the last step, then of each stride.
   void walk(const ToolPose& pose, Tissue& tissue) noexcept;
   /// The organ has moved under it: the tool goes along by `way` (m) with its loads, so that it stands on the
   /// surface as before.
@@ -77,10 +85,13 @@ class ToolContact {
   /// What it would feel at `p_W` (m), turned as it is; then it stands where it stood, and nothing has
   /// changed, bit by bit.
   ToolForce probe(const Vec3& p_W, Tissue& tissue) noexcept;
-  /// The surface nearest to a tool that stands at `p_W` outside the tissue, as it is now. O(triangles).
+  /// The surface nearest to a tool, all of it, with its tip at `p_W` outside the tissue, as it is now.
+  /// O(vertices).
   SurfacePlane nearest(const Vec3& p_W, const Tissue& tissue) const noexcept;
-  /// The touchable vertex nearest to `p_W`, as the surface is now. O(triangles).
-  int nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept;
+  /// The touchable vertex nearest to `p_W`, as the surface is now. O(vertices).
+  int nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept {
+    return finder_.nearest_vertex(tissue.positions, p_W);
+  }
   /// Away from the tissue: no loads, no force.
   void lift(Tissue& tissue) noexcept;
   /// Says that `force` is not settled.
@@ -109,7 +120,9 @@ class ToolContact {
   bool escaped(const ToolPose& pose) const noexcept;
   void enter(const ToolPose& pose, Tissue& tissue) noexcept;
   void start_stride(bool first, const Tissue& tissue) noexcept;
+  Vec3 place_before(const ToolPose& pose, const Vec3& inside, double share, const Vec3& door) const noexcept;
   double strides_to(const ToolPose& pose) const noexcept;
+  Vec3 aside(double share, const Vec3& way) const noexcept;
   ContactForce touch(Tissue& tissue) noexcept;
   void release(Tissue& tissue) noexcept;
   void conclude(const ContactForce& contact, int iterations, Tissue& tissue) noexcept;
@@ -133,6 +146,7 @@ class ToolContact {
   std::span<const Vec3> stride_from_;
   std::vector<Vec3> surface_was_, nodes_were_;
   ToolPose tip_was_;
+  Bend bend_;
   bool placed_ = false, arrived_ = false;
   ToolForce force_;
 };

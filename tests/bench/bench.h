@@ -17,6 +17,7 @@ namespace palpate::bench {
 void add_law_rows();
 void add_protocol_rows();
 void add_capture_rows();
+void add_finder_rows();
 void add_server_rows();
 void add_setup_rows();
 void add_falcon_rows();

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
     add_law_rows();
     add_protocol_rows();
     add_capture_rows();
+    add_finder_rows();
     add_server_rows();
     add_setup_rows();
 #ifdef PALPATE_WITH_USB

@@ -83,6 +83,78 @@ TEST_CASE("a capsule that turns by a right angle in one step presses the surface
   CHECK((force.force - expected.force).norm() < 0.02 * expected.force.norm());
 }
 
+TEST_CASE("a capsule whose turn takes more than a step has says so, and gets there in the next ones") {
+  Simulation fast = organ({.radius = kRadius, .length = 0.02}),
+             slow = organ({.radius = kRadius, .length = 0.02});
+  const auto turned = [](double angle) { return Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ())) * kLevel; };
+  const Vec3 p(0, 0.011, 0.0013);  // in the end 14 mm deep
+  fast.step({p, turned(0)}, kDt);
+  slow.step({p, turned(0)}, kDt);
+  ToolForce force = fast.step({p, turned(-1.5)}, kDt), expected;
+  CHECK(force.flagged);  // it has not arrived, though its tip has not moved
+  for (int i = 0; i < 5; ++i) force = fast.step({p, turned(-1.5)}, kDt);
+  for (int i = 1; i <= 15; ++i) expected = slow.step({p, turned(-0.1 * i)}, kDt);
+  CHECK_FALSE(force.flagged);
+  CHECK((force.force - expected.force).norm() < 1e-3 * expected.force.norm());
+}
+
+TEST_CASE("a tool that appears with its axis through the organ has come in through the nearest surface") {
+  // Along z through the block just under its top, both ends outside.
+  Simulation capsule = organ({.radius = kRadius, .length = 0.06}),
+             came = organ({.radius = kRadius, .length = 0.06});
+  const Vec3 through(0.0013, -0.002, -0.03);
+  const ToolForce appeared = capsule.step({through, Quat::Identity()}, kDt);
+  came.step({through + Vec3(0, 0.02, 0), Quat::Identity()}, kDt);
+  const ToolForce expected = came.step({through, Quat::Identity()}, kDt);
+  CHECK(appeared.force[1] > 0.1);
+  CHECK((appeared.force - expected.force).norm() < 1e-3 * expected.force.norm());
+
+  const Tool tool{.radius = 0.004, .trocar = Tool::Trocar{Vec3(-0.1, 0.0, 0.0013), 0.003}};
+  Simulation instrument = organ(tool), pressed = organ(tool);
+  const Vec3 tip(0.06, -0.004, 0.0013);
+  const ToolForce at_once = instrument.step(tip, kDt);
+  pressed.step(tip + Vec3(0, 0.03, 0), kDt);
+  const ToolForce slowly = pressed.step(tip, kDt);
+  CHECK(at_once.force[1] > 0.01);
+  CHECK((at_once.force - slowly.force).norm() < 1e-3 * slowly.force.norm());
+}
+
+TEST_CASE("a tool with an axis that has left the organ far behind lets go of it") {
+  const Tool tools[] = {{.radius = kRadius, .length = 0.015},
+                        {.radius = 0.004, .trocar = Tool::Trocar{Vec3(-0.1, 0.05, 0.0013), 0.003}}};
+  for (const Tool& tool : tools) {
+    Simulation simulation = organ(tool);
+    simulation.step({Vec3(0, 0.02, 0.0013), kLevel}, kDt);
+    REQUIRE(simulation.step({Vec3(0, 0.002, 0.0013), kLevel}, kDt).contacts > 0);
+    const ToolForce away = simulation.step({Vec3(0, 0.05, 0.0013), kLevel}, kDt);
+    CHECK(away.contacts == 0);
+    CHECK(away.force == Vec3::Zero());
+  }
+}
+
+TEST_CASE("before a shaft touches, the nearest surface is told for all of it, as the tip has to go") {
+  // Level over the block, the pivot 100 mm left of its middle; the tip is off the right edge.
+  const Tool tool{.radius = 0.005, .trocar = Tool::Trocar{Vec3(-0.1, 0.004, 0.0013), 0.002}};
+  Simulation simulation = organ(tool);
+  const Vec3 tip(0.1, 0.004, 0.0013);
+  CHECK(simulation.step(tip, kDt).contacts == 0);
+  const SurfacePlane plane = simulation.linearise(0, tip, nullptr).plane;
+  CHECK(plane.normal_W[1] == Approx(1).epsilon(1e-6));
+  // 2 mm clear all along the block; where on a parallel edge is a matter of choice: x from -40 to 40 mm.
+  CHECK(plane.gap >= Approx(0.002 * 0.2 / 0.14));
+  CHECK(plane.gap <= Approx(0.002 * 0.2 / 0.06));
+  const Tool lying{.radius = kRadius, .length = 0.05};
+  Simulation capsule = organ(lying);
+  const Quat tilted = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3(0.8, -0.6, 0));
+  const Vec3 high(-0.02, 0.037, 0.0013);  // its far end is 30 mm lower: 7 mm above the top
+  CHECK(capsule.step({high, tilted}, kDt).contacts == 0);
+  const auto linearised = capsule.linearise(0, high, nullptr);
+  const SurfacePlane& below = linearised.plane;
+  CHECK(below.gap == Approx(0.002));
+  CHECK(below.normal_W[1] == Approx(1));
+  CHECK(linearised.tangent(1, 1) < 0);
+}
+
 TEST_CASE("an instrument at a trocar: its shaft presses the edge of the organ and its tip is free") {
   // Over the left edge of the block, the tip beyond its right edge and above it.
   Simulation simulation = organ({.radius = 0.004, .trocar = Tool::Trocar{Vec3(-0.1, 0.05, 0.0013), 0.003}});

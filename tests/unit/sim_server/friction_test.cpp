@@ -1,4 +1,5 @@
 // Friction on the organ: strides, probes, several tools.
+#include <cmath>
 #include <optional>
 
 #include "sim_server/mesh/shapes.h"
@@ -65,6 +66,38 @@ TEST_CASE("friction on a rigid organ: mu F_n against the slide, whatever the ste
     CHECK(force.force[1] == Approx(1.6).epsilon(1e-4));
     CHECK(force.force[0] == Approx(-kMu * 1.6).epsilon(1e-4));
   }
+}
+
+TEST_CASE("friction: the way between two places is bent as the velocities say; wild ones hardly matter") {
+  // Round an arc of 4 mm radius, 30 degrees a step, 2 mm deep.
+  constexpr double kTurn = 0.5, kArc = 0.004;
+  const auto at = [](double phi) { return press(kArc * std::cos(phi), 0.002, kArc * std::sin(phi)); };
+  const auto velocity = [](double phi) -> Vec3 {
+    return kArc * kTurn / kDt * Vec3(-std::sin(phi), 0, std::cos(phi));
+  };
+  Block truth, straight, bent, wild;
+  for (Block* block : {&truth, &straight, &bent, &wild}) {
+    block->step(press(kArc, -0.001, 0), kDt);
+    block->step(at(0), kDt);
+  }
+  double by_line = 0, by_cubic = 0;
+  for (int i = 1; i <= 12; ++i) {
+    const double from = kTurn * (i - 1), to = kTurn * i;
+    const Vec3 way = at(to) - at(from);
+    Vec3 expected;
+    for (int k = 1; k <= 60; ++k) expected = truth.step(at(from + kTurn * k / 60), kDt / 60).force;
+    bent.bend_way(0, {kDt * velocity(from) - way, kDt * velocity(to) - way});
+    wild.bend_way(0,
+                  {1e200 * Vec3::UnitY(), i % 2 == 0 ? Vec3(1e300, 1e300, 1e300) : Vec3(0, std::nan(""), 0)});
+    const Vec3 line = straight.step(at(to), kDt).force;
+    by_line = std::max(by_line, relative(line, expected));
+    by_cubic = std::max(by_cubic, relative(bent.step(at(to), kDt).force, expected));
+    const ToolForce any = wild.step(at(to), kDt);
+    CHECK_FALSE(any.flagged);
+    CHECK(relative(any.force, line) < 0.1);
+  }
+  CAPTURE(by_line, by_cubic);
+  CHECK(by_cubic < 0.5 * by_line);
 }
 
 TEST_CASE("friction: a tool at rest holds its force for as long as it stays") {

@@ -1,0 +1,91 @@
+#include "sim_server/contact/bvh.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace palpate::sim {
+namespace {
+
+constexpr int kGroup = 16;  // triangles
+// A point of a triangle, as computed, may lie outside its box by rounding; m, up to places 1 km away.
+constexpr double kRounding = 1e-9;
+
+std::vector<Vec3> centres_of(std::span<const Vec3> x, std::span<const Triangle> triangles) {
+  std::vector<Vec3> centres;
+  for (const Triangle& t : triangles) centres.push_back((x[t[0]] + x[t[1]] + x[t[2]]) / 3);
+  return centres;
+}
+
+}  // namespace
+
+Bvh::Bvh(std::span<const Vec3> rest, std::span<const Triangle> triangles)
+    : triangles_(triangles.size()), near_(triangles.size()) {
+  std::iota(triangles_.begin(), triangles_.end(), 0);
+  if (!triangles.empty())
+    build(centres_of(rest, triangles), triangles, 0, static_cast<int>(triangles.size()));
+  refit(rest);
+}
+
+/// Adds the node of a piece of triangles_, and all below it; halves it across its longest side.
+void Bvh::build(std::span<const Vec3> centres, std::span<const Triangle> triangles, int begin, int end) {
+  const std::size_t node = nodes_.size();
+  nodes_.push_back({.box = {}, .end = 0, .triangle = begin, .triangle_end = begin});
+  if (end - begin <= kGroup) {
+    const auto first = static_cast<long>(vertices_.size());
+    for (int k = begin; k < end; ++k)
+      vertices_.insert(vertices_.end(), triangles[triangles_[k]].begin(), triangles[triangles_[k]].end());
+    std::sort(vertices_.begin() + first, vertices_.end());
+    vertices_.erase(std::unique(vertices_.begin() + first, vertices_.end()), vertices_.end());
+    nodes_[node].triangle_end = end;
+    nodes_[node].vertex = static_cast<int>(first);
+    nodes_[node].vertex_end = static_cast<int>(vertices_.size());
+  } else {
+    Eigen::AlignedBox3d box;
+    for (int k = begin; k < end; ++k) box.extend(centres[triangles_[k]]);
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const int middle = begin + (end - begin) / 2;
+    const auto before = [&](int a, int b) {
+      return std::pair(centres[a][axis], a) < std::pair(centres[b][axis], b);
+    };
+    std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end,
+                     before);
+    build(centres, triangles, begin, middle);
+    build(centres, triangles, middle, end);
+  }
+  nodes_[node].end = static_cast<int>(nodes_.size());
+}
+
+void Bvh::refit(std::span<const Vec3> positions) noexcept {
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    Node& node = nodes_[i];
+    if (is_group(node)) {
+      Vec3 min = positions[vertices_[node.vertex]], max = min;
+      for (int k = node.vertex + 1; k < node.vertex_end; ++k) {
+        min = min.cwiseMin(positions[vertices_[k]]);
+        max = max.cwiseMax(positions[vertices_[k]]);
+      }
+      node.box = Eigen::AlignedBox3d(min.array() - kRounding, max.array() + kRounding);
+    } else {
+      const Node& first = nodes_[i + 1];
+      node.box = first.box.merged(nodes_[first.end].box);
+    }
+  }
+}
+
+std::span<const int> Bvh::near(const Eigen::AlignedBox3d& box) noexcept {
+  auto last = near_.begin();
+  for (int i = 0; i < static_cast<int>(nodes_.size());) {
+    const Node& node = nodes_[i];
+    if (!node.box.intersects(box)) {
+      i = node.end;
+      continue;
+    }
+    last = std::copy(triangles_.begin() + node.triangle, triangles_.begin() + node.triangle_end, last);
+    ++i;
+  }
+  std::sort(near_.begin(), last);
+  return {near_.begin(), last};
+}
+
+}  // namespace palpate::sim

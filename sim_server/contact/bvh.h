@@ -1,0 +1,81 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "sim_server/mesh/surface.h"
+
+namespace palpate::sim {
+
+/// Boxes around groups of triangles that lie near each other, boxes around pairs of these, and so on up to
+/// one: what is far is passed over in few questions. The tree is that of the surface it was built on; `refit`
+/// fits the boxes to that surface deformed. Triangles are known by their index in the list it was built on.
+/// Nothing but the constructor allocates. One thread.
+class Bvh {
+ public:
+  /// `rest`: surface vertices, m. O(n log^2 n).
+  Bvh(std::span<const Vec3> rest, std::span<const Triangle> triangles);
+
+  /// To the vertices where they are now. Reads each about once: O(n), but a fraction of a pass over the
+  /// triangles.
+  void refit(std::span<const Vec3> positions) noexcept;
+
+  /// All triangles whose own box meets `box`, and some neighbours; ascending. Valid until the next call.
+  std::span<const int> near(const Eigen::AlignedBox3d& box) noexcept;
+
+  /// The triangle that `squared_distance` (of a triangle, m^2; at least that of its box) says is
+  /// nearest to `to`, of equals the first in the list; -1: there is none.
+  template <class SquaredDistance>
+  int nearest(const Eigen::AlignedBox3d& to, SquaredDistance squared_distance) const noexcept;
+
+ private:
+  /// Of the tree in depth-first order: its first child comes next, its second where the first one ends.
+  struct Node {
+    Eigen::AlignedBox3d box;
+    int end;                         // of all below it
+    int triangle, triangle_end;      // in triangles_; a group has some, the others none
+    int vertex = 0, vertex_end = 0;  // in vertices_, of a group
+  };
+  bool is_group(const Node& node) const { return node.triangle < node.triangle_end; }
+  void build(std::span<const Vec3> centres, std::span<const Triangle> triangles, int begin, int end);
+
+  std::vector<Node> nodes_;
+  std::vector<int> triangles_, vertices_;  // of the groups, one after the other
+  std::vector<int> near_;
+};
+
+template <class SquaredDistance>
+int Bvh::nearest(const Eigen::AlignedBox3d& to, SquaredDistance squared_distance) const noexcept {
+  double best = std::numeric_limits<double>::max();
+  int nearest = -1;
+  const auto look = [&](const Node& group) {
+    for (int k = group.triangle; k < group.triangle_end; ++k) {
+      const int triangle = triangles_[k];
+      const double distance = squared_distance(triangle);
+      if (distance > best || (distance == best && triangle >= nearest)) continue;
+      best = distance;
+      nearest = triangle;
+    }
+  };
+  const auto away = [&](int node) { return nodes_[node].box.squaredExteriorDistance(to); };
+  const int end = static_cast<int>(nodes_.size());
+  if (end == 0) return -1;
+  int likely = 0;  // first, so that the rest is soon seen to be farther
+  while (!is_group(nodes_[likely])) {
+    const int first = likely + 1, second = nodes_[first].end;
+    likely = away(first) <= away(second) ? first : second;
+  }
+  look(nodes_[likely]);
+  for (int i = 0; i < end;) {
+    if (away(i) > best) {
+      i = nodes_[i].end;
+      continue;
+    }
+    if (is_group(nodes_[i])) look(nodes_[i]);
+    ++i;
+  }
+  return nearest;
+}
+
+}  // namespace palpate::sim

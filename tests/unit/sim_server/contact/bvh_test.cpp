@@ -1,0 +1,183 @@
+// What the hierarchy finds is what a pass over all triangles finds, bit by bit.
+#include "sim_server/contact/bvh.h"
+
+#include <algorithm>
+
+#include "common/contact/simplex_distance.h"
+#include "sim_server/contact/contact_finder.h"
+#include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/mesh/shapes.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/catch.h"
+#include "tests/support/random.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+/// A surface, at rest and deformed by some bumps and a turn.
+struct Skin {
+  explicit Skin(const TetMesh& mesh) : surface(boundary_surface(mesh)) {
+    for (const int vertex : surface.vertices) rest.push_back(mesh.vertices[vertex]);
+    now = rest;
+    for (const Vec3& x : rest) box.extend(x);
+  }
+  void deform(test::Random& random) {
+    const Vec3 push = random.vector(0.02);
+    const Vec3& at = rest[random.bits() % rest.size()];
+    const Eigen::AngleAxisd turn(random.between(-0.5, 0.5), random.vector(1).normalized());
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      now[i] = turn * (rest[i] + push * std::exp(-(rest[i] - at).norm() / 0.02));
+  }
+  Vec3 place(test::Random& random) const {
+    const Vec3 share = random.vector(0.75);
+    return box.center() + share.cwiseProduct(box.sizes());
+  }
+  Surface surface;
+  std::vector<Vec3> rest, now;
+  Eigen::AlignedBox3d box;
+};
+
+TetMesh liver() {
+  return read_mesh(PALPATE_SOURCE_DIR "/configs/meshes/liver.msh");
+}
+
+/// A cube of edges 8 mm, 80 mm wide, drawn into a ball: many of its triangles are equally far from its
+/// middle.
+TetMesh ball() {
+  std::vector<double> line;
+  for (int i = -5; i <= 5; ++i) line.push_back(0.008 * i);
+  TetMesh mesh = grid_block(line, line, line);
+  for (Vec3& x : mesh.vertices) {
+    if (x.norm() > 0) x *= x.cwiseAbs().maxCoeff() / x.norm();
+  }
+  return mesh;
+}
+
+double distance_of(const Skin& skin, const Vec3& p, const Vec3& q, const Triangle& t) {
+  const Vec3 &a = skin.now[t[0]], &b = skin.now[t[1]], &c = skin.now[t[2]];
+  if (p != q) return segment_triangle_distance(p, q, a, b, c);
+  const auto w = closest_point(p, a, b, c).weight;
+  return (p - w[0] * a - w[1] * b - w[2] * c).norm();
+}
+
+/// The triangles of the patch as they are numbered on the surface.
+std::vector<Triangle> gathered(ContactFinder& finder, const Skin& skin, const Vec3& p, const Vec3& q,
+                               double reach, ContactPatch& patch) {
+  finder.gather(skin.now, skin.rest, p, q, reach, patch);
+  std::vector<Triangle> triangles;
+  for (const auto& t : patch.triangles)
+    triangles.push_back({finder.vertices()[t[0]], finder.vertices()[t[1]], finder.vertices()[t[2]]});
+  return triangles;
+}
+
+/// Vertices in the order in which the triangles name them.
+std::vector<int> in_order(const std::vector<Triangle>& triangles) {
+  std::vector<int> vertices;
+  for (const Triangle& t : triangles) {
+    for (const int vertex : t) {
+      if (std::find(vertices.begin(), vertices.end(), vertex) == vertices.end()) vertices.push_back(vertex);
+    }
+  }
+  return vertices;
+}
+
+void check_gather(Skin skin, double reach, double length) {
+  test::Random random(7);
+  // Room for everything, so that nothing is left out.
+  ContactFinder finder(skin.rest, skin.surface.triangles, skin.surface.triangles, 1, length);
+  ContactPatch patch;
+  patch.reserve(finder.max_nodes(), finder.max_triangles());
+  std::size_t found = 0;
+  for (int i = 0; i < 60; ++i) {
+    if (i % 3 == 0) skin.deform(random);
+    const Vec3 p = skin.place(random), q = length == 0 ? p : p + length * random.vector(1).normalized();
+    std::vector<Triangle> expected;
+    for (const Triangle& t : skin.surface.triangles) {
+      if (distance_of(skin, p, q, t) <= reach) expected.push_back(t);
+    }
+    CHECK(gathered(finder, skin, p, q, reach, patch) == expected);
+    const auto vertices = finder.vertices();
+    CHECK(std::vector<int>(vertices.begin(), vertices.end()) == in_order(expected));
+    found += expected.size();
+  }
+  CHECK(found > 300);
+}
+
+void check_nearest(Skin skin) {
+  test::Random random(8);
+  const auto& triangles = skin.surface.triangles;
+  const ContactFinder finder(skin.rest, triangles, triangles, 0.01);
+  for (int i = 0; i < 300; ++i) {
+    if (i % 3 == 1) skin.deform(random);
+    const Vec3 p = i % 10 == 0 ? Vec3(Vec3::Zero()) : skin.place(random);
+    const auto to = [&](const Triangle& t) {
+      const auto w = closest_point(p, skin.now[t[0]], skin.now[t[1]], skin.now[t[2]]).weight;
+      return (p - (w[0] * skin.now[t[0]] + w[1] * skin.now[t[1]] + w[2] * skin.now[t[2]])).squaredNorm();
+    };
+    const auto closer = [&](const Triangle& a, const Triangle& b) { return to(a) < to(b); };
+    const auto foot = finder.foot(skin.now, p);
+    CHECK(foot.triangle == *std::min_element(triangles.begin(), triangles.end(), closer));
+    CHECK((foot.of(skin.now) - p).squaredNorm() == to(foot.triangle));
+    int corner = triangles.front()[0];
+    for (const Triangle& t : triangles) {
+      for (const int vertex : t) {
+        if ((skin.now[vertex] - p).squaredNorm() < (skin.now[corner] - p).squaredNorm()) corner = vertex;
+      }
+    }
+    CHECK(finder.nearest_vertex(skin.now, p) == corner);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the surface near a ball or an axis: as by looking at every triangle, on deforming surfaces") {
+  check_gather(Skin(liver()), 0.02, 0);
+  check_gather(Skin(liver()), 0.015, 0.06);
+  check_gather(Skin(ball()), 0.012, 0);
+  check_gather(Skin(ball()), 0.01, 0.05);
+}
+
+TEST_CASE("the nearest triangle and vertex: as by looking at every one, the first of equals") {
+  check_nearest(Skin(liver()));
+  check_nearest(Skin(ball()));
+}
+
+TEST_CASE("a hierarchy lists whose boxes meet a box in ascending order; of an empty surface, none") {
+  Skin skin(ball());
+  Bvh bvh(skin.rest, skin.surface.triangles);
+  const auto all = bvh.near(skin.box);
+  CHECK(all.size() == skin.surface.triangles.size());
+  CHECK(std::is_sorted(all.begin(), all.end()));
+  const Eigen::AlignedBox3d far(Vec3(1, 1, 1), Vec3(2, 2, 2));
+  CHECK(bvh.near(far).empty());
+  for (Vec3& x : skin.rest) x += Vec3(1.5, 1.5, 1.5);
+  bvh.refit(skin.rest);
+  CHECK(bvh.near(far).size() == skin.surface.triangles.size());
+  Bvh none({}, {});
+  none.refit({});
+  CHECK(none.near(far).empty());
+  CHECK(none.nearest(far, [](int) { return 0.0; }) == -1);
+}
+
+TEST_CASE("finding the near and the nearest does not allocate") {
+  Skin skin(liver());
+  test::Random random(9);
+  skin.deform(random);
+  ContactFinder finder(skin.rest, skin.surface.triangles, skin.surface.triangles, 0.02, 0.1);
+  ContactPatch patch;
+  patch.reserve(finder.max_nodes(), finder.max_triangles());
+  std::size_t allocations = 1;
+  {
+    const test::AllocationGuard guard;
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 p = skin.place(random);
+      finder.gather(skin.now, skin.rest, p, p + Vec3(0.05, 0, 0), 0.02, patch);
+      finder.foot(skin.now, p);
+      finder.nearest_vertex(skin.now, p);
+    }
+    allocations = guard.count();
+  }
+  CHECK(allocations == 0);
+}
