@@ -21,6 +21,7 @@ void LocalContact::update(const Sample& sample) noexcept {
   without_.update(sample);
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = sample;
+  motion_.update(sample);
   known_ = false;
   if (!newest_.surface) return;
   const bool follows_path = newest_.surface->tool.friction > 0;
@@ -69,6 +70,7 @@ void LocalContact::restart() noexcept {
   contact_.lift();
   felts_ = 0;
   newest_ = {};
+  motion_.restart();
   known_ = false;
   kappa_ = 1;
 }
@@ -88,7 +90,7 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
 
 /// Where `p` is when the organ is at rest.
 Vec3 LocalContact::at_rest(const Vec3& p, Time t) const noexcept {
-  return p - newest_.surface->shift - to_seconds(t - newest_.t) * newest_.surface_v;
+  return p - newest_.surface->shift - motion_.since_sample(t);
 }
 
 }  // namespace palpate::client
