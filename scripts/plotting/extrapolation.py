@@ -129,7 +129,7 @@ def world_table(rows, folder):
     lines = []
     for law in values(rows, "method"):
         found = [average(chosen(rows, method=law, world=world, delay_ms=delay)) for world in worlds]
-        lines.append([law, *(row[key] for row in found for key in ("mean_percent", "max_percent"))])
+        lines.append([law, *(row[key] if row else "" for row in found for key in ("mean_percent", "max_percent"))])
     header = ["law"] + [f"{world} {what} %" for world in worlds for what in ("mean", "max")]
     write_table(folder, "worlds", f"Against the true force in every world: {RATE:g} Hz, {SPEED:g} m/s, {delay:g} ms\n"
                 "(average of the motions; max: the worst of them)", header, lines)
