@@ -13,6 +13,10 @@ constexpr double kBelievable = 0.5, kAlways = 0.1;  // -, N
 bool believable(const Vec3& local, const Vec3& right) noexcept {
   return (local - right).norm() <= kBelievable * std::max(local.norm(), right.norm()) + kAlways;
 }
+/// kappa: how many times `local` the part of `right` along it is.
+double factor(const Vec3& right, const Vec3& local) noexcept {
+  return std::clamp(right.dot(local) / local.squaredNorm(), 1 / kMostCorrection, kMostCorrection);
+}
 }  // namespace
 
 LocalContact::LocalContact() : felt_(kRemembered) {}
@@ -33,7 +37,9 @@ void LocalContact::update(const Sample& sample) noexcept {
     return;
   }
   known_ = local && believable(*local, sample.f);
-  if (known_) compare(*local);
+  if (!known_) return;
+  compare(*local);
+  if (!follows_path && local->isZero(0) && sample.f.isZero(0)) compare_ahead();
 }
 
 void LocalContact::remember(Time t, const Vec3& local) noexcept {
@@ -61,8 +67,16 @@ void LocalContact::compare(const Vec3& local) noexcept {
   local_size_ = local.norm();
   across_.setZero();
   if (!(local_size_ > 0) || newest_.f.isZero(0)) return;
-  kappa_ = std::clamp(newest_.f.dot(local) / local.squaredNorm(), 1 / kMostCorrection, kMostCorrection);
+  kappa_ = factor(newest_.f, local);
   across_ = newest_.f - kappa_ * local;
+}
+
+/// The tool is free, but was expected to touch by now: the server has said what it would feel.
+void LocalContact::compare_ahead() noexcept {
+  if (!newest_.ahead || !newest_.ahead->f.allFinite() || newest_.ahead->f.isZero(0)) return;
+  const auto local = contact_.probe(*newest_.surface, at_rest(newest_.ahead->p, newest_.t));
+  if (local && !local->isZero(0) && believable(*local, newest_.ahead->f))
+    kappa_ = factor(newest_.ahead->f, *local);
 }
 
 void LocalContact::restart() noexcept {

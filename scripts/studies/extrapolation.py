@@ -65,6 +65,7 @@ KEYS = ("world", "motion", "speed_m_s", "rate_hz", "delay_ms", "reference", "met
 
 # The laws alone: nothing between them and the drawing.
 FIGURES_CLIENT = """score = []
+blend_ms = 0
 [passivity]
 enabled = false
 [limits]
