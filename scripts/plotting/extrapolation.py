@@ -205,7 +205,7 @@ def draw_cost(rows, styles, folder):
             points = [(cost(found), found[key], law) for law, found in laws.items()]
             front = pareto(points)
             panel.plot(*zip(*((x, y) for x, y, _ in front)), color="#7F7F7F", linewidth=6, alpha=0.4,
-                       solid_capstyle="round", label="Pareto front")
+                       solid_capstyle="round", label="Pareto front: ringed")
             for x, y, law in points:
                 on = any(law == best for _, _, best in front)
                 panel.plot(x, y, "o", color=styles[law][0], markersize=11, markeredgewidth=2.5, label=law,

@@ -147,12 +147,13 @@ Json row_of(const Cell& cell, double direct, PressAndSlide& slides) {
 std::vector<Cell> cells(bool quick) {
   const std::vector<Link> links =
       quick ? std::vector<Link>{kUsual} : std::vector<Link>{{30, 0}, kUsual, {30, 83}, {10, 105}, {100, 15}};
+  // The quick study has no time for all hands on elements.
+  const auto slid = [quick](const Person& person) { return !quick || &person == &kPersons[1]; };
   std::vector<Cell> all;
   for (const std::string& world : {std::string("linear"), std::string("hertz"), kSlides}) {
     for (const Person& person : kPersons) {
       for (const Link& link : links) {
-        // Rates that a simulation of elements has; and the quick study has no time for all hands.
-        if (world == kSlides && (link.rate_hz > 30 || (quick && &person != &kPersons[1]))) continue;
+        if (world == kSlides && (link.rate_hz > 30 || !slid(person))) continue;  // no simulation is as fast
         for (const ExtrapolatorRow& row : extrapolators()) {
           for (const bool passivity : {false, true})
             all.push_back({&person, std::string(row.name), world, passivity, link});
@@ -161,6 +162,7 @@ std::vector<Cell> cells(bool quick) {
     }
   }
   for (const Person& person : kPersons) {
+    if (!slid(person)) continue;
     for (const double compliance : kWrong) {
       for (const bool passivity : {false, true})
         all.push_back({&person, kSolves, kSlides, passivity, kUsual, compliance});
