@@ -129,36 +129,44 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
   }
 }
 
-bool ContactSolver::compute_effective_compliance(const ContactPatch& patch) noexcept {
+/// C over the nodes considered, and I - C S.
+void ContactSolver::assemble_system(const ContactPatch& patch) noexcept {
   const auto count = static_cast<Eigen::Index>(nodes_.size()), size = 3 * count;
-  auto effective = effective_.topLeftCorner(size, size);
-  effective.setZero();
+  auto compliance = compliance_.topLeftCorner(size, size);
+  compliance.setZero();
   for (Eigen::Index j = 0; j + 1 < count; ++j) {
     for (Eigen::Index i = 0; i + 1 < count; ++i) {
-      effective.block<3, 3>(3 * i, 3 * j) = patch.compliance.block<3, 3>(3 * nodes_[i], 3 * nodes_[j]);
+      compliance.block<3, 3>(3 * i, 3 * j) = patch.compliance.block<3, 3>(3 * nodes_[i], 3 * nodes_[j]);
     }
   }
-  effective.bottomRightCorner<3, 3>().diagonal().setConstant(patch.tool_compliance);
+  compliance.bottomRightCorner<3, 3>().diagonal().setConstant(patch.tool_compliance);
   auto system = system_.topLeftCorner(size, size);
   system.setIdentity();
-  system.noalias() -= effective * curvature_.topLeftCorner(size, size);
-  return gauss_solve(system, effective);
+  system.noalias() -= compliance * curvature_.topLeftCorner(size, size);
 }
 
-bool ContactSolver::prepare_considered(const ContactPatch& patch) noexcept {
+void ContactSolver::differentiate_considered(const ContactPatch& patch) noexcept {
   collect_nodes(patch.nodes());
   differentiate_contacts(patch.nodes());
-  if (!compute_effective_compliance(patch)) return false;
+}
+
+/// C~ A, then C~ of `loads` (3 x nodes, k <= 3), in the columns of `response_`; and B C~ A + eps.
+bool ContactSolver::respond(const ContactPatch& patch,
+                            const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept {
+  assemble_system(patch);
   const int rows = rows_of_contact();
-  const auto n = rows * static_cast<Eigen::Index>(considered_.size()),
-             size = 3 * static_cast<Eigen::Index>(nodes_.size());
+  const auto n = rows * static_cast<Eigen::Index>(considered_.size()), size = loads.rows();
+  const auto compliance = compliance_.topLeftCorner(size, size);
   const auto jacobian = jacobian_.topLeftCorner(n, size);
-  auto response = response_.topLeftCorner(size, n);  // C~ A; the columns of the solve are no longer needed
+  auto response = response_.topLeftCorner(size, n);  // the columns of the solve are no longer needed
   if (rows > 1) {
-    response.noalias() = effective_.topLeftCorner(size, size) * spread_.topLeftCorner(size, n);
+    response.noalias() = compliance * spread_.topLeftCorner(size, n);
   } else {
-    response.noalias() = effective_.topLeftCorner(size, size) * jacobian.transpose();
+    response.noalias() = compliance * jacobian.transpose();
   }
+  response_.block(0, n, size, loads.cols()).noalias() = compliance * loads;
+  if (!gauss_solve(system_.topLeftCorner(size, size), response_.topLeftCorner(size, n + loads.cols())))
+    return false;
   auto delassus = delassus_.topLeftCorner(n, n);
   delassus.noalias() = jacobian * response;
   for (Eigen::Index row = 0; row < n; ++row)
@@ -170,7 +178,8 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
                                 Eigen::Ref<Eigen::VectorXd> next) noexcept {
   considered_.clear();
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) considered_.push_back(k);
-  if (considered_.empty() || !prepare_considered(patch)) return false;
+  if (considered_.empty()) return false;
+  differentiate_considered(patch);
   const auto n = rows_of_contact() * static_cast<Eigen::Index>(considered_.size()),
              size = 3 * static_cast<Eigen::Index>(nodes_.size());
   const auto jacobian = jacobian_.topLeftCorner(n, size);
@@ -179,7 +188,8 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
     local.segment<3>(3 * static_cast<Eigen::Index>(i)) = u.segment<3>(3 * nodes_[i]);
   }
   load.noalias() = curvature_.topLeftCorner(size, size) * local;
-  bent.noalias() = effective_.topLeftCorner(size, size) * load;  // C~ S u
+  if (!respond(patch, load)) return false;
+  bent = response_.col(n).head(size);  // C~ S u
   auto gap = rhs_.col(0).head(n), lambda = rhs_.col(1).head(n);
   gap = gap_.head(n);  // which is w - A^T u already
   gap.noalias() -= jacobian * bent;
@@ -230,13 +240,14 @@ bool ContactSolver::differentiate_forces(
 }
 
 Mat3 ContactSolver::tangent_of_considered(const ContactPatch& patch) noexcept {
-  if (!prepare_considered(patch)) return Mat3::Zero();
+  differentiate_considered(patch);
   const auto n = rows_of_contact() * static_cast<Eigen::Index>(considered_.size()),
              size = 3 * static_cast<Eigen::Index>(nodes_.size());
   const auto jacobian = jacobian_.topLeftCorner(n, size);
   const auto curvature = curvature_.topLeftCorner(size, size);
   auto moved = moved_.topRows(size);  // E + C~ S E: how the geometry follows the tool at fixed forces
-  moved.noalias() = effective_.topLeftCorner(size, size) * curvature.rightCols<3>();
+  if (!respond(patch, curvature.rightCols<3>())) return Mat3::Zero();
+  moved = response_.block(0, n, size, 3);
   moved.bottomRows<3>() += Mat3::Identity();
   auto force_change = rhs_.topRows(n);
   force_change.noalias() = jacobian * moved;

@@ -35,8 +35,8 @@ ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
       coulomb_(friction ? max_triangles : 0),
       slot_of_node_(static_cast<std::size_t>(max_nodes + 1)) {
   const int unknowns = 3 * (max_nodes + 1), rows = friction ? 3 * max_triangles : max_triangles;
-  for (Eigen::MatrixXd* square : {&curvature_, &effective_, &system_}) square->resize(unknowns, unknowns);
-  response_.resize(unknowns, rows);
+  for (Eigen::MatrixXd* square : {&curvature_, &compliance_, &system_}) square->resize(unknowns, unknowns);
+  response_.resize(unknowns, rows + 3);
   jacobian_.resize(rows, unknowns);
   if (friction) spread_.resize(unknowns, rows);
   delassus_.resize(rows, rows);
@@ -229,7 +229,7 @@ void ContactSolver::collect_result(int nodes, ContactForce& result) noexcept {
 std::size_t ContactSolver::bytes() const {
   const auto dense = [](const Eigen::MatrixXd& m) { return static_cast<std::size_t>(m.size()); };
   return coulomb_.bytes() + complementarity_.bytes() +
-         sizeof(double) * (dense(delassus_) + dense(response_) + dense(curvature_) + dense(effective_) +
+         sizeof(double) * (dense(delassus_) + dense(response_) + dense(curvature_) + dense(compliance_) +
                            dense(system_) + dense(jacobian_) + dense(spread_));
 }
 

@@ -113,8 +113,9 @@ class ContactSolver {
   void collect_nodes(int tip) noexcept;
   void differentiate_contacts(int tip) noexcept;
   void differentiate_friction(int contact, Eigen::Index row, std::span<const int> slot) noexcept;
-  bool compute_effective_compliance(const ContactPatch& patch) noexcept;
-  bool prepare_considered(const ContactPatch& patch) noexcept;
+  void assemble_system(const ContactPatch& patch) noexcept;
+  void differentiate_considered(const ContactPatch& patch) noexcept;
+  bool respond(const ContactPatch& patch, const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept;
   bool newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
                    Eigen::Ref<Eigen::VectorXd> next) noexcept;
   bool differentiate_forces(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
@@ -144,7 +145,7 @@ class ContactSolver {
   Mat3 turned_ = Mat3::Zero();  // what the tool's turn in the stride did to an arm of now
   // Second order: the contacts considered, their nodes (the tip last), and matrices over those nodes.
   std::vector<int> considered_, nodes_, slot_of_node_;
-  Eigen::MatrixXd curvature_, effective_, system_, jacobian_, spread_;  // spread: W^T, only with friction
+  Eigen::MatrixXd curvature_, compliance_, system_, jacobian_, spread_;  // spread: W^T, only with friction
   Eigen::Matrix<double, Eigen::Dynamic, 3> moved_, rhs_;
 };
 

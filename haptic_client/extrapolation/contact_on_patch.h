@@ -22,6 +22,8 @@ class ContactOnPatch {
   std::optional<Vec3> probe(const Surface& surface, const Vec3& p) noexcept;
   /// It stands nowhere.
   void lift() noexcept;
+  /// How the force changed with the place around the last one, N/m.
+  const Mat3& tangent() const noexcept { return state_.tangent; }
 
  private:
   struct Load {
@@ -33,6 +35,9 @@ class ContactOnPatch {
   bool displace_near(const Surface& surface, const Vec3& p) noexcept;
   bool take_triangles(const Surface& surface, const Vec3& p) noexcept;
   bool take_compliance(const SurfaceModel& model) noexcept;
+  Vec3 note_ways(std::size_t vertices) noexcept;
+  bool foresee(const Vec3& way) noexcept;
+  void learn_tangent(const Vec3& way, const Vec3& force_before) noexcept;
   void note_loads(const ContactSolver& solved) noexcept;
   void enter(const Surface& surface, const Vec3& p) noexcept;
   Eigen::Ref<Eigen::VectorXd> displacement() noexcept { return u_.head(3 * (patch_.nodes() + 1)); }
@@ -48,12 +53,16 @@ class ContactOnPatch {
   std::vector<Vec3> begin_;          // where the patch nodes were when the stride began, m
   std::vector<Load> loads_, kept_loads_;
   std::vector<Vec3> moved_;     // displacement of vertices, m; where near_ says so
+  std::vector<Vec3> went_;      // of vertices in the last stride, m; 0 where not known
   std::vector<char> near_;      // whether a vertex is near enough to be looked at
   Eigen::VectorXd u_;           // of the patch nodes, then of the tip
+  Eigen::VectorXd u_before_;    // when the last stride began
+  Vec3 way_ = Vec3::Zero();     // the last stride; 0: not known
   std::uint32_t version_ = 0;   // of the model that the patch is of
   Vec3 center_ = Vec3::Zero();  // of the patch
   struct State {
-    bool placed = false, touching = false;
+    bool placed = false;
+    int contacts = 0;
     Vec3 place = Vec3::Zero(), tip_offset = Vec3::Zero();  // solved for; tip minus place
     Vec3 force = Vec3::Zero();                             // there
     Mat3 tangent = Mat3::Zero();

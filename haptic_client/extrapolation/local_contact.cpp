@@ -5,17 +5,16 @@
 namespace palpate::client {
 namespace {
 constexpr double kMostCorrection = 3;
+// Of the largest force: below it, F_loc says little of how wrong the model is.
+constexpr double kDoubt = 0.02;
 constexpr std::size_t kRemembered = 1024;             // ticks: a quarter of a second at 4 kHz
-constexpr Time kGap = std::chrono::milliseconds(20);  // between ticks on whose line something may lie
+constexpr Time kGap = std::chrono::milliseconds(12);  // longer than any tick
+constexpr double kSamePlace = 1e-3;                   // m: how far a tangent leads
 // How far the model may be off at the sample, of the larger force and at all, to be believed elsewhere.
 constexpr double kBelievable = 0.5, kAlways = 0.1;  // -, N
 
 bool believable(const Vec3& local, const Vec3& right) noexcept {
   return (local - right).norm() <= kBelievable * std::max(local.norm(), right.norm()) + kAlways;
-}
-/// kappa: how many times `local` the part of `right` along it is.
-double factor(const Vec3& right, const Vec3& local) noexcept {
-  return std::clamp(right.dot(local) / local.squaredNorm(), 1 / kMostCorrection, kMostCorrection);
 }
 }  // namespace
 
@@ -28,46 +27,53 @@ void LocalContact::update(const Sample& sample) noexcept {
   motion_.update(sample);
   known_ = false;
   if (!newest_.surface) return;
-  const bool follows_path = newest_.surface->tool.friction > 0;
-  const auto local =
-      follows_path ? remembered(sample.t) : contact_.probe(*newest_.surface, at_rest(sample.p, sample.t));
-  if (follows_path && !local) {  // it begins to follow
+  const Vec3 p_rest = at_rest(sample.p, sample.t);
+  auto local = remembered(sample.t, p_rest);
+  if (!local && newest_.surface->tool.friction > 0) {  // it begins to follow the path
     local_size_ = 0;
     known_ = true;
     return;
   }
+  if (!local) local = contact_.probe(*newest_.surface, p_rest);
   known_ = local && believable(*local, sample.f);
   if (!known_) return;
   compare(*local);
-  if (!follows_path && local->isZero(0) && sample.f.isZero(0)) compare_ahead();
+  const bool free = local->isZero(0) && sample.f.isZero(0);
+  if (free && newest_.surface->tool.friction == 0) compare_ahead();
 }
 
-void LocalContact::remember(Time t, const Vec3& local) noexcept {
+void LocalContact::remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept {
   if (felts_ > 0 && felt_[(felts_ - 1) % kRemembered].t >= t) return;
-  felt_[felts_++ % kRemembered] = {t, local};
+  felt_[felts_++ % kRemembered] = {t, p_rest, local, contact_.tangent()};
 }
 
-/// What was felt at `t`, or on the line between two ticks around it.
-std::optional<Vec3> LocalContact::remembered(Time t) const noexcept {
-  const Felt* after = nullptr;
+/// What was felt at the tick of time `t`, or the one before it; at `p_rest`, which is where the tool is
+/// thought to have been by now.
+std::optional<Vec3> LocalContact::remembered(Time t, const Vec3& p_rest) const noexcept {
   for (std::size_t back = 1; back <= std::min(felts_, kRemembered); ++back) {
     const Felt& felt = felt_[(felts_ - back) % kRemembered];
-    if (felt.t == t) return felt.force;
-    if (felt.t < t) {
-      if (after == nullptr || after->t - felt.t > kGap) return {};
-      const double share = to_seconds(t - felt.t) / to_seconds(after->t - felt.t);
-      return felt.force + share * (after->force - felt.force);
-    }
-    after = &felt;
+    if (felt.t > t) continue;
+    if (t - felt.t > kGap || (felt.p_rest - p_rest).norm() > kSamePlace) return {};
+    if (felt.force.isZero(0)) return felt.force;
+    const Vec3 force = felt.force + felt.tangent * (p_rest - felt.p_rest);
+    return force.dot(felt.force) > 0 ? force : Vec3(Vec3::Zero());
   }
   return {};
+}
+
+/// What the server says is `right` the model takes for `local`, somewhere.
+void LocalContact::learn_factor(const Vec3& right, const Vec3& local) noexcept {
+  largest_ = std::max(largest_, right.norm());
+  const double doubt = kDoubt * largest_ * kDoubt * largest_;  // a light touch tells little of the factor
+  const double factor = (right.dot(local) + doubt * kappa_) / (local.squaredNorm() + doubt);
+  kappa_ = std::clamp(factor, 1 / kMostCorrection, kMostCorrection);
 }
 
 void LocalContact::compare(const Vec3& local) noexcept {
   local_size_ = local.norm();
   across_.setZero();
   if (!(local_size_ > 0) || newest_.f.isZero(0)) return;
-  kappa_ = factor(newest_.f, local);
+  learn_factor(newest_.f, local);
   across_ = newest_.f - kappa_ * local;
 }
 
@@ -76,7 +82,7 @@ void LocalContact::compare_ahead() noexcept {
   if (!newest_.ahead || !newest_.ahead->f.allFinite() || newest_.ahead->f.isZero(0)) return;
   const auto local = contact_.probe(*newest_.surface, at_rest(newest_.ahead->p, newest_.t));
   if (local && !local->isZero(0) && believable(*local, newest_.ahead->f))
-    kappa_ = factor(newest_.ahead->f, *local);
+    learn_factor(newest_.ahead->f, *local);
 }
 
 void LocalContact::restart() noexcept {
@@ -87,13 +93,15 @@ void LocalContact::restart() noexcept {
   motion_.restart();
   known_ = false;
   kappa_ = 1;
+  largest_ = 0;
 }
 
 Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
   if (known_) {
-    const auto local = contact_.go(*newest_.surface, at_rest(p, t));
+    const Vec3 p_rest = at_rest(p, t);
+    const auto local = contact_.go(*newest_.surface, p_rest);
     if (local) {
-      remember(t, *local);
+      remember(t, p_rest, *local);
       if (!(local_size_ > 0)) return kappa_ * *local;
       return kappa_ * *local + std::min(kMostCorrection, local->norm() / local_size_) * across_;
     }

@@ -27,27 +27,29 @@ class LocalContact : public Extrapolator {
 
  private:
   void compare(const Vec3& local) noexcept;
+  void learn_factor(const Vec3& right, const Vec3& local) noexcept;
   void compare_ahead() noexcept;
-  void remember(Time t, const Vec3& local) noexcept;
-  std::optional<Vec3> remembered(Time t) const noexcept;
+  void remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept;
+  std::optional<Vec3> remembered(Time t, const Vec3& p_rest) const noexcept;
   Vec3 at_rest(const Vec3& p, Time t) const noexcept;
 
   /// F_loc as it was felt.
   struct Felt {
     Time t;
-    Vec3 force;  // N
+    Vec3 p_rest, force;  // m, N
+    Mat3 tangent;        // N/m
   };
 
   TwoTangents without_;
   ContactOnPatch contact_;
   Sample newest_;
   OrganMotion motion_;
-  double local_size_ = 0;  // |F_loc(P_n')|, N
-  double kappa_ = 1;
-  Vec3 across_ = Vec3::Zero();  // r, N
-  std::vector<Felt> felt_;      // a ring
-  std::size_t felts_ = 0;       // so far
-  bool known_ = false;          // whether the model says what is felt, since the newest sample
+  double local_size_ = 0;           // |F_loc(P_n')|, N
+  double kappa_ = 1, largest_ = 0;  // -, N: of all samples
+  Vec3 across_ = Vec3::Zero();      // r, N
+  std::vector<Felt> felt_;          // a ring
+  std::size_t felts_ = 0;           // so far
+  bool known_ = false;              // whether the model says what is felt, since the newest sample
 };
 
 }  // namespace palpate::client
