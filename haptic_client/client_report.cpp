@@ -128,6 +128,10 @@ void print_tool(const Json& tool) {
       "  force   {:.0f} samples, age {:.1f} ms (p50), {:.1f} (p99), {:.1f} (max); largest force {:.2f} N\n",
       number(force, "samples"), number(age, "p50"), number(age, "p99"), number(age, "max"),
       number(force, "max_newton"));
+  if (number(force, "stepped_down") > 0 || number(force, "surface_pages") > 0) {
+    fmt::print("  law     a simpler one stood in for it in {:.0f} ticks; {:.0f} pages of the surface came\n",
+               number(force, "stepped_down"), number(force, "surface_pages"));
+  }
   fmt::print("  motion  {:.4f} m/s mean, {:.4f} max; {:.2f} mm between samples\n",
              number(motion, "mean_speed_m_s"), number(motion, "max_speed_m_s"),
              number(motion, "spatial_sampling_mm"));
@@ -173,6 +177,8 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
           {"force",
            {{"samples", stats.samples},
             {"overtaken", stats.overtaken},
+            {"stepped_down", stats.stepped_down},
+            {"surface_pages", stats.pages},
             {"age_ms", quantiles(stats.age_ns, 1e6)},
             {"max_newton", stats.max_newton}}},
           {"motion",

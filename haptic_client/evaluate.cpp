@@ -19,10 +19,14 @@
 namespace palpate::client {
 namespace {
 
+constexpr double kPageBytes = protocol::kHeaderBytes + 9 + 4 * protocol::SurfacePage::kValues;
+
 /// What a capture was like, and what the laws made of it, plain and blended.
 struct Evaluation {
   double ticks_hz = 0, path = 0, seconds = 0, age = 0;  // Hz, m, s, s: a sum over samples
   std::vector<double> bytes;                            // of each law: a sum over samples
+  std::size_t run = 0;                                  // of the capture
+  double model_bytes = 0;                               // of the surface, once
   std::uint64_t samples = 0;
   std::vector<Scoring> plain, blended;  // at most kMaxLaws laws each
 };
@@ -43,9 +47,12 @@ double ticks_per_second(const CapturedRun& run) {
   return std::clamp(std::round(run.ticks_hz()), 1.0, 20000.0);
 }
 
+Wants wants_of(const std::string& law) {
+  return find_row(extrapolators(), law, "method", "--method").make()->wants();
+}
+
 /// Of a sample without the parts that the law has no use for.
-double bytes_for(const std::string& law, protocol::ForceSample sample) {
-  const Wants wants = find_row(extrapolators(), law, "method", "--method").make()->wants();
+double bytes_for(const Wants& wants, protocol::ForceSample sample) {
   if (!wants.here) sample.flags &= ~protocol::ForceSample::kHasHere;
   if (!wants.ahead) sample.flags &= ~protocol::ForceSample::kHasAhead;
   if (!wants.surface) sample.flags &= ~protocol::ForceSample::kHasSurface;
@@ -60,26 +67,30 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
                                         [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
   Evaluation e;
   e.bytes.resize(laws.size());
+  e.run = static_cast<std::size_t>(longest - found.runs.begin());
   e.ticks_hz = ticks_per_second(*longest);
   e.plain = scorings(laws, e.ticks_hz, 0, truth);
   e.blended = scorings(laws, e.ticks_hz, options.blend_ms / 1e3, truth);
-  CapturedSession session(file, static_cast<std::size_t>(longest - found.runs.begin()));
+  CapturedSession session(file, e.run);
   std::optional<protocol::ToolState> before;
   ErrorSums ignored;
   SurfaceModel model;
   protocol::SurfacePages pages;
+  std::vector<Wants> wants;
+  for (const std::string& law : laws) wants.push_back(wants_of(law));
   for (CapturedTick tick; session.next(tick);) {
     const Time t{tick.state.t_ns};
     std::optional<Sample> sample;
     for (const protocol::SurfacePage& page : tick.pages)
       model.take(with_compliance(page, pages, options.compliance));
+    e.model_bytes += kPageBytes * static_cast<double>(tick.pages.size());
     if (tick.arrived) {
       const protocol::SurfaceState& surface = tick.arrived->surface;
       if (surface.version != 0) pages = {surface.vertices, surface.triangles};
       sample = sample_of(*tick.arrived, &model);
       ++e.samples;
       e.age += to_seconds(t - sample->t);
-      for (std::size_t i = 0; i < laws.size(); ++i) e.bytes[i] += bytes_for(laws[i], *tick.arrived);
+      for (std::size_t i = 0; i < laws.size(); ++i) e.bytes[i] += bytes_for(wants[i], *tick.arrived);
     }
     for (auto* all : {&e.plain, &e.blended}) {
       for (Scoring& scoring : *all) scoring.tick(tick.state.p_W, t, sample ? &*sample : nullptr, ignored);
@@ -110,6 +121,7 @@ Json row_of(const Scoring& scoring, std::size_t law, const LawCost& cost) {
           {"paper_max_force_percent", m.paper_max_force_percent},
           {"energy_percent", scoring.energy_percent(law)},
           {"ns_per_tick", cost.tick_ns},
+          {"ns_per_tick_p99", cost.tick_p99_ns},
           {"ns_per_arrival", cost.arrival_ns}};
 }
 
@@ -128,7 +140,9 @@ void add_rows(Json& rows, const std::string& world, const Evaluation& e, bool wi
                     {"method", scoring.names()[law]},
                     {"blended", blended}};
         row.update(row_of(scoring, law, costs[number]));
-        row["bytes_per_sample"] = e.bytes[number++] / samples;
+        row["bytes_per_sample"] = e.bytes[number] / samples;
+        row["model_bytes"] = wants_of(scoring.names()[law]).surface ? e.model_bytes : 0;
+        ++number;
         rows.push_back(row);
       }
     }
@@ -166,11 +180,12 @@ int evaluate(const EvaluateOptions& options) {
   std::optional<Truth> truth;
   if (options.truth)
     truth.emplace(*options.truth, [&](double share) { progress("reading the truth", share); });
-  std::vector<LawCost> costs;
-  for (const std::string& law : laws) costs.push_back(cost_of(law));
   Json rows = Json::array();
   for (const std::filesystem::path& capture : options.captures) {
     const Evaluation e = run(capture, laws, options, truth ? &*truth : nullptr, progress);
+    std::vector<LawCost> costs;
+    for (const std::string& law : laws)
+      costs.push_back(wants_of(law).surface ? cost_on(law, capture, e.run) : cost_of(law));
     add_rows(rows, options.world.empty() ? capture.stem().string() : options.world, e, truth.has_value(),
              costs);
   }

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <ctime>
+#include <vector>
 
 #include "common/clock.h"
 #include "common/text.h"
+#include "haptic_client/evaluation/captured_session.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/extrapolation/force_estimate.h"
+#include "haptic_client/loop/pipeline.h"
 
 namespace palpate::client {
 
@@ -39,7 +43,43 @@ double median_ns(int calls, Call call) {
   return rounds[rounds.size() / 2];
 }
 
+double thread_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
+}
+
+double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) return 0;
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 }  // namespace
+
+LawCost cost_on(const std::string& law, const std::filesystem::path& capture, std::size_t run) {
+  ForceEstimate estimate(find_row(extrapolators(), law, "method", "cost").make());
+  SurfaceModel model;
+  CapturedSession session(capture, run);
+  std::vector<double> ticks, arrivals;
+  for (CapturedTick tick; session.next(tick);) {
+    const Vec3& p = tick.state.p_W;
+    const Time t{tick.state.t_ns};
+    for (const protocol::SurfacePage& page : tick.pages) model.take(page);
+    const double start = thread_ns();
+    if (tick.arrived) estimate.take(sample_of(*tick.arrived, &model), p, t);
+    const double arrived = thread_ns();
+    const Vec3 force = estimate.force(p, t);
+    const double end = thread_ns();
+    if (tick.arrived) arrivals.push_back(arrived - start);
+    if (!tick.arrived && !force.isZero(0)) ticks.push_back(end - arrived);
+  }
+  return {.tick_ns = quantile(ticks, 0.5),
+          .tick_p99_ns = quantile(ticks, 0.99),
+          .arrival_ns = quantile(arrivals, 0.5)};
+}
 
 LawCost cost_of(const std::string& law) {
   ForceEstimate estimate(find_row(extrapolators(), law, "method", "cost").make());

@@ -14,10 +14,11 @@ constexpr int kMostNodes = 96, kMostTriangles = 160;
 // may go on it, as what it presses may move as far again.
 constexpr double kMargin = 0.25, kStride = 0.12;
 constexpr double kMostStrides = 16;  // a tick
-// Where the stride before foresees where the surface goes, one look at it is mostly enough.
-constexpr ContactSolver::Effort kEffort{.max_iterations = 30, .tolerance = 1e-3, .expected = 1e-3};
-// Of the tool radius: how far from a solved place the force follows its tangent; friction follows the path.
-constexpr double kNear = 0.008, kNearWithFriction = 0.004;
+// How far from a solved place the force follows its tangent, and how well a place is solved: shares of how
+// deep the tool presses, and at most of its radius. Friction follows the path more closely. Where the stride
+// before foresees where the surface goes, one look at it is mostly enough.
+constexpr double kNear = 0.03, kTolerance = 0.002, kMostNear = 0.01, kMostTolerance = 1e-3;
+constexpr double kLeastDepth = 1e-4;  // of the tool radius
 
 }  // namespace
 
@@ -53,8 +54,7 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) no
     return {};
   }
   if (!state_.placed) enter(surface, p);
-  const double near = surface.tool.friction > 0 ? kNearWithFriction : kNear;
-  if (const Vec3 way = p - state_.place; state_.contacts > 0 && way.norm() <= near * surface.tool.radius) {
+  if (const Vec3 way = p - state_.place; state_.contacts > 0 && way.norm() <= near(surface)) {
     const Vec3 force = state_.force + state_.tangent * way;
     return force.dot(state_.force) > 0 ? force : Vec3(Vec3::Zero());
   }
@@ -79,6 +79,17 @@ std::optional<Vec3> ContactOnPatch::probe(const Surface& surface, const Vec3& p)
   return force;
 }
 
+/// How far from the solved place the tangent leads, m.
+double ContactOnPatch::near(const Surface& surface) const noexcept {
+  const double near = std::min(kNear * state_.depth, kMostNear * surface.tool.radius);
+  return surface.tool.friction > 0 ? near / 4 : near;
+}
+
+ContactSolver::Effort ContactOnPatch::effort(const Surface& surface) const noexcept {
+  const double depth = std::max(state_.depth / surface.tool.radius, kLeastDepth);
+  return {.max_iterations = 30, .tolerance = std::min(kTolerance * depth, kMostTolerance), .expected = 1e-3};
+}
+
 bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
   if ((p - center_).norm() > kStride * surface.tool.radius && !take_patch(surface, p)) return false;
   const Vec3 tip = state_.place + state_.tip_offset, way = p - state_.place, before = state_.force;
@@ -92,10 +103,12 @@ bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
   for (int i = 0; i < patch_.nodes(); ++i) begin_.push_back(patch_.free[i] + u_.segment<3>(3 * i));
   ContactSolver& solving = solver(surface);
   const bool foreseen = foresee(way);
-  const ContactForce contact = solving.solve(patch_, surface.tool, p, displacement(), {begin_, tip}, kEffort);
+  const ContactForce contact =
+      solving.solve(patch_, surface.tool, p, displacement(), {begin_, tip}, effort(surface));
   note_loads(solving);
   state_.force = contact.force;
   state_.contacts = contact.contacts;
+  state_.depth = displacement().cwiseAbs().maxCoeff();
   if (foreseen && touched == state_.contacts) {
     learn_tangent(way, before);
   } else if (state_.contacts > 0) {

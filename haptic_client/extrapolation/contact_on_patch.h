@@ -30,6 +30,8 @@ class ContactOnPatch {
     int vertex;  // of the model
     Vec3 force;  // N
   };
+  double near(const Surface& surface) const noexcept;
+  ContactSolver::Effort effort(const Surface& surface) const noexcept;
   bool stride(const Surface& surface, const Vec3& p) noexcept;
   bool take_patch(const Surface& surface, const Vec3& p) noexcept;
   bool displace_near(const Surface& surface, const Vec3& p) noexcept;
@@ -63,6 +65,7 @@ class ContactOnPatch {
   struct State {
     bool placed = false;
     int contacts = 0;
+    double depth = 0;                                      // m: the largest displacement
     Vec3 place = Vec3::Zero(), tip_offset = Vec3::Zero();  // solved for; tip minus place
     Vec3 force = Vec3::Zero();                             // there
     Mat3 tangent = Mat3::Zero();

@@ -72,6 +72,8 @@ class Extrapolator {
   virtual Vec3 force(const Vec3& p, Time t) noexcept = 0;
   /// What it uses beyond the triplet. A law that uses something knows a free surface from one that pulls.
   virtual Wants wants() const noexcept { return {}; }
+  /// Whether a simpler law stands in for it, because the newest sample lacks what it uses.
+  virtual bool stepped_down() const noexcept { return false; }
 };
 
 /// The two newest samples, which is all that the paper's laws know. A sample that is not `usable`, or not

@@ -30,6 +30,7 @@ class ForceEstimate {
   Vec3 force(const Vec3& p, Time t) noexcept;
 
   Wants wants() const noexcept { return law_->wants(); }
+  bool stepped_down() const noexcept { return law_->stepped_down(); }
   /// Number 0: none yet.
   const Sample& newest() const noexcept { return newest_; }
   /// Between the two newest samples; 0 with less than two since the last outage.

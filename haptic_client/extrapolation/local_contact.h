@@ -24,6 +24,7 @@ class LocalContact : public Extrapolator {
   void restart() noexcept override;
   Vec3 force(const Vec3& p, Time t) noexcept override;
   Wants wants() const noexcept override { return {.here = true, .ahead = true, .surface = true}; }
+  bool stepped_down() const noexcept override { return !known_; }
 
  private:
   void compare(const Vec3& local) noexcept;

@@ -22,6 +22,7 @@ class Tangent : public Extrapolator {
   void restart() noexcept override;
   Vec3 force(const Vec3& p, Time t) noexcept override;
   Wants wants() const noexcept override { return {.here = true}; }
+  bool stepped_down() const noexcept override { return !newest_.here; }
 
  private:
   LearnedStiffness learned_;

@@ -15,6 +15,7 @@ class TwoTangents : public Extrapolator {
   void restart() noexcept override;
   Vec3 force(const Vec3& p, Time t) noexcept override;
   Wants wants() const noexcept override { return {.here = true, .ahead = true}; }
+  bool stepped_down() const noexcept override { return !newest_.here || !newest_.ahead; }
 
  private:
   Tangent first_;

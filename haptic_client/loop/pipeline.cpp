@@ -86,7 +86,7 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
   if (model_) {
     for (const protocol::SurfacePage& page : pages) model_->take(page);
   }
-  pages_taken_ += pages.size();
+  stats_.pages += pages.size();
   if (arrived != nullptr && take(*arrived, tool.p_W, now)) {
     result.used = true;
     result.sample = estimate_.newest();
@@ -95,12 +95,13 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
   result.tool.newest_sample = estimate_.newest().number;
   if (model_) ask_for_pages(result.tool, now);
   result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
+  stats_.stepped_down += result.tool.newest_sample > 0 && estimate_.stepped_down() ? 1 : 0;
   felt_ = tool;
   return result;
 }
 
 void Pipeline::ask_for_pages(ToolState& tool, Time now) noexcept {
-  tool.pages_taken = pages_taken_;
+  tool.pages_taken = stats_.pages;
   tool.flags &= static_cast<std::uint16_t>(~ToolState::kAsksPages);
   const auto& surface = estimate_.newest().surface;
   if (!surface || model_->version() == 0 || now - asked_ < kAskPeriod) return;

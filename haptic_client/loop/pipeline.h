@@ -28,16 +28,18 @@ struct TickResult {
 
 /// Sums over a session, for the report.
 struct PipelineStats {
-  Histogram age_ns;               ///< of the newest sample, each tick that has one
-  std::uint64_t samples = 0;      ///< used
-  std::uint64_t overtaken = 0;    ///< dropped: not newer than what was there
-  std::uint64_t lost = 0;         ///< ticks in which the device gave nothing usable
-  std::uint64_t clutched = 0;     ///< ticks
-  double max_newton = 0;          ///< largest force written
-  double path_m = 0, path_s = 0;  ///< of the tool, world
-  double max_speed = 0;           ///< m/s, of the filtered velocity
-  double sample_path_m = 0;       ///< sum of |P_n - P_(n-1)|
-  double sample_path_s = 0;       ///< and of t_n - t_(n-1)
+  Histogram age_ns;                ///< of the newest sample, each tick that has one
+  std::uint64_t samples = 0;       ///< used
+  std::uint64_t overtaken = 0;     ///< dropped: not newer than what was there
+  std::uint64_t stepped_down = 0;  ///< ticks in which a simpler law stood in for the chosen one
+  std::uint64_t pages = 0;         ///< of the surface, taken
+  std::uint64_t lost = 0;          ///< ticks in which the device gave nothing usable
+  std::uint64_t clutched = 0;      ///< ticks
+  double max_newton = 0;           ///< largest force written
+  double path_m = 0, path_s = 0;   ///< of the tool, world
+  double max_speed = 0;            ///< m/s, of the filtered velocity
+  double sample_path_m = 0;        ///< sum of |P_n - P_(n-1)|
+  double sample_path_s = 0;        ///< and of t_n - t_(n-1)
   std::uint64_t sample_pairs = 0;
 };
 
@@ -93,9 +95,8 @@ class Pipeline {
   ForceEstimate estimate_;
   Wants wants_;
   std::unique_ptr<SurfaceModel> model_;  // null: no law wants it
-  std::uint64_t pages_taken_ = 0;
-  Time asked_{};  // for pages
-  Time lead_{};   // from reading the device to the middle of the use of its force
+  Time asked_{};                         // for pages
+  Time lead_{};                          // from reading the device to the middle of the use of its force
   Workspace workspace_;
   Passivity passivity_;
   Watchdog watchdog_;

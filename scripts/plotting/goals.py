@@ -19,7 +19,8 @@ from typing import NamedTuple
 ERRORS = ("mean_percent", "p99_percent", "max_percent")
 MEAN, ENERGY, PAPER = ("mean_percent",), ("energy_percent",), ("paper_mean_percent",)
 COMBINE = {"max_percent": max, "jump_percent": max, "energy_percent": max, "stable_to_n_m": min,
-           "stable_percent": min, "ns_per_tick": statistics.median}
+           "stable_percent": min, "ns_per_tick": statistics.median,
+           "ns_per_tick_p99": statistics.median}
 
 
 class Goal(NamedTuple):
@@ -79,6 +80,7 @@ EXTRAPOLATION = (
     Goal("closed path, 0.02 m/s, 35 ms", TWO, "energy created, %", LOOP, ENERGY, (1,)),
     Goal("closed path, 0.02 m/s, 35 ms", SOLVES, "energy created, %", LOOP, ENERGY, (0.1,)),
     Goal("cost", TWO, "ns a tick", BLOCK, ("ns_per_tick",), (50,)),
+    Goal("cost", SOLVES, "ns a tick, median / p99", BLOCK, ("ns_per_tick", "ns_per_tick_p99"), (5000, 20000)),
     Goal("cost", SOLVES, "bytes of a steady sample", BLOCK, ("bytes_per_sample",), (1200,)),
     Goal("cost, friction", SOLVES, "bytes of a steady sample", in_world("friction"), ("bytes_per_sample",), (12000,)))
 

@@ -23,7 +23,7 @@ each, from the fixed seeds of scripts/trajectories; the mean speed is a study's 
 
 Writes into --out: summary.json and summary.csv (a row for each configuration and law),
 figures_*.csv (forces of all laws over a few seconds, for the drawings). The same each
-time but for ns_per_tick and ns_per_arrival.
+time but for ns_*.
 
 Exit status: 0 done, 1 a program failed, 2 wrong use.
 """
@@ -60,8 +60,8 @@ FIGURES_MOTION, FIGURES_SECONDS, FIGURES_FROM = "mix", 5.5, 1.5
 
 KEYS = ("world", "motion", "speed_m_s", "rate_hz", "delay_ms", "reference", "method", "blended", "mean_percent",
         "p99_percent", "max_percent", "jump_percent", "rough_percent", "exceed_percent", "paper_mean_percent",
-        "paper_max_percent", "paper_max_force_percent", "energy_percent", "ns_per_tick", "ns_per_arrival",
-        "bytes_per_sample")
+        "paper_max_percent", "paper_max_force_percent", "energy_percent", "ns_per_tick", "ns_per_tick_p99",
+        "ns_per_arrival", "bytes_per_sample", "model_bytes")
 
 # The laws alone: nothing between them and the drawing.
 FIGURES_CLIENT = """score = []

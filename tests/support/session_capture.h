@@ -19,6 +19,9 @@ class CaptureOf {
               std::uint16_t port = 5000) {
     add(server(), client(port), {session, sequence}, sample);
   }
+  void page(const protocol::SurfacePage& page, std::uint64_t sequence) {
+    add(server(), client(5000), {7, sequence}, page);
+  }
   void raw(const std::vector<std::byte>& bytes) {
     writer_.write(Time{1}, client(9), server(), bytes, bytes.size());
   }

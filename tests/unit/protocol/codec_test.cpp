@@ -51,6 +51,23 @@ std::vector<Message> one_of_each() {
   whole.ahead_p_W = {0.5, -1, 2};
   whole.ahead_f_W = {0, 1.5, 0};
   whole.ahead = {{-8, 0, 0, -16, 0, -32}, {0, 0, 0}, 0};
+  ToolState fetching = tool;
+  fetching.flags = ToolState::kWantsSurface | ToolState::kAsksPages;
+  fetching.pages_taken = 0x0203;
+  fetching.surface_version = 0xa1b2c3d4;
+  fetching.pages = {7, 8, 9, 10, 11, 12, 13, ToolState::kNoPage};
+  ForceSample on_surface = force;
+  on_surface.flags = ForceSample::kHasSurface;
+  on_surface.surface = {.version = 0xa1b2c3d4,
+                        .vertices = 0x162,
+                        .triangles = 0x2c0,
+                        .tool_radius = 0.5,
+                        .tool_friction = 0.25,
+                        .tool_compliance = 2,
+                        .shift_W = {0, -0.5, 0}};
+  SurfacePage page{.tool = 1, .version = 0xa1b2c3d4, .page = 0x0708};
+  page.values.front() = 0.5F;
+  page.values.back() = -2;
   return {Hello{.nonce = 42},
           Welcome{42, 1, 30, 0.005},
           Refuse{42, RefuseReason::kNoFreeTool},
@@ -58,7 +75,10 @@ std::vector<Message> one_of_each() {
           tool,
           force,
           asking,
-          whole};
+          whole,
+          fetching,
+          on_surface,
+          page};
 }
 
 }  // namespace
@@ -115,6 +135,24 @@ TEST_CASE("golden bytes: written down by hand from protocol/README.md") {
                                                   "0000000000000000"
                                                   "7011010000000000"
                                                   "01000000");
+  CHECK(hex(encoded(kHeader, messages[8])).substr(2 * (28 + 107)) ==
+        "6000"  // flags, then: pages taken, version, pages
+        "0302000000000000"
+        "d4c3b2a1"
+        "0700000008000000090000000a0000000b0000000c0000000d000000ffffffff");
+  CHECK(hex(encoded(kHeader, messages[9])).substr(2 * (28 + 105)) ==
+        "10000000"  // flags, then: version, vertices, triangles, radius, friction, compliance, shift
+        "d4c3b2a1"
+        "62010000"
+        "c0020000"
+        "000000000000e03f"
+        "000000000000d03f"
+        "0000000000000040"
+        "0000000000000000"
+        "000000000000e0bf"
+        "0000000000000000");
+  CHECK(hex(encoded(kHeader, messages[10])) == front("0a", "8d03") + "01" + "d4c3b2a1" + "08070000" +
+                                                   "0000003f" + std::string(2 * 4 * 223, '0') + "000000c0");
   CHECK(hex(encoded(kHeader, messages[6])).substr(2 * (28 + 107)) ==
         "1800"
         "3020100000000000");

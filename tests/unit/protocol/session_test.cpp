@@ -202,3 +202,24 @@ TEST_CASE("two sessions from one address hold a tool each, with its radius, apar
   CHECK(gone[0].tool == 0);
   CHECK(server.holder(1) != nullptr);
 }
+
+TEST_CASE(
+    "pages of the surface reach the client that holds the tool, each once, in whatever order they come") {
+  Pair pair;
+  pair.shake_hands();
+  auto* member = pair.server.holder(0);
+  const auto page = [&](std::uint64_t sequence, std::uint8_t tool) {
+    return Datagram{{member->session, sequence}, SurfacePage{.tool = tool, .version = 1, .page = 3}};
+  };
+  const auto reaches = [&](const Datagram& datagram) {
+    return pair.client.receive(datagram, pair.now, pair.client_stats) != nullptr;
+  };
+  CHECK(reaches(page(member->sent + 2, 0)));
+  CHECK(reaches(page(member->sent + 1, 0)));
+  CHECK_FALSE(reaches(page(member->sent + 1, 0)));
+  CHECK(pair.client_stats.duplicated == 1);
+  CHECK(pair.client_stats.reordered == 1);
+  CHECK_FALSE(reaches(page(member->sent + 3, 1)));
+  CHECK(pair.client_stats.rejected == 1);
+  CHECK_FALSE(reaches({{member->session + 1, 1}, SurfacePage{.version = 1}}));
+}

@@ -107,6 +107,40 @@ TEST_CASE("a capture begun in mid-session and with holes says what is missing") 
   CHECK(ticks.front().arrived->number == 100);
 }
 
+TEST_CASE(
+    "pages of the surface come to the tick that was the first to have them, in their order; lost ones are "
+    "missed") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.pcap";
+  {
+    CaptureOf capture(file);
+    for (std::uint64_t tick = 1; tick <= 40; ++tick) {
+      if (tick % 10 == 0) {
+        for (std::uint32_t i = 0; i < 3; ++i)  // the second of tick 30 is lost
+          if (tick != 30 || i != 1)
+            capture.page({.version = 5, .page = static_cast<std::uint32_t>(tick) + i}, tick + i);
+      }
+      ToolState state = state_at(tick, 0);
+      state.flags = ToolState::kWantsSurface;
+      state.pages_taken = tick < 12 ? 0 : tick < 14 ? 2 : 3 * (tick / 10);
+      capture.state(state, tick);
+    }
+    capture.close();
+  }
+  CapturedSession::Missing missing;
+  std::map<std::uint64_t, std::vector<std::uint32_t>> pages;
+  for (const CapturedTick& tick : all_ticks(file, 0, &missing)) {
+    for (const auto& page : tick.pages) pages[tick.state.tick].push_back(page.page);
+  }
+  using Numbers = std::vector<std::uint32_t>;
+  CHECK(pages[12] == Numbers{10, 11});
+  CHECK(pages[14] == Numbers{12});
+  CHECK(pages[20] == Numbers{20, 21, 22});
+  CHECK(pages[30] == Numbers{30, 32, 40});  // counted, not named: the third is the next that came
+  CHECK(pages[40] == Numbers{41, 42});
+  CHECK(missing.pages == 1);
+}
+
 TEST_CASE("ticks whose times jump back, or lie before time began, are left out and counted") {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.pcap";
