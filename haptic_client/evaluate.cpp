@@ -12,6 +12,7 @@
 #include "haptic_client/evaluation/captured_session.h"
 #include "haptic_client/evaluation/law_cost.h"
 #include "haptic_client/evaluation/scoring.h"
+#include "haptic_client/evaluation/told_compliance.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/loop/pipeline.h"
 
@@ -59,8 +60,8 @@ double bytes_for(const Wants& wants, protocol::ForceSample sample) {
   return static_cast<double>(protocol::encode({}, sample, bytes));
 }
 
-Evaluation run(const std::filesystem::path& file, const std::vector<std::string>& laws, double blend,
-               const Truth* truth, ProgressLine& progress) {
+Evaluation run(const std::filesystem::path& file, const std::vector<std::string>& laws,
+               const EvaluateOptions& options, const Truth* truth, ProgressLine& progress) {
   const CaptureSurvey found = survey(file, [](double) {});
   const auto longest = std::max_element(found.runs.begin(), found.runs.end(),
                                         [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
@@ -69,19 +70,23 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   e.run = static_cast<std::size_t>(longest - found.runs.begin());
   e.ticks_hz = ticks_per_second(*longest);
   e.plain = scorings(laws, e.ticks_hz, 0, truth);
-  e.blended = scorings(laws, e.ticks_hz, blend, truth);
+  e.blended = scorings(laws, e.ticks_hz, options.blend_ms / 1e3, truth);
   CapturedSession session(file, e.run);
   std::optional<protocol::ToolState> before;
   ErrorSums ignored;
   SurfaceModel model;
+  protocol::SurfacePages pages;
   std::vector<Wants> wants;
   for (const std::string& law : laws) wants.push_back(wants_of(law));
   for (CapturedTick tick; session.next(tick);) {
     const Time t{tick.state.t_ns};
     std::optional<Sample> sample;
-    for (const protocol::SurfacePage& page : tick.pages) model.take(page);
+    for (const protocol::SurfacePage& page : tick.pages)
+      model.take(with_compliance(page, pages, options.compliance));
     e.model_bytes += kPageBytes * static_cast<double>(tick.pages.size());
     if (tick.arrived) {
+      const protocol::SurfaceState& surface = tick.arrived->surface;
+      if (surface.version != 0) pages = {surface.vertices, surface.triangles};
       sample = sample_of(*tick.arrived, &model);
       ++e.samples;
       e.age += to_seconds(t - sample->t);
@@ -177,7 +182,7 @@ int evaluate(const EvaluateOptions& options) {
     truth.emplace(*options.truth, [&](double share) { progress("reading the truth", share); });
   Json rows = Json::array();
   for (const std::filesystem::path& capture : options.captures) {
-    const Evaluation e = run(capture, laws, options.blend_ms / 1e3, truth ? &*truth : nullptr, progress);
+    const Evaluation e = run(capture, laws, options, truth ? &*truth : nullptr, progress);
     std::vector<LawCost> costs;
     for (const std::string& law : laws)
       costs.push_back(wants_of(law).surface ? cost_on(law, capture, e.run) : cost_of(law));

@@ -14,6 +14,7 @@ struct EvaluateOptions {
   std::vector<std::string> methods;            ///< empty: every law there is
   std::string world;                           ///< name of what was touched; empty: the name of the capture
   double blend_ms = 10;                        ///< of the blended rows, (0, 100]
+  double compliance = 1;  ///< the surface model that laws see is so many times as compliant, [0.01, 100]
 };
 
 /// Runs every law on the captures (the longest session of each), as it is and blended, and scores it at the

@@ -123,6 +123,10 @@ CLI::App* add_evaluate(CLI::App& app, client::EvaluateOptions& options) {
   command->add_option("--method", options.methods, "Laws (default: all)")->allow_extra_args(false);
   command->add_option("--world", options.world, "Name for the first column (default: the capture's)");
   command->add_option("--blend-ms", options.blend_ms, "Time constant of the blended rows (default 10 ms)");
+  command
+      ->add_option("--compliance", options.compliance,
+                   "Laws see a surface model so many times as compliant as it was sent (default 1)")
+      ->check(CLI::Range(0.01, 100.0));
   command->footer("Example: haptic_client evaluate liver.pcap --truth truth.pcap --out out/evaluation");
   return command;
 }

@@ -5,8 +5,8 @@
 namespace palpate::client {
 namespace {
 constexpr double kMostCorrection = 3;
-constexpr double kDoubt =
-    0.02;  // of the largest force: below it, F_loc says little of how wrong the model is
+// Of the largest force: below it, F_loc says little of how wrong the model is.
+constexpr double kDoubt = 0.02;
 constexpr std::size_t kRemembered = 1024;             // ticks: a quarter of a second at 4 kHz
 constexpr Time kGap = std::chrono::milliseconds(12);  // longer than any tick
 constexpr double kSamePlace = 1e-3;                   // m: how far a tangent leads
@@ -24,6 +24,7 @@ void LocalContact::update(const Sample& sample) noexcept {
   without_.update(sample);
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = sample;
+  motion_.update(sample);
   known_ = false;
   if (!newest_.surface) return;
   const Vec3 p_rest = at_rest(sample.p, sample.t);
@@ -35,7 +36,10 @@ void LocalContact::update(const Sample& sample) noexcept {
   }
   if (!local) local = contact_.probe(*newest_.surface, p_rest);
   known_ = local && believable(*local, sample.f);
-  if (known_) compare(*local);
+  if (!known_) return;
+  compare(*local);
+  const bool free = local->isZero(0) && sample.f.isZero(0);
+  if (free && newest_.surface->tool.friction == 0) compare_ahead();
 }
 
 void LocalContact::remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept {
@@ -57,15 +61,28 @@ std::optional<Vec3> LocalContact::remembered(Time t, const Vec3& p_rest) const n
   return {};
 }
 
+/// What the server says is `right` the model takes for `local`, somewhere.
+void LocalContact::learn_factor(const Vec3& right, const Vec3& local) noexcept {
+  largest_ = std::max(largest_, right.norm());
+  const double doubt = kDoubt * largest_ * kDoubt * largest_;  // a light touch tells little of the factor
+  const double factor = (right.dot(local) + doubt * kappa_) / (local.squaredNorm() + doubt);
+  kappa_ = std::clamp(factor, 1 / kMostCorrection, kMostCorrection);
+}
+
 void LocalContact::compare(const Vec3& local) noexcept {
   local_size_ = local.norm();
   across_.setZero();
   if (!(local_size_ > 0) || newest_.f.isZero(0)) return;
-  largest_ = std::max(largest_, newest_.f.norm());
-  const double doubt = kDoubt * largest_ * kDoubt * largest_;  // a light touch tells little of the factor
-  const double factor = (newest_.f.dot(local) + doubt * kappa_) / (local.squaredNorm() + doubt);
-  kappa_ = std::clamp(factor, 1 / kMostCorrection, kMostCorrection);
+  learn_factor(newest_.f, local);
   across_ = newest_.f - kappa_ * local;
+}
+
+/// The tool is free, but was expected to touch by now: the server has said what it would feel.
+void LocalContact::compare_ahead() noexcept {
+  if (!newest_.ahead || !newest_.ahead->f.allFinite() || newest_.ahead->f.isZero(0)) return;
+  const auto local = contact_.probe(*newest_.surface, at_rest(newest_.ahead->p, newest_.t));
+  if (local && !local->isZero(0) && believable(*local, newest_.ahead->f))
+    learn_factor(newest_.ahead->f, *local);
 }
 
 void LocalContact::restart() noexcept {
@@ -73,6 +90,7 @@ void LocalContact::restart() noexcept {
   contact_.lift();
   felts_ = 0;
   newest_ = {};
+  motion_.restart();
   known_ = false;
   kappa_ = 1;
   largest_ = 0;
@@ -94,7 +112,7 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
 
 /// Where `p` is when the organ is at rest.
 Vec3 LocalContact::at_rest(const Vec3& p, Time t) const noexcept {
-  return p - newest_.surface->shift - to_seconds(t - newest_.t) * newest_.surface_v;
+  return p - newest_.surface->shift - motion_.since_sample(t);
 }
 
 }  // namespace palpate::client

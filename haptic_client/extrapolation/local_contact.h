@@ -8,14 +8,15 @@ namespace palpate::client {
 /// narrow phase and solver on the compliance of the tissue over a sample. Where F_loc, the force of that
 /// small problem, differs from the server's, it is corrected: of F_n = kappa F_loc(P_n') + r, r across
 /// F_loc(P_n'),
-///   F(P) = kappa F_loc(P') + c r,   c = min(3, |F_loc(P')| / |F_loc(P_n')|),   P' = P - s - v (t - t_n)
-/// with s and v how far and how fast the organ moves. So a tissue that is stiffer or softer than its model by
-/// a factor is met exactly, and what is missing fades with the contact; kappa stays as it was while a sample
-/// is free. Where the model is not known around the tool (yet), a sample brings none, or F_loc(P_n') is not
-/// even half right: `TwoTangents`, from one sample to the next. With friction, where force depends on the
-/// path, F_loc(P_n') is the one that was felt at t_n: the contact here has followed the path tick by tick, so
-/// there is no state of the server's to take over, and nothing to replay. About 0.1 us a tick, and each 1.5 %
-/// of the tool's radius a contact solve.
+///   F(P) = kappa F_loc(P') + c r,   c = min(3, |F_loc(P')| / |F_loc(P_n')|),   P' = P - s_n - s(t)
+/// with s_n how far the organ is from rest and s how far it has moved since (`OrganMotion`). So a tissue that
+/// is stiffer or softer than its model by a factor is met exactly, and what is missing fades with the
+/// contact; where a sample is free, kappa is that of the place ahead, if the tool touches there, else it
+/// stays as it was. Where the model is not known around the tool (yet), a sample brings none, or F_loc(P_n')
+/// is not even half right: `TwoTangents`, from one sample to the next. With friction, where force depends on
+/// the path, F_loc(P_n') is the one that was felt at t_n: the contact here has followed the path tick by
+/// tick, so there is no state of the server's to take over, and nothing to replay. About 0.1 us a tick, and
+/// each 1.5 % of the tool's radius a contact solve.
 class LocalContact : public Extrapolator {
  public:
   LocalContact();
@@ -27,6 +28,8 @@ class LocalContact : public Extrapolator {
 
  private:
   void compare(const Vec3& local) noexcept;
+  void learn_factor(const Vec3& right, const Vec3& local) noexcept;
+  void compare_ahead() noexcept;
   void remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept;
   std::optional<Vec3> remembered(Time t, const Vec3& p_rest) const noexcept;
   Vec3 at_rest(const Vec3& p, Time t) const noexcept;
@@ -41,6 +44,7 @@ class LocalContact : public Extrapolator {
   TwoTangents without_;
   ContactOnPatch contact_;
   Sample newest_;
+  OrganMotion motion_;
   double local_size_ = 0;           // |F_loc(P_n')|, N
   double kappa_ = 1, largest_ = 0;  // -, N: of all samples
   Vec3 across_ = Vec3::Zero();      // r, N

@@ -32,17 +32,19 @@ void Tangent::update(const Sample& sample) noexcept {
   learned_.update(sample);
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = sample;
+  motion_.update(sample);
   if (newest_.here) newest_.here->k = restoring_part(newest_.here->k);
 }
 
 void Tangent::restart() noexcept {
   learned_.restart();
   newest_ = {};
+  motion_.restart();
 }
 
 Vec3 Tangent::force(const Vec3& p, Time t) noexcept {
   if (!newest_.here) return learned_.force(p, t);
-  return force_at(*newest_.here, p - to_seconds(t - newest_.t) * newest_.surface_v);
+  return force_at(*newest_.here, p - motion_.since_sample(t));
 }
 
 }  // namespace palpate::client

@@ -1,5 +1,6 @@
 #pragma once
 #include "haptic_client/extrapolation/learned_stiffness.h"
+#include "haptic_client/extrapolation/organ_motion.h"
 
 namespace palpate::client {
 
@@ -12,9 +13,9 @@ Mat3 restoring_part(const Mat3& k) noexcept;
 /// near.
 Vec3 force_at(const Linearised& l, const Vec3& p) noexcept;
 
-/// F = F_n + K_n (P - P_n - v_s (t - t_n)), K_n = dF/dP the server's own tangent at P_n, v_s the velocity of
-/// the organ's surface. The first contact comes at the plane that the sample tells, not a sample late. Where
-/// a sample has no tangent: `LearnedStiffness`. About 10 ns.
+/// F = F_n + K_n (P - P_n - s(t)), K_n = dF/dP the server's own tangent at P_n, s how far the organ has moved
+/// since (`OrganMotion`). The first contact comes at the plane that the sample tells, not a sample late.
+/// Where a sample has no tangent: `LearnedStiffness`. About 10 ns.
 class Tangent : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override;
@@ -26,6 +27,7 @@ class Tangent : public Extrapolator {
  private:
   LearnedStiffness learned_;
   Sample newest_;
+  OrganMotion motion_;
 };
 
 }  // namespace palpate::client

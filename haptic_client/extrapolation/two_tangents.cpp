@@ -11,18 +11,20 @@ void TwoTangents::update(const Sample& sample) noexcept {
   first_.update(sample);
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = sample;
+  motion_.update(sample);
   if (newest_.ahead) newest_.ahead->k = restoring_part(newest_.ahead->k);
 }
 
 void TwoTangents::restart() noexcept {
   first_.restart();
   newest_ = {};
+  motion_.restart();
 }
 
 Vec3 TwoTangents::force(const Vec3& p, Time t) noexcept {
   const Vec3 here = first_.force(p, t);
   if (!newest_.ahead || !newest_.here) return here;
-  const Vec3 still = p - to_seconds(t - newest_.t) * newest_.surface_v;  // where the organ stood at t_n
+  const Vec3 still = p - motion_.since_sample(t);  // where the organ stood at t_n
   const Vec3 d = newest_.ahead->p - newest_.p;
   const double along = (still - newest_.p).dot(d) / (d.squaredNorm() + kSmallStep * kSmallStep);
   if (!(along > 0)) return here;

@@ -82,7 +82,9 @@ def write_table(folder, name, title, header, lines):
     heads = [(head + "   ").split(" ")[:3] for head in header]
     table = [*zip(*heads),
              *([f"{x:.3f}" if isinstance(x, float) else x for x in line] for line in lines)]
-    text = [title] + [f"{law:<24}" + "".join(f"{cell:>10}" for cell in cells) for law, *cells in table]
+    widths = [max(9, *map(len, column)) + 1 for column in zip(*table)]
+    text = [title] + [f"{law:<24}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths[1:]))
+                      for law, *cells in table]
     (folder / f"{name}.txt").write_text("\n".join(text) + "\n", encoding="ascii")
     print("\n".join(text) + "\n")
 
@@ -129,7 +131,7 @@ def world_table(rows, folder):
     lines = []
     for law in values(rows, "method"):
         found = [average(chosen(rows, method=law, world=world, delay_ms=delay)) for world in worlds]
-        lines.append([law, *(row[key] for row in found for key in ("mean_percent", "max_percent"))])
+        lines.append([law, *(row[key] if row else "" for row in found for key in ("mean_percent", "max_percent"))])
     header = ["law"] + [f"{world} {what} %" for world in worlds for what in ("mean", "max")]
     write_table(folder, "worlds", f"Against the true force in every world: {RATE:g} Hz, {SPEED:g} m/s, {delay:g} ms\n"
                 "(average of the motions; max: the worst of them)", header, lines)
@@ -203,20 +205,17 @@ def draw_cost(rows, styles, folder):
             points = [(cost(found), found[key], law) for law, found in laws.items()]
             front = pareto(points)
             panel.plot(*zip(*((x, y) for x, y, _ in front)), color="#7F7F7F", linewidth=6, alpha=0.4,
-                       solid_capstyle="round", label="Pareto front")
-            for number, (x, y, law) in enumerate(sorted(points, key=lambda p: p[1])):
+                       solid_capstyle="round", label="Pareto front: ringed")
+            for x, y, law in points:
                 on = any(law == best for _, _, best in front)
-                panel.plot(x, y, "o", color=styles[law][0], markersize=11, markeredgewidth=2.5,
+                panel.plot(x, y, "o", color=styles[law][0], markersize=11, markeredgewidth=2.5, label=law,
                            markeredgecolor="black" if on else styles[law][0])
-                left = number % 2 == 1  # names of neighbours to either side
-                panel.annotate(law, (x, y), xytext=(-11 if left else 11, -4), textcoords="offset points",
-                               ha="right" if left else "left", fontsize=10, weight="bold" if on else "normal")
             panel.set(xscale="log", yscale="log", xlabel=cost_name,
                       ylabel=f"{key.removesuffix('_percent')} error (% of {unit} force)")
-            panel.margins(x=0.45, y=0.1)
+            panel.margins(x=0.1, y=0.1)
             plain_numbers(panel)
             panel.grid(alpha=0.3, which="both")
-            panel.legend(loc="lower left")
+    panels[0, -1].legend(loc="upper left", bbox_to_anchor=(1.02, 1), fontsize=11)
     figure.suptitle(f"Error against cost: block, {RATE:g} Hz, {SPEED:g} m/s, {delay:g} ms, average of the motions")
     save(figure, folder / "error_cost.png")
 

@@ -3,8 +3,8 @@
 
 DIR holds summary.json. Written beside it: stability_WORLD.png, laws against operators and
 links; each cell has the stiffness (N/m) up to which the loop is stable, without and with
-passivity, and the colour says what share of the direct limit that is. Needs Debian's
-python3-matplotlib.
+passivity, and the colour says what share of the direct limit that is. A world with a wrong
+compliance is a line in the map of the true one. Needs Debian's python3-matplotlib.
 
 Exit status: 0 drawn, 2 the folder cannot be used.
 """
@@ -27,27 +27,39 @@ def unique(rows, *keys):
     return list(dict.fromkeys(tuple(row[key] for key in keys) for row in rows))
 
 
+def with_wrong_model(row):
+    """Of a world that a law was told wrongly: the true one, and a law of its own."""
+    world, _, share = row["world"].partition("_compliance_")
+    return {**row, "world": world, "method": f"{row['method']} ({share} of compliance)" if share else row["method"]}
+
+
+def share_of(row):
+    """Of the direct limit; nan without a row."""
+    return max(row["stable_to_n_m"] / row["direct_limit_n_m"], LOWEST) if row else math.nan
+
+
 def draw(rows, world, file):
     laws = [law for (law,) in unique(rows, "method")]
     columns = unique(rows, "operator", "rate_hz", "delay_ms")
     found = {(r["method"], r["operator"], r["rate_hz"], r["delay_ms"], r["passivity"]): r for r in rows}
-    figure, axes = plt.subplots(figsize=(2.5 + 0.95 * len(columns), 1.6 + 0.5 * len(laws)))
-    shares = [[max(found[(law, *c, False)]["stable_to_n_m"] / found[(law, *c, False)]["direct_limit_n_m"], LOWEST)
-               for c in columns] for law in laws]
+    figure, axes = plt.subplots(figsize=(4 + 0.95 * len(columns), 1.6 + 0.5 * len(laws)),
+                                 layout="constrained")
+    shares = [[share_of(found.get((law, *c, False))) for c in columns] for law in laws]
     image = axes.imshow([[math.log10(min(s, 1)) for s in line] for line in shares], aspect="auto", cmap="RdYlGn",
                         vmin=math.log10(LOWEST), vmax=0)
     for i, law in enumerate(laws):
         for j, c in enumerate(columns):
+            if (law, *c, False) not in found:
+                continue
             plain, passive = (found[(law, *c, p)]["stable_to_n_m"] for p in (False, True))
             axes.text(j, i, f"{plain:.0f}\n{passive:.0f}", ha="center", va="center", fontsize=7)
     axes.set_xticks(range(len(columns)), [f"{o}\n{r:g} Hz, {d:g} ms" for o, r, d in columns], fontsize=7, rotation=45,
                     ha="right")
     axes.set_yticks(range(len(laws)), laws, fontsize=8)
-    axes.set_title(f"{world.replace('_', ' ')}: stable up to (N/m), without passivity, below with it", fontsize=10)
+    axes.set_title(f"{world.replace('_', ' ')}: stable up to (N/m)\nwithout passivity, below with it", fontsize=10)
     bar = figure.colorbar(image, ticks=[math.log10(x) for x in (0.003, 0.01, 0.03, 0.1, 0.3, 1)])
     bar.ax.set_yticklabels(["0.3 %", "1 %", "3 %", "10 %", "30 %", "100 %"])
     bar.set_label("of the direct limit, without passivity", fontsize=8)
-    figure.tight_layout()
     figure.savefig(file, dpi=110)
     plt.close(figure)
 
@@ -57,7 +69,7 @@ def main():
     parser.add_argument("dir", type=Path, metavar="DIR")
     folder = parser.parse_args().dir
     try:
-        rows = json.loads((folder / "summary.json").read_text(encoding="ascii"))
+        rows = [with_wrong_model(row) for row in json.loads((folder / "summary.json").read_text(encoding="ascii"))]
         worlds = [world for (world,) in unique(rows, "world")]
     except (OSError, ValueError, KeyError, TypeError) as error:
         print(f"stability.py: {folder}: {error}; scripts/study stability makes it", file=sys.stderr)

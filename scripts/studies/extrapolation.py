@@ -8,7 +8,11 @@ rate and delay, all scored by haptic_client evaluate. The captures are deleted.
 The worlds (their scenes say mesh, E, nu and tool; the motions go up to 3 mm deep, 12 s
 each, from the fixed seeds of scripts/trajectories; the mean speed is a study's choice):
 
-  block     soft, five motions; all speeds, rates and delays
+  block     soft, five motions; all speeds, rates and delays; and once around at 0.02 m/s
+            with 35 ms: every motion ends where it began, so work done by a law that the
+            tissue does not do is energy from nowhere
+  compliance_0.7, compliance_1.3   the same captures at one speed and rate, with 35 ms,
+            when local_contact is told so many times the tissue's compliance
   stiff     the same 33 times as stiff, at one speed and rate; as the tissue is linear and
             the motion given, it must give the percentages of the block
   friction  the same with friction, likewise with 35 ms (its steps take long)
@@ -19,7 +23,7 @@ each, from the fixed seeds of scripts/trajectories; the mean speed is a study's 
 
 Writes into --out: summary.json and summary.csv (a row for each configuration and law),
 figures_*.csv (forces of all laws over a few seconds, for the drawings). The same each
-time but for ns_per_tick and ns_per_arrival.
+time but for ns_*.
 
 Exit status: 0 done, 1 a program failed, 2 wrong use.
 """
@@ -45,20 +49,23 @@ TRUTH_HZ = 2000
 SPEED, RATE = 0.017, 33.3  # of the paper's long run
 GRASP_RATE = 100 / 3       # the rows of grasp.csv
 SPEEDS = (0.01, 0.017, 0.05, 0.1)
+LOOP_SPEED, LOOP_SECONDS = 0.02, 10.2  # once around
 RATES = (80, 40, 33.3, 26.7, 20)
 DELAYS = (0, 35, 80)  # ms
 QUICK_DELAYS, QUICK_SECONDS = (0, 35), 6
-SLOW_DELAYS = (35,)        # where a step takes long
+USUAL_DELAYS = (35,)       # where a step takes long, or one says enough
+WRONG = (0.7, 1.3)         # of the compliance
 FIGURES = ((20, 0), (RATE, 35))  # rate, delay of the drawings: the paper's, and one with a link
 FIGURES_MOTION, FIGURES_SECONDS, FIGURES_FROM = "mix", 5.5, 1.5
 
 KEYS = ("world", "motion", "speed_m_s", "rate_hz", "delay_ms", "reference", "method", "blended", "mean_percent",
         "p99_percent", "max_percent", "jump_percent", "rough_percent", "exceed_percent", "paper_mean_percent",
-        "paper_max_percent", "paper_max_force_percent", "energy_percent", "ns_per_tick", "ns_per_arrival",
-        "bytes_per_sample")
+        "paper_max_percent", "paper_max_force_percent", "energy_percent", "ns_per_tick", "ns_per_tick_p99",
+        "ns_per_arrival", "bytes_per_sample", "model_bytes")
 
 # The laws alone: nothing between them and the drawing.
 FIGURES_CLIENT = """score = []
+blend_ms = 0
 [passivity]
 enabled = false
 [limits]
@@ -75,6 +82,7 @@ class Cell(NamedTuple):
     seconds: float     # recorded
     captures: tuple    # (rate in Hz, delay in ms)
     line: bool         # whether also against the line between samples, the paper's reference
+    wrong: bool = False  # whether also with a wrong compliance
 
     @property
     def scene(self):
@@ -89,8 +97,10 @@ def cells_of(quick, motions):
     def add(world, motion, speed, folder, rates=(RATE,)):
         file = folder / f"block_{motion}.csv"
         seconds = QUICK_SECONDS if quick else float(file.read_text().split("\n")[-2].split(",")[0])
-        captures = tuple((rate, delay) for rate in rates for delay in (delays if world != "friction" else SLOW_DELAYS))
-        cells.append(Cell(world, motion, speed, file, seconds, captures, world == "block" and speed == SPEED))
+        one = world == "friction" or speed == LOOP_SPEED
+        captures = tuple((rate, delay) for rate in rates for delay in (USUAL_DELAYS if one else delays))
+        usual = world == "block" and speed == SPEED
+        cells.append(Cell(world, motion, speed, file, seconds, captures, usual, usual))
 
     for speed in (s for s in motions if s != "moving"):
         for motion in MOTIONS:
@@ -146,6 +156,10 @@ class Study:
             if cell.line:
                 paper = {key: captures[key] for key in captures if round(key[0], 1) == RATE and key[1] == 0}
                 rows += self.evaluate(scoring_weight, cell, paper, folder)
+            for share in WRONG if cell.wrong else ():
+                told = {key: captures[key] for key in captures if key == (RATE, USUAL_DELAYS[0])}
+                rows += self.evaluate(0, cell._replace(world=f"compliance_{share}"), told, folder, "--truth",
+                                      folder / "truth.pcap", "--compliance", share, "--method", "local_contact")
         return rows
 
     def replay(self, capture, law):
@@ -184,7 +198,8 @@ def make_motions(folder, speeds):
     for speed in speeds:
         made[speed] = folder / f"{speed:g}"
         made[speed].mkdir()
-        run_program(sys.executable, MAKE_MOTIONS, "--speed", speed, "--output", made[speed])
+        run_program(sys.executable, MAKE_MOTIONS, "--speed", speed, "--output", made[speed],
+                    *(("--seconds", LOOP_SECONDS) if speed == LOOP_SPEED else ()))
     made["moving"] = folder / "moving"
     made["moving"].mkdir()
     run_program(sys.executable, MAKE_MOTIONS, "--speed", SPEED, "--follow", SCENES / "block_moving.toml", "--output",
@@ -203,7 +218,7 @@ def write_summary(rows, out):
 def run(quick, out):
     with tempfile.TemporaryDirectory(dir=out, prefix="captures.") as name:
         folder = Path(name)
-        motions = make_motions(folder, (SPEED,) if quick else SPEEDS)
+        motions = make_motions(folder, (SPEED,) if quick else (*SPEEDS, LOOP_SPEED))
         cells = cells_of(quick, motions)
         drawn = Cell("block", FIGURES_MOTION, SPEED, motions[SPEED] / f"block_{FIGURES_MOTION}.csv", FIGURES_SECONDS,
                      FIGURES, False)

@@ -29,6 +29,7 @@ struct Cell {
   std::string law, world;
   bool passivity;
   Link link;
+  double compliance = 1;  // the client is told so many times that of the tissue
 };
 
 struct Run {

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "haptic_client/evaluation/told_compliance.h"
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/random.h"
 
@@ -113,8 +114,8 @@ struct PressAndSlide::Block {
   explicit Block(double stiffness, sim::Simulation& soft)
       : depth(depth_of(soft, stiffness / kPress)),
         simulation(scene_of(kSoft * kPress / soft.step(pressed(depth), 1e-3).force[1]), mesh()) {}
-  /// A server that begins afresh.
-  test::Server server() {
+  /// A server that begins afresh, and tells that `compliance`.
+  test::Server server(double compliance) {
     simulation.lift_tool();
     auto tools = std::make_shared<sim::ServedTools>(simulation);
     auto pager = std::make_shared<sim::SurfacePager>(simulation, 0);
@@ -122,11 +123,13 @@ struct PressAndSlide::Block {
       const std::vector<sim::ToolInput> inputs{{1, state, true}};
       return tools->step(inputs, 0.03).front().answer;  // the tissue has no memory: any time step does
     };
-    const auto pages = [pager](const protocol::ToolState& state) {
+    const protocol::SurfacePages whole{pager->state().vertices, pager->state().triangles};
+    const auto pages = [pager, whole, compliance](const protocol::ToolState& state) {
       std::vector<protocol::SurfacePage> found;
       if ((state.flags & protocol::ToolState::kAsksPages) == 0) return found;
       for (const std::uint32_t number : state.pages) {
-        if (protocol::SurfacePage page; pager->page(number, page)) found.push_back(page);
+        if (protocol::SurfacePage page; pager->page(number, page))
+          found.push_back(client::with_compliance(page, whole, compliance));
       }
       return found;
     };
@@ -170,7 +173,7 @@ Run PressAndSlide::run(const Cell& cell, double stiffness, int seed, bool compar
   Block& block = block_of(stiffness);
   Hand hand(*cell.person, block.depth, seed);
   client::Pipeline pipeline = pipeline_of(cell);
-  test::ClosedLoop loop(hand.encoder, pipeline, block.server(), loop_of(cell.link, seed));
+  test::ClosedLoop loop(hand.encoder, pipeline, block.server(cell.compliance), loop_of(cell.link, seed));
   std::vector<Vec3> path;
   double error2 = 0, force2 = 0;
   while (loop.seconds() < kEnd) {

@@ -24,6 +24,9 @@ constexpr double kSwing = 0.15e-3;                                        // m, 
 constexpr double kSpeed = 2e-3;  // m/s RMS, a loop counts as unstable
 constexpr double kSoftest = 20, kStiffest = 51200, kStep = 1.19, kPrecision = 1.05;  // N/m; ratios
 const std::string kSlides = "press_and_slide";  // a world; the others are walls
+constexpr Link kUsual{30, 38};
+constexpr const char* kSolves = "local_contact";   // the law that is told a compliance,
+constexpr std::array<double, 2> kWrong{0.7, 1.3};  // also one so many times the true one
 
 const std::vector<Person> kPersons{
     {"light", {.mass = 0.1, .device_damping = 1, .hand_stiffness = 200, .hand_damping = 5}},
@@ -128,32 +131,41 @@ Json row_of(const Cell& cell, double direct, PressAndSlide& slides) {
   double error = 0;
   for (int seed = 1; seed <= kSeeds && limit > 0; ++seed)
     error += (slide ? slides.run(cell, limit, seed, true) : run(cell, limit / 2, seed)).force_error / kSeeds;
+  const std::string world =
+      cell.compliance == 1 ? cell.world : fmt::format("{}_compliance_{:g}", cell.world, cell.compliance);
   return {{"operator", cell.person->name},
           {"method", cell.law},
           {"passivity", cell.passivity},
           {"rate_hz", cell.link.rate_hz},
           {"delay_ms", cell.link.delay_ms},
-          {"world", cell.world},
+          {"world", world},
           {"stable_to_n_m", limit},
           {"direct_limit_n_m", direct},
           {"force_error_percent", 100 * error}};
 }
 
 std::vector<Cell> cells(bool quick) {
-  const std::vector<Link> links = quick
-                                      ? std::vector<Link>{{30, 38}}
-                                      : std::vector<Link>{{30, 0}, {30, 38}, {30, 83}, {10, 105}, {100, 15}};
+  const std::vector<Link> links =
+      quick ? std::vector<Link>{kUsual} : std::vector<Link>{{30, 0}, kUsual, {30, 83}, {10, 105}, {100, 15}};
+  // The quick study has no time for all hands on elements.
+  const auto slid = [quick](const Person& person) { return !quick || &person == &kPersons[1]; };
   std::vector<Cell> all;
   for (const std::string& world : {std::string("linear"), std::string("hertz"), kSlides}) {
     for (const Person& person : kPersons) {
       for (const Link& link : links) {
-        // Rates that a simulation of elements has; and the quick study has no time for all hands.
-        if (world == kSlides && (link.rate_hz > 30 || (quick && &person != &kPersons[1]))) continue;
+        if (world == kSlides && (link.rate_hz > 30 || !slid(person))) continue;  // no simulation is as fast
         for (const ExtrapolatorRow& row : extrapolators()) {
           for (const bool passivity : {false, true})
             all.push_back({&person, std::string(row.name), world, passivity, link});
         }
       }
+    }
+  }
+  for (const Person& person : kPersons) {
+    if (!slid(person)) continue;
+    for (const double compliance : kWrong) {
+      for (const bool passivity : {false, true})
+        all.push_back({&person, kSolves, kSlides, passivity, kUsual, compliance});
     }
   }
   return all;

@@ -115,6 +115,28 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("local contact: that the compliance is wrong is seen ahead of the first touch") {
+  for (const float factor : {0.7f, 1.3f}) {
+    Listener listener;
+    const std::uint32_t tiles = first_tile(listener);
+    listener.learn([&](protocol::SurfacePage& page) {
+      if (page.page < tiles) return true;
+      for (float& value : page.values) value *= factor;
+      return true;
+    });
+    sim::Simulation truth(block_scene(), block_mesh());
+    double largest = 0, peak = 0;
+    for (int i = 0; i < 150; ++i) {  // down at 30 mm/s
+      const Vec3 p(0.001, std::max(0.0125 - 6e-5 * i, 0.0035), 0.0005);
+      const Vec3 right = truth.step(p, 0.002).force;
+      largest = std::max(largest, (listener.tick(p) - right).norm());
+      peak = std::max(peak, right.norm());
+    }
+    CAPTURE(factor);
+    CHECK(largest < 0.03 * peak);
+  }
+}
+
 TEST_CASE("local contact: without the compliance it is two tangents") {
   Listener listener;
   const std::uint32_t tiles = first_tile(listener);

@@ -1,5 +1,8 @@
 #include "haptic_client/evaluation/scoring.h"
 
+#include <cmath>
+#include <numbers>
+
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 
@@ -53,6 +56,23 @@ TEST_CASE("latency counts: the law is judged with the samples it had") {
   const double late = (10 + 11 + 12 + 13 + 14 + 15 + 16) * 0.01, held = (7 + 8 + 9) * 0.01;
   CHECK(scoring.scored() == 500 - 7);
   CHECK(sums.error[0] == Approx(50 * held + 49 * late));
+}
+
+TEST_CASE("on a closed path a force that comes late creates energy") {
+  // x = A sin(w t) on a spring: late by phi, its work in a period is pi k A^2 sin(phi) more; k A^2 goes each
+  // way.
+  const double w = 2 * std::numbers::pi;
+  const auto x = [&](int k) { return Vec3(std::sin(w * to_seconds(k * kTick)), 0, 0); };
+  Scoring scoring({"constant"}, 500, "test");
+  ErrorSums sums;
+  const int late = 10;
+  for (int k = 0; k < 2500 + 2 * late; ++k) {  // of which five periods are scored
+    const int of = k - late;
+    const Sample sample{static_cast<std::uint64_t>(of + 1), of * kTick, x(of), -100 * x(of)};
+    scoring.tick(x(k), k * kTick, of >= 0 ? &sample : nullptr, sums);
+  }
+  CHECK(scoring.energy_percent(0) ==
+        Approx(100 * std::numbers::pi * std::sin(w * late * to_seconds(kTick))).epsilon(0.01));
 }
 
 TEST_CASE("nothing is scored across an outage") {
