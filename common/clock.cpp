@@ -19,6 +19,10 @@ Time now() noexcept {
   return read(CLOCK_MONOTONIC);
 }
 
+Time thread_time() noexcept {
+  return read(CLOCK_THREAD_CPUTIME_ID);
+}
+
 Time monotonic_epoch() noexcept {
   return read(CLOCK_REALTIME) - now();
 }

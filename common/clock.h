@@ -7,6 +7,10 @@ namespace palpate {
 /// Monotonic time of this machine (CLOCK_MONOTONIC). Any thread, no allocation, about 25 ns.
 Time now() noexcept;
 
+/// Processor time that this thread has used (CLOCK_THREAD_CPUTIME_ID), for measurements on busy machines. No
+/// allocation, some 200 ns.
+Time thread_time() noexcept;
+
 /// Where the monotonic clock began on the calendar: add it to `now()` for nanoseconds since 1970 (UTC).
 Time monotonic_epoch() noexcept;
 

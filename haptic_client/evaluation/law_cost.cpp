@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <vector>
 
 #include "common/clock.h"
@@ -44,9 +43,7 @@ double median_ns(int calls, Call call) {
 }
 
 double thread_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
+  return static_cast<double>(thread_time().count());
 }
 
 double quantile(std::vector<double>& values, double share) {
