@@ -226,7 +226,7 @@ Pipeline palpate::studies::pipeline_of(const Cell& cell) {
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool quick = !arguments.empty() && arguments.front() == "--quick";
-  if (arguments.size() != (quick ? 2u : 1u)) {
+  if (arguments.size() != (quick ? 2u : 1u) || arguments.back().front() == '-') {
     fmt::print(stderr, "usage: stability_study [--quick] DIR\n");
     return 2;
   }

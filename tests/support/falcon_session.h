@@ -51,17 +51,23 @@ struct Session {
     usb.command("hand 2-1 target 0 0 0.10 0.3");
     return pushes();
   }
-  /// Out of it and in: what the motors owe is forgotten where nothing pushes.
+  /// Out of it and in: what the motors owe is forgotten where nothing pushes. Three times at most: where the
+  /// machine holds a packet up on the way in, the motors owe again.
   bool press_again() const {
-    usb.command("hand 2-1 target 0 0 0.13 0.3");
-    return wait([](const nlohmann::json& s) {
-             return s["dac"] == nlohmann::json({0, 0, 0}) && s["hand_at_rest"] == true;
-           }) &&
-           press();
+    for (int i = 0; i < 3; ++i) {
+      usb.command("hand 2-1 target 0 0 0.13 0.3");
+      const bool out = wait([](const nlohmann::json& s) {
+        return s["dac"] == nlohmann::json({0, 0, 0}) && s["hand_at_rest"] == true;
+      });
+      usb.command("hand 2-1 target 0 0 0.10 0.3");
+      if (out && pushes(4)) return true;
+    }
+    return false;
   }
-  bool pushes() const {
+  bool pushes(double seconds = 10) const {
     return wait(
-        [](const nlohmann::json& s) { return std::abs(s["force"][2].get<double>() / kPush - 1) < 0.02; });
+        [](const nlohmann::json& s) { return std::abs(s["force"][2].get<double>() / kPush - 1) < 0.02; },
+        seconds);
   }
   bool silent(double seconds) const {
     return wait([](const nlohmann::json& s) { return s["dac"] == nlohmann::json({0, 0, 0}); }, seconds);
