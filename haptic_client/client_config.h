@@ -14,7 +14,7 @@ namespace palpate::client {
 /// What a client file asks for; every key has a default.
 struct ClientConfig {
   std::string server = "127.0.0.1:45130", server_where = "default";
-  double rate_hz = 500;                    ///< haptic ticks per second, [100, 4000]
+  double rate_hz = 500;                  ///< haptic ticks per second, [100, 4000]
   std::string method = "local_contact";  ///< a name of `extrapolators()`
   std::string method_where = "default";
   /// Laws that run beside it and are scored; absent: the paper's three and the chosen one; empty: none.

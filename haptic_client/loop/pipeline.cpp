@@ -34,7 +34,10 @@ Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
   if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = linearised(s.ahead_p_W, s.ahead_f_W, s.ahead);
   if ((s.flags & ForceSample::kHasSurface) != 0 && model != nullptr) {
     model->announce(s.surface);
-    sample.surface = Surface{model, s.surface.shift_W, {s.surface.tool_radius, s.surface.tool_friction}, s.surface.tool_compliance};
+    sample.surface = Surface{model,
+                             s.surface.shift_W,
+                             {s.surface.tool_radius, s.surface.tool_friction},
+                             s.surface.tool_compliance};
   }
   return sample;
 }

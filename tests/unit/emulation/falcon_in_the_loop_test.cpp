@@ -114,7 +114,8 @@ TEST_CASE(
     for (const char* law : {"constant", "linear_time", "linear_position", "linear_position_signed"}) {
       for (const double stiffness : {100.0, 800.0, 3000.0, 20000.0}) {
         CAPTURE(hand.name, law, stiffness);
-        Rig rig({.loaded = true, .homed = true}, hand, law, stiffness, {.sim_hz = 30, .link = {.delay = 0.035}});
+        Rig rig({.loaded = true, .homed = true}, hand, law, stiffness,
+                {.sim_hz = 30, .link = {.delay = 0.035}});
         rig.command("hand target 0 0 0.13");
         rig.run(2);
         const double before = rig.state()["work_motors"].get<double>();
