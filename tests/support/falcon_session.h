@@ -51,18 +51,15 @@ struct Session {
     usb.command("hand 2-1 target 0 0 0.10 0.3");
     return pushes();
   }
-  /// Out of it and in: what the motors owe is forgotten where nothing pushes. Three times at most: where the
-  /// machine holds a packet up on the way in, the motors owe again.
+  /// Out of it and in: what the motors owe is forgotten where nothing pushes. Within 1 s: a hand of 0.2 kg that
+  /// comes within 0.3 s goes 11 mm deep before it rests, and feels 8 N there.
   bool press_again() const {
-    for (int i = 0; i < 3; ++i) {
-      usb.command("hand 2-1 target 0 0 0.13 0.3");
-      const bool out = wait([](const nlohmann::json& s) {
-        return s["dac"] == nlohmann::json({0, 0, 0}) && s["hand_at_rest"] == true;
-      });
-      usb.command("hand 2-1 target 0 0 0.10 0.3");
-      if (out && pushes(4)) return true;
-    }
-    return false;
+    usb.command("hand 2-1 target 0 0 0.13 0.3");
+    const bool out = wait([](const nlohmann::json& s) {
+      return s["dac"] == nlohmann::json({0, 0, 0}) && s["hand_at_rest"] == true;
+    });
+    usb.command("hand 2-1 target 0 0 0.10 1");
+    return out && pushes();
   }
   bool pushes(double seconds = 10) const {
     return wait(
