@@ -70,6 +70,8 @@ class Extrapolator {
   /// sample. |p| and |f| up to 1e30 give a finite answer; times are from 0 to 2^62 ns.
   /// Called in the order of time: a law may go along with the tool.
   virtual Vec3 force(const Vec3& p, Time t) noexcept = 0;
+  /// `force` follows for a tick at `now`; its own time may stand still where that of the samples does.
+  virtual void begin_tick(Time) noexcept {}
   /// What it uses beyond the triplet. A law that uses something knows a free surface from one that pulls.
   virtual Wants wants() const noexcept { return {}; }
   /// Whether a simpler law stands in for it, because the newest sample lacks what it uses.

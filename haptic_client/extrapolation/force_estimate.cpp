@@ -31,6 +31,7 @@ Vec3 ForceEstimate::force(const Vec3& p, Time t) noexcept {
 
 Vec3 ForceEstimate::law_force(const Vec3& p, Time t) noexcept {
   if (newest_.f.isZero(0) && !sees_surface_) return Vec3::Zero();
+  law_->begin_tick(t);
   return law_->force(p, t - newest_.t <= kPatience * period_ ? t : newest_.t);
 }
 

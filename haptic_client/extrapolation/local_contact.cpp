@@ -89,6 +89,7 @@ void LocalContact::restart() noexcept {
   without_.restart();
   contact_.lift();
   felts_ = 0;
+  now_ = {};
   newest_ = {};
   motion_.restart();
   known_ = false;
@@ -101,7 +102,7 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
     const Vec3 p_rest = at_rest(p, t);
     const auto local = contact_.go(*newest_.surface, p_rest);
     if (local) {
-      remember(t, p_rest, *local);
+      remember(std::max(now_, t), p_rest, *local);
       if (!(local_size_ > 0)) return kappa_ * *local;
       return kappa_ * *local + std::min(kMostCorrection, local->norm() / local_size_) * across_;
     }

@@ -22,6 +22,7 @@ class LocalContact : public Extrapolator {
   LocalContact();
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
+  void begin_tick(Time now) noexcept override { now_ = now; }
   Vec3 force(const Vec3& p, Time t) noexcept override;
   Wants wants() const noexcept override { return {.here = true, .ahead = true, .surface = true}; }
   bool stepped_down() const noexcept override { return !known_; }
@@ -45,6 +46,7 @@ class LocalContact : public Extrapolator {
   ContactOnPatch contact_;
   Sample newest_;
   OrganMotion motion_;
+  Time now_{};                      // of the tick: the force felt then is remembered
   double local_size_ = 0;           // |F_loc(P_n')|, N
   double kappa_ = 1, largest_ = 0;  // -, N: of all samples
   Vec3 across_ = Vec3::Zero();      // r, N

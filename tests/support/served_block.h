@@ -35,11 +35,15 @@ inline std::vector<protocol::SurfacePage> all_pages(const sim::Simulation& simul
   return pages;
 }
 
-/// The block steps at 33.3 Hz; what it answers arrives `delay` later.
+/// The block steps once in each `period`; what it answers arrives `delay` later.
 class ServedBlock {
  public:
-  explicit ServedBlock(Time delay, std::size_t tools = 1)
-      : simulation(block_scene(tools), block_mesh()), served_(simulation), inputs_(tools), delay_(delay) {}
+  explicit ServedBlock(Time delay, std::size_t tools = 1, Time period = kPeriod)
+      : simulation(block_scene(tools), block_mesh()),
+        served_(simulation),
+        inputs_(tools),
+        delay_(delay),
+        period_(period) {}
 
   /// The newest sample that has arrived by `t`, and has not been given before; a step if one is due, of tool
   /// 0 at `p`.
@@ -47,11 +51,11 @@ class ServedBlock {
                                                 Time lead = std::chrono::milliseconds(50)) {
     using protocol::ToolState;
     if (t >= due_) {
-      due_ += kPeriod;
+      due_ = (due_ == Time{} ? t : due_) + period_;
       ToolState state{.tick = ++ticks_, .t_ns = t.count(), .p_W = p, .v_W = v, .lead_ns = lead.count()};
       state.flags = ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface;
       inputs_.front() = {7, state, true};
-      const auto outcomes = served_.step(inputs_, to_seconds(kPeriod));
+      const auto outcomes = served_.step(inputs_, to_seconds(period_));
       on_the_way_.push_back({t + delay_, outcomes.front().answer.value()});
     }
     std::optional<protocol::ForceSample> newest;
@@ -62,13 +66,13 @@ class ServedBlock {
   void hold_second_tool(const Vec3& p) { inputs_[1] = {8, {.tool = 1, .tick = ++ticks_, .p_W = p}, true}; }
   void set_delay(Time delay) { delay_ = delay; }
 
-  static constexpr Time kPeriod = std::chrono::microseconds(30030);
+  static constexpr Time kPeriod = std::chrono::microseconds(30030);  // 33.3 Hz
   sim::Simulation simulation;
 
  private:
   sim::ServedTools served_;
   std::vector<sim::ToolInput> inputs_;
-  Time delay_, due_{};
+  Time delay_, period_, due_{};
   std::uint64_t ticks_ = 0;
   std::deque<std::pair<Time, protocol::ForceSample>> on_the_way_;
 };
