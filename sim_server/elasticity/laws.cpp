@@ -1,0 +1,122 @@
+#include "sim_server/elasticity/laws.h"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::sim {
+namespace {
+
+constexpr int kMostTurns = 20;
+constexpr double kTurned = 1e-14;     // square of what the last turn changed
+constexpr double kFlat = 1e-3;        // of the cube of its size: too flat for Newton
+constexpr double kLeastStretch = 0.1;  // sum of two stretches below which R turns no faster
+
+Mat3 cross_matrix(const Vec3& a) noexcept {
+  Mat3 m;
+  m << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return m;
+}
+
+Mat3 cofactor(const Mat3& F) noexcept {
+  Mat3 c;
+  c << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
+  return c;
+}
+
+Mat3 rotation_by_singular_values(const Mat3& F) noexcept {
+  const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Vec3 signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+}  // namespace
+
+Mat3 nearest_rotation(const Mat3& F) noexcept {
+  const double size = std::sqrt(F.squaredNorm() / 3);
+  if (!(F.determinant() > kFlat * size * size * size)) return rotation_by_singular_values(F);
+  Mat3 R = F / size;
+  for (int i = 0; i < kMostTurns; ++i) {
+    const Mat3 c = cofactor(R);
+    const double det = R.col(0).dot(c.col(0));
+    // Scaled so that it converges in a few steps from far away, too (Higham 1986, equation 3.5).
+    const double scale = std::sqrt(std::sqrt(c.squaredNorm() / R.squaredNorm()) / det);
+    const Mat3 next = 0.5 * (scale * R + c / (scale * det));
+    const double change = (next - R).squaredNorm();
+    R = next;
+    if (change < kTurned) break;
+  }
+  return R;
+}
+
+CorotationalLaw::CorotationalLaw(const Moduli& moduli, const Mat3& F) noexcept
+    : mu_(moduli.mu), F_(F), R_(nearest_rotation(F)) {
+  Mat3 stretch = F * R_.transpose();  // R S R^T
+  trace_ = stretch.trace();
+  stretch = 0.5 * (stretch + stretch.transpose()).eval();
+  Mat3 sums = -stretch;  // its eigenvalues are the sums of two stretches
+  sums.diagonal().array() += trace_;
+  const double det = sums.determinant(), size = sums.norm();
+  if (det > kLeastStretch * size * size / 4) {
+    turn_ = sums.inverse();
+    return;
+  }
+  const Eigen::JacobiSVD<Mat3> svd(sums, Eigen::ComputeFullU);
+  const Vec3 inverse = svd.singularValues().cwiseMax(kLeastStretch).cwiseInverse();
+  turn_ = svd.matrixU() * inverse.asDiagonal() * svd.matrixU().transpose();
+}
+
+Mat3 CorotationalLaw::block(double p, const Vec3& gi, const Vec3& gj) const noexcept {
+  const Mat3 qi = cross_matrix(R_ * gi), qj = cross_matrix(R_ * gj);
+  Mat3 block = (2 * mu_ - p) * qi * turn_ * qj;  // qj is skew: its transpose is -qj
+  block.diagonal().array() += 2 * mu_ * gi.dot(gj);
+  return block;
+}
+
+Mat3 StVenantKirchhoffLaw::block(double p, const Vec3& gi, const Vec3& gj) const noexcept {
+  const double product = gi.dot(gj);
+  Mat3 block = mu_ * (product * F_ * F_.transpose() + (F_ * gj) * (F_ * gi).transpose());
+  block.diagonal().array() += 2 * mu_ * gi.dot(strain_ * gj) + p * product;
+  return block;
+}
+
+NeoHookeanLaw::NeoHookeanLaw(const Moduli& moduli, const Mat3& F) noexcept
+    : mu_(moduli.mu), stretch2_(F.squaredNorm()), F_(F), cofactor_(cofactor(F)) {
+  volume_ = F.col(0).dot(cofactor_.col(0));
+}
+
+double NeoHookeanLaw::shape_energy() const noexcept {
+  return 0.5 * mu_ * (stretch2_ - 3 - std::log((stretch2_ + 1) / 4)) - 0.75 * mu_ * (volume_ - 1);
+}
+
+Mat3 NeoHookeanLaw::block(double p, const Vec3& gi, const Vec3& gj) const noexcept {
+  const double shrink = 1 / (stretch2_ + 1);
+  Mat3 block = 2 * mu_ * shrink * shrink * (F_ * gi) * (F_ * gj).transpose();
+  block.diagonal().array() += mu_ * (1 - shrink) * gi.dot(gj);
+  // The second derivative of det F along a gi^T and b gj^T is (a x b) . F (gi x gj).
+  block -= (p - 0.75 * mu_) * cross_matrix(F_ * gi.cross(gj));
+  return block;
+}
+
+FibreLaw::FibreLaw(double modulus, const Vec3& a, const Mat3& F, bool small_strain) noexcept
+    : k_(modulus), a_(a), along_(a) {
+  const Vec3 now = F * a;
+  if (small_strain) {
+    stretch_ = a.dot(now) - 1;
+    return;
+  }
+  const double length = now.norm();
+  stretch_ = length - 1;
+  if (!(length > 0)) return;
+  along_ = now / length;
+  across_ = stretch_ / length;
+}
+
+Mat3 FibreLaw::block(const Vec3& gi, const Vec3& gj) const noexcept {
+  Mat3 block = (1 - across_) * along_ * along_.transpose();
+  block.diagonal().array() += across_;
+  return k_ * gi.dot(a_) * gj.dot(a_) * block;
+}
+
+}  // namespace palpate::sim
