@@ -4,16 +4,6 @@
 
 namespace palpate::sim {
 
-FreeDofs::FreeDofs(int vertices, const std::vector<int>& fixed)
-    : first(static_cast<std::size_t>(vertices), 0) {
-  for (const int vertex : fixed) first[vertex] = -1;
-  for (int& dof : first) {
-    if (dof < 0) continue;
-    dof = count;
-    count += 3;
-  }
-}
-
 SparseMatrix assemble_stiffness(const TetMesh& mesh, const Material& material, const FreeDofs& dofs) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(mesh.tetrahedra.size() * (4 * 6 + 6 * 9));

@@ -9,8 +9,8 @@ namespace palpate::sim {
 namespace {
 
 constexpr int kMostTurns = 20;
-constexpr double kTurned = 1e-14;     // square of what the last turn changed
-constexpr double kFlat = 1e-3;        // of the cube of its size: too flat for Newton
+constexpr double kTurned = 1e-14;      // square of what the last turn changed
+constexpr double kFlat = 1e-3;         // of the cube of its size: too flat for Newton
 constexpr double kLeastStretch = 0.1;  // sum of two stretches below which R turns no faster
 
 Mat3 cross_matrix(const Vec3& a) noexcept {

@@ -104,8 +104,8 @@ class NeoHookeanLaw {
 };
 
 /// Fibres along the unit vector `a` at rest, which add k / 2 (|F a| - 1)^2 to any law (and k / 2 (a . F a -
-/// 1)^2 to the linear one): transverse isotropy, whose Young modulus along `a` is that of the law plus k where
-/// nothing holds it aside.
+/// 1)^2 to the linear one): transverse isotropy, whose Young modulus along `a` is that of the law plus k
+/// where nothing holds it aside.
 class FibreLaw {
  public:
   FibreLaw(double modulus, const Vec3& a, const Mat3& F, bool small_strain) noexcept;

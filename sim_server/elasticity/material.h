@@ -1,12 +1,38 @@
 #pragma once
+#include <optional>
+#include <vector>
+
+#include "common/types.h"
 
 namespace palpate::sim {
 
-/// Isotropic elastic tissue. Liver, the values of configs/scenes/liver.toml: see there for their sources.
+/// Which energy a deformation costs: see `laws.h`.
+enum class ElasticLaw { kLinear, kCorotational, kStVenantKirchhoff, kNeoHookean };
+
+/// How displacement and volume vary inside a tetrahedron: see `solid.h`.
+enum class ElementKind { kLinear, kNodalPressure, kQuadratic };
+
+/// Fibres along one direction everywhere, which stiffen the tissue along it.
+struct Fibres {
+  Vec3 direction;  ///< unit, mesh frame at rest
+  double modulus;  ///< Young's modulus along them, beyond that of the rest, Pa, (0, 1e12]
+};
+
+/// A share of all stress that fades when the strain is held: one term of a Prony series.
+struct Relaxation {
+  double share;  ///< of the stress at once, (0, 1); all shares together below 1
+  double time;   ///< to 1/e, s, [1e-4, 1e6]
+};
+
+/// Tissue. Liver, the values of configs/scenes/liver.toml: see there for their sources.
 struct Material {
-  double young_modulus = 10e3;  ///< E, Pa, (0, 1e12]
+  double young_modulus = 10e3;  ///< E, Pa, (0, 1e12]; of a tissue that relaxes: at once
   double poisson_ratio = 0.45;  ///< nu, [0, 0.5)
   double density = 1060;        ///< kg/m^3, (0, 1e5]
+  ElasticLaw law = ElasticLaw::kLinear;
+  ElementKind element = ElementKind::kLinear;
+  std::optional<Fibres> fibres{};
+  std::vector<Relaxation> relaxations{};
 
   /// First Lame parameter, Pa.
   double lame_lambda() const {

@@ -43,7 +43,8 @@ SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& whe
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);  // the same bits on every machine
   factor_->llt.cholmod().print = 0;                                      // errors are ours to word
 #endif
-  factor_->llt.compute(lower);
+  factor_->llt.analyzePattern(lower);
+  factor_->llt.factorize(lower);
   if (factor_->llt.info() != Eigen::Success || nearly_singular(lower, solve(alternating(lower.rows())))) {
     fail(
         "{}: the stiffness matrix is singular: the fixed nodes do not hold the body (three that are not in "
@@ -55,6 +56,11 @@ SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& whe
 SparseCholesky::~SparseCholesky() = default;
 SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
+
+bool SparseCholesky::refactor(const SparseMatrix& lower) {
+  factor_->llt.factorize(lower);
+  return factor_->llt.info() == Eigen::Success;
+}
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
   return factor_->llt.solve(b);

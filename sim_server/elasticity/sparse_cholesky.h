@@ -18,6 +18,10 @@ class SparseCholesky {
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
+  /// Factors other values on the same pattern. False where the matrix is not positive definite: then the
+  /// factor is of no use until the next one.
+  bool refactor(const SparseMatrix& lower);
+
   /// X = A^-1 B for dense B (n x k); allocates X.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 

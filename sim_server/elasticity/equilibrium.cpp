@@ -1,0 +1,151 @@
+#include "sim_server/elasticity/equilibrium.h"
+
+#include <cmath>
+
+#include "common/error.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kArmijo = 1e-4, kShortest = 1e-4;  // line search: descent, and the shortest step
+constexpr double kLook = 1e-7;  // of what the supports move: how far to look ahead for what that asks for
+constexpr double kFirstShift = 0.05, kLastShift = 1e3;  // of the stiffness at rest
+
+class Newton {
+ public:
+  Newton(const Solid& solid, const StaticLoad& load, const std::string& where,
+         const EquilibriumSettings& settings)
+      : solid_(solid),
+        load_(load),
+        settings_(settings),
+        dofs_(solid.nodes(), load.fixed),
+        stiffness_(solid.stiffness_matrix(dofs_)),
+        internal_(static_cast<std::size_t>(solid.nodes())),
+        external_(internal_.size()) {
+    solid.add_stiffness(solid.rest(), stiffness_);
+    at_rest_ = stiffness_.lower();
+    factor_.emplace(at_rest_, where);
+  }
+
+  /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.
+  bool advance(std::vector<Vec3>& x, double from, double to) {
+    share_ = to;
+    move_supports(x, to - from);
+    for (int i = 0; i <= settings_.max_newton; ++i) {
+      const Eigen::VectorXd residual = unbalanced(x);
+      if (!std::isfinite(residual_)) return false;
+      if (residual_ <= settings_.tolerance) return true;
+      ++iterations_;
+      if (!step(x, residual)) return false;
+    }
+    return false;
+  }
+
+  int iterations() const { return iterations_; }
+  double residual() const { return residual_; }
+
+ private:
+  /// f_ext - f_int over the free displacements, N.
+  Eigen::VectorXd unbalanced(const std::vector<Vec3>& x) {
+    solid_.forces(x, internal_);
+    std::fill(external_.begin(), external_.end(), Vec3::Zero());
+    if (load_.forces) load_.forces(x, external_);
+    Eigen::VectorXd residual(dofs_.count);
+    double at_work = 0;
+    for (std::size_t i = 0; i < internal_.size(); ++i) {
+      at_work += internal_[i].squaredNorm() + share_ * share_ * external_[i].squaredNorm();
+      if (dofs_.first[i] >= 0) residual.segment<3>(dofs_.first[i]) = share_ * external_[i] - internal_[i];
+    }
+    residual_ = at_work > 0 ? residual.norm() / std::sqrt(at_work) : 0;
+    return residual;
+  }
+
+  bool factor_at(const std::vector<Vec3>& x) {
+    stiffness_.set_zero();
+    solid_.add_stiffness(x, stiffness_);
+    if (factor_->refactor(stiffness_.lower())) return true;
+    double added = 0;
+    for (double shift = kFirstShift; shift < kLastShift; shift *= 4) {
+      stiffness_.lower() += (shift - added) * at_rest_;
+      added = shift;
+      if (factor_->refactor(stiffness_.lower())) return true;
+    }
+    return false;
+  }
+
+  double potential(const std::vector<Vec3>& x) const {
+    double work = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) work += share_ * external_[i].dot(x[i] - solid_.rest()[i]);
+    return solid_.energy(x) - work;
+  }
+
+  bool step(std::vector<Vec3>& x, const Eigen::VectorXd& residual) {
+    if (!factor_at(x)) return false;
+    const Eigen::VectorXd way = factor_->solve(residual).col(0);
+    const double before = potential(x), slope = residual.dot(way), left = residual.norm();
+    const std::vector<Vec3> from = x;
+    for (double length = 1; length > kShortest; length /= 2) {
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        if (dofs_.first[i] >= 0) x[i] = from[i] + length * way.segment<3>(dofs_.first[i]);
+      }
+      if (potential(x) <= before - kArmijo * length * slope || unbalanced(x).norm() < left) return true;
+    }
+    x = from;
+    return false;
+  }
+
+  /// The supports go on by a share of their way, and the body with them as its tangent says.
+  void move_supports(std::vector<Vec3>& x, double share) {
+    if (load_.moved.empty()) return;
+    std::vector<Vec3> ahead = x;
+    for (const int node : load_.fixed) ahead[node] += kLook * share * load_.moved[node];
+    const Eigen::VectorXd before = unbalanced(x);
+    const Eigen::VectorXd pull = (unbalanced(ahead) - before) / kLook;
+    if (!factor_at(x)) return;
+    const Eigen::VectorXd way = factor_->solve(pull).col(0);
+    for (const int node : load_.fixed) x[node] += share * load_.moved[node];
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (dofs_.first[i] >= 0) x[i] += way.segment<3>(dofs_.first[i]);
+    }
+  }
+
+  const Solid& solid_;
+  const StaticLoad& load_;
+  const EquilibriumSettings& settings_;
+  FreeDofs dofs_;
+  StiffnessMatrix stiffness_;
+  SparseMatrix at_rest_;
+  std::optional<SparseCholesky> factor_;
+  std::vector<Vec3> internal_, external_;
+  double share_ = 0, residual_ = 0;
+  int iterations_ = 0;
+};
+
+}  // namespace
+
+Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const std::string& where,
+                             const std::function<void(double)>& progress,
+                             const EquilibriumSettings& settings) {
+  Newton newton(solid, load, where, settings);
+  Equilibrium found{.x = solid.rest()};
+  const double smallest = std::pow(0.5, settings.max_halvings);
+  double done = 0, step = 1;
+  while (done < 1) {
+    std::vector<Vec3> x = found.x;
+    if (newton.advance(x, done, std::min(1.0, done + step))) {
+      done = std::min(1.0, done + step);
+      found.x = std::move(x);
+      ++found.increments;
+      step *= 2;
+      if (progress) progress(done);
+    } else if ((step /= 2) < smallest) {
+      fail("{}: no equilibrium found beyond {:.3g} % of the load: is it too much for this material?", where,
+           100 * done);
+    }
+  }
+  found.iterations = newton.iterations();
+  found.residual = newton.residual();
+  return found;
+}
+
+}  // namespace palpate::sim

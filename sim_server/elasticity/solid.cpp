@@ -1,0 +1,389 @@
+#include "sim_server/elasticity/solid.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "common/parallel.h"
+#include "sim_server/elasticity/element.h"
+#include "sim_server/elasticity/laws.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr int kMostCorners = 10;
+// Tetrahedra whose forces or stiffness wait in the scratch to be added up in order; and those of one task.
+constexpr std::size_t kBatch = 2048, kTask = 64;
+/// Corners at the ends of each further node of a quadratic tetrahedron.
+constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+
+/// Calls `work` with the class of the law.
+template <class Work>
+void with_law(ElasticLaw law, const Work& work) {
+  switch (law) {
+    case ElasticLaw::kLinear:
+      return work.template operator()<LinearLaw>();
+    case ElasticLaw::kCorotational:
+      return work.template operator()<CorotationalLaw>();
+    case ElasticLaw::kStVenantKirchhoff:
+      return work.template operator()<StVenantKirchhoffLaw>();
+    case ElasticLaw::kNeoHookean:
+      return work.template operator()<NeoHookeanLaw>();
+  }
+}
+
+std::size_t blocks_of(int corners) {
+  return static_cast<std::size_t>(corners * (corners + 1) / 2);
+}
+
+}  // namespace
+
+/// One tetrahedron with all it takes to work on it.
+struct Solid::Element {
+  Element(const Solid& solid, std::span<const Vec3> x, std::size_t e)
+      : nodes(solid.element_nodes_.data() + e * static_cast<std::size_t>(solid.corners_)),
+        solid_(solid),
+        first_point_(e * static_cast<std::size_t>(solid.points_)),
+        linear_(solid.material_.law == ElasticLaw::kLinear) {
+    for (int i = 0; i < solid.corners_; ++i) x_[i] = x[nodes[i]];
+  }
+  std::size_t point(int q) const { return first_point_ + static_cast<std::size_t>(q); }
+  double weight(int q) const { return solid_.weight_[point(q)]; }
+  const Vec3* gradients(int q) const {
+    return solid_.gradient_.data() + point(q) * static_cast<std::size_t>(solid_.corners_);
+  }
+  Mat3 deformation(int q) const {
+    const Vec3* const g = gradients(q);
+    Mat3 F = x_[0] * g[0].transpose();
+    for (int i = 1; i < solid_.corners_; ++i) F += x_[i] * g[i].transpose();
+    return F;
+  }
+  /// What the stress before adds to the first Piola-Kirchhoff stress.
+  Mat3 remembered(const Mat3& F, const Mat3& memory) const { return linear_ ? memory : Mat3(F * memory); }
+
+  const int* nodes;
+
+ private:
+  const Solid& solid_;
+  std::size_t first_point_;
+  bool linear_;
+  std::array<Vec3, kMostCorners> x_;
+};
+
+Solid::Solid(const TetMesh& mesh, const Material& material) : material_(material), rest_(mesh.vertices) {
+  if (material.element == ElementKind::kQuadratic) {
+    build_quadratic(mesh);
+  } else {
+    build_linear(mesh);
+  }
+  if (material.element == ElementKind::kNodalPressure) gather_patches();
+  force_scratch_.resize(kBatch * static_cast<std::size_t>(corners_));
+  stiffness_scratch_.resize(kBatch * blocks_of(corners_));
+}
+
+void Solid::build_linear(const TetMesh& mesh) {
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    element_nodes_.insert(element_nodes_.end(), t.begin(), t.end());
+    const LinearTetrahedron element({rest_[t[0]], rest_[t[1]], rest_[t[2]], rest_[t[3]]});
+    weight_.push_back(element.volume);
+    gradient_.insert(gradient_.end(), element.gradient.begin(), element.gradient.end());
+  }
+}
+
+void Solid::build_quadratic(const TetMesh& mesh) {
+  constexpr double kNear = 0.58541020, kFar = 0.13819660;  // barycentric, of the four points
+  corners_ = 10;
+  points_ = 4;
+  std::map<std::array<int, 2>, int> middle;
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    element_nodes_.insert(element_nodes_.end(), t.begin(), t.end());
+    for (const auto& [a, b] : kEdges) {
+      const std::array<int, 2> edge{std::min(t[a], t[b]), std::max(t[a], t[b])};
+      const auto [found, fresh] = middle.try_emplace(edge, static_cast<int>(rest_.size()));
+      if (fresh) {
+        rest_.push_back(0.5 * (rest_[edge[0]] + rest_[edge[1]]));
+        edges_.push_back(edge);
+      }
+      element_nodes_.push_back(found->second);
+    }
+    const LinearTetrahedron element({rest_[t[0]], rest_[t[1]], rest_[t[2]], rest_[t[3]]});
+    const auto& g = element.gradient;
+    for (int q = 0; q < 4; ++q) {
+      weight_.push_back(element.volume / 4);
+      const auto l = [q](int i) { return i == q ? kNear : kFar; };
+      for (int i = 0; i < 4; ++i) gradient_.push_back((4 * l(i) - 1) * g[i]);  // of l (2 l - 1)
+      for (const auto& [a, b] : kEdges) gradient_.push_back(4 * (l(a) * g[b] + l(b) * g[a]));
+    }
+  }
+}
+
+void Solid::gather_patches() {
+  std::vector<int> count(rest_.size() + 1, 0);
+  for (const int node : element_nodes_) ++count[static_cast<std::size_t>(node) + 1];
+  std::partial_sum(count.begin(), count.end(), count.begin());
+  around_first_ = count;
+  around_.resize(element_nodes_.size());
+  nodal_volume_.assign(rest_.size(), 0);
+  for (std::size_t k = 0; k < element_nodes_.size(); ++k) {
+    const int node = element_nodes_[k];
+    around_[count[node]++] = static_cast<int>(k / 4);
+    nodal_volume_[node] += weight_[k / 4] / 4;
+  }
+  dilation_.resize(elements());
+  nodal_dilation_.resize(rest_.size());
+}
+
+std::vector<double> Solid::masses() const {
+  std::vector<double> masses(rest_.size(), 0);
+  for (std::size_t e = 0; e < elements(); ++e) {
+    double mass = 0;
+    for (int q = 0; q < points_; ++q)
+      mass +=
+          material_.density * weight_[e * static_cast<std::size_t>(points_) + static_cast<std::size_t>(q)];
+    for (int i = 0; i < corners_; ++i) {
+      const double share = corners_ == 4 ? 0.25 : i < 4 ? 1.0 / 36 : 4.0 / 27;
+      masses[element_nodes_[e * static_cast<std::size_t>(corners_) + static_cast<std::size_t>(i)]] +=
+          share * mass;
+    }
+  }
+  return masses;
+}
+
+/// Of each tetrahedron, then of each vertex.
+void Solid::average_dilation(std::span<const Vec3> x) const {
+  with_law(material_.law, [&]<class Law>() {
+    const Moduli moduli = Law::moduli(material_);
+    parallel_blocks(elements(), kTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t e = begin; e < end; ++e)
+        dilation_[e] = Law(moduli, Element(*this, x, e).deformation(0)).dilation();
+    });
+  });
+  for (std::size_t a = 0; a < rest_.size(); ++a) {
+    double sum = 0;
+    for (int k = around_first_[a]; k < around_first_[a + 1]; ++k)
+      sum += weight_[around_[k]] / 4 * dilation_[around_[k]];
+    nodal_dilation_[a] = nodal_volume_[a] > 0 ? sum / nodal_volume_[a] : 0;
+  }
+}
+
+/// Mean dilation of the vertices of a tetrahedron, by which the pressure in it goes.
+double Solid::mean_dilation(std::size_t e) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < 4; ++i) sum += nodal_dilation_[element_nodes_[4 * e + i]];
+  return sum / 4;
+}
+
+void Solid::evaluate(std::span<const Vec3> x, std::span<State> at_points) const {
+  if (averages()) average_dilation(x);
+  with_law(material_.law, [&]<class Law>() {
+    const Moduli moduli = Law::moduli(material_);
+    parallel_blocks(elements(), kTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t e = begin; e < end; ++e) {
+        const Element element(*this, x, e);
+        for (int q = 0; q < points_; ++q) {
+          State& state = at_points[element.point(q)];
+          state.F = element.deformation(q);
+          const Law law(moduli, state.F);
+          const double theta = averages() ? mean_dilation(e) : law.dilation();
+          state.stress = law.shape_stress() + moduli.lambda * theta * law.dilation_gradient();
+          state.energy = law.shape_energy() + (averages() ? 0 : 0.5 * moduli.lambda * theta * theta);
+          if (!material_.fibres) continue;
+          const FibreLaw fibres = fibre_law(state.F);
+          state.stress += fibres.stress();
+          state.energy += fibres.energy();
+        }
+        if (!averages()) continue;
+        for (std::size_t i = 0; i < 4; ++i) {
+          const double theta = nodal_dilation_[element_nodes_[4 * e + i]];
+          at_points[e].energy += 0.125 * moduli.lambda * theta * theta;
+        }
+      }
+    });
+  });
+}
+
+FibreLaw Solid::fibre_law(const Mat3& F) const {
+  return {material_.fibres->modulus, material_.fibres->direction, F, material_.law == ElasticLaw::kLinear};
+}
+
+double Solid::energy(std::span<const Vec3> x) const {
+  std::vector<State> states(points());
+  evaluate(x, states);
+  double sum = 0;
+  for (std::size_t p = 0; p < points(); ++p) sum += weight_[p] * states[p].energy;
+  return sum;
+}
+
+void Solid::forces(std::span<const Vec3> x, std::span<Vec3> f, const Viscosity& viscosity) const {
+  if (averages()) average_dilation(x);
+  std::fill(f.begin(), f.end(), Vec3::Zero());
+  const auto corners = static_cast<std::size_t>(corners_);
+  for (std::size_t from = 0; from < elements(); from += kBatch) {
+    const std::size_t count = std::min(kBatch, elements() - from);
+    with_law(material_.law, [&]<class Law>() {
+      parallel_blocks(count, kTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k)
+          element_forces<Law>(x, from + k, force_scratch_.data() + k * corners, viscosity);
+      });
+    });
+    for (std::size_t k = 0; k < count * corners; ++k)
+      f[element_nodes_[from * corners + k]] += force_scratch_[k];
+  }
+}
+
+template <class Law>
+void Solid::element_forces(std::span<const Vec3> x, std::size_t e, Vec3* f,
+                           const Viscosity& viscosity) const {
+  const Moduli moduli = Law::moduli(material_);
+  const Element element(*this, x, e);
+  std::fill_n(f, corners_, Vec3::Zero());
+  for (int q = 0; q < points_; ++q) {
+    const Mat3 F = element.deformation(q);
+    const Law law(moduli, F);
+    const double theta = averages() ? mean_dilation(e) : law.dilation();
+    Mat3 stress = law.shape_stress() + moduli.lambda * theta * law.dilation_gradient();
+    if (material_.fibres) stress += fibre_law(F).stress();
+    stress *= viscosity.scale;
+    if (!viscosity.memory.empty()) stress += element.remembered(F, viscosity.memory[element.point(q)]);
+    const Vec3* const g = element.gradients(q);
+    for (int i = 0; i < corners_; ++i) f[i] += element.weight(q) * (stress * g[i]);
+  }
+}
+
+void Solid::add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Viscosity& viscosity) const {
+  if (averages()) average_dilation(x);
+  const std::size_t blocks = blocks_of(corners_), corners = static_cast<std::size_t>(corners_);
+  for (std::size_t from = 0; from < elements(); from += kBatch) {
+    const std::size_t count = std::min(kBatch, elements() - from);
+    with_law(material_.law, [&]<class Law>() {
+      parallel_blocks(count, kTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t e = begin; e < end; ++e)
+          element_stiffness<Law>(x, from + e, stiffness_scratch_.data() + e * blocks, viscosity);
+      });
+    });
+    for (std::size_t e = 0; e < count; ++e) {
+      const Mat3* block = stiffness_scratch_.data() + e * blocks;
+      const int* const nodes = element_nodes_.data() + (from + e) * corners;
+      for (int i = 0; i < corners_; ++i) {
+        for (int j = 0; j <= i; ++j) k.add(nodes[i], nodes[j], *block++);
+      }
+    }
+  }
+  if (averages()) add_nodal_stiffness(x, k, viscosity.scale);
+}
+
+template <class Law>
+void Solid::element_stiffness(std::span<const Vec3> x, std::size_t e, Mat3* k,
+                              const Viscosity& viscosity) const {
+  const Moduli moduli = Law::moduli(material_);
+  const Element element(*this, x, e);
+  std::fill_n(k, blocks_of(corners_), Mat3::Zero());
+  for (int q = 0; q < points_; ++q) {
+    const Mat3 F = element.deformation(q);
+    const Law law(moduli, F);
+    const double theta = averages() ? mean_dilation(e) : law.dilation();
+    const double weight = viscosity.scale * element.weight(q);
+    const Mat3 dilation = law.dilation_gradient();
+    const Vec3* const g = element.gradients(q);
+    std::array<Vec3, kMostCorners> along;  // how the dilation goes with each node
+    for (int i = 0; i < corners_; ++i) along[i] = dilation * g[i];
+    Mat3* block = k;
+    for (int i = 0; i < corners_; ++i) {
+      for (int j = 0; j <= i; ++j, ++block) {
+        *block += weight * law.block(moduli.lambda * theta, g[i], g[j]);
+        if (!averages()) *block += weight * moduli.lambda * along[i] * along[j].transpose();
+      }
+    }
+    if (material_.fibres || !viscosity.memory.empty()) add_extras(element, q, F, viscosity, k);
+  }
+}
+
+/// Of fibres, and of the stress that is remembered, which turns with the tissue.
+void Solid::add_extras(const Element& element, int q, const Mat3& F, const Viscosity& viscosity,
+                       Mat3* k) const {
+  const Vec3* const g = element.gradients(q);
+  for (int i = 0; i < corners_; ++i) {
+    for (int j = 0; j <= i; ++j, ++k) {
+      if (material_.fibres) *k += viscosity.scale * element.weight(q) * fibre_law(F).block(g[i], g[j]);
+      if (viscosity.memory.empty() || material_.law == ElasticLaw::kLinear) continue;
+      k->diagonal().array() += element.weight(q) * g[i].dot(viscosity.memory[element.point(q)] * g[j]);
+    }
+  }
+}
+
+/// Of the averaged dilation: V_a lambda (dtheta_a/dx) (dtheta_a/dx)^T for each vertex a, which ties all nodes
+/// of the tetrahedra around it.
+void Solid::add_nodal_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, double scale) const {
+  std::vector<Vec3> along(4 * elements());  // V_e dtheta_e by node
+  double lambda = 0;
+  with_law(material_.law, [&]<class Law>() {
+    const Moduli moduli = Law::moduli(material_);
+    lambda = moduli.lambda;
+    parallel_blocks(elements(), kTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t e = begin; e < end; ++e) {
+        const Element element(*this, x, e);
+        const Mat3 dilation = Law(moduli, element.deformation(0)).dilation_gradient();
+        for (std::size_t i = 0; i < 4; ++i) along[4 * e + i] = weight_[e] * dilation * gradient_[4 * e + i];
+      }
+    });
+  });
+  std::vector<std::pair<int, Vec3>> terms;
+  for (std::size_t a = 0; a < rest_.size(); ++a) {
+    if (!(nodal_volume_[a] > 0)) continue;
+    collect_terms(a, along, terms);
+    const double factor = scale * lambda / (16 * nodal_volume_[a]);
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j)
+        k.add(terms[i].first, terms[j].first, factor * terms[i].second * terms[j].second.transpose());
+    }
+  }
+}
+
+/// The sum of `along` over the tetrahedra around vertex `a`, by node.
+void Solid::collect_terms(std::size_t a, std::span<const Vec3> along,
+                          std::vector<std::pair<int, Vec3>>& terms) const {
+  terms.clear();
+  for (int k = around_first_[a]; k < around_first_[a + 1]; ++k) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t at = 4 * static_cast<std::size_t>(around_[k]) + i;
+      const int node = element_nodes_[at];
+      const auto same = [node](const auto& term) { return term.first == node; };
+      const auto found = std::find_if(terms.begin(), terms.end(), same);
+      if (found == terms.end()) {
+        terms.emplace_back(node, along[at]);
+      } else {
+        found->second += along[at];
+      }
+    }
+  }
+}
+
+StiffnessMatrix Solid::stiffness_matrix(const FreeDofs& dofs) const {
+  std::vector<int> groups, first{0};
+  if (!averages()) {
+    for (std::size_t k = static_cast<std::size_t>(corners_); k <= element_nodes_.size();
+         k += static_cast<std::size_t>(corners_))
+      first.push_back(static_cast<int>(k));
+    return {dofs, element_nodes_, first};
+  }
+  for (std::size_t a = 0; a < rest_.size(); ++a) {
+    const auto begin = static_cast<long>(groups.size());
+    for (int k = around_first_[a]; k < around_first_[a + 1]; ++k)
+      groups.insert(groups.end(), element_nodes_.begin() + 4 * around_[k],
+                    element_nodes_.begin() + 4 * around_[k] + 4);
+    std::sort(groups.begin() + begin, groups.end());
+    groups.erase(std::unique(groups.begin() + begin, groups.end()), groups.end());
+    first.push_back(static_cast<int>(groups.size()));
+  }
+  return {dofs, groups, first};
+}
+
+std::size_t Solid::bytes() const {
+  return (rest_.size() + gradient_.size() + force_scratch_.size()) * sizeof(Vec3) +
+         (weight_.size() + nodal_volume_.size() + dilation_.size() + nodal_dilation_.size()) *
+             sizeof(double) +
+         (element_nodes_.size() + around_.size() + around_first_.size() + 2 * edges_.size()) * sizeof(int) +
+         stiffness_scratch_.size() * sizeof(Mat3);
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,102 @@
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "sim_server/elasticity/laws.h"
+#include "sim_server/elasticity/material.h"
+#include "sim_server/elasticity/stiffness_matrix.h"
+#include "sim_server/mesh/tet_mesh.h"
+
+namespace palpate::sim {
+
+/// What viscosity adds to the stress at each quadrature point: the stress of now counts `scale` times, and
+/// `memory` (second Piola-Kirchhoff; Cauchy of the linear law; Pa) is what is left of the strains before.
+struct Viscosity {
+  double scale = 1;
+  std::span<const Mat3> memory = {};  ///< (points), or empty: none
+};
+
+/// A body of tetrahedra and one material: energy, internal forces and tangent stiffness of a deformed state.
+/// Three elements:
+/// - `kLinear`: four nodes, one quadrature point. Locks where nu goes to one half.
+/// - `kNodalPressure`: the same, with the dilation averaged over the tetrahedra around each vertex and the
+///   volume energy counted there (Bonet and Burton 1998, Commun. Numer. Meth. Engng 14:437, whose pressure it
+///   is; here from one energy, so that forces are conservative and the stiffness symmetric):
+///     theta_a = sum_e V_e / 4 theta_e / V_a,   E_vol = sum_a V_a lambda / 2 theta_a^2.
+/// - `kQuadratic`: ten nodes, straight edges with one more node in the middle of each, four points
+/// (Zienkiewicz
+///   and Taylor 2000, volume 1, tables 8.5 and 9.3).
+/// Sums run over tetrahedra in their order, whatever the number of threads: the same bytes. After
+/// construction only the scratch of a call changes: one thread at a time.
+class Solid {
+ public:
+  Solid(const TetMesh& mesh, const Material& material);
+
+  /// Vertices of the mesh first, in its order; then those in the middle of edges.
+  int nodes() const { return static_cast<int>(rest_.size()); }
+  const std::vector<Vec3>& rest() const { return rest_; }
+  /// The two vertices that each node beyond the mesh's vertices stands between.
+  const std::vector<std::array<int, 2>>& edges() const { return edges_; }
+  const Material& material() const { return material_; }
+
+  /// Elastic energy at positions `x` (nodes, m), J; without viscosity.
+  double energy(std::span<const Vec3> x) const;
+  /// Forces (nodes, N) with which the body resists being at `x`: dE/dx.
+  void forces(std::span<const Vec3> x, std::span<Vec3> f, const Viscosity& viscosity = {}) const;
+  /// Adds the derivative of `forces` to `k`.
+  void add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Viscosity& viscosity = {}) const;
+  /// A matrix with room for it.
+  StiffnessMatrix stiffness_matrix(const FreeDofs& dofs) const;
+  /// Lumped mass of each node, kg: a quarter of a tetrahedron for each vertex; of ten nodes 1/36 for a corner
+  /// and 4/27 for the middle of an edge (Hinton, Rock and Zienkiewicz 1976).
+  std::vector<double> masses() const;
+
+  /// Quadrature points in all: of tetrahedron e from e * points_per_element().
+  std::size_t points() const { return weight_.size(); }
+  int points_per_element() const { return points_; }
+  double volume_of(std::size_t point) const { return weight_[point]; }
+  /// First Piola-Kirchhoff stress (Pa) and deformation gradient at each point, and the energy density
+  /// (J/m^3).
+  struct State {
+    Mat3 F, stress;
+    double energy;
+  };
+  void evaluate(std::span<const Vec3> x, std::span<State> at_points) const;
+  std::size_t bytes() const;
+
+ private:
+  struct Element;
+  bool averages() const { return material_.element == ElementKind::kNodalPressure; }
+  void build_linear(const TetMesh& mesh);
+  void build_quadratic(const TetMesh& mesh);
+  void gather_patches();
+  void average_dilation(std::span<const Vec3> x) const;
+  double mean_dilation(std::size_t e) const;
+  FibreLaw fibre_law(const Mat3& F) const;
+  template <class Law>
+  void element_forces(std::span<const Vec3> x, std::size_t e, Vec3* f, const Viscosity& viscosity) const;
+  template <class Law>
+  void element_stiffness(std::span<const Vec3> x, std::size_t e, Mat3* k, const Viscosity& viscosity) const;
+  void add_extras(const Element& element, int q, const Mat3& F, const Viscosity& viscosity, Mat3* k) const;
+  void add_nodal_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, double scale) const;
+  void collect_terms(std::size_t a, std::span<const Vec3> along,
+                     std::vector<std::pair<int, Vec3>>& terms) const;
+  std::size_t elements() const { return element_nodes_.size() / static_cast<std::size_t>(corners_); }
+
+  Material material_;
+  int corners_ = 4, points_ = 1;  // nodes and quadrature points of an element
+  std::vector<Vec3> rest_;
+  std::vector<std::array<int, 2>> edges_;
+  std::vector<int> element_nodes_;  // (elements x corners)
+  std::vector<double> weight_;      // (points in all), m^3
+  std::vector<Vec3> gradient_;      // (points in all x corners), 1/m
+  // Only for averaged dilation: the tetrahedra around each vertex, and its share of their volume.
+  std::vector<int> around_, around_first_;
+  std::vector<double> nodal_volume_;
+  mutable std::vector<double> dilation_, nodal_dilation_;
+  mutable std::vector<Vec3> force_scratch_;
+  mutable std::vector<Mat3> stiffness_scratch_;
+};
+
+}  // namespace palpate::sim
