@@ -8,6 +8,7 @@
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/record.h"
 #include "sim_server/server.h"
+#include "sim_server/solve.h"
 
 namespace {
 
@@ -80,6 +81,16 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
   return command;
 }
 
+CLI::App* add_solve(CLI::App& app, sim::SolveOptions& options) {
+  auto* command = app.add_subcommand("solve", "Solve a scene without a tool: loads, supports, one material");
+  command->add_option("SCENE", options.scene, "Scene file (TOML) with [mesh], [material], [[fixed]], [[load]]")
+      ->required();
+  command->add_option("--out", options.out, "Deformed mesh to write, for ParaView (.vtu)")->required();
+  command->add_option("--probe", options.probes, "Place in the body at rest, m: prints its displacement; repeatable");
+  command->footer("Example: sim_server solve configs/scenes/liver_weight.toml --out liver.vtu --probe 0.1,0.02,0.03");
+  return command;
+}
+
 CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
   auto* command =
       app.add_subcommand("explain", "What a scene builds, what it leaves out, and what that saves");
@@ -117,10 +128,13 @@ int run(int argc, char** argv) {
   add_run(app, serving);
   const auto* record = add_record(app, recording);
   const auto* explain = add_explain(app, explaining);
+  sim::SolveOptions solving;
+  const auto* solve = add_solve(app, solving);
   const auto* mesh_info = add_mesh_info(app, mesh_file);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*mesh_info) return print_mesh_info(mesh_file);
   if (*explain) return sim::run_explain(explaining);
+  if (*solve) return sim::solve(solving);
   if (*record) {
     check(recording);
     return sim::record(recording);

@@ -7,14 +7,10 @@
 #include "common/error.h"
 #include "common/text.h"
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/scene_parts.h"
 
 namespace palpate::sim {
 namespace {
-
-Box read_box(const Config& config, const std::string& key) {
-  const auto [min, max] = config.box(key);
-  return {min, max};
-}
 
 SupportMotion read_motion(const Config& config) {
   SupportMotion motion{};
@@ -30,28 +26,20 @@ SupportMotion read_motion(const Config& config) {
 }
 
 FixedRegion read_fixed(const Config& config) {
-  FixedRegion region;
-  region.where = config.where();
-  if (config.has("box")) region.box = read_box(config, "box");
-  region.surface_tag = config.text("surface_tag", "");
-  if (region.box.has_value() == !region.surface_tag.empty()) {
-    fail("{}: [[fixed]] needs either `box` or `surface_tag`", region.where);
-  }
+  FixedRegion region{read_region(config, "[[fixed]]"), {}};
   for (const Config& motion : config.tables("motion")) region.motions.push_back(read_motion(motion));
   config.reject_unknown();
   return region;
 }
 
-Material read_material(const Config& config) {
-  Material material;
-  const std::string law = config.text("law", "linear");
-  if (law != "linear") fail("{}: unknown law \"{}\"; known: linear", config.where("law"), law);
-  material.young_modulus = config.number("young_modulus", {1e-3, 1e12, "Pa"});
-  // Below one half by more than rounding: lambda grows without bound there.
-  material.poisson_ratio = config.number("poisson_ratio", {0, 0.499999, "below 0.5, no unit"});
-  material.density = config.number("density", {1e-3, 1e5, "kg/m3"}, material.density);
-  config.reject_unknown();
-  return material;
+/// "quasi_static", or "tensor_mass, implicit": names of the models that can.
+template <class Can>
+std::string models_that(const Can& can) {
+  std::string names;
+  for (const DeformationModelRow& row : deformation_models()) {
+    if (can(row)) names += (names.empty() ? "" : ", ") + std::string(row.name);
+  }
+  return names;
 }
 
 DeformationSettings read_deformation(const Config& config) {
@@ -68,15 +56,14 @@ DeformationSettings read_deformation(const Config& config) {
   return settings;
 }
 
-/// That the model moves with its supports, where they move.
-void require_followed(const Scene& scene) {
+/// That the model does what the scene asks of it.
+void require_what_the_model_can(const Scene& scene) {
   const auto& settings = scene.deformation;
-  if (find_row(deformation_models(), settings.model, "deformation model", settings.where).follows_supports)
-    return;
+  const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
   for (const FixedRegion& region : scene.fixed) {
-    if (region.moves())
-      fail("{}: [[fixed.motion]]: model \"{}\" does not move with its supports; quasi_static does",
-           region.where, settings.model);
+    if (region.moves() && !row.follows_supports)
+      fail("{}: [[fixed.motion]]: model \"{}\" does not move with its supports; {} would", region.where,
+           settings.model, models_that([](const DeformationModelRow& m) { return m.follows_supports; }));
   }
 }
 
@@ -121,7 +108,8 @@ ToolSettings read_tool(const Config& config) {
   tool.shape.friction = config.number("friction", {0, 2, "no unit"}, tool.shape.friction);
   read_shape(config, tool.shape);
   if (config.has("reach")) {
-    tool.reach = read_box(config, "reach");
+    const auto [min, max] = config.box("reach");
+    tool.reach = Box{min, max};
     tool.reach_where = config.where("reach");
   }
   read_grasp(config, tool);
@@ -142,7 +130,7 @@ std::vector<ToolSettings> read_tools(const Config& config) {
 
 }  // namespace
 
-Scene read_scene(const std::filesystem::path& file) {
+Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   const Config config = Config::read(file);
   Scene scene;
   scene.source = file.string();
@@ -161,21 +149,23 @@ Scene read_scene(const std::filesystem::path& file) {
     fail("{}: `[mesh] file`: {}: no such file", mesh->where("file"), scene.mesh_file.string());
   }
   for (const Config& fixed : config.tables("fixed")) scene.fixed.push_back(read_fixed(fixed));
+  for (const Config& load : config.tables("load")) scene.loads.push_back(read_load(load));
   if (const auto material = config.table("material")) {
     scene.material = read_material(*material);
     scene.material_where = material->where();
   }
   const auto deformation = config.table("deformation");
-  if (!deformation) fail("{}: missing section [deformation] with `model`", config.where());
-  scene.deformation = read_deformation(*deformation);
-  require_followed(scene);
-  scene.tools = read_tools(config);
+  if (!deformation && purpose == Purpose::kServe)
+    fail("{}: missing section [deformation] with `model`", config.where());
+  if (deformation) scene.deformation = read_deformation(*deformation);
+  if (purpose == Purpose::kServe) require_what_the_model_can(scene);
+  if (purpose == Purpose::kServe || !config.tables("tool").empty()) scene.tools = read_tools(config);
   config.reject_unknown();
   return scene;
 }
 
-std::vector<int> vertices_in(const FixedRegion& region, const TetMesh& mesh) {
-  if (!region.box) {
+std::vector<int> vertices_in(const Region& region, const TetMesh& mesh) {
+  if (!region.surface_tag.empty()) {
     std::vector<std::string> known;
     for (const auto& [tag, vertices] : mesh.surface_tags) known.push_back(tag);
     const auto found = mesh.surface_tags.find(region.surface_tag);
@@ -185,10 +175,12 @@ std::vector<int> vertices_in(const FixedRegion& region, const TetMesh& mesh) {
   }
   std::vector<int> inside;
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
-    if (region.box->contains(mesh.vertices[v])) inside.push_back(v);
+    if (region.contains(mesh.vertices[v])) inside.push_back(v);
   }
-  if (inside.empty())
-    fail("{}: no vertex of the mesh lies in this [[fixed]] box; is it in metres?", region.where);
+  if (inside.empty()) {
+    fail("{}: no vertex of the mesh lies in this {}; is it in metres?", region.where,
+         region.box ? "box" : "ball");
+  }
   return inside;
 }
 

@@ -30,14 +30,43 @@ struct SupportMotion {
   double phase = 0;  ///< rad, [-1e3, 1e3]
 };
 
-/// `[[fixed]]`: mesh vertices that the tissue does not move, by a box or by a surface tag of the mesh.
-struct FixedRegion {
-  std::optional<Box> box;
-  std::string surface_tag;
-  std::string where;                     ///< "FILE:LINE" of this section
+/// Ball, m, closed.
+struct Ball {
+  Vec3 center;
+  double radius;  ///< m, (0, 1e3]
+  bool contains(const Vec3& x) const { return (x - center).squaredNorm() <= radius * radius; }
+};
+
+/// Mesh vertices by a box, by a surface tag of the mesh, or by a ball: one of them.
+struct Region {
+  std::optional<Box> box{};
+  std::string surface_tag{};
+  std::string where{};  ///< "FILE:LINE" of this section
+  std::optional<Ball> ball{};
+
+  bool contains(const Vec3& x) const { return box ? box->contains(x) : ball && ball->contains(x); }
+};
+
+/// `[[fixed]]`: mesh vertices that the tissue does not move.
+struct FixedRegion : Region {
   std::vector<SupportMotion> motions{};  ///< prescribed, added up; none: they rest
 
   bool moves() const { return !motions.empty(); }
+};
+
+/// `[[load]]`: what acts on the tissue besides tools.
+struct Load {
+  enum class Kind {
+    kGravity,       ///< `vector`: m/s^2, on all of it
+    kTraction,      ///< `vector`: Pa of the area at rest, on the boundary triangles whose corners are in `region`
+    kPressure,      ///< `pressure`, on the same; of all but the linear law it turns and grows with the surface
+    kForce,         ///< `vector`: N in all, shared equally by the vertices of `region`
+    kDisplacement,  ///< `vector`: m from rest, where the vertices of `region` are held
+  };
+  Kind kind;
+  Region region{};
+  Vec3 vector = Vec3::Zero();
+  double pressure = 0;  ///< Pa, against the outward normal
 };
 
 /// `[deformation]`.
@@ -72,6 +101,7 @@ struct Scene {
   std::filesystem::path mesh_file;
   std::string mesh_where;  ///< "FILE:LINE" of `[mesh] file`
   std::vector<FixedRegion> fixed;
+  std::vector<Load> loads{};
   std::optional<Material> material;
   std::string material_where;  ///< "FILE:LINE" of `[material]`; empty where it is absent
   DeformationSettings deformation;
@@ -79,12 +109,16 @@ struct Scene {
   std::string source;                                              ///< the file, for messages
 };
 
+/// What a scene is read for: to be served, or to be solved without a tool, which needs neither [deformation]
+/// nor [[tool]].
+enum class Purpose { kServe, kSolve };
+
 /// Reads and checks a scene file. Throws `Error` (file, line, key, what was expected). Does not read the
 /// mesh.
-Scene read_scene(const std::filesystem::path& file);
+Scene read_scene(const std::filesystem::path& file, Purpose purpose = Purpose::kServe);
 
-/// Mesh vertices of one `[[fixed]]`. Throws `Error` as `fixed_vertices`.
-std::vector<int> vertices_in(const FixedRegion& region, const TetMesh& mesh);
+/// Mesh vertices of a region. Throws `Error` as `fixed_vertices`.
+std::vector<int> vertices_in(const Region& region, const TetMesh& mesh);
 
 /// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an
 /// unknown tag.

@@ -149,6 +149,17 @@ std::vector<double> Solid::masses() const {
   return masses;
 }
 
+void Solid::add_body_forces(const Vec3& per_volume, std::span<Vec3> f) const {
+  const auto points = static_cast<std::size_t>(points_);
+  for (std::size_t e = 0; e < elements(); ++e) {
+    double volume = 0;
+    for (std::size_t q = 0; q < points; ++q) volume += weight_[e * points + q];
+    const std::span<const int> nodes = element(e);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      f[nodes[i]] += (corners_ == 4 ? 0.25 : i < 4 ? -0.05 : 0.2) * volume * per_volume;
+  }
+}
+
 /// Of each tetrahedron, then of each vertex.
 void Solid::average_dilation(std::span<const Vec3> x) const {
   with_law(material_.law, [&]<class Law>() {

@@ -48,10 +48,18 @@ class Solid {
   void add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Viscosity& viscosity = {}) const;
   /// A matrix with room for it.
   StiffnessMatrix stiffness_matrix(const FreeDofs& dofs) const;
+  /// Adds the forces (nodes, N) of a force per volume (N/m^3), as the shape functions say.
+  void add_body_forces(const Vec3& per_volume, std::span<Vec3> f) const;
   /// Lumped mass of each node, kg: a quarter of a tetrahedron for each vertex; of ten nodes 1/36 for a corner
   /// and 4/27 for the middle of an edge (Hinton, Rock and Zienkiewicz 1976).
   std::vector<double> masses() const;
 
+  /// Nodes of tetrahedron e, `nodes_per_element()` of them: corners, then the middles of the edges 01, 12, 02,
+  /// 03, 13, 23.
+  std::span<const int> element(std::size_t e) const {
+    return std::span(element_nodes_).subspan(e * static_cast<std::size_t>(corners_), static_cast<std::size_t>(corners_));
+  }
+  std::size_t elements() const { return element_nodes_.size() / static_cast<std::size_t>(corners_); }
   /// Quadrature points in all: of tetrahedron e from e * points_per_element().
   std::size_t points() const { return weight_.size(); }
   int points_per_element() const { return points_; }
@@ -82,7 +90,6 @@ class Solid {
   void add_nodal_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, double scale) const;
   void collect_terms(std::size_t a, std::span<const Vec3> along,
                      std::vector<std::pair<int, Vec3>>& terms) const;
-  std::size_t elements() const { return element_nodes_.size() / static_cast<std::size_t>(corners_); }
 
   Material material_;
   int corners_ = 4, points_ = 1;  // nodes and quadrature points of an element

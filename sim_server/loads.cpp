@@ -1,0 +1,103 @@
+#include "sim_server/loads.h"
+
+#include <algorithm>
+
+#include "common/error.h"
+
+namespace palpate::sim {
+namespace {
+
+Vec3 area_of(std::span<const Vec3> x, const std::array<int, 3>& corner) {
+  return 0.5 * (x[corner[1]] - x[corner[0]]).cross(x[corner[2]] - x[corner[0]]);
+}
+
+}  // namespace
+
+Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, const Solid& solid)
+    : middles_(mesh.vertices.size()),
+      follows_(solid.material().law != ElasticLaw::kLinear),
+      rest_(solid.rest()),
+      dead_(rest_.size(), Vec3::Zero()) {
+  for (std::size_t k = 0; k < solid.edges().size(); ++k) {
+    const auto [a, b] = solid.edges()[k];
+    middles_[a].emplace_back(b, static_cast<int>(mesh.vertices.size() + k));
+    middles_[b].emplace_back(a, static_cast<int>(mesh.vertices.size() + k));
+  }
+  hold(scene, mesh, solid);
+  for (const Load& load : scene.loads) {
+    if (load.kind == Load::Kind::kGravity) {
+      solid.add_body_forces(solid.material().density * load.vector, dead_);
+    } else if (load.kind == Load::Kind::kForce) {
+      const std::vector<int> vertices = vertices_in(load.region, mesh);
+      for (const int v : vertices) dead_[v] += load.vector / static_cast<double>(vertices.size());
+    } else if (load.kind == Load::Kind::kTraction) {
+      for (const Face& face : faces_in(load.region, mesh, surface))
+        push(face, area_of(rest_, face.corner).norm() * load.vector, dead_);
+    } else if (load.kind == Load::Kind::kPressure) {
+      pressures_.push_back({load.pressure, faces_in(load.region, mesh, surface)});
+    }
+  }
+}
+
+/// What is held, and where: a later displacement counts over an earlier one, and over a [[fixed]].
+void Loads::hold(const Scene& scene, const TetMesh& mesh, const Solid& solid) {
+  std::vector<char> held(rest_.size(), 0);
+  std::vector<Vec3> moved(rest_.size(), Vec3::Zero());
+  for (const int vertex : fixed_vertices(scene, mesh)) held[vertex] = 1;
+  bool moves = false;
+  for (const Load& load : scene.loads) {
+    if (load.kind != Load::Kind::kDisplacement) continue;
+    moves = true;
+    for (const int vertex : vertices_in(load.region, mesh)) {
+      held[vertex] = 1;
+      moved[vertex] = load.vector;
+    }
+  }
+  for (std::size_t k = 0; k < solid.edges().size(); ++k) {
+    const auto [a, b] = solid.edges()[k];
+    if (held[a] == 0 || held[b] == 0) continue;
+    held[mesh.vertices.size() + k] = 1;
+    moved[mesh.vertices.size() + k] = 0.5 * (moved[a] + moved[b]);
+  }
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] != 0) fixed_.push_back(static_cast<int>(i));
+  }
+  if (moves) moved_ = std::move(moved);
+}
+
+std::vector<Loads::Face> Loads::faces_in(const Region& region, const TetMesh& mesh,
+                                         const Surface& surface) const {
+  std::vector<char> inside(mesh.vertices.size(), 0);
+  for (const int v : vertices_in(region, mesh)) inside[v] = 1;
+  std::vector<Face> faces;
+  for (const Triangle& t : surface.triangles) {
+    Face face{{surface.vertices[t[0]], surface.vertices[t[1]], surface.vertices[t[2]]}, {-1, -1, -1}};
+    const auto& c = face.corner;
+    if (inside[c[0]] == 0 || inside[c[1]] == 0 || inside[c[2]] == 0) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (const auto& [other, node] : middles_[c[i]]) {
+        if (other == c[(i + 1) % 3]) face.middle[i] = node;
+      }
+    }
+    faces.push_back(face);
+  }
+  if (faces.empty())
+    fail("{}: no triangle of the boundary has all its corners in this region; make it larger", region.where);
+  return faces;
+}
+
+/// Equally on the corners; of quadratic triangles on the middles of the edges, as their shape functions say.
+void Loads::push(const Face& face, const Vec3& force, std::span<Vec3> f) {
+  const bool quadratic = face.middle[0] >= 0;
+  for (const int node : quadratic ? face.middle : face.corner) f[node] += force / 3;
+}
+
+void Loads::add_forces(std::span<const Vec3> x, std::span<Vec3> f) const {
+  for (std::size_t i = 0; i < dead_.size(); ++i) f[i] += dead_[i];
+  for (const Pressure& pressure : pressures_) {
+    for (const Face& face : pressure.faces)
+      push(face, -pressure.pascal * area_of(follows_ ? x : std::span<const Vec3>(rest_), face.corner), f);
+  }
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,45 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "sim_server/elasticity/solid.h"
+#include "sim_server/mesh/surface.h"
+#include "sim_server/scene.h"
+
+namespace palpate::sim {
+
+/// What the [[load]] and [[fixed]] sections of a scene do to a body.
+class Loads {
+ public:
+  /// Throws `Error` for a region that holds nothing, or a load on vertices that are all fixed.
+  Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, const Solid& solid);
+
+  /// Adds the forces (nodes, N) on a body at `x` (nodes, m).
+  void add_forces(std::span<const Vec3> x, std::span<Vec3> f) const;
+  /// Nodes that are held, ascending; a node in the middle of an edge is, where both ends are.
+  const std::vector<int>& fixed() const { return fixed_; }
+  /// (nodes) From rest to where fixed nodes are held, m; empty where all are held at rest.
+  const std::vector<Vec3>& moved() const { return moved_; }
+
+ private:
+  struct Face {
+    std::array<int, 3> corner;
+    std::array<int, 3> middle;  // of the edges from corner i to i + 1; -1: none
+  };
+  struct Pressure {
+    double pascal;
+    std::vector<Face> faces;
+  };
+  void hold(const Scene& scene, const TetMesh& mesh, const Solid& solid);
+  std::vector<Face> faces_in(const Region& region, const TetMesh& mesh, const Surface& surface) const;
+  static void push(const Face& face, const Vec3& force, std::span<Vec3> f);
+
+  std::vector<std::vector<std::pair<int, int>>> middles_;  // of each vertex: other end of an edge, its node
+  bool follows_ = false;                                   // pressure goes with the surface
+  std::vector<Vec3> rest_, dead_;  // nodes at rest, m; forces that do not change, N
+  std::vector<Pressure> pressures_;
+  std::vector<int> fixed_;
+  std::vector<Vec3> moved_;
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,18 @@
+#pragma once
+/// Sections of a scene file that have much in them.
+#include "common/config.h"
+#include "sim_server/scene.h"
+
+namespace palpate::sim {
+
+/// `box`, `surface_tag`, or `center` and `radius`, of which a section has one; `section` is its name for
+/// messages. Leaves other keys to the caller. These all throw `Error`.
+Region read_region(const Config& config, const std::string& section);
+
+/// `[[load]]`.
+Load read_load(const Config& config);
+
+/// `[material]`.
+Material read_material(const Config& config);
+
+}  // namespace palpate::sim

@@ -1,0 +1,161 @@
+#include "sim_server/solve.h"
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <fmt/core.h>
+
+#include "common/error.h"
+#include "common/log.h"
+#include "common/progress.h"
+#include "common/report.h"
+#include "sim_server/elasticity/equilibrium.h"
+#include "sim_server/loads.h"
+#include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/mesh/vtu_output.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kInside = -1e-9;  // barycentric: on the boundary, but for rounding
+
+/// A place in the body at rest and how it follows the nodes.
+struct Probe {
+  std::string text;
+  Vec3 place;
+  std::vector<std::pair<int, double>> nodes;
+  double off = 0;  // m, from the place to the body, where it is outside
+};
+
+Vec3 parse_place(const std::string& text) {
+  Vec3 place;
+  int used = 0;
+  const bool read = std::sscanf(text.c_str(), " %lf , %lf , %lf %n", &place[0], &place[1], &place[2], &used) == 3;
+  if (!read || static_cast<std::size_t>(used) != text.size() || !place.allFinite())
+    fail("--probe \"{}\": three numbers in metres, with commas between them, are a place: 0.1,0.02,0", text);
+  return place;
+}
+
+/// Shape functions at barycentric coordinates: of four nodes, or of ten.
+void weigh(std::span<const int> nodes, const Eigen::Vector4d& l, Probe& probe) {
+  constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+  probe.nodes.clear();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const double weight = nodes.size() == 4 ? l[static_cast<long>(i)]
+                          : i < 4           ? l[static_cast<long>(i)] * (2 * l[static_cast<long>(i)] - 1)
+                                            : 4 * l[kEdges[i - 4][0]] * l[kEdges[i - 4][1]];
+    probe.nodes.emplace_back(nodes[i], weight);
+  }
+}
+
+/// In the tetrahedron that holds the place; outside, at the nearest vertex.
+Probe find_probe(const std::string& text, const Solid& solid, std::size_t vertices) {
+  Probe probe{text, parse_place(text), {}};
+  const auto& x = solid.rest();
+  for (std::size_t e = 0; e < solid.elements(); ++e) {
+    const std::span<const int> nodes = solid.element(e);
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = x[nodes[static_cast<std::size_t>(k) + 1]] - x[nodes[0]];
+    const Vec3 l = edges.inverse() * (probe.place - x[nodes[0]]);
+    const Eigen::Vector4d all(1 - l.sum(), l[0], l[1], l[2]);
+    if (all.minCoeff() < kInside) continue;
+    weigh(nodes, all, probe);
+    return probe;
+  }
+  int nearest = 0;
+  for (int v = 1; v < static_cast<int>(vertices); ++v) {
+    if ((x[v] - probe.place).norm() < (x[nearest] - probe.place).norm()) nearest = v;
+  }
+  probe.nodes = {{nearest, 1.0}};
+  probe.off = (x[nearest] - probe.place).norm();
+  return probe;
+}
+
+double von_mises(const Mat3& stress) {
+  const Mat3 deviator = stress - stress.trace() / 3 * Mat3::Identity();
+  return std::sqrt(1.5) * deviator.norm();
+}
+
+/// The body as it stands, and what it bears: means over each tetrahedron.
+void write_state(const std::filesystem::path& file, const Solid& solid, std::span<const Vec3> x) {
+  std::vector<Solid::State> states(solid.points());
+  solid.evaluate(x, states);
+  VtuArray moved{"displacement", 3, {}}, stress{"stress", 9, {}}, mises{"von_mises", 1, {}},
+      energy{"energy_density", 1, {}};
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 u = x[i] - solid.rest()[i];
+    moved.values.insert(moved.values.end(), u.data(), u.data() + 3);
+  }
+  const auto points = static_cast<std::size_t>(solid.points_per_element());
+  std::vector<int> cells;
+  for (std::size_t e = 0; e < solid.elements(); ++e) {
+    const std::span<const int> nodes = solid.element(e);
+    cells.insert(cells.end(), nodes.begin(), nodes.end());
+    Mat3 cauchy = Mat3::Zero();
+    double density = 0;
+    for (std::size_t q = 0; q < points; ++q) {
+      const Solid::State& state = states[e * points + q];
+      const bool linear = solid.material().law == ElasticLaw::kLinear;
+      cauchy += linear ? state.stress : Mat3(state.stress * state.F.transpose() / state.F.determinant());
+      density += state.energy;
+    }
+    cauchy /= static_cast<double>(points);
+    for (int i = 0; i < 9; ++i) stress.values.push_back(cauchy(i / 3, i % 3));
+    mises.values.push_back(von_mises(cauchy));
+    energy.values.push_back(density / static_cast<double>(points));
+  }
+  write_vtu(file, x, cells, static_cast<int>(solid.element(0).size()), {moved}, {stress, mises, energy});
+}
+
+void print_result(const Solid& solid, const Loads& loads, std::span<const Vec3> x,
+                  const std::vector<Probe>& probes) {
+  std::vector<Vec3> internal(x.size()), external(x.size(), Vec3::Zero());
+  solid.forces(x, internal);
+  loads.add_forces(x, external);
+  Vec3 held = Vec3::Zero();
+  for (const int node : loads.fixed()) held += internal[node] - external[node];
+  std::size_t farthest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if ((x[i] - solid.rest()[i]).norm() > (x[farthest] - solid.rest()[farthest]).norm()) farthest = i;
+  }
+  const Vec3& from = solid.rest()[farthest];
+  fmt::print("  elastic energy         {:.9g} J\n", solid.energy(x));
+  fmt::print("  force of the supports  {:.9g} {:.9g} {:.9g} N\n", held[0], held[1], held[2]);
+  fmt::print("  largest displacement   {:.9g} m at {:.6g},{:.6g},{:.6g}\n", (x[farthest] - from).norm(), from[0],
+             from[1], from[2]);
+  for (const Probe& probe : probes) {
+    Vec3 u = Vec3::Zero();
+    for (const auto& [node, weight] : probe.nodes) u += weight * (x[node] - solid.rest()[node]);
+    fmt::print("  probe {}: displacement {:.9g} {:.9g} {:.9g} m{}\n", probe.text, u[0], u[1], u[2],
+               probe.off > 0 ? fmt::format(" (outside the body: its nearest vertex, {:.3g} m off)", probe.off) : "");
+  }
+}
+
+}  // namespace
+
+int solve(const SolveOptions& options) {
+  const Scene scene = read_scene(options.scene, Purpose::kSolve);
+  if (!scene.material) fail("{}: solving needs a [material] section", scene.source);
+  check_writable(options.out);
+  ProgressLine progress;
+  progress("reading the mesh", 0);
+  const TetMesh mesh = read_mesh(scene.mesh_file);
+  const Surface surface = boundary_surface(mesh);
+  const Solid solid(mesh, *scene.material);
+  const Loads loads(scene, mesh, surface, solid);
+  std::vector<Probe> probes;
+  for (const std::string& text : options.probes) probes.push_back(find_probe(text, solid, mesh.vertices.size()));
+  const StaticLoad load{[&](std::span<const Vec3> x, std::span<Vec3> f) { loads.add_forces(x, f); },
+                        loads.fixed(), loads.moved()};
+  const Equilibrium found = find_equilibrium(solid, load, scene.source,
+                                             [&](double share) { progress("loading", share); });
+  progress("loading", 1);
+  write_state(options.out, solid, found.x);
+  fmt::print("{}: {} nodes, {} tetrahedra\n", scene.source, solid.nodes(), solid.elements());
+  fmt::print("  static equilibrium     {} Newton steps in {} increments, residual {:.1e} of the forces at work\n",
+             found.iterations, found.increments, found.residual);
+  print_result(solid, loads, found.x, probes);
+  return 0;
+}
+
+}  // namespace palpate::sim
