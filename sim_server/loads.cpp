@@ -41,26 +41,27 @@ Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, co
 
 /// What is held, and where: a later displacement counts over an earlier one, and over a [[fixed]].
 void Loads::hold(const Scene& scene, const TetMesh& mesh, const Solid& solid) {
-  std::vector<char> held(rest_.size(), 0);
+  held_.assign(rest_.size(), 0);
   std::vector<Vec3> moved(rest_.size(), Vec3::Zero());
-  for (const int vertex : fixed_vertices(scene, mesh)) held[vertex] = 1;
+  for (const FixedRegion& region : scene.fixed) {
+    for (const int vertex : vertices_in(region, mesh)) held_[vertex] |= region.axes;
+  }
   bool moves = false;
   for (const Load& load : scene.loads) {
     if (load.kind != Load::Kind::kDisplacement) continue;
     moves = true;
     for (const int vertex : vertices_in(load.region, mesh)) {
-      held[vertex] = 1;
-      moved[vertex] = load.vector;
+      held_[vertex] |= load.axes;
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((load.axes >> axis & 1) != 0) moved[vertex][axis] = load.vector[axis];
+      }
     }
   }
   for (std::size_t k = 0; k < solid.edges().size(); ++k) {
     const auto [a, b] = solid.edges()[k];
-    if (held[a] == 0 || held[b] == 0) continue;
-    held[mesh.vertices.size() + k] = 1;
-    moved[mesh.vertices.size() + k] = 0.5 * (moved[a] + moved[b]);
-  }
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    if (held[i] != 0) fixed_.push_back(static_cast<int>(i));
+    const std::size_t middle = mesh.vertices.size() + k;
+    held_[middle] = held_[a] & held_[b];
+    moved[middle] = 0.5 * (moved[a] + moved[b]);
   }
   if (moves) moved_ = std::move(moved);
 }

@@ -16,9 +16,9 @@ class Loads {
 
   /// Adds the forces (nodes, N) on a body at `x` (nodes, m).
   void add_forces(std::span<const Vec3> x, std::span<Vec3> f) const;
-  /// Nodes that are held, ascending; a node in the middle of an edge is, where both ends are.
-  const std::vector<int>& fixed() const { return fixed_; }
-  /// (nodes) From rest to where fixed nodes are held, m; empty where all are held at rest.
+  /// (nodes) A node in the middle of an edge is held where both ends are.
+  const std::vector<HeldAxes>& held() const { return held_; }
+  /// (nodes) From rest to where they are held, m; empty where all are held at rest.
   const std::vector<Vec3>& moved() const { return moved_; }
 
  private:
@@ -36,9 +36,9 @@ class Loads {
 
   std::vector<std::vector<std::pair<int, int>>> middles_;  // of each vertex: other end of an edge, its node
   bool follows_ = false;                                   // pressure goes with the surface
-  std::vector<Vec3> rest_, dead_;  // nodes at rest, m; forces that do not change, N
+  std::vector<Vec3> rest_, dead_;                          // nodes at rest, m; forces that do not change, N
   std::vector<Pressure> pressures_;
-  std::vector<int> fixed_;
+  std::vector<HeldAxes> held_;
   std::vector<Vec3> moved_;
 };
 

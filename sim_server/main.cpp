@@ -83,11 +83,14 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
 
 CLI::App* add_solve(CLI::App& app, sim::SolveOptions& options) {
   auto* command = app.add_subcommand("solve", "Solve a scene without a tool: loads, supports, one material");
-  command->add_option("SCENE", options.scene, "Scene file (TOML) with [mesh], [material], [[fixed]], [[load]]")
+  command
+      ->add_option("SCENE", options.scene, "Scene file (TOML) with [mesh], [material], [[fixed]], [[load]]")
       ->required();
   command->add_option("--out", options.out, "Deformed mesh to write, for ParaView (.vtu)")->required();
-  command->add_option("--probe", options.probes, "Place in the body at rest, m: prints its displacement; repeatable");
-  command->footer("Example: sim_server solve configs/scenes/liver_weight.toml --out liver.vtu --probe 0.1,0.02,0.03");
+  command->add_option("--probe", options.probes,
+                      "Place in the body at rest, m: prints its displacement; repeatable");
+  command->footer(
+      "Example: sim_server solve configs/scenes/liver_weight.toml --out liver.vtu --probe 0.1,0.02,0.03");
   return command;
 }
 

@@ -26,7 +26,7 @@ SupportMotion read_motion(const Config& config) {
 }
 
 FixedRegion read_fixed(const Config& config) {
-  FixedRegion region{read_region(config, "[[fixed]]"), {}};
+  FixedRegion region{read_region(config, "[[fixed]]"), read_axes(config), {}};
   for (const Config& motion : config.tables("motion")) region.motions.push_back(read_motion(motion));
   config.reject_unknown();
   return region;
@@ -61,6 +61,8 @@ void require_what_the_model_can(const Scene& scene) {
   const auto& settings = scene.deformation;
   const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
   for (const FixedRegion& region : scene.fixed) {
+    if (region.axes != kAllAxes)
+      fail("{}: `axes`: only `sim_server solve` holds vertices along some axes; remove it", region.where);
     if (region.moves() && !row.follows_supports)
       fail("{}: [[fixed.motion]]: model \"{}\" does not move with its supports; {} would", region.where,
            settings.model, models_that([](const DeformationModelRow& m) { return m.follows_supports; }));
@@ -187,6 +189,7 @@ std::vector<int> vertices_in(const Region& region, const TetMesh& mesh) {
 std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh) {
   std::vector<char> is_fixed(mesh.vertices.size(), 0);
   for (const FixedRegion& region : scene.fixed) {
+    if (region.axes != kAllAxes) continue;
     for (const int vertex : vertices_in(region, mesh)) is_fixed[vertex] = 1;
   }
   std::vector<int> fixed;

@@ -9,6 +9,7 @@
 #include "common/contact/tool.h"
 #include "common/types.h"
 #include "sim_server/elasticity/material.h"
+#include "sim_server/elasticity/stiffness_matrix.h"
 #include "sim_server/mesh/tet_mesh.h"
 
 namespace palpate::sim {
@@ -49,6 +50,7 @@ struct Region {
 
 /// `[[fixed]]`: mesh vertices that the tissue does not move.
 struct FixedRegion : Region {
+  HeldAxes axes = kAllAxes;              ///< along which
   std::vector<SupportMotion> motions{};  ///< prescribed, added up; none: they rest
 
   bool moves() const { return !motions.empty(); }
@@ -57,16 +59,17 @@ struct FixedRegion : Region {
 /// `[[load]]`: what acts on the tissue besides tools.
 struct Load {
   enum class Kind {
-    kGravity,       ///< `vector`: m/s^2, on all of it
-    kTraction,      ///< `vector`: Pa of the area at rest, on the boundary triangles whose corners are in `region`
-    kPressure,      ///< `pressure`, on the same; of all but the linear law it turns and grows with the surface
-    kForce,         ///< `vector`: N in all, shared equally by the vertices of `region`
+    kGravity,   ///< `vector`: m/s^2, on all of it
+    kTraction,  ///< `vector`: Pa of the area at rest, on the boundary triangles whose corners are in `region`
+    kPressure,  ///< `pressure`, on the same; of all but the linear law it turns and grows with the surface
+    kForce,     ///< `vector`: N in all, shared equally by the vertices of `region`
     kDisplacement,  ///< `vector`: m from rest, where the vertices of `region` are held
   };
   Kind kind;
   Region region{};
   Vec3 vector = Vec3::Zero();
-  double pressure = 0;  ///< Pa, against the outward normal
+  HeldAxes axes = kAllAxes;  ///< of a displacement: along which
+  double pressure = 0;       ///< Pa, against the outward normal
 };
 
 /// `[deformation]`.

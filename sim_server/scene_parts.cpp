@@ -39,8 +39,8 @@ std::vector<Relaxation> read_relaxations(const Config& material) {
   std::vector<Relaxation> relaxations;
   double shares = 0;
   for (const Config& section : material.tables("relaxation")) {
-    relaxations.push_back(
-        {section.number("share", {1e-6, 0.999999, "of the stress at once"}), section.number("time", {1e-4, 1e6, "s"})});
+    relaxations.push_back({section.number("share", {1e-6, 0.999999, "of the stress at once"}),
+                           section.number("time", {1e-4, 1e6, "s"})});
     section.reject_unknown();
     shares += relaxations.back().share;
     if (shares > 0.999999)
@@ -67,6 +67,18 @@ Region read_region(const Config& config, const std::string& section) {
   return region;
 }
 
+HeldAxes read_axes(const Config& config) {
+  constexpr std::string_view kNames = "xyz";
+  int axes = 0;
+  for (const char c : config.text("axes", std::string(kNames))) {
+    const auto axis = kNames.find(c);
+    if (axis == std::string_view::npos)
+      fail("{}: `axes` is some of x, y, z, as in \"xz\"; absent: all", config.where("axes"));
+    axes |= 1 << axis;
+  }
+  return static_cast<HeldAxes>(axes);
+}
+
 Load read_load(const Config& config) {
   constexpr double kFast = 1e4, kHard = 1e12, kStrong = 1e9, kFar = 1e3;
   Load load{};
@@ -90,6 +102,7 @@ Load read_load(const Config& config) {
     fail("{}: [[load]] needs one of `gravity`, `traction`, `pressure`, `force`, `displacement`",
          config.where());
   }
+  if (load.kind == Load::Kind::kDisplacement) load.axes = read_axes(config);
   if (load.kind != Load::Kind::kGravity) load.region = read_region(config, "[[load]]");
   load.region.where = config.where();
   config.reject_unknown();
@@ -99,7 +112,8 @@ Load read_load(const Config& config) {
 Material read_material(const Config& config) {
   Material material;
   material.law = find_row(kLaws, config.text("law", "linear"), "law", config.where("law")).value;
-  material.element = find_row(kElements, config.text("element", "p1"), "element", config.where("element")).value;
+  material.element =
+      find_row(kElements, config.text("element", "p1"), "element", config.where("element")).value;
   material.young_modulus = config.number("young_modulus", {1e-3, 1e12, "Pa"});
   // Below one half by more than rounding: lambda grows without bound there.
   material.poisson_ratio = config.number("poisson_ratio", {0, 0.499999, "below 0.5, no unit"});

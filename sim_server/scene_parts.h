@@ -9,6 +9,9 @@ namespace palpate::sim {
 /// messages. Leaves other keys to the caller. These all throw `Error`.
 Region read_region(const Config& config, const std::string& section);
 
+/// `axes`: "x", "xz", ..; absent: all.
+HeldAxes read_axes(const Config& config);
+
 /// `[[load]]`.
 Load read_load(const Config& config);
 

@@ -30,7 +30,8 @@ struct Probe {
 Vec3 parse_place(const std::string& text) {
   Vec3 place;
   int used = 0;
-  const bool read = std::sscanf(text.c_str(), " %lf , %lf , %lf %n", &place[0], &place[1], &place[2], &used) == 3;
+  const bool read =
+      std::sscanf(text.c_str(), " %lf , %lf , %lf %n", &place[0], &place[1], &place[2], &used) == 3;
   if (!read || static_cast<std::size_t>(used) != text.size() || !place.allFinite())
     fail("--probe \"{}\": three numbers in metres, with commas between them, are a place: 0.1,0.02,0", text);
   return place;
@@ -113,7 +114,10 @@ void print_result(const Solid& solid, const Loads& loads, std::span<const Vec3> 
   solid.forces(x, internal);
   loads.add_forces(x, external);
   Vec3 held = Vec3::Zero();
-  for (const int node : loads.fixed()) held += internal[node] - external[node];
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis)
+      held[axis] += (loads.held()[i] >> axis & 1) != 0 ? internal[i][axis] - external[i][axis] : 0.0;
+  }
   std::size_t farthest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if ((x[i] - solid.rest()[i]).norm() > (x[farthest] - solid.rest()[farthest]).norm()) farthest = i;
@@ -121,13 +125,14 @@ void print_result(const Solid& solid, const Loads& loads, std::span<const Vec3> 
   const Vec3& from = solid.rest()[farthest];
   fmt::print("  elastic energy         {:.9g} J\n", solid.energy(x));
   fmt::print("  force of the supports  {:.9g} {:.9g} {:.9g} N\n", held[0], held[1], held[2]);
-  fmt::print("  largest displacement   {:.9g} m at {:.6g},{:.6g},{:.6g}\n", (x[farthest] - from).norm(), from[0],
-             from[1], from[2]);
+  fmt::print("  largest displacement   {:.9g} m at {:.6g},{:.6g},{:.6g}\n", (x[farthest] - from).norm(),
+             from[0], from[1], from[2]);
   for (const Probe& probe : probes) {
     Vec3 u = Vec3::Zero();
     for (const auto& [node, weight] : probe.nodes) u += weight * (x[node] - solid.rest()[node]);
-    fmt::print("  probe {}: displacement {:.9g} {:.9g} {:.9g} m{}\n", probe.text, u[0], u[1], u[2],
-               probe.off > 0 ? fmt::format(" (outside the body: its nearest vertex, {:.3g} m off)", probe.off) : "");
+    fmt::print(
+        "  probe {}: displacement {:.9g} {:.9g} {:.9g} m{}\n", probe.text, u[0], u[1], u[2],
+        probe.off > 0 ? fmt::format(" (outside the body: its nearest vertex, {:.3g} m off)", probe.off) : "");
   }
 }
 
@@ -144,16 +149,18 @@ int solve(const SolveOptions& options) {
   const Solid solid(mesh, *scene.material);
   const Loads loads(scene, mesh, surface, solid);
   std::vector<Probe> probes;
-  for (const std::string& text : options.probes) probes.push_back(find_probe(text, solid, mesh.vertices.size()));
+  for (const std::string& text : options.probes)
+    probes.push_back(find_probe(text, solid, mesh.vertices.size()));
   const StaticLoad load{[&](std::span<const Vec3> x, std::span<Vec3> f) { loads.add_forces(x, f); },
-                        loads.fixed(), loads.moved()};
-  const Equilibrium found = find_equilibrium(solid, load, scene.source,
-                                             [&](double share) { progress("loading", share); });
+                        loads.held(), loads.moved()};
+  const Equilibrium found =
+      find_equilibrium(solid, load, scene.source, [&](double share) { progress("loading", share); });
   progress("loading", 1);
   write_state(options.out, solid, found.x);
   fmt::print("{}: {} nodes, {} tetrahedra\n", scene.source, solid.nodes(), solid.elements());
-  fmt::print("  static equilibrium     {} Newton steps in {} increments, residual {:.1e} of the forces at work\n",
-             found.iterations, found.increments, found.residual);
+  fmt::print(
+      "  static equilibrium     {} Newton steps in {} increments, residual {:.1e} of the forces at work\n",
+      found.iterations, found.increments, found.residual);
   print_result(solid, loads, found.x, probes);
   return 0;
 }

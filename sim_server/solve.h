@@ -9,9 +9,9 @@ namespace palpate::sim {
 /// What `sim_server solve` was asked for.
 struct SolveOptions {
   std::filesystem::path scene, out;
-  std::vector<std::string> probes;  ///< "x,y,z", m, in the body at rest
-  std::optional<double> seconds;    ///< of motion; absent: the static equilibrium
-  double step = 0.01;               ///< s, of the motion
+  std::vector<std::string> probes;              ///< "x,y,z", m, in the body at rest
+  std::optional<double> seconds;                ///< of motion; absent: the static equilibrium
+  double step = 0.01;                           ///< s, of the motion
   std::optional<std::filesystem::path> series;  ///< a .pvd of `frames` files beside it
   int frames = 50;
 };

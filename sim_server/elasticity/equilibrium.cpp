@@ -1,6 +1,7 @@
 #include "sim_server/elasticity/equilibrium.h"
 
 #include <cmath>
+#include <limits>
 
 #include "common/error.h"
 
@@ -18,11 +19,13 @@ class Newton {
       : solid_(solid),
         load_(load),
         settings_(settings),
-        dofs_(solid.nodes(), load.fixed),
+        dofs_(load.held),
         stiffness_(solid.stiffness_matrix(dofs_)),
         internal_(static_cast<std::size_t>(solid.nodes())),
         external_(internal_.size()) {
     solid.add_stiffness(solid.rest(), stiffness_);
+    usual_ = stiffness_.lower().diagonal().mean();
+    stiffness_.close_held(usual_);
     at_rest_ = stiffness_.lower();
     factor_.emplace(at_rest_, where);
   }
@@ -30,13 +33,16 @@ class Newton {
   /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.
   bool advance(std::vector<Vec3>& x, double from, double to) {
     share_ = to;
-    move_supports(x, to - from);
+    if (load_.start.empty()) move_supports(x, to - from);
+    double before = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= settings_.max_newton; ++i) {
       const Eigen::VectorXd residual = unbalanced(x);
       if (!std::isfinite(residual_)) return false;
-      if (residual_ <= settings_.tolerance) return true;
+      const bool stuck = residual_ > 0.5 * before && residual_ <= settings_.rounding;
+      if (residual_ <= settings_.tolerance || stuck) return true;
+      before = residual_;
       ++iterations_;
-      if (!step(x, residual)) return false;
+      if (!step(x, residual)) return residual_ <= settings_.rounding;
     }
     return false;
   }
@@ -56,6 +62,7 @@ class Newton {
       at_work += internal_[i].squaredNorm() + share_ * share_ * external_[i].squaredNorm();
       if (dofs_.first[i] >= 0) residual.segment<3>(dofs_.first[i]) = share_ * external_[i] - internal_[i];
     }
+    dofs_.hold(residual);
     residual_ = at_work > 0 ? residual.norm() / std::sqrt(at_work) : 0;
     return residual;
   }
@@ -63,6 +70,7 @@ class Newton {
   bool factor_at(const std::vector<Vec3>& x) {
     stiffness_.set_zero();
     solid_.add_stiffness(x, stiffness_);
+    stiffness_.close_held(usual_);
     if (factor_->refactor(stiffness_.lower())) return true;
     double added = 0;
     for (double shift = kFirstShift; shift < kLastShift; shift *= 4) {
@@ -97,13 +105,20 @@ class Newton {
   /// The supports go on by a share of their way, and the body with them as its tangent says.
   void move_supports(std::vector<Vec3>& x, double share) {
     if (load_.moved.empty()) return;
-    std::vector<Vec3> ahead = x;
-    for (const int node : load_.fixed) ahead[node] += kLook * share * load_.moved[node];
+    const auto moved_by = [&](double part) {
+      std::vector<Vec3> moved = x;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        for (int axis = 0; axis < 3; ++axis)
+          moved[i][axis] += (load_.held[i] >> axis & 1) != 0 ? part * load_.moved[i][axis] : 0.0;
+      }
+      return moved;
+    };
+    const std::vector<Vec3> ahead = moved_by(kLook * share);
     const Eigen::VectorXd before = unbalanced(x);
     const Eigen::VectorXd pull = (unbalanced(ahead) - before) / kLook;
     if (!factor_at(x)) return;
     const Eigen::VectorXd way = factor_->solve(pull).col(0);
-    for (const int node : load_.fixed) x[node] += share * load_.moved[node];
+    x = moved_by(share);
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (dofs_.first[i] >= 0) x[i] += way.segment<3>(dofs_.first[i]);
     }
@@ -117,6 +132,7 @@ class Newton {
   SparseMatrix at_rest_;
   std::optional<SparseCholesky> factor_;
   std::vector<Vec3> internal_, external_;
+  double usual_ = 0;  // on the diagonal at rest, N/m
   double share_ = 0, residual_ = 0;
   int iterations_ = 0;
 };
@@ -127,7 +143,7 @@ Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const s
                              const std::function<void(double)>& progress,
                              const EquilibriumSettings& settings) {
   Newton newton(solid, load, where, settings);
-  Equilibrium found{.x = solid.rest()};
+  Equilibrium found{.x = load.start.empty() ? solid.rest() : load.start};
   const double smallest = std::pow(0.5, settings.max_halvings);
   double done = 0, step = 1;
   while (done < 1) {

@@ -11,13 +11,16 @@ namespace palpate::sim {
 struct StaticLoad {
   /// Forces on the nodes (N) of a body at `x` (nodes, m); they may follow it.
   std::function<void(std::span<const Vec3> x, std::span<Vec3> f)> forces;
-  std::vector<int> fixed;   ///< nodes held
-  std::vector<Vec3> moved;  ///< (nodes) from rest to where each of them is held, m; of others no matter
+  std::vector<HeldAxes> held;  ///< (nodes)
+  std::vector<Vec3> moved;  ///< (nodes) from rest to where each is held, along those axes, m; empty: at rest
+  std::vector<Vec3> start =
+      {};  ///< (nodes) where to look first, with what is held where it shall be, m; empty: at rest
 };
 
 /// How well an equilibrium is to be found.
 struct EquilibriumSettings {
   double tolerance = 1e-10;  ///< of the forces at work: what may be left over
+  double rounding = 1e-7;    ///< likewise, where one more step does not make it less
   int max_newton = 60;       ///< per increment
   int max_halvings = 12;     ///< of the load, where Newton's method fails
 };

@@ -91,7 +91,7 @@ void Solid::build_linear(const TetMesh& mesh) {
 }
 
 void Solid::build_quadratic(const TetMesh& mesh) {
-  constexpr double kNear = 0.58541020, kFar = 0.13819660;  // barycentric, of the four points
+  constexpr double kNear = 0.5854101966249685, kFar = 0.1381966011250105;  // barycentric, of the four points
   corners_ = 10;
   points_ = 4;
   std::map<std::array<int, 2>, int> middle;

@@ -54,10 +54,11 @@ class Solid {
   /// and 4/27 for the middle of an edge (Hinton, Rock and Zienkiewicz 1976).
   std::vector<double> masses() const;
 
-  /// Nodes of tetrahedron e, `nodes_per_element()` of them: corners, then the middles of the edges 01, 12, 02,
-  /// 03, 13, 23.
+  /// Nodes of tetrahedron e, `nodes_per_element()` of them: corners, then the middles of the edges 01, 12,
+  /// 02, 03, 13, 23.
   std::span<const int> element(std::size_t e) const {
-    return std::span(element_nodes_).subspan(e * static_cast<std::size_t>(corners_), static_cast<std::size_t>(corners_));
+    return std::span(element_nodes_)
+        .subspan(e * static_cast<std::size_t>(corners_), static_cast<std::size_t>(corners_));
   }
   std::size_t elements() const { return element_nodes_.size() / static_cast<std::size_t>(corners_); }
   /// Quadrature points in all: of tetrahedron e from e * points_per_element().

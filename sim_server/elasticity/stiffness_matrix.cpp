@@ -5,19 +5,38 @@
 
 namespace palpate::sim {
 
-FreeDofs::FreeDofs(int nodes, const std::vector<int>& fixed) : first(static_cast<std::size_t>(nodes), 0) {
-  for (const int node : fixed) first[node] = -1;
-  for (int& dof : first) {
-    if (dof < 0) continue;
-    dof = count;
+FreeDofs::FreeDofs(int nodes, const std::vector<int>& fixed) : held(static_cast<std::size_t>(nodes), 0) {
+  for (const int node : fixed) held[node] = kAllAxes;
+  number();
+}
+
+FreeDofs::FreeDofs(std::vector<HeldAxes> held_axes) : held(std::move(held_axes)) {
+  number();
+}
+
+void FreeDofs::number() {
+  first.assign(held.size(), -1);
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] == kAllAxes) continue;
+    first[i] = count;
     count += 3;
+  }
+}
+
+void FreeDofs::hold(Eigen::VectorXd& v) const noexcept {
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] == 0 || first[i] < 0) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((held[i] >> axis & 1) != 0) v[first[i] + axis] = 0;
+    }
   }
 }
 
 StiffnessMatrix::StiffnessMatrix(const FreeDofs& dofs, std::span<const int> groups,
                                  std::span<const int> first)
-    : matrix_(dofs.count, dofs.count) {
+    : held_(dofs.held), matrix_(dofs.count, dofs.count) {
   for (const int dof : dofs.first) block_.push_back(dof < 0 ? -1 : dof / 3);
+  partly_held_ = std::any_of(held_.begin(), held_.end(), [](HeldAxes h) { return h != 0 && h != kAllAxes; });
   const auto blocks = static_cast<std::size_t>(dofs.count / 3);
   std::vector<std::vector<int>> below(blocks);  // block rows of each block column, from the diagonal down
   for (std::size_t c = 0; c < blocks; ++c) below[c].push_back(static_cast<int>(c));
@@ -56,8 +75,27 @@ void StiffnessMatrix::set_zero() noexcept {
 }
 
 void StiffnessMatrix::add(int i, int j, const Mat3& block) noexcept {
+  if (block_[i] < 0 || block_[j] < 0) return;
+  if (!partly_held_ || (held_[i] == 0 && held_[j] == 0)) return add_to(i, j, block);
+  Mat3 free = block;
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((held_[i] >> axis & 1) != 0) free.row(axis).setZero();
+    if ((held_[j] >> axis & 1) != 0) free.col(axis).setZero();
+  }
+  add_to(i, j, free);
+}
+
+void StiffnessMatrix::close_held(double value) noexcept {
+  for (std::size_t i = 0; partly_held_ && i < held_.size(); ++i) {
+    if (held_[i] == 0 || block_[i] < 0) continue;
+    Mat3 block = Mat3::Zero();
+    for (int axis = 0; axis < 3; ++axis) block(axis, axis) = (held_[i] >> axis & 1) != 0 ? value : 0.0;
+    add_to(static_cast<int>(i), static_cast<int>(i), block);
+  }
+}
+
+void StiffnessMatrix::add_to(int i, int j, const Mat3& block) noexcept {
   int row = block_[i], column = block_[j];
-  if (row < 0 || column < 0) return;
   const bool turned = row < column;
   if (turned) std::swap(row, column);
   const int* const outer = matrix_.outerIndexPtr();

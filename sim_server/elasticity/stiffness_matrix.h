@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/SparseCore>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,12 +10,25 @@ namespace palpate::sim {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// Which displacements are unknown: three per free node, in node order; a fixed node has none.
+/// Axes along which a node is held: bit 0 is x, 1 y, 2 z.
+using HeldAxes = std::uint8_t;
+constexpr HeldAxes kAllAxes = 7;
+
+/// Which displacements are unknown: three per node that is not held altogether, in node order. Those along an
+/// axis that is held are unknowns that are always 0.
 struct FreeDofs {
-  std::vector<int> first;  ///< (n nodes) index of the x displacement, or -1 where the node is fixed
-  int count = 0;           ///< number of unknowns
+  std::vector<int> first;      ///< (n nodes) index of the x displacement, or -1 where the node is fixed
+  std::vector<HeldAxes> held;  ///< (n nodes)
+  int count = 0;               ///< number of unknowns
 
   FreeDofs(int nodes, const std::vector<int>& fixed);
+  explicit FreeDofs(std::vector<HeldAxes> held_axes);
+
+  /// Sets to 0 what is held along single axes; `v` by unknowns.
+  void hold(Eigen::VectorXd& v) const noexcept;
+
+ private:
+  void number();
 };
 
 /// A symmetric sparse matrix of 3 x 3 blocks over free nodes, of which the lower triangle is kept: one
@@ -27,6 +41,9 @@ class StiffnessMatrix {
   StiffnessMatrix(const FreeDofs& dofs, std::span<const int> groups, std::span<const int> first);
 
   void set_zero() noexcept;
+  /// Puts `value` on the diagonal where a node is held along an axis: its row and column are 0 else. After
+  /// all is added.
+  void close_held(double value) noexcept;
   /// Adds the block of rows of node `i` and columns of node `j`; also stands for the one of j and i. Each
   /// pair once. Nothing where one is fixed.
   void add(int i, int j, const Mat3& block) noexcept;
@@ -39,7 +56,11 @@ class StiffnessMatrix {
   std::size_t bytes() const;
 
  private:
-  std::vector<int> block_;  // of each node: its number among the free ones; -1: fixed
+  void add_to(int i, int j, const Mat3& block) noexcept;
+
+  std::vector<int> block_;      // of each node: its number among the free ones; -1: fixed
+  std::vector<HeldAxes> held_;  // of each node
+  bool partly_held_ = false;    // any along some axes only
   SparseMatrix matrix_;
 };
 

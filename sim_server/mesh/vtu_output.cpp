@@ -18,9 +18,9 @@ class Appended {
  public:
   template <class Value>
   std::string add(const char* type, const std::string& name, int components, std::span<const Value> values) {
-    const std::string element =
-        fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
-                    type, name, components, bytes_.size());
+    const std::string element = fmt::format(
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
+        type, name, components, bytes_.size());
     const std::uint64_t size = values.size_bytes();
     append(&size, sizeof(size));
     append(values.data(), values.size_bytes());
@@ -59,7 +59,8 @@ void write_vtu(const std::filesystem::path& file, std::span<const Vec3> points, 
   const std::vector<std::uint8_t> types(count, points_per_cell == 4 ? kTetrahedron : kQuadraticTetrahedron);
   Appended appended;
   std::string text =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+      "byte_order=\"LittleEndian\" "
       "header_type=\"UInt64\">\n<UnstructuredGrid>\n";
   text += fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", points.size(), count);
   text += "<PointData>\n" + appended.add(at_points) + "</PointData>\n<CellData>\n" + appended.add(in_cells) +
