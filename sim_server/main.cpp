@@ -89,8 +89,17 @@ CLI::App* add_solve(CLI::App& app, sim::SolveOptions& options) {
   command->add_option("--out", options.out, "Deformed mesh to write, for ParaView (.vtu)")->required();
   command->add_option("--probe", options.probes,
                       "Place in the body at rest, m: prints its displacement; repeatable");
+  command->add_option(
+      "--seconds", options.seconds,
+      "Move for so long from rest, all loads there at once (default: the static equilibrium)");
+  command->add_option("--step", options.step, "Step of the motion, s")->capture_default_str();
+  command->add_option("--series", options.series,
+                      "Also write the motion for ParaView: a .pvd and its frames");
+  command->add_option("--frames", options.frames, "How many frames about")->capture_default_str();
   command->footer(
-      "Example: sim_server solve configs/scenes/liver_weight.toml --out liver.vtu --probe 0.1,0.02,0.03");
+      "Examples:\n"
+      "  sim_server solve configs/scenes/liver_weight.toml --out liver.vtu --probe 0.1,0.02,0.03\n"
+      "  sim_server solve configs/scenes/liver_weight.toml --seconds 2 --out end.vtu --series motion.pvd");
   return command;
 }
 
@@ -111,6 +120,12 @@ CLI::App* add_mesh_info(CLI::App& app, std::string& file) {
   info->add_option("FILE", file, "Mesh file, metres")->required();
   info->footer("Example: sim_server mesh info configs/meshes/liver.msh");
   return info;
+}
+
+void check(const sim::SolveOptions& options) {
+  if (options.seconds) require_within(*options.seconds, 1e-6, 1e6, "--seconds", "s");
+  require_within(options.step, 1e-6, 1e3, "--step", "s");
+  require_within(options.frames, 1, 100000, "--frames", "files");
 }
 
 void check(const sim::RecordOptions& options) {
@@ -137,7 +152,10 @@ int run(int argc, char** argv) {
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*mesh_info) return print_mesh_info(mesh_file);
   if (*explain) return sim::run_explain(explaining);
-  if (*solve) return sim::solve(solving);
+  if (*solve) {
+    check(solving);
+    return sim::solve(solving);
+  }
   if (*record) {
     check(recording);
     return sim::record(recording);

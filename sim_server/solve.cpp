@@ -9,6 +9,7 @@
 #include "common/log.h"
 #include "common/progress.h"
 #include "common/report.h"
+#include "sim_server/elasticity/dynamics.h"
 #include "sim_server/elasticity/equilibrium.h"
 #include "sim_server/loads.h"
 #include "sim_server/mesh/gmsh_io.h"
@@ -136,32 +137,100 @@ void print_result(const Solid& solid, const Loads& loads, std::span<const Vec3> 
   }
 }
 
+/// At rest under all loads.
+std::vector<Vec3> find_rest(const Scene& scene, const Solid& solid, const Loads& loads,
+                            ProgressLine& progress) {
+  const StaticLoad load{[&](std::span<const Vec3> x, std::span<Vec3> f) { loads.add_forces(x, f); },
+                        loads.held(), loads.moved()};
+  Equilibrium found =
+      find_equilibrium(solid, load, scene.source, [&](double share) { progress("loading", share); });
+  progress("loading", 1);
+  fmt::print(
+      "  static equilibrium     {} Newton steps in {} increments, residual {:.1e} of the forces at work\n",
+      found.iterations, found.increments, found.residual);
+  return std::move(found.x);
+}
+
+/// Files of a series: beside it, numbered.
+class Series {
+ public:
+  explicit Series(const SolveOptions& options) : options_(options) {}
+  void add(double t, const Solid& solid, std::span<const Vec3> x) {
+    const std::filesystem::path name =
+        fmt::format("{}_{:04}.vtu", options_.series->stem().string(), frames_.size());
+    write_state(options_.series->parent_path() / name, solid, x);
+    frames_.emplace_back(t, name);
+  }
+  void finish() const { write_pvd(*options_.series, frames_); }
+
+ private:
+  const SolveOptions& options_;
+  std::vector<std::pair<double, std::filesystem::path>> frames_;
+};
+
+/// From rest, with all loads there at once, and what is moved moved at once.
+std::vector<Vec3> move_for(const SolveOptions& options, const Scene& scene, const Solid& solid,
+                           const Loads& loads, ProgressLine& progress) {
+  constexpr int kMostNewton = 50;
+  constexpr double kTolerance = 1e-9;
+  Dynamics dynamics(solid, loads.held(), {.second_order = true}, scene.source);
+  const auto steps = static_cast<int>(std::ceil(*options.seconds / options.step - 1e-9));
+  const double h = *options.seconds / steps;
+  const int every = std::max(1, steps / options.frames);
+  Series series(options);
+  std::vector<Vec3> external(static_cast<std::size_t>(solid.nodes()));
+  int newton = 0;
+  if (options.series) series.add(0, solid, dynamics.position());
+  for (int step = 1; step <= steps; ++step) {
+    dynamics.start_step(h);
+    for (std::size_t i = 0; !loads.moved().empty() && i < external.size(); ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((loads.held()[i] >> axis & 1) != 0)
+          dynamics.position()[i][axis] = solid.rest()[i][axis] + loads.moved()[i][axis];
+      }
+    }
+    for (int k = 0; k < kMostNewton; ++k) {
+      ++newton;
+      std::fill(external.begin(), external.end(), Vec3::Zero());
+      loads.add_forces(dynamics.position(), external);
+      if (dynamics.improve(external) <= kTolerance) break;
+      if (k + 1 == kMostNewton)
+        fail_at_run_time("{}: no convergence at {:g} s; a smaller --step than {:g} s would help",
+                         scene.source, step * h, h);
+    }
+    dynamics.finish_step();
+    progress("moving", static_cast<double>(step) / steps);
+    if (options.series && (step % every == 0 || step == steps))
+      series.add(step * h, solid, dynamics.position());
+  }
+  if (options.series) series.finish();
+  fmt::print(
+      "  after {:g} s            {} steps of {:g} s (BDF2), {} Newton steps, kinetic energy {:.9g} J\n",
+      *options.seconds, steps, h, newton, dynamics.kinetic_energy());
+  return {dynamics.position().begin(), dynamics.position().end()};
+}
+
 }  // namespace
 
 int solve(const SolveOptions& options) {
   const Scene scene = read_scene(options.scene, Purpose::kSolve);
   if (!scene.material) fail("{}: solving needs a [material] section", scene.source);
+  if (options.series && !options.seconds) fail("--series: needs --seconds, the time that it is a series of");
   check_writable(options.out);
+  if (options.series) check_writable(*options.series);
   ProgressLine progress;
   progress("reading the mesh", 0);
   const TetMesh mesh = read_mesh(scene.mesh_file);
-  const Surface surface = boundary_surface(mesh);
   const Solid solid(mesh, *scene.material);
-  const Loads loads(scene, mesh, surface, solid);
+  const Loads loads(scene, mesh, boundary_surface(mesh), solid);
   std::vector<Probe> probes;
   for (const std::string& text : options.probes)
     probes.push_back(find_probe(text, solid, mesh.vertices.size()));
-  const StaticLoad load{[&](std::span<const Vec3> x, std::span<Vec3> f) { loads.add_forces(x, f); },
-                        loads.held(), loads.moved()};
-  const Equilibrium found =
-      find_equilibrium(solid, load, scene.source, [&](double share) { progress("loading", share); });
-  progress("loading", 1);
-  write_state(options.out, solid, found.x);
   fmt::print("{}: {} nodes, {} tetrahedra\n", scene.source, solid.nodes(), solid.elements());
-  fmt::print(
-      "  static equilibrium     {} Newton steps in {} increments, residual {:.1e} of the forces at work\n",
-      found.iterations, found.increments, found.residual);
-  print_result(solid, loads, found.x, probes);
+  const std::vector<Vec3> x = options.seconds ? move_for(options, scene, solid, loads, progress)
+                                              : find_rest(scene, solid, loads, progress);
+  write_state(options.out, solid, x);
+  print_result(solid, loads, x, probes);
   return 0;
 }
 

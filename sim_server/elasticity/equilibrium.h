@@ -10,11 +10,12 @@ namespace palpate::sim {
 /// What acts on a body at rest.
 struct StaticLoad {
   /// Forces on the nodes (N) of a body at `x` (nodes, m); they may follow it.
-  std::function<void(std::span<const Vec3> x, std::span<Vec3> f)> forces;
-  std::vector<HeldAxes> held;  ///< (nodes)
-  std::vector<Vec3> moved;  ///< (nodes) from rest to where each is held, along those axes, m; empty: at rest
-  std::vector<Vec3> start =
-      {};  ///< (nodes) where to look first, with what is held where it shall be, m; empty: at rest
+  std::function<void(std::span<const Vec3> x, std::span<Vec3> f)> forces = {};
+  std::vector<HeldAxes> held = {};  ///< (nodes)
+  /// (nodes) From rest to where each is held, along those axes, m; empty: at rest.
+  std::vector<Vec3> moved = {};
+  /// (nodes) Where to look first, with what is held where it shall be, m; empty: at rest.
+  std::vector<Vec3> start = {};
 };
 
 /// How well an equilibrium is to be found.
