@@ -58,12 +58,17 @@ DeformationSettings read_deformation(const Config& config) {
   DeformationSettings settings;
   settings.where = config.where("model");
   settings.model = config.text("model");
-  find_row(deformation_models(), settings.model, "deformation model", settings.where);
+  const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
   settings.stiffness = config.number("stiffness", {1e-3, 1e6, "N/m"}, settings.stiffness);
   if (config.has("spring_stiffness"))
     settings.spring_stiffness = config.vector("spring_stiffness", {1e-3, 1e6, "N/m"});
   if (config.has("hardening_length"))
     settings.hardening_length = config.number("hardening_length", {1e-4, 10, "m"});
+  if (row.damped) {
+    settings.rayleigh_mass = config.number("rayleigh_mass", {0, 1e4, "1/s"}, settings.rayleigh_mass);
+    settings.rayleigh_stiffness =
+        config.number("rayleigh_stiffness", {0, 1, "s"}, settings.rayleigh_stiffness);
+  }
   config.reject_unknown();
   return settings;
 }

@@ -117,6 +117,7 @@ void Simulation::move_organ(double dt) noexcept {
   const FreeMotion motion = tissue_.model->free_motion(dt);
   tissue_.free = motion.positions;
   tissue_.velocities = motion.velocities;
+  if (!motion.loaded.empty()) tissue_.positions = motion.loaded;
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
     ways_[i] += 0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
   for (std::size_t i = 0; moves && i < tools_.size(); ++i) tools_[i].carry(ways_[i], tissue_);

@@ -17,13 +17,16 @@ struct NodalLoad {
 /// A tissue free of contact; valid until it is asked again.
 struct FreeMotion {
   std::span<const Vec3> positions;        ///< (n)
-  std::span<const Vec3> velocities = {};  ///< (n), m/s, at the end of the step; empty: it rests
+  std::span<const Vec3> velocities = {};  ///< (n), m/s, of its supports' doing; empty: they rest
+  /// (n) under the loads that are held; empty: `apply` will tell, or told it before
+  std::span<const Vec3> loaded = {};
 };
 
 /// Bytes that a part of the program holds, for reports.
 struct MemoryPart {
   std::string name;
   std::size_t bytes;
+  std::string detail = {};  ///< counts
 };
 
 /// A tissue. Every model answers the same questions (where would you go, how compliant are you, here are the

@@ -30,7 +30,9 @@ struct DeformationModelRow {
   std::string_view name;
   std::string_view summary;
   std::unique_ptr<DeformationModel> (*make)(const ModelInputs&);
+  bool elastic = false;           ///< it needs a [material], and keeps the compliance of what tools reach
   bool follows_supports = false;  ///< it moves with a [[fixed.motion]]
+  bool damped = false;            ///< it has Rayleigh damping
 };
 std::span<const DeformationModelRow> deformation_models();
 
