@@ -44,29 +44,40 @@ ExplicitMotion::ExplicitMotion(const ElasticTensors& tensors, const RayleighDamp
 }
 
 void ExplicitMotion::sub_step(double h, const std::vector<double>& force) noexcept {
-  auto& [u, v, f] = state;
-  const double keep = 1 - h * damping_.mass;
-  for (std::size_t k = 0; k < u.size(); ++k) bent_[k] = u[k] + damping_.stiffness * v[k];
   if (columns_ == 1) {
     tensors_.multiply(bent_.data(), resistance_.data());
+    advance<1>(h, force.data());
   } else {
     tensors_.multiply_wide(bent_.data(), resistance_.data());
+    advance<ElasticTensors::kWide>(h, force.data());
   }
-  std::size_t k = 0;
+}
+
+template <int kColumns>
+void ExplicitMotion::advance(double h, const double* __restrict force) noexcept {
+  const double keep = 1 - h * damping_.mass, stiffness = damping_.stiffness;
+  const double* __restrict resistance = resistance_.data();
+  double* __restrict u = state.u.data(), * __restrict v = state.v.data(), * __restrict bent = bent_.data();
+  std::ptrdiff_t k = 0;
   for (const double mass : tensors_.masses()) {
     const double kick = h / mass;
-    for (const std::size_t end = k + 3 * columns_; k < end; ++k) {
-      v[k] = keep * v[k] + kick * (force[k] - resistance_[k]);
+    for (int i = 0; i < 3 * kColumns; ++i, ++k) {
+      v[k] = keep * v[k] + kick * (force[k] - resistance[k]);
       u[k] += h * v[k];
+      bent[k] = u[k] + stiffness * v[k];
     }
   }
 }
 
 void ExplicitMotion::run(int steps, double h, const std::vector<double>& force) noexcept {
-  for (std::size_t k = 0; k < force.size(); ++k) state.f[k] = 0.5 * (state.f[k] + force[k]);
-  sub_step(h, state.f);
+  auto& [u, v, f] = state;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    f[k] = 0.5 * (f[k] + force[k]);
+    bent_[k] = u[k] + damping_.stiffness * v[k];
+  }
+  sub_step(h, f);
   for (int i = 1; i < steps; ++i) sub_step(h, force);
-  state.f = force;
+  f = force;
 }
 
 }  // namespace palpate::sim

@@ -36,16 +36,18 @@ class ExplicitMotion {
   };
   State state;
 
-  /// Goes on by `h` (s) under forces (N).
-  void sub_step(double h, const std::vector<double>& force) noexcept;
-  /// Goes on by `steps` >= 1 sub-steps under forces that are held. The first takes the mean of those before
-  /// and these, so that they change half-way between two velocities. The displacement is then of second order
-  /// in h, of each mode never against its force, and forces that stay give no jolt.
+  /// Goes on by `steps` >= 1 sub-steps of `h` (s) under forces (N) that are held. The first takes the mean of
+  /// those before and these, so that they change half-way between two velocities. The displacement is then of
+  /// second order in h, of each mode never against its force, and forces that stay give no jolt.
   void run(int steps, double h, const std::vector<double>& force) noexcept;
 
   std::size_t bytes() const { return 5 * state.u.size() * sizeof(double); }
 
  private:
+  void sub_step(double h, const std::vector<double>& force) noexcept;
+  template <int kColumns>
+  void advance(double h, const double* force) noexcept;
+
   const ElasticTensors& tensors_;
   RayleighDamping damping_;
   int columns_;

@@ -53,7 +53,7 @@ Recursion watch(const Tissue& tissue, int mode, const RayleighDamping& damping, 
   std::vector<double> q{1};
   double strayed = 0;
   for (int i = 0; i < steps; ++i) {
-    motion.sub_step(h, kNone);
+    motion.run(1, h, kNone);
     const auto u = as_vector(motion.state.u);
     q.push_back(weighted.dot(u));
     strayed = std::max(strayed, (u - q.back() * shape).norm() / shape.norm());
@@ -116,7 +116,7 @@ TEST_CASE("explicit motion: the highest frequency, and the sub-step at which a m
     for (const double share : {0.999, 1.001}) {
       ExplicitMotion motion(tissue.tensors, damping);
       start_in(motion, tissue.dense.modes.rightCols<1>());
-      for (int i = 0; i < 20000; ++i) motion.sub_step(share * limit, kNone);
+      for (int i = 0; i < 20000; ++i) motion.run(1, share * limit, kNone);
       const double grown = as_vector(motion.state.u).norm() / tissue.dense.modes.rightCols<1>().norm();
       CHECK((share < 1 ? grown < 100 : !(grown < 1e3)));
     }
@@ -127,7 +127,7 @@ TEST_CASE("explicit motion: unstable at 1.3 times the undamped limit") {
   const Tissue tissue;
   ExplicitMotion motion(tissue.tensors, {});
   start_in(motion, Eigen::VectorXd::Constant(tissue.dense.mass.size(), 1e-3));
-  for (int i = 0; i < 100; ++i) motion.sub_step(1.3 * 2 / tissue.dense.highest(), kNone);
+  for (int i = 0; i < 100; ++i) motion.run(1, 1.3 * 2 / tissue.dense.highest(), kNone);
   CHECK_FALSE(as_vector(motion.state.u).norm() < 1e10);
 }
 
@@ -166,7 +166,7 @@ TEST_CASE("explicit motion: energy stays without damping over 1e4 sub-steps, and
   const double kept = kept_energy(tissue, motion, h), first = energy(tissue, motion);
   double most = 0;
   for (int i = 0; i < 10000; ++i) {
-    motion.sub_step(h, kNone);
+    motion.run(1, h, kNone);
     most = std::max(most, energy(tissue, motion));
   }
   CHECK(kept_energy(tissue, motion, h) == Approx(kept).epsilon(1e-10));
