@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "common/progress.h"
+#include "common/text.h"
 #include "protocol/recorder.h"
 #include "sim_server/setup_times.h"
 
@@ -31,6 +32,8 @@ constexpr std::array kStageParts{
     StagePart{"factoring the stiffness matrix", "its factor"},
     StagePart{"computing compliance", "compliance"},
     StagePart{"computing moving supports", "moving supports"},
+    StagePart{"assembling the tensors", "tensors"},
+    StagePart{"finding the highest frequency", "tensors"},
 };
 
 /// What a variant is compared by. `setup_ms` is without reading the mesh, which all share.
@@ -48,7 +51,7 @@ Cost cost_of(const Simulation& simulation, const SetupTimes& times, const StepTi
   return cost;
 }
 
-/// Surface vertices whose compliance the quasi-static model of this scene keeps.
+/// Surface vertices whose compliance an elastic model of this scene keeps.
 std::size_t loaded_nodes(const Scene& scene, const Simulation& simulation) {
   const std::vector<int> fixed = fixed_vertices(scene, simulation.mesh());
   const std::vector<int> all = reachable_vertices(simulation.surface(), simulation.mesh(), scene.tools);
@@ -57,13 +60,14 @@ std::size_t loaded_nodes(const Scene& scene, const Simulation& simulation) {
   }));
 }
 
-bool is_quasi_static(const Scene& scene) {
-  return scene.deformation.model == "quasi_static";
+bool is_elastic(const Scene& scene) {
+  return find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where)
+      .elastic;
 }
 
-/// By formula; what no quasi-static scene has is nothing.
+/// By formula; what no elastic scene has is nothing.
 double compliance_bytes(const Scene& scene, const Simulation& simulation) {
-  if (!is_quasi_static(scene)) return 0;
+  if (!is_elastic(scene)) return 0;
   const auto nodes = static_cast<double>(loaded_nodes(scene, simulation));
   return kBytesPerPair * nodes * nodes;
 }
@@ -128,11 +132,14 @@ std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulat
   for (const SetupTimes::Stage& stage : times.stages()) {
     row_of(rows, part_of(stage.name), scene, simulation).setup_ms += ms(stage.took);
   }
-  for (const MemoryPart& part : simulation.memory())
-    row_of(rows, part.name, scene, simulation).bytes = part.bytes;
+  for (const MemoryPart& part : simulation.memory()) {
+    BuiltPart& row = row_of(rows, part.name, scene, simulation);
+    row.bytes = part.bytes;
+    if (!part.detail.empty()) row.detail = part.detail;
+  }
   for (const FixedRegion& region : scene.fixed) rows.push_back({"fixed", "nothing kept", region.where});
   if (scene.material)
-    rows.push_back({"material", is_quasi_static(scene) ? "nothing kept" : "not used", scene.material_where});
+    rows.push_back({"material", is_elastic(scene) ? "nothing kept" : "not used", scene.material_where});
   return rows;
 }
 
@@ -218,7 +225,7 @@ std::vector<LeftOut> left_out(const Own& own) {
   if (const auto row = beyond_reach(own)) rows.push_back(*row);
   if (const auto row = friction(own)) rows.push_back(*row);
   if (own.scene.deformation.model == "rigid") rows.push_back(elasticity(own));
-  if (is_quasi_static(own.scene)) rows.push_back(whole_compliance(own));
+  if (is_elastic(own.scene)) rows.push_back(whole_compliance(own));
   rows.push_back({.what = "recording",
                   .why = "sim_server run --record",
                   .bytes = static_cast<double>(protocol::Recorder::memory_bytes()),

@@ -68,7 +68,8 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
 }  // namespace
 
 int record(const RecordOptions& options) {
-  const Scene scene = read_scene(options.scene);
+  Scene scene = read_scene(options.scene);
+  scene.rate_hz = options.rate_hz;
   const double ticks_hz = options.ticks_hz.value_or(std::max(kUsualTicks, options.rate_hz));
   if (ticks_hz < options.rate_hz)
     fail("--ticks: {} Hz is less than --rate {} Hz; every step answers a tool state", ticks_hz,

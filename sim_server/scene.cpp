@@ -46,12 +46,27 @@ DeformationSettings read_deformation(const Config& config) {
   DeformationSettings settings;
   settings.where = config.where("model");
   settings.model = config.text("model");
-  find_row(deformation_models(), settings.model, "deformation model", settings.where);
+  const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
   settings.stiffness = config.number("stiffness", {1e-3, 1e6, "N/m"}, settings.stiffness);
   if (config.has("spring_stiffness"))
     settings.spring_stiffness = config.vector("spring_stiffness", {1e-3, 1e6, "N/m"});
   if (config.has("hardening_length"))
     settings.hardening_length = config.number("hardening_length", {1e-4, 10, "m"});
+  if (row.damped) {
+    settings.rayleigh_mass = config.number("rayleigh_mass", {0, 1e4, "1/s"}, settings.rayleigh_mass);
+    settings.rayleigh_stiffness =
+        config.number("rayleigh_stiffness", {0, 1, "s"}, settings.rayleigh_stiffness);
+  }
+  if (row.any_material) {
+    const std::string integrator = config.text("integrator", "backward_euler");
+    settings.second_order = integrator == "bdf2";
+    if (!settings.second_order && integrator != "backward_euler")
+      fail("{}: unknown integrator \"{}\"; known: backward_euler, bdf2", config.where("integrator"),
+           integrator);
+    settings.max_newton =
+        static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
+    settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);
+  }
   config.reject_unknown();
   return settings;
 }
@@ -60,6 +75,15 @@ DeformationSettings read_deformation(const Config& config) {
 void require_what_the_model_can(const Scene& scene) {
   const auto& settings = scene.deformation;
   const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
+  const auto any = [](const DeformationModelRow& m) { return m.any_material; };
+  if (!scene.loads.empty() && !row.any_material)
+    fail("{}: [[load]]: model \"{}\" bears tools only; {} would, or `sim_server solve`",
+         scene.loads.front().region.where, settings.model, models_that(any));
+  if (scene.material && row.elastic && !scene.material->is_plain())
+    fail(
+        "{}: model \"{}\" is for law \"linear\", element \"p1\", no fibres and no relaxation; {} takes all "
+        "of them",
+        scene.material_where, settings.model, models_that(any));
   for (const FixedRegion& region : scene.fixed) {
     if (region.axes != kAllAxes)
       fail("{}: `axes`: only `sim_server solve` holds vertices along some axes; remove it", region.where);

@@ -78,7 +78,12 @@ struct DeformationSettings {
   double stiffness = 800;                    ///< N/m, (0, 1e6], model "rigid" only
   std::optional<Vec3> spring_stiffness{};    ///< along x, y, z, N/m, [1e-3, 1e6], model "spring" only
   std::optional<double> hardening_length{};  ///< m, [1e-4, 10], likewise; absent: linear
-  std::string where;                         ///< "FILE:LINE" of `model`
+  double rayleigh_mass = 10;                 ///< damping by mass, 1/s, [0, 1e4], model "tensor_mass" only
+  double rayleigh_stiffness = 1e-4;          ///< and by stiffness, s, [0, 1], likewise
+  bool second_order = false;                 ///< `integrator` = "bdf2", model "implicit" only
+  int max_newton = 5;                        ///< per step, [1, 100], likewise
+  double tolerance = 1e-5;  ///< of the forces at work, what Newton may leave, [1e-12, 0.1], likewise
+  std::string where;        ///< "FILE:LINE" of `model`
 };
 
 /// One `[[tool]]`.

@@ -101,6 +101,15 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPo
     tools_[i].walk(*places_W[i], tissue_);
   }
   settle();
+  while (const auto motion = tissue_.model->relinearise()) {
+    take(*motion);
+    for (ToolContact& tool : tools_) {
+      if (!tool.placed()) continue;
+      tool.share(tools_, tissue_);
+      tool.settle(tissue_);
+    }
+    settle();
+  }
   if (!tissue_.before.empty())
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
   for (std::size_t i = 0; i < tools_.size(); ++i) forces_[i] = tools_[i].force();
@@ -114,14 +123,18 @@ void Simulation::move_organ(double dt) noexcept {
   const bool moves = !tissue_.velocities.empty();
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
     ways_[i] = 0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
-  const FreeMotion motion = tissue_.model->free_motion(dt);
-  tissue_.free = motion.positions;
-  tissue_.velocities = motion.velocities;
+  take(tissue_.model->free_motion(dt));
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
     ways_[i] += 0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
   for (std::size_t i = 0; moves && i < tools_.size(); ++i) tools_[i].carry(ways_[i], tissue_);
   if (moves && !tissue_.before.empty())  // gone along, nothing has slipped
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
+}
+
+void Simulation::take(const FreeMotion& motion) noexcept {
+  tissue_.free = motion.positions;
+  tissue_.velocities = motion.velocities;
+  if (!motion.loaded.empty()) tissue_.positions = motion.loaded;
 }
 
 Vec3 Simulation::surface_velocity(std::size_t tool, const Vec3& p_W) const noexcept {

@@ -77,6 +77,7 @@ class Simulation {
 
  private:
   void move_organ(double dt) noexcept;
+  void take(const FreeMotion& motion) noexcept;
   void settle() noexcept;
 
   TetMesh mesh_;

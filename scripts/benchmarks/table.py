@@ -22,7 +22,7 @@ UNITS = (("s", 1e9), ("ms", 1e6), ("us", 1e3), ("ns", 1))
 BASE_LAW = "constant"
 LEFT_OUT = "left out: "  # what a row says that the scene has no use for
 FRAME_NS, TICK_NS = 1e9 / 30, 1e9 / 4000  # the scene's rate, and the quickest a client may ask for
-COUNTERS = (("p50", " us"), ("p99", " us"), ("rate", "/s"))  # what a row counts beside its time
+COUNTERS = (("p50", " us"), ("p99", " us"), ("rate", "/s"), ("GB/s", " GB/s"))  # what a row counts beside its time
 SESSION = re.compile(r"virtual_session/(\d+)_s$")
 
 
@@ -126,6 +126,8 @@ def ratios_of(rows):
             if free in ns:
                 add(f"{name} : {free}", value, ns[free])
             add(f"{name} : frame at 30 Hz", value, FRAME_NS)
+        if group.startswith("sub_step"):
+            add(f"{name} : stream/{rest}", value, ns.get(f"stream/{rest}"))
         if group == "setup" and rest != "total" and "setup/total" in ns:
             add(f"{name} : setup/total", value, ns["setup/total"])
         session = SESSION.match(name)

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,13 +18,16 @@ struct NodalLoad {
 /// A tissue free of contact; valid until it is asked again.
 struct FreeMotion {
   std::span<const Vec3> positions;        ///< (n)
-  std::span<const Vec3> velocities = {};  ///< (n), m/s, at the end of the step; empty: it rests
+  std::span<const Vec3> velocities = {};  ///< (n), m/s, of its supports' doing; empty: they rest
+  /// (n) under the loads that are held; empty: `apply` will tell, or told it before
+  std::span<const Vec3> loaded = {};
 };
 
 /// Bytes that a part of the program holds, for reports.
 struct MemoryPart {
   std::string name;
   std::size_t bytes;
+  std::string detail = {};  ///< counts
 };
 
 /// A tissue. Every model answers the same questions (where would you go, how compliant are you, here are the
@@ -48,6 +52,10 @@ class DeformationModel {
   /// Here are the loads: move. Positions (n) under them, valid until the next call. Replaces the loads
   /// before.
   virtual std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept = 0;
+
+  /// Looks again at where the loads of the last `apply` led: where a linearisation about that place would say
+  /// something else, the free motion of that, under the same loads; nothing where all is said.
+  virtual std::optional<FreeMotion> relinearise() noexcept { return {}; }
 
   /// What this model holds in memory.
   virtual std::vector<MemoryPart> memory() const = 0;

@@ -2,9 +2,11 @@
 
 #include <array>
 
+#include "sim_server/deformation/implicit.h"
 #include "sim_server/deformation/quasi_static.h"
 #include "sim_server/deformation/rigid.h"
 #include "sim_server/deformation/spring.h"
+#include "sim_server/deformation/tensor_mass.h"
 
 namespace palpate::sim {
 namespace {
@@ -15,10 +17,27 @@ std::unique_ptr<DeformationModel> make(const ModelInputs& inputs) {
 }
 
 constexpr std::array kModels{
-    DeformationModelRow{"rigid", "no deformation; force = stiffness x penetration depth", &make<Rigid>},
-    DeformationModelRow{"quasi_static", "linear elastic equilibrium by pre-computed compliance",
-                        &make<QuasiStatic>, true},
-    DeformationModelRow{"spring", "no deformation; the organ hangs on a spring that hardens", &make<Spring>},
+    DeformationModelRow{.name = "rigid",
+                        .summary = "no deformation; force = stiffness x penetration depth",
+                        .make = &make<Rigid>},
+    DeformationModelRow{.name = "quasi_static",
+                        .summary = "linear elastic equilibrium by pre-computed compliance",
+                        .make = &make<QuasiStatic>,
+                        .elastic = true,
+                        .follows_supports = true},
+    DeformationModelRow{.name = "tensor_mass",
+                        .summary = "linear elastic motion, explicit, by a tensor per vertex and edge",
+                        .make = &make<TensorMass>,
+                        .elastic = true,
+                        .damped = true},
+    DeformationModelRow{.name = "implicit",
+                        .summary = "motion of any law, element and load, by implicit steps",
+                        .make = &make<Implicit>,
+                        .any_material = true,
+                        .damped = true},
+    DeformationModelRow{.name = "spring",
+                        .summary = "no deformation; the organ hangs on a spring that hardens",
+                        .make = &make<Spring>},
 };
 
 }  // namespace

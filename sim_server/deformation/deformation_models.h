@@ -30,7 +30,10 @@ struct DeformationModelRow {
   std::string_view name;
   std::string_view summary;
   std::unique_ptr<DeformationModel> (*make)(const ModelInputs&);
+  bool elastic = false;           ///< it needs a [material], and keeps the compliance of what tools reach
   bool follows_supports = false;  ///< it moves with a [[fixed.motion]]
+  bool any_material = false;      ///< all laws, elements, fibres, relaxation, and [[load]]; else linear p1
+  bool damped = false;            ///< it has Rayleigh damping
 };
 std::span<const DeformationModelRow> deformation_models();
 

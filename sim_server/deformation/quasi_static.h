@@ -1,18 +1,16 @@
 #pragma once
 #include "sim_server/deformation/moving_supports.h"
+#include "sim_server/deformation/surface_compliance.h"
 
 namespace palpate::sim {
 
 /// Linear elastic equilibrium K u = f at every step (Cotin, Delingette and Ayache 1999, IEEE TVCG 5:62:
 /// pre-computed elementary deformations). Set-up factors K over the free nodes and keeps W = J K^-1 J^T for
-/// the r reachable surface nodes: (3r x 3r) doubles, 27 MB for 614 of them. A step then is a few
-/// columns of W: O(r x loaded nodes). Surface nodes out of reach do not give way; they are not computed.
-/// Where supports move, the free shape moves by the static response to them (`MovingSupports`).
-/// A fixed vertex does not move with the tissue, but where the tool presses on it, it gives way like the
-/// stiffest free vertex: an infinitely hard wall in soft tissue would be neither true nor safe.
+/// the reachable surface nodes (`SurfaceCompliance`). A step then is a few columns of W. Where supports move,
+/// the free shape moves by the static response to them (`MovingSupports`).
 class QuasiStatic : public DeformationModel {
  public:
-  /// Throws `Error` without material or fixed nodes, or when K is singular.
+  /// Throws `Error` as `SurfaceCompliance`, or when K is singular.
   explicit QuasiStatic(const ModelInputs& inputs);
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
@@ -21,13 +19,8 @@ class QuasiStatic : public DeformationModel {
   std::vector<MemoryPart> memory() const override;
 
  private:
-  void precompute(const ModelInputs& inputs);
-
   std::vector<Vec3> rest_, positions_;
-  std::vector<int> row_;  // per surface vertex: its first row in compliance_, or -1 (fixed or out of reach)
-  std::vector<int> reachable_;  // surface vertex of each block row
-  double held_compliance_ = 0;  // m/N, of a fixed vertex under the tool itself: that of the stiffest free one
-  Eigen::MatrixXd compliance_;  // m/N
+  SurfaceCompliance compliance_;
   std::optional<MovingSupports> supports_;  // where some move
 };
 

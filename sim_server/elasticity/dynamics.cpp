@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace palpate::sim {
+namespace {
+
+// Of what is unbalanced: a step with an old factor that leaves more is a reason to factor anew.
+constexpr double kWorthwhile = 0.3;
+
+}  // namespace
 
 Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,
                    const std::string& where)
@@ -31,9 +37,13 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
   terms_.assign(terms * solid.points(), Mat3::Zero());
 }
 
+void Dynamics::stand_at(std::vector<Vec3> x) {
+  x_ = x_before_ = x_then_ = std::move(x);
+}
+
 void Dynamics::start_step(double h) {
-  factored_ = factored_ && h == h_ && steps_ != 1;
   h_ = h;
+  improved_ = false;
   const bool second = settings_.second_order && steps_ > 0;
   c_ = (second ? 1.5 : 1) / h;
   for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -58,20 +68,20 @@ Viscosity Dynamics::viscosity() const {
   return {scale_, memory_};
 }
 
-void Dynamics::linearise() {
-  const bool constant = solid_.material().law == ElasticLaw::kLinear;
-  if (constant && factored_) return;
+void Dynamics::factor() {
   matrix_.set_zero();
   solid_.add_stiffness(x_, matrix_, viscosity());
   matrix_.lower() *= 1 + settings_.rayleigh_stiffness * c_;
   matrix_.add_to_diagonal(mass_, c_ * c_ + settings_.rayleigh_mass * c_);
   matrix_.close_held(usual_);
-  factored_ = factor_->refactor(matrix_.lower());
+  bool definite = factor_->refactor(matrix_.lower());
   // A body squeezed hard may buckle, where A is not positive definite: more inertia keeps it on its way.
-  for (double more = 1; !factored_ && more < 1e6; more *= 4) {
+  for (double more = 1; !definite && more < 1e6; more *= 4) {
     matrix_.add_to_diagonal(mass_, more * c_ * c_);
-    factored_ = factor_->refactor(matrix_.lower());
+    definite = factor_->refactor(matrix_.lower());
   }
+  factored_c_ = c_;
+  ++factors_;
 }
 
 /// f_ext - f_int - M a - C v over the unknowns, N.
@@ -108,19 +118,28 @@ void Dynamics::move(const Eigen::VectorXd& by) {
   }
 }
 
-double Dynamics::improve(std::span<const Vec3> external) {
-  linearise();
-  const Eigen::VectorXd left = unbalanced(external);
+double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
+  const bool fits = factored_c_ == c_;
+  if (!fits) factor();
+  const double before = left_;
+  Eigen::VectorXd left = unbalanced(external);
+  if (!std::isfinite(left_)) {  // flung about beyond all measure: it stays where it was
+    x_ = x_before_;
+    return left_ = 0;
+  }
+  if (left_ <= tolerance) return left_;
+  if (fits && improved_ && left_ > kWorthwhile * before) {
+    factor();
+    left = unbalanced(external);
+  }
+  improved_ = true;
   move(factor_->solve(left).col(0));
   return left_;
 }
 
 int Dynamics::settle(std::span<const Vec3> external, int most, double tolerance) {
   int steps = 0;
-  while (steps < most) {
-    ++steps;
-    if (improve(external) <= tolerance) break;
-  }
+  while (steps < most && improve(external, tolerance) > tolerance) ++steps;
   return steps;
 }
 

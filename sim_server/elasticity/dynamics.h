@@ -17,7 +17,8 @@ struct DynamicsSettings {
 ///   M a + (alpha M + beta K) v + f_int(x) = f_ext,
 /// K the stiffness there, with v = c (x - x~), a = c (v - v~): backward Euler (c = 1 / h, x~, v~ those
 /// before) or BDF2 (c = 3 / 2h, x~ = (4 x_n - x_(n-1)) / 3, likewise v~; its first step is an Euler step).
-/// Newton's method on A = (1 + beta c) K + (c^2 + alpha c) M, by sparse Cholesky. Viscosity by Prony series
+/// Newton's method on A = (1 + beta c) K + (c^2 + alpha c) M, by sparse Cholesky; a factor of earlier serves
+/// as long as each step with it leaves no more than 30 % of what was unbalanced. Viscosity by Prony series
 /// with the recursion of Simo (1987, Comput. Meth. Appl. Mech. Engng 60:153): with S0 the elastic second
 /// Piola-Kirchhoff stress, g_i and tau_i share and time of each term,
 ///   h_i' = exp(-h / tau_i) h_i + g_i gamma_i (S0' - S0),   gamma_i = (1 - exp(-h / tau_i)) tau_i / h,
@@ -29,11 +30,13 @@ class Dynamics {
   Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,
            const std::string& where);
 
+  /// At rest at `x` (nodes, m), before the first step.
+  void stand_at(std::vector<Vec3> x);
   /// Begins a step of `h` (s > 0): looks for its end first where the velocity leads.
   void start_step(double h);
-  /// One step of Newton's method under these forces (nodes, N) and what is unbalanced by then, as a share of
-  /// the forces at work. `position` and `solve` are of the linearisation it made.
-  double improve(std::span<const Vec3> external);
+  /// One step of Newton's method under these forces (nodes, N), unless no more than `tolerance` is unbalanced
+  /// before it; returns that, as a share of the forces at work.
+  double improve(std::span<const Vec3> external, double tolerance = 0);
   /// At most `most` of them, until no more than `tolerance` is unbalanced. Returns how many.
   int settle(std::span<const Vec3> external, int most, double tolerance);
   /// What is found now is the end of the step.
@@ -45,8 +48,14 @@ class Dynamics {
   /// (nodes) m/s, at the end of the last step.
   std::span<const Vec3> velocity() const { return v_before_; }
   const FreeDofs& dofs() const { return dofs_; }
-  /// A^-1 b of the newest linearisation, for columns b over the unknowns.
+  /// What is unbalanced from here on is of other forces, not of an old factor.
+  void push_anew() { improved_ = false; }
+  /// How often A has been factored: what `solve` gave stands while this does.
+  int factors() const { return factors_; }
+  /// A^-1 b of the newest factor, for columns b over the unknowns.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return factor_->solve(b); }
+  /// What the stiffest node gives way by, m/N, or a little less.
+  double least_compliance() const { return 1 / matrix_.lower().diagonal().maxCoeff(); }
   /// Moves the unknowns, m.
   void move(const Eigen::VectorXd& by);
   double kinetic_energy() const;
@@ -55,7 +64,7 @@ class Dynamics {
   std::size_t bytes() const;
 
  private:
-  void linearise();
+  void factor();
   Eigen::VectorXd unbalanced(std::span<const Vec3> external);
   void relax_stress(double h);
   Viscosity viscosity() const;
@@ -66,7 +75,9 @@ class Dynamics {
   std::vector<double> mass_;
   StiffnessMatrix matrix_;
   std::optional<SparseCholesky> factor_;
-  bool factored_ = false;                                        // A of this step's h, where it never changes
+  double factored_c_ = 0;  // of the factor; 0: none of A yet
+  int factors_ = 0;
+  bool improved_ = false;                                        // in this step
   std::vector<Vec3> x_, x_before_, v_before_, x_then_, v_then_;  // now; last step's end; the one before
   std::vector<Vec3> from_, from_v_;                              // x~, v~
   std::vector<Vec3> internal_;

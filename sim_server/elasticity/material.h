@@ -34,6 +34,10 @@ struct Material {
   std::optional<Fibres> fibres{};
   std::vector<Relaxation> relaxations{};
 
+  /// Linear law, linear elements, nothing else.
+  bool is_plain() const {
+    return law == ElasticLaw::kLinear && element == ElementKind::kLinear && !fibres && relaxations.empty();
+  }
   /// First Lame parameter, Pa.
   double lame_lambda() const {
     return young_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio));

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     add_finder_rows();
     add_server_rows();
     add_setup_rows();
+    add_tensor_rows();
 #ifdef PALPATE_WITH_USB
     add_falcon_rows();
 #endif

@@ -21,6 +21,7 @@ struct Bench {
   std::unique_ptr<DeformationModel> model;
 
   explicit Bench(const DeformationModelRow& row) {
+    scene.rate_hz = 1000;  // steps below are of 1 ms
     for (int v = 0; v < static_cast<int>(surface.vertices.size()); ++v) reachable.push_back(v);
     model = row.make({scene, mesh, surface, fixed, reachable, [](std::string_view, double) {}});
   }

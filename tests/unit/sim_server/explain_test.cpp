@@ -162,6 +162,20 @@ TEST_CASE("explain: without a reach none is left out; elasticity is not left out
   CHECK(bench.left_out("recording") != nullptr);
 }
 
+TEST_CASE("explain: what a scene in motion builds: tensors with its sub-steps, and compliance") {
+  const Bench bench(kMesh + kFixed + kMaterial + model("tensor_mass") + kTool + kReach);
+  const double r = reachable_free(kReachFrom);
+  CHECK(static_cast<double>(bench.built("compliance").bytes) == 72 * r * r);
+  CHECK(bench.built("tensors").where == bench.line("model = "));
+  CHECK(bench.built("tensors").bytes > 0);
+  CHECK(bench.built("tensors").detail.find("144 vertices, ") == 0);  // of 9 x 4 x 5, without 9 x 4
+  CHECK(bench.built("tensors").detail.find(" sub-steps of ") != std::string::npos);
+  CHECK(bench.built("material").detail == "nothing kept");
+  CHECK(bench.left_out("other free vertices") != nullptr);
+  CHECK(bench.left_out("elasticity") == nullptr);
+  CHECK(bench.explanation.steps.contacts == 200);
+}
+
 TEST_CASE("explain: friction is left out, and what it would cost is measured, unless a tool has some") {
   const std::string scene = kMesh + kFixed + kMaterial + model("quasi_static") + kTool;
   const Bench without(scene), with(scene + "friction = 0.2\n");

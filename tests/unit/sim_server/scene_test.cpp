@@ -12,19 +12,19 @@ using namespace palpate::sim;
 
 namespace {
 
-/// A scene file of six lines, then `tools`; read.
+/// A scene file of five lines, then `deformation` and `tools`; read.
 struct SceneFile {
   test::TemporaryFolder folder;
   std::string file;
 
-  explicit SceneFile(const std::string& tools) {
+  explicit SceneFile(const std::string& tools, const std::string& deformation = "model = \"rigid\"\n") {
     folder.write("organ.msh", "");
-    file = folder
-               .write("scene.toml",
-                      "[mesh]\nfile = \"organ.msh\"\n[[fixed]]\nbox = [[0, 0, 0], [1, 1, 1]]\n[deformation]\n"
-                      "model = \"rigid\"\n" +
-                          tools)
-               .string();
+    file =
+        folder
+            .write("scene.toml",
+                   "[mesh]\nfile = \"organ.msh\"\n[[fixed]]\nbox = [[0, 0, 0], [1, 1, 1]]\n[deformation]\n" +
+                       deformation + tools)
+            .string();
   }
   std::string error() const {
     try {
@@ -85,4 +85,19 @@ TEST_CASE("a capsule needs a length, a trocar a pivot and a shaft no thicker tha
   CHECK(thick.error().starts_with(thick.file + ":10: `shaft_radius`"));
   CHECK(stray.error().starts_with(stray.file + ":8: unknown key"));
   CHECK(unknown.error().starts_with(unknown.file + ":8: unknown shape"));
+}
+
+TEST_CASE("only a model that has damping is asked for it") {
+  const auto scene = [](const std::string& deformation) { return SceneFile(tool_sections(1), deformation); };
+  const auto plain = read_scene(scene("model = \"tensor_mass\"\n").file).deformation;
+  CHECK(plain.rayleigh_mass == 10);
+  CHECK(plain.rayleigh_stiffness == 1e-4);
+  const std::string damped = "rayleigh_mass = 0\nrayleigh_stiffness = 1e-3\n";
+  const auto given = read_scene(scene("model = \"tensor_mass\"\n" + damped).file).deformation;
+  CHECK(given.rayleigh_mass == 0);
+  CHECK(given.rayleigh_stiffness == 1e-3);
+  const SceneFile none = scene("model = \"quasi_static\"\n" + damped),
+                  negative = scene("model = \"tensor_mass\"\nrayleigh_mass = -1\n");
+  CHECK(none.error().starts_with(none.file + ":7: unknown key"));
+  CHECK(negative.error().starts_with(negative.file + ":7: "));
 }

@@ -1,0 +1,83 @@
+#include "sim_server/deformation/explicit_motion.h"
+
+#include <cmath>
+#include <random>
+
+namespace palpate::sim {
+namespace {
+constexpr int kMostProducts = 1000;
+constexpr double kSettled = 1e-6;  // growth of the Rayleigh quotient
+}  // namespace
+
+double highest_frequency(const ElasticTensors& tensors) {
+  const std::vector<double>& mass = tensors.masses();
+  std::vector<double> x(3 * mass.size()), force(x.size());
+  std::minstd_rand random;  // any start will do that is the same every time
+  for (double& value : x) value = static_cast<double>(random()) / std::minstd_rand::max() - 0.5;
+  double quotient = 0;
+  for (int i = 0; i < kMostProducts; ++i) {
+    tensors.multiply(x.data(), force.data());
+    double work = 0, inertia = 0, size = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      work += x[k] * force[k];
+      inertia += x[k] * x[k] * mass[k / 3];
+      x[k] = force[k] / mass[k / 3];
+      size += x[k] * x[k];
+    }
+    for (double& value : x) value /= std::sqrt(size);
+    const double before = quotient;
+    quotient = work / inertia;
+    if (quotient - before < kSettled * quotient) break;
+  }
+  return std::sqrt(quotient);
+}
+
+double longest_sub_step(double w, const RayleighDamping& damping) {
+  const double d = damping.mass + damping.stiffness * w * w;
+  return 4 / (d + std::sqrt(d * d + 4 * w * w));
+}
+
+ExplicitMotion::ExplicitMotion(const ElasticTensors& tensors, const RayleighDamping& damping, int columns)
+    : tensors_(tensors), damping_(damping), columns_(columns) {
+  for (auto* const all : {&state.u, &state.v, &state.f, &bent_, &resistance_})
+    all->assign(3 * tensors.masses().size() * columns, 0);
+}
+
+void ExplicitMotion::sub_step(double h, const std::vector<double>& force) noexcept {
+  if (columns_ == 1) {
+    tensors_.multiply(bent_.data(), resistance_.data());
+    advance<1>(h, force.data());
+  } else {
+    tensors_.multiply_wide(bent_.data(), resistance_.data());
+    advance<ElasticTensors::kWide>(h, force.data());
+  }
+}
+
+template <int kColumns>
+void ExplicitMotion::advance(double h, const double* __restrict force) noexcept {
+  const double keep = 1 - h * damping_.mass, stiffness = damping_.stiffness;
+  const double* __restrict resistance = resistance_.data();
+  double* __restrict u = state.u.data(), * __restrict v = state.v.data(), * __restrict bent = bent_.data();
+  std::ptrdiff_t k = 0;
+  for (const double mass : tensors_.masses()) {
+    const double kick = h / mass;
+    for (int i = 0; i < 3 * kColumns; ++i, ++k) {
+      v[k] = keep * v[k] + kick * (force[k] - resistance[k]);
+      u[k] += h * v[k];
+      bent[k] = u[k] + stiffness * v[k];
+    }
+  }
+}
+
+void ExplicitMotion::run(int steps, double h, const std::vector<double>& force) noexcept {
+  auto& [u, v, f] = state;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    f[k] = 0.5 * (f[k] + force[k]);
+    bent_[k] = u[k] + damping_.stiffness * v[k];
+  }
+  sub_step(h, f);
+  for (int i = 1; i < steps; ++i) sub_step(h, force);
+  f = force;
+}
+
+}  // namespace palpate::sim

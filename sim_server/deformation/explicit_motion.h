@@ -1,0 +1,57 @@
+#pragma once
+#include <vector>
+
+#include "sim_server/elasticity/tensors.h"
+
+namespace palpate::sim {
+
+/// Rayleigh damping: the damping matrix is mass M + stiffness K (Bathe 1996, section 9.3.3). A mode of
+/// angular frequency w has the damping ratio (mass / w + stiffness w) / 2.
+struct RayleighDamping {
+  double mass = 0;       ///< 1/s, >= 0
+  double stiffness = 0;  ///< s, >= 0
+};
+
+/// The highest angular frequency of M^-1 K, rad/s, from below: the power method from a fixed start until the
+/// Rayleigh quotient grows by less than one in a million, or 1000 products.
+double highest_frequency(const ElasticTensors& tensors);
+
+/// The longest sub-step (s) that is stable where no frequency is above `w` (rad/s). From the roots of one
+/// mode's step, h^2 w^2 + 2 h d <= 4 with d = mass + stiffness w^2; without damping that is h <= 2 / w.
+double longest_sub_step(double w, const RayleighDamping& damping);
+
+/// The free vertices of a linear tissue in motion, by the semi-implicit (symplectic) Euler method with
+/// lumped masses M:
+///   v += h (M^-1 (f - K (u + stiffness v)) - mass v),   u += h v.
+/// Several motions side by side: (n x 3 x columns), those of one number together. One thread; only the
+/// constructor allocates.
+class ExplicitMotion {
+ public:
+  /// At rest. `columns`: 1 or `ElasticTensors::kWide`. `tensors` must outlive it.
+  ExplicitMotion(const ElasticTensors& tensors, const RayleighDamping& damping, int columns = 1);
+
+  /// Displacements, m; velocities, m/s, half a sub-step before them; the forces held until now, N.
+  struct State {
+    std::vector<double> u, v, f;
+  };
+  State state;
+
+  /// Goes on by `steps` >= 1 sub-steps of `h` (s) under forces (N) that are held. The first takes the mean of
+  /// those before and these, so that they change half-way between two velocities. The displacement is then of
+  /// second order in h, of each mode never against its force, and forces that stay give no jolt.
+  void run(int steps, double h, const std::vector<double>& force) noexcept;
+
+  std::size_t bytes() const { return 5 * state.u.size() * sizeof(double); }
+
+ private:
+  void sub_step(double h, const std::vector<double>& force) noexcept;
+  template <int kColumns>
+  void advance(double h, const double* force) noexcept;
+
+  const ElasticTensors& tensors_;
+  RayleighDamping damping_;
+  int columns_;
+  std::vector<double> bent_, resistance_;  // u + stiffness v, m; K times that, N
+};
+
+}  // namespace palpate::sim

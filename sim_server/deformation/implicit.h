@@ -1,0 +1,53 @@
+#pragma once
+#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/elasticity/dynamics.h"
+#include "sim_server/loads.h"
+
+namespace palpate::sim {
+
+/// Tissue of any law in motion, by implicit steps of T = 1 / rate_hz of the scene (`Dynamics`): stable
+/// whatever the stiffness. At rest under the scene's [[load]] when the run begins. A step looks for its end
+/// under the loads of the last one, linearises there, and answers the contact solver from that: compliance W
+/// = J A^-1 J^T, dt^2 of the mass-like matrix in it, which is also that over the sample interval, as loads
+/// are held over the step. Then it looks again where contact led, until Newton's method has settled with
+/// contact inside its loop, at most `max_newton` times. The factor of A is kept over steps as long as it
+/// serves: that takes more looks, but what they converge to is balanced against the true forces. Columns of W
+/// are solved for as they are asked for, and kept while the factor stands: for a linear law from then on.
+class Implicit : public DeformationModel {
+ public:
+  /// Throws `Error` without material, rate or what holds the body.
+  explicit Implicit(const ModelInputs& inputs);
+  /// Any `dt` > 0 is taken for one period.
+  FreeMotion free_motion(double dt) noexcept override;
+  void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  bool compliance_is_constant() const noexcept override { return false; }
+  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  std::optional<FreeMotion> relinearise() noexcept override;
+  std::vector<MemoryPart> memory() const override;
+
+ private:
+  void follow_loads() noexcept;
+  void linearised() noexcept;
+  void find_columns(std::span<const int> vertices) const noexcept;
+  void press(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const noexcept;
+  std::span<const Vec3> external() noexcept;
+  bool never_changes() const { return solid_.material().law == ElasticLaw::kLinear; }
+
+  Solid solid_;
+  Loads scene_loads_;
+  Dynamics dynamics_;
+  double period_, tolerance_;
+  int max_newton_, looks_ = 0;   // linearisations of this step
+  int factors_ = 0;              // of the columns
+  bool moving_ = false;          // a step has begun
+  bool touched_ = false;         // and was looked at again
+  std::vector<int> node_, dof_;  // per surface vertex: its node; its first unknown, or -1: held
+  std::vector<Vec3> rest_, free_, positions_, external_;  // m; surface vertices; N, nodes
+  std::vector<NodalLoad> loads_, met_;                    // now; those that the linearisation was made under
+  double held_compliance_ = 0;                            // m/N
+  mutable std::vector<int> slot_;                         // per surface vertex: of its columns, or -1
+  mutable int slots_ = 0;
+  mutable Eigen::MatrixXd columns_;  // of W: all surface vertices, three columns a slot
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,136 @@
+#include "sim_server/deformation/tensor_mass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/core.h>
+
+#include "common/error.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kMostSubSteps = 1e5;
+constexpr double kSafety = 0.95;  // of the longest stable sub-step; the frequency is known from below
+
+ElasticTensors assemble(const ModelInputs& inputs) {
+  const Scene& scene = inputs.scene;
+  if (scene.rate_hz <= 0) {
+    fail(
+        "{}: `rate_hz` = 0, but model \"tensor_mass\" must know the time of a step beforehand; name a rate, "
+        "such as 30",
+        scene.rate_where);
+  }
+  inputs.progress("assembling the tensors", 0);
+  return {inputs.mesh, *scene.material, inputs.fixed};
+}
+
+RayleighDamping damping_of(const Scene& scene) {
+  return {scene.deformation.rayleigh_mass, scene.deformation.rayleigh_stiffness};
+}
+
+}  // namespace
+
+TensorMass::TensorMass(const ModelInputs& inputs)
+    : compliance_(inputs),
+      tensors_(assemble(inputs)),
+      motion_(tensors_, damping_of(inputs.scene)),
+      begin_(motion_.state),
+      force_(begin_.f) {
+  for (const int vertex : inputs.surface.vertices) {
+    rest_.push_back(inputs.mesh.vertices[vertex]);
+    const int place = tensors_.places()[vertex];
+    first_.push_back(place < 0 ? -1 : 3 * place);
+  }
+  free_ = positions_ = rest_;
+  loads_.reserve(kMaxTools * inputs.reachable.size());
+  choose_sub_step(inputs);
+  precompute(inputs);
+}
+
+void TensorMass::choose_sub_step(const ModelInputs& inputs) {
+  inputs.progress("finding the highest frequency", 0);
+  const double longest = kSafety * longest_sub_step(highest_frequency(tensors_), damping_of(inputs.scene));
+  const double period = 1 / inputs.scene.rate_hz, steps = std::ceil(period / longest);
+  if (steps > kMostSubSteps) {
+    fail(
+        "{}: a step at {:g} Hz would take {:g} sub-steps of {:.2g} s; model \"tensor_mass\" is for soft "
+        "tissue",
+        inputs.scene.source, inputs.scene.rate_hz, steps, longest);
+  }
+  sub_steps_ = static_cast<int>(steps);
+  sub_step_ = period / sub_steps_;
+}
+
+void TensorMass::precompute(const ModelInputs& inputs) {
+  constexpr Eigen::Index kWide = ElasticTensors::kWide;
+  ExplicitMotion motion(tensors_, damping_of(inputs.scene), kWide);
+  std::vector<double> force = motion.state.f;
+  const auto number = [&](Eigen::Index row, Eigen::Index column) {
+    return (first_[compliance_.vertices()[row / 3]] + row % 3) * kWide + column;
+  };
+  const auto respond = [&](Eigen::Index from, Eigen::Ref<Eigen::MatrixXd> columns) {
+    auto& [u, v, f] = motion.state;
+    for (auto* const all : {&u, &v, &f, &force}) std::fill(all->begin(), all->end(), 0);
+    for (Eigen::Index c = 0; c < columns.cols(); ++c) force[number(from + c, c)] = 1;
+    motion.run(sub_steps_, sub_step_, force);
+    for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+      for (Eigen::Index r = 0; r < columns.rows(); ++r) columns(r, c) = u[number(r, c)];
+    }
+  };
+  compliance_.compute(kWide, respond, inputs.progress);
+  inputs.progress("computing compliance", 1);
+}
+
+FreeMotion TensorMass::free_motion(double dt) noexcept {
+  if (dt > 0) {
+    end_period();
+    motion_.run(sub_steps_, sub_step_, force_);
+    for (std::size_t v = 0; v < rest_.size(); ++v) {
+      if (first_[v] >= 0) free_[v] = rest_[v] + Eigen::Map<const Vec3>(motion_.state.u.data() + first_[v]);
+    }
+    press(loads_);
+  }
+  return {free_, {}, positions_};
+}
+
+/// From the state at the end of the period without loads to that with them, where the next one begins.
+void TensorMass::end_period() noexcept {
+  if (!loads_.empty()) {
+    motion_.state = begin_;
+    for (const NodalLoad& load : loads_) {
+      if (compliance_.row(load.vertex) >= 0)
+        Eigen::Map<Vec3>(force_.data() + first_[load.vertex]) += load.force;
+    }
+    motion_.run(sub_steps_, sub_step_, force_);
+    std::fill(force_.begin(), force_.end(), 0);
+  }
+  begin_ = motion_.state;
+}
+
+void TensorMass::press(std::span<const NodalLoad> loads) noexcept {
+  std::copy(free_.begin(), free_.end(), positions_.begin());
+  compliance_.move(loads, positions_);
+}
+
+void TensorMass::compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
+  compliance_.fill(vertices, patch);
+}
+
+std::span<const Vec3> TensorMass::apply(std::span<const NodalLoad> loads) noexcept {
+  loads_.assign(loads.begin(), loads.end());
+  press(loads);
+  return positions_;
+}
+
+std::vector<MemoryPart> TensorMass::memory() const {
+  return {{"tensors", tensors_.bytes(),
+           fmt::format("{} vertices, {} edges; {} sub-steps of {:.3g} ms", tensors_.vertices(),
+                       tensors_.edges(), sub_steps_, 1e3 * sub_step_)},
+          {"compliance", compliance_.bytes()},
+          {"motion", motion_.bytes() + 4 * force_.size() * sizeof(double)},
+          {"positions", (rest_.size() + free_.size() + positions_.size()) * sizeof(Vec3) +
+                            loads_.capacity() * sizeof(NodalLoad) + first_.size() * sizeof(int) +
+                            compliance_.index_bytes()}};
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,47 @@
+#pragma once
+#include "sim_server/deformation/explicit_motion.h"
+#include "sim_server/deformation/surface_compliance.h"
+
+namespace palpate::sim {
+
+/// Linear elastic tissue in motion: explicit dynamics with a tensor per vertex and per edge (Cotin,
+/// Delingette and Ayache 2000, Vis. Comput. 16:437), lumped masses and Rayleigh damping (`ExplicitMotion`).
+/// Its time goes in periods T = 1 / rate_hz of the scene, each of N sub-steps as long as the measured highest
+/// frequency allows. Loads are held over a period, so that one compliance serves the contact solver and the
+/// clients: R, the displacement at the end of a period per force held over it, the same at every step.
+/// Set-up finds it by running N sub-steps from rest under unit loads, eight at once
+/// (`SurfaceCompliance`). A period costs N sub-steps, twice that in contact.
+class TensorMass : public DeformationModel {
+ public:
+  /// Throws `Error` as `SurfaceCompliance`, or where the scene names no rate.
+  explicit TensorMass(const ModelInputs& inputs);
+  /// Any `dt` > 0 is taken for one period: callers step at the scene's rate, though their times may jitter
+  /// about it. The loads of the last `apply` are those of the period that ends; the next runs free of any.
+  FreeMotion free_motion(double dt) noexcept override;
+  void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  bool compliance_is_constant() const noexcept override { return true; }
+  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  std::vector<MemoryPart> memory() const override;
+
+  int sub_steps() const { return sub_steps_; }
+  double sub_step() const { return sub_step_; }  ///< s
+
+ private:
+  void choose_sub_step(const ModelInputs& inputs);
+  void precompute(const ModelInputs& inputs);
+  void end_period() noexcept;
+  void press(std::span<const NodalLoad> loads) noexcept;
+
+  SurfaceCompliance compliance_;
+  ElasticTensors tensors_;
+  int sub_steps_ = 1;
+  double sub_step_ = 0;           // s
+  ExplicitMotion motion_;         // at the end of the period, free of loads
+  ExplicitMotion::State begin_;   // at its beginning
+  std::vector<double> force_;     // over it, N
+  std::vector<NodalLoad> loads_;  // over it
+  std::vector<int> first_;        // per surface vertex: its first number in `motion_`, or -1: fixed
+  std::vector<Vec3> rest_, free_, positions_;  // m
+};
+
+}  // namespace palpate::sim

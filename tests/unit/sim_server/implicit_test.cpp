@@ -1,0 +1,131 @@
+// The implicit model in whole simulations: it comes to rest where statics say, also under contact.
+#include "sim_server/deformation/implicit.h"
+
+#include "common/error.h"
+#include "sim_server/simulation.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/solids.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+
+namespace {
+
+TetMesh block() {
+  return grid_block(lines(-0.02, 0.02, 10), lines(-0.016, 0, 4), lines(-0.02, 0.02, 10));
+}
+
+Scene block_scene(std::string_view model, ElasticLaw law = ElasticLaw::kLinear, double friction = 0) {
+  Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4, .law = law},
+                         {Vec3(-1, -1, -1), Vec3(1, -0.0159, 1)}, 0.005);
+  scene.deformation.model = model;
+  scene.deformation.rayleigh_mass = 20;
+  scene.deformation.rayleigh_stiffness = 0.01;
+  scene.tools[0].shape.friction = friction;
+  return scene;
+}
+
+/// Presses from above to that depth (m) and waits there.
+ToolForce pressed(Simulation& simulation, double depth, double dt = 1.0 / 30) {
+  ToolForce force;
+  for (int i = 0; i < 120; ++i)
+    force = simulation.step({Vec3(0.001, 0.0055 - std::min(1.0, i / 20.0) * (depth + 0.0005), 0.0015)}, dt);
+  return force;
+}
+
+}  // namespace
+
+TEST_CASE("implicit: a sphere on a linear block is felt as in quasi-statics, with and without friction") {
+  for (const double friction : {0.0, 0.3}) {
+    Simulation moving(block_scene("implicit", ElasticLaw::kLinear, friction), block()),
+        resting(block_scene("quasi_static", ElasticLaw::kLinear, friction), block());
+    const ToolForce a = pressed(moving, 0.003), b = pressed(resting, 0.003);
+    CAPTURE(friction);
+    CHECK(b.force.norm() > 0.3);
+    CHECK((a.force - b.force).norm() < 1e-5 * b.force.norm());
+    CHECK_FALSE(a.flagged);
+  }
+}
+
+TEST_CASE(
+    "implicit: in contact the other laws come to the force that statics give for where the surface is") {
+  for (const ElasticLaw law :
+       {ElasticLaw::kCorotational, ElasticLaw::kStVenantKirchhoff, ElasticLaw::kNeoHookean}) {
+    Scene scene = block_scene("implicit", law);
+    scene.deformation.tolerance = 1e-9;
+    scene.deformation.max_newton = 30;
+    Simulation simulation(scene, block());
+    const ToolForce felt = pressed(simulation, 0.004);
+    REQUIRE(felt.contacts > 0);
+    // The same body with its surface held where it is now, but for what moves freely inside: the force that
+    // the held surface takes is the tool's.
+    const Solid solid(block(), *scene.material);
+    std::vector<HeldAxes> held(solid.rest().size(), 0);
+    std::vector<Vec3> moved(held.size(), Vec3::Zero());
+    for (std::size_t v = 0; v < simulation.surface().vertices.size(); ++v) {
+      const int node = simulation.surface().vertices[v];
+      held[node] = kAllAxes;
+      moved[node] = simulation.positions()[v] - solid.rest()[node];
+    }
+    const Equilibrium found = find_equilibrium(solid, {.held = held, .moved = moved}, "test");
+    std::vector<Vec3> f(found.x.size());
+    solid.forces(found.x, f);
+    Vec3 above = Vec3::Zero();
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      if (solid.rest()[i][1] > -0.0159) above += f[i];
+    }
+    CAPTURE(static_cast<int>(law), felt.force.transpose(), above.transpose());
+    CHECK((felt.force + above).norm() < 1e-4 * felt.force.norm());
+  }
+}
+
+TEST_CASE("implicit: the force does not depend on how old the factor is") {
+  Scene scene = block_scene("implicit", ElasticLaw::kCorotational);
+  scene.deformation.tolerance = 1e-8;
+  scene.deformation.max_newton = 60;
+  Simulation once(scene, block()), again(scene, block());
+  // The second has been bent elsewhere before: its factor is another's.
+  for (int i = 0; i < 30; ++i) again.step({Vec3(-0.012, 0.001, -0.01)}, 1.0 / 30);
+  for (int i = 0; i < 150; ++i) again.step({Vec3(0, 0.03, 0)}, 1.0 / 30);
+  const ToolForce a = pressed(once, 0.004), b = pressed(again, 0.004);
+  CHECK((a.force - b.force).norm() < 1e-4 * a.force.norm());
+}
+
+TEST_CASE("implicit: the tangent is what the force changes by over one step") {
+  const Scene scene = block_scene("implicit");
+  Simulation simulation(scene, block());
+  const ToolForce before = pressed(simulation, 0.003);
+  const Vec3 place(0.001, 0.0025 - 0.0005, 0.0015);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double h = 1e-6;
+    Vec3 change[2];
+    for (const int side : {0, 1}) {
+      Simulation other(scene, block());
+      pressed(other, 0.003);
+      const Vec3 at = simulation.tool(0).place() + (side == 0 ? -h : h) * Vec3::Unit(axis);
+      change[side] = other.step({at}, 1.0 / 30).force;
+    }
+    CHECK(((change[1] - change[0]) / (2 * h) - before.tangent.col(axis)).norm() <
+          1e-3 * before.tangent.norm());
+  }
+}
+
+TEST_CASE("implicit: under its own weight it begins at rest and stays there") {
+  Scene scene = block_scene("implicit", ElasticLaw::kNeoHookean);
+  Load weight{};
+  weight.kind = Load::Kind::kGravity;
+  weight.vector = Vec3(9.81, 0, 0);
+  scene.loads.push_back(weight);
+  Simulation simulation(scene, block());
+  const std::vector<Vec3> begin(simulation.positions().begin(), simulation.positions().end());
+  double sagged = 0;
+  for (std::size_t v = 0; v < begin.size(); ++v)
+    sagged =
+        std::max(sagged, (begin[v] - simulation.mesh().vertices[simulation.surface().vertices[v]]).norm());
+  CHECK(sagged > 1e-4);
+  for (int i = 0; i < 30; ++i) simulation.step({Vec3(0, 1, 0)}, 1.0 / 30);
+  for (std::size_t v = 0; v < begin.size(); ++v)
+    CHECK((simulation.positions()[v] - begin[v]).norm() < 1e-4 * sagged);
+}
