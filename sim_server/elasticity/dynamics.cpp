@@ -8,6 +8,10 @@ namespace {
 
 // Of what is unbalanced: a step with an old factor that leaves more is a reason to factor anew.
 constexpr double kWorthwhile = 0.3;
+// Likewise: so little may be rounding, where a fresh factor makes it no less.
+constexpr double kRounding = 1e-6;
+// Of the size of the body: what moves a node by less is no force at work, so that a body at rest is at rest.
+constexpr double kStill = 1e-9;
 
 }  // namespace
 
@@ -30,6 +34,9 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
   usual_ = matrix_.lower().diagonal().mean();
   matrix_.close_held(usual_);
   factor_.emplace(matrix_.lower(), where);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : x_) box.extend(x);
+  still_ = kStill * box.diagonal().norm() * usual_;
   const std::size_t terms = solid.material().relaxations.size();
   if (terms == 0) return;
   stress_.assign(solid.points(), Mat3::Zero());
@@ -89,7 +96,7 @@ Eigen::VectorXd Dynamics::unbalanced(std::span<const Vec3> external) {
   solid_.forces(x_, internal_, viscosity());
   const double alpha = settings_.rayleigh_mass, beta = settings_.rayleigh_stiffness;
   Eigen::VectorXd left(dofs_.count), speed(dofs_.count);
-  double at_work = 0;
+  double at_work = still_ * still_;
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const Vec3 v = c_ * (x_[i] - from_[i]), inertia = mass_[i] * (c_ * (v - from_v_[i]) + alpha * v);
     at_work += internal_[i].squaredNorm() + external[i].squaredNorm() + inertia.squaredNorm();
@@ -108,7 +115,7 @@ Eigen::VectorXd Dynamics::unbalanced(std::span<const Vec3> external) {
     left -= beta / (1 + beta * c_) * damping;
   }
   dofs_.hold(left);
-  left_ = at_work > 0 ? left.norm() / std::sqrt(at_work) : 0;
+  left_ = left.norm() / std::sqrt(at_work);
   return left;
 }
 
@@ -119,8 +126,8 @@ void Dynamics::move(const Eigen::VectorXd& by) {
 }
 
 double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
-  const bool fits = factored_c_ == c_;
-  if (!fits) factor();
+  bool fresh = factored_c_ != c_;
+  if (fresh) factor();
   const double before = left_;
   Eigen::VectorXd left = unbalanced(external);
   if (!std::isfinite(left_)) {  // flung about beyond all measure: it stays where it was
@@ -128,12 +135,23 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
     return left_ = 0;
   }
   if (left_ <= tolerance) return left_;
-  if (fits && improved_ && left_ > kWorthwhile * before) {
+  if (improved_ && left_ > kWorthwhile * before) {
+    if (fresh_ && left_ <= kRounding) return 0;
+    if (fresh_ && left_ > before) {  // too far: half of the way back
+      way_ *= -0.5;
+      move(way_);
+      way_ *= -1;
+      left_ = before;
+      return 1;
+    }
     factor();
+    fresh = true;
     left = unbalanced(external);
   }
   improved_ = true;
-  move(factor_->solve(left).col(0));
+  fresh_ = fresh;
+  way_ = factor_->solve(left).col(0);
+  move(way_);
   return left_;
 }
 

@@ -35,7 +35,8 @@ class Dynamics {
   /// Begins a step of `h` (s > 0): looks for its end first where the velocity leads.
   void start_step(double h);
   /// One step of Newton's method under these forces (nodes, N), unless no more than `tolerance` is unbalanced
-  /// before it; returns that, as a share of the forces at work.
+  /// before it; returns that, as a share of the forces at work; 0 where it is rounding; 1 where the
+  /// step before was too long, and half of it is taken back.
   double improve(std::span<const Vec3> external, double tolerance = 0);
   /// At most `most` of them, until no more than `tolerance` is unbalanced. Returns how many.
   int settle(std::span<const Vec3> external, int most, double tolerance);
@@ -77,14 +78,15 @@ class Dynamics {
   std::optional<SparseCholesky> factor_;
   double factored_c_ = 0;  // of the factor; 0: none of A yet
   int factors_ = 0;
-  bool improved_ = false;                                        // in this step
+  bool improved_ = false, fresh_ = false;  // in this step; by a factor of the very place
+  Eigen::VectorXd way_;                    // of the last improvement, m
   std::vector<Vec3> x_, x_before_, v_before_, x_then_, v_then_;  // now; last step's end; the one before
   std::vector<Vec3> from_, from_v_;                              // x~, v~
   std::vector<Vec3> internal_;
   double c_ = 0, h_ = 0;
   int steps_ = 0;
-  double left_ = 0;  // unbalanced, of the forces at work
-  double usual_ = 1;
+  double left_ = 0;               // unbalanced, of the forces at work
+  double usual_ = 1, still_ = 0;  // of the diagonal of K at rest, N/m; a force that is none, N
   // Viscosity: by quadrature point; terms one after the other.
   double scale_ = 1;
   std::vector<Mat3> stress_, memory_, terms_;
