@@ -22,7 +22,7 @@ UNITS = (("s", 1e9), ("ms", 1e6), ("us", 1e3), ("ns", 1))
 BASE_LAW = "constant"
 LEFT_OUT = "left out: "  # what a row says that the scene has no use for
 FRAME_NS, TICK_NS = 1e9 / 30, 1e9 / 4000  # the scene's rate, and the quickest a client may ask for
-COUNTERS = (("p50", " us"), ("p99", " us"), ("rate", "/s"), ("GB/s", " GB/s"))  # what a row counts beside its time
+COUNTERS = (("p50", " us"), ("p99", " us"), ("rate", "/s"), ("reads", " GB/s"))  # what a row counts beside its time
 SESSION = re.compile(r"virtual_session/(\d+)_s$")
 
 
@@ -146,7 +146,7 @@ def print_tables(rows, skipped, ratios):
     width = max(map(len, [*rows, *skipped, *ratios, "name"]))
     print(f"{'name':<{width}}  {'median':>8}  {'cv %':>5}  hash")
     for name, row in rows.items():
-        print(f"{name:<{width}}  {time_text(row['ns']):>8}  {row['cv']:>5.1f}  {row['hash']}{row['also']}")
+        print(f"{name:<{width}}  {time_text(row['ns']):>8}  {row['cv']:>5.1f}  " + "  ".join(filter(None, (row['hash'], row['also']))))
     for name, why in skipped.items():
         print(f"{name:<{width}}  {why if why.startswith(LEFT_OUT) else 'failed: ' + why}")
     if ratios:

@@ -39,7 +39,7 @@ const ElasticTensors& tensors_of(int cells) {
 }
 
 void count_bytes(benchmark::State& state, std::size_t bytes) {
-  state.counters["GB/s"] =
+  state.counters["reads"] =
       benchmark::Counter(1e-9 * static_cast<double>(bytes), benchmark::Counter::kIsIterationInvariantRate);
 }
 
