@@ -15,7 +15,8 @@ class ContactOnPatch {
   ContactOnPatch();
 
   /// Goes to `p` (m) and gives the force on the tool there (N); nothing where the model does not know all
-  /// that may be touched on the way, or the way is too long for one tick: then it stands nowhere. In contact
+  /// that may be touched on the way, the contact does not settle, or the way is too long for one tick: then
+  /// it stands nowhere. In contact
   /// it solves anew where the tool has gone 1.5 % of its radius, and follows the tangent in between.
   std::optional<Vec3> go(const Surface& surface, const Vec3& p) noexcept;
   /// The force at `p`; then it stands where it stood, on a patch around that.
