@@ -39,11 +39,9 @@ ContactOnPatch::ContactOnPatch()
 }
 
 void ContactOnPatch::lift() noexcept {
-  state_.placed = false;
-  state_.contacts = 0;
+  state_ = {};
   way_.setZero();
   loads_.clear();
-  state_.tip_offset.setZero();
 }
 
 std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) noexcept {
