@@ -112,7 +112,8 @@ bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
   } else if (state_.contacts > 0) {
     state_.tangent = solving.tangent(patch_);
   }
-  return contact.converged && state_.force.allFinite() && displacement().allFinite();
+  return contact.converged && state_.force.allFinite() && state_.tangent.allFinite() &&
+         displacement().allFinite();
 }
 
 /// Moves the surface on as it went in the last stride, by as much of that as `way` repeats; false where there
