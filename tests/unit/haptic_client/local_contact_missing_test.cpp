@@ -84,6 +84,7 @@ struct Beside : Listener {
 sim::Scene crowded_scene() {
   sim::Scene scene = block_scene();
   scene.tools[0].shape.radius = 0.015;
+  scene.tools[0].reach = sim::Box{Vec3(-1, -1e-3, -1), Vec3(1, 1e-3, 1)};  // so that the whole model has room
   return scene;
 }
 sim::TetMesh crowded_mesh() {
@@ -119,7 +120,9 @@ TEST_CASE(
     "local contact: more triangles near the tool than it has room for: it says so, and is two tangents") {
   Beside listener(crowded_scene(), crowded_mesh());
   listener.learn(kWholeModel);
-  REQUIRE(listener.model.has_shape());
+  listener.place = {0, 0.018, 0.001};
+  std::array<std::uint32_t, 8> none;
+  REQUIRE_FALSE(listener.model.choose_missing(listener.place, 0.05, 1s, none));
   int pressed = 0;
   for (int i = 0; i < 1000; ++i) {  // down to 2 mm deep, and to and fro
     const Vec3 p(0.003 * std::sin(0.01 * i), std::max(0.018 - 2.5e-5 * i, 0.013), 0.001);
