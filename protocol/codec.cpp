@@ -45,8 +45,9 @@ bool valid(const Linearisation& m) noexcept {
 /// Says nothing of a radius of 0 where there is no surface.
 bool valid(const SurfaceState& m) noexcept {
   return m.vertices <= kMostSurfaceVertices && m.triangles <= 2 * kMostSurfaceVertices &&
-         m.tool_radius >= 0 && m.tool_radius <= 1 && m.tool_friction >= 0 && m.tool_friction <= 10 &&
-         m.tool_compliance >= 0 && m.tool_compliance <= 1e6 && small(m.shift_W);
+         m.tool_radius <= 1 && (m.tool_radius > 0 || (m.version == 0 && m.tool_radius == 0)) &&
+         m.tool_friction >= 0 && m.tool_friction <= 10 && m.tool_compliance >= 0 &&
+         m.tool_compliance <= 1e6 && small(m.shift_W);
 }
 bool valid(const ForceSample& m) noexcept {
   return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W) &&

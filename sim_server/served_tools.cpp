@@ -91,7 +91,18 @@ std::optional<ForceSample> ServedTools::answer(std::size_t tool, const ToolInput
 /// What this tool state asked for beyond the force; nothing is computed that nobody asked for.
 void ServedTools::add_parts(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
                             ForceSample& sample) noexcept {
-  if ((state.flags & (protocol::ToolState::kWantsHere | protocol::ToolState::kWantsAhead)) == 0) return;
+  if ((state.flags & (protocol::ToolState::kWantsHere | protocol::ToolState::kWantsAhead)) != 0)
+    add_tangents(tool, state, force, sample);
+  if ((state.flags & protocol::ToolState::kWantsSurface) != 0 && surfaces_[tool].version != 0 &&
+      !simulation_.tool(tool).holds()) {  // what is grasped is no matter of contact
+    sample.surface = surfaces_[tool];
+    sample.surface.shift_W = simulation_.surface_shift(tool, state.p_W);
+    sample.flags |= ForceSample::kHasSurface;
+  }
+}
+
+void ServedTools::add_tangents(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
+                               ForceSample& sample) noexcept {
   const Vec3 surface_v_W = simulation_.surface_velocity(tool, state.p_W);
   if ((state.flags & protocol::ToolState::kWantsHere) != 0) {
     sample.surface_v_W = surface_v_W;
@@ -107,12 +118,6 @@ void ServedTools::add_parts(std::size_t tool, const protocol::ToolState& state, 
     sample.ahead_f_W = there.force;
     sample.ahead = on_the_wire(there);
     sample.flags |= ForceSample::kHasAhead;
-  }
-  if ((state.flags & protocol::ToolState::kWantsSurface) != 0 && surfaces_[tool].version != 0 &&
-      !simulation_.tool(tool).holds()) {  // what is grasped is no matter of contact
-    sample.surface = surfaces_[tool];
-    sample.surface.shift_W = simulation_.surface_shift(tool, state.p_W);
-    sample.flags |= ForceSample::kHasSurface;
   }
 }
 

@@ -39,6 +39,8 @@ class ServedTools {
   };
   void add_parts(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
                  protocol::ForceSample& sample) noexcept;
+  void add_tangents(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
+                    protocol::ForceSample& sample) noexcept;
   std::optional<protocol::ForceSample> answer(std::size_t tool, const ToolInput& input,
                                               const ToolForce& force) noexcept;
 

@@ -94,7 +94,9 @@ void VirtualSession::deliver(Time t) {
     // Numbered only now: a Welcome in between does not overtake it.
     auto* const member = server_.holder(next.sample.tool);
     to_client({session_, ++member->sent}, next.sample, next.ready);
-    if (++stats_.force_samples == 1 && link_.parts) send_surface(next.ready);
+    ++stats_.force_samples;
+    const bool tells = (next.sample.flags & ForceSample::kHasSurface) != 0;
+    if (tells && pages_ == 0 && link_.parts) send_surface(next.ready);
   }
 }
 

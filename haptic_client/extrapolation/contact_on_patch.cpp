@@ -13,7 +13,7 @@ constexpr int kMostNodes = 96, kMostTriangles = 160;
 // Of the tool radius: how far from the tool a patch reaches, on the deformed surface; and how far the tool
 // may go on it, as what it presses may move as far again.
 constexpr double kMargin = 0.25, kStride = 0.12;
-constexpr double kMostStrides = 16;  // a tick
+constexpr double kMostStrides = 16, kMostEntering = 32;  // a tick
 // How far from a solved place the force follows its tangent, and how well a place is solved: shares of how
 // deep the tool presses, and at most of its radius. Friction follows the path more closely. Where the stride
 // before foresees where the surface goes, one look at it is mostly enough.
@@ -39,11 +39,9 @@ ContactOnPatch::ContactOnPatch()
 }
 
 void ContactOnPatch::lift() noexcept {
-  state_.placed = false;
-  state_.contacts = 0;
+  state_ = {};
   way_.setZero();
   loads_.clear();
-  state_.tip_offset.setZero();
 }
 
 std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) noexcept {
@@ -53,6 +51,7 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) no
     lift();
     return {};
   }
+  const double most = state_.placed ? kMostStrides : kMostEntering;
   if (!state_.placed) enter(surface, p);
   if (const Vec3 way = p - state_.place; state_.contacts > 0 && way.norm() <= near(surface)) {
     const Vec3 force = state_.force + state_.tangent * way;
@@ -60,13 +59,12 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) no
   }
   const Vec3 from = state_.place, way = p - state_.place;
   const double strides = std::max(std::ceil(way.norm() / longest), 1.0);
-  for (double i = 1; i <= strides; ++i) {
-    const Vec3 next = i == strides ? p : Vec3(from + (i / strides) * way);
-    if (stride(surface, next)) continue;
-    lift();
-    return {};
-  }
-  return state_.force;
+  bool found = strides <= most;
+  for (double i = 1; found && i <= strides; ++i)
+    found = stride(surface, i == strides ? p : Vec3(from + (i / strides) * way));
+  if (found) return state_.force;
+  lift();
+  return {};
 }
 
 std::optional<Vec3> ContactOnPatch::probe(const Surface& surface, const Vec3& p) noexcept {
@@ -114,7 +112,8 @@ bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
   } else if (state_.contacts > 0) {
     state_.tangent = solving.tangent(patch_);
   }
-  return state_.force.allFinite() && displacement().allFinite();
+  return contact.converged && state_.force.allFinite() && state_.tangent.allFinite() &&
+         displacement().allFinite();
 }
 
 /// Moves the surface on as it went in the last stride, by as much of that as `way` repeats; false where there

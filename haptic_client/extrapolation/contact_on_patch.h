@@ -9,14 +9,16 @@ namespace palpate::client {
 
 /// The contact of a tool with the surface near it, solved with the server's own solver: goes with the tool,
 /// place by place, on the patch of triangles that it may touch next, which it takes out of the model as it
-/// goes. All in the frame of the surface at rest. Haptic thread; only the constructor allocates (about 2 MB).
+/// goes. All in the frame of the surface at rest. Haptic thread; only the constructor allocates, 15 MB: the
+/// matrices of a solver without friction (3.6) and one with it (10.4), the patch's compliance (0.7).
 class ContactOnPatch {
  public:
   ContactOnPatch();
 
   /// Goes to `p` (m) and gives the force on the tool there (N); nothing where the model does not know all
-  /// that may be touched on the way, or the way is too long for one tick: then it stands nowhere. In contact
-  /// it solves anew where the tool has gone 1.5 % of its radius, and follows the tangent in between.
+  /// that may be touched on the way, the contact does not settle, or the way is too long for one tick: then
+  /// it stands nowhere. In contact it solves anew where the tool has gone 3 % of how deep it presses, at most
+  /// 1 % of its radius (with friction a quarter of that), and follows the tangent in between.
   std::optional<Vec3> go(const Surface& surface, const Vec3& p) noexcept;
   /// The force at `p`; then it stands where it stood, on a patch around that.
   std::optional<Vec3> probe(const Surface& surface, const Vec3& p) noexcept;

@@ -45,6 +45,24 @@ inline bool usable(const Sample& sample) noexcept {
   return sample.p.allFinite() && sample.f.allFinite();
 }
 
+/// Likewise of its parts: they are what a server can mean, in SI units; the bounds of the protocol.
+inline bool usable(const Linearised& l) noexcept {
+  const auto bounded = [](const auto& m) { return (m.array().abs() <= 1e9).all(); };
+  return bounded(l.p) && bounded(l.f) && bounded(l.k) && bounded(l.normal) && l.gap >= 0 && l.gap <= 1e9;
+}
+inline bool usable(const Surface& s) noexcept {
+  const Tool& tool = s.tool;
+  return (s.shift.array().abs() <= 1e9).all() && tool.is_sphere() && tool.radius > 0 && tool.radius <= 1 &&
+         tool.friction >= 0 && tool.friction <= 10 && s.tool_compliance >= 0 && s.tool_compliance <= 1e6;
+}
+/// The sample without those parts that are not.
+inline Sample with_usable_parts(Sample sample) noexcept {
+  if (sample.here && !usable(*sample.here)) sample.here.reset();
+  if (sample.ahead && !usable(*sample.ahead)) sample.ahead.reset();
+  if (sample.surface && !usable(*sample.surface)) sample.surface.reset();
+  return sample;
+}
+
 /// Parts of a sample that a law can use.
 struct Wants {
   bool here = false, ahead = false, surface = false;
@@ -62,7 +80,7 @@ class Extrapolator {
  public:
   virtual ~Extrapolator() = default;
   /// A new sample, usually later than the one before (`ForceEstimate` sees to it). One that is not `usable`
-  /// changes nothing.
+  /// changes nothing; a part that is not counts as missing.
   virtual void update(const Sample& sample) noexcept = 0;
   /// Forgets all samples: what came before is too long ago to look back at.
   virtual void restart() noexcept = 0;

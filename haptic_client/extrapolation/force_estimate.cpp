@@ -16,17 +16,22 @@ bool ForceEstimate::take(const Sample& sample, const Vec3& p, Time now) noexcept
   }
   newest_ = sample;
   law_->update(sample);
-  if (blend_ > 0) {
-    offset_ = before - law_force(p, now);
-    arrived_ = now;
-  }
+  if (blend_ > 0) blend_from(before, law_force(p, now), now);
   return true;
 }
 
 Vec3 ForceEstimate::force(const Vec3& p, Time t) noexcept {
   const Vec3 f = law_force(p, t);
-  if (!(blend_ > 0) || f.isZero(0)) return f;  // free is free at once
-  return f + std::exp(-to_seconds(t - arrived_) / blend_) * offset_;
+  if (!(blend_ > 0)) return f;
+  if (law_->stepped_down() != stepped_down_) blend_from(last_, f, t);
+  last_ = f.isZero(0) ? f : Vec3(f + std::exp(-to_seconds(t - changed_) / blend_) * offset_);  // free at once
+  return last_;
+}
+
+void ForceEstimate::blend_from(const Vec3& before, const Vec3& after, Time t) noexcept {
+  stepped_down_ = law_->stepped_down();
+  offset_ = before - after;
+  changed_ = t;
 }
 
 Vec3 ForceEstimate::law_force(const Vec3& p, Time t) noexcept {

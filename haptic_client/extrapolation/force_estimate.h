@@ -16,7 +16,8 @@ constexpr Time kOutage = std::chrono::milliseconds(300);
 /// Pure; haptic thread only; no allocation.
 class ForceEstimate {
  public:
-  /// `blend`: how long what a new sample changes takes to come in (time constant, s, 0 to 0.1); 0: at once.
+  /// `blend`: how long what a new sample changes, or a simpler law that stands in, takes to come in (time
+  /// constant, s, 0 to 0.1); 0: at once.
   explicit ForceEstimate(std::unique_ptr<Extrapolator> law, double blend = 0)
       : law_(std::move(law)),
         sees_surface_(law_->wants().here || law_->wants().ahead || law_->wants().surface),
@@ -40,11 +41,14 @@ class ForceEstimate {
   static constexpr int kPatience = 3;  // periods
   std::unique_ptr<Extrapolator> law_;
   Vec3 law_force(const Vec3& p, Time t) noexcept;
+  void blend_from(const Vec3& before, const Vec3& after, Time t) noexcept;
 
   bool sees_surface_;
   double blend_;                // s
-  Vec3 offset_ = Vec3::Zero();  // what the newest sample took away, N
-  Time arrived_{};              // when it did
+  Vec3 offset_ = Vec3::Zero();  // what the newest sample, or a simpler law that stands in, took away, N
+  Time changed_{};              // when it did
+  Vec3 last_ = Vec3::Zero();    // force given, N
+  bool stepped_down_ = false;
   Sample newest_;
   Time period_{};
 };

@@ -23,8 +23,8 @@ LocalContact::LocalContact() : felt_(kRemembered) {}
 void LocalContact::update(const Sample& sample) noexcept {
   without_.update(sample);
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
-  newest_ = sample;
-  motion_.update(sample);
+  newest_ = with_usable_parts(sample);
+  motion_.update(newest_);
   known_ = false;
   if (!newest_.surface) return;
   const Vec3 p_rest = at_rest(sample.p, sample.t);

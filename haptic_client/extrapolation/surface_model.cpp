@@ -99,7 +99,10 @@ void SurfaceModel::take_tile(const SurfacePage& page) noexcept {
   std::uint16_t& slot = slot_of_tile_[page.page - pages_.first_tile()];
   if (slot != kNoSlot) return;
   Tile& tile = tiles_[next_slot_];
-  if (tile.page != 0) slot_of_tile_[tile.page - pages_.first_tile()] = kNoSlot;
+  if (tile.page != 0) {
+    slot_of_tile_[tile.page - pages_.first_tile()] = kNoSlot;
+    complete_at_.reset();
+  }
   tile.page = page.page;
   tile.values = page.values;
   slot = static_cast<std::uint16_t>(next_slot_);

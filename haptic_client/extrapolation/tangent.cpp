@@ -31,8 +31,8 @@ Vec3 force_at(const Linearised& l, const Vec3& p) noexcept {
 void Tangent::update(const Sample& sample) noexcept {
   learned_.update(sample);
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
-  newest_ = sample;
-  motion_.update(sample);
+  newest_ = with_usable_parts(sample);
+  motion_.update(newest_);
   if (newest_.here) newest_.here->k = restoring_part(newest_.here->k);
 }
 

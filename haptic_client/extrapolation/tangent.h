@@ -15,7 +15,9 @@ Vec3 force_at(const Linearised& l, const Vec3& p) noexcept;
 
 /// F = F_n + K_n (P - P_n - s(t)), K_n = dF/dP the server's own tangent at P_n, s how far the organ has moved
 /// since (`OrganMotion`). The first contact comes at the plane that the sample tells, not a sample late.
-/// Where a sample has no tangent: `LearnedStiffness`. About 10 ns.
+/// Where a sample has no tangent: `LearnedStiffness`. A linear model of the tissue around the tool between
+/// two steps of the simulation: Cavusoglu and Tendick (2000); plane, organ motion and what is left out of K
+/// are of our own. About 20 ns a tick and 0.4 us a sample.
 class Tangent : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override;

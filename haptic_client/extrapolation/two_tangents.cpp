@@ -10,8 +10,8 @@ constexpr double kSmallStep = 10e-6;  // m
 void TwoTangents::update(const Sample& sample) noexcept {
   first_.update(sample);
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
-  newest_ = sample;
-  motion_.update(sample);
+  newest_ = with_usable_parts(sample);
+  motion_.update(newest_);
   if (newest_.ahead) newest_.ahead->k = restoring_part(newest_.ahead->k);
 }
 

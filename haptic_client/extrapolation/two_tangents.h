@@ -8,7 +8,7 @@ namespace palpate::client {
 ///   D = P^ - P_n,  s = clamp((P - P_n) . D / (|D|^2 + (10 um)^2), 0, 1),  w = s^2 (3 - 2 s),
 ///   F = (1 - w) T_n(P) + w T^(P),
 /// P as it stands on the organ of t_n (`OrganMotion`).
-/// Where a sample lacks the second: `Tangent`. About 20 ns.
+/// Where a sample lacks the second: `Tangent`. Of our own. About 30 ns a tick and 0.8 us a sample.
 class TwoTangents : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override;

@@ -151,7 +151,8 @@ def plain_numbers(panel):
     from matplotlib import ticker
     for axis in (panel.xaxis, panel.yaxis):
         if axis.get_scale() == "log":
-            axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 3, 5)))
+            low, high = axis.get_view_interval()
+            axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 3, 5) if high < 1000 * low else (1,)))
             axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_formatter(ticker.NullFormatter())
 
@@ -192,6 +193,12 @@ def pareto(points):
                   if not any(q[0] <= p[0] and q[1] <= p[1] and q[:2] != p[:2] for q in points))
 
 
+def model_bytes_note(laws):
+    """A second line for the axis: what comes once besides, of each law that has such a thing."""
+    once = [f"{law} {found['model_bytes'] / 1e6:.2g} MB" for law, found in laws.items() if found["model_bytes"] > 0]
+    return f"\nand once, for the model of the surface: {', '.join(once)}" if once else ""
+
+
 def draw_cost(rows, styles, folder):
     """Mean and p99 against time per tick and bytes per second, at the delay nearest to 35 ms."""
     from matplotlib import pyplot
@@ -199,7 +206,8 @@ def draw_cost(rows, styles, folder):
     delay = min(values(rows, "delay_ms"), key=lambda d: abs(d - 35))
     laws = {law: average(chosen(rows, method=law, delay_ms=delay)) for law in styles}
     figure, panels = pyplot.subplots(2, 2, figsize=(16, 11), dpi=DPI, sharey="row", layout="constrained")
-    costs = (("ns per tick", lambda a: a["ns_per_tick"]), ("bytes per second", lambda a: RATE * a["bytes_per_sample"]))
+    costs = (("ns per tick: median (line: to p99 where a few ticks do the work)", lambda a: a["ns_per_tick"]),
+             ("bytes per second" + model_bytes_note(laws), lambda a: RATE * a["bytes_per_sample"]))
     for column, (cost_name, cost) in enumerate(costs):
         for panel, key, unit in zip(panels[:, column], ("mean_percent", "p99_percent"), ("RMS", "peak")):
             points = [(cost(found), found[key], law) for law, found in laws.items()]
@@ -210,6 +218,8 @@ def draw_cost(rows, styles, folder):
                 on = any(law == best for _, _, best in front)
                 panel.plot(x, y, "o", color=styles[law][0], markersize=11, markeredgewidth=2.5, label=law,
                            markeredgecolor="black" if on else styles[law][0])
+                if column == 0 and laws[law]["ns_per_tick_p99"] > 0:
+                    panel.plot([x, laws[law]["ns_per_tick_p99"]], [y, y], "-|", color=styles[law][0], markersize=11)
             panel.set(xscale="log", yscale="log", xlabel=cost_name,
                       ylabel=f"{key.removesuffix('_percent')} error (% of {unit} force)")
             panel.margins(x=0.1, y=0.1)

@@ -6,9 +6,56 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
+#include "tests/support/served_block.h"
 
 using namespace palpate;
 using namespace palpate::client;
+
+namespace {
+
+/// What a server tells of a block, and its model, whole.
+struct Told {
+  Told() {
+    const sim::Simulation simulation(test::block_scene(), test::block_mesh());
+    model.announce(sim::SurfacePager(simulation, 0).state());
+    for (const protocol::SurfacePage& page : test::all_pages(simulation)) model.take(page);
+  }
+  SurfaceModel model;
+};
+Told& told() {
+  static Told once;
+  return once;
+}
+
+constexpr Time kPeriod = std::chrono::microseconds(30030), kAMinute = std::chrono::seconds(60);
+const Vec3 kPressed(0.001, 0.0035, 0.0005), kAway(0.001, 0.008, 0.0005);
+
+/// The force on a tool at rest, at every tick; `part` takes away what a sample shall not tell.
+template <class Part>
+void rest_and_leave(ForceEstimate& estimate, Part part) {
+  test::ServedBlock block(Time::zero(), 1, kPeriod);
+  Vec3 settled = Vec3::Zero(), given = Vec3::Zero();
+  std::uint64_t free = 0;
+  for (Time t{1}; t < kAMinute + std::chrono::milliseconds(500); t += kPeriod / 3) {
+    const Vec3 p = t < kAMinute ? kPressed : kAway;
+    if (const auto sent = block.exchange(t, p, Vec3::Zero())) {
+      Sample sample = sample_of(*sent, &told().model);
+      part(sample);
+      REQUIRE(estimate.take(sample, p, t));
+      free += sample.f.isZero(0) ? 1 : 0;
+    }
+    given = estimate.force(p, t);
+    REQUIRE(given.allFinite());
+    if (estimate.newest().number == 2 && settled.isZero(0)) settled = given;
+    if (estimate.newest().number >= 2 && t < kAMinute)
+      REQUIRE((given - settled).norm() <= 1e-9 * settled.norm());
+    if (free > 0) REQUIRE(given == Vec3::Zero());
+  }
+  CHECK(settled.norm() > 0.1);
+  CHECK(free > 10);
+}
+
+}  // namespace
 
 TEST_CASE("contract: every extrapolation law") {
   for (const ExtrapolatorRow& row : extrapolators()) {
@@ -49,6 +96,66 @@ TEST_CASE("contract: every extrapolation law") {
           CHECK(law->force({any(), any(), any()}, sample.t).allFinite());
           CHECK(law->force(sample.p, sample.t + Time{2'000'000}).allFinite());
         }
+      }
+      SECTION("whatever the parts of a sample hold, the answer is finite") {
+        constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+        const std::array wild{0.0,    1e-300, 5e-324, 1e-12, 0.001, 0.005,
+                              -0.001, 1.0,    10.0,   1e6,   1e9,   -1e9,
+                              1e30,   -1e30,  1e300,  kNan,  -kNan, std::numeric_limits<double>::infinity()};
+        test::Random random(13);
+        const auto any = [&] {
+          return wild[static_cast<std::size_t>(random.between(0, wild.size() - 1e-3))];
+        };
+        const auto near = [&] { return Vec3(kPressed + random.vector(0.001)); };
+        // A wall, mostly, with some wild numbers in it; one in three is free.
+        const auto any_linear = [&] {
+          Linearised l{.p = near(), .f = random.vector(2), .normal = {0, 1, 0}, .gap = 0.001};
+          l.k = -500 * Mat3::Identity();
+          if (random.between(0, 3) < 1) l.f.setZero();
+          double* const numbers[] = {&l.p[0],      &l.p[1],      &l.f[0],    &l.f[2],
+                                     &l.k(0, 0),   &l.k(1, 1),   &l.k(0, 1), &l.normal[0],
+                                     &l.normal[1], &l.normal[2], &l.gap};
+          for (double* const number : numbers) *number = random.between(0, 8) < 1 ? any() : *number;
+          return l;
+        };
+        const auto any_surface = [&](const SurfaceModel& model) {
+          Surface s{&model,
+                    random.vector(0.001),
+                    {.radius = 0.005, .friction = random.between(0, 2) < 1 ? 0 : 0.3},
+                    0};
+          double* const numbers[] = {&s.shift[0], &s.shift[1], &s.tool.radius, &s.tool.friction,
+                                     &s.tool_compliance};
+          for (double* const number : numbers) *number = random.between(0, 8) < 1 ? any() : *number;
+          return s;
+        };
+        const SurfaceModel empty;
+        for (int n = 1; n <= 3000; ++n) {
+          const Time t = n * std::chrono::milliseconds(33);
+          Sample sample{static_cast<std::uint64_t>(n), t, near(), random.vector(2)};
+          if (n % 8 == 0) sample.surface_v[n % 3] = any();
+          if (n % 4 != 0) sample.here = any_linear();
+          if (n % 5 != 0) sample.ahead = any_linear();
+          if (n % 6 != 0) sample.surface = any_surface(n % 10 == 0 ? empty : told().model);
+          law->update(sample);
+          CHECK(law->force(near(), t).allFinite());
+          CHECK(law->force({any(), any(), any()}, t + Time{1'000'000}).allFinite());
+          CHECK(law->force(sample.p, t + Time{2'000'000}).allFinite());
+        }
+      }
+      SECTION("a tool at rest for a minute: a constant force, which ends when it leaves") {
+        const auto everything = [](Sample&) {};
+        const auto no_surface = [](Sample& s) { s.surface.reset(); };
+        const auto triplet = [](Sample& s) { s = {s.number, s.t, s.p, s.f}; };
+        {
+          ForceEstimate estimate(row.make());
+          rest_and_leave(estimate, everything);
+        }
+        {
+          ForceEstimate estimate(row.make());
+          rest_and_leave(estimate, no_surface);
+        }
+        ForceEstimate estimate(row.make());
+        rest_and_leave(estimate, triplet);
       }
       SECTION("a sample that is not finite changes nothing, one that comes again neither") {
         const double nan = std::numeric_limits<double>::quiet_NaN();

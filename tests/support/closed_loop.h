@@ -19,7 +19,8 @@ namespace palpate::test {
 struct ClosedLoopSettings {
   double haptic_hz = 1000, sim_hz = 30;
   protocol::LinkConditions link = {.delay = 0.035};
-  std::uint64_t seed = 1;  ///< of the link
+  std::uint64_t seed = 1;   ///< of the link
+  double faults_end = 1e6;  ///< s: what is sent from then on takes `link.delay` and nothing happens to it
 };
 
 /// An organ that is a function of the tool's place: with its tangent, and its surface out of contact.
@@ -70,7 +71,8 @@ class ClosedLoop {
         pipeline_(pipeline),
         server_(std::move(server)),
         settings_(settings),
-        link_(settings.link, settings.seed) {}
+        link_(settings.link, settings.seed),
+        good_link_({.delay = settings.link.delay}, settings.seed) {}
 
   /// One tick; returns what was written.
   client::TickResult tick() {
@@ -99,25 +101,27 @@ class ClosedLoop {
   void receive(Time now) {
     arrived_.reset();
     pages_.clear();
-    while (const auto bytes = link_.receive(now)) {
-      protocol::Datagram datagram;
-      if (protocol::decode(*bytes, datagram) != protocol::Verdict::kAccepted) continue;
-      if (!window_.accept(datagram.header.sequence, stats_)) continue;
-      if (const auto* sample = std::get_if<protocol::ForceSample>(&datagram.message)) arrived_ = *sample;
-      if (const auto* page = std::get_if<protocol::SurfacePage>(&datagram.message)) pages_.push_back(*page);
-    }
+    while (const auto bytes = link_.receive(now)) take(*bytes);
+    while (const auto bytes = good_link_.receive(now)) take(*bytes);
+  }
+  void take(std::span<const std::byte> bytes) {
+    protocol::Datagram datagram;
+    if (protocol::decode(bytes, datagram) != protocol::Verdict::kAccepted) return;
+    if (!window_.accept(datagram.header.sequence, stats_)) return;
+    if (const auto* sample = std::get_if<protocol::ForceSample>(&datagram.message)) arrived_ = *sample;
+    if (const auto* page = std::get_if<protocol::SurfacePage>(&datagram.message)) pages_.push_back(*page);
   }
   void send(const protocol::Message& message, Time now) {
     std::array<std::byte, protocol::kMaxDatagram> bytes;
     const std::size_t size = protocol::encode({1, ++sent_}, message, bytes);
-    link_.send({bytes.data(), size}, now);
+    (seconds() < settings_.faults_end ? link_ : good_link_).send({bytes.data(), size}, now);
   }
 
   client::Device& device_;
   client::Pipeline& pipeline_;
   Server server_;
   ClosedLoopSettings settings_;
-  protocol::LinkSimulator link_;
+  protocol::LinkSimulator link_, good_link_;
   protocol::ReplayWindow window_;
   protocol::LinkStats stats_;
   std::uint64_t ticks_ = 0, steps_ = 0, sent_ = 0;

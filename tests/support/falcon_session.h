@@ -51,8 +51,8 @@ struct Session {
     usb.command("hand 2-1 target 0 0 0.10 0.3");
     return pushes();
   }
-  /// Out of it and in: what the motors owe is forgotten where nothing pushes. Within 1 s: a hand of 0.2 kg that
-  /// comes within 0.3 s goes 11 mm deep before it rests, and feels 8 N there.
+  /// Out of it and in: what the motors owe is forgotten where nothing pushes. Within 1 s: a hand of 0.2 kg
+  /// that comes within 0.3 s goes 11 mm deep before it rests, and feels 8 N there.
   bool press_again() const {
     usb.command("hand 2-1 target 0 0 0.13 0.3");
     const bool out = wait([](const nlohmann::json& s) {

@@ -39,9 +39,12 @@ inline std::vector<protocol::SurfacePage> all_pages(const sim::Simulation& simul
 class ServedBlock {
  public:
   explicit ServedBlock(Time delay, std::size_t tools = 1, Time period = kPeriod)
-      : simulation(block_scene(tools), block_mesh()),
+      : ServedBlock(block_scene(tools), block_mesh(), delay, period) {}
+  /// Another organ.
+  ServedBlock(const sim::Scene& scene, sim::TetMesh mesh, Time delay, Time period = kPeriod)
+      : simulation(scene, std::move(mesh)),
         served_(simulation),
-        inputs_(tools),
+        inputs_(scene.tools.size()),
         delay_(delay),
         period_(period) {}
 

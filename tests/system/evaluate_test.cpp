@@ -89,6 +89,29 @@ TEST_CASE("evaluate: on the liver, 33 Hz and 35 ms, two tangents are far ahead o
   CHECK(lines[0]["reference"] == "line");
 }
 
+TEST_CASE(
+    "evaluate: a told compliance of 0.7 is another model for the law that solves contact, and only for it") {
+  const Study study;
+  study.record("slow.pcap", {"--rate", "33.3", "--delay-ms", "35"});
+  const auto evaluate = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"evaluate", study.file("slow.pcap"), "--out",    study.file(out),
+                                       "--method", "local_contact",         "--method", "two_tangents"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    output_of("haptic_client", arguments, 0);
+    return without_timings(read_json(study.folder.path() / out / "summary.json"));
+  };
+  const Json told = evaluate("told", {}), same = evaluate("same", {"--compliance", "1"}),
+             stiffer = evaluate("stiffer", {"--compliance", "0.7"});
+  CHECK(same == told);
+  for (const bool blended : {false, true}) {
+    CHECK(row(stiffer, "two_tangents", blended) == row(told, "two_tangents", blended));
+    const Json &right = row(told, "local_contact", blended), &wrong = row(stiffer, "local_contact", blended);
+    CHECK(wrong["mean_percent"] != right["mean_percent"]);
+    CHECK(wrong["model_bytes"] == right["model_bytes"]);
+    CHECK(right["model_bytes"].get<double>() > 1e6);
+  }
+}
+
 TEST_CASE("evaluate: wrong input") {
   const Study study;
   study.record("slow.pcap", {"--rate", "33.3"});

@@ -1,8 +1,10 @@
 // Every law behind every fault that a link can have.
 #include "haptic_client/device/simulated_operator.h"
 #include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/extrapolation/local_contact.h"
 #include "tests/support/catch.h"
 #include "tests/support/closed_loop.h"
+#include "tests/support/served_block.h"
 
 using namespace palpate;
 using namespace palpate::client;
@@ -45,12 +47,73 @@ double largest_force(const ExtrapolatorRow& row, double corrupted, protocol::Lin
   return largest;
 }
 
+/// The block with its pages.
+test::Server served(sim::Simulation& block) {
+  auto tools = std::make_shared<sim::ServedTools>(block);
+  auto pager = std::make_shared<sim::SurfacePager>(block, 0);
+  const auto step = [tools](const protocol::ToolState& state) {
+    const std::vector<sim::ToolInput> inputs{{1, state, true}};
+    return tools->step(inputs, 0.03).front().answer;
+  };
+  const auto pages = [pager](const protocol::ToolState& state) {
+    std::vector<protocol::SurfacePage> found;
+    if ((state.flags & protocol::ToolState::kAsksPages) == 0) return found;
+    if (state.surface_version != pager->state().version) return found;
+    for (const std::uint32_t number : state.pages) {
+      if (protocol::SurfacePage page; pager->page(number, page)) found.push_back(page);
+    }
+    return found;
+  };
+  return {.step = step, .pages = pages};
+}
+
+/// What a hand felt that presses the block and slides over it, against the force of the block where it was,
+/// N.
+struct Felt {
+  double largest = 0, largest_true = 0;
+  double off_at_end = 0;     // largest error in the last second, N: the link has long been good again
+  bool whole_at_end = true;  // the model served then
+  protocol::LinkCounts counts = {};
+};
+
+constexpr double kFaultsEnd = 4, kLastSecond = 6.5, kEnd = 7.5;  // s
+
+SimulatedOperator presser() {
+  return {{},
+          Trajectory({0, 0.5, 1, 2, 3, 4, 5, 6, 7, 8},
+                     {Vec3(0, 0.008, 0), Vec3(0, 0.008, 0), Vec3(0, 0.001, 0), Vec3(0.006, 0.001, 0),
+                      Vec3(0, 0.007, 0.002), Vec3(-0.006, 0.001, 0), Vec3(0, 0.001, 0.004),
+                      Vec3(0, 0.007, 0.004), Vec3(0.004, 0.001, 0), Vec3(-0.004, 0.001, 0)})};
+}
+
+Felt press_block(const protocol::LinkConditions& link) {
+  SimulatedOperator hand = presser();
+  Pipeline pipeline(std::make_unique<LocalContact>(), {}, {.max_force = kMost, .max_slew = 100});
+  sim::Simulation block(test::block_scene(), test::block_mesh()),
+      truth(test::block_scene(), test::block_mesh());
+  test::ClosedLoop loop(hand, pipeline, served(block), {.link = link, .seed = 7, .faults_end = kFaultsEnd});
+  Felt felt;
+  while (loop.seconds() < kEnd) {
+    const bool last = loop.seconds() >= kLastSecond;
+    const auto simpler = pipeline.stats().stepped_down;
+    const TickResult tick = loop.tick();
+    if (!tick.f_D.allFinite()) return {.largest = std::nan("")};
+    const Vec3 right = truth.step(tick.tool.p_W, 0.001).force;
+    felt.largest = std::max(felt.largest, tick.f_D.norm());
+    felt.largest_true = std::max(felt.largest_true, right.norm());
+    if (last) felt.off_at_end = std::max(felt.off_at_end, (tick.f_D - right).norm());
+    if (last && pipeline.stats().stepped_down > simpler) felt.whole_at_end = false;
+  }
+  felt.counts = loop.link();
+  return felt;
+}
+
 }  // namespace
 
 TEST_CASE("bad link: whatever it does to the samples, the force is finite and within its limits") {
   for (const ExtrapolatorRow& row : extrapolators()) {
     CAPTURE(row.name);
-    protocol::LinkCounts counts;
+    protocol::LinkCounts counts = {};
     const double felt = largest_force(row, 0, counts);
     CHECK(felt <= kMost * (1 + 1e-9));
     CHECK(felt > 0.5);
@@ -61,4 +124,39 @@ TEST_CASE("bad link: whatever it does to the samples, the force is finite and wi
     CHECK(largest_force(row, 0.2, counts) <= kMost * (1 + 1e-9));
     CHECK(counts.corrupted > 0);
   }
+}
+
+TEST_CASE("bad link: a law that has its model feels no more than the truth, and the truth when it is over") {
+  using protocol::LinkConditions, protocol::LinkCounts;
+  struct Fault {
+    const char* name;
+    LinkConditions link;
+    std::uint64_t LinkCounts::*counted;
+  };
+  const Fault faults[] = {
+      {"late", {.delay = 0.2}, &LinkCounts::delivered},
+      {"later for a time",
+       {.delay = 0.005, .delay_steps = {{2s, 0.2}, {3500ms, 0.005}}},
+       &LinkCounts::delivered},
+      {"jitter", {.delay = 0.005, .jitter = 0.1}, &LinkCounts::delivered},
+      {"lost", {.delay = 0.005, .loss = 0.3}, &LinkCounts::lost},
+      {"bursts", {.delay = 0.005, .burst_begin = 0.05, .burst_end = 0.2}, &LinkCounts::lost_in_bursts},
+      {"twice", {.delay = 0.005, .jitter = 0.02, .duplicates = 0.3}, &LinkCounts::duplicated},
+      {"reordered", {.delay = 0.005, .reordered = 0.3, .reorder_delay = 0.1}, &LinkCounts::reordered},
+      {"a thin line", {.delay = 0.005, .bandwidth = 20'000}, &LinkCounts::dropped_by_queue},
+      {"cut", {.delay = 0.005, .partitions = {{2600ms, 3100ms}}}, &LinkCounts::partitioned},
+      {"all at once", bad_link(0), &LinkCounts::dropped_by_queue}};
+  for (const Fault& fault : faults) {
+    CAPTURE(fault.name);
+    const Felt felt = press_block(fault.link);
+    CHECK(felt.largest <= 1.01 * felt.largest_true);
+    CHECK(felt.largest > 0.5);
+    CHECK(felt.off_at_end < 0.01 * felt.largest_true);
+    CHECK(felt.whole_at_end);
+    CHECK(felt.counts.*fault.counted > 0);
+  }
+  // A wrong byte may be any force or end the session, as above.
+  const Felt felt = press_block(bad_link(0.2));
+  CHECK(felt.largest <= kMost * (1 + 1e-9));
+  CHECK(felt.counts.corrupted > 0);
 }

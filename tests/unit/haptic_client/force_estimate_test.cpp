@@ -1,5 +1,6 @@
 #include "haptic_client/extrapolation/force_estimate.h"
 
+#include <cmath>
 #include <limits>
 
 #include "haptic_client/extrapolation/linear_time.h"
@@ -18,6 +19,24 @@ ForceEstimate rising() {
   REQUIRE(estimate.take({2, 40ms, {0, 0, 0}, {0, 2, 0}}, Vec3::Zero(), 41ms));
   return estimate;
 }
+
+/// 1 N; a simpler law that stands in for it gives 3 N.
+struct StoodInFor : Extrapolator {
+  void update(const Sample&) noexcept override {}
+  void restart() noexcept override {}
+  Vec3 force(const Vec3&, Time) noexcept override { return {0, simpler ? 3.0 : 1.0, 0}; }
+  Wants wants() const noexcept override { return {.here = true}; }  // so that it is asked from the beginning
+  bool stepped_down() const noexcept override { return simpler; }
+  bool simpler = false;
+};
+/// From 50 until 80 ms.
+struct StoodInForATime : StoodInFor {
+  void begin_tick(Time now) noexcept override { simpler = now >= 50ms && now < 80ms; }
+};
+/// From sample 2 until sample 3.
+struct StoodInForASample : StoodInFor {
+  void update(const Sample& sample) noexcept override { simpler = sample.number == 2; }
+};
 
 }  // namespace
 
@@ -56,4 +75,44 @@ TEST_CASE("a tool that the newest sample saw free feels nothing") {
   ForceEstimate estimate = rising();
   REQUIRE(estimate.take({3, 80ms, {0, 0, 0}, {0, 0, 0}}, Vec3::Zero(), 80ms));
   CHECK(estimate.force({0, 0, 0}, 100ms) == Vec3::Zero());
+}
+
+TEST_CASE("a simpler law that stands in within an interval, and goes again, comes and goes without a jump") {
+  constexpr double kBlend = 0.010;
+  ForceEstimate estimate(std::make_unique<StoodInForATime>(), kBlend);
+  REQUIRE(estimate.take({1, 0ms, {0, 0, 0}, {0, 1, 0}}, Vec3::Zero(), 0ms));
+  double before = 1;
+  for (Time t = 2ms; t < 150ms; t += 2ms) {
+    // From the force given last towards that of the law: e^(-(time since) / blend) of the difference is left.
+    const double began = t < 50ms ? 1 : t < 80ms ? 1 : 3 - 2 * std::exp(-0.028 / kBlend);
+    const Time since = t < 50ms ? 0ms : t < 80ms ? t - 50ms : t - 80ms;
+    const double law = t >= 50ms && t < 80ms ? 3 : 1;
+    const double expected = law + (began - law) * std::exp(-to_seconds(since) / kBlend);
+    const Vec3 given = estimate.force({0, 0, 0}, t);
+    CHECK(given[1] == Approx(expected).epsilon(1e-12));
+    if (since == 0ms) CHECK(given[1] == Approx(before).epsilon(1e-12));
+    before = given[1];
+  }
+}
+
+TEST_CASE("a simpler law that begins to stand in with a sample, or leaves with it, does not jump either") {
+  constexpr double kBlend = 0.010;
+  ForceEstimate estimate(std::make_unique<StoodInForASample>(), kBlend);
+  REQUIRE(estimate.take({1, 0ms, {0, 0, 0}, {0, 1, 0}}, Vec3::Zero(), 0ms));
+  REQUIRE(estimate.force({0, 0, 0}, 48ms)[1] == Approx(1));
+  REQUIRE(estimate.take({2, 40ms, {0, 0, 0}, {0, 1, 0}}, Vec3::Zero(), 50ms));
+  CHECK(estimate.force({0, 0, 0}, 50ms)[1] == Approx(1).epsilon(1e-12));
+  CHECK(estimate.force({0, 0, 0}, 88ms)[1] == Approx(3 - 2 * std::exp(-3.8)).epsilon(1e-12));
+  const double last = 3 - 2 * std::exp(-4.0);  // what it would have been
+  REQUIRE(estimate.take({3, 80ms, {0, 0, 0}, {0, 1, 0}}, Vec3::Zero(), 90ms));
+  CHECK(estimate.force({0, 0, 0}, 90ms)[1] == Approx(last).epsilon(1e-12));
+  CHECK(estimate.force({0, 0, 0}, 100ms)[1] == Approx(1 + (last - 1) * std::exp(-1.0)).epsilon(1e-12));
+}
+
+TEST_CASE("without blending a simpler law stands in at once") {
+  ForceEstimate estimate(std::make_unique<StoodInForATime>());
+  REQUIRE(estimate.take({1, 0ms, {0, 0, 0}, {0, 1, 0}}, Vec3::Zero(), 0ms));
+  CHECK(estimate.force({0, 0, 0}, 48ms)[1] == 1);
+  CHECK(estimate.force({0, 0, 0}, 50ms)[1] == 3);
+  CHECK(estimate.force({0, 0, 0}, 80ms)[1] == 1);
 }

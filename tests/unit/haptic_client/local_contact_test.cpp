@@ -2,12 +2,11 @@
 #include "haptic_client/extrapolation/local_contact.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
+#include "tests/support/listener.h"
 #include "tests/support/random.h"
-#include "tests/support/served_block.h"
 
 using namespace palpate;
 using namespace palpate::client;
@@ -16,70 +15,9 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr Time kTick = 2ms;
-const auto kWholeModel = [](protocol::SurfacePage&) { return true; };
-
-/// Slides over the block, 1 to 2 mm deep, turning at its ends; leaves it once in each 0.8 s.
-Vec3 slide(Time t) {
-  const double s = to_seconds(t), turn = 2 * std::numbers::pi / 0.8;
-  const double height = 0.0035 + 0.0045 * std::max(std::cos(turn * s) - 0.6, 0.0) + 0.0005 * std::sin(7 * s);
-  return {0.006 * std::sin(4 * s), height, 0.004 * std::cos(3 * s)};
-}
-
-/// A law that listens to the block with a tool that moves.
-struct Listener {
-  explicit Listener(Time delay = 35ms, std::size_t tools = 1, Time period = ServedBlock::kPeriod)
-      : block(delay, tools, period) {}
-
-  /// Gives the model to the law, each page as `change` leaves it; false leaves it out.
-  template <class Change>
-  void learn(Change change) {
-    model.announce(sim::SurfacePager(block.simulation, 0).state());
-    for (protocol::SurfacePage page : all_pages(block.simulation)) {
-      if (change(page)) model.take(page);
-    }
-  }
-  Vec3 tick(const Vec3& p) {
-    const Vec3 v = (p - place) / to_seconds(kTick);
-    place = p;
-    t += kTick;
-    if (const auto sample = block.exchange(t, p, v)) {
-      law.take(sample_of(*sample, &model), p, t);
-      newest = *sample;
-    }
-    return law.force(p, t);
-  }
-
-  ServedBlock block;
-  SurfaceModel model;
-  ForceEstimate law{std::make_unique<LocalContact>()};
-  protocol::ForceSample newest;
-  Time t = 1s;
-  Vec3 place = slide(1s);
-};
-
 std::uint32_t first_tile(const Listener& listener) {
   const auto state = sim::SurfacePager(listener.block.simulation, 0).state();
   return protocol::SurfacePages{state.vertices, state.triangles}.first_tile();
-}
-
-/// Error of a law over 3 s of the slide, against the simulation at every tick, as a share of the peak force.
-struct Errors {
-  double mean = 0, largest = 0;
-};
-Errors follow(Listener& listener, Time duration = 3s) {
-  sim::Simulation truth(block_scene(), block_mesh());
-  double sum = 0, largest = 0, peak = 0;
-  int ticks = 0;
-  for (const Time end = listener.t + duration; listener.t < end; ++ticks) {
-    const Vec3 p = slide(listener.t + kTick);
-    const Vec3 right = truth.step(p, 0.002).force, given = listener.tick(p);
-    peak = std::max(peak, right.norm());
-    if (listener.newest.number < 3) continue;
-    sum += (given - right).norm();
-    largest = std::max(largest, (given - right).norm());
-  }
-  return {sum / ticks / peak, largest / peak};
 }
 
 }  // namespace

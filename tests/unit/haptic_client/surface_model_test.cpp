@@ -187,3 +187,49 @@ TEST_CASE("surface model: full, it forgets the oldest; it does not allocate") {
   CHECK((*known(2))(0, 0) == pages.first_tile() + 2);
   CHECK(known(SurfaceModel::kRoom + 1));
 }
+
+TEST_CASE("surface model: what it forgot for want of room it asks for again where the tool comes back") {
+  // 2000 vertices in a row, 1 mm apart, all of them within reach of each other: of the 400 clusters the
+  // nearest 120 are wanted at a time, and there is room for 127.
+  const SurfaceState state{.version = 3, .vertices = 2000, .triangles = 1, .tool_radius = 0.005};
+  const SurfacePages pages{state.vertices, state.triangles};
+  SurfaceModel model;
+  model.announce(state);
+  const auto answer = [&](std::uint32_t number) {
+    SurfacePage page{.version = 3, .page = number, .values = {static_cast<float>(number)}};
+    for (std::uint32_t i = 0; number < pages.first_triangle_page() && i < SurfacePages::kPerPage; ++i)
+      page.values[3 * i] = 0.001F * static_cast<float>(SurfacePages::kPerPage * number + i);
+    model.take(page);
+  };
+  Time now = 1s;
+  const auto fetch = [&](double x) {
+    std::size_t came = 0;
+    for (Asked asked; came < 50000 && model.choose_missing({x, 0, 0}, 3, now += 300ms, asked);) {
+      for (const std::uint32_t number : asked) {
+        if (number == ToolState::kNoPage) continue;
+        answer(number);
+        ++came;
+      }
+    }
+    return came;
+  };
+  constexpr std::size_t kPairs = 120 * 121 / 2;
+  const auto known_at_first = [&] {
+    std::size_t known = 0;
+    for (int a = 0; a < 120; ++a) {
+      for (int b = 0; b <= a; ++b) {
+        const auto c = model.compliance(5 * a, 5 * b);
+        const auto tile = pages.tile(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+        known += c && (*c)(0, 0) == tile ? 1 : 0;
+      }
+    }
+    return known;
+  };
+  CHECK(fetch(0) == pages.first_tile() + kPairs);
+  CHECK(known_at_first() == kPairs);
+  CHECK(fetch(1) == kPairs);  // all of them new
+  CHECK(known_at_first() == SurfaceModel::kRoom - kPairs);
+  CHECK(fetch(0) == kPairs);  // what was left of the first was the oldest, and went first
+  CHECK(known_at_first() == kPairs);
+  CHECK(fetch(0) == 0);
+}

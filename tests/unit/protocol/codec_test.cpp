@@ -265,6 +265,28 @@ TEST_CASE("each reason of refusal") {
   CHECK(untouched.header.session == 1);
 }
 
+TEST_CASE("a surface without a tool that could touch it is refused, and one that is none may say nothing") {
+  constexpr std::size_t kVersion = 28 + 109, kRadius = kVersion + 12;  // by hand, behind the flags
+  const auto with_radius = [](const char* radius, bool none = false) {
+    Bytes bytes = encoded(kHeader, one_of_each()[9]);
+    for (std::size_t i = 0; i < 8; ++i)
+      bytes[kRadius + i] = static_cast<std::byte>(std::stoi(std::string(radius + 2 * i, 2), nullptr, 16));
+    if (none) std::fill_n(bytes.begin() + kVersion, 4, std::byte{0});
+    Datagram datagram;
+    return decode(bytes, datagram);
+  };
+  CHECK(with_radius("000000000000e03f") == Verdict::kAccepted);  // 0.5, as it was
+  CHECK(with_radius("0100000000000000") == Verdict::kAccepted);  // the least there is
+  CHECK(with_radius("0000000000000000") == Verdict::kValue);
+  CHECK(with_radius("0000000000000080") == Verdict::kValue);  // -0
+  CHECK(with_radius("000000000000e0bf") == Verdict::kValue);  // -0.5
+  CHECK(with_radius("0000000000000040") == Verdict::kValue);  // 2 m
+  CHECK(with_radius("000000000000f87f") == Verdict::kNotFinite);
+  CHECK(with_radius("000000000000f07f") == Verdict::kNotFinite);
+  CHECK(with_radius("0000000000000000", true) == Verdict::kAccepted);
+  CHECK(with_radius("000000000000e0bf", true) == Verdict::kValue);
+}
+
 TEST_CASE("a tag behind the payload, and fields a later version adds, do not disturb a reader") {
   Bytes bytes = encoded(kHeader, one_of_each()[5]);
   bytes[8] = std::byte{16};

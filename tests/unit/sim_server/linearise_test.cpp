@@ -1,5 +1,6 @@
 // What a sample carries beyond its force.
 #include "sim_server/served_tools.h"
+#include "sim_server/surface_pager.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
@@ -98,6 +99,18 @@ TEST_CASE("parts of a sample: only those asked for, not of a lost device, and no
   CHECK((both.flags & kParts) == kParts);
   CHECK((both.ahead_p_W - at(top - 0.004)).norm() < 1e-12);  // 10 ms at 0.1 m/s
   CHECK(both.ahead_f_W.norm() > both.f_W.norm());
+  constexpr std::uint32_t kAll = kParts | ForceSample::kHasSurface;
+  const ForceSample surface = answer(ToolState::kWantsSurface);
+  CHECK((surface.flags & kAll) == ForceSample::kHasSurface);
+  CHECK(surface.surface.version == SurfacePager(liver, 0).state().version);
+  CHECK(surface.surface.version != 0);
+  CHECK(surface.here.tangent == protocol::Linearisation{}.tangent);
+  CHECK(surface.ahead_p_W == Vec3::Zero());
+  const ForceSample here = answer(ToolState::kWantsHere);
+  CHECK((here.flags & kAll) == ForceSample::kHasHere);
+  CHECK(here.here.tangent[3] == Approx(both.here.tangent[3]));
+  CHECK(here.ahead_p_W == Vec3::Zero());
+  CHECK(here.surface.version == 0);
   state.lead_ns = 1'000'000'000;
   CHECK((answer(ToolState::kWantsAhead).ahead_p_W - at(top - 0.005)).norm() < 1e-12);  // at most 2 mm
   CHECK((answer(ToolState::kWantsHere | ToolState::kDeviceLost).flags & kParts) == 0);

@@ -1,5 +1,7 @@
 #include "sim_server/simulation.h"
 
+#include "common/contact/simplex_distance.h"
+#include "sim_server/mesh/shapes.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
@@ -178,4 +180,38 @@ TEST_CASE("the same path gives the same bits") {
     two.step(on_liver(two, x, 0, 0.004), kDt);
   }
   CHECK(one.state_hash() == two.state_hash());
+}
+
+TEST_CASE("a long tool on a surface finer than it has room for: finite, settled, and outside the tissue") {
+  // 128 x 12 x 16 mm, top at y = 0, held at the bottom, vertices 2 mm apart on top; a capsule of 2 mm along
+  // it.
+  std::vector<double> x, z;
+  for (int i = -32; i <= 32; ++i) x.push_back(0.002 * i);
+  for (int i = -4; i <= 4; ++i) z.push_back(0.002 * i);
+  constexpr double kRadius = 0.002, kLength = 0.12;
+  Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4},
+                               {Vec3(-1, -1, -1), Vec3(1, -0.0119, 1)}, kRadius);
+  scene.tools[0].shape.length = kLength;
+  scene.tools[0].reach = Box{Vec3(-1, -1e-3, -1), Vec3(1, 1e-3, 1)};
+  Simulation block(scene, grid_block(x, {-0.012, -0.008, -0.004, 0}, z));
+  const Quat level = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX());
+  const auto axis = [](double depth) { return Vec3(-kLength / 2, kRadius - depth, 0.0003); };
+  ToolForce force;
+  for (double depth = -0.002; depth < 0.0021; depth += 0.0005) {
+    force = block.step({axis(depth), level}, kDt);
+    REQUIRE(force.force.allFinite());
+    CHECK_FALSE(force.flagged);
+  }
+  CHECK(force.force[1] > 0.5);
+  const Vec3 begin = axis(0.002), end = begin + Vec3(kLength, 0, 0);
+  const auto at = block.positions();
+  int near = 0;
+  double nearest = 1;
+  for (const Triangle& t : block.touchable(0)) {
+    const double distance = segment_triangle_distance(begin, end, at[t[0]], at[t[1]], at[t[2]]);
+    nearest = std::min(nearest, distance);
+    near += distance <= 2 * kRadius ? 1 : 0;  // as the server gathers them
+  }
+  CHECK(near > block.tool(0).max_nodes());  // as many as triangles, and two
+  CHECK(nearest == Approx(kRadius).margin(2e-9));
 }

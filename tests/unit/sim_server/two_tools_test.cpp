@@ -225,6 +225,34 @@ TEST_CASE("two tools: one that presses moves the surface from under the other") 
   CHECK(two.at({press(0.006, touching), {}})[0].contacts > 0);
 }
 
+TEST_CASE(
+    "two tools on the very same spot share what one would feel there; 1 mm apart they feel more together") {
+  // The tissue is pressed by the same sphere, so it gives the same force, whoever carries how much of it.
+  for (const double depth : {0.0005, 0.002, 0.003}) {
+    CAPTURE(depth);
+    const Vec3 place = press(0.0013, depth);
+    Block alone(1), two(2), in_turn(2);
+    const Vec3 single = alone.at({place})[0].force;
+    in_turn.at({{}, place});
+    for (const auto& forces : {two.at({place, place}), in_turn.at({place, place})}) {
+      CHECK(relative(forces[0].force + forces[1].force, single) < 1e-6);
+      CHECK(forces[0].flagged == forces[1].flagged);
+      for (const ToolForce& force : forces) CHECK(force.force.dot(single) >= 0);
+    }
+    const Vec3 beside = place + Vec3(0.001, 0, 0);
+    const auto apart = Block(2).at({place, beside});
+    const double other = Block(1).at({beside})[0].force[1];
+    CHECK_FALSE(apart[0].flagged);
+    CHECK_FALSE(apart[1].flagged);
+    for (const ToolForce& force : apart) CHECK(force.force[1] >= 0);
+    // Each helps the other to hold the tissue down.
+    constexpr double kRounding = 1 + 1e-9;  // the first touch may be of one alone
+    CHECK(apart[0].force[1] < kRounding * single[1]);
+    CHECK(apart[1].force[1] < kRounding * other);
+    CHECK(kRounding * (apart[0].force[1] + apart[1].force[1]) > std::max(single[1], other));
+  }
+}
+
 TEST_CASE("two tools on a rigid organ do not feel each other") {
   Block two(2, "rigid"), alone(1, "rigid");
   const auto forces = two.at({press(-0.004, 0.002), press(0.004, 0.003)});

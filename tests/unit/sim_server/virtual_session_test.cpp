@@ -6,7 +6,7 @@
 
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/catch.h"
-#include "tests/support/scenes.h"
+#include "tests/support/served_block.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace palpate;
@@ -62,6 +62,45 @@ Captured run(const VirtualLink& link, double seconds, const std::filesystem::pat
   return found;
 }
 
+/// In which order samples and pages of the surface came. Pages come in one go, in their own order.
+struct Order {
+  std::uint32_t pages = 0;
+  int nameless = 0, samples_before_pages = 0, samples_behind_pages = 0;
+};
+Order order_of(Simulation& simulation, const Trajectory& motion, double seconds) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "order.pcap";
+  const VirtualLink link{.rate_hz = 30, .ticks_hz = 500, .delay = 5ms, .parts = true};
+  {
+    protocol::CaptureWriter capture(file);
+    VirtualSession session(simulation, motion, 0.005, link, capture);
+    for (std::uint64_t k = 0; k <= static_cast<std::uint64_t>(seconds * link.ticks_hz); ++k) session.tick(k);
+  }
+  Order order;
+  protocol::CaptureReader reader(file);
+  protocol::CapturedDatagram captured;
+  protocol::Datagram datagram;
+  while (reader.next(captured)) {
+    REQUIRE(protocol::decode(captured.bytes, datagram) == protocol::Verdict::kAccepted);
+    if (const auto* sample = std::get_if<ForceSample>(&datagram.message)) {
+      const bool names = (sample->flags & ForceSample::kHasSurface) != 0;
+      order.nameless += names ? 0 : 1;
+      ++(order.pages == 0 ? order.samples_before_pages : order.samples_behind_pages);
+    }
+    if (const auto* page = std::get_if<protocol::SurfacePage>(&datagram.message)) {
+      CHECK(order.samples_behind_pages == 0);
+      CHECK(page->page == order.pages);
+      ++order.pages;
+    }
+  }
+  return order;
+}
+
+std::uint32_t whole_model(const Simulation& simulation) {
+  const auto state = SurfacePager(simulation, 0).state();
+  return protocol::SurfacePages{state.vertices, state.triangles}.count();
+}
+
 std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -105,6 +144,27 @@ TEST_CASE("virtual time without delay: the tick that is answered knows the answe
     CHECK(arrived == Time{sample.tool_t_ns});
   }
   CHECK(found.samples.size() == 51);
+}
+
+TEST_CASE("virtual time: the pages of the surface come right after the first sample that names it") {
+  // Samples of a tool beyond the world are flagged and name nothing; those within do: from the third step on.
+  const Trajectory motion{{0, 0.05, 0.1, 0.3}, {{0, 1500, 0}, {0, 1100, 0}, {0, 0.007, 0}, {0, 0.004, 0}}};
+  Simulation block(test::block_scene(), test::block_mesh());
+  const Order order = order_of(block, motion, 0.3);
+  CHECK(order.samples_before_pages == 3);
+  CHECK(order.nameless == 2);
+  CHECK(order.pages == whole_model(block));
+  CHECK(order.samples_behind_pages > 3);
+}
+
+TEST_CASE("virtual time: of tissue that is held no sample names the surface, and no page comes") {
+  Scene scene = test::block_scene();
+  scene.tools[0].grasp_place = Vec3(0.001, 0.005, 0.0005);
+  Simulation block(scene, test::block_mesh());
+  const Order order = order_of(block, {{0, 0.3}, {{0.001, 0.005, 0.0005}, {0.001, 0.008, 0.0005}}}, 0.3);
+  CHECK(order.pages == 0);
+  CHECK(order.nameless == order.samples_before_pages);
+  CHECK(order.samples_before_pages > 5);
 }
 
 TEST_CASE("virtual time twice gives the same bytes") {

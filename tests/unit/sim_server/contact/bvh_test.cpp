@@ -130,6 +130,44 @@ void check_nearest(Skin skin) {
   }
 }
 
+/// A surface crowded into a tenth of its size, more of which is near than there is room for: those kept are
+/// nearer than all that are not, within the room, and the next look, a ninth farther, would not have fitted.
+void check_crowded(Skin skin, double length) {
+  test::Random random(11);
+  constexpr double kReach = 0.02;
+  ContactFinder finder(skin.rest, skin.surface.triangles, skin.surface.triangles, kReach, length);
+  for (Vec3& x : skin.now) x *= 0.1;
+  ContactPatch patch;
+  patch.reserve(finder.max_nodes(), finder.max_triangles());
+  for (int i = 0; i < 30; ++i) {
+    const Vec3 p = 0.1 * skin.place(random), q = p + 0.1 * length * random.vector(1).normalized();
+    const auto kept = gathered(finder, skin, p, q, kReach, patch);
+    REQUIRE(kept.size() <= static_cast<std::size_t>(finder.max_triangles()));
+    REQUIRE(finder.vertices().size() <= static_cast<std::size_t>(finder.max_nodes()));
+    REQUIRE(patch.free.size() == finder.vertices().size());
+    const auto is_kept = [&](const Triangle& t) {
+      return std::find(kept.begin(), kept.end(), t) != kept.end();
+    };
+    double farthest_kept = 0, nearest_left = kReach;
+    for (const Triangle& t : skin.surface.triangles) {
+      const double distance = distance_of(skin, p, q, t);
+      if (is_kept(t)) {
+        farthest_kept = std::max(farthest_kept, distance);
+      } else {
+        nearest_left = std::min(nearest_left, distance);
+      }
+    }
+    CHECK(farthest_kept <= nearest_left);
+    CHECK(kept.size() < skin.surface.triangles.size());
+    std::vector<Triangle> next;
+    for (const Triangle& t : skin.surface.triangles) {
+      if (distance_of(skin, p, q, t) <= nearest_left / 0.9) next.push_back(t);
+    }
+    CHECK((next.size() > static_cast<std::size_t>(finder.max_triangles()) ||
+           in_order(next).size() > static_cast<std::size_t>(finder.max_nodes())));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("the surface near a ball or an axis: as by looking at every triangle, on deforming surfaces") {
@@ -137,6 +175,11 @@ TEST_CASE("the surface near a ball or an axis: as by looking at every triangle, 
   check_gather(Skin(liver()), 0.015, 0.06);
   check_gather(Skin(ball()), 0.012, 0);
   check_gather(Skin(ball()), 0.01, 0.05);
+}
+
+TEST_CASE("a surface more crowded than there is room for: the nearest of it stays") {
+  check_crowded(Skin(ball()), 0);
+  check_crowded(Skin(ball()), 0.05);
 }
 
 TEST_CASE("the nearest triangle and vertex: as by looking at every one, the first of equals") {

@@ -1,0 +1,79 @@
+// The contact that goes with the tool: where it gives no answer.
+#include "haptic_client/extrapolation/contact_on_patch.h"
+
+#include "tests/support/catch.h"
+#include "tests/support/served_block.h"
+
+using namespace palpate;
+using namespace palpate::client;
+
+namespace {
+
+constexpr double kRadius = 0.002;
+// It enters in at most 32 strides of 0.12 radii each, from where it just touches: the centre one radius
+// above.
+constexpr double kDeepest = (32 * 0.12 - 1) * kRadius;
+
+/// The whole model of the block, and tools upon it.
+struct OnBlock {
+  OnBlock() {
+    const sim::Simulation block(test::block_scene(), test::block_mesh());
+    model.announce(sim::SurfacePager(block, 0).state());
+    for (const protocol::SurfacePage& page : test::all_pages(block)) model.take(page);
+    REQUIRE(model.has_shape());
+  }
+  Surface under(double radius, double friction = 0) const {
+    return {.model = &model, .tool = {.radius = radius, .friction = friction}};
+  }
+  SurfaceModel model;
+};
+
+Vec3 below(double depth) {
+  return {0.001, -depth, 0.0005};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "contact on a patch: inside deeper than it enters in a tick there is no answer, and it stands nowhere") {
+  const OnBlock block;
+  for (const double friction : {0.0, 0.3}) {
+    CAPTURE(friction);
+    const Surface surface = block.under(kRadius, friction);
+    ContactOnPatch contact, fresh;
+    CHECK(contact.go(surface, below(-0.9 * kRadius)));
+    for (const double deep : {kDeepest + 1e-6, 0.007, 0.0075}) {
+      CHECK_FALSE(contact.go(surface, below(deep)));
+      CHECK_FALSE(contact.probe(surface, below(deep)));
+    }
+    // From where it stood, or had got to, its path would be another.
+    const Vec3 place(0.0013, 0.85 * kRadius, 0.0002);
+    const auto force = contact.go(surface, place), right = fresh.go(surface, place);
+    REQUIRE(force);
+    REQUIRE(right);
+    CHECK(right->norm() > 0.01);
+    CHECK(*force == *right);
+  }
+}
+
+TEST_CASE("contact on a patch: it enters as deep as that") {
+  const OnBlock block;
+  ContactOnPatch contact;
+  const auto force = contact.go(block.under(kRadius), below(kDeepest - 1e-6));
+  REQUIRE(force);
+  CHECK((*force)[1] > 0.5);
+}
+
+TEST_CASE("contact on a patch: a tool tiny against its way returns without an answer") {
+  const OnBlock block;
+  for (const double radius : {1e-9, 1e-30, 1e-300, 5e-324, 0.0}) {
+    CAPTURE(radius);
+    ContactOnPatch contact;
+    const Surface surface = block.under(radius);
+    contact.go(surface, below(-0.001));
+    CHECK_FALSE(contact.go(surface, below(0.004)));
+    CHECK_FALSE(contact.probe(surface, below(0.004)));
+    contact.go(surface, below(-0.001));
+    CHECK_FALSE(contact.go(surface, below(0.004)));
+  }
+}
