@@ -1,0 +1,115 @@
+// sim_server solve: what an engineer compares with another code, as the program prints it.
+#include <fmt/core.h>
+
+#include "tests/support/catch.h"
+#include "tests/support/programs.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::test;
+
+namespace {
+
+/// A column of 0.1 x 0.4 x 0.1 m, one cube of six tetrahedra on the other.
+std::string column() {
+  std::string nodes, elements;
+  int node = 0, element = 0;
+  for (int y = 0; y <= 4; ++y) {
+    for (int k = 0; k < 4; ++k)
+      nodes += fmt::format("{} {} {} {}\n", ++node, 0.1 * (k % 2), 0.1 * y, 0.1 * (k / 2));
+  }
+  // The corners of a cube: bit 0 is x, bit 1 z, 4 more is up; six ways along its edges from 0 to 7.
+  const int ways[6][4] = {{0, 3, 1, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 6, 2, 7}, {0, 5, 4, 7}, {0, 4, 6, 7}};
+  for (int y = 0; y < 4; ++y) {
+    for (const auto& way : ways) {
+      const int first = 4 * y + 1;
+      elements += fmt::format("{} 4 2 0 0 {} {} {} {}\n", ++element, first + way[0], first + way[1],
+                              first + way[2], first + way[3]);
+    }
+  }
+  return fmt::format(
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}$EndNodes\n$Elements\n{}\n{}$EndElements\n", node,
+      nodes, element, elements);
+}
+
+struct Bench {
+  TemporaryFolder folder;
+  std::string out = (folder.path() / "out.vtu").string();
+  Bench() { folder.write("column.msh", column()); }
+  std::string scene(const std::string& more,
+                    const std::string& material = "law = \"linear\"\nelement = \"p2\"") {
+    const std::string text = fmt::format(
+        "[mesh]\nfile = \"column.msh\"\n[material]\nyoung_modulus = 2e4\npoisson_ratio = 0\ndensity = "
+        "1000\n{}\n"
+        "[[fixed]]\nbox = [[-1, -1, -1], [1, 0.001, 1]]\n{}",
+        material, more);
+    return folder.write("scene.toml", text).string();
+  }
+};
+
+double number_after(const std::string& text, const std::string& before, int skip = 0) {
+  std::size_t at = text.find(before);
+  REQUIRE(at != std::string::npos);
+  at += before.size();
+  for (int i = 0; i < skip; ++i) at = text.find(' ', text.find_first_not_of(' ', at));
+  return std::stod(text.substr(at));
+}
+
+}  // namespace
+
+TEST_CASE("solve: a column under its own weight: probe, energy and reaction by hand") {
+  Bench bench;
+  const std::string said = output_of("sim_server",
+                                     {"solve", bench.scene("[[load]]\ngravity = [0, -9.81, 0]\n"), "--out",
+                                      bench.out, "--probe", "0.05,0.2,0.05"},
+                                     0);
+  CAPTURE(said);
+  // u = -rho g (y L - y^2 / 2) / E; energy: half the work of the weight, (rho g)^2 A L^3 / (6 E).
+  CHECK(number_after(said, ": displacement ", 1) == Approx(-9810 * (0.2 * 0.4 - 0.02) / 2e4).epsilon(1e-7));
+  CHECK(number_after(said, "elastic energy") ==
+        Approx(9810.0 * 9810 * 0.01 * 0.064 / (6 * 2e4)).epsilon(1e-7));
+  CHECK(number_after(said, "force of the supports", 1) == Approx(9810 * 0.004).epsilon(1e-7));
+  std::ifstream file(bench.out);
+  std::string first;
+  std::getline(file, first);
+  CHECK(first.rfind("<?xml", 0) == 0);
+}
+
+TEST_CASE("solve: relaxing under a load that stays, it creeps to where half the stiffness leads") {
+  Bench bench;
+  const std::string scene = bench.scene(
+      "[[load]]\ntraction = [0, -100, 0]\nbox = [[-1, 0.399, -1], [1, 1, 1]]\n[[material.relaxation]]\n"
+      "share = 0.5\ntime = 0.2\n",
+      "element = \"p1\"");
+  const std::string at_once =
+      output_of("sim_server", {"solve", scene, "--out", bench.out, "--probe", "0,0.4,0"}, 0);
+  const std::string later =
+      output_of("sim_server",
+                {"solve", scene, "--out", bench.out, "--probe", "0,0.4,0", "--seconds", "8", "--step", "0.05",
+                 "--series", (bench.folder.path() / "m.pvd").string()},
+                0);
+  CHECK(number_after(at_once, ": displacement ", 1) == Approx(-100 * 0.4 / 2e4).epsilon(1e-7));
+  CHECK(number_after(later, ": displacement ", 1) == Approx(-100 * 0.4 / 1e4).epsilon(0.01));
+  CHECK(std::filesystem::exists(bench.folder.path() / "m_0000.vtu"));
+}
+
+TEST_CASE("solve: wrong input is one clear line, exit 2, and no file") {
+  Bench bench;
+  const auto refused = [&](const std::string& scene, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments{"solve", scene, "--out", bench.out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const std::string said = output_of("sim_server", arguments, 2);
+    CHECK_FALSE(std::filesystem::exists(bench.out));
+    return said;
+  };
+  CHECK(refused(bench.scene("", "law = \"rubber\"")).find("linear, corotational, neo_hookean, stvk") !=
+        std::string::npos);
+  CHECK(refused(bench.scene("", "element = \"p3\"")).find("unknown element \"p3\"") != std::string::npos);
+  CHECK(refused(bench.scene("[[load]]\nforce = [0, 1, 0]\n")).find("needs one of `box`") !=
+        std::string::npos);
+  CHECK(
+      refused(bench.scene("[[load]]\ngravity = [0, 1, 0]\npressure = 1\n")).find("needs one of `gravity`") !=
+      std::string::npos);
+  CHECK(refused(bench.scene(""), {"--probe", "1,2"}).find("three numbers in metres") != std::string::npos);
+  CHECK(refused(bench.scene(""), {"--series", "x.pvd"}).find("needs --seconds") != std::string::npos);
+}
