@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "common/error.h"
 #include "sim_server/deformation/implicit.h"
 #include "sim_server/deformation/quasi_static.h"
 #include "sim_server/deformation/rigid.h"
@@ -41,6 +42,16 @@ constexpr std::array kModels{
 };
 
 }  // namespace
+
+double step_period(const Scene& scene) {
+  if (scene.rate_hz <= 0) {
+    fail(
+        "{}: `rate_hz` = 0, but model \"{}\" must know the time of a step beforehand; name a rate, such as "
+        "30",
+        scene.rate_where, scene.deformation.model);
+  }
+  return 1 / scene.rate_hz;
+}
 
 std::span<const DeformationModelRow> deformation_models() {
   return kModels;

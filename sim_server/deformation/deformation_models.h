@@ -25,6 +25,9 @@ struct ModelInputs {
   const Progress& progress;
 };
 
+/// 1 / rate_hz of the scene, s, for a model whose steps all take that long. Throws `Error` where it is 0.
+double step_period(const Scene& scene);
+
 /// One row per model: a new one is one file and one row.
 struct DeformationModelRow {
   std::string_view name;

@@ -11,12 +11,7 @@ namespace {
 const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"implicit\" needs a [material] section", scene.source);
-  if (scene.rate_hz <= 0) {
-    fail(
-        "{}: `rate_hz` = 0, but model \"implicit\" must know the time of a step beforehand; name a rate, "
-        "such as 30",
-        scene.rate_where);
-  }
+  step_period(scene);  // before any work
   inputs.progress("assembling the stiffness matrix", 0);
   return *scene.material;
 }
@@ -31,7 +26,7 @@ Implicit::Implicit(const ModelInputs& inputs)
     : solid_(inputs.mesh, material_of(inputs)),
       scene_loads_(inputs.scene, inputs.mesh, inputs.surface, solid_),
       dynamics_(solid_, scene_loads_.held(), settings_of(inputs.scene.deformation), inputs.scene.source),
-      period_(1 / inputs.scene.rate_hz),
+      period_(step_period(inputs.scene)),
       tolerance_(inputs.scene.deformation.tolerance),
       max_newton_(inputs.scene.deformation.max_newton),
       node_(inputs.surface.vertices),

@@ -14,12 +14,7 @@ constexpr double kSafety = 0.95;  // of the longest stable sub-step; the frequen
 
 ElasticTensors assemble(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
-  if (scene.rate_hz <= 0) {
-    fail(
-        "{}: `rate_hz` = 0, but model \"tensor_mass\" must know the time of a step beforehand; name a rate, "
-        "such as 30",
-        scene.rate_where);
-  }
+  step_period(scene);  // before any work
   inputs.progress("assembling the tensors", 0);
   return {inputs.mesh, *scene.material, inputs.fixed};
 }
@@ -50,7 +45,7 @@ TensorMass::TensorMass(const ModelInputs& inputs)
 void TensorMass::choose_sub_step(const ModelInputs& inputs) {
   inputs.progress("finding the highest frequency", 0);
   const double longest = kSafety * longest_sub_step(highest_frequency(tensors_), damping_of(inputs.scene));
-  const double period = 1 / inputs.scene.rate_hz, steps = std::ceil(period / longest);
+  const double period = step_period(inputs.scene), steps = std::ceil(period / longest);
   if (steps > kMostSubSteps) {
     fail(
         "{}: a step at {:g} Hz would take {:g} sub-steps of {:.2g} s; model \"tensor_mass\" is for soft "

@@ -20,6 +20,16 @@ std::uint32_t first_tile(const Listener& listener) {
   return protocol::SurfacePages{state.vertices, state.triangles}.first_tile();
 }
 
+/// The model with all compliance `factor` times what it is.
+void learn_wrong(Listener& listener, float factor) {
+  const std::uint32_t tiles = first_tile(listener);
+  listener.learn([&](protocol::SurfacePage& page) {
+    if (page.page < tiles) return true;
+    for (float& value : page.values) value *= factor;
+    return true;
+  });
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -39,12 +49,7 @@ TEST_CASE(
     "local contact: a compliance wrong by 30 % is made up for, so that the sample's place has its force") {
   for (const float factor : {0.7f, 1.3f}) {
     Listener listener;
-    const std::uint32_t tiles = first_tile(listener);
-    listener.learn([&](protocol::SurfacePage& page) {
-      if (page.page < tiles) return true;
-      for (float& value : page.values) value *= factor;
-      return true;
-    });
+    learn_wrong(listener, factor);
     const Errors errors = follow(listener);
     CAPTURE(factor, errors.mean, errors.largest);
     CHECK(errors.mean < 1e-3);
@@ -57,12 +62,7 @@ TEST_CASE(
 TEST_CASE("local contact: that the compliance is wrong is seen ahead of the first touch") {
   for (const float factor : {0.7f, 1.3f}) {
     Listener listener;
-    const std::uint32_t tiles = first_tile(listener);
-    listener.learn([&](protocol::SurfacePage& page) {
-      if (page.page < tiles) return true;
-      for (float& value : page.values) value *= factor;
-      return true;
-    });
+    learn_wrong(listener, factor);
     sim::Simulation truth(block_scene(), block_mesh());
     double largest = 0, peak = 0;
     for (int i = 0; i < 150; ++i) {  // down at 30 mm/s
