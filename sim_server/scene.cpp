@@ -1,6 +1,7 @@
 #include "sim_server/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/config.h"
@@ -42,6 +43,14 @@ std::string models_that(const Can& can) {
   return names;
 }
 
+struct SolverRow {
+  std::string_view name;
+  DynamicsSettings::Solver solver;
+};
+constexpr std::array kSolvers{SolverRow{"direct", DynamicsSettings::Solver::kDirect},
+                              SolverRow{"pcg", DynamicsSettings::Solver::kConjugateGradients},
+                              SolverRow{"quasi_newton", DynamicsSettings::Solver::kQuasiNewton}};
+
 DeformationSettings read_deformation(const Config& config) {
   DeformationSettings settings;
   settings.where = config.where("model");
@@ -63,6 +72,10 @@ DeformationSettings read_deformation(const Config& config) {
     if (!settings.second_order && integrator != "backward_euler")
       fail("{}: unknown integrator \"{}\"; known: backward_euler, bdf2", config.where("integrator"),
            integrator);
+    settings.solver =
+        find_row(kSolvers, config.text("solver", "direct"), "solver", config.where("solver")).solver;
+    settings.refresh_steps =
+        static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
     settings.max_newton =
         static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
     settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);

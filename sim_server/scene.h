@@ -8,6 +8,7 @@
 
 #include "common/contact/tool.h"
 #include "common/types.h"
+#include "sim_server/elasticity/dynamics_settings.h"
 #include "sim_server/elasticity/material.h"
 #include "sim_server/elasticity/stiffness_matrix.h"
 #include "sim_server/mesh/tet_mesh.h"
@@ -83,7 +84,9 @@ struct DeformationSettings {
   bool second_order = false;                 ///< `integrator` = "bdf2", model "implicit" only
   int max_newton = 5;                        ///< per step, [1, 100], likewise
   double tolerance = 1e-5;  ///< of the forces at work, what Newton may leave, [1e-12, 0.1], likewise
-  std::string where;        ///< "FILE:LINE" of `model`
+  DynamicsSettings::Solver solver = DynamicsSettings::Solver::kDirect;  ///< likewise
+  int refresh_steps = 8;  ///< from one factor of the background to the next, [1, 1000], likewise
+  std::string where;      ///< "FILE:LINE" of `model`
 };
 
 /// One `[[tool]]`.

@@ -110,6 +110,7 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPo
     }
     settle();
   }
+  if (!tissue_.model->balanced()) flag_contacts();
   if (!tissue_.before.empty())
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
   for (std::size_t i = 0; i < tools_.size(); ++i) forces_[i] = tools_[i].force();
@@ -156,13 +157,17 @@ void Simulation::settle() noexcept {
     ++still;
     if (!tool.placed() || !tool.share(tools_, tissue_)) continue;
     if (tool.exhausted() || turn >= kMaxSweeps * tools_.size()) {
-      for (ToolContact& any : tools_) {
-        if (any.force().contacts > 0) any.flag();
-      }
+      flag_contacts();
       return;
     }
     tool.settle(tissue_);
     still = 1;
+  }
+}
+
+void Simulation::flag_contacts() noexcept {
+  for (ToolContact& tool : tools_) {
+    if (tool.force().contacts > 0) tool.flag();
   }
 }
 

@@ -79,6 +79,7 @@ class Simulation {
   void move_organ(double dt) noexcept;
   void take(const FreeMotion& motion) noexcept;
   void settle() noexcept;
+  void flag_contacts() noexcept;
 
   TetMesh mesh_;
   Surface surface_;

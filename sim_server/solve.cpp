@@ -186,7 +186,7 @@ std::vector<Vec3> move_for(const SolveOptions& options, const Scene& scene, cons
     for (std::size_t i = 0; !loads.moved().empty() && i < external.size(); ++i) {
       for (int axis = 0; axis < 3; ++axis) {
         if ((loads.held()[i] >> axis & 1) != 0)
-          dynamics.position()[i][axis] = solid.rest()[i][axis] + loads.moved()[i][axis];
+          dynamics.put()[i][axis] = solid.rest()[i][axis] + loads.moved()[i][axis];
       }
     }
     for (int k = 0; k < kMostNewton; ++k) {

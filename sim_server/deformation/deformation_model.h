@@ -13,6 +13,7 @@ namespace palpate::sim {
 struct NodalLoad {
   int vertex;  ///< surface vertex
   Vec3 force;  ///< N, world
+  bool operator==(const NodalLoad&) const = default;
 };
 
 /// A tissue free of contact; valid until it is asked again.
@@ -56,6 +57,9 @@ class DeformationModel {
   /// Looks again at where the loads of the last `apply` led: where a linearisation about that place would say
   /// something else, the free motion of that, under the same loads; nothing where all is said.
   virtual std::optional<FreeMotion> relinearise() noexcept { return {}; }
+
+  /// Whether the last step came to balance: false where it is an answer held for want of a better one.
+  virtual bool balanced() const noexcept { return true; }
 
   /// What this model holds in memory.
   virtual std::vector<MemoryPart> memory() const = 0;

@@ -8,6 +8,9 @@
 namespace palpate::sim {
 namespace {
 
+// Of the forces at work: what may be left before the last correction of a step.
+constexpr double kBalanced = 0.05;
+
 const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"implicit\" needs a [material] section", scene.source);
@@ -17,7 +20,8 @@ const Material& material_of(const ModelInputs& inputs) {
 }
 
 DynamicsSettings settings_of(const DeformationSettings& settings) {
-  return {settings.rayleigh_mass, settings.rayleigh_stiffness, settings.second_order};
+  return {settings.rayleigh_mass, settings.rayleigh_stiffness, settings.second_order, settings.solver,
+          settings.refresh_steps};
 }
 
 }  // namespace
@@ -31,7 +35,8 @@ Implicit::Implicit(const ModelInputs& inputs)
       max_newton_(inputs.scene.deformation.max_newton),
       node_(inputs.surface.vertices),
       external_(static_cast<std::size_t>(solid_.nodes())),
-      slot_(node_.size(), -1) {
+      slot_(node_.size(), -1),
+      asked_(node_.size()) {
   if (!inputs.scene.loads.empty()) {
     inputs.progress("finding the shape under its loads", 0);
     dynamics_.stand_at(
@@ -48,10 +53,14 @@ Implicit::Implicit(const ModelInputs& inputs)
     dof_.push_back(dynamics_.dofs().first[node]);
     rest_.push_back(dynamics_.position()[node]);
   }
+  vertex_.assign(static_cast<std::size_t>(dynamics_.dofs().count / 3), -1);
+  for (std::size_t v = 0; v < dof_.size(); ++v) {
+    if (dof_[v] >= 0) vertex_[static_cast<std::size_t>(dof_[v] / 3)] = static_cast<int>(v);
+  }
   free_ = positions_ = rest_;
   dynamics_.start_step(period_);
   dynamics_.improve(external());
-  held_compliance_ = dynamics_.least_compliance();
+  held_compliance_ = 1 / dynamics_.matrix().largest();
   linearised();
   inputs.progress("factoring the stiffness matrix", 1);
 }
@@ -64,9 +73,10 @@ FreeMotion Implicit::free_motion(double dt) noexcept {
     }
     moving_ = true;
     touched_ = false;
+    foresee_columns();
     dynamics_.start_step(period_);
     met_ = loads_;
-    looks_ = dynamics_.settle(external(), max_newton_, tolerance_);
+    looks_ = dynamics_.settle(external(), 1, tolerance_);
     linearised();
   }
   return {free_, {}, positions_};
@@ -74,17 +84,23 @@ FreeMotion Implicit::free_motion(double dt) noexcept {
 
 /// All of the body goes where the loads of now lead by the linearisation that stands.
 void Implicit::follow_loads() noexcept {
+  if (loads_ == met_) return;
   Eigen::VectorXd change = Eigen::VectorXd::Zero(dynamics_.dofs().count);
-  const auto add = [&](const std::vector<NodalLoad>& loads, double sign) {
-    for (const NodalLoad& load : loads) {
-      if (dof_[load.vertex] >= 0) change.segment<3>(dof_[load.vertex]) += sign * load.force;
-    }
-  };
-  add(loads_, 1);
-  add(met_, -1);
-  if (change.isZero(0)) return;
-  dynamics_.move(dynamics_.solve(change).col(0));
+  add_response(loads_, 1, change);
+  add_response(met_, -1, change);
+  dynamics_.move(change);
   met_ = loads_;
+}
+
+/// Adds what moves by loads, times `sign`, m by unknowns.
+void Implicit::add_response(std::span<const NodalLoad> loads, double sign,
+                            Eigen::VectorXd& moved) const noexcept {
+  std::vector<int> vertices;
+  for (const NodalLoad& load : loads) vertices.push_back(load.vertex);
+  find_columns(vertices);
+  for (const NodalLoad& load : loads) {
+    if (dof_[load.vertex] >= 0) moved += columns_.middleCols<3>(3 * slot_[load.vertex]) * (sign * load.force);
+  }
 }
 
 std::optional<FreeMotion> Implicit::relinearise() noexcept {
@@ -97,13 +113,16 @@ std::optional<FreeMotion> Implicit::relinearise() noexcept {
   return FreeMotion{free_, {}, positions_};
 }
 
+bool Implicit::balanced() const noexcept {
+  return never_changes() || dynamics_.unbalanced() <= kBalanced;
+}
+
 /// A new linearisation, or a new place of an old one: the surface there, and free of the loads it was made
 /// under.
 void Implicit::linearised() noexcept {
   if (factors_ != dynamics_.factors()) {
-    std::fill(slot_.begin(), slot_.end(), -1);
-    slots_ = 0;
     factors_ = dynamics_.factors();
+    drop_columns();
   }
   for (std::size_t v = 0; v < node_.size(); ++v) positions_[v] = free_[v] = dynamics_.position()[node_[v]];
   press(met_, -1, free_);
@@ -117,32 +136,43 @@ std::span<const Vec3> Implicit::external() noexcept {
   return external_;
 }
 
+/// Has the next factor of the background come with the columns asked for since the last one.
+void Implicit::foresee_columns() noexcept {
+  std::vector<int> first;
+  for (std::size_t v = 0; v < dof_.size(); ++v) {
+    if (asked_[v] != 0 && dof_[v] >= 0) first.push_back(dof_[v]);
+  }
+  dynamics_.foresee(std::move(first));
+}
+
+/// Of an older factor; takes those that came with the new one.
+void Implicit::drop_columns() noexcept {
+  std::fill(slot_.begin(), slot_.end(), -1);
+  std::fill(asked_.begin(), asked_.end(), std::uint8_t{0});
+  slots_ = 0;
+  const Columns& foreseen = dynamics_.foreseen();
+  for (std::size_t k = 0; k < foreseen.first.size(); ++k)
+    slot_[vertex_[static_cast<std::size_t>(foreseen.first[k] / 3)]] = static_cast<int>(k);
+  if (!foreseen.first.empty()) keep_columns(foreseen.values);
+}
+
 void Implicit::find_columns(std::span<const int> vertices) const noexcept {
   std::vector<int> missing;
   for (const int v : vertices) {
+    asked_[v] = 1;
     if (dof_[v] < 0 || slot_[v] >= 0) continue;
     slot_[v] = slots_ + static_cast<int>(missing.size());
-    missing.push_back(v);
+    missing.push_back(dof_[v]);
   }
-  if (missing.empty()) return;
-  const auto count = static_cast<Eigen::Index>(missing.size());
-  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(dynamics_.dofs().count, 3 * count);
-  for (Eigen::Index k = 0; k < count; ++k) unit.block<3, 3>(dof_[missing[k]], 3 * k).setIdentity();
-  const Eigen::MatrixXd moved = dynamics_.solve(unit);
-  slots_ += static_cast<int>(count);
-  if (columns_.cols() < 3 * slots_)
-    columns_.conservativeResize(3 * static_cast<Eigen::Index>(node_.size()), 2 * 3 * slots_);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    auto column = columns_.middleCols<3>(3 * slot_[missing[k]]);
-    for (std::size_t v = 0; v < node_.size(); ++v) {
-      auto rows = column.middleRows<3>(static_cast<Eigen::Index>(3 * v));
-      if (dof_[v] >= 0) {
-        rows = moved.block<3, 3>(dof_[v], 3 * k);
-      } else {
-        rows.setZero();
-      }
-    }
-  }
+  if (!missing.empty()) keep_columns(dynamics_.matrix().columns(missing));
+}
+
+void Implicit::keep_columns(const Eigen::MatrixXd& columns) const noexcept {
+  const Eigen::Index before = 3 * slots_;
+  if (columns_.cols() < before + columns.cols())
+    columns_.conservativeResize(dynamics_.dofs().count, 2 * (before + columns.cols()));
+  columns_.middleCols(before, columns.cols()) = columns;
+  slots_ += static_cast<int>(columns.cols() / 3);
 }
 
 void Implicit::compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
@@ -156,8 +186,8 @@ void Implicit::compliance(std::span<const int> vertices, ContactPatch& patch) co
         block = (i == j ? held_compliance_ : 0.0) * Mat3::Identity();
       } else {
         // Equal by theory to its mirror image; make it so to the last bit.
-        block = 0.5 * (columns_.block<3, 3>(3 * vertices[i], 3 * slot_[vertices[j]]) +
-                       columns_.block<3, 3>(3 * vertices[j], 3 * slot_[vertices[i]]).transpose());
+        block = 0.5 * (columns_.block<3, 3>(dof_[vertices[i]], 3 * slot_[vertices[j]]) +
+                       columns_.block<3, 3>(dof_[vertices[j]], 3 * slot_[vertices[i]]).transpose());
       }
       patch.compliance.block<3, 3>(3 * j, 3 * i) = block.transpose();
     }
@@ -167,17 +197,14 @@ void Implicit::compliance(std::span<const int> vertices, ContactPatch& patch) co
 /// Moves `positions` by what loads do, times `sign`.
 void Implicit::press(std::span<const NodalLoad> loads, double sign,
                      std::span<Vec3> positions) const noexcept {
-  std::vector<int> vertices;
-  for (const NodalLoad& load : loads) vertices.push_back(load.vertex);
-  find_columns(vertices);
+  if (loads.empty()) return;
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(dynamics_.dofs().count);
+  add_response(loads, sign, moved);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (dof_[v] >= 0) positions[v] += moved.segment<3>(dof_[v]);
+  }
   for (const NodalLoad& load : loads) {
-    if (dof_[load.vertex] < 0) {
-      positions[load.vertex] += sign * held_compliance_ * load.force;
-      continue;
-    }
-    const Eigen::VectorXd moved = columns_.middleCols<3>(3 * slot_[load.vertex]) * (sign * load.force);
-    for (std::size_t v = 0; v < positions.size(); ++v)
-      positions[v] += moved.segment<3>(static_cast<Eigen::Index>(3 * v));
+    if (dof_[load.vertex] < 0) positions[load.vertex] += sign * held_compliance_ * load.force;
   }
 }
 

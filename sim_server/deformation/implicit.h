@@ -11,8 +11,10 @@ namespace palpate::sim {
 /// = J A^-1 J^T, dt^2 of the mass-like matrix in it, which is also that over the sample interval, as loads
 /// are held over the step. Then it looks again where contact led, until Newton's method has settled with
 /// contact inside its loop, at most `max_newton` times. The factor of A is kept over steps as long as it
-/// serves: that takes more looks, but what they converge to is balanced against the true forces. Columns of W
-/// are solved for as they are asked for, and kept while the factor stands: for a linear law from then on.
+/// serves, or made in the background and taken every `refresh_steps`: that takes more looks, but what they
+/// converge to is balanced against the true forces. Columns of W are solved for as they are asked for, and
+/// kept while the factor stands: for a linear law from then on; with a factor of the background come those
+/// that were asked for while it was made.
 class Implicit : public DeformationModel {
  public:
   /// Throws `Error` without material, rate or what holds the body.
@@ -23,12 +25,18 @@ class Implicit : public DeformationModel {
   bool compliance_is_constant() const noexcept override { return false; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::optional<FreeMotion> relinearise() noexcept override;
+  /// Whether the last look found no more than 5 % of the forces at work unbalanced.
+  bool balanced() const noexcept override;
   std::vector<MemoryPart> memory() const override;
 
  private:
   void follow_loads() noexcept;
   void linearised() noexcept;
+  void foresee_columns() noexcept;
+  void drop_columns() noexcept;
   void find_columns(std::span<const int> vertices) const noexcept;
+  void keep_columns(const Eigen::MatrixXd& columns) const noexcept;
+  void add_response(std::span<const NodalLoad> loads, double sign, Eigen::VectorXd& moved) const noexcept;
   void press(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const noexcept;
   std::span<const Vec3> external() noexcept;
   bool never_changes() const { return solid_.material().law == ElasticLaw::kLinear; }
@@ -42,12 +50,14 @@ class Implicit : public DeformationModel {
   bool moving_ = false;          // a step has begun
   bool touched_ = false;         // and was looked at again
   std::vector<int> node_, dof_;  // per surface vertex: its node; its first unknown, or -1: held
+  std::vector<int> vertex_;      // per three unknowns: the surface vertex, or -1: inside
   std::vector<Vec3> rest_, free_, positions_, external_;  // m; surface vertices; N, nodes
   std::vector<NodalLoad> loads_, met_;                    // now; those that the linearisation was made under
   double held_compliance_ = 0;                            // m/N
   mutable std::vector<int> slot_;                         // per surface vertex: of its columns, or -1
+  mutable std::vector<std::uint8_t> asked_;  // per surface vertex: for its columns, of this factor
   mutable int slots_ = 0;
-  mutable Eigen::MatrixXd columns_;  // of W: all surface vertices, three columns a slot
+  mutable Eigen::MatrixXd columns_;  // of A^-1, three a slot, m/N
 };
 
 }  // namespace palpate::sim

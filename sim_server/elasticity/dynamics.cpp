@@ -12,6 +12,11 @@ constexpr double kWorthwhile = 0.3;
 constexpr double kRounding = 1e-6;
 // Of the size of the body: what moves a node by less is no force at work, so that a body at rest is at rest.
 constexpr double kStill = 1e-9;
+// Likewise: by so much nodes are moved to learn how forces change.
+constexpr double kNudge = 1e-7;
+// Conjugate gradients end when no more than this share is left, or after so many.
+constexpr double kInexact = 0.1;
+constexpr int kMostGradients = 20;
 
 }  // namespace
 
@@ -20,8 +25,7 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
     : solid_(solid),
       settings_(settings),
       dofs_(std::move(held)),
-      mass_(solid.masses()),
-      matrix_(solid.stiffness_matrix(dofs_)),
+      matrix_(solid, dofs_, settings, where),
       x_(solid.rest()),
       x_before_(x_),
       v_before_(x_.size(), Vec3::Zero()),
@@ -29,14 +33,17 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
       v_then_(v_before_),
       from_(x_),
       from_v_(v_before_),
-      internal_(x_.size()) {
-  solid.add_stiffness(x_, matrix_);
-  usual_ = matrix_.lower().diagonal().mean();
-  matrix_.close_held(usual_);
-  factor_.emplace(matrix_.lower(), where);
+      internal_(x_.size(), Vec3::Zero()),
+      internal_before_(internal_),
+      internal_then_(internal_),
+      from_internal_(internal_) {
   Eigen::AlignedBox3d box;
   for (const Vec3& x : x_) box.extend(x);
-  still_ = kStill * box.diagonal().norm() * usual_;
+  reach_ = box.diagonal().norm();
+  still_ = kStill * reach_ * matrix_.usual();
+  // Of a linear law one factor serves for ever.
+  if (settings.solver != DynamicsSettings::Solver::kDirect && solid.material().law != ElasticLaw::kLinear)
+    background_.emplace(solid, dofs_, settings, where);
   const std::size_t terms = solid.material().relaxations.size();
   if (terms == 0) return;
   stress_.assign(solid.points(), Mat3::Zero());
@@ -46,20 +53,34 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
 
 void Dynamics::stand_at(std::vector<Vec3> x) {
   x_ = x_before_ = x_then_ = std::move(x);
+  resist();
+  internal_before_ = internal_then_ = internal_;
 }
 
 void Dynamics::start_step(double h) {
   h_ = h;
+  told_ = false;
+  quasi_newton_.begin();
   improved_ = false;
   const bool second = settings_.second_order && steps_ > 0;
   c_ = (second ? 1.5 : 1) / h;
   for (std::size_t i = 0; i < x_.size(); ++i) {
     from_[i] = second ? Vec3((4 * x_before_[i] - x_then_[i]) / 3) : x_before_[i];
     from_v_[i] = second ? Vec3((4 * v_before_[i] - v_then_[i]) / 3) : v_before_[i];
+    from_internal_[i] =
+        second ? Vec3((4 * internal_before_[i] - internal_then_[i]) / 3) : internal_before_[i];
     if (dofs_.first[i] >= 0) x_[i] = x_before_[i] + h * v_before_[i];
   }
   scale_ = 1;
-  if (terms_.empty()) return;
+  if (!terms_.empty()) remember(h);
+  if (background_ && steps_ % settings_.refresh_steps == 0 && steps_ != exchanged_) {
+    exchanged_ = steps_;
+    exchange_factors();
+  }
+}
+
+/// What is left of the stresses before, at the end of a step of `h`.
+void Dynamics::remember(double h) {
   std::fill(memory_.begin(), memory_.end(), Mat3::Zero());
   const auto& relaxations = solid_.material().relaxations;
   for (std::size_t k = 0; k < relaxations.size(); ++k) {
@@ -76,43 +97,51 @@ Viscosity Dynamics::viscosity() const {
 }
 
 void Dynamics::factor() {
-  matrix_.set_zero();
-  solid_.add_stiffness(x_, matrix_, viscosity());
-  matrix_.lower() *= 1 + settings_.rayleigh_stiffness * c_;
-  matrix_.add_to_diagonal(mass_, c_ * c_ + settings_.rayleigh_mass * c_);
-  matrix_.close_held(usual_);
-  bool definite = factor_->refactor(matrix_.lower());
-  // A body squeezed hard may buckle, where A is not positive definite: more inertia keeps it on its way.
-  for (double more = 1; !definite && more < 1e6; more *= 4) {
-    matrix_.add_to_diagonal(mass_, more * c_ * c_);
-    definite = factor_->refactor(matrix_.lower());
-  }
-  factored_c_ = c_;
+  matrix_.build(solid_, x_, viscosity(), c_);
+  from_background_ = false;
+  renewed();
+}
+
+void Dynamics::renewed() {
+  too_old_ = false;
+  quasi_newton_.forget();
   ++factors_;
 }
 
-/// f_ext - f_int - M a - C v over the unknowns, N.
-Eigen::VectorXd Dynamics::unbalanced(std::span<const Vec3> external) {
-  solid_.forces(x_, internal_, viscosity());
-  const double alpha = settings_.rayleigh_mass, beta = settings_.rayleigh_stiffness;
-  Eigen::VectorXd left(dofs_.count), speed(dofs_.count);
+/// Takes the factor that the background has made, and has it begin the next from where the body is now.
+void Dynamics::exchange_factors() {
+  if (background_->begun()) {
+    background_->take(matrix_);
+    from_background_ = true;
+    renewed();
+  }
+  background_->begin(x_before_, viscosity(), c_, foreseen_);
+}
+
+const Columns& Dynamics::foreseen() const {
+  static const Columns none;
+  return from_background_ ? background_->columns() : none;
+}
+
+/// f_int where the body is looked for now.
+void Dynamics::resist() {
+  if (!told_) solid_.forces(x_, internal_, viscosity());
+  told_ = true;
+}
+
+/// f_ext less all the rest, over the unknowns, N.
+Eigen::VectorXd Dynamics::imbalance(std::span<const Vec3> external) {
+  resist();
+  const double alpha = settings_.rayleigh_mass, damped = settings_.rayleigh_stiffness * c_;
+  const std::vector<double>& mass = matrix_.masses();
+  Eigen::VectorXd left(dofs_.count);
   double at_work = still_ * still_;
   for (std::size_t i = 0; i < x_.size(); ++i) {
-    const Vec3 v = c_ * (x_[i] - from_[i]), inertia = mass_[i] * (c_ * (v - from_v_[i]) + alpha * v);
+    const Vec3 v = c_ * (x_[i] - from_[i]), inertia = mass[i] * (c_ * (v - from_v_[i]) + alpha * v);
     at_work += internal_[i].squaredNorm() + external[i].squaredNorm() + inertia.squaredNorm();
     if (dofs_.first[i] < 0) continue;
-    left.segment<3>(dofs_.first[i]) = external[i] - internal_[i] - inertia;
-    speed.segment<3>(dofs_.first[i]) = v;
-  }
-  if (beta > 0) {  // K v, from A
-    dofs_.hold(speed);
-    Eigen::VectorXd damping = matrix_.lower().selfadjointView<Eigen::Lower>() * speed;
-    for (std::size_t i = 0; i < x_.size(); ++i) {
-      if (dofs_.first[i] >= 0)
-        damping.segment<3>(dofs_.first[i]) -=
-            (c_ * c_ + alpha * c_) * mass_[i] * speed.segment<3>(dofs_.first[i]);
-    }
-    left -= beta / (1 + beta * c_) * damping;
+    left.segment<3>(dofs_.first[i]) =
+        external[i] - internal_[i] - damped * (internal_[i] - from_internal_[i]) - inertia;
   }
   dofs_.hold(left);
   left_ = left.norm() / std::sqrt(at_work);
@@ -120,19 +149,22 @@ Eigen::VectorXd Dynamics::unbalanced(std::span<const Vec3> external) {
 }
 
 void Dynamics::move(const Eigen::VectorXd& by) {
+  told_ = false;
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (dofs_.first[i] >= 0) x_[i] += by.segment<3>(dofs_.first[i]);
   }
 }
 
 double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
-  bool fresh = factored_c_ != c_;
+  bool fresh = matrix_.c() != c_;
   if (fresh) factor();
   const double before = left_;
-  Eigen::VectorXd left = unbalanced(external);
+  Eigen::VectorXd left = imbalance(external);
   if (!std::isfinite(left_)) {  // flung about beyond all measure: it stays where it was
     x_ = x_before_;
-    return left_ = 0;
+    told_ = false;
+    left_ = 1;
+    return 0;
   }
   if (left_ <= tolerance) return left_;
   if (improved_ && left_ > kWorthwhile * before) {
@@ -144,15 +176,69 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
       left_ = before;
       return 1;
     }
-    factor();
-    fresh = true;
-    left = unbalanced(external);
+    too_old_ = true;
+    if (!background_) {
+      factor();
+      fresh = true;
+      left = imbalance(external);
+    }
   }
   improved_ = true;
-  fresh_ = fresh;
-  way_ = factor_->solve(left).col(0);
+  fresh_ = fresh || (background_ && (too_old_ || settings_.solver == DynamicsSettings::Solver::kQuasiNewton));
+  way_ = towards_balance(left, external);
   move(way_);
   return left_;
+}
+
+Eigen::VectorXd Dynamics::towards_balance(const Eigen::VectorXd& left, std::span<const Vec3> external) {
+  using Solver = DynamicsSettings::Solver;
+  if (background_ && settings_.solver == Solver::kQuasiNewton) return learned_step(left, external);
+  if (background_ && too_old_) return conjugate_gradients(left, external);
+  return matrix_.solve(left).col(0);
+}
+
+Eigen::VectorXd Dynamics::learned_step(const Eigen::VectorXd& left, std::span<const Vec3> external) {
+  Eigen::VectorXd place = Eigen::VectorXd::Zero(dofs_.count), resistance = -left;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    if (dofs_.first[i] < 0) continue;
+    place.segment<3>(dofs_.first[i]) = x_[i];
+    resistance.segment<3>(dofs_.first[i]) += external[i];
+  }
+  dofs_.hold(resistance);
+  quasi_newton_.learn(place, resistance);
+  return quasi_newton_.step(matrix_, left);
+}
+
+/// A way by which the body moves towards balance, m: A^-1 `left` to within a share of it, of A here and now.
+Eigen::VectorXd Dynamics::conjugate_gradients(const Eigen::VectorXd& left, std::span<const Vec3> external) {
+  const double enough = kInexact * left.norm();
+  Eigen::VectorXd way = Eigen::VectorXd::Zero(left.size()), rest = left, along = way;
+  double before = 1;
+  for (int i = 0; i < kMostGradients && rest.norm() > enough; ++i) {
+    const Eigen::VectorXd ahead = matrix_.solve(rest).col(0);
+    const double now = rest.dot(ahead);
+    along = ahead + now / before * along;
+    before = now;
+    const Eigen::VectorXd pull = stiffness_times(along, left, external);
+    const double bend = along.dot(pull);
+    if (!(bend > 0)) return i == 0 ? along : way;  // about to buckle: as far as it goes
+    way += now / bend * along;
+    rest -= now / bend * pull;
+  }
+  return way;
+}
+
+/// A `way`, N, of A here and now, where `left` is unbalanced.
+Eigen::VectorXd Dynamics::stiffness_times(const Eigen::VectorXd& way, const Eigen::VectorXd& left,
+                                          std::span<const Vec3> external) {
+  const double share = kNudge * reach_ / way.cwiseAbs().maxCoeff(), unbalanced_here = left_;
+  const std::vector<Vec3> here = x_;
+  move(share * way);
+  Eigen::VectorXd change = (left - imbalance(external)) / share;
+  x_ = here;
+  told_ = false;
+  left_ = unbalanced_here;
+  return change;
 }
 
 int Dynamics::settle(std::span<const Vec3> external, int most, double tolerance) {
@@ -162,6 +248,10 @@ int Dynamics::settle(std::span<const Vec3> external, int most, double tolerance)
 }
 
 void Dynamics::finish_step() {
+  if (settings_.rayleigh_stiffness > 0) resist();
+  std::swap(internal_then_, internal_before_);
+  std::swap(internal_before_, internal_);
+  told_ = false;
   if (!terms_.empty()) relax_stress(h_);
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const Vec3 v = c_ * (x_[i] - from_[i]);
@@ -197,13 +287,15 @@ void Dynamics::forces(std::span<Vec3> f) const {
 
 double Dynamics::kinetic_energy() const {
   double sum = 0;
-  for (std::size_t i = 0; i < mass_.size(); ++i) sum += 0.5 * mass_[i] * v_before_[i].squaredNorm();
+  const std::vector<double>& mass = matrix_.masses();
+  for (std::size_t i = 0; i < mass.size(); ++i) sum += 0.5 * mass[i] * v_before_[i].squaredNorm();
   return sum;
 }
 
 std::size_t Dynamics::bytes() const {
   return (x_.size() * 8) * sizeof(Vec3) + matrix_.bytes() +
-         (stress_.size() + memory_.size() + terms_.size()) * sizeof(Mat3) + mass_.size() * sizeof(double);
+         (stress_.size() + memory_.size() + terms_.size()) * sizeof(Mat3) +
+         (background_ ? background_->bytes() : 0);
 }
 
 }  // namespace palpate::sim

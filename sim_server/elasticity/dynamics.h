@@ -1,24 +1,24 @@
 #pragma once
 #include <optional>
 
-#include "sim_server/elasticity/solid.h"
-#include "sim_server/elasticity/sparse_cholesky.h"
+#include "sim_server/elasticity/quasi_newton.h"
 
 namespace palpate::sim {
 
-/// How a body moves in time.
-struct DynamicsSettings {
-  double rayleigh_mass = 0;       ///< alpha, 1/s, [0, 1e4]
-  double rayleigh_stiffness = 0;  ///< beta, s, [0, 10]
-  bool second_order = false;      ///< BDF2 instead of backward Euler
-};
-
 /// Implicit dynamics of a body: at the end of each step of length h
-///   M a + (alpha M + beta K) v + f_int(x) = f_ext,
-/// K the stiffness there, with v = c (x - x~), a = c (v - v~): backward Euler (c = 1 / h, x~, v~ those
-/// before) or BDF2 (c = 3 / 2h, x~ = (4 x_n - x_(n-1)) / 3, likewise v~; its first step is an Euler step).
-/// Newton's method on A = (1 + beta c) K + (c^2 + alpha c) M, by sparse Cholesky; a factor of earlier serves
-/// as long as each step with it leaves no more than 30 % of what was unbalanced. Viscosity by Prony series
+///   M a + alpha M v + beta df_int/dt + f_int(x) = f_ext,
+/// which is Rayleigh's damping with K of here and now, with v = c (x - x~), a = c (v - v~): backward Euler (c
+/// = 1 / h, x~, v~ those before) or BDF2 (c = 3 / 2h, x~ = (4 x_n - x_(n-1)) / 3, likewise v~; its first step
+/// is an Euler step). Newton's method on A = (1 + beta c) K + (c^2 + alpha c) M (`NewtonMatrix`), in one of
+/// three ways:
+/// - by the sparse Cholesky factor of A, where one of earlier serves as long as each step with it leaves no
+///   more than 30 % of what was unbalanced;
+/// - with a factor that is made in the background, of where the body was `refresh_steps` to twice as many
+///   steps before (Courtecuisse et al. 2010), as it is, and where that leaves more, by conjugate gradients
+///   that it preconditions. A v is had from a difference of forces (Knoll and Keyes 2004, J. Comput. Phys.
+///   193:357), so that no matrix is assembled in a step;
+/// - with the same factor by a quasi-Newton method (`QuasiNewton`), which takes fewer forces and solves.
+/// All balance the same forces. Viscosity by Prony series
 /// with the recursion of Simo (1987, Comput. Meth. Appl. Mech. Engng 60:153): with S0 the elastic second
 /// Piola-Kirchhoff stress, g_i and tau_i share and time of each term,
 ///   h_i' = exp(-h / tau_i) h_i + g_i gamma_i (S0' - S0),   gamma_i = (1 - exp(-h / tau_i)) tau_i / h,
@@ -40,12 +40,18 @@ class Dynamics {
   double improve(std::span<const Vec3> external, double tolerance = 0);
   /// At most `most` of them, until no more than `tolerance` is unbalanced. Returns how many.
   int settle(std::span<const Vec3> external, int most, double tolerance);
+  /// What the last `improve` found unbalanced before it, as a share of the forces at work.
+  double unbalanced() const { return left_; }
   /// What is found now is the end of the step.
   void finish_step();
 
   /// Where it is looked for now: (nodes) m.
   std::span<const Vec3> position() const { return x_; }
-  std::span<Vec3> position() { return x_; }
+  /// To put nodes elsewhere.
+  std::span<Vec3> put() {
+    told_ = false;
+    return x_;
+  }
   /// (nodes) m/s, at the end of the last step.
   std::span<const Vec3> velocity() const { return v_before_; }
   const FreeDofs& dofs() const { return dofs_; }
@@ -53,10 +59,12 @@ class Dynamics {
   void push_anew() { improved_ = false; }
   /// How often A has been factored: what `solve` gave stands while this does.
   int factors() const { return factors_; }
-  /// A^-1 b of the newest factor, for columns b over the unknowns.
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return factor_->solve(b); }
-  /// What the stiffest node gives way by, m/N, or a little less.
-  double least_compliance() const { return 1 / matrix_.lower().diagonal().maxCoeff(); }
+  /// The matrix of now and its factor; inexact where it was made in the background.
+  const NewtonMatrix& matrix() const { return matrix_; }
+  /// The factor begun next in the background comes with its columns from these unknowns on.
+  void foresee(std::vector<int> first) { foreseen_ = std::move(first); }
+  /// Those that the factor of now came with; none where it is not of the background.
+  const Columns& foreseen() const;
   /// Moves the unknowns, m.
   void move(const Eigen::VectorXd& by);
   double kinetic_energy() const;
@@ -66,27 +74,39 @@ class Dynamics {
 
  private:
   void factor();
-  Eigen::VectorXd unbalanced(std::span<const Vec3> external);
+  Eigen::VectorXd towards_balance(const Eigen::VectorXd& left, std::span<const Vec3> external);
+  Eigen::VectorXd learned_step(const Eigen::VectorXd& left, std::span<const Vec3> external);
+  void exchange_factors();
+  void renewed();
+  Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& left, std::span<const Vec3> external);
+  Eigen::VectorXd stiffness_times(const Eigen::VectorXd& way, const Eigen::VectorXd& left,
+                                  std::span<const Vec3> external);
+  Eigen::VectorXd imbalance(std::span<const Vec3> external);
+  void remember(double h);
+  void resist();
   void relax_stress(double h);
   Viscosity viscosity() const;
 
   const Solid& solid_;
   DynamicsSettings settings_;
   FreeDofs dofs_;
-  std::vector<double> mass_;
-  StiffnessMatrix matrix_;
-  std::optional<SparseCholesky> factor_;
-  double factored_c_ = 0;  // of the factor; 0: none of A yet
+  NewtonMatrix matrix_;
+  std::optional<BackgroundMatrix> background_;
+  QuasiNewton quasi_newton_;
+  bool from_background_ = false, too_old_ = false;  // to serve alone
+  std::vector<int> foreseen_;
   int factors_ = 0;
   bool improved_ = false, fresh_ = false;  // in this step; by a factor of the very place
   Eigen::VectorXd way_;                    // of the last improvement, m
   std::vector<Vec3> x_, x_before_, v_before_, x_then_, v_then_;  // now; last step's end; the one before
   std::vector<Vec3> from_, from_v_;                              // x~, v~
-  std::vector<Vec3> internal_;
+  std::vector<Vec3> internal_, internal_before_, internal_then_, from_internal_;  // f_int, likewise, N
+  bool told_ = false;                                                             // `internal_` is of here
   double c_ = 0, h_ = 0;
-  int steps_ = 0;
-  double left_ = 0;               // unbalanced, of the forces at work
-  double usual_ = 1, still_ = 0;  // of the diagonal of K at rest, N/m; a force that is none, N
+  int steps_ = 0, exchanged_ = -1;
+  double left_ = 0;   // unbalanced, of the forces at work
+  double reach_ = 0;  // size of the body, m
+  double still_ = 0;  // a force that is none, N
   // Viscosity: by quadrature point; terms one after the other.
   double scale_ = 1;
   std::vector<Mat3> stress_, memory_, terms_;

@@ -95,6 +95,49 @@ TEST_CASE("implicit: the force does not depend on how old the factor is") {
   CHECK((a.force - b.force).norm() < 1e-4 * a.force.norm());
 }
 
+TEST_CASE("implicit: with a factor of the background the force is that of a factor made when it is needed") {
+  using Solver = DynamicsSettings::Solver;
+  // Pressed and drawn along, then let go; the largest difference of forces, and the largest force, N.
+  const auto drawn = [](Scene scene, std::vector<Vec3>& forces) {
+    Simulation simulation(scene, block());
+    for (int i = 0; i < 50; ++i) {
+      const double down = i < 40 ? std::min(1.0, i / 10.0) * 0.0045 : -0.01,
+                   along = std::max(0, i - 10) * 2e-4;
+      const ToolForce force = simulation.step({Vec3(0.001 + along, 0.0055 - down, 0.0015)}, 1.0 / 30);
+      CHECK_FALSE(force.flagged);
+      forces.push_back(force.force);
+    }
+    return simulation.state_hash();
+  };
+  for (const ElasticLaw law : {ElasticLaw::kCorotational, ElasticLaw::kNeoHookean}) {
+    // With friction the way there counts, which looks at the surface at other moments.
+    for (const double friction : {0.0, 0.2}) {
+      Scene scene = block_scene("implicit", law, friction);
+      const DeformationSettings usual = scene.deformation;
+      scene.deformation.tolerance = 1e-9;
+      scene.deformation.max_newton = 60;
+      std::vector<Vec3> exact;
+      drawn(scene, exact);
+      double most = 0;
+      for (const Vec3& force : exact) most = std::max(most, force.norm());
+      REQUIRE(most > 0.4);
+      for (const Solver solver : {Solver::kConjugateGradients, Solver::kQuasiNewton}) {
+        if (friction > 0) scene.deformation = usual;
+        scene.deformation.solver = solver;
+        scene.deformation.refresh_steps = 4;
+        std::vector<Vec3> forces, again;
+        const std::uint64_t hash = drawn(scene, forces);
+        CHECK(drawn(scene, again) == hash);  // whenever the background is ready
+        CHECK(again == forces);
+        double off = 0;
+        for (std::size_t i = 0; i < exact.size(); ++i) off = std::max(off, (forces[i] - exact[i]).norm());
+        CAPTURE(static_cast<int>(law), static_cast<int>(solver), friction, off / most);
+        CHECK(off < (friction > 0 ? 0.01 : 1e-4) * most);
+      }
+    }
+  }
+}
+
 TEST_CASE("implicit: the tangent is what the force changes by over one step") {
   const Scene scene = block_scene("implicit");
   Simulation simulation(scene, block());

@@ -148,6 +148,70 @@ TEST_CASE("dynamics: with damping every law comes to rest in its static equilibr
   }
 }
 
+TEST_CASE("dynamics: a quasi-Newton step answers what it learned last, and on a quadratic soon everything") {
+  const Solid solid(small_block(), soft());
+  const FreeDofs dofs(held_below(solid));
+  const NewtonMatrix matrix(solid, dofs, {}, "test");
+  // Another matrix than the one it begins from: A + a diagonal.
+  StiffnessMatrix k = solid.stiffness_matrix(dofs);
+  solid.add_stiffness(solid.rest(), k);
+  const Eigen::VectorXd more = 10 * Eigen::VectorXd::Random(dofs.count).cwiseAbs();
+  const auto times = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+    return k.lower().selfadjointView<Eigen::Lower>() * v + more.cwiseProduct(v);
+  };
+  QuasiNewton method;
+  const Eigen::VectorXd load = Eigen::VectorXd::Random(dofs.count);
+  Eigen::VectorXd place = Eigen::VectorXd::Zero(dofs.count), before = place;
+  double first = 0, left = 0;
+  for (int i = 0; i < 12; ++i) {
+    const Eigen::VectorXd resistance = times(place);
+    method.learn(place, resistance);
+    if (i > 0) {  // the secant equation
+      const Eigen::VectorXd change = times(place - before);
+      CHECK((method.step(matrix, change) - (place - before)).norm() <
+            1e-9 * (place - before).norm() + 1e-12 * place.norm());
+    }
+    left = (load - resistance).norm();
+    if (i == 1) first = left;
+    before = place;
+    place += method.step(matrix, load - resistance);
+  }
+  CAPTURE(first, left);
+  CHECK(left < 1e-3 * first);  // the old matrix alone would take 0.3 of it off a step, at most
+  method.forget();
+  CHECK((method.step(matrix, load) - matrix.solve(load)).norm() == 0);
+}
+
+TEST_CASE("dynamics: solved with a factor of the background, a step ends where a direct one does") {
+  const Solid solid(small_block(), soft(ElasticLaw::kCorotational));
+  using Solver = DynamicsSettings::Solver;
+  std::vector<std::vector<Vec3>> ends;
+  for (const Solver solver : {Solver::kDirect, Solver::kConjugateGradients, Solver::kQuasiNewton}) {
+    for (const bool second : {false, true}) {
+      Dynamics dynamics(solid, held_below(solid), {2, 0, second, solver, 3}, "test");
+      int looks = 0;
+      for (int step = 0; step < 20; ++step) {  // bends far, so that a factor of before is of another place
+        dynamics.start_step(0.02);
+        looks += dynamics.settle(pull(solid, Vec3(0.1 * std::min(step, 10), 0, 0)), 100, 1e-10);
+        dynamics.finish_step();
+      }
+      CAPTURE(static_cast<int>(solver), second);
+      CHECK(looks < 20 * 30);
+      ends.emplace_back(dynamics.position().begin(), dynamics.position().end());
+    }
+  }
+  for (std::size_t run = 2; run < ends.size(); ++run) {
+    double off = 0, moved = 0;
+    for (std::size_t i = 0; i < ends[run].size(); ++i) {
+      off = std::max(off, (ends[run][i] - ends[run % 2][i]).norm());
+      moved = std::max(moved, (ends[run][i] - solid.rest()[i]).norm());
+    }
+    CAPTURE(run, off, moved);
+    CHECK(moved > 0.1 * kSide);
+    CHECK(off < 1e-7 * moved);
+  }
+}
+
 TEST_CASE("dynamics: backward Euler never makes energy, whatever the law and the step") {
   for (const ElasticLaw law : {ElasticLaw::kLinear, ElasticLaw::kCorotational, ElasticLaw::kNeoHookean}) {
     const Solid solid(small_block(), soft(law));
@@ -182,7 +246,7 @@ TEST_CASE("dynamics: a strain that is held relaxes along its Prony series, under
     const double h = 0.05;
     for (int step = 1; step <= 60; ++step) {
       dynamics.start_step(h);
-      for (std::size_t i = 0; i < held.size(); ++i) dynamics.position()[i] = stretch * solid.rest()[i];
+      for (std::size_t i = 0; i < held.size(); ++i) dynamics.put()[i] = stretch * solid.rest()[i];
       dynamics.settle(none, 5, 1e-12);
       dynamics.finish_step();
       // The strain comes within the first step, evenly: each term has relaxed by gamma when it ends.

@@ -1,0 +1,20 @@
+#pragma once
+
+namespace palpate::sim {
+
+/// How a body moves in time.
+struct DynamicsSettings {
+  double rayleigh_mass = 0;       ///< alpha, 1/s, [0, 1e4]
+  double rayleigh_stiffness = 0;  ///< beta, s, [0, 10]
+  bool second_order = false;      ///< BDF2 instead of backward Euler
+  /// How A x = b is solved: by its own factor, or by one of the background taken every `refresh_steps`.
+  enum class Solver {
+    kDirect,
+    kConjugateGradients,  ///< preconditioned by that factor
+    kQuasiNewton,         ///< which mends it
+  };
+  Solver solver = Solver::kDirect;
+  int refresh_steps = 8;  ///< [1, 1000]
+};
+
+}  // namespace palpate::sim
