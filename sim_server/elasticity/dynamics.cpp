@@ -202,7 +202,7 @@ double Dynamics::kinetic_energy() const {
 }
 
 std::size_t Dynamics::bytes() const {
-  return (x_.size() * 8) * sizeof(Vec3) + matrix_.bytes() +
+  return (x_.size() * 8) * sizeof(Vec3) + matrix_.bytes() + factor_->bytes() +
          (stress_.size() + memory_.size() + terms_.size()) * sizeof(Mat3) + mass_.size() * sizeof(double);
 }
 

@@ -179,6 +179,18 @@ TEST_CASE("bodies that share faces vertex by vertex are joined", "[mesh]") {
   CHECK(mesh.surface_tags.at("both") == std::vector<int>{1, 8});  // (1, 0, 0), and (2, 0, 0): the ninth kept
 }
 
+TEST_CASE("the surface is looked at after bodies were joined", "[mesh]") {
+  TetMesh mesh = cube();
+  append(mesh, cube(), {1, 0, 0});
+  mesh.vertices.insert(mesh.vertices.end(), {Vec3(3, 1, 0.5), Vec3(2.5, 2, 0.5)});
+  mesh.tetrahedra.push_back({11, 15, 16, 17});  // on the edge from (2, 1, 0) to (2, 1, 1)
+  const MeshFaults faults = mend(mesh);
+  REQUIRE(faults.found.size() == 2);
+  CHECK(faults.found[0].remedy == "merged");
+  CHECK(faults.found[1].cure == Cure::kAccepted);
+  CHECK(faults.found[1].example == "the surface meets itself along the edge from (2, 1, 0) to (2, 1, 1)");
+}
+
 TEST_CASE("tetrahedra each with vertices of their own become one body", "[mesh]") {
   const TetMesh block = grid_block({0, 1, 2, 3}, {0, 1, 2}, {0, 1});
   TetMesh soup;
