@@ -1,11 +1,8 @@
 #include <CLI/CLI.hpp>
-#include <fmt/core.h>
-#include <numbers>
 
-#include "common/log.h"
 #include "common/program.h"
 #include "sim_server/explain.h"
-#include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/mesh_info.h"
 #include "sim_server/record.h"
 #include "sim_server/server.h"
 #include "sim_server/solve.h"
@@ -13,28 +10,6 @@
 namespace {
 
 using namespace palpate;
-
-int print_mesh_info(const std::string& file) {
-  const sim::MeshInfo info = sim::describe(sim::read_mesh(file));
-  constexpr double kDegrees = 180 / std::numbers::pi;
-  const Vec3 size = info.max - info.min;
-  fmt::print("{}\n", file);
-  fmt::print("  vertices            {}\n  edges               {}\n  tetrahedra          {}\n", info.vertices,
-             info.edges, info.tetrahedra);
-  fmt::print("  boundary vertices   {}\n  boundary triangles  {}\n", info.boundary_vertices,
-             info.boundary_triangles);
-  fmt::print("  volume              {:.6g} m3 ({:.4g} litres)\n", info.volume, 1e3 * info.volume);
-  fmt::print("  size                {:.4g} x {:.4g} x {:.4g} m\n", size[0], size[1], size[2]);
-  fmt::print("  box                 [[{:.4g}, {:.4g}, {:.4g}], [{:.4g}, {:.4g}, {:.4g}]] m\n", info.min[0],
-             info.min[1], info.min[2], info.max[0], info.max[1], info.max[2]);
-  fmt::print("  edge length         {:.4g} / {:.4g} / {:.4g} mm (min, median, max)\n", 1e3 * info.min_edge,
-             1e3 * info.median_edge, 1e3 * info.max_edge);
-  fmt::print(
-      "  dihedral angles     {:.2f} to {:.2f} degrees; median of the smallest per tetrahedron {:.2f}\n",
-      kDegrees * info.min_dihedral, kDegrees * info.max_dihedral, kDegrees * info.median_min_dihedral);
-  if (size.maxCoeff() > 2) log::warning("the mesh is {:.3g} m long; is it in millimetres?", size.maxCoeff());
-  return 0;
-}
 
 CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
   auto* command = app.add_subcommand("run", "Serve a scene until Ctrl-C");
@@ -115,10 +90,12 @@ CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
 CLI::App* add_mesh_info(CLI::App& app, std::string& file) {
   auto* mesh = app.add_subcommand("mesh", "Look at meshes");
   mesh->require_subcommand(1);
-  auto* info =
-      mesh->add_subcommand("info", "Counts, volume, size and quality of a Gmsh file (MSH 2.2 or 4.1)");
+  auto* info = mesh->add_subcommand(
+      "info", "What is wrong with a Gmsh file (MSH 2.2 or 4.1), and its size and quality");
   info->add_option("FILE", file, "Mesh file, metres")->required();
-  info->footer("Example: sim_server mesh info configs/meshes/liver.msh");
+  info->footer(
+      "Lists every fault: what is mended on loading, and what has to be changed first (then exit code 2).\n"
+      "Example: sim_server mesh info configs/meshes/liver.msh");
   return info;
 }
 
@@ -150,7 +127,7 @@ int run(int argc, char** argv) {
   const auto* solve = add_solve(app, solving);
   const auto* mesh_info = add_mesh_info(app, mesh_file);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
-  if (*mesh_info) return print_mesh_info(mesh_file);
+  if (*mesh_info) return sim::print_mesh_info(mesh_file);
   if (*explain) return sim::run_explain(explaining);
   if (*solve) {
     check(solving);

@@ -7,6 +7,7 @@
 #include "common/hash.h"
 #include "common/text.h"
 #include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/set_up_memory.h"
 
 namespace palpate::sim {
 namespace {
@@ -63,6 +64,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
       fail("{}: no triangle of the surface lies in the tool's `reach` box", scene.tools[i].reach_where);
   }
   const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, mesh_);
+  require_memory_for(scene, Purpose::kServe, count_parts(mesh_, surface_));
   tissue_.model =
       find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where)
           .make({scene, mesh_, surface_, fixed, reachable, progress});

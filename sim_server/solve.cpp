@@ -14,6 +14,7 @@
 #include "sim_server/loads.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/vtu_output.h"
+#include "sim_server/set_up_memory.h"
 
 namespace palpate::sim {
 namespace {
@@ -221,8 +222,10 @@ int solve(const SolveOptions& options) {
   ProgressLine progress;
   progress("reading the mesh", 0);
   const TetMesh mesh = read_mesh(scene.mesh_file);
+  const Surface surface = boundary_surface(mesh);
+  require_memory_for(scene, Purpose::kSolve, count_parts(mesh, surface));
   const Solid solid(mesh, *scene.material);
-  const Loads loads(scene, mesh, boundary_surface(mesh), solid);
+  const Loads loads(scene, mesh, surface, solid);
   std::vector<Probe> probes;
   for (const std::string& text : options.probes)
     probes.push_back(find_probe(text, solid, mesh.vertices.size()));

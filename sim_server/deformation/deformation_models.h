@@ -4,6 +4,7 @@
 #include <span>
 #include <string_view>
 
+#include "common/memory_budget.h"
 #include "sim_server/deformation/deformation_model.h"
 #include "sim_server/mesh/surface.h"
 #include "sim_server/scene.h"
@@ -23,6 +24,7 @@ struct ModelInputs {
   const std::vector<int>& fixed;
   const std::vector<int>& reachable;
   const Progress& progress;
+  double free_bytes = free_memory();  ///< that it may take
 };
 
 /// 1 / rate_hz of the scene, s, for a model whose steps all take that long. Throws `Error` where it is 0.

@@ -7,7 +7,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostBytes = 4e9;  // of compliance
+constexpr double kMostBytes = 4e9;  // of compliance, however many are free
 
 void require_held_tissue(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
@@ -23,7 +23,8 @@ void require_held_tissue(const ModelInputs& inputs) {
 
 }  // namespace
 
-SurfaceCompliance::SurfaceCompliance(const ModelInputs& inputs) : row_(inputs.surface.vertices.size(), -1) {
+SurfaceCompliance::SurfaceCompliance(const ModelInputs& inputs)
+    : source_(inputs.scene.source), row_(inputs.surface.vertices.size(), -1) {
   require_held_tissue(inputs);
   for (const int vertex : inputs.reachable) {
     if (std::binary_search(inputs.fixed.begin(), inputs.fixed.end(), inputs.surface.vertices[vertex]))
@@ -35,18 +36,22 @@ SurfaceCompliance::SurfaceCompliance(const ModelInputs& inputs) : row_(inputs.su
     fail("{}: every vertex the tool can reach is fixed; make the [[fixed]] regions smaller",
          inputs.scene.source);
   }
+  require_room(inputs.free_bytes);
+}
+
+void SurfaceCompliance::require_room(double free) const {
   const double rows = 3 * static_cast<double>(vertices_.size()), bytes = rows * rows * sizeof(double);
-  if (bytes > kMostBytes) {
-    fail(
-        "{}: the compliance of {} reachable surface nodes would take {:.1f} GB; give [[tool]] a `reach` box "
-        "around "
-        "the part it touches",
-        inputs.scene.source, vertices_.size(), bytes / 1e9);
-  }
+  const std::string what = fmt::format("the compliance of {} reachable surface nodes", vertices_.size());
+  const std::string remedy = "give [[tool]] a `reach` box around the part it touches";
+  if (bytes > kMostBytes)
+    fail("{}: {} would take {}, and {} are the most; {}", source_, what, bytes_text(bytes),
+         bytes_text(kMostBytes), remedy);
+  require_memory(bytes, free, source_, what, remedy);
 }
 
 void SurfaceCompliance::compute(Eigen::Index at_once, const Respond& respond, const Progress& progress) {
   const auto rows = static_cast<Eigen::Index>(3 * vertices_.size());
+  require_room(free_memory());
   compliance_.resize(rows, rows);
   for (Eigen::Index from = 0; from < rows; from += at_once) {
     progress("computing compliance", static_cast<double>(from) / static_cast<double>(rows));

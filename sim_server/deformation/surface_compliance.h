@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "sim_server/deformation/deformation_models.h"
@@ -15,12 +16,13 @@ namespace palpate::sim {
 class SurfaceCompliance {
  public:
   /// Numbers the rows; W is not there yet. Throws `Error` without material or fixed nodes, where all
-  /// reachable vertices are fixed, or where W would take more than 4 GB.
+  /// reachable vertices are fixed, or where W would take more than 4 GB, or than there are free.
   explicit SurfaceCompliance(const ModelInputs& inputs);
 
   /// Fills columns `first`, `first` + 1, ... of W: where all rows go (m) per force on these.
   using Respond = std::function<void(Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> columns)>;
-  /// Set-up: asks for W, `at_once` columns at a time. Allocates it; tells `progress`.
+  /// Set-up: asks for W, `at_once` columns at a time. Allocates it, and throws `Error` where what
+  /// was built meanwhile left no room for it; tells `progress`.
   void compute(Eigen::Index at_once, const Respond& respond, const Progress& progress);
 
   /// Surface vertices of the rows, three rows each.
@@ -38,6 +40,9 @@ class SurfaceCompliance {
   std::size_t index_bytes() const { return (row_.size() + vertices_.size()) * sizeof(int); }
 
  private:
+  void require_room(double free) const;
+
+  std::string source_;          // of the scene, for errors
   std::vector<int> row_;        // per surface vertex
   std::vector<int> vertices_;   // surface vertex of each block row
   Eigen::MatrixXd compliance_;  // W

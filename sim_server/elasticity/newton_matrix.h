@@ -29,7 +29,7 @@ class NewtonMatrix {
   double usual() const { return usual_; }
   double largest() const { return matrix_.lower().diagonal().maxCoeff(); }
   const std::vector<double>& masses() const { return mass_; }
-  std::size_t bytes() const { return matrix_.bytes() + mass_.size() * sizeof(double); }
+  std::size_t bytes() const { return matrix_.bytes() + factor_.bytes() + mass_.size() * sizeof(double); }
 
  private:
   double alpha_, beta_;

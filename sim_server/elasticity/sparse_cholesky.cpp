@@ -14,10 +14,38 @@ namespace palpate::sim {
 
 struct SparseCholesky::Factor {
 #ifdef PALPATE_WITH_CHOLMOD
-  Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> llt;
+  struct Llt : Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {
+    /// False where the factor has more entries than CHOLMOD's `int` counts. Else both below are known as soon
+    /// as the pattern is.
+    bool countable() const { return m_cholmodFactor != nullptr; }
+    std::size_t bytes() const {
+      return m_cholmodFactor->xsize * sizeof(double) +
+             (m_cholmodFactor->ssize + 3 * m_cholmodFactor->n) * sizeof(int);
+    }
+    /// What is taken besides while it is made, but for a copy of the matrix.
+    std::size_t work_bytes() const { return m_cholmodFactor->maxcsize * sizeof(double); }
+  };
 #else
-  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt;
+  struct Llt : Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> {
+    bool countable() const { return true; }
+    std::size_t bytes() const {
+      const auto columns = static_cast<std::size_t>(m_matrix.outerSize());
+      return static_cast<std::size_t>(m_matrix.outerIndexPtr()[columns]) * (sizeof(double) + sizeof(int)) +
+             3 * columns * sizeof(int);
+    }
+    std::size_t work_bytes() const { return 0; }
+  };
 #endif
+  Llt llt;
+
+  /// Between the analysis of the pattern and the numbers.
+  void require_room(const SparseMatrix& lower, double free, const std::string& where) const {
+    const std::string what = fmt::format("the Cholesky factor of {} unknowns", lower.rows());
+    if (!llt.countable()) fail("{}: {} has more than 2^31 entries; take a coarser mesh", where, what);
+    const auto copy = static_cast<std::size_t>(lower.nonZeros()) * (sizeof(double) + sizeof(int));
+    require_memory(static_cast<double>(llt.bytes() + llt.work_bytes() + copy), free, where, what,
+                   "take a coarser mesh");
+  }
 };
 
 namespace {
@@ -37,13 +65,14 @@ bool nearly_singular(const SparseMatrix& lower, const Eigen::VectorXd& answer) {
 
 }  // namespace
 
-SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& where)
+SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& where, double free)
     : factor_(std::make_unique<Factor>()) {
 #ifdef PALPATE_WITH_CHOLMOD
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);  // the same bits on every machine
   factor_->llt.cholmod().print = 0;                                      // errors are ours to word
 #endif
   factor_->llt.analyzePattern(lower);
+  factor_->require_room(lower, free, where);
   factor_->llt.factorize(lower);
   if (factor_->llt.info() != Eigen::Success || nearly_singular(lower, solve(alternating(lower.rows())))) {
     fail(
@@ -64,6 +93,10 @@ bool SparseCholesky::refactor(const SparseMatrix& lower) {
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
   return factor_->llt.solve(b);
+}
+
+std::size_t SparseCholesky::bytes() const {
+  return factor_->llt.bytes();
 }
 
 const char* SparseCholesky::library() {

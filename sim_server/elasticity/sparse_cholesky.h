@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 
+#include "common/memory_budget.h"
 #include "sim_server/elasticity/assembly.h"
 
 namespace palpate::sim {
@@ -11,9 +12,10 @@ namespace palpate::sim {
 /// background threads only.
 class SparseCholesky {
  public:
-  /// Factors the matrix whose lower triangle is given. Throws `Error`, beginning with `where`, when it is not
-  /// positive definite, or singular but for rounding.
-  SparseCholesky(const SparseMatrix& lower, const std::string& where);
+  /// Factors the matrix whose lower triangle is given. Throws `Error`, beginning with `where`, when its
+  /// factor would take more than `free` bytes (told from its pattern, before the numbers are allocated), when
+  /// it is not positive definite, or singular but for rounding.
+  SparseCholesky(const SparseMatrix& lower, const std::string& where, double free = free_memory());
   ~SparseCholesky();
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
@@ -24,6 +26,9 @@ class SparseCholesky {
 
   /// X = A^-1 B for dense B (n x k); allocates X.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+
+  /// Of the factor.
+  std::size_t bytes() const;
 
   /// The library behind it, for reports.
   static const char* library();

@@ -16,13 +16,17 @@
 #include <vector>
 
 #include "common/error.h"
+#include "common/log.h"
+#include "common/memory_budget.h"
 #include "sim_server/mesh/cursor.h"
 
 namespace palpate::sim {
 namespace {
 
+// Bytes for each of the file, checks of the mesh included; measured: 5 to 7.5.
+constexpr double kReadingTakes = 8;
+constexpr double kSmallFile = 1e6;  // bytes; to ask for the free memory would take longer than to read it
 constexpr std::int64_t kTriangle = 2, kTetrahedron = 4;  // element types of Gmsh
-constexpr int kUnused = -1;
 
 /// How many nodes an element of Gmsh's `type` has; 0 for a type this reader has never heard of.
 int nodes_of_type(std::int64_t type) {
@@ -60,7 +64,8 @@ class MeshReader {
     if (!has_nodes_ || !has_elements_) {
       cursor_.wrong("the file ends without ${}", has_nodes_ ? "Elements" : "Nodes");
     }
-    return used_part();
+    all_.surface_tags = surface_tags();
+    return std::move(all_);
   }
 
  private:
@@ -269,34 +274,13 @@ class MeshReader {
     return at->second;
   }
 
-  /// The mesh of the vertices that tetrahedra use, with its tags.
-  TetMesh used_part() const {
-    std::vector<int> index(all_.vertices.size(), kUnused);  // the vertex in the result of each node
-    for (const Tetrahedron& t : all_.tetrahedra) {
-      for (const int vertex : t) index[vertex] = 0;
-    }
-    TetMesh mesh;
-    for (std::size_t i = 0; i < index.size(); ++i) {
-      if (index[i] == kUnused) continue;
-      index[i] = static_cast<int>(mesh.vertices.size());
-      mesh.vertices.push_back(all_.vertices[i]);
-    }
-    mesh.tetrahedra = all_.tetrahedra;
-    for (Tetrahedron& t : mesh.tetrahedra) {
-      for (int& vertex : t) vertex = index[vertex];
-    }
-    mesh.surface_tags = surface_tags(index);
-    return mesh;
-  }
-
-  std::map<std::string, std::vector<int>> surface_tags(const std::vector<int>& index) const {
+  std::map<std::string, std::vector<int>> surface_tags() const {
     std::map<std::string, std::vector<int>> tags;
     for (const auto& [group, nodes] : vertices_of_group_) {
       for (const std::int64_t physical : physicals(group)) {
         if (physical == 0) continue;  // Gmsh's way to say "in no physical group"
-        for (const int node : nodes) {
-          if (index[node] != kUnused) tags[tag_name(physical)].push_back(index[node]);
-        }
+        std::vector<int>& vertices = tags[tag_name(physical)];
+        vertices.insert(vertices.end(), nodes.begin(), nodes.end());
       }
     }
     for (auto& [name, vertices] : tags) {
@@ -358,7 +342,11 @@ std::string read_bytes(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file, ignored)) fail("{}: no such file", file.string());
   if (!std::filesystem::is_regular_file(file, ignored)) fail("{}: not a file", file.string());
   std::ifstream in(file, std::ios::binary);
-  std::string bytes(std::filesystem::file_size(file), '\0');
+  const auto size = std::filesystem::file_size(file);
+  if (static_cast<double>(size) > kSmallFile)
+    require_memory(kReadingTakes * static_cast<double>(size), free_memory(), file.string(), "reading it",
+                   "take a coarser mesh");
+  std::string bytes(size, '\0');
   if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
     fail("{}: cannot be read; check its permissions", file.string());
   }
@@ -367,12 +355,20 @@ std::string read_bytes(const std::filesystem::path& file) {
 
 }  // namespace
 
-TetMesh read_mesh(const std::filesystem::path& file) {
+CheckedMesh check_mesh(const std::filesystem::path& file) {
   const std::string bytes = read_bytes(file);
   if (!bytes.starts_with("$MeshFormat")) fail_other_format(file, bytes);
-  TetMesh mesh = MeshReader(file.string(), bytes).read();
-  validate(mesh, file.string());
-  return mesh;
+  CheckedMesh checked{MeshReader(file.string(), bytes).read(), {}};
+  checked.faults = mend(checked.mesh);
+  return checked;
+}
+
+TetMesh read_mesh(const std::filesystem::path& file) {
+  CheckedMesh checked = check_mesh(file);
+  require_usable(checked.faults, file.string());
+  const std::string mended = mended_in_short(checked.faults);
+  if (!mended.empty()) log::info("{}: {}", file.string(), mended);
+  return std::move(checked.mesh);
 }
 
 }  // namespace palpate::sim

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <iterator>
 #include <tuple>
+#include <utility>
 
 #include "common/error.h"
 
@@ -44,17 +45,6 @@ bool is_even(const Triangle& t) {
   return (t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0]) == 2;
 }
 
-[[noreturn]] void fail_shared(std::vector<Face>::const_iterator first,
-                              std::vector<Face>::const_iterator last) {
-  std::vector<int> owners;
-  std::transform(first, last, std::back_inserter(owners), [](const Face& face) { return face.tetrahedron; });
-  fail(
-      "mesh: the face of vertices {} belongs to {} tetrahedra ({}), but a solid has one on each side of a "
-      "face; "
-      "remove the tetrahedra that overlap",
-      first->sorted, owners.size(), fmt::join(owners, ", "));
-}
-
 // Gives the vertices that `surface.triangles` names (mesh numbers) their surface numbers.
 void number_vertices(Surface& surface) {
   std::vector<int>& vertices = surface.vertices;
@@ -73,19 +63,39 @@ void number_vertices(Surface& surface) {
 
 }  // namespace
 
-Surface boundary_surface(const TetMesh& mesh) {
+OuterFaces outer_faces(const TetMesh& mesh) {
   const std::vector<Face> faces = sorted_faces(mesh);
-  Surface surface;
+  OuterFaces found;
   for (auto first = faces.begin(); first != faces.end();) {
     const auto last =
         std::find_if(first, faces.end(), [&](const Face& f) { return f.sorted != first->sorted; });
-    if (last - first > 2) fail_shared(first, last);
     // Two tetrahedra on a face lie on its two sides, so they see it turned the other way round.
-    if (last - first == 2 && is_even(first->outward) == is_even((first + 1)->outward))
-      fail_shared(first, last);
-    if (last - first == 1) surface.triangles.push_back(first->outward);
+    const bool same_side = last - first == 2 && is_even(first->outward) == is_even((first + 1)->outward);
+    if (last - first == 1) {
+      found.triangles.push_back(first->outward);
+    } else if (last - first > 2 || same_side) {
+      OverlappingFace& overlap = found.overlaps.emplace_back();
+      overlap.vertices = first->sorted;
+      std::transform(first, last, std::back_inserter(overlap.tetrahedra),
+                     [](const Face& face) { return face.tetrahedron; });
+    }
     first = last;
   }
+  return found;
+}
+
+std::string describe(const OverlappingFace& face) {
+  return fmt::format(
+      "the face of vertices {} belongs to {} tetrahedra ({}), but a solid has one on each side of a face",
+      face.vertices, face.tetrahedra.size(), fmt::join(face.tetrahedra, ", "));
+}
+
+Surface boundary_surface(const TetMesh& mesh) {
+  OuterFaces faces = outer_faces(mesh);
+  if (!faces.overlaps.empty())
+    fail("mesh: {}; remove the tetrahedra that overlap", describe(faces.overlaps.front()));
+  Surface surface;
+  surface.triangles = std::move(faces.triangles);
   number_vertices(surface);
   return surface;
 }

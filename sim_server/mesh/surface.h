@@ -1,5 +1,6 @@
 #pragma once
 /// The skin of the solid: the triangles a tool can touch.
+#include <string>
 #include <vector>
 
 #include "sim_server/mesh/tet_mesh.h"
@@ -12,9 +13,26 @@ struct Surface {
   std::vector<Triangle> triangles;  ///< (k), indices into `vertices`; normals outward by the right-hand rule
 };
 
-/// The faces that belong to exactly one tetrahedron of `mesh` (positively oriented, indices in range: see
-/// `validate`). The order depends on the mesh alone. Throws `Error` when three or more tetrahedra share a
-/// face. O(m log m).
+/// A face with tetrahedra in one another's place: more than two on it, or two on the same side.
+struct OverlappingFace {
+  Triangle vertices;            ///< ascending
+  std::vector<int> tetrahedra;  ///< ascending
+};
+/// "the face of vertices ... belongs to ...".
+std::string describe(const OverlappingFace& face);
+
+/// The faces of a mesh that do not lie between two tetrahedra.
+struct OuterFaces {
+  std::vector<Triangle> triangles;        ///< on one tetrahedron; outward, by vertices of the mesh
+  std::vector<OverlappingFace> overlaps;  ///< none in a solid
+};
+
+/// Of a `mesh` that is positively oriented, indices in range. The order depends on the mesh alone. O(m log
+/// m).
+OuterFaces outer_faces(const TetMesh& mesh);
+
+/// The faces of exactly one tetrahedron of `mesh` (as `outer_faces` needs it). Throws `Error` where faces
+/// overlap. O(m log m).
 Surface boundary_surface(const TetMesh& mesh);
 
 }  // namespace palpate::sim

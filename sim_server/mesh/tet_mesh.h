@@ -12,7 +12,7 @@ namespace palpate::sim {
 using Tetrahedron = std::array<int, 4>;
 using Triangle = std::array<int, 3>;
 
-/// Vertices and positively oriented tetrahedra: det(x1-x0, x2-x0, x3-x0) > 0. `validate` says so.
+/// Vertices and positively oriented tetrahedra: det(x1-x0, x2-x0, x3-x0) > 0. `mend` sees to it.
 struct TetMesh {
   std::vector<Vec3> vertices;           ///< (n), metres, mesh frame at rest
   std::vector<Tetrahedron> tetrahedra;  ///< (m), indices into `vertices`
@@ -23,12 +23,7 @@ struct TetMesh {
 /// Six times the signed volume of tetrahedron `t`, m^3.
 double six_volumes(const TetMesh& mesh, const Tetrahedron& t);
 
-/// Throws `Error` naming `source` and the first offender for: no tetrahedra, a coordinate that is not finite,
-/// a repeated or missing vertex, a flat or inverted tetrahedron, several bodies. Vertices that no tetrahedron
-/// uses must be gone before. O(n + m).
-void validate(const TetMesh& mesh, const std::string& source);
-
-/// What `sim_server mesh info` prints.
+/// What `sim_server mesh info` prints of a mesh that is in order.
 struct MeshInfo {
   int vertices = 0, edges = 0, tetrahedra = 0, boundary_vertices = 0, boundary_triangles = 0;
   double volume = 0;                            ///< m^3
@@ -38,7 +33,7 @@ struct MeshInfo {
   double min_edge = 0, median_edge = 0, max_edge = 0;  ///< m
 };
 
-/// Counts, size and quality. O(m log m).
+/// Counts, size and quality of a mesh that `mend` found usable. O(m log m).
 MeshInfo describe(const TetMesh& mesh);
 
 }  // namespace palpate::sim

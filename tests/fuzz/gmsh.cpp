@@ -3,5 +3,5 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return palpate::test::fuzz_file(data, size, ".msh",
-                                  [](const std::string& file) { palpate::sim::read_mesh(file); });
+                                  [](const std::string& file) { palpate::sim::check_mesh(file); });
 }

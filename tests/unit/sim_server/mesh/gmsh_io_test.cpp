@@ -29,12 +29,12 @@ class Scratch {
     std::ofstream(path_ / name, std::ios::binary) << bytes;
     return path_ / name;
   }
-  /// What `read_mesh` says about `bytes`, with FILE for the path; empty when it reads them.
+  /// What reading says about `bytes`, with FILE for the path; empty when it reads them.
   std::string error_of(const std::string& bytes, const std::string& name = "mesh.msh") const {
     const std::string file = write(bytes, name).string();
     std::string message;
     try {
-      read_mesh(file);
+      require_usable(check_mesh(file).faults, file);  // as `read_mesh`, but for its line in the log
     } catch (const Error& error) {
       message = error.what();
     }
@@ -324,6 +324,22 @@ TEST_CASE("a solid that cannot be simulated is named with its file", "[mesh]") {
   CHECK(error("1 2 3 4", "1 3 2 4").find("FILE: tetrahedron 0 (vertices 0 2 1 3) is inverted") == 0);
   CHECK(error("4 0 0 1", "4 1 1 0").find("FILE: tetrahedron 0 (vertices 0 1 2 3) is flat") == 0);
   CHECK(error("1 4 0 1 2 3 4", "1 2 0 1 2 3").find("FILE: no tetrahedra") == 0);
+}
+
+TEST_CASE("check_mesh reads what read_mesh refuses, and mends as it does", "[mesh]") {
+  const Scratch scratch;
+  const std::string inverted = replaced(kHead22 + kNodes22 + kElements22, "1 2 3 4", "1 3 2 4");
+  const CheckedMesh checked = check_mesh(scratch.write(inverted));
+  CHECK(checked.mesh.tetrahedra == std::vector<Tetrahedron>{{0, 2, 1, 3}});
+  REQUIRE(checked.faults.found.size() == 1);
+  CHECK(checked.faults.found[0].cure == Cure::kRefused);
+  // Node 500 of the cube is in no tetrahedron; a triangle of group 17 that names it loses it.
+  const std::string tagged = replaced(cube({false, false}), "2 2 2 17 1 1999999999", "2 2 2 17 1 500");
+  const CheckedMesh loose = check_mesh(scratch.write(tagged));
+  REQUIRE(loose.faults.found.size() == 1);
+  CHECK(loose.faults.found[0].kind == "unused vertices");
+  CHECK(loose.faults.found[0].count == 1);
+  CHECK(loose.mesh.vertices.size() == 8);
 }
 
 TEST_CASE("other formats are named with the command that converts them", "[mesh]") {

@@ -1,0 +1,77 @@
+#include "common/memory_budget.h"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <optional>
+
+#include "common/error.h"
+
+namespace palpate {
+namespace {
+
+/// The number that a file is; nothing for "max" or where there is no such file.
+std::optional<double> number_in(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  double value = 0;
+  if (in >> value) return value;
+  return {};
+}
+
+/// The number behind `key` in lines "KEY NUMBER".
+std::optional<double> number_after(const std::filesystem::path& file, std::string_view key) {
+  std::ifstream in(file);
+  std::string word, rest;
+  double value = 0;
+  while (in >> word) {
+    if (word == key) {
+      if (in >> value) return value;
+      return {};
+    }
+    std::getline(in, rest);
+  }
+  return {};
+}
+
+/// What the limit of one control group leaves.
+double left_in_group(const std::filesystem::path& folder) {
+  const auto most = number_in(folder / "memory.max"), now = number_in(folder / "memory.current");
+  if (!most || !now) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, *most - *now + number_after(folder / "memory.stat", "inactive_file").value_or(0));
+}
+
+/// "/a/b" of the line "0::/a/b".
+std::string own_group(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("0::/")) return line.substr(3);
+  }
+  return "/";
+}
+
+}  // namespace
+
+double free_memory(const std::filesystem::path& root) {
+  const auto kilobytes = number_after(root / "proc/meminfo", "MemAvailable:");
+  double free = kilobytes ? 1024 * *kilobytes : std::numeric_limits<double>::infinity();
+  const std::filesystem::path groups = root / "sys/fs/cgroup";
+  // Each group is within the limits of those above it.
+  for (std::filesystem::path group = own_group(root / "proc/self/cgroup").substr(1);;
+       group = group.parent_path()) {
+    free = std::min(free, left_in_group(groups / group));
+    if (group.empty()) return free;
+  }
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes >= 1e9) return fmt::format("{:.1f} GB", bytes / 1e9);
+  return bytes >= 1e7 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.3g} MB", bytes / 1e6);
+}
+
+void require_memory(double bytes, double free, std::string_view where, std::string_view what,
+                    std::string_view remedy) {
+  if (bytes <= free) return;
+  fail("{}: {} would take {}, and {} are free; {}", where, what, bytes_text(bytes), bytes_text(free), remedy);
+}
+
+}  // namespace palpate

@@ -1,0 +1,47 @@
+#pragma once
+/// What can be wrong with somebody's mesh, all of it at once, and what is done about it.
+#include <string>
+#include <vector>
+
+#include "sim_server/mesh/tet_mesh.h"
+
+namespace palpate::sim {
+
+/// Whether a fault was mended, does no harm, or has to be dealt with by whoever made the mesh.
+enum class Cure { kMended, kAccepted, kRefused };
+
+/// All faults of one kind.
+struct MeshFault {
+  Cure cure;
+  std::size_t count;
+  std::string kind;     ///< "unused vertices"
+  std::string example;  ///< a sentence about the first; numbers count from 0 in the mesh as it was mended
+  std::string remedy;   ///< what was done, or what to change; empty: nothing need be
+};
+
+struct MeshFaults {
+  std::vector<MeshFault> found;
+  bool surface_seen = true;  ///< else flat tetrahedra and the like hid what is wrong with the surface
+
+  bool refused() const;
+};
+
+/// Mends `mesh` where that can mean one thing only, and tells everything that was wrong:
+/// - mended: vertices in no tetrahedron and repeated tetrahedra (dropped), vertices in one place (merged,
+///   where `merge_coincident` can);
+/// - refused: no tetrahedra, vertices that are not there, coordinates that are not finite, a vertex twice in
+/// a
+///   tetrahedron, flat or inverted tetrahedra, other vertices in one place, several bodies, tetrahedra that
+///   overlap at a face;
+/// - accepted: edges and vertices where the surface meets itself.
+/// Surface tags follow. Without faults, tetrahedra are positively oriented and the surface is closed.
+/// O((n + m) log(n + m)).
+MeshFaults mend(TetMesh& mesh);
+
+/// Throws `Error` naming `source` about the first fault that is refused, if there is one.
+void require_usable(const MeshFaults& faults, const std::string& source);
+
+/// "unused vertices (2) dropped, repeated tetrahedra (1) dropped"; empty where nothing was mended.
+std::string mended_in_short(const MeshFaults& faults);
+
+}  // namespace palpate::sim
