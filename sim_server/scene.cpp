@@ -71,6 +71,18 @@ DeformationSettings read_deformation(const Config& config) {
   return settings;
 }
 
+/// That an elastic model is for the material of the scene.
+void require_material_of(const Scene& scene, const DeformationModelRow& row) {
+  if (!scene.material || !row.elastic) return;
+  const auto takes = [&material = *scene.material](const DeformationModelRow& m) {
+    return m.any_material || (m.elastic && (material.is_plain() || (m.any_linear && material.is_linear())));
+  };
+  if (takes(row)) return;
+  const std::string_view also = row.any_linear ? "" : ", element \"p1\", no fibres";
+  fail("{}: model \"{}\" is for law \"linear\"{} and no relaxation; for this material: {}",
+       scene.material_where, row.name, also, models_that(takes));
+}
+
 /// That the model does what the scene asks of it.
 void require_what_the_model_can(const Scene& scene) {
   const auto& settings = scene.deformation;
@@ -79,11 +91,7 @@ void require_what_the_model_can(const Scene& scene) {
   if (!scene.loads.empty() && !row.any_material)
     fail("{}: [[load]]: model \"{}\" bears tools only; {} would, or `sim_server solve`",
          scene.loads.front().region.where, settings.model, models_that(any));
-  if (scene.material && row.elastic && !scene.material->is_plain())
-    fail(
-        "{}: model \"{}\" is for law \"linear\", element \"p1\", no fibres and no relaxation; {} takes all "
-        "of them",
-        scene.material_where, settings.model, models_that(any));
+  require_material_of(scene, row);
   for (const FixedRegion& region : scene.fixed) {
     if (region.axes != kAllAxes)
       fail("{}: `axes`: only `sim_server solve` holds vertices along some axes; remove it", region.where);

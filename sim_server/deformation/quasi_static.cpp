@@ -9,19 +9,25 @@ namespace {
 constexpr Eigen::Index kColumnsAtOnce =
     48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
 
-SparseCholesky factor_stiffness(const ModelInputs& inputs, const FreeDofs& dofs) {
+Solid solid_of(const ModelInputs& inputs) {
   inputs.progress("assembling the stiffness matrix", 0);
-  const SparseMatrix stiffness = assemble_stiffness(inputs.mesh, *inputs.scene.material, dofs);
+  return {inputs.mesh, *inputs.scene.material};
+}
+
+SparseCholesky factor_stiffness(const ModelInputs& inputs, const Solid& solid, const FreeDofs& dofs) {
+  StiffnessMatrix stiffness = solid.stiffness_matrix(dofs);
+  solid.add_stiffness(solid.rest(), stiffness);
   inputs.progress("factoring the stiffness matrix", 0);
-  return {stiffness, inputs.scene.source};
+  return {stiffness.lower(), inputs.scene.source};
 }
 }  // namespace
 
 QuasiStatic::QuasiStatic(const ModelInputs& inputs) : compliance_(inputs) {
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
   positions_ = rest_;
-  const FreeDofs dofs(static_cast<int>(inputs.mesh.vertices.size()), inputs.fixed);
-  const SparseCholesky factor = factor_stiffness(inputs, dofs);
+  const Solid solid = solid_of(inputs);
+  const FreeDofs dofs(static_cast<int>(inputs.mesh.vertices.size()), inputs.fixed, solid.edges());
+  const SparseCholesky factor = factor_stiffness(inputs, solid, dofs);
   const auto dof = [&](Eigen::Index row) {
     return dofs.first[inputs.surface.vertices[compliance_.vertices()[row / 3]]] + row % 3;
   };
@@ -34,7 +40,7 @@ QuasiStatic::QuasiStatic(const ModelInputs& inputs) : compliance_(inputs) {
     }
   };
   compliance_.compute(kColumnsAtOnce, respond, inputs.progress);
-  if (MovingSupports supports(inputs, dofs, factor); supports.any()) supports_ = std::move(supports);
+  if (MovingSupports supports(inputs, solid, dofs, factor); supports.any()) supports_ = std::move(supports);
   inputs.progress("computing compliance", 1);
 }
 

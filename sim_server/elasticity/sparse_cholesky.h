@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "sim_server/elasticity/assembly.h"
+#include "sim_server/elasticity/stiffness_matrix.h"
 
 namespace palpate::sim {
 
