@@ -6,7 +6,7 @@
 
 namespace palpate::sim {
 namespace {
-constexpr Eigen::Index kColumnsAtOnce =
+constexpr std::size_t kColumnsAtOnce =
     48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
 
 Solid solid_of(const ModelInputs& inputs) {

@@ -18,10 +18,12 @@ class SurfaceCompliance {
   /// reachable vertices are fixed, or where W would take more than 4 GB.
   explicit SurfaceCompliance(const ModelInputs& inputs);
 
-  /// Fills columns `first`, `first` + 1, ... of W: where all rows go (m) per force on these.
+  /// Fills columns `first`, `first` + 1, ... of W: where all rows go (m) per force on these. Called by
+  /// several threads at once.
   using Respond = std::function<void(Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> columns)>;
-  /// Set-up: asks for W, `at_once` columns at a time. Allocates it; tells `progress`.
-  void compute(Eigen::Index at_once, const Respond& respond, const Progress& progress);
+  /// Set-up: asks for W, `at_once` columns with one call, on all cores; the same bytes on any number of them.
+  /// Allocates W; tells `progress` from the calling thread.
+  void compute(std::size_t at_once, const Respond& respond, const Progress& progress);
 
   /// Surface vertices of the rows, three rows each.
   const std::vector<int>& vertices() const { return vertices_; }

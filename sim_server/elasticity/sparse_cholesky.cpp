@@ -1,5 +1,7 @@
 #include "sim_server/elasticity/sparse_cholesky.h"
 
+#include <limits>
+
 #include "common/error.h"
 
 #ifdef PALPATE_WITH_CHOLMOD
@@ -14,7 +16,9 @@ namespace palpate::sim {
 
 struct SparseCholesky::Factor {
 #ifdef PALPATE_WITH_CHOLMOD
-  Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> llt;
+  struct Llt : Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {
+    cholmod_factor* factor() const { return m_cholmodFactor; }
+  } llt;
 #else
   Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> llt;
 #endif
@@ -23,6 +27,7 @@ struct SparseCholesky::Factor {
 namespace {
 
 constexpr double kSingular = 1e13;  // condition beyond which rounding has eaten the answer
+constexpr double kNoAnswer = std::numeric_limits<double>::quiet_NaN();  // of a factor that is of no use
 
 /// A load that no smooth motion balances.
 Eigen::VectorXd alternating(Eigen::Index n) {
@@ -63,7 +68,22 @@ bool SparseCholesky::refactor(const SparseMatrix& lower) {
 }
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
+#ifdef PALPATE_WITH_CHOLMOD
+  // Eigen's would write to the workspace that belongs to the factor; this call has its own.
+  cholmod_common workspace;
+  cholmod_start(&workspace);
+  workspace.print = 0;
+  cholmod_dense rhs = Eigen::viewAsCholmod(b.const_cast_derived());
+  cholmod_dense* solved = cholmod_solve(CHOLMOD_A, factor_->llt.factor(), &rhs, &workspace);
+  Eigen::MatrixXd x = solved == nullptr ? Eigen::MatrixXd::Constant(b.rows(), b.cols(), kNoAnswer)
+                                        : Eigen::MatrixXd(Eigen::Map<const Eigen::MatrixXd>(
+                                              static_cast<const double*>(solved->x), b.rows(), b.cols()));
+  cholmod_free_dense(&solved, &workspace);
+  cholmod_finish(&workspace);
+  return x;
+#else
   return factor_->llt.solve(b);
+#endif
 }
 
 const char* SparseCholesky::library() {

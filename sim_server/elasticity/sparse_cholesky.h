@@ -22,7 +22,7 @@ class SparseCholesky {
   /// factor is of no use until the next one.
   bool refactor(const SparseMatrix& lower);
 
-  /// X = A^-1 B for dense B (n x k); allocates X.
+  /// X = A^-1 B for dense B (n x k); allocates X. Several threads may ask at once.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
   /// The library behind it, for reports.

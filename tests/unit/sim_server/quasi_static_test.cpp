@@ -10,6 +10,10 @@
 #include "tests/support/stiffness.h"
 #include "tests/support/temporary_folder.h"
 
+#ifdef PALPATE_WITH_TBB
+#include <oneapi/tbb/global_control.h>
+#endif
+
 using namespace palpate;
 using namespace palpate::sim;
 
@@ -115,3 +119,20 @@ TEST_CASE("quasi-static: any element of the linear law; what is not linear is re
         ":9: model \"tensor_mass\" is for law \"linear\", element \"p1\", no fibres and no relaxation; for "
         "this material: quasi_static, implicit");
 }
+
+#ifdef PALPATE_WITH_TBB
+TEST_CASE("quasi-static: compliance has the same bytes with one thread and two") {
+  Eigen::MatrixXd compliance[2];
+  for (const std::size_t threads : {1, 2}) {
+    const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+    const Bench bench({8e3, 0.45, 1000, ElasticLaw::kLinear, ElementKind::kNodalPressure});
+    const auto n = static_cast<int>(bench.reachable.size());
+    ContactPatch patch;
+    patch.reserve(n, 1);
+    bench.model->compliance(bench.reachable, patch);
+    compliance[threads - 1] = patch.compliance;
+  }
+  REQUIRE(compliance[0].norm() > 0);
+  CHECK(compliance[0] == compliance[1]);
+}
+#endif
