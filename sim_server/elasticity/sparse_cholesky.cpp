@@ -46,7 +46,6 @@ struct SparseCholesky::Factor {
 namespace {
 
 constexpr double kSingular = 1e13;  // condition beyond which rounding has eaten the answer
-constexpr double kNoAnswer = std::numeric_limits<double>::quiet_NaN();  // of a factor that is of no use
 
 /// A load that no smooth motion balances.
 Eigen::VectorXd alternating(Eigen::Index n) {
@@ -82,6 +81,7 @@ bool SparseCholesky::refactor(const SparseMatrix& lower) {
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
 #ifdef PALPATE_WITH_CHOLMOD
+  constexpr double kNoAnswer = std::numeric_limits<double>::quiet_NaN();  // of a factor that is of no use
   // Eigen's would write to the workspace that belongs to the factor; this call has its own.
   cholmod_common workspace;
   cholmod_start(&workspace);
