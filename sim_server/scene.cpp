@@ -55,6 +55,11 @@ DeformationSettings read_deformation(const Config& config) {
   DeformationSettings settings;
   settings.where = config.where("model");
   settings.model = config.text("model");
+#ifndef PALPATE_WITH_SPECTRA
+  if (settings.model == "reduced")
+    fail("{}: model \"reduced\" is not in this build; configure it with -DPALPATE_SPECTRA=ON",
+         settings.where);
+#endif
   const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
   settings.stiffness = config.number("stiffness", {1e-3, 1e6, "N/m"}, settings.stiffness);
   if (config.has("spring_stiffness"))
@@ -66,6 +71,8 @@ DeformationSettings read_deformation(const Config& config) {
     settings.rayleigh_stiffness =
         config.number("rayleigh_stiffness", {0, 1, "s"}, settings.rayleigh_stiffness);
   }
+  if (row.modal)
+    settings.modes = static_cast<int>(config.integer("modes", {1, 1000, "modes"}, settings.modes));
   if (row.any_material) {
     const std::string integrator = config.text("integrator", "backward_euler");
     settings.second_order = integrator == "bdf2";
@@ -84,6 +91,18 @@ DeformationSettings read_deformation(const Config& config) {
   return settings;
 }
 
+/// That an elastic model is for the material of the scene.
+void require_material_of(const Scene& scene, const DeformationModelRow& row) {
+  if (!scene.material || !row.elastic) return;
+  const auto takes = [&material = *scene.material](const DeformationModelRow& m) {
+    return m.any_material || (m.elastic && (material.is_plain() || (m.any_linear && material.is_linear())));
+  };
+  if (takes(row)) return;
+  const std::string_view also = row.any_linear ? "" : ", element \"p1\", no fibres";
+  fail("{}: model \"{}\" is for law \"linear\"{} and no relaxation; for this material: {}",
+       scene.material_where, row.name, also, models_that(takes));
+}
+
 /// That the model does what the scene asks of it.
 void require_what_the_model_can(const Scene& scene) {
   const auto& settings = scene.deformation;
@@ -92,11 +111,7 @@ void require_what_the_model_can(const Scene& scene) {
   if (!scene.loads.empty() && !row.any_material)
     fail("{}: [[load]]: model \"{}\" bears tools only; {} would, or `sim_server solve`",
          scene.loads.front().region.where, settings.model, models_that(any));
-  if (scene.material && row.elastic && !scene.material->is_plain())
-    fail(
-        "{}: model \"{}\" is for law \"linear\", element \"p1\", no fibres and no relaxation; {} takes all "
-        "of them",
-        scene.material_where, settings.model, models_that(any));
+  require_material_of(scene, row);
   for (const FixedRegion& region : scene.fixed) {
     if (region.axes != kAllAxes)
       fail("{}: `axes`: only `sim_server solve` holds vertices along some axes; remove it", region.where);

@@ -85,6 +85,7 @@ struct DeformationSettings {
   int max_newton = 5;                        ///< per step, [1, 100], likewise
   double tolerance = 1e-5;  ///< of the forces at work, what Newton may leave, [1e-12, 0.1], likewise
   DynamicsSettings::Solver solver = DynamicsSettings::Solver::kDirect;  ///< likewise
+  int modes = 40;         ///< that swing, [1, 1000], model "reduced" only
   int refresh_steps = 8;  ///< from one factor of the background to the next, [1, 1000], likewise
   std::string where;      ///< "FILE:LINE" of `model`
 };

@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kReal = sizeof(double), kInt = sizeof(int), kVec = 3 * kReal;
 constexpr double kEntry = kReal + kInt;        // of a sparse matrix
-constexpr double kTriplet = kReal + 2 * kInt;  // of a list of entries
 constexpr double kTwoRing = 4.9;  // pairs of vertices at most two edges apart, per edge: measured 4.1 to 4.8
 
 double nodes_of(const MeshCounts& counts, ElementKind element) {
@@ -72,12 +71,6 @@ double tensors_bytes(const MeshCounts& counts) {
   return held + counts.tetrahedra * 6 * 2 * kInt;
 }
 
-double assembly_bytes(const MeshCounts& counts) {
-  constexpr double kEntries = 4 * 6 + 6 * 9;  // of the lower triangle, of a tetrahedron
-  return counts.tetrahedra * kEntries * (kTriplet + kEntry) +
-         kEntry * (9 * counts.edges + 6 * counts.vertices);
-}
-
 void require_memory_for(const Scene& scene, Purpose purpose, const MeshCounts& counts, double free) {
   if (!scene.material) return;  // the model asks for one, where it needs it
   const ElementKind element = scene.material->element;
@@ -87,8 +80,10 @@ void require_memory_for(const Scene& scene, Purpose purpose, const MeshCounts& c
     bytes = body_bytes(counts, element, 2);  // of now, and at rest
   } else if (model == "implicit") {
     bytes = body_bytes(counts, element, 1);
-  } else if (model == "quasi_static") {
-    bytes = assembly_bytes(counts);
+    if (scene.deformation.solver != DynamicsSettings::Solver::kDirect)  // another of each in the background
+      bytes += solid_bytes(counts, element) + matrix_bytes(counts, element);
+  } else if (model == "quasi_static" || model == "reduced") {
+    bytes = body_bytes(counts, element, 1);
   } else if (model == "tensor_mass") {
     bytes = tensors_bytes(counts);
   }

@@ -21,8 +21,6 @@ double solid_bytes(const MeshCounts& counts, ElementKind element);
 double matrix_bytes(const MeshCounts& counts, ElementKind element);
 /// Bytes that `ElasticTensors` take while they are built, nothing fixed.
 double tensors_bytes(const MeshCounts& counts);
-/// Bytes that `assemble_stiffness` takes while it sorts its entries.
-double assembly_bytes(const MeshCounts& counts);
 
 /// Throws `Error` naming the scene and the estimate where the elements and matrices of the scene's model, or
 /// for `Purpose::kSolve` those of a solution without a tool, are more than `free` bytes. The factor of the

@@ -63,6 +63,7 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
       free_(rest) {
   if (tool.grasps()) grip_.emplace(tool, rest, touchable, finder_.max_nodes());
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
+  filled_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   displacement_.resize(3 * (finder_.max_nodes() + 1));
   loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   kept_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
@@ -314,7 +315,10 @@ ContactForce ToolContact::touch(Tissue& tissue) noexcept {
     return {};
   }
   const std::span<const int> vertices = finder_.vertices();
-  tissue.model->compliance(vertices, patch_);
+  if (!tissue.model->compliance_is_constant() || !std::ranges::equal(vertices, filled_)) {
+    tissue.model->compliance(vertices, patch_);
+    filled_.assign(vertices.begin(), vertices.end());
+  }
   const int m = patch_.nodes();
   auto u = displacement_.head(3 * (m + 1));
   for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = tissue.positions[vertices[i]] - patch_.free[i];

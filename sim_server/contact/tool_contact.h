@@ -133,6 +133,7 @@ class ToolContact {
   ContactFinder finder_;
   ContactSolver solver_;
   ContactPatch patch_;
+  std::vector<int> filled_;         // surface vertices whose compliance the patch holds
   std::optional<Grip> grip_;        // for a tool that grasps
   std::span<const Vec3> free_;      // the tissue's, or pushed_
   std::vector<Vec3> pushed_;        // free under the loads of the other tools; empty where there are none

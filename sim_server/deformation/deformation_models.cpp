@@ -5,6 +5,9 @@
 #include "common/error.h"
 #include "sim_server/deformation/implicit.h"
 #include "sim_server/deformation/quasi_static.h"
+#ifdef PALPATE_WITH_SPECTRA
+#include "sim_server/deformation/reduced.h"
+#endif
 #include "sim_server/deformation/rigid.h"
 #include "sim_server/deformation/spring.h"
 #include "sim_server/deformation/tensor_mass.h"
@@ -25,7 +28,8 @@ constexpr std::array kModels{
                         .summary = "linear elastic equilibrium by pre-computed compliance",
                         .make = &make<QuasiStatic>,
                         .elastic = true,
-                        .follows_supports = true},
+                        .follows_supports = true,
+                        .any_linear = true},
     DeformationModelRow{.name = "tensor_mass",
                         .summary = "linear elastic motion, explicit, by a tensor per vertex and edge",
                         .make = &make<TensorMass>,
@@ -36,6 +40,15 @@ constexpr std::array kModels{
                         .make = &make<Implicit>,
                         .any_material = true,
                         .damped = true},
+#ifdef PALPATE_WITH_SPECTRA
+    DeformationModelRow{.name = "reduced",
+                        .summary = "linear elastic: the slowest modes swing, the rest follows at once",
+                        .make = &make<Reduced>,
+                        .elastic = true,
+                        .any_linear = true,
+                        .damped = true,
+                        .modal = true},
+#endif
     DeformationModelRow{.name = "spring",
                         .summary = "no deformation; the organ hangs on a spring that hardens",
                         .make = &make<Spring>},

@@ -37,8 +37,10 @@ struct DeformationModelRow {
   std::unique_ptr<DeformationModel> (*make)(const ModelInputs&);
   bool elastic = false;           ///< it needs a [material], and keeps the compliance of what tools reach
   bool follows_supports = false;  ///< it moves with a [[fixed.motion]]
-  bool any_material = false;      ///< all laws, elements, fibres, relaxation, and [[load]]; else linear p1
+  bool any_linear = false;        ///< all elements, and fibres, of the linear law
+  bool any_material = false;      ///< all laws, elements, fibres, relaxation, and [[load]]
   bool damped = false;            ///< it has Rayleigh damping
+  bool modal = false;             ///< it takes a number of `modes`
 };
 std::span<const DeformationModelRow> deformation_models();
 

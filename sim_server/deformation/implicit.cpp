@@ -57,6 +57,8 @@ Implicit::Implicit(const ModelInputs& inputs)
   for (std::size_t v = 0; v < dof_.size(); ++v) {
     if (dof_[v] >= 0) vertex_[static_cast<std::size_t>(dof_[v] / 3)] = static_cast<int>(v);
   }
+  if (inputs.scene.deformation.solver != DynamicsSettings::Solver::kDirect)
+    triangles_ = inputs.surface.triangles;
   free_ = positions_ = rest_;
   dynamics_.start_step(period_);
   dynamics_.improve(external());
@@ -73,7 +75,7 @@ FreeMotion Implicit::free_motion(double dt) noexcept {
     }
     moving_ = true;
     touched_ = false;
-    foresee_columns();
+    if (!triangles_.empty()) foresee_columns();
     dynamics_.start_step(period_);
     met_ = loads_;
     looks_ = dynamics_.settle(external(), 1, tolerance_);
@@ -136,11 +138,16 @@ std::span<const Vec3> Implicit::external() noexcept {
   return external_;
 }
 
-/// Has the next factor of the background come with the columns asked for since the last one.
+/// Has the next factor of the background come with the columns asked for since the last one, and with those
+/// around them, where a tool that slides will ask.
 void Implicit::foresee_columns() noexcept {
+  std::vector<std::uint8_t> near = asked_;
+  for (const Triangle& t : triangles_) {
+    if ((asked_[t[0]] | asked_[t[1]] | asked_[t[2]]) != 0) near[t[0]] = near[t[1]] = near[t[2]] = 1;
+  }
   std::vector<int> first;
   for (std::size_t v = 0; v < dof_.size(); ++v) {
-    if (asked_[v] != 0 && dof_[v] >= 0) first.push_back(dof_[v]);
+    if (near[v] != 0 && dof_[v] >= 0) first.push_back(dof_[v]);
   }
   dynamics_.foresee(std::move(first));
 }

@@ -45,12 +45,13 @@ class Implicit : public DeformationModel {
   Loads scene_loads_;
   Dynamics dynamics_;
   double period_, tolerance_;
-  int max_newton_, looks_ = 0;   // linearisations of this step
-  int factors_ = 0;              // of the columns
-  bool moving_ = false;          // a step has begun
-  bool touched_ = false;         // and was looked at again
-  std::vector<int> node_, dof_;  // per surface vertex: its node; its first unknown, or -1: held
-  std::vector<int> vertex_;      // per three unknowns: the surface vertex, or -1: inside
+  int max_newton_, looks_ = 0;       // linearisations of this step
+  int factors_ = 0;                  // of the columns
+  bool moving_ = false;              // a step has begun
+  bool touched_ = false;             // and was looked at again
+  std::vector<int> node_, dof_;      // per surface vertex: its node; its first unknown, or -1: held
+  std::vector<Triangle> triangles_;  // of the surface, where columns are foreseen
+  std::vector<int> vertex_;          // per three unknowns: the surface vertex, or -1: inside
   std::vector<Vec3> rest_, free_, positions_, external_;  // m; surface vertices; N, nodes
   std::vector<NodalLoad> loads_, met_;                    // now; those that the linearisation was made under
   double held_compliance_ = 0;                            // m/N

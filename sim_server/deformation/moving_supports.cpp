@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim_server/elasticity/element.h"
-
 namespace palpate::sim {
 namespace {
 
@@ -18,28 +16,29 @@ std::vector<int> region_of_vertices(const Scene& scene, const TetMesh& mesh) {
   return region;
 }
 
-/// -K_fd d for the displacement `way` of the vertices of one region, N.
-Eigen::VectorXd load_of(const ModelInputs& inputs, const FreeDofs& dofs, const std::vector<int>& region_of,
+/// -K_fd d for a unit displacement d along `way` of the vertices of one region, N: what the body at rest but
+/// for that pulls at its free nodes.
+Eigen::VectorXd load_of(const Solid& solid, const FreeDofs& dofs, const std::vector<int>& region_of,
                         int region, const Vec3& way) {
-  Eigen::VectorXd load = Eigen::VectorXd::Zero(dofs.count);
-  const auto& x = inputs.mesh.vertices;
-  for (const Tetrahedron& t : inputs.mesh.tetrahedra) {
-    if (std::none_of(t.begin(), t.end(), [&](int v) { return region_of[v] == region; })) continue;
-    const LinearTetrahedron element({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
-    for (int i = 0; i < 4; ++i) {
-      if (dofs.first[t[i]] < 0) continue;
-      for (int j = 0; j < 4; ++j) {
-        if (region_of[t[j]] != region) continue;
-        load.segment<3>(dofs.first[t[i]]) -= element.stiffness_block(i, j, *inputs.scene.material) * way;
-      }
-    }
+  std::vector<Vec3> x = solid.rest(), force(x.size());
+  const std::size_t vertices = region_of.size();
+  const auto share = [&](int vertex) { return region_of[vertex] == region ? 1.0 : 0.0; };
+  for (std::size_t v = 0; v < vertices; ++v) x[v] += share(static_cast<int>(v)) * way;
+  for (std::size_t k = 0; k < solid.edges().size(); ++k) {
+    const auto& [a, b] = solid.edges()[k];
+    if (dofs.first[vertices + k] < 0) x[vertices + k] += 0.5 * (share(a) + share(b)) * way;
+  }
+  solid.forces(x, force);
+  Eigen::VectorXd load(dofs.count);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (dofs.first[i] >= 0) load.segment<3>(dofs.first[i]) = -force[i];
   }
   return load;
 }
 
 }  // namespace
 
-MovingSupports::MovingSupports(const ModelInputs& inputs, const FreeDofs& dofs,
+MovingSupports::MovingSupports(const ModelInputs& inputs, const Solid& solid, const FreeDofs& dofs,
                                const SparseCholesky& factor) {
   const auto region_of = region_of_vertices(inputs.scene, inputs.mesh);
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
@@ -50,7 +49,7 @@ MovingSupports::MovingSupports(const ModelInputs& inputs, const FreeDofs& dofs,
       inputs.progress("computing moving supports", 0);
       const auto region = static_cast<int>(r);
       const Eigen::VectorXd u =
-          factor.solve(load_of(inputs, dofs, region_of, region, motion.direction)).col(0);
+          factor.solve(load_of(solid, dofs, region_of, region, motion.direction)).col(0);
       Column column{motion, {}};
       for (const int vertex : inputs.surface.vertices) {
         const int first = dofs.first[vertex];

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "sim_server/deformation/deformation_models.h"
-#include "sim_server/elasticity/assembly.h"
+#include "sim_server/elasticity/solid.h"
 #include "sim_server/elasticity/sparse_cholesky.h"
 
 namespace palpate::sim {
@@ -13,9 +13,11 @@ namespace palpate::sim {
 /// step adds them up, each times its sinusoid. A common translation of all supports moves the surface as one.
 class MovingSupports {
  public:
-  /// `factor`: of K_ff over `dofs`. Nothing is kept where no [[fixed]] has a motion. A vertex that lies in
-  /// several [[fixed]] belongs to the first.
-  MovingSupports(const ModelInputs& inputs, const FreeDofs& dofs, const SparseCholesky& factor);
+  /// `solid`: of the linear law; `factor`: of its K_ff over `dofs`. Nothing is kept where no [[fixed]] has a
+  /// motion. A vertex that lies in several [[fixed]] belongs to the first; a node between two that are fixed
+  /// moves by the mean of both.
+  MovingSupports(const ModelInputs& inputs, const Solid& solid, const FreeDofs& dofs,
+                 const SparseCholesky& factor);
 
   /// Goes on by `dt` (s) from time 0. No allocation.
   FreeMotion advance(double dt) noexcept;

@@ -2,39 +2,17 @@
 
 #include <algorithm>
 
-#include "sim_server/elasticity/sparse_cholesky.h"
+#include "sim_server/deformation/linear_statics.h"
 
 namespace palpate::sim {
-namespace {
-constexpr Eigen::Index kColumnsAtOnce =
-    48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
-
-SparseCholesky factor_stiffness(const ModelInputs& inputs, const FreeDofs& dofs) {
-  inputs.progress("assembling the stiffness matrix", 0);
-  const SparseMatrix stiffness = assemble_stiffness(inputs.mesh, *inputs.scene.material, dofs);
-  inputs.progress("factoring the stiffness matrix", 0);
-  return {stiffness, inputs.scene.source};
-}
-}  // namespace
 
 QuasiStatic::QuasiStatic(const ModelInputs& inputs) : compliance_(inputs) {
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
   positions_ = rest_;
-  const FreeDofs dofs(static_cast<int>(inputs.mesh.vertices.size()), inputs.fixed);
-  const SparseCholesky factor = factor_stiffness(inputs, dofs);
-  const auto dof = [&](Eigen::Index row) {
-    return dofs.first[inputs.surface.vertices[compliance_.vertices()[row / 3]]] + row % 3;
-  };
-  const auto respond = [&](Eigen::Index from, Eigen::Ref<Eigen::MatrixXd> columns) {
-    Eigen::MatrixXd load = Eigen::MatrixXd::Zero(dofs.count, columns.cols());
-    for (Eigen::Index c = 0; c < columns.cols(); ++c) load(dof(from + c), c) = 1;
-    const Eigen::MatrixXd moved = factor.solve(load);
-    for (Eigen::Index c = 0; c < columns.cols(); ++c) {
-      for (Eigen::Index r = 0; r < columns.rows(); ++r) columns(r, c) = moved(dof(r), c);
-    }
-  };
-  compliance_.compute(kColumnsAtOnce, respond, inputs.progress);
-  if (MovingSupports supports(inputs, dofs, factor); supports.any()) supports_ = std::move(supports);
+  const LinearStatics statics(inputs);
+  statics.fill(compliance_, inputs);
+  MovingSupports supports(inputs, statics.solid, statics.dofs, statics.factor);
+  if (supports.any()) supports_ = std::move(supports);
   inputs.progress("computing compliance", 1);
 }
 

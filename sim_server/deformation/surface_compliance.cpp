@@ -3,11 +3,14 @@
 #include <algorithm>
 
 #include "common/error.h"
+#include "common/parallel.h"
 
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostBytes = 4e9;  // of compliance, however many are free
+constexpr double kMostBytes = 4e9;           // of compliance, however many are free
+constexpr std::size_t kCallsPerReport = 16;  // of progress: enough to keep cores busy
+constexpr std::size_t kTile = 64;            // rows and columns that stay in the cache
 
 void require_held_tissue(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
@@ -19,6 +22,21 @@ void require_held_tissue(const ModelInputs& inputs) {
         "contains some",
         scene.source);
   }
+}
+
+/// Equal by theory to its transpose; makes it so to the last bit, for contact and for Cholesky.
+void symmetrise(Eigen::MatrixXd& m) {
+  const auto n = static_cast<std::size_t>(m.rows());
+  parallel_blocks(n, kTile, [&](std::size_t begin, std::size_t end) {
+    const auto row = static_cast<Eigen::Index>(begin), rows = static_cast<Eigen::Index>(end - begin);
+    for (Eigen::Index column = 0; column <= row; column += kTile) {
+      const Eigen::Index columns = std::min<Eigen::Index>(kTile, m.cols() - column);
+      auto below = m.block(row, column, rows, columns), above = m.block(column, row, columns, rows);
+      const Eigen::MatrixXd mean = 0.5 * (below + above.transpose());
+      below = mean;
+      above = mean.transpose();
+    }
+  });
 }
 
 }  // namespace
@@ -49,21 +67,31 @@ void SurfaceCompliance::require_room(double free) const {
   require_memory(bytes, free, source_, what, remedy);
 }
 
-void SurfaceCompliance::compute(Eigen::Index at_once, const Respond& respond, const Progress& progress) {
-  const auto rows = static_cast<Eigen::Index>(3 * vertices_.size());
+void SurfaceCompliance::compute(std::size_t at_once, const Respond& respond, const Progress& progress) {
+  const std::size_t rows = 3 * vertices_.size(), report = kCallsPerReport * at_once;
   require_room(free_memory());
-  compliance_.resize(rows, rows);
-  for (Eigen::Index from = 0; from < rows; from += at_once) {
+  compliance_.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(rows));
+  for (std::size_t from = 0; from < rows; from += report) {
     progress("computing compliance", static_cast<double>(from) / static_cast<double>(rows));
-    respond(from, compliance_.middleCols(from, std::min(at_once, rows - from)));
+    parallel_blocks(std::min(report, rows - from), at_once, [&](std::size_t begin, std::size_t end) {
+      const auto first = static_cast<Eigen::Index>(from + begin);
+      respond(first, compliance_.middleCols(first, static_cast<Eigen::Index>(end - begin)));
+    });
   }
-  // Equal by theory; make it so to the last bit, for contact and for Cholesky.
-  for (Eigen::Index c = 0; c < rows; ++c) {
-    for (Eigen::Index r = 0; r < c; ++r) {
-      const double mean = 0.5 * (compliance_(r, c) + compliance_(c, r));
-      compliance_(r, c) = compliance_(c, r) = mean;
-    }
-  }
+  symmetrise(compliance_);
+  held_compliance_ = compliance_.diagonal().minCoeff();
+}
+
+void SurfaceCompliance::add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd& weights) {
+  Eigen::MatrixXd here(compliance_.rows(), shapes.cols());
+  for (std::size_t k = 0; k < vertices_.size(); ++k)
+    here.middleRows<3>(3 * static_cast<Eigen::Index>(k)) = shapes.middleRows<3>(3 * vertices_[k]);
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * here.transpose();
+  parallel_blocks(static_cast<std::size_t>(here.rows()), kTile, [&](std::size_t begin, std::size_t end) {
+    const auto from = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
+    compliance_.middleCols(from, count).noalias() += here * weighted.middleCols(from, count);
+  });
+  symmetrise(compliance_);
   held_compliance_ = compliance_.diagonal().minCoeff();
 }
 

@@ -19,11 +19,17 @@ class SurfaceCompliance {
   /// reachable vertices are fixed, or where W would take more than 4 GB, or than there are free.
   explicit SurfaceCompliance(const ModelInputs& inputs);
 
-  /// Fills columns `first`, `first` + 1, ... of W: where all rows go (m) per force on these.
+  /// Fills columns `first`, `first` + 1, ... of W: where all rows go (m) per force on these. Called by
+  /// several threads at once.
   using Respond = std::function<void(Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> columns)>;
-  /// Set-up: asks for W, `at_once` columns at a time. Allocates it, and throws `Error` where what
-  /// was built meanwhile left no room for it; tells `progress`.
-  void compute(Eigen::Index at_once, const Respond& respond, const Progress& progress);
+  /// Set-up: asks for W, `at_once` columns with one call, on all cores; the same bytes on any number of them.
+  /// Allocates W, and throws `Error` where what was built meanwhile left no room for it; tells `progress`
+  /// from the calling thread.
+  void compute(std::size_t at_once, const Respond& respond, const Progress& progress);
+
+  /// Adds sum_k weights_k s_k s_k^T, s_k: shape k over the rows. `shapes`: (3 surface vertices x k). Set-up,
+  /// on all cores.
+  void add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd& weights);
 
   /// Surface vertices of the rows, three rows each.
   const std::vector<int>& vertices() const { return vertices_; }

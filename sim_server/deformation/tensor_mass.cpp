@@ -58,18 +58,16 @@ void TensorMass::choose_sub_step(const ModelInputs& inputs) {
 
 void TensorMass::precompute(const ModelInputs& inputs) {
   constexpr Eigen::Index kWide = ElasticTensors::kWide;
-  ExplicitMotion motion(tensors_, damping_of(inputs.scene), kWide);
-  std::vector<double> force = motion.state.f;
   const auto number = [&](Eigen::Index row, Eigen::Index column) {
     return (first_[compliance_.vertices()[row / 3]] + row % 3) * kWide + column;
   };
   const auto respond = [&](Eigen::Index from, Eigen::Ref<Eigen::MatrixXd> columns) {
-    auto& [u, v, f] = motion.state;
-    for (auto* const all : {&u, &v, &f, &force}) std::fill(all->begin(), all->end(), 0);
+    ExplicitMotion motion(tensors_, damping_of(inputs.scene), kWide);
+    std::vector<double> force = motion.state.f;
     for (Eigen::Index c = 0; c < columns.cols(); ++c) force[number(from + c, c)] = 1;
     motion.run(sub_steps_, sub_step_, force);
     for (Eigen::Index c = 0; c < columns.cols(); ++c) {
-      for (Eigen::Index r = 0; r < columns.rows(); ++r) columns(r, c) = u[number(r, c)];
+      for (Eigen::Index r = 0; r < columns.rows(); ++r) columns(r, c) = motion.state.u[number(r, c)];
     }
   };
   compliance_.compute(kWide, respond, inputs.progress);

@@ -16,12 +16,4 @@ LinearTetrahedron::LinearTetrahedron(const std::array<Vec3, 4>& corners) {
   }
 }
 
-Mat3 LinearTetrahedron::stiffness_block(int i, int j, const Material& material) const {
-  const Vec3 &gi = gradient[i], &gj = gradient[j];
-  const double mu = material.lame_mu();
-  Mat3 block = material.lame_lambda() * gi * gj.transpose() + mu * gj * gi.transpose();
-  block.diagonal().array() += mu * gi.dot(gj);
-  return volume * block;
-}
-
 }  // namespace palpate::sim

@@ -68,6 +68,7 @@ class Newton {
   }
 
   bool factor_at(const std::vector<Vec3>& x) {
+    if (solid_.material().law == ElasticLaw::kLinear) return true;  // as at rest, everywhere
     stiffness_.set_zero();
     solid_.add_stiffness(x, stiffness_);
     stiffness_.close_held(usual_);

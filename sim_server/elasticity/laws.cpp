@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kMostTurns = 20;
 constexpr double kTurned = 1e-14;      // square of what the last turn changed
+constexpr double kNear = 0.01;          // likewise: from here on it converges as fast unscaled
 constexpr double kFlat = 1e-3;         // of the cube of its size: too flat for Newton
 constexpr double kLeastStretch = 0.1;  // sum of two stretches below which R turns no faster
 
@@ -37,23 +38,26 @@ Mat3 nearest_rotation(const Mat3& F) noexcept {
   const double size = std::sqrt(F.squaredNorm() / 3);
   if (!(F.determinant() > kFlat * size * size * size)) return rotation_by_singular_values(F);
   Mat3 R = F / size;
-  for (int i = 0; i < kMostTurns; ++i) {
+  double change = 3;
+  for (int i = 0; i < kMostTurns && change > kTurned; ++i) {
     const Mat3 c = cofactor(R);
     const double det = R.col(0).dot(c.col(0));
     // Scaled so that it converges in a few steps from far away, too (Higham 1986, equation 3.5).
-    const double scale = std::sqrt(std::sqrt(c.squaredNorm() / R.squaredNorm()) / det);
-    const Mat3 next = 0.5 * (scale * R + c / (scale * det));
-    const double change = (next - R).squaredNorm();
+    const double scale = change > kNear ? std::sqrt(std::sqrt(c.squaredNorm() / R.squaredNorm()) / det) : 1.0;
+    const Mat3 next = (0.5 * scale) * R + (0.5 / (scale * det)) * c;
+    change = (next - R).squaredNorm();
     R = next;
-    if (change < kTurned) break;
   }
   return R;
 }
 
 CorotationalLaw::CorotationalLaw(const Moduli& moduli, const Mat3& F) noexcept
     : mu_(moduli.mu), F_(F), R_(nearest_rotation(F)) {
-  Mat3 stretch = F * R_.transpose();  // R S R^T
-  trace_ = stretch.trace();
+  trace_ = F.cwiseProduct(R_).sum();
+}
+
+void CorotationalLaw::prepare_blocks() noexcept {
+  Mat3 stretch = F_ * R_.transpose();  // R S R^T
   stretch = 0.5 * (stretch + stretch.transpose()).eval();
   Mat3 sums = -stretch;  // its eigenvalues are the sums of two stretches
   sums.diagonal().array() += trace_;

@@ -17,6 +17,7 @@ Mat3 nearest_rotation(const Mat3& F) noexcept;
 ///   shape_stress  dw/dF,                  Pa, first Piola-Kirchhoff
 ///   dilation      theta
 ///   dilation_gradient  dtheta/dF
+///   prepare_blocks()   before the first block: what forces alone do not need
 ///   block(p, a, b)     the matrix B with a' B b = (d2w + p d2theta)(a' x g_i, b' x g_j): what two shape
 ///                      functions of gradients g_i, g_j (1/m) get from the second derivatives, Pa/m^2,
 /// and all agree with linear elasticity of the same Lame parameters at rest. Pure; no allocation.
@@ -34,6 +35,7 @@ class LinearLaw {
   Mat3 shape_stress() const noexcept { return 2 * mu_ * strain_; }
   double dilation() const noexcept { return strain_.trace(); }
   Mat3 dilation_gradient() const noexcept { return Mat3::Identity(); }
+  void prepare_blocks() noexcept {}
   Mat3 block(double, const Vec3& gi, const Vec3& gj) const noexcept {
     Mat3 block = mu_ * gj * gi.transpose();
     block.diagonal().array() += mu_ * gi.dot(gj);
@@ -56,6 +58,7 @@ class CorotationalLaw {
   Mat3 shape_stress() const noexcept { return 2 * mu_ * (F_ - R_); }
   double dilation() const noexcept { return trace_ - 3; }
   const Mat3& dilation_gradient() const noexcept { return R_; }
+  void prepare_blocks() noexcept;
   Mat3 block(double p, const Vec3& gi, const Vec3& gj) const noexcept;
 
  private:
@@ -74,6 +77,7 @@ class StVenantKirchhoffLaw {
   Mat3 shape_stress() const noexcept { return 2 * mu_ * F_ * strain_; }
   double dilation() const noexcept { return strain_.trace(); }
   const Mat3& dilation_gradient() const noexcept { return F_; }
+  void prepare_blocks() noexcept {}
   Mat3 block(double p, const Vec3& gi, const Vec3& gj) const noexcept;
 
  private:
@@ -96,6 +100,7 @@ class NeoHookeanLaw {
   Mat3 shape_stress() const noexcept { return mu_ * (1 - 1 / (stretch2_ + 1)) * F_ - 0.75 * mu_ * cofactor_; }
   double dilation() const noexcept { return volume_ - 1; }
   const Mat3& dilation_gradient() const noexcept { return cofactor_; }
+  void prepare_blocks() noexcept {}
   Mat3 block(double p, const Vec3& gi, const Vec3& gj) const noexcept;
 
  private:

@@ -38,6 +38,8 @@ struct Material {
   bool is_plain() const {
     return law == ElasticLaw::kLinear && element == ElementKind::kLinear && !fibres && relaxations.empty();
   }
+  /// Linear law, any element, with fibres or without: stress goes with strain, and that is all.
+  bool is_linear() const { return law == ElasticLaw::kLinear && relaxations.empty(); }
   /// First Lame parameter, Pa.
   double lame_lambda() const {
     return young_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio));

@@ -291,7 +291,8 @@ void Solid::element_stiffness(std::span<const Vec3> x, std::size_t e, Mat3* k,
   std::fill_n(k, blocks_of(corners_), Mat3::Zero());
   for (int q = 0; q < points_; ++q) {
     const Mat3 F = element.deformation(q);
-    const Law law(moduli, F);
+    Law law(moduli, F);
+    law.prepare_blocks();
     const double theta = averages() ? mean_dilation(e) : law.dilation();
     const double weight = viscosity.scale * element.weight(q);
     const Mat3 dilation = law.dilation_gradient();

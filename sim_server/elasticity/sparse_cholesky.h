@@ -3,7 +3,7 @@
 #include <string>
 
 #include "common/memory_budget.h"
-#include "sim_server/elasticity/assembly.h"
+#include "sim_server/elasticity/stiffness_matrix.h"
 
 namespace palpate::sim {
 
@@ -24,7 +24,7 @@ class SparseCholesky {
   /// factor is of no use until the next one.
   bool refactor(const SparseMatrix& lower);
 
-  /// X = A^-1 B for dense B (n x k); allocates X.
+  /// X = A^-1 B for dense B (n x k); allocates X. Several threads may ask at once.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
   /// Of the factor.

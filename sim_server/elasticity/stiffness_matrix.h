@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/SparseCore>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,7 +22,9 @@ struct FreeDofs {
   std::vector<HeldAxes> held;  ///< (n nodes)
   int count = 0;               ///< number of unknowns
 
-  FreeDofs(int nodes, const std::vector<int>& fixed);
+  /// Of nodes of which some are fixed, and then of one more in the middle of each of `edges` between two of
+  /// them, fixed where both are.
+  FreeDofs(int nodes, const std::vector<int>& fixed, std::span<const std::array<int, 2>> edges = {});
   explicit FreeDofs(std::vector<HeldAxes> held_axes);
 
   /// Sets to 0 what is held along single axes; `v` by unknowns.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "sim_server/elasticity/element.h"
+#include "sim_server/elasticity/laws.h"
 
 namespace palpate::sim {
 namespace {
@@ -129,6 +130,8 @@ double* ElasticTensors::edge_tensor(int i, int j) {
 void ElasticTensors::add(const TetMesh& mesh, const Tetrahedron& t, const Material& material) {
   const auto& x = mesh.vertices;
   const LinearTetrahedron element({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
+  const Moduli moduli = LinearLaw::moduli(material);
+  const LinearLaw law(moduli, Mat3::Identity());
   using Tensor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   for (int a = 0; a < 4; ++a) {
     const int i = place_[t[a]];
@@ -137,7 +140,8 @@ void ElasticTensors::add(const TetMesh& mesh, const Tetrahedron& t, const Materi
     for (int b = 0; b < 4; ++b) {
       const int j = place_[t[b]];
       if (j < 0 || j > i) continue;
-      const Mat3 block = element.stiffness_block(a, b, material);
+      const Vec3 &gi = element.gradient[a], &gj = element.gradient[b];
+      const Mat3 block = element.volume * (law.block(0, gi, gj) + moduli.lambda * gi * gj.transpose());
       if (j < i) {
         Eigen::Map<Tensor>(edge_tensor(i, j)) += block;
         continue;

@@ -8,8 +8,11 @@ namespace palpate::sim {
 
 /// The stiffness K of linear tetrahedra over the free vertices, as tensors (Cotin, Delingette and Ayache
 /// 2000, Vis. Comput. 16:437): a symmetric one for each vertex, K_ii, and one for each edge, K_ij, kept once
-/// and used for both of its ends. Vertices are numbered along a space-filling curve, so that what meets lies
-/// close together in memory: 76 bytes an edge and 52 a vertex, about 100 a tetrahedron.
+/// and used for both of its ends. Of a tetrahedron of volume V whose shape functions have gradients g (their
+/// equation 12):
+///   K_ij = V (lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I),   K_ji = K_ij^T.
+/// Vertices are numbered along a space-filling curve, so that what meets lies close together in memory: 76
+/// bytes an edge and 52 a vertex, about 100 a tetrahedron.
 class ElasticTensors {
  public:
   /// O(m log m). Summed in tetrahedron order, so the same mesh gives the same bits.

@@ -28,9 +28,20 @@ std::array<Vec3, kSlideSteps> slide(const Vec3& place, const Vec3& along, double
   return places;
 }
 
+/// Not a model, but a quasi-static liver under a tool of 15 mm that rubs on it: about 20 nodes are near.
+constexpr std::string_view kFriction = "friction";
+
+Scene scene_called(std::string_view name) {
+  if (name != kFriction) return liver_scene_with(name);
+  Scene scene = liver_scene_with("quasi_static");
+  scene.tools[0].shape.radius = 0.015;
+  scene.tools[0].shape.friction = 0.3;
+  return scene;
+}
+
 /// A liver with a place to press on, built when a row first needs it.
 struct Liver {
-  explicit Liver(std::string_view model) : scene(liver_scene_with(model)), simulation(scene) {
+  explicit Liver(std::string_view name) : scene(scene_called(name)), simulation(scene) {
     press = find_press(scene, simulation);
     hash = contact_hash(scene, simulation, press);
     simulation.lift_tool();
@@ -48,7 +59,8 @@ struct Liver {
   std::uint64_t hash = 0, free_hash = 0;
 };
 
-/// The liver with a model; null, and the row says so, where the scene lacks what the model needs.
+/// The liver with a model, or with friction; null, and the row says so, where the scene lacks what the model
+/// needs.
 Liver* liver(benchmark::State& state, std::string_view model) {
   static std::map<std::string_view, Liver> built;
   try {
@@ -152,6 +164,7 @@ void add_server_rows() {
     add(fmt::format("step/{}/free", name), [name](benchmark::State& state) { run_free(state, name); });
     add(fmt::format("step/{}/contact", name), [name](benchmark::State& state) { run_contact(state, name); });
   }
+  add("step/quasi_static/friction", [](benchmark::State& state) { run_contact(state, kFriction); });
   add("contact/flat_patch", run_contact_alone);
   add("virtual_session/5_s", run_virtual_session);
 }

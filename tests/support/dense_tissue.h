@@ -1,13 +1,13 @@
 #pragma once
 #include <Eigen/Eigenvalues>
 
-#include "sim_server/elasticity/element.h"
 #include "sim_server/elasticity/tensors.h"
+#include "tests/support/stiffness.h"
 
 namespace palpate::test {
 
-/// Stiffness, masses and modes of a small tissue, dense, element by element: what `ElasticTensors` and all
-/// that moves by them is held against. Numbers are those of the tensors: three for each free vertex.
+/// Stiffness, masses and modes of a small tissue, dense, from the body as a `Solid`: what `ElasticTensors`
+/// and all that moves by them is held against. Numbers are those of the tensors: three for each free vertex.
 struct DenseTissue {
   Eigen::MatrixXd stiffness;  ///< N/m
   Eigen::VectorXd mass;       ///< kg, of each number
@@ -18,17 +18,16 @@ struct DenseTissue {
     const int n = 3 * tensors.vertices();
     stiffness = Eigen::MatrixXd::Zero(n, n);
     mass = Eigen::VectorXd::Zero(n);
-    for (const sim::Tetrahedron& t : mesh.tetrahedra) {
-      const auto& x = mesh.vertices;
-      const sim::LinearTetrahedron element({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
-      for (int a = 0; a < 4; ++a) {
-        const int i = 3 * tensors.places()[t[a]];
-        if (i < 0) continue;
-        mass.segment<3>(i).array() += material.density * element.volume / 4;
-        for (int b = 0; b < 4; ++b) {
-          const int j = 3 * tensors.places()[t[b]];
-          if (j >= 0) stiffness.block<3, 3>(i, j) += element.stiffness_block(a, b, material);
-        }
+    const sim::Solid solid(mesh, material);
+    const Eigen::MatrixXd all = dense_stiffness(solid, sim::FreeDofs(solid.nodes(), {}));
+    const std::vector<double> masses = solid.masses();
+    for (int a = 0; a < solid.nodes(); ++a) {
+      const int i = 3 * tensors.places()[a];
+      if (i < 0) continue;
+      mass.segment<3>(i).setConstant(masses[a]);
+      for (int b = 0; b < solid.nodes(); ++b) {
+        const int j = 3 * tensors.places()[b];
+        if (j >= 0) stiffness.block<3, 3>(i, j) = all.block<3, 3>(3 * a, 3 * b);
       }
     }
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, mass.asDiagonal());

@@ -1,13 +1,13 @@
 #include <optional>
 
 #include "common/contact/simplex_distance.h"
-#include "sim_server/elasticity/assembly.h"
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/simulation.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
+#include "tests/support/stiffness.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -71,8 +71,7 @@ Eigen::VectorXd holding_forces(const Simulation& block) {
   const TetMesh& mesh = block.mesh();
   const Scene made = scene(1);
   const FreeDofs dofs(static_cast<int>(mesh.vertices.size()), fixed_vertices(made, mesh));
-  const Eigen::MatrixXd lower = assemble_stiffness(mesh, *made.material, dofs);
-  const Eigen::MatrixXd stiffness = lower.selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd stiffness = test::dense_stiffness(Solid(mesh, *made.material), dofs);
   std::vector<int> surface, inside;
   Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.count);
   std::vector<char> on_surface(static_cast<std::size_t>(dofs.count), 0);

@@ -31,7 +31,8 @@ Mat3 stress(const Mat3& F) {
 template <class Law>
 Mat3 block(const Mat3& F, const Vec3& gi, const Vec3& gj) {
   const Moduli moduli = Law::moduli(kTissue);
-  const Law law(moduli, F);
+  Law law(moduli, F);
+  law.prepare_blocks();
   const Mat3 dilation = law.dilation_gradient();
   return law.block(moduli.lambda * law.dilation(), gi, gj) +
          moduli.lambda * (dilation * gi) * (dilation * gj).transpose();

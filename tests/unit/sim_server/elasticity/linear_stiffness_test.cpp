@@ -1,10 +1,9 @@
-#include "sim_server/elasticity/assembly.h"
-
 #include "common/error.h"
 #include "sim_server/elasticity/sparse_cholesky.h"
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
+#include "tests/support/stiffness.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -22,32 +21,39 @@ TetMesh shaken_block() {
   return mesh;
 }
 
-Eigen::MatrixXd full(const SparseMatrix& lower) {
-  const Eigen::MatrixXd dense = lower;
-  return dense.selfadjointView<Eigen::Lower>();
+bool is_inner(const Vec3& x) {
+  constexpr double kEdge = 1e-12;
+  return x.minCoeff() > kEdge && (Vec3(1, 1.1, 1.3) - x).minCoeff() > kEdge;
+}
+
+constexpr std::array kElements{ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic};
+
+SparseCholesky factor_of(const Solid& solid, const FreeDofs& dofs) {
+  StiffnessMatrix k = solid.stiffness_matrix(dofs);
+  solid.add_stiffness(solid.rest(), k);
+  return {k.lower(), "test"};
 }
 
 }  // namespace
 
 TEST_CASE("patch test: prescribing a linear field on the boundary gives it inside, to 1e-12") {
-  const TetMesh mesh = shaken_block();
-  const Material material{1e4, 0.45, 1000};
-  const int n = static_cast<int>(mesh.vertices.size());
-  const Eigen::MatrixXd k = full(assemble_stiffness(mesh, material, FreeDofs(n, {})));
+  const ElementKind element = GENERATE(from_range(kElements));
+  const Solid solid(shaken_block(), {1e4, 0.45, 1000, ElasticLaw::kLinear, element});
+  const int n = solid.nodes();
+  const Eigen::MatrixXd k = test::dense_stiffness(solid, FreeDofs(n, {}));
   Mat3 gradient;
   gradient << 0.01, 0.003, -0.002, 0.004, -0.02, 0.001, 0.005, -0.001, 0.015;
   Eigen::VectorXd u(3 * n);
   std::vector<int> inner, outer;
   for (int v = 0; v < n; ++v) {
-    const Vec3& x = mesh.vertices[v];
+    const Vec3& x = solid.rest()[v];
     u.segment<3>(3 * v) = gradient * x;
-    const bool is_inner = x[0] > 0 && x[0] < 1 && x[1] > 0 && x[1] < 1.1 && x[2] > 0 && x[2] < 1.3;
-    (is_inner ? inner : outer).push_back(v);
+    (is_inner(x) ? inner : outer).push_back(v);
   }
-  REQUIRE(inner.size() == 8);
+  REQUIRE(std::count_if(inner.begin(), inner.end(), [](int v) { return v < 64; }) == 8);
   // Solve K_ii u_i = -K_io u_o with the program's own dofs and Cholesky.
   const FreeDofs dofs(n, outer);
-  const SparseCholesky factor(assemble_stiffness(mesh, material, dofs), "test");
+  const SparseCholesky factor = factor_of(solid, dofs);
   Eigen::VectorXd load = Eigen::VectorXd::Zero(dofs.count);
   for (const int i : inner) {
     for (const int o : outer) {
@@ -61,14 +67,15 @@ TEST_CASE("patch test: prescribing a linear field on the boundary gives it insid
 }
 
 TEST_CASE("the stiffness is symmetric, positive, blind to rigid motion, energy is that of uniform strain") {
-  const TetMesh mesh = shaken_block();
-  const Material material{1e4, 0.3, 1000};
-  const int n = static_cast<int>(mesh.vertices.size());
-  const Eigen::MatrixXd k = full(assemble_stiffness(mesh, material, FreeDofs(n, {})));
+  const ElementKind element = GENERATE(from_range(kElements));
+  const Material material{1e4, 0.3, 1000, ElasticLaw::kLinear, element};
+  const Solid solid(shaken_block(), material);
+  const int n = solid.nodes();
+  const Eigen::MatrixXd k = test::dense_stiffness(solid, FreeDofs(n, {}));
   Eigen::VectorXd rotation(3 * n), stretch(3 * n);
   for (int v = 0; v < n; ++v) {
-    rotation.segment<3>(3 * v) = Vec3(1, 2, 3).cross(mesh.vertices[v]);
-    stretch.segment<3>(3 * v) = Vec3(0.01 * mesh.vertices[v][0], 0, 0);
+    rotation.segment<3>(3 * v) = Vec3(1, 2, 3).cross(solid.rest()[v]);
+    stretch.segment<3>(3 * v) = Vec3(0.01 * solid.rest()[v][0], 0, 0);
   }
   CHECK((k * rotation).norm() < 1e-12 * k.norm() * rotation.norm());
   // Uniaxial strain e: energy = volume (lambda + 2 mu) e^2 / 2.
@@ -77,7 +84,6 @@ TEST_CASE("the stiffness is symmetric, positive, blind to rigid motion, energy i
 }
 
 TEST_CASE("a body that nothing holds is refused") {
-  const TetMesh mesh = shaken_block();
-  const int n = static_cast<int>(mesh.vertices.size());
-  CHECK_THROWS_AS(SparseCholesky(assemble_stiffness(mesh, {}, FreeDofs(n, {0})), "test"), Error);
+  const Solid solid(shaken_block(), {});
+  CHECK_THROWS_AS(factor_of(solid, FreeDofs(solid.nodes(), {0})), Error);
 }

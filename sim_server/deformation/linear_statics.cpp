@@ -1,0 +1,52 @@
+#include "sim_server/deformation/linear_statics.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr std::size_t kColumnsAtOnce =
+    48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
+
+Solid solid_of(const ModelInputs& inputs) {
+  inputs.progress("assembling the stiffness matrix", 0);
+  return {inputs.mesh, *inputs.scene.material};
+}
+
+SparseCholesky factor_stiffness(const ModelInputs& inputs, const Solid& solid, const FreeDofs& dofs) {
+  StiffnessMatrix stiffness = solid.stiffness_matrix(dofs);
+  solid.add_stiffness(solid.rest(), stiffness);
+  inputs.progress("factoring the stiffness matrix", 0);
+  return {stiffness.lower(), inputs.scene.source};
+}
+
+}  // namespace
+
+LinearStatics::LinearStatics(const ModelInputs& inputs)
+    : solid(solid_of(inputs)),
+      dofs(static_cast<int>(inputs.mesh.vertices.size()), inputs.fixed, solid.edges()),
+      factor(factor_stiffness(inputs, solid, dofs)) {}
+
+Eigen::VectorXd LinearStatics::masses() const {
+  const std::vector<double> of_nodes = solid.masses();
+  Eigen::VectorXd masses(dofs.count);
+  for (std::size_t i = 0; i < of_nodes.size(); ++i) {
+    if (dofs.first[i] >= 0) masses.segment<3>(dofs.first[i]).setConstant(of_nodes[i]);
+  }
+  return masses;
+}
+
+void LinearStatics::fill(SurfaceCompliance& compliance, const ModelInputs& inputs) const {
+  const auto dof = [&](Eigen::Index row) {
+    return dofs.first[inputs.surface.vertices[compliance.vertices()[row / 3]]] + row % 3;
+  };
+  const auto respond = [&](Eigen::Index from, Eigen::Ref<Eigen::MatrixXd> columns) {
+    Eigen::MatrixXd load = Eigen::MatrixXd::Zero(dofs.count, columns.cols());
+    for (Eigen::Index c = 0; c < columns.cols(); ++c) load(dof(from + c), c) = 1;
+    const Eigen::MatrixXd moved = factor.solve(load);
+    for (Eigen::Index c = 0; c < columns.cols(); ++c) {
+      for (Eigen::Index r = 0; r < columns.rows(); ++r) columns(r, c) = moved(dof(r), c);
+    }
+  };
+  compliance.compute(kColumnsAtOnce, respond, inputs.progress);
+}
+
+}  // namespace palpate::sim

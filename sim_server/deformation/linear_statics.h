@@ -1,0 +1,22 @@
+#pragma once
+#include "sim_server/deformation/surface_compliance.h"
+#include "sim_server/elasticity/solid.h"
+#include "sim_server/elasticity/sparse_cholesky.h"
+
+namespace palpate::sim {
+
+/// The stiffness K of a linear tissue at rest, factored: what its models pre-compute from.
+struct LinearStatics {
+  Solid solid;
+  FreeDofs dofs;
+  SparseCholesky factor;  ///< of K over `dofs`
+
+  /// Tells the progress of `inputs`. Throws `Error` where K is singular.
+  explicit LinearStatics(const ModelInputs& inputs);
+  /// Of each unknown, kg, lumped.
+  Eigen::VectorXd masses() const;
+  /// Fills `compliance` with J K^-1 J^T, on all cores.
+  void fill(SurfaceCompliance& compliance, const ModelInputs& inputs) const;
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,43 @@
+#pragma once
+#include "sim_server/deformation/surface_compliance.h"
+#include "sim_server/elasticity/vibration_modes.h"
+
+namespace palpate::sim {
+
+/// Linear tissue of which only the slowest `modes` swing; all the rest follows the loads at once, as in
+/// statics (residual flexibility: MacNeal 1971, Comput. Struct. 1:581; Craig 1981, Structural Dynamics,
+/// chapter 18). So it rests where `quasi_static` does, whatever the number of modes; what is left out is the
+/// inertia of the quick ones. Each mode q'' + (alpha + beta w^2) q' + w^2 q = phi^T f is stepped exactly
+/// over T = 1 / rate_hz of the scene under loads that are held: no step is too long. Set-up finds the modes
+/// and
+///   W = J K^-1 J^T + sum_k J phi_k (r_k - 1 / w_k^2) (J phi_k)^T,
+/// r_k the way of mode k within T per force on it. A step takes a few columns of W and one pass over modes
+/// and surface vertices.
+class Reduced : public DeformationModel {
+ public:
+  /// Throws `Error` as `SurfaceCompliance`, or when K is singular, `rate_hz` 0, or modes not to be had.
+  explicit Reduced(const ModelInputs& inputs);
+  /// Any `dt` > 0 is taken for one period.
+  FreeMotion free_motion(double dt) noexcept override;
+  void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  bool compliance_is_constant() const noexcept override { return true; }
+  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  std::vector<MemoryPart> memory() const override;
+
+ private:
+  /// How one mode goes over T: of q, q' and a held force per unit mass p at its beginning to those at its
+  /// end.
+  struct Step {
+    double q_of_q, q_of_v, v_of_q, v_of_v, q_of_p, v_of_p;
+  };
+  static Step step_of(double w, double damping, double period);
+
+  std::vector<Vec3> rest_, free_, positions_;
+  SurfaceCompliance compliance_;
+  std::vector<Step> steps_;             // (modes)
+  Eigen::MatrixXd shapes_;              // (3 surface vertices x modes), 1/sqrt(kg)
+  Eigen::VectorXd q_, v_, p_, q_free_;  // (modes) m sqrt(kg), m sqrt(kg)/s, N/sqrt(kg)
+  Eigen::VectorXd moved_;               // (3 surface vertices) m
+};
+
+}  // namespace palpate::sim
