@@ -93,7 +93,7 @@ TEST_CASE("a scene beyond the machine is refused with the estimate, before anyth
   const Scene still = scene_with("quasi_static");
   CHECK(refusal(still, Purpose::kServe, 1.667e6).empty());
   CHECK(refusal(still, Purpose::kServe, 1.665e6) ==
-        "test: the stiffness of 5000 tetrahedra would take 1.7 MB, and 1.7 MB are free; take a coarser mesh");
+        "test: the stiffness of 5000 tetrahedra would take 1.67 MB, and 1.67 MB are free; take a coarser mesh");
   // 1000 (48 + 4) + 6000 (72 + 4) + 5000 48: 0.748 MB
   CHECK(refusal(scene_with("tensor_mass"), Purpose::kServe, 0.749e6).empty());
   CHECK_FALSE(refusal(scene_with("tensor_mass"), Purpose::kServe, 0.747e6).empty());
