@@ -88,6 +88,10 @@ struct DeformationSettings {
   int modes = 40;         ///< that swing, [1, 1000], model "reduced" only
   int refresh_steps = 8;  ///< from one factor of the background to the next, [1, 1000], likewise
   std::string where;      ///< "FILE:LINE" of `model`
+
+  DynamicsSettings dynamics() const {
+    return {rayleigh_mass, rayleigh_stiffness, second_order, solver, refresh_steps};
+  }
 };
 
 /// One `[[tool]]`.

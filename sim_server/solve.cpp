@@ -1,10 +1,12 @@
 #include "sim_server/solve.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/core.h>
 
+#include "common/clock.h"
 #include "common/error.h"
 #include "common/log.h"
 #include "common/progress.h"
@@ -143,12 +145,14 @@ std::vector<Vec3> find_rest(const Scene& scene, const Solid& solid, const Loads&
                             ProgressLine& progress) {
   const StaticLoad load{[&](std::span<const Vec3> x, std::span<Vec3> f) { loads.add_forces(x, f); },
                         loads.held(), loads.moved()};
+  const Time begin = now();
   Equilibrium found =
       find_equilibrium(solid, load, scene.source, [&](double share) { progress("loading", share); });
   progress("loading", 1);
   fmt::print(
-      "  static equilibrium     {} Newton steps in {} increments, residual {:.1e} of the forces at work\n",
-      found.iterations, found.increments, found.residual);
+      "  static equilibrium     {} Newton steps in {} increments, residual {:.1e} of the forces at work, {:.3g} "
+      "ms\n",
+      found.iterations, found.increments, found.residual, 1e3 * to_seconds(now() - begin));
   return std::move(found.x);
 }
 
@@ -169,45 +173,71 @@ class Series {
   std::vector<std::pair<double, std::filesystem::path>> frames_;
 };
 
+/// How a motion is stepped: as model "implicit" of the scene says; where it names none, by BDF2, undamped.
+struct Stepping {
+  DynamicsSettings dynamics{.second_order = true};
+  double tolerance = 1e-9;
+  explicit Stepping(const DeformationSettings& settings) {
+    if (settings.model != "implicit") return;
+    dynamics = settings.dynamics();
+    tolerance = settings.tolerance;
+  }
+  const char* name() const { return dynamics.second_order ? "BDF2" : "backward Euler"; }
+};
+
+/// One step of `h` to balance. Returns the steps of Newton's method that it took.
+int step_to_balance(Dynamics& dynamics, const Loads& loads, const Solid& solid, double h, double tolerance,
+                    std::vector<Vec3>& external) {
+  constexpr int kMostNewton = 50;
+  dynamics.start_step(h);
+  for (std::size_t i = 0; !loads.moved().empty() && i < external.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((loads.held()[i] >> axis & 1) != 0)
+        dynamics.put()[i][axis] = solid.rest()[i][axis] + loads.moved()[i][axis];
+    }
+  }
+  for (int k = 1; k <= kMostNewton; ++k) {
+    std::fill(external.begin(), external.end(), Vec3::Zero());
+    loads.add_forces(dynamics.position(), external);
+    if (dynamics.improve(external, tolerance) > tolerance) continue;
+    dynamics.finish_step();
+    return k;
+  }
+  return 0;
+}
+
 /// From rest, with all loads there at once, and what is moved moved at once.
 std::vector<Vec3> move_for(const SolveOptions& options, const Scene& scene, const Solid& solid,
                            const Loads& loads, ProgressLine& progress) {
-  constexpr int kMostNewton = 50;
-  constexpr double kTolerance = 1e-9;
-  Dynamics dynamics(solid, loads.held(), {.second_order = true}, scene.source);
+  const Stepping stepping(scene.deformation);
+  Dynamics dynamics(solid, loads.held(), stepping.dynamics, scene.source);
   const auto steps = static_cast<int>(std::ceil(*options.seconds / options.step - 1e-9));
   const double h = *options.seconds / steps;
   const int every = std::max(1, steps / options.frames);
   Series series(options);
   std::vector<Vec3> external(static_cast<std::size_t>(solid.nodes()));
+  std::vector<Time> times;
   int newton = 0;
   if (options.series) series.add(0, solid, dynamics.position());
   for (int step = 1; step <= steps; ++step) {
-    dynamics.start_step(h);
-    for (std::size_t i = 0; !loads.moved().empty() && i < external.size(); ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if ((loads.held()[i] >> axis & 1) != 0)
-          dynamics.put()[i][axis] = solid.rest()[i][axis] + loads.moved()[i][axis];
-      }
-    }
-    for (int k = 0; k < kMostNewton; ++k) {
-      ++newton;
-      std::fill(external.begin(), external.end(), Vec3::Zero());
-      loads.add_forces(dynamics.position(), external);
-      if (dynamics.improve(external) <= kTolerance) break;
-      if (k + 1 == kMostNewton)
-        fail_at_run_time("{}: no convergence at {:g} s; a smaller --step than {:g} s would help",
-                         scene.source, step * h, h);
-    }
-    dynamics.finish_step();
+    const Time begin = now();
+    const int looks = step_to_balance(dynamics, loads, solid, h, stepping.tolerance, external);
+    if (looks == 0)
+      fail_at_run_time("{}: no convergence at {:g} s; a smaller --step than {:g} s would help", scene.source,
+                       step * h, h);
+    times.push_back(now() - begin);
+    newton += looks;
     progress("moving", static_cast<double>(step) / steps);
     if (options.series && (step % every == 0 || step == steps))
       series.add(step * h, solid, dynamics.position());
   }
   if (options.series) series.finish();
+  std::nth_element(times.begin(), times.begin() + steps / 2, times.end());
   fmt::print(
-      "  after {:g} s            {} steps of {:g} s (BDF2), {} Newton steps, kinetic energy {:.9g} J\n",
-      *options.seconds, steps, h, newton, dynamics.kinetic_energy());
+      "  after {:g} s            {} steps of {:g} s ({}, to {:g} of the forces), {} looks, {:.3g} ms a step "
+      "(median), kinetic energy {:.9g} J\n",
+      *options.seconds, steps, h, stepping.name(), stepping.tolerance, newton,
+      1e3 * to_seconds(times[static_cast<std::size_t>(steps / 2)]), dynamics.kinetic_energy());
   return {dynamics.position().begin(), dynamics.position().end()};
 }
 

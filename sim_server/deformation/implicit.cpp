@@ -19,17 +19,12 @@ const Material& material_of(const ModelInputs& inputs) {
   return *scene.material;
 }
 
-DynamicsSettings settings_of(const DeformationSettings& settings) {
-  return {settings.rayleigh_mass, settings.rayleigh_stiffness, settings.second_order, settings.solver,
-          settings.refresh_steps};
-}
-
 }  // namespace
 
 Implicit::Implicit(const ModelInputs& inputs)
     : solid_(inputs.mesh, material_of(inputs)),
       scene_loads_(inputs.scene, inputs.mesh, inputs.surface, solid_),
-      dynamics_(solid_, scene_loads_.held(), settings_of(inputs.scene.deformation), inputs.scene.source),
+      dynamics_(solid_, scene_loads_.held(), inputs.scene.deformation.dynamics(), inputs.scene.source),
       period_(step_period(inputs.scene)),
       tolerance_(inputs.scene.deformation.tolerance),
       max_newton_(inputs.scene.deformation.max_newton),

@@ -61,6 +61,7 @@ void Dynamics::start_step(double h) {
   h_ = h;
   told_ = false;
   quasi_newton_.begin();
+  if (learns()) too_old_ = false;
   improved_ = false;
   const bool second = settings_.second_order && steps_ > 0;
   c_ = (second ? 1.5 : 1) / h;
@@ -166,7 +167,9 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
     left_ = 1;
     return 0;
   }
+    printf("left %.2e before %.2e improved %d fresh %d old %d\n", left_, before, improved_, fresh_, too_old_);
   if (left_ <= tolerance) return left_;
+  bool slow = false;
   if (improved_ && left_ > kWorthwhile * before) {
     if (fresh_ && left_ <= kRounding) return 0;
     if (fresh_ && left_ > before) {  // too far: half of the way back
@@ -176,7 +179,7 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
       left_ = before;
       return 1;
     }
-    too_old_ = true;
+    slow = true;
     if (!background_) {
       factor();
       fresh = true;
@@ -184,20 +187,16 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
     }
   }
   improved_ = true;
-  fresh_ = fresh || (background_ && (too_old_ || settings_.solver == DynamicsSettings::Solver::kQuasiNewton));
-  way_ = towards_balance(left, external);
+  if (learns()) learn(left, external);
+  too_old_ = too_old_ || slow;
+  fresh_ = fresh || too_old_;
+  way_ = background_ && too_old_ ? conjugate_gradients(left, external) : quasi_newton_.step(matrix_, left);
   move(way_);
   return left_;
 }
 
-Eigen::VectorXd Dynamics::towards_balance(const Eigen::VectorXd& left, std::span<const Vec3> external) {
-  using Solver = DynamicsSettings::Solver;
-  if (background_ && settings_.solver == Solver::kQuasiNewton) return learned_step(left, external);
-  if (background_ && too_old_) return conjugate_gradients(left, external);
-  return matrix_.solve(left).col(0);
-}
-
-Eigen::VectorXd Dynamics::learned_step(const Eigen::VectorXd& left, std::span<const Vec3> external) {
+/// How the body resists where it is now.
+void Dynamics::learn(const Eigen::VectorXd& left, std::span<const Vec3> external) {
   Eigen::VectorXd place = Eigen::VectorXd::Zero(dofs_.count), resistance = -left;
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (dofs_.first[i] < 0) continue;
@@ -206,7 +205,6 @@ Eigen::VectorXd Dynamics::learned_step(const Eigen::VectorXd& left, std::span<co
   }
   dofs_.hold(resistance);
   quasi_newton_.learn(place, resistance);
-  return quasi_newton_.step(matrix_, left);
 }
 
 /// A way by which the body moves towards balance, m: A^-1 `left` to within a share of it, of A here and now.
@@ -215,7 +213,7 @@ Eigen::VectorXd Dynamics::conjugate_gradients(const Eigen::VectorXd& left, std::
   Eigen::VectorXd way = Eigen::VectorXd::Zero(left.size()), rest = left, along = way;
   double before = 1;
   for (int i = 0; i < kMostGradients && rest.norm() > enough; ++i) {
-    const Eigen::VectorXd ahead = matrix_.solve(rest).col(0);
+    const Eigen::VectorXd ahead = quasi_newton_.step(matrix_, rest);
     const double now = rest.dot(ahead);
     along = ahead + now / before * along;
     before = now;

@@ -17,7 +17,8 @@ namespace palpate::sim {
 ///   steps before (Courtecuisse et al. 2010), as it is, and where that leaves more, by conjugate gradients
 ///   that it preconditions. A v is had from a difference of forces (Knoll and Keyes 2004, J. Comput. Phys.
 ///   193:357), so that no matrix is assembled in a step;
-/// - with the same factor by a quasi-Newton method (`QuasiNewton`), which takes fewer forces and solves.
+/// - with the same factor by a quasi-Newton method (`QuasiNewton`), which takes fewer forces and solves,
+///   and by conjugate gradients only in a step in which that leaves more.
 /// All balance the same forces. Viscosity by Prony series
 /// with the recursion of Simo (1987, Comput. Meth. Appl. Mech. Engng 60:153): with S0 the elastic second
 /// Piola-Kirchhoff stress, g_i and tau_i share and time of each term,
@@ -74,8 +75,8 @@ class Dynamics {
 
  private:
   void factor();
-  Eigen::VectorXd towards_balance(const Eigen::VectorXd& left, std::span<const Vec3> external);
-  Eigen::VectorXd learned_step(const Eigen::VectorXd& left, std::span<const Vec3> external);
+  bool learns() const { return background_ && settings_.solver == DynamicsSettings::Solver::kQuasiNewton; }
+  void learn(const Eigen::VectorXd& left, std::span<const Vec3> external);
   void exchange_factors();
   void renewed();
   Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& left, std::span<const Vec3> external);
