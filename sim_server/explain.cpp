@@ -32,6 +32,7 @@ constexpr std::array kStageParts{
     StagePart{"factoring the stiffness matrix", "its factor"},
     StagePart{"computing compliance", "compliance"},
     StagePart{"computing moving supports", "moving supports"},
+    StagePart{"finding the modes of vibration", "modes"},
     StagePart{"assembling the tensors", "tensors"},
     StagePart{"finding the highest frequency", "tensors"},
 };
@@ -97,10 +98,12 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
   const Surface& surface = simulation.surface();
   if (part == "mesh")
     return fmt::format("{} vertices, {} tetrahedra", mesh.vertices.size(), mesh.tetrahedra.size());
+  if (part == "modes") return fmt::format("{} of vibration", scene.deformation.modes);
   if (part == "surface")
     return fmt::format("{} vertices, {} triangles", surface.vertices.size(), surface.triangles.size());
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
-  if (part == "stiffness matrix" || part == "its factor") return "freed after set-up";
+  if (part == "stiffness matrix" || part == "its factor")
+    return is_elastic(scene) ? "freed after set-up" : "kept: part of motion";
   if (const ToolSettings* tool = tool_of(scene, part))
     return fmt::format("{}, radius {:g} mm{}, reaches {} nodes{}", shape_of(tool->shape),
                        1e3 * tool->shape.radius,
@@ -243,7 +246,8 @@ Explanation explain(const Scene& scene, const Progress& progress) {
                           .built = built_parts(scene, own.simulation, times),
                           .left_out = {},
                           .steps = time_steps(scene, own.simulation, own.press, kSteps),
-                          .state_hash = own.simulation.state_hash()};
+                          .state_hash = own.simulation.state_hash(),
+                          .tetrahedra = own.simulation.mesh().tetrahedra.size()};
   own.cost = cost_of(own.simulation, times, explanation.steps);
   explanation.left_out = left_out(own);
   return explanation;

@@ -41,6 +41,7 @@ struct Explanation {
   std::vector<LeftOut> left_out;
   StepTimes steps;
   std::uint64_t state_hash = 0;  ///< after the steps in contact
+  std::size_t tetrahedra = 0;
 };
 
 /// Builds the scene and a variant for each thing it leaves out, and steps them all. Throws `Error` where the

@@ -68,8 +68,11 @@ std::string built_text(const Explanation& explanation) {
     rows.push_back(
         {p.part, p.detail, p.where, bytes_text(static_cast<double>(p.bytes)), setup_text(p.setup_ms)});
   }
-  rows.push_back({"all", "", "", bytes_text(static_cast<double>(total_bytes(explanation))),
-                  setup_text(total_setup_ms(explanation))});
+  const auto bytes = static_cast<double>(total_bytes(explanation));
+  rows.push_back(
+      {"all", fmt::format("{:.0f} bytes a tetrahedron", bytes / static_cast<double>(explanation.tetrahedra)),
+       "", bytes_text(static_cast<double>(total_bytes(explanation))),
+       setup_text(total_setup_ms(explanation))});
   return table(rows, 3, 4);
 }
 
@@ -160,6 +163,8 @@ Json to_json(const Explanation& explanation) {
           {"left_out", left_out},
           {"free", steps_json(explanation.steps.free_ns)},
           {"contact", contact},
+          {"bytes_per_tetrahedron",
+           static_cast<double>(total_bytes(explanation)) / static_cast<double>(explanation.tetrahedra)},
           {"state_hash", fmt::format("{:016x}", explanation.state_hash)}};
 }
 

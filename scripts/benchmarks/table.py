@@ -22,7 +22,8 @@ UNITS = (("s", 1e9), ("ms", 1e6), ("us", 1e3), ("ns", 1))
 BASE_LAW = "constant"
 LEFT_OUT = "left out: "  # what a row says that the scene has no use for
 FRAME_NS, TICK_NS = 1e9 / 30, 1e9 / 4000  # the scene's rate, and the quickest a client may ask for
-COUNTERS = (("p50", " us"), ("p99", " us"), ("rate", "/s"), ("reads", " GB/s"))  # what a row counts beside its time
+COUNTERS = (("p50", ".0f", " us"), ("p99", ".0f", " us"), ("rate", ".0f", "/s"), ("reads", ".0f", " GB/s"),
+            ("touching", ".1f", ""), ("error", ".2g", " %"))  # what a row counts beside its time
 SESSION = re.compile(r"virtual_session/(\d+)_s$")
 
 
@@ -99,7 +100,7 @@ def rows_of(result):
         row = rows.setdefault(name, {"hash": entry.get("label", ""), "also": ""})
         if kind == "median":
             row["ns"] = entry[key]
-            row["also"] = ", ".join(f"{what} {entry[what]:.0f}{unit}" for what, unit in COUNTERS if what in entry)
+            row["also"] = ", ".join(f"{what} {entry[what]:{form}}{unit}" for what, form, unit in COUNTERS if what in entry)
         elif kind == "cv":
             row["cv"] = 100 * entry[key]
     return rows, skipped
@@ -125,6 +126,8 @@ def ratios_of(rows):
             free = name.replace("/contact", "/free")
             if free in ns:
                 add(f"{name} : {free}", value, ns[free])
+            add(f"{name} : frame at 30 Hz", value, FRAME_NS)
+        if group == "implicit":
             add(f"{name} : frame at 30 Hz", value, FRAME_NS)
         if group.startswith("sub_step"):
             add(f"{name} : stream/{rest}", value, ns.get(f"stream/{rest}"))

@@ -167,7 +167,6 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
     left_ = 1;
     return 0;
   }
-    printf("left %.2e before %.2e improved %d fresh %d old %d\n", left_, before, improved_, fresh_, too_old_);
   if (left_ <= tolerance) return left_;
   bool slow = false;
   if (improved_ && left_ > kWorthwhile * before) {

@@ -21,6 +21,7 @@ void add_finder_rows();
 void add_server_rows();
 void add_setup_rows();
 void add_tensor_rows();
+void add_implicit_rows();
 void add_falcon_rows();
 
 /// Adds a row called `name`. `run` takes the state; an `Error` of it skips the row and says why.

@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
     add_server_rows();
     add_setup_rows();
     add_tensor_rows();
+    add_implicit_rows();
 #ifdef PALPATE_WITH_USB
     add_falcon_rows();
 #endif
