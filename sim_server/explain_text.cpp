@@ -108,9 +108,12 @@ std::string steps_text(const Explanation& explanation) {
   const Scene& scene = explanation.scene;
   const std::string asked =
       scene.rate_hz > 0 ? fmt::format("{:g} Hz", scene.rate_hz) : "a step per tool state";
-  text +=
-      fmt::format("\n  1 / p99 in contact: up to {:.0f} Hz; asked for: {} ({})\n", possible_rate_hz(steps),
-                  asked, scene.rate_where.empty() ? "default" : scene.rate_where);
+  text += fmt::format(
+      "\n  this machine in contact: {:.0f} Hz by the median step, {:.0f} Hz by all but 1 in 100; asked for: "
+      "{} "
+      "({})\n",
+      1e9 / steps.contact_ns.quantile(0.5), possible_rate_hz(steps), asked,
+      scene.rate_where.empty() ? "default" : scene.rate_where);
   return text + fmt::format("  state hash after these steps: {:016x}\n", explanation.state_hash);
 }
 

@@ -20,7 +20,7 @@ Mat3 cross_matrix(const Vec3& a) noexcept {
   return m;
 }
 
-Mat3 cofactor(const Mat3& F) noexcept {
+[[gnu::always_inline]] inline Mat3 cofactor(const Mat3& F) noexcept {
   Mat3 c;
   c << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
   return c;

@@ -54,9 +54,11 @@ struct Solid::Element {
   }
   Mat3 deformation(int q) const {
     const Vec3* const g = gradients(q);
-    Mat3 F = x_[0] * g[0].transpose();
-    for (int i = 1; i < solid_.corners_; ++i) F += x_[i] * g[i].transpose();
-    return F;
+    const auto sum = [&](auto corners) {
+      using Nodes = Eigen::Matrix<double, 3, decltype(corners)::value>;
+      return Mat3(Eigen::Map<const Nodes>(x_[0].data()) * Eigen::Map<const Nodes>(g[0].data()).transpose());
+    };
+    return solid_.corners_ == 4 ? sum(std::integral_constant<int, 4>()) : sum(std::integral_constant<int, 10>());
   }
   /// What the stress before adds to the first Piola-Kirchhoff stress.
   Mat3 remembered(const Mat3& F, const Mat3& memory) const { return linear_ ? memory : Mat3(F * memory); }

@@ -294,6 +294,10 @@ TEST_CASE("explain: JSON in plain units, a table that says the same") {
     sum += row["bytes"].get<std::size_t>();
   }
   CHECK(json["bytes"] == sum);
+  int vertices = 0, tetrahedra = 0;
+  REQUIRE(std::sscanf(json["built"][0]["detail"].get<std::string>().c_str(), "%d vertices, %d tetrahedra",
+                      &vertices, &tetrahedra) == 2);
+  CHECK(json["bytes_per_tetrahedron"].get<double>() == Approx(static_cast<double>(sum) / tetrahedra));
   for (const Json& row : json["left_out"]) {
     for (const char* key : {"what", "why", "bytes", "setup_ms", "step_ms", "note"}) CHECK(row.contains(key));
   }
