@@ -169,7 +169,7 @@ class Series {
   std::vector<std::pair<double, std::filesystem::path>> frames_;
 };
 
-/// From rest, with all loads there at once, and what is moved moved at once.
+/// From rest, with all loads there at once, what is displaced moved at once, and what swings on its way.
 std::vector<Vec3> move_for(const SolveOptions& options, const Scene& scene, const Solid& solid,
                            const Loads& loads, ProgressLine& progress) {
   constexpr int kMostNewton = 50;
@@ -184,12 +184,7 @@ std::vector<Vec3> move_for(const SolveOptions& options, const Scene& scene, cons
   if (options.series) series.add(0, solid, dynamics.position());
   for (int step = 1; step <= steps; ++step) {
     dynamics.start_step(h);
-    for (std::size_t i = 0; !loads.moved().empty() && i < external.size(); ++i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        if ((loads.held()[i] >> axis & 1) != 0)
-          dynamics.put()[i][axis] = solid.rest()[i][axis] + loads.moved()[i][axis];
-      }
-    }
+    loads.put_held(step * h, dynamics.put());
     for (int k = 0; k < kMostNewton; ++k) {
       ++newton;
       std::fill(external.begin(), external.end(), Vec3::Zero());
