@@ -47,7 +47,7 @@ std::vector<HeldMotion> held_motions(const Scene& scene, const TetMesh& mesh,
   for (std::size_t r = 0; r < scene.fixed.size(); ++r) {
     const auto share = [&](std::size_t vertex) { return region_of[vertex] == static_cast<int>(r) ? 1.0 : 0; };
     for (const SupportMotion& motion : scene.fixed[r].motions) {
-      HeldMotion one{motion};
+      HeldMotion one{motion, {}, scene.fixed[r].where};
       const auto add = [&](std::size_t node, double part) {
         const Vec3 way = part * along_axes(motion.direction, scene.fixed[r].axes & held[node]);
         if (!way.isZero(0)) one.nodes.emplace_back(static_cast<int>(node), way);

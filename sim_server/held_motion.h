@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct HeldMotion {
   SupportMotion motion;
   /// Each and its way per displacement of the support, no unit, along the axes on which it is held.
   std::vector<std::pair<int, Vec3>> nodes{};
+  std::string where{};  ///< "FILE:LINE" of its [[fixed]]
 };
 
 /// 2 pi t / period + phase, rad; t in s.

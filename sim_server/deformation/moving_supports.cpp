@@ -114,8 +114,8 @@ std::vector<SupportResponse> support_responses(const ModelInputs& inputs, const 
     const Complex s =
         Complex(-w * w, w * settings.rayleigh_mass) / Complex(1, w * settings.rayleigh_stiffness);
     if (following == Following::kSwinging && !swing(flexibility, mass, s, x))
-      fail("{}: [[fixed.motion]]: at a period of {:g} s the tissue swings beyond all measure; {}",
-           inputs.scene.source, held.motion.period, "give it damping, or another period");
+      fail("{}: [[fixed.motion]]: at a period of {:g} s the tissue swings beyond all measure; {}", held.where,
+           held.motion.period, "give it damping, or another period");
     responses.push_back(response_of(held, x, dofs));
   }
   return responses;
