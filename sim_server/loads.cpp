@@ -63,7 +63,28 @@ void Loads::hold(const Scene& scene, const TetMesh& mesh, const Solid& solid) {
     held_[middle] = held_[a] & held_[b];
     moved[middle] = 0.5 * (moved[a] + moved[b]);
   }
-  if (moves) moved_ = std::move(moved);
+  motions_ = held_motions(scene, mesh, solid.edges(), held_);
+  if (moves || !motions_.empty()) moved_ = std::move(moved);
+}
+
+std::vector<Vec3> Loads::moved(double t) const {
+  std::vector<Vec3> moved = moved_;
+  for (const HeldMotion& held : motions_) {
+    for (const auto& [node, way] : held.nodes) moved[node] += displacement_at(held.motion, t) * way;
+  }
+  return moved;
+}
+
+void Loads::put_held(double t, std::span<Vec3> x) const noexcept {
+  for (std::size_t i = 0; i < moved_.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((held_[i] >> axis & 1) != 0) x[i][axis] = rest_[i][axis] + moved_[i][axis];
+    }
+  }
+  for (const HeldMotion& held : motions_) {
+    const double displacement = displacement_at(held.motion, t);
+    for (const auto& [node, way] : held.nodes) x[node] += displacement * way;
+  }
 }
 
 std::vector<Loads::Face> Loads::faces_in(const Region& region, const TetMesh& mesh,

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "sim_server/elasticity/solid.h"
+#include "sim_server/held_motion.h"
 #include "sim_server/mesh/surface.h"
 #include "sim_server/scene.h"
 
@@ -18,8 +19,12 @@ class Loads {
   void add_forces(std::span<const Vec3> x, std::span<Vec3> f) const;
   /// (nodes) A node in the middle of an edge is held where both ends are.
   const std::vector<HeldAxes>& held() const { return held_; }
-  /// (nodes) From rest to where they are held, m; empty where all are held at rest.
-  const std::vector<Vec3>& moved() const { return moved_; }
+  /// (nodes) From rest to where they are held at time `t` (s), m; empty where all are always held at rest.
+  /// What [[fixed.motion]] does adds to a displacement.
+  std::vector<Vec3> moved(double t = 0) const;
+  /// Puts what is held of a body at `x` (nodes, m) there. No allocation.
+  void put_held(double t, std::span<Vec3> x) const noexcept;
+  const std::vector<HeldMotion>& motions() const { return motions_; }
 
  private:
   struct Face {
@@ -39,7 +44,8 @@ class Loads {
   std::vector<Vec3> rest_, dead_;                          // nodes at rest, m; forces that do not change, N
   std::vector<Pressure> pressures_;
   std::vector<HeldAxes> held_;
-  std::vector<Vec3> moved_;
+  std::vector<Vec3> moved_;  // but for motions
+  std::vector<HeldMotion> motions_;
 };
 
 }  // namespace palpate::sim

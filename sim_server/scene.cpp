@@ -116,7 +116,7 @@ void require_what_the_model_can(const Scene& scene) {
     if (region.axes != kAllAxes)
       fail("{}: `axes`: only `sim_server solve` holds vertices along some axes; remove it", region.where);
     if (region.moves() && !row.follows_supports)
-      fail("{}: [[fixed.motion]]: model \"{}\" does not move with its supports; {} does", region.where,
+      fail("{}: [[fixed.motion]]: model \"{}\" does not move with its supports; {} do", region.where,
            settings.model, models_that([](const DeformationModelRow& m) { return m.follows_supports; }));
   }
 }

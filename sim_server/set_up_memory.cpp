@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <fmt/core.h>
 
+#include "sim_server/held_motion.h"
+
 namespace palpate::sim {
 namespace {
 
 constexpr double kReal = sizeof(double), kInt = sizeof(int), kVec = 3 * kReal;
-constexpr double kEntry = kReal + kInt;        // of a sparse matrix
+constexpr double kEntry = kReal + kInt;  // of a sparse matrix
 constexpr double kTwoRing = 4.9;  // pairs of vertices at most two edges apart, per edge: measured 4.1 to 4.8
 
 double nodes_of(const MeshCounts& counts, ElementKind element) {
@@ -79,13 +81,13 @@ void require_memory_for(const Scene& scene, Purpose purpose, const MeshCounts& c
   if (purpose == Purpose::kSolve) {
     bytes = body_bytes(counts, element, 2);  // of now, and at rest
   } else if (model == "implicit") {
-    bytes = body_bytes(counts, element, 1);
+    bytes = body_bytes(counts, element, supports_move(scene) ? 2 : 1);  // one with all nodes in it
     if (scene.deformation.solver != DynamicsSettings::Solver::kDirect)  // another of each in the background
       bytes += solid_bytes(counts, element) + matrix_bytes(counts, element);
   } else if (model == "quasi_static" || model == "reduced") {
     bytes = body_bytes(counts, element, 1);
   } else if (model == "tensor_mass") {
-    bytes = tensors_bytes(counts);
+    bytes = tensors_bytes(counts) + (supports_move(scene) ? body_bytes(counts, element, 1) : 0);
   }
   require_memory(bytes, free, scene.source,
                  fmt::format("the stiffness of {:.0f} tetrahedra", counts.tetrahedra),

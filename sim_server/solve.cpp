@@ -150,7 +150,8 @@ std::vector<Vec3> find_rest(const Scene& scene, const Solid& solid, const Loads&
       find_equilibrium(solid, load, scene.source, [&](double share) { progress("loading", share); });
   progress("loading", 1);
   fmt::print(
-      "  static equilibrium     {} Newton steps in {} increments, residual {:.1e} of the forces at work, {:.3g} "
+      "  static equilibrium     {} Newton steps in {} increments, residual {:.1e} of the forces at work, "
+      "{:.3g} "
       "ms\n",
       found.iterations, found.increments, found.residual, 1e3 * to_seconds(now() - begin));
   return std::move(found.x);
@@ -185,17 +186,12 @@ struct Stepping {
   const char* name() const { return dynamics.second_order ? "BDF2" : "backward Euler"; }
 };
 
-/// One step of `h` to balance. Returns the steps of Newton's method that it took.
-int step_to_balance(Dynamics& dynamics, const Loads& loads, const Solid& solid, double h, double tolerance,
+/// One step of `h` to balance, at time `t`. Returns the steps of Newton's method that it took; 0: no balance.
+int step_to_balance(Dynamics& dynamics, const Loads& loads, double t, double h, double tolerance,
                     std::vector<Vec3>& external) {
   constexpr int kMostNewton = 50;
   dynamics.start_step(h);
-  for (std::size_t i = 0; !loads.moved().empty() && i < external.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if ((loads.held()[i] >> axis & 1) != 0)
-        dynamics.put()[i][axis] = solid.rest()[i][axis] + loads.moved()[i][axis];
-    }
-  }
+  loads.put_held(t, dynamics.put());
   for (int k = 1; k <= kMostNewton; ++k) {
     std::fill(external.begin(), external.end(), Vec3::Zero());
     loads.add_forces(dynamics.position(), external);
@@ -206,7 +202,7 @@ int step_to_balance(Dynamics& dynamics, const Loads& loads, const Solid& solid, 
   return 0;
 }
 
-/// From rest, with all loads there at once, and what is moved moved at once.
+/// From rest, with all loads there at once, what is displaced moved at once, and what swings on its way.
 std::vector<Vec3> move_for(const SolveOptions& options, const Scene& scene, const Solid& solid,
                            const Loads& loads, ProgressLine& progress) {
   const Stepping stepping(scene.deformation);
@@ -221,7 +217,7 @@ std::vector<Vec3> move_for(const SolveOptions& options, const Scene& scene, cons
   if (options.series) series.add(0, solid, dynamics.position());
   for (int step = 1; step <= steps; ++step) {
     const Time begin = now();
-    const int looks = step_to_balance(dynamics, loads, solid, h, stepping.tolerance, external);
+    const int looks = step_to_balance(dynamics, loads, step * h, h, stepping.tolerance, external);
     if (looks == 0)
       fail_at_run_time("{}: no convergence at {:g} s; a smaller --step than {:g} s would help", scene.source,
                        step * h, h);

@@ -32,17 +32,7 @@ Implicit::Implicit(const ModelInputs& inputs)
       external_(static_cast<std::size_t>(solid_.nodes())),
       slot_(node_.size(), -1),
       asked_(node_.size()) {
-  if (!inputs.scene.loads.empty()) {
-    inputs.progress("finding the shape under its loads", 0);
-    dynamics_.stand_at(
-        find_equilibrium(
-            solid_,
-            {.forces = [this](std::span<const Vec3> x, std::span<Vec3> f) { scene_loads_.add_forces(x, f); },
-             .held = scene_loads_.held(),
-             .moved = scene_loads_.moved()},
-            inputs.scene.source)
-            .x);
-  }
+  begin(inputs);
   inputs.progress("factoring the stiffness matrix", 0);
   for (const int node : node_) {
     dof_.push_back(dynamics_.dofs().first[node]);
@@ -59,7 +49,25 @@ Implicit::Implicit(const ModelInputs& inputs)
   dynamics_.improve(external());
   held_compliance_ = 1 / dynamics_.matrix().largest();
   linearised();
+  if (supports_) free_ = positions_ = rest_;
   inputs.progress("factoring the stiffness matrix", 1);
+}
+
+/// Where the body is at time 0, and how fast it goes.
+void Implicit::begin(const ModelInputs& inputs) {
+  const auto flexibility = [this](const Eigen::MatrixXd& f) { return dynamics_.matrix().solve(f); };
+  const auto responses =
+      support_responses(inputs, solid_, dynamics_.dofs(), flexibility, Following::kSwinging);
+  if (!responses.empty()) supports_.emplace(inputs, responses);
+  if (inputs.scene.loads.empty() && !supports_) return;
+  inputs.progress("finding the shape under its loads", 0);
+  const StaticLoad load{
+      .forces = [this](std::span<const Vec3> x, std::span<Vec3> f) { scene_loads_.add_forces(x, f); },
+      .held = scene_loads_.held(),
+      .moved = scene_loads_.moved()};
+  std::vector<Vec3> x = solid_.rest(), v(x.size(), Vec3::Zero());
+  for (const SupportResponse& response : responses) response.add(0, x, v);
+  dynamics_.stand_at(find_equilibrium(solid_, load, inputs.scene.source).x, std::move(v));
 }
 
 FreeMotion Implicit::free_motion(double dt) noexcept {
@@ -72,11 +80,19 @@ FreeMotion Implicit::free_motion(double dt) noexcept {
     touched_ = false;
     if (!triangles_.empty()) foresee_columns();
     dynamics_.start_step(period_);
+    if (supports_) {
+      supports_->advance(period_);
+      scene_loads_.put_held(supports_->time(), dynamics_.put());
+    }
     met_ = loads_;
     looks_ = dynamics_.settle(external(), 1, tolerance_);
     linearised();
   }
-  return {free_, {}, positions_};
+  return motion();
+}
+
+FreeMotion Implicit::motion() const noexcept {
+  return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>(), positions_};
 }
 
 /// All of the body goes where the loads of now lead by the linearisation that stands.
@@ -107,7 +123,7 @@ std::optional<FreeMotion> Implicit::relinearise() noexcept {
   touched_ = true;
   if (dynamics_.improve(external(), tolerance_) <= tolerance_) return {};
   linearised();
-  return FreeMotion{free_, {}, positions_};
+  return motion();
 }
 
 bool Implicit::balanced() const noexcept {
@@ -218,11 +234,14 @@ std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) noexcept
 }
 
 std::vector<MemoryPart> Implicit::memory() const {
-  return {{"elements", solid_.bytes()},
-          {"motion", dynamics_.bytes()},
-          {"compliance", static_cast<std::size_t>(columns_.size()) * sizeof(double)},
-          {"positions", (rest_.size() + free_.size() + positions_.size() + external_.size()) * sizeof(Vec3) +
-                            (node_.size() + dof_.size() + slot_.size()) * sizeof(int)}};
+  std::vector<MemoryPart> parts{
+      {"elements", solid_.bytes()},
+      {"motion", dynamics_.bytes()},
+      {"compliance", static_cast<std::size_t>(columns_.size()) * sizeof(double)},
+      {"positions", (rest_.size() + free_.size() + positions_.size() + external_.size()) * sizeof(Vec3) +
+                        (node_.size() + dof_.size() + slot_.size()) * sizeof(int)}};
+  if (supports_) parts.push_back({"moving supports", supports_->bytes()});
+  return parts;
 }
 
 }  // namespace palpate::sim

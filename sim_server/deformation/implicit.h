@@ -1,5 +1,5 @@
 #pragma once
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/moving_supports.h"
 #include "sim_server/elasticity/dynamics.h"
 #include "sim_server/loads.h"
 
@@ -14,7 +14,8 @@ namespace palpate::sim {
 /// serves, or made in the background and taken every `refresh_steps`: that takes more looks, but what they
 /// converge to is balanced against the true forces. Columns of W are solved for as they are asked for, and
 /// kept while the factor stands: for a linear law from then on; with a factor of the background come those
-/// that were asked for while it was made.
+/// that were asked for while it was made. Moving supports stand at the end of a step where they shall be
+/// then; the run begins with the body in equilibrium, at the velocities that it will have by them.
 class Implicit : public DeformationModel {
  public:
   /// Throws `Error` without material, rate or what holds the body.
@@ -30,7 +31,9 @@ class Implicit : public DeformationModel {
   std::vector<MemoryPart> memory() const override;
 
  private:
+  void begin(const ModelInputs& inputs);
   void follow_loads() noexcept;
+  FreeMotion motion() const noexcept;
   void linearised() noexcept;
   void foresee_columns() noexcept;
   void drop_columns() noexcept;
@@ -44,6 +47,8 @@ class Implicit : public DeformationModel {
   Solid solid_;
   Loads scene_loads_;
   Dynamics dynamics_;
+  /// Where some move. Only for how fast the surface goes by them (by a linearisation about rest), and when.
+  std::optional<MovingSupports> supports_;
   double period_, tolerance_;
   int max_newton_, looks_ = 0;       // linearisations of this step
   int factors_ = 0;                  // of the columns

@@ -25,13 +25,11 @@ LinearStatics::LinearStatics(const ModelInputs& inputs)
       dofs(static_cast<int>(inputs.mesh.vertices.size()), inputs.fixed, solid.edges()),
       factor(factor_stiffness(inputs, solid, dofs)) {}
 
-Eigen::VectorXd LinearStatics::masses() const {
-  const std::vector<double> of_nodes = solid.masses();
-  Eigen::VectorXd masses(dofs.count);
-  for (std::size_t i = 0; i < of_nodes.size(); ++i) {
-    if (dofs.first[i] >= 0) masses.segment<3>(dofs.first[i]).setConstant(of_nodes[i]);
-  }
-  return masses;
+std::optional<MovingSupports> LinearStatics::supports(const ModelInputs& inputs, Following following) const {
+  const auto flexibility = [this](const Eigen::MatrixXd& forces) { return factor.solve(forces); };
+  const auto responses = support_responses(inputs, solid, dofs, flexibility, following);
+  if (responses.empty()) return {};
+  return MovingSupports(inputs, responses);
 }
 
 void LinearStatics::fill(SurfaceCompliance& compliance, const ModelInputs& inputs) const {

@@ -1,4 +1,5 @@
 #pragma once
+#include "sim_server/deformation/moving_supports.h"
 #include "sim_server/deformation/surface_compliance.h"
 #include "sim_server/elasticity/solid.h"
 #include "sim_server/elasticity/sparse_cholesky.h"
@@ -13,8 +14,10 @@ struct LinearStatics {
 
   /// Tells the progress of `inputs`. Throws `Error` where K is singular.
   explicit LinearStatics(const ModelInputs& inputs);
+  /// What moves the surface where some [[fixed]] has a motion.
+  std::optional<MovingSupports> supports(const ModelInputs& inputs, Following following) const;
   /// Of each unknown, kg, lumped.
-  Eigen::VectorXd masses() const;
+  Eigen::VectorXd masses() const { return masses_of(solid, dofs); }
   /// Fills `compliance` with J K^-1 J^T, on all cores.
   void fill(SurfaceCompliance& compliance, const ModelInputs& inputs) const;
 };

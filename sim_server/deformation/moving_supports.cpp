@@ -2,84 +2,148 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
+
+#include "common/error.h"
+#include "sim_server/held_motion.h"
 
 namespace palpate::sim {
 namespace {
 
-/// Which vertices each [[fixed]] moves, given to the first that holds them: -1 for a free one.
-std::vector<int> region_of_vertices(const Scene& scene, const TetMesh& mesh) {
-  std::vector<int> region(mesh.vertices.size(), -1);
-  for (std::size_t r = scene.fixed.size(); r-- > 0;) {
-    for (const int vertex : vertices_in(scene.fixed[r], mesh)) region[vertex] = static_cast<int>(r);
-  }
-  return region;
+using Complex = std::complex<double>;
+
+constexpr int kMostSteps = 2000;
+constexpr double kSolved = 1e-12;  // of the static answer: what may be left
+constexpr double kWild = 1e4;      // likewise: farther swings nothing
+
+/// The stiffness at rest of all nodes, none held; the lower triangle.
+SparseMatrix whole_stiffness(const Solid& solid) {
+  StiffnessMatrix stiffness = solid.stiffness_matrix(FreeDofs(solid.nodes(), {}));
+  solid.add_stiffness(solid.rest(), stiffness);
+  return std::move(stiffness.lower());
 }
 
-/// -K_fd d for a unit displacement d along `way` of the vertices of one region, N: what the body at rest but
-/// for that pulls at its free nodes.
-Eigen::VectorXd load_of(const Solid& solid, const FreeDofs& dofs, const std::vector<int>& region_of,
-                        int region, const Vec3& way) {
-  std::vector<Vec3> x = solid.rest(), force(x.size());
-  const std::size_t vertices = region_of.size();
-  const auto share = [&](int vertex) { return region_of[vertex] == region ? 1.0 : 0.0; };
-  for (std::size_t v = 0; v < vertices; ++v) x[v] += share(static_cast<int>(v)) * way;
-  for (std::size_t k = 0; k < solid.edges().size(); ++k) {
-    const auto& [a, b] = solid.edges()[k];
-    if (dofs.first[vertices + k] < 0) x[vertices + k] += 0.5 * (share(a) + share(b)) * way;
+/// -K_fd e over the unknowns, N/m.
+Eigen::VectorXd pull_of(const HeldMotion& held, const SparseMatrix& stiffness, const FreeDofs& dofs) {
+  Eigen::VectorXd way = Eigen::VectorXd::Zero(stiffness.rows()), pull(dofs.count);
+  for (const auto& [node, e] : held.nodes) way.segment<3>(3 * static_cast<Eigen::Index>(node)) = e;
+  const Eigen::VectorXd force = stiffness.selfadjointView<Eigen::Lower>() * way;
+  for (std::size_t i = 0; i < dofs.first.size(); ++i) {
+    if (dofs.first[i] >= 0)
+      pull.segment<3>(dofs.first[i]) = -force.segment<3>(3 * static_cast<Eigen::Index>(i));
   }
-  solid.forces(x, force);
-  Eigen::VectorXd load(dofs.count);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (dofs.first[i] >= 0) load.segment<3>(dofs.first[i]) = -force[i];
+  dofs.hold(pull);
+  return pull;
+}
+
+/// X of (I + s K^-1 M) X = `statics` by conjugate orthogonal conjugate gradients (van der Vorst and Melissen
+/// 1990, IEEE Trans. Magn. 26:706) with the product x^T M y, in which K^-1 M is symmetric: as many steps as
+/// there are modes whose frequency is not far above that of the motion, and a few more. False where it does
+/// not come to an end, or to one that cannot be.
+bool swing(const Flexibility& flexibility, const Eigen::VectorXd& mass, Complex s, Eigen::VectorXcd& x) {
+  const auto applied = [&](const Eigen::VectorXcd& p) -> Eigen::VectorXcd {
+    Eigen::MatrixXd parts(p.size(), 2);
+    parts << mass.cwiseProduct(p.real()), mass.cwiseProduct(p.imag());
+    parts = flexibility(parts);
+    return p + s * (parts.col(0) + Complex(0, 1) * parts.col(1));
+  };
+  const auto product = [&](const Eigen::VectorXcd& a, const Eigen::VectorXcd& b) {
+    return a.cwiseProduct(mass).cwiseProduct(b).sum();
+  };
+  const double statics = x.norm(), enough = kSolved * statics;
+  Eigen::VectorXcd left = x - applied(x), along = left;
+  Complex before = product(left, left);
+  for (int i = 0; i < kMostSteps && left.norm() > enough; ++i) {
+    const Eigen::VectorXcd ahead = applied(along);
+    const Complex way = before / product(along, ahead);
+    x += way * along;
+    left -= way * ahead;
+    const Complex now = product(left, left);
+    along = left + now / before * along;
+    before = now;
   }
-  return load;
+  return left.norm() <= enough && x.norm() <= kWild * statics;
+}
+
+SupportResponse response_of(const HeldMotion& held, const Eigen::VectorXcd& x, const FreeDofs& dofs) {
+  SupportResponse response{held.motion, std::vector<Vec3>(dofs.first.size(), Vec3::Zero()),
+                           std::vector<Vec3>(dofs.first.size(), Vec3::Zero())};
+  for (const auto& [node, e] : held.nodes) response.along[node] = e;
+  for (std::size_t i = 0; i < dofs.first.size(); ++i) {
+    if (dofs.first[i] < 0) continue;
+    response.along[i] += x.segment<3>(dofs.first[i]).real();
+    response.ahead[i] = x.segment<3>(dofs.first[i]).imag();
+  }
+  return response;
 }
 
 }  // namespace
 
-MovingSupports::MovingSupports(const ModelInputs& inputs, const Solid& solid, const FreeDofs& dofs,
-                               const SparseCholesky& factor) {
-  const auto region_of = region_of_vertices(inputs.scene, inputs.mesh);
+Eigen::VectorXd masses_of(const Solid& solid, const FreeDofs& dofs) {
+  const std::vector<double> masses = solid.masses();
+  Eigen::VectorXd of_unknowns(dofs.count);
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    if (dofs.first[i] >= 0) of_unknowns.segment<3>(dofs.first[i]).setConstant(masses[i]);
+  }
+  return of_unknowns;
+}
+
+void SupportResponse::add(double t, std::span<Vec3> positions, std::span<Vec3> velocities) const noexcept {
+  const double angle = angle_at(motion, t), omega = 2 * std::numbers::pi / motion.period;
+  const double sine = motion.amplitude * std::sin(angle), cosine = motion.amplitude * std::cos(angle);
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    positions[i] += sine * along[i] + cosine * ahead[i];
+    velocities[i] += omega * (cosine * along[i] - sine * ahead[i]);
+  }
+}
+
+std::vector<SupportResponse> support_responses(const ModelInputs& inputs, const Solid& solid,
+                                               const FreeDofs& dofs, const Flexibility& flexibility,
+                                               Following following) {
+  std::vector<SupportResponse> responses;
+  const auto motions = held_motions(inputs.scene, inputs.mesh, solid.edges(), dofs.held);
+  if (motions.empty()) return responses;
+  inputs.progress("computing moving supports", 0);
+  const DeformationSettings& settings = inputs.scene.deformation;
+  const SparseMatrix stiffness = whole_stiffness(solid);
+  const Eigen::VectorXd mass = masses_of(solid, dofs);
+  for (const HeldMotion& held : motions) {
+    Eigen::VectorXcd x = flexibility(pull_of(held, stiffness, dofs)).col(0).cast<Complex>();
+    const double w = 2 * std::numbers::pi / held.motion.period;
+    const Complex s =
+        Complex(-w * w, w * settings.rayleigh_mass) / Complex(1, w * settings.rayleigh_stiffness);
+    if (following == Following::kSwinging && !swing(flexibility, mass, s, x))
+      fail("{}: [[fixed.motion]]: at a period of {:g} s the tissue swings beyond all measure; {}", held.where,
+           held.motion.period, "give it damping, or another period");
+    responses.push_back(response_of(held, x, dofs));
+  }
+  return responses;
+}
+
+MovingSupports::MovingSupports(const ModelInputs& inputs, const std::vector<SupportResponse>& responses) {
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
-  positions_ = rest_;
-  velocities_.resize(rest_.size(), Vec3::Zero());
-  for (std::size_t r = 0; r < inputs.scene.fixed.size(); ++r) {
-    for (const SupportMotion& motion : inputs.scene.fixed[r].motions) {
-      inputs.progress("computing moving supports", 0);
-      const auto region = static_cast<int>(r);
-      const Eigen::VectorXd u =
-          factor.solve(load_of(solid, dofs, region_of, region, motion.direction)).col(0);
-      Column column{motion, {}};
-      for (const int vertex : inputs.surface.vertices) {
-        const int first = dofs.first[vertex];
-        column.moved.push_back(first >= 0                    ? Vec3(u.segment<3>(first))
-                               : region_of[vertex] == region ? motion.direction
-                                                             : Vec3(Vec3::Zero()));
-      }
-      columns_.push_back(std::move(column));
+  for (const SupportResponse& all : responses) {
+    SupportResponse& here = responses_.emplace_back(SupportResponse{all.motion, {}, {}});
+    for (const int vertex : inputs.surface.vertices) {
+      here.along.push_back(all.along[vertex]);
+      here.ahead.push_back(all.ahead[vertex]);
     }
   }
+  positions_ = velocities_ = rest_;
+  advance(0);
 }
 
 FreeMotion MovingSupports::advance(double dt) noexcept {
   time_ += dt;
   std::copy(rest_.begin(), rest_.end(), positions_.begin());
   std::fill(velocities_.begin(), velocities_.end(), Vec3::Zero());
-  for (const Column& column : columns_) {
-    const auto& [direction, amplitude, period, phase] = column.motion;
-    const double omega = 2 * std::numbers::pi / period, angle = omega * time_ + phase;
-    const double way = amplitude * std::sin(angle), speed = amplitude * omega * std::cos(angle);
-    for (std::size_t v = 0; v < rest_.size(); ++v) {
-      positions_[v] += way * column.moved[v];
-      velocities_[v] += speed * column.moved[v];
-    }
-  }
+  for (const SupportResponse& response : responses_) response.add(time_, positions_, velocities_);
   return {positions_, velocities_};
 }
 
 std::size_t MovingSupports::bytes() const {
-  return (columns_.size() + 3) * rest_.size() * sizeof(Vec3);
+  return (2 * responses_.size() + 3) * rest_.size() * sizeof(Vec3);
 }
 
 }  // namespace palpate::sim

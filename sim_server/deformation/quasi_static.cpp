@@ -11,8 +11,7 @@ QuasiStatic::QuasiStatic(const ModelInputs& inputs) : compliance_(inputs) {
   positions_ = rest_;
   const LinearStatics statics(inputs);
   statics.fill(compliance_, inputs);
-  MovingSupports supports(inputs, statics.solid, statics.dofs, statics.factor);
-  if (supports.any()) supports_ = std::move(supports);
+  supports_ = statics.supports(inputs, Following::kAtOnce);
   inputs.progress("computing compliance", 1);
 }
 

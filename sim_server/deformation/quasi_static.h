@@ -7,7 +7,7 @@ namespace palpate::sim {
 /// Linear elastic equilibrium K u = f at every step (Cotin, Delingette and Ayache 1999, IEEE TVCG 5:62:
 /// pre-computed elementary deformations). Set-up factors K over the free nodes and keeps W = J K^-1 J^T for
 /// the reachable surface nodes (`SurfaceCompliance`). A step then is a few columns of W. Where supports move,
-/// the free shape moves by the static response to them (`MovingSupports`). Any element and fibres, of the
+/// the free shape moves by the static response to them (`support_responses`). Any element and fibres, of the
 /// linear law; vertices are what tools press on, also where there are nodes between them.
 class QuasiStatic : public DeformationModel {
  public:

@@ -32,12 +32,13 @@ Reduced::Step Reduced::step_of(double w, double damping, double period) {
   return step;
 }
 
-Reduced::Reduced(const ModelInputs& inputs) : compliance_(inputs) {
-  const double period = step_period(inputs.scene);
+Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene)), compliance_(inputs) {
   const DeformationSettings& settings = inputs.scene.deformation;
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
-  free_ = positions_ = rest_;
   const LinearStatics statics(inputs);
+  supports_ = statics.supports(inputs, Following::kSwinging);
+  free_.assign(unloaded().begin(), unloaded().end());
+  positions_ = free_;
   inputs.progress("finding the modes of vibration", 0);
   const VibrationModes modes =
       vibration_modes(statics.factor, statics.masses(), settings.modes, settings.where);
@@ -51,7 +52,7 @@ Reduced::Reduced(const ModelInputs& inputs) : compliance_(inputs) {
   Eigen::VectorXd beyond_statics(count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const double w = modes.frequencies[k];
-    steps_.push_back(step_of(w, settings.rayleigh_mass + settings.rayleigh_stiffness * w * w, period));
+    steps_.push_back(step_of(w, settings.rayleigh_mass + settings.rayleigh_stiffness * w * w, period_));
     beyond_statics[k] = steps_.back().q_of_p - 1 / (w * w);
   }
   q_ = v_ = p_ = q_free_ = Eigen::VectorXd::Zero(count);
@@ -71,10 +72,11 @@ FreeMotion Reduced::free_motion(double dt) noexcept {
       q_free_[k] = step.q_of_q * q + step.q_of_v * v_[k];
     }
     moved_.noalias() = shapes_ * q_free_;
+    if (supports_) supports_->advance(period_);
     for (std::size_t v = 0; v < rest_.size(); ++v)
-      free_[v] = rest_[v] + moved_.segment<3>(3 * static_cast<Eigen::Index>(v));
+      free_[v] = unloaded()[v] + moved_.segment<3>(3 * static_cast<Eigen::Index>(v));
   }
-  return {free_};
+  return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>()};
 }
 
 void Reduced::compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
@@ -92,10 +94,13 @@ std::span<const Vec3> Reduced::apply(std::span<const NodalLoad> loads) noexcept 
 }
 
 std::vector<MemoryPart> Reduced::memory() const {
-  return {{"compliance", compliance_.bytes()},
-          {"modes", static_cast<std::size_t>(shapes_.size() + 5 * q_.size()) * sizeof(double) +
-                        steps_.size() * sizeof(Step)},
-          {"positions", 3 * rest_.size() * sizeof(Vec3) + compliance_.index_bytes()}};
+  std::vector<MemoryPart> parts{
+      {"compliance", compliance_.bytes()},
+      {"modes", static_cast<std::size_t>(shapes_.size() + 5 * q_.size()) * sizeof(double) +
+                    steps_.size() * sizeof(Step)},
+      {"positions", 3 * rest_.size() * sizeof(Vec3) + compliance_.index_bytes()}};
+  if (supports_) parts.push_back({"moving supports", supports_->bytes()});
+  return parts;
 }
 
 }  // namespace palpate::sim

@@ -1,4 +1,5 @@
 #pragma once
+#include "sim_server/deformation/moving_supports.h"
 #include "sim_server/deformation/surface_compliance.h"
 #include "sim_server/elasticity/vibration_modes.h"
 
@@ -12,7 +13,8 @@ namespace palpate::sim {
 /// and
 ///   W = J K^-1 J^T + sum_k J phi_k (r_k - 1 / w_k^2) (J phi_k)^T,
 /// r_k the way of mode k within T per force on it. A step takes a few columns of W and one pass over modes
-/// and surface vertices.
+/// and surface vertices. What moving supports do is added to that, of all modes and exact in time
+/// (`support_responses`).
 class Reduced : public DeformationModel {
  public:
   /// Throws `Error` as `SurfaceCompliance`, or when K is singular, `rate_hz` 0, or modes not to be had.
@@ -32,12 +34,17 @@ class Reduced : public DeformationModel {
   };
   static Step step_of(double w, double damping, double period);
 
+  /// The surface as its supports move it.
+  std::span<const Vec3> unloaded() const noexcept { return supports_ ? supports_->positions() : rest_; }
+
+  double period_;  // s
   std::vector<Vec3> rest_, free_, positions_;
   SurfaceCompliance compliance_;
-  std::vector<Step> steps_;             // (modes)
-  Eigen::MatrixXd shapes_;              // (3 surface vertices x modes), 1/sqrt(kg)
-  Eigen::VectorXd q_, v_, p_, q_free_;  // (modes) m sqrt(kg), m sqrt(kg)/s, N/sqrt(kg)
-  Eigen::VectorXd moved_;               // (3 surface vertices) m
+  std::optional<MovingSupports> supports_;  // where some move
+  std::vector<Step> steps_;                 // (modes)
+  Eigen::MatrixXd shapes_;                  // (3 surface vertices x modes), 1/sqrt(kg)
+  Eigen::VectorXd q_, v_, p_, q_free_;      // (modes) m sqrt(kg), m sqrt(kg)/s, N/sqrt(kg)
+  Eigen::VectorXd moved_;                   // (3 surface vertices) m
 };
 
 }  // namespace palpate::sim

@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 
 #include "common/error.h"
+#include "sim_server/deformation/linear_statics.h"
+#include "sim_server/held_motion.h"
 
 namespace palpate::sim {
 namespace {
@@ -31,12 +33,15 @@ TensorMass::TensorMass(const ModelInputs& inputs)
       motion_(tensors_, damping_of(inputs.scene)),
       begin_(motion_.state),
       force_(begin_.f) {
+  if (supports_move(inputs.scene)) supports_ = LinearStatics(inputs).supports(inputs, Following::kSwinging);
   for (const int vertex : inputs.surface.vertices) {
     rest_.push_back(inputs.mesh.vertices[vertex]);
     const int place = tensors_.places()[vertex];
     first_.push_back(place < 0 ? -1 : 3 * place);
   }
-  free_ = positions_ = rest_;
+  free_ = rest_;
+  stand();
+  positions_ = free_;
   loads_.reserve(kMaxTools * inputs.reachable.size());
   choose_sub_step(inputs);
   precompute(inputs);
@@ -78,12 +83,20 @@ FreeMotion TensorMass::free_motion(double dt) noexcept {
   if (dt > 0) {
     end_period();
     motion_.run(sub_steps_, sub_step_, force_);
-    for (std::size_t v = 0; v < rest_.size(); ++v) {
-      if (first_[v] >= 0) free_[v] = rest_[v] + Eigen::Map<const Vec3>(motion_.state.u.data() + first_[v]);
-    }
+    if (supports_) supports_->advance(sub_steps_ * sub_step_);
+    stand();
     press(loads_);
   }
-  return {free_, {}, positions_};
+  return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>(), positions_};
+}
+
+/// Where the body goes free of loads: by itself, and by its supports.
+void TensorMass::stand() noexcept {
+  const std::span<const Vec3> from = supports_ ? supports_->positions() : rest_;
+  std::copy(from.begin(), from.end(), free_.begin());
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    if (first_[v] >= 0) free_[v] += Eigen::Map<const Vec3>(motion_.state.u.data() + first_[v]);
+  }
 }
 
 /// From the state at the end of the period without loads to that with them, where the next one begins.
@@ -116,14 +129,17 @@ std::span<const Vec3> TensorMass::apply(std::span<const NodalLoad> loads) noexce
 }
 
 std::vector<MemoryPart> TensorMass::memory() const {
-  return {{"tensors", tensors_.bytes(),
-           fmt::format("{} vertices, {} edges; {} sub-steps of {:.3g} ms", tensors_.vertices(),
-                       tensors_.edges(), sub_steps_, 1e3 * sub_step_)},
-          {"compliance", compliance_.bytes()},
-          {"motion", motion_.bytes() + 4 * force_.size() * sizeof(double)},
-          {"positions", (rest_.size() + free_.size() + positions_.size()) * sizeof(Vec3) +
-                            loads_.capacity() * sizeof(NodalLoad) + first_.size() * sizeof(int) +
-                            compliance_.index_bytes()}};
+  std::vector<MemoryPart> parts{
+      {"tensors", tensors_.bytes(),
+       fmt::format("{} vertices, {} edges; {} sub-steps of {:.3g} ms", tensors_.vertices(), tensors_.edges(),
+                   sub_steps_, 1e3 * sub_step_)},
+      {"compliance", compliance_.bytes()},
+      {"motion", motion_.bytes() + 4 * force_.size() * sizeof(double)},
+      {"positions", (rest_.size() + free_.size() + positions_.size()) * sizeof(Vec3) +
+                        loads_.capacity() * sizeof(NodalLoad) + first_.size() * sizeof(int) +
+                        compliance_.index_bytes()}};
+  if (supports_) parts.push_back({"moving supports", supports_->bytes()});
+  return parts;
 }
 
 }  // namespace palpate::sim

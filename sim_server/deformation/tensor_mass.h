@@ -1,5 +1,6 @@
 #pragma once
 #include "sim_server/deformation/explicit_motion.h"
+#include "sim_server/deformation/moving_supports.h"
 #include "sim_server/deformation/surface_compliance.h"
 
 namespace palpate::sim {
@@ -10,7 +11,9 @@ namespace palpate::sim {
 /// frequency allows. Loads are held over a period, so that one compliance serves the contact solver and the
 /// clients: R, the displacement at the end of a period per force held over it, the same at every step.
 /// Set-up finds it by running N sub-steps from rest under unit loads, eight at once
-/// (`SurfaceCompliance`). A period costs N sub-steps, twice that in contact.
+/// (`SurfaceCompliance`). A period costs N sub-steps, twice that in contact. What the body does by itself and
+/// what it does by its supports add up, as it is linear: where supports move, the second comes from
+/// `support_responses`, with inertia and damping and exact in time, and costs no sub-step anything.
 class TensorMass : public DeformationModel {
  public:
   /// Throws `Error` as `SurfaceCompliance`, or where the scene names no rate.
@@ -30,17 +33,19 @@ class TensorMass : public DeformationModel {
   void choose_sub_step(const ModelInputs& inputs);
   void precompute(const ModelInputs& inputs);
   void end_period() noexcept;
+  void stand() noexcept;
   void press(std::span<const NodalLoad> loads) noexcept;
 
   SurfaceCompliance compliance_;
   ElasticTensors tensors_;
   int sub_steps_ = 1;
-  double sub_step_ = 0;           // s
-  ExplicitMotion motion_;         // at the end of the period, free of loads
-  ExplicitMotion::State begin_;   // at its beginning
-  std::vector<double> force_;     // over it, N
-  std::vector<NodalLoad> loads_;  // over it
-  std::vector<int> first_;        // per surface vertex: its first number in `motion_`, or -1: fixed
+  double sub_step_ = 0;                     // s
+  ExplicitMotion motion_;                   // at the end of the period, free of loads
+  ExplicitMotion::State begin_;             // at its beginning
+  std::vector<double> force_;               // over it, N
+  std::vector<NodalLoad> loads_;            // over it
+  std::optional<MovingSupports> supports_;  // where some move
+  std::vector<int> first_;                  // per surface vertex: its first number in `motion_`, or -1: fixed
   std::vector<Vec3> rest_, free_, positions_;  // m
 };
 

@@ -51,8 +51,9 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
   terms_.assign(terms * solid.points(), Mat3::Zero());
 }
 
-void Dynamics::stand_at(std::vector<Vec3> x) {
+void Dynamics::stand_at(std::vector<Vec3> x, std::vector<Vec3> v) {
   x_ = x_before_ = x_then_ = std::move(x);
+  if (!v.empty()) v_before_ = std::move(v);
   resist();
   internal_before_ = internal_then_ = internal_;
 }

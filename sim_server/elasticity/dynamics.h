@@ -31,8 +31,8 @@ class Dynamics {
   Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,
            const std::string& where);
 
-  /// At rest at `x` (nodes, m), before the first step.
-  void stand_at(std::vector<Vec3> x);
+  /// At `x` (nodes, m) before the first step; at rest, or at these velocities (nodes, m/s).
+  void stand_at(std::vector<Vec3> x, std::vector<Vec3> v = {});
   /// Begins a step of `h` (s > 0): looks for its end first where the velocity leads.
   void start_step(double h);
   /// One step of Newton's method under these forces (nodes, N), unless no more than `tolerance` is unbalanced

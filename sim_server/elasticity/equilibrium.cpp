@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kArmijo = 1e-4, kShortest = 1e-4;  // line search: descent, and the shortest step
 constexpr double kLook = 1e-7;  // of what the supports move: how far to look ahead for what that asks for
+// Of the size of the body: forces that move a node by less, without any other, are rounding at rest.
+constexpr double kStill = 1e-7;
 constexpr double kFirstShift = 0.05, kLastShift = 1e3;  // of the stiffness at rest
 
 class Newton {
@@ -28,6 +30,9 @@ class Newton {
     stiffness_.close_held(usual_);
     at_rest_ = stiffness_.lower();
     factor_.emplace(at_rest_, where);
+    Eigen::AlignedBox3d box;
+    for (const Vec3& x : solid.rest()) box.extend(x);
+    still_ = kStill * box.diagonal().norm() * usual_;
   }
 
   /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.
@@ -57,13 +62,13 @@ class Newton {
     std::fill(external_.begin(), external_.end(), Vec3::Zero());
     if (load_.forces) load_.forces(x, external_);
     Eigen::VectorXd residual(dofs_.count);
-    double at_work = 0;
+    double at_work = still_ * still_;
     for (std::size_t i = 0; i < internal_.size(); ++i) {
       at_work += internal_[i].squaredNorm() + share_ * share_ * external_[i].squaredNorm();
       if (dofs_.first[i] >= 0) residual.segment<3>(dofs_.first[i]) = share_ * external_[i] - internal_[i];
     }
     dofs_.hold(residual);
-    residual_ = at_work > 0 ? residual.norm() / std::sqrt(at_work) : 0;
+    residual_ = residual.norm() / std::sqrt(at_work);
     return residual;
   }
 
@@ -134,6 +139,7 @@ class Newton {
   std::optional<SparseCholesky> factor_;
   std::vector<Vec3> internal_, external_;
   double usual_ = 0;  // on the diagonal at rest, N/m
+  double still_ = 0;  // a force that is none, N
   double share_ = 0, residual_ = 0;
   int iterations_ = 0;
 };

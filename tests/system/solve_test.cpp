@@ -93,6 +93,21 @@ TEST_CASE("solve: relaxing under a load that stays, it creeps to where half the 
   CHECK(std::filesystem::exists(bench.folder.path() / "m_0000.vtu"));
 }
 
+TEST_CASE("solve: what moves to and fro stands where it does at t = 0, and after --seconds") {
+  Bench bench;
+  const std::string scene =
+      bench.scene("[[fixed.motion]]\ndirection = [3, 4, 0]\namplitude = 0.01\nperiod = 4\nphase = 0.5\n",
+                  "element = \"p1\"");
+  const std::string still =
+      output_of("sim_server", {"solve", scene, "--out", bench.out, "--probe", "0,0.4,0"}, 0);
+  CHECK(number_after(still, ": displacement ", 1) == Approx(0.008 * std::sin(0.5)).epsilon(1e-7));
+  const std::string later = output_of(
+      "sim_server",
+      {"solve", scene, "--out", bench.out, "--probe", "0,0,0", "--seconds", "2.5", "--step", "0.05"}, 0);
+  CHECK(number_after(later, ": displacement ") ==
+        Approx(0.006 * std::sin(1.25 * 3.14159265358979 + 0.5)).epsilon(1e-7));
+}
+
 TEST_CASE("solve: wrong input is one clear line, exit 2, and no file") {
   Bench bench;
   const auto refused = [&](const std::string& scene, std::vector<std::string> more = {}) {

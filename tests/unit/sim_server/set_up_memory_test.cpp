@@ -92,8 +92,9 @@ TEST_CASE("a scene beyond the machine is refused with the estimate, before anyth
   // 0.624 + 0.772 + 0.27 MB.
   const Scene still = scene_with("quasi_static");
   CHECK(refusal(still, Purpose::kServe, 1.667e6).empty());
-  CHECK(refusal(still, Purpose::kServe, 1.665e6) ==
-        "test: the stiffness of 5000 tetrahedra would take 1.67 MB, and 1.67 MB are free; take a coarser mesh");
+  CHECK(
+      refusal(still, Purpose::kServe, 1.665e6) ==
+      "test: the stiffness of 5000 tetrahedra would take 1.67 MB, and 1.67 MB are free; take a coarser mesh");
   // 1000 (48 + 4) + 6000 (72 + 4) + 5000 48: 0.748 MB
   CHECK(refusal(scene_with("tensor_mass"), Purpose::kServe, 0.749e6).empty());
   CHECK_FALSE(refusal(scene_with("tensor_mass"), Purpose::kServe, 0.747e6).empty());
@@ -103,6 +104,13 @@ TEST_CASE("a scene beyond the machine is refused with the estimate, before anyth
   background.deformation.solver = DynamicsSettings::Solver::kQuasiNewton;
   CHECK(refusal(background, Purpose::kServe, 3.063e6).empty());
   CHECK_FALSE(refusal(background, Purpose::kServe, 3.061e6).empty());
+  // Supports that move: tensor_mass makes a body as quasi_static does, implicit one more matrix.
+  Scene tensors = scene_with("tensor_mass"), implicit = scene_with("implicit");
+  tensors.fixed[0].motions = implicit.fixed[0].motions = {{Vec3::UnitX(), 0.01, 4}};
+  CHECK(refusal(tensors, Purpose::kServe, (0.748 + 1.667) * 1e6).empty());
+  CHECK_FALSE(refusal(tensors, Purpose::kServe, (0.748 + 1.665) * 1e6).empty());
+  CHECK(refusal(implicit, Purpose::kServe, 2.439e6).empty());
+  CHECK_FALSE(refusal(implicit, Purpose::kServe, 2.437e6).empty());
   CHECK(refusal(still, Purpose::kSolve, 2.439e6).empty());  // the matrix twice
   CHECK_FALSE(refusal(still, Purpose::kSolve, 2.437e6).empty());
   CHECK(refusal(scene_with("implicit", ElementKind::kQuadratic), Purpose::kServe, 1e6)

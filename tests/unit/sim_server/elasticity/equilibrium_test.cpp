@@ -274,3 +274,18 @@ TEST_CASE("equilibrium: a body that nothing holds is told") {
   loose.scene.loads.push_back(load(Load::Kind::kGravity, kAll, Vec3(0, -9.81, 0)));
   CHECK_THROWS_AS(loose.solve(material(1e4, 0.4, ElementKind::kLinear)), Error);
 }
+
+TEST_CASE("equilibrium: a body that its supports move as one is at rest there, by any law") {
+  for (const ElasticLaw law : {ElasticLaw::kLinear, ElasticLaw::kCorotational, ElasticLaw::kNeoHookean}) {
+    Case shifted(grid_block(lines(0, 0.1, 4), lines(0, 0.05, 2), lines(0, 0.05, 2)));
+    const Box bottom = box(Vec3(0, 0, 0), Vec3(0.1, 0, 0.05));
+    shifted.fix(bottom);
+    const Vec3 way(0.003, 0.004, -0.001);
+    shifted.scene.loads = {load(Load::Kind::kDisplacement, bottom, way)};
+    const Equilibrium found = shifted.solve(material(8e3, 0.3, ElementKind::kLinear, law));
+    for (std::size_t i = 0; i < found.x.size(); ++i) {
+      CAPTURE(static_cast<int>(law), i);
+      CHECK((found.x[i] - shifted.solid->rest()[i] - way).norm() < 1e-12);
+    }
+  }
+}

@@ -1,0 +1,35 @@
+#pragma once
+#include <array>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim_server/scene.h"
+
+namespace palpate::sim {
+
+/// One `[[fixed.motion]]` and the nodes it moves.
+struct HeldMotion {
+  SupportMotion motion;
+  /// Each and its way per displacement of the support, no unit, along the axes on which it is held.
+  std::vector<std::pair<int, Vec3>> nodes{};
+  std::string where{};  ///< "FILE:LINE" of its [[fixed]]
+};
+
+/// 2 pi t / period + phase, rad; t in s.
+double angle_at(const SupportMotion& motion, double t);
+/// amplitude x sin of that, m.
+double displacement_at(const SupportMotion& motion, double t);
+
+/// Whether any [[fixed]] of the scene has a motion.
+bool supports_move(const Scene& scene);
+
+/// All motions of a scene, region by region. `edges`: of the nodes beyond the mesh's vertices, the two that
+/// each stands between; `held`: of all nodes. A vertex in several [[fixed]] belongs to the first; a node
+/// between two vertices that are held goes by the mean of both.
+std::vector<HeldMotion> held_motions(const Scene& scene, const TetMesh& mesh,
+                                     std::span<const std::array<int, 2>> edges,
+                                     std::span<const HeldAxes> held);
+
+}  // namespace palpate::sim
