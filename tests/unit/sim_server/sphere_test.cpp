@@ -40,14 +40,16 @@ double layer_factor(double depth) {
 }
 
 /// Relative error of the computed force with `elements` across one contact radius.
-double force_error(int elements) {
+double force_error(int elements, ElementKind element = ElementKind::kLinear) {
   const double fine = kContact / elements;
   const std::vector<double> across = graded_axis(kHalfWidth, 1.4 * kContact, fine, 1.4);
   std::vector<double> down;
   for (const double z : graded_axis(kThick, kContact, fine, 1.4)) {
     if (z <= 0) down.push_back(z);
   }
-  Scene scene = test::scene_of(kTissue, {Vec3(-1, -1, -kThick), Vec3(1, 1, -kThick)}, kSphere);
+  Material tissue = kTissue;
+  tissue.element = element;
+  Scene scene = test::scene_of(tissue, {Vec3(-1, -1, -kThick), Vec3(1, 1, -kThick)}, kSphere);
   const double reach = 1.15 * kContact;
   scene.tools[0].reach = Box{Vec3(-reach, -reach, -1e-9), Vec3(reach, reach, 1)};
   Simulation block(scene, grid_block(across, across, down));
@@ -72,4 +74,12 @@ TEST_CASE(
   CHECK(std::abs(fine) < 0.05);
   CHECK(middle < 0.6 * coarse);
   CHECK(fine < 0.7 * middle);
+}
+
+TEST_CASE("sphere on a graded block of averaged dilation: within 4 % at three elements per contact radius") {
+  const double coarse = force_error(2, ElementKind::kNodalPressure),
+               fine = force_error(3, ElementKind::kNodalPressure);
+  CAPTURE(coarse, fine);
+  CHECK(std::abs(fine) < 0.04);
+  CHECK(std::abs(fine) < 0.5 * std::abs(coarse));
 }

@@ -110,7 +110,7 @@ TEST_CASE("solid: with stress that is remembered, stiffness is the derivative of
   });
 }
 
-TEST_CASE("solid: no force at rest or shifted; turned, only the linear law feels one") {
+TEST_CASE("solid: no force and no energy at rest or shifted; turned, only the linear law has them") {
   each_solid([](const Solid& solid) {
     const double scale = stiffness(solid, solid.rest()).norm();
     CHECK(forces(solid, solid.rest()).norm() < 1e-14 * scale);
@@ -121,6 +121,8 @@ TEST_CASE("solid: no force at rest or shifted; turned, only the linear law feels
     CHECK(forces(solid, moved).norm() < 1e-13 * scale);
     const bool linear = solid.material().law == ElasticLaw::kLinear;
     CHECK((forces(solid, turned).norm() < 1e-13 * scale) == !linear);
+    for (const std::vector<Vec3>& x : {solid.rest(), moved}) CHECK(std::abs(solid.energy(x)) < 1e-14 * scale);
+    CHECK((std::abs(solid.energy(turned)) < 1e-14 * scale) == !linear);
   });
 }
 
