@@ -10,6 +10,8 @@ namespace {
 
 // Of the forces at work: what may be left before the last correction of a step.
 constexpr double kBalanced = 0.05;
+// Likewise: a body that its own motion leaves so well balanced rests.
+constexpr double kAtRest = 1e-6;
 
 const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
@@ -86,6 +88,7 @@ FreeMotion Implicit::free_motion(double dt) noexcept {
     }
     met_ = loads_;
     looks_ = dynamics_.settle(external(), 1, tolerance_);
+    if (dynamics_.unbalanced() <= std::max(tolerance_, kAtRest) && !never_changes()) dynamics_.refresh();
     linearised();
   }
   return motion();

@@ -11,11 +11,12 @@ namespace palpate::sim {
 /// = J A^-1 J^T, dt^2 of the mass-like matrix in it, which is also that over the sample interval, as loads
 /// are held over the step. Then it looks again where contact led, until Newton's method has settled with
 /// contact inside its loop, at most `max_newton` times. The factor of A is kept over steps as long as it
-/// serves, or made in the background and taken every `refresh_steps`: that takes more looks, but what they
-/// converge to is balanced against the true forces. Columns of W are solved for as they are asked for, and
-/// kept while the factor stands: for a linear law from then on; with a factor of the background come those
-/// that were asked for while it was made. Moving supports stand at the end of a step where they shall be
-/// then; the run begins with the body in equilibrium, at the velocities that it will have by them.
+/// serves (where the body rests, none is older than its shape), or made in the background and taken every
+/// `refresh_steps`: that takes more looks, but what they converge to is balanced against the true forces.
+/// Columns of W are solved for as they are asked for, and kept while the factor stands: for a linear law from
+/// then on; with a factor of the background come those that were asked for while it was made. Moving supports
+/// stand at the end of a step where they shall be then; the run begins with the body in equilibrium, at the
+/// velocities that it will have by them.
 class Implicit : public DeformationModel {
  public:
   /// Throws `Error` without material, rate or what holds the body.

@@ -12,6 +12,8 @@ constexpr double kWorthwhile = 0.3;
 constexpr double kRounding = 1e-6;
 // Of the size of the body: what moves a node by less is no force at work, so that a body at rest is at rest.
 constexpr double kStill = 1e-9;
+// Likewise: a factor of a place that far off is of another place.
+constexpr double kElsewhere = 1e-4;
 // Likewise: by so much nodes are moved to learn how forces change.
 constexpr double kNudge = 1e-7;
 // Conjugate gradients end when no more than this share is left, or after so many.
@@ -100,8 +102,17 @@ Viscosity Dynamics::viscosity() const {
 
 void Dynamics::factor() {
   matrix_.build(solid_, x_, viscosity(), c_);
+  factored_at_ = x_;
   from_background_ = false;
   renewed();
+}
+
+void Dynamics::refresh() {
+  if (background_) return;
+  double farthest = 0;
+  for (std::size_t i = 0; i < x_.size(); ++i)
+    farthest = std::max(farthest, (x_[i] - factored_at_[i]).squaredNorm());
+  if (std::sqrt(farthest) > kElsewhere * reach_) factor();
 }
 
 void Dynamics::renewed() {

@@ -43,6 +43,8 @@ class Dynamics {
   int settle(std::span<const Vec3> external, int most, double tolerance);
   /// What the last `improve` found unbalanced before it, as a share of the forces at work.
   double unbalanced() const { return left_; }
+  /// Factors anew, where the factor is of a place elsewhere and none comes from the background.
+  void refresh();
   /// What is found now is the end of the step.
   void finish_step();
 
@@ -96,6 +98,7 @@ class Dynamics {
   QuasiNewton quasi_newton_;
   bool from_background_ = false, too_old_ = false;  // to serve alone
   std::vector<int> foreseen_;
+  std::vector<Vec3> factored_at_;  // m
   int factors_ = 0;
   bool improved_ = false, fresh_ = false;  // in this step; by a factor of the very place
   Eigen::VectorXd way_;                    // of the last improvement, m

@@ -44,12 +44,8 @@ struct ModelCase {
            kSolvers[static_cast<std::size_t>(solver)];
   }
   bool linear() const { return law == sim::ElasticLaw::kLinear; }
-  /// How long (steps) loads are to be held until compliance is of here and now; nothing: a factor made when
-  /// it is needed is kept for as long as it serves.
-  std::optional<int> held_until_fresh() const {
-    if (linear() || !exempt(row.name, "slope in motion")) return 0;
-    return solver == Solver::kDirect ? std::nullopt : std::optional(60);
-  }
+  /// How long (steps) loads are to be held until compliance is of here and now.
+  int held_until_fresh() const { return linear() || !exempt(row.name, "slope in motion") ? 0 : 60; }
   /// Writes the choice into a scene, and has iterations go on until rounding ends them.
   void choose(sim::Scene& scene) const {
     scene.deformation.model = row.name;
