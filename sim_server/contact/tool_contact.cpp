@@ -9,7 +9,8 @@ namespace {
 constexpr double kStride = 0.5;  // of the tool radius: how far the tool goes between two contact solves
 // With friction, which follows the path: shorter, as many as a step has time for.
 constexpr double kFrictionStride = 0.01, kFrictionStrides = 16;
-constexpr double kGather = 2.0;  // of the tool radius: how far from the tip the patch extends
+constexpr double kGather = 2.0;      // of the tool radius: how far from the tip the patch extends
+constexpr double kGatherDear = 1.5;  // likewise, where each node more costs solves of the whole tissue
 constexpr double kMaxStrides = 256;
 constexpr double kEscape = 3.0;  // of the tool radius: how far outside its free organ contact may go on
 // Contact linearisations a step may use, on the way and to settle with other tools, before it answers from
@@ -309,7 +310,8 @@ void ToolContact::start_stride(bool first, const Tissue& tissue) noexcept {
 
 ContactForce ToolContact::touch(Tissue& tissue) noexcept {
   const ToolPose tip(place_.p_W + tip_offset_, place_.q_W);
-  finder_.gather(tissue.positions, free_, tip.p_W, far_end(tool_, tip), kGather * tool_.radius, patch_);
+  const double reach = (tissue.model->compliance_is_constant() ? kGather : kGatherDear) * tool_.radius;
+  finder_.gather(tissue.positions, free_, tip.p_W, far_end(tool_, tip), reach, patch_);
   if (patch_.triangles.empty()) {
     release(tissue);
     return {};

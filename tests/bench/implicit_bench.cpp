@@ -128,8 +128,8 @@ void add_case(const std::string& name, Case (*make)()) {
 
 void add_implicit_rows() {
   add_case("liver_6k/direct", &liver_case);
-  add_case("block_22k/quasi_newton", [] { return block_case(20, 30, 8); });
-  add_case("block_98k/quasi_newton", [] { return block_case(33, 10, 16); });
+  add_case("block_22k/quasi_newton", [] { return block_case(20, 30, 16); });
+  add_case("block_98k/quasi_newton", [] { return block_case(33, 10, 64); });
 }
 
 }  // namespace palpate::bench
