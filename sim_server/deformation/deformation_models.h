@@ -15,8 +15,8 @@ namespace palpate::sim {
 /// each stage at least; with 1 at the end of the last, so that stages cover the whole set-up (`SetupTimes`).
 using Progress = std::function<void(std::string_view what, double share)>;
 
-/// What a model is built from. `fixed`: mesh vertices that move only with their [[fixed.motion]]. `reachable`: surface vertices the tool
-/// can load.
+/// What a model is built from. `fixed`: mesh vertices that move only with their [[fixed.motion]].
+/// `reachable`: surface vertices the tool can load.
 struct ModelInputs {
   const Scene& scene;
   const TetMesh& mesh;

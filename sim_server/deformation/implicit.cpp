@@ -12,6 +12,7 @@ namespace {
 constexpr double kBalanced = 0.05;
 // Likewise: a body that its own motion leaves so well balanced rests.
 constexpr double kAtRest = 1e-6;
+constexpr double kMostBytes = 1e9;  // of columns, when a step begins
 
 const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
@@ -80,6 +81,7 @@ FreeMotion Implicit::free_motion(double dt) noexcept {
     }
     moving_ = true;
     touched_ = false;
+    if (static_cast<double>(columns_.size()) * sizeof(double) > kMostBytes) forget_columns();
     if (!triangles_.empty()) foresee_columns();
     dynamics_.start_step(period_);
     if (supports_) {
@@ -164,6 +166,13 @@ void Implicit::foresee_columns() noexcept {
     if (near[v] != 0 && dof_[v] >= 0) first.push_back(dof_[v]);
   }
   dynamics_.foresee(std::move(first));
+}
+
+/// So many were touched: those that are asked for again are solved for again.
+void Implicit::forget_columns() noexcept {
+  std::fill(slot_.begin(), slot_.end(), -1);
+  slots_ = 0;
+  columns_.resize(0, 0);
 }
 
 /// Of an older factor; takes those that came with the new one.

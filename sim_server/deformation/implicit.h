@@ -38,6 +38,7 @@ class Implicit : public DeformationModel {
   void linearised() noexcept;
   void foresee_columns() noexcept;
   void drop_columns() noexcept;
+  void forget_columns() noexcept;
   void find_columns(std::span<const int> vertices) const noexcept;
   void keep_columns(const Eigen::MatrixXd& columns) const noexcept;
   void add_response(std::span<const NodalLoad> loads, double sign, Eigen::VectorXd& moved) const noexcept;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMostTurns = 20;
 constexpr double kTurned = 1e-14;      // square of what the last turn changed
-constexpr double kNear = 0.01;          // likewise: from here on it converges as fast unscaled
+constexpr double kNear = 0.01;         // likewise: from here on it converges as fast unscaled
 constexpr double kFlat = 1e-3;         // of the cube of its size: too flat for Newton
 constexpr double kLeastStretch = 0.1;  // sum of two stretches below which R turns no faster
 

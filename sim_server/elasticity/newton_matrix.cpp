@@ -44,7 +44,7 @@ Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first) const {
 
 BackgroundMatrix::BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                                    const std::string& where)
-    : solid_(solid), matrix_(solid, dofs, settings, where) {}
+    : solid_(solid), matrix_(solid, dofs, settings, where), bytes_(solid_.bytes() + matrix_.bytes()) {}
 
 void BackgroundMatrix::begin(std::span<const Vec3> x, const Viscosity& viscosity, double c,
                              std::vector<int> first) {

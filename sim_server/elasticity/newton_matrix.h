@@ -60,11 +60,13 @@ class BackgroundMatrix {
   void take(NewtonMatrix& matrix);
   /// What came with the one taken last. Until the next is taken.
   const Columns& columns() const { return taken_; }
-  std::size_t bytes() const { return solid_.bytes() + matrix_.bytes(); }
+  /// Known beforehand: asked for while the thread works, too.
+  std::size_t bytes() const { return bytes_; }
 
  private:
   Solid solid_;
   NewtonMatrix matrix_;
+  std::size_t bytes_;
   std::vector<Vec3> x_;
   std::vector<Mat3> memory_;
   Columns made_, taken_;
