@@ -97,7 +97,7 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
   const TetMesh& mesh = simulation.mesh();
   const Surface& surface = simulation.surface();
   if (part == "mesh")
-    return fmt::format("{} vertices, {} tetrahedra", mesh.vertices.size(), mesh.tetrahedra.size());
+    return fmt::format("{} vertices, {} tetrahedra", mesh.corners(), mesh.tetrahedra.size());
   if (part == "modes") return fmt::format("{} of vibration", scene.deformation.modes);
   if (part == "surface")
     return fmt::format("{} vertices, {} triangles", surface.vertices.size(), surface.triangles.size());

@@ -7,9 +7,9 @@
 namespace palpate::sim {
 namespace {
 
-/// Which [[fixed]] each vertex belongs to: -1 for a free one.
-std::vector<int> region_of_vertices(const Scene& scene, const TetMesh& mesh) {
-  std::vector<int> region(mesh.vertices.size(), -1);
+/// Which [[fixed]] each corner belongs to: -1 for a free one.
+std::vector<int> region_of_corners(const Scene& scene, const TetMesh& mesh) {
+  std::vector<int> region(static_cast<std::size_t>(mesh.corners()), -1);
   for (std::size_t r = scene.fixed.size(); r-- > 0;) {
     for (const int vertex : vertices_in(scene.fixed[r], mesh)) region[vertex] = static_cast<int>(r);
   }
@@ -39,11 +39,10 @@ bool supports_move(const Scene& scene) {
 }
 
 std::vector<HeldMotion> held_motions(const Scene& scene, const TetMesh& mesh,
-                                     std::span<const std::array<int, 2>> edges,
                                      std::span<const HeldAxes> held) {
   std::vector<HeldMotion> all;
   if (!supports_move(scene)) return all;
-  const std::vector<int> region_of = region_of_vertices(scene, mesh);
+  const std::vector<int> region_of = region_of_corners(scene, mesh);
   for (std::size_t r = 0; r < scene.fixed.size(); ++r) {
     const auto share = [&](std::size_t vertex) { return region_of[vertex] == static_cast<int>(r) ? 1.0 : 0; };
     for (const SupportMotion& motion : scene.fixed[r].motions) {
@@ -53,8 +52,8 @@ std::vector<HeldMotion> held_motions(const Scene& scene, const TetMesh& mesh,
         if (!way.isZero(0)) one.nodes.emplace_back(static_cast<int>(node), way);
       };
       for (std::size_t v = 0; v < region_of.size(); ++v) add(v, share(v));
-      for (std::size_t k = 0; k < edges.size(); ++k)
-        add(region_of.size() + k, 0.5 * (share(edges[k][0]) + share(edges[k][1])));
+      for (std::size_t k = 0; k < mesh.mid_edges.size(); ++k)
+        add(region_of.size() + k, 0.5 * (share(mesh.mid_edges[k][0]) + share(mesh.mid_edges[k][1])));
       all.push_back(std::move(one));
     }
   }

@@ -25,11 +25,8 @@ double displacement_at(const SupportMotion& motion, double t);
 /// Whether any [[fixed]] of the scene has a motion.
 bool supports_move(const Scene& scene);
 
-/// All motions of a scene, region by region. `edges`: of the nodes beyond the mesh's vertices, the two that
-/// each stands between; `held`: of all nodes. A vertex in several [[fixed]] belongs to the first; a node
-/// between two vertices that are held goes by the mean of both.
-std::vector<HeldMotion> held_motions(const Scene& scene, const TetMesh& mesh,
-                                     std::span<const std::array<int, 2>> edges,
-                                     std::span<const HeldAxes> held);
+/// All motions of a scene, region by region. `held`: (vertices) of `mesh`. A corner in several [[fixed]]
+/// belongs to the first; a vertex in the middle of an edge that is held goes by the mean of its ends.
+std::vector<HeldMotion> held_motions(const Scene& scene, const TetMesh& mesh, std::span<const HeldAxes> held);
 
 }  // namespace palpate::sim

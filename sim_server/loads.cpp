@@ -14,16 +14,10 @@ Vec3 area_of(std::span<const Vec3> x, const std::array<int, 3>& corner) {
 }  // namespace
 
 Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, const Solid& solid)
-    : middles_(mesh.vertices.size()),
-      follows_(solid.material().law != ElasticLaw::kLinear),
+    : follows_(solid.material().law != ElasticLaw::kLinear),
       rest_(solid.rest()),
       dead_(rest_.size(), Vec3::Zero()) {
-  for (std::size_t k = 0; k < solid.edges().size(); ++k) {
-    const auto [a, b] = solid.edges()[k];
-    middles_[a].emplace_back(b, static_cast<int>(mesh.vertices.size() + k));
-    middles_[b].emplace_back(a, static_cast<int>(mesh.vertices.size() + k));
-  }
-  hold(scene, mesh, solid);
+  hold(scene, mesh);
   for (const Load& load : scene.loads) {
     if (load.kind == Load::Kind::kGravity) {
       solid.add_body_forces(solid.material().density * load.vector, dead_);
@@ -32,7 +26,7 @@ Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, co
       for (const int v : vertices) dead_[v] += load.vector / static_cast<double>(vertices.size());
     } else if (load.kind == Load::Kind::kTraction) {
       for (const Face& face : faces_in(load.region, mesh, surface))
-        push(face, area_of(rest_, face.corner).norm() * load.vector, dead_);
+        push(face, area_of(rest_, face.corners).norm() * load.vector, dead_);
     } else if (load.kind == Load::Kind::kPressure) {
       pressures_.push_back({load.pressure, faces_in(load.region, mesh, surface)});
     }
@@ -40,7 +34,7 @@ Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, co
 }
 
 /// What is held, and where: a later displacement counts over an earlier one, and over a [[fixed]].
-void Loads::hold(const Scene& scene, const TetMesh& mesh, const Solid& solid) {
+void Loads::hold(const Scene& scene, const TetMesh& mesh) {
   held_.assign(rest_.size(), 0);
   std::vector<Vec3> moved(rest_.size(), Vec3::Zero());
   for (const FixedRegion& region : scene.fixed) {
@@ -57,13 +51,13 @@ void Loads::hold(const Scene& scene, const TetMesh& mesh, const Solid& solid) {
       }
     }
   }
-  for (std::size_t k = 0; k < solid.edges().size(); ++k) {
-    const auto [a, b] = solid.edges()[k];
-    const std::size_t middle = mesh.vertices.size() + k;
+  for (std::size_t k = 0; k < mesh.mid_edges.size(); ++k) {
+    const auto [a, b] = mesh.mid_edges[k];
+    const std::size_t middle = static_cast<std::size_t>(mesh.corners()) + k;
     held_[middle] = held_[a] & held_[b];
     moved[middle] = 0.5 * (moved[a] + moved[b]);
   }
-  motions_ = held_motions(scene, mesh, solid.edges(), held_);
+  motions_ = held_motions(scene, mesh, held_);
   if (moves || !motions_.empty()) moved_ = std::move(moved);
 }
 
@@ -87,21 +81,20 @@ void Loads::put_held(double t, std::span<Vec3> x) const noexcept {
   }
 }
 
-std::vector<Loads::Face> Loads::faces_in(const Region& region, const TetMesh& mesh,
-                                         const Surface& surface) const {
+std::vector<Loads::Face> Loads::faces_in(const Region& region, const TetMesh& mesh, const Surface& surface) {
   std::vector<char> inside(mesh.vertices.size(), 0);
   for (const int v : vertices_in(region, mesh)) inside[v] = 1;
   std::vector<Face> faces;
-  for (const Triangle& t : surface.triangles) {
-    Face face{{surface.vertices[t[0]], surface.vertices[t[1]], surface.vertices[t[2]]}, {-1, -1, -1}};
-    const auto& c = face.corner;
-    if (inside[c[0]] == 0 || inside[c[1]] == 0 || inside[c[2]] == 0) continue;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (const auto& [other, node] : middles_[c[i]]) {
-        if (other == c[(i + 1) % 3]) face.middle[i] = node;
-      }
+  for (std::size_t i = 0; i < surface.triangles.size(); i += static_cast<std::size_t>(surface.per_face)) {
+    const Triangle* const parts = &surface.triangles[i];
+    const bool whole = surface.per_face == 1;
+    Face face{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      face.corners[c] = surface.vertices[whole ? parts[0][c] : parts[c][0]];
+      face.pushed[c] = surface.vertices[whole ? parts[0][c] : parts[3][c]];
     }
-    faces.push_back(face);
+    const auto is_inside = [&](int corner) { return inside[corner] != 0; };
+    if (std::all_of(face.corners.begin(), face.corners.end(), is_inside)) faces.push_back(face);
   }
   if (faces.empty())
     fail("{}: no triangle of the boundary has all its corners in this region; make it larger", region.where);
@@ -110,15 +103,14 @@ std::vector<Loads::Face> Loads::faces_in(const Region& region, const TetMesh& me
 
 /// Equally on the corners; of quadratic triangles on the middles of the edges, as their shape functions say.
 void Loads::push(const Face& face, const Vec3& force, std::span<Vec3> f) {
-  const bool quadratic = face.middle[0] >= 0;
-  for (const int node : quadratic ? face.middle : face.corner) f[node] += force / 3;
+  for (const int node : face.pushed) f[node] += force / 3;
 }
 
 void Loads::add_forces(std::span<const Vec3> x, std::span<Vec3> f) const {
   for (std::size_t i = 0; i < dead_.size(); ++i) f[i] += dead_[i];
   for (const Pressure& pressure : pressures_) {
     for (const Face& face : pressure.faces)
-      push(face, -pressure.pascal * area_of(follows_ ? x : std::span<const Vec3>(rest_), face.corner), f);
+      push(face, -pressure.pascal * area_of(follows_ ? x : std::span<const Vec3>(rest_), face.corners), f);
   }
 }
 

@@ -17,7 +17,7 @@ class Loads {
 
   /// Adds the forces (nodes, N) on a body at `x` (nodes, m).
   void add_forces(std::span<const Vec3> x, std::span<Vec3> f) const;
-  /// (nodes) A node in the middle of an edge is held where both ends are.
+  /// (nodes) One in the middle of an edge is held where both ends are.
   const std::vector<HeldAxes>& held() const { return held_; }
   /// (nodes) From rest to where they are held at time `t` (s), m; empty where all are always held at rest.
   /// What [[fixed.motion]] does adds to a displacement.
@@ -28,20 +28,19 @@ class Loads {
 
  private:
   struct Face {
-    std::array<int, 3> corner;
-    std::array<int, 3> middle;  // of the edges from corner i to i + 1; -1: none
+    Triangle corners;
+    Triangle pushed;  // nodes that share the force on it equally
   };
   struct Pressure {
     double pascal;
     std::vector<Face> faces;
   };
-  void hold(const Scene& scene, const TetMesh& mesh, const Solid& solid);
-  std::vector<Face> faces_in(const Region& region, const TetMesh& mesh, const Surface& surface) const;
+  void hold(const Scene& scene, const TetMesh& mesh);
+  static std::vector<Face> faces_in(const Region& region, const TetMesh& mesh, const Surface& surface);
   static void push(const Face& face, const Vec3& force, std::span<Vec3> f);
 
-  std::vector<std::vector<std::pair<int, int>>> middles_;  // of each vertex: other end of an edge, its node
-  bool follows_ = false;                                   // pressure goes with the surface
-  std::vector<Vec3> rest_, dead_;                          // nodes at rest, m; forces that do not change, N
+  bool follows_ = false;           // pressure goes with the surface
+  std::vector<Vec3> rest_, dead_;  // nodes at rest, m; forces that do not change, N
   std::vector<Pressure> pressures_;
   std::vector<HeldAxes> held_;
   std::vector<Vec3> moved_;  // but for motions

@@ -228,7 +228,7 @@ std::vector<int> vertices_in(const Region& region, const TetMesh& mesh) {
     return found->second;
   }
   std::vector<int> inside;
-  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+  for (int v = 0; v < mesh.corners(); ++v) {
     if (region.contains(mesh.vertices[v])) inside.push_back(v);
   }
   if (inside.empty()) {
@@ -243,6 +243,10 @@ std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh) {
   for (const FixedRegion& region : scene.fixed) {
     if (region.axes != kAllAxes) continue;
     for (const int vertex : vertices_in(region, mesh)) is_fixed[vertex] = 1;
+  }
+  for (std::size_t k = 0; k < mesh.mid_edges.size(); ++k) {
+    const auto [a, b] = mesh.mid_edges[k];
+    is_fixed[static_cast<std::size_t>(mesh.corners()) + k] = is_fixed[a] & is_fixed[b];
   }
   std::vector<int> fixed;
   for (int v = 0; v < static_cast<int>(is_fixed.size()); ++v) {

@@ -133,7 +133,7 @@ enum class Purpose { kServe, kSolve };
 /// mesh.
 Scene read_scene(const std::filesystem::path& file, Purpose purpose = Purpose::kServe);
 
-/// Mesh vertices of a region. Throws `Error` as `fixed_vertices`.
+/// Mesh vertices of a region, of those that are corners. Throws `Error` as `fixed_vertices`.
 std::vector<int> vertices_in(const Region& region, const TetMesh& mesh);
 
 /// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an

@@ -46,9 +46,10 @@ double body_bytes(const MeshCounts& counts, ElementKind element, int matrices) {
 
 MeshCounts count_parts(const TetMesh& mesh, const Surface& surface) {
   MeshCounts counts;
-  counts.vertices = static_cast<double>(mesh.vertices.size());
+  counts.vertices = mesh.corners();
   counts.tetrahedra = static_cast<double>(mesh.tetrahedra.size());
-  counts.faces = 2 * counts.tetrahedra + 0.5 * static_cast<double>(surface.triangles.size());
+  counts.faces =
+      2 * counts.tetrahedra + 0.5 * static_cast<double>(surface.triangles.size()) / surface.per_face;
   counts.edges = counts.vertices + counts.faces - counts.tetrahedra - 1;
   return counts;
 }
@@ -56,7 +57,7 @@ MeshCounts count_parts(const TetMesh& mesh, const Surface& surface) {
 double solid_bytes(const MeshCounts& counts, ElementKind element) {
   const bool quadratic = element == ElementKind::kQuadratic;
   const double corners = quadratic ? 10 : 4, points = quadratic ? 4 : 1;
-  double bytes = nodes_of(counts, element) * kVec + (quadratic ? 2 * kInt * counts.edges : 0) +
+  double bytes = nodes_of(counts, element) * kVec +
                  counts.tetrahedra * (corners * kInt + points * (kReal + corners * kVec));
   if (element == ElementKind::kNodalPressure)
     bytes += counts.tetrahedra * (4 * kInt + kReal) + counts.vertices * (kInt + 2 * kReal);

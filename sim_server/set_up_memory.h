@@ -11,8 +11,8 @@ struct MeshCounts {
   double vertices = 0, edges = 0, faces = 0, tetrahedra = 0;
 };
 
-/// Of `mesh`; edges by Euler's formula, as of a body without handles and voids (each changes it by one).
-/// O(1).
+/// Of `mesh`, without what `add_mid_edges` put there; edges by Euler's formula, as of a body without handles
+/// and voids (each changes it by one). O(1).
 MeshCounts count_parts(const TetMesh& mesh, const Surface& surface);
 
 /// Bytes that a `Solid` of these elements holds.

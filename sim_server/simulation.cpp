@@ -6,6 +6,7 @@
 #include "common/error.h"
 #include "common/hash.h"
 #include "common/text.h"
+#include "sim_server/elasticity/solid.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/set_up_memory.h"
 
@@ -56,6 +57,7 @@ Simulation::Simulation(const Scene& scene, const Progress& progress)
 
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
   progress("extracting the surface", 0);
+  if (scene.material) mesh_ = with_nodes(std::move(mesh_), scene.material->element);
   surface_ = boundary_surface(mesh_);
   for (const int vertex : surface_.vertices) rest_.push_back(mesh_.vertices[vertex]);
   auto touchable = touchable_by(scene.tools, surface_, mesh_);
@@ -205,8 +207,9 @@ void Simulation::lift_tool(std::size_t tool) noexcept {
 
 std::vector<MemoryPart> Simulation::memory() const {
   std::vector<MemoryPart> parts = tissue_.model->memory();
-  parts.push_back(
-      {"mesh", mesh_.vertices.size() * sizeof(Vec3) + mesh_.tetrahedra.size() * sizeof(Tetrahedron)});
+  parts.push_back({"mesh", mesh_.vertices.size() * sizeof(Vec3) +
+                               mesh_.tetrahedra.size() * sizeof(Tetrahedron) +
+                               mesh_.mid_edges.size() * sizeof(mesh_.mid_edges[0])});
   parts.push_back(
       {"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
   for (std::size_t i = 0; i < tools_.size(); ++i)

@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/core.h>
 
@@ -43,7 +42,6 @@ Vec3 parse_place(const std::string& text) {
 
 /// Shape functions at barycentric coordinates: of four nodes, or of ten.
 void weigh(std::span<const int> nodes, const Eigen::Vector4d& l, Probe& probe) {
-  constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
   probe.nodes.clear();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const double weight = nodes.size() == 4 ? l[static_cast<long>(i)]
@@ -53,8 +51,8 @@ void weigh(std::span<const int> nodes, const Eigen::Vector4d& l, Probe& probe) {
   }
 }
 
-/// In the tetrahedron that holds the place; outside, at the nearest vertex.
-Probe find_probe(const std::string& text, const Solid& solid, std::size_t vertices) {
+/// In the tetrahedron that holds the place; outside, at the nearest of the corners, which come first.
+Probe find_probe(const std::string& text, const Solid& solid, int corners) {
   Probe probe{text, parse_place(text), {}};
   const auto& x = solid.rest();
   for (std::size_t e = 0; e < solid.elements(); ++e) {
@@ -68,7 +66,7 @@ Probe find_probe(const std::string& text, const Solid& solid, std::size_t vertic
     return probe;
   }
   int nearest = 0;
-  for (int v = 1; v < static_cast<int>(vertices); ++v) {
+  for (int v = 1; v < corners; ++v) {
     if ((x[v] - probe.place).norm() < (x[nearest] - probe.place).norm()) nearest = v;
   }
   probe.nodes = {{nearest, 1.0}};
@@ -247,14 +245,13 @@ int solve(const SolveOptions& options) {
   if (options.series) check_writable(*options.series);
   ProgressLine progress;
   progress("reading the mesh", 0);
-  const TetMesh mesh = read_mesh(scene.mesh_file);
+  const TetMesh mesh = with_nodes(read_mesh(scene.mesh_file), scene.material->element);
   const Surface surface = boundary_surface(mesh);
   require_memory_for(scene, Purpose::kSolve, count_parts(mesh, surface));
   const Solid solid(mesh, *scene.material);
   const Loads loads(scene, mesh, surface, solid);
   std::vector<Probe> probes;
-  for (const std::string& text : options.probes)
-    probes.push_back(find_probe(text, solid, mesh.vertices.size()));
+  for (const std::string& text : options.probes) probes.push_back(find_probe(text, solid, mesh.corners()));
   fmt::print("{}: {} nodes, {} tetrahedra\n", scene.source, solid.nodes(), solid.elements());
   const std::vector<Vec3> x = options.seconds ? move_for(options, scene, solid, loads, progress)
                                               : find_rest(scene, solid, loads, progress);

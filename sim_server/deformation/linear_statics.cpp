@@ -22,7 +22,7 @@ SparseCholesky factor_stiffness(const ModelInputs& inputs, const Solid& solid, c
 
 LinearStatics::LinearStatics(const ModelInputs& inputs)
     : solid(solid_of(inputs)),
-      dofs(static_cast<int>(inputs.mesh.vertices.size()), inputs.fixed, solid.edges()),
+      dofs(solid.nodes(), inputs.fixed),
       factor(factor_stiffness(inputs, solid, dofs)) {}
 
 std::optional<MovingSupports> LinearStatics::supports(const ModelInputs& inputs, Following following) const {

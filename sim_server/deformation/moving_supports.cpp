@@ -102,7 +102,7 @@ std::vector<SupportResponse> support_responses(const ModelInputs& inputs, const 
                                                const FreeDofs& dofs, const Flexibility& flexibility,
                                                Following following) {
   std::vector<SupportResponse> responses;
-  const auto motions = held_motions(inputs.scene, inputs.mesh, solid.edges(), dofs.held);
+  const auto motions = held_motions(inputs.scene, inputs.mesh, dofs.held);
   if (motions.empty()) return responses;
   inputs.progress("computing moving supports", 0);
   const DeformationSettings& settings = inputs.scene.deformation;

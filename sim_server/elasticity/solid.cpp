@@ -1,9 +1,9 @@
 #include "sim_server/elasticity/solid.h"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 
+#include "common/error.h"
 #include "common/parallel.h"
 #include "sim_server/elasticity/element.h"
 #include "sim_server/elasticity/laws.h"
@@ -14,8 +14,6 @@ namespace {
 
 // Tetrahedra whose forces or stiffness wait in the scratch to be added up in order; and those of one task.
 constexpr std::size_t kBatch = 2048, kTask = 64;
-/// Corners at the ends of each further node of a quadratic tetrahedron.
-constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
 
 /// Calls `work` with the class of the law.
 template <class Work>
@@ -38,8 +36,17 @@ std::size_t blocks_of(int corners) {
 
 }  // namespace
 
+TetMesh with_nodes(TetMesh mesh, ElementKind element) {
+  if (element == ElementKind::kQuadratic) add_mid_edges(mesh);
+  return mesh;
+}
+
 Solid::Solid(const TetMesh& mesh, const Material& material) : material_(material), rest_(mesh.vertices) {
-  if (material.element == ElementKind::kQuadratic) {
+  const bool quadratic = material.element == ElementKind::kQuadratic;
+  if (quadratic == mesh.mid_edges.empty() && !mesh.tetrahedra.empty())
+    fail("mesh: {} vertices in the middle of edges, of elements that are{} quadratic", mesh.mid_edges.size(),
+         quadratic ? "" : " not");
+  if (quadratic) {
     build_quadratic(mesh);
   } else {
     build_linear(mesh);
@@ -62,18 +69,9 @@ void Solid::build_quadratic(const TetMesh& mesh) {
   constexpr double kNear = 0.5854101966249685, kFar = 0.1381966011250105;  // barycentric, of the four points
   corners_ = 10;
   points_ = 4;
-  std::map<std::array<int, 2>, int> middle;
   for (const Tetrahedron& t : mesh.tetrahedra) {
     element_nodes_.insert(element_nodes_.end(), t.begin(), t.end());
-    for (const auto& [a, b] : kEdges) {
-      const std::array<int, 2> edge{std::min(t[a], t[b]), std::max(t[a], t[b])};
-      const auto [found, fresh] = middle.try_emplace(edge, static_cast<int>(rest_.size()));
-      if (fresh) {
-        rest_.push_back(0.5 * (rest_[edge[0]] + rest_[edge[1]]));
-        edges_.push_back(edge);
-      }
-      element_nodes_.push_back(found->second);
-    }
+    for (const auto& [a, b] : kEdges) element_nodes_.push_back(mesh.middle(t[a], t[b]));
     const LinearTetrahedron element({rest_[t[0]], rest_[t[1]], rest_[t[2]], rest_[t[3]]});
     const auto& g = element.gradient;
     for (int q = 0; q < 4; ++q) {
@@ -362,7 +360,7 @@ std::size_t Solid::bytes() const {
   return (rest_.size() + gradient_.size() + force_scratch_.size()) * sizeof(Vec3) +
          (weight_.size() + nodal_volume_.size() + dilation_.size() + nodal_dilation_.size()) *
              sizeof(double) +
-         (element_nodes_.size() + around_.size() + around_first_.size() + 2 * edges_.size()) * sizeof(int) +
+         (element_nodes_.size() + around_.size() + around_first_.size()) * sizeof(int) +
          stiffness_scratch_.size() * sizeof(Mat3);
 }
 

@@ -10,6 +10,9 @@
 
 namespace palpate::sim {
 
+/// The mesh with the nodes of such elements among its vertices: quadratic ones have them on edges too.
+TetMesh with_nodes(TetMesh mesh, ElementKind element);
+
 /// What viscosity adds to the stress at each quadrature point: the stress of now counts `scale` times, and
 /// `memory` (second Piola-Kirchhoff; Cauchy of the linear law; Pa) is what is left of the strains before.
 struct Viscosity {
@@ -31,13 +34,12 @@ struct Viscosity {
 /// construction only the scratch of a call changes: one thread at a time.
 class Solid {
  public:
+  /// Throws `Error` where `mesh` is not as `with_nodes` makes it for this material.
   Solid(const TetMesh& mesh, const Material& material);
 
-  /// Vertices of the mesh first, in its order; then those in the middle of edges.
+  /// The vertices of the mesh, in its order.
   int nodes() const { return static_cast<int>(rest_.size()); }
   const std::vector<Vec3>& rest() const { return rest_; }
-  /// The two vertices that each node beyond the mesh's vertices stands between.
-  const std::vector<std::array<int, 2>>& edges() const { return edges_; }
   const Material& material() const { return material_; }
 
   /// Elastic energy at positions `x` (nodes, m), J; without viscosity.
@@ -54,8 +56,7 @@ class Solid {
   /// and 4/27 for the middle of an edge (Hinton, Rock and Zienkiewicz 1976).
   std::vector<double> masses() const;
 
-  /// Nodes of tetrahedron e, `nodes_per_element()` of them: corners, then the middles of the edges 01, 12,
-  /// 02, 03, 13, 23.
+  /// Nodes of tetrahedron e, 4 or 10: corners, then the middles of its edges in the order of `kEdges`.
   std::span<const int> element(std::size_t e) const {
     return std::span(element_nodes_)
         .subspan(e * static_cast<std::size_t>(corners_), static_cast<std::size_t>(corners_));
@@ -95,7 +96,6 @@ class Solid {
   Material material_;
   int corners_ = 4, points_ = 1;  // nodes and quadrature points of an element
   std::vector<Vec3> rest_;
-  std::vector<std::array<int, 2>> edges_;
   std::vector<int> element_nodes_;  // (elements x corners)
   std::vector<double> weight_;      // (points in all), m^3
   std::vector<Vec3> gradient_;      // (points in all x corners), 1/m

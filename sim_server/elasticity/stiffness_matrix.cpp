@@ -5,10 +5,8 @@
 
 namespace palpate::sim {
 
-FreeDofs::FreeDofs(int nodes, const std::vector<int>& fixed, std::span<const std::array<int, 2>> edges)
-    : held(static_cast<std::size_t>(nodes), 0) {
+FreeDofs::FreeDofs(int nodes, const std::vector<int>& fixed) : held(static_cast<std::size_t>(nodes), 0) {
   for (const int node : fixed) held[node] = kAllAxes;
-  for (const auto& [a, b] : edges) held.push_back(static_cast<HeldAxes>(held[a] & held[b]));
   number();
 }
 

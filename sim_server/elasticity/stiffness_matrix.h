@@ -22,9 +22,8 @@ struct FreeDofs {
   std::vector<HeldAxes> held;  ///< (n nodes)
   int count = 0;               ///< number of unknowns
 
-  /// Of nodes of which some are fixed, and then of one more in the middle of each of `edges` between two of
-  /// them, fixed where both are.
-  FreeDofs(int nodes, const std::vector<int>& fixed, std::span<const std::array<int, 2>> edges = {});
+  /// Of nodes of which some are fixed.
+  FreeDofs(int nodes, const std::vector<int>& fixed);
   explicit FreeDofs(std::vector<HeldAxes> held_axes);
 
   /// Sets to 0 what is held along single axes; `v` by unknowns.

@@ -61,6 +61,17 @@ void number_vertices(Surface& surface) {
   }
 }
 
+/// Each face in four, by the vertices in the middle of its edges.
+std::vector<Triangle> in_four(const std::vector<Triangle>& faces, const TetMesh& mesh) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(4 * faces.size());
+  for (const auto& [a, b, c] : faces) {
+    const int ab = mesh.middle(a, b), bc = mesh.middle(b, c), ca = mesh.middle(c, a);
+    triangles.insert(triangles.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+  }
+  return triangles;
+}
+
 }  // namespace
 
 OuterFaces outer_faces(const TetMesh& mesh) {
@@ -95,7 +106,12 @@ Surface boundary_surface(const TetMesh& mesh) {
   if (!faces.overlaps.empty())
     fail("mesh: {}; remove the tetrahedra that overlap", describe(faces.overlaps.front()));
   Surface surface;
-  surface.triangles = std::move(faces.triangles);
+  if (mesh.mid_edges.empty()) {
+    surface.triangles = std::move(faces.triangles);
+  } else {
+    surface.triangles = in_four(faces.triangles, mesh);
+    surface.per_face = 4;
+  }
   number_vertices(surface);
   return surface;
 }

@@ -11,6 +11,9 @@ namespace palpate::sim {
 struct Surface {
   std::vector<int> vertices;        ///< (s), the mesh vertex of each surface vertex, ascending
   std::vector<Triangle> triangles;  ///< (k), indices into `vertices`; normals outward by the right-hand rule
+  /// Triangles of each outer face, which follow each other: 1; where edges have a vertex in the middle 4, at
+  /// the corners, each of which comes first, then between the middles.
+  int per_face = 1;
 };
 
 /// A face with tetrahedra in one another's place: more than two on it, or two on the same side.

@@ -10,7 +10,7 @@ namespace palpate::sim {
 namespace {
 
 // The six edges of a tetrahedron, each followed by the two corners it does not touch.
-constexpr std::array<std::array<int, 4>, 6> kEdges{
+constexpr std::array<std::array<int, 4>, 6> kDihedrals{
     {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}}};
 
 // The angle between the two faces that meet at edge (a, b), seen from inside; c and d are the other corners.
@@ -25,13 +25,21 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-void describe_edges(const TetMesh& mesh, MeshInfo& info) {
-  std::vector<std::pair<int, int>> edges;
+/// Both corners ascending, and all of them.
+std::vector<std::array<int, 2>> edges_of(const TetMesh& mesh) {
+  std::vector<std::array<int, 2>> edges;
+  edges.reserve(6 * mesh.tetrahedra.size());
   for (const Tetrahedron& t : mesh.tetrahedra) {
-    for (const auto& [i, j, k, l] : kEdges) edges.push_back(std::minmax({t[i], t[j]}));
+    for (const auto& [i, j] : kEdges) edges.push_back({std::min(t[i], t[j]), std::max(t[i], t[j])});
   }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  edges.shrink_to_fit();
+  return edges;
+}
+
+void describe_edges(const TetMesh& mesh, MeshInfo& info) {
+  const auto edges = edges_of(mesh);
   std::vector<double> lengths;
   lengths.reserve(edges.size());
   for (const auto& [a, b] : edges) lengths.push_back((mesh.vertices[a] - mesh.vertices[b]).norm());
@@ -46,7 +54,7 @@ void describe_tetrahedra(const TetMesh& mesh, MeshInfo& info) {
   std::vector<double> smallest;
   for (const Tetrahedron& t : mesh.tetrahedra) {
     std::array<double, 6> angles{};
-    std::transform(kEdges.begin(), kEdges.end(), angles.begin(), [&](const std::array<int, 4>& e) {
+    std::transform(kDihedrals.begin(), kDihedrals.end(), angles.begin(), [&](const std::array<int, 4>& e) {
       return dihedral(x[t[e[0]]], x[t[e[1]]], x[t[e[2]]], x[t[e[3]]]);
     });
     const auto [least, most] = std::minmax_element(angles.begin(), angles.end());
@@ -60,6 +68,20 @@ void describe_tetrahedra(const TetMesh& mesh, MeshInfo& info) {
 
 }  // namespace
 
+int TetMesh::middle(int a, int b) const {
+  const std::array<int, 2> edge{std::min(a, b), std::max(a, b)};
+  return corners() +
+         static_cast<int>(std::lower_bound(mid_edges.begin(), mid_edges.end(), edge) - mid_edges.begin());
+}
+
+void add_mid_edges(TetMesh& mesh) {
+  if (!mesh.mid_edges.empty()) return;
+  std::vector<std::array<int, 2>> edges = edges_of(mesh);
+  mesh.vertices.reserve(mesh.vertices.size() + edges.size());
+  for (const auto& [a, b] : edges) mesh.vertices.push_back(0.5 * (mesh.vertices[a] + mesh.vertices[b]));
+  mesh.mid_edges = std::move(edges);
+}
+
 double six_volumes(const TetMesh& mesh, const Tetrahedron& t) {
   const std::vector<Vec3>& x = mesh.vertices;
   return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).dot(x[t[3]] - x[t[0]]);
@@ -69,10 +91,12 @@ MeshInfo describe(const TetMesh& mesh) {
   MeshInfo info;
   if (mesh.tetrahedra.empty()) return info;
   const Surface surface = boundary_surface(mesh);
-  info.vertices = static_cast<int>(mesh.vertices.size());
+  info.vertices = mesh.corners();
   info.tetrahedra = static_cast<int>(mesh.tetrahedra.size());
-  info.boundary_vertices = static_cast<int>(surface.vertices.size());
-  info.boundary_triangles = static_cast<int>(surface.triangles.size());
+  const auto& skin = surface.vertices;  // ascending: corners first
+  info.boundary_vertices =
+      static_cast<int>(std::lower_bound(skin.begin(), skin.end(), mesh.corners()) - skin.begin());
+  info.boundary_triangles = static_cast<int>(surface.triangles.size()) / surface.per_face;
   info.min = info.max = mesh.vertices.front();
   for (const Vec3& x : mesh.vertices) {
     info.min = info.min.cwiseMin(x);

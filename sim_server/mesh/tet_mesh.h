@@ -12,13 +12,29 @@ namespace palpate::sim {
 using Tetrahedron = std::array<int, 4>;
 using Triangle = std::array<int, 3>;
 
+/// The corners of the edges of a tetrahedron, in the order in which quadratic elements number their middles.
+constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+
 /// Vertices and positively oriented tetrahedra: det(x1-x0, x2-x0, x3-x0) > 0. `mend` sees to it.
 struct TetMesh {
   std::vector<Vec3> vertices;           ///< (n), metres, mesh frame at rest
   std::vector<Tetrahedron> tetrahedra;  ///< (m), indices into `vertices`
   /// Vertices of each named (or numbered, "17") surface the file tags; empty where it tags none.
   std::map<std::string, std::vector<int>> surface_tags;
+  /// The two corners, ascending, of the edge in whose middle each of the last vertices is. All edges of the
+  /// mesh, ascending (`add_mid_edges`), or none.
+  std::vector<std::array<int, 2>> mid_edges = {};
+
+  /// Vertices that are corners of tetrahedra: the first ones.
+  int corners() const { return static_cast<int>(vertices.size() - mid_edges.size()); }
+  /// The vertex in the middle of the edge between two corners, either way round, where there are such.
+  /// O(log n).
+  int middle(int a, int b) const;
 };
+
+/// Puts one more vertex in the middle of each edge of a mesh that `mend` found usable, as elements with ten
+/// nodes need it; nothing where they are there. O(m log m).
+void add_mid_edges(TetMesh& mesh);
 
 /// Six times the signed volume of tetrahedron `t`, m^3.
 double six_volumes(const TetMesh& mesh, const Tetrahedron& t);
@@ -33,7 +49,8 @@ struct MeshInfo {
   double min_edge = 0, median_edge = 0, max_edge = 0;  ///< m
 };
 
-/// Counts, size and quality of a mesh that `mend` found usable. O(m log m).
+/// Counts, size and quality of a mesh that `mend` found usable, without what `add_mid_edges` put there.
+/// O(m log m).
 MeshInfo describe(const TetMesh& mesh);
 
 }  // namespace palpate::sim

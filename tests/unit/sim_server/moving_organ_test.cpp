@@ -79,7 +79,7 @@ TEST_CASE("moving supports: a bar pulled at one end stretches evenly; the other 
     const double left = at(scene.fixed[0].motions[0], t)[0];
     const double right = at(scene.fixed[1].motions[0], t)[0] + at(scene.fixed[1].motions[1], t)[0];
     for (std::size_t v = 0; v < bar.positions().size(); ++v) {
-      const Vec3& rest = mesh.vertices[bar.surface().vertices[v]];
+      const Vec3& rest = bar.mesh().vertices[bar.surface().vertices[v]];
       const Vec3 expected = rest + (left + (right - left) * rest[0] / 0.04) * Vec3::UnitX();
       CHECK((bar.positions()[v] - expected).norm() < 1e-12);
     }

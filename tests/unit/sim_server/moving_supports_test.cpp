@@ -56,7 +56,8 @@ struct Bench {
   std::vector<int> fixed, reachable;
   std::unique_ptr<DeformationModel> model;
 
-  Bench(const Scene& scene, TetMesh of) : mesh(std::move(of)), fixed(fixed_vertices(scene, mesh)) {
+  Bench(const Scene& scene, TetMesh of)
+      : mesh(with_nodes(std::move(of), scene.material->element)), fixed(fixed_vertices(scene, mesh)) {
     for (int v = 0; v < static_cast<int>(surface.vertices.size()); ++v) reachable.push_back(v);
     for (const DeformationModelRow& row : deformation_models()) {
       if (row.name == scene.deformation.model)
@@ -252,7 +253,7 @@ TEST_CASE("moving supports: a soft bar of any law and element is drawn out as st
       moved = bench.model->free_motion(1.0 / 30);
       while (const auto again = bench.model->relinearise()) moved = *again;
     }
-    const Solid solid(mesh, *scene.material);
+    const Solid solid(bench.mesh, *scene.material);
     std::vector<HeldAxes> held(solid.rest().size(), 0);
     std::vector<Vec3> displaced(held.size(), Vec3::Zero());
     for (std::size_t i = 0; i < held.size(); ++i) {
@@ -269,7 +270,7 @@ TEST_CASE("moving supports: a soft bar of any law and element is drawn out as st
 }
 
 TEST_CASE("moving supports: what is held stands where displacement and motion add up, along its axes") {
-  const TetMesh mesh = grid_block({0, 0.01, 0.02}, {0, 0.01}, {0, 0.01});
+  const TetMesh mesh = with_nodes(grid_block({0, 0.01, 0.02}, {0, 0.01}, {0, 0.01}), ElementKind::kQuadratic);
   Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.3, .element = ElementKind::kQuadratic},
                          {Vec3(-1, -1, -1), Vec3(0.01, 1, 1)}, 0.005);
   scene.fixed[0].axes = 3;  // x and y

@@ -23,14 +23,16 @@ constexpr std::array kElements{ElementKind::kLinear, ElementKind::kNodalPressure
 
 /// A block held where x = 0, all of its surface in reach, with the model on it.
 struct Bench {
-  TetMesh mesh = grid_block({0, 0.01, 0.02, 0.03}, {0, 0.01, 0.02}, {0, 0.012, 0.025});
+  TetMesh mesh;
   Surface surface = boundary_surface(mesh);
   Scene scene;
   std::vector<int> fixed, reachable;
   std::optional<QuasiStatic> model;
 
   explicit Bench(const Material& material)
-      : scene(test::scene_of(material, {Vec3(-1, -1, -1), Vec3(0, 1, 1)}, 0.005)),
+      : mesh(with_nodes(grid_block({0, 0.01, 0.02, 0.03}, {0, 0.01, 0.02}, {0, 0.012, 0.025}),
+                        material.element)),
+        scene(test::scene_of(material, {Vec3(-1, -1, -1), Vec3(0, 1, 1)}, 0.005)),
         fixed(fixed_vertices(scene, mesh)) {
     for (int v = 0; v < static_cast<int>(surface.vertices.size()); ++v) reachable.push_back(v);
     model.emplace(ModelInputs{scene, mesh, surface, fixed, reachable, [](std::string_view, double) {}});

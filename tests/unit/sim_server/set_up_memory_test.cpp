@@ -57,11 +57,11 @@ TEST_CASE("the parts of a mesh are counted without looking for edges") {
 
 TEST_CASE("the estimate of a body's elements is what it holds") {
   const auto element = GENERATE(ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic);
-  const TetMesh mesh = GENERATE(0, 1) == 0 ? block() : liver();
+  const TetMesh mesh = with_nodes(GENERATE(0, 1) == 0 ? block() : liver(), element);
   const Solid solid(mesh, {.element = element});
   CAPTURE(static_cast<int>(element), solid.bytes());
   // The scratch of a batch is not counted; it does not grow with the mesh.
-  TetMesh tiny = grid_block({0, 1}, {0, 1}, {0, 1});
+  const TetMesh tiny = with_nodes(grid_block({0, 1}, {0, 1}, {0, 1}), element);
   const double scratch =
       static_cast<double>(Solid(tiny, {.element = element}).bytes()) - solid_bytes(counts_of(tiny), element);
   CHECK(solid_bytes(counts_of(mesh), element) + scratch ==
@@ -70,7 +70,7 @@ TEST_CASE("the estimate of a body's elements is what it holds") {
 
 TEST_CASE("the estimate of a matrix is what it holds") {
   const auto element = GENERATE(ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic);
-  const TetMesh mesh = GENERATE(0, 1) == 0 ? block() : liver();
+  const TetMesh mesh = with_nodes(GENERATE(0, 1) == 0 ? block() : liver(), element);
   const Solid solid(mesh, {.element = element});
   const auto held = static_cast<double>(solid.stiffness_matrix(FreeDofs(solid.nodes(), {})).bytes());
   const double estimate = matrix_bytes(counts_of(mesh), element);

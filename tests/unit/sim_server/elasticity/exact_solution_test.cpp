@@ -37,7 +37,7 @@ struct Held {
   std::vector<HeldAxes> held;
   std::vector<Vec3> x;
   Held(const TetMesh& mesh, const Material& material, const Field& exact, const Where& where)
-      : solid(mesh, material) {
+      : solid(with_nodes(mesh, material.element), material) {
     std::vector<Vec3> start = solid.rest();
     for (Vec3& p : start) {
       held.push_back(where(p) ? kAllAxes : 0);

@@ -40,9 +40,10 @@ class TwistedBar {
   static constexpr double kRadius = 0.01, kLength = 0.04;
 
   TwistedBar(const Material& material, int across, int along)
-      : solid_(mapped(grid_block(lines(-kRadius, kRadius, across), lines(0, kLength, along),
-                                 lines(-kRadius, kRadius, across)),
-                      square_to_disc),
+      : solid_(with_nodes(mapped(grid_block(lines(-kRadius, kRadius, across), lines(0, kLength, along),
+                                            lines(-kRadius, kRadius, across)),
+                                 square_to_disc),
+                          material.element),
                material),
         x_(solid_.rest()) {
     for (const Vec3& x : solid_.rest()) held_.push_back(x[1] == 0 || at_top(x) ? kAllAxes : 0);
@@ -86,8 +87,9 @@ TEST_CASE(
     "large turn: turned by a quarter as a whole, a bent bar keeps its volume, its energy and its forces") {
   for (const ElasticLaw law : kTurning) {
     for (const ElementKind element : kElements) {
-      const Solid solid(grid_block(lines(0, 0.1, 3), lines(0, 0.03, 2), lines(0, 0.03, 2)),
-                        {1e4, 0.4, 1000, law, element, {}, {}});
+      const Solid solid(
+          with_nodes(grid_block(lines(0, 0.1, 3), lines(0, 0.03, 2), lines(0, 0.03, 2)), element),
+          {1e4, 0.4, 1000, law, element, {}, {}});
       std::vector<Vec3> bent = solid.rest(), turned;
       for (Vec3& x : bent) x += Vec3(0.2 * x[0] * x[1], 2 * x[0] * x[0], -0.5 * x[0] * x[2]);
       const Mat3 turn = turn_about(Vec3(1, 2, -1), kPi / 2);

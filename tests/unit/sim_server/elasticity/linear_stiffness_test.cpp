@@ -38,7 +38,7 @@ SparseCholesky factor_of(const Solid& solid, const FreeDofs& dofs) {
 
 TEST_CASE("patch test: prescribing a linear field on the boundary gives it inside, to 1e-12") {
   const ElementKind element = GENERATE(from_range(kElements));
-  const Solid solid(shaken_block(), {1e4, 0.45, 1000, ElasticLaw::kLinear, element});
+  const Solid solid(with_nodes(shaken_block(), element), {1e4, 0.45, 1000, ElasticLaw::kLinear, element});
   const int n = solid.nodes();
   const Eigen::MatrixXd k = test::dense_stiffness(solid, FreeDofs(n, {}));
   Mat3 gradient;
@@ -69,7 +69,7 @@ TEST_CASE("patch test: prescribing a linear field on the boundary gives it insid
 TEST_CASE("the stiffness is symmetric, positive, blind to rigid motion, energy is that of uniform strain") {
   const ElementKind element = GENERATE(from_range(kElements));
   const Material material{1e4, 0.3, 1000, ElasticLaw::kLinear, element};
-  const Solid solid(shaken_block(), material);
+  const Solid solid(with_nodes(shaken_block(), element), material);
   const int n = solid.nodes();
   const Eigen::MatrixXd k = test::dense_stiffness(solid, FreeDofs(n, {}));
   Eigen::VectorXd rotation(3 * n), stretch(3 * n);

@@ -57,7 +57,7 @@ void each_solid(const Work& work) {
   for (const ElasticLaw law : kLaws) {
     for (const ElementKind element : kElements) {
       DYNAMIC_SECTION("law " << static_cast<int>(law) << ", element " << static_cast<int>(element)) {
-        work(Solid(shaken_block(), tissue(law, element)));
+        work(Solid(with_nodes(shaken_block(), element), tissue(law, element)));
       }
     }
   }
@@ -143,7 +143,7 @@ TEST_CASE("solid: patch test: under one strain everywhere the inner nodes feel n
 
 TEST_CASE("solid: masses add up to density times volume") {
   for (const ElementKind element : kElements) {
-    const Solid solid(shaken_block(), tissue(ElasticLaw::kLinear, element));
+    const Solid solid(with_nodes(shaken_block(), element), tissue(ElasticLaw::kLinear, element));
     double volume = 0, mass = 0;
     for (std::size_t p = 0; p < solid.points(); ++p) volume += solid.volume_of(p);
     for (const double each : solid.masses()) mass += each;

@@ -1,6 +1,7 @@
 #include "sim_server/mesh/surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <set>
@@ -39,6 +40,24 @@ TetMesh cube(int n) {
     } while (std::next_permutation(order.begin(), order.end()));
   }
   return mesh;
+}
+
+Vec3 at(const TetMesh& mesh, const Surface& surface, int vertex) {
+  return mesh.vertices[surface.vertices[vertex]];
+}
+
+Vec3 area_of(const TetMesh& mesh, const Surface& surface, const Triangle& t) {
+  const Vec3 a = at(mesh, surface, t[0]);
+  return 0.5 * (at(mesh, surface, t[1]) - a).cross(at(mesh, surface, t[2]) - a);
+}
+
+// Every directed edge once, and its opposite too.
+void check_closed(const Surface& surface) {
+  std::set<std::pair<int, int>> edges;
+  for (const Triangle& t : surface.triangles) {
+    for (int i = 0; i < 3; ++i) CHECK(edges.emplace(t[i], t[(i + 1) % 3]).second);
+  }
+  for (const auto& edge : edges) CHECK(edges.count({edge.second, edge.first}) == 1);
 }
 
 // By the divergence theorem: positive when the triangles look outward.
@@ -81,12 +100,61 @@ TEST_CASE("the surface of a cube is closed, outward and numbered without the ver
         static_cast<std::size_t>((n + 1) * (n + 1) * (n + 1) - (n - 1) * (n - 1) * (n - 1)));
   CHECK(std::is_sorted(surface.vertices.begin(), surface.vertices.end()));
   CHECK(std::abs(enclosed_volume(mesh, surface) - 1) < 1e-12);
-  // Closed and consistently turned: every directed edge once, and its opposite too.
-  std::set<std::pair<int, int>> edges;
-  for (const Triangle& t : surface.triangles) {
-    for (int i = 0; i < 3; ++i) CHECK(edges.emplace(t[i], t[(i + 1) % 3]).second);
+  check_closed(surface);
+}
+
+TEST_CASE("vertices in the middle of edges come last, one for each edge", "[mesh]") {
+  const int n = GENERATE(1, 2, 3);
+  const TetMesh plain = cube(n);
+  TetMesh mesh = plain;
+  add_mid_edges(mesh);
+  // Euler: vertices - edges + faces - tetrahedra = 1, of 6 n^3 tetrahedra and 12 n^2 triangles outside.
+  const int corners = (n + 1) * (n + 1) * (n + 1), faces = 12 * n * n * n + 6 * n * n;
+  const int edges = corners + faces - 6 * n * n * n - 1;
+  CHECK(mesh.corners() == corners);
+  REQUIRE(mesh.mid_edges.size() == static_cast<std::size_t>(edges));
+  REQUIRE(mesh.vertices.size() == static_cast<std::size_t>(corners + edges));
+  CHECK(mesh.tetrahedra == plain.tetrahedra);
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    for (const auto& [i, j] : kEdges) {
+      const int middle = mesh.middle(t[i], t[j]);
+      CHECK(mesh.middle(t[j], t[i]) == middle);
+      REQUIRE(middle >= corners);
+      CHECK(mesh.vertices[middle] == 0.5 * (mesh.vertices[t[i]] + mesh.vertices[t[j]]));
+    }
   }
-  for (const auto& edge : edges) CHECK(edges.count({edge.second, edge.first}) == 1);
+  TetMesh again = mesh;
+  add_mid_edges(again);
+  CHECK(again.vertices == mesh.vertices);
+  const MeshInfo info = describe(mesh), before = describe(plain);
+  CHECK(info.vertices == corners);
+  CHECK(info.edges == edges);
+  CHECK(info.boundary_vertices == before.boundary_vertices);
+  CHECK(info.boundary_triangles == 12 * n * n);
+}
+
+TEST_CASE("where edges have a vertex in the middle, each face of the surface is four triangles", "[mesh]") {
+  const int n = GENERATE(1, 2, 3);
+  TetMesh mesh = cube(n);
+  const Surface plain = boundary_surface(mesh);
+  add_mid_edges(mesh);
+  const Surface surface = boundary_surface(mesh);
+  CHECK(plain.per_face == 1);
+  REQUIRE(surface.per_face == 4);
+  REQUIRE(surface.triangles.size() == 4 * plain.triangles.size());
+  // Euler, of a closed surface without handles: vertices - triangles / 2 = 2.
+  CHECK(surface.vertices.size() == static_cast<std::size_t>(24 * n * n + 2));
+  CHECK(std::is_sorted(surface.vertices.begin(), surface.vertices.end()));
+  check_closed(surface);
+  CHECK(std::abs(enclosed_volume(mesh, surface) - 1) < 1e-12);
+  for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+    const Vec3 whole = area_of(mesh, plain, plain.triangles[i / 4]);
+    CHECK((area_of(mesh, surface, surface.triangles[i]) - whole / 4).norm() < 1e-15);
+    const std::size_t part = i % 4;
+    const int first = surface.vertices[surface.triangles[i][0]];
+    if (part < 3) CHECK(first == plain.vertices[plain.triangles[i / 4][part]]);
+    if (part == 3) CHECK(first >= mesh.corners());
+  }
 }
 
 TEST_CASE("the surface does not depend on the run", "[mesh]") {
