@@ -12,6 +12,8 @@ constexpr double kArmijo = 1e-4, kShortest = 1e-4;  // line search: descent, and
 constexpr double kLook = 1e-7;  // of what the supports move: how far to look ahead for what that asks for
 // Of the size of the body: forces that move a node by less, without any other, are rounding at rest.
 constexpr double kStill = 1e-7;
+// Likewise: what a linear law leaves, whose steps of refinement cost little.
+constexpr double kSharp = 1e-12;
 constexpr double kFirstShift = 0.05, kLastShift = 1e3;  // of the stiffness at rest
 
 class Newton {
@@ -29,7 +31,7 @@ class Newton {
     usual_ = stiffness_.lower().diagonal().mean();
     stiffness_.close_held(usual_);
     at_rest_ = stiffness_.lower();
-    factor_.emplace(at_rest_, where);
+    factor_.emplace(at_rest_, where, SparseCholesky::Precision::kSingle);
     Eigen::AlignedBox3d box;
     for (const Vec3& x : solid.rest()) box.extend(x);
     still_ = kStill * box.diagonal().norm() * usual_;
@@ -40,11 +42,12 @@ class Newton {
     share_ = to;
     if (load_.start.empty()) move_supports(x, to - from);
     double before = std::numeric_limits<double>::infinity();
+    const double enough = is_linear() ? std::min(kSharp, settings_.tolerance) : settings_.tolerance;
     for (int i = 0; i <= settings_.max_newton; ++i) {
       const Eigen::VectorXd residual = unbalanced(x);
       if (!std::isfinite(residual_)) return false;
       const bool stuck = residual_ > 0.5 * before && residual_ <= settings_.rounding;
-      if (residual_ <= settings_.tolerance || stuck) return true;
+      if (residual_ <= enough || stuck) return true;
       before = residual_;
       ++iterations_;
       if (!step(x, residual)) return residual_ <= settings_.rounding;
@@ -56,6 +59,8 @@ class Newton {
   double residual() const { return residual_; }
 
  private:
+  bool is_linear() const { return solid_.material().law == ElasticLaw::kLinear; }
+
   /// f_ext - f_int over the free displacements, N.
   Eigen::VectorXd unbalanced(const std::vector<Vec3>& x) {
     solid_.forces(x, internal_);
@@ -73,7 +78,7 @@ class Newton {
   }
 
   bool factor_at(const std::vector<Vec3>& x) {
-    if (solid_.material().law == ElasticLaw::kLinear) return true;  // as at rest, everywhere
+    if (is_linear()) return true;  // as at rest, everywhere
     stiffness_.set_zero();
     solid_.add_stiffness(x, stiffness_);
     stiffness_.close_held(usual_);
@@ -96,16 +101,25 @@ class Newton {
   bool step(std::vector<Vec3>& x, const Eigen::VectorXd& residual) {
     if (!factor_at(x)) return false;
     const Eigen::VectorXd way = factor_->solve(residual).col(0);
-    const double before = potential(x), slope = residual.dot(way), left = residual.norm();
     const std::vector<Vec3> from = x;
+    if (is_linear()) {
+      go(from, 1, way, x);
+      return true;
+    }
+    const double before = potential(x), slope = residual.dot(way), left = residual.norm();
     for (double length = 1; length > kShortest; length /= 2) {
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        if (dofs_.first[i] >= 0) x[i] = from[i] + length * way.segment<3>(dofs_.first[i]);
-      }
+      go(from, length, way, x);
       if (potential(x) <= before - kArmijo * length * slope || unbalanced(x).norm() < left) return true;
     }
     x = from;
     return false;
+  }
+
+  void go(const std::vector<Vec3>& from, double length, const Eigen::VectorXd& way,
+          std::vector<Vec3>& x) const {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (dofs_.first[i] >= 0) x[i] = from[i] + length * way.segment<3>(dofs_.first[i]);
+    }
   }
 
   /// The supports go on by a share of their way, and the body with them as its tangent says.
@@ -125,9 +139,7 @@ class Newton {
     if (!factor_at(x)) return;
     const Eigen::VectorXd way = factor_->solve(pull).col(0);
     x = moved_by(share);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      if (dofs_.first[i] >= 0) x[i] += way.segment<3>(dofs_.first[i]);
-    }
+    go(x, 1, way, x);
   }
 
   const Solid& solid_;

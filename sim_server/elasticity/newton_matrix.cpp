@@ -10,6 +10,12 @@ StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs) {
   return matrix;
 }
 
+/// One factor of a linear law answers for ever; Newton's method looks again at what others answer.
+SparseCholesky::Precision precision_for(const Material& material) {
+  using Precision = SparseCholesky::Precision;
+  return material.law == ElasticLaw::kLinear ? Precision::kDouble : Precision::kSingle;
+}
+
 }  // namespace
 
 NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
@@ -19,7 +25,7 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
       mass_(solid.masses()),
       matrix_(at_rest(solid, dofs)),
       usual_(matrix_.lower().diagonal().mean()),
-      factor_(matrix_.lower(), where) {}
+      factor_(matrix_.lower(), where, precision_for(solid.material())) {}
 
 void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c) {
   c_ = c;
@@ -39,7 +45,10 @@ Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first) const {
   const auto count = static_cast<Eigen::Index>(first.size());
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(matrix_.lower().rows(), 3 * count);
   for (Eigen::Index k = 0; k < count; ++k) unit.block<3, 3>(first[k], 3 * k).setIdentity();
-  return solve(unit);
+  Eigen::MatrixXd found = solve(unit);
+  if (factor_.precision() == SparseCholesky::Precision::kSingle)
+    found += solve(unit - matrix_.lower().selfadjointView<Eigen::Lower>() * found);
+  return found;
 }
 
 BackgroundMatrix::BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,

@@ -1,98 +1,132 @@
 #include "sim_server/elasticity/sparse_cholesky.h"
 
-#include <limits>
+#include <optional>
 
 #include "common/error.h"
 
 #ifdef PALPATE_WITH_CHOLMOD
-#include <Eigen/CholmodSupport>
-// Present in every OpenBLAS, absent from other BLAS libraries: hence weak.
-extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
-// Likewise: in every OpenMP, which CHOLMOD may have been built with.
-extern "C" void omp_set_max_active_levels(int levels) __attribute__((weak));
+#include "sim_server/elasticity/supernodal_factor.h"
 #else
 #include <Eigen/SparseCholesky>
 #endif
 
 namespace palpate::sim {
 
-struct SparseCholesky::Factor {
 #ifdef PALPATE_WITH_CHOLMOD
-  struct Llt : Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {
-    Llt() {
-      if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);  // the same bits everywhere
-      cholmod().print = 0;                                                   // errors are ours to word
-      // Merge more columns than by default, twice as many zeros: fewer, larger products are quicker.
-      for (auto& columns : cholmod().nrelax) columns *= 2;
-      cholmod().zrelax[1] *= 2;
-      cholmod().zrelax[2] *= 2;
+struct SparseCholesky::Factor {
+  Factor(const SparseMatrix& lower, Precision wanted) : pattern(lower), precision(wanted) {}
+
+  SupernodalPattern pattern;
+  Precision precision;
+  std::optional<SupernodalFactor<double>> fine;  // one of the two
+  std::optional<SupernodalFactor<float>> rough;
+
+  bool countable() const { return pattern.countable(); }
+  std::size_t bytes() const {
+    const std::size_t number = precision == Precision::kSingle ? sizeof(float) : sizeof(double);
+    return pattern.values() * number + pattern.bytes();
+  }
+  /// What is taken besides while it is made.
+  std::size_t work_bytes(const SparseMatrix&) const {
+    return (pattern.subtrees.size() + 1) * pattern.order.size() * sizeof(int);
+  }
+
+  bool factorize(const SparseMatrix& lower) {
+    if (precision == Precision::kDouble) {
+      if (!fine) fine.emplace(pattern);
+      return fine->factor(lower);
     }
-    cholmod_factor* factor() const { return m_cholmodFactor; }
-    /// False where the factor has more entries than CHOLMOD's `int` counts. Else both below are known as soon
-    /// as the pattern is.
-    bool countable() const { return m_cholmodFactor != nullptr; }
-    std::size_t bytes() const {
-      return m_cholmodFactor->xsize * sizeof(double) +
-             (m_cholmodFactor->ssize + 3 * m_cholmodFactor->n) * sizeof(int);
+    if (!rough) rough.emplace(pattern);
+    return rough->factor(lower) || refine(lower);
+  }
+
+  /// From here on in double precision, if the numbers allow that.
+  bool refine(const SparseMatrix& lower) {
+    fine.emplace(pattern);
+    if (!fine->factor(lower)) {
+      fine.reset();
+      return false;
     }
-    /// What is taken besides while it is made, but for a copy of the matrix.
-    std::size_t work_bytes() const { return m_cholmodFactor->maxcsize * sizeof(double); }
-  };
+    rough.reset();
+    precision = Precision::kDouble;
+    return true;
+  }
+
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const {
+    return rough ? Eigen::MatrixXd(rough->solve(b.cast<float>()).cast<double>()) : fine->solve(b);
+  }
+};
 #else
+/// Always in double precision.
+struct SparseCholesky::Factor {
+  Factor(const SparseMatrix& lower, Precision) { llt.analyzePattern(lower); }
+
   struct Llt : Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> {
-    bool countable() const { return true; }
     std::size_t bytes() const {
       const auto columns = static_cast<std::size_t>(m_matrix.outerSize());
       return static_cast<std::size_t>(m_matrix.outerIndexPtr()[columns]) * (sizeof(double) + sizeof(int)) +
              3 * columns * sizeof(int);
     }
-    std::size_t work_bytes() const { return 0; }
   };
-#endif
   Llt llt;
+  Precision precision = Precision::kDouble;
 
-  /// Between the analysis of the pattern and the numbers.
-  void require_room(const SparseMatrix& lower, double free, const std::string& where) const {
-    const std::string what = fmt::format("the Cholesky factor of {} unknowns", lower.rows());
-    if (!llt.countable()) fail("{}: {} has more than 2^31 entries; take a coarser mesh", where, what);
-    const auto copy = static_cast<std::size_t>(lower.nonZeros()) * (sizeof(double) + sizeof(int));
-    require_memory(static_cast<double>(llt.bytes() + llt.work_bytes() + copy), free, where, what,
-                   "take a coarser mesh");
+  bool countable() const { return true; }
+  std::size_t bytes() const { return llt.bytes(); }
+  std::size_t work_bytes(const SparseMatrix& lower) const {
+    return static_cast<std::size_t>(lower.nonZeros()) * (sizeof(double) + sizeof(int));  // a copy
   }
-
+  bool refine(const SparseMatrix&) { return true; }
   bool factorize(const SparseMatrix& lower) {
-#ifdef PALPATE_WITH_CHOLMOD
-    // CHOLMOD's own loops are short: its threads would wait for each other for longer than they work. The
-    // setting is of the calling thread.
-    if (omp_set_max_active_levels != nullptr) omp_set_max_active_levels(0);
-#endif
     llt.factorize(lower);
     return llt.info() == Eigen::Success;
   }
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return llt.solve(b); }
 };
+#endif
 
 namespace {
 
 constexpr double kSingular = 1e13;  // condition beyond which rounding has eaten the answer
+constexpr double kRough = 1e-3;     // of a load: so much unbalanced is more than single precision may leave
+
+/// Between the analysis of the pattern and the numbers.
+template <class Factor>
+void require_room(const Factor& factor, const SparseMatrix& lower, double free, const std::string& where) {
+  const std::string what = fmt::format("the Cholesky factor of {} unknowns", lower.rows());
+  if (!factor.countable()) fail("{}: {} has more than 2^31 entries; take a coarser mesh", where, what);
+  require_memory(static_cast<double>(factor.bytes() + factor.work_bytes(lower)), free, where, what,
+                 "take a coarser mesh");
+}
 
 /// A load that no smooth motion balances.
-Eigen::VectorXd alternating(Eigen::Index n) {
+Eigen::MatrixXd alternating(Eigen::Index n) {
   return Eigen::VectorXd::NullaryExpr(n, [](Eigen::Index i) { return i % 2 == 0 ? 1.0 : -0.7; });
 }
 
 /// A singular matrix can pass as positive definite by rounding; its answers are huge then.
-bool nearly_singular(const SparseMatrix& lower, const Eigen::VectorXd& answer) {
+bool nearly_singular(const SparseMatrix& lower, const Eigen::MatrixXd& answer) {
   const double largest = lower.diagonal().maxCoeff() * answer.cwiseAbs().maxCoeff();
   return !(largest < kSingular);
 }
 
 }  // namespace
 
-SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& where, double free)
-    : factor_(std::make_unique<Factor>()) {
-  factor_->llt.analyzePattern(lower);
-  factor_->require_room(lower, free, where);
-  if (!factor_->factorize(lower) || nearly_singular(lower, solve(alternating(lower.rows())))) {
+SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& where, Precision precision,
+                               double free)
+    : factor_(std::make_unique<Factor>(lower, precision)) {
+  require_room(*factor_, lower, free, where);
+  bool definite = factor_->factorize(lower);
+  const Eigen::MatrixXd load = alternating(lower.rows());
+  Eigen::MatrixXd answer = definite ? solve(load) : load;
+  if (definite && precision == Precision::kSingle) {
+    const Eigen::MatrixXd left = load - lower.selfadjointView<Eigen::Lower>() * answer;
+    if (!(left.norm() < kRough * load.norm())) {
+      definite = factor_->refine(lower);
+      answer = definite ? solve(load) : load;
+    }
+  }
+  if (!definite || nearly_singular(lower, answer)) {
     fail(
         "{}: the stiffness matrix is singular: the fixed nodes do not hold the body (three that are not in "
         "line would)",
@@ -109,27 +143,15 @@ bool SparseCholesky::refactor(const SparseMatrix& lower) {
 }
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
-#ifdef PALPATE_WITH_CHOLMOD
-  constexpr double kNoAnswer = std::numeric_limits<double>::quiet_NaN();  // of a factor that is of no use
-  // Eigen's would write to the workspace that belongs to the factor; this call has its own.
-  cholmod_common workspace;
-  cholmod_start(&workspace);
-  workspace.print = 0;
-  cholmod_dense rhs = Eigen::viewAsCholmod(b.const_cast_derived());
-  cholmod_dense* solved = cholmod_solve(CHOLMOD_A, factor_->llt.factor(), &rhs, &workspace);
-  Eigen::MatrixXd x = solved == nullptr ? Eigen::MatrixXd::Constant(b.rows(), b.cols(), kNoAnswer)
-                                        : Eigen::MatrixXd(Eigen::Map<const Eigen::MatrixXd>(
-                                              static_cast<const double*>(solved->x), b.rows(), b.cols()));
-  cholmod_free_dense(&solved, &workspace);
-  cholmod_finish(&workspace);
-  return x;
-#else
-  return factor_->llt.solve(b);
-#endif
+  return factor_->solve(b);
+}
+
+SparseCholesky::Precision SparseCholesky::precision() const {
+  return factor_->precision;
 }
 
 std::size_t SparseCholesky::bytes() const {
-  return factor_->llt.bytes();
+  return factor_->bytes();
 }
 
 const char* SparseCholesky::library() {

@@ -7,15 +7,22 @@
 
 namespace palpate::sim {
 
-/// Sparse Cholesky factorisation of a symmetric positive definite matrix, by CHOLMOD (supernodal, on one BLAS
-/// thread) or, built with PALPATE_CHOLMOD=OFF, by Eigen. This is the one file that knows which. Set-up and
-/// background threads only.
+/// Sparse Cholesky factorisation of a symmetric positive definite matrix: by order and pattern of CHOLMOD,
+/// with our own numbers on all cores (`SupernodalFactor`), or, built with PALPATE_CHOLMOD=OFF, by Eigen. This
+/// is the one file that knows which. Set-up and background threads only.
 class SparseCholesky {
  public:
-  /// Factors the matrix whose lower triangle is given. Throws `Error`, beginning with `where`, when its
-  /// factor would take more than `free` bytes (told from its pattern, before the numbers are allocated), when
-  /// it is not positive definite, or singular but for rounding.
-  SparseCholesky(const SparseMatrix& lower, const std::string& where, double free = free_memory());
+  /// Of the numbers of the factor. Single takes half the memory and time, and serves where what is solved for
+  /// is looked at again: answers are right to some 1e-6 of their size times the condition of the matrix.
+  /// Where that is too little, double is taken instead.
+  enum class Precision { kDouble, kSingle };
+
+  /// Factors the matrix whose lower triangle is given, in 3 x 3 blocks as `StiffnessMatrix` has them. Throws
+  /// `Error`, beginning with `where`, when its factor would take more than `free` bytes (told from its
+  /// pattern, before the numbers are allocated), when it is not positive definite, or singular but for
+  /// rounding.
+  SparseCholesky(const SparseMatrix& lower, const std::string& where,
+                 Precision precision = Precision::kDouble, double free = free_memory());
   ~SparseCholesky();
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
@@ -27,7 +34,8 @@ class SparseCholesky {
   /// X = A^-1 B for dense B (n x k); allocates X. Several threads may ask at once.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
-  /// Of the factor.
+  /// Of the factor that there is.
+  Precision precision() const;
   std::size_t bytes() const;
 
   /// The library behind it, for reports.
