@@ -6,6 +6,7 @@
 #include "sim_server/record.h"
 #include "sim_server/server.h"
 #include "sim_server/solve.h"
+#include "sim_server/study/study.h"
 
 namespace {
 
@@ -87,6 +88,31 @@ CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
   return command;
 }
 
+CLI::App* add_study(CLI::App& app, sim::StudyOptions& options) {
+  auto* command = app.add_subcommand(
+      "study", "Error against run time: models, elements, meshes, steps and tolerances around a scene's own");
+  command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
+  command
+      ->add_option(
+          "--out", options.out,
+          "Folder for rows.csv, timing.csv, along.csv, summary.json; an interrupted study goes on from there")
+      ->required();
+  command->add_option("--mesh", options.meshes,
+                      "Another mesh of the same organ, coarser or finer; repeatable");
+  command->add_option(
+      "--trajectory", options.trajectory,
+      "Motion of the tool: a CSV (t_s, x_m, y_m, z_m) (default: pressed, slid to and fro, lifted, 2 s)");
+  command->add_option("--budget-ms", options.budget_ms,
+                      "End with the case that is felt best at so many ms a step, as TOML");
+  command
+      ->add_option("--latency-ms", options.latency_ms,
+                   "Of the link, from the end of a step to its force in the client, ms")
+      ->capture_default_str();
+  command->add_flag("--quick", options.quick, "Fewer steps, no finer meshes, a coarser reference: a minute");
+  command->footer("Example: sim_server study configs/scenes/liver.toml --out out/liver --budget-ms 33");
+  return command;
+}
+
 CLI::App* add_mesh_info(CLI::App& app, std::string& file) {
   auto* mesh = app.add_subcommand("mesh", "Look at meshes");
   mesh->require_subcommand(1);
@@ -103,6 +129,11 @@ void check(const sim::SolveOptions& options) {
   if (options.seconds) require_within(*options.seconds, 1e-6, 1e6, "--seconds", "s");
   require_within(options.step, 1e-6, 1e3, "--step", "s");
   require_within(options.frames, 1, 100000, "--frames", "files");
+}
+
+void check(const sim::StudyOptions& options) {
+  if (options.budget_ms) require_within(*options.budget_ms, 1e-3, 1e6, "--budget-ms", "ms");
+  require_within(options.latency_ms, 0, 1000, "--latency-ms", "ms");
 }
 
 void check(const sim::RecordOptions& options) {
@@ -125,6 +156,8 @@ int run(int argc, char** argv) {
   const auto* explain = add_explain(app, explaining);
   sim::SolveOptions solving;
   const auto* solve = add_solve(app, solving);
+  sim::StudyOptions studying;
+  const auto* study = add_study(app, studying);
   const auto* mesh_info = add_mesh_info(app, mesh_file);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*mesh_info) return sim::print_mesh_info(mesh_file);
@@ -132,6 +165,10 @@ int run(int argc, char** argv) {
   if (*solve) {
     check(solving);
     return sim::solve(solving);
+  }
+  if (*study) {
+    check(studying);
+    return sim::study(studying);
   }
   if (*record) {
     check(recording);

@@ -1,5 +1,6 @@
 #include "sim_server/scene_parts.h"
 
+#include <algorithm>
 #include <array>
 
 #include "common/error.h"
@@ -24,6 +25,11 @@ constexpr std::array kElements{
     Named{"p1_nodal_pressure", ElementKind::kNodalPressure},
     Named{"p2", ElementKind::kQuadratic},
 };
+
+template <class Table, class Value>
+std::string_view name_in(const Table& table, Value value) {
+  return std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.value == value; })->name;
+}
 
 Fibres read_fibres(const Config& config) {
   Fibres fibres{config.vector("direction", {-1e3, 1e3, "any length but 0"}),
@@ -107,6 +113,14 @@ Load read_load(const Config& config) {
   load.region.where = config.where();
   config.reject_unknown();
   return load;
+}
+
+std::string_view name_of(ElasticLaw law) {
+  return name_in(kLaws, law);
+}
+
+std::string_view name_of(ElementKind element) {
+  return name_in(kElements, element);
 }
 
 Material read_material(const Config& config) {

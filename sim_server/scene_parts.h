@@ -18,4 +18,8 @@ Load read_load(const Config& config);
 /// `[material]`.
 Material read_material(const Config& config);
 
+/// As `law` and `element` of `[material]` say it.
+std::string_view name_of(ElasticLaw law);
+std::string_view name_of(ElementKind element);
+
 }  // namespace palpate::sim

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include "tests/support/catch.h"
+#include "tests/support/column.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -9,28 +10,6 @@ using namespace palpate;
 using namespace palpate::test;
 
 namespace {
-
-/// A column of 0.1 x 0.4 x 0.1 m, one cube of six tetrahedra on the other.
-std::string column() {
-  std::string nodes, elements;
-  int node = 0, element = 0;
-  for (int y = 0; y <= 4; ++y) {
-    for (int k = 0; k < 4; ++k)
-      nodes += fmt::format("{} {} {} {}\n", ++node, 0.1 * (k % 2), 0.1 * y, 0.1 * (k / 2));
-  }
-  // The corners of a cube: bit 0 is x, bit 1 z, 4 more is up; six ways along its edges from 0 to 7.
-  const int ways[6][4] = {{0, 3, 1, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 6, 2, 7}, {0, 5, 4, 7}, {0, 4, 6, 7}};
-  for (int y = 0; y < 4; ++y) {
-    for (const auto& way : ways) {
-      const int first = 4 * y + 1;
-      elements += fmt::format("{} 4 2 0 0 {} {} {} {}\n", ++element, first + way[0], first + way[1],
-                              first + way[2], first + way[3]);
-    }
-  }
-  return fmt::format(
-      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}$EndNodes\n$Elements\n{}\n{}$EndElements\n", node,
-      nodes, element, elements);
-}
 
 struct Bench {
   TemporaryFolder folder;

@@ -1,0 +1,185 @@
+#!/usr/bin/python3
+"""Draw what sim_server study found, and the cost of meshes that scripts/study deformation measured.
+
+DIR holds summary.json of sim_server study, or folders that do, and perhaps cost.json. Written
+beside each summary.json: study.png, four sheets of a scene: error of the force against time a
+step, with the front named; the felt error (deformation, extrapolation and lateness together)
+against the server's time for a step; the error along the run; set-up time and memory. From
+cost.json: cost.png, time a step against the size of the mesh. Needs Debian's
+python3-matplotlib.
+
+Exit status: 0 drawn, 2 the folder cannot be used.
+"""
+
+import argparse
+import csv
+import json
+import math
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+LEAST = 1e-3  # %: what is less is drawn there
+COLOURS = {"quasi_static": "tab:blue", "tensor_mass": "tab:orange", "implicit": "tab:green", "reduced": "tab:purple"}
+MARKS = {"p1": "o", "p1_nodal_pressure": "s", "p2": "D"}
+BETTER = {"fontsize": 8, "color": "0.35", "ha": "left", "va": "bottom"}
+
+
+def label_of(row):
+    parts = [row["model"]]
+    if row["law"] != "linear":
+        parts.append(row["law"])
+    if row["element"] != "p1":
+        parts.append(row["element"])
+    return ", ".join(parts) + f", {row['tetrahedra']} tetrahedra"
+
+
+def of_setting(row):
+    return (row["model"], row["law"], row["element"], row["mesh"], row["refinements"])
+
+
+def above(value):
+    return max(value, LEAST)
+
+
+def draw_front(axes, rows):
+    for row in rows:
+        axes.loglog(row["step_ms_p50"], above(row["force_error_percent"]), MARKS[row["element"]],
+                    color=COLOURS[row["model"]], alpha=1 if row["on_front"] else 0.45)
+    front = sorted((r for r in rows if r["on_front"]), key=lambda r: r["step_ms_p50"])
+    axes.loglog([r["step_ms_p50"] for r in front], [above(r["force_error_percent"]) for r in front], "-", color="0.4",
+                linewidth=0.8, zorder=0)
+    for k, row in enumerate(front):
+        axes.annotate(f"{label_of(row)}, {row['dt_ms']:.3g} ms", (row["step_ms_p50"], above(row["force_error_percent"])),
+                      xytext=(6, 6 if k % 2 else -10), textcoords="offset points", fontsize=6.5)
+    for model in dict.fromkeys(r["model"] for r in rows):
+        axes.plot([], [], "o", color=COLOURS[model], label=model)
+    for element in dict.fromkeys(r["element"] for r in rows):
+        axes.plot([], [], MARKS[element], color="0.4", label=element)
+    axes.legend(fontsize=7)
+    axes.set_xlabel("server, median time of a step in contact (ms)")
+    axes.set_ylabel("error of the tool's force (%)")
+    axes.set_title("Error against run time\n(better: lower and to the left; the line is the front)", fontsize=9)
+
+
+def draw_felt(axes, rows):
+    settings = dict.fromkeys(of_setting(r) for r in rows if r["axis"] in ("scene", "mesh", "step"))
+    for setting in settings:
+        line = sorted((r for r in rows if of_setting(r) == setting and r["tolerance"] in (None, rows[0]["tolerance"])),
+                      key=lambda r: r["dt_ms"])
+        if len(line) < 2:
+            continue
+        (drawn,) = axes.loglog([r["dt_ms"] for r in line], [above(r["felt_error_percent"]) for r in line], "--",
+                               linewidth=0.9, label=label_of(line[0]))
+        kept = [r for r in line if r["step_ms_p50"] <= r["dt_ms"]]
+        axes.loglog([r["dt_ms"] for r in kept], [above(r["felt_error_percent"]) for r in kept], "-o",
+                    color=drawn.get_color())
+        late = [r for r in line if r["step_ms_p50"] > r["dt_ms"]]
+        axes.loglog([r["dt_ms"] for r in late], [above(r["felt_error_percent"]) for r in late], "o",
+                    color=drawn.get_color(), markerfacecolor="white")
+    axes.plot([], [], "o", color="0.4", label="this machine keeps up")
+    axes.plot([], [], "o", color="0.4", markerfacecolor="white", label="it does not: a step takes longer")
+    axes.legend(fontsize=7)
+    axes.set_xlabel("time that the server has for a step (ms)")
+    axes.set_ylabel("felt error of the force (%)")
+    axes.set_title("What the hand feels: deformation, extrapolation and lateness together\n"
+                   "(better: lower; a finer mesh pays only where its full line is lower)", fontsize=9)
+
+
+def draw_along(axes, rows, along):
+    shown = [r for r in rows if r["axis"] in ("scene", "model", "element")]
+    for row in shown:
+        points = along.get(row["case"], [])
+        axes.semilogy([t for t, _ in points], [above(e) for _, e in points], linewidth=1,
+                      color=COLOURS[row["model"]], linestyle={"p1": "-", "p2": ":"}.get(row["element"], "--"),
+                      label=label_of(row))
+    axes.legend(fontsize=7)
+    axes.set_xlabel("time (s): pressed, slid to and fro, lifted")
+    axes.set_ylabel("error of the force, of its mean size (%)")
+    axes.set_title("Error along the run\n(a line that climbs drifts)", fontsize=9)
+
+
+def draw_price(axes, rows):
+    shown = [r for r in rows if r["axis"] in ("scene", "model", "element", "mesh")]
+    for row in shown:
+        axes.loglog(row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6, MARKS[row["element"]], color=COLOURS[row["model"]])
+        axes.annotate(label_of(row), (row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6), xytext=(5, 3),
+                      textcoords="offset points", fontsize=6.5)
+    axes.set_xlabel("set-up (s)")
+    axes.set_ylabel("peak memory of the process (MB)")
+    axes.set_title("What it costs before the first step\n(better: lower and to the left)", fontsize=9)
+
+
+def read_along(file):
+    along = {}
+    with open(file, encoding="ascii", newline="") as lines:
+        for row in csv.DictReader(lines):
+            along.setdefault(row["case"], []).append((float(row["t_s"]), float(row["force_error_percent"])))
+    return along
+
+
+def draw_scene(folder):
+    found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    rows, truth = found["rows"], found["reference"]
+    figure, axes = plt.subplots(2, 2, figsize=(15, 10), layout="constrained")
+    draw_front(axes[0][0], rows)
+    draw_felt(axes[0][1], rows)
+    draw_along(axes[1][0], rows, read_along(folder / "along.csv"))
+    draw_price(axes[1][1], rows)
+    figure.suptitle(f"{rows[0]['scene']}: against {truth['case']}\n(the reference itself: {truth['check']} differs from "
+                    f"it by {truth['force_error_percent']:.2g} % in force; link {found['latency_ms']:g} ms)", fontsize=11)
+    for sheet in axes.flat:
+        sheet.grid(True, which="major", linewidth=0.3)
+    figure.savefig(folder / "study.png", dpi=110)
+    plt.close(figure)
+
+
+def exponent(points):
+    """Of cost = c size^e, by least squares of logarithms."""
+    xs, ys = [math.log(x) for x, _ in points], [math.log(y) for _, y in points]
+    x, y = sum(xs) / len(xs), sum(ys) / len(ys)
+    return sum((a - x) * (b - y) for a, b in zip(xs, ys)) / sum((a - x) ** 2 for a in xs)
+
+
+def draw_cost(folder):
+    rows = json.loads((folder / "cost.json").read_text(encoding="utf-8"))
+    figure, axes = plt.subplots(1, 2, figsize=(12, 5), layout="constrained")
+    for sheet, key, unit, what in ((axes[0], "step_ms_p50", 1, "median time of a step in contact (ms)"),
+                                   (axes[1], "setup_ms", 1e-3, "set-up (s)")):
+        for model in dict.fromkeys(r["model"] for r in rows):
+            points = sorted((r["tetrahedra"], unit * r[key]) for r in rows if r["model"] == model)
+            text = f"{model}, exponent {exponent(points):.2f}" if len(points) > 1 else model
+            sheet.loglog(*zip(*points), "-o", color=COLOURS[model], label=text)
+        sheet.set_xlabel("tetrahedra")
+        sheet.set_ylabel(what)
+        sheet.grid(True, which="major", linewidth=0.3)
+        sheet.legend(fontsize=8)
+    figure.suptitle("Cost against the size of the mesh (better: lower, and flatter)", fontsize=11)
+    figure.savefig(folder / "cost.png", dpi=110)
+    plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("dir", type=Path, metavar="DIR")
+    folder = parser.parse_args().dir
+    folders = [f for f in (folder, *sorted(folder.glob("*/"))) if (f / "along.csv").exists()]
+    try:
+        for one in folders:
+            draw_scene(one)
+        if (folder / "cost.json").exists():
+            draw_cost(folder)
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        print(f"deformation.py: {folder}: {error}; sim_server study makes it", file=sys.stderr)
+        return 2
+    if not folders:
+        print(f"deformation.py: {folder}: no summary.json with along.csv; sim_server study makes it", file=sys.stderr)
+        return 2
+    return 0
+
+
+sys.exit(main())

@@ -1,0 +1,83 @@
+#include "sim_server/study/study_errors.h"
+
+#include <cmath>
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kTick = 1e-3;   // s, of the client
+constexpr double kTouch = 1e-6;  // N
+
+/// The step of the reference that ends when step `k` of the trace does.
+std::size_t same_time(const Trace& trace, const Trace& reference, std::size_t k) {
+  const auto end = std::llround(static_cast<double>(k + 1) * trace.dt / reference.dt);
+  return std::min(static_cast<std::size_t>(std::max(1LL, end)), reference.forces.size()) - 1;
+}
+
+/// A mean of |F - F_ref| over contact, of the root mean square of F_ref.
+struct RelativeError {
+  double sum = 0, squares = 0;
+  int count = 0;
+
+  void add(const Vec3& force, const Vec3& truth) {
+    if (std::max(force.norm(), truth.norm()) < kTouch) return;
+    sum += (force - truth).norm();
+    squares += truth.squaredNorm();
+    ++count;
+  }
+  double rms() const { return count == 0 ? 0 : std::sqrt(squares / count); }
+  double percent() const { return squares > 0 ? 100 * sum / count / rms() : 0; }
+};
+
+/// Between the ends of steps.
+Vec3 force_at(const Trace& reference, double t) {
+  const double at = std::clamp(t / reference.dt - 1, 0.0, static_cast<double>(reference.forces.size() - 1));
+  const auto before = static_cast<std::size_t>(at);
+  const std::size_t after = std::min(before + 1, reference.forces.size() - 1);
+  const double share = at - static_cast<double>(before);
+  return (1 - share) * reference.forces[before] + share * reference.forces[after];
+}
+
+double felt_error(const Trace& trace, const Trace& reference, const Trajectory& motion, double latency) {
+  RelativeError error;
+  const double end = reference.dt * static_cast<double>(reference.forces.size());
+  for (int tick = 0; tick * kTick <= end; ++tick) {
+    const double t = tick * kTick;
+    // Step k took the place of (k + 1) dt, worked for dt, and its force travelled.
+    const double newest = std::floor((t - latency) / trace.dt - 2 + 1e-9);
+    Vec3 force = Vec3::Zero();
+    if (newest >= 0) {
+      const std::size_t k = std::min(static_cast<std::size_t>(newest), trace.forces.size() - 1);
+      force = trace.forces[k] + trace.tangents[k] * (motion.at(t) - trace.places[k]);
+    }
+    error.add(force, force_at(reference, t));
+  }
+  return error.percent();
+}
+
+}  // namespace
+
+StudyErrors errors_of(const Trace& trace, const Trace& reference, const Trajectory& motion, double latency) {
+  RelativeError force;
+  double off = 0, moved = 0;
+  for (std::size_t k = 0; k < trace.forces.size(); ++k) {
+    const std::size_t r = same_time(trace, reference, k);
+    force.add(trace.forces[k], reference.forces[r]);
+    for (std::size_t s = 0; s < trace.sites; ++s) {
+      const Vec3 &u = trace.moved[k * trace.sites + s], &truth = reference.moved[r * reference.sites + s];
+      off += (u - truth).squaredNorm();
+      moved += truth.squaredNorm();
+    }
+  }
+  StudyErrors errors{force.percent(),
+                     moved > 0 ? 100 * std::sqrt(off / moved) : 0,
+                     felt_error(trace, reference, motion, latency),
+                     {}};
+  for (std::size_t k = 0; k < trace.forces.size(); ++k) {
+    const double away = (trace.forces[k] - reference.forces[same_time(trace, reference, k)]).norm();
+    errors.along.push_back(force.rms() > 0 ? 100 * away / force.rms() : 0);
+  }
+  return errors;
+}
+
+}  // namespace palpate::sim

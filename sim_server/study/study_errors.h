@@ -1,0 +1,22 @@
+#pragma once
+#include "sim_server/study/study_run.h"
+
+namespace palpate::sim {
+
+/// How far a case is from the reference, %.
+struct StudyErrors {
+  /// Mean of |F - F_ref| over the steps in which either touches, of the root mean square of F_ref there.
+  double force = 0;
+  /// Root mean square over all sites and steps of |u - u_ref|, of that of u_ref.
+  double surface = 0;
+  /// As `force`, of what a client renders at 1 kHz: each step begins with the tool's place then, takes its
+  /// whole `dt`, and its force comes `latency` later, with the tangent by which the client goes on: F + K
+  /// (x(t) - x of the step).
+  double felt = 0;
+  std::vector<double> along;  ///< (steps) |F - F_ref|, of the same root mean square
+};
+
+/// Every step of the trace must end where one of the reference does, but for rounding; `latency` in s.
+StudyErrors errors_of(const Trace& trace, const Trace& reference, const Trajectory& motion, double latency);
+
+}  // namespace palpate::sim

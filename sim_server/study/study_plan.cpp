@@ -1,0 +1,213 @@
+#include "sim_server/study/study_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/core.h>
+
+#include "common/error.h"
+#include "common/text.h"
+#include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/mesh/refinement.h"
+#include "sim_server/scene_parts.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kMostTetrahedra = 22e3;                                 // of a timed mesh
+constexpr double kMostNodes = 16e3, kMostNodesQuick = 4e3;               // of a reference in motion
+constexpr double kMostNodesAtRest = 90e3, kMostNodesAtRestQuick = 35e3;  // of one that is static
+constexpr int kReferenceSteps = 8, kReferenceStepsQuick = 4;             // to one of the scene
+constexpr double kUsualRate = 30;                                        // Hz, where the scene names none
+constexpr std::array kSteps{0.25, 0.5, 1.0, 2.0, 4.0};                   // of the scene's, s
+constexpr std::array kTolerances{1e-1, 1e-2, 1e-3, 1e-5, 1e-8};
+constexpr std::array kElements{ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic};
+
+const DeformationModelRow& row_of(const Scene& scene) {
+  return find_row(deformation_models(), scene.deformation.model, "deformation model",
+                  scene.deformation.where);
+}
+
+bool has_tissue(const DeformationModelRow& row) {
+  return row.elastic || row.any_material;
+}
+
+bool takes(const DeformationModelRow& row, ElementKind element) {
+  return element == ElementKind::kLinear || row.any_linear || row.any_material;
+}
+
+/// The scene as `model` can do it: by the linear law where it knows no other.
+Scene with_model(Scene scene, const DeformationModelRow& row) {
+  scene.deformation.model = row.name;
+  if (row.any_material) return scene;
+  scene.material->law = ElasticLaw::kLinear;
+  scene.material->relaxations.clear();
+  scene.loads.clear();
+  if (!takes(row, scene.material->element)) scene.material->element = ElementKind::kLinear;
+  if (!row.any_linear) scene.material->fibres.reset();
+  return scene;
+}
+
+std::string fixed_tag(std::size_t region) {
+  return fmt::format("fixed region {}", region + 1);
+}
+
+/// Nodes of a mesh after `refinements`, of an element.
+double nodes_of(const TetMesh& mesh, int refinements, ElementKind element) {
+  const double cells = static_cast<double>(mesh.tetrahedra.size()) * std::pow(8.0, refinements);
+  const double corners = static_cast<double>(mesh.vertices.size()) * std::pow(7.5, refinements);
+  return element == ElementKind::kQuadratic ? corners + 1.2 * cells + corners : corners;
+}
+
+/// What is as near to the truth as `most` nodes allow: quadratic elements before smaller ones; the scene's
+/// own mesh where it has too many for that.
+StudyCase finest(StudyCase one, const TetMesh& mesh, double most) {
+  if (nodes_of(mesh, 0, ElementKind::kQuadratic) > most) return one;
+  one.scene.material->element = ElementKind::kQuadratic;
+  while (nodes_of(mesh, one.refinements + 1, ElementKind::kQuadratic) <= most) ++one.refinements;
+  return one;
+}
+
+class Planner {
+ public:
+  Planner(const Scene& scene, const StudyOptions& options) : base_(scene), options_(options) {
+    if (base_.rate_hz <= 0) base_.rate_hz = kUsualRate;
+    mesh_ = read_mesh(base_.mesh_file);
+    for (std::size_t k = 0; k < base_.fixed.size(); ++k) {
+      vertices_in(base_.fixed[k], mesh_);  // there are some
+    }
+  }
+
+  StudyPlan plan() {
+    StudyPlan plan;
+    cases_ = &plan.cases;
+    add("scene", base_, 0);
+    for (const DeformationModelRow& row : deformation_models()) {
+      if (has_tissue(row)) add("model", with_model(base_, row), 0);
+    }
+    for (const ElementKind element : kElements) {
+      Scene other = base_;
+      if (!takes(row_of(base_), element)) other = with_model(base_, implicit());
+      other.material->element = element;
+      add("element", other, 0);
+    }
+    add_meshes();
+    if (row_of(base_).any_material) add_tolerances();
+    add_references(plan);
+    const StudyCase& truth = plan.reference;
+    std::erase_if(plan.cases, [&](const StudyCase& one) {  // says nothing: it is the reference
+      return one.axis != "scene" && one.refinements == truth.refinements &&
+             one.scene.material->element == truth.scene.material->element &&
+             one.scene.mesh_file == truth.scene.mesh_file;
+    });
+    return plan;
+  }
+
+ private:
+  static const DeformationModelRow& implicit() {
+    return find_row(deformation_models(), std::string("implicit"), "deformation model", "");
+  }
+
+  void add(const std::string& axis, const Scene& scene, int refinements) {
+    StudyCase one{axis, scene, refinements};
+    const std::string name = one.name();
+    const auto same = [&](const StudyCase& other) { return other.name() == name; };
+    if (std::none_of(cases_->begin(), cases_->end(), same)) cases_->push_back(std::move(one));
+  }
+
+  /// Meshes, each with all steps in time: a finer mesh may pay, or come too late.
+  void add_meshes() {
+    std::vector<std::pair<Scene, int>> meshes{{base_, 0}};
+    for (const auto& file : options_.meshes) {
+      Scene other = base_;
+      other.mesh_file = file;
+      meshes.emplace_back(other, 0);
+    }
+    double cells = static_cast<double>(mesh_.tetrahedra.size());
+    for (int r = 1; (cells *= 8) <= kMostTetrahedra && !options_.quick; ++r) meshes.emplace_back(base_, r);
+    for (const auto& [scene, refinements] : meshes) {
+      add("mesh", scene, refinements);
+      for (const double step : kSteps) {
+        if (options_.quick && (step < 0.5 || step > 2)) continue;
+        Scene other = scene;
+        other.rate_hz /= step;
+        add("step", other, refinements);
+      }
+    }
+  }
+
+  void add_tolerances() {
+    for (const double tolerance : kTolerances) {
+      Scene other = base_;
+      other.deformation.tolerance = tolerance;
+      other.deformation.max_newton = 100;
+      add("tolerance", other, 0);
+    }
+  }
+
+  /// A scene at rest is held against statics, one in motion against motion.
+  void add_references(StudyPlan& plan) const {
+    const bool quick = options_.quick, rests = base_.deformation.model == "quasi_static";
+    Scene exact = rests ? base_ : with_model(base_, implicit());
+    exact.deformation.second_order = true;
+    exact.deformation.solver = DynamicsSettings::Solver::kDirect;
+    exact.deformation.tolerance = 1e-7;
+    exact.deformation.max_newton = 60;
+    exact.rate_hz *= quick ? kReferenceStepsQuick : kReferenceSteps;
+    const double in_motion = quick ? kMostNodesQuick : kMostNodes;
+    const double at_rest = quick ? kMostNodesAtRestQuick : kMostNodesAtRest;
+    plan.reference = finest({"reference", exact, 0}, mesh_, rests ? at_rest : in_motion);
+    plan.check = plan.reference;
+    plan.check.axis = "check";
+    plan.check.scene.rate_hz /= 2;
+    if (plan.check.refinements > 0) {
+      --plan.check.refinements;
+    } else if (plan.check.scene.material->element != base_.material->element) {
+      plan.check.scene.material->element = base_.material->element;
+    }
+  }
+
+  Scene base_;
+  const StudyOptions& options_;
+  TetMesh mesh_;
+  std::vector<StudyCase>* cases_ = nullptr;
+};
+
+}  // namespace
+
+std::string StudyCase::name() const {
+  const DeformationSettings& by = scene.deformation;
+  std::string name = fmt::format("{}-{}-{}-{}-r{}-{:.4g}ms", by.model, name_of(scene.material->law),
+                                 name_of(scene.material->element), scene.mesh_file.stem().string(),
+                                 refinements, 1e3 / scene.rate_hz);
+  if (by.model == "implicit")
+    name += fmt::format("-{:g}-{}{}", by.tolerance, by.max_newton, by.second_order ? "-bdf2" : "");
+  return name;
+}
+
+TetMesh mesh_of(const StudyCase& one) {
+  TetMesh mesh = read_mesh(one.scene.mesh_file);
+  for (std::size_t k = 0; k < one.scene.fixed.size(); ++k)
+    mesh.surface_tags[fixed_tag(k)] = vertices_in(one.scene.fixed[k], mesh);
+  for (int r = 0; r < one.refinements; ++r) mesh = refined(mesh);
+  return mesh;
+}
+
+Simulation simulation_of(const StudyCase& one, const Progress& progress) {
+  Scene scene = one.scene;
+  for (std::size_t k = 0; k < scene.fixed.size(); ++k) {
+    scene.fixed[k].box.reset();
+    scene.fixed[k].ball.reset();
+    scene.fixed[k].surface_tag = fixed_tag(k);
+  }
+  return Simulation(scene, mesh_of(one), progress);
+}
+
+StudyPlan plan_study(const Scene& scene, const StudyOptions& options) {
+  if (!scene.material || !has_tissue(row_of(scene)))
+    fail("{}: model \"{}\" has no tissue to study; take quasi_static, tensor_mass, reduced or implicit",
+         scene.deformation.where, scene.deformation.model);
+  return Planner(scene, options).plan();
+}
+
+}  // namespace palpate::sim

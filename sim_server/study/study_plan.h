@@ -1,0 +1,41 @@
+#pragma once
+#include "sim_server/simulation.h"
+
+namespace palpate::sim {
+
+/// What `sim_server study` was asked for.
+struct StudyOptions {
+  std::filesystem::path scene, out;
+  std::vector<std::filesystem::path> meshes;        ///< of the same organ, coarser or finer
+  std::optional<std::filesystem::path> trajectory;  ///< CSV (t_s, x_m, y_m, z_m); absent: pressed and slid
+  std::optional<double> budget_ms;                  ///< for a step
+  double latency_ms = 5;  ///< of the link, from the end of a step to the force in the client, [0, 1000]
+  bool quick = false;
+};
+
+/// One way to compute the scene.
+struct StudyCase {
+  std::string axis;     ///< along which it differs from the scene: "scene", "model", "element", "mesh", ...
+  Scene scene;          ///< its own mesh file; fixed regions as `surface_tag`s that refinement keeps
+  int refinements = 0;  ///< of that mesh
+
+  /// "quasi_static linear p1 6342 33.3ms", for files and messages; the mesh by its number of refinements.
+  std::string name() const;
+};
+
+/// All of a study: the scene's own setting, one axis at a time around it, and what they are held against.
+struct StudyPlan {
+  std::vector<StudyCase> cases;
+  StudyCase reference;  ///< same law, a short step, on the finest mesh or element that is affordable
+  StudyCase check;      ///< coarser than that by one: what the two differ by bounds the reference's own error
+};
+
+/// The mesh of a case. Throws `Error`.
+TetMesh mesh_of(const StudyCase& one);
+/// Its simulation, told about. Throws `Error`.
+Simulation simulation_of(const StudyCase& one, const Progress& progress = kSilent);
+
+/// Plans the study of a scene. Throws `Error` for a scene without tissue. Set-up only; reads meshes.
+StudyPlan plan_study(const Scene& scene, const StudyOptions& options);
+
+}  // namespace palpate::sim

@@ -1,0 +1,145 @@
+#include "sim_server/study/study_table.h"
+
+#include <algorithm>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/report.h"
+#include "sim_server/scene_parts.h"
+
+namespace palpate::sim {
+namespace {
+
+double dt_ms(const StudyRow& row) {
+  return 1e3 / row.one.scene.rate_hz;
+}
+
+bool by_iterations(const StudyRow& row) {
+  return row.one.scene.deformation.model == "implicit";
+}
+
+/// What is the same on every run.
+Json facts_of(const StudyRow& row) {
+  const Scene& scene = row.one.scene;
+  Json facts{{"scene", row.scene},
+             {"axis", row.one.axis},
+             {"case", row.one.name()},
+             {"model", scene.deformation.model},
+             {"law", std::string(name_of(scene.material->law))},
+             {"element", std::string(name_of(scene.material->element))},
+             {"mesh", scene.mesh_file.filename().string()},
+             {"refinements", row.one.refinements},
+             {"tetrahedra", row.tetrahedra},
+             {"nodes", row.nodes},
+             {"dt_ms", dt_ms(row)}};
+  facts["tolerance"] = by_iterations(row) ? Json(scene.deformation.tolerance) : Json(nullptr);
+  facts["force_error_percent"] = row.errors.force;
+  facts["surface_error_percent"] = row.errors.surface;
+  facts["felt_error_percent"] = row.errors.felt;
+  facts["flagged_steps"] = row.flagged;
+  facts["state_hash"] = fmt::format("{:016x}", row.state_hash);
+  return facts;
+}
+
+/// What depends on the machine.
+Json times_of(const StudyRow& row) {
+  return {{"step_ms_p50", row.step_ms_p50},
+          {"step_ms_p99", row.step_ms_p99},
+          {"setup_ms", row.setup_ms},
+          {"peak_bytes", row.peak_bytes},
+          {"on_front", row.on_front}};
+}
+
+Json along_of(const StudyRow& row) {
+  Json lines = Json::array();
+  for (std::size_t k = 0; k < row.errors.along.size(); ++k)
+    lines.push_back({{"case", row.one.name()},
+                     {"t_s", 1e-3 * dt_ms(row) * static_cast<double>(k + 1)},
+                     {"force_error_percent", row.errors.along[k]}});
+  return lines;
+}
+
+std::string settings_of(const StudyRow& row) {
+  const Scene& scene = row.one.scene;
+  std::string text =
+      fmt::format("rate_hz = {:g}\n[mesh]\nfile = \"{}\"", scene.rate_hz, scene.mesh_file.string());
+  if (row.one.refinements > 0)
+    text += fmt::format("  # each tetrahedron cut into 8, {} times", row.one.refinements);
+  text +=
+      fmt::format("\n[material]\nlaw = \"{}\"\nelement = \"{}\"\n[deformation]\nmodel = \"{}\"\n",
+                  name_of(scene.material->law), name_of(scene.material->element), scene.deformation.model);
+  if (by_iterations(row))
+    text += fmt::format("tolerance = {:g}\nmax_newton = {}\n", scene.deformation.tolerance,
+                        scene.deformation.max_newton);
+  return text;
+}
+
+}  // namespace
+
+void mark_front(std::vector<StudyRow>& rows) {
+  for (StudyRow& row : rows) {
+    row.on_front = std::none_of(rows.begin(), rows.end(), [&](const StudyRow& other) {
+      return other.errors.force < row.errors.force && other.step_ms_p50 <= row.step_ms_p50;
+    });
+  }
+}
+
+std::string to_text(const StudyResult& result) {
+  std::string text = fmt::format(
+      "reference {}; {} differs from it by {:.2g} % in force, {:.2g} % in shape\n\n"
+      "  {:<9} {:<58} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}\n",
+      result.reference, result.check, result.own.force, result.own.surface, "axis", "case", "tetrahedra",
+      "force %", "surface %", "felt %", "step ms", "set-up s", "peak MB");
+  for (const StudyRow& row : result.rows) {
+    text += fmt::format("{} {:<9} {:<58} {:>10} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>8.0f}{}\n",
+                        row.on_front ? '*' : ' ', row.one.axis, row.one.name(), row.tetrahedra,
+                        row.errors.force, row.errors.surface, row.errors.felt, row.step_ms_p50,
+                        row.setup_ms / 1e3, row.peak_bytes / 1e6,
+                        row.flagged > 0 ? fmt::format("  {} steps flagged", row.flagged) : "");
+  }
+  for (const auto& [name, why] : result.refused) text += fmt::format("  refused   {}: {}\n", name, why);
+  return text + "* on the front: none has a smaller error of the force in less time\n";
+}
+
+std::string advice(const StudyResult& result, double budget_ms) {
+  const StudyRow* best = nullptr;
+  for (const StudyRow& row : result.rows) {
+    if (row.step_ms_p50 > std::min(budget_ms, dt_ms(row)) || row.flagged > 0) continue;
+    if (best == nullptr || row.errors.felt < best->errors.felt) best = &row;
+  }
+  if (best == nullptr)
+    return fmt::format("\nNo case takes {:g} ms a step or less; a coarser mesh (--mesh FILE) would.\n",
+                       budget_ms);
+  return fmt::format(
+      "\nWithin {:g} ms a step, {} is felt with the smallest error: {:.2g} %, at {:.2g} ms a step.\n\n{}",
+      budget_ms, best->one.name(), best->errors.felt, best->step_ms_p50, settings_of(*best));
+}
+
+void write_study(const StudyOptions& options, const StudyResult& result) {
+  Json facts = Json::array(), times = Json::array(), along = Json::array(), all = Json::array();
+  for (const StudyRow& row : result.rows) {
+    facts.push_back(facts_of(row));
+    Json timed{{"case", row.one.name()}};
+    timed.update(times_of(row));
+    times.push_back(timed);
+    for (const Json& line : along_of(row)) along.push_back(line);
+    Json whole = facts_of(row);
+    whole.update(times_of(row));
+    all.push_back(whole);
+  }
+  Json refused = Json::array();
+  for (const auto& [name, why] : result.refused) refused.push_back({{"case", name}, {"reason", why}});
+  write_whole(options.out / "rows.csv", csv_of(facts));
+  write_whole(options.out / "timing.csv", csv_of(times));
+  write_whole(options.out / "along.csv", csv_of(along));
+  write_json(options.out / "summary.json", {{"reference",
+                                             {{"case", result.reference},
+                                              {"check", result.check},
+                                              {"force_error_percent", result.own.force},
+                                              {"surface_error_percent", result.own.surface}}},
+                                            {"latency_ms", options.latency_ms},
+                                            {"rows", all},
+                                            {"refused", refused}});
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,36 @@
+#pragma once
+#include "sim_server/study/study_errors.h"
+
+namespace palpate::sim {
+
+/// A case of a study with all that is told about it.
+struct StudyRow {
+  std::string scene;
+  StudyCase one;
+  StudyErrors errors;
+  std::size_t tetrahedra = 0, nodes = 0;
+  int flagged = 0;  ///< steps
+  std::uint64_t state_hash = 0;
+  double step_ms_p50 = 0, step_ms_p99 = 0, setup_ms = 0, peak_bytes = 0;
+  bool on_front = false;  ///< no other row has a smaller error of the force at no more time a step
+};
+
+/// What a study found.
+struct StudyResult {
+  StudyErrors own;  ///< of the check against the reference, which bounds the reference's own
+  std::vector<StudyRow> rows;
+  std::string reference = {}, check = {};
+  std::vector<std::pair<std::string, std::string>> refused = {};  ///< case, why
+};
+
+/// Finds the rows on the front of error against time.
+void mark_front(std::vector<StudyRow>& rows);
+/// A table for a terminal, best front first.
+std::string to_text(const StudyResult& result);
+/// One sentence, and TOML to paste into the scene: of the cases that take no more than `budget_ms` a step,
+/// and no longer than their own step in time, the one that is felt with the smallest error.
+std::string advice(const StudyResult& result, double budget_ms);
+/// rows.csv, timing.csv, along.csv and summary.json. Throws `Error`.
+void write_study(const StudyOptions& options, const StudyResult& result);
+
+}  // namespace palpate::sim

@@ -1,0 +1,131 @@
+// Traces in files, and processes of their own.
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "common/error.h"
+#include "common/report.h"
+#include "sim_server/study/study_run.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr std::uint64_t kMagic = 0x31656361'72745050;  // "PPtrace1"
+
+/// Reads or writes one thing after another, as bytes of this machine: a cache, not a format.
+struct Writer {
+  std::ofstream file;
+  template <class T>
+  void number(const T& value) {
+    file.write(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  template <class T>
+  void list(const std::vector<T>& values) {
+    number(values.size());
+    file.write(reinterpret_cast<const char*>(values.data()),
+               static_cast<std::streamsize>(values.size() * sizeof(T)));
+  }
+};
+struct Reader {
+  std::ifstream file;
+  std::uintmax_t size;
+  template <class T>
+  void number(T& value) {
+    file.read(reinterpret_cast<char*>(&value), sizeof value);
+  }
+  template <class T>
+  void list(std::vector<T>& values) {
+    std::size_t count = 0;
+    number(count);
+    if (!file || count > size / sizeof(T)) return file.setstate(std::ios::failbit);
+    values.resize(count);
+    file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count * sizeof(T)));
+  }
+};
+
+template <class File, class T>
+void pass(File& file, T& trace) {
+  file.number(trace.dt);
+  file.list(trace.places);
+  file.list(trace.forces);
+  file.list(trace.tangents);
+  file.list(trace.moved);
+  file.number(trace.sites);
+  file.number(trace.flagged);
+  file.number(trace.tetrahedra);
+  file.number(trace.nodes);
+  file.number(trace.state_hash);
+  file.number(trace.setup_ms);
+  file.number(trace.step_ms_p50);
+  file.number(trace.step_ms_p99);
+  file.number(trace.peak_bytes);
+}
+
+}  // namespace
+
+void write_trace(const std::filesystem::path& path, const Trace& trace) {
+  WholeFile whole(path);
+  Writer writer{std::ofstream(whole.path(), std::ios::binary)};
+  writer.number(kMagic);
+  pass(writer, trace);
+  writer.number(kMagic);
+  writer.file.close();
+  if (!writer.file) fail_at_run_time("{}: cannot be written", path.string());
+  whole.commit();
+}
+
+std::optional<Trace> read_trace(const std::filesystem::path& path) {
+  std::error_code none;
+  Reader reader{std::ifstream(path, std::ios::binary), std::filesystem::file_size(path, none)};
+  std::uint64_t first = 0, last = 0;
+  Trace trace;
+  reader.number(first);
+  if (!reader.file || first != kMagic) return {};
+  pass(reader, trace);
+  reader.number(last);
+  if (!reader.file || last != kMagic) return {};
+  return trace;
+}
+
+double run_apart(const std::string& name, const std::function<void()>& work) {
+  int said[2];
+  if (pipe(said) != 0) fail_at_run_time("{}: no pipe: {}", name, std::strerror(errno));
+  const pid_t child = fork();
+  if (child < 0) fail_at_run_time("{}: no process: {}", name, std::strerror(errno));
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // an interrupted study leaves nobody behind
+    close(said[0]);
+    int code = 0;
+    try {
+      work();
+    } catch (const Error& error) {
+      code = error.exit_code();
+      if (write(said[1], error.what(), std::strlen(error.what())) < 0) code = 1;
+    } catch (const std::exception& error) {
+      code = 1;
+      if (write(said[1], error.what(), std::strlen(error.what())) < 0) code = 1;
+    }
+    _exit(code);
+  }
+  close(said[1]);
+  std::string text(4096, '\0');
+  std::size_t length = 0;
+  for (ssize_t got;
+       length < text.size() && (got = read(said[0], text.data() + length, text.size() - length)) > 0;)
+    length += static_cast<std::size_t>(got);
+  close(said[0]);
+  text.resize(length);
+  int status = 0;
+  rusage used{};
+  if (wait4(child, &status, 0, &used) < 0) fail_at_run_time("{}: lost: {}", name, std::strerror(errno));
+  if (WIFSIGNALED(status)) fail_at_run_time("{}: ended by signal {}", name, WTERMSIG(status));
+  if (WEXITSTATUS(status) == 2) fail("{}", text);
+  if (WEXITSTATUS(status) != 0) fail_at_run_time("{}: {}", name, text);
+  return 1024.0 * static_cast<double>(used.ru_maxrss);
+}
+
+}  // namespace palpate::sim

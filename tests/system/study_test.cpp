@@ -1,0 +1,63 @@
+// sim_server study: the same rows every time, from where it was left.
+#include <fstream>
+#include <iterator>
+
+#include "tests/support/catch.h"
+#include "tests/support/column.h"
+#include "tests/support/programs.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate::test;
+
+namespace {
+
+struct Bench {
+  TemporaryFolder folder;
+  std::string out = (folder.path() / "out").string();
+  Bench() { folder.write("column.msh", column()); }
+  std::string scene(const std::string& model) {
+    return folder
+        .write("scene.toml",
+               "rate_hz = 30\n[mesh]\nfile = \"column.msh\"\n[material]\nyoung_modulus = 2e4\npoisson_ratio "
+               "= 0.3\n"
+               "[[fixed]]\nbox = [[-1, -1, -1], [1, 0.001, 1]]\n[[tool]]\nradius = "
+               "0.03\n[deformation]\nmodel = \"" +
+                   model + "\"\n")
+        .string();
+  }
+  std::string text_of(const std::string& file) const {
+    std::ifstream in(out + "/" + file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("study: rows are the same again from nothing, and at once from what was run before") {
+  Bench bench;
+  const std::string scene = bench.scene("quasi_static");
+  const std::vector<std::string> command{"study", scene, "--out", bench.out, "--quick", "--budget-ms", "33"};
+  const std::string said = output_of("sim_server", command, 0, 120);
+  CAPTURE(said);
+  CHECK(said.find("[deformation]\nmodel = \"") != std::string::npos);
+  const std::string rows = bench.text_of("rows.csv"), timing = bench.text_of("timing.csv"),
+                    along = bench.text_of("along.csv");
+  CHECK(rows.find("scene,axis,case,model,law,element,mesh,refinements,tetrahedra,nodes,dt_ms,tolerance,"
+                  "force_error_percent,surface_error_percent,felt_error_percent,flagged_steps,state_hash") ==
+        0);
+  CHECK(rows.find(",tensor_mass,linear,p1,") != std::string::npos);
+  // Again: times are of the traces that are there.
+  output_of("sim_server", command, 0, 20);
+  CHECK(bench.text_of("timing.csv") == timing);
+  CHECK(bench.text_of("rows.csv") == rows);
+  std::filesystem::remove_all(bench.out);
+  output_of("sim_server", command, 0, 120);
+  CHECK(bench.text_of("rows.csv") == rows);
+  CHECK(bench.text_of("along.csv") == along);
+}
+
+TEST_CASE("study: a scene without tissue is refused with what to take") {
+  Bench bench;
+  const std::string said = output_of("sim_server", {"study", bench.scene("rigid"), "--out", bench.out}, 2);
+  CHECK(said.find("no tissue to study; take quasi_static") != std::string::npos);
+}

@@ -1,0 +1,99 @@
+#include "sim_server/study/study_errors.h"
+
+#include <cmath>
+#include <csignal>
+
+#include "common/error.h"
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kSpeed = 0.02, kStiffness = 300;  // m/s, N/m
+
+/// The tool goes down evenly for 2 s.
+Trajectory even_way() {
+  return {{0.0, 2.0}, {Vec3::Zero(), Vec3(0, -2 * kSpeed, 0)}};
+}
+
+/// A spring that the tool presses from the beginning; `share` of its true force, one site that goes along.
+Trace spring(double dt, double share, const Mat3& tangent) {
+  Trace trace;
+  trace.dt = dt;
+  trace.sites = 1;
+  for (int k = 1; k * dt < 2 + 1e-9; ++k) {
+    const Vec3 place = even_way().at(k * dt);
+    trace.places.push_back(place);
+    trace.forces.push_back(-share * kStiffness * place);
+    trace.tangents.push_back(tangent);
+    trace.moved.push_back(share * place);
+  }
+  return trace;
+}
+
+}  // namespace
+
+TEST_CASE("a force that is a tenth too large is wrong by a tenth of its mean, of its root mean square") {
+  const Trace truth = spring(0.001, 1, Mat3::Zero());
+  const StudyErrors errors = errors_of(spring(0.01, 1.1, Mat3::Zero()), truth, even_way(), 0);
+  // Mean and root mean square of a ramp of n steps: (n + 1) / 2 and sqrt((n + 1)(2n + 1) / 6).
+  CHECK(errors.force == Approx(10 * (201. / 2) / std::sqrt(201. * 401 / 6)).epsilon(1e-9));
+  CHECK(errors.surface == Approx(10).epsilon(1e-9));
+  CHECK(errors.along.size() == 200);
+  CHECK(errors.along.back() == Approx(10 * 200 / std::sqrt(201. * 401 / 6)).epsilon(1e-9));
+}
+
+TEST_CASE("what is right but late is felt late, by the step and the link, and held for a step") {
+  constexpr double kDt = 0.04, kLatency = 0.01;
+  const Trace truth = spring(0.001, 1, Mat3::Zero());
+  const StudyErrors errors = errors_of(spring(kDt, 1, Mat3::Zero()), truth, even_way(), kLatency);
+  CHECK(errors.force == Approx(0).margin(1e-9));
+  // In the mean the place is old by dt + latency and half a step for which it is held.
+  const double off = kStiffness * kSpeed * (kDt + kLatency + kDt / 2);
+  const double size = kStiffness * kSpeed * 2 / std::sqrt(3.0);
+  CHECK(errors.felt == Approx(100 * off / size).epsilon(0.03));
+}
+
+TEST_CASE("the exact tangent takes what is late away, once the first force is there") {
+  const Trace truth = spring(0.001, 1, Mat3::Zero());
+  const Mat3 tangent = -kStiffness * Mat3::Identity();
+  const double felt = errors_of(spring(0.04, 1, tangent), truth, even_way(), 0.01).felt;
+  // Until 2 dt + latency = 0.09 s there is none: the mean of the force there, over all 2 s.
+  const double before = kStiffness * kSpeed * 0.09 * 0.09 / 2 / 2;
+  CHECK(felt == Approx(100 * before / (kStiffness * kSpeed * 2 / std::sqrt(3.0))).epsilon(0.05));
+}
+
+TEST_CASE("a trace reads back as it was, and half of one is none") {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "one.trace";
+  Trace trace = spring(0.1, 1, Mat3::Identity());
+  trace.state_hash = 77;
+  trace.peak_bytes = 1.5;
+  CHECK(!read_trace(file));
+  write_trace(file, trace);
+  const std::optional<Trace> back = read_trace(file);
+  REQUIRE(back);
+  CHECK(back->forces == trace.forces);
+  CHECK(back->moved == trace.moved);
+  CHECK(back->state_hash == 77);
+  CHECK(back->peak_bytes == 1.5);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  CHECK(!read_trace(file));
+}
+
+TEST_CASE("what runs apart tells its errors and its crashes here") {
+  CHECK(run_apart("big", [] { std::vector<char> much(64 << 20, 1); }) > 0);
+  const auto said = [](const std::function<void()>& work) -> std::string {
+    try {
+      run_apart("case", work);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  CHECK(said([] { fail("{}: no such thing", "scene.toml"); }) == "scene.toml: no such thing");
+  CHECK(said([] { std::raise(SIGKILL); }) == "case: ended by signal 9");
+}
+
+}  // namespace palpate::sim
