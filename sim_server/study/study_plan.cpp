@@ -59,10 +59,10 @@ double nodes_of(const TetMesh& mesh, int refinements, ElementKind element) {
   return element == ElementKind::kQuadratic ? corners + 1.2 * cells + corners : corners;
 }
 
-/// What is as near to the truth as `most` nodes allow: quadratic elements before smaller ones; the scene's
-/// own mesh where it has too many for that.
+/// Finer than the scene, and as near to the truth as `most` nodes allow: quadratic elements before smaller
+/// ones.
 StudyCase finest(StudyCase one, const TetMesh& mesh, double most) {
-  if (nodes_of(mesh, 0, ElementKind::kQuadratic) > most) return one;
+  if (one.scene.material->element == ElementKind::kQuadratic) ++one.refinements;
   one.scene.material->element = ElementKind::kQuadratic;
   while (nodes_of(mesh, one.refinements + 1, ElementKind::kQuadratic) <= most) ++one.refinements;
   return one;
@@ -94,11 +94,9 @@ class Planner {
     add_meshes();
     if (row_of(base_).any_material) add_tolerances();
     add_references(plan);
-    const StudyCase& truth = plan.reference;
-    std::erase_if(plan.cases, [&](const StudyCase& one) {  // says nothing: it is the reference
-      return one.axis != "scene" && one.refinements == truth.refinements &&
-             one.scene.material->element == truth.scene.material->element &&
-             one.scene.mesh_file == truth.scene.mesh_file;
+    std::erase_if(plan.cases, [&](const StudyCase& one) {  // what is as fine says nothing
+      return one.scene.material->element == plan.reference.scene.material->element &&
+             one.refinements >= plan.reference.refinements;
     });
     return plan;
   }
@@ -162,7 +160,7 @@ class Planner {
     plan.check.scene.rate_hz /= 2;
     if (plan.check.refinements > 0) {
       --plan.check.refinements;
-    } else if (plan.check.scene.material->element != base_.material->element) {
+    } else {
       plan.check.scene.material->element = base_.material->element;
     }
   }

@@ -1,0 +1,122 @@
+#!/usr/bin/python3
+"""Run sim_server study over scenes that ship, and measure what larger meshes cost.
+
+Called by scripts/study, which builds the program first. Each scene gets a folder with its
+rows.csv, timing.csv, along.csv and summary.json. Blocks of 3 to 300 thousand tetrahedra (made
+here, gone afterwards) are explained by model: cost.json, time a step in contact, set-up, bytes.
+Timed runs go one at a time. Interrupted, it goes on where it was.
+
+Writes into --out: the folders, cost.json and summary.json (the rows of all scenes).
+
+Exit status: 0 done, 1 a program failed, 2 wrong use.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SERVER = ROOT / "build" / "release" / "bin" / "sim_server"
+SCENES = ("liver", "liver_implicit", "liver_tensor_mass", "liver_reduced", "block", "block_friction")
+QUICK = ("liver_reduced",)
+# Cells along x and z of a block, half as many along y; and the most that a model is asked for.
+SIZES = (10, 15, 22, 32, 46)
+MOST = {"tensor_mass": 46, "quasi_static": 22, "implicit": 32}
+SCENE = """title = "A block of {n} x {m} x {n} cells"
+rate_hz = 30
+[mesh]
+file = "{mesh}"
+[[fixed]]
+box = [[-1, -1, -1], [1, -0.0299, 1]]
+[material]
+law = "linear"
+young_modulus = 10e3
+poisson_ratio = 0.45
+[deformation]
+model = "{model}"
+[[tool]]
+radius = 0.006
+reach = [[-0.01, -0.01, -0.01], [0.01, 0.01, 0.01]]
+"""
+KUHN = ((1, 2, 4), (1, 4, 2), (2, 1, 4), (2, 4, 1), (4, 1, 2), (4, 2, 1))  # ways from a corner: bits x, y, z
+
+
+def write_block(file, n):
+    """60 x 30 x 60 mm, its top y = 0: n x n/2 x n cubes of six tetrahedra."""
+    m = n // 2
+    step = 0.06 / n
+    number = {}
+    for i in range(n + 1):
+        for j in range(m + 1):
+            for k in range(n + 1):
+                number[i, j, k] = len(number) + 1
+    cells = [(i, j, k) for i in range(n) for j in range(m) for k in range(n)]
+    with open(file, "w", encoding="ascii") as out:
+        print(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(number)}", file=out)
+        for (i, j, k), v in number.items():
+            print(v, i * step - 0.03, (j - m) * 0.03 / m, k * step - 0.03, file=out)
+        print(f"$EndNodes\n$Elements\n{6 * len(cells)}", file=out)
+        e = 0
+        for i, j, k in cells:
+            for way in KUHN:
+                corner, corners = 0, [number[i, j, k]]
+                for bit in way:
+                    corner |= bit
+                    corners.append(number[i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2 & 1)])
+                if way in ((1, 4, 2), (2, 1, 4), (4, 2, 1)):  # an odd permutation: inside out
+                    corners[2], corners[3] = corners[3], corners[2]
+                e += 1
+                print(e, "4 2 0 0", *corners, file=out)
+        print("$EndElements", file=out)
+
+
+def say(text):
+    print(f"study deformation: {text}", file=sys.stderr, flush=True)
+
+
+def run(*arguments):
+    """Its progress is shown; its table goes to stdout."""
+    ended = subprocess.run([SERVER, *map(str, arguments)], check=False)
+    if ended.returncode != 0:
+        raise SystemExit(f"study deformation: sim_server {' '.join(map(str, arguments))} ended with {ended.returncode}")
+
+
+def cost_of(folder, model, n):
+    mesh, scene, found = folder / f"block_{n}.msh", folder / f"block_{n}_{model}.toml", folder / f"{model}_{n}.json"
+    if not found.exists():
+        write_block(mesh, n)
+        scene.write_text(SCENE.format(n=n, m=n // 2, mesh=mesh, model=model), encoding="ascii")
+        subprocess.run([SERVER, "explain", scene, "--json", found], check=True, stdout=subprocess.DEVNULL)
+        mesh.unlink()
+    told = json.loads(found.read_text(encoding="utf-8"))
+    return {"model": model, "tetrahedra": 6 * n * n * (n // 2), "step_ms_p50": told["contact"]["step_ms"]["p50"],
+            "setup_ms": told["setup_ms"], "bytes": told["bytes"]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, required=True, help="folder; made if it is not there")
+    parser.add_argument("--quick", action="store_true", help="one scene, coarse reference, meshes to 10 thousand")
+    options = parser.parse_args()
+    rows = []
+    for name in QUICK if options.quick else SCENES:
+        say(name)
+        folder = options.out / name
+        run("study", ROOT / "configs" / "scenes" / f"{name}.toml", "--out", folder, "--budget-ms", 33,
+            *(["--quick"] if options.quick else []))
+        rows += json.loads((folder / "summary.json").read_text(encoding="utf-8"))["rows"]
+    costs = options.out / "cost"
+    costs.mkdir(parents=True, exist_ok=True)
+    sizes = [(model, n) for model, most in MOST.items() for n in SIZES if n <= (15 if options.quick else most)]
+    found = []
+    for model, n in sizes:
+        say(f"{model} of {6 * n * n * (n // 2)} tetrahedra")
+        found.append(cost_of(costs, model, n))
+    (options.out / "cost.json").write_text(json.dumps(found, indent=1) + "\n", encoding="ascii")
+    (options.out / "summary.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+sys.exit(main())
