@@ -119,6 +119,7 @@ class ToolContact {
   void give_up(Tissue& tissue) noexcept;
   bool escaped(const ToolPose& pose) const noexcept;
   void enter(const ToolPose& pose, Tissue& tissue) noexcept;
+  bool fell_in(Tissue& tissue) noexcept;
   void start_stride(bool first, const Tissue& tissue) noexcept;
   Vec3 place_before(const ToolPose& pose, const Vec3& inside, double share, const Vec3& door) const noexcept;
   double strides_to(const ToolPose& pose) const noexcept;
