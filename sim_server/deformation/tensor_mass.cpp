@@ -11,8 +11,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostSubSteps = 2e4;
-constexpr double kSafety = 0.95;  // of the longest stable sub-step; the frequency is known from below
+constexpr double kMostSubSteps = 2e4;  // no step of so many is in time
+constexpr double kSafety = 0.95;       // of the longest stable sub-step; the frequency is known from below
 
 ElasticTensors assemble(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
