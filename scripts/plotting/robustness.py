@@ -27,7 +27,7 @@ MEANINGS = {"stable": "stable: error of the force at the end", "flagged": "flagg
             "exploded": "exploded"}
 # What a refusal is about, in a word.
 WHY = {"sub-steps": "too many\nsub-steps", "no fixed nodes": "nothing\nholds it", "singular": "nothing\nholds it",
-       "friction": "friction\nabove 2", "is for law": "other\nelement", "bears tools only": "tools\nonly",
+       "friction": "friction\nabove 2", "is for law": "material\nit cannot", "bears tools only": "tools\nonly",
        "reduced": "not in\nthis build"}
 
 
@@ -63,8 +63,8 @@ def draw(rows, file):
         spine.set_visible(False)
     axes.set_title("Extreme scenes: what each model makes of them", fontsize=12, pad=12)
     used = [o for o in COLOURS if any(r["outcome"] == o for r in rows)]
-    figure.legend(handles=[Patch(color=COLOURS[o], label=MEANINGS[o]) for o in used], loc="outside lower center",
-                  ncols=2, fontsize=8, frameon=False)
+    axes.legend(handles=[Patch(color=COLOURS[o], label=MEANINGS[o]) for o in used], loc="upper center", ncol=2,
+                bbox_to_anchor=(0.5, -0.01), fontsize=8, frameon=False)
     figure.savefig(file, dpi=110)
     plt.close(figure)
 

@@ -2,7 +2,7 @@
 """Try extreme scenes with every deformation model: what holds, what is refused, what is flagged.
 
 Called by scripts/study, which builds the program first; that program (tests/studies) runs one
-cell, a case with a model. Two cells run at a time, each in a process of its own, for 100 s at
+cell, a case with a model. Two cells run at a time, each in a process of its own, for 300 s at
 most: one that crashes or hangs is "exploded", and the others go on.
 
 Writes into --out: summary.json and robustness.csv (a row for each cell) and robustness.txt.
@@ -31,7 +31,7 @@ from workers import Failed, Workers
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build" / "release" / "bin" / "robustness_study"
-LONGEST = 100  # s, of a cell
+LONGEST = 300  # s, of a cell
 SIGNS = {"stable": "", "refused": "refused", "flagged": "flagged", "exploded": "EXPLODED", "not_applicable": "-"}
 
 
