@@ -84,6 +84,13 @@ void Loads::put_held(double t, std::span<Vec3> x) const noexcept {
 std::vector<Loads::Face> Loads::faces_in(const Region& region, const TetMesh& mesh, const Surface& surface) {
   std::vector<char> inside(mesh.vertices.size(), 0);
   for (const int v : vertices_in(region, mesh)) inside[v] = 1;
+  const auto tagged = mesh.tagged_triangles.find(region.surface_tag);
+  const auto is_in = [&](Triangle corners) {
+    if (tagged == mesh.tagged_triangles.end())
+      return std::all_of(corners.begin(), corners.end(), [&](int corner) { return inside[corner] != 0; });
+    std::sort(corners.begin(), corners.end());
+    return std::binary_search(tagged->second.begin(), tagged->second.end(), corners);
+  };
   std::vector<Face> faces;
   for (std::size_t i = 0; i < surface.triangles.size(); i += static_cast<std::size_t>(surface.per_face)) {
     const Triangle* const parts = &surface.triangles[i];
@@ -93,8 +100,7 @@ std::vector<Loads::Face> Loads::faces_in(const Region& region, const TetMesh& me
       face.corners[c] = surface.vertices[whole ? parts[0][c] : parts[c][0]];
       face.pushed[c] = surface.vertices[whole ? parts[0][c] : parts[3][c]];
     }
-    const auto is_inside = [&](int corner) { return inside[corner] != 0; };
-    if (std::all_of(face.corners.begin(), face.corners.end(), is_inside)) faces.push_back(face);
+    if (is_in(face.corners)) faces.push_back(face);
   }
   if (faces.empty())
     fail("{}: no triangle of the boundary has all its corners in this region; make it larger", region.where);

@@ -61,7 +61,8 @@ struct FixedRegion : Region {
 struct Load {
   enum class Kind {
     kGravity,   ///< `vector`: m/s^2, on all of it
-    kTraction,  ///< `vector`: Pa of the area at rest, on the boundary triangles whose corners are in `region`
+    kTraction,  ///< `vector`: Pa of the area at rest, on the boundary triangles whose corners are in
+                ///< `region`, or that its tag names
     kPressure,  ///< `pressure`, on the same; of all but the linear law it turns and grows with the surface
     kForce,     ///< `vector`: N in all, shared equally by the vertices of `region`
     kDisplacement,  ///< `vector`: m from rest, where the vertices of `region` are held

@@ -46,6 +46,13 @@ def above(value):
     return max(value, LEAST)
 
 
+def at_least_a_decade(axes):
+    low, high = axes.get_ylim()
+    if high < 10 * low:
+        middle = math.sqrt(low * high)
+        axes.set_ylim(middle / math.sqrt(10), middle * math.sqrt(10))
+
+
 def draw_front(axes, rows):
     for row in rows:
         axes.loglog(row["step_ms_p50"], above(row["force_error_percent"]), MARKS[row["element"]],
@@ -53,13 +60,15 @@ def draw_front(axes, rows):
     front = sorted((r for r in rows if r["on_front"]), key=lambda r: r["step_ms_p50"])
     axes.loglog([r["step_ms_p50"] for r in front], [above(r["force_error_percent"]) for r in front], "-", color="0.4",
                 linewidth=0.8, zorder=0)
-    for k, row in enumerate(front):
+    for k, row in enumerate(front):  # the fastest first: names go to the right of their marks
         axes.annotate(f"{label_of(row)}, {row['dt_ms']:.3g} ms", (row["step_ms_p50"], above(row["force_error_percent"])),
                       xytext=(6, 6 if k % 2 else -10), textcoords="offset points", fontsize=6.5)
     for model in dict.fromkeys(r["model"] for r in rows):
         axes.plot([], [], "o", color=COLOURS[model], label=model)
     for element in dict.fromkeys(r["element"] for r in rows):
         axes.plot([], [], MARKS[element], color="0.4", label=element)
+    at_least_a_decade(axes)
+    axes.margins(x=0.25)
     axes.legend(fontsize=7)
     axes.set_xlabel("server, median time of a step in contact (ms)")
     axes.set_ylabel("error of the tool's force (%)")
@@ -83,6 +92,7 @@ def draw_felt(axes, rows):
                     color=drawn.get_color(), markerfacecolor="white")
     axes.plot([], [], "o", color="0.4", label="this machine keeps up")
     axes.plot([], [], "o", color="0.4", markerfacecolor="white", label="it does not: a step takes longer")
+    at_least_a_decade(axes)
     axes.legend(fontsize=7)
     axes.set_xlabel("time that the server has for a step (ms)")
     axes.set_ylabel("felt error of the force (%)")
@@ -109,6 +119,7 @@ def draw_price(axes, rows):
         axes.loglog(row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6, MARKS[row["element"]], color=COLOURS[row["model"]])
         axes.annotate(label_of(row), (row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6), xytext=(5, 3),
                       textcoords="offset points", fontsize=6.5)
+    axes.margins(x=0.3)
     axes.set_xlabel("set-up (s)")
     axes.set_ylabel("peak memory of the process (MB)")
     axes.set_title("What it costs before the first step\n(better: lower and to the left)", fontsize=9)

@@ -34,6 +34,10 @@ class Workers:
         if self.stopped:
             raise Failed("stopped")
         run_program(*arguments)
+        self.advance(weight)
+
+    def advance(self, weight):
+        """Something that is worth `weight` of the whole is done."""
         with self.lock:
             self.done += weight
             self.tell()

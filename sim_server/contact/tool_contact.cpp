@@ -12,6 +12,8 @@ constexpr double kFrictionStride = 0.01, kFrictionStrides = 16;
 constexpr double kGather = 2.0;      // of the tool radius: how far from the tip the patch extends
 constexpr double kGatherDear = 1.5;  // likewise, where each node more costs solves of the whole tissue
 constexpr double kMaxStrides = 256;
+// Likewise: how far it presses on in one step, where the tissue is known only near its shape of before.
+constexpr double kFarthestPress = 2.0;
 constexpr double kEscape = 3.0;  // of the tool radius: how far outside its free organ contact may go on
 // Contact linearisations a step may use, on the way and to settle with other tools, before it answers from
 // where it got to.
@@ -136,16 +138,23 @@ void ToolContact::go(const ToolPose& pose, Tissue& tissue) noexcept {
   const Vec3 way = pose.p_W - place_.p_W;
   const ToolPose from = place_;
   const double strides = strides_to(pose);
+  const bool anywhere = tissue.model->compliance_is_constant();
+  const double stride = way.norm() / strides / tool_.radius;
   ContactForce contact;
   int iterations = 0;
+  double pressed = 0;  // of the tool radius, in contact
   for (double i = 1; i <= strides && iterations < kMaxIterations; ++i) {
+    if (pressed > kFarthestPress && !anywhere) break;
     start_stride(i == 1, tissue);
     const double share = i / strides;
     place_ = i == strides
                  ? pose
                  : ToolPose(from.p_W + share * way + aside(share, way), from.q_W.slerp(share, pose.q_W));
+    const bool touched = pressed > 0 || force_.contacts > 0;
     contact = touch(tissue);
     iterations += contact.iterations;
+    if (contact.contacts > 0) pressed += stride;
+    if (contact.contacts == 0 && touched && fell_in(tissue)) break;
   }
   // Else the next step goes on from here.
   arrived_ = place_.p_W == pose.p_W && place_.q_W.coeffs() == pose.q_W.coeffs();
@@ -195,8 +204,15 @@ Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue) const 
 
 void ToolContact::settle(Tissue& tissue) noexcept {
   if (holds()) return pull(place_, tissue);
-  const ContactForce contact = touch(tissue);
-  conclude(contact, force_.iterations + contact.iterations, tissue);
+  ContactForce contact = touch(tissue);
+  const bool may_be_in =
+      force_.contacts > 0 && (contact.contacts == 0 || !tissue.model->compliance_is_constant());
+  const int iterations = force_.iterations + contact.iterations;
+  if (may_be_in && fell_in(tissue)) {
+    arrived_ = false;
+    contact = {};
+  }
+  conclude(contact, iterations, tissue);
 }
 
 void ToolContact::conclude(const ContactForce& contact, int iterations, Tissue& tissue) noexcept {
@@ -287,6 +303,15 @@ void ToolContact::enter(const ToolPose& pose, Tissue& tissue) noexcept {
     deepest = (door - x).norm();
     place_.p_W = place_before(pose, x, share, door);
   }
+}
+
+/// Whether the tissue has closed over a tool that touched it, as after a change of shape beyond what its
+/// compliance foretold. Then the tool stands before the surface again, without a load, and has not arrived.
+bool ToolContact::fell_in(Tissue& tissue) noexcept {
+  const ToolPose there = place_;
+  if (!finder_.inside(tissue.positions, there.p_W + tip_offset_)) return false;
+  enter(there, tissue);
+  return place_.p_W != there.p_W;
 }
 
 /// Where the tip was when the place `inside` on the axis, at that share of it, stood before `door`.

@@ -16,8 +16,8 @@ struct ToolForce {
   int contacts = 0;             ///< touching faces, edges and vertices; or vertices that it grasps
   int iterations = 0;           ///< contact linearisations, all sub-places together
   /// No settled answer: a wild position (then there is no force), contact that did not converge, several
-  /// tools that did not come to an equilibrium, or a way too long for one step (then the force belongs to the
-  /// place the tool got to).
+  /// tools that did not come to an equilibrium, tissue that found no balance or closed over the tool, or a
+  /// way too long for one step (then the force belongs to the place the tool got to).
   bool flagged = false;
 };
 
@@ -119,6 +119,7 @@ class ToolContact {
   void give_up(Tissue& tissue) noexcept;
   bool escaped(const ToolPose& pose) const noexcept;
   void enter(const ToolPose& pose, Tissue& tissue) noexcept;
+  bool fell_in(Tissue& tissue) noexcept;
   void start_stride(bool first, const Tissue& tissue) noexcept;
   Vec3 place_before(const ToolPose& pose, const Vec3& inside, double share, const Vec3& door) const noexcept;
   double strides_to(const ToolPose& pose) const noexcept;

@@ -106,8 +106,8 @@ void Implicit::follow_loads() noexcept {
   Eigen::VectorXd change = Eigen::VectorXd::Zero(dynamics_.dofs().count);
   add_response(loads_, 1, change);
   add_response(met_, -1, change);
-  dynamics_.move(change);
   met_ = loads_;
+  dynamics_.follow(change, external());
 }
 
 /// Adds what moves by loads, times `sign`, m by unknowns.
@@ -132,7 +132,7 @@ std::optional<FreeMotion> Implicit::relinearise() noexcept {
 }
 
 bool Implicit::balanced() const noexcept {
-  return never_changes() || dynamics_.unbalanced() <= kBalanced;
+  return never_changes() || (dynamics_.unbalanced() <= kBalanced && !dynamics_.inside_out());
 }
 
 /// A new linearisation, or a new place of an old one: the surface there, and free of the loads it was made

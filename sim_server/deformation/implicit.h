@@ -27,7 +27,8 @@ class Implicit : public DeformationModel {
   bool compliance_is_constant() const noexcept override { return false; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::optional<FreeMotion> relinearise() noexcept override;
-  /// Whether the last look found no more than 5 % of the forces at work unbalanced.
+  /// Whether the last look found no more than 5 % of the forces at work unbalanced, and no element inverted
+  /// for good.
   bool balanced() const noexcept override;
   std::vector<MemoryPart> memory() const override;
 

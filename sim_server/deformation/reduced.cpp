@@ -57,6 +57,7 @@ Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene))
   }
   q_ = v_ = p_ = q_free_ = Eigen::VectorXd::Zero(count);
   moved_.setZero(shapes_.rows());
+  loads_.reserve(kMaxTools * inputs.reachable.size());
   statics.fill(compliance_, inputs);
   compliance_.add(shapes_, beyond_statics);
   inputs.progress("computing compliance", 1);
@@ -75,8 +76,9 @@ FreeMotion Reduced::free_motion(double dt) noexcept {
     if (supports_) supports_->advance(period_);
     for (std::size_t v = 0; v < rest_.size(); ++v)
       free_[v] = unloaded()[v] + moved_.segment<3>(3 * static_cast<Eigen::Index>(v));
+    press(loads_);
   }
-  return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>()};
+  return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>(), positions_};
 }
 
 void Reduced::compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
@@ -88,9 +90,14 @@ std::span<const Vec3> Reduced::apply(std::span<const NodalLoad> loads) noexcept 
   for (const NodalLoad& load : loads)
     p_.noalias() +=
         shapes_.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex)).transpose() * load.force;
+  loads_.assign(loads.begin(), loads.end());
+  press(loads);
+  return positions_;
+}
+
+void Reduced::press(std::span<const NodalLoad> loads) noexcept {
   std::copy(free_.begin(), free_.end(), positions_.begin());
   compliance_.move(loads, positions_);
-  return positions_;
 }
 
 std::vector<MemoryPart> Reduced::memory() const {

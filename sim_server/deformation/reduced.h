@@ -36,6 +36,7 @@ class Reduced : public DeformationModel {
 
   /// The surface as its supports move it.
   std::span<const Vec3> unloaded() const noexcept { return supports_ ? supports_->positions() : rest_; }
+  void press(std::span<const NodalLoad> loads) noexcept;
 
   double period_;  // s
   std::vector<Vec3> rest_, free_, positions_;
@@ -45,6 +46,7 @@ class Reduced : public DeformationModel {
   Eigen::MatrixXd shapes_;                  // (3 surface vertices x modes), 1/sqrt(kg)
   Eigen::VectorXd q_, v_, p_, q_free_;      // (modes) m sqrt(kg), m sqrt(kg)/s, N/sqrt(kg)
   Eigen::VectorXd moved_;                   // (3 surface vertices) m
+  std::vector<NodalLoad> loads_;            // of the last `apply`
 };
 
 }  // namespace palpate::sim

@@ -11,8 +11,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostSubSteps = 1e5;
-constexpr double kSafety = 0.95;  // of the longest stable sub-step; the frequency is known from below
+constexpr double kMostSubSteps = 2e4;  // no step of so many is in time
+constexpr double kSafety = 0.95;       // of the longest stable sub-step; the frequency is known from below
 
 ElasticTensors assemble(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
@@ -53,9 +53,10 @@ void TensorMass::choose_sub_step(const ModelInputs& inputs) {
   const double period = step_period(inputs.scene), steps = std::ceil(period / longest);
   if (steps > kMostSubSteps) {
     fail(
-        "{}: a step at {:g} Hz would take {:g} sub-steps of {:.2g} s; model \"tensor_mass\" is for soft "
-        "tissue",
-        inputs.scene.source, inputs.scene.rate_hz, steps, longest);
+        "{}: a step at {:g} Hz would take {:g} sub-steps of {:.2g} s, and {:g} are the most; model "
+        "\"tensor_mass\" is for soft tissue: take \"implicit\", a larger `rate_hz` or a smaller "
+        "`rayleigh_stiffness`",
+        inputs.scene.source, inputs.scene.rate_hz, steps, longest, kMostSubSteps);
   }
   sub_steps_ = static_cast<int>(steps);
   sub_step_ = period / sub_steps_;

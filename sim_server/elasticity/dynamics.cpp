@@ -16,6 +16,11 @@ constexpr double kStill = 1e-9;
 constexpr double kElsewhere = 1e-4;
 // Likewise: by so much nodes are moved to learn how forces change.
 constexpr double kNudge = 1e-7;
+// Of the forces at work: where the last way of a step leaves more, velocities mean nothing, and it ends at
+// rest: each step from there lowers the energy, however far Newton's method is from balance.
+constexpr double kAdrift = 0.1;
+// Of a way that overshoots: the shortest part that is tried.
+constexpr double kShortest = 1e-4;
 // Conjugate gradients end when no more than this share is left, or after so many.
 constexpr double kInexact = 0.1;
 constexpr int kMostGradients = 20;
@@ -66,6 +71,8 @@ void Dynamics::start_step(double h) {
   quasi_newton_.begin();
   if (learns()) too_old_ = false;
   improved_ = false;
+  remains_ = 0;
+  predicted_ = true;
   const bool second = settings_.second_order && steps_ > 0;
   c_ = (second ? 1.5 : 1) / h;
   for (std::size_t i = 0; i < x_.size(); ++i) {
@@ -169,27 +176,21 @@ void Dynamics::move(const Eigen::VectorXd& by) {
 }
 
 double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
+  const double before = left_;
+  if (predicted_) shorten_prediction(external);
   bool fresh = matrix_.c() != c_;
   if (fresh) factor();
-  const double before = left_;
   Eigen::VectorXd left = imbalance(external);
   if (!std::isfinite(left_)) {  // flung about beyond all measure: it stays where it was
     x_ = x_before_;
     told_ = false;
-    left_ = 1;
+    left_ = remains_ = 1;
     return 0;
   }
   if (left_ <= tolerance) return left_;
   bool slow = false;
   if (improved_ && left_ > kWorthwhile * before) {
     if (fresh_ && left_ <= kRounding) return 0;
-    if (fresh_ && left_ > before) {  // too far: half of the way back
-      way_ *= -0.5;
-      move(way_);
-      way_ *= -1;
-      left_ = before;
-      return 1;
-    }
     slow = true;
     if (!background_) {
       factor();
@@ -201,9 +202,52 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
   if (learns()) learn(left, external);
   too_old_ = too_old_ || slow;
   fresh_ = fresh || too_old_;
-  way_ = background_ && too_old_ ? conjugate_gradients(left, external) : quasi_newton_.step(matrix_, left);
-  move(way_);
+  Eigen::VectorXd way =
+      background_ && too_old_ ? conjugate_gradients(left, external) : quasi_newton_.step(matrix_, left);
+  if (!way.allFinite()) way = left / matrix_.largest();  // there is no factor: a little the right way
+  go(way, left, external);
   return left_;
+}
+
+void Dynamics::follow(const Eigen::VectorXd& way, std::span<const Vec3> external) {
+  if (never_changes()) return move(way);
+  const double unbalanced_before = left_;
+  const Eigen::VectorXd left = imbalance(external);
+  go(way, left, external);
+  left_ = unbalanced_before;
+}
+
+/// Along `way` (m) from where `left` is unbalanced: all of it, or a half, a quarter ... of it, so that what
+/// is unbalanced there does not pull back harder. Forces that grow faster than their linearisation would else
+/// throw the body farther each time.
+void Dynamics::go(const Eigen::VectorXd& way, const Eigen::VectorXd& left, std::span<const Vec3> external) {
+  if (never_changes()) return move(way);
+  const double unbalanced_here = left_, pull = std::abs(left.dot(way));
+  const std::vector<Vec3> here = x_;
+  remains_ = 1;
+  for (double length = 1; remains_ == 1 && length > kShortest; length /= 2) {
+    x_ = here;
+    move(length * way);
+    if (imbalance(external).dot(way) >= -pull) remains_ = left_;
+  }
+  if (remains_ == 1) x_ = here;
+  told_ = told_ && remains_ < 1;
+  left_ = unbalanced_here;
+}
+
+/// Where the velocity leads, unless elastic forces would turn the body on the way.
+void Dynamics::shorten_prediction(std::span<const Vec3> external) {
+  predicted_ = false;
+  if (never_changes()) return;
+  Eigen::VectorXd way(dofs_.count);
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    if (dofs_.first[i] < 0) continue;
+    way.segment<3>(dofs_.first[i]) = h_ * v_before_[i];
+    x_[i] = x_before_[i];
+  }
+  told_ = false;
+  dofs_.hold(way);
+  go(way, imbalance(external), external);
 }
 
 /// How the body resists where it is now.
@@ -262,10 +306,11 @@ void Dynamics::finish_step() {
   std::swap(internal_before_, internal_);
   told_ = false;
   if (!terms_.empty()) relax_stress(h_);
+  const bool adrift = remains_ > kAdrift;
   for (std::size_t i = 0; i < x_.size(); ++i) {
-    const Vec3 v = c_ * (x_[i] - from_[i]);
-    x_then_[i] = x_before_[i];
-    v_then_[i] = v_before_[i];
+    const Vec3 v = adrift ? Vec3(Vec3::Zero()) : Vec3(c_ * (x_[i] - from_[i]));
+    x_then_[i] = adrift ? x_[i] : x_before_[i];
+    v_then_[i] = adrift ? v : v_before_[i];
     x_before_[i] = x_[i];
     v_before_[i] = v;
   }
@@ -292,6 +337,16 @@ void Dynamics::relax_stress(double h) {
 
 void Dynamics::forces(std::span<Vec3> f) const {
   solid_.forces(x_, f, viscosity());
+}
+
+bool Dynamics::inside_out() const {
+  if (solid_.material().law != ElasticLaw::kStVenantKirchhoff) return false;
+  for (std::size_t e = 0; e < solid_.elements(); ++e) {
+    const std::span<const int> t = solid_.element(e);
+    const Vec3 a = x_[t[1]] - x_[t[0]], b = x_[t[2]] - x_[t[0]], c = x_[t[3]] - x_[t[0]];
+    if (!(a.cross(b).dot(c) > 0)) return true;
+  }
+  return false;
 }
 
 double Dynamics::kinetic_energy() const {

@@ -43,6 +43,9 @@ class Dynamics {
   int settle(std::span<const Vec3> external, int most, double tolerance);
   /// What the last `improve` found unbalanced before it, as a share of the forces at work.
   double unbalanced() const { return left_; }
+  /// Whether an element is inverted of a law that does not turn it back: St. Venant and Kirchhoff's, which
+  /// has a second rest there. O(elements), a fraction of a look.
+  bool inside_out() const;
   /// Factors anew, where the factor is of a place elsewhere and none comes from the background.
   void refresh();
   /// What is found now is the end of the step.
@@ -68,8 +71,9 @@ class Dynamics {
   void foresee(std::vector<int> first) { foreseen_ = std::move(first); }
   /// Those that the factor of now came with; none where it is not of the background.
   const Columns& foreseen() const;
-  /// Moves the unknowns, m.
-  void move(const Eigen::VectorXd& by);
+  /// Moves the unknowns by what a linearisation foretells of these forces (nodes, N), m; less far where their
+  /// resistance would throw the body back.
+  void follow(const Eigen::VectorXd& way, std::span<const Vec3> external);
   double kinetic_energy() const;
   /// With which the body resists (nodes, N), viscosity counted, at the end of the last step.
   void forces(std::span<Vec3> f) const;
@@ -79,6 +83,10 @@ class Dynamics {
   void factor();
   bool learns() const { return background_ && settings_.solver == DynamicsSettings::Solver::kQuasiNewton; }
   void learn(const Eigen::VectorXd& left, std::span<const Vec3> external);
+  void go(const Eigen::VectorXd& way, const Eigen::VectorXd& left, std::span<const Vec3> external);
+  bool never_changes() const { return solid_.material().law == ElasticLaw::kLinear; }
+  void move(const Eigen::VectorXd& by);
+  void shorten_prediction(std::span<const Vec3> external);
   void exchange_factors();
   void renewed();
   Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& left, std::span<const Vec3> external);
@@ -101,16 +109,17 @@ class Dynamics {
   std::vector<Vec3> factored_at_;  // m
   int factors_ = 0;
   bool improved_ = false, fresh_ = false;  // in this step; by a factor of the very place
-  Eigen::VectorXd way_;                    // of the last improvement, m
+  bool predicted_ = false;                 // the step has begun where its velocity led
   std::vector<Vec3> x_, x_before_, v_before_, x_then_, v_then_;  // now; last step's end; the one before
   std::vector<Vec3> from_, from_v_;                              // x~, v~
   std::vector<Vec3> internal_, internal_before_, internal_then_, from_internal_;  // f_int, likewise, N
   bool told_ = false;                                                             // `internal_` is of here
   double c_ = 0, h_ = 0;
   int steps_ = 0, exchanged_ = -1;
-  double left_ = 0;   // unbalanced, of the forces at work
-  double reach_ = 0;  // size of the body, m
-  double still_ = 0;  // a force that is none, N
+  double left_ = 0;     // unbalanced, of the forces at work
+  double remains_ = 0;  // likewise, where the last way led
+  double reach_ = 0;    // size of the body, m
+  double still_ = 0;    // a force that is none, N
   // Viscosity: by quadrature point; terms one after the other.
   double scale_ = 1;
   std::vector<Mat3> stress_, memory_, terms_;

@@ -20,8 +20,8 @@ class NewtonMatrix {
   void build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c);
   /// A^-1 b of the factor, for columns b over the unknowns.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return factor_.solve(b); }
-  /// A^-1 of unit forces on the three unknowns from each of `first` on: (unknowns x 3 first.size()); to some
-  /// 1e-12 whatever the precision of the factor, by one step of refinement.
+  /// A^-1 of unit forces on the three unknowns from each of `first` on: (unknowns x 3 first.size()); of a
+  /// factor in single precision by one step of refinement, which squares its error.
   Eigen::MatrixXd columns(std::span<const int> first) const;
 
   /// c of the last `build`, 1/s; 0 before the first.

@@ -21,7 +21,7 @@ struct SparseCholesky::Factor {
   std::optional<SupernodalFactor<double>> fine;  // one of the two
   std::optional<SupernodalFactor<float>> rough;
 
-  bool countable() const { return pattern.countable(); }
+  bool countable() const { return pattern.countable; }
   std::size_t bytes() const {
     const std::size_t number = precision == Precision::kSingle ? sizeof(float) : sizeof(double);
     return pattern.values() * number + pattern.bytes();
@@ -37,19 +37,13 @@ struct SparseCholesky::Factor {
       return fine->factor(lower);
     }
     if (!rough) rough.emplace(pattern);
-    return rough->factor(lower) || refine(lower);
+    return rough->factor(lower);
   }
 
-  /// From here on in double precision, if the numbers allow that.
-  bool refine(const SparseMatrix& lower) {
-    fine.emplace(pattern);
-    if (!fine->factor(lower)) {
-      fine.reset();
-      return false;
-    }
+  /// From here on in double precision.
+  void refine() {
     rough.reset();
     precision = Precision::kDouble;
-    return true;
   }
 
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const {
@@ -76,7 +70,7 @@ struct SparseCholesky::Factor {
   std::size_t work_bytes(const SparseMatrix& lower) const {
     return static_cast<std::size_t>(lower.nonZeros()) * (sizeof(double) + sizeof(int));  // a copy
   }
-  bool refine(const SparseMatrix&) { return true; }
+  void refine() {}
   bool factorize(const SparseMatrix& lower) {
     llt.factorize(lower);
     return llt.info() == Eigen::Success;
@@ -104,6 +98,11 @@ Eigen::MatrixXd alternating(Eigen::Index n) {
   return Eigen::VectorXd::NullaryExpr(n, [](Eigen::Index i) { return i % 2 == 0 ? 1.0 : -0.7; });
 }
 
+/// Of a load, the share that an answer leaves.
+double imbalance(const SparseMatrix& lower, const Eigen::MatrixXd& answer, const Eigen::MatrixXd& load) {
+  return (load - lower.selfadjointView<Eigen::Lower>() * answer).norm() / load.norm();
+}
+
 /// A singular matrix can pass as positive definite by rounding; its answers are huge then.
 bool nearly_singular(const SparseMatrix& lower, const Eigen::MatrixXd& answer) {
   const double largest = lower.diagonal().maxCoeff() * answer.cwiseAbs().maxCoeff();
@@ -115,16 +114,20 @@ bool nearly_singular(const SparseMatrix& lower, const Eigen::MatrixXd& answer) {
 SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& where, Precision precision,
                                double free)
     : factor_(std::make_unique<Factor>(lower, precision)) {
-  require_room(*factor_, lower, free, where);
-  bool definite = factor_->factorize(lower);
+  if (lower.rows() == 0) return;
   const Eigen::MatrixXd load = alternating(lower.rows());
-  Eigen::MatrixXd answer = definite ? solve(load) : load;
-  if (definite && precision == Precision::kSingle) {
-    const Eigen::MatrixXd left = load - lower.selfadjointView<Eigen::Lower>() * answer;
-    if (!(left.norm() < kRough * load.norm())) {
-      definite = factor_->refine(lower);
-      answer = definite ? solve(load) : load;
-    }
+  Eigen::MatrixXd answer;
+  bool definite = false;
+  const auto factor = [&] {
+    require_room(*factor_, lower, free, where);
+    definite = factor_->factorize(lower);
+    answer = definite ? solve(load) : load;
+  };
+  factor();
+  const bool single = factor_->precision == Precision::kSingle;
+  if (single && (!definite || !(imbalance(lower, answer, load) < kRough))) {
+    factor_->refine();
+    factor();
   }
   if (!definite || nearly_singular(lower, answer)) {
     fail(
@@ -139,11 +142,11 @@ SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
 bool SparseCholesky::refactor(const SparseMatrix& lower) {
-  return factor_->factorize(lower);
+  return lower.rows() == 0 || factor_->factorize(lower);
 }
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
-  return factor_->solve(b);
+  return b.rows() == 0 ? b : factor_->solve(b);
 }
 
 SparseCholesky::Precision SparseCholesky::precision() const {

@@ -14,7 +14,7 @@ class SparseCholesky {
  public:
   /// Of the numbers of the factor. Single takes half the memory and time, and serves where what is solved for
   /// is looked at again: answers are right to some 1e-6 of their size times the condition of the matrix.
-  /// Where that is too little, double is taken instead.
+  /// Where the first matrix leaves more than a thousandth of a load, double is taken instead, for good.
   enum class Precision { kDouble, kSingle };
 
   /// Factors the matrix whose lower triangle is given, in 3 x 3 blocks as `StiffnessMatrix` has them. Throws

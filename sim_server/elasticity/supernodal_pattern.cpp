@@ -1,6 +1,7 @@
 #include "sim_server/elasticity/supernodal_pattern.h"
 
 #include <algorithm>
+#include <new>
 #include <numeric>
 #include <suitesparse/cholmod.h>
 
@@ -87,11 +88,19 @@ std::vector<To> copied(const void* from, std::size_t count) {
 }  // namespace
 
 SupernodalPattern::SupernodalPattern(const SparseMatrix& lower) {
+  if (lower.rows() == 0) {
+    first = {0};
+    rows_begin = values_begin = updates_begin = {0};
+    return;
+  }
   Cholmod cholmod;
   std::vector<int> nodal = cholmod.order_of(NodeGraph(lower));
-  if (nodal.empty()) return;
-  cholmod_factor* found = cholmod.analyze(lower, nodal);
-  if (found == nullptr) return;
+  cholmod_factor* found = nodal.empty() ? nullptr : cholmod.analyze(lower, nodal);
+  if (found == nullptr) {
+    if (cholmod.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+    countable = false;
+    return;
+  }
   order = copied<int>(found->Perm, found->n);
   first = copied<int>(found->super, found->nsuper + 1);
   rows = copied<int>(found->s, found->ssize);

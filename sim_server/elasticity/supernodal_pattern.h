@@ -23,10 +23,9 @@ struct SupernodalPattern {
 
   /// Of a matrix whose lower triangle is given in 3 x 3 blocks (`StiffnessMatrix`): the order is that of the
   /// graph of its nodes, by AMD or METIS, of which gives the smaller factor. `countable` is false, and the
-  /// rest empty, where L has more than 2^31 entries.
+  /// rest empty, where L has more than 2^31 entries. Throws `std::bad_alloc`.
   explicit SupernodalPattern(const SparseMatrix& lower);
 
-  bool countable() const { return !order.empty(); }
   int supernodes() const { return static_cast<int>(first.size()) - 1; }
   int columns(int s) const { return first[s + 1] - first[s]; }
   /// Those of L's rows that a supernode has: its own columns, then others below.
@@ -39,6 +38,7 @@ struct SupernodalPattern {
   std::size_t values() const { return values_begin.back(); }  ///< entries of all blocks
   std::size_t bytes() const;
 
+  bool countable = true;
   std::vector<int> order;                 ///< (n) the unknown eliminated at each place
   std::vector<int> first;                 ///< (supernodes + 1) first column
   std::vector<int> rows;                  ///< one list after another

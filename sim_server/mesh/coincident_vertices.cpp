@@ -116,11 +116,13 @@ void renumber(TetMesh& mesh, const std::vector<int>& number) {
   }
   for (auto& [name, vertices] : mesh.surface_tags) {
     for (int& vertex : vertices) vertex = number[vertex];
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    if (!vertices.empty() && vertices.front() < 0) vertices.erase(vertices.begin());
   }
-  std::erase_if(mesh.surface_tags, [](const auto& tag) { return tag.second.empty(); });
+  for (auto& [name, triangles] : mesh.tagged_triangles) {
+    for (Triangle& t : triangles) {
+      for (int& vertex : t) vertex = number[vertex];
+    }
+  }
+  sort_tags(mesh);
 }
 
 void keep_vertices(TetMesh& mesh, const std::vector<char>& keep) {

@@ -64,7 +64,7 @@ class MeshReader {
     if (!has_nodes_ || !has_elements_) {
       cursor_.wrong("the file ends without ${}", has_nodes_ ? "Elements" : "Nodes");
     }
-    all_.surface_tags = surface_tags();
+    tag_surfaces();
     return std::move(all_);
   }
 
@@ -274,20 +274,18 @@ class MeshReader {
     return at->second;
   }
 
-  std::map<std::string, std::vector<int>> surface_tags() const {
-    std::map<std::string, std::vector<int>> tags;
+  void tag_surfaces() {
     for (const auto& [group, nodes] : vertices_of_group_) {
       for (const std::int64_t physical : physicals(group)) {
         if (physical == 0) continue;  // Gmsh's way to say "in no physical group"
-        std::vector<int>& vertices = tags[tag_name(physical)];
+        std::vector<int>& vertices = all_.surface_tags[tag_name(physical)];
         vertices.insert(vertices.end(), nodes.begin(), nodes.end());
+        std::vector<Triangle>& triangles = all_.tagged_triangles[tag_name(physical)];
+        for (std::size_t k = 0; k + 2 < nodes.size(); k += 3)
+          triangles.push_back({nodes[k], nodes[k + 1], nodes[k + 2]});
       }
     }
-    for (auto& [name, vertices] : tags) {
-      std::sort(vertices.begin(), vertices.end());
-      vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    }
-    return tags;
+    sort_tags(all_);
   }
 
   std::vector<std::int64_t> physicals(std::int64_t group) const {

@@ -41,6 +41,16 @@ TetMesh refined(const TetMesh& mesh) {
       if (has[a] != 0 && has[b] != 0) tagged.push_back(static_cast<int>(mesh.vertices.size() + k));
     }
   }
+  for (const auto& [name, triangles] : mesh.tagged_triangles) {
+    for (const auto& [a, b, c] : triangles) {
+      const int ab = with_middles.middle(a, b), bc = with_middles.middle(b, c),
+                ac = with_middles.middle(a, c);
+      for (const Triangle& t :
+           {Triangle{a, ab, ac}, Triangle{b, ab, bc}, Triangle{c, ac, bc}, Triangle{ab, bc, ac}})
+        fine.tagged_triangles[name].push_back(t);
+    }
+  }
+  sort_tags(fine);
   for (const Tetrahedron& t : mesh.tetrahedra) {
     std::array<int, 6> middle{};
     for (std::size_t e = 0; e < 6; ++e) middle[e] = with_middles.middle(t[kEdges[e][0]], t[kEdges[e][1]]);

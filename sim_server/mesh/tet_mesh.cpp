@@ -82,6 +82,21 @@ void add_mid_edges(TetMesh& mesh) {
   mesh.mid_edges = std::move(edges);
 }
 
+void sort_tags(TetMesh& mesh) {
+  const auto put_in_order = [](auto& list, const auto& is_gone) {
+    std::erase_if(list, is_gone);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  for (auto& [name, vertices] : mesh.surface_tags) put_in_order(vertices, [](int v) { return v < 0; });
+  for (auto& [name, triangles] : mesh.tagged_triangles) {
+    for (Triangle& t : triangles) std::sort(t.begin(), t.end());
+    put_in_order(triangles, [](const Triangle& t) { return t[0] < 0; });
+  }
+  std::erase_if(mesh.surface_tags, [](const auto& tag) { return tag.second.empty(); });
+  std::erase_if(mesh.tagged_triangles, [](const auto& tag) { return tag.second.empty(); });
+}
+
 double six_volumes(const TetMesh& mesh, const Tetrahedron& t) {
   const std::vector<Vec3>& x = mesh.vertices;
   return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).dot(x[t[3]] - x[t[0]]);

@@ -21,6 +21,8 @@ struct TetMesh {
   std::vector<Tetrahedron> tetrahedra;  ///< (m), indices into `vertices`
   /// Vertices of each named (or numbered, "17") surface the file tags; empty where it tags none.
   std::map<std::string, std::vector<int>> surface_tags;
+  /// Triangles of each such surface as the file has them: corners ascending, and so the list.
+  std::map<std::string, std::vector<Triangle>> tagged_triangles = {};
   /// The two corners, ascending, of the edge in whose middle each of the last vertices is. All edges of the
   /// mesh, ascending (`add_mid_edges`), or none.
   std::vector<std::array<int, 2>> mid_edges = {};
@@ -35,6 +37,9 @@ struct TetMesh {
 /// Puts one more vertex in the middle of each edge of a mesh that `mend` found usable, as elements with ten
 /// nodes need it; nothing where they are there. O(m log m).
 void add_mid_edges(TetMesh& mesh);
+
+/// Puts tagged vertices and triangles in order, each once, and drops those below 0.
+void sort_tags(TetMesh& mesh);
 
 /// Six times the signed volume of tetrahedron `t`, m^3.
 double six_volumes(const TetMesh& mesh, const Tetrahedron& t);

@@ -124,12 +124,30 @@ void add_case(const std::string& name, Case (*make)()) {
       ->Iterations(30);
 }
 
+/// Setting up a large scene, without reading its mesh.
+void add_set_up(const std::string& name, Case (*make)()) {
+  add("setup/" + name,
+      [make, hash = std::uint64_t{0}](benchmark::State& state) mutable {
+        const Case on = make();
+        for (auto _ : state) {
+          const Time begin = now();
+          const Simulation simulation(on.scene, on.mesh);
+          state.SetIterationTime(to_seconds(now() - begin));
+          hash = simulation.state_hash();
+        }
+        show(state, hash);
+      })
+      ->UseManualTime()
+      ->Iterations(1);
+}
+
 }  // namespace
 
 void add_implicit_rows() {
   add_case("liver_6k/direct", &liver_case);
   add_case("block_22k/quasi_newton", [] { return block_case(20, 30, 16); });
   add_case("block_98k/quasi_newton", [] { return block_case(33, 10, 64); });
+  add_set_up("block_98k", [] { return block_case(33, 10, 64); });
 }
 
 }  // namespace palpate::bench

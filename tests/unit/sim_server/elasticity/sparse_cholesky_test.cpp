@@ -125,3 +125,15 @@ TEST_CASE("a factor that does not fit is refused before it is made") {
     CHECK(said.find(" MB, and " + bytes_text(bytes) + " are free; take a coarser mesh") != std::string::npos);
   }
 }
+
+TEST_CASE("a factor of nothing answers nothing") {
+  SparseCholesky factor(SparseMatrix(0, 0), "test");
+  CHECK(factor.solve(Eigen::MatrixXd(0, 3)).size() == 0);
+  CHECK(factor.refactor(SparseMatrix(0, 0)));
+}
+
+TEST_CASE("double precision that does not fit is refused, too") {
+  const StiffnessMatrix matrix = stiffness_of_block(8, 0.499999);
+  const auto bytes = static_cast<double>(SparseCholesky(matrix.lower(), "test").bytes());
+  CHECK_THROWS_AS(SparseCholesky(matrix.lower(), "test", Precision::kSingle, 0.8 * bytes), Error);
+}

@@ -204,6 +204,9 @@ TEST_CASE("a cube comes out of every flavour of the format", "[mesh]") {
     REQUIRE(mesh.surface_tags.size() == 2);
     CHECK(mesh.surface_tags.at("base plate") == std::vector<int>{0, 2, 4, 6});
     CHECK(mesh.surface_tags.at("23") == std::vector<int>{0, 1, 2, 3});
+    for (const Triangle& t : mesh.tagged_triangles.at("base plate"))
+      CHECK((t[0] < t[1] && t[1] < t[2] && t[0] % 2 + t[1] % 2 + t[2] % 2 == 0));
+    CHECK(mesh.tagged_triangles.at("base plate").size() == 2);
   }
 }
 

@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+"""Draw what scripts/study robustness found: one table, cases by models, outcome by colour.
+
+DIR holds summary.json. Written beside it: robustness.png. A stable or flagged cell has its error
+against the reference; the error of a body that was flung about is how far it is from rest, in
+percent of its size. Needs Debian's python3-matplotlib.
+
+Exit status: 0 drawn, 2 the folder cannot be used.
+"""
+
+import argparse
+import json
+import sys
+import textwrap
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.patches import Patch  # noqa: E402
+
+COLOURS = {"stable": "#b8e0c2", "flagged": "#fbe3a1", "refused": "#c9d6ea", "not_applicable": "#f2f2f2",
+           "exploded": "#e4604e"}
+MEANINGS = {"stable": "stable: error of the force at the end", "flagged": "flagged: a defined answer, told to be unsettled",
+            "refused": "refused: the program says what to change", "not_applicable": "makes no sense for this model",
+            "exploded": "exploded"}
+# What a refusal is about, in a word.
+WHY = {"sub-steps": "too many\nsub-steps", "no fixed nodes": "nothing\nholds it", "singular": "nothing\nholds it",
+       "friction": "friction\nabove 2", "is for law": "material\nit cannot", "bears tools only": "tools\nonly",
+       "reduced": "not in\nthis build"}
+
+
+def number(value):
+    """Errors below 0.01 % are none to a hand."""
+    return "< 0.01 %" if value < 0.01 else f"{value:.2g} %" if value < 1e4 else f"{value:.0e} %"
+
+
+def in_cell(row):
+    if row["outcome"] == "not_applicable":
+        return ""
+    if row["outcome"] == "refused":
+        return next((short for part, short in WHY.items() if part in row["reason"]), "refused")
+    if row["error_percent"] is not None:
+        return number(row["error_percent"])
+    return "\n".join(textwrap.wrap(row["reason"], 16)[:2])
+
+
+def draw(rows, file):
+    cases, models = list(dict.fromkeys(r["case"] for r in rows)), list(dict.fromkeys(r["model"] for r in rows))
+    figure, axes = plt.subplots(figsize=(3 + 1.25 * len(models), 1.9 + 0.42 * len(cases)), layout="constrained")
+    for row in rows:
+        x, y = models.index(row["model"]), cases.index(row["case"])
+        axes.add_patch(plt.Rectangle((x - 0.48, y - 0.46), 0.96, 0.92, color=COLOURS[row["outcome"]], lw=0))
+        axes.text(x, y, in_cell(row), ha="center", va="center", fontsize=7.5, linespacing=0.95)
+    axes.set_xlim(-0.5, len(models) - 0.5)
+    axes.set_ylim(len(cases) - 0.5, -0.5)
+    axes.set_xticks(range(len(models)), [m.replace(" ", "\n") for m in models], fontsize=9)
+    axes.set_yticks(range(len(cases)), [c.replace("_", " ") for c in cases], fontsize=9)
+    axes.xaxis.tick_top()
+    axes.tick_params(length=0)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    axes.set_title("Extreme scenes: what each model makes of them", fontsize=12, pad=12)
+    used = [o for o in COLOURS if any(r["outcome"] == o for r in rows)]
+    axes.legend(handles=[Patch(color=COLOURS[o], label=MEANINGS[o]) for o in used], loc="upper center", ncol=2,
+                bbox_to_anchor=(0.5, -0.01), fontsize=8, frameon=False)
+    figure.savefig(file, dpi=110)
+    plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("dir", type=Path, metavar="DIR")
+    folder = parser.parse_args().dir
+    try:
+        draw(json.loads((folder / "summary.json").read_text(encoding="ascii")), folder / "robustness.png")
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        print(f"robustness.py: {folder}: {error}; scripts/study robustness makes it", file=sys.stderr)
+        return 2
+    return 0
+
+
+sys.exit(main())

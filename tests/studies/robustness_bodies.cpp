@@ -1,0 +1,145 @@
+// Bodies without tools: flung out of shape, and left swinging.
+#include <fmt/core.h>
+
+#include "common/error.h"
+#include "sim_server/deformation/explicit_motion.h"
+#include "sim_server/elasticity/dynamics.h"
+#include "tests/studies/robustness.h"
+#include "tests/support/random.h"
+
+namespace palpate::studies {
+namespace {
+
+using namespace palpate::sim;
+
+constexpr double kSize = 0.03;      // m, of the block
+constexpr double kNoise = 1e-6;     // of that
+constexpr double kStep = 1.0 / 30;  // s
+constexpr double kHome = 1e-3;      // of the size: back at rest
+constexpr double kFar = 100;        // of the size: exploded
+
+std::vector<HeldAxes> held_below(const Solid& solid) {
+  std::vector<HeldAxes> held;
+  for (const Vec3& x : solid.rest()) held.push_back(x[1] < -0.0149 ? kAllAxes : 0);
+  return held;
+}
+
+double farthest(std::span<const Vec3> from, std::span<const Vec3> to) {
+  double most = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) most = std::max(most, (to[i] - from[i]).norm());
+  return most;
+}
+
+int inverted(const Solid& solid, std::span<const Vec3> x) {
+  std::vector<Solid::State> states(solid.points());
+  solid.evaluate(x, states);
+  int count = 0;
+  for (const Solid::State& state : states) count += state.F.determinant() > 0 ? 0 : 1;
+  return count;
+}
+
+/// Lets go of a body whose free vertices `put` has put somewhere.
+template <class Put>
+Verdict let_go(const Column& column, bool quick, const Put& put) {
+  if (!column.implicit())
+    return {"not_applicable", "the state of this model is not free vertices", {}, {}, ""};
+  const Solid solid(usual_block(), {.young_modulus = 1e4, .poisson_ratio = 0.45, .law = column.elastic});
+  const std::vector<HeldAxes> held = held_below(solid);
+  std::vector<Vec3> x = solid.rest();
+  test::Random random(7);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (held[i] == 0) x[i] = put(x[i], random);
+  }
+  Dynamics dynamics(solid, held, {.rayleigh_mass = 10, .rayleigh_stiffness = 1e-4}, "study");
+  dynamics.stand_at(x);
+  const std::vector<Vec3> none(x.size(), Vec3::Zero());
+  const int steps = quick ? 150 : 300;
+  double most = 0;
+  for (int i = 0; i < steps; ++i) {
+    dynamics.start_step(kStep);
+    dynamics.settle(none, 5, 1e-5);
+    dynamics.finish_step();
+    most = std::max(most, farthest(solid.rest(), dynamics.position()) / kSize);
+  }
+  const double off = farthest(solid.rest(), dynamics.position()) / kSize;
+  Verdict verdict{"stable", "", 100 * off, {}, "the shape at rest, in percent of the size"};
+  if (!std::isfinite(off) || most > kFar) {
+    return {
+        "exploded", fmt::format("it came to {:.3g} of its size from rest", most), {}, {}, verdict.reference};
+  }
+  if (off > kHome) {
+    const bool said = dynamics.inside_out() || dynamics.unbalanced() > 0.05;
+    verdict.outcome = said ? "flagged" : "exploded";
+    verdict.reason =
+        fmt::format("{:.0f} s later {} elements are still inverted: this law has a second rest there",
+                    steps * kStep, inverted(solid, dynamics.position()));
+  }
+  return verdict;
+}
+
+/// Of the conserved quantity of a leap-frog: its kinetic energy at a half step, with u K u' / 2 of the
+/// displacements around it.
+double energy_of(const ElasticTensors& tensors, const ExplicitMotion::State& state,
+                 const std::vector<double>& before) {
+  std::vector<double> force(state.u.size());
+  tensors.multiply(before.data(), force.data());
+  double energy = 0;
+  for (std::size_t k = 0; k < force.size(); ++k)
+    energy += 0.5 * (tensors.masses()[k / 3] * state.v[k] * state.v[k] + force[k] * state.u[k]);
+  return energy;
+}
+
+}  // namespace
+
+Verdict run_scattered(const Case&, const Column& column, bool quick) {
+  return let_go(column, quick,
+                [](const Vec3& x, test::Random& random) -> Vec3 { return x + random.vector(kSize / 2); });
+}
+
+Verdict run_collapsed_to_point(const Case&, const Column& column, bool quick) {
+  return let_go(column, quick,
+                [](const Vec3&, test::Random& random) -> Vec3 { return random.vector(kNoise * kSize); });
+}
+
+Verdict run_collapsed_to_plane(const Case&, const Column& column, bool quick) {
+  return let_go(column, quick, [](const Vec3& x, test::Random& random) -> Vec3 {
+    return Vec3(x[0], 0, x[2]) + random.vector(kNoise * kSize);
+  });
+}
+
+/// A body that was kicked everywhere: does its energy stay?
+Verdict run_undamped(const Case&, const Column& column, bool quick) {
+  if (column.model != "tensor_mass") return {"not_applicable", "only tensor_mass has sub-steps", {}, {}, ""};
+  const TetMesh mesh = usual_block();
+  std::vector<int> fixed;
+  for (int v = 0; v < mesh.corners(); ++v) {
+    if (mesh.vertices[v][1] < -0.0149) fixed.push_back(v);
+  }
+  const ElasticTensors tensors(mesh, {.young_modulus = 1e4, .poisson_ratio = 0.45}, fixed);
+  ExplicitMotion motion(tensors, {});
+  test::Random random(7);
+  for (double& v : motion.state.v) v = random.between(-0.1, 0.1);
+  const double h = 0.95 * longest_sub_step(highest_frequency(tensors), {});
+  const std::vector<double> none(motion.state.u.size(), 0);
+  const int looks = 1000, between = quick ? 10 : 1000;
+  double first = 0, least = 0, most = 0;
+  for (int i = 0; i < looks; ++i) {
+    motion.run(between - 1, h, none);
+    const std::vector<double> before = motion.state.u;
+    motion.run(1, h, none);
+    const double energy = energy_of(tensors, motion.state, before);
+    if (i == 0) first = least = most = energy;
+    least = std::min(least, energy);
+    most = std::max(most, energy);
+  }
+  const double band = 100 * (most - least) / first;
+  Verdict verdict{"stable",
+                  fmt::format("{} sub-steps", looks * between),
+                  band,
+                  {},
+                  "the energy of the first sub-steps, band of all"};
+  if (!(band < 1)) verdict.outcome = "exploded";
+  return verdict;
+}
+
+}  // namespace palpate::studies

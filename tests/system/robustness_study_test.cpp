@@ -1,0 +1,45 @@
+// `robustness_study`, the program behind `scripts/study robustness`: rows of a few quick cells.
+#include "tests/support/catch.h"
+#include "tests/support/programs.h"
+
+using namespace palpate::test;
+
+namespace {
+
+nlohmann::json row_of(const std::string& name, const std::string& model) {
+  const auto row = nlohmann::json::parse(output_of("robustness_study", {"--quick", name, model}, 0, 60));
+  CHECK(row.at("case") == name);
+  CHECK(row.at("model") == model);
+  CHECK(row.size() == 7);
+  return row;
+}
+
+}  // namespace
+
+TEST_CASE("robustness study: a cell that holds has an error against a reference, and a largest force") {
+  const auto row = row_of("usual", "rigid");
+  CHECK(row.at("outcome") == "stable");
+  CHECK(row.at("error_percent").get<double>() < 1e-3);
+  CHECK(row.at("max_force_newton").get<double>() == Approx(800 * 0.003).epsilon(1e-3));  // stiffness x depth
+  CHECK(row.at("reference") == "closed form: stiffness x depth");
+  CHECK(row_of("soft", "quasi_static").at("error_percent").get<double>() < 0.01);
+}
+
+TEST_CASE("robustness study: a refused cell says what to change, a flagged one how often it was") {
+  const auto refused = row_of("friction_10", "quasi_static");
+  CHECK(refused.at("outcome") == "refused");
+  CHECK(refused.at("reason").get<std::string>().find("must be between 0 and 2") != std::string::npos);
+  CHECK(refused.at("error_percent").is_null());
+  const auto flagged = row_of("nan_pose", "quasi_static");
+  CHECK(flagged.at("outcome") == "flagged");
+  CHECK(flagged.at("reason").get<std::string>().find("steps flagged") != std::string::npos);
+  CHECK(row_of("scattered", "rigid").at("outcome") == "not_applicable");
+}
+
+TEST_CASE("robustness study: twice the same cell gives the same bytes; wrong use tells how, exit 2") {
+  const std::vector<std::string> cell{"--quick", "usual", "implicit neo_hookean"};
+  CHECK(output_of("robustness_study", cell, 0, 60) == output_of("robustness_study", cell, 0, 60));
+  CHECK(output_of("robustness_study", {"usual"}, 2).find("example:") != std::string::npos);
+  CHECK(output_of("robustness_study", {"usul", "rigid"}, 2).find("did you mean \"usual\"") !=
+        std::string::npos);
+}
