@@ -19,6 +19,9 @@ constexpr double kNudge = 1e-7;
 // Of the forces at work: where the last way of a step leaves more, velocities mean nothing, and it ends at
 // rest: each step from there lowers the energy, however far Newton's method is from balance.
 constexpr double kAdrift = 0.1;
+// Likewise: where no more is unbalanced, and loads change by no more, linearisation is trusted without
+// another look at the forces.
+constexpr double kCalm = 0.1;
 // Of a way that overshoots: the shortest part that is tried.
 constexpr double kShortest = 1e-4;
 // Conjugate gradients end when no more than this share is left, or after so many.
@@ -60,6 +63,7 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
 
 void Dynamics::stand_at(std::vector<Vec3> x, std::vector<Vec3> v) {
   x_ = x_before_ = x_then_ = std::move(x);
+  told_ = told_before_ = false;
   if (!v.empty()) v_before_ = std::move(v);
   resist();
   internal_before_ = internal_then_ = internal_;
@@ -164,7 +168,9 @@ Eigen::VectorXd Dynamics::imbalance(std::span<const Vec3> external) {
         external[i] - internal_[i] - damped * (internal_[i] - from_internal_[i]) - inertia;
   }
   dofs_.hold(left);
-  left_ = left.norm() / std::sqrt(at_work);
+  at_work_ = std::sqrt(at_work);
+  left_ = left.norm() / at_work_;
+  seen_.assign(external.begin(), external.end());
   return left;
 }
 
@@ -205,12 +211,19 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
   Eigen::VectorXd way =
       background_ && too_old_ ? conjugate_gradients(left, external) : quasi_newton_.step(matrix_, left);
   if (!way.allFinite()) way = left / matrix_.largest();  // there is no factor: a little the right way
-  go(way, left, external);
+  if (left_ > kCalm) {
+    go(way, left, external);
+  } else {
+    move(way);
+    remains_ = left_;
+  }
   return left_;
 }
 
 void Dynamics::follow(const Eigen::VectorXd& way, std::span<const Vec3> external) {
-  if (never_changes()) return move(way);
+  double changed = 0;
+  for (std::size_t i = 0; i < seen_.size(); ++i) changed += (external[i] - seen_[i]).squaredNorm();
+  if (never_changes() || (left_ <= kCalm && std::sqrt(changed) <= kCalm * at_work_)) return move(way);
   const double unbalanced_before = left_;
   const Eigen::VectorXd left = imbalance(external);
   go(way, left, external);
@@ -245,7 +258,8 @@ void Dynamics::shorten_prediction(std::span<const Vec3> external) {
     way.segment<3>(dofs_.first[i]) = h_ * v_before_[i];
     x_[i] = x_before_[i];
   }
-  told_ = false;
+  told_ = told_before_ && terms_.empty();
+  if (told_) internal_ = internal_before_;
   dofs_.hold(way);
   go(way, imbalance(external), external);
 }
@@ -302,6 +316,7 @@ int Dynamics::settle(std::span<const Vec3> external, int most, double tolerance)
 
 void Dynamics::finish_step() {
   if (settings_.rayleigh_stiffness > 0) resist();
+  told_before_ = told_;
   std::swap(internal_then_, internal_before_);
   std::swap(internal_before_, internal_);
   told_ = false;

@@ -55,7 +55,7 @@ class Dynamics {
   std::span<const Vec3> position() const { return x_; }
   /// To put nodes elsewhere.
   std::span<Vec3> put() {
-    told_ = false;
+    told_ = told_before_ = false;
     return x_;
   }
   /// (nodes) m/s, at the end of the last step.
@@ -113,13 +113,15 @@ class Dynamics {
   std::vector<Vec3> x_, x_before_, v_before_, x_then_, v_then_;  // now; last step's end; the one before
   std::vector<Vec3> from_, from_v_;                              // x~, v~
   std::vector<Vec3> internal_, internal_before_, internal_then_, from_internal_;  // f_int, likewise, N
-  bool told_ = false;                                                             // `internal_` is of here
+  bool told_ = false, told_before_ = false;  // `internal_` is of here, `internal_before_` of there
   double c_ = 0, h_ = 0;
   int steps_ = 0, exchanged_ = -1;
-  double left_ = 0;     // unbalanced, of the forces at work
-  double remains_ = 0;  // likewise, where the last way led
-  double reach_ = 0;    // size of the body, m
-  double still_ = 0;    // a force that is none, N
+  std::vector<Vec3> seen_;  // external forces of the last look, N
+  double at_work_ = 0;      // then, N
+  double left_ = 0;         // unbalanced, of the forces at work
+  double remains_ = 0;      // likewise, where the last way led
+  double reach_ = 0;        // size of the body, m
+  double still_ = 0;        // a force that is none, N
   // Viscosity: by quadrature point; terms one after the other.
   double scale_ = 1;
   std::vector<Mat3> stress_, memory_, terms_;

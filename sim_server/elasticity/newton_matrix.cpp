@@ -10,10 +10,12 @@ StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs) {
   return matrix;
 }
 
-/// One factor of a linear law answers for ever; Newton's method looks again at what others answer.
-SparseCholesky::Precision precision_for(const Material& material) {
+/// What a factor of the background answers is looked at again; others are as exact as they can be.
+SparseCholesky::Precision precision_for(const Material& material, const DynamicsSettings& settings) {
   using Precision = SparseCholesky::Precision;
-  return material.law == ElasticLaw::kLinear ? Precision::kDouble : Precision::kSingle;
+  const bool exact =
+      settings.solver == DynamicsSettings::Solver::kDirect || material.law == ElasticLaw::kLinear;
+  return exact ? Precision::kDouble : Precision::kSingle;
 }
 
 }  // namespace
@@ -25,7 +27,7 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
       mass_(solid.masses()),
       matrix_(at_rest(solid, dofs)),
       usual_(matrix_.lower().diagonal().mean()),
-      factor_(matrix_.lower(), where, precision_for(solid.material())) {}
+      factor_(matrix_.lower(), where, precision_for(solid.material(), settings)) {}
 
 void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c) {
   c_ = c;
@@ -40,7 +42,7 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Visc
     definite = factor_.refactor(matrix_.lower());
   }
   if (definite) return;
-  matrix_.set_zero();  // nothing but inertia: what moves goes on
+  matrix_.set_zero();  // nothing but inertia: what moves goes on, and the step is not balanced
   matrix_.add_to_diagonal(mass_, c * c);
   matrix_.close_held(usual_);
   factor_.refactor(matrix_.lower());
@@ -51,8 +53,7 @@ Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first) const {
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(matrix_.lower().rows(), 3 * count);
   for (Eigen::Index k = 0; k < count; ++k) unit.block<3, 3>(first[k], 3 * k).setIdentity();
   Eigen::MatrixXd found = solve(unit);
-  if (factor_.precision() == SparseCholesky::Precision::kSingle)
-    found += solve(unit - matrix_.lower().selfadjointView<Eigen::Lower>() * found);
+  if (factor_.precision() == SparseCholesky::Precision::kSingle) found += solve(unit - matrix_.times(found));
   return found;
 }
 

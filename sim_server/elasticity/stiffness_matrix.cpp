@@ -124,6 +124,21 @@ void StiffnessMatrix::add_to_diagonal(std::span<const double> per_node, double f
   }
 }
 
+Eigen::MatrixXd StiffnessMatrix::times(const Eigen::MatrixXd& x) const {
+  // By rows, so that the inner loops are over the columns of X.
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Rows by = x;
+  Rows sum = Rows::Zero(x.rows(), x.cols());
+  for (Eigen::Index column = 0; column < matrix_.outerSize(); ++column) {
+    for (SparseMatrix::InnerIterator entry(matrix_, column); entry; ++entry) {
+      if (entry.row() < column) continue;  // above the diagonal
+      sum.row(entry.row()) += entry.value() * by.row(column);
+      if (entry.row() > column) sum.row(column) += entry.value() * by.row(entry.row());
+    }
+  }
+  return sum;
+}
+
 std::size_t StiffnessMatrix::bytes() const {
   return static_cast<std::size_t>(matrix_.nonZeros()) * (sizeof(double) + sizeof(int)) +
          (static_cast<std::size_t>(matrix_.cols()) + block_.size()) * sizeof(int);

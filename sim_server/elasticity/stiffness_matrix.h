@@ -52,6 +52,9 @@ class StiffnessMatrix {
   /// Adds `factor` per_node[i] to the diagonal entries of each free node i.
   void add_to_diagonal(std::span<const double> per_node, double factor) noexcept;
 
+  /// A X for dense X (n x k), all k at once.
+  Eigen::MatrixXd times(const Eigen::MatrixXd& x) const;
+
   /// Rows and columns by `FreeDofs`; only the lower triangle is to be read.
   const SparseMatrix& lower() const { return matrix_; }
   SparseMatrix& lower() { return matrix_; }

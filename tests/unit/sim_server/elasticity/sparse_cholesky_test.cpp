@@ -63,6 +63,13 @@ TEST_CASE("a factor answers as a dense one does") {
   CHECK((single.solve(loads) - exact).norm() < 1e-4 * exact.norm());
 }
 
+TEST_CASE("a stiffness matrix times many columns is what a dense one gives") {
+  const StiffnessMatrix matrix = stiffness_of_block(3);
+  const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix.lower()).selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd x = dense.leftCols(5);
+  CHECK((matrix.times(x) - dense * x).norm() < 1e-14 * dense.squaredNorm());
+}
+
 TEST_CASE("a factor is made again of other numbers") {
   for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
     StiffnessMatrix matrix = stiffness_of_block(6);
