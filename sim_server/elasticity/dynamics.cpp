@@ -211,7 +211,7 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
   Eigen::VectorXd way =
       background_ && too_old_ ? conjugate_gradients(left, external) : quasi_newton_.step(matrix_, left);
   if (!way.allFinite()) way = left / matrix_.largest();  // there is no factor: a little the right way
-  if (left_ > kCalm) {
+  if (wary_ || left_ > kCalm) {
     go(way, left, external);
   } else {
     move(way);
@@ -223,7 +223,8 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
 void Dynamics::follow(const Eigen::VectorXd& way, std::span<const Vec3> external) {
   double changed = 0;
   for (std::size_t i = 0; i < seen_.size(); ++i) changed += (external[i] - seen_[i]).squaredNorm();
-  if (never_changes() || (left_ <= kCalm && std::sqrt(changed) <= kCalm * at_work_)) return move(way);
+  if (never_changes() || (!wary_ && left_ <= kCalm && std::sqrt(changed) <= kCalm * at_work_))
+    return move(way);
   const double unbalanced_before = left_;
   const Eigen::VectorXd left = imbalance(external);
   go(way, left, external);
@@ -248,10 +249,11 @@ void Dynamics::go(const Eigen::VectorXd& way, const Eigen::VectorXd& left, std::
   left_ = unbalanced_here;
 }
 
-/// Where the velocity leads, unless elastic forces would turn the body on the way.
+/// Where the velocity leads; since a step that ended far from balance, and until the body rests, only as far
+/// as elastic forces would not turn it on the way.
 void Dynamics::shorten_prediction(std::span<const Vec3> external) {
   predicted_ = false;
-  if (never_changes()) return;
+  if (never_changes() || !wary_) return;
   Eigen::VectorXd way(dofs_.count);
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (dofs_.first[i] < 0) continue;
@@ -322,6 +324,7 @@ void Dynamics::finish_step() {
   told_ = false;
   if (!terms_.empty()) relax_stress(h_);
   const bool adrift = remains_ > kAdrift;
+  wary_ = adrift || (wary_ && left_ > kRounding);
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const Vec3 v = adrift ? Vec3(Vec3::Zero()) : Vec3(c_ * (x_[i] - from_[i]));
     x_then_[i] = adrift ? x_[i] : x_before_[i];

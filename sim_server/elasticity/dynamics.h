@@ -109,6 +109,7 @@ class Dynamics {
   std::vector<Vec3> factored_at_;  // m
   int factors_ = 0;
   bool improved_ = false, fresh_ = false;  // in this step; by a factor of the very place
+  bool wary_ = false;                      // since a step that ended far from balance
   bool predicted_ = false;                 // the step has begun where its velocity led
   std::vector<Vec3> x_, x_before_, v_before_, x_then_, v_then_;  // now; last step's end; the one before
   std::vector<Vec3> from_, from_v_;                              // x~, v~

@@ -41,11 +41,6 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Visc
     matrix_.add_to_diagonal(mass_, more);
     definite = factor_.refactor(matrix_.lower());
   }
-  if (definite) return;
-  matrix_.set_zero();  // nothing but inertia: what moves goes on, and the step is not balanced
-  matrix_.add_to_diagonal(mass_, c * c);
-  matrix_.close_held(usual_);
-  factor_.refactor(matrix_.lower());
 }
 
 Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first) const {

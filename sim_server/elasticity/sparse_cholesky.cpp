@@ -1,5 +1,6 @@
 #include "sim_server/elasticity/sparse_cholesky.h"
 
+#include <limits>
 #include <optional>
 
 #include "common/error.h"
@@ -142,10 +143,13 @@ SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
 bool SparseCholesky::refactor(const SparseMatrix& lower) {
-  return lower.rows() == 0 || factor_->factorize(lower);
+  definite_ = lower.rows() == 0 || factor_->factorize(lower);
+  return definite_;
 }
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
+  if (!definite_)
+    return Eigen::MatrixXd::Constant(b.rows(), b.cols(), std::numeric_limits<double>::quiet_NaN());
   return b.rows() == 0 ? b : factor_->solve(b);
 }
 

@@ -28,7 +28,7 @@ class SparseCholesky {
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
   /// Factors other values on the same pattern. False where the matrix is not positive definite: then the
-  /// factor is of no use until the next one.
+  /// factor is of no use until the next one, and what it answers is not a number.
   bool refactor(const SparseMatrix& lower);
 
   /// X = A^-1 B for dense B (n x k); allocates X. Several threads may ask at once.
@@ -44,6 +44,7 @@ class SparseCholesky {
  private:
   struct Factor;
   std::unique_ptr<Factor> factor_;
+  bool definite_ = true;
 };
 
 }  // namespace palpate::sim
