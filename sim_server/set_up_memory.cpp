@@ -82,15 +82,16 @@ void require_memory_for(const Scene& scene, Purpose purpose, const MeshCounts& c
   if (purpose == Purpose::kSolve) {
     bytes = body_bytes(counts, element, 2);  // of now, and at rest
   } else if (model == "implicit") {
-    // One more with all nodes in it; to find the shape under loads, of now and at rest.
+    // To find the shape under loads or on supports that move, of now and at rest besides.
     const bool loaded = !scene.loads.empty() || supports_move(scene);
-    bytes = body_bytes(counts, element, 1 + (supports_move(scene) ? 1 : 0) + (loaded ? 2 : 0));
+    bytes = body_bytes(counts, element, loaded ? 3 : 1);
     if (scene.deformation.solver != DynamicsSettings::Solver::kDirect)  // another of each in the background
       bytes += solid_bytes(counts, element) + matrix_bytes(counts, element);
   } else if (model == "quasi_static" || model == "reduced") {
     bytes = body_bytes(counts, element, 1);
     // Vectors that modes are found among, and what is kept of them.
-    if (model == "reduced") bytes += 3 * nodes_of(counts, element) * kReal * (3.0 * scene.deformation.modes + 20);
+    if (model == "reduced")
+      bytes += 3 * nodes_of(counts, element) * kReal * (3.0 * scene.deformation.modes + 20);
   } else if (model == "tensor_mass") {
     bytes = tensors_bytes(counts) + (supports_move(scene) ? body_bytes(counts, element, 1) : 0);
   }

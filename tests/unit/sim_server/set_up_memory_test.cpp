@@ -104,13 +104,20 @@ TEST_CASE("a scene beyond the machine is refused with the estimate, before anyth
   background.deformation.solver = DynamicsSettings::Solver::kQuasiNewton;
   CHECK(refusal(background, Purpose::kServe, 3.063e6).empty());
   CHECK_FALSE(refusal(background, Purpose::kServe, 3.061e6).empty());
-  // Supports that move: tensor_mass makes a body as quasi_static does, implicit one more matrix.
+  // Supports that move: tensor_mass makes a body as quasi_static does, implicit
+  // finds its shape with two more matrices: 1.666 + 2 0.772 MB.
   Scene tensors = scene_with("tensor_mass"), implicit = scene_with("implicit");
   tensors.fixed[0].motions = implicit.fixed[0].motions = {{Vec3::UnitX(), 0.01, 4}};
   CHECK(refusal(tensors, Purpose::kServe, (0.748 + 1.667) * 1e6).empty());
   CHECK_FALSE(refusal(tensors, Purpose::kServe, (0.748 + 1.665) * 1e6).empty());
-  CHECK(refusal(implicit, Purpose::kServe, 2.439e6).empty());
-  CHECK_FALSE(refusal(implicit, Purpose::kServe, 2.437e6).empty());
+  CHECK(refusal(implicit, Purpose::kServe, 3.211e6).empty());
+  CHECK_FALSE(refusal(implicit, Purpose::kServe, 3.209e6).empty());
+  Scene weighed = scene_with("implicit");
+  weighed.loads.push_back({.kind = Load::Kind::kGravity, .vector = {0, -9.81, 0}});
+  CHECK_FALSE(refusal(weighed, Purpose::kServe, 3.209e6).empty());
+  // Vectors of modes: 3 1000 8 (3 40 + 20) bytes, 3.36 MB.
+  CHECK(refusal(scene_with("reduced"), Purpose::kServe, (1.667 + 3.36) * 1e6).empty());
+  CHECK_FALSE(refusal(scene_with("reduced"), Purpose::kServe, (1.665 + 3.36) * 1e6).empty());
   CHECK(refusal(still, Purpose::kSolve, 2.439e6).empty());  // the matrix twice
   CHECK_FALSE(refusal(still, Purpose::kSolve, 2.437e6).empty());
   CHECK(refusal(scene_with("implicit", ElementKind::kQuadratic), Purpose::kServe, 1e6)
