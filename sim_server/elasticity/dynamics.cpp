@@ -221,10 +221,10 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
 }
 
 void Dynamics::follow(const Eigen::VectorXd& way, std::span<const Vec3> external) {
+  if (never_changes()) return move(way);
   double changed = 0;
   for (std::size_t i = 0; i < seen_.size(); ++i) changed += (external[i] - seen_[i]).squaredNorm();
-  if (never_changes() || (!wary_ && left_ <= kCalm && std::sqrt(changed) <= kCalm * at_work_))
-    return move(way);
+  if (!wary_ && left_ <= kCalm && std::sqrt(changed) <= kCalm * at_work_) return move(way);
   const double unbalanced_before = left_;
   const Eigen::VectorXd left = imbalance(external);
   go(way, left, external);

@@ -47,6 +47,8 @@ class Runner {
       run_apart(own.name(), [&] { write_motion(file, press_and_slide(own)); });
     motion_.emplace(TrajectorySettings{.file = file});
     seconds_ = motion_->duration();
+    if (seconds_ < 4 / own.scene.rate_hz)
+      fail("{}: lasts {:g} s, which is less than four steps of the scene", file.string(), seconds_);
     sites_ = compared_sites(own, around(*motion_, own.scene.tools.front().shape.radius));
   }
 
@@ -133,7 +135,7 @@ int study(const StudyOptions& options) {
   mark_front(result.rows);
   write_study(options, result);
   fmt::print("{}", to_text(result));
-  if (options.budget_ms) fmt::print("{}", advice(result, *options.budget_ms));
+  if (options.budget_ms) fmt::print("{}", advice(result, *options.budget_ms, options.scene.parent_path()));
   return 0;
 }
 

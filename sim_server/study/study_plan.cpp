@@ -119,6 +119,8 @@ class Planner {
     for (const auto& file : options_.meshes) {
       Scene other = base_;
       other.mesh_file = file;
+      const TetMesh mesh = read_mesh(file);
+      for (const FixedRegion& region : base_.fixed) vertices_in(region, mesh);  // there are some
       meshes.emplace_back(other, 0);
     }
     double cells = static_cast<double>(mesh_.tetrahedra.size());

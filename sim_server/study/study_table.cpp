@@ -59,12 +59,10 @@ Json along_of(const StudyRow& row) {
   return lines;
 }
 
-std::string settings_of(const StudyRow& row) {
+std::string settings_of(const StudyRow& row, const std::filesystem::path& folder) {
   const Scene& scene = row.one.scene;
-  std::string text =
-      fmt::format("rate_hz = {:g}\n[mesh]\nfile = \"{}\"", scene.rate_hz, scene.mesh_file.string());
-  if (row.one.refinements > 0)
-    text += fmt::format("  # each tetrahedron cut into 8, {} times", row.one.refinements);
+  std::string text = fmt::format("rate_hz = {:g}\n[mesh]\nfile = \"{}\"", scene.rate_hz,
+                                 std::filesystem::proximate(scene.mesh_file, folder).generic_string());
   text +=
       fmt::format("\n[material]\nlaw = \"{}\"\nelement = \"{}\"\n[deformation]\nmodel = \"{}\"\n",
                   name_of(scene.material->law), name_of(scene.material->element), scene.deformation.model);
@@ -101,10 +99,11 @@ std::string to_text(const StudyResult& result) {
   return text + "* on the front: none has a smaller error of the force in less time\n";
 }
 
-std::string advice(const StudyResult& result, double budget_ms) {
+std::string advice(const StudyResult& result, double budget_ms, const std::filesystem::path& folder) {
   const StudyRow* best = nullptr;
   for (const StudyRow& row : result.rows) {
-    if (row.step_ms_p50 > std::min(budget_ms, dt_ms(row)) || row.flagged > 0) continue;
+    if (row.one.refinements > 0 || row.flagged > 0) continue;
+    if (row.step_ms_p50 > std::min(budget_ms, dt_ms(row))) continue;
     if (best == nullptr || row.errors.felt < best->errors.felt) best = &row;
   }
   if (best == nullptr)
@@ -112,7 +111,7 @@ std::string advice(const StudyResult& result, double budget_ms) {
                        budget_ms);
   return fmt::format(
       "\nWithin {:g} ms a step, {} is felt with the smallest error: {:.2g} %, at {:.2g} ms a step.\n\n{}",
-      budget_ms, best->one.name(), best->errors.felt, best->step_ms_p50, settings_of(*best));
+      budget_ms, best->one.name(), best->errors.felt, best->step_ms_p50, settings_of(*best, folder));
 }
 
 void write_study(const StudyOptions& options, const StudyResult& result) {

@@ -27,9 +27,10 @@ struct StudyResult {
 void mark_front(std::vector<StudyRow>& rows);
 /// A table for a terminal, best front first.
 std::string to_text(const StudyResult& result);
-/// One sentence, and TOML to paste into the scene: of the cases that take no more than `budget_ms` a step,
-/// and no longer than their own step in time, the one that is felt with the smallest error.
-std::string advice(const StudyResult& result, double budget_ms);
+/// One sentence, and TOML to paste into the scene: of the cases on meshes that are files, of those that
+/// take no more than `budget_ms` a step, and no longer than their own step in time, the one that is felt with
+/// the smallest error. `folder`: the scene's, from which it names its mesh.
+std::string advice(const StudyResult& result, double budget_ms, const std::filesystem::path& folder);
 /// rows.csv, timing.csv, along.csv and summary.json. Throws `Error`.
 void write_study(const StudyOptions& options, const StudyResult& result);
 

@@ -97,6 +97,7 @@ double run_apart(const std::string& name, const std::function<void()>& work) {
   const pid_t child = fork();
   if (child < 0) fail_at_run_time("{}: no process: {}", name, std::strerror(errno));
   if (child == 0) {
+    std::signal(SIGINT, SIG_DFL);      // Ctrl-C ends it at once
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // an interrupted study leaves nobody behind
     close(said[0]);
     int code = 0;
@@ -121,7 +122,13 @@ double run_apart(const std::string& name, const std::function<void()>& work) {
   text.resize(length);
   int status = 0;
   rusage used{};
-  if (wait4(child, &status, 0, &used) < 0) fail_at_run_time("{}: lost: {}", name, std::strerror(errno));
+  if (wait4(child, &status, 0, &used) < 0) {  // a signal came
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+    fail_at_run_time("{}: interrupted; the same command goes on from there", name);
+  }
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT)
+    fail_at_run_time("{}: interrupted; the same command goes on from there", name);
   if (WIFSIGNALED(status)) fail_at_run_time("{}: ended by signal {}", name, WTERMSIG(status));
   if (WEXITSTATUS(status) == 2) fail("{}", text);
   if (WEXITSTATUS(status) != 0) fail_at_run_time("{}: {}", name, text);
