@@ -91,7 +91,7 @@ struct DeformationSettings {
   std::string where;      ///< "FILE:LINE" of `model`
 
   DynamicsSettings dynamics() const {
-    return {rayleigh_mass, rayleigh_stiffness, second_order, solver, refresh_steps};
+    return {rayleigh_mass, rayleigh_stiffness, second_order, solver, refresh_steps, tolerance};
   }
 };
 

@@ -199,6 +199,7 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
     if (fresh_ && left_ <= kRounding) return 0;
     slow = true;
     if (!background_) {
+      if (fresh_) matrix_.check_precision();
       factor();
       fresh = true;
       left = imbalance(external);

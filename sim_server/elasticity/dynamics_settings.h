@@ -15,6 +15,9 @@ struct DynamicsSettings {
   };
   Solver solver = Solver::kDirect;
   int refresh_steps = 8;  ///< [1, 1000]
+  /// Of unit forces, what columns of compliance made in the background may leave, which are of where the body
+  /// was steps ago.
+  double tolerance = 0;
 };
 
 }  // namespace palpate::sim

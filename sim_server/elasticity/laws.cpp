@@ -1,17 +1,13 @@
 #include "sim_server/elasticity/laws.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 namespace palpate::sim {
 namespace {
 
-constexpr int kMostTurns = 20;
-constexpr double kTurned = 1e-14;      // square of what the last turn changed
-constexpr double kNear = 0.01;         // likewise: from here on it converges as fast unscaled
-constexpr double kFlat = 1e-3;         // of the cube of its size: too flat for Newton
 constexpr double kLeastStretch = 0.1;  // sum of two stretches below which R turns no faster
 
 Mat3 cross_matrix(const Vec3& a) noexcept {
@@ -26,35 +22,7 @@ Mat3 cross_matrix(const Vec3& a) noexcept {
   return c;
 }
 
-Mat3 rotation_by_singular_values(const Mat3& F) noexcept {
-  const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vec3 signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-}
-
 }  // namespace
-
-Mat3 nearest_rotation(const Mat3& F) noexcept {
-  const double size = std::sqrt(F.squaredNorm() / 3);
-  if (!(F.determinant() > kFlat * size * size * size)) return rotation_by_singular_values(F);
-  Mat3 R = F / size;
-  double change = 3;
-  for (int i = 0; i < kMostTurns && change > kTurned; ++i) {
-    const Mat3 c = cofactor(R);
-    const double det = R.col(0).dot(c.col(0));
-    // Scaled so that it converges in a few steps from far away, too (Higham 1986, equation 3.5).
-    const double scale = change > kNear ? std::sqrt(std::sqrt(c.squaredNorm() / R.squaredNorm()) / det) : 1.0;
-    const Mat3 next = (0.5 * scale) * R + (0.5 / (scale * det)) * c;
-    change = (next - R).squaredNorm();
-    R = next;
-  }
-  return R;
-}
-
-CorotationalLaw::CorotationalLaw(const Moduli& moduli, const Mat3& F) noexcept
-    : mu_(moduli.mu), F_(F), R_(nearest_rotation(F)) {
-  trace_ = F.cwiseProduct(R_).sum();
-}
 
 void CorotationalLaw::prepare_blocks() noexcept {
   Mat3 stretch = F_ * R_.transpose();  // R S R^T
@@ -66,9 +34,9 @@ void CorotationalLaw::prepare_blocks() noexcept {
     turn_ = sums.inverse();
     return;
   }
-  const Eigen::JacobiSVD<Mat3> svd(sums, Eigen::ComputeFullU);
-  const Vec3 inverse = svd.singularValues().cwiseMax(kLeastStretch).cwiseInverse();
-  turn_ = svd.matrixU() * inverse.asDiagonal() * svd.matrixU().transpose();
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(sums);
+  const Vec3 inverse = eigen.eigenvalues().cwiseAbs().cwiseMax(kLeastStretch).cwiseInverse();
+  turn_ = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 Mat3 CorotationalLaw::block(double p, const Vec3& gi, const Vec3& gj) const noexcept {

@@ -4,10 +4,6 @@
 
 namespace palpate::sim {
 
-/// The rotation nearest to `F` (polar decomposition F = R S): by Newton's method (Higham 1986, SIAM J. Sci.
-/// Stat. Comput. 7:1160), or, where F is turned inside out or nearly flat, by singular values. det R = 1.
-Mat3 nearest_rotation(const Mat3& F) noexcept;
-
 /// Elastic laws at one deformation gradient F (3 x 3, F = I at rest), all in the same two parts,
 ///   Psi(F) = w(F) + lambda / 2 theta(F)^2,
 /// w (Pa) the energy of a change of shape, theta (no unit) a measure of the change of volume that is the
@@ -20,7 +16,8 @@ Mat3 nearest_rotation(const Mat3& F) noexcept;
 ///   prepare_blocks()   before the first block: what forces alone do not need
 ///   block(p, a, b)     the matrix B with a' B b = (d2w + p d2theta)(a' x g_i, b' x g_j): what two shape
 ///                      functions of gradients g_i, g_j (1/m) get from the second derivatives, Pa/m^2,
-/// and all agree with linear elasticity of the same Lame parameters at rest. Pure; no allocation.
+/// and all agree with linear elasticity of the same Lame parameters at rest. Pure; no allocation. Made by
+/// `law_at`.
 struct Moduli {
   double mu, lambda;  ///< Pa: of w and of theta, as the law counts them
 };
@@ -28,6 +25,7 @@ struct Moduli {
 /// Small strain: w = mu |sym(F) - I|^2, theta = tr(F) - 3. Not for large turns.
 class LinearLaw {
  public:
+  static constexpr bool kTurns = false;
   static Moduli moduli(const Material& m) { return {m.lame_mu(), m.lame_lambda()}; }
   LinearLaw(const Moduli& moduli, const Mat3& F) noexcept
       : mu_(moduli.mu), strain_(0.5 * (F + F.transpose()) - Mat3::Identity()) {}
@@ -52,8 +50,10 @@ class LinearLaw {
 /// out), R has no derivative, and the one of a small stretch stands in.
 class CorotationalLaw {
  public:
+  static constexpr bool kTurns = true;
   static Moduli moduli(const Material& m) { return {m.lame_mu(), m.lame_lambda()}; }
-  CorotationalLaw(const Moduli& moduli, const Mat3& F) noexcept;
+  CorotationalLaw(const Moduli& moduli, const Mat3& F, const Mat3& R) noexcept
+      : mu_(moduli.mu), trace_(F.cwiseProduct(R).sum()), F_(F), R_(R) {}
   double shape_energy() const noexcept { return mu_ * (F_ - R_).squaredNorm(); }
   Mat3 shape_stress() const noexcept { return 2 * mu_ * (F_ - R_); }
   double dilation() const noexcept { return trace_ - 3; }
@@ -70,6 +70,7 @@ class CorotationalLaw {
 /// not below about 0.6 of its length.
 class StVenantKirchhoffLaw {
  public:
+  static constexpr bool kTurns = false;
   static Moduli moduli(const Material& m) { return {m.lame_mu(), m.lame_lambda()}; }
   StVenantKirchhoffLaw(const Moduli& moduli, const Mat3& F) noexcept
       : mu_(moduli.mu), F_(F), strain_(0.5 * (F.transpose() * F - Mat3::Identity())) {}
@@ -92,6 +93,7 @@ class StVenantKirchhoffLaw {
 /// 1) / 4)) - 3/4 m (J - 1) and theta = J - 1.
 class NeoHookeanLaw {
  public:
+  static constexpr bool kTurns = false;
   static Moduli moduli(const Material& m) {
     return {4.0 / 3 * m.lame_mu(), m.lame_lambda() + 5.0 / 6 * m.lame_mu()};
   }
@@ -107,6 +109,13 @@ class NeoHookeanLaw {
   double mu_, stretch2_, volume_;  // I_C, J
   Mat3 F_, cofactor_;
 };
+
+/// The law at `F`; `R` (`nearest_rotation` of it) is read where the law `kTurns`.
+template <class Law>
+Law law_at(const Moduli& moduli, const Mat3& F, const Mat3& R) noexcept {
+  if constexpr (Law::kTurns) return Law(moduli, F, R);
+  if constexpr (!Law::kTurns) return Law(moduli, F);
+}
 
 /// Fibres along the unit vector `a` at rest, which add k / 2 (|F a| - 1)^2 to any law (and k / 2 (a . F a -
 /// 1)^2 to the linear one): transverse isotropy, whose Young modulus along `a` is that of the law plus k

@@ -10,12 +10,10 @@ StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs) {
   return matrix;
 }
 
-/// What a factor of the background answers is looked at again; others are as exact as they can be.
-SparseCholesky::Precision precision_for(const Material& material, const DynamicsSettings& settings) {
+/// What a factor answers is looked at again, but for the linear law, where it is all there is.
+SparseCholesky::Precision precision_for(const Material& material) {
   using Precision = SparseCholesky::Precision;
-  const bool exact =
-      settings.solver == DynamicsSettings::Solver::kDirect || material.law == ElasticLaw::kLinear;
-  return exact ? Precision::kDouble : Precision::kSingle;
+  return material.law == ElasticLaw::kLinear ? Precision::kDouble : Precision::kSingle;
 }
 
 }  // namespace
@@ -27,7 +25,7 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
       mass_(solid.masses()),
       matrix_(at_rest(solid, dofs)),
       usual_(matrix_.lower().diagonal().mean()),
-      factor_(matrix_.lower(), where, precision_for(solid.material(), settings)) {}
+      factor_(matrix_.lower(), where, precision_for(solid.material())) {}
 
 void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c) {
   c_ = c;
@@ -43,18 +41,27 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Visc
   }
 }
 
-Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first) const {
+void NewtonMatrix::check_precision() {
+  factor_.check_precision(matrix_.lower());
+}
+
+Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first, double enough) const {
   const auto count = static_cast<Eigen::Index>(first.size());
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(matrix_.lower().rows(), 3 * count);
   for (Eigen::Index k = 0; k < count; ++k) unit.block<3, 3>(first[k], 3 * k).setIdentity();
   Eigen::MatrixXd found = solve(unit);
-  if (factor_.precision() == SparseCholesky::Precision::kSingle) found += solve(unit - matrix_.times(found));
+  if (count == 0 || factor_.precision() == SparseCholesky::Precision::kDouble) return found;
+  const Eigen::MatrixXd sample = unit.leftCols<3>() - matrix_.times(found.leftCols<3>());
+  if (!(sample.norm() <= enough)) found += solve(unit - matrix_.times(found));
   return found;
 }
 
 BackgroundMatrix::BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                                    const std::string& where)
-    : solid_(solid), matrix_(solid, dofs, settings, where), bytes_(solid_.bytes() + matrix_.bytes()) {}
+    : solid_(solid),
+      matrix_(solid, dofs, settings, where),
+      tolerance_(settings.tolerance),
+      bytes_(solid_.bytes() + matrix_.bytes()) {}
 
 void BackgroundMatrix::begin(std::span<const Vec3> x, const Viscosity& viscosity, double c,
                              std::vector<int> first) {
@@ -63,7 +70,7 @@ void BackgroundMatrix::begin(std::span<const Vec3> x, const Viscosity& viscosity
   made_.first = std::move(first);
   work_ = std::async(std::launch::async, [this, scale = viscosity.scale, c] {
     matrix_.build(solid_, x_, {scale, memory_}, c);
-    made_.values = matrix_.columns(made_.first);
+    made_.values = matrix_.columns(made_.first, tolerance_);
   });
 }
 

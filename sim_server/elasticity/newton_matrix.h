@@ -18,11 +18,15 @@ class NewtonMatrix {
   /// A of the solid at `x` (nodes, m), factored. Where A is not positive definite, as of a body about to
   /// buckle, with more inertia.
   void build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c);
+  /// To be called where the last `build` has served badly: should that be for want of digits, the next will
+  /// be in double precision. Cost of a solve.
+  void check_precision();
   /// A^-1 b of the factor, for columns b over the unknowns.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return factor_.solve(b); }
   /// A^-1 of unit forces on the three unknowns from each of `first` on: (unknowns x 3 first.size()); of a
-  /// factor in single precision by one step of refinement, which squares its error.
-  Eigen::MatrixXd columns(std::span<const int> first) const;
+  /// factor in single precision by one step of refinement, which squares its error, where the first three
+  /// leave more than `enough` of them.
+  Eigen::MatrixXd columns(std::span<const int> first, double enough = 0) const;
 
   /// c of the last `build`, 1/s; 0 before the first.
   double c() const { return c_; }
@@ -67,6 +71,7 @@ class BackgroundMatrix {
  private:
   Solid solid_;
   NewtonMatrix matrix_;
+  double tolerance_;
   std::size_t bytes_;
   std::vector<Vec3> x_;
   std::vector<Mat3> memory_;

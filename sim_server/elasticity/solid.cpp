@@ -7,6 +7,7 @@
 #include "common/parallel.h"
 #include "sim_server/elasticity/element.h"
 #include "sim_server/elasticity/laws.h"
+#include "sim_server/elasticity/rotations.h"
 #include "sim_server/elasticity/solid_element.h"
 
 namespace palpate::sim {
@@ -14,6 +15,8 @@ namespace {
 
 // Tetrahedra whose forces or stiffness wait in the scratch to be added up in order; and those of one task.
 constexpr std::size_t kBatch = 2048, kTask = 64;
+// And those whose rotations are looked for together.
+constexpr std::size_t kTogether = 16;
 
 /// Calls `work` with the class of the law.
 template <class Work>
@@ -126,13 +129,30 @@ void Solid::add_body_forces(const Vec3& per_volume, std::span<Vec3> f) const {
   }
 }
 
+/// `work(element, F, R)` for the tetrahedra from `begin` to `end`, in order: deformation gradient at each of
+/// its points and, where the law asks for it, the rotation nearest to it.
+template <class Law, class Work>
+void Solid::each_element(std::span<const Vec3> x, std::size_t begin, std::size_t end,
+                         const Work& work) const {
+  std::array<Mat3, kTogether * kMostPoints> F, R;
+  const auto points = static_cast<std::size_t>(points_);
+  for (std::size_t from = begin; from < end; from += kTogether) {
+    const std::size_t count = std::min(kTogether, end - from);
+    for (std::size_t k = 0; k < count; ++k) Element(*this, from + k).deform(x, F.data() + k * points);
+    if constexpr (Law::kTurns) nearest_rotations({F.data(), count * points}, R);
+    for (std::size_t k = 0; k < count; ++k)
+      work(Element(*this, from + k), F.data() + k * points, R.data() + k * points);
+  }
+}
+
 /// Of each tetrahedron, then of each vertex.
 void Solid::average_dilation(std::span<const Vec3> x) const {
   with_law(material_.law, [&]<class Law>() {
     const Moduli moduli = Law::moduli(material_);
     parallel_blocks(elements(), kTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t e = begin; e < end; ++e)
-        dilation_[e] = Law(moduli, Element(*this, x, e).deformation(0)).dilation();
+      each_element<Law>(x, begin, end, [&](const Element& element, const Mat3* F, const Mat3* R) {
+        dilation_[element.point(0)] = law_at<Law>(moduli, *F, *R).dilation();
+      });
     });
   });
   for (std::size_t a = 0; a < rest_.size(); ++a) {
@@ -144,9 +164,9 @@ void Solid::average_dilation(std::span<const Vec3> x) const {
 }
 
 /// Mean dilation of the vertices of a tetrahedron, by which the pressure in it goes.
-double Solid::mean_dilation(std::size_t e) const {
+double Solid::mean_dilation(const int* nodes) const {
   double sum = 0;
-  for (std::size_t i = 0; i < 4; ++i) sum += nodal_dilation_[element_nodes_[4 * e + i]];
+  for (int i = 0; i < 4; ++i) sum += nodal_dilation_[nodes[i]];
   return sum / 4;
 }
 
@@ -155,13 +175,12 @@ void Solid::evaluate(std::span<const Vec3> x, std::span<State> at_points) const 
   with_law(material_.law, [&]<class Law>() {
     const Moduli moduli = Law::moduli(material_);
     parallel_blocks(elements(), kTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t e = begin; e < end; ++e) {
-        const Element element(*this, x, e);
+      each_element<Law>(x, begin, end, [&](const Element& element, const Mat3* F, const Mat3* R) {
         for (int q = 0; q < points_; ++q) {
           State& state = at_points[element.point(q)];
-          state.F = element.deformation(q);
-          const Law law(moduli, state.F);
-          const double theta = averages() ? mean_dilation(e) : law.dilation();
+          state.F = F[q];
+          const Law law = law_at<Law>(moduli, F[q], R[q]);
+          const double theta = averages() ? mean_dilation(element.nodes) : law.dilation();
           state.stress = law.shape_stress() + moduli.lambda * theta * law.dilation_gradient();
           state.energy = law.shape_energy() + (averages() ? 0 : 0.5 * moduli.lambda * theta * theta);
           if (!material_.fibres) continue;
@@ -169,12 +188,11 @@ void Solid::evaluate(std::span<const Vec3> x, std::span<State> at_points) const 
           state.stress += fibres.stress();
           state.energy += fibres.energy();
         }
-        if (!averages()) continue;
-        for (std::size_t i = 0; i < 4; ++i) {
-          const double theta = nodal_dilation_[element_nodes_[4 * e + i]];
-          at_points[e].energy += 0.125 * moduli.lambda * theta * theta;
+        for (int i = 0; averages() && i < 4; ++i) {
+          const double theta = nodal_dilation_[element.nodes[i]];
+          at_points[element.point(0)].energy += 0.125 * moduli.lambda * theta * theta;
         }
-      }
+      });
     });
   });
 }
@@ -199,8 +217,12 @@ void Solid::forces(std::span<const Vec3> x, std::span<Vec3> f, const Viscosity& 
     const std::size_t count = std::min(kBatch, elements() - from);
     with_law(material_.law, [&]<class Law>() {
       parallel_blocks(count, kTask, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k)
-          element_forces<Law>(x, from + k, force_scratch_.data() + k * corners, viscosity);
+        Vec3* own = force_scratch_.data() + begin * corners;
+        each_element<Law>(x, from + begin, from + end,
+                          [&](const Element& element, const Mat3* F, const Mat3* R) {
+                            element_forces<Law>(element, F, R, own, viscosity);
+                            own += corners;
+                          });
       });
     });
     for (std::size_t k = 0; k < count * corners; ++k)
@@ -209,19 +231,17 @@ void Solid::forces(std::span<const Vec3> x, std::span<Vec3> f, const Viscosity& 
 }
 
 template <class Law>
-void Solid::element_forces(std::span<const Vec3> x, std::size_t e, Vec3* f,
+void Solid::element_forces(const Element& element, const Mat3* F, const Mat3* R, Vec3* f,
                            const Viscosity& viscosity) const {
   const Moduli moduli = Law::moduli(material_);
-  const Element element(*this, x, e);
   std::fill_n(f, corners_, Vec3::Zero());
   for (int q = 0; q < points_; ++q) {
-    const Mat3 F = element.deformation(q);
-    const Law law(moduli, F);
-    const double theta = averages() ? mean_dilation(e) : law.dilation();
+    const Law law = law_at<Law>(moduli, F[q], R[q]);
+    const double theta = averages() ? mean_dilation(element.nodes) : law.dilation();
     Mat3 stress = law.shape_stress() + moduli.lambda * theta * law.dilation_gradient();
-    if (material_.fibres) stress += fibre_law(F).stress();
+    if (material_.fibres) stress += fibre_law(F[q]).stress();
     stress *= viscosity.scale;
-    if (!viscosity.memory.empty()) stress += element.remembered(F, viscosity.memory[element.point(q)]);
+    if (!viscosity.memory.empty()) stress += element.remembered(F[q], viscosity.memory[element.point(q)]);
     const Vec3* const g = element.gradients(q);
     for (int i = 0; i < corners_; ++i) f[i] += element.weight(q) * (stress * g[i]);
   }
@@ -234,8 +254,12 @@ void Solid::add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Vis
     const std::size_t count = std::min(kBatch, elements() - from);
     with_law(material_.law, [&]<class Law>() {
       parallel_blocks(count, kTask, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t e = begin; e < end; ++e)
-          element_stiffness<Law>(x, from + e, stiffness_scratch_.data() + e * blocks, viscosity);
+        Mat3* own = stiffness_scratch_.data() + begin * blocks;
+        each_element<Law>(x, from + begin, from + end,
+                          [&](const Element& element, const Mat3* F, const Mat3* R) {
+                            element_stiffness<Law>(element, F, R, own, viscosity);
+                            own += blocks;
+                          });
       });
     });
     for (std::size_t e = 0; e < count; ++e) {
@@ -250,16 +274,14 @@ void Solid::add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Vis
 }
 
 template <class Law>
-void Solid::element_stiffness(std::span<const Vec3> x, std::size_t e, Mat3* k,
+void Solid::element_stiffness(const Element& element, const Mat3* F, const Mat3* R, Mat3* k,
                               const Viscosity& viscosity) const {
   const Moduli moduli = Law::moduli(material_);
-  const Element element(*this, x, e);
   std::fill_n(k, blocks_of(corners_), Mat3::Zero());
   for (int q = 0; q < points_; ++q) {
-    const Mat3 F = element.deformation(q);
-    Law law(moduli, F);
+    Law law = law_at<Law>(moduli, F[q], R[q]);
     law.prepare_blocks();
-    const double theta = averages() ? mean_dilation(e) : law.dilation();
+    const double theta = averages() ? mean_dilation(element.nodes) : law.dilation();
     const double weight = viscosity.scale * element.weight(q);
     const Mat3 dilation = law.dilation_gradient();
     const Vec3* const g = element.gradients(q);
@@ -272,7 +294,7 @@ void Solid::element_stiffness(std::span<const Vec3> x, std::size_t e, Mat3* k,
         if (!averages()) *block += weight * moduli.lambda * along[i] * along[j].transpose();
       }
     }
-    if (material_.fibres || !viscosity.memory.empty()) add_extras(element, q, F, viscosity, k);
+    if (material_.fibres || !viscosity.memory.empty()) add_extras(element, q, F[q], viscosity, k);
   }
 }
 
@@ -298,11 +320,11 @@ void Solid::add_nodal_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, dou
     const Moduli moduli = Law::moduli(material_);
     lambda = moduli.lambda;
     parallel_blocks(elements(), kTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t e = begin; e < end; ++e) {
-        const Element element(*this, x, e);
-        const Mat3 dilation = Law(moduli, element.deformation(0)).dilation_gradient();
-        for (std::size_t i = 0; i < 4; ++i) along[4 * e + i] = weight_[e] * dilation * gradient_[4 * e + i];
-      }
+      each_element<Law>(x, begin, end, [&](const Element& element, const Mat3* F, const Mat3* R) {
+        const Mat3 dilation = law_at<Law>(moduli, *F, *R).dilation_gradient();
+        for (std::size_t i = 0; i < 4; ++i)
+          along[4 * element.point(0) + i] = element.weight(0) * dilation * element.gradients(0)[i];
+      });
     });
   });
   std::vector<std::pair<int, Vec3>> terms;

@@ -81,12 +81,16 @@ class Solid {
   void build_quadratic(const TetMesh& mesh);
   void gather_patches();
   void average_dilation(std::span<const Vec3> x) const;
-  double mean_dilation(std::size_t e) const;
+  double mean_dilation(const int* nodes) const;
   FibreLaw fibre_law(const Mat3& F) const;
+  template <class Law, class Work>
+  void each_element(std::span<const Vec3> x, std::size_t begin, std::size_t end, const Work& work) const;
   template <class Law>
-  void element_forces(std::span<const Vec3> x, std::size_t e, Vec3* f, const Viscosity& viscosity) const;
+  void element_forces(const Element& element, const Mat3* F, const Mat3* R, Vec3* f,
+                      const Viscosity& viscosity) const;
   template <class Law>
-  void element_stiffness(std::span<const Vec3> x, std::size_t e, Mat3* k, const Viscosity& viscosity) const;
+  void element_stiffness(const Element& element, const Mat3* F, const Mat3* R, Mat3* k,
+                         const Viscosity& viscosity) const;
   void add_extras(const Element& element, int q, const Mat3& F, const Viscosity& viscosity, Mat3* k) const;
   void add_nodal_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, double scale) const;
   void collect_terms(std::size_t a, std::span<const Vec3> along,

@@ -41,10 +41,11 @@ struct SparseCholesky::Factor {
     return rough->factor(lower);
   }
 
-  /// From here on in double precision.
-  void refine() {
+  /// From here on in this precision.
+  void take(Precision other) {
     rough.reset();
-    precision = Precision::kDouble;
+    fine.reset();
+    precision = other;
   }
 
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const {
@@ -71,7 +72,7 @@ struct SparseCholesky::Factor {
   std::size_t work_bytes(const SparseMatrix& lower) const {
     return static_cast<std::size_t>(lower.nonZeros()) * (sizeof(double) + sizeof(int));  // a copy
   }
-  void refine() {}
+  void take(Precision) {}
   bool factorize(const SparseMatrix& lower) {
     llt.factorize(lower);
     return llt.info() == Eigen::Success;
@@ -127,7 +128,7 @@ SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& whe
   factor();
   const bool single = factor_->precision == Precision::kSingle;
   if (single && (!definite || !(imbalance(lower, answer, load) < kRough))) {
-    factor_->refine();
+    factor_->take(Precision::kDouble);
     factor();
   }
   if (!definite || nearly_singular(lower, answer)) {
@@ -144,7 +145,19 @@ SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
 bool SparseCholesky::refactor(const SparseMatrix& lower) {
   definite_ = lower.rows() == 0 || factor_->factorize(lower);
+  if (definite_ || factor_->precision == Precision::kDouble) return definite_;
+  factor_->take(Precision::kDouble);  // for want of digits?
+  definite_ = factor_->factorize(lower);
+  if (!definite_) factor_->take(Precision::kSingle);
   return definite_;
+}
+
+void SparseCholesky::check_precision(const SparseMatrix& lower) {
+  if (!definite_ || factor_->precision == Precision::kDouble) return;
+  const Eigen::MatrixXd load = alternating(lower.rows());
+  if (imbalance(lower, solve(load), load) < kRough) return;
+  factor_->take(Precision::kDouble);
+  definite_ = false;
 }
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {

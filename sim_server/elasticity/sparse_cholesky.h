@@ -14,7 +14,8 @@ class SparseCholesky {
  public:
   /// Of the numbers of the factor. Single takes half the memory and time, and serves where what is solved for
   /// is looked at again: answers are right to some 1e-6 of their size times the condition of the matrix.
-  /// Where the first matrix leaves more than a thousandth of a load, double is taken instead, for good.
+  /// Where the first matrix leaves more than a thousandth of a load, or a later one is positive definite only
+  /// in double precision, double is taken instead, for good.
   enum class Precision { kDouble, kSingle };
 
   /// Factors the matrix whose lower triangle is given, in 3 x 3 blocks as `StiffnessMatrix` has them. Throws
@@ -30,6 +31,10 @@ class SparseCholesky {
   /// Factors other values on the same pattern. False where the matrix is not positive definite: then the
   /// factor is of no use until the next one, and what it answers is not a number.
   bool refactor(const SparseMatrix& lower);
+
+  /// Of the matrix factored last: where the factor leaves more than a thousandth of a load, it is of no use,
+  /// and the next is in double precision. Cost of a solve.
+  void check_precision(const SparseMatrix& lower);
 
   /// X = A^-1 B for dense B (n x k); allocates X. Several threads may ask at once.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;

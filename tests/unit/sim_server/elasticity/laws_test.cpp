@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
+#include "sim_server/elasticity/rotations.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 
@@ -18,20 +19,20 @@ const Material kTissue{7e3, 0.4, 1000};
 template <class Law>
 double energy(const Mat3& F) {
   const Moduli moduli = Law::moduli(kTissue);
-  const Law law(moduli, F);
+  const auto law = law_at<Law>(moduli, F, nearest_rotation(F));
   return law.shape_energy() + 0.5 * moduli.lambda * law.dilation() * law.dilation();
 }
 template <class Law>
 Mat3 stress(const Mat3& F) {
   const Moduli moduli = Law::moduli(kTissue);
-  const Law law(moduli, F);
+  const auto law = law_at<Law>(moduli, F, nearest_rotation(F));
   return law.shape_stress() + moduli.lambda * law.dilation() * law.dilation_gradient();
 }
 /// Second derivative of the energy along a g_i^T and b g_j^T is a . B b.
 template <class Law>
 Mat3 block(const Mat3& F, const Vec3& gi, const Vec3& gj) {
   const Moduli moduli = Law::moduli(kTissue);
-  Law law(moduli, F);
+  auto law = law_at<Law>(moduli, F, nearest_rotation(F));
   law.prepare_blocks();
   const Mat3 dilation = law.dilation_gradient();
   return law.block(moduli.lambda * law.dilation(), gi, gj) +
@@ -151,6 +152,19 @@ TEST_CASE("laws: the nearest rotation, also of what is flat or turned inside out
     CHECK((R.transpose() * F).trace() == Approx(most).epsilon(1e-9));
   }
   CHECK(nearest_rotation(Mat3::Zero()).allFinite());
+}
+
+TEST_CASE("laws: the nearest rotations of many together are those of each alone, bit by bit") {
+  test::Random random(16);
+  for (const std::size_t count : {1, 2, 3, 4, 5, 11, 64}) {
+    std::vector<Mat3> F(count), R(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      F[i] = random_deformation(random, i % 3 == 0 ? 2.0 : 0.01);
+      if (i % 4 == 1) F[i].col(2) *= -1e-5;
+    }
+    nearest_rotations(F, R);
+    for (std::size_t i = 0; i < count; ++i) CHECK(R[i] == nearest_rotation(F[i]));
+  }
 }
 
 TEST_CASE("laws: inside out and flat, all but the linear one stay finite and push back") {
