@@ -27,18 +27,18 @@ Scene block_scene(const ModelCase& choice, double friction = 0) {
   return scene;
 }
 
-/// A tool goes down aslant in six periods, drags along in eight more by less than a stride each, waits, and
+/// A tool goes down aslant in six periods, drags along in twelve more by less than a stride each, waits, and
 /// goes to `last`.
 struct Way {
   Vec3 last = Vec3::Zero();
   int held = 0;
   double friction = 0;
   Vec3 drag = Vec3::Zero();
-  int steps() const { return 6 + (drag.isZero() ? 0 : 8) + held; }
+  int steps() const { return 6 + (drag.isZero() ? 0 : 12) + held; }
   Vec3 place(int step) const {
     const double way = 0.0003 * std::min(step, 6);
     if (step == steps()) return last;
-    return Vec3(0.001 + way, 0.0048 - way, 0.0015) + std::clamp(step - 6, 0, 8) * drag;
+    return Vec3(0.001 + way, 0.0048 - way, 0.0015) + std::clamp(step - 6, 0, 12) * drag;
   }
 };
 
@@ -93,6 +93,28 @@ TEST_CASE(
       const Mat3 slope = slope_of(choice, way, 1e-6);
       CAPTURE(sent, slope, (sent - slope).norm() / slope.norm());
       CHECK((sent - slope).norm() < (exempt(choice, "slope in motion") ? 1e-2 : 1e-3) * slope.norm());
+    }
+  }
+}
+
+// With friction the force depends on the way, and where the tool slides its slope is not symmetric. What is
+// sent is the part of it that stores energy, of the last stride: the whole way of a slow tool.
+TEST_CASE("contract: with friction the stiffness sent is that of a tool that sticks, or slides on") {
+  const Vec3 drag(2e-5, 5e-6, 0);
+  for (const ModelCase& choice : model_cases()) {
+    for (const bool slides : {false, true}) {
+      DYNAMIC_SECTION(choice.name() << (slides ? ": slides" : ": sticks")) {
+        Way way{.held = std::max(1, held_until_fresh(choice)), .friction = 0.3, .drag = drag};
+        way.last = way.place(way.steps() - 1) + (slides ? drag : Vec3(-drag));
+        ToolForce felt;
+        const Mat3 sent = tangent_of(answer_to(choice, way, &felt));
+        REQUIRE(felt.contacts > 0);
+        REQUIRE_FALSE(felt.flagged);
+        const Mat3 slope = slope_of(choice, way, 1e-7), stores = 0.5 * (slope + slope.transpose());
+        CAPTURE(sent, slope, (sent - stores).norm() / stores.norm());
+        CHECK((sent - stores).norm() < (exempt(choice, "slope in motion") ? 1e-2 : 1e-3) * stores.norm());
+        CHECK(((slope - stores).norm() > 0.05 * stores.norm()) == slides);
+      }
     }
   }
 }
