@@ -80,6 +80,10 @@ bool Config::has(const std::string& key) const {
   return node_->find(key) != nullptr;
 }
 
+bool Config::says(const std::string& key) const {
+  return node_->table->contains(key);
+}
+
 double Config::number(const std::string& key, const Range& range, std::optional<double> otherwise) const {
   const toml::node* node = node_->get(key, !otherwise);
   return node == nullptr ? *otherwise : node_->number(*node, key, range);

@@ -28,6 +28,8 @@ class Config {
   std::string where(const std::string& key = {}) const;
 
   bool has(const std::string& key) const;
+  /// The same of a key that does not belong here: without asking for it.
+  bool says(const std::string& key) const;
   double number(const std::string& key, const Range& range, std::optional<double> otherwise = {}) const;
   long integer(const std::string& key, const Range& range, std::optional<long> otherwise = {}) const;
   bool flag(const std::string& key, bool otherwise) const;

@@ -51,6 +51,49 @@ constexpr std::array kSolvers{SolverRow{"direct", DynamicsSettings::Solver::kDir
                               SolverRow{"pcg", DynamicsSettings::Solver::kConjugateGradients},
                               SolverRow{"quasi_newton", DynamicsSettings::Solver::kQuasiNewton}};
 
+/// Keys of [deformation] that only some models take.
+struct KeyOfSome {
+  const char* key;
+  bool DeformationModelRow::*taken;
+};
+constexpr std::array kKeysOfSome{KeyOfSome{"stiffness", &DeformationModelRow::penalty},
+                                 KeyOfSome{"spring_stiffness", &DeformationModelRow::hangs},
+                                 KeyOfSome{"hardening_length", &DeformationModelRow::hangs},
+                                 KeyOfSome{"rayleigh_mass", &DeformationModelRow::damped},
+                                 KeyOfSome{"rayleigh_stiffness", &DeformationModelRow::damped},
+                                 KeyOfSome{"modes", &DeformationModelRow::modal},
+                                 KeyOfSome{"integrator", &DeformationModelRow::any_material},
+                                 KeyOfSome{"solver", &DeformationModelRow::any_material},
+                                 KeyOfSome{"refresh_steps", &DeformationModelRow::any_material},
+                                 KeyOfSome{"max_newton", &DeformationModelRow::any_material},
+                                 KeyOfSome{"tolerance", &DeformationModelRow::any_material}};
+
+void refuse_keys_of_others(const Config& config, const DeformationModelRow& row) {
+  for (const auto& [key, taken] : kKeysOfSome) {
+    if (row.*taken || !config.says(key)) continue;
+    const std::string takers =
+        models_that([taken = taken](const DeformationModelRow& m) { return m.*taken; });
+    fail("{}: unknown key `[deformation] {}` of model \"{}\"; known to: {}", config.where(key), key, row.name,
+         takers.empty() ? "no model of this build" : takers);
+  }
+}
+
+/// What models that take any material are asked for.
+void read_steps(const Config& config, DeformationSettings& settings) {
+  const std::string integrator = config.text("integrator", "backward_euler");
+  settings.second_order = integrator == "bdf2";
+  if (!settings.second_order && integrator != "backward_euler")
+    fail("{}: unknown integrator \"{}\"; known: backward_euler, bdf2", config.where("integrator"),
+         integrator);
+  settings.solver =
+      find_row(kSolvers, config.text("solver", "direct"), "solver", config.where("solver")).solver;
+  settings.refresh_steps =
+      static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
+  settings.max_newton =
+      static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
+  settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);
+}
+
 DeformationSettings read_deformation(const Config& config) {
   DeformationSettings settings;
   settings.where = config.where("model");
@@ -61,6 +104,7 @@ DeformationSettings read_deformation(const Config& config) {
          settings.where);
 #endif
   const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
+  refuse_keys_of_others(config, row);
   settings.stiffness = config.number("stiffness", {1e-3, 1e6, "N/m"}, settings.stiffness);
   if (config.has("spring_stiffness"))
     settings.spring_stiffness = config.vector("spring_stiffness", {1e-3, 1e6, "N/m"});
@@ -73,31 +117,24 @@ DeformationSettings read_deformation(const Config& config) {
   }
   if (row.modal)
     settings.modes = static_cast<int>(config.integer("modes", {1, 1000, "modes"}, settings.modes));
-  if (row.any_material) {
-    const std::string integrator = config.text("integrator", "backward_euler");
-    settings.second_order = integrator == "bdf2";
-    if (!settings.second_order && integrator != "backward_euler")
-      fail("{}: unknown integrator \"{}\"; known: backward_euler, bdf2", config.where("integrator"),
-           integrator);
-    settings.solver =
-        find_row(kSolvers, config.text("solver", "direct"), "solver", config.where("solver")).solver;
-    settings.refresh_steps =
-        static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
-    settings.max_newton =
-        static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
-    settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);
-  }
+  if (row.any_material) read_steps(config, settings);
   config.reject_unknown();
   return settings;
 }
 
-/// That an elastic model is for the material of the scene.
+/// That a model is for the material of the scene. One that does not deform passes over a plain one.
 void require_material_of(const Scene& scene, const DeformationModelRow& row) {
-  if (!scene.material || !row.elastic) return;
+  if (!scene.material) return;
   const auto takes = [&material = *scene.material](const DeformationModelRow& m) {
     return m.any_material || (m.elastic && (material.is_plain() || (m.any_linear && material.is_linear())));
   };
   if (takes(row)) return;
+  if (!row.elastic) {
+    if (scene.material->is_plain()) return;
+    fail(
+        "{}: model \"{}\" does not deform, by this law, element, fibres or relaxation; for this material: {}",
+        scene.material_where, row.name, models_that(takes));
+  }
   const std::string_view also = row.any_linear ? "" : ", element \"p1\", no fibres";
   fail("{}: model \"{}\" is for law \"linear\"{} and no relaxation; for this material: {}",
        scene.material_where, row.name, also, models_that(takes));

@@ -82,6 +82,7 @@ HeldAxes read_axes(const Config& config) {
       fail("{}: `axes` is some of x, y, z, as in \"xz\"; absent: all", config.where("axes"));
     axes |= 1 << axis;
   }
+  if (axes == 0) fail("{}: `axes` holds along none; name some of x, y, z", config.where("axes"));
   return static_cast<HeldAxes>(axes);
 }
 

@@ -27,7 +27,6 @@ struct Probe {
   std::string text;
   Vec3 place;
   std::vector<std::pair<int, double>> nodes;
-  double off = 0;  // m, from the place to the body, where it is outside
 };
 
 Vec3 parse_place(const std::string& text) {
@@ -51,7 +50,8 @@ void weigh(std::span<const int> nodes, const Eigen::Vector4d& l, Probe& probe) {
   }
 }
 
-/// In the tetrahedron that holds the place; outside, at the nearest of the corners, which come first.
+/// In the tetrahedron that holds the place. Throws `Error` where none does, with the nearest of the corners,
+/// which come first.
 Probe find_probe(const std::string& text, const Solid& solid, int corners) {
   Probe probe{text, parse_place(text), {}};
   const auto& x = solid.rest();
@@ -69,9 +69,8 @@ Probe find_probe(const std::string& text, const Solid& solid, int corners) {
   for (int v = 1; v < corners; ++v) {
     if ((x[v] - probe.place).norm() < (x[nearest] - probe.place).norm()) nearest = v;
   }
-  probe.nodes = {{nearest, 1.0}};
-  probe.off = (x[nearest] - probe.place).norm();
-  return probe;
+  fail("--probe {}: outside the body at rest, whose nearest vertex is {},{},{}, {:.3g} m off", text,
+       x[nearest][0], x[nearest][1], x[nearest][2], (x[nearest] - probe.place).norm());
 }
 
 double von_mises(const Mat3& stress) {
@@ -132,9 +131,7 @@ void print_result(const Solid& solid, const Loads& loads, std::span<const Vec3> 
   for (const Probe& probe : probes) {
     Vec3 u = Vec3::Zero();
     for (const auto& [node, weight] : probe.nodes) u += weight * (x[node] - solid.rest()[node]);
-    fmt::print(
-        "  probe {}: displacement {:.9g} {:.9g} {:.9g} m{}\n", probe.text, u[0], u[1], u[2],
-        probe.off > 0 ? fmt::format(" (outside the body: its nearest vertex, {:.3g} m off)", probe.off) : "");
+    fmt::print("  probe {}: displacement {:.9g} {:.9g} {:.9g} m\n", probe.text, u[0], u[1], u[2]);
   }
 }
 

@@ -23,7 +23,8 @@ std::unique_ptr<DeformationModel> make(const ModelInputs& inputs) {
 constexpr std::array kModels{
     DeformationModelRow{.name = "rigid",
                         .summary = "no deformation; force = stiffness x penetration depth",
-                        .make = &make<Rigid>},
+                        .make = &make<Rigid>,
+                        .penalty = true},
     DeformationModelRow{.name = "quasi_static",
                         .summary = "linear elastic equilibrium by pre-computed compliance",
                         .make = &make<QuasiStatic>,
@@ -54,7 +55,8 @@ constexpr std::array kModels{
 #endif
     DeformationModelRow{.name = "spring",
                         .summary = "no deformation; the organ hangs on a spring that hardens",
-                        .make = &make<Spring>},
+                        .make = &make<Spring>,
+                        .hangs = true},
 };
 
 }  // namespace

@@ -41,6 +41,8 @@ struct DeformationModelRow {
   bool any_material = false;      ///< all laws, elements, fibres, relaxation, and [[load]]
   bool damped = false;            ///< it has Rayleigh damping
   bool modal = false;             ///< it takes a number of `modes`
+  bool penalty = false;           ///< it takes the `stiffness` of a contact
+  bool hangs = false;             ///< it takes the `spring_stiffness` of what holds the organ
 };
 std::span<const DeformationModelRow> deformation_models();
 

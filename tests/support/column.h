@@ -4,9 +4,10 @@
 
 namespace palpate::test {
 
-/// A column of 0.1 x 0.4 x 0.1 m, one cube of six tetrahedra on the other.
-inline std::string column() {
-  std::string nodes, elements;
+/// A column of 0.1 x 0.4 x 0.1 m, one cube of six tetrahedra on the other. `tagged`: its ends, y = 0.4 and y
+/// = 0, are the surfaces "top" and "bottom".
+inline std::string column(bool tagged = false) {
+  std::string nodes, elements, names;
   int node = 0, element = 0;
   for (int y = 0; y <= 4; ++y) {
     for (int k = 0; k < 4; ++k)
@@ -21,9 +22,14 @@ inline std::string column() {
                               first + way[2], first + way[3]);
     }
   }
+  if (tagged) {
+    names = "$PhysicalNames\n2\n2 7 \"top\"\n2 8 \"bottom\"\n$EndPhysicalNames\n";
+    for (const char* triangle : {"7 7 17 18 20", "7 7 17 19 20", "8 8 1 2 4", "8 8 1 3 4"})
+      elements += fmt::format("{} 2 2 {}\n", ++element, triangle);
+  }
   return fmt::format(
-      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}$EndNodes\n$Elements\n{}\n{}$EndElements\n", node,
-      nodes, element, elements);
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{}$Nodes\n{}\n{}$EndNodes\n$Elements\n{}\n{}$EndElements\n",
+      names, node, nodes, element, elements);
 }
 
 }  // namespace palpate::test

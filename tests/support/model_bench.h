@@ -1,84 +1,20 @@
 #pragma once
-/// Every deformation model with every law and solver it takes, and what is not asked of some of them.
+/// A small body with a deformation model on it, to be loaded by hand.
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <optional>
-#include <string>
 
-#include "sim_server/deformation/deformation_models.h"
-#include "sim_server/mesh/shapes.h"
+#include "sim_server/elasticity/solid.h"
+#include "tests/support/model_cases.h"
 #include "tests/support/scenes.h"
+#include "tests/support/solids.h"
 
 namespace palpate::test {
 
-/// What physics, or its method, does not let a model do.
-struct Exemption {
-  std::string_view model, from, reason;
-};
-inline constexpr std::array kExemptions{
-    Exemption{"rigid", "static limit", "it does not deform"},
-    Exemption{"spring", "static limit", "the organ moves as one piece, not as its [material] says"},
-    Exemption{"spring", "elastic energy", "what it stores is in the spring, not in the [material]"},
-    Exemption{"spring", "turning", "the axes of `spring_stiffness` are the world's"},
-    Exemption{"implicit", "no allocation", "it factors matrices as it goes"},
-    Exemption{"implicit", "slope in motion",
-              "but for a linear law its factor is of where the body was before"},
-};
-inline bool exempt(std::string_view model, std::string_view from) {
-  return std::any_of(kExemptions.begin(), kExemptions.end(),
-                     [&](const Exemption& e) { return e.model == model && e.from == from; });
-}
-
-/// A row of the registry, with a law and a solver that it takes.
-struct ModelCase {
-  using Solver = sim::DynamicsSettings::Solver;
-  const sim::DeformationModelRow& row;
-  sim::ElasticLaw law = sim::ElasticLaw::kLinear;
-  Solver solver = Solver::kDirect;
-
-  std::string name() const {
-    constexpr std::array kLaws{"linear", "corotational", "stvk", "neo_hookean"};
-    constexpr std::array kSolvers{"", ", conjugate gradients", ", quasi-Newton"};
-    return std::string(row.name) + ", " + kLaws[static_cast<std::size_t>(law)] +
-           kSolvers[static_cast<std::size_t>(solver)];
-  }
-  bool linear() const { return law == sim::ElasticLaw::kLinear; }
-  /// How long (steps) loads are to be held until compliance is of here and now.
-  int held_until_fresh() const { return linear() || !exempt(row.name, "slope in motion") ? 0 : 60; }
-  /// Writes the choice into a scene, and has iterations go on until rounding ends them.
-  void choose(sim::Scene& scene) const {
-    scene.deformation.model = row.name;
-    scene.material->law = law;
-    scene.deformation.solver = solver;
-    scene.deformation.refresh_steps = 2;
-    scene.deformation.modes = 8;
-    scene.deformation.tolerance = 1e-11;
-    scene.deformation.max_newton = 60;
-  }
-};
-
-inline std::vector<ModelCase> model_cases() {
-  using sim::ElasticLaw;
-  using Solver = ModelCase::Solver;
-  std::vector<ModelCase> cases;
-  for (const sim::DeformationModelRow& row : sim::deformation_models()) {
-    cases.push_back({row});
-    if (!row.any_material) continue;
-    for (const ElasticLaw law :
-         {ElasticLaw::kCorotational, ElasticLaw::kStVenantKirchhoff, ElasticLaw::kNeoHookean})
-      cases.push_back({row, law});
-    cases.push_back({row, ElasticLaw::kCorotational, Solver::kConjugateGradients});
-    cases.push_back({row, ElasticLaw::kCorotational, Solver::kQuasiNewton});
-  }
-  return cases;
-}
-
-/// A small block held at its bottom, z = 0, with one model on it. All of its surface is in reach.
+/// A small block, or bar, held at its bottom, z = 0, with one model on it. All of its surface is in reach.
 struct ModelBench {
   struct Setting {
     Eigen::Isometry3d place = Eigen::Isometry3d::Identity();  ///< where the whole scene is
-    bool thin = false;                                        ///< no vertex inside
+    bool thin = false;                                        ///< a bar with no node inside
     double rate_hz = 1000, rayleigh_mass = 10, rayleigh_stiffness = 1e-4;
   };
   sim::TetMesh mesh;
@@ -88,11 +24,14 @@ struct ModelBench {
   std::unique_ptr<sim::DeformationModel> model;
 
   explicit ModelBench(const ModelCase& choice) : ModelBench(choice, Setting{}) {}
-  ModelBench(const ModelCase& choice, const Setting& setting)
-      : mesh(sim::grid_block({0, 0.01, 0.02, 0.03},
-                             setting.thin ? std::vector<double>{0, 0.02} : std::vector<double>{0, 0.01, 0.02},
-                             {0, 0.012, 0.025})) {
+  ModelBench(const ModelCase& choice, const Setting& setting) {
     choice.choose(scene);
+    if (auto& fibres = scene.material->fibres) fibres->direction = setting.place.linear() * fibres->direction;
+    const std::array<Vec3, 3> corners{Vec3(0, 0, 0), Vec3(0.03, 0, 0), Vec3(0.01, 0.025, 0)};
+    mesh =
+        with_nodes(setting.thin ? triangular_bar(corners, 0.025, 3)
+                                : sim::grid_block({0, 0.01, 0.02, 0.03}, {0, 0.01, 0.02}, {0, 0.012, 0.025}),
+                   choice.element);
     scene.rate_hz = setting.rate_hz;
     scene.deformation.rayleigh_mass = setting.rayleigh_mass;
     scene.deformation.rayleigh_stiffness = setting.rayleigh_stiffness;

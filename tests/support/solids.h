@@ -23,6 +23,19 @@ inline sim::TetMesh mapped(sim::TetMesh mesh, const std::function<Vec3(const Vec
   return mesh;
 }
 
+/// Prisms on each other along z, three tetrahedra each: no vertex inside, and no edge. The corners of the
+/// first go round against the clock.
+inline sim::TetMesh triangular_bar(const std::array<Vec3, 3>& corners, double height, int layers) {
+  sim::TetMesh mesh;
+  for (int l = 0; l <= layers; ++l) {
+    for (const Vec3& corner : corners) mesh.vertices.push_back(corner + height * l / layers * Vec3::UnitZ());
+  }
+  for (int a = 0; a < 3 * layers; a += 3)
+    mesh.tetrahedra.insert(mesh.tetrahedra.end(),
+                           {{a, a + 1, a + 2, a + 5}, {a, a + 4, a + 1, a + 5}, {a, a + 3, a + 4, a + 5}});
+  return mesh;
+}
+
 /// Of the square of half side s to the disc of radius s, lines max(|x|, |z|) = r to circles (Shirley and Chiu
 /// 1997).
 inline Vec3 square_to_disc(const Vec3& p) {
