@@ -74,7 +74,7 @@ CLI::App* add_solve(CLI::App& app, sim::SolveOptions& options) {
   command->add_option("--frames", options.frames, "How many frames about")->capture_default_str();
   command->footer(
       "Examples:\n"
-      "  sim_server solve configs/scenes/liver_weight.toml --out liver.vtu --probe 0.1,0.02,0.03\n"
+      "  sim_server solve configs/scenes/liver_weight.toml --out liver.vtu --probe 0.1,0.03,0.02\n"
       "  sim_server solve configs/scenes/liver_weight.toml --seconds 2 --out end.vtu --series motion.pvd");
   return command;
 }

@@ -211,6 +211,17 @@ TEST_CASE("solve: a probe outside the body is refused, with the vertex nearest t
   CHECK_FALSE(std::filesystem::exists(bench.out));
 }
 
+TEST_CASE("solve: the example of its help can be run, its probe is in the liver") {
+  const TemporaryFolder folder;
+  const std::string scene = "configs/scenes/liver_weight.toml", place = "0.1,0.03,0.02";
+  CHECK(output_of("sim_server", {"solve", "--help"}, 0)
+            .find("sim_server solve " + scene + " --out liver.vtu --probe " + place) != std::string::npos);
+  output_of("sim_server",
+            {"solve", std::string(PALPATE_SOURCE_DIR) + "/" + scene, "--out",
+             (folder.path() / "liver.vtu").string(), "--probe", place},
+            0);
+}
+
 TEST_CASE("solve: a tag that the mesh has not, and a region without a triangle, are refused") {
   Bench bench;
   const auto refused = [&](const std::string& sections) {
