@@ -15,6 +15,10 @@ std::string lock_memory() {
                      std::strerror(errno));
 }
 
+void name_thread(const char* name) {
+  pthread_setname_np(pthread_self(), name);
+}
+
 std::string make_realtime(pthread_t thread, const char* name, int priority) {
   pthread_setname_np(thread, name);
   sched_param param{};

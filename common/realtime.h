@@ -8,6 +8,9 @@ namespace palpate {
 /// sentence that says what the system refused and what to change. Call once, after set-up.
 std::string lock_memory();
 
+/// Gives the calling thread a name (at most 15 characters, shown by `top -H`).
+void name_thread(const char* name);
+
 /// Gives a thread real-time priority (SCHED_FIFO `priority`, 1..99) and the name `name` (at most 15
 /// characters, shown by `top -H`). Returns an empty text, or one sentence that says what was refused and what
 /// to change.

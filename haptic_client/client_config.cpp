@@ -10,8 +10,6 @@
 namespace palpate::client {
 namespace {
 
-constexpr double kFar = 1e3;  // m
-
 OperatorSettings read_operator(const Config& config) {
   OperatorSettings hand;
   hand.mass = config.number("mass", {0.01, 10, "kg"}, hand.mass);
@@ -32,24 +30,6 @@ FalconSettings read_falcon(const Config& config) {
   return falcon;
 }
 
-/// Which device axis each axis of the world is, such as ["x", "-z", "y"].
-Mat3 read_axes(const Config& config) {
-  Mat3 axes = Mat3::Zero();
-  const auto names = config.texts("axes", 3, {"x", "y", "z"});
-  for (int i = 0; i < 3; ++i) {
-    const std::string& name = names[static_cast<std::size_t>(i)];
-    const bool minus = name.starts_with('-');
-    const std::size_t axis = std::string("xyz").find(name.substr(minus ? 1 : 0));
-    if (name.size() != (minus ? 2 : 1) || axis == std::string::npos)
-      fail("{}: `axes`: \"{}\" is no axis; known: x, y, z, -x, -y, -z", config.where("axes"), name);
-    axes(i, static_cast<int>(axis)) = minus ? -1 : 1;
-  }
-  if (axes.determinant() == 0) fail("{}: `axes` must name x, y and z once each", config.where("axes"));
-  if (axes.determinant() < 0)
-    fail("{}: `axes` would mirror the world; change one sign or swap two", config.where("axes"));
-  return axes;
-}
-
 SpaceMouseSettings read_spacemouse(const Config& config) {
   SpaceMouseSettings mouse;
   mouse.speed = config.number("speed", {0.001, 1, "m/s"}, mouse.speed);
@@ -58,11 +38,8 @@ SpaceMouseSettings read_spacemouse(const Config& config) {
   return mouse;
 }
 
-Workspace read_workspace(const Config& config) {
-  Workspace workspace;
-  workspace.scale = config.number("scale", {0.01, 100, "world m per device m"}, workspace.scale);
-  workspace.offset_W = config.vector("offset", {-kFar, kFar, "m"}, workspace.offset_W);
-  workspace.axes = read_axes(config);
+Workspace read_client_workspace(const Config& config) {
+  Workspace workspace = read_workspace(config);
   workspace.clutch = static_cast<std::uint16_t>(config.integer("clutch", {0, 0xffff, "button bits"}, 0));
   config.reject_unknown();
   return workspace;
@@ -133,7 +110,7 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   if (const auto mouse = config.table("spacemouse")) client.device.spacemouse = read_spacemouse(*mouse);
   if (const auto trajectory = config.table("trajectory"))
     client.device.trajectory = read_trajectory_settings(*trajectory);
-  if (const auto workspace = config.table("workspace")) client.workspace = read_workspace(*workspace);
+  if (const auto workspace = config.table("workspace")) client.workspace = read_client_workspace(*workspace);
   if (client.device.trajectory) put_in_device_frame(*client.device.trajectory, client.workspace);
   if (const auto limits = config.table("limits")) client.limits = read_limits(*limits);
   if (const auto passivity = config.table("passivity")) client.passivity = read_passivity(*passivity);

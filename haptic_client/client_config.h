@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "haptic_client/device/devices.h"
-#include "haptic_client/loop/workspace.h"
+#include "common/workspace.h"
 #include "haptic_client/safety/limiter.h"
 #include "haptic_client/safety/passivity.h"
 

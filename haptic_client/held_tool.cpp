@@ -77,9 +77,16 @@ HeldTool::~HeldTool() {
 }
 
 bool HeldTool::connect() {
-  if (recorder_)
-    recording_thread_ = std::jthread([this](const std::stop_token& stop) { recorder_->run(stop); });
-  net_thread_ = std::jthread([this] { link_.run(); });
+  if (recorder_) {
+    recording_thread_ = std::jthread([this](const std::stop_token& stop) {
+      name_thread("palpate-record");
+      recorder_->run(stop);
+    });
+  }
+  net_thread_ = std::jthread([this] {
+    name_thread("palpate-net");
+    link_.run();
+  });
   for (const Time start = now(); !link_.welcomed;) {
     if (wait_for_interrupt(std::chrono::milliseconds(20))) return false;
     if (now() - start < kWelcomePatience) continue;

@@ -104,11 +104,15 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
   if (part == "stiffness matrix" || part == "its factor")
     return is_elastic(scene) ? "freed after set-up" : "kept: part of motion";
-  if (const ToolSettings* tool = tool_of(scene, part))
-    return fmt::format("{}, radius {:g} mm{}, reaches {} nodes{}", shape_of(tool->shape),
-                       1e3 * tool->shape.radius,
-                       tool->shape.friction > 0 ? fmt::format(", friction {:g}", tool->shape.friction) : "",
-                       reachable_vertices(surface, mesh, {tool, 1}).size(), tool->reach ? "" : ": all");
+  if (const ToolSettings* tool = tool_of(scene, part)) {
+    const std::size_t reached = reachable_vertices(surface, mesh, {tool, 1}).size();
+    return fmt::format(
+        "{}, radius {:g} mm{}, reaches {} nodes{}", shape_of(tool->shape), 1e3 * tool->shape.radius,
+        tool->shape.friction > 0 ? fmt::format(", friction {:g}", tool->shape.friction) : "", reached,
+        !tool->reach   ? ": all"
+        : reached == 0 ? ": no collision tree"
+                       : "");
+  }
   return {};
 }
 
@@ -258,7 +262,7 @@ int run_explain(const ExplainOptions& options) {
   require_distinct({{"SCENE", options.scene}, {"--json", options.json}});
   if (options.json) check_writable(*options.json);
   const Explanation explanation = explain(scene, ProgressLine());
-  fmt::print("{}", to_text(explanation));
+  fmt::print("{}", options.why ? why_text(explanation, *options.why) : to_text(explanation));
   if (options.json) write_json(*options.json, to_json(explanation));
   return 0;
 }

@@ -14,6 +14,7 @@ namespace palpate::sim {
 struct ExplainOptions {
   std::filesystem::path scene;
   std::optional<std::filesystem::path> json;
+  std::optional<std::string> why;  ///< of this part alone
 };
 
 /// Something a scene builds.
@@ -47,6 +48,10 @@ struct Explanation {
 /// Builds the scene and a variant for each thing it leaves out, and steps them all. Throws `Error` where the
 /// scene itself cannot be built. Takes as long as all those set-ups, and the memory of two of them.
 Explanation explain(const Scene& scene, const Progress& progress = kSilent);
+
+/// Which line of the scene asks for a part, or leaves it out, and what it costs or saves. Throws `Error`
+/// naming the parts that there are.
+std::string why_text(const Explanation& explanation, const std::string& part);
 
 /// The three tables of it, in kB and ms, and the same in plain units (`bytes`, `setup_ms`, `step_ms`).
 std::string to_text(const Explanation& explanation);

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/core.h>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "common/text.h"
 #include "sim_server/explain.h"
 
 namespace palpate::sim {
@@ -48,6 +50,18 @@ std::string table(const std::vector<Row>& rows, std::size_t first_right, std::si
     text += line + "\n";
   }
   return text;
+}
+
+/// What stands at "FILE:LINE", with its place; or `where` itself.
+std::string line_at(const std::string& where) {
+  const std::size_t colon = where.rfind(':');
+  int number = 0;
+  if (colon == std::string::npos || std::sscanf(where.c_str() + colon + 1, "%d", &number) != 1) return where;
+  std::ifstream file(where.substr(0, colon));
+  std::string line;
+  for (int i = 0; i < number && std::getline(file, line); ++i) {
+  }
+  return fmt::format("{}: {}", where, line);
 }
 
 double total_setup_ms(const Explanation& explanation) {
@@ -131,6 +145,25 @@ std::string to_text(const Explanation& explanation) {
   const Scene& scene = explanation.scene;
   return fmt::format("{}: \"{}\", model {}\n\n{}\n{}\n{}", scene.source, scene.title, scene.deformation.model,
                      built_text(explanation), left_out_text(explanation), steps_text(explanation));
+}
+
+std::string why_text(const Explanation& explanation, const std::string& part) {
+  std::vector<std::string> known;
+  for (const BuiltPart& row : explanation.built) {
+    known.push_back(row.part);
+    if (row.part != part) continue;
+    return fmt::format("{} is built: {}\n  asked for by {}\n  holds {}, set-up {}\n", part, row.detail,
+                       line_at(row.where), bytes_text(static_cast<double>(row.bytes)),
+                       setup_text(row.setup_ms));
+  }
+  for (const LeftOut& row : explanation.left_out) {
+    known.push_back(row.what);
+    if (row.what != part) continue;
+    return fmt::format("{} is left out\n  by {}\n  saves {}, set-up {}, a step {} ({})\n", part,
+                       line_at(row.why), or_dash(row.bytes, bytes_text), or_dash(row.setup_ms, setup_text),
+                       or_dash(row.step_ms, step_text), row.note);
+  }
+  fail_unknown_name(part, "part", "--why", known);
 }
 
 Json to_json(const Explanation& explanation) {

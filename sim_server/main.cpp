@@ -84,7 +84,15 @@ CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
       app.add_subcommand("explain", "What a scene builds, what it leaves out, and what that saves");
   command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
   command->add_option("--json", options.json, "Write the same to this JSON file");
-  command->footer("Example: sim_server explain configs/scenes/liver.toml --json explain.json");
+  command
+      ->add_option(
+          "--why", options.why,
+          "Only this part, built or left out: which line of the scene says so, and what it costs or saves")
+      ->type_name("PART");
+  command->footer(
+      "Examples:\n"
+      "  sim_server explain configs/scenes/liver.toml --json explain.json\n"
+      "  sim_server explain configs/scenes/liver.toml --why compliance");
   return command;
 }
 

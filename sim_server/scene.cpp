@@ -9,6 +9,7 @@
 #include "common/text.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_parts.h"
+#include "sim_server/tool_reach.h"
 
 namespace palpate::sim {
 namespace {
@@ -198,14 +199,23 @@ ToolSettings read_tool(const Config& config) {
   tool.shape.radius = config.number("radius", {1e-5, 0.05, "m"}, tool.shape.radius);
   tool.shape.friction = config.number("friction", {0, 2, "no unit"}, tool.shape.friction);
   read_shape(config, tool.shape);
-  if (config.has("reach")) {
-    const auto [min, max] = config.box("reach");
-    tool.reach = Box{min, max};
-    tool.reach_where = config.where("reach");
-  }
+  read_reach(config, tool);
   read_grasp(config, tool);
   config.reject_unknown();
   return tool;
+}
+
+/// The organ comes nearer by as much as its supports move.
+void reach_what_moves(Scene& scene) {
+  double way = 0;
+  for (const FixedRegion& region : scene.fixed) {
+    double own = 0;
+    for (const SupportMotion& motion : region.motions) own += motion.amplitude;
+    way = std::max(way, own);
+  }
+  for (ToolSettings& tool : scene.tools) {
+    if (tool.reach && way > 0) tool.reach = widened(*tool.reach, way);
+  }
 }
 
 std::vector<ToolSettings> read_tools(const Config& config) {
@@ -252,6 +262,7 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   if (purpose == Purpose::kServe) require_what_the_model_can(scene);
   if (purpose == Purpose::kServe || !config.tables("tool").empty()) scene.tools = read_tools(config);
   config.reject_unknown();
+  reach_what_moves(scene);
   return scene;
 }
 

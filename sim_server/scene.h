@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "common/contact/tool.h"
@@ -57,6 +58,18 @@ struct FixedRegion : Region {
   bool moves() const { return !motions.empty(); }
 };
 
+/// Part of a ball around `apex` within `half_angle` of an axis, closed.
+struct Cone {
+  Vec3 apex;          ///< m
+  Vec3 axis;          ///< unit
+  double half_angle;  ///< rad, (0, pi]
+  double depth;       ///< m from the apex
+  double around = 0;  ///< m: what is no farther from it counts as inside
+};
+
+/// Where a tool's surface can get to.
+using Reach = std::variant<Box, Cone>;
+
 /// `[[load]]`: what acts on the tissue besides tools.
 struct Load {
   enum class Kind {
@@ -98,9 +111,9 @@ struct DeformationSettings {
 /// One `[[tool]]`.
 struct ToolSettings {
   Tool shape;
-  std::optional<Box> reach;  ///< places the tool's surface can get to; absent: the whole organ
-  std::string where;         ///< "FILE:LINE" of this section
-  std::string reach_where;   ///< "FILE:LINE" of `reach`; empty where it is absent
+  std::optional<Reach> reach;  ///< absent: the whole organ
+  std::string where;           ///< "FILE:LINE" of this section
+  std::string reach_where;     ///< "FILE:LINE" of what tells `reach`; empty where it is absent
   /// Buttons of which any, while pressed, makes it hold the surface near it; 0: none does, [0, 65535].
   std::uint16_t grasp_buttons = 0;
   std::optional<Vec3> grasp_place{};  ///< tool centre, m, from where it holds the resting surface always

@@ -59,6 +59,8 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const ToolInpu
     // The pose of a lost device is the last one known, or none: it touches nothing.
     const bool lost = (inputs[i].state.flags & protocol::ToolState::kDeviceLost) != 0;
     simulation_.press_buttons(i, inputs[i].state.buttons);
+    simulation_.want_tangent(
+        i, inputs[i].fresh && (inputs[i].state.flags & protocol::ToolState::kWantsHere) != 0);
     simulation_.bend_way(i, bend_between(holders_[i].before, inputs[i].state));
     holders_[i].before = inputs[i].state;
     places_[i].reset();

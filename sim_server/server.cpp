@@ -172,8 +172,16 @@ int run_server(const ServerOptions& options) {
   const Time start = now();
   {
     std::jthread recording;
-    if (recorder) recording = std::jthread([&](const std::stop_token& stop) { recorder->run(stop); });
-    std::jthread net([&] { link.run(); });
+    if (recorder) {
+      recording = std::jthread([&](const std::stop_token& stop) {
+        name_thread("palpate-record");
+        recorder->run(stop);
+      });
+    }
+    std::jthread net([&] {
+      name_thread("palpate-net");
+      link.run();
+    });
     std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
     warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kPriority));
     warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold

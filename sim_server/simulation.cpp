@@ -61,10 +61,8 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   surface_ = boundary_surface(mesh_);
   for (const int vertex : surface_.vertices) rest_.push_back(mesh_.vertices[vertex]);
   auto touchable = touchable_by(scene.tools, surface_, mesh_);
-  for (std::size_t i = 0; i < touchable.size(); ++i) {
-    if (touchable[i].empty())
-      fail("{}: no triangle of the surface lies in the tool's `reach` box", scene.tools[i].reach_where);
-  }
+  if (std::all_of(touchable.begin(), touchable.end(), [](const auto& list) { return list.empty(); }))
+    fail("{}: no triangle of the surface lies within the tool's reach", scene.tools.front().reach_where);
   const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, mesh_);
   require_memory_for(scene, Purpose::kServe, count_parts(mesh_, surface_));
   tissue_.model =
@@ -90,6 +88,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   places_.resize(tools_.size());
   ways_.resize(tools_.size(), Vec3::Zero());
   forces_.resize(tools_.size());
+  tangents_wanted_.resize(tools_.size(), 1);
 }
 
 std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPose>> places_W,
@@ -117,7 +116,10 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPo
   if (!tissue_.model->balanced()) flag_contacts();
   if (!tissue_.before.empty())
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
-  for (std::size_t i = 0; i < tools_.size(); ++i) forces_[i] = tools_[i].force();
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (tangents_wanted_[i]) tools_[i].differentiate();
+    forces_[i] = tools_[i].force();
+  }
   return forces_;
 }
 

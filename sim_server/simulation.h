@@ -37,6 +37,9 @@ class Simulation {
     tools_[tool].press_buttons(buttons);
   }
 
+  /// Whether the next steps tell the tangent of that tool's force; at first they do.
+  void want_tangent(std::size_t tool, bool wanted) noexcept { tangents_wanted_[tool] = wanted; }
+
   /// How that tool's way bends in the next step.
   void bend_way(std::size_t tool, const Bend& way) noexcept { tools_[tool].bend(way); }
 
@@ -46,7 +49,7 @@ class Simulation {
     Mat3 tangent = Mat3::Zero();  ///< N/m; free of contact: what it will be when it touches
     SurfacePlane plane;           ///< of contact, or the nearest; no normal: none within twice the radius
   };
-  /// `felt`: what `step` gave for that place; null: to be found out. At most two contact solves.
+  /// `felt`: what `step` gave for that place, with its tangent; null: to be found out. At most two contact solves.
   Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) noexcept;
 
   /// How fast the organ's surface moves by itself where that tool touches it at `p_W` (m), or else nearest to
@@ -89,6 +92,7 @@ class Simulation {
   std::vector<Vec3> ways_;                       // of the surface at each tool in this step, m
   std::vector<std::optional<ToolPose>> places_;  // for the step of tool 0 alone
   std::vector<ToolForce> forces_;
+  std::vector<std::uint8_t> tangents_wanted_;
 };
 
 /// "contact", or "contact of tool 2" where there are several: the name of a tool's part in reports, and,

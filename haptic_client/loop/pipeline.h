@@ -5,7 +5,7 @@
 #include "haptic_client/device/device.h"
 #include "haptic_client/extrapolation/force_estimate.h"
 #include "haptic_client/extrapolation/surface_model.h"
-#include "haptic_client/loop/workspace.h"
+#include "common/workspace.h"
 #include "haptic_client/safety/limiter.h"
 #include "haptic_client/safety/passivity.h"
 #include "haptic_client/safety/watchdog.h"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim_server/tool_reach.h"
+
 namespace palpate::sim {
 namespace {
 
@@ -45,14 +47,8 @@ std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh&
   if (!tool.reach) return surface.triangles;
   std::vector<Triangle> touchable;
   for (const Triangle& t : surface.triangles) {
-    Vec3 min = mesh.vertices[surface.vertices[t[0]]], max = min;
-    for (const int corner : t) {
-      min = min.cwiseMin(mesh.vertices[surface.vertices[corner]]);
-      max = max.cwiseMax(mesh.vertices[surface.vertices[corner]]);
-    }
-    if ((max.array() >= tool.reach->min.array()).all() && (min.array() <= tool.reach->max.array()).all()) {
-      touchable.push_back(t);
-    }
+    const auto corner = [&](int i) -> const Vec3& { return mesh.vertices[surface.vertices[t[i]]]; };
+    if (may_meet(*tool.reach, corner(0), corner(1), corner(2))) touchable.push_back(t);
   }
   return touchable;
 }
@@ -60,7 +56,7 @@ std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh&
 ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
                          std::vector<Triangle> touchable)
     : tool_(tool.shape),
-      finder_(rest, surface.triangles, touchable, kGather * tool.shape.radius,
+      finder_(rest, touchable.empty() ? touchable : surface.triangles, touchable, kGather * tool.shape.radius,
               longest_axis(tool.shape, rest)),
       solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0),
       free_(rest) {
@@ -217,8 +213,15 @@ void ToolContact::settle(Tissue& tissue) noexcept {
 
 void ToolContact::conclude(const ContactForce& contact, int iterations, Tissue& tissue) noexcept {
   if (!contact.force.allFinite()) return give_up(tissue);
-  force_ = {contact.force,    contact.torque, solver_.tangent(patch_),
-            contact.contacts, iterations,     !contact.converged || !arrived_};
+  force_ = {.force = contact.force,
+            .torque = contact.torque,
+            .contacts = contact.contacts,
+            .iterations = iterations,
+            .flagged = !contact.converged || !arrived_};
+}
+
+void ToolContact::differentiate() noexcept {
+  if (!holds() && force_.contacts > 0) force_.tangent = solver_.tangent(patch_);
 }
 
 bool ToolContact::exhausted() const {
@@ -232,6 +235,7 @@ ToolForce ToolContact::probe(const Vec3& p_W, Tissue& tissue) noexcept {
   const bool placed = placed_, arrived = arrived_;
   kept_.assign(own_loads().begin(), own_loads().end());
   go({p_W, place_.q_W}, tissue);
+  differentiate();
   const ToolForce there = force_;
   force_ = force;
   place_ = place;

@@ -10,11 +10,12 @@ namespace palpate::sim {
 
 /// What a tool feels after one step.
 struct ToolForce {
-  Vec3 force = Vec3::Zero();    ///< N, world, on the tool at its tip: what the device renders
-  Vec3 torque = Vec3::Zero();   ///< N m, world, on the tool about its tip; 0 for a shaft that pivots
-  Mat3 tangent = Mat3::Zero();  ///< dF/dp, N/m, symmetric without friction; the loads of other tools held
-  int contacts = 0;             ///< touching faces, edges and vertices; or vertices that it grasps
-  int iterations = 0;           ///< contact linearisations, all sub-places together
+  Vec3 force = Vec3::Zero();   ///< N, world, on the tool at its tip: what the device renders
+  Vec3 torque = Vec3::Zero();  ///< N m, world, on the tool about its tip; 0 for a shaft that pivots
+  /// dF/dp, N/m, symmetric without friction; the loads of other tools held. Zero where nobody wants it.
+  Mat3 tangent = Mat3::Zero();
+  int contacts = 0;    ///< touching faces, edges and vertices; or vertices that it grasps
+  int iterations = 0;  ///< contact linearisations, all sub-places together
   /// No settled answer: a wild position (then there is no force), contact that did not converge, several
   /// tools that did not come to an equilibrium, tissue that found no balance or closed over the tool, or a
   /// way too long for one step (then the force belongs to the place the tool got to).
@@ -94,6 +95,8 @@ class ToolContact {
   }
   /// Away from the tissue: no loads, no force.
   void lift(Tissue& tissue) noexcept;
+  /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.
+  void differentiate() noexcept;
   /// Says that `force` is not settled.
   void flag() noexcept { force_.flagged = true; }
 

@@ -90,6 +90,17 @@ TEST_CASE("served tools: a tool that changes hands does not travel from one to t
   CHECK(served.newton(1) == Approx(2).epsilon(1e-3));
 }
 
+TEST_CASE("served tools: no tangent is made that nobody asked for, and the force is the same without") {
+  Served asks, asks_not;
+  asks.inputs[0].state.flags |= protocol::ToolState::kWantsHere;
+  asks.step(), asks_not.step();
+  const ToolForce &with = asks.simulation.tool(0).force(), &without = asks_not.simulation.tool(0).force();
+  REQUIRE(with.contacts > 0);
+  CHECK(with.tangent.norm() > 10);
+  CHECK(without.tangent == Mat3::Zero());
+  CHECK(with.force == without.force);
+}
+
 TEST_CASE("served tools: nothing happens while nobody holds any, and a step does not allocate") {
   Served served;
   served.step();

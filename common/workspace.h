@@ -1,7 +1,10 @@
 #pragma once
-#include "common/types.h"
+#include <span>
+#include <string_view>
 
-namespace palpate::client {
+#include "common/config.h"
+
+namespace palpate {
 
 /// Where the device's workspace lies in the world: p_W = offset + scale R p_D. The force goes back by virtual
 /// work, f_D = scale R^T f_W, so that enlarging the motion neither makes nor loses energy.
@@ -18,4 +21,15 @@ struct Workspace {
   Vec3 motion_to_device(const Vec3& d_W) const noexcept { return axes.transpose() * d_W / scale; }
 };
 
-}  // namespace palpate::client
+/// `scale`, `offset` and `axes` of a [workspace] section. Throws `Error`.
+Workspace read_workspace(const Config& config);
+
+/// Where a device can take its grip, in its own frame: nowhere outside this box.
+struct DeviceReach {
+  std::string_view name;  ///< of the device
+  Vec3 min, max;          ///< m
+};
+/// Of the devices that have one.
+std::span<const DeviceReach> device_reaches();
+
+}  // namespace palpate

@@ -1,0 +1,166 @@
+// What minimal scenes build and start, by the real program: parts, bytes and threads; and that what is left
+// out is not in resident memory either. Each later feature adds its row.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
+
+#include "tests/support/catch.h"
+#include "tests/support/programs.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate::test;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string kScenes = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/";
+
+/// A liver by some model, without anything that it does not need.
+std::string minimal(const std::string& model) {
+  std::string text = "[mesh]\nfile = \"" + kScenes + "../meshes/liver.msh\"\n[deformation]\nmodel = \"" +
+                     model + "\"\n[[tool]]\nradius = 0.005\n";
+  if (model != "rigid")
+    text +=
+        "[material]\nyoung_modulus = 1e4\npoisson_ratio = 0.4\n"
+        "[[fixed]]\nbox = [[-0.11, -0.08, -0.10], [0.11, 0.10, -0.060]]\n";
+  return text;
+}
+
+Json explained(const std::string& scene) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "explain.json").string();
+  Process process("sim_server", {"explain", scene, "--json", file});
+  CHECK(process.wait(120) == 0);
+  CAPTURE(process.output());
+  return read_json(file);
+}
+
+std::set<std::string> parts_of(const Json& explanation) {
+  std::set<std::string> parts;
+  for (const Json& row : explanation["built"]) {
+    if (row["bytes"].get<long>() > 0) parts.insert(row["part"].get<std::string>());
+  }
+  return parts;
+}
+
+/// And be it for set-up alone.
+bool was_built(const Json& explanation, const std::string& part) {
+  const Json& rows = explanation["built"];
+  return std::any_of(rows.begin(), rows.end(), [&](const Json& row) { return row["part"] == part; });
+}
+
+/// A server that waits for somebody.
+struct Waiting {
+  Process process;
+  Waiting(const std::string& scene, std::vector<std::string> more = {})
+      : process("sim_server", [&] {
+          std::vector<std::string> all{"run", scene, "--listen", "127.0.0.1:0", "--seconds", "30"};
+          all.insert(all.end(), more.begin(), more.end());
+          return all;
+        }()) {
+    REQUIRE(process.wait_for("listening"));
+  }
+  std::string proc(const std::string& name) const {
+    return "/proc/" + std::to_string(process.id()) + "/" + name;
+  }
+  /// By name: those that the program names, and how many others, which wait in libraries.
+  std::pair<std::multiset<std::string>, unsigned> threads() const {
+    std::multiset<std::string> named;
+    unsigned others = 0;
+    for (const auto& task : std::filesystem::directory_iterator(proc("task"))) {
+      std::ifstream file(task.path() / "comm");
+      std::string name;
+      std::getline(file, name);
+      if (name.starts_with("palpate-")) {
+        named.insert(name);
+      } else {
+        ++others;
+      }
+    }
+    return {named, others};
+  }
+  /// bytes
+  long resident() const {
+    std::ifstream file(proc("statm"));
+    long all = 0, resident = 0;
+    file >> all >> resident;
+    return resident * 4096;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("left out: a minimal scene has these parts in memory, and no other") {
+  using Parts = std::set<std::string>;
+  const std::vector<std::pair<std::string, Parts>> rows{
+      {"rigid", {"rest_positions"}},
+      {"quasi_static", {"positions", "compliance"}},
+      {"tensor_mass", {"positions", "tensors", "motion", "compliance"}},
+      {"implicit", {"positions", "elements", "motion", "compliance"}},
+      {"reduced", {"positions", "compliance", "modes"}},
+  };
+  const TemporaryFolder folder;
+  for (const auto& [model, own] : rows) {
+    DYNAMIC_SECTION(model) {
+      Parts expected = own;
+      expected.insert({"mesh", "surface", "contact"});
+      const Json explanation = explained(folder.write("scene.toml", minimal(model)).string());
+      CHECK(parts_of(explanation) == expected);
+      const bool factors = model != "rigid" && model != "tensor_mass";
+      for (const char* part : {"stiffness matrix", "its factor"})
+        CHECK(was_built(explanation, part) == factors);
+    }
+  }
+}
+
+TEST_CASE("left out: a server starts two threads, one more to record, and asks a quiet scene for no other") {
+  const TemporaryFolder folder;
+  const std::multiset<std::string> two{"palpate-net", "palpate-sim"};
+  const unsigned cores = std::thread::hardware_concurrency();
+  for (const char* model : {"rigid", "quasi_static", "tensor_mass", "implicit"}) {
+    DYNAMIC_SECTION(model) {
+      const Waiting server(folder.write("scene.toml", minimal(model)).string());
+      const auto [named, others] = server.threads();
+      CHECK(named == two);
+      // `main`, and what oneTBB and OpenBLAS keep for the other cores.
+      CHECK(others <= 1 + 2 * (cores - 1));
+    }
+  }
+  SECTION("recording") {
+    const Waiting server(folder.write("scene.toml", minimal("rigid")).string(),
+                         {"--record", (folder.path() / "session.pcap").string()});
+    auto three = two;
+    three.insert("palpate-record");
+    CHECK(server.threads().first == three);
+  }
+}
+
+TEST_CASE("left out: what a workspace leaves out is not in resident memory either") {
+  const std::string whole = kScenes + "liver.toml", some = kScenes + "liver_falcon.toml";
+  const long saved = explained(whole)["bytes"].get<long>() - explained(some)["bytes"].get<long>();
+  CHECK(saved > 5'000'000);
+  const long resident = Waiting(whole).resident() - Waiting(some).resident();
+  CAPTURE(saved, resident);
+  CHECK(10 * resident > 7 * saved);
+}
+
+TEST_CASE("explain --why names the line that asks for a part, or leaves it out") {
+  const auto why = [](const std::string& part) {
+    Process process("sim_server", {"explain", kScenes + "liver_falcon.toml", "--why", part});
+    const int code = process.wait(120);
+    return std::pair(code, process.output());
+  };
+  const auto [built, line] = why("compliance");
+  CHECK(built == 0);
+  CHECK(line.find("model = \"quasi_static\"") != std::string::npos);
+  CHECK(line.find("liver_falcon.toml:19") != std::string::npos);
+  const auto [left, out] = why("the surface out of reach");
+  CHECK(left == 0);
+  CHECK(out.find("[tool.workspace]") != std::string::npos);
+  const auto [wrong, known] = why("complience");
+  CHECK(wrong == 2);
+  CHECK(known.find("compliance") != std::string::npos);
+}
