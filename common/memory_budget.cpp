@@ -4,6 +4,8 @@
 #include <fstream>
 #include <limits>
 #include <optional>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "common/error.h"
 
@@ -49,11 +51,23 @@ std::string own_group(const std::filesystem::path& file) {
   return "/";
 }
 
+/// What `ulimit -v` leaves of addresses, with room for what libraries take as they are first used.
+double left_of_addresses(const std::filesystem::path& root) {
+  constexpr double kLibraries = 3e8;
+  rlimit limit{};
+  const auto pages = number_in(root / "proc/self/statm");
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !pages)
+    return std::numeric_limits<double>::infinity();
+  const double taken = *pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return std::max(0.0, static_cast<double>(limit.rlim_cur) - taken - kLibraries);
+}
+
 }  // namespace
 
 double free_memory(const std::filesystem::path& root) {
   const auto kilobytes = number_after(root / "proc/meminfo", "MemAvailable:");
   double free = kilobytes ? 1024 * *kilobytes : std::numeric_limits<double>::infinity();
+  free = std::min(free, left_of_addresses(root));
   const std::filesystem::path groups = root / "sys/fs/cgroup";
   // Each group is within the limits of those above it.
   for (std::filesystem::path group = own_group(root / "proc/self/cgroup").substr(1);;

@@ -61,9 +61,18 @@ std::size_t loaded_nodes(const Scene& scene, const Simulation& simulation) {
   }));
 }
 
+const DeformationModelRow& model_of(const Scene& scene) {
+  return find_row(deformation_models(), scene.deformation.model, "deformation model",
+                  scene.deformation.where);
+}
+
 bool is_elastic(const Scene& scene) {
-  return find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where)
-      .elastic;
+  return model_of(scene).elastic;
+}
+
+/// By its material.
+bool deforms(const Scene& scene) {
+  return model_of(scene).elastic || model_of(scene).any_material;
 }
 
 /// By formula; what no elastic scene has is nothing.
@@ -146,7 +155,7 @@ std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulat
   }
   for (const FixedRegion& region : scene.fixed) rows.push_back({"fixed", "nothing kept", region.where});
   if (scene.material)
-    rows.push_back({"material", is_elastic(scene) ? "nothing kept" : "not used", scene.material_where});
+    rows.push_back({"material", deforms(scene) ? "nothing kept" : "not used", scene.material_where});
   return rows;
 }
 

@@ -368,6 +368,17 @@ bool Dynamics::inside_out() const {
   return false;
 }
 
+void Dynamics::resistance(std::span<Vec3> f) const {
+  solid_.forces(x_, f, viscosity());
+  const double alpha = settings_.rayleigh_mass, damped = settings_.rayleigh_stiffness * c_;
+  const std::vector<double>& mass = matrix_.masses();
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    const Vec3 v = c_ * (x_[i] - from_[i]);
+    if (damped > 0) f[i] += damped * (f[i] - from_internal_[i]);
+    f[i] += mass[i] * (c_ * (v - from_v_[i]) + alpha * v);
+  }
+}
+
 double Dynamics::kinetic_energy() const {
   double sum = 0;
   const std::vector<double>& mass = matrix_.masses();

@@ -75,6 +75,11 @@ class Dynamics {
   /// resistance would throw the body back.
   void follow(const Eigen::VectorXd& way, std::span<const Vec3> external);
   double kinetic_energy() const;
+  /// What each node does against being where it is (nodes, N): elastic forces, viscosity, damping and
+  /// inertia, at the end of the last step. Those that are held bear the rest of what acts on them.
+  void resistance(std::span<Vec3> f) const;
+  /// Of the last step. Stands until the next.
+  Viscosity viscosity() const;
   /// With which the body resists (nodes, N), viscosity counted, at the end of the last step.
   void forces(std::span<Vec3> f) const;
   std::size_t bytes() const;
@@ -96,7 +101,6 @@ class Dynamics {
   void remember(double h);
   void resist();
   void relax_stress(double h);
-  Viscosity viscosity() const;
 
   const Solid& solid_;
   DynamicsSettings settings_;

@@ -18,6 +18,7 @@ struct DynamicsSettings {
   /// Of unit forces, what columns of compliance made in the background may leave, which are of where the body
   /// was steps ago.
   double tolerance = 0;
+  bool flies = false;  ///< nothing need hold the body: it has mass
 };
 
 }  // namespace palpate::sim

@@ -3,9 +3,12 @@
 namespace palpate::sim {
 namespace {
 
-StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs) {
+constexpr double kFlies = 1;  // 1/s: the step of the matrix that shows whether a body that flies is sound
+
+StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
   StiffnessMatrix matrix = solid.stiffness_matrix(dofs);
   solid.add_stiffness(solid.rest(), matrix);
+  if (flies) matrix.add_to_diagonal(solid.masses(), kFlies * kFlies);
   matrix.close_held(matrix.lower().diagonal().mean());
   return matrix;
 }
@@ -23,7 +26,7 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
     : alpha_(settings.rayleigh_mass),
       beta_(settings.rayleigh_stiffness),
       mass_(solid.masses()),
-      matrix_(at_rest(solid, dofs)),
+      matrix_(at_rest(solid, dofs, settings.flies)),
       usual_(matrix_.lower().diagonal().mean()),
       factor_(matrix_.lower(), where, precision_for(solid.material())) {}
 

@@ -11,7 +11,8 @@ namespace palpate::sim {
 /// of some place, and its factor. One thread at a time.
 class NewtonMatrix {
  public:
-  /// K of the solid at rest, factored. Throws `Error`, beginning with `where`, when `dofs` do not hold it.
+  /// K of the solid at rest, factored; of one that flies with some inertia. Throws `Error`, beginning with
+  /// `where`, when `dofs` do not hold it.
   NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                const std::string& where);
 

@@ -170,7 +170,7 @@ double Solid::mean_dilation(const int* nodes) const {
   return sum / 4;
 }
 
-void Solid::evaluate(std::span<const Vec3> x, std::span<State> at_points) const {
+void Solid::evaluate(std::span<const Vec3> x, std::span<State> at_points, const Viscosity& viscosity) const {
   if (averages()) average_dilation(x);
   with_law(material_.law, [&]<class Law>() {
     const Moduli moduli = Law::moduli(material_);
@@ -183,10 +183,14 @@ void Solid::evaluate(std::span<const Vec3> x, std::span<State> at_points) const 
           const double theta = averages() ? mean_dilation(element.nodes) : law.dilation();
           state.stress = law.shape_stress() + moduli.lambda * theta * law.dilation_gradient();
           state.energy = law.shape_energy() + (averages() ? 0 : 0.5 * moduli.lambda * theta * theta);
-          if (!material_.fibres) continue;
-          const FibreLaw fibres = fibre_law(state.F);
-          state.stress += fibres.stress();
-          state.energy += fibres.energy();
+          if (material_.fibres) {
+            const FibreLaw fibres = fibre_law(state.F);
+            state.stress += fibres.stress();
+            state.energy += fibres.energy();
+          }
+          state.stress *= viscosity.scale;
+          if (!viscosity.memory.empty())
+            state.stress += element.remembered(state.F, viscosity.memory[element.point(q)]);
         }
         for (int i = 0; averages() && i < 4; ++i) {
           const double theta = nodal_dilation_[element.nodes[i]];

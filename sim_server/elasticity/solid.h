@@ -71,7 +71,8 @@ class Solid {
     Mat3 F, stress;
     double energy;
   };
-  void evaluate(std::span<const Vec3> x, std::span<State> at_points) const;
+  /// The energy is the law's at once, whatever has relaxed.
+  void evaluate(std::span<const Vec3> x, std::span<State> at_points, const Viscosity& viscosity = {}) const;
   std::size_t bytes() const;
 
  private:

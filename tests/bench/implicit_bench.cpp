@@ -50,10 +50,10 @@ Case liver_case() {
 }
 
 /// 60 x 27 x 60 mm, held below; its top, of `n` x `n` cells, under a sphere of 8 mm.
-Case block_case(int n, double rate_hz, int refresh_steps) {
+Case block_case(int n, double rate_hz, int refresh_steps, Solver solver = Solver::kQuasiNewton) {
   Scene scene = test::scene_of({.young_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060},
                                {Vec3(-1, -1, -1), Vec3(1, -0.0269, 1)}, 0.008);
-  scene.deformation.solver = Solver::kQuasiNewton;
+  scene.deformation.solver = solver;
   scene.deformation.refresh_steps = refresh_steps;
   scene.deformation.tolerance = 1e-2;
   const int high = static_cast<int>(std::lround(0.45 * n));
@@ -146,6 +146,7 @@ void add_set_up(const std::string& name, Case (*make)()) {
 void add_implicit_rows() {
   add_case("liver_6k/direct", &liver_case);
   add_case("block_22k/quasi_newton", [] { return block_case(20, 30, 16); });
+  add_case("block_22k/pcg", [] { return block_case(20, 30, 16, Solver::kConjugateGradients); });
   add_case("block_98k/quasi_newton", [] { return block_case(33, 10, 64); });
   add_set_up("block_98k", [] { return block_case(33, 10, 64); });
 }

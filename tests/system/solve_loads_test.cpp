@@ -2,63 +2,20 @@
 #include <fmt/core.h>
 #include <numbers>
 
-#include "tests/support/column.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/solve_bench.h"
 #include "tests/support/vtu.h"
 
 using namespace palpate::test;
+using Place = SolveBench::Place;
 
 namespace {
-
-constexpr double kE = 2e4, kHeight = 0.4, kArea = 0.01;
-using Place = std::array<double, 3>;
-
-const std::string kFixed = "[[fixed]]\nsurface_tag = \"bottom\"\n";
-
-/// A folder with the column, and what the program said of it last.
-struct Bench {
-  TemporaryFolder folder;
-  std::string out = path("out.vtu"), said;
-  Bench() { folder.write("column.msh", column(true)); }
-  std::string path(const std::string& name) const { return (folder.path() / name).string(); }
-
-  std::vector<std::string> arguments(const std::string& sections, const std::vector<std::string>& more,
-                                     const std::string& material, const std::string& mesh) const {
-    const std::string text =
-        fmt::format("[mesh]\nfile = \"{}\"\n[material]\nyoung_modulus = {}\ndensity = 1000\n{}\n{}", mesh, kE,
-                    material, sections);
-    std::vector<std::string> all{"solve", folder.write("scene.toml", text).string(), "--out", out};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-  void solve(const std::string& sections, const std::vector<std::string>& more,
-             const std::string& material = "poisson_ratio = 0", const std::string& mesh = "column.msh") {
-    said = output_of("sim_server", arguments(sections, more, material, mesh), 0);
-  }
-  /// The numbers that were said after this.
-  Place numbers(const std::string& after) const {
-    CAPTURE(said, after);
-    const std::size_t at = said.find(after);
-    REQUIRE(at != std::string::npos);
-    Place read{};
-    REQUIRE(std::sscanf(said.c_str() + at + after.size(), " %lf %lf %lf", &read[0], &read[1], &read[2]) >= 1);
-    return read;
-  }
-  void check_moved(const std::string& probe, const Place& expected) const {
-    const Place moved = numbers("probe " + probe + ": displacement ");
-    const double size = std::hypot(expected[0], expected[1], expected[2]);
-    CAPTURE(probe);
-    for (std::size_t i = 0; i < 3; ++i)
-      CHECK(moved[i] == Approx(expected[i]).epsilon(1e-7).margin(1e-6 * size));
-  }
-};
 
 const std::vector<std::string> kTwoProbes{"--probe", "0.03,0.4,0.07", "--probe", "0.01,0.12,0.06"};
 
 }  // namespace
 
 TEST_CASE("solve: a bar that is pulled, held and loaded by tags, boxes and balls of its ends") {
-  Bench bench;
+  SolveBench bench;
   const std::string box = "[[fixed]]\nbox = [[-1, -1, -1], [1, 0.001, 1]]\n",
                     ball = "[[fixed]]\ncenter = [0.05, -10, 0.05]\nradius = 10.01\n",
                     traction = "[[load]]\ntraction = [0, 50, 0]\n";
@@ -77,7 +34,7 @@ TEST_CASE("solve: a bar that is pulled, held and loaded by tags, boxes and balls
 }
 
 TEST_CASE("solve: pressure on a bar that rests on three planes widens it by Poisson's ratio") {
-  Bench bench;
+  SolveBench bench;
   const std::string planes =
       "[[fixed]]\nsurface_tag = \"bottom\"\naxes = \"y\"\n"
       "[[fixed]]\nbox = [[-1, -1, -1], [0.001, 1, 1]]\naxes = \"x\"\n"
@@ -91,7 +48,7 @@ TEST_CASE("solve: pressure on a bar that rests on three planes widens it by Pois
 TEST_CASE("solve: under suction St. Venant and Kirchhoff's bar is stretched as its cubic says") {
   // Without Poisson's effect its ends keep their area: p = E l (1 - l^2) / 2 makes it l times as long.
   // Pressed by as much it would buckle.
-  Bench bench;
+  SolveBench bench;
   const double stretch = 1.07, pressure = 0.5 * kE * stretch * (1 - stretch * stretch);
   bench.solve(kFixed + fmt::format("[[load]]\npressure = {}\nsurface_tag = \"top\"\n", pressure), kTwoProbes,
               "poisson_ratio = 0\nlaw = \"stvk\"");
@@ -103,7 +60,7 @@ TEST_CASE("solve: under suction St. Venant and Kirchhoff's bar is stretched as i
 TEST_CASE("solve: a force is shared equally by the vertices of its region, and is all of it in all") {
   // Two tetrahedra of heights h on one held base of area A: with no Poisson's ratio an apex that bears F goes
   // 3 h F / (E A) along the height, and 6 h F / (E A) across it.
-  Bench bench;
+  SolveBench bench;
   bench.folder.write(
       "two.msh",
       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 0.3 0 0\n3 0 0 0.3\n4 0.1 0.1 0.1\n"
@@ -125,7 +82,7 @@ TEST_CASE("solve: a force is shared equally by the vertices of its region, and i
 }
 
 TEST_CASE("solve: an end that is displaced takes the bar along, and counts over what is fixed") {
-  Bench bench;
+  SolveBench bench;
   bench.solve(kFixed + "[[load]]\ndisplacement = [0, -0.02, 0]\naxes = \"y\"\nsurface_tag = \"top\"\n",
               kTwoProbes);
   bench.check_moved("0.03,0.4,0.07", {0, -0.02, 0});
@@ -138,7 +95,7 @@ TEST_CASE("solve: an end that is displaced takes the bar along, and counts over 
 }
 
 TEST_CASE("solve: the .vtu has every array in its size, and its displacement is what is printed") {
-  Bench bench;
+  SolveBench bench;
   const double stress = 50, density = stress * stress / (2 * kE);
   for (const auto& [element, points] : {std::pair("p1", 20), std::pair("p2", 20 + 61)}) {
     CAPTURE(element);
@@ -174,7 +131,7 @@ TEST_CASE("solve: the .vtu has every array in its size, and its displacement is 
 }
 
 TEST_CASE("solve: a series has about as many frames as asked for, each where the body is at its time") {
-  Bench bench;
+  SolveBench bench;
   const double amplitude = 0.01, period = 0.8;
   bench.solve("[[fixed]]\nsurface_tag = \"bottom\"\n[[fixed.motion]]\ndirection = [0, 0, 2]\n" +
                   fmt::format("amplitude = {}\nperiod = {}\n", amplitude, period),
@@ -200,7 +157,7 @@ TEST_CASE("solve: a series has about as many frames as asked for, each where the
 }
 
 TEST_CASE("solve: a probe outside the body is refused, with the vertex nearest to it") {
-  Bench bench;
+  SolveBench bench;
   const std::string load = kFixed + "[[load]]\ntraction = [0, 50, 0]\nsurface_tag = \"top\"\n";
   const std::string said = output_of("sim_server",
                                      bench.arguments(load, {"--probe", "0,0.4,0", "--probe", "0.1,0.45,0"},
@@ -223,7 +180,7 @@ TEST_CASE("solve: the example of its help can be run, its probe is in the liver"
 }
 
 TEST_CASE("solve: a tag that the mesh has not, and a region without a triangle, are refused") {
-  Bench bench;
+  SolveBench bench;
   const auto refused = [&](const std::string& sections) {
     return output_of("sim_server", bench.arguments(sections, {}, "poisson_ratio = 0", "column.msh"), 2);
   };
