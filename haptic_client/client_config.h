@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "haptic_client/device/devices.h"
 #include "common/workspace.h"
+#include "haptic_client/device/devices.h"
 #include "haptic_client/safety/limiter.h"
 #include "haptic_client/safety/passivity.h"
 

@@ -49,7 +49,8 @@ class Simulation {
     Mat3 tangent = Mat3::Zero();  ///< N/m; free of contact: what it will be when it touches
     SurfacePlane plane;           ///< of contact, or the nearest; no normal: none within twice the radius
   };
-  /// `felt`: what `step` gave for that place, with its tangent; null: to be found out. At most two contact solves.
+  /// `felt`: what `step` gave for that place, with its tangent; null: to be found out. At most two contact
+  /// solves.
   Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) noexcept;
 
   /// How fast the organ's surface moves by itself where that tool touches it at `p_W` (m), or else nearest to

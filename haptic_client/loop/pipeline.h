@@ -2,10 +2,10 @@
 #include <memory>
 
 #include "common/histogram.h"
+#include "common/workspace.h"
 #include "haptic_client/device/device.h"
 #include "haptic_client/extrapolation/force_estimate.h"
 #include "haptic_client/extrapolation/surface_model.h"
-#include "common/workspace.h"
 #include "haptic_client/safety/limiter.h"
 #include "haptic_client/safety/passivity.h"
 #include "haptic_client/safety/watchdog.h"
