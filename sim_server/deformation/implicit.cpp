@@ -194,7 +194,7 @@ void Implicit::find_columns(std::span<const int> vertices) const noexcept {
     slot_[v] = slots_ + static_cast<int>(missing.size());
     missing.push_back(dof_[v]);
   }
-  if (!missing.empty()) keep_columns(dynamics_.matrix().columns(missing));
+  if (!missing.empty()) keep_columns(dynamics_.matrix().columns(missing, tolerance_));
 }
 
 void Implicit::keep_columns(const Eigen::MatrixXd& columns) const noexcept {

@@ -27,7 +27,7 @@ class NewtonMatrix {
   /// A^-1 of unit forces on the three unknowns from each of `first` on: (unknowns x 3 first.size()); of a
   /// factor in single precision by one step of refinement, which squares its error, where the first three
   /// leave more than `enough` of them.
-  Eigen::MatrixXd columns(std::span<const int> first, double enough = 0) const;
+  Eigen::MatrixXd columns(std::span<const int> first, double enough) const;
 
   /// c of the last `build`, 1/s; 0 before the first.
   double c() const { return c_; }
