@@ -141,6 +141,14 @@ void watch(const NetLink& link, std::size_t tools, const protocol::Recorder* rec
   }
 }
 
+void warn_if_out_of_reach(const Simulation& simulation, const Scene& scene) {
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    if (simulation.touchable(i).empty())
+      log::warning("{}: tool {} reaches no part of the surface and will feel nothing; is this in metres?",
+                   scene.tools[i].reach_where, i + 1);
+  }
+}
+
 std::uint64_t random_seed() {
   std::random_device device;
   return std::uint64_t{device()} << 32 | device();
@@ -159,6 +167,7 @@ int run_server(const ServerOptions& options) {
   Simulation simulation(scene, std::ref(progress));
   warn_if_huge(simulation.mesh(), scene);
   warn_if_slow(scene);
+  warn_if_out_of_reach(simulation, scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);
   std::vector<double> radii;
   std::vector<SurfacePager> pagers;

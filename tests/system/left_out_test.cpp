@@ -138,6 +138,17 @@ TEST_CASE("left out: a server starts two threads, one more to record, and asks a
   }
 }
 
+TEST_CASE("left out: of a tool that reaches nothing is told when the server starts, and of no other") {
+  const TemporaryFolder folder;
+  const std::string away = "[[tool]]\nreach = [[5, 5, 5], [6, 6, 6]]\n";
+  Waiting both(folder.write("scene.toml", minimal("rigid") + away).string());
+  const std::string& said = both.process.output();
+  CAPTURE(said);
+  CHECK(said.find("tool 2 reaches no part of the surface") != std::string::npos);
+  CHECK(said.find("tool 1 reaches no part") == std::string::npos);
+  CHECK(said.find("scene.toml:8") != std::string::npos);
+}
+
 TEST_CASE("left out: what a workspace leaves out is not in resident memory either") {
   const std::string whole = kScenes + "liver.toml", some = kScenes + "liver_falcon.toml";
   const long saved = explained(whole)["bytes"].get<long>() - explained(some)["bytes"].get<long>();
