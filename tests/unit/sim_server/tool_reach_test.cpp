@@ -108,6 +108,19 @@ TEST_CASE("tool reach: a cone meets each triangle that has a place in it, and no
   }
 }
 
+TEST_CASE(
+    "tool reach: a cone reaches so far around itself, and no farther: beside it, beyond it, behind it") {
+  const Cone cone{Vec3::Zero(), Vec3::UnitX(), std::numbers::pi / 6, 0.1, 0.004};
+  const Vec3 edge(std::sqrt(0.75), 0.5, 0), out(-0.5, std::sqrt(0.75), 0);
+  const auto met = [&](const Vec3& x) { return may_meet(cone, x, x, x); };
+  for (const double off : {0.0, 0.0039, 0.0041, 0.05}) {
+    CAPTURE(off);
+    CHECK(met(0.05 * edge + off * out) == (off < 0.004));
+    CHECK(met((0.1 + off) * Vec3::UnitX()) == (off < 0.004));
+    CHECK(met(-off * Vec3::UnitX()) == (off < 0.004));
+  }
+}
+
 TEST_CASE("tool reach: the scenes that ship leave much of the liver out, and lose nothing of the force") {
   for (const char* name : {"liver_falcon", "liver_trocar"}) {
     DYNAMIC_SECTION(name) {
