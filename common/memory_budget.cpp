@@ -85,7 +85,9 @@ std::string bytes_text(double bytes) {
 void require_memory(double bytes, double free, std::string_view where, std::string_view what,
                     std::string_view remedy) {
   if (bytes <= free) return;
-  fail("{}: {} would take {}, and {} are free; {}", where, what, bytes_text(bytes), bytes_text(free), remedy);
+  const char* const limit = left_of_addresses("/") <= free ? " below the limit of `ulimit -v`" : "";
+  fail("{}: {} would take {}, and {} are free{}; {}", where, what, bytes_text(bytes), bytes_text(free), limit,
+       remedy);
 }
 
 }  // namespace palpate

@@ -15,7 +15,7 @@ double free_memory(const std::filesystem::path& root = "/");
 std::string bytes_text(double bytes);
 
 /// Throws `Error` "WHERE: WHAT would take 2.6 GB, and 1.9 GB are free; REMEDY" where `bytes` are more than
-/// `free`.
+/// `free`; names `ulimit -v` where that leaves no more.
 void require_memory(double bytes, double free, std::string_view where, std::string_view what,
                     std::string_view remedy);
 

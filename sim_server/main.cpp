@@ -124,6 +124,7 @@ CLI::App* add_study(CLI::App& app, sim::StudyOptions& options) {
 CLI::App* add_mesh_info(CLI::App& app, std::string& file) {
   auto* mesh = app.add_subcommand("mesh", "Look at meshes");
   mesh->require_subcommand(1);
+  mesh->footer("Example: sim_server mesh info configs/meshes/liver.msh");
   auto* info = mesh->add_subcommand(
       "info", "What is wrong with a Gmsh file (MSH 2.2 or 4.1), and its size and quality");
   info->add_option("FILE", file, "Mesh file, metres")->required();

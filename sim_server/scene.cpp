@@ -91,6 +91,9 @@ void read_steps(const Config& config, DeformationSettings& settings) {
       find_row(kSolvers, config.text("solver", "direct"), "solver", config.where("solver")).solver;
   settings.refresh_steps =
       static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
+  if (settings.solver == DynamicsSettings::Solver::kDirect && config.says("refresh_steps"))
+    fail("{}: solver \"direct\" factors where it has to; refresh_steps is for pcg and quasi_newton",
+         config.where("refresh_steps"));
   settings.max_newton =
       static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
   settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);

@@ -8,6 +8,7 @@ Called by scripts/bench, which says more with --help. Exit status: 0 all rows ra
 
 import argparse
 import json
+import math
 import os
 import re
 import subprocess
@@ -136,7 +137,20 @@ def ratios_of(rows):
         session = SESSION.match(name)
         if session:
             add(f"{name} : real time", value, float(session[1]) * 1e9)
+    for group in ("sub_step", "sub_step_of_8"):
+        exponent = exponent_of({name: value for name, value in ns.items() if name.startswith(f"{group}/")})
+        if exponent is not None:
+            ratios[f"{group} : exponent in the size of the mesh"] = exponent
     return ratios
+
+
+def exponent_of(rows):
+    """Of times that grow as a power of the size, as "group/29k" names it: by least squares; of two sizes at least."""
+    points = [(math.log(float(name.split("/")[1].rstrip("k"))), math.log(value)) for name, value in rows.items()]
+    if len(points) < 2:
+        return None
+    mean_x, mean_y = (sum(column) / len(points) for column in zip(*points))
+    return sum((x - mean_x) * (y - mean_y) for x, y in points) / sum((x - mean_x) ** 2 for x, _ in points)
 
 
 def time_text(ns):

@@ -62,8 +62,8 @@ void SurfaceCompliance::require_room(double free) const {
   const std::string what = fmt::format("the compliance of {} reachable surface nodes", vertices_.size());
   const std::string remedy = "give [[tool]] a `reach` box around the part it touches";
   if (bytes > kMostBytes)
-    fail("{}: {} would take {}, and {} are the most; {}", source_, what, bytes_text(bytes),
-         bytes_text(kMostBytes), remedy);
+    fail("{}: {} would take {}, and a scene is given no more than {} for it; {}", source_, what,
+         bytes_text(bytes), bytes_text(kMostBytes), remedy);
   require_memory(bytes, free, source_, what, remedy);
 }
 

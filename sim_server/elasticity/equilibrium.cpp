@@ -30,8 +30,7 @@ class Newton {
     solid.add_stiffness(solid.rest(), stiffness_);
     usual_ = stiffness_.lower().diagonal().mean();
     stiffness_.close_held(usual_);
-    at_rest_ = stiffness_.lower();
-    factor_.emplace(at_rest_, where, SparseCholesky::Precision::kSingle);
+    factor_.emplace(stiffness_.lower(), where, SparseCholesky::Precision::kSingle);
     Eigen::AlignedBox3d box;
     for (const Vec3& x : solid.rest()) box.extend(x);
     still_ = kStill * box.diagonal().norm() * usual_;
@@ -83,9 +82,12 @@ class Newton {
     solid_.add_stiffness(x, stiffness_);
     stiffness_.close_held(usual_);
     if (factor_->refactor(stiffness_.lower())) return true;
+    StiffnessMatrix at_rest = solid_.stiffness_matrix(dofs_);
+    solid_.add_stiffness(solid_.rest(), at_rest);
+    at_rest.close_held(usual_);
     double added = 0;
     for (double shift = kFirstShift; shift < kLastShift; shift *= 4) {
-      stiffness_.lower() += (shift - added) * at_rest_;
+      stiffness_.lower() += (shift - added) * at_rest.lower();
       added = shift;
       if (factor_->refactor(stiffness_.lower())) return true;
     }
@@ -147,7 +149,6 @@ class Newton {
   const EquilibriumSettings& settings_;
   FreeDofs dofs_;
   StiffnessMatrix stiffness_;
-  SparseMatrix at_rest_;
   std::optional<SparseCholesky> factor_;
   std::vector<Vec3> internal_, external_;
   double usual_ = 0;  // on the diagonal at rest, N/m

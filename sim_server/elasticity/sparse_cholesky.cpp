@@ -41,6 +41,8 @@ struct SparseCholesky::Factor {
     return rough->factor(lower);
   }
 
+  /// What double precision would take more than single.
+  std::size_t more_bytes() const { return pattern.values() * sizeof(double); }
   /// From here on in this precision.
   void take(Precision other) {
     rough.reset();
@@ -72,6 +74,7 @@ struct SparseCholesky::Factor {
   std::size_t work_bytes(const SparseMatrix& lower) const {
     return static_cast<std::size_t>(lower.nonZeros()) * (sizeof(double) + sizeof(int));  // a copy
   }
+  std::size_t more_bytes() const { return 0; }
   void take(Precision) {}
   bool factorize(const SparseMatrix& lower) {
     llt.factorize(lower);
@@ -85,6 +88,13 @@ namespace {
 
 constexpr double kSingular = 1e13;  // condition beyond which rounding has eaten the answer
 constexpr double kRough = 1e-3;     // of a load: so much unbalanced is more than single precision may leave
+
+/// Whether it could go on in double precision.
+template <class Factor>
+bool can_be_finer(const Factor& factor) {
+  return factor.precision == SparseCholesky::Precision::kSingle &&
+         static_cast<double>(factor.more_bytes()) <= free_memory();
+}
 
 /// Between the analysis of the pattern and the numbers.
 template <class Factor>
@@ -145,7 +155,7 @@ SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
 bool SparseCholesky::refactor(const SparseMatrix& lower) {
   definite_ = lower.rows() == 0 || factor_->factorize(lower);
-  if (definite_ || factor_->precision == Precision::kDouble) return definite_;
+  if (definite_ || !can_be_finer(*factor_)) return definite_;
   factor_->take(Precision::kDouble);  // for want of digits?
   definite_ = factor_->factorize(lower);
   if (!definite_) factor_->take(Precision::kSingle);
@@ -153,7 +163,7 @@ bool SparseCholesky::refactor(const SparseMatrix& lower) {
 }
 
 void SparseCholesky::check_precision(const SparseMatrix& lower) {
-  if (!definite_ || factor_->precision == Precision::kDouble) return;
+  if (!definite_ || !can_be_finer(*factor_)) return;
   const Eigen::MatrixXd load = alternating(lower.rows());
   if (imbalance(lower, solve(load), load) < kRough) return;
   factor_->take(Precision::kDouble);

@@ -15,7 +15,7 @@ class SparseCholesky {
   /// Of the numbers of the factor. Single takes half the memory and time, and serves where what is solved for
   /// is looked at again: answers are right to some 1e-6 of their size times the condition of the matrix.
   /// Where the first matrix leaves more than a thousandth of a load, or a later one is positive definite only
-  /// in double precision, double is taken instead, for good.
+  /// in double precision, double is taken instead, for good, as far as memory is free.
   enum class Precision { kDouble, kSingle };
 
   /// Factors the matrix whose lower triangle is given, in 3 x 3 blocks as `StiffnessMatrix` has them. Throws

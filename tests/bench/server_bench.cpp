@@ -28,15 +28,11 @@ std::array<Vec3, kSlideSteps> slide(const Vec3& place, const Vec3& along, double
   return places;
 }
 
-/// Not a model, but a quasi-static liver under a tool of 15 mm that rubs on it: about 20 nodes are near.
+/// Not a model, but the scene of the liver under a tool that rubs on it: about 20 nodes are near.
 constexpr std::string_view kFriction = "friction";
 
 Scene scene_called(std::string_view name) {
-  if (name != kFriction) return liver_scene_with(name);
-  Scene scene = liver_scene_with("quasi_static");
-  scene.tools[0].shape.radius = 0.015;
-  scene.tools[0].shape.friction = 0.3;
-  return scene;
+  return name == kFriction ? test::example_scene("liver_friction") : liver_scene_with(name);
 }
 
 /// A liver with a place to press on, built when a row first needs it.

@@ -97,6 +97,21 @@ TEST_CASE(
   }
 }
 
+// Of laws that are not linear the factor is of where the body was one look before, or, where the background
+// makes it, some steps before.
+TEST_CASE("contract: in motion too the stiffness sent is that slope, but for the age of its factor") {
+  for (const ModelCase& choice : model_cases()) {
+    if (!exempt(choice, "slope in motion")) continue;
+    DYNAMIC_SECTION(choice.name()) {
+      const Way way{.last = Vec3(0.0028, 0.0030, 0.0015)};
+      const Mat3 sent = tangent_of(answer_to(choice, way)), slope = slope_of(choice, way, 1e-6);
+      CAPTURE(sent, slope, (sent - slope).norm() / slope.norm());
+      CHECK((sent - slope).norm() <
+            (choice.solver == ModelCase::Solver::kDirect ? 0.06 : 0.15) * slope.norm());
+    }
+  }
+}
+
 // With friction the force depends on the way, and where the tool slides its slope is not symmetric. What is
 // sent is the part of it that stores energy, of the last stride: the whole way of a slow tool.
 TEST_CASE("contract: with friction the stiffness sent is that of a tool that sticks, or slides on") {

@@ -3,9 +3,13 @@
 
 namespace palpate::test {
 
-/// The scene that ships, with paths that work from anywhere.
+/// A scene that ships, with paths that work from anywhere.
+inline sim::Scene example_scene(const std::string& name) {
+  return sim::read_scene(std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/" + name + ".toml");
+}
+
 inline sim::Scene liver_scene() {
-  return sim::read_scene(std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver.toml");
+  return example_scene("liver");
 }
 
 /// A scene around a mesh made in memory: quasi-static unless said otherwise, fixed where `fixed` contains a

@@ -1,6 +1,7 @@
 // The scenes that ship with tools that have an axis.
 #include "sim_server/explain.h"
 #include "tests/support/catch.h"
+#include "tests/support/scenes.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -23,4 +24,19 @@ TEST_CASE("a finger on the liver, and an instrument: pressed from above they fee
     CHECK(explanation.steps.contacts == 200);
     CHECK_FALSE(to_text(explanation).empty());
   }
+}
+
+TEST_CASE("a tip that rubs on the liver is held back sideways, by no more than friction allows") {
+  const Scene scene = test::example_scene("liver_friction");
+  Simulation simulation(scene);
+  const double dt = 1 / scene.rate_hz;
+  Vec3 place(-0.03, 0.1, 0.005);
+  ToolForce force;
+  while (place.y() > 0.02 && force.force.y() < 0.5)
+    force = simulation.step(place -= 0.001 * Vec3::UnitY(), dt);
+  CHECK(force.force.y() >= 0.5);
+  const double before = force.force.x();
+  for (int i = 0; i < 10; ++i) force = simulation.step(place += 0.001 * Vec3::UnitX(), dt);
+  CHECK_FALSE(force.flagged);
+  CHECK(force.force.x() < before - 0.1 * force.force.y());
 }

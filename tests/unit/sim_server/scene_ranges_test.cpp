@@ -172,6 +172,7 @@ TEST_CASE("[deformation]: a key of other models says whose it is") {
                  "spring"},
            Wrong{"[deformation]", "refresh_steps = 4", "`[deformation] refresh_steps`", "known to: implicit",
                  "quasi_static"},
+           Wrong{"[deformation]", "refresh_steps = 4", "factors where it has to", "for pcg and quasi_newton"},
            Wrong{"[deformation]", "rayleigh_mass = 1", "`[deformation] rayleigh_mass`",
                  "known to: tensor_mass, implicit", "quasi_static"},
            Wrong{"[deformation]", "modes = 20", "`[deformation] modes`", "known to: ", "implicit"},

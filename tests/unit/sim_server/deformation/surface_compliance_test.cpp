@@ -42,8 +42,8 @@ TEST_CASE("compliance beyond the free memory is refused, with the number of node
 
 TEST_CASE("compliance beyond 4 GB is refused, however much memory is free") {
   // 2 x 63 x 63 vertices, one fixed: 7937 nodes, 72 7937^2 = 4.54 GB.
-  CHECK(
-      refusal(62, 1e12) ==
-      "test: the compliance of 7937 reachable surface nodes would take 4.5 GB, and 4.0 GB are the most; give "
-      "[[tool]] a `reach` box around the part it touches");
+  CHECK(refusal(62, 1e12) ==
+        "test: the compliance of 7937 reachable surface nodes would take 4.5 GB, and a scene is given no "
+        "more than "
+        "4.0 GB for it; give [[tool]] a `reach` box around the part it touches");
 }
