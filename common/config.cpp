@@ -1,5 +1,6 @@
 #include "common/config.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -29,8 +30,17 @@ struct Config::Node {
   /// The node of `key`; null when absent and `required` is false.
   const toml::node* get(const std::string& key, bool required) {
     const toml::node* node = find(key);
-    if (node == nullptr && required) fail("{}: missing key `{}`", at(*table), full(key));
+    if (node == nullptr && required) missing(key);
     return node;
+  }
+  /// Names the key that may be a slip of the pen for it.
+  [[noreturn]] void missing(const std::string& key) const {
+    const int slip = std::min(3, static_cast<int>(key.size()) / 3);  // letters
+    for (const auto& [other, node] : *table) {
+      if (!asked.contains(std::string(other.str())) && edit_distance(key, other.str()) <= slip)
+        fail("{}: unknown key `{}`; did you mean `{}`?", at(node), full(std::string(other.str())), key);
+    }
+    fail("{}: missing key `{}`", at(*table), full(key));
   }
   [[noreturn]] void wrong(const toml::node& node, const std::string& key, const std::string& expected) const {
     fail("{}: `{}` must be {}", at(node), full(key), expected);

@@ -15,6 +15,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr int kSteps = 200;           // timed free, and in contact
+constexpr double kLongSetUp = 1e4;    // ms: a scene whose variants are not built to compare
 constexpr double kMostVariant = 2e9;  // bytes of compliance that a variant is built with
 constexpr double kUsualFriction = 0.3;
 constexpr double kBytesPerPair = 72;  // of two nodes' compliance: 3 x 3 doubles
@@ -174,6 +175,10 @@ LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
   if (compliance > kMostVariant) {
     row.bytes = compliance - compliance_bytes(own.scene, own.simulation);
     row.note = "not built: too large (bytes: computed, 72 r^2)";
+    return row;
+  }
+  if (own.cost.setup_ms > kLongSetUp) {
+    row.note = "not measured: this scene takes long to set up";
     return row;
   }
   try {

@@ -21,7 +21,7 @@ std::string bytes_text(double bytes) {
 }
 
 std::string or_dash(const std::optional<double>& value, std::string (*text)(double)) {
-  return value ? text(*value) : "-";
+  return value && *value > 0 ? text(*value) : "-";
 }
 
 std::string setup_text(double ms) {

@@ -23,6 +23,9 @@ Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, co
       solid.add_body_forces(solid.material().density * load.vector, dead_);
     } else if (load.kind == Load::Kind::kForce) {
       const std::vector<int> vertices = vertices_in(load.region, mesh);
+      if (std::all_of(vertices.begin(), vertices.end(), [&](int v) { return held_[v] == kAllAxes; }))
+        fail("{}: every vertex in this region is held, so that the force would move nothing",
+             load.region.where);
       for (const int v : vertices) dead_[v] += load.vector / static_cast<double>(vertices.size());
     } else if (load.kind == Load::Kind::kTraction) {
       for (const Face& face : faces_in(load.region, mesh, surface))

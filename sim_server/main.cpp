@@ -68,10 +68,14 @@ CLI::App* add_solve(CLI::App& app, sim::SolveOptions& options) {
   command->add_option(
       "--seconds", options.seconds,
       "Move for so long from rest, all loads there at once (default: the static equilibrium)");
-  command->add_option("--step", options.step, "Step of the motion, s")->capture_default_str();
+  command->add_option("--step", options.step, "Step of the motion, s")
+      ->capture_default_str()
+      ->needs("--seconds");
   command->add_option("--series", options.series,
                       "Also write the motion for ParaView: a .pvd and its frames");
-  command->add_option("--frames", options.frames, "How many frames about")->capture_default_str();
+  command->add_option("--frames", options.frames, "How many frames about")
+      ->capture_default_str()
+      ->needs("--series");
   command->footer(
       "Examples:\n"
       "  sim_server solve configs/scenes/liver_weight.toml --out liver.vtu --probe 0.1,0.03,0.02\n"

@@ -9,6 +9,7 @@
 #include "common/error.h"
 #include "common/text.h"
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/inclusions.h"
 #include "sim_server/scene_parts.h"
 #include "sim_server/tool_reach.h"
 
@@ -135,9 +136,10 @@ void require_material_of(const Scene& scene, const DeformationModelRow& row) {
   };
   if (takes(row)) return;
   if (!row.elastic) {
-    if (scene.material->is_plain()) return;
+    if (scene.material->is_plain() && scene.inclusions.empty()) return;
     fail(
-        "{}: model \"{}\" does not deform, by this law, element, fibres or relaxation; for this material: {}",
+        "{}: model \"{}\" does not deform, by this law, element, fibres, inclusions or relaxation; for this "
+        "material: {}",
         scene.material_where, row.name, models_that(takes));
   }
   const std::string_view also = row.any_linear ? "" : ", element \"p1\", no fibres";
@@ -251,13 +253,21 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   mesh->reject_unknown();
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(scene.mesh_file, ignored)) {
-    fail("{}: `[mesh] file`: {}: no such file", mesh->where("file"), scene.mesh_file.string());
+    fail("{}: `[mesh] file`: {}: {}", mesh->where("file"), scene.mesh_file.string(),
+         std::filesystem::is_directory(scene.mesh_file, ignored) ? "a folder, not a mesh" : "no such file");
   }
   for (const Config& fixed : config.tables("fixed")) scene.fixed.push_back(read_fixed(fixed));
   for (const Config& load : config.tables("load")) scene.loads.push_back(read_load(load));
   if (const auto material = config.table("material")) {
+    scene.inclusions = read_inclusions(*material);
     scene.material = read_material(*material);
     scene.material_where = material->where();
+    if (!scene.inclusions.empty() && scene.material->element == ElementKind::kNodalPressure)
+      fail(
+          "{}: [[material.inclusion]]: element \"p1_nodal_pressure\" averages over tissue of one stiffness; "
+          "take "
+          "\"p1\" or \"p2\"",
+          scene.inclusions.front().where);
   }
   const auto deformation = config.table("deformation");
   if (!deformation && purpose == Purpose::kServe)

@@ -58,6 +58,11 @@ struct FixedRegion : Region {
   bool moves() const { return !motions.empty(); }
 };
 
+/// `[[material.inclusion]]`: a part of the tissue, as the mesh resolves it, that differs by how stiff it is.
+struct Inclusion : Region {
+  double young_modulus = 0;  ///< Pa, [1e-3, 1e12]; fibres in it are stiffer by as much
+};
+
 /// Part of a ball around `apex` within `half_angle` of an axis, closed.
 struct Cone {
   Vec3 apex;          ///< m
@@ -133,6 +138,7 @@ struct Scene {
   std::vector<FixedRegion> fixed;
   std::vector<Load> loads{};
   std::optional<Material> material;
+  std::vector<Inclusion> inclusions{};
   std::string material_where;  ///< "FILE:LINE" of `[material]`; empty where it is absent
   DeformationSettings deformation;
   std::vector<ToolSettings> tools = std::vector<ToolSettings>(1);  ///< 1 to `kMaxTools`

@@ -68,8 +68,10 @@ Region read_region(const Config& config, const std::string& section) {
   region.surface_tag = config.text("surface_tag", "");
   if (config.has("center") || config.has("radius"))
     region.ball = Ball{config.vector("center", {.unit = "m"}), config.number("radius", {1e-9, 1e3, "m"})};
-  if (region.box.has_value() + region.ball.has_value() + !region.surface_tag.empty() != 1)
-    fail("{}: {} needs one of `box`, `surface_tag`, or `center` with `radius`", region.where, section);
+  const int given = region.box.has_value() + region.ball.has_value() + !region.surface_tag.empty();
+  if (given != 1)
+    fail("{}: {} needs one of `box`, `surface_tag`, or `center` with `radius`, and has {}", region.where,
+         section, given == 0 ? "none" : "more");
   return region;
 }
 
@@ -106,8 +108,8 @@ Load read_load(const Config& config) {
     ++kinds;
   }
   if (kinds != 1) {
-    fail("{}: [[load]] needs one of `gravity`, `traction`, `pressure`, `force`, `displacement`",
-         config.where());
+    fail("{}: [[load]] needs one of `gravity`, `traction`, `pressure`, `force`, `displacement`, and has {}",
+         config.where(), kinds == 0 ? "none" : "more; another [[load]] takes the rest");
   }
   if (load.kind == Load::Kind::kDisplacement) load.axes = read_axes(config);
   if (load.kind != Load::Kind::kGravity) load.region = read_region(config, "[[load]]");

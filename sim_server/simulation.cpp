@@ -7,6 +7,7 @@
 #include "common/hash.h"
 #include "common/text.h"
 #include "sim_server/elasticity/solid.h"
+#include "sim_server/inclusions.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/set_up_memory.h"
 
@@ -56,6 +57,7 @@ Simulation::Simulation(const Scene& scene, const Progress& progress)
     : Simulation(scene, read_mesh_of(scene, progress), progress) {}
 
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
+  put_inclusions(scene, mesh_);
   progress("extracting the surface", 0);
   if (scene.material) mesh_ = with_nodes(std::move(mesh_), scene.material->element);
   surface_ = boundary_surface(mesh_);

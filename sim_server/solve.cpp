@@ -13,6 +13,7 @@
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/elasticity/dynamics.h"
 #include "sim_server/elasticity/equilibrium.h"
+#include "sim_server/inclusions.h"
 #include "sim_server/loads.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/vtu_output.h"
@@ -145,17 +146,27 @@ Outcome move_for(const SolveOptions& options, const Scene& scene, const Solid& s
   return outcome_of(dynamics);
 }
 
+/// A file that can be written, and that ParaView will know by its name.
+void require_output(const std::filesystem::path& file, const char* option, std::string_view extension) {
+  std::error_code ignored;
+  const bool named = file.extension() == extension || std::filesystem::is_character_file(file, ignored);
+  if (!named)
+    fail("{}: \"{}\" is to end in {}, by which ParaView knows it", option, file.string(), extension);
+  check_writable(file);
+}
+
 }  // namespace
 
 int solve(const SolveOptions& options) {
   const Scene scene = read_scene(options.scene, Purpose::kSolve);
   if (!scene.material) fail("{}: solving needs a [material] section", scene.source);
   if (options.series && !options.seconds) fail("--series: needs --seconds, the time that it is a series of");
-  check_writable(options.out);
-  if (options.series) check_writable(*options.series);
+  require_output(options.out, "--out", ".vtu");
+  if (options.series) require_output(*options.series, "--series", ".pvd");
   ProgressLine progress;
   progress("reading the mesh", 0);
-  const TetMesh mesh = with_nodes(read_mesh(scene.mesh_file), scene.material->element);
+  TetMesh mesh = with_nodes(read_mesh(scene.mesh_file), scene.material->element);
+  put_inclusions(scene, mesh);
   const Surface surface = boundary_surface(mesh);
   require_memory_for(scene, Purpose::kSolve, count_parts(mesh, surface));
   const Solid solid(mesh, *scene.material);
@@ -166,10 +177,12 @@ int solve(const SolveOptions& options) {
   if (!options.seconds && !scene.material->relaxations.empty())
     log::warning("{}: nothing relaxes in a static solution; --seconds tells how it does",
                  scene.material_where);
+  if (!options.seconds && scene.loads.empty() && loads.motions().empty())
+    log::warning("{}: no [[load]], so that the body stays as it is", scene.source);
   const Outcome outcome = options.seconds ? move_for(options, scene, solid, loads, progress)
                                           : find_rest(scene, solid, loads, progress);
   write_outcome(options.out, solid, outcome);
-  print_outcome(solid, loads, held_regions(scene, mesh), outcome, probes);
+  print_outcome(scene.source, solid, loads, held_regions(scene, mesh), outcome, probes);
   return 0;
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "common/error.h"
+#include "common/log.h"
 #include "sim_server/mesh/vtu_output.h"
 
 namespace palpate::sim {
@@ -67,6 +68,26 @@ void print_forces(const Loads& loads, const std::vector<HeldRegion>& regions, co
   for (const HeldRegion& region : regions) print("  of " + region.name, region.nodes);
 }
 
+void warn_of_inverted(const std::string& where, const Solid& solid, std::span<const Vec3> x) {
+  std::vector<Solid::State> states(solid.points());
+  solid.evaluate(x, states);
+  const auto points = static_cast<std::size_t>(solid.points_per_element());
+  std::size_t inverted = 0;
+  double least = 1;
+  for (std::size_t e = 0; e < solid.elements(); ++e) {
+    double own = 1;
+    for (std::size_t q = 0; q < points; ++q) own = std::min(own, states[e * points + q].F.determinant());
+    inverted += own > 0 ? 0 : 1;
+    least = std::min(least, own);
+  }
+  if (inverted > 0)
+    log::warning(
+        "{}: {} of {} tetrahedra are inside out (volume ratio down to {:.3g}): no tissue does that; a "
+        "smaller load, a "
+        "finer mesh or another law",
+        where, inverted, solid.elements(), least);
+}
+
 }  // namespace
 
 Probe find_probe(const std::string& text, const Solid& solid, int corners) {
@@ -95,7 +116,7 @@ void write_outcome(const std::filesystem::path& file, const Solid& solid, const 
   std::vector<Solid::State> states(solid.points());
   solid.evaluate(x, states, outcome.viscosity());
   VtuArray moved{"displacement", 3, {}}, stress{"stress", 9, {}}, mises{"von_mises", 1, {}},
-      energy{"energy_density", 1, {}};
+      energy{"energy_density", 1, {}}, volume{"volume_ratio", 1, {}};
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 u = x[i] - solid.rest()[i];
     moved.values.insert(moved.values.end(), u.data(), u.data() + 3);
@@ -106,19 +127,24 @@ void write_outcome(const std::filesystem::path& file, const Solid& solid, const 
     const std::span<const int> nodes = solid.element(e);
     cells.insert(cells.end(), nodes.begin(), nodes.end());
     Mat3 cauchy = Mat3::Zero();
-    double density = 0;
+    double density = 0, ratio = 0;
     for (std::size_t q = 0; q < points; ++q) {
       const Solid::State& state = states[e * points + q];
       const bool linear = solid.material().law == ElasticLaw::kLinear;
-      cauchy += linear ? state.stress : Mat3(state.stress * state.F.transpose() / state.F.determinant());
-      density += state.energy;
+      const double times = solid.stiffness_of(e * points + q);
+      cauchy +=
+          times * (linear ? state.stress : Mat3(state.stress * state.F.transpose() / state.F.determinant()));
+      density += times * state.energy;
+      ratio += state.F.determinant();
     }
     cauchy /= static_cast<double>(points);
     for (int i = 0; i < 9; ++i) stress.values.push_back(cauchy(i / 3, i % 3));
     mises.values.push_back(von_mises(cauchy));
     energy.values.push_back(density / static_cast<double>(points));
+    volume.values.push_back(ratio / static_cast<double>(points));
   }
-  write_vtu(file, x, cells, static_cast<int>(solid.element(0).size()), {moved}, {stress, mises, energy});
+  write_vtu(file, x, cells, static_cast<int>(solid.element(0).size()), {moved},
+            {stress, mises, energy, volume});
 }
 
 std::vector<HeldRegion> held_regions(const Scene& scene, const TetMesh& mesh) {
@@ -143,8 +169,9 @@ std::vector<HeldRegion> held_regions(const Scene& scene, const TetMesh& mesh) {
   return regions;
 }
 
-void print_outcome(const Solid& solid, const Loads& loads, const std::vector<HeldRegion>& regions,
-                   const Outcome& outcome, const std::vector<Probe>& probes) {
+void print_outcome(const std::string& where, const Solid& solid, const Loads& loads,
+                   const std::vector<HeldRegion>& regions, const Outcome& outcome,
+                   const std::vector<Probe>& probes) {
   const std::vector<Vec3>& x = outcome.x;
   std::size_t farthest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -156,6 +183,7 @@ void print_outcome(const Solid& solid, const Loads& loads, const std::vector<Hel
   print_forces(loads, regions, outcome);
   fmt::print("  largest displacement   {:.9g} m at {:.6g},{:.6g},{:.6g}\n", (x[farthest] - from).norm(),
              from[0], from[1], from[2]);
+  warn_of_inverted(where, solid, x);
   for (const Probe& probe : probes) {
     Vec3 u = Vec3::Zero();
     for (const auto& [node, weight] : probe.nodes) u += weight * (x[node] - solid.rest()[node]);

@@ -36,11 +36,13 @@ struct HeldRegion {
 };
 std::vector<HeldRegion> held_regions(const Scene& scene, const TetMesh& mesh);
 
-/// The body as it stands (.vtu), and what it bears: means over each tetrahedron.
+/// The body as it stands (.vtu), and what it bears and how it swells: means over each tetrahedron.
 void write_outcome(const std::filesystem::path& file, const Solid& solid, const Outcome& outcome);
 
 /// Energy, forces of the supports, all and each, the largest displacement, and the probes, to 9 digits.
-void print_outcome(const Solid& solid, const Loads& loads, const std::vector<HeldRegion>& regions,
-                   const Outcome& outcome, const std::vector<Probe>& probes);
+/// Warns where tetrahedra are inside out, beginning with `where`.
+void print_outcome(const std::string& where, const Solid& solid, const Loads& loads,
+                   const std::vector<HeldRegion>& regions, const Outcome& outcome,
+                   const std::vector<Probe>& probes);
 
 }  // namespace palpate::sim

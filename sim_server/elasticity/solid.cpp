@@ -44,7 +44,8 @@ TetMesh with_nodes(TetMesh mesh, ElementKind element) {
   return mesh;
 }
 
-Solid::Solid(const TetMesh& mesh, const Material& material) : material_(material), rest_(mesh.vertices) {
+Solid::Solid(const TetMesh& mesh, const Material& material)
+    : material_(material), rest_(mesh.vertices), stiffness_(mesh.stiffness) {
   const bool quadratic = material.element == ElementKind::kQuadratic;
   if (quadratic == mesh.mid_edges.empty() && !mesh.tetrahedra.empty())
     fail("mesh: {} vertices in the middle of edges, of elements that are{} quadratic", mesh.mid_edges.size(),
@@ -54,6 +55,7 @@ Solid::Solid(const TetMesh& mesh, const Material& material) : material_(material
   } else {
     build_linear(mesh);
   }
+  for (std::size_t p = 0; p < points(); ++p) weight_[p] *= stiffness_of(p);
   if (material.element == ElementKind::kNodalPressure) gather_patches();
   force_scratch_.resize(kBatch * static_cast<std::size_t>(corners_));
   stiffness_scratch_.resize(kBatch * blocks_of(corners_));
@@ -106,9 +108,7 @@ std::vector<double> Solid::masses() const {
   std::vector<double> masses(rest_.size(), 0);
   for (std::size_t e = 0; e < elements(); ++e) {
     double mass = 0;
-    for (int q = 0; q < points_; ++q)
-      mass +=
-          material_.density * weight_[e * static_cast<std::size_t>(points_) + static_cast<std::size_t>(q)];
+    for (int q = 0; q < points_; ++q) mass += material_.density * volume_of(Element(*this, e).point(q));
     for (int i = 0; i < corners_; ++i) {
       const double share = corners_ == 4 ? 0.25 : i < 4 ? 1.0 / 36 : 4.0 / 27;
       masses[element_nodes_[e * static_cast<std::size_t>(corners_) + static_cast<std::size_t>(i)]] +=
@@ -122,7 +122,7 @@ void Solid::add_body_forces(const Vec3& per_volume, std::span<Vec3> f) const {
   const auto points = static_cast<std::size_t>(points_);
   for (std::size_t e = 0; e < elements(); ++e) {
     double volume = 0;
-    for (std::size_t q = 0; q < points; ++q) volume += weight_[e * points + q];
+    for (std::size_t q = 0; q < points; ++q) volume += volume_of(e * points + q);
     const std::span<const int> nodes = element(e);
     for (std::size_t i = 0; i < nodes.size(); ++i)
       f[nodes[i]] += (corners_ == 4 ? 0.25 : i < 4 ? -0.05 : 0.2) * volume * per_volume;
@@ -384,7 +384,8 @@ StiffnessMatrix Solid::stiffness_matrix(const FreeDofs& dofs) const {
 
 std::size_t Solid::bytes() const {
   return (rest_.size() + gradient_.size() + force_scratch_.size()) * sizeof(Vec3) +
-         (weight_.size() + nodal_volume_.size() + dilation_.size() + nodal_dilation_.size()) *
+         (weight_.size() + stiffness_.size() + nodal_volume_.size() + dilation_.size() +
+          nodal_dilation_.size()) *
              sizeof(double) +
          (element_nodes_.size() + around_.size() + around_first_.size()) * sizeof(int) +
          stiffness_scratch_.size() * sizeof(Mat3);

@@ -64,9 +64,13 @@ class Solid {
   /// Quadrature points in all: of tetrahedron e from e * points_per_element().
   std::size_t points() const { return weight_.size(); }
   int points_per_element() const { return points_; }
-  double volume_of(std::size_t point) const { return weight_[point]; }
+  double volume_of(std::size_t point) const { return weight_[point] / stiffness_of(point); }
+  /// Of the tissue there, as a multiple of the material: all stresses and energies of it are.
+  double stiffness_of(std::size_t point) const {
+    return stiffness_.empty() ? 1 : stiffness_[point / static_cast<std::size_t>(points_)];
+  }
   /// First Piola-Kirchhoff stress (Pa) and deformation gradient at each point, and the energy density
-  /// (J/m^3).
+  /// (J/m^3), of the material: where the tissue is stiffer, to be multiplied by `stiffness_of`.
   struct State {
     Mat3 F, stress;
     double energy;
@@ -101,7 +105,8 @@ class Solid {
   int corners_ = 4, points_ = 1;  // nodes and quadrature points of an element
   std::vector<Vec3> rest_;
   std::vector<int> element_nodes_;  // (elements x corners)
-  std::vector<double> weight_;      // (points in all), m^3
+  std::vector<double> weight_;      // (points in all), volume x stiffness, m^3
+  std::vector<double> stiffness_;   // (elements), or empty: all 1
   std::vector<Vec3> gradient_;      // (points in all x corners), 1/m
   // Only for averaged dilation: the tetrahedra around each vertex, and its share of their volume.
   std::vector<int> around_, around_first_;

@@ -80,7 +80,8 @@ ElasticTensors::ElasticTensors(const TetMesh& mesh, const Material& material, co
   find_edges(mesh);
   vertex_tensors_.assign(6 * mass_.size(), 0);
   edge_tensors_.assign(9 * neighbour_.size(), 0);
-  for (const Tetrahedron& t : mesh.tetrahedra) add(mesh, t, material);
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
+    add(mesh, mesh.tetrahedra[e], material, mesh.stiffness.empty() ? 1 : mesh.stiffness[e]);
 }
 
 void ElasticTensors::number(const TetMesh& mesh, const std::vector<int>& fixed) {
@@ -127,7 +128,9 @@ double* ElasticTensors::edge_tensor(int i, int j) {
   return edge_tensors_.data() + 9 * (std::lower_bound(from, to, j) - neighbour_.begin());
 }
 
-void ElasticTensors::add(const TetMesh& mesh, const Tetrahedron& t, const Material& material) {
+/// One that is `stiffness` times as stiff as the material.
+void ElasticTensors::add(const TetMesh& mesh, const Tetrahedron& t, const Material& material,
+                         double stiffness) {
   const auto& x = mesh.vertices;
   const LinearTetrahedron element({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
   const Moduli moduli = LinearLaw::moduli(material);
@@ -141,7 +144,8 @@ void ElasticTensors::add(const TetMesh& mesh, const Tetrahedron& t, const Materi
       const int j = place_[t[b]];
       if (j < 0 || j > i) continue;
       const Vec3 &gi = element.gradient[a], &gj = element.gradient[b];
-      const Mat3 block = element.volume * (law.block(0, gi, gj) + moduli.lambda * gi * gj.transpose());
+      const Mat3 block =
+          stiffness * element.volume * (law.block(0, gi, gj) + moduli.lambda * gi * gj.transpose());
       if (j < i) {
         Eigen::Map<Tensor>(edge_tensor(i, j)) += block;
         continue;

@@ -38,7 +38,7 @@ class ElasticTensors {
  private:
   void number(const TetMesh& mesh, const std::vector<int>& fixed);
   void find_edges(const TetMesh& mesh);
-  void add(const TetMesh& mesh, const Tetrahedron& t, const Material& material);
+  void add(const TetMesh& mesh, const Tetrahedron& t, const Material& material, double stiffness);
   double* edge_tensor(int i, int j);
 
   std::vector<int> place_;

@@ -51,6 +51,7 @@ TetMesh refined(const TetMesh& mesh) {
     }
   }
   sort_tags(fine);
+  for (const double stiffness : mesh.stiffness) fine.stiffness.insert(fine.stiffness.end(), 8, stiffness);
   for (const Tetrahedron& t : mesh.tetrahedra) {
     std::array<int, 6> middle{};
     for (std::size_t e = 0; e < 6; ++e) middle[e] = with_middles.middle(t[kEdges[e][0]], t[kEdges[e][1]]);

@@ -26,6 +26,8 @@ struct TetMesh {
   /// The two corners, ascending, of the edge in whose middle each of the last vertices is. All edges of the
   /// mesh, ascending (`add_mid_edges`), or none.
   std::vector<std::array<int, 2>> mid_edges = {};
+  /// (m) How stiff each tetrahedron is, as a multiple of its material; empty: all 1 (`put_inclusions`).
+  std::vector<double> stiffness = {};
 
   /// Vertices that are corners of tetrahedra: the first ones.
   int corners() const { return static_cast<int>(vertices.size() - mid_edges.size()); }

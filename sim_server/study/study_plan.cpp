@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "common/text.h"
+#include "sim_server/inclusions.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/refinement.h"
 #include "sim_server/scene_parts.h"
@@ -189,6 +190,7 @@ TetMesh mesh_of(const StudyCase& one) {
   TetMesh mesh = read_mesh(one.scene.mesh_file);
   for (std::size_t k = 0; k < one.scene.fixed.size(); ++k)
     mesh.surface_tags[fixed_tag(k)] = vertices_in(one.scene.fixed[k], mesh);
+  put_inclusions(one.scene, mesh);  // of all refinements those of the mesh
   for (int r = 0; r < one.refinements; ++r) mesh = refined(mesh);
   return mesh;
 }

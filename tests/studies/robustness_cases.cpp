@@ -52,6 +52,10 @@ void quadratic(Trial& trial) {
 void stiff_fibres(Trial& trial) {
   trial.file.material = "[material.fibres]\ndirection = [1, 0, 0]\nmodulus = 1e10\n";
 }
+void hard_neighbours(Trial& trial) {
+  trial.file.material =
+      "[[material.inclusion]]\nbox = [[-1, -0.0101, -1], [0, -0.0049, 1]]\nyoung_modulus = 1e10\n";
+}
 void slivers(Trial& trial) {
   const double thin = 0.005 * std::tan(0.1 / 180 * std::numbers::pi);
   trial.mesh = sim::grid_block(test::lines(-0.015, 0.015, 6), {-0.015, -0.01, -0.005, -0.005 + thin, 0},
@@ -156,6 +160,7 @@ const std::vector<Case>& cases() {
       {"nu_0.4999_nodal_pressure", "nu 0.4999, element p1_nodal_pressure", false, run_trial,
        averaged_pressure},
       {"nu_0.4999_p2", "nu 0.4999, element p2", false, run_trial, quadratic},
+      {"neighbours_1e6", "a part 1e6 times as stiff as what is around it", false, run_trial, hard_neighbours},
       {"fibres_1e6", "fibres 1e6 times as stiff as the tissue", false, run_trial, stiff_fibres},
       {"slivers", "dihedral angles of 0.1 degrees", true, run_trial, slivers},
       {"sizes", "edges from 0.1 to 50 mm", false, run_trial, sizes},

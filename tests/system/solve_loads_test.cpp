@@ -33,6 +33,37 @@ TEST_CASE("solve: a bar that is pulled, held and loaded by tags, boxes and balls
   }
 }
 
+TEST_CASE("solve: a bar of layers, some a million times as stiff: each is stretched by its own modulus") {
+  // As springs one after the other: stress s everywhere, and of each layer s h / E.
+  SolveBench bench;
+  const double stress = 50, h = 0.1, hard = 1e6 * kE, soft = kE / 4;
+  const std::string layers = fmt::format(
+      "\n[[material.inclusion]]\nbox = [[-1, 0.1, -1], [1, 0.2, 1]]\nyoung_modulus = {}"
+      "\n[[material.inclusion]]\ncenter = [0.05, 1.3, 0.05]\nradius = 1\nyoung_modulus = {}",
+      hard, soft);
+  for (const char* law : {"linear", "corotational"}) {
+    for (const char* element : {"p1", "p2"}) {
+      CAPTURE(law, element);
+      bench.solve(kFixed + fmt::format("[[load]]\ntraction = [0, {}, 0]\nsurface_tag = \"top\"\n", stress),
+                  kTwoProbes,
+                  fmt::format("poisson_ratio = 0\nlaw = \"{}\"\nelement = \"{}\"{}", law, element, layers));
+      bench.check_moved("0.01,0.12,0.06", {0, stress * (h / kE + 0.02 / hard), 0});
+      bench.check_moved("0.03,0.4,0.07", {0, stress * h * (2 / kE + 1 / hard + 1 / soft), 0});
+      CHECK(bench.numbers("force of the supports")[1] == Approx(-stress * kArea).epsilon(1e-7));
+      Vtu vtu(bench.out);
+      for (std::size_t cell = 0; cell < vtu.cells; ++cell) {
+        const double modulus = std::array{kE, hard, kE, soft}[cell / 6];
+        CAPTURE(cell);
+        // Of the linear law forces are per area at rest; the other is stretched by 1 + s / E with no
+        // Poisson's effect.
+        CHECK(vtu.in_cells["stress"].values[9 * cell + 4] == Approx(stress).epsilon(1e-5));
+        CHECK(vtu.in_cells["energy_density"].values[cell] ==
+              Approx(stress * stress / (2 * modulus)).epsilon(1e-5));
+      }
+    }
+  }
+}
+
 TEST_CASE("solve: pressure on a bar that rests on three planes widens it by Poisson's ratio") {
   SolveBench bench;
   const std::string planes =
@@ -113,6 +144,9 @@ TEST_CASE("solve: the .vtu has every array in its size, and its displacement is 
     check_size(vtu.in_cells["stress"], 9, vtu.cells);
     check_size(vtu.in_cells["von_mises"], 1, vtu.cells);
     check_size(vtu.in_cells["energy_density"], 1, vtu.cells);
+    check_size(vtu.in_cells["volume_ratio"], 1, vtu.cells);
+    for (const double ratio : vtu.in_cells["volume_ratio"].values)
+      CHECK(ratio == Approx(1 + stress / kE).epsilon(1e-8));
     const Place printed = bench.numbers("probe 0.1,0.4,0.1: displacement ");
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t at = 3 * 19 + i;  // the last corner

@@ -99,11 +99,30 @@ TEST_CASE("solve: wrong input is one clear line, exit 2, and no file") {
   CHECK(refused(bench.scene("", "law = \"rubber\"")).find("linear, corotational, neo_hookean, stvk") !=
         std::string::npos);
   CHECK(refused(bench.scene("", "element = \"p3\"")).find("unknown element \"p3\"") != std::string::npos);
-  CHECK(refused(bench.scene("[[load]]\nforce = [0, 1, 0]\n")).find("needs one of `box`") !=
+  CHECK(refused(bench.scene("[[load]]\nforce = [0, 1, 0]\n"))
+            .find("needs one of `box`, `surface_tag`, or `center` with `radius`, and has none") !=
         std::string::npos);
   CHECK(
       refused(bench.scene("[[load]]\ngravity = [0, 1, 0]\npressure = 1\n")).find("needs one of `gravity`") !=
       std::string::npos);
   CHECK(refused(bench.scene(""), {"--probe", "1,2"}).find("three numbers in metres") != std::string::npos);
   CHECK(refused(bench.scene(""), {"--series", "x.pvd"}).find("needs --seconds") != std::string::npos);
+  CHECK(refused(bench.scene(""), {"--step", "0.1"}).find("--step requires --seconds") != std::string::npos);
+  CHECK(refused(bench.scene("[[load]]\nforce = [0, 1, 0]\nbox = [[-1, -1, -1], [1, 0.001, 1]]\n"))
+            .find("every vertex in this region is held") != std::string::npos);
+  for (const auto& [file, says] :
+       {std::pair("wrong.txt", "is to end in .vtu"), std::pair("", "\"\" is to end in .vtu")}) {
+    const std::vector<std::string> arguments{"solve", bench.scene(""), "--out", file};
+    CHECK(output_of("sim_server", arguments, 2).find(says) != std::string::npos);
+  }
+}
+
+TEST_CASE("solve: a load beyond what a mesh bears is told of, and none at all") {
+  Bench bench;
+  const std::string pressed = "[[load]]\ntraction = [0, -3e4, 0]\nbox = [[-1, 0.39, -1], [1, 1, 1]]\n";
+  const std::string said =
+      output_of("sim_server", {"solve", bench.scene(pressed, "law = \"linear\""), "--out", bench.out}, 0);
+  CHECK(said.find("24 of 24 tetrahedra are inside out (volume ratio down to -0.5)") != std::string::npos);
+  CHECK(output_of("sim_server", {"solve", bench.scene(""), "--out", bench.out}, 0).find("no [[load]]") !=
+        std::string::npos);
 }

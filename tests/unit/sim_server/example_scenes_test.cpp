@@ -40,3 +40,22 @@ TEST_CASE("a tip that rubs on the liver is held back sideways, by no more than f
   CHECK_FALSE(force.flagged);
   CHECK(force.force.x() < before - 0.1 * force.force.y());
 }
+
+TEST_CASE("the liver is harder to press above its lump, by every model, and beside it as without") {
+  Scene lump = test::example_scene("liver_lump"), plain = lump;
+  plain.inclusions.clear();
+  const double dt = 1 / lump.rate_hz;
+  const auto pressed = [&](const Scene& scene, const Vec3& top) {
+    Simulation simulation(scene);
+    for (int i = 0; i < 20; ++i) simulation.step(top + (0.007 - 0.0002 * i) * Vec3::UnitY(), dt);
+    for (int i = 0; i < 20; ++i) simulation.step(top + 0.003 * Vec3::UnitY(), dt);
+    return simulation.tool(0).force().force.norm();
+  };
+  const Vec3 above(-0.03, 0.073, 0.005), beside(0.05, 0.06, 0.005);
+  for (const char* model : {"quasi_static", "tensor_mass", "implicit"}) {
+    CAPTURE(model);
+    lump.deformation.model = plain.deformation.model = model;
+    CHECK(pressed(lump, above) > 1.1 * pressed(plain, above));
+    CHECK(pressed(lump, beside) == Approx(pressed(plain, beside)).epsilon(0.02));
+  }
+}

@@ -130,6 +130,15 @@ TEST_CASE("[material]: values out of range, and names that are none") {
            Wrong{"[material]", none.c_str(), "share", "between 1e-06 and 0.999999"},
            Wrong{"[material]", all.c_str(), "share", "between 1e-06 and 0.999999"},
            Wrong{"[material]", too_many.c_str(), "shares", "are 1 together; less than 1"},
+           Wrong{"[material]", "[[material.inclusion]]\ncenter = [0, 0, 0]\nradius = 1\nyoung_modulus = 0",
+                 "young_modulus", "between 0.001"},
+           Wrong{"[material]", "inclusion = [{young_modulus = 1}]", "[[material.inclusion]]", "one of `box`"},
+           Wrong{"[material]", "inclusion = [{young_modulus = 1, surface_tag = \"top\"}]", "surface_tag",
+                 "a `box`, or `center` with `radius`"},
+           Wrong{"[material]",
+                 "element = \"p1_nodal_pressure\"\n"
+                 "inclusion = [{young_modulus = 1, center = [0, 0, 0], radius = 1}]",
+                 "[[material.inclusion]]", "take \"p1\" or \"p2\""},
            Wrong{"[material]", "[[material.relaxation]]\nshare = 0.5\ntime = 0", "time",
                  "between 0.0001 and 1000000 (s)"},
        })
@@ -197,6 +206,7 @@ TEST_CASE("a model that does not deform refuses a material that asks for it, and
              {"law = \"corotational\"", ": implicit"},
              {"[[material.relaxation]]\nshare = 0.5\ntime = 1", ": implicit"},
              {"[material.fibres]\ndirection = [1, 0, 0]\nmodulus = 1e4", ": quasi_static, implicit"},
+             {"inclusion = [{young_modulus = 1, center = [0, 0, 0], radius = 1}]", ": quasi_static, "},
              {"element = \"p2\"", ": quasi_static, implicit"}}) {
       const std::string said = SceneWith("[material]", material, model).error();
       CAPTURE(said);
