@@ -11,7 +11,8 @@
 namespace palpate {
 
 void ProgressLine::operator()(std::string_view stage, double share) {
-  if (wait_for_interrupt(Time::zero())) fail_at_run_time("interrupted while {}; nothing was written", stage);
+  if (wait_for_interrupt(Time::zero()))
+    fail_at_run_time("interrupted while {}; {}", stage, when_interrupted_);
   const int percent = static_cast<int>(100 * std::clamp(share, 0.0, 1.0));
   const bool new_stage = stage != stage_;
   if (!new_stage && percent == shown_) return;

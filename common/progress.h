@@ -6,13 +6,16 @@ namespace palpate {
 
 /// Tells on stderr how long work goes on: on a terminal one running line with a percentage, elsewhere one
 /// line a stage. Call it with the name of the stage and the share of it that is done (0 to 1), as often as
-/// you like; 1 ends a stage. Ctrl-C ends the work here, by an `Error` (run time). Main thread.
+/// you like; 1 ends a stage. Ctrl-C ends the work here, by an `Error` (run time) that ends with what that
+/// means. Main thread.
 class ProgressLine {
  public:
+  explicit ProgressLine(std::string when_interrupted = "nothing was written")
+      : when_interrupted_(std::move(when_interrupted)) {}
   void operator()(std::string_view stage, double share);
 
  private:
-  std::string stage_;
+  std::string when_interrupted_, stage_;
   int shown_ = -1;  // percent
 };
 

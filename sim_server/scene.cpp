@@ -147,6 +147,21 @@ void require_material_of(const Scene& scene, const DeformationModelRow& row) {
        scene.material_where, row.name, also, models_that(takes));
 }
 
+/// Of a model that could have the body fly.
+void require_flight(const Scene& scene) {
+  if (scene.material && scene.material->law == ElasticLaw::kLinear)
+    fail(
+        "{}: no [[fixed]] holds the body, and law \"linear\" is for small turns: add a [[fixed]], or take "
+        "law "
+        "\"corotational\", by which it flies",
+        scene.source);
+  for (const ToolSettings& tool : scene.tools) {
+    if (tool.reach)
+      fail("{}: no [[fixed]] holds the body, so that all of it comes within reach; remove this",
+           tool.reach_where);
+  }
+}
+
 /// That the model does what the scene asks of it.
 void require_what_the_model_can(const Scene& scene) {
   const auto& settings = scene.deformation;
@@ -275,6 +290,8 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   if (deformation) scene.deformation = read_deformation(*deformation);
   if (purpose == Purpose::kServe) require_what_the_model_can(scene);
   if (purpose == Purpose::kServe || !config.tables("tool").empty()) scene.tools = read_tools(config);
+  if (purpose == Purpose::kServe && scene.fixed.empty() && scene.deformation.model == "implicit")
+    require_flight(scene);
   config.reject_unknown();
   reach_what_moves(scene);
   return scene;

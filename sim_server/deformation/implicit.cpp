@@ -14,6 +14,13 @@ constexpr double kBalanced = 0.05;
 constexpr double kAtRest = 1e-6;
 constexpr double kMostBytes = 1e9;  // of columns, when a step begins
 
+/// A body that nothing holds flies.
+DynamicsSettings settings_of(const ModelInputs& inputs) {
+  DynamicsSettings settings = inputs.scene.deformation.dynamics();
+  settings.flies = inputs.fixed.empty();
+  return settings;
+}
+
 const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"implicit\" needs a [material] section", scene.source);
@@ -27,7 +34,7 @@ const Material& material_of(const ModelInputs& inputs) {
 Implicit::Implicit(const ModelInputs& inputs)
     : solid_(inputs.mesh, material_of(inputs)),
       scene_loads_(inputs.scene, inputs.mesh, inputs.surface, solid_),
-      dynamics_(solid_, scene_loads_.held(), inputs.scene.deformation.dynamics(), inputs.scene.source),
+      dynamics_(solid_, scene_loads_.held(), settings_of(inputs), inputs.scene.source),
       period_(step_period(inputs.scene)),
       tolerance_(inputs.scene.deformation.tolerance),
       max_newton_(inputs.scene.deformation.max_newton),
@@ -62,7 +69,7 @@ void Implicit::begin(const ModelInputs& inputs) {
   const auto responses =
       support_responses(inputs, solid_, dynamics_.dofs(), flexibility, Following::kSwinging);
   if (!responses.empty()) supports_.emplace(inputs, responses);
-  if (inputs.scene.loads.empty() && !supports_) return;
+  if (inputs.fixed.empty() || (inputs.scene.loads.empty() && !supports_)) return;
   inputs.progress("finding the shape under its loads", 0);
   const StaticLoad load{
       .forces = [this](std::span<const Vec3> x, std::span<Vec3> f) { scene_loads_.add_forces(x, f); },

@@ -6,7 +6,8 @@
 namespace palpate::sim {
 
 /// Tissue of any law in motion, by implicit steps of T = 1 / rate_hz of the scene (`Dynamics`): stable
-/// whatever the stiffness. At rest under the scene's [[load]] when the run begins. A step looks for its end
+/// whatever the stiffness. At rest under the scene's [[load]] when the run begins; where nothing is fixed, at
+/// rest without, and it flies. A step looks for its end
 /// under the loads of the last one, linearises there, and answers the contact solver from that: compliance W
 /// = J A^-1 J^T, dt^2 of the mass-like matrix in it, which is also that over the sample interval, as loads
 /// are held over the step. Then it looks again where contact led, until Newton's method has settled with
@@ -27,8 +28,7 @@ class Implicit : public DeformationModel {
   bool compliance_is_constant() const noexcept override { return false; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::optional<FreeMotion> relinearise() noexcept override;
-  /// Whether the last look found no more than 5 % of the forces at work unbalanced, and no element inverted
-  /// for good.
+  /// Whether the last look found no more than 5 % of the forces at work unbalanced, and no element inverted.
   bool balanced() const noexcept override;
   std::vector<MemoryPart> memory() const override;
 

@@ -11,9 +11,12 @@ namespace palpate::sim {
 /// frequency allows. Loads are held over a period, so that one compliance serves the contact solver and the
 /// clients: R, the displacement at the end of a period per force held over it, the same at every step.
 /// Set-up finds it by running N sub-steps from rest under unit loads, eight at once
-/// (`SurfaceCompliance`). A period costs N sub-steps, twice that in contact. What the body does by itself and
-/// what it does by its supports add up, as it is linear: where supports move, the second comes from
-/// `support_responses`, with inertia and damping and exact in time, and costs no sub-step anything.
+/// (`SurfaceCompliance`). Where a period is a few sub-steps, what a load stops at its end would swing back in
+/// the next: its velocity along the load becomes what it went by on average, if that is less (the velocity
+/// stage of RATTLE, Andersen 1983, J. Comput. Phys. 52:24). A period costs N sub-steps, twice that in
+/// contact. What the body does by itself and what it does by its supports add up, as it is linear: where
+/// supports move, the second comes from `support_responses`, with inertia and damping and exact in time, and
+/// costs no sub-step anything.
 class TensorMass : public DeformationModel {
  public:
   /// Throws `Error` as `SurfaceCompliance`, or where the scene names no rate.
@@ -33,6 +36,7 @@ class TensorMass : public DeformationModel {
   void choose_sub_step(const ModelInputs& inputs);
   void precompute(const ModelInputs& inputs);
   void end_period() noexcept;
+  void calm_loaded() noexcept;
   void stand() noexcept;
   void press(std::span<const NodalLoad> loads) noexcept;
 

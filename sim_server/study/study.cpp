@@ -89,7 +89,7 @@ class Runner {
   std::optional<Trajectory> motion_;
   double seconds_ = 0;
   std::vector<Vec3> sites_;
-  ProgressLine progress_;
+  ProgressLine progress_{"the same command goes on from there"};
 };
 
 StudyRow row_of(const Scene& scene, const StudyCase& one, const Trace& trace, const StudyErrors& errors) {

@@ -25,7 +25,7 @@ const std::vector<Column>& columns();
 struct Verdict {
   std::string outcome;                  ///< stable, refused, flagged, exploded, not_applicable
   std::string reason;                   ///< one sentence; of a refusal, what the program said
-  std::optional<double> error_percent;  ///< against `reference`
+  std::optional<double> error_percent;  ///< against `reference`; none where that did not settle
   std::optional<double> max_newton;     ///< the largest force on any tool, N
   std::string reference;
 };
@@ -84,6 +84,8 @@ sim::TetMesh usual_block();
 Verdict run_scattered(const Case& row, const Column& column, bool quick);
 Verdict run_collapsed_to_point(const Case& row, const Column& column, bool quick);
 Verdict run_collapsed_to_plane(const Case& row, const Column& column, bool quick);
+/// Run as a press where the model refuses a body that nothing holds, or as one that flies.
+Verdict run_free_body(const Case& row, const Column& column, bool quick);
 Verdict run_undamped(const Case& row, const Column& column, bool quick);
 
 }  // namespace palpate::studies

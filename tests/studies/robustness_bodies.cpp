@@ -107,6 +107,42 @@ Verdict run_collapsed_to_plane(const Case&, const Column& column, bool quick) {
   });
 }
 
+/// A body that turns, goes and shakes: is its momentum kept?
+Verdict run_free_body(const Case& row, const Column& column, bool quick) {
+  if (!column.implicit() || column.linear()) return run_trial(row, column, quick);
+  const Solid solid(usual_block(), {.young_modulus = 1e4, .poisson_ratio = 0.45, .law = column.elastic});
+  const std::vector<Vec3> none(solid.rest().size(), Vec3::Zero());
+  std::vector<Vec3> v(none.size());
+  test::Random random(7);
+  for (std::size_t i = 0; i < v.size(); ++i)
+    v[i] = Vec3(0.1, 0.2, -0.05) + Vec3(2, 1, 3).cross(solid.rest()[i]) + random.vector(0.05);
+  Dynamics dynamics(solid, std::vector<HeldAxes>(none.size(), 0), {.rayleigh_stiffness = 1e-4, .flies = true},
+                    "study");
+  dynamics.stand_at(solid.rest(), v);
+  const std::vector<double> mass = solid.masses();
+  const auto momentum = [&] {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < mass.size(); ++i) sum += mass[i] * dynamics.velocity()[i];
+    return sum;
+  };
+  const Vec3 before = momentum();
+  const int steps = quick ? 60 : 300;
+  double most = 0;
+  bool settled = true;
+  for (int i = 0; i < steps; ++i) {
+    dynamics.start_step(kStep);
+    dynamics.settle(none, 20, 1e-9);
+    settled = settled && dynamics.unbalanced() < 0.05 && !dynamics.inside_out();
+    dynamics.finish_step();
+    most = std::max(most, (momentum() - before).norm() / before.norm());
+  }
+  Verdict verdict{
+      "stable", fmt::format("it flies for {:.0f} s", steps * kStep), 100 * most, {}, "its momentum at first"};
+  if (!settled) verdict.outcome = "flagged";
+  if (!(most < 1e-3)) verdict.outcome = settled ? "exploded" : "flagged";
+  return verdict;
+}
+
 /// A body that was kicked everywhere: does its energy stay?
 Verdict run_undamped(const Case&, const Column& column, bool quick) {
   if (column.model != "tensor_mass") return {"not_applicable", "only tensor_mass has sub-steps", {}, {}, ""};

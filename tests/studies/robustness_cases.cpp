@@ -175,7 +175,7 @@ const std::vector<Case>& cases() {
       {"to_a_plane", "all free vertices in one plane, to 1e-6", true, run_collapsed_to_plane},
       {"gravity_x100", "981 m/s2", false, run_trial, heavy},
       {"undamped", "1e6 sub-steps without damping", true, run_undamped},
-      {"free_body", "no [[fixed]]", true, run_trial, free_body},
+      {"free_body", "no [[fixed]]", true, run_free_body, free_body},
       {"one_newton_step", "max_newton 1, tolerance 1e-12", false, run_trial, one_newton_step},
       {"friction_0", "drawn by 4 mm, friction 0", false, run_trial, slippery},
       {"friction_0.5", "drawn by 4 mm, friction 0.5", false, run_trial, rough},

@@ -27,6 +27,7 @@ struct Run {
   double max_newton = 0;   // of all steps
   double wildest = 0;      // of those that were not flagged
   int steps = 0, flagged = 0;
+  bool pressed_flagged = false;  // when `last` was felt
   bool finite = true, ends_flagged = false;
   double off = 0;  // from where the surface began, when the tools have been away, m
 };
@@ -54,6 +55,7 @@ class Watch {
       see(simulation_.step(places, dt_));
     }
     run_.last.clear();
+    run_.pressed_flagged = run_.ends_flagged;
     for (std::size_t k = 0; k < paths.size(); ++k) run_.last.push_back(simulation_.tool(k).force().force);
     for (auto& place : places) place.reset();
     for (int i = 0; i < steps && run_.finite; ++i) see(simulation_.step(places, dt_));
@@ -112,6 +114,7 @@ struct Reference {
   std::vector<double> newton;  // of each tool
   std::vector<Vec3> force;     // of each tool; empty: only its size is known
   double most = 0;
+  bool settled = true;
 };
 
 Reference reference_of(const Trial& trial, const Column& column) {
@@ -136,6 +139,8 @@ Reference reference_of(const Trial& trial, const Column& column) {
       run.last,
       run.max_newton};
   for (const Vec3& force : run.last) reference.newton.push_back(force.norm());
+  reference.settled = !run.pressed_flagged;
+  if (!reference.settled) reference.what += ": flagged at its end, so that there is no error to tell";
   if (run.flagged > 0) reference.what += fmt::format(" (flagged in {} of {} steps)", run.flagged, run.steps);
   return reference;
 }
@@ -151,7 +156,8 @@ double error_of(const Run& run, const Reference& reference) {
 }
 
 Verdict judge(const Run& run, const Reference& reference, double depth) {
-  Verdict verdict{"stable", "", 100 * error_of(run, reference), run.max_newton, reference.what};
+  Verdict verdict{"stable", "", {}, run.max_newton, reference.what};
+  if (reference.settled) verdict.error_percent = 100 * error_of(run, reference);
   const std::string flags = run.flagged == 0
                                 ? ""
                                 : fmt::format("{} of {} steps flagged, answered with what was found so far",

@@ -4,8 +4,10 @@
 #include "common/error.h"
 #include "sim_server/simulation.h"
 #include "tests/support/catch.h"
+#include "tests/support/column.h"
 #include "tests/support/scenes.h"
 #include "tests/support/solids.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -173,4 +175,59 @@ TEST_CASE("implicit: under its own weight it begins at rest and stays there") {
   for (int i = 0; i < 30; ++i) simulation.step({Vec3(0, 1, 0)}, 1.0 / 30);
   for (std::size_t v = 0; v < begin.size(); ++v)
     CHECK((simulation.positions()[v] - begin[v]).norm() < 1e-4 * sagged);
+}
+
+TEST_CASE("implicit: a body that nothing holds flies off with the momentum that a tool gave it") {
+  Scene scene = test::scene_of(
+      {.young_modulus = 2e4, .poisson_ratio = 0.3, .density = 1000, .law = ElasticLaw::kCorotational},
+      {Vec3(-1, -1, -1), Vec3(1, -0.5, 1)}, 0.006);
+  scene.fixed.clear();
+  scene.rate_hz = 500;
+  scene.deformation.model = "implicit";
+  scene.deformation.rayleigh_mass = 0;
+  scene.deformation.rayleigh_stiffness = 2e-3;
+  scene.deformation.tolerance = 1e-10;
+  scene.deformation.max_newton = 60;
+  Simulation simulation(scene, grid_block(test::lines(-0.015, 0.015, 4), test::lines(-0.015, 0, 2),
+                                          test::lines(-0.015, 0.015, 4)));
+  const auto middle = [&] {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& x : simulation.positions())
+      sum += x / static_cast<double>(simulation.positions().size());
+    return sum;
+  };
+  // Pressed on aside of its middle, the block turns as it goes; let go, it shakes until it is stiff again.
+  const double dt = 1 / scene.rate_hz, mass = 1000 * 0.03 * 0.015 * 0.03;
+  Vec3 impulse = Vec3::Zero();
+  for (int i = 0; i < 40; ++i)
+    impulse -= dt * simulation.step(Vec3(0.002, 0.0065 - 1e-4 * i, 0.001), dt).force;
+  const std::vector<std::optional<ToolPose>> away(1);
+  for (int i = 0; i < 200; ++i) simulation.step(away, dt);
+  CHECK(impulse.y() < -1e-4);
+  // The middle of all vertices is that of the block, stiff and whole, wherever it has turned.
+  const Vec3 from = middle();
+  for (int i = 0; i < 100; ++i) simulation.step(away, dt);
+  const Vec3 velocity = (middle() - from) / (100 * dt);
+  CHECK((mass * velocity - impulse).norm() < 1e-3 * impulse.norm());
+}
+
+TEST_CASE("implicit: a body that nothing holds is refused with the linear law, and with a reach") {
+  test::TemporaryFolder folder;
+  folder.write("column.msh", test::column());
+  const auto said = [&](const std::string& law, const std::string& tool) {
+    const auto file = folder.write(
+        "scene.toml",
+        "[mesh]\nfile = \"column.msh\"\n[material]\nyoung_modulus = 1e4\npoisson_ratio = 0.3\nlaw = \"" +
+            law + "\"\n[deformation]\nmodel = \"implicit\"\n[[tool]]\n" + tool);
+    try {
+      read_scene(file);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  CHECK(said("linear", "").find("take law \"corotational\", by which it flies") != std::string::npos);
+  CHECK(said("corotational", "reach = [[0, 0, 0], [1, 1, 1]]")
+            .find("scene.toml:10: no [[fixed]] holds the body") != std::string::npos);
+  CHECK(said("corotational", "").empty());
 }

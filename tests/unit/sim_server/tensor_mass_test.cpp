@@ -263,3 +263,27 @@ TEST_CASE("two tools on tensor_mass come to rest as on quasi_static, and let go"
   for (int i = 0; i < 60; ++i) moving.step(nowhere, kPeriod);
   CHECK(largest(moving.positions(), moving.rest()) < 1e-6);
 }
+
+TEST_CASE(
+    "tensor_mass: at rates near that of its sub-steps a tool at rest feels a steady force, that of statics") {
+  Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.45},
+                               {Vec3(-1, -1, -1), Vec3(1, -0.0149, 1)}, 0.004);
+  const TetMesh mesh = grid_block(lines(-0.015, 0.005, 6), lines(-0.015, 0.005, 3), lines(-0.015, 0.005, 6));
+  const Vec3 place(0.001, 0.001, 0.002);
+  Simulation still(scene, mesh);
+  const Vec3 expected = still.step(place, 1).force;
+  scene.deformation.model = "tensor_mass";
+  scene.deformation.rayleigh_mass = 200;
+  for (const double rate : {10000.0, 3000.0, 1500.0}) {
+    CAPTURE(rate);
+    scene.rate_hz = rate;
+    Simulation moving(scene, mesh);
+    const int down = static_cast<int>(0.05 * rate), steps = static_cast<int>(0.2 * rate);
+    Vec3 force;
+    for (int i = 1; i <= steps; ++i) {
+      const double up = 0.005 * std::max(0.0, 1 - static_cast<double>(i) / down);
+      force = moving.step(place + up * Vec3::UnitY(), 1 / rate).force;
+      if (i > steps - 4) CHECK((force - expected).norm() < 0.01 * expected.norm());
+    }
+  }
+}
