@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "sim_server/elasticity/inversion.h"
+
 namespace palpate::sim {
 namespace {
 
@@ -359,13 +361,7 @@ void Dynamics::forces(std::span<Vec3> f) const {
 }
 
 bool Dynamics::inside_out() const {
-  if (never_changes()) return false;
-  for (std::size_t e = 0; e < solid_.elements(); ++e) {
-    const std::span<const int> t = solid_.element(e);
-    const Vec3 a = x_[t[1]] - x_[t[0]], b = x_[t[2]] - x_[t[0]], c = x_[t[3]] - x_[t[0]];
-    if (!(a.cross(b).dot(c) > 0)) return true;
-  }
-  return false;
+  return !never_changes() && any_inverted(solid_, x_);
 }
 
 void Dynamics::resistance(std::span<Vec3> f) const {

@@ -1,6 +1,7 @@
 // Bodies of all laws and elements: forces are the derivative of the energy, stiffness that of the forces.
 #include "sim_server/elasticity/solid.h"
 
+#include "sim_server/elasticity/inversion.h"
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
@@ -176,3 +177,20 @@ TEST_CASE("solid: the same bytes with one thread and two") {
   CHECK(e[0] == e[1]);
 }
 #endif
+
+TEST_CASE("a tetrahedron pushed through itself is inverted, a sliver that turns over is not told of") {
+  const std::vector<Vec3> corners{{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}};
+  for (const auto& [height, told] :
+       {std::pair(0.008, true), std::pair(0.0005, true), std::pair(0.00002, false)}) {
+    CAPTURE(height);
+    TetMesh mesh{.vertices = corners, .tetrahedra = {{0, 1, 2, 3}}, .surface_tags = {}};
+    mesh.vertices.push_back(Vec3(0.002, 0.002, height));
+    const Solid solid(mesh, {});
+    std::vector<Vec3> x = solid.rest();
+    CHECK_FALSE(any_inverted(solid, x));
+    x[3][2] = 1e-9;
+    CHECK_FALSE(any_inverted(solid, x));
+    x[3][2] = -1e-9;
+    CHECK(any_inverted(solid, x) == told);
+  }
+}

@@ -1,0 +1,11 @@
+#pragma once
+#include "sim_server/elasticity/solid.h"
+
+namespace palpate::sim {
+
+/// Whether a tetrahedron of `solid` is inside out (by its corners) at positions `x` (nodes, m) that is no
+/// sliver: flat ones turn over under little, and are not felt when they do. O(elements), a fraction of
+/// `Solid::forces`.
+bool any_inverted(const Solid& solid, std::span<const Vec3> x);
+
+}  // namespace palpate::sim
