@@ -1,10 +1,20 @@
 #include "sim_server/elasticity/inversion.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace palpate::sim {
 namespace {
 
-// Of the product of three edges from one corner: what spans less at rest is a sliver.
+// Six volumes, of the cube of the longest edge: what spans less at rest is a sliver (a regular one: 0.7).
 constexpr double kSliver = 0.01;
+
+double longest_edge(const Solid& solid, std::span<const int> t) {
+  double longest = 0;
+  for (const auto& [a, b] : kEdges)
+    longest = std::max(longest, (solid.rest()[t[a]] - solid.rest()[t[b]]).norm());
+  return longest;
+}
 
 }  // namespace
 
@@ -16,9 +26,7 @@ bool any_inverted(const Solid& solid, std::span<const Vec3> x) {
       return edge(at, 1).cross(edge(at, 2)).dot(edge(at, 3));
     };
     if (spanned(x) > 0) continue;
-    const std::span<const Vec3> rest = solid.rest();
-    const double edges = edge(rest, 1).norm() * edge(rest, 2).norm() * edge(rest, 3).norm();
-    if (spanned(rest) > kSliver * edges) return true;
+    if (spanned(solid.rest()) > kSliver * std::pow(longest_edge(solid, t), 3)) return true;
   }
   return false;
 }
