@@ -38,7 +38,7 @@ struct Config::Node {
     const int slip = std::min(3, static_cast<int>(key.size()) / 3);  // letters
     for (const auto& [other, node] : *table) {
       if (!asked.contains(std::string(other.str())) && edit_distance(key, other.str()) <= slip)
-        fail("{}: unknown key `{}`; did you mean `{}`?", at(node), full(std::string(other.str())), key);
+        fail("{}: unknown key `{}`; did you mean \"{}\"?", at(node), full(std::string(other.str())), key);
     }
     fail("{}: missing key `{}`", at(*table), full(key));
   }

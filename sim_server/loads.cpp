@@ -23,7 +23,12 @@ Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, co
       solid.add_body_forces(solid.material().density * load.vector, dead_);
     } else if (load.kind == Load::Kind::kForce) {
       const std::vector<int> vertices = vertices_in(load.region, mesh);
-      if (std::all_of(vertices.begin(), vertices.end(), [&](int v) { return held_[v] == kAllAxes; }))
+      const auto resists = [&](int v) {
+        int axes = 0;  // of the force
+        for (int axis = 0; axis < 3; ++axis) axes |= load.vector[axis] != 0 ? 1 << axis : 0;
+        return axes != 0 && (axes & ~held_[v]) == 0;
+      };
+      if (std::all_of(vertices.begin(), vertices.end(), resists))
         fail("{}: every vertex in this region is held, so that the force would move nothing",
              load.region.where);
       for (const int v : vertices) dead_[v] += load.vector / static_cast<double>(vertices.size());

@@ -290,7 +290,7 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   if (deformation) scene.deformation = read_deformation(*deformation);
   if (purpose == Purpose::kServe) require_what_the_model_can(scene);
   if (purpose == Purpose::kServe || !config.tables("tool").empty()) scene.tools = read_tools(config);
-  if (purpose == Purpose::kServe && scene.fixed.empty() && scene.deformation.model == "implicit")
+  if (purpose == Purpose::kServe && scene.flies() && scene.deformation.model == "implicit")
     require_flight(scene);
   config.reject_unknown();
   reach_what_moves(scene);

@@ -1,5 +1,6 @@
 #pragma once
 /// What a scene file asks for. An absent section means: not built.
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -143,6 +144,12 @@ struct Scene {
   DeformationSettings deformation;
   std::vector<ToolSettings> tools = std::vector<ToolSettings>(1);  ///< 1 to `kMaxTools`
   std::string source;                                              ///< the file, for messages
+
+  /// Whether nothing holds the body anywhere.
+  bool flies() const {
+    const auto displaces = [](const Load& load) { return load.kind == Load::Kind::kDisplacement; };
+    return fixed.empty() && std::none_of(loads.begin(), loads.end(), displaces);
+  }
 };
 
 /// What a scene is read for: to be served, or to be solved without a tool, which needs neither [deformation]

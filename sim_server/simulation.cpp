@@ -213,7 +213,8 @@ std::vector<MemoryPart> Simulation::memory() const {
   std::vector<MemoryPart> parts = tissue_.model->memory();
   parts.push_back({"mesh", mesh_.vertices.size() * sizeof(Vec3) +
                                mesh_.tetrahedra.size() * sizeof(Tetrahedron) +
-                               mesh_.mid_edges.size() * sizeof(mesh_.mid_edges[0])});
+                               mesh_.mid_edges.size() * sizeof(mesh_.mid_edges[0]) +
+                               mesh_.stiffness.size() * sizeof(double)});
   parts.push_back(
       {"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
   for (std::size_t i = 0; i < tools_.size(); ++i)

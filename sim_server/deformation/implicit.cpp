@@ -17,7 +17,7 @@ constexpr double kMostBytes = 1e9;  // of columns, when a step begins
 /// A body that nothing holds flies.
 DynamicsSettings settings_of(const ModelInputs& inputs) {
   DynamicsSettings settings = inputs.scene.deformation.dynamics();
-  settings.flies = inputs.fixed.empty();
+  settings.flies = inputs.scene.flies();
   return settings;
 }
 
@@ -59,7 +59,7 @@ Implicit::Implicit(const ModelInputs& inputs)
   dynamics_.improve(external());
   held_compliance_ = 1 / dynamics_.matrix().largest();
   linearised();
-  if (supports_) free_ = positions_ = rest_;
+  if (supports_ || inputs.scene.flies()) free_ = positions_ = rest_;
   inputs.progress("factoring the stiffness matrix", 1);
 }
 
@@ -69,7 +69,7 @@ void Implicit::begin(const ModelInputs& inputs) {
   const auto responses =
       support_responses(inputs, solid_, dynamics_.dofs(), flexibility, Following::kSwinging);
   if (!responses.empty()) supports_.emplace(inputs, responses);
-  if (inputs.fixed.empty() || (inputs.scene.loads.empty() && !supports_)) return;
+  if (inputs.scene.flies() || (inputs.scene.loads.empty() && !supports_)) return;
   inputs.progress("finding the shape under its loads", 0);
   const StaticLoad load{
       .forces = [this](std::span<const Vec3> x, std::span<Vec3> f) { scene_loads_.add_forces(x, f); },

@@ -20,7 +20,7 @@ namespace palpate::sim {
 /// velocities that it will have by them.
 class Implicit : public DeformationModel {
  public:
-  /// Throws `Error` without material, rate or what holds the body.
+  /// Throws `Error` without material or rate, or where what is held does not hold the body.
   explicit Implicit(const ModelInputs& inputs);
   /// Any `dt` > 0 is taken for one period.
   FreeMotion free_motion(double dt) noexcept override;
@@ -28,7 +28,8 @@ class Implicit : public DeformationModel {
   bool compliance_is_constant() const noexcept override { return false; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::optional<FreeMotion> relinearise() noexcept override;
-  /// Whether the last look found no more than 5 % of the forces at work unbalanced, and no element inverted.
+  /// Whether the last look found no more than 5 % of the forces at work unbalanced, and no element inverted
+  /// that is no sliver (of the linear law nothing of this is asked).
   bool balanced() const noexcept override;
   std::vector<MemoryPart> memory() const override;
 

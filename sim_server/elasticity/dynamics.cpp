@@ -12,8 +12,11 @@ namespace {
 constexpr double kWorthwhile = 0.3;
 // Likewise: so little may be rounding, where a fresh factor makes it no less.
 constexpr double kRounding = 1e-6;
+// Of what a fresh factor made no less: so much is the same rounding, and no reason to factor again.
+constexpr double kSame = 2;
 // Of the size of the body: what moves a node by less is no force at work, so that a body at rest is at rest.
 constexpr double kStill = 1e-9;
+constexpr double kMute = 1e-3;  // of such a force: what a fresh factor does not lessen is rounding as well
 // Likewise: a factor of a place that far off is of another place.
 constexpr double kElsewhere = 1e-4;
 // Likewise: by so much nodes are moved to learn how forces change.
@@ -196,9 +199,13 @@ double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
     return 0;
   }
   if (left_ <= tolerance) return left_;
+  if (left_ * at_work_ <= kSame * rounding_) return 0;
   bool slow = false;
   if (improved_ && left_ > kWorthwhile * before) {
-    if (fresh_ && left_ <= kRounding) return 0;
+    if (fresh_ && (left_ <= kRounding || left_ * at_work_ <= kMute * still_)) {
+      rounding_ = left_ * at_work_;
+      return 0;
+    }
     slow = true;
     if (!background_) {
       if (fresh_) matrix_.check_precision();

@@ -128,6 +128,7 @@ class Dynamics {
   double remains_ = 0;      // likewise, where the last way led
   double reach_ = 0;        // size of the body, m
   double still_ = 0;        // a force that is none, N
+  double rounding_ = 0;     // what is unbalanced by it, N; 0: not known
   // Viscosity: by quadrature point; terms one after the other.
   double scale_ = 1;
   std::vector<Mat3> stress_, memory_, terms_;

@@ -56,7 +56,8 @@ Solid::Solid(const TetMesh& mesh, const Material& material)
     build_linear(mesh);
   }
   for (std::size_t p = 0; p < points(); ++p) weight_[p] *= stiffness_of(p);
-  if (material.element == ElementKind::kNodalPressure) gather_patches();
+  if (averages() && !stiffness_.empty()) fail("mesh: of several stiffnesses, whose pressure is not averaged");
+  if (averages()) gather_patches();
   force_scratch_.resize(kBatch * static_cast<std::size_t>(corners_));
   stiffness_scratch_.resize(kBatch * blocks_of(corners_));
 }

@@ -1,9 +1,11 @@
 #include "sim_server/elasticity/sparse_cholesky.h"
 
 #include <limits>
+#include <mutex>
 #include <optional>
 
 #include "common/error.h"
+#include "common/log.h"
 
 #ifdef PALPATE_WITH_CHOLMOD
 #include "sim_server/elasticity/supernodal_factor.h"
@@ -42,7 +44,7 @@ struct SparseCholesky::Factor {
   }
 
   /// What double precision would take more than single.
-  std::size_t more_bytes() const { return pattern.values() * sizeof(double); }
+  std::size_t more_bytes() const { return pattern.values() * (sizeof(double) - sizeof(float)); }
   /// From here on in this precision.
   void take(Precision other) {
     rough.reset();
@@ -89,11 +91,18 @@ namespace {
 constexpr double kSingular = 1e13;  // condition beyond which rounding has eaten the answer
 constexpr double kRough = 1e-3;     // of a load: so much unbalanced is more than single precision may leave
 
-/// Whether it could go on in double precision.
+/// Whether it can go on in double precision; warns where that is for want of memory.
 template <class Factor>
 bool can_be_finer(const Factor& factor) {
-  return factor.precision == SparseCholesky::Precision::kSingle &&
-         static_cast<double>(factor.more_bytes()) <= free_memory();
+  if (factor.precision == SparseCholesky::Precision::kDouble) return false;
+  if (static_cast<double>(factor.more_bytes()) <= free_memory()) return true;
+  static std::once_flag told;
+  std::call_once(told, [&] {
+    log::warning(
+        "a Cholesky factor would need {} more for double precision, which are not free: it stays in single",
+        bytes_text(static_cast<double>(factor.more_bytes())));
+  });
+  return false;
 }
 
 /// Between the analysis of the pattern and the numbers.

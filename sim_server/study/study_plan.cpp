@@ -87,6 +87,7 @@ class Planner {
       if (has_tissue(row)) add("model", with_model(base_, row), 0);
     }
     for (const ElementKind element : kElements) {
+      if (element == ElementKind::kNodalPressure && !base_.inclusions.empty()) continue;  // of one stiffness
       Scene other = base_;
       if (!takes(row_of(base_), element)) other = with_model(base_, implicit());
       other.material->element = element;
@@ -209,6 +210,8 @@ StudyPlan plan_study(const Scene& scene, const StudyOptions& options) {
   if (!scene.material || !has_tissue(row_of(scene)))
     fail("{}: model \"{}\" has no tissue to study; take quasi_static, tensor_mass, reduced or implicit",
          scene.deformation.where, scene.deformation.model);
+  if (scene.flies())
+    fail("{}: nothing holds the body, so that errors would grow as it flies; add a [[fixed]]", scene.source);
   return Planner(scene, options).plan();
 }
 

@@ -2,12 +2,14 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "common/error.h"
+#include "common/interrupt.h"
 #include "common/report.h"
 #include "sim_server/study/study_run.h"
 
@@ -91,47 +93,66 @@ std::optional<Trace> read_trace(const std::filesystem::path& path) {
   return trace;
 }
 
+namespace {
+
+/// In the child: does `work`, and says what went wrong.
+[[noreturn]] void work_apart(int out, const std::function<void()>& work) {
+  sigset_t all;
+  sigfillset(&all);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_DFL);
+  sigprocmask(SIG_UNBLOCK, &all, nullptr);  // Ctrl-C ends it at once
+  prctl(PR_SET_PDEATHSIG, SIGKILL);         // an interrupted study leaves nobody behind
+  int code = 0;
+  try {
+    work();
+  } catch (const std::exception& error) {
+    const auto* const known = dynamic_cast<const Error*>(&error);
+    code = known != nullptr ? known->exit_code() : 1;
+    if (write(out, error.what(), std::strlen(error.what())) < 0) code = 1;
+  }
+  _exit(code);
+}
+
+/// What the child says until it ends; nothing where Ctrl-C came first.
+std::optional<std::string> hear(int in) {
+  constexpr int kLook = 100;  // ms
+  std::string text(4096, '\0');
+  std::size_t length = 0;
+  pollfd waiting{in, POLLIN, 0};
+  while (length < text.size()) {
+    if (wait_for_interrupt(Time::zero())) return {};
+    if (poll(&waiting, 1, kLook) <= 0) continue;
+    const ssize_t got = read(in, text.data() + length, text.size() - length);
+    if (got <= 0) break;
+    length += static_cast<std::size_t>(got);
+  }
+  text.resize(length);
+  return text;
+}
+
+}  // namespace
+
 double run_apart(const std::string& name, const std::function<void()>& work) {
   int said[2];
   if (pipe(said) != 0) fail_at_run_time("{}: no pipe: {}", name, std::strerror(errno));
   const pid_t child = fork();
   if (child < 0) fail_at_run_time("{}: no process: {}", name, std::strerror(errno));
   if (child == 0) {
-    std::signal(SIGINT, SIG_DFL);      // Ctrl-C ends it at once
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // an interrupted study leaves nobody behind
     close(said[0]);
-    int code = 0;
-    try {
-      work();
-    } catch (const Error& error) {
-      code = error.exit_code();
-      if (write(said[1], error.what(), std::strlen(error.what())) < 0) code = 1;
-    } catch (const std::exception& error) {
-      code = 1;
-      if (write(said[1], error.what(), std::strlen(error.what())) < 0) code = 1;
-    }
-    _exit(code);
+    work_apart(said[1], work);
   }
   close(said[1]);
-  std::string text(4096, '\0');
-  std::size_t length = 0;
-  for (ssize_t got;
-       length < text.size() && (got = read(said[0], text.data() + length, text.size() - length)) > 0;)
-    length += static_cast<std::size_t>(got);
+  const std::optional<std::string> text = hear(said[0]);
   close(said[0]);
-  text.resize(length);
+  if (!text) kill(child, SIGKILL);
   int status = 0;
   rusage used{};
-  if (wait4(child, &status, 0, &used) < 0) {  // a signal came
-    kill(child, SIGKILL);
-    waitpid(child, &status, 0);
-    fail_at_run_time("{}: interrupted; the same command goes on from there", name);
-  }
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT)
+  wait4(child, &status, 0, &used);
+  if (!text || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT))
     fail_at_run_time("{}: interrupted; the same command goes on from there", name);
   if (WIFSIGNALED(status)) fail_at_run_time("{}: ended by signal {}", name, WTERMSIG(status));
-  if (WEXITSTATUS(status) == 2) fail("{}", text);
-  if (WEXITSTATUS(status) != 0) fail_at_run_time("{}: {}", name, text);
+  if (WEXITSTATUS(status) == 2) fail("{}", *text);
+  if (WEXITSTATUS(status) != 0) fail_at_run_time("{}: {}", name, *text);
   return 1024.0 * static_cast<double>(used.ru_maxrss);
 }
 

@@ -249,7 +249,7 @@ TEST_CASE("wrong input: one line that says what, where and what to do, exit 2, n
        "scene.toml:7: `[material] poisson_ratio` must be between 0 and 0.499999");
   says(scene_error(replaced("young_modulus = 1e4", "young_modulus = \"soft\"")), "must be a number (Pa)");
   says(scene_error(replaced("young_modulus", "youngs_modulus")),
-       "unknown key `[material] youngs_modulus`; did you mean `young_modulus`?");
+       "unknown key `[material] youngs_modulus`; did you mean \"young_modulus\"?");
   says(scene_error(replaced("[[tool]]", "[[tool]]\nradios = 1")),
        "unknown key `[[tool]] radios`; did you mean \"radius\"?");
   says(scene_error(replaced("quasi_static", "quasistatic")),

@@ -1,4 +1,5 @@
 // sim_server study: the same rows every time, from where it was left.
+#include <csignal>
 #include <fstream>
 #include <iterator>
 
@@ -60,4 +61,16 @@ TEST_CASE("study: a scene without tissue is refused with what to take") {
   Bench bench;
   const std::string said = output_of("sim_server", {"study", bench.scene("rigid"), "--out", bench.out}, 2);
   CHECK(said.find("no tissue to study; take quasi_static") != std::string::npos);
+}
+
+TEST_CASE("study: asked to end in the middle of a case it ends at once, and nobody is left behind") {
+  Bench bench;
+  // A reference on the liver takes minutes.
+  Process study(
+      "sim_server",
+      {"study", std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_implicit.toml", "--out", bench.out});
+  REQUIRE(study.wait_for("reference: "));
+  study.signal(SIGTERM);
+  CHECK(study.wait(5) == 1);
+  CHECK(study.output().find("interrupted; the same command goes on from there") != std::string::npos);
 }

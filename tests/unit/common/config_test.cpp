@@ -54,7 +54,7 @@ TEST_CASE("values, defaults, tables and paths") {
 TEST_CASE("every wrong value names line, key and what was expected") {
   CHECK(error_of([] { config_of("a = 1").number("b", {}); }) == ":1: missing key `b`");
   CHECK(error_of([] { config_of("c = 1\nradios = 1").number("radius", {}); }) ==
-        ":2: unknown key `radios`; did you mean `radius`?");
+        ":2: unknown key `radios`; did you mean \"radius\"?");
   CHECK(error_of([] { config_of("\na = \"1\"").number("a", {.unit = "Pa"}); }) ==
         ":2: `a` must be a number (Pa)");
   CHECK(error_of([] {

@@ -231,3 +231,26 @@ TEST_CASE("implicit: a body that nothing holds is refused with the linear law, a
             .find("scene.toml:10: no [[fixed]] holds the body") != std::string::npos);
   CHECK(said("corotational", "").empty());
 }
+
+TEST_CASE("implicit: a body that a displacement alone holds is served in its shape under it") {
+  Scene scene = test::scene_of({.young_modulus = 2e4, .poisson_ratio = 0.3, .density = 1000},
+                               {Vec3(-1, -1, -1), Vec3(1, -0.5, 1)}, 0.006);
+  scene.fixed.clear();
+  scene.deformation.model = "implicit";
+  const auto held = [](double from, double to, const Vec3& moved) {
+    Load load{Load::Kind::kDisplacement};
+    load.region.box = Box{Vec3(from, -1, -1), Vec3(to, 1, 1)};
+    load.vector = moved;
+    return load;
+  };
+  const Vec3 shift(0, 0.002, 0);
+  scene.loads = {held(-0.021, -0.019, shift), held(0.019, 0.021, shift)};
+  Simulation simulation(scene, block());
+  for (int i = 0; i < 3; ++i) {
+    double most = 0;
+    for (std::size_t v = 0; v < simulation.rest().size(); ++v)
+      most = std::max(most, (simulation.positions()[v] - simulation.rest()[v] - shift).norm());
+    CHECK(most < 1e-9);
+    simulation.step(Vec3(0, 0.1, 0), 1 / scene.rate_hz);
+  }
+}
