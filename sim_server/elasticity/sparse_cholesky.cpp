@@ -1,7 +1,7 @@
 #include "sim_server/elasticity/sparse_cholesky.h"
 
+#include <atomic>
 #include <limits>
-#include <mutex>
 #include <optional>
 
 #include "common/error.h"
@@ -96,12 +96,12 @@ template <class Factor>
 bool can_be_finer(const Factor& factor) {
   if (factor.precision == SparseCholesky::Precision::kDouble) return false;
   if (static_cast<double>(factor.more_bytes()) <= free_memory()) return true;
-  static std::once_flag told;
-  std::call_once(told, [&] {
+  static std::atomic_flag told;
+  if (!told.test_and_set()) {
     log::warning(
         "a Cholesky factor would need {} more for double precision, which are not free: it stays in single",
         bytes_text(static_cast<double>(factor.more_bytes())));
-  });
+  }
   return false;
 }
 
