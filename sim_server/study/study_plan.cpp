@@ -21,6 +21,7 @@ constexpr double kMostNodesAtRest = 90e3, kMostNodesAtRestQuick = 35e3;  // of o
 constexpr int kReferenceSteps = 8, kReferenceStepsQuick = 4;             // to one of the scene
 constexpr double kUsualRate = 30;                                        // Hz, where the scene names none
 constexpr std::array kSteps{0.25, 0.5, 1.0, 2.0, 4.0};                   // of the scene's, s
+constexpr std::array kStepsOfElements{0.5, 2.0};  // likewise: where a better element comes too late
 constexpr std::array kTolerances{1e-1, 1e-2, 1e-3, 1e-5, 1e-8};
 constexpr std::array kElements{ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic};
 
@@ -92,6 +93,11 @@ class Planner {
       if (!takes(row_of(base_), element)) other = with_model(base_, implicit());
       other.material->element = element;
       add("element", other, 0);
+      for (const double step : kStepsOfElements) {
+        Scene slower = other;
+        slower.rate_hz /= step;
+        if (!options_.quick) add("step", slower, 0);
+      }
     }
     add_meshes();
     if (row_of(base_).any_material) add_tolerances();
