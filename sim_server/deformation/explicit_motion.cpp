@@ -71,9 +71,8 @@ void ExplicitMotion::advance(double h, const double* __restrict force) noexcept 
 
 void ExplicitMotion::run(int steps, double h, const std::vector<double>& force) noexcept {
   auto& [u, v, f] = state;
-  const double share = steps > 1 ? 0.5 : 1;
   for (std::size_t k = 0; k < u.size(); ++k) {
-    f[k] += share * (force[k] - f[k]);
+    f[k] = 0.5 * (f[k] + force[k]);
     bent_[k] = u[k] + damping_.stiffness * v[k];
   }
   sub_step(h, f);

@@ -38,8 +38,7 @@ class ExplicitMotion {
 
   /// Goes on by `steps` >= 1 sub-steps of `h` (s) under forces (N) that are held. The first takes the mean of
   /// those before and these, so that they change half-way between two velocities. The displacement is then of
-  /// second order in h, of each mode never against its force, and forces that stay give no jolt. One alone
-  /// takes these: else forces that are to lead somewhere at its end would have to swing about their mean.
+  /// second order in h, of each mode never against its force, and forces that stay give no jolt.
   void run(int steps, double h, const std::vector<double>& force) noexcept;
 
   std::size_t bytes() const { return 5 * state.u.size() * sizeof(double); }

@@ -72,7 +72,7 @@ void TensorMass::precompute(const ModelInputs& inputs) {
     ExplicitMotion motion(tensors_, damping_of(inputs.scene), kWide);
     std::vector<double> force = motion.state.f;
     for (Eigen::Index c = 0; c < columns.cols(); ++c) force[number(from + c, c)] = 1;
-    motion.run(sub_steps_, sub_step_, force);
+    run_period(motion, force);
     for (Eigen::Index c = 0; c < columns.cols(); ++c) {
       for (Eigen::Index r = 0; r < columns.rows(); ++r) columns(r, c) = motion.state.u[number(r, c)];
     }
@@ -84,12 +84,19 @@ void TensorMass::precompute(const ModelInputs& inputs) {
 FreeMotion TensorMass::free_motion(double dt) noexcept {
   if (dt > 0) {
     end_period();
-    motion_.run(sub_steps_, sub_step_, force_);
+    run_period(motion_, force_);
     if (supports_) supports_->advance(sub_steps_ * sub_step_);
     stand();
     press(loads_);
   }
   return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>(), positions_};
+}
+
+/// One sub-step alone takes these forces for all of it, not their mean with those before: else forces that
+/// are to lead somewhere at its end would have to swing about that mean.
+void TensorMass::run_period(ExplicitMotion& motion, const std::vector<double>& force) const noexcept {
+  if (sub_steps_ == 1) motion.state.f = force;
+  motion.run(sub_steps_, sub_step_, force);
 }
 
 /// Where the body goes free of loads: by itself, and by its supports.
@@ -109,7 +116,7 @@ void TensorMass::end_period() noexcept {
       if (compliance_.row(load.vertex) >= 0)
         Eigen::Map<Vec3>(force_.data() + first_[load.vertex]) += load.force;
     }
-    motion_.run(sub_steps_, sub_step_, force_);
+    run_period(motion_, force_);
     std::fill(force_.begin(), force_.end(), 0);
     if (sub_steps_ <= kFew) calm_loaded();
   }

@@ -35,6 +35,7 @@ class TensorMass : public DeformationModel {
  private:
   void choose_sub_step(const ModelInputs& inputs);
   void precompute(const ModelInputs& inputs);
+  void run_period(ExplicitMotion& motion, const std::vector<double>& force) const noexcept;
   void end_period() noexcept;
   void calm_loaded() noexcept;
   void stand() noexcept;
