@@ -45,8 +45,9 @@ struct Explanation {
   std::size_t tetrahedra = 0;
 };
 
-/// Builds the scene and a variant for each thing it leaves out, and steps them all. Throws `Error` where the
-/// scene itself cannot be built. Takes as long as all those set-ups, and the memory of two of them.
+/// Builds the scene and, where that takes no more than 10 s, a variant for each thing it leaves out, and
+/// steps them all. Throws `Error` where the scene itself cannot be built. Takes as long as all those set-ups,
+/// and the memory of two of them.
 Explanation explain(const Scene& scene, const Progress& progress = kSilent);
 
 /// Which line of the scene asks for a part, or leaves it out, and what it costs or saves. Throws `Error`

@@ -95,6 +95,7 @@ void require_memory_for(const Scene& scene, Purpose purpose, const MeshCounts& c
   } else if (model == "tensor_mass") {
     bytes = tensors_bytes(counts) + (supports_move(scene) ? body_bytes(counts, element, 1) : 0);
   }
+  if (!scene.inclusions.empty()) bytes += 2 * counts.tetrahedra * kReal;  // in the mesh and in its solid
   require_memory(bytes, free, scene.source,
                  fmt::format("the stiffness of {:.0f} tetrahedra", counts.tetrahedra),
                  element == ElementKind::kQuadratic ? "take a coarser mesh, or another `element`"

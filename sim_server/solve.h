@@ -17,8 +17,8 @@ struct SolveOptions {
 };
 
 /// Solves a scene without a tool, writes the deformed mesh (`out`, .vtu: displacement m, Cauchy stress Pa,
-/// von Mises stress Pa, strain energy density J/m3) and prints what an engineer compares: energy, reactions,
-/// probes to 9 digits. Throws `Error`. Returns the exit code.
+/// von Mises stress Pa, strain energy density J/m3, volume over that at rest) and prints what an engineer
+/// compares: energy, reactions, probes to 9 digits. Throws `Error`. Returns the exit code.
 int solve(const SolveOptions& options);
 
 }  // namespace palpate::sim

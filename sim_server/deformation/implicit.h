@@ -29,7 +29,7 @@ class Implicit : public DeformationModel {
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::optional<FreeMotion> relinearise() noexcept override;
   /// Whether the last look found no more than 5 % of the forces at work unbalanced, and no element inverted
-  /// that is no sliver (of the linear law nothing of this is asked).
+  /// for good (`Dynamics::inside_out`).
   bool balanced() const noexcept override;
   std::vector<MemoryPart> memory() const override;
 

@@ -368,7 +368,7 @@ void Dynamics::forces(std::span<Vec3> f) const {
 }
 
 bool Dynamics::inside_out() const {
-  return !never_changes() && any_inverted(solid_, x_);
+  return may_stay_inverted(solid_.material()) && any_inverted(solid_, x_);
 }
 
 void Dynamics::resistance(std::span<Vec3> f) const {

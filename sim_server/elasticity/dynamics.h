@@ -43,9 +43,8 @@ class Dynamics {
   int settle(std::span<const Vec3> external, int most, double tolerance);
   /// What the last `improve` found unbalanced before it, as a share of the forces at work.
   double unbalanced() const { return left_; }
-  /// Whether an element that is no sliver is inverted, of a law that is not linear: none of them is true to
-  /// tissue there, St. Venant and Kirchhoff's has a second rest there, and the corotational one where nu is
-  /// near one half. O(elements), a fraction of a look.
+  /// Whether an element that is no sliver is inverted, of a law that can have a second rest there: St. Venant
+  /// and Kirchhoff's, and the corotational one where nu is near one half. O(elements), a fraction of a look.
   bool inside_out() const;
   /// Factors anew, where the factor is of a place elsewhere and none comes from the background.
   void refresh();

@@ -9,6 +9,8 @@ namespace {
 // Six volumes, of the cube of the longest edge: what spans less at rest is a sliver (a regular one: 0.7).
 constexpr double kSliver = 0.01;
 
+constexpr double kSnaps = 0.49;  // Poisson's ratio: above it, corotational tissue snaps through
+
 double longest_edge(const Solid& solid, std::span<const int> t) {
   double longest = 0;
   for (const auto& [a, b] : kEdges)
@@ -29,6 +31,11 @@ bool any_inverted(const Solid& solid, std::span<const Vec3> x) {
     if (spanned(solid.rest()) > kSliver * std::pow(longest_edge(solid, t), 3)) return true;
   }
   return false;
+}
+
+bool may_stay_inverted(const Material& material) {
+  return material.law == ElasticLaw::kStVenantKirchhoff ||
+         (material.law == ElasticLaw::kCorotational && material.poisson_ratio > kSnaps);
 }
 
 }  // namespace palpate::sim

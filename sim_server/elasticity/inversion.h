@@ -8,4 +8,8 @@ namespace palpate::sim {
 /// `Solid::forces`.
 bool any_inverted(const Solid& solid, std::span<const Vec3> x);
 
+/// Whether tissue of this material can have a second rest inside out: St. Venant and Kirchhoff's, and
+/// corotational tissue where nu is near one half.
+bool may_stay_inverted(const Material& material);
+
 }  // namespace palpate::sim
