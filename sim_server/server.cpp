@@ -76,6 +76,7 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
     tools.push_back({{"radius_m", scene.tools[i].shape.radius},
                      {"max_newton", stats.tools[i].max_newton},
                      {"contact_steps", stats.tools[i].contact_steps},
+                     {"beyond_steps", stats.tools[i].beyond_steps},
                      {"sessions", link.tools[i].so_far.load()}});
   }
   return tools;
@@ -128,16 +129,27 @@ void tell_holders(const NetLink& link, std::vector<bool>& told) {
   }
 }
 
+/// Says, once for each tool, that it left what the scene says it stays in.
+void tell_beyond(const SimLoop& loop, const Scene& scene, std::vector<bool>& told) {
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (told[i] || !loop.went_beyond[i]) continue;
+    log::warning("{}: tool {} is beyond this; out there it feels nothing, as nothing is built: make it wider",
+                 scene.tools[i].reach_where, i + 1);
+    told[i] = true;
+  }
+}
+
 /// Waits for Ctrl-C or the end of `seconds`, telling who comes and goes.
-void watch(const NetLink& link, std::size_t tools, const protocol::Recorder* recorder,
+void watch(const NetLink& link, const SimLoop& loop, const Scene& scene, const protocol::Recorder* recorder,
            std::optional<double> seconds) {
   protocol::RecordingWatcher recording(recorder);
   const Time start = now();
-  std::vector<bool> told(tools, false);
+  std::vector<bool> told(scene.tools.size(), false), told_beyond = told;
   while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
     if (seconds && to_seconds(now() - start) >= *seconds) return;
     recording.look();
     tell_holders(link, told);
+    tell_beyond(loop, scene, told_beyond);
   }
 }
 
@@ -176,7 +188,7 @@ int run_server(const ServerOptions& options) {
     pagers.emplace_back(simulation, i);
   }
   SimMailboxes mailboxes;
-  SimLoop loop(simulation, scene.rate_hz, mailboxes);
+  SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools);
   NetLink link(socket, {scene.rate_hz, radii}, std::move(pagers), mailboxes, random_seed(), recorder.get());
   const Time start = now();
   {
@@ -196,7 +208,7 @@ int run_server(const ServerOptions& options) {
     warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
     log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
               report["setup_ms"].get<double>() / 1e3, protocol::to_string(socket.local()));
-    watch(link, scene.tools.size(), recorder.get(), options.seconds);
+    watch(link, loop, scene, recorder.get(), options.seconds);
     sim.request_stop();
     sim.join();
     link.stop();

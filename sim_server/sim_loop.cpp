@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/clock.h"
+#include "sim_server/tool_reach.h"
 
 namespace palpate::sim {
 namespace {
@@ -17,9 +18,11 @@ StepCell& StepCell::operator+=(const StepCell& other) noexcept {
   return *this;
 }
 
-SimLoop::SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes)
+SimLoop::SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes,
+                 std::span<const ToolSettings> tools)
     : served_(simulation),
       mailboxes_(mailboxes),
+      tools_(tools),
       period_(rate_hz > 0 ? from_seconds(1 / rate_hz) : Time::zero()),
       inputs_(simulation.tools()) {
   stats_.tools.resize(simulation.tools());
@@ -80,6 +83,13 @@ void SimLoop::step(double dt) noexcept {
   if (answered) mailboxes_.bell.ring();
 }
 
+void SimLoop::count_beyond(std::size_t tool) noexcept {
+  if (inputs_[tool].session == 0 || !tools_[tool].stays_within) return;
+  if (!beyond(*tools_[tool].reach, inputs_[tool].state.p_W)) return;
+  ++stats_.tools[tool].beyond_steps;
+  went_beyond[tool].store(true, std::memory_order_relaxed);
+}
+
 void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept {
   const auto took_ns = static_cast<double>(took.count());
   bool contact = false, flagged = false;
@@ -90,6 +100,7 @@ void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, 
     ToolStats& tool = stats_.tools[i];
     tool.contact_steps += force.contacts > 0 ? 1 : 0;
     tool.max_newton = std::max(tool.max_newton, newton);
+    count_beyond(i);
     contact = contact || force.contacts > 0;
     flagged = flagged || force.flagged;
     largest = std::max(largest, newton);

@@ -40,6 +40,7 @@ struct StepCell {
 /// What one tool did.
 struct ToolStats {
   std::uint64_t contact_steps = 0;
+  std::uint64_t beyond_steps = 0;  ///< with its tip beyond its workspace or cone, where nothing is built
   double max_newton = 0;
 };
 
@@ -60,7 +61,9 @@ struct SimLoopStats {
 class SimLoop {
  public:
   /// `rate_hz` 0: steps as soon as a new pose of any tool is there.
-  SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes);
+  /// `tools`: of the scene, which outlives this.
+  SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes,
+          std::span<const ToolSettings> tools);
 
   /// Runs until asked to stop.
   void run(const std::stop_token& stop) noexcept;
@@ -70,14 +73,17 @@ class SimLoop {
   /// Progress for a watching thread: steps done, and the largest force of the newest (N).
   std::atomic<std::uint64_t> steps_done{0};
   std::atomic<double> newest_newton{0};
+  std::array<std::atomic<bool>, kMaxTools> went_beyond{};  ///< of each tool, whether it ever was beyond
 
  private:
   bool read_inputs() noexcept;
   void step(double dt) noexcept;
+  void count_beyond(std::size_t tool) noexcept;
   void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
 
   ServedTools served_;
   SimMailboxes& mailboxes_;
+  std::span<const ToolSettings> tools_;
   Time period_;
   std::vector<ToolInput> inputs_;
   SimLoopStats stats_;

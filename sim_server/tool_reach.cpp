@@ -37,6 +37,14 @@ bool meets(const Cone& cone, const Vec3& a, const Vec3& b, const Vec3& c) noexce
   return distance(cone, centre) <= cone.around + radius;
 }
 
+bool outside(const Box& box, const Vec3& p) noexcept {
+  return (p.array() < box.min.array()).any() || (p.array() > box.max.array()).any();
+}
+
+bool outside(const Cone& cone, const Vec3& p) noexcept {
+  return distance(cone, p) > cone.around;
+}
+
 Box widened(const Box& box, double by) {
   return {box.min.array() - by, box.max.array() + by};
 }
@@ -97,9 +105,11 @@ void read_reach(const Config& config, ToolSettings& tool) {
   } else if (workspace) {
     tool.reach = read_workspace_of(*workspace, tool.shape);
     tool.reach_where = workspace->where();
+    tool.stays_within = true;
   } else if (cone) {
     tool.reach = read_cone(*cone, tool.shape);
     tool.reach_where = cone->where();
+    tool.stays_within = true;
   }
 }
 
@@ -109,6 +119,10 @@ Reach widened(const Reach& reach, double by) {
 
 bool may_meet(const Reach& reach, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   return std::visit([&](const auto& part) { return meets(part, a, b, c); }, reach);
+}
+
+bool beyond(const Reach& reach, const Vec3& p_W) noexcept {
+  return std::visit([&](const auto& part) { return outside(part, p_W); }, reach);
 }
 
 }  // namespace palpate::sim

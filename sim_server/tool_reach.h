@@ -16,4 +16,7 @@ Reach widened(const Reach& reach, double by);
 /// Whether a triangle comes within reach; where that is not plain, true.
 bool may_meet(const Reach& reach, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
+/// Whether a tip at p is beyond what its workspace or cone said, by more than was added to them.
+bool beyond(const Reach& reach, const Vec3& p_W) noexcept;
+
 }  // namespace palpate::sim

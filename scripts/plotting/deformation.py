@@ -141,8 +141,11 @@ def draw_scene(folder):
     draw_felt(axes[0][1], rows)
     draw_along(axes[1][0], rows, read_along(folder / "along.csv"))
     draw_price(axes[1][1], rows)
-    figure.suptitle(f"{rows[0]['scene']}: against {truth['case']}\n(the reference itself: {truth['check']} differs from "
-                    f"it by {truth['force_error_percent']:.2g} % in force; link {found['latency_ms']:g} ms)", fontsize=11)
+    closed = truth.get("closed_form_percent")
+    figure.suptitle(f"{rows[0]['scene']}: against {truth['case']}\n(the reference itself: {truth['check']} differs "
+                    f"from it by {truth['force_error_percent']:.2g} % in force"
+                    + (f", it from the closed form of a sphere on a layer by {closed:.2g} %" if closed else "")
+                    + f"; link {found['latency_ms']:g} ms)", fontsize=11)
     for sheet in axes.flat:
         sheet.grid(True, which="major", linewidth=0.3)
     figure.savefig(folder / "study.png", dpi=110)

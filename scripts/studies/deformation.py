@@ -2,9 +2,9 @@
 """Run sim_server study over scenes that ship, and measure what larger meshes cost.
 
 Called by scripts/study, which builds the program first. Each scene gets a folder with its
-rows.csv, timing.csv, along.csv and summary.json. Blocks of 3 to 300 thousand tetrahedra (made
-here, gone afterwards) are explained by model: cost.json, time a step in contact, set-up, bytes.
-Timed runs go one at a time. Interrupted, it goes on where it was.
+rows.csv, timing.csv, along.csv, reference.csv and summary.json. Blocks of 3 to 300 thousand
+tetrahedra (made here, gone afterwards) are explained by model: cost.json, time a step in contact,
+set-up, bytes. Timed runs go one at a time. Interrupted, it goes on where it was.
 
 Writes into --out: the folders, cost.json and summary.json (the rows of all scenes).
 
@@ -12,7 +12,9 @@ Exit status: 0 done, 1 a program failed, 2 wrong use.
 """
 
 import argparse
+import csv
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -21,6 +23,11 @@ ROOT = Path(__file__).resolve().parents[2]
 SERVER = ROOT / "build" / "release" / "bin" / "sim_server"
 SCENES = ("liver", "liver_implicit", "liver_tensor_mass", "liver_reduced", "block", "block_friction")
 QUICK = ("liver_reduced",)
+# Of blocks also a mesh with edges (mm) twice as long under the tool; blocks are too fine to be refined in time.
+BLOCK_EDGE = 4
+# The block without friction has a closed form: a sphere of this radius (m) on a bonded layer of this height (m), E (Pa)
+# and nu; while it presses by less than this share of the radius, which the form is for.
+BALL, LAYER, MODULUS, POISSON, SHALLOW = 0.006, 0.040, 48e3, 0.45, 0.2
 # Cells along x and z of a block, half as many along y; and the most that a model is asked for.
 SIZES = (10, 15, 22, 32, 46)
 MOST = {"tensor_mass": 46, "quasi_static": 22, "implicit": 32}
@@ -95,17 +102,54 @@ def cost_of(folder, model, n):
             "setup_ms": told["setup_ms"], "bytes": told["bytes"]}
 
 
+def sphere_on_layer(depth):
+    """Force (N) that presses a ball by depth (m) into the layer: Sneddon (1965) for the half-space, times what
+    Dimitriadis et al. (2002, Biophys. J. 82:2798) found for a bonded layer."""
+    low, high = 0.0, BALL * (1 - 1e-12)
+    for _ in range(200):  # depth = a / 2 ln((R + a) / (R - a)) grows with the radius a of the contact
+        a = (low + high) / 2
+        low, high = (a, high) if a / 2 * math.log((BALL + a) / (BALL - a)) < depth else (low, a)
+    half_space = MODULUS / (1 - POISSON**2) * ((a * a + BALL * BALL) / 2 * math.log((BALL + a) / (BALL - a)) - a * BALL)
+    alpha = -(1.2876 - 1.4678 * POISSON + 1.3442 * POISSON**2) / (1 - POISSON)
+    beta = (0.6387 - 1.0277 * POISSON + 1.5164 * POISSON**2) / (1 - POISSON)
+    chi, pi = math.sqrt(BALL * depth) / LAYER, math.pi
+    return half_space * (1 - 2 * alpha / pi * chi + 4 * alpha**2 / pi**2 * chi**2
+                         - 8 / pi**3 * (alpha**3 + 4 * pi**2 / 15 * beta) * chi**3
+                         + 16 * alpha / pi**4 * (alpha**3 + 3 * pi**2 / 5 * beta) * chi**4)
+
+
+def against_closed_form(folder):
+    """By how much (%) the reference's force on the block differs from the closed form, on average over the steps in
+    which it is pressed by 0.05 to 0.2 radii."""
+    off = []
+    with open(folder / "reference.csv", encoding="ascii", newline="") as lines:
+        for row in csv.DictReader(lines):
+            depth = BALL - float(row["y_m"])  # the top is y = 0
+            if 0.05 * BALL <= depth <= SHALLOW * BALL:
+                force = sphere_on_layer(depth)
+                off.append(100 * abs(float(row["fy_n"]) - force) / force)
+    return sum(off) / len(off) if off else None
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True, help="folder; made if it is not there")
     parser.add_argument("--quick", action="store_true", help="one scene, coarse reference, meshes to 10 thousand")
     options = parser.parse_args()
     rows = []
+    options.out.mkdir(parents=True, exist_ok=True)
+    coarse = options.out / "block_coarse.msh"
+    if not options.quick:
+        subprocess.run([ROOT / "scripts/meshes/make_block", "--fine", str(BLOCK_EDGE), "-o", coarse], check=True)
     for name in QUICK if options.quick else SCENES:
         say(name)
         folder = options.out / name
         run("study", ROOT / "configs" / "scenes" / f"{name}.toml", "--out", folder, "--budget-ms", 33,
-            *(["--quick"] if options.quick else []))
+            *(["--quick"] if options.quick else []), *(["--mesh", coarse] if name.startswith("block") else []))
+        if name == "block":
+            found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+            found["reference"]["closed_form_percent"] = against_closed_form(folder)
+            (folder / "summary.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
         rows += json.loads((folder / "summary.json").read_text(encoding="utf-8"))["rows"]
     costs = options.out / "cost"
     costs.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,8 @@
 #include "sim_server/mesh/refinement.h"
 
 #include <algorithm>
+#include <map>
+#include <tuple>
 
 namespace palpate::sim {
 namespace {
@@ -27,20 +29,102 @@ void cut_octahedron(const std::array<int, 6>& middle, TetMesh& mesh) {
     add(mesh, {middle[(*shortest)[0]], middle[(*shortest)[1]], middle[ring[k]], middle[ring[(k + 1) % 4]]});
 }
 
+/// An edge by its ends, the lower first.
+using Edge = std::array<int, 2>;
+
+Edge edge_of(int a, int b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+/// Middles of `edges`, the last vertices of `fine`, have a tag where both ends have it.
+void tag_middles(const std::vector<Edge>& edges, TetMesh& fine) {
+  const std::size_t first = fine.vertices.size() - edges.size();
+  for (auto& [name, tagged] : fine.surface_tags) {
+    std::vector<std::uint8_t> has(first, 0);
+    for (const int v : tagged) has[v] = 1;
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+      if (has[edges[k][0]] != 0 && has[edges[k][1]] != 0) tagged.push_back(static_cast<int>(first + k));
+    }
+  }
+}
+
+/// The longest edges of all tetrahedra, longest first; of equals the one with the higher ends.
+std::vector<Edge> longest_edges(const TetMesh& mesh) {
+  using Ranked = std::tuple<double, Edge>;
+  std::vector<Ranked> longest;
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    Ranked most{-1, {}};
+    for (const auto& [a, b] : kEdges) {
+      const Edge edge = edge_of(t[a], t[b]);
+      most = std::max(most, {(mesh.vertices[edge[1]] - mesh.vertices[edge[0]]).squaredNorm(), edge});
+    }
+    longest.push_back(most);
+  }
+  std::sort(longest.begin(), longest.end(), std::greater<>());
+  longest.erase(std::unique(longest.begin(), longest.end()), longest.end());
+  std::vector<Edge> edges;
+  for (const auto& [length, edge] : longest) edges.push_back(edge);
+  return edges;
+}
+
+/// A triangle or tetrahedron in parts: halved at each of its edges that has a middle, in the order of these.
+template <std::size_t N>
+std::vector<std::array<int, N>> halves_of(const std::array<int, N>& whole,
+                                          const std::map<Edge, int>& middle_of) {
+  std::vector<std::pair<int, Edge>> cuts;
+  for (std::size_t a = 0; a < N; ++a) {
+    for (std::size_t b = a + 1; b < N; ++b) {
+      const auto found = middle_of.find(edge_of(whole[a], whole[b]));
+      if (found != middle_of.end()) cuts.emplace_back(found->second, found->first);
+    }
+  }
+  std::sort(cuts.begin(), cuts.end());
+  std::vector<std::array<int, N>> parts{whole};
+  for (const auto& [middle, ends] : cuts) {
+    for (std::size_t k = 0, count = parts.size(); k < count; ++k) {
+      const auto first = std::find(parts[k].begin(), parts[k].end(), ends[0]),
+                 second = std::find(parts[k].begin(), parts[k].end(), ends[1]);
+      if (first == parts[k].end() || second == parts[k].end()) continue;
+      std::array<int, N> other = parts[k];
+      other[static_cast<std::size_t>(first - parts[k].begin())] = middle;
+      *second = middle;
+      parts.push_back(other);
+    }
+  }
+  return parts;
+}
+
 }  // namespace
+
+TetMesh halved(const TetMesh& mesh) {
+  TetMesh fine{.vertices = mesh.vertices, .tetrahedra = {}, .surface_tags = mesh.surface_tags};
+  std::map<Edge, int> middle_of;
+  const std::vector<Edge> edges = longest_edges(mesh);
+  for (const Edge& edge : edges) {
+    middle_of[edge] = static_cast<int>(fine.vertices.size());
+    fine.vertices.push_back((mesh.vertices[edge[0]] + mesh.vertices[edge[1]]) / 2);
+  }
+  tag_middles(edges, fine);
+  for (const auto& [name, triangles] : mesh.tagged_triangles) {
+    for (const Triangle& triangle : triangles) {
+      for (const Triangle& part : halves_of(triangle, middle_of)) fine.tagged_triangles[name].push_back(part);
+    }
+  }
+  sort_tags(fine);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    for (const Tetrahedron& part : halves_of(mesh.tetrahedra[t], middle_of)) {
+      fine.tetrahedra.push_back(part);
+      if (!mesh.stiffness.empty()) fine.stiffness.push_back(mesh.stiffness[t]);
+    }
+  }
+  return fine;
+}
 
 TetMesh refined(const TetMesh& mesh) {
   TetMesh with_middles = mesh;
   add_mid_edges(with_middles);
   TetMesh fine{.vertices = with_middles.vertices, .tetrahedra = {}, .surface_tags = mesh.surface_tags};
-  for (auto& [name, tagged] : fine.surface_tags) {
-    std::vector<std::uint8_t> has(mesh.vertices.size(), 0);
-    for (const int v : tagged) has[v] = 1;
-    for (std::size_t k = 0; k < with_middles.mid_edges.size(); ++k) {
-      const auto [a, b] = with_middles.mid_edges[k];
-      if (has[a] != 0 && has[b] != 0) tagged.push_back(static_cast<int>(mesh.vertices.size() + k));
-    }
-  }
+  tag_middles(with_middles.mid_edges, fine);
   for (const auto& [name, triangles] : mesh.tagged_triangles) {
     for (const auto& [a, b, c] : triangles) {
       const int ab = with_middles.middle(a, b), bc = with_middles.middle(b, c),

@@ -120,6 +120,7 @@ int study(const StudyOptions& options) {
   StudyResult result{.own = errors_of(check, reference, runner.motion(), latency), .rows = {}};
   result.reference = plan.reference.name();
   result.check = plan.check.name();
+  result.truth = reference;
   for (std::size_t k = 0; k < plan.cases.size(); ++k) {
     const StudyCase& one = plan.cases[k];
     const double share = 0.2 + 0.8 * static_cast<double>(k) / static_cast<double>(plan.cases.size());

@@ -55,7 +55,7 @@ std::string fixed_tag(std::size_t region) {
 }
 
 /// Nodes of a mesh after `refinements`, of an element.
-double nodes_of(const TetMesh& mesh, int refinements, ElementKind element) {
+double nodes_of(const TetMesh& mesh, double refinements, ElementKind element) {
   const double cells = static_cast<double>(mesh.tetrahedra.size()) * std::pow(8.0, refinements);
   const double corners = static_cast<double>(mesh.vertices.size()) * std::pow(7.5, refinements);
   return element == ElementKind::kQuadratic ? corners + 1.2 * cells + corners : corners;
@@ -114,7 +114,7 @@ class Planner {
     return find_row(deformation_models(), std::string("implicit"), "deformation model", "");
   }
 
-  void add(const std::string& axis, const Scene& scene, int refinements) {
+  void add(const std::string& axis, const Scene& scene, double refinements) {
     StudyCase one{axis, scene, refinements};
     const std::string name = one.name();
     const auto same = [&](const StudyCase& other) { return other.name() == name; };
@@ -123,7 +123,7 @@ class Planner {
 
   /// Meshes, each with all steps in time: a finer mesh may pay, or come too late.
   void add_meshes() {
-    std::vector<std::pair<Scene, int>> meshes{{base_, 0}};
+    std::vector<std::pair<Scene, double>> meshes{{base_, 0}};
     for (const auto& file : options_.meshes) {
       Scene other = base_;
       other.mesh_file = file;
@@ -131,8 +131,9 @@ class Planner {
       for (const FixedRegion& region : base_.fixed) vertices_in(region, mesh);  // there are some
       meshes.emplace_back(other, 0);
     }
-    double cells = static_cast<double>(mesh_.tetrahedra.size());
-    for (int r = 1; (cells *= 8) <= kMostTetrahedra && !options_.quick; ++r) meshes.emplace_back(base_, r);
+    const auto cells = static_cast<double>(mesh_.tetrahedra.size());
+    for (double r = 0.5; cells * std::pow(8, r) <= kMostTetrahedra && !options_.quick; r += 0.5)
+      meshes.emplace_back(base_, r);
     for (const auto& [scene, refinements] : meshes) {
       add("mesh", scene, refinements);
       for (const double step : kSteps) {
@@ -185,7 +186,7 @@ class Planner {
 
 std::string StudyCase::name() const {
   const DeformationSettings& by = scene.deformation;
-  std::string name = fmt::format("{}-{}-{}-{}-r{}-{:.4g}ms", by.model, name_of(scene.material->law),
+  std::string name = fmt::format("{}-{}-{}-{}-r{:g}-{:.4g}ms", by.model, name_of(scene.material->law),
                                  name_of(scene.material->element), scene.mesh_file.stem().string(),
                                  refinements, 1e3 / scene.rate_hz);
   if (by.model == "implicit")
@@ -198,7 +199,7 @@ TetMesh mesh_of(const StudyCase& one) {
   for (std::size_t k = 0; k < one.scene.fixed.size(); ++k)
     mesh.surface_tags[fixed_tag(k)] = vertices_in(one.scene.fixed[k], mesh);
   put_inclusions(one.scene, mesh);  // of all refinements those of the mesh
-  for (int r = 0; r < one.refinements; ++r) mesh = refined(mesh);
+  for (double left = one.refinements; left > 0; --left) mesh = left < 1 ? halved(mesh) : refined(mesh);
   return mesh;
 }
 

@@ -15,9 +15,9 @@ struct StudyOptions {
 
 /// One way to compute the scene.
 struct StudyCase {
-  std::string axis;     ///< along which it differs from the scene: "scene", "model", "element", "mesh", ...
-  Scene scene;          ///< its own mesh file; fixed regions as `surface_tag`s that refinement keeps
-  int refinements = 0;  ///< of that mesh
+  std::string axis;  ///< along which it differs from the scene: "scene", "model", "element", "mesh", ...
+  Scene scene;       ///< its own mesh file; fixed regions as `surface_tag`s that refinement keeps
+  double refinements = 0;  ///< of that mesh: so often `refined`, and `halved` for a half
 
   /// "quasi_static linear p1 6342 33.3ms", for files and messages; the mesh by its number of refinements.
   std::string name() const;

@@ -59,6 +59,21 @@ Json along_of(const StudyRow& row) {
   return lines;
 }
 
+Json steps_of(const Trace& truth) {
+  Json lines = Json::array();
+  for (std::size_t k = 0; k < truth.forces.size(); ++k) {
+    const Vec3 &p = truth.places[k], &f = truth.forces[k];
+    lines.push_back({{"t_s", truth.dt * static_cast<double>(k + 1)},
+                     {"x_m", p.x()},
+                     {"y_m", p.y()},
+                     {"z_m", p.z()},
+                     {"fx_n", f.x()},
+                     {"fy_n", f.y()},
+                     {"fz_n", f.z()}});
+  }
+  return lines;
+}
+
 std::string settings_of(const StudyRow& row, const std::filesystem::path& folder) {
   const Scene& scene = row.one.scene;
   std::string text = fmt::format("rate_hz = {:g}\n[mesh]\nfile = \"{}\"", scene.rate_hz,
@@ -131,6 +146,7 @@ void write_study(const StudyOptions& options, const StudyResult& result) {
   write_whole(options.out / "rows.csv", csv_of(facts));
   write_whole(options.out / "timing.csv", csv_of(times));
   write_whole(options.out / "along.csv", csv_of(along));
+  write_whole(options.out / "reference.csv", csv_of(steps_of(result.truth)));
   write_json(options.out / "summary.json", {{"reference",
                                              {{"case", result.reference},
                                               {"check", result.check},

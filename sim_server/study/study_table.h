@@ -20,6 +20,7 @@ struct StudyResult {
   StudyErrors own;  ///< of the check against the reference, which bounds the reference's own
   std::vector<StudyRow> rows;
   std::string reference = {}, check = {};
+  Trace truth = {};                                               ///< of the reference
   std::vector<std::pair<std::string, std::string>> refused = {};  ///< case, why
 };
 
@@ -31,7 +32,8 @@ std::string to_text(const StudyResult& result);
 /// take no more than `budget_ms` a step, and no longer than their own step in time, the one that is felt with
 /// the smallest error. `folder`: the scene's, from which it names its mesh.
 std::string advice(const StudyResult& result, double budget_ms, const std::filesystem::path& folder);
-/// rows.csv, timing.csv, along.csv and summary.json. Throws `Error`.
+/// rows.csv, timing.csv, along.csv, reference.csv (tool and force, step by step) and summary.json. Throws
+/// `Error`.
 void write_study(const StudyOptions& options, const StudyResult& result);
 
 }  // namespace palpate::sim

@@ -18,15 +18,17 @@ struct Server {
   Process process;
   std::string address;
 
-  explicit Server(const std::vector<std::string>& more = {}, const std::string& listen = "127.0.0.1:0")
-      : process("sim_server", arguments(listen, more)) {
+  explicit Server(const std::vector<std::string>& more = {}, const std::string& listen = "127.0.0.1:0",
+                  const std::string& scene = kScene)
+      : process("sim_server", arguments(scene, listen, more)) {
     if (!process.wait_for("listening on ")) throw std::runtime_error("no server: " + process.output());
     const std::string& said = process.output();
     const std::size_t begin = said.find("listening on ") + 13;
     address = said.substr(begin, said.find(' ', begin) - begin);
   }
-  static std::vector<std::string> arguments(const std::string& listen, const std::vector<std::string>& more) {
-    std::vector<std::string> all{"run", kScene, "--listen", listen};
+  static std::vector<std::string> arguments(const std::string& scene, const std::string& listen,
+                                            const std::vector<std::string>& more) {
+    std::vector<std::string> all{"run", scene, "--listen", listen};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }

@@ -1,6 +1,7 @@
 // What minimal scenes build and start, by the real program: parts, bytes and threads; and that what is left
 // out is not in resident memory either. Each later feature adds its row.
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -147,6 +148,24 @@ TEST_CASE("left out: of a tool that reaches nothing is told when the server star
   CHECK(said.find("tool 2 reaches no part of the surface") != std::string::npos);
   CHECK(said.find("tool 1 reaches no part") == std::string::npos);
   CHECK(said.find("scene.toml:8") != std::string::npos);
+}
+
+TEST_CASE("left out: a tool that goes beyond its workspace is told of, and counted") {
+  const TemporaryFolder folder;
+  const std::string report = (folder.path() / "server.json").string();
+  for (const bool wide : {true, false}) {
+    CAPTURE(wide);
+    const std::string box = wide ? "[[-1, -1, -1], [1, 1, 1]]" : "[[-0.01, 0, -0.01], [0.01, 0.02, 0.01]]";
+    const auto scene =
+        folder.write("scene.toml", minimal("quasi_static") + "[tool.workspace]\nbox = " + box + "\n");
+    Server server({"--report", report}, "127.0.0.1:0", scene.string());
+    Process client("haptic_client", client_arguments(server.address, {"--seconds", "2"}));
+    CHECK(client.wait() == 0);
+    server.process.signal(SIGINT);
+    CHECK(server.process.wait() == 0);
+    CHECK((server.process.output().find("tool 1 is beyond this") == std::string::npos) == wide);
+    CHECK((read_json(report)["tools"][0]["beyond_steps"].get<int>() == 0) == wide);
+  }
 }
 
 TEST_CASE("left out: what a workspace leaves out is not in resident memory either") {

@@ -121,6 +121,23 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "tool reach: a tip beyond its workspace or cone is told from one within; a plain reach is of surface") {
+  const Scene placed =
+      scene_with("radius = 0.005\n[tool.workspace]\nbox = [[-0.01, -0.02, -0.03], [0.01, 0.02, 0.04]]\n");
+  CHECK(placed.tools[0].stays_within);
+  for (const double off : {-0.001, 0.001}) {  // around what is added to the box: radius and 20 mm
+    CAPTURE(off);
+    CHECK(beyond(*placed.tools[0].reach, {0.035 + off, 0, 0}) == (off > 0));
+    CHECK(beyond(*placed.tools[0].reach, {0, 0, -0.055 - off}) == (off > 0));
+  }
+  const Reach cone = Cone{Vec3::Zero(), Vec3::UnitX(), std::numbers::pi / 6, 0.1, 0.004};
+  CHECK_FALSE(beyond(cone, {0.1035, 0, 0}));
+  CHECK(beyond(cone, {0.1045, 0, 0}));
+  CHECK(beyond(cone, {-0.0045, 0, 0}));
+  CHECK_FALSE(scene_with("radius = 0.005\nreach = [[-1, -1, -1], [1, 1, 1]]\n").tools[0].stays_within);
+}
+
 TEST_CASE("tool reach: the scenes that ship leave much of the liver out, and lose nothing of the force") {
   for (const char* name : {"liver_falcon", "liver_trocar"}) {
     DYNAMIC_SECTION(name) {

@@ -54,4 +54,23 @@ TEST_CASE("what is tagged stays tagged, and no more") {
   }
 }
 
+TEST_CASE("a halved mesh fills the same place, fits together, and is between the mesh and a refined one") {
+  const TetMesh coarse = block(), fine = halved(coarse), twice = halved(fine);
+  CHECK(fine.tetrahedra.size() >= 2 * coarse.tetrahedra.size());
+  CHECK(fine.tetrahedra.size() < 8 * coarse.tetrahedra.size());
+  for (const TetMesh* mesh : {&fine, &twice}) {
+    // A middle on one side only would open the surface there.
+    TetMesh looked_at = *mesh;
+    CHECK(mend(looked_at).found.empty());
+    CHECK(describe(*mesh).volume == Approx(0.03 * 0.02 * 0.015).epsilon(1e-12));
+    double area = 0;
+    const Surface skin = boundary_surface(*mesh);
+    for (const auto& [a, b, c] : skin.triangles)
+      area += 0.5 * (mesh->vertices[skin.vertices[b]] - mesh->vertices[skin.vertices[a]])
+                        .cross(mesh->vertices[skin.vertices[c]] - mesh->vertices[skin.vertices[a]])
+                        .norm();
+    CHECK(area == Approx(2 * (0.03 * 0.02 + 0.03 * 0.015 + 0.02 * 0.015)).epsilon(1e-12));
+  }
+}
+
 }  // namespace palpate::sim
