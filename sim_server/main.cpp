@@ -105,9 +105,9 @@ CLI::App* add_study(CLI::App& app, sim::StudyOptions& options) {
       "study", "Error against run time: models, elements, meshes, steps and tolerances around a scene's own");
   command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
   command
-      ->add_option(
-          "--out", options.out,
-          "Folder for rows.csv, timing.csv, along.csv, summary.json; an interrupted study goes on from there")
+      ->add_option("--out", options.out,
+                   "Folder for rows.csv, timing.csv, along.csv, reference.csv, summary.json; an interrupted "
+                   "study goes on")
       ->required();
   command->add_option("--mesh", options.meshes,
                       "Another mesh of the same organ, coarser or finer; repeatable");

@@ -133,7 +133,7 @@ void tell_holders(const NetLink& link, std::vector<bool>& told) {
 void tell_beyond(const SimLoop& loop, const Scene& scene, std::vector<bool>& told) {
   for (std::size_t i = 0; i < told.size(); ++i) {
     if (told[i] || !loop.went_beyond[i]) continue;
-    log::warning("{}: tool {} is beyond this; out there it feels nothing, as nothing is built: make it wider",
+    log::warning("{}: tool {} went beyond this, where nothing is built that it could feel; make it wider",
                  scene.tools[i].reach_where, i + 1);
     told[i] = true;
   }

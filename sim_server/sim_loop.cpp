@@ -84,8 +84,10 @@ void SimLoop::step(double dt) noexcept {
 }
 
 void SimLoop::count_beyond(std::size_t tool) noexcept {
-  if (inputs_[tool].session == 0 || !tools_[tool].stays_within) return;
-  if (!beyond(*tools_[tool].reach, inputs_[tool].state.p_W)) return;
+  const ToolInput& input = inputs_[tool];
+  const bool lost = (input.state.flags & protocol::ToolState::kDeviceLost) != 0;
+  if (input.session == 0 || lost || !tools_[tool].stays_within) return;
+  if (!beyond(*tools_[tool].reach, input.state.p_W)) return;
   ++stats_.tools[tool].beyond_steps;
   went_beyond[tool].store(true, std::memory_order_relaxed);
 }

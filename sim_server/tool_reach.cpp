@@ -41,8 +41,10 @@ bool outside(const Box& box, const Vec3& p) noexcept {
   return (p.array() < box.min.array()).any() || (p.array() > box.max.array()).any();
 }
 
+/// A tip that was drawn out of the body, behind the apex, is where it may be.
 bool outside(const Cone& cone, const Vec3& p) noexcept {
-  return distance(cone, p) > cone.around;
+  const bool drawn_out = cone.half_angle <= std::numbers::pi / 2 && cone.axis.dot(p - cone.apex) <= 0;
+  return !drawn_out && distance(cone, p) > cone.around;
 }
 
 Box widened(const Box& box, double by) {

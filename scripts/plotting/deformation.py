@@ -144,7 +144,7 @@ def draw_scene(folder):
     closed = truth.get("closed_form_percent")
     figure.suptitle(f"{rows[0]['scene']}: against {truth['case']}\n(the reference itself: {truth['check']} differs "
                     f"from it by {truth['force_error_percent']:.2g} % in force"
-                    + (f", it from the closed form of a sphere on a layer by {closed:.2g} %" if closed else "")
+                    + (f", is off the closed form of a sphere on an endless layer by {closed:+.2g} %" if closed else "")
                     + f"; link {found['latency_ms']:g} ms)", fontsize=11)
     for sheet in axes.flat:
         sheet.grid(True, which="major", linewidth=0.3)

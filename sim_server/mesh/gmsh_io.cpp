@@ -321,7 +321,8 @@ class MeshReader {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".toml") fail("{}: a scene or client file, not a mesh; name the file of its [mesh]", path);
+  if (extension == ".toml")
+    fail("{}: a file of settings, not a mesh; a scene names its mesh in [mesh] file", path);
   const std::string kind = extension.empty() || extension == ".msh" ? "no known format" : extension + " file";
   if (extension == ".obj" || extension == ".stl" || extension == ".ply" || extension == ".off") {
     fail(

@@ -1,8 +1,9 @@
 #include "sim_server/mesh/refinement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
-#include <tuple>
+#include <set>
 
 namespace palpate::sim {
 namespace {
@@ -48,22 +49,44 @@ void tag_middles(const std::vector<Edge>& edges, TetMesh& fine) {
   }
 }
 
-/// The longest edges of all tetrahedra, longest first; of equals the one with the higher ends.
-std::vector<Edge> longest_edges(const TetMesh& mesh) {
-  using Ranked = std::tuple<double, Edge>;
+/// Edges are ordered by length, those of equal length by their ends.
+using Ranked = std::pair<double, Edge>;
+
+Ranked longest_edge(const TetMesh& mesh, const Tetrahedron& t) {
+  Ranked most{-1, {}};
+  for (const auto& [a, b] : kEdges) {
+    const Edge edge = edge_of(t[a], t[b]);
+    most = std::max(most, {(mesh.vertices[edge[1]] - mesh.vertices[edge[0]]).squaredNorm(), edge});
+  }
+  return most;
+}
+
+/// The edges to cut, longest first: the longest ones of tetrahedra that are `too_large`, and of all that are
+/// cut for their neighbours' sake.
+std::vector<Edge> edges_to_cut(const TetMesh& mesh,
+                               const std::function<bool(const Tetrahedron&, double)>& too_large) {
   std::vector<Ranked> longest;
+  std::set<Edge> cut;
   for (const Tetrahedron& t : mesh.tetrahedra) {
-    Ranked most{-1, {}};
-    for (const auto& [a, b] : kEdges) {
-      const Edge edge = edge_of(t[a], t[b]);
-      most = std::max(most, {(mesh.vertices[edge[1]] - mesh.vertices[edge[0]]).squaredNorm(), edge});
+    longest.push_back(longest_edge(mesh, t));
+    if (too_large(t, std::sqrt(longest.back().first))) cut.insert(longest.back().second);
+  }
+  const auto is_cut = [&](const Tetrahedron& t) {
+    return std::any_of(kEdges.begin(), kEdges.end(),
+                       [&](const auto& e) { return cut.contains(edge_of(t[e[0]], t[e[1]])); });
+  };
+  for (std::size_t before = 0; before != cut.size();) {
+    before = cut.size();
+    for (std::size_t t = 0; t < longest.size(); ++t) {
+      if (is_cut(mesh.tetrahedra[t])) cut.insert(longest[t].second);
     }
-    longest.push_back(most);
   }
   std::sort(longest.begin(), longest.end(), std::greater<>());
   longest.erase(std::unique(longest.begin(), longest.end()), longest.end());
   std::vector<Edge> edges;
-  for (const auto& [length, edge] : longest) edges.push_back(edge);
+  for (const auto& [length, edge] : longest) {
+    if (cut.contains(edge)) edges.push_back(edge);
+  }
   return edges;
 }
 
@@ -94,12 +117,9 @@ std::vector<std::array<int, N>> halves_of(const std::array<int, N>& whole,
   return parts;
 }
 
-}  // namespace
-
-TetMesh halved(const TetMesh& mesh) {
+TetMesh cut_at(const std::vector<Edge>& edges, const TetMesh& mesh) {
   TetMesh fine{.vertices = mesh.vertices, .tetrahedra = {}, .surface_tags = mesh.surface_tags};
   std::map<Edge, int> middle_of;
-  const std::vector<Edge> edges = longest_edges(mesh);
   for (const Edge& edge : edges) {
     middle_of[edge] = static_cast<int>(fine.vertices.size());
     fine.vertices.push_back((mesh.vertices[edge[0]] + mesh.vertices[edge[1]]) / 2);
@@ -118,6 +138,23 @@ TetMesh halved(const TetMesh& mesh) {
     }
   }
   return fine;
+}
+
+}  // namespace
+
+TetMesh halved(const TetMesh& mesh) {
+  return cut_at(edges_to_cut(mesh, [](const Tetrahedron&, double) { return true; }), mesh);
+}
+
+TetMesh graded(TetMesh mesh, const std::function<double(const Vec3&)>& longest) {
+  while (true) {
+    const std::vector<Edge> edges = edges_to_cut(mesh, [&](const Tetrahedron& t, double length) {
+      const auto& x = mesh.vertices;
+      return length > longest((x[t[0]] + x[t[1]] + x[t[2]] + x[t[3]]) / 4);
+    });
+    if (edges.empty()) return mesh;
+    mesh = cut_at(edges, mesh);
+  }
 }
 
 TetMesh refined(const TetMesh& mesh) {

@@ -14,7 +14,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMargin = 2;  // of the tool's radius, around its way: what it may touch
+constexpr double kMargin = 1.5,
+                 kNear = 1;  // of the tool's radius, around its way: what it may touch, and does
 
 void add_file(Fnv1a& hash, const std::filesystem::path& file) {
   std::ifstream bytes(file, std::ios::binary);
@@ -65,10 +66,11 @@ class Runner {
     return *trace;
   }
 
-  /// The case with a tool that reaches what the motion touches, and no more: the compliance of the rest of a
-  /// fine mesh would be much, and for nothing.
-  StudyCase within_reach(StudyCase one) const {
-    one.scene.tools.front().reach = around(*motion_, kMargin * one.scene.tools.front().shape.radius);
+  /// The case with a tool that reaches what the motion touches, and no more, where the mesh is fine: the rest
+  /// would be much, and for nothing.
+  StudyCase near_the_way(StudyCase one) const {
+    ToolSettings& tool = one.scene.tools.front();
+    tool.reach = around(*motion_, kMargin * tool.shape.radius);
     return one;
   }
 
@@ -109,14 +111,15 @@ StudyRow row_of(const Scene& scene, const StudyCase& one, const Trace& trace, co
 
 int study(const StudyOptions& options) {
   const Scene scene = read_scene(options.scene);
-  const StudyPlan plan = plan_study(scene, options);
+  StudyPlan plan = plan_study(scene, options);
   std::error_code failed;
   std::filesystem::create_directories(options.out, failed);
   check_writable(options.out / "summary.json");
   Runner runner(options, plan);
+  refine_references(plan, around(runner.motion(), kNear * scene.tools.front().shape.radius));
   const double latency = 1e-3 * options.latency_ms;
-  const Trace reference = runner.run(runner.within_reach(plan.reference), 0),
-              check = runner.run(runner.within_reach(plan.check), 0.1);
+  const Trace reference = runner.run(runner.near_the_way(plan.reference), 0),
+              check = runner.run(runner.near_the_way(plan.check), 0.1);
   StudyResult result{.own = errors_of(check, reference, runner.motion(), latency), .rows = {}};
   result.reference = plan.reference.name();
   result.check = plan.check.name();

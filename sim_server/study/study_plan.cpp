@@ -1,5 +1,6 @@
 #include "sim_server/study/study_plan.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,13 +16,16 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostTetrahedra = 22e3;                                 // of a timed mesh
-constexpr double kMostNodes = 16e3, kMostNodesQuick = 4e3;               // of a reference in motion
-constexpr double kMostNodesAtRest = 90e3, kMostNodesAtRestQuick = 35e3;  // of one that is static
-constexpr int kReferenceSteps = 8, kReferenceStepsQuick = 4;             // to one of the scene
-constexpr double kUsualRate = 30;                                        // Hz, where the scene names none
-constexpr std::array kSteps{0.25, 0.5, 1.0, 2.0, 4.0};                   // of the scene's, s
-constexpr std::array kStepsOfElements{0.5, 2.0};  // likewise: where a better element comes too late
+constexpr double kMostTetrahedra = 22e3;  // of a timed mesh
+// Of references: nodes, of those in motion and at rest; where edges under the tool are short enough, of its
+// radius; how much shorter each try; and how fast edges grow away from there.
+constexpr double kMostNodes = 11e3, kMostNodesQuick = 4e3, kMostNodesAtRest = 36e3,
+                 kMostNodesAtRestQuick = 25e3;
+constexpr double kShortEdge = 0.2, kShorter = 0.7, kGrowth = 0.7;
+constexpr int kReferenceSteps = 4;                      // to one of the scene
+constexpr double kUsualRate = 30;                       // Hz, where the scene names none
+constexpr std::array kSteps{0.25, 0.5, 1.0, 2.0, 4.0};  // of the scene's, s
+constexpr std::array kStepsOfElements{0.5, 2.0};        // likewise: where a better element comes too late
 constexpr std::array kTolerances{1e-1, 1e-2, 1e-3, 1e-5, 1e-8};
 constexpr std::array kElements{ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic};
 
@@ -54,20 +58,9 @@ std::string fixed_tag(std::size_t region) {
   return fmt::format("fixed region {}", region + 1);
 }
 
-/// Nodes of a mesh after `refinements`, of an element.
-double nodes_of(const TetMesh& mesh, double refinements, ElementKind element) {
-  const double cells = static_cast<double>(mesh.tetrahedra.size()) * std::pow(8.0, refinements);
-  const double corners = static_cast<double>(mesh.vertices.size()) * std::pow(7.5, refinements);
-  return element == ElementKind::kQuadratic ? corners + 1.2 * cells + corners : corners;
-}
-
-/// Finer than the scene, and as near to the truth as `most` nodes allow: quadratic elements before smaller
-/// ones.
-StudyCase finest(StudyCase one, const TetMesh& mesh, double most) {
-  if (one.scene.material->element == ElementKind::kQuadratic) ++one.refinements;
-  one.scene.material->element = ElementKind::kQuadratic;
-  while (nodes_of(mesh, one.refinements + 1, ElementKind::kQuadratic) <= most) ++one.refinements;
-  return one;
+double quadratic_nodes(TetMesh mesh) {
+  add_mid_edges(mesh);
+  return static_cast<double>(mesh.vertices.size());
 }
 
 class Planner {
@@ -102,10 +95,6 @@ class Planner {
     add_meshes();
     if (row_of(base_).any_material) add_tolerances();
     add_references(plan);
-    std::erase_if(plan.cases, [&](const StudyCase& one) {  // what is as fine says nothing
-      return one.scene.material->element == plan.reference.scene.material->element &&
-             one.refinements >= plan.reference.refinements;
-    });
     return plan;
   }
 
@@ -162,18 +151,14 @@ class Planner {
     exact.deformation.solver = DynamicsSettings::Solver::kDirect;
     exact.deformation.tolerance = 1e-7;
     exact.deformation.max_newton = 60;
-    exact.rate_hz *= quick ? kReferenceStepsQuick : kReferenceSteps;
-    const double in_motion = quick ? kMostNodesQuick : kMostNodes;
-    const double at_rest = quick ? kMostNodesAtRestQuick : kMostNodesAtRest;
-    plan.reference = finest({"reference", exact, 0}, mesh_, rests ? at_rest : in_motion);
+    exact.rate_hz *= kReferenceSteps;
+    exact.material->element = ElementKind::kQuadratic;
+    plan.reference = {"reference", exact, 0};
+    plan.most_nodes =
+        rests ? (quick ? kMostNodesAtRestQuick : kMostNodesAtRest) : (quick ? kMostNodesQuick : kMostNodes);
     plan.check = plan.reference;
     plan.check.axis = "check";
     plan.check.scene.rate_hz /= 2;
-    if (plan.check.refinements > 0) {
-      --plan.check.refinements;
-    } else {
-      plan.check.scene.material->element = base_.material->element;
-    }
   }
 
   Scene base_;
@@ -186,12 +171,29 @@ class Planner {
 
 std::string StudyCase::name() const {
   const DeformationSettings& by = scene.deformation;
-  std::string name = fmt::format("{}-{}-{}-{}-r{:g}-{:.4g}ms", by.model, name_of(scene.material->law),
-                                 name_of(scene.material->element), scene.mesh_file.stem().string(),
-                                 refinements, 1e3 / scene.rate_hz);
+  std::string name =
+      fmt::format("{}-{}-{}-{}-r{:g}", by.model, name_of(scene.material->law),
+                  name_of(scene.material->element), scene.mesh_file.stem().string(), refinements);
+  if (edge > 0) name += fmt::format("-{:.3g}mm", 1e3 * edge);
+  name += fmt::format("-{:.4g}ms", 1e3 / scene.rate_hz);
   if (by.model == "implicit")
     name += fmt::format("-{:g}-{}{}", by.tolerance, by.max_newton, by.second_order ? "-bdf2" : "");
   return name;
+}
+
+void refine_references(StudyPlan& plan, const Box& near) {
+  StudyCase& reference = plan.reference;
+  reference.near = plan.check.near = near;
+  const TetMesh coarsest = mesh_of(reference);
+  const double radius = reference.scene.tools.front().shape.radius;
+  for (double edge = describe(coarsest).median_edge; edge >= kShortEdge * radius; edge *= kShorter) {
+    StudyCase finer = reference;
+    finer.edge = edge;
+    if (quadratic_nodes(mesh_of(finer)) > plan.most_nodes) break;
+    reference = finer;
+  }
+  plan.check.edge = 2 * reference.edge;
+  if (reference.edge == 0) plan.check.scene.material->element = plan.cases.front().scene.material->element;
 }
 
 TetMesh mesh_of(const StudyCase& one) {
@@ -200,7 +202,9 @@ TetMesh mesh_of(const StudyCase& one) {
     mesh.surface_tags[fixed_tag(k)] = vertices_in(one.scene.fixed[k], mesh);
   put_inclusions(one.scene, mesh);  // of all refinements those of the mesh
   for (double left = one.refinements; left > 0; --left) mesh = left < 1 ? halved(mesh) : refined(mesh);
-  return mesh;
+  if (one.edge == 0) return mesh;
+  const Eigen::AlignedBox3d near(one.near.min, one.near.max);
+  return graded(mesh, [&](const Vec3& x) { return one.edge + kGrowth * near.exteriorDistance(x); });
 }
 
 Simulation simulation_of(const StudyCase& one, const Progress& progress) {

@@ -18,6 +18,8 @@ struct StudyCase {
   std::string axis;  ///< along which it differs from the scene: "scene", "model", "element", "mesh", ...
   Scene scene;       ///< its own mesh file; fixed regions as `surface_tag`s that refinement keeps
   double refinements = 0;  ///< of that mesh: so often `refined`, and `halved` for a half
+  double edge = 0;         ///< m: then cut until edges near `near` are no longer; 0: not
+  Box near{};              ///< m, at rest; away from it edges may grow
 
   /// "quasi_static linear p1 6342 33.3ms", for files and messages; the mesh by its number of refinements.
   std::string name() const;
@@ -27,8 +29,13 @@ struct StudyCase {
 struct StudyPlan {
   std::vector<StudyCase> cases;
   StudyCase reference;  ///< same law, a short step, on the finest mesh or element that is affordable
-  StudyCase check;      ///< coarser than that by one: what the two differ by bounds the reference's own error
+  StudyCase check;  ///< half as fine in space and time: what the two differ by bounds the reference's error
+  double most_nodes = 0;  ///< of the reference
 };
+
+/// Makes the mesh of the reference as fine near `near` (m, at rest) as its nodes allow, that of the check
+/// half as fine; where they allow nothing, the check has the element of the scene. Throws `Error`.
+void refine_references(StudyPlan& plan, const Box& near);
 
 /// The mesh of a case. Throws `Error`.
 TetMesh mesh_of(const StudyCase& one);

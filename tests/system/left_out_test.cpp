@@ -163,7 +163,7 @@ TEST_CASE("left out: a tool that goes beyond its workspace is told of, and count
     CHECK(client.wait() == 0);
     server.process.signal(SIGINT);
     CHECK(server.process.wait() == 0);
-    CHECK((server.process.output().find("tool 1 is beyond this") == std::string::npos) == wide);
+    CHECK((server.process.output().find("tool 1 went beyond this") == std::string::npos) == wide);
     CHECK((read_json(report)["tools"][0]["beyond_steps"].get<int>() == 0) == wide);
   }
 }

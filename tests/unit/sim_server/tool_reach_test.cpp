@@ -134,7 +134,8 @@ TEST_CASE(
   const Reach cone = Cone{Vec3::Zero(), Vec3::UnitX(), std::numbers::pi / 6, 0.1, 0.004};
   CHECK_FALSE(beyond(cone, {0.1035, 0, 0}));
   CHECK(beyond(cone, {0.1045, 0, 0}));
-  CHECK(beyond(cone, {-0.0045, 0, 0}));
+  CHECK(beyond(cone, {0.02, 0.03, 0}));
+  CHECK_FALSE(beyond(cone, {-0.0045, 0, 0}));  // drawn out of the body
   CHECK_FALSE(scene_with("radius = 0.005\nreach = [[-1, -1, -1], [1, 1, 1]]\n").tools[0].stays_within);
 }
 

@@ -357,7 +357,7 @@ TEST_CASE("other formats are named with the command that converts them", "[mesh]
   CHECK(scratch.error_of("# vtk DataFile Version 3.0\n", "a.VTK") == "FILE: .vtk file, " + meshio);
   CHECK(scratch.error_of("MeshVersionFormatted 2\n", "a.mesh") == "FILE: .mesh file, " + meshio);
   CHECK(scratch.error_of("rate_hz = 30\n", "a.toml") ==
-        "FILE: a scene or client file, not a mesh; name the file of its [mesh]");
+        "FILE: a file of settings, not a mesh; a scene names its mesh in [mesh] file");
   CHECK(scratch.error_of("hello\n") == "FILE: no known format, " + meshio);
   CHECK(
       scratch.error_of("v 0 0 0\n", "a.obj").find("FILE: .obj file, a surface without an inside; fill it") ==

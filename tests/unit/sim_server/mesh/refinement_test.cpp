@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/mesh_faults.h"
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/mesh/surface.h"
@@ -17,6 +18,11 @@ TetMesh block() {
     if (mesh.vertices[v].y() == 0) mesh.surface_tags["floor"].push_back(static_cast<int>(v));
   }
   return mesh;
+}
+
+/// 0.5 mm in a corner, growing away from there.
+TetMesh in_a_corner() {
+  return graded(block(), [](const Vec3& x) { return 0.0005 + 0.5 * x.norm(); });
 }
 
 }  // namespace
@@ -46,19 +52,43 @@ TEST_CASE("a refined mesh keeps its quality") {
 }
 
 TEST_CASE("what is tagged stays tagged, and no more") {
-  const TetMesh fine = refined(block());
-  for (std::size_t v = 0; v < fine.vertices.size(); ++v) {
-    const auto& floor = fine.surface_tags.at("floor");
-    const bool tagged = std::find(floor.begin(), floor.end(), static_cast<int>(v)) != floor.end();
-    CHECK(tagged == (fine.vertices[v].y() == 0));
+  for (const TetMesh& fine : {refined(block()), halved(halved(block())), in_a_corner()}) {
+    for (std::size_t v = 0; v < fine.vertices.size(); ++v) {
+      const auto& floor = fine.surface_tags.at("floor");
+      const bool tagged = std::find(floor.begin(), floor.end(), static_cast<int>(v)) != floor.end();
+      CHECK(tagged == (fine.vertices[v].y() == 0));
+    }
+  }
+}
+
+TEST_CASE("of an irregular mesh too, all parts fit together, and each is as stiff as what it was cut from") {
+  TetMesh liver = read_mesh(std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver.msh");
+  const double volume = describe(liver).volume;
+  for (const Tetrahedron& t : liver.tetrahedra)
+    liver.stiffness.push_back(liver.vertices[t[0]].x() > 0 ? 2 : 1);
+  const auto moment = [](const TetMesh& mesh) {  // volume times stiffness
+    double sum = 0;
+    for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+      sum += mesh.stiffness[t] * six_volumes(mesh, mesh.tetrahedra[t]) / 6;
+    return sum;
+  };
+  const Vec3 place = liver.vertices[100];
+  TetMesh near = graded(liver, [&](const Vec3& x) { return 0.003 + 0.7 * (x - place).norm(); });
+  TetMesh half = halved(liver);
+  CHECK(near.tetrahedra.size() < half.tetrahedra.size());
+  for (TetMesh* mesh : {&near, &half}) {
+    CHECK(moment(*mesh) == Approx(moment(liver)).epsilon(1e-12));
+    CHECK(describe(*mesh).volume == Approx(volume).epsilon(1e-12));
+    CHECK(describe(*mesh).min_dihedral > 0.25 * describe(liver).min_dihedral);
+    CHECK(mend(*mesh).found.empty());
   }
 }
 
 TEST_CASE("a halved mesh fills the same place, fits together, and is between the mesh and a refined one") {
-  const TetMesh coarse = block(), fine = halved(coarse), twice = halved(fine);
+  const TetMesh coarse = block(), fine = halved(coarse), twice = halved(fine), near = in_a_corner();
   CHECK(fine.tetrahedra.size() >= 2 * coarse.tetrahedra.size());
   CHECK(fine.tetrahedra.size() < 8 * coarse.tetrahedra.size());
-  for (const TetMesh* mesh : {&fine, &twice}) {
+  for (const TetMesh* mesh : {&fine, &twice, &near}) {
     // A middle on one side only would open the surface there.
     TetMesh looked_at = *mesh;
     CHECK(mend(looked_at).found.empty());
@@ -71,6 +101,22 @@ TEST_CASE("a halved mesh fills the same place, fits together, and is between the
                         .norm();
     CHECK(area == Approx(2 * (0.03 * 0.02 + 0.03 * 0.015 + 0.02 * 0.015)).epsilon(1e-12));
   }
+}
+
+TEST_CASE("a graded mesh is as fine as asked where asked, not everywhere, and keeps its quality") {
+  const TetMesh mesh = in_a_corner();
+  double largest = 0;
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    Vec3 centre = Vec3::Zero();
+    for (const int v : t) centre += mesh.vertices[v] / 4;
+    double longest = 0;
+    for (const auto& [a, b] : kEdges)
+      longest = std::max(longest, (mesh.vertices[t[b]] - mesh.vertices[t[a]]).norm());
+    CHECK(longest <= 0.0005 + 0.5 * centre.norm());
+    largest = std::max(largest, longest);
+  }
+  CHECK(largest > 0.008);
+  CHECK(describe(mesh).min_dihedral > 0.3 * describe(block()).min_dihedral);
 }
 
 }  // namespace palpate::sim
