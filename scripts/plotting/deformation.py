@@ -22,6 +22,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.ticker import LogFormatter  # noqa: E402
 
 LEAST = 1e-3  # %: what is less is drawn there
 COLOURS = {"quasi_static": "tab:blue", "tensor_mass": "tab:orange", "implicit": "tab:green", "reduced": "tab:purple"}
@@ -46,11 +47,14 @@ def above(value):
     return max(value, LEAST)
 
 
-def at_least_a_decade(axes):
+def percents(axes):
+    """At least a decade, with plain numbers beside it."""
     low, high = axes.get_ylim()
     if high < 10 * low:
         middle = math.sqrt(low * high)
         axes.set_ylim(middle / math.sqrt(10), middle * math.sqrt(10))
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.5)))
 
 
 def draw_front(axes, rows):
@@ -60,14 +64,15 @@ def draw_front(axes, rows):
     front = sorted((r for r in rows if r["on_front"]), key=lambda r: r["step_ms_p50"])
     axes.loglog([r["step_ms_p50"] for r in front], [above(r["force_error_percent"]) for r in front], "-", color="0.4",
                 linewidth=0.8, zorder=0)
-    for k, row in enumerate(front):  # the fastest first: names go to the right of their marks
-        axes.annotate(f"{label_of(row)}, {row['dt_ms']:.3g} ms", (row["step_ms_p50"], above(row["force_error_percent"])),
+    named = {of_setting(r): r for r in reversed(front)}  # the fastest of each, whatever its step
+    for k, row in enumerate(reversed(named.values())):  # names go to the right of their marks
+        axes.annotate(label_of(row), (row["step_ms_p50"], above(row["force_error_percent"])),
                       xytext=(6, 6 if k % 2 else -10), textcoords="offset points", fontsize=6.5)
     for model in dict.fromkeys(r["model"] for r in rows):
         axes.plot([], [], "o", color=COLOURS[model], label=model)
     for element in dict.fromkeys(r["element"] for r in rows):
         axes.plot([], [], MARKS[element], color="0.4", label=element)
-    at_least_a_decade(axes)
+    percents(axes)
     axes.margins(x=0.25)
     axes.legend(fontsize=7)
     axes.set_xlabel("server, median time of a step in contact (ms)")
@@ -78,7 +83,7 @@ def draw_front(axes, rows):
 def draw_felt(axes, rows):
     settings = dict.fromkeys(of_setting(r) for r in rows if r["axis"] in ("scene", "mesh", "step"))
     for setting in settings:
-        line = sorted((r for r in rows if of_setting(r) == setting and r["tolerance"] in (None, rows[0]["tolerance"])),
+        line = sorted((r for r in rows if of_setting(r) == setting and r["axis"] != "tolerance"),
                       key=lambda r: r["dt_ms"])
         if len(line) < 2:
             continue
@@ -92,7 +97,7 @@ def draw_felt(axes, rows):
                     color=drawn.get_color(), markerfacecolor="white")
     axes.plot([], [], "o", color="0.4", label="this machine keeps up")
     axes.plot([], [], "o", color="0.4", markerfacecolor="white", label="it does not: a step takes longer")
-    at_least_a_decade(axes)
+    percents(axes)
     axes.legend(fontsize=7)
     axes.set_xlabel("time that the server has for a step (ms)")
     axes.set_ylabel("felt error of the force (%)")
@@ -115,9 +120,9 @@ def draw_along(axes, rows, along):
 
 def draw_price(axes, rows):
     shown = [r for r in rows if r["axis"] in ("scene", "model", "element", "mesh")]
-    for row in shown:
+    for k, row in enumerate(shown):
         axes.loglog(row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6, MARKS[row["element"]], color=COLOURS[row["model"]])
-        axes.annotate(label_of(row), (row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6), xytext=(5, 3),
+        axes.annotate(label_of(row), (row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6), xytext=(5, -9 if k % 2 else 3),
                       textcoords="offset points", fontsize=6.5)
     axes.margins(x=0.3)
     axes.set_xlabel("set-up (s)")

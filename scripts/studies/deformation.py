@@ -6,7 +6,8 @@ rows.csv, timing.csv, along.csv, reference.csv and summary.json. Blocks of 3 to 
 tetrahedra (made here, gone afterwards) are explained by model: cost.json, time a step in contact,
 set-up, bytes. Timed runs go one at a time. Interrupted, it goes on where it was.
 
-Writes into --out: the folders, block_coarse.msh (a mesh that advice may name), cost.json and summary.json (the rows of all scenes).
+Writes into --out: the folders, block_coarse.msh (a mesh that advice may name), cost.json and
+summary.json (the rows of all scenes).
 
 Exit status: 0 done, 1 a program failed, 2 wrong use.
 """

@@ -18,10 +18,11 @@ namespace {
 
 constexpr double kMostTetrahedra = 22e3;  // of a timed mesh
 // Of references: nodes, of those in motion and at rest; where edges under the tool are short enough, of its
-// radius; how much shorter each try; and how fast edges grow away from there.
+// radius (with friction each touching node costs far more); how much shorter each try; and how fast edges
+// grow away from there.
 constexpr double kMostNodes = 11e3, kMostNodesQuick = 4e3, kMostNodesAtRest = 36e3,
                  kMostNodesAtRestQuick = 25e3;
-constexpr double kShortEdge = 0.2, kShorter = 0.7, kGrowth = 0.7;
+constexpr double kShortEdge = 0.2, kShortEdgeRubbed = 0.6, kShorter = 0.7, kGrowth = 0.7;
 constexpr int kReferenceSteps = 4;                      // to one of the scene
 constexpr double kUsualRate = 30;                       // Hz, where the scene names none
 constexpr std::array kSteps{0.25, 0.5, 1.0, 2.0, 4.0};  // of the scene's, s
@@ -185,8 +186,9 @@ void refine_references(StudyPlan& plan, const Box& near) {
   StudyCase& reference = plan.reference;
   reference.near = plan.check.near = near;
   const TetMesh coarsest = mesh_of(reference);
-  const double radius = reference.scene.tools.front().shape.radius;
-  for (double edge = describe(coarsest).median_edge; edge >= kShortEdge * radius; edge *= kShorter) {
+  const Tool& tool = reference.scene.tools.front().shape;
+  const double shortest = (tool.friction > 0 ? kShortEdgeRubbed : kShortEdge) * tool.radius;
+  for (double edge = describe(coarsest).median_edge; edge >= shortest; edge *= kShorter) {
     StudyCase finer = reference;
     finer.edge = edge;
     if (quadratic_nodes(mesh_of(finer)) > plan.most_nodes) break;
