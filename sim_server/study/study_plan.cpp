@@ -198,9 +198,10 @@ void refine_references(StudyPlan& plan, const Box& near) {
   }
   plan.check.edge = 2 * reference.edge;
   if (reference.edge > 0) return;
-  plan.check.scene.material->element = plan.cases.front().scene.material->element;
-  std::erase_if(plan.cases, [](const StudyCase& one) {  // what is as fine says nothing
-    return one.scene.material->element == ElementKind::kQuadratic;
+  const ElementKind own = plan.cases.front().scene.material->element;
+  plan.check.scene.material->element = own == ElementKind::kQuadratic ? ElementKind::kLinear : own;
+  std::erase_if(plan.cases, [](const StudyCase& one) {  // what is as fine says nothing; the scene stays
+    return one.axis != "scene" && one.scene.material->element == ElementKind::kQuadratic;
   });
 }
 

@@ -34,8 +34,8 @@ struct StudyPlan {
 };
 
 /// Makes the mesh of the reference as fine near `near` (m, at rest) as its nodes allow, that of the check
-/// half as fine; where they allow nothing, the check has the element of the scene, and cases as fine go.
-/// Throws `Error`.
+/// half as fine; where they allow nothing, the check has the element of the scene, or p1, and cases as fine
+/// go. Throws `Error`.
 void refine_references(StudyPlan& plan, const Box& near);
 
 /// The mesh of a case. Throws `Error`.
