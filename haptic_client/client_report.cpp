@@ -141,6 +141,10 @@ void print_tool(const Json& tool) {
       number(safety, "clamped"), number(safety, "slewed"), number(safety, "passive"), number(safety, "lost"),
       number(safety, "clutched"), number(safety, "ramped"), number(safety, "not_finite"),
       number(safety, "storms"));
+  if (safety.value("cut_by_motors", 0) > 0) {
+    fmt::print("          {:.0f} ticks: the motors of the device could not give the whole force\n",
+               number(safety, "cut_by_motors"));
+  }
 }
 
 void print_link(const Json& link) {

@@ -161,6 +161,7 @@ Json HeldTool::report() const {
   Json tool = tool_report(config_, pipeline_, observation_);
   tool["loop"] = loop_report(rate_of(config_), loop_.stats());
   tool["link"] = link_report(link_.stats());
+  tool["safety"]["cut_by_motors"] = device_->cut_by_motors();
   if (recorder_) tool["recording"] = protocol::recording_report(*recorder_);
   return tool;
 }

@@ -76,8 +76,8 @@ void refuse_keys_of_others(const Config& config, const DeformationModelRow& row)
     if (row.*taken || !config.says(key)) continue;
     const std::string takers =
         models_that([taken = taken](const DeformationModelRow& m) { return m.*taken; });
-    fail("{}: unknown key `[deformation] {}` of model \"{}\"; known to: {}", config.where(key), key, row.name,
-         takers.empty() ? "no model of this build" : takers);
+    fail("{}: unknown key `[deformation] {}` of model \"{}\"; known to: {}; remove it", config.where(key),
+         key, row.name, takers.empty() ? "no model of this build" : takers);
   }
 }
 

@@ -111,12 +111,16 @@ int step_to_balance(Dynamics& dynamics, const Loads& loads, double t, double h, 
   return 0;
 }
 
+int steps_of(const SolveOptions& options) {
+  return static_cast<int>(std::ceil(*options.seconds / options.step - 1e-9));
+}
+
 /// From rest, with all loads there at once, what is displaced moved at once, and what swings on its way.
 Outcome move_for(const SolveOptions& options, const Scene& scene, const Solid& solid, const Loads& loads,
                  ProgressLine& progress) {
   const Stepping stepping(scene.deformation);
   Dynamics dynamics(solid, loads.held(), stepping.dynamics, scene.source);
-  const auto steps = static_cast<int>(std::ceil(*options.seconds / options.step - 1e-9));
+  const int steps = steps_of(options);
   const double h = *options.seconds / steps;
   const int every = std::max(1, steps / options.frames);
   Series series(options);
@@ -127,9 +131,11 @@ Outcome move_for(const SolveOptions& options, const Scene& scene, const Solid& s
   for (int step = 1; step <= steps; ++step) {
     const Time begin = now();
     const int looks = step_to_balance(dynamics, loads, step * h, h, stepping.tolerance, external);
-    if (looks == 0)
+    if (looks == 0) {
+      if (options.series) series.finish();  // what there is can be looked at
       fail_at_run_time("{}: no convergence at {:g} s; a smaller --step than {:g} s would help", scene.source,
                        step * h, h);
+    }
     times.push_back(now() - begin);
     newton += looks;
     progress("moving", static_cast<double>(step) / steps);
@@ -155,12 +161,28 @@ void require_output(const std::filesystem::path& file, const char* option, std::
   check_writable(file);
 }
 
+/// A motion of a countable number of steps, none of whose frames stands where the end is to be written.
+void require_motion(const SolveOptions& options) {
+  constexpr double kMostSteps = 1e7;
+  const double steps = *options.seconds / options.step;
+  if (steps > kMostSteps)
+    fail("--step: {:g} s in steps of {:g} s are {:.2g} steps, more than {:g}; take longer ones",
+         *options.seconds, options.step, steps, kMostSteps);
+  if (!options.series) return;
+  const std::filesystem::path of_series = options.series->parent_path() / options.series->stem();
+  const std::string frames = std::filesystem::absolute(of_series).lexically_normal().string() + "_",
+                    end = std::filesystem::absolute(options.out).lexically_normal().string();
+  if (end.starts_with(frames) && end.find_first_not_of("0123456789", frames.size()) == end.rfind(".vtu"))
+    fail("--out: \"{}\" is the name of a frame of --series; take another", options.out.string());
+}
+
 }  // namespace
 
 int solve(const SolveOptions& options) {
   const Scene scene = read_scene(options.scene, Purpose::kSolve);
   if (!scene.material) fail("{}: solving needs a [material] section", scene.source);
   if (options.series && !options.seconds) fail("--series: needs --seconds, the time that it is a series of");
+  if (options.seconds) require_motion(options);
   require_output(options.out, "--out", ".vtu");
   if (options.series) require_output(*options.series, "--series", ".pvd");
   ProgressLine progress;

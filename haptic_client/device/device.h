@@ -28,6 +28,8 @@ class Device {
   virtual void write(const Vec3& f_D) noexcept = 0;
   /// The last call: zero force, and it has left when this returns (half a second at most).
   virtual void stop() noexcept { write(Vec3::Zero()); }
+  /// Writes so far whose force its motors could not give whole. The haptic thread, or once it has ended.
+  virtual std::uint64_t cut_by_motors() const noexcept { return 0; }
   /// What the user should know or do, a static text; empty where there is nothing to say. Any thread.
   virtual const char* status() const noexcept { return ""; }
 };

@@ -43,22 +43,19 @@ std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
 
 /// All that are there, if no port was asked for: which one the dead process had is not known.
 int make_falcon_safe(const DeviceSettings& settings) {
-  int stopped = 0;
 #ifdef PALPATE_WITH_USB
-  std::vector<std::string> paths;
+  std::vector<std::unique_ptr<UsbTransport>> ports;
   if (settings.port.empty()) {
-    for (const UsbDevice& device : find_usb(kFalconIds)) paths.push_back(device.path);
+    for (const UsbDevice& device : find_usb({kFalconIds}))
+      ports.push_back(std::make_unique<UsbPort>(UsbKind{kFalconIds}, device.path));
   } else {
-    paths.push_back(settings.port);
+    ports.push_back(usb_port(settings, {kFalconIds}));
   }
-  for (const std::string& path : paths) {
-    UsbPort port({kFalconIds}, path);
-    stopped += silence_falcon(port) ? 1 : 0;
-  }
+  return silence_falcons(ports);
 #else
   (void)settings;
+  return 0;
 #endif
-  return stopped;
 }
 
 DeviceLimits limits_of_falcon(const DeviceSettings&) {
@@ -119,7 +116,8 @@ int print_plugged_in() {
 #ifdef PALPATE_WITH_USB
   std::vector<UsbId> known(kFalconIds.begin(), kFalconIds.end());
   known.insert(known.end(), spacemouse_ids().begin(), spacemouse_ids().end());
-  const std::vector<UsbDevice> found = find_usb(known);
+  std::vector<UsbDevice> found = find_usb({kFalconIds});
+  for (UsbDevice& mouse : find_usb({spacemouse_ids(), true})) found.push_back(std::move(mouse));
   if (found.empty())
     fmt::print("no device that Palpate knows is plugged in; known: Novint Falcon, 3Dconnexion 6-DoF mice\n");
   std::set<std::string> rules;

@@ -23,6 +23,20 @@ void drain(UsbTransport& port) noexcept {
   }
 }
 
+/// Zero torque, three times, and that it left; closes the port.
+bool send_zero(UsbTransport& port) {
+  constexpr int kTimes = 3;
+  FalconMachine::normal_mode(port);
+  for (int i = 0; i < kTimes; ++i) {
+    drain(port);
+    port.write(encode_falcon({.red = true}));
+  }
+  drain(port);
+  const bool sent = port.state() == UsbTransport::State::kIdle;
+  port.close();
+  return sent;
+}
+
 }  // namespace
 
 std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
@@ -40,23 +54,21 @@ std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
   return image;
 }
 
-bool silence_falcon(UsbTransport& port) {
-  constexpr int kTries = 100, kTimes = 3;
-  bool open = false;
-  for (int i = 0; i < kTries && !open; ++i) {
-    open = port.open(now() + i * std::chrono::seconds(1));  // it looks each time, not twice a second
-    if (!open) sleep_until(now() + std::chrono::milliseconds(10));
+int silence_falcons(std::span<const std::unique_ptr<UsbTransport>> ports) {
+  constexpr int kTries = 100;
+  std::vector<UsbTransport*> waiting;
+  for (const auto& port : ports) waiting.push_back(port.get());
+  int silenced = 0;
+  for (int i = 0; i < kTries && !waiting.empty(); ++i) {
+    if (i > 0) sleep_until(now() + std::chrono::milliseconds(10));
+    const Time looks = now() + i * std::chrono::seconds(1);  // it looks each time, not twice a second
+    std::erase_if(waiting, [&](UsbTransport* port) {
+      if (!port->open(looks)) return false;
+      silenced += send_zero(*port) ? 1 : 0;
+      return true;
+    });
   }
-  if (!open) return false;
-  FalconMachine::normal_mode(port);
-  for (int i = 0; i < kTimes; ++i) {
-    drain(port);
-    port.write(encode_falcon({.red = true}));
-  }
-  drain(port);
-  const bool sent = port.state() == UsbTransport::State::kIdle;
-  port.close();
-  return sent;
+  return silenced;
 }
 
 Falcon::Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmware, double torque_constant)
@@ -98,6 +110,7 @@ void Falcon::write(const Vec3& f_D) noexcept {
   std::array<std::int16_t, 3> torque{};
   for (int i = 0; i < 3; ++i)
     torque[static_cast<std::size_t>(i)] = static_cast<std::int16_t>(std::lround(dac[i]));
+  cut_ += std::lround(dac.cwiseAbs().maxCoeff()) >= kFalconMaxTorque ? 1 : 0;
   machine_.command(*port_, torque);
 }
 

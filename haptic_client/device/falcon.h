@@ -22,9 +22,10 @@ std::vector<std::byte> read_firmware(const std::filesystem::path& file);
 
 inline constexpr std::array kFalconIds{UsbId{0x0403, 0xcb48}};
 
-/// Opens a Falcon that another process may just have left, and sends it zero torque. Waits for it, a second
-/// at most; false when it did not come free. Closes it again.
-bool silence_falcon(UsbTransport& port);
+/// Opens Falcons that another process may just have left, each as soon as it is free (one that is held does
+/// not keep the others waiting), sends each zero torque and closes it again. Waits for them, a second at
+/// most; returns how many had their zero.
+int silence_falcons(std::span<const std::unique_ptr<UsbTransport>> ports);
 
 /// A Novint Falcon: grip position in m in its own frame (x right, y up, z out towards the user), force of its
 /// three motors. No force before it is homed. One USB exchange a tick, which overlaps the tick: the position
@@ -36,6 +37,7 @@ class Falcon : public Device {
   DeviceReading read(Time now) noexcept override;
   void write(const Vec3& f_D) noexcept override;
   void stop() noexcept override;
+  std::uint64_t cut_by_motors() const noexcept override { return cut_; }
   const char* status() const noexcept override { return machine_.message(); }
 
  private:
@@ -44,6 +46,7 @@ class Falcon : public Device {
   double torque_constant_;
   Vec3 p_D_;
   bool valid_ = false;
+  std::uint64_t cut_ = 0;
 };
 
 }  // namespace palpate::client

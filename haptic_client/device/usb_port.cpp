@@ -112,15 +112,28 @@ std::optional<Interface> choose_interface(libusb_device* device, bool hid) {
   return chosen;
 }
 
+/// Whether a program could use it now: 0 or libusb's error. The kernel's driver would give way, and is left
+/// alone here.
+int try_to_use(libusb_device* device, bool hid) {
+  libusb_device_handle* handle = nullptr;
+  int error = libusb_open(device, &handle);
+  if (error != 0) return error;
+  const auto interface = choose_interface(device, hid);
+  if (interface && libusb_kernel_driver_active(handle, interface->number) != 1) {
+    error = libusb_claim_interface(handle, interface->number);
+    if (error == 0) libusb_release_interface(handle, interface->number);
+  }
+  libusb_close(handle);
+  return error;
+}
+
 }  // namespace
 
-std::vector<UsbDevice> find_usb(std::span<const UsbId> ids) {
+std::vector<UsbDevice> find_usb(const UsbKind& kind) {
   libusb_context* context = begin_usb();
   std::vector<UsbDevice> found;
-  for_each(context, ids, [&](libusb_device* device, const UsbId& id) {
-    libusb_device_handle* handle = nullptr;
-    const int error = libusb_open(device, &handle);
-    if (handle != nullptr) libusb_close(handle);
+  for_each(context, kind.ids, [&](libusb_device* device, const UsbId& id) {
+    const int error = try_to_use(device, kind.hid);
     found.push_back(
         {path_of(device).data(), id, error == 0 ? "" : in_words(error), error == LIBUSB_ERROR_ACCESS});
   });

@@ -19,13 +19,14 @@ struct UsbKind {
 struct UsbDevice {
   std::string path;  ///< "2-1": bus and ports, as in lsusb -t
   UsbId id;
-  std::string access;   ///< empty: it can be opened; else why not
+  std::string access;   ///< empty: it can be used; else why not
   bool locked = false;  ///< why not: no permission
 };
 
-/// Devices of these kinds that are plugged in now, in the order of their paths. Opens and closes each one.
-/// Throws `Error` when there is no USB at all.
-std::vector<UsbDevice> find_usb(std::span<const UsbId> ids);
+/// Devices of this kind that are plugged in now, in the order of their paths. Opens and closes each one, and
+/// takes its interface for a moment unless the kernel's driver has it, to see whether a program does. Throws
+/// `Error` when there is no USB at all.
+std::vector<UsbDevice> find_usb(const UsbKind& kind);
 
 /// An interface of a device through libusb, asynchronously (the only file that knows libusb): four IN
 /// transfers of a packet each are always pending, OUT and control transfers go without waiting, unplugging is

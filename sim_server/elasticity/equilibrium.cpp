@@ -175,8 +175,10 @@ Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const s
       step *= 2;
       if (progress) progress(done);
     } else if ((step /= 2) < smallest) {
-      fail("{}: no equilibrium found beyond {:.3g} % of the load: is it too much for this material?", where,
-           100 * done);
+      fail(
+          "{}: no equilibrium found beyond {:.3g} % of the load: a smaller load, a stiffer material, finer "
+          "tetrahedra or law neo_hookean would help",
+          where, 100 * done);
     }
   }
   found.iterations = newton.iterations();

@@ -2,6 +2,7 @@
 // client does besides.
 #include <sstream>
 
+#include "common/text.h"
 #include "haptic_client/device/falcon.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/loop/pipeline.h"
@@ -59,12 +60,12 @@ class FakePort : public UsbTransport {
 };
 
 /// Bytes in, place, force of the law for it, limits, motor commands, bytes out.
-void run_tick(benchmark::State& state) {
+void run_tick(benchmark::State& state, const std::string& law) {
   auto own = std::make_unique<FakePort>();
   const FakePort& port = *own;
   Falcon falcon(std::move(own), {}, 10000);
   Palpation hand;  // its samples; the place is the Falcon's
-  Pipeline pipeline(extrapolators().front().make(), {}, {});
+  Pipeline pipeline(find_row(extrapolators(), law, "method", "bench").make(), {}, {});
   time_calls(state, 8 * kTurn, [&] {
     hand.next();
     const DeviceReading reading = falcon.read(Time{hand.tool().t_ns});
@@ -103,7 +104,8 @@ void run_round_trips(benchmark::State& state, const std::string& clock, int trip
 }  // namespace
 
 void add_falcon_rows() {
-  add("tick_falcon/besides_usb", run_tick);
+  for (const std::string law : {"constant", "two_tangents", "local_contact"})
+    add("tick_falcon/besides_usb/" + law, [=](benchmark::State& state) { run_tick(state, law); });
   add("usb_round_trip/virtual_clock",
       [](benchmark::State& state) { run_round_trips(state, "virtual", 5000); })
       ->UseManualTime()

@@ -92,6 +92,7 @@ void run_contact(benchmark::State& state, std::string_view model) {
   on->simulation.step(on->press.place + 2 * on->radius() * on->press.normal, kPeriod);
   const ToolForce first = on->simulation.step(on->press.place, kPeriod);
   if (first.contacts == 0 || first.flagged) return state.SkipWithError("no settled contact to time");
+  state.counters["touching"] = first.contacts;
   time_steps_at(state, on->simulation,
                 slide(on->press.place, on->press.normal.unitOrthogonal(), on->radius()));
 }

@@ -84,9 +84,12 @@ nlohmann::json Emulator::state(const std::string& device) const {
 }
 
 std::vector<std::pair<std::string, std::string>> Emulator::environment() const {
+  const std::string shim = std::string(PALPATE_BIN_DIR) + "/libusb_vhci_shim.so";
+  if (shim.find_first_of(" :") != std::string::npos)  // it would not be loaded, and real devices be taken
+    throw std::runtime_error(shim + ": a library to preload has neither space nor colon in its path");
   const char* options = std::getenv("ASAN_OPTIONS");
   const std::string before = options == nullptr || *options == 0 ? "" : std::string(options) + ":";
-  return {{"LD_PRELOAD", std::string(PALPATE_BIN_DIR) + "/libusb_vhci_shim.so"},
+  return {{"LD_PRELOAD", shim},
           {"USBSHIM", socket_},
           {"ASAN_OPTIONS", before + "verify_asan_link_order=0"}};  // the shim stands before the sanitizer
 }

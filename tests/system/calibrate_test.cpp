@@ -38,7 +38,7 @@ struct Calibrating {
 
 }  // namespace
 
-TEST_CASE("calibrate: from homing to the line for the client file; no force before homing, none at the end") {
+TEST_CASE("calibrate: from homing to the line for the client file, no force before homing, none at the end") {
   Calibrating table;
   table.hang();
   CHECK(table.client->wait(60) == 0);

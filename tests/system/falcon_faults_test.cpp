@@ -73,7 +73,7 @@ TEST_CASE("Falcon faults: split, joined, flooded and spoilt replies: nothing los
   check_lines(session.said(), {"homed: ready"});
 }
 
-TEST_CASE("Falcon faults: a flood without end does not hold the loop; told once, and over when it ends") {
+TEST_CASE("Falcon faults: a flood without end does not hold the loop, told once, and over when it ends") {
   Session session(kHomedAlready);
   REQUIRE(session.client->wait_for("Falcon homed: ready"));
   REQUIRE(session.press());
@@ -235,7 +235,7 @@ TEST_CASE("Falcon faults: its IN transfers hang: zero at once, and back without 
   check_soft_starts(session.trace, 1, 2);
 }
 
-TEST_CASE("Falcon faults: frozen encoders under force are told of, once; the force stays what it was") {
+TEST_CASE("Falcon faults: frozen encoders under force are told of, once, the force stays what it was") {
   Session session(kHomedAlready);
   session.usb.command("hand 2-1 tremor 0.0005 tremor_rate 9");
   REQUIRE(session.client->wait_for("Falcon homed: ready"));

@@ -112,14 +112,16 @@ TEST_CASE("Falcon: no firmware, no permission, no image: each says what to do") 
 }
 
 TEST_CASE("devices: what is plugged in, and the rule that gives access where it is missing") {
-  Emulator falcons({"falcon:2-1", "falcon:3-2", "spacemouse:1-1"});
+  Emulator falcons({"falcon:2-1", "falcon:3-2", "falcon:4-3", "spacemouse:1-1"});
   falcons.command("fault 3-2 permission");
+  falcons.command("fault 4-3 busy");
   auto list = falcons.start("haptic_client", {"devices"});
   CHECK(list->wait() == 0);
   const std::string said = list->output();
   CAPTURE(said);
   CHECK(said.find("--device falcon:2-1    ready to use") != std::string::npos);
   CHECK(said.find("--device falcon:3-2    no permission") != std::string::npos);
+  CHECK(said.find("--device falcon:4-3    another program holds") != std::string::npos);
   // The rule that is printed is the one that ships.
   const std::string rules = bytes_of(std::string(PALPATE_SOURCE_DIR) + "/configs/udev/70-palpate.rules");
   const std::size_t rule = rules.find("SUBSYSTEM");
@@ -167,4 +169,29 @@ TEST_CASE("Falcon: found when it is plugged in later, and when the program that 
   REQUIRE(falcon.wait_for("2-1", [](const Json& s) { return s["red"] == true || s["green"] == true; }));
   client->signal(SIGINT);
   CHECK(client->wait() == 0);
+}
+
+TEST_CASE("Falcon: its centre button is the clutch: held, nothing is felt, let go, the force comes back") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcon({"falcon:2-1"}, {"--loaded", "--homed"});
+  const std::string file =
+      bench.folder.write("clutch.toml", bytes_of(bench.client) + "[workspace]\nclutch = 4\n").string();
+  const std::string report = (bench.folder.path() / "report.json").string();
+  falcon.command("hand 2-1 place 0 0 0.13");
+  auto client = falcon.start("haptic_client", {"run", file, "--server", wall.address, "--report", report});
+  REQUIRE(client->wait_for("Falcon homed: ready"));
+  falcon.command("hand 2-1 target 0 0 0.115 1");
+  const auto pushes = [](const Json& s) { return s["force"][2].get<double>() > 0.5; };
+  const auto silent = [](const Json& s) { return s["dac"] == Json({0, 0, 0}); };
+  REQUIRE(falcon.wait_for("2-1", pushes));
+  falcon.command("buttons 2-1 11");  // all but the clutch
+  CHECK(pushes(falcon.state("2-1")));
+  falcon.command("buttons 2-1 4");
+  CHECK(falcon.wait_for("2-1", silent));
+  falcon.command("buttons 2-1 0");
+  CHECK(falcon.wait_for("2-1", pushes));
+  client->signal(SIGINT);
+  CHECK(client->wait() == 0);
+  CHECK(read_json(report)["tools"][0]["safety"]["clutched"].get<int>() > 0);
 }

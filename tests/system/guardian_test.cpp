@@ -113,6 +113,26 @@ TEST_CASE("guardian: a device that is gone does not keep the other waiting") {
       0.8));
 }
 
+TEST_CASE("guardian: without a port, a Falcon that another program holds keeps nobody waiting") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcons({"falcon:2-1", "falcon:3-2"}, {"--loaded", "--homed"});
+  falcons.command("fault 2-1 busy");
+  falcons.command("hand 3-2 place 0 0 0.13");
+  auto client =
+      falcons.start("haptic_client", {"run", bench.client, "--device", "falcon", "--server", wall.address});
+  REQUIRE(client->wait_for("Falcon homed: ready"));
+  falcons.command("hand 3-2 target 0 0 0.105 1");
+  REQUIRE(falcons.wait_for("3-2", [](const Json& s) { return s["force"][2].get<double>() > 2; }));
+  client->signal(SIGKILL);
+  CHECK(falcons.wait_for(
+      "3-2",
+      [](const Json& s) {
+        return s["dac"] == Json({0, 0, 0});
+      },
+      0.8));
+}
+
 TEST_CASE("Ctrl-C: the force is off before anything is reported") {
   Leaning hand("falcon:2-1");
   hand.client->signal(SIGINT);

@@ -36,7 +36,7 @@ TEST_CASE("robustness study: a refused cell says what to change, a flagged one h
   CHECK(row_of("scattered", "rigid").at("outcome") == "not_applicable");
 }
 
-TEST_CASE("robustness study: twice the same cell gives the same bytes; wrong use tells how, exit 2") {
+TEST_CASE("robustness study: twice the same cell gives the same bytes, wrong use tells how, exit 2") {
   const std::vector<std::string> cell{"--quick", "usual", "implicit neo_hookean"};
   CHECK(output_of("robustness_study", cell, 0, 60) == output_of("robustness_study", cell, 0, 60));
   CHECK(output_of("robustness_study", {"usual"}, 2).find("example:") != std::string::npos);

@@ -108,6 +108,13 @@ TEST_CASE("solve: wrong input is one clear line, exit 2, and no file") {
   CHECK(refused(bench.scene(""), {"--probe", "1,2"}).find("three numbers in metres") != std::string::npos);
   CHECK(refused(bench.scene(""), {"--series", "x.pvd"}).find("needs --seconds") != std::string::npos);
   CHECK(refused(bench.scene(""), {"--step", "0.1"}).find("--step requires --seconds") != std::string::npos);
+  CHECK(refused(bench.scene(""), {"--seconds", "1e6", "--step", "1e-4"}).find("are 1e+10 steps") !=
+        std::string::npos);
+  bench.out = (bench.folder.path() / "motion_0001.vtu").string();
+  const std::string series = (bench.folder.path() / "motion.pvd").string();
+  CHECK(refused(bench.scene(""), {"--seconds", "1", "--series", series}).find("a frame of --series") !=
+        std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(series));
   CHECK(refused(bench.scene("[[load]]\nforce = [0, 1, 0]\nbox = [[-1, -1, -1], [1, 0.001, 1]]\n"))
             .find("every vertex in this region is held") != std::string::npos);
   for (const auto& [file, says] :

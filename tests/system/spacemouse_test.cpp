@@ -52,7 +52,7 @@ struct Session {
 }  // namespace
 
 TEST_CASE(
-    "SpaceMouse: reports of 7 and of 13 bytes, and of a second interface, move the tool; the light is on "
+    "SpaceMouse: reports of 7 and of 13 bytes, and of a second interface, move the tool, the light is on "
     "meanwhile") {
   Server server;
   Emulator mice({"spacemouse:1-1", "spacemouse13:1-2", "spacemouse_receiver:1-3"});

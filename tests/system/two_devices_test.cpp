@@ -34,7 +34,7 @@ double push(const Json& state) {
 
 }  // namespace
 
-TEST_CASE("two Falcons: each feels its own wall only; one is unplugged, and the other does not notice") {
+TEST_CASE("two Falcons: each feels its own wall only, one is unplugged, and the other does not notice") {
   Pair pair({"falcon:2-1", "falcon:3-2"}, {"--loaded", "--homed"});
   for (const std::string port : {"2-1", "3-2"}) {
     pair.usb.command("hand " + port + " stiffness 400 damping 8 mass 0.2");

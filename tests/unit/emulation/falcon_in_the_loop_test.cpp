@@ -34,11 +34,12 @@ Workspace towards_the_wall() {
 /// An emulated Falcon in a hand, the driver on top of it, and a wall.
 class Rig {
  public:
-  Rig(const emulation::Falcon::Settings& device, const Hand& hand, const char* law, double wall,
-      const test::ClosedLoopSettings& link)
+  Rig(const emulation::Falcon::Settings& device, const Hand& hand, std::string_view law, double wall,
+      const test::ClosedLoopSettings& link, double torque_constant = kTorqueConstant)
       : emulated_(device),
-        falcon_(own_port(), std::vector<std::byte>(5000, std::byte{7}), kTorqueConstant),
-        pipeline_(find_row(extrapolators(), law, "method", "test").make(), towards_the_wall(), {}),
+        falcon_(own_port(), std::vector<std::byte>(5000, std::byte{7}), torque_constant),
+        pipeline_(find_row(extrapolators(), std::string(law), "method", "test").make(), towards_the_wall(),
+                  {}),
         loop_(falcon_, pipeline_, test::served(test::wall(wall)), link) {
     command("hand mass " + std::to_string(hand.mass) + " stiffness " + std::to_string(hand.stiffness) +
             " damping " + std::to_string(hand.damping));
@@ -65,6 +66,7 @@ class Rig {
   /// Position and force of every tick.
   const std::vector<double>& trace() const { return trace_; }
   const Pipeline& pipeline() const { return pipeline_; }
+  std::uint64_t cut_by_motors() const { return falcon_.cut_by_motors(); }
 
  private:
   std::unique_ptr<test::EmulatedPort> own_port() {
@@ -99,6 +101,17 @@ std::vector<double> whole_session() {
   return rig.trace();
 }
 
+/// The works of an emulated device, J.
+struct Ledger {
+  double motors, hand, taken, kinetic;
+  explicit Ledger(const nlohmann::json& state)
+      : motors(state["work_motors"]),
+        hand(state["work_hand"]),
+        taken(state["work_friction"].get<double>() + state["work_stops"].get<double>() +
+              state["work_weight"].get<double>()),
+        kinetic(state["kinetic"]) {}
+};
+
 }  // namespace
 
 TEST_CASE("a session with the Falcon, from firmware to wall, gives the same trace every time, bit by bit") {
@@ -106,29 +119,50 @@ TEST_CASE("a session with the Falcon, from firmware to wall, gives the same trac
   CHECK(once == again);
 }
 
-TEST_CASE(
-    "a Falcon at walls of 100 N/m to 20 kN/m, 30 Hz and 35 ms, in three hands: the ledger of the motors") {
+TEST_CASE("a Falcon at walls of 100 N/m to 20 kN/m, 30 Hz and 35 ms, three hands, every law: the ledger") {
   const Passivity::Settings passivity;
   constexpr double kSeconds = 10;
   for (const Hand& hand : kHands) {
-    for (const char* law : {"constant", "linear_time", "linear_position", "linear_position_signed"}) {
+    for (const ExtrapolatorRow& law : extrapolators()) {
       for (const double stiffness : {100.0, 800.0, 3000.0, 20000.0}) {
-        CAPTURE(hand.name, law, stiffness);
-        Rig rig({.loaded = true, .homed = true}, hand, law, stiffness,
+        CAPTURE(hand.name, law.name, stiffness);
+        Rig rig({.loaded = true, .homed = true}, hand, law.name, stiffness,
                 {.sim_hz = 30, .link = {.delay = 0.035}});
         rig.command("hand target 0 0 0.13");
         rig.run(2);
-        const double before = rig.state()["work_motors"].get<double>();
+        const Ledger before(rig.state());
         const double target = 0.12 - 1.5 / stiffness - 1.5 / hand.stiffness;
         rig.command("hand target 0 0 " + std::to_string(target) + " 0.5");
         rig.run(kSeconds);
         const auto state = rig.state();
-        CHECK(state["work_motors"].get<double>() - before <=
-              passivity.allowance * kSeconds + 3 * passivity.debt);
+        const Ledger after(state);
+        const double motors = after.motors - before.motors, hand_work = after.hand - before.hand;
+        CHECK(motors <= passivity.allowance * kSeconds + 3 * passivity.debt);
+        // Both works, and what friction and stops took, are the motion that there is.
+        CHECK(motors + hand_work + after.taken - before.taken ==
+              Approx(after.kinetic - before.kinetic).margin(1e-3 * std::abs(hand_work) + 1e-6));
         CHECK(std::abs(state["position"][2].get<double>() - target) < 0.02);  // nor thrown out of the wall
         CHECK(state["largest_dac"] <= 4096);
         CHECK(rig.pipeline().stats().max_newton <= 8);
       }
     }
   }
+}
+
+TEST_CASE("forces that the motors cannot give are counted, and their direction is kept") {
+  constexpr double kLargeConstant = 40000;  // DAC per N m: all 4096 are little torque
+  Rig rig({.loaded = true, .homed = true, .mechanics = {.torque_constant = kLargeConstant}},
+          {"", 0.2, 1000, 20}, "constant", 1500, {.sim_hz = 1000, .link = {.delay = 0.001}}, kLargeConstant);
+  rig.command("hand target 0.01 0.01 0.13");  // aside, where the legs share the force unequally
+  rig.run(2);
+  CHECK(rig.cut_by_motors() == 0);
+  rig.command("hand target 0.01 0.01 0.10 1");
+  rig.run(3);
+  const auto state = rig.state();
+  CHECK(state["largest_dac"] == 4096);
+  CHECK(rig.cut_by_motors() > 1000);
+  const auto& force = state["force"];
+  const double aside = std::hypot(force[0].get<double>(), force[1].get<double>());
+  CHECK(force[2].get<double>() > 2);
+  CHECK(aside < 0.02 * force[2].get<double>());
 }

@@ -66,7 +66,7 @@ TEST_CASE("falcon microcontroller: at the wrong baud rate it understands nothing
   CHECK(board.say(encode({}), kLoadingBaud).empty());
 }
 
-TEST_CASE("falcon microcontroller: DTR that rises, and power, lose the firmware; DTR that falls does not") {
+TEST_CASE("falcon microcontroller: DTR that rises, and power, lose the firmware, DTR that falls does not") {
   Board board;
   REQUIRE(board.load());
   board.mcu.set_dtr(false);

@@ -70,7 +70,7 @@ TEST_CASE("organ motion: what is too hard for an organ is another place, not an 
   CHECK(motion.since_sample(1070ms) == Vec3(0.04 * kFaster));
 }
 
-TEST_CASE("organ motion: at rest it is zero, bit by bit; and where a sample tells nothing of it") {
+TEST_CASE("organ motion: at rest it is zero, bit by bit, and where a sample tells nothing of it") {
   CHECK(after({moving(1s, Vec3::Zero()), moving(1030ms, Vec3::Zero())}).since_sample(2s) == Vec3::Zero());
   Sample silent = moving(1030ms, kSlow);
   silent.here.reset();

@@ -91,7 +91,7 @@ TEST_CASE("credit is used up first, then the share falls with the square of what
   CHECK(passivity.counts().reduced == 3);
 }
 
-TEST_CASE("debt is forgiven at the allowance; where nothing pushes credit goes at once, debt within 0.3 s") {
+TEST_CASE("debt is forgiven at the allowance, where nothing pushes credit goes at once, debt within 0.3 s") {
   Passivity passivity({.debt = 1e-3, .allowance = 1e-2});
   const auto owed = [&] { return std::sqrt(-std::log(passivity.share(10))) * 1e-3; };
   passivity.wrote({0, 1, 0});

@@ -134,7 +134,7 @@ TEST_CASE("SpaceMouse: the tool stays in its box and comes back from its wall at
   CHECK(back[1] == kReach);
 }
 
-TEST_CASE("SpaceMouse: unplugged it is invalid and says so; plugged in again it goes on where it was") {
+TEST_CASE("SpaceMouse: unplugged it is invalid and says so, plugged in again it goes on where it was") {
   Desk desk;
   desk.hold(push(350, 0, 0), 200ms);
   CHECK(std::string(desk.mouse->status()).find("ready") != std::string::npos);

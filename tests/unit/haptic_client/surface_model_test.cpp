@@ -161,7 +161,7 @@ TEST_CASE(
   CHECK_FALSE(served.model.choose_missing({0, 0, 0}, 0.006, 99s, asked));
 }
 
-TEST_CASE("surface model: full, it forgets the oldest; it does not allocate") {
+TEST_CASE("surface model: full, it forgets the oldest, it does not allocate") {
   SurfaceModel model;
   const SurfaceState state{.version = 3, .vertices = 2000, .triangles = 1, .tool_radius = 0.005};
   const SurfacePages pages{state.vertices, state.triangles};

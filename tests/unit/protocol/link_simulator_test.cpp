@@ -186,7 +186,7 @@ TEST_CASE("link simulator: nothing sent during a partition arrives, what was on 
 }
 
 TEST_CASE(
-    "link simulator: the same seed gives the same, another another; one fault does not shift the others") {
+    "link simulator: the same seed gives the same, another another, one fault does not shift the others") {
   const auto hash_of = [](const Run& run) {
     Fnv1a hash;
     for (const Arrival& arrival : run.arrivals) {

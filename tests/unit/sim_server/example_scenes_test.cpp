@@ -7,7 +7,7 @@
 using namespace palpate;
 using namespace palpate::sim;
 
-TEST_CASE("a finger on the liver, and an instrument: pressed from above they feel it; explain tells of it") {
+TEST_CASE("a finger on the liver, and an instrument: pressed from above they feel it, explain tells of it") {
   for (const char* name : {"liver_capsule", "liver_trocar"}) {
     CAPTURE(name);
     const Scene scene = read_scene(fmt::format("{}/configs/scenes/{}.toml", PALPATE_SOURCE_DIR, name));

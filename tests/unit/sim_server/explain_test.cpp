@@ -153,7 +153,7 @@ TEST_CASE("explain: what a quasi-static scene with a reach builds, by line, and 
   CHECK_FALSE(whole->setup_ms.has_value());
 }
 
-TEST_CASE("explain: without a reach none is left out; elasticity is not left out where it is built") {
+TEST_CASE("explain: without a reach none is left out, elasticity is not left out where it is built") {
   const Bench bench(kMesh + kFixed + kMaterial + model("quasi_static") + kTool);
   const double all = reachable_free(0);
   CHECK(static_cast<double>(bench.built("compliance").bytes) == 72 * all * all);

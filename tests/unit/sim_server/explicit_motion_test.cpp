@@ -82,7 +82,7 @@ double kept_energy(const Tissue& tissue, const ExplicitMotion& motion, double h)
 
 }  // namespace
 
-TEST_CASE("tensors: the product is that of the dense stiffness; eight at once are the same to the bit") {
+TEST_CASE("tensors: the product is that of the dense stiffness, eight at once are the same to the bit") {
   const Tissue tissue;
   const auto n = static_cast<std::size_t>(3 * tissue.tensors.vertices());
   CHECK(tissue.tensors.bytes() ==

@@ -68,7 +68,7 @@ TEST_CASE("friction on a rigid organ: mu F_n against the slide, whatever the ste
   }
 }
 
-TEST_CASE("friction: the way between two places is bent as the velocities say; wild ones hardly matter") {
+TEST_CASE("friction: the way between two places is bent as the velocities say, wild ones hardly matter") {
   // Round an arc of 4 mm radius, 30 degrees a step, 2 mm deep.
   constexpr double kTurn = 0.5, kArc = 0.004;
   const auto at = [](double phi) { return press(kArc * std::cos(phi), 0.002, kArc * std::sin(phi)); };
@@ -130,7 +130,7 @@ TEST_CASE("friction: looking ahead changes nothing, bit by bit, and foretells th
   }
 }
 
-TEST_CASE("friction: one tool moves the tissue under another that rests; it is dragged, and returns") {
+TEST_CASE("friction: one tool moves the tissue under another that rests, it is dragged, and returns") {
   Block two(2), alone;
   alone.step(press(-0.006, 0.002), kDt);
   const Vec3 before = two.at({press(-0.006, 0.002), {}})[0].force;

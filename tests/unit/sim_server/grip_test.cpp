@@ -133,7 +133,7 @@ TEST_CASE("a button closes the jaws without a jump, and opens them") {
   CHECK((organ.step(pressed, kDt).force - contact.force).norm() < 1e-3 * contact.force.norm());
 }
 
-TEST_CASE("served: the buttons of a tool state grasp; parts are told without effect, or allocation") {
+TEST_CASE("served: the buttons of a tool state grasp, parts are told without effect, or allocation") {
   Scene scene = block_scene();
   scene.tools[0].grasp_place.reset();
   scene.tools[0].grasp_buttons = 1;

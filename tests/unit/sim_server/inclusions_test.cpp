@@ -75,7 +75,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("inclusions: a scene without any tells the mesh nothing; one beside the mesh is an error") {
+TEST_CASE("inclusions: a scene without any tells the mesh nothing, one beside the mesh is an error") {
   TetMesh mesh = bar();
   put_inclusions(bar_with({}), mesh);
   CHECK(mesh.stiffness.empty());

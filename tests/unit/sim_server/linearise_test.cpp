@@ -52,7 +52,7 @@ TEST_CASE("linearise: in contact the tangent is the slope of the force, elsewher
   CHECK((ahead.force - direct.force).norm() < 1e-6 * direct.force.norm());
 }
 
-TEST_CASE("linearise: near the surface its plane, gap and stiffness; far away nothing") {
+TEST_CASE("linearise: near the surface its plane, gap and stiffness, far away nothing") {
   Simulation liver(test::liver_scene());
   const double top = touching(liver);
   liver.lift_tool();

@@ -60,7 +60,7 @@ Vec3 speed_of(const SupportMotion& motion, double t) {
 
 }  // namespace
 
-TEST_CASE("moving supports: a bar pulled at one end stretches evenly; the other end may move too") {
+TEST_CASE("moving supports: a bar pulled at one end stretches evenly, the other end may move too") {
   // Without lateral contraction the field between two ends that move along x is linear in x, to the bit of
   // what linear elements give.
   const ElementKind element =
@@ -100,7 +100,7 @@ TEST_CASE("moving supports: a common translation moves the body as one, at the v
   }
 }
 
-TEST_CASE("a tool that moves with the organ feels what it felt at rest; a resting organ has no velocity") {
+TEST_CASE("a tool that moves with the organ feels what it felt at rest, a resting organ has no velocity") {
   for (const std::string_view model : models()) {
     // The block's slowest frequency is 25 Hz: at a quarter of one, its inertia bends it by little.
     const double inertia = model == "quasi_static" ? 1e-6 : 0.005;
@@ -213,7 +213,7 @@ TEST_CASE(
   CHECK(tools.step(inputs, 0.03)[0].answer->surface_v_W == Vec3::Zero());
 }
 
-TEST_CASE("a step of a moving organ does not allocate, but by implicit; and equal runs are equal") {
+TEST_CASE("a step of a moving organ does not allocate, but by implicit, and equal runs are equal") {
   for (const std::string_view model : models()) {
     Simulation one(block_scene({kBreath}, model, 0.03), block()),
         two(block_scene({kBreath}, model, 0.03), block());

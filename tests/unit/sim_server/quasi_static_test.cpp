@@ -116,7 +116,7 @@ TEST_CASE("quasi-static: a bar with fibres along it, pulled at its end, gets lon
   }
 }
 
-TEST_CASE("quasi-static: any element of the linear law; what is not linear is refused in one line") {
+TEST_CASE("quasi-static: any element of the linear law, what is not linear is refused in one line") {
   const std::string fibres = "[material.fibres]\ndirection = [1, 0, 0]\nmodulus = 2e4";
   for (const std::string& material :
        {std::string("element = \"p1_nodal_pressure\""), std::string("element = \"p2\""), fibres})

@@ -158,7 +158,7 @@ TEST_CASE("tensor_mass: without damping its compliance is positive all the same"
   }
 }
 
-TEST_CASE("tensor_mass: no time, no motion; any other step is a period") {
+TEST_CASE("tensor_mass: no time, no motion, any other step is a period") {
   const Bench bench;
   TensorMass model(bench.inputs()), other(bench.inputs());
   const std::vector<NodalLoad> loads{{bench.top(0, 0), Vec3(0, -0.2, 0)}};

@@ -122,7 +122,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "tool reach: a tip beyond its workspace or cone is told from one within; a plain reach is of surface") {
+    "tool reach: a tip beyond its workspace or cone is told from one within, a plain reach is of surface") {
   const Scene placed =
       scene_with("radius = 0.005\n[tool.workspace]\nbox = [[-0.01, -0.02, -0.03], [0.01, 0.02, 0.04]]\n");
   CHECK(placed.tools[0].stays_within);

@@ -225,7 +225,7 @@ TEST_CASE("two tools: one that presses moves the surface from under the other") 
 }
 
 TEST_CASE(
-    "two tools on the very same spot share what one would feel there; 1 mm apart they feel more together") {
+    "two tools on the very same spot share what one would feel there, 1 mm apart they feel more together") {
   // The tissue is pressed by the same sphere, so it gives the same force, whoever carries how much of it.
   for (const double depth : {0.0005, 0.002, 0.003}) {
     CAPTURE(depth);

@@ -155,7 +155,7 @@ TEST_CASE("the Hessian of the distance to an edge or a vertex of what slides alo
   }
 }
 
-TEST_CASE("a trocar: what touches the shaft halfway is felt with half its force; at the tip with all of it") {
+TEST_CASE("a trocar: what touches the shaft halfway is felt with half its force, at the tip with all of it") {
   // The pivot 100 mm from the ridge and the tip 100 mm beyond it, all level: lever 1/2.
   const Tool tool{.radius = 0.003, .trocar = Tool::Trocar{Vec3(-0.1, 0.0015, 0), 0.002}};
   Bench bench(ridge(0, 1e-3), tool);

@@ -108,7 +108,7 @@ TEST_CASE("a capture begun in mid-session and with holes says what is missing") 
 }
 
 TEST_CASE(
-    "pages of the surface come to the tick that was the first to have them, in their order; lost ones are "
+    "pages of the surface come to the tick that was the first to have them, in their order, lost ones are "
     "missed") {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.pcap";
@@ -198,7 +198,7 @@ TEST_CASE("stragglers of a session that is over stay with their run") {
   CHECK(found.runs[0].duplicated() == 1);
 }
 
-TEST_CASE("two clients in one capture are two sessions; a restarted server is the same one") {
+TEST_CASE("two clients in one capture are two sessions, a restarted server is the same one") {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.pcap";
   {

@@ -187,7 +187,7 @@ TEST_CASE("the nearest triangle and vertex: as by looking at every one, the firs
   check_nearest(Skin(ball()));
 }
 
-TEST_CASE("a hierarchy lists whose boxes meet a box in ascending order; of an empty surface, none") {
+TEST_CASE("a hierarchy lists whose boxes meet a box in ascending order, of an empty surface, none") {
   Skin skin(ball());
   Bvh bvh(skin.rest, skin.surface.triangles);
   const auto all = bvh.near(skin.box);

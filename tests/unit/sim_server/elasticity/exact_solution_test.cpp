@@ -96,7 +96,7 @@ TEST_CASE("exact: a smooth field converges with the order of the element, two an
 }
 
 TEST_CASE(
-    "exact: pure bending: quadratic elements have it all, moment too; linear ones are of second order") {
+    "exact: pure bending: quadratic elements have it all, moment too, linear ones are of second order") {
   // St Venant: u = kappa (x y, -(x^2 + nu (y^2 - z^2)) / 2, -nu y z), moment E I kappa (Timoshenko and
   // Goodier 1970, section 102).
   const double nu = 0.3, e = 1e4, kappa = 0.05, length = 0.4, half = 0.05;

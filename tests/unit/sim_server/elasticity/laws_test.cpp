@@ -178,7 +178,7 @@ TEST_CASE("laws: inside out and flat, all but the linear one stay finite and pus
   }
 }
 
-TEST_CASE("laws: fibres add their modulus along them and nothing across; derivatives") {
+TEST_CASE("laws: fibres add their modulus along them and nothing across, derivatives") {
   test::Random random(16);
   const Vec3 a = Vec3(1, 2, -1).normalized();
   const double k = 5e3;

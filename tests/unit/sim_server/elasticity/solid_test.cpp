@@ -111,7 +111,7 @@ TEST_CASE("solid: with stress that is remembered, stiffness is the derivative of
   });
 }
 
-TEST_CASE("solid: no force and no energy at rest or shifted; turned, only the linear law has them") {
+TEST_CASE("solid: no force and no energy at rest or shifted, turned, only the linear law has them") {
   each_solid([](const Solid& solid) {
     const double scale = stiffness(solid, solid.rest()).norm();
     CHECK(forces(solid, solid.rest()).norm() < 1e-14 * scale);
