@@ -14,7 +14,6 @@
 namespace palpate::sim {
 namespace {
 
-constexpr int kSteps = 200;           // timed free, and in contact
 constexpr double kLongSetUp = 1e4;    // ms: a scene whose variants are not built to compare
 constexpr double kMostVariant = 2e9;  // bytes of compliance that a variant is built with
 constexpr double kUsualFriction = 0.3;
@@ -164,6 +163,7 @@ std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulat
 struct Own {
   const Scene& scene;
   const Progress& progress;
+  int steps;  // timed free, and in contact
   Simulation simulation;
   Press press;
   Cost cost;
@@ -184,7 +184,8 @@ LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
   try {
     SetupTimes times(own.progress);
     Simulation simulation(variant, own.simulation.mesh(), std::ref(times));
-    const Cost cost = cost_of(simulation, times, time_steps(variant, simulation, own.press, kSteps));
+    const Cost cost =
+        cost_of(simulation, times, time_steps(variant, simulation, own.press, own.steps, own.progress));
     row.bytes = cost.bytes - own.cost.bytes;
     row.setup_ms = cost.setup_ms - own.cost.setup_ms;
     row.step_ms = cost.step_ms - own.cost.step_ms;
@@ -256,14 +257,14 @@ std::vector<LeftOut> left_out(const Own& own) {
 
 }  // namespace
 
-Explanation explain(const Scene& scene, const Progress& progress) {
+Explanation explain(const Scene& scene, const Progress& progress, int steps) {
   SetupTimes times(progress);
-  Own own{scene, progress, Simulation(scene, std::ref(times)), {}, {}};
+  Own own{scene, progress, steps, Simulation(scene, std::ref(times)), {}, {}};
   own.press = find_press(scene, own.simulation);
   Explanation explanation{.scene = scene,
                           .built = built_parts(scene, own.simulation, times),
                           .left_out = {},
-                          .steps = time_steps(scene, own.simulation, own.press, kSteps),
+                          .steps = time_steps(scene, own.simulation, own.press, steps, progress),
                           .state_hash = own.simulation.state_hash(),
                           .tetrahedra = own.simulation.mesh().tetrahedra.size()};
   own.cost = cost_of(own.simulation, times, explanation.steps);
@@ -275,7 +276,7 @@ int run_explain(const ExplainOptions& options) {
   const Scene scene = read_scene(options.scene);
   require_distinct({{"SCENE", options.scene}, {"--json", options.json}});
   if (options.json) check_writable(*options.json);
-  const Explanation explanation = explain(scene, ProgressLine());
+  const Explanation explanation = explain(scene, ProgressLine(), options.steps);
   fmt::print("{}", options.why ? why_text(explanation, *options.why) : to_text(explanation));
   if (options.json) write_json(*options.json, to_json(explanation));
   return 0;

@@ -15,6 +15,7 @@ struct ExplainOptions {
   std::filesystem::path scene;
   std::optional<std::filesystem::path> json;
   std::optional<std::string> why;  ///< of this part alone
+  int steps = 200;                 ///< timed, free and in contact each
 };
 
 /// Something a scene builds.
@@ -46,9 +47,9 @@ struct Explanation {
 };
 
 /// Builds the scene and, where that takes no more than 10 s, a variant for each thing it leaves out, and
-/// steps them all. Throws `Error` where the scene itself cannot be built. Takes as long as all those set-ups,
-/// and the memory of two of them.
-Explanation explain(const Scene& scene, const Progress& progress = kSilent);
+/// steps them all, `steps` free and as many in contact each. Throws `Error` where the scene itself cannot be
+/// built. Takes as long as all those set-ups, and the memory of two of them.
+Explanation explain(const Scene& scene, const Progress& progress = kSilent, int steps = 200);
 
 /// Which line of the scene asks for a part, or leaves it out, and what it costs or saves. Throws `Error`
 /// naming the parts that there are.

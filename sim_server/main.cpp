@@ -93,6 +93,9 @@ CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
           "--why", options.why,
           "Only this part, built or left out: which line of the scene says so, and what it costs or saves")
       ->type_name("PART");
+  command
+      ->add_option("--steps", options.steps, "How many steps to time, free of the organ and in contact each")
+      ->capture_default_str();
   command->footer(
       "Examples:\n"
       "  sim_server explain configs/scenes/liver.toml --json explain.json\n"
@@ -144,6 +147,10 @@ void check(const sim::SolveOptions& options) {
   require_within(options.frames, 1, 100000, "--frames", "files");
 }
 
+void check(const sim::ExplainOptions& options) {
+  require_within(options.steps, 1, 100000, "--steps", "steps");
+}
+
 void check(const sim::StudyOptions& options) {
   if (options.budget_ms) require_within(*options.budget_ms, 1e-3, 1e6, "--budget-ms", "ms");
   require_within(options.latency_ms, 0, 1000, "--latency-ms", "ms");
@@ -174,7 +181,10 @@ int run(int argc, char** argv) {
   const auto* mesh_info = add_mesh_info(app, mesh_file);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*mesh_info) return sim::print_mesh_info(mesh_file);
-  if (*explain) return sim::run_explain(explaining);
+  if (*explain) {
+    check(explaining);
+    return sim::run_explain(explaining);
+  }
   if (*solve) {
     check(solving);
     return sim::solve(solving);

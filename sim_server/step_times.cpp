@@ -84,7 +84,8 @@ Press find_press(const Scene& scene, Simulation& simulation) {
   return unsettled.front();
 }
 
-StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& press, int steps) {
+StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& press, int steps,
+                     const Progress& progress) {
   const double radius = scene.tools.front().shape.radius, dt = period_of(scene);
   const auto slide = [&](int i) {
     return kSlide * radius * std::sin(2 * std::numbers::pi * i / kSlideSteps);
@@ -92,10 +93,13 @@ StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& pr
   Vec3 above = press.place;
   for (const Vec3& x : simulation.positions()) above[1] = std::max(above[1], x[1] + kClear * radius);
   StepTimes times;
+  const auto tell = [&](int done) { progress("timing steps", 0.5 * done / steps); };
+  tell(0);
   simulation.lift_tool();
   simulation.step(above, dt);
   for (int i = 1; i <= steps; ++i) {
     timed_step(simulation, above + slide(i) * Vec3::UnitX(), dt, times.free_ns);
+    tell(i);
   }
   const Vec3 tangent = press.normal.unitOrthogonal();
   approach(scene, simulation, press);
@@ -103,6 +107,7 @@ StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& pr
     const ToolForce force = timed_step(simulation, press.place + slide(i) * tangent, dt, times.contact_ns);
     times.contacts += force.contacts > 0 ? 1 : 0;
     times.flagged += force.flagged ? 1 : 0;
+    tell(steps + i);
   }
   return times;
 }

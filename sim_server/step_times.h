@@ -24,6 +24,7 @@ struct StepTimes {
 
 /// Takes `steps` steps free, then as many in contact, and leaves the tool there: `state_hash` then tells
 /// whether two runs agree. One thread; asks the clock twice a step.
-StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& press, int steps);
+StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& press, int steps,
+                     const Progress& progress = kSilent);
 
 }  // namespace palpate::sim

@@ -97,7 +97,7 @@ def cost_of(folder, model, n):
     if not found.exists():
         write_block(mesh, n)
         scene.write_text(SCENE.format(n=n, m=n // 2, mesh=mesh, model=model), encoding="ascii")
-        subprocess.run([SERVER, "explain", scene, "--json", found], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([SERVER, "explain", scene, "--json", found, "--steps", "20"], check=True, stdout=subprocess.DEVNULL)
         mesh.unlink()
     told = json.loads(found.read_text(encoding="utf-8"))
     return {"model": model, "tetrahedra": 6 * n * n * (n // 2), "step_ms_p50": told["contact"]["step_ms"]["p50"],

@@ -50,6 +50,17 @@ TEST_CASE("explain of a file that is not there: one line, exit 2") {
   CHECK(std::count(said.begin(), said.end(), '\n') == 1);
 }
 
+TEST_CASE("explain takes as many steps as it is asked for, and tells that it does") {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "explain.json").string();
+  const std::string said = output_of("sim_server", {"explain", kScene, "--steps", "7", "--json", file}, 0);
+  CHECK(said.find("timing steps") != std::string::npos);
+  const Json json = read_json(file);
+  CHECK(json["free"]["steps"] == 7);
+  CHECK(json["contact"]["steps"] == 7);
+  CHECK(output_of("sim_server", {"explain", kScene, "--steps", "0"}, 2).find("--steps") != std::string::npos);
+}
+
 TEST_CASE("the report of a run tells set-up by stage, and the stages fit into the whole") {
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "server.json").string();
