@@ -68,7 +68,8 @@ TEST_CASE("Sneddon's force goes over into Hertz' for small contacts") {
 
 TEST_CASE(
     "sphere on a graded block: within 5 % of Sneddon's force at six elements per contact radius, and "
-    "converging") {
+    "converging",
+    "[large]") {
   const double coarse = force_error(2), middle = force_error(4), fine = force_error(6);
   CAPTURE(coarse, middle, fine);
   CHECK(std::abs(fine) < 0.05);
