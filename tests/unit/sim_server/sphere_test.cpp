@@ -79,7 +79,8 @@ TEST_CASE(
 
 TEST_CASE(
     "sphere on a graded block of quadratic elements, pressed on corners and mid-edges: within 3 % at two "
-    "elements per contact radius") {
+    "elements per contact radius",
+    "[large]") {
   // On corners alone it would be 15 to 18 % too soft, at any number of elements.
   const double coarse = force_error(1, ElementKind::kQuadratic),
                fine = force_error(2, ElementKind::kQuadratic);
