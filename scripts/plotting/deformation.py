@@ -23,6 +23,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import LogFormatter  # noqa: E402
+from matplotlib.transforms import Bbox  # noqa: E402
 
 LEAST = 1e-3  # %: what is less is drawn there
 COLOURS = {"quasi_static": "tab:blue", "tensor_mass": "tab:orange", "implicit": "tab:green", "reduced": "tab:purple"}
@@ -57,6 +58,27 @@ def percents(axes):
     axes.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.5)))
 
 
+def name_points(axes, points):
+    """Writes each name beside its point (x, y, name): inside the axes, on no other name, point or legend."""
+    renderer = axes.figure.canvas.get_renderer()
+    taken = [axes.get_legend().get_window_extent(renderer)] if axes.get_legend() else []
+    marks = [place for line in axes.lines for place in line.get_xydata()]
+    taken += [Bbox.from_bounds(x - 4, y - 4, 8, 8) for x, y in map(axes.transData.transform, marks)]
+    for x, y, name in points:
+        for right, up in ((6, 4), (6, -10), (-6, 4), (-6, -10), (6, 13), (-6, 13), (6, -19), (-6, -19), (6, 22), (-6, 22),
+                          (6, -28), (-6, -28), (6, 31), (-6, 31)):
+            text = axes.annotate(name, (x, y), xytext=(right, up), textcoords="offset points", fontsize=6.5,
+                                 ha="left" if right > 0 else "right")
+            box = text.get_window_extent(renderer)
+            inside = axes.bbox.x0 <= box.x0 and box.x1 <= axes.bbox.x1
+            if inside and not any(box.overlaps(other) for other in taken):
+                break
+            text.remove()
+        else:
+            axes.annotate(name, (x, y), xytext=(6, 4), textcoords="offset points", fontsize=6.5)
+        taken.append(box)
+
+
 def draw_front(axes, rows):
     for row in rows:
         axes.loglog(row["step_ms_p50"], above(row["force_error_percent"]), MARKS[row["element"]],
@@ -65,9 +87,6 @@ def draw_front(axes, rows):
     axes.loglog([r["step_ms_p50"] for r in front], [above(r["force_error_percent"]) for r in front], "-", color="0.4",
                 linewidth=0.8, zorder=0)
     named = {of_setting(r): r for r in reversed(front)}  # the fastest of each, whatever its step
-    for k, row in enumerate(reversed(named.values())):  # names go to the right of their marks
-        axes.annotate(label_of(row), (row["step_ms_p50"], above(row["force_error_percent"])),
-                      xytext=(6, 6 if k % 2 else -10), textcoords="offset points", fontsize=6.5)
     for model in dict.fromkeys(r["model"] for r in rows):
         axes.plot([], [], "o", color=COLOURS[model], label=model)
     for element in dict.fromkeys(r["element"] for r in rows):
@@ -78,6 +97,7 @@ def draw_front(axes, rows):
     axes.set_xlabel("server, median time of a step in contact (ms)")
     axes.set_ylabel("error of the tool's force (%)")
     axes.set_title("Error against run time\n(better: lower and to the left; the line is the front)", fontsize=9)
+    return [(r["step_ms_p50"], above(r["force_error_percent"]), label_of(r)) for r in reversed(named.values())]
 
 
 def draw_felt(axes, rows):
@@ -112,6 +132,8 @@ def draw_along(axes, rows, along):
         axes.semilogy([t for t, _ in points], [above(e) for _, e in points], linewidth=1,
                       color=COLOURS[row["model"]], linestyle={"p1": "-", "p2": ":"}.get(row["element"], "--"),
                       label=label_of(row))
+    low, high = axes.get_ylim()
+    axes.set_ylim(bottom=max(low, high / 1e4))  # nothing touches where it falls off
     axes.legend(fontsize=7)
     axes.set_xlabel("time (s): pressed, slid to and fro, lifted")
     axes.set_ylabel("error of the force, of its mean size (%)")
@@ -120,14 +142,13 @@ def draw_along(axes, rows, along):
 
 def draw_price(axes, rows):
     shown = [r for r in rows if r["axis"] in ("scene", "model", "element", "mesh")]
-    for k, row in enumerate(shown):
+    for row in shown:
         axes.loglog(row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6, MARKS[row["element"]], color=COLOURS[row["model"]])
-        axes.annotate(label_of(row), (row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6), xytext=(5, -9 if k % 2 else 3),
-                      textcoords="offset points", fontsize=6.5)
-    axes.margins(x=0.3)
+    axes.margins(x=0.3, y=0.1)
     axes.set_xlabel("set-up (s)")
     axes.set_ylabel("peak memory of the process (MB)")
     axes.set_title("What it costs before the first step\n(better: lower and to the left)", fontsize=9)
+    return [(r["setup_ms"] / 1e3, r["peak_bytes"] / 1e6, label_of(r)) for r in shown]
 
 
 def read_along(file):
@@ -142,10 +163,10 @@ def draw_scene(folder):
     found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     rows, truth = found["rows"], found["reference"]
     figure, axes = plt.subplots(2, 2, figsize=(15, 10), layout="constrained")
-    draw_front(axes[0][0], rows)
+    front = draw_front(axes[0][0], rows)
     draw_felt(axes[0][1], rows)
     draw_along(axes[1][0], rows, read_along(folder / "along.csv"))
-    draw_price(axes[1][1], rows)
+    dear = draw_price(axes[1][1], rows)
     closed = truth.get("closed_form_percent")
     figure.suptitle(f"{rows[0]['scene']}: against {truth['case']}\n(the reference itself: {truth['check']} differs "
                     f"from it by {truth['force_error_percent']:.2g} % in force"
@@ -153,6 +174,10 @@ def draw_scene(folder):
                     + f"; link {found['latency_ms']:g} ms)", fontsize=11)
     for sheet in axes.flat:
         sheet.grid(True, which="major", linewidth=0.3)
+    figure.canvas.draw()
+    figure.set_layout_engine("none")  # names are placed where the axes are now
+    name_points(axes[0][0], front)
+    name_points(axes[1][1], dear)
     figure.savefig(folder / "study.png", dpi=110)
     plt.close(figure)
 
