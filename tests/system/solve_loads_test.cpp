@@ -202,7 +202,7 @@ TEST_CASE("solve: a probe outside the body is refused, with the vertex nearest t
   CHECK_FALSE(std::filesystem::exists(bench.out));
 }
 
-TEST_CASE("solve: the example of its help can be run, its probe is in the liver") {
+TEST_CASE("solve: the example of its help can be run, its probe is in the liver", "[large]") {
   const TemporaryFolder folder;
   const std::string scene = "configs/scenes/liver_weight.toml", place = "0.1,0.03,0.02";
   CHECK(output_of("sim_server", {"solve", "--help"}, 0)

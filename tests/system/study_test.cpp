@@ -34,7 +34,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("study: rows are the same again from nothing, and at once from what was run before") {
+TEST_CASE("study: rows are the same again from nothing, and at once from what was run before", "[large]") {
   Bench bench;
   const std::string scene = bench.scene("quasi_static");
   const std::vector<std::string> command{"study", scene, "--out", bench.out, "--quick", "--budget-ms", "33"};
