@@ -153,8 +153,7 @@ SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& whe
   if (!definite || nearly_singular(lower, answer)) {
     fail(
         "{}: the stiffness matrix is singular: the fixed nodes do not hold the body; a [[fixed]] with three "
-        "that "
-        "are not in line would",
+        "that are not in line would",
         where);
   }
 }
