@@ -104,7 +104,7 @@ void run_round_trips(benchmark::State& state, const std::string& clock, int trip
 }  // namespace
 
 void add_falcon_rows() {
-  for (const std::string law : {"constant", "two_tangents", "local_contact"})
+  for (const std::string law : {"constant", "learned_stiffness"})
     add("tick_falcon/besides_usb/" + law, [=](benchmark::State& state) { run_tick(state, law); });
   add("usb_round_trip/virtual_clock",
       [](benchmark::State& state) { run_round_trips(state, "virtual", 5000); })

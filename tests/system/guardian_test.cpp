@@ -9,6 +9,22 @@ using Json = nlohmann::json;
 
 namespace {
 
+/// No torque on any motor within so many seconds.
+bool falls_silent(const Emulator& falcons, const std::string& port, double seconds) {
+  return falcons.wait_for(
+      port,
+      [](const Json& s) {
+        return s["dac"] == Json({0, 0, 0});
+      },
+      seconds);
+}
+
+/// The hand goes into the wall, and feels it.
+bool leans(const Emulator& falcons, const std::string& port) {
+  falcons.command("hand " + port + " target 0 0 0.105 1");
+  return falcons.wait_for(port, [](const Json& s) { return s["force"][2].get<double>() > 2; });
+}
+
 /// A hand that leans on a wall, held by a client that is ready to die.
 struct Leaning {
   Bench bench;
@@ -21,18 +37,9 @@ struct Leaning {
     client =
         falcon.start("haptic_client", {"run", bench.client, "--device", device, "--server", wall.address});
     if (!client->wait_for("Falcon homed: ready")) throw std::runtime_error(client->output());
-    falcon.command("hand 2-1 target 0 0 0.105 1");
-    const bool pushes = falcon.wait_for("2-1", [](const Json& s) { return s["force"][2].get<double>() > 2; });
-    if (!pushes) throw std::runtime_error("no force: " + falcon.state("2-1").dump());
+    if (!leans(falcon, "2-1")) throw std::runtime_error("no force: " + falcon.state("2-1").dump());
   }
-  bool falls_silent() const {
-    return falcon.wait_for(
-        "2-1",
-        [](const Json& s) {
-          return s["dac"] == Json({0, 0, 0});
-        },
-        2);
-  }
+  bool falls_silent() const { return ::falls_silent(falcon, "2-1", 2); }
   /// By the client, or by its guardian when it is dead.
   bool said(const std::string& text) const {
     for (int i = 0; i < 400 && client->output().find(text) == std::string::npos; ++i)
@@ -82,12 +89,7 @@ TEST_CASE("guardian: with a port, another Falcon is left alone") {
 TEST_CASE("guardian: a client that was stopped is ended, and its device switched off") {
   Leaning hand("falcon:2-1");
   hand.client->signal(SIGSTOP);
-  CHECK(hand.falcon.wait_for(
-      "2-1",
-      [](const Json& s) {
-        return s["dac"] == Json({0, 0, 0});
-      },
-      4));
+  CHECK(falls_silent(hand.falcon, "2-1", 4));
   CHECK(hand.said("the client stands still"));
   CHECK(hand.client->wait() == -SIGKILL);
 }
@@ -100,17 +102,11 @@ TEST_CASE("guardian: a device that is gone does not keep the other waiting") {
   auto client = falcons.start("haptic_client", {"run", bench.client, "--device", "falcon:2-1", "--device",
                                                 "falcon:3-2", "--server", wall.address});
   REQUIRE(client->wait_for("tool 2 (falcon:3-2): Falcon homed"));
-  falcons.command("hand 3-2 target 0 0 0.105 1");
-  REQUIRE(falcons.wait_for("3-2", [](const Json& s) { return s["force"][2].get<double>() > 2; }));
+  REQUIRE(leans(falcons, "3-2"));
   falcons.command("unplug 2-1");
   REQUIRE(client->wait_for("unplugged"));
   client->signal(SIGKILL);
-  CHECK(falcons.wait_for(
-      "3-2",
-      [](const Json& s) {
-        return s["dac"] == Json({0, 0, 0});
-      },
-      0.8));
+  CHECK(falls_silent(falcons, "3-2", 0.8));
 }
 
 TEST_CASE("guardian: without a port, a Falcon that another program holds keeps nobody waiting") {
@@ -122,25 +118,14 @@ TEST_CASE("guardian: without a port, a Falcon that another program holds keeps n
   auto client =
       falcons.start("haptic_client", {"run", bench.client, "--device", "falcon", "--server", wall.address});
   REQUIRE(client->wait_for("Falcon homed: ready"));
-  falcons.command("hand 3-2 target 0 0 0.105 1");
-  REQUIRE(falcons.wait_for("3-2", [](const Json& s) { return s["force"][2].get<double>() > 2; }));
+  REQUIRE(leans(falcons, "3-2"));
   client->signal(SIGKILL);
-  CHECK(falcons.wait_for(
-      "3-2",
-      [](const Json& s) {
-        return s["dac"] == Json({0, 0, 0});
-      },
-      0.8));
+  CHECK(falls_silent(falcons, "3-2", 0.8));
 }
 
 TEST_CASE("Ctrl-C: the force is off before anything is reported") {
   Leaning hand("falcon:2-1");
   hand.client->signal(SIGINT);
-  CHECK(hand.falcon.wait_for(
-      "2-1",
-      [](const Json& s) {
-        return s["dac"] == Json({0, 0, 0});
-      },
-      0.5));
+  CHECK(falls_silent(hand.falcon, "2-1", 0.5));
   CHECK(hand.client->wait() == 0);
 }
