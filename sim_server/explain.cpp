@@ -19,6 +19,8 @@ constexpr double kLongSetUp = 1e4;    // ms: a scene whose variants are not buil
 constexpr double kMostVariant = 2e9;  // bytes of compliance that a variant is built with
 constexpr double kUsualFriction = 0.3;
 constexpr double kBytesPerPair = 72;  // of two nodes' compliance: 3 x 3 doubles
+constexpr double kBytesOfMotion =
+    9 * 24 + 8;  // of a vertex, as `tensor_mass` keeps them: nine vectors, a mass
 constexpr std::string_view kReading = "reading the mesh", kResponding = "computing compliance";
 
 /// Which part each stage of set-up builds; a stage that is not here is a part of its own.
@@ -251,12 +253,64 @@ LeftOut whole_compliance(const Own& own) {
           .note = fmt::format("computed: 72 n^2 for all {} free vertices, less what is kept", free)};
 }
 
-std::vector<LeftOut> left_out(const Own& own) {
+/// Of a model at rest: what motion would hold.
+LeftOut motion(const Own& own) {
+  const auto n = static_cast<double>(own.simulation.mesh().vertices.size());
+  return {.what = "motion (mass, velocities)",
+          .why = own.scene.deformation.where,
+          .bytes = kBytesOfMotion * n,
+          .note = fmt::format("computed: {:g} n; the model is at rest", kBytesOfMotion)};
+}
+
+/// Nothing is cut, so that nobody asks which tetrahedra share a face or an edge.
+LeftOut neighbour_tables(const Own& own) {
+  const auto vertices = static_cast<double>(own.simulation.mesh().corners()),
+             tetrahedra = static_cast<double>(own.simulation.mesh().tetrahedra.size()),
+             triangles = static_cast<double>(own.simulation.surface().triangles.size());
+  const double edges = vertices + tetrahedra + triangles / 2 - 1;  // Euler's, of a ball
+  return {.what = "edge and neighbour tables",
+          .why = own.scene.mesh_where,
+          .bytes = 4 * sizeof(int) * tetrahedra + 2 * sizeof(int) * edges,
+          .note = "computed: 4 neighbours a tetrahedron, 2 ends an edge; nothing is cut"};
+}
+
+/// What a step saves as long as no client's law asks for dF/dp.
+LeftOut tangents(Own& own) {
+  for (std::size_t i = 0; i < own.scene.tools.size(); ++i) own.simulation.want_tangent(i, false);
+  const StepTimes without = time_steps(own.scene, own.simulation, own.press, own.steps, own.progress);
+  for (std::size_t i = 0; i < own.scene.tools.size(); ++i) own.simulation.want_tangent(i, true);
+  return {.what = "tangents",
+          .why = "nobody, until a client's law subscribes",
+          .step_ms = own.cost.step_ms - without.contact_ns.quantile(0.5) / 1e6,
+          .note = "measured; the times below are with them"};
+}
+
+void add_unreached_tools(const Own& own, std::vector<LeftOut>& rows) {
+  for (std::size_t i = 0; i < own.scene.tools.size(); ++i) {
+    const ToolSettings& tool = own.scene.tools[i];
+    if (!tool.reach ||
+        !reachable_vertices(own.simulation.surface(), own.simulation.mesh(), {&tool, 1}).empty())
+      continue;
+    rows.push_back({.what = fmt::format("collision tree of tool {}", i + 1),
+                    .why = tool.reach_where,
+                    .note = "it reaches no part of the surface"});
+  }
+}
+
+std::vector<LeftOut> left_out(Own& own) {
   std::vector<LeftOut> rows;
+  const std::string& model = own.scene.deformation.model;
   if (const auto row = beyond_reach(own)) rows.push_back(*row);
   if (const auto row = friction(own)) rows.push_back(*row);
-  if (own.scene.deformation.model == "rigid") rows.push_back(elasticity(own));
+  if (model == "rigid") rows.push_back(elasticity(own));
   if (is_elastic(own.scene)) rows.push_back(whole_compliance(own));
+  if (model == "rigid" || model == "quasi_static") rows.push_back(motion(own));
+  if (model == "tensor_mass")
+    rows.push_back(
+        {.what = "its factor", .why = own.scene.deformation.where, .note = "explicit steps solve nothing"});
+  rows.push_back(neighbour_tables(own));
+  add_unreached_tools(own, rows);
+  rows.push_back(tangents(own));
   rows.push_back({.what = "recording",
                   .why = "sim_server run --record",
                   .bytes = static_cast<double>(protocol::Recorder::memory_bytes()),

@@ -218,7 +218,7 @@ ToolSettings read_tool(const Config& config) {
   ToolSettings tool;
   tool.where = config.where();
   tool.shape.radius = config.number("radius", {1e-5, 0.05, "m"}, tool.shape.radius);
-  tool.shape.friction = config.number("friction", {0, 2, "no unit"}, tool.shape.friction);
+  tool.shape.friction = config.number("friction", {0, 10, "no unit"}, tool.shape.friction);
   read_shape(config, tool.shape);
   read_reach(config, tool);
   read_grasp(config, tool);

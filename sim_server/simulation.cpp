@@ -7,6 +7,7 @@
 #include "common/hash.h"
 #include "common/text.h"
 #include "sim_server/elasticity/solid.h"
+#include "sim_server/held_motion.h"
 #include "sim_server/inclusions.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/set_up_memory.h"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kNear = 2;              // of the tool radius: how far off a surface is told
 constexpr double kTouch = 0.04;          // of the tool radius: how deep to ask how stiff it is
+constexpr double kRunAway = 3;           // of the organ's size: farther from rest no tissue goes
 constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
 
 std::vector<int> vertices_of(const std::vector<std::vector<Triangle>>& lists) {
@@ -34,6 +36,16 @@ std::vector<std::vector<Triangle>> touchable_by(std::span<const ToolSettings> to
   std::vector<std::vector<Triangle>> lists;
   for (const ToolSettings& tool : tools) lists.push_back(touchable_triangles(surface, mesh, tool));
   return lists;
+}
+
+/// Of the box around them, from corner to corner, m.
+double size_of(std::span<const Vec3> places) {
+  Vec3 least = places.front(), most = least;
+  for (const Vec3& p : places) {
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
+  }
+  return (most - least).norm();
 }
 
 /// `read_mesh`, told to `progress`.
@@ -73,6 +85,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;
   tissue_.velocities = motion.velocities;
+  if (!fixed.empty() && !supports_move(scene)) farthest_ = kRunAway * size_of(rest_);
   std::size_t loads = 0;
   tools_.reserve(scene.tools.size());
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
@@ -116,13 +129,31 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPo
     settle();
   }
   if (!tissue_.model->balanced()) flag_contacts();
+  const bool lost = ran_away();
   if (!tissue_.before.empty())
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
   for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (lost && tools_[i].placed()) {  // what was felt before is held
+      forces_[i].flagged = true;
+      continue;
+    }
     if (tangents_wanted_[i]) tools_[i].differentiate();
     forces_[i] = tools_[i].force();
   }
   return forces_;
+}
+
+/// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.
+bool Simulation::ran_away() const noexcept {
+  const double most = farthest_ * farthest_;
+  double square = 0;
+  bool finite = true;
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    const double off = (tissue_.positions[v] - rest_[v]).squaredNorm();
+    finite = finite && off == off;
+    square = std::max(square, off);
+  }
+  return !finite || square > most;
 }
 
 /// The tools stay where they were on the organ, which goes by the mean of its velocities before and after

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "sim_server/contact/tool_contact.h"
@@ -84,10 +85,12 @@ class Simulation {
   void take(const FreeMotion& motion) noexcept;
   void settle() noexcept;
   void flag_contacts() noexcept;
+  bool ran_away() const noexcept;
 
   TetMesh mesh_;
   Surface surface_;
   std::vector<Vec3> rest_;
+  double farthest_ = std::numeric_limits<double>::infinity();  // from there, m
   Tissue tissue_;
   std::vector<ToolContact> tools_;
   std::vector<Vec3> ways_;                       // of the surface at each tool in this step, m

@@ -25,13 +25,12 @@ void LocalContact::update(const Sample& sample) noexcept {
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = with_usable_parts(sample);
   motion_.update(newest_);
-  known_ = false;
+  known_ = following_ = false;
   if (!newest_.surface) return;
   const Vec3 p_rest = at_rest(sample.p, sample.t);
   auto local = remembered(sample.t, p_rest);
-  if (!local && newest_.surface->tool.friction > 0) {  // it begins to follow the path
-    local_size_ = 0;
-    known_ = true;
+  if (!local && newest_.surface->tool.friction > 0) {  // nothing to compare yet
+    following_ = true;
     return;
   }
   if (!local) local = contact_.probe(*newest_.surface, p_rest);
@@ -92,21 +91,22 @@ void LocalContact::restart() noexcept {
   now_ = {};
   newest_ = {};
   motion_.restart();
-  known_ = false;
+  known_ = following_ = false;
   kappa_ = 1;
   largest_ = 0;
 }
 
 Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
-  if (known_) {
+  if (known_ || following_) {
     const Vec3 p_rest = at_rest(p, t);
     const auto local = contact_.go(*newest_.surface, p_rest);
     if (local) {
       remember(std::max(now_, t), p_rest, *local);
+      if (!known_) return without_.force(p, t);
       if (!(local_size_ > 0)) return kappa_ * *local;
       return kappa_ * *local + std::min(kMostCorrection, local->norm() / local_size_) * across_;
     }
-    known_ = false;  // until the next sample: no going back and forth
+    known_ = following_ = false;  // until the next sample: no going back and forth
   }
   return without_.force(p, t);
 }

@@ -15,7 +15,8 @@ namespace palpate::client {
 /// stays as it was. Where the model is not known around the tool (yet), a sample brings none, or F_loc(P_n')
 /// is not even half right: `TwoTangents`, from one sample to the next. With friction, where force depends on
 /// the path, F_loc(P_n') is the one that was felt at t_n: the contact here has followed the path tick by
-/// tick, so there is no state of the server's to take over, and nothing to replay. Contact solved at the
+/// tick, so there is no state of the server's to take over, and nothing to replay; it is not felt before it
+/// was compared. Contact solved at the
 /// haptic rate on a compliance from the simulation: Peterlik et al. (2011); the rest is of our own. About 50
 /// ns a tick, and where the tool has gone on (see `ContactOnPatch`) a contact solve of 10 us, one in ten
 /// above 50 us; with friction 30 us, one in ten above 130 us. A sample: 1 us, of a free tool expected to
@@ -56,6 +57,7 @@ class LocalContact : public Extrapolator {
   std::vector<Felt> felt_;          // a ring
   std::size_t felts_ = 0;           // so far
   bool known_ = false;              // whether the model says what is felt, since the newest sample
+  bool following_ = false;  // or follows the path unfelt, as with friction nothing can be compared yet
 };
 
 }  // namespace palpate::client

@@ -82,7 +82,10 @@ def name_points(axes, points):
 def draw_front(axes, rows):
     for row in rows:
         axes.loglog(row["step_ms_p50"], above(row["force_error_percent"]), MARKS[row["element"]],
-                    color=COLOURS[row["model"]], alpha=1 if row["on_front"] else 0.45)
+                    color=COLOURS[row["model"]], alpha=1 if row["on_front"] else 0.45,
+                    markerfacecolor="white" if row["flagged_steps"] else None)
+    if any(r["flagged_steps"] for r in rows):
+        axes.plot([], [], "o", color="0.4", markerfacecolor="white", label="some steps did not settle")
     front = sorted((r for r in rows if r["on_front"]), key=lambda r: r["step_ms_p50"])
     axes.loglog([r["step_ms_p50"] for r in front], [above(r["force_error_percent"]) for r in front], "-", color="0.4",
                 linewidth=0.8, zorder=0)

@@ -22,13 +22,13 @@ from matplotlib.patches import Patch  # noqa: E402
 
 COLOURS = {"stable": "#b8e0c2", "flagged": "#fbe3a1", "refused": "#c9d6ea", "not_applicable": "#f2f2f2",
            "exploded": "#e4604e"}
-MEANINGS = {"stable": "stable: error of the force at the end", "flagged": "flagged: a defined answer, told to be unsettled",
+MEANINGS = {"stable": "stable: error of the force at the end, or of the shape where no tool is", "flagged": "flagged: a defined answer, told to be unsettled",
             "refused": "refused: the program says what to change", "not_applicable": "makes no sense for this model",
             "exploded": "exploded"}
 # What a refusal is about, in a word.
-WHY = {"sub-steps": "too many\nsub-steps", "no fixed nodes": "nothing\nholds it", "singular": "nothing\nholds it",
-       "friction": "friction\nabove 2", "is for law": "material\nit cannot", "bears tools only": "tools\nonly",
-       "reduced": "not in\nthis build"}
+WHY = {"sub-steps": "too many\nsub-steps", "no fixed nodes": "nothing\nholds it", "small turns": "nothing\nholds it",
+       "is for law": "material\nit cannot", "does not deform": "material\nit cannot", "bears tools only": "tools\nonly",
+       "not in this build": "not in\nthis build"}
 
 
 def number(value):
@@ -42,13 +42,15 @@ def in_cell(row):
     if row["outcome"] == "refused":
         return next((short for part, short in WHY.items() if part in row["reason"]), "refused")
     if row["error_percent"] is not None:
-        return number(row["error_percent"])
-    return "\n".join(textwrap.wrap(row["reason"], 16)[:2])
+        elsewhere = "place to rest" in row["reason"]
+        return number(row["error_percent"]) + ("\nanother rest" if elsewhere else "")
+    return "\n".join(textwrap.wrap(row["reason"].split(",")[0], 16)[:2])
 
 
 def draw(rows, file):
     cases, models = list(dict.fromkeys(r["case"] for r in rows)), list(dict.fromkeys(r["model"] for r in rows))
-    figure, axes = plt.subplots(figsize=(3 + 1.25 * len(models), 1.9 + 0.42 * len(cases)), layout="constrained")
+    said = {r["case"]: r["what"] for r in rows}
+    figure, axes = plt.subplots(figsize=(4.6 + 1.25 * len(models), 1.9 + 0.42 * len(cases)), layout="constrained")
     for row in rows:
         x, y = models.index(row["model"]), cases.index(row["case"])
         axes.add_patch(plt.Rectangle((x - 0.48, y - 0.46), 0.96, 0.92, color=COLOURS[row["outcome"]], lw=0))
@@ -56,7 +58,7 @@ def draw(rows, file):
     axes.set_xlim(-0.5, len(models) - 0.5)
     axes.set_ylim(len(cases) - 0.5, -0.5)
     axes.set_xticks(range(len(models)), [m.replace(" ", "\n") for m in models], fontsize=9)
-    axes.set_yticks(range(len(cases)), [c.replace("_", " ") for c in cases], fontsize=9)
+    axes.set_yticks(range(len(cases)), [c.replace("_", " ") + "\n" + said[c] for c in cases], fontsize=8, linespacing=0.95)
     axes.xaxis.tick_top()
     axes.tick_params(length=0)
     for spine in axes.spines.values():

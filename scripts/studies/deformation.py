@@ -14,6 +14,7 @@ Exit status: 0 done, 1 a program failed, 2 wrong use.
 
 import argparse
 import csv
+import hashlib
 import json
 import math
 import subprocess
@@ -93,6 +94,7 @@ def run(*arguments):
 
 
 def cost_of(folder, model, n):
+    """Measured by this program before, or now."""
     mesh, scene, found = folder / f"block_{n}.msh", folder / f"block_{n}_{model}.toml", folder / f"{model}_{n}.json"
     if not found.exists():
         write_block(mesh, n)
@@ -153,7 +155,7 @@ def main():
             found["reference"]["closed_form_percent"] = against_closed_form(folder)
             (folder / "summary.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
         rows += json.loads((folder / "summary.json").read_text(encoding="utf-8"))["rows"]
-    costs = options.out / "cost"
+    costs = options.out / "cost" / hashlib.sha256(SERVER.read_bytes() + SCENE.encode()).hexdigest()[:16]
     costs.mkdir(parents=True, exist_ok=True)
     sizes = [(model, n) for model, most in MOST.items() for n in SIZES if n <= (15 if options.quick else most)]
     found = []

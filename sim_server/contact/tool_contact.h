@@ -17,8 +17,10 @@ struct ToolForce {
   int contacts = 0;    ///< touching faces, edges and vertices; or vertices that it grasps
   int iterations = 0;  ///< contact linearisations, all sub-places together
   /// No settled answer: a wild position (then there is no force), contact that did not converge, several
-  /// tools that did not come to an equilibrium, tissue that found no balance or closed over the tool, or a
-  /// way too long for one step (then the force belongs to the place the tool got to).
+  /// tools that did not come to an equilibrium, tissue that found no balance or closed over the tool, a way
+  /// too long for one step (then the force belongs to the place the tool got to), or an organ that ran away:
+  /// some of its surface at no finite place, or, though held, three times its size from rest (then the force
+  /// is that of the step before).
   bool flagged = false;
 };
 

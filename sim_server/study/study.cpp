@@ -1,5 +1,6 @@
 #include "sim_server/study/study.h"
 
+#include <algorithm>
 #include <array>
 #include <fmt/core.h>
 #include <fstream>
@@ -35,11 +36,20 @@ std::string fingerprint(const StudyOptions& options, const StudyPlan& plan) {
   return fmt::format("{:016x}", hash.value());
 }
 
+[[noreturn]] void fail_untouched(const StudyOptions& options) {
+  fail(
+      "{}: the tool never touches the organ on this way, so that there is no force to compare; --trajectory "
+      "takes "
+      "places (m) in the scene's frame",
+      options.trajectory.value_or(options.scene).string());
+}
+
 /// Runs cases, or finds that they were run before.
 class Runner {
  public:
-  Runner(const StudyOptions& options, const StudyPlan& plan)
-      : folder_(options.out / "traces" / fingerprint(options, plan)) {
+  /// `empty`: bytes of this program before it read anything.
+  Runner(const StudyOptions& options, const StudyPlan& plan, double empty)
+      : folder_(options.out / "traces" / fingerprint(options, plan)), empty_(empty) {
     std::filesystem::create_directories(folder_);
     progress_("finding where to press", 0);
     const StudyCase& own = plan.cases.front();
@@ -51,6 +61,7 @@ class Runner {
     if (seconds_ < 4 / own.scene.rate_hz)
       fail("{}: lasts {:g} s, which is less than four steps of the scene", file.string(), seconds_);
     sites_ = compared_sites(own, around(*motion_, own.scene.tools.front().shape.radius));
+    if (sites_.empty()) fail_untouched(options);
   }
 
   Trace run(const StudyCase& one, double share) {
@@ -61,7 +72,7 @@ class Runner {
         run_apart(one.name(), [&] { write_trace(file, run_case(one, *motion_, seconds_, sites_)); });
     std::optional<Trace> trace = read_trace(file);
     if (!trace) fail_at_run_time("{}: its trace {} is not whole", one.name(), file.string());
-    trace->peak_bytes = bytes;
+    trace->peak_bytes = empty_ + bytes;
     write_trace(file, *trace);
     return *trace;
   }
@@ -91,6 +102,7 @@ class Runner {
   std::optional<Trajectory> motion_;
   double seconds_ = 0;
   std::vector<Vec3> sites_;
+  double empty_;
   ProgressLine progress_{"the same command goes on from there"};
 };
 
@@ -110,16 +122,20 @@ StudyRow row_of(const Scene& scene, const StudyCase& one, const Trace& trace, co
 }  // namespace
 
 int study(const StudyOptions& options) {
+  const double empty = own_bytes();
   const Scene scene = read_scene(options.scene);
   StudyPlan plan = plan_study(scene, options);
   std::error_code failed;
   std::filesystem::create_directories(options.out, failed);
   check_writable(options.out / "summary.json");
-  Runner runner(options, plan);
+  Runner runner(options, plan, empty);
   refine_references(plan, around(runner.motion(), kNear * scene.tools.front().shape.radius));
   const double latency = 1e-3 * options.latency_ms;
   const Trace reference = runner.run(runner.near_the_way(plan.reference), 0),
               check = runner.run(runner.near_the_way(plan.check), 0.1);
+  if (std::all_of(reference.forces.begin(), reference.forces.end(),
+                  [](const Vec3& f) { return f.isZero(0); }))
+    fail_untouched(options);
   StudyResult result{.own = errors_of(check, reference, runner.motion(), latency), .rows = {}};
   result.reference = plan.reference.name();
   result.check = plan.check.name();
@@ -130,8 +146,7 @@ int study(const StudyOptions& options) {
     try {
       const Trace trace = runner.run(one, share);
       result.rows.push_back(row_of(scene, one, trace, errors_of(trace, reference, runner.motion(), latency)));
-    } catch (const Error& error) {
-      if (error.exit_code() != 2) throw;
+    } catch (const CaseFailed& error) {
       result.refused.emplace_back(one.name(), error.what());
     }
   }
@@ -139,7 +154,9 @@ int study(const StudyOptions& options) {
   mark_front(result.rows);
   write_study(options, result);
   fmt::print("{}", to_text(result));
-  if (options.budget_ms) fmt::print("{}", advice(result, *options.budget_ms, options.scene.parent_path()));
+  if (scene.tools.size() > 1)
+    fmt::print("Only tool 1 of {} is moved and compared; the others are away.\n", scene.tools.size());
+  if (options.budget_ms) fmt::print("{}", advice(result, options));
   return 0;
 }
 

@@ -116,6 +116,11 @@ class Planner {
     std::vector<std::pair<Scene, double>> meshes{{base_, 0}};
     for (const auto& file : options_.meshes) {
       Scene other = base_;
+      for (const auto& [before, refinements] : meshes) {
+        if (before.mesh_file.stem() == file.stem())
+          fail("--mesh {}: has the name of {}, and cases are known by it; rename one", file.string(),
+               before.mesh_file.string());
+      }
       other.mesh_file = file;
       const TetMesh mesh = read_mesh(file);
       for (const FixedRegion& region : base_.fixed) vertices_in(region, mesh);  // there are some

@@ -1,4 +1,5 @@
 #pragma once
+#include "common/error.h"
 #include "common/trajectory.h"
 #include "sim_server/study/study_plan.h"
 
@@ -15,7 +16,7 @@ struct Trace {
   std::size_t tetrahedra = 0, nodes = 0;
   std::uint64_t state_hash = 0;
   double setup_ms = 0, step_ms_p50 = 0, step_ms_p99 = 0;  ///< of steps in contact
-  double peak_bytes = 0;                                  ///< resident, of the process that ran it
+  double peak_bytes = 0;                                  ///< resident, of a process that runs it
 };
 
 /// The tool pressed on the scene by half its radius, slid to and fro by its radius and lifted, in 2 s: where
@@ -38,9 +39,18 @@ void write_trace(const std::filesystem::path& file, const Trace& trace);
 /// Reads it, or gives nothing where there is none, or not a whole one.
 std::optional<Trace> read_trace(const std::filesystem::path& file);
 
-/// Runs `work` in a process of its own, which has the machine's memory and threads to itself, and gives the
-/// most that was resident, bytes. An `Error` there is one here; a crash is a run-time `Error`. To be called
-/// before this process has threads.
+/// Resident memory of this process now but for pages of files (programs and libraries, which a child gets as
+/// it uses them), bytes; 0 where the system does not tell.
+double own_bytes();
+
+/// A case that came to no end: refused, out of memory, crashed. The other cases of a study go on.
+struct CaseFailed : Error {
+  using Error::Error;
+};
+
+/// Runs `work` in a process of its own, which has the machine's memory and threads to itself, and gives how
+/// much more than at its beginning was resident at most, bytes. Throws `CaseFailed`, with what an `Error`
+/// there said; an `Error` where it was interrupted. To be called before this process has threads.
 double run_apart(const std::string& name, const std::function<void()>& work);
 
 }  // namespace palpate::sim

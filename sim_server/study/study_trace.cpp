@@ -1,7 +1,9 @@
 // Traces in files, and processes of their own.
+#include <algorithm>
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <malloc.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -93,6 +95,13 @@ std::optional<Trace> read_trace(const std::filesystem::path& path) {
   return trace;
 }
 
+double own_bytes() {
+  std::ifstream file("/proc/self/statm");
+  double all = 0, resident = 0, of_files = 0;
+  file >> all >> resident >> of_files;
+  return (resident - of_files) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
 namespace {
 
 /// In the child: does `work`, and says what went wrong.
@@ -133,6 +142,8 @@ std::optional<std::string> hear(int in) {
 }  // namespace
 
 double run_apart(const std::string& name, const std::function<void()>& work) {
+  malloc_trim(0);  // what is free here is not the child's
+  const double inherited = own_bytes();
   int said[2];
   if (pipe(said) != 0) fail_at_run_time("{}: no pipe: {}", name, std::strerror(errno));
   const pid_t child = fork();
@@ -150,10 +161,13 @@ double run_apart(const std::string& name, const std::function<void()>& work) {
   wait4(child, &status, 0, &used);
   if (!text || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT))
     fail_at_run_time("{}: interrupted; the same command goes on from there", name);
-  if (WIFSIGNALED(status)) fail_at_run_time("{}: ended by signal {}", name, WTERMSIG(status));
-  if (WEXITSTATUS(status) == 2) fail("{}", *text);
-  if (WEXITSTATUS(status) != 0) fail_at_run_time("{}: {}", name, *text);
-  return 1024.0 * static_cast<double>(used.ru_maxrss);
+  if (WIFSIGNALED(status))
+    throw CaseFailed(fmt::format("{}: ended by signal {}{}", name, WTERMSIG(status),
+                                 WTERMSIG(status) == SIGKILL ? ", as where memory runs out" : ""),
+                     Error::Kind::kRun);
+  if (WEXITSTATUS(status) != 0)
+    throw CaseFailed(*text, WEXITSTATUS(status) == 2 ? Error::Kind::kInput : Error::Kind::kRun);
+  return std::max(0.0, 1024.0 * static_cast<double>(used.ru_maxrss) - inherited);
 }
 
 }  // namespace palpate::sim

@@ -16,9 +16,13 @@ namespace {
 
 using namespace palpate::sim;
 
-constexpr double kAbsurd = 10;      // of the largest force of the reference: an explosion
-constexpr double kReturned = 0.05;  // of the depth: how far from rest a surface may be that was let go
-constexpr double kSmallest = 1e-9;  // N: less is no force
+constexpr double kAbsurd = 10;       // of the largest force of the reference: an explosion
+constexpr double kReturned = 0.05;   // of the depth: how far from rest a surface may be that was let go
+constexpr double kSmallest = 1e-9;   // N: less is no force
+constexpr double kTellWhy = 0.01;    // an error of a force that nothing flagged: more is looked into,
+constexpr double kWrong = 0.1;       // and so much without a reason is no answer
+constexpr double kSamePlace = 1e-3;  // of the force: two runs that ended in one place
+constexpr double kAside = 0.0005;    // m
 constexpr const char* kMesh = "block.msh";
 
 /// What a run showed.
@@ -117,11 +121,19 @@ struct Reference {
   bool settled = true;
 };
 
-Reference reference_of(const Trial& trial, const Column& column) {
-  if (column.model == "rigid") {
-    const double newton = trial.felt_by_rigid.value_or(1) * 800 * trial.depth;
-    return {"closed form: stiffness x depth", std::vector<double>(trial.paths.size(), newton), {}, newton};
+/// What stands for the truth: the same scene, to the same end, slowly and by another model where there is
+/// one.
+struct Truth {
+  Trial trial;
+  const Column* column;
+  bool same;  // as the one that is tried
+
+  Run follow(const std::vector<Path>& paths) const {
+    return studies::follow(trial, trial.file, *column, paths);
   }
+};
+
+Truth truth_of(const Trial& trial, const Column& column) {
   Trial slow = trial;
   slow.file.rate_hz = 30;
   slow.file.max_newton = 60;
@@ -129,15 +141,25 @@ Reference reference_of(const Trial& trial, const Column& column) {
   slow.file.rayleigh_mass = SceneFile{}.rayleigh_mass;
   slow.file.rayleigh_stiffness = SceneFile{}.rayleigh_stiffness;
   slow.seconds = std::max(trial.seconds, trial.reference_seconds);
+  if (!trial.slow.empty()) slow.paths = trial.slow;
   const bool same = !column.linear() || trial.only_implicit_refers;
   const Column& other =
       same ? column : column_named(column.model == "quasi_static" ? "implicit linear" : "quasi_static");
-  const Run run = follow(slow, slow.file, other, trial.slow.empty() ? trial.paths : trial.slow);
-  Reference reference{
-      same ? "pressed slowly, Newton's method to 1e-9" : fmt::format("{}, pressed slowly", other.name),
-      {},
-      run.last,
-      run.max_newton};
+  return {std::move(slow), &other, same};
+}
+
+Reference reference_of(const Trial& trial, const Column& column) {
+  if (column.model == "rigid") {
+    const double newton = trial.felt_by_rigid.value_or(1) * 800 * trial.depth;
+    return {"closed form: stiffness x depth", std::vector<double>(trial.paths.size(), newton), {}, newton};
+  }
+  const Truth truth = truth_of(trial, column);
+  const Run run = truth.follow(truth.trial.paths);
+  Reference reference{truth.same ? "pressed slowly, Newton's method to 1e-9"
+                                 : fmt::format("{}, pressed slowly", truth.column->name),
+                      {},
+                      run.last,
+                      run.max_newton};
   for (const Vec3& force : run.last) reference.newton.push_back(force.norm());
   reference.settled = !run.pressed_flagged;
   if (!reference.settled) reference.what += ": flagged at its end, so that there is no error to tell";
@@ -155,13 +177,39 @@ double error_of(const Run& run, const Reference& reference) {
   return error;
 }
 
+/// Whether the truth ends where `run` did, too, if its tools come from a little aside: two facets may both
+/// bear a tool, and then the way to the end decides. Says so, or nothing.
+std::string another_rest(const Run& run, const Truth& truth) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      std::vector<Path> paths = truth.trial.paths;
+      for (Path& path : paths) {
+        const Waypoint end = path.back();
+        path.back().place[axis] += sign * kAside;
+        path.push_back({(end.t + truth.trial.seconds) / 2, end.place});
+      }
+      const Run other = truth.follow(paths);
+      Reference there{"", {}, other.last};
+      for (const Vec3& force : other.last) there.newton.push_back(force.norm());
+      if (!other.pressed_flagged && error_of(run, there) < kSamePlace)
+        return fmt::format(
+            "the tools have more than one place to rest, and this is another: {} ends there, too, where they "
+            "come from {} mm aside ({}{})",
+            truth.column->name, 1e3 * kAside, sign < 0 ? '-' : '+', "xyz"[axis]);
+    }
+  }
+  return {};
+}
+
 Verdict judge(const Run& run, const Reference& reference, double depth) {
   Verdict verdict{"stable", "", {}, run.max_newton, reference.what};
   if (reference.settled) verdict.error_percent = 100 * error_of(run, reference);
-  const std::string flags = run.flagged == 0
-                                ? ""
-                                : fmt::format("{} of {} steps flagged, answered with what was found so far",
-                                              run.flagged, run.steps);
+  const std::string flags =
+      run.flagged == 0
+          ? ""
+          : fmt::format("{} of {} steps flagged, answered with what was found so far; {}", run.flagged,
+                        run.steps,
+                        run.pressed_flagged ? "the force at the end, too" : "the force at the end was not");
   if (!run.finite) {
     verdict = {"exploded", "a force, tangent or position that is not finite", {}, {}, reference.what};
   } else if (run.wildest > kAbsurd * reference.most + kSmallest) {
@@ -176,6 +224,19 @@ Verdict judge(const Run& run, const Reference& reference, double depth) {
     verdict.reason = flags;
   }
   return verdict;
+}
+
+/// A force that was told as settled and is off needs a reason; where it is far off and there is none, it is
+/// wrong.
+void look_into(Verdict& verdict, const Run& run, const Trial& trial, const Column& column) {
+  if (verdict.outcome == "exploded" || run.pressed_flagged || verdict.error_percent <= 100 * kTellWhy) return;
+  const std::string elsewhere = column.model == "rigid" ? "" : another_rest(run, truth_of(trial, column));
+  if (elsewhere.empty() && verdict.error_percent > 100 * kWrong) {
+    verdict.outcome = "exploded";
+    verdict.reason = fmt::format("{:.2g} % off, and not flagged", *verdict.error_percent);
+  } else if (!elsewhere.empty()) {
+    verdict.reason += (verdict.reason.empty() ? "" : "; ") + elsewhere;
+  }
 }
 
 }  // namespace
@@ -219,7 +280,9 @@ Verdict run_trial(const Case& row, const Column& column, bool quick) {
   if (quick) trial.seconds = std::min(trial.seconds, 2.0);
   try {
     const Run run = follow(trial, trial.file, column, trial.paths);
-    return judge(run, reference_of(trial, column), trial.depth);
+    Verdict verdict = judge(run, reference_of(trial, column), trial.depth);
+    look_into(verdict, run, trial, column);
+    return verdict;
   } catch (const Error& e) {
     return {"refused", e.what(), {}, {}, ""};
   }

@@ -25,10 +25,28 @@ TEST_CASE("robustness study: a cell that holds has an error against a reference,
   CHECK(row_of("soft", "quasi_static").at("error_percent").get<double>() < 0.01);
 }
 
+TEST_CASE("robustness study: with friction of 10 a tool that is drawn does not slip") {
+  const auto rigid = row_of("friction_10", "rigid");
+  CHECK(rigid.at("outcome") == "stable");
+  CHECK(rigid.at("max_force_newton").get<double>() ==
+        Approx(800 * 0.005).epsilon(1e-3));  // 3 mm deep, 4 mm along
+  const auto elastic = row_of("friction_10", "quasi_static");
+  CHECK(elastic.at("outcome") == "stable");
+  CHECK(elastic.at("error_percent").get<double>() < 0.01);
+}
+
+TEST_CASE("robustness study: where two facets may bear a tool, a cell says that it rests on the other") {
+  const auto row = row_of("pinched", "tensor_mass");
+  CHECK(row.at("outcome") == "stable");
+  CHECK(row.at("error_percent").get<double>() > 1);
+  CHECK(row.at("reason").get<std::string>().find("more than one place to rest") != std::string::npos);
+  CHECK(row_of("pinched", "quasi_static").at("reason") == "");
+}
+
 TEST_CASE("robustness study: a refused cell says what to change, a flagged one how often it was") {
-  const auto refused = row_of("friction_10", "quasi_static");
+  const auto refused = row_of("hard", "tensor_mass");
   CHECK(refused.at("outcome") == "refused");
-  CHECK(refused.at("reason").get<std::string>().find("must be between 0 and 2") != std::string::npos);
+  CHECK(refused.at("reason").get<std::string>().find("sub-steps") != std::string::npos);
   CHECK(refused.at("error_percent").is_null());
   const auto flagged = row_of("nan_pose", "quasi_static");
   CHECK(flagged.at("outcome") == "flagged");

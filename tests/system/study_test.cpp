@@ -41,6 +41,12 @@ TEST_CASE("study: rows are the same again from nothing, and at once from what wa
   const std::string said = output_of("sim_server", command, 0, 120);
   CAPTURE(said);
   CHECK(said.find("[deformation]\nmodel = \"") != std::string::npos);
+  CHECK(said.find("scene.toml: in the place of the same keys") != std::string::npos);
+  const std::string summary = bench.text_of("summary.json");
+  for (const auto& row : nlohmann::json::parse(summary)["rows"]) {
+    CHECK(row["peak_bytes"].get<double>() > 1e6);
+    CHECK(row["peak_bytes"].get<double>() < 60e6);  // a column of some hundred vertices, and the program
+  }
   const std::string rows = bench.text_of("rows.csv"), timing = bench.text_of("timing.csv"),
                     along = bench.text_of("along.csv");
   CHECK(rows.find("scene,axis,case,model,law,element,mesh,refinements,tetrahedra,nodes,dt_ms,tolerance,"
@@ -55,6 +61,21 @@ TEST_CASE("study: rows are the same again from nothing, and at once from what wa
   output_of("sim_server", command, 0, 120);
   CHECK(bench.text_of("rows.csv") == rows);
   CHECK(bench.text_of("along.csv") == along);
+}
+
+TEST_CASE("study: two meshes of one name, and a way that touches nothing, are refused") {
+  Bench bench;
+  const std::string scene = bench.scene("quasi_static");
+  std::filesystem::create_directory(bench.folder.path() / "other");
+  bench.folder.write("other/column.msh", column());
+  const std::string twice = output_of(
+      "sim_server",
+      {"study", scene, "--out", bench.out, "--mesh", (bench.folder.path() / "other/column.msh").string()}, 2);
+  CHECK(twice.find("cases are known by it; rename one") != std::string::npos);
+  const std::string away = bench.folder.write("away.csv", "t_s,x_m,y_m,z_m\n0,5,5,5\n1,5,5,6\n").string();
+  const std::string missed =
+      output_of("sim_server", {"study", scene, "--out", bench.out, "--quick", "--trajectory", away}, 2, 120);
+  CHECK(missed.find("never touches the organ") != std::string::npos);
 }
 
 TEST_CASE("study: a scene without tissue is refused with what to take") {

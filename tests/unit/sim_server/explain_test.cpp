@@ -176,6 +176,32 @@ TEST_CASE("explain: what a scene in motion builds: tensors with its sub-steps, a
   CHECK(bench.explanation.steps.contacts == 200);
 }
 
+TEST_CASE("explain: motion at rest, tables of neighbours, tangents and a tool's tree are left out, by line") {
+  const std::string away = "[[tool]]\nradius = 0.005\nreach = [[5, 5, 5], [6, 6, 6]]\n";
+  const Bench rests(kMesh + kFixed + kMaterial + model("quasi_static") + kTool + away);
+  const LeftOut* motion = rests.left_out("motion");
+  REQUIRE(motion != nullptr);
+  CHECK(motion->why == rests.line("model = "));
+  const TetMesh mesh = block();
+  CHECK(motion->bytes.value() == 224.0 * static_cast<double>(mesh.vertices.size()));
+  std::set<std::pair<int, int>> edges;
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    for (const int a : t) {
+      for (const int b : t) edges.emplace(std::min(a, b), std::max(a, b));
+    }
+  }
+  const std::size_t pairs = edges.size() - mesh.vertices.size();  // without those of a vertex with itself
+  CHECK(rests.left_out("neighbour")->bytes.value() ==
+        static_cast<double>(16 * mesh.tetrahedra.size() + 8 * pairs));
+  CHECK(rests.left_out("collision tree of tool 2")->why == rests.line("reach = "));
+  CHECK(rests.left_out("collision tree of tool 1") == nullptr);
+  CHECK(rests.left_out("tangents")->step_ms.has_value());
+  CHECK(rests.left_out("its factor") == nullptr);
+  const Bench moves(kMesh + kFixed + kMaterial + model("tensor_mass") + kTool);
+  CHECK(moves.left_out("motion") == nullptr);
+  CHECK(moves.left_out("its factor")->why == moves.line("model = "));
+}
+
 TEST_CASE("explain: friction is left out, and what it would cost is measured, unless a tool has some") {
   const std::string scene = kMesh + kFixed + kMaterial + model("quasi_static") + kTool;
   const Bench without(scene), with(scene + "friction = 0.2\n");

@@ -114,3 +114,20 @@ TEST_CASE("run away: a tool that appears deep inside is felt or flagged, never l
     if (law != ElasticLaw::kStVenantKirchhoff) CHECK_FALSE(force.flagged);
   }
 }
+
+TEST_CASE("run away: an organ that is held but far from itself is flagged, and the force before it is held") {
+  Scene scene = block_scene("implicit", ElasticLaw::kLinear);
+  const Vec3 inside(0.001, kRadius - 0.003, 0.002);
+  // It sinks by about density x g x height^2 / (2 E): 11 mm and 22 m, as the linear law knows no end.
+  for (const auto& [g, lost] : {std::pair(1e3, false), std::pair(2e6, true)}) {
+    CAPTURE(g);
+    Simulation simulation(scene, block());
+    const ToolForce before = simulation.step(ToolPose(inside), kDt);
+    CHECK_FALSE(before.flagged);
+    scene.loads = {{.kind = Load::Kind::kGravity, .vector = Vec3(0, -g, 0)}};
+    Simulation heavy(scene, block());
+    scene.loads.clear();
+    CHECK(heavy.step(ToolPose(inside), kDt).flagged == lost);
+    CHECK((largest_way(heavy) > 3 * std::hypot(0.03, 0.015, 0.03)) == lost);
+  }
+}

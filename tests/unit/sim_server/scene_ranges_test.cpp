@@ -163,7 +163,7 @@ TEST_CASE("other sections: values out of range") {
            Wrong{"[[fixed]]", "[[load]]\nforce = [0, 1, 0]\ncenter = [0, 0, 0]\nradius = 0", "radius",
                  "between 1e-09 and 1000 (m)"},
            Wrong{"[[tool]]", "radius = 0", "radius", "between 1e-05 and 0.05 (m)"},
-           Wrong{"[[tool]]", "friction = -0.1", "friction", "between 0 and 2"},
+           Wrong{"[[tool]]", "friction = -0.1", "friction", "between 0 and 10"},
            Wrong{"[[tool]]", "grasp_buttons = 65536", "grasp_buttons", "between 1 and 65535"},
        })
     check_refused(wrong);

@@ -83,7 +83,11 @@ TEST_CASE("a trace reads back as it was, and half of one is none") {
 }
 
 TEST_CASE("what runs apart tells its errors and its crashes here") {
-  CHECK(run_apart("big", [] { std::vector<char> much(64 << 20, 1); }) > 0);
+  const std::vector<char> own(128 << 20, 1);  // of this process, and not of those
+  CHECK(run_apart("small", [] {}) < 8e6);
+  const double big = run_apart("big", [] { std::vector<char> much(64 << 20, 1); });
+  CHECK(big > 64e6);
+  CHECK(big < 80e6);
   const auto said = [](const std::function<void()>& work) -> std::string {
     try {
       run_apart("case", work);
@@ -93,7 +97,7 @@ TEST_CASE("what runs apart tells its errors and its crashes here") {
     return {};
   };
   CHECK(said([] { fail("{}: no such thing", "scene.toml"); }) == "scene.toml: no such thing");
-  CHECK(said([] { std::raise(SIGKILL); }) == "case: ended by signal 9");
+  CHECK(said([] { std::raise(SIGKILL); }) == "case: ended by signal 9, as where memory runs out");
 }
 
 }  // namespace palpate::sim
