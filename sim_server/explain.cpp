@@ -266,8 +266,9 @@ LeftOut motion(const Own& own) {
 LeftOut neighbour_tables(const Own& own) {
   const auto vertices = static_cast<double>(own.simulation.mesh().corners()),
              tetrahedra = static_cast<double>(own.simulation.mesh().tetrahedra.size()),
-             triangles = static_cast<double>(own.simulation.surface().triangles.size());
-  const double edges = vertices + tetrahedra + triangles / 2 - 1;  // Euler's, of a ball
+             faces = static_cast<double>(own.simulation.surface().triangles.size()) /
+                     own.simulation.surface().per_face;
+  const double edges = vertices + tetrahedra + faces / 2 - 1;  // Euler's, of a ball
   return {.what = "edge and neighbour tables",
           .why = own.scene.mesh_where,
           .bytes = 4 * sizeof(int) * tetrahedra + 2 * sizeof(int) * edges,

@@ -46,14 +46,6 @@ std::string models_that(const Can& can) {
   return names;
 }
 
-struct SolverRow {
-  std::string_view name;
-  DynamicsSettings::Solver solver;
-};
-constexpr std::array kSolvers{SolverRow{"direct", DynamicsSettings::Solver::kDirect},
-                              SolverRow{"pcg", DynamicsSettings::Solver::kConjugateGradients},
-                              SolverRow{"quasi_newton", DynamicsSettings::Solver::kQuasiNewton}};
-
 /// Keys of [deformation] that only some models take.
 struct KeyOfSome {
   const char* key;
@@ -79,25 +71,6 @@ void refuse_keys_of_others(const Config& config, const DeformationModelRow& row)
     fail("{}: unknown key `[deformation] {}` of model \"{}\"; known to: {}; remove it", config.where(key),
          key, row.name, takers.empty() ? "no model of this build" : takers);
   }
-}
-
-/// What models that take any material are asked for.
-void read_steps(const Config& config, DeformationSettings& settings) {
-  const std::string integrator = config.text("integrator", "backward_euler");
-  settings.second_order = integrator == "bdf2";
-  if (!settings.second_order && integrator != "backward_euler")
-    fail("{}: unknown integrator \"{}\"; known: backward_euler, bdf2", config.where("integrator"),
-         integrator);
-  settings.solver =
-      find_row(kSolvers, config.text("solver", "direct"), "solver", config.where("solver")).solver;
-  settings.refresh_steps =
-      static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
-  if (settings.solver == DynamicsSettings::Solver::kDirect && config.says("refresh_steps"))
-    fail("{}: solver \"direct\" factors where it has to; refresh_steps is for pcg and quasi_newton",
-         config.where("refresh_steps"));
-  settings.max_newton =
-      static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
-  settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);
 }
 
 DeformationSettings read_deformation(const Config& config) {

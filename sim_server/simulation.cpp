@@ -38,6 +38,14 @@ std::vector<std::vector<Triangle>> touchable_by(std::span<const ToolSettings> to
   return lists;
 }
 
+/// A force of an organ that is no more: half of it a step.
+void fade(ToolForce& force) noexcept {
+  force.force *= 0.5;
+  force.torque *= 0.5;
+  force.tangent.setZero();
+  force.flagged = true;
+}
+
 /// Of the box around them, from corner to corner, m.
 double size_of(std::span<const Vec3> places) {
   Vec3 least = places.front(), most = least;
@@ -79,13 +87,14 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
     fail("{}: no triangle of the surface lies within the tool's reach", scene.tools.front().reach_where);
   const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, mesh_);
   require_memory_for(scene, Purpose::kServe, count_parts(mesh_, surface_));
-  tissue_.model =
-      find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where)
-          .make({scene, mesh_, surface_, fixed, reachable, progress});
+  const DeformationModelRow& row =
+      find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where);
+  const bool stays = (row.elastic || row.any_material) && !fixed.empty() && !supports_move(scene);
+  if (stays) farthest_ = kRunAway * size_of(rest_);
+  tissue_.model = row.make({scene, mesh_, surface_, fixed, reachable, progress});
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;
   tissue_.velocities = motion.velocities;
-  if (!fixed.empty() && !supports_move(scene)) farthest_ = kRunAway * size_of(rest_);
   std::size_t loads = 0;
   tools_.reserve(scene.tools.size());
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
@@ -133,8 +142,8 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPo
   if (!tissue_.before.empty())
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (lost && tools_[i].placed()) {  // what was felt before is held
-      forces_[i].flagged = true;
+    if (lost && tools_[i].placed()) {  // what was felt before fades
+      fade(forces_[i]);
       continue;
     }
     if (tangents_wanted_[i]) tools_[i].differentiate();
@@ -146,14 +155,10 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPo
 /// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.
 bool Simulation::ran_away() const noexcept {
   const double most = farthest_ * farthest_;
-  double square = 0;
-  bool finite = true;
-  for (std::size_t v = 0; v < rest_.size(); ++v) {
-    const double off = (tissue_.positions[v] - rest_[v]).squaredNorm();
-    finite = finite && off == off;
-    square = std::max(square, off);
-  }
-  return !finite || square > most;
+  bool near = true;
+  for (std::size_t v = 0; v < rest_.size(); ++v)
+    near &= (tissue_.positions[v] - rest_[v]).squaredNorm() <= most;  // false of what is not a number, too
+  return !near;
 }
 
 /// The tools stay where they were on the organ, which goes by the mean of its velocities before and after
@@ -236,6 +241,7 @@ Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) noexcept {
 }
 
 void Simulation::lift_tool(std::size_t tool) noexcept {
+  forces_[tool] = {};
   if (tools_[tool].placed()) tools_[tool].share(tools_, tissue_);
   tools_[tool].lift(tissue_);
 }
@@ -256,7 +262,7 @@ std::vector<MemoryPart> Simulation::memory() const {
 std::uint64_t Simulation::state_hash() const noexcept {
   Fnv1a hash;
   hash.add(tissue_.positions.data(), tissue_.positions.size_bytes());
-  for (const ToolContact& tool : tools_) hash.add(tool.force().force);
+  for (const ToolForce& force : forces_) hash.add(force.force);
   return hash.value();
 }
 

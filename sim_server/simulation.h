@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "sim_server/contact/tool_contact.h"
@@ -90,7 +89,7 @@ class Simulation {
   TetMesh mesh_;
   Surface surface_;
   std::vector<Vec3> rest_;
-  double farthest_ = std::numeric_limits<double>::infinity();  // from there, m
+  double farthest_ = 1e150;  // from there, m; so far: no bound but that of numbers
   Tissue tissue_;
   std::vector<ToolContact> tools_;
   std::vector<Vec3> ways_;                       // of the surface at each tool in this step, m

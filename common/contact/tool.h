@@ -18,7 +18,7 @@ namespace palpate {
 ///            wall carries the rest).
 struct Tool {
   double radius = 0.005;  ///< m, [1e-5, 0.05]
-  double friction = 0;    ///< Coulomb's coefficient mu against the tissue, [0, 2]; 0 = slips freely
+  double friction = 0;    ///< Coulomb's coefficient mu against the tissue, [0, 10]; 0 = slips freely
   double length = 0;      ///< capsule: between the centres of its ends, m, [0, 0.5]; 0: a sphere
   struct Trocar {
     Vec3 pivot_W = Vec3::Zero();  ///< m

@@ -26,7 +26,10 @@ void LocalContact::update(const Sample& sample) noexcept {
   newest_ = with_usable_parts(sample);
   motion_.update(newest_);
   known_ = following_ = false;
-  if (!newest_.surface) return;
+  if (!newest_.surface) {
+    forget();
+    return;
+  }
   const Vec3 p_rest = at_rest(sample.p, sample.t);
   auto local = remembered(sample.t, p_rest);
   if (!local && newest_.surface->tool.friction > 0) {  // nothing to compare yet
@@ -35,10 +38,18 @@ void LocalContact::update(const Sample& sample) noexcept {
   }
   if (!local) local = contact_.probe(*newest_.surface, p_rest);
   known_ = local && believable(*local, sample.f);
-  if (!known_) return;
+  if (!known_) {
+    forget();
+    return;
+  }
   compare(*local);
   const bool free = local->isZero(0) && sample.f.isZero(0);
   if (free && newest_.surface->tool.friction == 0) compare_ahead();
+}
+
+/// The path is lost, and with it what sticks: what was felt before is no measure of what would be from here.
+void LocalContact::forget() noexcept {
+  felts_ = 0;
 }
 
 void LocalContact::remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept {
@@ -107,6 +118,7 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
       return kappa_ * *local + std::min(kMostCorrection, local->norm() / local_size_) * across_;
     }
     known_ = following_ = false;  // until the next sample: no going back and forth
+    forget();
   }
   return without_.force(p, t);
 }

@@ -35,6 +35,7 @@ class LocalContact : public Extrapolator {
   void compare(const Vec3& local) noexcept;
   void learn_factor(const Vec3& right, const Vec3& local) noexcept;
   void compare_ahead() noexcept;
+  void forget() noexcept;
   void remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept;
   std::optional<Vec3> remembered(Time t, const Vec3& p_rest) const noexcept;
   Vec3 at_rest(const Vec3& p, Time t) const noexcept;

@@ -13,11 +13,11 @@ The same bytes each time. Columns:
                     not finite; an unflagged force more than ten times that of the reference, or at the end
                     more than 10 % off where the reference knows no such place of rest; a surface that
                     does not come back; an end without an answer), or not_applicable
-  what              the case in words
   reason            one sentence; also of a stable cell whose tools rest in another place than those of the reference
   error_percent     of the force at the end, against the reference; of bodies without a tool, see there
   max_force_newton  the largest on any tool, flagged or not
   reference         what the error is measured against
+  what              the case in words
 
 Exit status: 0 no cell exploded, 1 one did, 2 wrong use.
 """

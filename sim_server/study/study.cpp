@@ -38,9 +38,8 @@ std::string fingerprint(const StudyOptions& options, const StudyPlan& plan) {
 
 [[noreturn]] void fail_untouched(const StudyOptions& options) {
   fail(
-      "{}: the tool never touches the organ on this way, so that there is no force to compare; --trajectory "
-      "takes "
-      "places (m) in the scene's frame",
+      "{}: the tool never touches the organ on this way, so that there is no force to compare; its "
+      "places are in m, in the scene's frame",
       options.trajectory.value_or(options.scene).string());
 }
 
@@ -60,7 +59,10 @@ class Runner {
     seconds_ = motion_->duration();
     if (seconds_ < 4 / own.scene.rate_hz)
       fail("{}: lasts {:g} s, which is less than four steps of the scene", file.string(), seconds_);
-    sites_ = compared_sites(own, around(*motion_, own.scene.tools.front().shape.radius));
+    const double radius = own.scene.tools.front().shape.radius;
+    sites_ = compared_sites(own, around(*motion_, radius));
+    if (sites_.empty())  // it may be thinner than edges are long
+      sites_ = compared_sites(own, around(*motion_, radius + describe(mesh_of(own)).max_edge));
     if (sites_.empty()) fail_untouched(options);
   }
 
@@ -151,12 +153,15 @@ int study(const StudyOptions& options) {
     }
   }
   runner.end();
+  if (result.rows.empty())
+    fail_at_run_time("{}: no case could be run; of the first: {}", options.scene.string(),
+                     result.refused.front().second);
   mark_front(result.rows);
   write_study(options, result);
   fmt::print("{}", to_text(result));
   if (scene.tools.size() > 1)
     fmt::print("Only tool 1 of {} is moved and compared; the others are away.\n", scene.tools.size());
-  if (options.budget_ms) fmt::print("{}", advice(result, options));
+  if (options.budget_ms) fmt::print("{}", advice(result, *options.budget_ms, scene));
   return 0;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/report.h"
+#include "common/text.h"
 #include "sim_server/scene_parts.h"
 
 namespace palpate::sim {
@@ -84,20 +85,33 @@ std::string without(const Scene& scene, const Scene& asked) {
   return text;
 }
 
-/// To be pasted into the scene `file`, whose other keys stay.
-std::string settings_of(const StudyRow& row, const std::filesystem::path& file) {
+/// The keys of [deformation] that this model takes.
+std::string deformation_text(const DeformationSettings& by) {
+  const DeformationModelRow& row = find_row(deformation_models(), by.model, "deformation model", by.where);
+  std::string text = fmt::format("[deformation]\nmodel = \"{}\"\n", by.model);
+  if (row.damped)
+    text += fmt::format("rayleigh_mass = {:g}\nrayleigh_stiffness = {:g}\n", by.rayleigh_mass,
+                        by.rayleigh_stiffness);
+  if (row.modal) text += fmt::format("modes = {}\n", by.modes);
+  if (!row.any_material) return text;
+  if (by.second_order) text += "integrator = \"bdf2\"\n";
+  if (by.solver != DynamicsSettings::Solver::kDirect)
+    text += fmt::format("solver = \"{}\"\nrefresh_steps = {}\n", name_of(by.solver), by.refresh_steps);
+  return text + fmt::format("tolerance = {:g}\nmax_newton = {}\n", by.tolerance, by.max_newton);
+}
+
+/// To be pasted into the scene that was `asked` about.
+std::string settings_of(const StudyRow& row, const Scene& asked) {
   const Scene& scene = row.one.scene;
-  std::string text = fmt::format("# {}: in the place of the same keys; all others stay as they are\n{}",
-                                 file.string(), without(scene, read_scene(file)));
+  std::string text = fmt::format(
+      "# {}: in the place of the same keys, [deformation] of all that stands there; the rest stays\n{}",
+      asked.source, without(scene, asked));
+  const std::filesystem::path folder = std::filesystem::path(asked.source).parent_path();
   text += fmt::format("rate_hz = {:g}\n[mesh]\nfile = \"{}\"", scene.rate_hz,
-                      std::filesystem::proximate(scene.mesh_file, file.parent_path()).generic_string());
-  text +=
-      fmt::format("\n[material]\nlaw = \"{}\"\nelement = \"{}\"\n[deformation]\nmodel = \"{}\"\n",
-                  name_of(scene.material->law), name_of(scene.material->element), scene.deformation.model);
-  if (by_iterations(row))
-    text += fmt::format("tolerance = {:g}\nmax_newton = {}\n", scene.deformation.tolerance,
-                        scene.deformation.max_newton);
-  return text;
+                      std::filesystem::proximate(scene.mesh_file, folder).generic_string());
+  text += fmt::format("\n[material]\nlaw = \"{}\"\nelement = \"{}\"\n", name_of(scene.material->law),
+                      name_of(scene.material->element));
+  return text + deformation_text(scene.deformation);
 }
 
 }  // namespace
@@ -130,8 +144,7 @@ std::string to_text(const StudyResult& result) {
   return text + "* on the front: nothing settled has as small an error of the force in less time\n";
 }
 
-std::string advice(const StudyResult& result, const StudyOptions& options) {
-  const double budget_ms = *options.budget_ms;
+std::string advice(const StudyResult& result, double budget_ms, const Scene& asked) {
   const StudyRow* best = nullptr;
   for (const StudyRow& row : result.rows) {
     if (row.one.refinements > 0 || row.flagged > 0) continue;
@@ -142,11 +155,10 @@ std::string advice(const StudyResult& result, const StudyOptions& options) {
     return fmt::format("\nNo case takes {:g} ms a step or less; a coarser mesh (--mesh FILE) would.\n",
                        budget_ms);
   return fmt::format(
-      "\nWithin {:g} ms a step, {} is felt with the smallest error: {:.2g} %, at {:.2g} ms a step (all but 1 "
-      "in "
-      "100 within {:.2g}).\n\n{}",
+      "\nWithin {:g} ms a step, {} is felt with the smallest error: {:.2g} %, at {:.2g} ms a step (99 "
+      "of 100 within {:.2g}).\n\n{}",
       budget_ms, best->one.name(), best->errors.felt, best->step_ms_p50, best->step_ms_p99,
-      settings_of(*best, options.scene));
+      settings_of(*best, asked));
 }
 
 void write_study(const StudyOptions& options, const StudyResult& result) {

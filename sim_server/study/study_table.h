@@ -29,9 +29,9 @@ void mark_front(std::vector<StudyRow>& rows);
 /// A table for a terminal, best front first.
 std::string to_text(const StudyResult& result);
 /// One sentence, and TOML to paste into the scene: of the cases on meshes that are files, of those that
-/// take no more than `options.budget_ms` a step (median), and no longer than their own step in time, the one
-/// that is felt with the smallest error. Throws `Error` where the scene is not there any more.
-std::string advice(const StudyResult& result, const StudyOptions& options);
+/// take no more than `budget_ms` a step (median), and no longer than their own step in time, the one
+/// that is felt with the smallest error. `asked`: the scene itself.
+std::string advice(const StudyResult& result, double budget_ms, const Scene& asked);
 /// rows.csv, timing.csv, along.csv, reference.csv (tool and force, step by step) and summary.json. Throws
 /// `Error`.
 void write_study(const StudyOptions& options, const StudyResult& result);

@@ -159,14 +159,16 @@ double run_apart(const std::string& name, const std::function<void()>& work) {
   int status = 0;
   rusage used{};
   wait4(child, &status, 0, &used);
-  if (!text || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT))
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (!text || signal == SIGINT || signal == SIGTERM || signal == SIGHUP)
     fail_at_run_time("{}: interrupted; the same command goes on from there", name);
-  if (WIFSIGNALED(status))
-    throw CaseFailed(fmt::format("{}: ended by signal {}{}", name, WTERMSIG(status),
-                                 WTERMSIG(status) == SIGKILL ? ", as where memory runs out" : ""),
+  if (signal != 0)
+    throw CaseFailed(fmt::format("{}: ended by signal {}{}", name, signal,
+                                 signal == SIGKILL ? ", as where memory runs out" : ""),
                      Error::Kind::kRun);
   if (WEXITSTATUS(status) != 0)
-    throw CaseFailed(*text, WEXITSTATUS(status) == 2 ? Error::Kind::kInput : Error::Kind::kRun);
+    throw WEXITSTATUS(status) == 2 ? CaseFailed(*text)
+                                   : CaseFailed(fmt::format("{}: {}", name, *text), Error::Kind::kRun);
   return std::max(0.0, 1024.0 * static_cast<double>(used.ru_maxrss) - inherited);
 }
 

@@ -58,9 +58,8 @@ class Watch {
       for (std::size_t k = 0; k < paths.size(); ++k) places[k] = place_at(paths[k], i * dt_);
       see(simulation_.step(places, dt_));
     }
-    run_.last.clear();
+    run_.last = felt_;
     run_.pressed_flagged = run_.ends_flagged;
-    for (std::size_t k = 0; k < paths.size(); ++k) run_.last.push_back(simulation_.tool(k).force().force);
     for (auto& place : places) place.reset();
     for (int i = 0; i < steps && run_.finite; ++i) see(simulation_.step(places, dt_));
     for (std::size_t v = 0; v < began_.size(); ++v)
@@ -72,7 +71,9 @@ class Watch {
   void see(std::span<const ToolForce> forces) {
     ++run_.steps;
     run_.ends_flagged = false;
+    felt_.clear();
     for (const ToolForce& force : forces) {
+      felt_.push_back(force.force);
       const double newton = force.force.norm();
       run_.finite = run_.finite && std::isfinite(newton) && force.tangent.allFinite();
       run_.max_newton = std::max(run_.max_newton, newton);
@@ -86,7 +87,7 @@ class Watch {
 
   Simulation& simulation_;
   double dt_;
-  std::vector<Vec3> began_;
+  std::vector<Vec3> began_, felt_;
   Run run_;
 };
 

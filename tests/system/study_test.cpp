@@ -41,11 +41,13 @@ TEST_CASE("study: rows are the same again from nothing, and at once from what wa
   const std::string said = output_of("sim_server", command, 0, 120);
   CAPTURE(said);
   CHECK(said.find("[deformation]\nmodel = \"") != std::string::npos);
-  CHECK(said.find("scene.toml: in the place of the same keys") != std::string::npos);
+  CHECK(said.find("scene.toml: in the place of the same keys, [deformation]") != std::string::npos);
   const std::string summary = bench.text_of("summary.json");
   for (const auto& row : nlohmann::json::parse(summary)["rows"]) {
     CHECK(row["peak_bytes"].get<double>() > 1e6);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they keep more
     CHECK(row["peak_bytes"].get<double>() < 60e6);  // a column of some hundred vertices, and the program
+#endif
   }
   const std::string rows = bench.text_of("rows.csv"), timing = bench.text_of("timing.csv"),
                     along = bench.text_of("along.csv");

@@ -115,19 +115,34 @@ TEST_CASE("run away: a tool that appears deep inside is felt or flagged, never l
   }
 }
 
-TEST_CASE("run away: an organ that is held but far from itself is flagged, and the force before it is held") {
+TEST_CASE(
+    "run away: the force of an organ that is far from itself is flagged, and fades, wherever the tool goes") {
   Scene scene = block_scene("implicit", ElasticLaw::kLinear);
   const Vec3 inside(0.001, kRadius - 0.003, 0.002);
   // It sinks by about density x g x height^2 / (2 E): 11 mm and 22 m, as the linear law knows no end.
   for (const auto& [g, lost] : {std::pair(1e3, false), std::pair(2e6, true)}) {
     CAPTURE(g);
-    Simulation simulation(scene, block());
-    const ToolForce before = simulation.step(ToolPose(inside), kDt);
-    CHECK_FALSE(before.flagged);
     scene.loads = {{.kind = Load::Kind::kGravity, .vector = Vec3(0, -g, 0)}};
     Simulation heavy(scene, block());
-    scene.loads.clear();
     CHECK(heavy.step(ToolPose(inside), kDt).flagged == lost);
     CHECK((largest_way(heavy) > 3 * std::hypot(0.03, 0.015, 0.03)) == lost);
   }
+}
+
+TEST_CASE("run away: what was felt before an organ ran away fades, and does not come to another hand") {
+  Scene scene = block_scene("quasi_static", ElasticLaw::kLinear);
+  const Vec3 place(0.001, kRadius, 0.002), far = place + Vec3(0, 1, 0);  // 20 times its size
+  scene.tools[0].grasp_place = place;
+  Simulation simulation(scene, block());
+  const ToolForce felt = simulation.step(ToolPose(place + Vec3(0, 0.002, 0)), kDt);
+  CHECK_FALSE(felt.flagged);
+  REQUIRE(felt.force.norm() > 0.1);
+  for (const double share : {0.5, 0.25, 0.125}) {
+    const ToolForce held = simulation.step(ToolPose(far), kDt);
+    CHECK(held.flagged);
+    CHECK((held.force - share * felt.force).norm() < 1e-12);
+    CHECK(held.tangent.isZero(0));
+  }
+  simulation.lift_tool(0);
+  CHECK(simulation.step(ToolPose(far), kDt).force.isZero(0));
 }
