@@ -142,6 +142,7 @@ TEST_CASE("left out: a server starts two threads, one more to record, and asks a
       CHECK(others <= 1 + 2 * (cores - 1));
     }
   }
+#ifdef PALPATE_WITH_CAPTURE
   SECTION("recording") {
     const Waiting server(folder.write("scene.toml", minimal("rigid")).string(),
                          {"--record", (folder.path() / "session.pcap").string()});
@@ -149,6 +150,7 @@ TEST_CASE("left out: a server starts two threads, one more to record, and asks a
     three.insert("palpate-record");
     CHECK(server.threads().first == three);
   }
+#endif
 }
 
 TEST_CASE("left out: of a tool that reaches nothing is told when the server starts, and of no other") {
