@@ -268,7 +268,8 @@ LeftOut neighbour_tables(const Own& own) {
              tetrahedra = static_cast<double>(own.simulation.mesh().tetrahedra.size()),
              faces = static_cast<double>(own.simulation.surface().triangles.size()) /
                      own.simulation.surface().per_face;
-  const double edges = vertices + tetrahedra + faces / 2 - 1;  // Euler's, of a ball
+  const bool has_edges = !own.simulation.mesh().mid_edges.empty();  // p2: the ends of each are there
+  const double edges = has_edges ? 0 : vertices + tetrahedra + faces / 2 - 1;  // Euler's, of a ball
   return {.what = "edge and neighbour tables",
           .why = own.scene.mesh_where,
           .bytes = 4 * sizeof(int) * tetrahedra + 2 * sizeof(int) * edges,
@@ -307,8 +308,9 @@ std::vector<LeftOut> left_out(Own& own) {
   if (is_elastic(own.scene)) rows.push_back(whole_compliance(own));
   if (model == "rigid" || model == "quasi_static") rows.push_back(motion(own));
   if (model == "tensor_mass")
-    rows.push_back(
-        {.what = "its factor", .why = own.scene.deformation.where, .note = "explicit steps solve nothing"});
+    rows.push_back({.what = "factor of the stiffness matrix",
+                    .why = own.scene.deformation.where,
+                    .note = "explicit steps solve nothing"});
   rows.push_back(neighbour_tables(own));
   add_unreached_tools(own, rows);
   rows.push_back(tangents(own));
