@@ -58,6 +58,7 @@ Passivity::Settings read_passivity(const Config& config) {
   passivity.enabled = config.flag("enabled", passivity.enabled);
   passivity.allowance = config.number("allowance", {0, 10, "W"}, passivity.allowance);
   passivity.debt = config.number("debt", {1e-6, 10, "J"}, passivity.debt);
+  passivity.damping = config.number("damping", {0, 100, "N s/m"}, passivity.damping);
   config.reject_unknown();
   return passivity;
 }

@@ -136,11 +136,12 @@ void print_tool(const Json& tool) {
              number(motion, "mean_speed_m_s"), number(motion, "max_speed_m_s"),
              number(motion, "spatial_sampling_mm"));
   fmt::print(
-      "  safety  ticks: {:.0f} clamped, {:.0f} slewed, {:.0f} made passive, {:.0f} without device, {:.0f} "
+      "  safety  ticks: {:.0f} clamped, {:.0f} slewed, {:.0f} damped, {:.0f} softened, {:.0f} without "
+      "device, {:.0f} "
       "clutched; times: {:.0f} faded, {:.0f} not finite, {:.0f} storms\n",
-      number(safety, "clamped"), number(safety, "slewed"), number(safety, "passive"), number(safety, "lost"),
-      number(safety, "clutched"), number(safety, "ramped"), number(safety, "not_finite"),
-      number(safety, "storms"));
+      number(safety, "clamped"), number(safety, "slewed"), number(safety, "damped"),
+      number(safety, "softened"), number(safety, "lost"), number(safety, "clutched"),
+      number(safety, "ramped"), number(safety, "not_finite"), number(safety, "storms"));
   if (safety.value("cut_by_motors", 0) > 0) {
     fmt::print("          {:.0f} ticks: the motors of the device could not give the whole force\n",
                number(safety, "cut_by_motors"));
@@ -193,7 +194,10 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
           {"safety",
            {{"clamped", limiter.clamped},
             {"slewed", limiter.slewed},
-            {"passive", pipeline.passivity().counts().reduced},
+            {"damped", pipeline.passivity().counts().damped},
+            {"softened", pipeline.passivity().counts().softened},
+            {"least_gain", pipeline.passivity().counts().least_gain},
+            {"weak_s", pipeline.felt_share().total_s()},
             {"largest_debt_mj", 1e3 * pipeline.passivity().counts().largest_debt_j},
             {"ramped", pipeline.watchdog().ramped()},
             {"lost", stats.lost},

@@ -5,6 +5,7 @@
 #include <random>
 #include <unistd.h>
 
+#include "common/ages.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "common/interrupt.h"
@@ -21,7 +22,6 @@ namespace {
 constexpr int kPriority = 80;
 constexpr double kTraceSeconds = 60;
 constexpr Time kWelcomePatience = std::chrono::seconds(5);
-constexpr std::int64_t kSilentNs = 300'000'000;
 constexpr int kPatience = 30;  // looks of 100 ms
 
 std::uint64_t random_number() {
@@ -131,19 +131,40 @@ void HeldTool::end_if_stuck() {
   std::abort();
 }
 
+/// Whoever presses into a wall that gives way should know that the wall is not to blame.
+void HeldTool::tell_weakness() {
+  const bool weak = loop_.weak;
+  if (weak && !weak_) {
+    const double gain = loop_.gain, law = loop_.law_newton;
+    const std::string why =
+        gain < FeltShare::kHalf
+            ? fmt::format(
+                  "the wall is too stiff for this rate and latency, so it is felt at {:.0f} % of its "
+                  "stiffness; a law with tangents, a faster loop or a softer organ help",
+                  100 * gain)
+            : fmt::format("more than [limits] force = {:g} N, or than it may change by",
+                          config_.device_limits().max_force);
+    log::warning("{}for half a second, less than half of the force has been felt ({:.2f} of {:.2f} N): {}",
+                 name_, loop_.newest_newton.load(), law, why);
+  }
+  weak_ = weak;
+}
+
 void HeldTool::look() {
   end_if_stuck();
   const std::int64_t age = loop_.newest_age_ns;
-  if (age > kSilentNs && !silent_)
+  if (age > kOutage.count() && !silent_)
     log::warning("{}no samples from {}: force goes to zero; asking again", name_, config_.server);
-  if (age >= 0 && age < kSilentNs && silent_) log::info("{}{} is back: soft start", name_, config_.server);
-  silent_ = age > kSilentNs;
+  if (age >= 0 && age < kOutage.count() && silent_)
+    log::info("{}{} is back: soft start", name_, config_.server);
+  silent_ = age > kOutage.count();
   const Fault fault = loop_.fault;
   if (fault != Fault::kNone && fault_ == Fault::kNone) {
     log::warning("{}force latched off ({}); when it is safe, re-arm with `kill -USR1 {}`", name_,
                  name_of(fault), getpid());
   }
   fault_ = fault;
+  tell_weakness();
   recording_.look();
   if (const char* status = device_->status(); status != device_status_) {
     if (status[0] != 0) log::info("{}{}", name_, status);

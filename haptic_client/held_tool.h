@@ -39,7 +39,7 @@ class HeldTool {
   void rearm() { loop_.rearm = true; }
 
   /// To be called ten times a second. Tells, once each: the loss and the return of the server, a latched
-  /// fault, what the device wants.
+  /// fault, a force of which most is not felt, what the device wants.
   void look();
   /// Force, age and ticks, for a line of progress.
   std::string progress() const;
@@ -51,6 +51,7 @@ class HeldTool {
 
  private:
   void end_if_stuck();
+  void tell_weakness();
 
   ClientConfig config_;
   ToolFiles files_;
@@ -68,7 +69,7 @@ class HeldTool {
   const char* device_status_ = "";
   std::uint64_t ticks_ = 0;  // when looked at last
   int standstills_ = 0;      // looks since then
-  bool silent_ = false;
+  bool silent_ = false, weak_ = false;
   Fault fault_ = Fault::kNone;
   std::jthread recording_thread_, net_thread_, haptic_thread_;
 };

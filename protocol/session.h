@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/time.h"
+#include "common/ages.h"
 #include "protocol/codec.h"
 #include "protocol/replay_window.h"
 
@@ -44,7 +44,7 @@ class ClientSession {
   std::optional<RefuseReason> refused() const noexcept { return refused_; }
 
   static constexpr Time kHelloPeriod = std::chrono::milliseconds(250);
-  static constexpr Time kSilence = std::chrono::milliseconds(300);  ///< without a sample: ask again
+  static constexpr Time kSilence = kOutage;  ///< without a sample: ask again
 
  private:
   std::uint64_t nonce_, session_ = 0, left_session_ = 0, sent_ = 0, newest_sample_ = 0;

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/ages.h"
+
 namespace palpate::client {
 namespace {
 
 using Stage = CalibrationStage;
 using Trouble = CalibrationTrouble;
 
-constexpr double kLongestTick = 0.01;             // s
 constexpr double kLongestLoss = 1;                // s
 constexpr double kForceFilter = 0.3;              // s, while the weight is awaited
 constexpr double kLeastShare = 0.5;               // of m g, as assumed: a weight hangs there
@@ -51,8 +52,8 @@ Vec3 Calibration::tick(const DeviceReading& reading) noexcept {
   if (stage_ == Stage::kEnd) return limiter_.drop();
   if (!holds_) find(reading.p_D);
   const double fade = stage_ == Stage::kLetDown ? std::max(1 - in_stage_ / kLetDown, 0.0) : 1;
-  limiter_.push(holder_.push(reading.p_D, goal(), dt), dt, {.fade = fade});
-  const Vec3 f_D = limiter_.finish(holder_.damping());
+  const Vec3 push_D = limiter_.clamp(holder_.push(reading.p_D, goal(), dt));
+  const Vec3 f_D = limiter_.push(fade * push_D + holder_.damping(), dt);
   newton_ = f_D.norm();
   if (limiter_.fault() != Fault::kNone) {
     end(Trouble::kOscillates);

@@ -1,12 +1,10 @@
 #pragma once
 #include <memory>
 
+#include "common/ages.h"
 #include "haptic_client/extrapolation/extrapolator.h"
 
 namespace palpate::client {
-
-/// Samples further apart than this, or older, say nothing about each other: an outage.
-constexpr Time kOutage = std::chrono::milliseconds(300);
 
 /// An extrapolation law with what stands around every law alike, so that the law that is felt and those that
 /// only run beside it are treated the same: it sees each sample once and in order; time stands still for it

@@ -56,6 +56,9 @@ void HapticLoop::tell(const TickResult& result) noexcept {
   newest_newton.store(result.f_D.norm(), std::memory_order_relaxed);
   newest_age_ns.store(pipeline_.age_ns(), std::memory_order_relaxed);
   if (heartbeat != nullptr) heartbeat->fetch_add(1, std::memory_order_relaxed);
+  law_newton.store(pipeline_.law_newton(), std::memory_order_relaxed);
+  gain.store(pipeline_.passivity().gain(), std::memory_order_relaxed);
+  weak.store(pipeline_.felt_share().weak(), std::memory_order_relaxed);
   fault.store(pipeline_.limiter().fault(), std::memory_order_relaxed);
 }
 

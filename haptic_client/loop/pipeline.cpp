@@ -13,7 +13,8 @@ constexpr int kLeadFilter = 8;                             // samples
 constexpr Time kAskPeriod = std::chrono::milliseconds(8);  // a thousand pages a second at most
 constexpr double kCovered = 3;                             // of the tool radius: what is asked for first
 constexpr Time kForesight = std::chrono::milliseconds(200);
-constexpr double kFadeDamping = 2;  // N s/m, in the device frame, while the force fades
+constexpr double kDamperShare = 0.25;  // of the largest force: all dampers together
+constexpr double kFadeDamping = 2;     // N s/m, in the device frame, while the force fades
 
 Linearised linearised(const Vec3& p, const Vec3& f, const protocol::Linearisation& l) noexcept {
   const auto& k = l.tangent;
@@ -97,6 +98,9 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
   }
   result.tool.newest_sample = estimate_.newest().number;
   if (model_) ask_for_pages(result.tool, now);
+  if (felt_.tick > 0)
+    passivity_.moved(now, workspace_.motion_to_device(tool.p_W - felt_.p_W),
+                     workspace_.motion_to_device(estimate_.newest().surface_v), dt);
   result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
   stats_.stepped_down += result.tool.newest_sample > 0 && estimate_.stepped_down() ? 1 : 0;
   felt_ = tool;
@@ -122,26 +126,31 @@ Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept 
              clutched = (tool.flags & ToolState::kClutched) != 0, off = lost || clutched;
   stats_.lost += lost ? 1 : 0;
   stats_.clutched += clutched ? 1 : 0;
-  if (felt_.tick > 0) passivity_.moved(workspace_.motion_to_device(tool.p_W - felt_.p_W), dt);
-  std::optional<Time> age;
-  if (estimate_.newest().number > 0) {
-    age = Time{tool.t_ns} - estimate_.newest().t;
-    stats_.age_ns.add(age->count());
-  }
-  const Watchdog::Ruling ruling = watchdog_.rule(age, dt);
+  const Vec3 law_D = workspace_.to_device(f_W), felt_D = limiter_.clamp(law_D);
+  const Passivity::Ruling passive = passivity_.rule(dt);
+  const Watchdog::Ruling watchdog = rule_by_age(tool, dt);
   if (off) watchdog_.restart();  // so that it comes back softly
-  if (ruling.gain < 1) passivity_.forgive();
-  const Limiter::Shares shares{.fade = ruling.gain, .passive = passivity_.share(dt)};
-  if (off) {
-    limiter_.drop();
+  const double damping = passive.damping + (watchdog.damper ? watchdog.gain * kFadeDamping : 0);
+  const Vec3 damper_D = limiter_.within(kDamperShare, -damping * workspace_.motion_to_device(tool.v_W));
+  const Vec3 f_D =
+      off ? limiter_.drop() : limiter_.push(watchdog.gain * passive.gain * felt_D + damper_D, dt);
+  passivity_.wrote(felt_D, damper_D);
+  law_newton_ = law_D.stableNorm();
+  if (off || watchdog.gain < 1) {
+    passivity_.restart();
+    felt_share_.restart();
   } else {
-    limiter_.push(workspace_.to_device(f_W), dt, shares);
+    felt_share_.tick(law_D, f_D, dt);
   }
-  const double damping = ruling.damper && !off ? ruling.gain * kFadeDamping : 0;
-  const Vec3 f_D = limiter_.finish(-damping * workspace_.motion_to_device(tool.v_W));
-  passivity_.wrote(f_D);
   stats_.max_newton = std::max(stats_.max_newton, f_D.norm());
   return f_D;
+}
+
+Watchdog::Ruling Pipeline::rule_by_age(const ToolState& tool, double dt) noexcept {
+  if (estimate_.newest().number == 0) return watchdog_.rule({}, dt);
+  const Time age = Time{tool.t_ns} - estimate_.newest().t;
+  stats_.age_ns.add(age.count());
+  return watchdog_.rule(age, dt);
 }
 
 std::int64_t Pipeline::age_ns() const noexcept {
@@ -162,6 +171,9 @@ bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexc
     ++stats_.overtaken;
     return false;
   }
+  const Sample& newest = estimate_.newest();
+  passivity_.sampled(newest.t, workspace_.motion_to_device(newest.p), workspace_.to_device(newest.f),
+                     limiter_.max_force());
   const Time lead = now - estimate_.newest().t + estimate_.period() / 2;
   lead_ += (std::min(lead, kOutage) - lead_) / kLeadFilter;
   ++stats_.samples;

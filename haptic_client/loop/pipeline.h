@@ -6,6 +6,7 @@
 #include "haptic_client/device/device.h"
 #include "haptic_client/extrapolation/force_estimate.h"
 #include "haptic_client/extrapolation/surface_model.h"
+#include "haptic_client/safety/felt_share.h"
 #include "haptic_client/safety/limiter.h"
 #include "haptic_client/safety/passivity.h"
 #include "haptic_client/safety/watchdog.h"
@@ -84,11 +85,15 @@ class Pipeline {
   const Limiter& limiter() const noexcept { return limiter_; }
   const Watchdog& watchdog() const noexcept { return watchdog_; }
   const Passivity& passivity() const noexcept { return passivity_; }
+  const FeltShare& felt_share() const noexcept { return felt_share_; }
+  /// The law's force of the last tick before the safety chain, N, device frame.
+  double law_newton() const noexcept { return law_newton_; }
   const PipelineStats& stats() const noexcept { return stats_; }
 
  private:
   bool take(const protocol::ForceSample& arrived, const Vec3& p_W, Time now) noexcept;
   Vec3 safe(const Vec3& f_W, const protocol::ToolState& tool, double dt) noexcept;
+  Watchdog::Ruling rule_by_age(const protocol::ToolState& tool, double dt) noexcept;
   void ask_for_pages(protocol::ToolState& tool, Time now) noexcept;
   void follow_path(const protocol::ToolState& tool, double dt) noexcept;
 
@@ -101,6 +106,8 @@ class Pipeline {
   Passivity passivity_;
   Watchdog watchdog_;
   Limiter limiter_;
+  FeltShare felt_share_;
+  double law_newton_ = 0;
   protocol::ToolState sensed_;  // tick 0: none yet
   protocol::ToolState felt_;    // likewise
   bool rearm_asked_ = false;

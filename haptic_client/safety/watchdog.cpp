@@ -2,11 +2,9 @@
 
 #include <algorithm>
 
-namespace palpate::client {
-namespace {
-constexpr double kLongestTick = 0.01;  // s: a stalled loop does not shorten the soft start
-}
+#include "common/ages.h"
 
+namespace palpate::client {
 Watchdog::Ruling Watchdog::rule(std::optional<Time> age, double dt) noexcept {
   const bool stale = !age || *age > kStale;
   if (stale && !fading_ && gain_ > 0) ++ramped_;

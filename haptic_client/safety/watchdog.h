@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "haptic_client/extrapolation/force_estimate.h"
+#include "common/ages.h"
 
 namespace palpate::client {
 

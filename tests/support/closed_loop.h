@@ -93,6 +93,9 @@ class ClosedLoop {
     return result;
   }
 
+  /// A tick that is missed: time goes on, and what was written stays.
+  void skip() { ++ticks_; }
+
   double seconds() const { return static_cast<double>(ticks_) / settings_.haptic_hz; }
   const protocol::LinkCounts& link() const { return link_.counts(); }
 

@@ -135,7 +135,7 @@ inline void check_soft_starts(const std::string& trace, int walls, int starts) {
   double above = 0, jump = 0;  // N: beyond what a soft start, or the slew limit, gives
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double dt = std::min(rows[i].t - rows[i - 1].t, 0.01);
-    jump = std::max(jump, rows[i].newton() - rows[i - 1].newton() - 160 * dt);
+    jump = std::max(jump, rows[i].newton() - rows[i - 1].newton() - 2000 * dt);
     if (rows[i - 1].newton() > 0 || rows[i].newton() <= 0 || ++begins <= walls) continue;
     for (std::size_t k = i; k < rows.size() && rows[k].t < rows[i].t + 0.2; ++k)
       above = std::max(above, rows[k].newton() - 8 * (rows[k].t - rows[i - 1].t + kReply));

@@ -57,7 +57,8 @@ TEST_CASE("a session: force in contact, zero out of it, nothing above the clamp,
   CHECK(tool["motion"]["mean_speed_m_s"].get<double>() > 0.001);
   for (const char* key : {"mean_speed_m_s", "max_speed_m_s", "spatial_sampling_mm"})
     CHECK(tool["motion"].contains(key));
-  for (const char* key : {"clamped", "slewed", "passive", "ramped", "storms"})
+  for (const char* key :
+       {"clamped", "slewed", "damped", "softened", "least_gain", "weak_s", "ramped", "storms"})
     CHECK(tool["safety"].contains(key));
   for (const char* key : {"sent", "received", "lost", "reordered", "duplicated", "rejected"})
     CHECK(tool["link"].contains(key));

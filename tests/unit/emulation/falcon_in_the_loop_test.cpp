@@ -120,7 +120,6 @@ TEST_CASE("a session with the Falcon, from firmware to wall, gives the same trac
 }
 
 TEST_CASE("a Falcon at walls of 100 N/m to 20 kN/m, 30 Hz and 35 ms, three hands, every law: the ledger") {
-  const Passivity::Settings passivity;
   constexpr double kSeconds = 10;
   for (const Hand& hand : kHands) {
     for (const ExtrapolatorRow& law : extrapolators()) {
@@ -137,7 +136,7 @@ TEST_CASE("a Falcon at walls of 100 N/m to 20 kN/m, 30 Hz and 35 ms, three hands
         const auto state = rig.state();
         const Ledger after(state);
         const double motors = after.motors - before.motors, hand_work = after.hand - before.hand;
-        CHECK(motors <= passivity.allowance * kSeconds + 3 * passivity.debt);
+        CHECK(motors <= 0.5);  // J; a law that is unstable there and is not damped gives up to 15
         // Both works, and what friction and stops took, are the motion that there is.
         CHECK(motors + hand_work + after.taken - before.taken ==
               Approx(after.kinetic - before.kinetic).margin(1e-3 * std::abs(hand_work) + 1e-6));
@@ -147,6 +146,61 @@ TEST_CASE("a Falcon at walls of 100 N/m to 20 kN/m, 30 Hz and 35 ms, three hands
       }
     }
   }
+}
+
+TEST_CASE("brisk strokes of a Falcon into a wall of 800 N/m end at the same force, without a kick") {
+  struct Served {
+    const char* law;
+    test::ClosedLoopSettings link;
+  };
+  for (const Served& served :
+       {Served{"constant", {.sim_hz = 1000, .link = {.delay = 0.001}}},
+        Served{"two_tangents", {.sim_hz = 30, .link = {.delay = 0.035}}},
+        Served{"two_tangents", {.haptic_hz = 500, .sim_hz = 30, .link = {.delay = 0.005}}}}) {
+    for (const double seconds : {0.2, 0.12, 0.10, 0.08, 0.06}) {
+      CAPTURE(served.law, served.link.sim_hz, served.link.haptic_hz, seconds);
+      Rig rig({.loaded = true, .homed = true}, {"", 0.2, 400, 8}, served.law, 800, served.link);
+      rig.command("hand target 0 0 0.125");
+      rig.run(2);
+      const std::size_t begin = rig.trace().size();
+      rig.command("hand target 0 0 0.10 " + std::to_string(seconds));  // 25 mm, 20 of them in the wall
+      rig.run(seconds + 0.5);
+      double drop = 0;
+      for (std::size_t i = begin; i + 6 < rig.trace().size(); i += 6) {
+        const double wall = 800 * (rig.trace()[i + 7] - rig.trace()[i + 1]);  // that it takes away, N
+        drop = std::max(drop, rig.trace()[i + 5] - rig.trace()[i + 11] - std::max(wall, 0.0));
+      }
+      CHECK(drop <= 1);
+      for (int i = 0; i < 5; ++i) {
+        rig.run(0.2);
+        CHECK(rig.state()["force"][2].get<double>() == Approx(16.0 / 3).epsilon(0.05));
+      }
+      CHECK(rig.pipeline().limiter().fault() == Fault::kNone);
+    }
+  }
+}
+
+TEST_CASE("a Falcon that is homed again while it presses keeps its force when the hand draws back") {
+  Rig rig({.loaded = true, .homed = true}, {"", 0.2, 400, 8}, "two_tangents", 800,
+          {.sim_hz = 30, .link = {.delay = 0.035}});
+  rig.command("hand target 0 0 0.10");
+  rig.run(6);  // the soft start comes while the grip is in the wall
+  CHECK(rig.state()["force"][2].get<double>() == Approx(16.0 / 3).epsilon(0.02));
+  rig.command("hand target 0 0 0.1003 0.05");  // 0.3 mm back: 0.1 mm at the grip
+  rig.run(2);
+  CHECK(rig.state()["force"][2].get<double>() == Approx((0.02 - 0.0003) * 800 / 3).epsilon(0.02));
+  CHECK(rig.pipeline().passivity().gain() == 1);
+}
+
+TEST_CASE("a wall of 20 kN/m is pressed, not passed") {
+  Rig rig({.loaded = true, .homed = true}, {"", 0.2, 400, 8}, "two_tangents", 20000,
+          {.sim_hz = 30, .link = {.delay = 0.035}});
+  rig.command("hand target 0 0 0.125");
+  rig.run(2);
+  rig.command("hand target 0 0 0.11 0.3");  // 10 mm beyond: 4 N
+  rig.run(3);
+  CHECK(rig.state()["force"][2].get<double>() == Approx(4).epsilon(0.05));
+  CHECK(0.12 - rig.state()["position"][2].get<double>() < 1e-3);
 }
 
 TEST_CASE("forces that the motors cannot give are counted, and their direction is kept") {

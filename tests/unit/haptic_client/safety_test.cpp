@@ -1,3 +1,4 @@
+#include "haptic_client/safety/felt_share.h"
 #include "haptic_client/safety/limiter.h"
 #include "haptic_client/safety/watchdog.h"
 #include "tests/support/catch.h"
@@ -12,9 +13,8 @@ constexpr double kDt = 0.002;
 const Vec3 kNone = Vec3::Zero();
 
 /// A tick of the limiter.
-Vec3 limit(Limiter& limiter, const Vec3& f_D, const Vec3& damping_D = kNone, double dt = kDt) {
-  limiter.push(f_D, dt, {});
-  return limiter.finish(damping_D);
+Vec3 limit(Limiter& limiter, const Vec3& f_D, double dt = kDt) {
+  return limiter.push(limiter.clamp(f_D), dt);
 }
 }  // namespace
 
@@ -40,27 +40,41 @@ TEST_CASE("magnitude is clamped along the direction, change is slewed") {
 
 TEST_CASE("a stalled loop does not come back with a blow") {
   Limiter limiter({.max_force = 8, .max_slew = 160});
-  CHECK(limit(limiter, {8, 0, 0}, kNone, 0.2).norm() == Approx(1.6));  // ten milliseconds' worth
+  CHECK(limit(limiter, {8, 0, 0}, 0.2).norm() == Approx(1.6));  // ten milliseconds' worth
   Watchdog watchdog;
   CHECK(watchdog.rule(10ms, 0.5).gain == Approx(0.01));
 }
 
-TEST_CASE("damping is exempt from the slew limit, not from the clamp") {
-  Limiter limiter({.max_force = 1, .max_slew = 1});
-  CHECK(limit(limiter, kNone, {0.5, 0, 0}) == Vec3(0.5, 0, 0));
-  CHECK(limit(limiter, kNone, {5, 0, 0}).norm() == Approx(1));
-}
-
-TEST_CASE(
-    "what passivity takes away goes at once, what it gives back is slewed, the fade is slewed both ways") {
+TEST_CASE("force goes as slowly as it comes, only losing the device and a fault are quicker") {
   Limiter limiter({.max_force = 8, .max_slew = 100});  // 0.2 N a tick
   for (int tick = 0; tick < 20; ++tick) limit(limiter, {2, 0, 0});
-  limiter.push({2, 0, 0}, kDt, {.passive = 0.25});
-  CHECK(limiter.finish(kNone) == Vec3(0.5, 0, 0));
-  limiter.push({2, 0, 0}, kDt, {});
-  CHECK(limiter.finish(kNone)[0] == Approx(0.7));
-  limiter.push({2, 0, 0}, kDt, {.fade = 0});
-  CHECK(limiter.finish(kNone)[0] == Approx(0.5));
+  CHECK(limit(limiter, kNone)[0] == Approx(1.8));
+  CHECK(limit(limiter, {0, 2, 0}).norm() < 1.8);
+  CHECK(limiter.drop() == kNone);
+  CHECK(limit(limiter, {2, 0, 0})[0] == Approx(0.2));
+}
+
+TEST_CASE("a share of the largest force is kept along its direction") {
+  const Limiter limiter({.max_force = 8});
+  CHECK(limiter.within(0.25, {3, 4, 0}).isApprox(Vec3(1.2, 1.6, 0)));
+  CHECK(limiter.within(0.25, {0.3, 0.4, 0}) == Vec3(0.3, 0.4, 0));
+}
+
+TEST_CASE("less than half of the force for half a second is noticed, shorter, or of a small force, is not") {
+  FeltShare share;
+  const auto felt = [&](double law, double written, double seconds) {
+    for (double t = 0; t < seconds - kDt / 2; t += kDt) share.tick({0, law, 0}, {0, written, 0}, kDt);
+    return share.weak();
+  };
+  CHECK(!felt(2, 1.01, 5));
+  CHECK(!felt(2, 0.99, 0.498));
+  CHECK(felt(2, 0.99, 0.004));
+  CHECK(!felt(2, 2, kDt));
+  CHECK(!felt(0.19, 0, 5));
+  CHECK(felt(2, -2, 0.6));
+  CHECK(share.total_s() == Approx(0.502 + 0.6));
+  share.restart();
+  CHECK(!share.weak());
 }
 
 TEST_CASE("anything at all goes in, and within the limits it comes out") {
