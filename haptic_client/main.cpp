@@ -4,11 +4,12 @@
 #include "common/error.h"
 #include "common/program.h"
 #include "common/text.h"
-#include "haptic_client/calibrate.h"
-#include "haptic_client/client.h"
-#include "haptic_client/evaluate.h"
+#include "haptic_client/commands/calibrate.h"
+#include "haptic_client/commands/devices.h"
+#include "haptic_client/commands/evaluate.h"
+#include "haptic_client/commands/replay.h"
+#include "haptic_client/commands/run.h"
 #include "haptic_client/extrapolation/extrapolators.h"
-#include "haptic_client/replay.h"
 
 namespace {
 

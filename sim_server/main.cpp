@@ -1,12 +1,12 @@
 #include <CLI/CLI.hpp>
 
 #include "common/program.h"
-#include "sim_server/explain.h"
-#include "sim_server/mesh_info.h"
-#include "sim_server/record.h"
-#include "sim_server/server.h"
-#include "sim_server/solve.h"
-#include "sim_server/study/study.h"
+#include "sim_server/commands/explain.h"
+#include "sim_server/commands/mesh_info.h"
+#include "sim_server/commands/record.h"
+#include "sim_server/commands/run.h"
+#include "sim_server/commands/solve.h"
+#include "sim_server/commands/study.h"
 
 namespace {
 

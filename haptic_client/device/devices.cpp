@@ -1,9 +1,6 @@
 #include "haptic_client/device/devices.h"
 
-#include <algorithm>
 #include <array>
-#include <fmt/format.h>
-#include <set>
 
 #include "common/error.h"
 #include "common/text.h"
@@ -80,24 +77,6 @@ constexpr std::array kDevices{
               &limits_of_spacemouse, &make_spacemouse, nullptr},
 };
 
-#ifdef PALPATE_WITH_USB
-bool is_falcon(const UsbId& id) {
-  return std::find(kFalconIds.begin(), kFalconIds.end(), id) != kFalconIds.end();
-}
-
-/// One for all products of this vendor that we know, as in configs/udev/70-palpate.rules.
-std::string udev_rule(std::uint16_t vendor, std::span<const UsbId> known) {
-  std::string products;
-  for (const UsbId& id : known) {
-    if (id.vendor == vendor) products += fmt::format("{}{:04x}", products.empty() ? "" : "|", id.product);
-  }
-  return fmt::format(
-      "SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{}\", MODE=\"0660\", "
-      "GROUP=\"plugdev\", TAG+=\"uaccess\"",
-      vendor, products);
-}
-#endif
-
 }  // namespace
 
 void choose_device(DeviceSettings& settings, const std::string& text, const std::string& where) {
@@ -110,34 +89,6 @@ void choose_device(DeviceSettings& settings, const std::string& text, const std:
 
 std::span<const DeviceRow> devices() {
   return kDevices;
-}
-
-int print_plugged_in() {
-#ifdef PALPATE_WITH_USB
-  std::vector<UsbId> known(kFalconIds.begin(), kFalconIds.end());
-  known.insert(known.end(), spacemouse_ids().begin(), spacemouse_ids().end());
-  std::vector<UsbDevice> found = find_usb({kFalconIds});
-  for (UsbDevice& mouse : find_usb({spacemouse_ids(), true})) found.push_back(std::move(mouse));
-  if (found.empty())
-    fmt::print("no device that Palpate knows is plugged in; known: Novint Falcon, 3Dconnexion 6-DoF mice\n");
-  std::set<std::string> rules;
-  for (const UsbDevice& device : found) {
-    const bool falcon = is_falcon(device.id);
-    const char* const model = falcon ? "Novint Falcon" : spacemouse_name(device.id);
-    fmt::print("{:10} {:30} --device {}:{}    {}\n", device.path, model, falcon ? "falcon" : "spacemouse",
-               device.path, device.access.empty() ? "ready to use" : device.access);
-    if (device.locked) rules.insert(udev_rule(device.id.vendor, known));
-  }
-  if (!rules.empty()) {
-    fmt::print(
-        "what follows, in /etc/udev/rules.d/70-palpate.rules, gives access (scripts/setup --udev puts it "
-        "there); then plug the device in again:\n{}\n",
-        fmt::join(rules, "\n"));
-  }
-  return 0;
-#else
-  fail("USB devices were left out of this build (PALPATE_USB=OFF); build with it, and libusb-1.0-0-dev");
-#endif
 }
 
 }  // namespace palpate::client

@@ -37,9 +37,4 @@ struct DeviceRow {
 };
 std::span<const DeviceRow> devices();
 
-/// What is plugged in and known to us, a line each, on stdout: bus-port path, model, how to ask for it,
-/// access; where access is missing, the udev rule that gives it. Throws `Error` when there is no USB. Returns
-/// the exit code.
-int print_plugged_in();
-
 }  // namespace palpate::client

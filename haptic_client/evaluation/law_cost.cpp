@@ -9,7 +9,7 @@
 #include "haptic_client/evaluation/captured_session.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/extrapolation/force_estimate.h"
-#include "haptic_client/loop/pipeline.h"
+#include "haptic_client/pipeline/pipeline.h"
 
 namespace palpate::client {
 

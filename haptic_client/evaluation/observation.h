@@ -3,7 +3,7 @@
 
 #include "common/timeline.h"
 #include "haptic_client/evaluation/scoring.h"
-#include "haptic_client/loop/pipeline.h"
+#include "haptic_client/pipeline/pipeline.h"
 
 namespace palpate::client {
 

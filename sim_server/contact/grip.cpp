@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "common/error.h"
-#include "sim_server/contact/tool_contact.h"
 
 namespace palpate::sim {
 namespace {

@@ -2,12 +2,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim_server/deformation/deformation_model.h"
-#include "sim_server/scene.h"
+#include "sim_server/contact/tissue.h"
+#include "sim_server/scene/scene.h"
 
 namespace palpate::sim {
-
-struct Tissue;
 
 /// Tissue in the jaws of a tool: vertices of the surface attached to it both ways, each at the offset from
 /// the tool centre that it had when the jaws closed. With C the model's compliance at these m vertices, c_t

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim_server/tool_reach.h"
+#include "sim_server/scene/tool_reach.h"
 
 namespace palpate::sim {
 namespace {

@@ -1,10 +1,7 @@
 #pragma once
-#include <memory>
-
 #include "sim_server/contact/contact_finder.h"
 #include "sim_server/contact/grip.h"
-#include "sim_server/deformation/deformation_models.h"
-#include "sim_server/scene.h"
+#include "sim_server/contact/tissue.h"
 
 namespace palpate::sim {
 
@@ -34,15 +31,6 @@ struct SurfacePlane {
 /// have come at the velocity that it had at the beginning, and at the end, m.
 struct Bend {
   Vec3 begin = Vec3::Zero(), end = Vec3::Zero();
-};
-
-/// The tissue as all tools share it. Positions are those of the surface vertices, m, world.
-struct Tissue {
-  std::unique_ptr<DeformationModel> model;
-  std::span<const Vec3> free;        ///< in this step, without any contact
-  std::span<const Vec3> velocities;  ///< of that, m/s; empty: it rests
-  std::span<const Vec3> positions;   ///< now, under the loads of all tools
-  std::vector<Vec3> before;          ///< at the end of the last step; empty where no tool has friction
 };
 
 /// Triangles of the surface that come near enough to the reach box of the tool to be touched there.

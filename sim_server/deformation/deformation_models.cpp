@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "common/error.h"
 #include "sim_server/deformation/implicit.h"
 #include "sim_server/deformation/quasi_static.h"
 #ifdef PALPATE_WITH_SPECTRA
@@ -60,16 +59,6 @@ constexpr std::array kModels{
 };
 
 }  // namespace
-
-double step_period(const Scene& scene) {
-  if (scene.rate_hz <= 0) {
-    fail(
-        "{}: `rate_hz` = 0, but model \"{}\" must know the time of a step beforehand; name a rate, such as "
-        "30",
-        scene.rate_where, scene.deformation.model);
-  }
-  return 1 / scene.rate_hz;
-}
 
 std::span<const DeformationModelRow> deformation_models() {
   return kModels;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "common/error.h"
-#include "sim_server/elasticity/equilibrium.h"
+#include "sim_server/solvers/equilibrium.h"
 
 namespace palpate::sim {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 #include "sim_server/deformation/moving_supports.h"
-#include "sim_server/elasticity/dynamics.h"
-#include "sim_server/loads.h"
+#include "sim_server/scene/loads.h"
+#include "sim_server/solvers/dynamics.h"
 
 namespace palpate::sim {
 

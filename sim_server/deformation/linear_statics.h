@@ -2,7 +2,7 @@
 #include "sim_server/deformation/moving_supports.h"
 #include "sim_server/deformation/surface_compliance.h"
 #include "sim_server/elasticity/solid.h"
-#include "sim_server/elasticity/sparse_cholesky.h"
+#include "sim_server/sparse/sparse_cholesky.h"
 
 namespace palpate::sim {
 

@@ -2,7 +2,8 @@
 #include <functional>
 #include <vector>
 
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/deformation_model.h"
+#include "sim_server/deformation/model_inputs.h"
 #include "sim_server/elasticity/solid.h"
 
 namespace palpate::sim {

@@ -1,7 +1,7 @@
 #pragma once
 #include "sim_server/deformation/moving_supports.h"
 #include "sim_server/deformation/surface_compliance.h"
-#include "sim_server/elasticity/vibration_modes.h"
+#include "sim_server/solvers/vibration_modes.h"
 
 namespace palpate::sim {
 

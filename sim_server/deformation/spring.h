@@ -1,5 +1,6 @@
 #pragma once
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/deformation_model.h"
+#include "sim_server/deformation/model_inputs.h"
 
 namespace palpate::sim {
 

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/deformation_model.h"
+#include "sim_server/deformation/model_inputs.h"
 
 namespace palpate::sim {
 

@@ -6,7 +6,7 @@
 
 #include "common/error.h"
 #include "sim_server/deformation/linear_statics.h"
-#include "sim_server/held_motion.h"
+#include "sim_server/scene/held_motion.h"
 
 namespace palpate::sim {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "sim_server/elasticity/laws.h"
 #include "sim_server/elasticity/material.h"
-#include "sim_server/elasticity/stiffness_matrix.h"
 #include "sim_server/mesh/tet_mesh.h"
+#include "sim_server/sparse/stiffness_matrix.h"
 
 namespace palpate::sim {
 

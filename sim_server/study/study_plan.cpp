@@ -8,10 +8,11 @@
 
 #include "common/error.h"
 #include "common/text.h"
-#include "sim_server/inclusions.h"
+#include "sim_server/deformation/deformation_models.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/refinement.h"
-#include "sim_server/scene_parts.h"
+#include "sim_server/scene/inclusions.h"
+#include "sim_server/scene_file/read_parts.h"
 
 namespace palpate::sim {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include "sim_server/simulation.h"
+#include "sim_server/simulation/simulation.h"
 
 namespace palpate::sim {
 

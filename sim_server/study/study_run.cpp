@@ -7,7 +7,7 @@
 #include "common/clock.h"
 #include "common/report.h"
 #include "sim_server/contact/contact_finder.h"
-#include "sim_server/step_times.h"
+#include "sim_server/simulation/step_times.h"
 #include "sim_server/study/surface_sites.h"
 
 namespace palpate::sim {

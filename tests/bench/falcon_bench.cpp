@@ -5,7 +5,7 @@
 #include "common/text.h"
 #include "haptic_client/device/falcon.h"
 #include "haptic_client/extrapolation/extrapolators.h"
-#include "haptic_client/loop/pipeline.h"
+#include "haptic_client/pipeline/pipeline.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/palpation.h"
 #include "tests/emulation/emulator.h"

@@ -1,8 +1,8 @@
 // A haptic tick: the hand alone (which is in all the others), each law alone, the whole tick with each law,
 // and what is written down after it.
-#include "haptic_client/client_config.h"
 #include "haptic_client/evaluation/observation.h"
 #include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/session/client_config.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/palpation.h"
 

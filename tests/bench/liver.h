@@ -1,5 +1,5 @@
 #pragma once
-#include "sim_server/step_times.h"
+#include "sim_server/simulation/step_times.h"
 #include "tests/support/scenes.h"
 
 namespace palpate::bench {

@@ -5,7 +5,8 @@
 #include <map>
 #include <numbers>
 
-#include "sim_server/virtual_session.h"
+#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/serving/virtual_session.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/liver.h"
 #include "tests/support/temporary_folder.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "sim_server/setup_times.h"
+#include "sim_server/simulation/setup_times.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/liver.h"
 

@@ -1,7 +1,7 @@
 // What every deformation model must do over many steps: energy, and where it comes to rest.
 #include <utility>
 
-#include "sim_server/elasticity/equilibrium.h"
+#include "sim_server/solvers/equilibrium.h"
 #include "tests/support/catch.h"
 #include "tests/support/model_bench.h"
 

@@ -1,6 +1,6 @@
 // Tools on every deformation model: the stiffness that is sent to clients, the force at rest, and the work of
 // a tool.
-#include "sim_server/served_tools.h"
+#include "sim_server/serving/served_tools.h"
 #include "tests/support/catch.h"
 #include "tests/support/model_bench.h"
 #include "tests/support/solids.h"

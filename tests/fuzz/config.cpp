@@ -1,6 +1,7 @@
 // Any bytes as a scene and as a client file.
-#include "haptic_client/client_config.h"
-#include "sim_server/scene.h"
+#include "haptic_client/session/client_config.h"
+#include "sim_server/scene/scene.h"
+#include "sim_server/scene_file/read_scene.h"
 #include "tests/fuzz/file_fuzzer.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

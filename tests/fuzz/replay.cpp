@@ -1,7 +1,7 @@
 // A capture of anything, as far as the force.
 #include "haptic_client/evaluation/resampler.h"
 #include "haptic_client/extrapolation/extrapolators.h"
-#include "haptic_client/loop/pipeline.h"
+#include "haptic_client/pipeline/pipeline.h"
 #include "tests/fuzz/file_fuzzer.h"
 
 using namespace palpate;

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "haptic_client/device/simulated_operator.h"
-#include "haptic_client/loop/pipeline.h"
+#include "haptic_client/pipeline/pipeline.h"
 #include "tests/support/closed_loop.h"
 
 namespace palpate::studies {

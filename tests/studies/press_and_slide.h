@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "sim_server/served_tools.h"
-#include "sim_server/surface_pager.h"
+#include "sim_server/serving/served_tools.h"
+#include "sim_server/serving/surface_pager.h"
 #include "tests/studies/hands.h"
 
 namespace palpate::studies {

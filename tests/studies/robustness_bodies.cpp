@@ -3,7 +3,7 @@
 
 #include "common/error.h"
 #include "sim_server/deformation/explicit_motion.h"
-#include "sim_server/elasticity/dynamics.h"
+#include "sim_server/solvers/dynamics.h"
 #include "tests/studies/robustness.h"
 #include "tests/support/random.h"
 

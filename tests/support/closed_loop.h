@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "haptic_client/device/device.h"
-#include "haptic_client/loop/pipeline.h"
+#include "haptic_client/pipeline/pipeline.h"
 #include "protocol/codec.h"
 #include "protocol/link_simulator.h"
 #include "protocol/replay_window.h"

@@ -1,5 +1,6 @@
 #pragma once
-#include "sim_server/scene.h"
+#include "sim_server/scene/scene.h"
+#include "sim_server/scene_file/read_scene.h"
 
 namespace palpate::test {
 

@@ -4,10 +4,10 @@
 #include <deque>
 
 #include "haptic_client/extrapolation/force_estimate.h"
-#include "haptic_client/loop/pipeline.h"
+#include "haptic_client/pipeline/pipeline.h"
 #include "sim_server/mesh/shapes.h"
-#include "sim_server/served_tools.h"
-#include "sim_server/surface_pager.h"
+#include "sim_server/serving/served_tools.h"
+#include "sim_server/serving/surface_pager.h"
 #include "tests/support/scenes.h"
 
 namespace palpate::test {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <map>
 
-#include "sim_server/elasticity/equilibrium.h"
 #include "sim_server/mesh/shapes.h"
+#include "sim_server/solvers/equilibrium.h"
 
 namespace palpate::test {
 

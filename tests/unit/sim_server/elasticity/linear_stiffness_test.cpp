@@ -1,6 +1,6 @@
 #include "common/error.h"
-#include "sim_server/elasticity/sparse_cholesky.h"
 #include "sim_server/mesh/shapes.h"
+#include "sim_server/sparse/sparse_cholesky.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 #include "tests/support/stiffness.h"

@@ -1,0 +1,180 @@
+#include "haptic_client/commands/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+#include <thread>
+#include <unistd.h>
+
+#include "common/clock.h"
+#include "common/error.h"
+#include "common/interrupt.h"
+#include "common/latest_value.h"
+#include "common/log.h"
+#include "common/program.h"
+#include "common/realtime.h"
+#include "common/text.h"
+#include "haptic_client/calibration/calibration.h"
+#include "haptic_client/session/guardian.h"
+
+namespace palpate::client {
+namespace {
+
+using Stage = CalibrationStage;
+using Trouble = CalibrationTrouble;
+
+constexpr int kPriority = 80;
+constexpr double kLeastMass = 0.05, kMostMass = 0.5;  // kg
+constexpr double kLowestTorqueConstant = 2300;        // DAC units per N m, that is plausible
+constexpr double kMostTilt = 10;                      // degrees
+constexpr int kPatience = 30;                         // looks of 100 ms
+
+/// Haptic thread: ticks until the calibration has ended or is asked to stop; writes zero force last.
+void run_loop(const std::stop_token& stop, Device& device, Calibration& calibration, Time period,
+              LatestValue<CalibrationProgress>& progress, std::atomic<std::uint64_t>* heartbeat) noexcept {
+  for (Time deadline = now(); !stop.stop_requested() && !calibration.ended();) {
+    sleep_until(deadline);
+    device.write(calibration.tick(device.read(now())));
+    progress.write(calibration.progress());
+    if (heartbeat != nullptr) heartbeat->fetch_add(1, std::memory_order_relaxed);
+    deadline = std::max(deadline + period, now());  // what is late is given up
+  }
+  device.stop();
+}
+
+std::string what_to_do(const CalibrationProgress& progress, double mass) {
+  if (progress.held) return "something holds the grip: let go of it";
+  switch (progress.stage) {
+    case Stage::kHome:
+      return "1/5 home the Falcon; it stands upright, nothing hangs on the grip";
+    case Stage::kCentre:
+      return "2/5 let go of the grip; it goes to the middle by itself";
+    case Stage::kWeighGrip:
+      return "3/5 do not touch it: it swings by 4 mm, to weigh the grip alone";
+    case Stage::kHang:
+      return fmt::format("4/5 hang the weight of {:g} kg on the grip and let go of both, slowly", mass);
+    case Stage::kWeighBoth:
+      return "5/5 do not touch it: it swings by 4 mm, to weigh both";
+    case Stage::kLetDown:
+      return "hold the weight: the force goes off now";
+    case Stage::kEnd:
+      break;
+  }
+  return "";
+}
+
+/// Talks to the user while the loop runs; true on Ctrl-C.
+bool guide(LatestValue<CalibrationProgress>& newest, const Device& device, double mass) {
+  const bool terminal = isatty(STDOUT_FILENO) != 0;
+  std::string said, status;
+  CalibrationProgress progress;
+  for (int standstills = 0; progress.stage != Stage::kEnd;) {
+    if (wait_for_interrupt(std::chrono::milliseconds(100))) return true;
+    standstills = newest.read(progress) ? 0 : standstills + 1;
+    if (standstills == kPatience) {  // its last force may still be on the motors
+      log::error("the haptic loop stands still; the guardian takes the device over");
+      std::abort();
+    }
+    const std::string text = what_to_do(progress, mass);
+    if (!text.empty() && text != said) fmt::print("{}{}\n", terminal ? "\r\033[K" : "", said = text);
+    if (device.status() != status)
+      fmt::print("{}  {}\n", terminal ? "\r\033[K" : "", status = device.status());
+    if (terminal)
+      fmt::print("\r    {:4.2f} N asked for, {:3.0f} s left \033[K", progress.newton, progress.seconds);
+    std::fflush(stdout);
+  }
+  if (terminal) fmt::print("\r\033[K");
+  return false;
+}
+
+/// Throws the `Error` for what went wrong.
+[[noreturn]] void explain(const Calibration& calibration, const ClientConfig& config, double mass,
+                          const char* status) {
+  const double most = config.device_limits().max_force,
+               largest = std::floor(calibration.largest_mass() * 100) / 100;
+  switch (calibration.trouble()) {
+    case Trouble::kNotHomed:
+      fail_at_run_time("the Falcon was not homed within two minutes ({}); begin again", status);
+    case Trouble::kNotMoved:
+      fail_at_run_time(
+          "the grip did not come to rest in the middle with up to {:g} N; let go of it, take off what hangs "
+          "on it, "
+          "and see that the mains adaptor is plugged in",
+          most);
+    case Trouble::kHeld:
+      fail_at_run_time(
+          "the grip did not move freely: a hand held it, or its joints are stiff; let go of it, and begin "
+          "again");
+    case Trouble::kUnsteady:
+      fail_at_run_time("the readings did not agree within a minute; nothing may touch or shake the device");
+    case Trouble::kNoWeight:
+      fail_at_run_time(
+          "no weight of {:g} kg came to rest on the grip within a minute: the force changed by {:.2f} N, and "
+          "must "
+          "by more than {:.2f} N; hang it on and let go, or give the right --mass",
+          mass, calibration.difference().norm(), mass * Calibration::kGravity / 2);
+    case Trouble::kTooHeavy:
+      if (largest < kLeastMass || largest >= mass)
+        fail_at_run_time("all of the {:g} N did not lift the weight; nothing may hold it or hang beside it",
+                         most);
+      fail_at_run_time("the weight is too heavy for the {:g} N at hand; one of {:g} kg or less does for sure",
+                       most, largest);
+    case Trouble::kOscillates:
+      fail_at_run_time("the grip oscillated, and the limiter switched the force off; nothing may touch it");
+    default:
+      fail_at_run_time("the Falcon gave no position any more ({}); begin again", status);
+  }
+}
+
+void print_result(const Calibration& calibration) {
+  const double tilt = calibration.tilt() * 180 / std::numbers::pi;
+  fmt::print(
+      "torque constant {:.0f} DAC units per N m, +-{:.1f} % by the spread of the readings; the weight pulled "
+      "{:.0f} "
+      "degrees off the vertical\n",
+      calibration.torque_constant(), 100 * calibration.uncertainty(), tilt);
+  if (tilt > kMostTilt) {
+    log::warning(
+        "the weight did not pull straight down (-y): the device does not stand upright, something touched "
+        "it, or "
+        "its geometry is not that of a Falcon");
+  }
+  fmt::print("put this into the client file:\n\n[falcon]\ntorque_constant = {:.0f}\n",
+             calibration.torque_constant());
+}
+
+}  // namespace
+
+int calibrate(ClientConfig config, double mass) {
+  if (config.device.name != "falcon")
+    fail("calibrate: device \"{}\" has no torque constant; only falcon or falcon:PORT has",
+         config.device.name);
+  require_within(mass, kLeastMass, kMostMass, "--mass", "kg");
+  FalconSettings& falcon = config.device.falcon;
+  falcon.torque_constant = std::min(falcon.torque_constant, kLowestTorqueConstant);
+  Guardian guardian({&config, 1});  // before any thread; goes after the device
+  const DeviceRow& row = find_row(devices(), config.device.name, "device", config.device.where);
+  const std::unique_ptr<Device> device = row.make(config.device);
+  Calibration calibration(
+      {.mass = mass, .assumed = falcon.torque_constant, .limits = config.device_limits()});
+  LatestValue<CalibrationProgress> progress;
+  bool interrupted = false;
+  {
+    std::jthread loop([&](const std::stop_token& stop) {
+      run_loop(stop, *device, calibration, row.limits(config.device).min_period, progress,
+               guardian.heartbeat());
+    });
+    if (const auto refused = make_realtime(loop.native_handle(), "palpate-haptic", kPriority);
+        !refused.empty())
+      log::warning("{}", refused);
+    if (const auto refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
+    interrupted = guide(progress, *device, mass);
+  }
+  if (interrupted) fail_at_run_time("interrupted; nothing was measured, the force is off");
+  if (calibration.trouble() != Trouble::kNone) explain(calibration, config, mass, device->status());
+  print_result(calibration);
+  return 0;
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,10 @@
+#pragma once
+
+namespace palpate::client {
+
+/// What is plugged in and known to us, a line each, on stdout: bus-port path, model, how to ask for it,
+/// access; where access is missing, the udev rule that gives it. Throws `Error` when there is no USB. Returns
+/// the exit code.
+int print_plugged_in();
+
+}  // namespace palpate::client

@@ -1,0 +1,198 @@
+#include "haptic_client/commands/evaluate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/error.h"
+#include "common/progress.h"
+#include "common/report.h"
+#include "common/text.h"
+#include "haptic_client/evaluation/captured_session.h"
+#include "haptic_client/evaluation/law_cost.h"
+#include "haptic_client/evaluation/scoring.h"
+#include "haptic_client/evaluation/told_compliance.h"
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/pipeline/pipeline.h"
+
+namespace palpate::client {
+namespace {
+
+constexpr double kPageBytes = protocol::kHeaderBytes + 9 + 4 * protocol::SurfacePage::kValues;
+
+/// What a capture was like, and what the laws made of it, plain and blended.
+struct Evaluation {
+  double ticks_hz = 0, path = 0, seconds = 0, age = 0;  // Hz, m, s, s: a sum over samples
+  std::vector<double> bytes;                            // of each law: a sum over samples
+  std::size_t run = 0;                                  // of the capture
+  double model_bytes = 0;                               // of the surface, once
+  std::uint64_t samples = 0;
+  std::vector<Scoring> plain, blended;  // at most kMaxLaws laws each
+};
+
+std::vector<Scoring> scorings(const std::vector<std::string>& laws, double ticks_hz, double blend,
+                              const Truth* truth) {
+  std::vector<Scoring> all;
+  for (std::size_t i = 0; i < laws.size(); i += kMaxLaws) {
+    const auto end = laws.begin() + static_cast<std::ptrdiff_t>(std::min(i + kMaxLaws, laws.size()));
+    all.emplace_back(std::vector(laws.begin() + static_cast<std::ptrdiff_t>(i), end), ticks_hz, "--method",
+                     blend, truth);
+  }
+  return all;
+}
+
+/// The rate that was meant: captured ticks come at whole microseconds.
+double ticks_per_second(const CapturedRun& run) {
+  return std::clamp(std::round(run.ticks_hz()), 1.0, 20000.0);
+}
+
+Wants wants_of(const std::string& law) {
+  return find_row(extrapolators(), law, "method", "--method").make()->wants();
+}
+
+/// Of a sample without the parts that the law has no use for.
+double bytes_for(const Wants& wants, protocol::ForceSample sample) {
+  if (!wants.here) sample.flags &= ~protocol::ForceSample::kHasHere;
+  if (!wants.ahead) sample.flags &= ~protocol::ForceSample::kHasAhead;
+  if (!wants.surface) sample.flags &= ~protocol::ForceSample::kHasSurface;
+  std::array<std::byte, protocol::kMaxDatagram> bytes;
+  return static_cast<double>(protocol::encode({}, sample, bytes));
+}
+
+Evaluation run(const std::filesystem::path& file, const std::vector<std::string>& laws,
+               const EvaluateOptions& options, const Truth* truth, ProgressLine& progress) {
+  const CaptureSurvey found = survey(file, [](double) {});
+  const auto longest = std::max_element(found.runs.begin(), found.runs.end(),
+                                        [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
+  Evaluation e;
+  e.bytes.resize(laws.size());
+  e.run = static_cast<std::size_t>(longest - found.runs.begin());
+  e.ticks_hz = ticks_per_second(*longest);
+  e.plain = scorings(laws, e.ticks_hz, 0, truth);
+  e.blended = scorings(laws, e.ticks_hz, options.blend_ms / 1e3, truth);
+  CapturedSession session(file, e.run);
+  std::optional<protocol::ToolState> before;
+  ErrorSums ignored;
+  SurfaceModel model;
+  protocol::SurfacePages pages;
+  std::vector<Wants> wants;
+  for (const std::string& law : laws) wants.push_back(wants_of(law));
+  for (CapturedTick tick; session.next(tick);) {
+    const Time t{tick.state.t_ns};
+    std::optional<Sample> sample;
+    for (const protocol::SurfacePage& page : tick.pages)
+      model.take(with_compliance(page, pages, options.compliance));
+    e.model_bytes += kPageBytes * static_cast<double>(tick.pages.size());
+    if (tick.arrived) {
+      const protocol::SurfaceState& surface = tick.arrived->surface;
+      if (surface.version != 0) pages = {surface.vertices, surface.triangles};
+      sample = sample_of(*tick.arrived, &model);
+      ++e.samples;
+      e.age += to_seconds(t - sample->t);
+      for (std::size_t i = 0; i < laws.size(); ++i) e.bytes[i] += bytes_for(wants[i], *tick.arrived);
+    }
+    for (auto* all : {&e.plain, &e.blended}) {
+      for (Scoring& scoring : *all) scoring.tick(tick.state.p_W, t, sample ? &*sample : nullptr, ignored);
+    }
+    if (before) {
+      e.path += (tick.state.p_W - before->p_W).norm();
+      e.seconds += to_seconds(t - Time{before->t_ns});
+    }
+    before = tick.state;
+    if (tick.state.tick % 4096 == 0) progress(file.filename().string(), session.share());
+  }
+  progress(file.filename().string(), 1);
+  if (e.samples < 2 || !(e.seconds > 0))
+    fail("{}: has fewer than two force samples; nothing to evaluate", file.string());
+  return e;
+}
+
+Json row_of(const Scoring& scoring, std::size_t law, const LawCost& cost) {
+  const ErrorMetrics m = scoring.metrics(law);
+  return {{"mean_percent", m.mean_percent},
+          {"p99_percent", m.p99_percent},
+          {"max_percent", m.max_percent},
+          {"jump_percent", m.jump_percent},
+          {"rough_percent", m.rough_percent},
+          {"exceed_percent", m.exceed_percent},
+          {"paper_mean_percent", m.paper_mean_percent},
+          {"paper_max_percent", m.paper_max_percent},
+          {"paper_max_force_percent", m.paper_max_force_percent},
+          {"energy_percent", scoring.energy_percent(law)},
+          {"ns_per_tick", cost.tick_ns},
+          {"ns_per_tick_p99", cost.tick_p99_ns},
+          {"ns_per_arrival", cost.arrival_ns}};
+}
+
+void add_rows(Json& rows, const std::string& world, const Evaluation& e, bool with_truth,
+              const std::vector<LawCost>& costs) {
+  for (const bool blended : {false, true}) {
+    std::size_t number = 0;
+    for (const Scoring& scoring : blended ? e.blended : e.plain) {
+      for (std::size_t law = 0; law < scoring.names().size(); ++law) {
+        const auto samples = static_cast<double>(e.samples);
+        Json row = {{"world", world},
+                    {"speed_m_s", e.path / e.seconds},
+                    {"rate_hz", samples / e.seconds},
+                    {"delay_ms", 1e3 * e.age / samples},
+                    {"reference", with_truth ? "truth" : "line"},
+                    {"method", scoring.names()[law]},
+                    {"blended", blended}};
+        row.update(row_of(scoring, law, costs[number]));
+        row["bytes_per_sample"] = e.bytes[number] / samples;
+        row["model_bytes"] = wants_of(scoring.names()[law]).surface ? e.model_bytes : 0;
+        ++number;
+        rows.push_back(row);
+      }
+    }
+  }
+}
+
+void print(const Json& rows) {
+  fmt::print("{:20} {:24} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "world", "law", "blend",
+             "mean %", "p99 %", "max %", "jump %", "rough %", "energy %", "ns/tick");
+  for (const Json& row : rows) {
+    const auto number = [&](const char* key) { return row[key].get<double>(); };
+    fmt::print("{:20} {:24} {:>5} {:8.3f} {:8.2f} {:8.2f} {:8.2f} {:8.3f} {:8.2f} {:9.1f}\n",
+               row["world"].get<std::string>(), row["method"].get<std::string>(),
+               row["blended"].get<bool>() ? "yes" : "no", number("mean_percent"), number("p99_percent"),
+               number("max_percent"), number("jump_percent"), number("rough_percent"),
+               number("energy_percent"), number("ns_per_tick"));
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int evaluate(const EvaluateOptions& options) {
+  std::vector<std::string> laws = options.methods;
+  for (const std::string& law : laws) find_row(extrapolators(), law, "method", "--method");
+  if (laws.empty()) {
+    for (const ExtrapolatorRow& row : extrapolators()) laws.emplace_back(row.name);
+  }
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (!std::filesystem::is_directory(options.out, error))
+    fail("{}: is no folder, and could not be made one", options.out.string());
+  check_writable(options.out / "summary.json");
+  ProgressLine progress;
+  std::optional<Truth> truth;
+  if (options.truth)
+    truth.emplace(*options.truth, [&](double share) { progress("reading the truth", share); });
+  Json rows = Json::array();
+  for (const std::filesystem::path& capture : options.captures) {
+    const Evaluation e = run(capture, laws, options, truth ? &*truth : nullptr, progress);
+    std::vector<LawCost> costs;
+    for (const std::string& law : laws)
+      costs.push_back(wants_of(law).surface ? cost_on(law, capture, e.run) : cost_of(law));
+    add_rows(rows, options.world.empty() ? capture.stem().string() : options.world, e, truth.has_value(),
+             costs);
+  }
+  print(rows);
+  write_json(options.out / "summary.json", rows);
+  write_whole(options.out / "summary.csv", csv_of(rows));
+  return 0;
+}
+
+}  // namespace palpate::client

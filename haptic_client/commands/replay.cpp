@@ -1,0 +1,166 @@
+#include "haptic_client/commands/replay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/error.h"
+#include "common/log.h"
+#include "common/progress.h"
+#include "common/text.h"
+#include "haptic_client/evaluation/resampler.h"
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/session/client_report.h"
+#include "haptic_client/session/trace.h"
+#include "protocol/udp_socket.h"
+
+namespace palpate::client {
+namespace {
+
+constexpr double kFastest = 20000;           // Hz
+constexpr double kSameRate = 0.02;           // of the rate
+constexpr std::uint64_t kLookAround = 4096;  // ticks between two looks at the progress line
+
+std::string describe(const CapturedRun& run, std::size_t index) {
+  return fmt::format("{}: client {}, {} ticks from {} ({:.0f} Hz), {} samples", index + 1,
+                     protocol::to_string(run.client), run.ticks, run.first_tick, run.ticks_hz(), run.samples);
+}
+
+/// The session asked for, or the longest; says which when there are several.
+std::size_t choose(const CaptureSurvey& found, const ReplayOptions& options) {
+  const auto count = static_cast<int>(found.runs.size());
+  const auto longest = std::max_element(found.runs.begin(), found.runs.end(),
+                                        [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
+  if (options.session && (*options.session < 1 || *options.session > count))
+    fail("--session: {} has {} session{}, there is no number {}", options.capture.string(), count,
+         count == 1 ? "" : "s", *options.session);
+  const auto chosen = options.session ? static_cast<std::size_t>(*options.session - 1)
+                                      : static_cast<std::size_t>(longest - found.runs.begin());
+  if (count > 1) {
+    log::info("{} holds {} sessions; replaying number {}, --session chooses another",
+              options.capture.string(), count, chosen + 1);
+    for (std::size_t i = 0; i < found.runs.size(); ++i) log::info("  {}", describe(found.runs[i], i));
+  }
+  if (found.runs[chosen].ticks == 0)
+    fail("--session: number {} in {} has no tool states", chosen + 1, options.capture.string());
+  return chosen;
+}
+
+/// The captured ticks as they are, or at the rate asked for.
+class TickSource {
+ public:
+  TickSource(CapturedSession& session, std::optional<double> rate_hz) : session_(session) {
+    if (rate_hz) resampler_.emplace(session, *rate_hz);
+  }
+  bool next(CapturedTick& out) { return resampler_ ? resampler_->next(out) : session_.next(out); }
+
+ private:
+  CapturedSession& session_;
+  std::optional<Resampler> resampler_;
+};
+
+std::uint64_t run_ticks(CapturedSession& session, std::optional<double> rate_hz, Pipeline& pipeline,
+                        Observation& observation, TraceWriter* trace) {
+  TickSource source(session, rate_hz);
+  ProgressLine progress;
+  CapturedTick tick;
+  std::uint64_t ticks = 0;
+  while (source.next(tick)) {
+    const TickResult result = pipeline.feel(tick.state, tick.arrived ? &*tick.arrived : nullptr, tick.pages);
+    observation.tick(result, Time::zero(), 0);
+    if (trace != nullptr) trace->add({result, observation.scoring().forces()});
+    if (++ticks % kLookAround == 0) progress("replaying", session.share());
+  }
+  progress("replaying", 1);
+  return ticks;
+}
+
+Json describe_capture(const CaptureSurvey& found, const CapturedRun& run, const CapturedSession& session,
+                      std::uint64_t ticks, double rate_hz, bool exact) {
+  const CapturedSession::Missing& missing = session.missing();
+  return {{"client", protocol::to_string(run.client)},
+          {"packets", found.packets},
+          {"ours", found.ours},
+          {"refused", found.refused},
+          {"left_out", found.left_out},
+          {"other_traffic", found.other},
+          {"sessions", found.runs.size()},
+          {"tool_states", run.ticks},
+          {"force_samples", run.samples},
+          {"rate_hz", rate_hz},
+          {"ticks", ticks},
+          {"own_ticks", exact},
+          {"missing_ticks", missing.ticks},
+          {"missing_samples", missing.samples},
+          {"missing_pages", missing.pages},
+          {"backward_ticks", missing.backwards},
+          {"link_lost", run.lost()},
+          {"link_reordered", run.reordered()},
+          {"link_duplicated", run.duplicated()}};
+}
+
+/// Whether these are the forces the client wrote, or what keeps them from being.
+void say_how_exact(const Json& capture, const CapturedRun& run, const std::string& trouble,
+                   const std::string& file) {
+  if (!trouble.empty()) log::warning("{}: {}", file, trouble);
+  fmt::print("haptic_client: {} ticks at {:.6g} Hz, {} samples of client {}\n",
+             capture["ticks"].get<std::uint64_t>(), capture["rate_hz"].get<double>(), run.samples,
+             protocol::to_string(run.client));
+  if (run.first_tick > 1)
+    log::info("{}: begins in mid-session, at tick {}: the force starts softly there", file, run.first_tick);
+  const auto count = [&](const char* key) { return capture[key].get<std::uint64_t>(); };
+  if (count("left_out") > 0)
+    log::warning("{}: holds more sessions than can be told apart; {} datagrams were left out", file,
+                 count("left_out"));
+  if (count("missing_ticks") + count("missing_samples") + count("missing_pages") + count("backward_ticks") >
+      0) {
+    log::warning(
+        "{}: {} ticks, {} samples and {} pages of the surface are missing, {} ticks have times that jump: "
+        "the "
+        "forces differ from those felt there",
+        file, count("missing_ticks"), count("missing_samples"), count("missing_pages"),
+        count("backward_ticks"));
+  }
+}
+
+/// The rate that the client was asked for, if the capture (which may have missed ticks) is near it; in any
+/// case one that a loop can have.
+double nominal_rate(double captured_hz, double asked_hz) {
+  const bool near = std::abs(captured_hz - asked_hz) <= kSameRate * asked_hz;
+  return std::clamp(near ? asked_hz : captured_hz, 1.0, kFastest);
+}
+
+}  // namespace
+
+int replay(const ClientConfig& config, const ReplayOptions& options) {
+  require_distinct({{"CAPTURE", options.capture}, {"--out", options.out}, {"--report", options.report}});
+  if (options.report) check_writable(*options.report);
+  if (options.out) check_writable(*options.out);
+  ProgressLine progress;
+  const CaptureSurvey found =
+      survey(options.capture, [&](double share) { progress("reading the capture", share); });
+  const std::size_t index = choose(found, options);
+  const CapturedRun& run = found.runs[index];
+  const double captured_hz = run.ticks_hz(), rate_hz = options.rate_hz.value_or(captured_hz);
+  const bool exact = captured_hz == 0 || std::abs(rate_hz - captured_hz) <= kSameRate * captured_hz;
+  const double ticks_hz = exact ? nominal_rate(captured_hz, config.rate_hz) : rate_hz;
+
+  Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(),
+                    config.workspace, config.device_limits(), config.passivity, config.blend);
+  Observation observation(config.scored_laws(), ticks_hz, config.score_where, 0, config.blend);
+  CapturedSession session(options.capture, index);
+  std::optional<TraceWriter> trace;
+  if (options.out) trace.emplace(*options.out, observation.scoring().names());
+  const std::uint64_t ticks = run_ticks(session, exact ? std::nullopt : std::optional(rate_hz), pipeline,
+                                        observation, trace ? &*trace : nullptr);
+  if (trace) trace->finish();
+
+  const Json report = {{"capture", describe_capture(found, run, session, ticks, ticks_hz, exact)},
+                       {"tools", Json::array({tool_report(config, pipeline, observation)})}};
+  say_how_exact(report["capture"], run, found.trouble, options.capture.string());
+  print_report(report);
+  if (options.report) write_json(*options.report, report);
+  return 0;
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,132 @@
+#include "haptic_client/commands/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/core.h>
+#include <list>
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <set>
+#include <unistd.h>
+
+#include "common/clock.h"
+#include "common/error.h"
+#include "common/interrupt.h"
+#include "common/log.h"
+#include "common/realtime.h"
+#include "haptic_client/session/client_report.h"
+#include "haptic_client/session/guardian.h"
+#include "haptic_client/session/held_tool.h"
+
+namespace palpate::client {
+namespace {
+
+using Path = std::filesystem::path;
+
+/// F.csv, or F-2.csv for the second of several tools.
+std::optional<Path> numbered(const std::optional<Path>& file, std::size_t number, std::size_t of) {
+  if (!file || of == 1) return file;
+  Path name = *file;
+  return name.replace_filename(
+      fmt::format("{}-{}{}", file->stem().string(), number, file->extension().string()));
+}
+
+std::string name_of_tool(const ClientConfig& config, std::size_t number, std::size_t of) {
+  if (of == 1) return "";
+  const DeviceSettings& device = config.device;
+  return fmt::format("tool {} ({}{}{}): ", number, device.name, device.port.empty() ? "" : ":", device.port);
+}
+
+/// Two tools need two devices, and one server.
+void check_together(const std::vector<ClientConfig>& configs) {
+  std::set<std::pair<std::string, std::string>> taken;
+  for (const ClientConfig& config : configs) {
+    const DeviceSettings& device = config.device;
+    if (config.server != configs.front().server) {
+      fail("{}: server \"{}\", but the first tool has \"{}\"; all tools of one run are at one server",
+           config.server_where, config.server, configs.front().server);
+    }
+    if (configs.size() == 1 || device.name == "simulated") continue;
+    const bool several = std::count_if(configs.begin(), configs.end(), [&](const ClientConfig& other) {
+                           return other.device.name == device.name;
+                         }) > 1;
+    if (several && device.port.empty())
+      fail(
+          "{}: of several devices \"{}\" each needs its port, such as {}:2-1; `haptic_client devices` lists "
+          "them",
+          device.where, device.name, device.name);
+    if (!taken.insert({device.name, device.port}).second)
+      fail("{}: two tools cannot hold the same device {}:{}", device.where, device.name, device.port);
+  }
+}
+
+/// Whether a line can be printed without waiting: nobody who reads slowly may keep us from Ctrl-C.
+bool takes_output() {
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&out, 1, 0) > 0 && (out.revents & POLLOUT) != 0;
+}
+
+void watch(std::list<HeldTool>& tools, std::optional<double> seconds) {
+  const bool terminal = isatty(STDOUT_FILENO) != 0;
+  const double period = terminal ? 0.2 : 5;  // s
+  double next = 0;
+  for (const Time start = now();;) {
+    const double elapsed = to_seconds(now() - start);
+    if (seconds && elapsed >= *seconds) break;
+    for (HeldTool& tool : tools) tool.look();
+    if (elapsed >= next && takes_output()) {
+      next = (std::floor(elapsed / period) + 1) * period;
+      fmt::print("{}haptic_client: {:6.1f} s", terminal ? "\r" : "", elapsed);
+      for (const HeldTool& tool : tools) fmt::print("  {}", tool.progress());
+      fmt::print("{}", terminal ? "  " : "\n");
+      std::fflush(stdout);
+    }
+    const double left = seconds ? *seconds - elapsed : 0.1;
+    if (wait_for_interrupt(from_seconds(std::min(left, 0.1)))) break;
+    if (take_rearm_request()) {
+      for (HeldTool& tool : tools) tool.rearm();
+    }
+  }
+  if (terminal) fmt::print("\n");
+}
+
+}  // namespace
+
+int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& options) {
+  check_together(configs);
+  std::vector<NamedFile> written{{"--report", options.report}};
+  std::vector<ToolFiles> files;
+  for (std::size_t i = 1; i <= configs.size(); ++i) {
+    files.push_back(
+        {numbered(options.trace, i, configs.size()), numbered(options.record, i, configs.size())});
+    written.insert(written.end(), {{"--trace", files.back().trace}, {"--record", files.back().record}});
+  }
+  require_distinct(written);
+  if (options.report) check_writable(*options.report);
+  for (const ToolFiles& tool : files) {
+    if (tool.trace) check_writable(*tool.trace);
+  }
+  Guardian guardian(configs);  // before any thread; goes after the tools
+  std::list<HeldTool> tools;
+  for (std::size_t i = 0; i < configs.size(); ++i)
+    tools.emplace_back(configs[i], files[i], name_of_tool(configs[i], i + 1, configs.size()),
+                       options.seconds);
+  // One after the other, so that the first tool of the scene is the first one here.
+  if (std::all_of(tools.begin(), tools.end(), [](HeldTool& tool) { return tool.connect(); })) {
+    for (HeldTool& tool : tools) tool.start(guardian.heartbeat());
+    // After the threads, whose stacks a small limit would not hold.
+    if (const std::string refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
+    watch(tools, options.seconds);
+  }
+  for (HeldTool& tool : tools) tool.halt();
+  guardian.dismiss();
+  for (HeldTool& tool : tools) tool.stop();
+  Json report = {{"server", configs.front().server}, {"tools", Json::array()}};
+  for (const HeldTool& tool : tools) report["tools"].push_back(tool.report());
+  print_report(report);
+  for (const HeldTool& tool : tools) tool.write_files();
+  if (options.report) write_json(*options.report, report);
+  return 0;
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,22 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "haptic_client/session/client_config.h"
+
+namespace palpate::client {
+
+/// What `haptic_client run` was asked for, beyond the configuration.
+struct ClientOptions {
+  std::optional<double> seconds;  ///< stop after so long in contact with the server; absent: at Ctrl-C
+  std::optional<std::filesystem::path> report;  ///< JSON written at the end
+  std::optional<std::filesystem::path> trace;   ///< CSV of the last minute, a row a tick; a file each tool
+  std::optional<std::filesystem::path> record;  ///< capture of every datagram; a file each tool
+};
+
+/// One tool for each of `configs` (at least one): connects, runs the haptic loops until Ctrl-C or `seconds`,
+/// reports. Throws `Error`. Returns the exit code.
+int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& options);
+
+}  // namespace palpate::client

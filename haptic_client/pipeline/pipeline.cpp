@@ -1,0 +1,188 @@
+#include "haptic_client/pipeline/pipeline.h"
+
+#include <algorithm>
+
+namespace palpate::client {
+using protocol::ForceSample;
+using protocol::ToolState;
+
+namespace {
+
+constexpr double kVelocityFilter = 0.005;                  // s, time constant of the velocity estimate
+constexpr int kLeadFilter = 8;                             // samples
+constexpr Time kAskPeriod = std::chrono::milliseconds(8);  // a thousand pages a second at most
+constexpr double kCovered = 3;                             // of the tool radius: what is asked for first
+constexpr Time kForesight = std::chrono::milliseconds(200);
+constexpr double kDamperShare = 0.25;  // of the largest force: all dampers together
+constexpr double kFadeDamping = 2;     // N s/m, in the device frame, while the force fades
+
+Linearised linearised(const Vec3& p, const Vec3& f, const protocol::Linearisation& l) noexcept {
+  const auto& k = l.tangent;
+  Linearised out{.p = p, .f = f, .normal = l.normal_W, .gap = l.gap};
+  out.k << k[0], k[1], k[2], k[1], k[3], k[4], k[2], k[4], k[5];
+  return out;
+}
+
+double seconds_between(const ToolState& before, Time t) {
+  return before.tick == 0 ? 0 : to_seconds(t - Time{before.t_ns});
+}
+
+}  // namespace
+
+Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
+  Sample sample{s.number, Time{s.tool_t_ns}, s.p_W, s.f_W, s.surface_v_W};
+  if ((s.flags & ForceSample::kHasHere) != 0) sample.here = linearised(s.p_W, s.f_W, s.here);
+  if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = linearised(s.ahead_p_W, s.ahead_f_W, s.ahead);
+  if ((s.flags & ForceSample::kHasSurface) != 0 && model != nullptr) {
+    model->announce(s.surface);
+    sample.surface = Surface{model,
+                             s.surface.shift_W,
+                             {s.surface.tool_radius, s.surface.tool_friction},
+                             s.surface.tool_compliance};
+  }
+  return sample;
+}
+
+void Pipeline::ask_for(const Wants& wants) {
+  wants_ |= wants;
+  if (wants_.surface && !model_) model_ = std::make_unique<SurfaceModel>();
+}
+
+ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
+  const double dt = seconds_between(sensed_, reading.t);
+  const bool was_lost = sensed_.tick == 0 || (sensed_.flags & ToolState::kDeviceLost) != 0;
+  ++sensed_.tick;
+  sensed_.t_ns = reading.t.count();
+  sensed_.buttons = reading.buttons;
+  sensed_.flags = rearm_asked_ ? ToolState::kRearmed : 0;
+  rearm_asked_ = false;
+  if (wants_.here) sensed_.flags |= ToolState::kWantsHere;
+  if (wants_.ahead) sensed_.flags |= ToolState::kWantsAhead;
+  if (wants_.surface) sensed_.flags |= ToolState::kWantsSurface;
+  sensed_.lead_ns = wants_.ahead ? lead_.count() : 0;
+  if ((reading.buttons & workspace_.clutch) != 0) sensed_.flags |= ToolState::kClutched;
+  if (!reading.valid || !reading.p_D.allFinite()) {
+    sensed_.flags |= ToolState::kDeviceLost;
+    return sensed_;
+  }
+  if ((sensed_.flags & ToolState::kClutched) != 0 && !was_lost)  // the world moves with the hand
+    workspace_.offset_W += sensed_.p_W - workspace_.to_world(reading.p_D);
+  const Vec3 p_W = workspace_.to_world(reading.p_D);
+  if (was_lost) {
+    sensed_.v_W.setZero();  // it may have gone anywhere meanwhile
+  } else if (dt > 0) {
+    sensed_.v_W += dt / (dt + kVelocityFilter) * ((p_W - sensed_.p_W) / dt - sensed_.v_W);
+  }
+  sensed_.p_W = p_W;
+  return sensed_;
+}
+
+TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
+                          std::span<const protocol::SurfacePage> pages) noexcept {
+  const Time now{tool.t_ns};
+  const double dt = seconds_between(felt_, now);
+  if ((tool.flags & ToolState::kRearmed) != 0 && limiter_.fault() != Fault::kNone) {
+    limiter_.rearm();
+    watchdog_.restart();
+  }
+  follow_path(tool, dt);
+  TickResult result{.tool = tool};
+  if (model_) {
+    for (const protocol::SurfacePage& page : pages) model_->take(page);
+  }
+  stats_.pages += pages.size();
+  if (arrived != nullptr && take(*arrived, tool.p_W, now)) {
+    result.used = true;
+    result.sample = estimate_.newest();
+    result.step = Time{arrived->step_ns};
+  }
+  result.tool.newest_sample = estimate_.newest().number;
+  if (model_) ask_for_pages(result.tool, now);
+  if (felt_.tick > 0)
+    passivity_.moved(now, workspace_.motion_to_device(tool.p_W - felt_.p_W),
+                     workspace_.motion_to_device(estimate_.newest().surface_v), dt);
+  result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
+  stats_.stepped_down += result.tool.newest_sample > 0 && estimate_.stepped_down() ? 1 : 0;
+  felt_ = tool;
+  return result;
+}
+
+void Pipeline::ask_for_pages(ToolState& tool, Time now) noexcept {
+  tool.pages_taken = stats_.pages;
+  tool.flags &= static_cast<std::uint16_t>(~ToolState::kAsksPages);
+  const auto& surface = estimate_.newest().surface;
+  if (!surface || model_->version() == 0 || now - asked_ < kAskPeriod) return;
+  asked_ = now;
+  const Vec3 p_rest = tool.p_W - surface->shift;
+  const double reach = kCovered * surface->tool.radius + to_seconds(kForesight) * tool.v_W.norm();
+  if (!model_->choose_missing(p_rest, reach, now, tool.pages)) return;
+  tool.flags |= ToolState::kAsksPages;
+  tool.surface_version = model_->version();
+}
+
+/// What of the force `f_W` (N, world) may go to the motors: passivity, watchdog, limiter.
+Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept {
+  const bool lost = (tool.flags & ToolState::kDeviceLost) != 0,
+             clutched = (tool.flags & ToolState::kClutched) != 0, off = lost || clutched;
+  stats_.lost += lost ? 1 : 0;
+  stats_.clutched += clutched ? 1 : 0;
+  const Vec3 law_D = workspace_.to_device(f_W), felt_D = limiter_.clamp(law_D);
+  const Passivity::Ruling passive = passivity_.rule(dt);
+  const Watchdog::Ruling watchdog = rule_by_age(tool, dt);
+  if (off) watchdog_.restart();  // so that it comes back softly
+  const double damping = passive.damping + (watchdog.damper ? watchdog.gain * kFadeDamping : 0);
+  const Vec3 damper_D = limiter_.within(kDamperShare, -damping * workspace_.motion_to_device(tool.v_W));
+  const Vec3 f_D =
+      off ? limiter_.drop() : limiter_.push(watchdog.gain * passive.gain * felt_D + damper_D, dt);
+  passivity_.wrote(felt_D, damper_D);
+  law_newton_ = law_D.stableNorm();
+  if (off || watchdog.gain < 1) {
+    passivity_.restart();
+    felt_share_.restart();
+  } else {
+    felt_share_.tick(law_D, f_D, dt);
+  }
+  stats_.max_newton = std::max(stats_.max_newton, f_D.norm());
+  return f_D;
+}
+
+Watchdog::Ruling Pipeline::rule_by_age(const ToolState& tool, double dt) noexcept {
+  if (estimate_.newest().number == 0) return watchdog_.rule({}, dt);
+  const Time age = Time{tool.t_ns} - estimate_.newest().t;
+  stats_.age_ns.add(age.count());
+  return watchdog_.rule(age, dt);
+}
+
+std::int64_t Pipeline::age_ns() const noexcept {
+  return estimate_.newest().number == 0 ? -1 : felt_.t_ns - estimate_.newest().t.count();
+}
+
+void Pipeline::follow_path(const ToolState& tool, double dt) noexcept {
+  const bool known = ((tool.flags | felt_.flags) & ToolState::kDeviceLost) == 0;
+  if (dt <= 0 || !known) return;
+  stats_.path_m += (tool.p_W - felt_.p_W).norm();
+  stats_.path_s += dt;
+  stats_.max_speed = std::max(stats_.max_speed, tool.v_W.norm());
+}
+
+bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexcept {
+  const Vec3 before = estimate_.newest().p;
+  if (!estimate_.take(sample_of(arrived, model_.get()), p_W, now)) {
+    ++stats_.overtaken;
+    return false;
+  }
+  const Sample& newest = estimate_.newest();
+  passivity_.sampled(newest.t, workspace_.motion_to_device(newest.p), workspace_.to_device(newest.f),
+                     limiter_.max_force());
+  const Time lead = now - estimate_.newest().t + estimate_.period() / 2;
+  lead_ += (std::min(lead, kOutage) - lead_) / kLeadFilter;
+  ++stats_.samples;
+  if (estimate_.period() > Time::zero()) {
+    stats_.sample_path_m += (arrived.p_W - before).norm();
+    stats_.sample_path_s += to_seconds(estimate_.period());
+    ++stats_.sample_pairs;
+  }
+  return true;
+}
+
+}  // namespace palpate::client

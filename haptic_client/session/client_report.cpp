@@ -1,0 +1,244 @@
+#include "haptic_client/session/client_report.h"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "haptic_client/evaluation/law_cost.h"
+
+namespace palpate::client {
+namespace {
+
+double per(double sum, double count) {
+  return count > 0 ? sum / count : 0;
+}
+
+Json methods_report(const Scoring& scoring) {
+  Json methods = Json::object();
+  for (std::size_t i = 0; i < scoring.names().size(); ++i) {
+    const ErrorMetrics m = scoring.metrics(i);
+    methods[scoring.names()[i]] = {{"mean_percent", m.mean_percent},
+                                   {"p99_percent", m.p99_percent},
+                                   {"max_percent", m.max_percent},
+                                   {"exceed_percent", m.exceed_percent},
+                                   {"jump_percent", m.jump_percent},
+                                   {"rough_percent", m.rough_percent},
+                                   {"paper_mean_percent", m.paper_mean_percent},
+                                   {"paper_max_percent", m.paper_max_percent},
+                                   {"paper_max_force_percent", m.paper_max_force_percent},
+                                   {"ns_per_tick", cost_of(scoring.names()[i]).tick_ns}};
+  }
+  return methods;
+}
+
+Json timeline_report(const SessionTimeline& timeline, const Scoring& scoring) {
+  Json cells = Json::array();
+  for (std::size_t i = 0; i < timeline.size(); ++i) {
+    const SessionCell& cell = timeline[i];
+    Json errors = Json::object();
+    const double rms = std::sqrt(per(cell.errors.reference_squared, cell.errors.ticks));
+    for (std::size_t law = 0; law < scoring.names().size(); ++law) {
+      errors[scoring.names()[law]] = 100 * per(per(cell.errors.error[law], cell.errors.ticks), rms);
+    }
+    cells.push_back({{"t_s", static_cast<double>(i) * to_seconds(timeline.width())},
+                     {"ticks", cell.ticks},
+                     {"missed", cell.missed},
+                     {"tick_us_mean", 1e-3 * per(cell.tick_ns_sum, cell.ticks)},
+                     {"tick_us_max", 1e-3 * cell.tick_ns_max},
+                     {"samples", cell.samples},
+                     {"step_ms_mean", 1e-6 * per(cell.step_ns_sum, cell.samples)},
+                     {"step_ms_max", 1e-6 * cell.step_ns_max},
+                     {"error_percent", errors}});
+  }
+  return {{"cell_s", to_seconds(timeline.width())}, {"cells", cells}};
+}
+
+/// Mean over the cells [from, to) of what `value` says of each, weighted by `weight`.
+double mean_over(const Json& cells, std::size_t from, std::size_t to, const char* weight, auto value) {
+  double sum = 0, count = 0;
+  for (std::size_t i = from; i < to; ++i) {
+    const double w = cells[i][weight].template get<double>();
+    sum += w * value(cells[i]);
+    count += w;
+  }
+  return per(sum, count);
+}
+
+void print_drift(const Json& tool) {
+  const Json& cells = tool["timeline"]["cells"];
+  const std::size_t n = cells.size(), part = n / 4;
+  if (part == 0) return;
+  const auto drift = [&](const char* weight, auto value) {
+    return fmt::format("{:.2f} -> {:.2f}", mean_over(cells, 0, part, weight, value),
+                       mean_over(cells, n - part, n, weight, value));
+  };
+  const auto column = [](const char* key) {
+    return [key](const Json& cell) { return cell[key].get<double>(); };
+  };
+  std::string text;
+  const auto add = [&](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
+  if (mean_over(cells, 0, n, "ticks", column("tick_us_mean")) > 0)
+    add(fmt::format("tick {} us", drift("ticks", column("tick_us_mean"))));
+  if (mean_over(cells, 0, n, "samples", column("step_ms_mean")) > 0)
+    add(fmt::format("step {} ms", drift("samples", column("step_ms_mean"))));
+  const auto method = tool["method"].get<std::string>();
+  if (tool["methods"].contains(method)) {
+    add(fmt::format("error {} %", drift("samples", [&](const Json& cell) {
+                      return cell["error_percent"][method].get<double>();
+                    })));
+  }
+  if (!text.empty()) fmt::print("  drift   first to last quarter: {}\n", text);
+}
+
+void print_scores(const Json& tool) {
+  const Json &methods = tool["methods"], &motion = tool["motion"];
+  if (methods.empty()) return;
+  fmt::print(
+      "  score   {} ticks against the line between the samples, latency included; {:.1f} samples a second\n",
+      tool["scored_ticks"].get<long>(), motion["sample_rate_hz"].get<double>());
+  fmt::print("          {:24}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
+             "paper: % of the interpolated force", "");
+  fmt::print("          {:24}{:>11}{:>11}{:>11}   {:>12}{:>12}{:>12}   {:>7}\n", "law", "mean", "p99", "max",
+             "average", "maximal", "max force", "ns/tick");
+  for (const auto& [name, m] : methods.items()) {
+    const auto number = [&m = m](const char* key) { return m[key].get<double>(); };
+    fmt::print("          {:24}{:11.3f}{:11.3f}{:11.2f}   {:12.3f}{:12.1f}{:12.1f}   {:7.1f}\n", name,
+               number("mean_percent"), number("p99_percent"), number("max_percent"),
+               number("paper_mean_percent"), number("paper_max_percent"), number("paper_max_force_percent"),
+               number("ns_per_tick"));
+  }
+}
+
+void print_loop(const Json& loop) {
+  const auto number = [](const Json& group, const char* key) { return group[key].get<double>(); };
+  const Json &period = loop["period_us"], &tick = loop["tick_us"];
+  const double due = number(loop, "ticks") + number(loop, "missed");
+  fmt::print(
+      "  loop    {:g} Hz, {:.0f} ticks, {:.0f} missed ({:.2f} % on time); period {:.0f} us (p50), {:.0f} "
+      "(p99), {:.0f} (max); a tick takes {:.1f} us (p50), {:.1f} (p99)\n",
+      number(loop, "rate_hz"), number(loop, "ticks"), number(loop, "missed"),
+      due > 0 ? 100 * number(loop, "ticks") / due : 0, number(period, "p50"), number(period, "p99"),
+      number(period, "max"), number(tick, "p50"), number(tick, "p99"));
+}
+
+void print_tool(const Json& tool) {
+  const auto number = [](const Json& group, const char* key) { return group[key].get<double>(); };
+  const Json &force = tool["force"], &motion = tool["motion"], &safety = tool["safety"],
+             &age = force["age_ms"];
+  fmt::print(
+      "  force   {:.0f} samples, age {:.1f} ms (p50), {:.1f} (p99), {:.1f} (max); largest force {:.2f} N\n",
+      number(force, "samples"), number(age, "p50"), number(age, "p99"), number(age, "max"),
+      number(force, "max_newton"));
+  if (number(force, "stepped_down") > 0 || number(force, "surface_pages") > 0) {
+    fmt::print("  law     a simpler one stood in for it in {:.0f} ticks; {:.0f} pages of the surface came\n",
+               number(force, "stepped_down"), number(force, "surface_pages"));
+  }
+  fmt::print("  motion  {:.4f} m/s mean, {:.4f} max; {:.2f} mm between samples\n",
+             number(motion, "mean_speed_m_s"), number(motion, "max_speed_m_s"),
+             number(motion, "spatial_sampling_mm"));
+  fmt::print(
+      "  safety  ticks: {:.0f} clamped, {:.0f} slewed, {:.0f} damped, {:.0f} softened, {:.0f} without "
+      "device, {:.0f} "
+      "clutched; times: {:.0f} faded, {:.0f} not finite, {:.0f} storms\n",
+      number(safety, "clamped"), number(safety, "slewed"), number(safety, "damped"),
+      number(safety, "softened"), number(safety, "lost"), number(safety, "clutched"),
+      number(safety, "ramped"), number(safety, "not_finite"), number(safety, "storms"));
+  if (safety.value("cut_by_motors", 0) > 0) {
+    fmt::print("          {:.0f} ticks: the motors of the device could not give the whole force\n",
+               number(safety, "cut_by_motors"));
+  }
+}
+
+void print_link(const Json& link) {
+  fmt::print("  link   ");
+  const char* separator = " ";
+  for (const auto& [name, count] : link.items()) {
+    fmt::print("{}{} {}", separator, count.get<long>(), name);
+    separator = ", ";
+  }
+  fmt::print("\n");
+}
+
+}  // namespace
+
+const char* name_of(Fault fault) {
+  switch (fault) {
+    case Fault::kNone:
+      return "none";
+    case Fault::kNotFinite:
+      return "a force was not finite";
+    case Fault::kStorm:
+      return "the force oscillated against the slew limit";
+  }
+  return "unknown";
+}
+
+Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Observation& observation) {
+  const PipelineStats& stats = pipeline.stats();
+  const LimiterCounts& limiter = pipeline.limiter().counts();
+  const auto pairs = static_cast<double>(stats.sample_pairs);
+  return {{"device", config.device.name},
+          {"port", config.device.port},
+          {"method", config.method},
+          {"force",
+           {{"samples", stats.samples},
+            {"overtaken", stats.overtaken},
+            {"stepped_down", stats.stepped_down},
+            {"surface_pages", stats.pages},
+            {"age_ms", quantiles(stats.age_ns, 1e6)},
+            {"max_newton", stats.max_newton}}},
+          {"motion",
+           {{"mean_speed_m_s", per(stats.path_m, stats.path_s)},
+            {"max_speed_m_s", stats.max_speed},
+            {"sample_rate_hz", per(pairs, stats.sample_path_s)},
+            {"spatial_sampling_mm", 1e3 * per(stats.sample_path_m, pairs)}}},
+          {"safety",
+           {{"clamped", limiter.clamped},
+            {"slewed", limiter.slewed},
+            {"damped", pipeline.passivity().counts().damped},
+            {"softened", pipeline.passivity().counts().softened},
+            {"least_gain", pipeline.passivity().counts().least_gain},
+            {"weak_s", pipeline.felt_share().total_s()},
+            {"largest_debt_mj", 1e3 * pipeline.passivity().counts().largest_debt_j},
+            {"ramped", pipeline.watchdog().ramped()},
+            {"lost", stats.lost},
+            {"clutched", stats.clutched},
+            {"not_finite", limiter.not_finite},
+            {"storms", limiter.storms}}},
+          {"scored_ticks", observation.scoring().scored()},
+          {"methods", methods_report(observation.scoring())},
+          {"timeline", timeline_report(observation.timeline(), observation.scoring())}};
+}
+
+Json loop_report(double rate_hz, const HapticLoopStats& stats) {
+  return {{"rate_hz", rate_hz},
+          {"ticks", stats.ticks},
+          {"missed", stats.missed},
+          {"unsent", stats.unsent},
+          {"period_us", quantiles(stats.period_ns, 1e3)},
+          {"tick_us", quantiles(stats.tick_ns, 1e3)}};
+}
+
+Json link_report(const protocol::LinkStats& net) {
+  return {{"sent", net.sent},           {"received", net.received},     {"lost", net.lost},
+          {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"rejected", net.rejected}};
+}
+
+void print_report(const Json& report) {
+  for (const Json& tool : report["tools"]) {
+    fmt::print("haptic_client: {} with {}\n", tool["device"].get<std::string>(),
+               tool["method"].get<std::string>());
+    if (tool.contains("loop")) print_loop(tool["loop"]);
+    print_tool(tool);
+    print_scores(tool);
+    print_drift(tool);
+    if (tool.contains("link")) print_link(tool["link"]);
+    if (tool.contains("recording")) {
+      const Json& recording = tool["recording"];
+      fmt::print("  record  {} packets in {}, {} dropped\n", recording["packets"].get<long>(),
+                 recording["file"].get<std::string>(), recording["dropped"].get<long>());
+    }
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,25 @@
+#pragma once
+#include "common/report.h"
+#include "haptic_client/evaluation/observation.h"
+#include "haptic_client/session/client_config.h"
+#include "haptic_client/session/haptic_loop.h"
+#include "protocol/link_stats.h"
+
+namespace palpate::client {
+
+/// Why a force is latched off, in words.
+const char* name_of(Fault fault);
+
+/// What a session, live or replayed, says about one tool; keys in session/REPORT.md. Measures what a
+/// tick of each scored law costs, which takes a few milliseconds.
+Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Observation& observation);
+
+/// What only a live loop has.
+Json loop_report(double rate_hz, const HapticLoopStats& stats);
+
+Json link_report(const protocol::LinkStats& stats);
+
+/// A whole report for people, on stdout; parts that are absent are left out.
+void print_report(const Json& report);
+
+}  // namespace palpate::client

@@ -1,0 +1,112 @@
+#include "haptic_client/session/guardian.h"
+
+#include <algorithm>
+#include <csignal>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "common/error.h"
+#include "common/log.h"
+#include "common/text.h"
+
+namespace palpate::client {
+namespace {
+
+const DeviceRow& row_of(const ClientConfig& config) {
+  return find_row(devices(), config.device.name, "device", config.device.where);
+}
+
+constexpr int kLook = 100;     // ms
+constexpr int kPatience = 15;  // looks without a heartbeat, once there was one
+
+enum class Ending { kGoodbye, kDied, kStopped };
+
+/// Waits until the client says goodbye, dies, or stands still.
+Ending wait_for_end(int pipe, const std::atomic<std::uint64_t>& beats) {
+  std::uint64_t seen = 0;
+  for (int still = 0; still < kPatience;) {
+    pollfd end{pipe, POLLIN, 0};
+    const int ready = poll(&end, 1, kLook);
+    char byte;
+    if (ready > 0) return read(pipe, &byte, 1) > 0 ? Ending::kGoodbye : Ending::kDied;
+    const std::uint64_t now = beats;
+    still = now == seen && now > 0 ? still + 1 : 0;
+    seen = now;
+  }
+  return Ending::kStopped;
+}
+
+void make_safe(const ClientConfig& config) {
+  const std::string name = config.device.name + (config.device.port.empty() ? "" : ":") + config.device.port;
+  try {
+    if (row_of(config).make_safe(config.device) == 0)
+      fail_at_run_time("it is not plugged in, or another program holds it");
+    log::warning("the client died; zero force sent to {}", name);
+  } catch (const std::exception& e) {
+    log::error("the client died; {} could not be taken over ({}): if it still pushes, switch it off", name,
+               e.what());
+  }
+}
+
+/// The whole life of the guardian.
+void guard(int pipe, pid_t client, const std::atomic<std::uint64_t>& beats,
+           std::span<const ClientConfig> configs) {
+  setsid();  // a signal to the client's group is not for us
+  prctl(PR_SET_NAME, "palpate-guard");
+  const Ending ending = wait_for_end(pipe, beats);
+  if (ending == Ending::kGoodbye) return;
+  if (ending == Ending::kStopped) {
+    log::error("the client stands still with a device in its hand; it is ended");
+    kill(client, SIGKILL);
+  }
+  for (const ClientConfig& config : configs) {  // at the same time: one must not wait for another
+    if (row_of(config).make_safe == nullptr) continue;
+    const pid_t child = fork();
+    if (child > 0) continue;
+    make_safe(config);  // here, where there can be no other process
+    if (child == 0) _exit(0);
+  }
+  while (wait(nullptr) > 0) {
+  }
+}
+
+}  // namespace
+
+Guardian::Guardian(std::span<const ClientConfig> configs) {
+  const bool needed = std::any_of(configs.begin(), configs.end(), [](const ClientConfig& config) {
+    return row_of(config).make_safe != nullptr;
+  });
+  if (!needed) return;
+  void* const page = mmap(nullptr, sizeof *beats_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (page == MAP_FAILED) fail_at_run_time("no memory for the guardian process");
+  beats_ = new (page) std::atomic<std::uint64_t>(0);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) fail_at_run_time("no pipe for the guardian process; too many open files?");
+  const pid_t client = getpid();
+  child_ = fork();
+  if (child_ < 0) fail_at_run_time("no guardian process could be started; too many processes?");
+  if (child_ == 0) {
+    close(ends[1]);
+    guard(ends[0], client, *beats_, configs);
+    _exit(0);
+  }
+  close(ends[0]);
+  pipe_ = ends[1];
+  prctl(PR_SET_DUMPABLE, 0);
+}
+
+void Guardian::dismiss() {
+  if (pipe_ < 0) return;
+  const char goodbye = 1;
+  while (write(pipe_, &goodbye, 1) < 0 && errno == EINTR) {
+  }
+  close(pipe_);
+  pipe_ = -1;
+  waitpid(child_, nullptr, 0);
+}
+
+}  // namespace palpate::client

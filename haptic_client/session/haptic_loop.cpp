@@ -1,0 +1,65 @@
+#include "haptic_client/session/haptic_loop.h"
+
+#include <algorithm>
+
+#include "common/clock.h"
+
+namespace palpate::client {
+
+HapticLoop::HapticLoop(Device& device, Pipeline& pipeline, HapticMailboxes& mailboxes,
+                       Observation& observation, Time period)
+    : device_(device),
+      pipeline_(pipeline),
+      mailboxes_(mailboxes),
+      observation_(observation),
+      period_(period) {}
+
+void HapticLoop::run(const std::stop_token& stop) noexcept {
+  Time deadline = now(), last = deadline;
+  while (!stop.stop_requested()) {
+    sleep_until(deadline);
+    const Time start = now();
+    const auto late = static_cast<std::uint64_t>(std::max<Time::rep>((start - deadline) / period_, 0));
+    deadline += static_cast<Time::rep>(late) * period_;
+    stats_.missed += late;
+    if (stats_.ticks > 0) stats_.period_ns.add((start - last).count());
+    last = start;
+    const TickResult result = tick();
+    ++stats_.ticks;
+    const Time took = now() - start;
+    stats_.tick_ns.add(took.count());
+    observation_.tick(result, took, late);
+    tell(result);
+    deadline += period_;
+  }
+  device_.stop();
+}
+
+TickResult HapticLoop::tick() noexcept {
+  if (rearm.exchange(false, std::memory_order_relaxed)) pipeline_.rearm();
+  const DeviceReading reading = device_.read(now());
+  protocol::ForceSample sample;
+  const bool fresh = mailboxes_.force.read(sample);
+  std::size_t pages = 0;
+  while (pages < pages_.size() && mailboxes_.pages.pop(pages_[pages])) ++pages;
+  const TickResult result =
+      pipeline_.tick(reading, fresh ? &sample : nullptr, std::span(pages_).first(pages));
+  device_.write(result.f_D);
+  if (!mailboxes_.tool.push(result.tool)) ++stats_.unsent;
+  mailboxes_.bell.ring();
+  return result;
+}
+
+void HapticLoop::tell(const TickResult& result) noexcept {
+  ticks.store(stats_.ticks, std::memory_order_relaxed);
+  missed.store(stats_.missed, std::memory_order_relaxed);
+  newest_newton.store(result.f_D.norm(), std::memory_order_relaxed);
+  newest_age_ns.store(pipeline_.age_ns(), std::memory_order_relaxed);
+  if (heartbeat != nullptr) heartbeat->fetch_add(1, std::memory_order_relaxed);
+  law_newton.store(pipeline_.law_newton(), std::memory_order_relaxed);
+  gain.store(pipeline_.passivity().gain(), std::memory_order_relaxed);
+  weak.store(pipeline_.felt_share().weak(), std::memory_order_relaxed);
+  fault.store(pipeline_.limiter().fault(), std::memory_order_relaxed);
+}
+
+}  // namespace palpate::client

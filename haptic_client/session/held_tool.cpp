@@ -1,0 +1,197 @@
+#include "haptic_client/session/held_tool.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <unistd.h>
+
+#include "common/ages.h"
+#include "common/clock.h"
+#include "common/error.h"
+#include "common/interrupt.h"
+#include "common/log.h"
+#include "common/realtime.h"
+#include "common/text.h"
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/session/client_report.h"
+#include "haptic_client/session/trace.h"
+
+namespace palpate::client {
+namespace {
+
+constexpr int kPriority = 80;
+constexpr double kTraceSeconds = 60;
+constexpr Time kWelcomePatience = std::chrono::seconds(5);
+constexpr int kPatience = 30;  // looks of 100 ms
+
+std::uint64_t random_number() {
+  std::random_device device;
+  return (std::uint64_t{device()} << 32 | device()) | 1;
+}
+
+const DeviceRow& row_of(const ClientConfig& config) {
+  return find_row(devices(), config.device.name, "device", config.device.where);
+}
+
+/// Ticks a second: as asked for, or what the device serves if that is less.
+double rate_of(const ClientConfig& config) {
+  return std::min(config.rate_hz, 1 / to_seconds(row_of(config).limits(config.device).min_period));
+}
+
+std::size_t kept_ticks(const ClientConfig& config, const ToolFiles& files, std::optional<double> seconds) {
+  if (!files.trace) return 0;
+  return static_cast<std::size_t>(std::min(seconds.value_or(kTraceSeconds) + 1, kTraceSeconds) *
+                                  rate_of(config));
+}
+
+protocol::Endpoint server_of(const ClientConfig& config) {
+  const protocol::Endpoint server = protocol::resolve(config.server, config.server_where);
+  if (server.port == 0)
+    fail("{}: \"{}\": a server has a port from 1 to 65535", config.server_where, config.server);
+  return server;
+}
+
+}  // namespace
+
+HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::string name,
+                   std::optional<double> seconds)
+    : config_(config),
+      files_(files),
+      name_(std::move(name)),
+      device_(row_of(config).make(config.device)),
+      pipeline_(find_row(extrapolators(), config.method, "method", config.method_where).make(),
+                config.workspace, config.device_limits(), config.passivity, config.blend),
+      observation_(config.scored_laws(), rate_of(config), config.score_where,
+                   kept_ticks(config, files, seconds), config.blend),
+      loop_(*device_, pipeline_, mailboxes_, observation_, from_seconds(1 / rate_of(config))),
+      server_(server_of(config)),
+      socket_(protocol::Endpoint{.v6 = server_.v6}),
+      recorder_(files.record ? std::make_unique<protocol::Recorder>(*files.record) : nullptr),
+      recording_(recorder_.get()),
+      link_(socket_, server_, mailboxes_, random_number(), recorder_.get()) {
+  pipeline_.ask_for(observation_.scoring().wants());
+}
+
+HeldTool::~HeldTool() {
+  stop();
+}
+
+bool HeldTool::connect() {
+  if (recorder_) {
+    recording_thread_ = std::jthread([this](const std::stop_token& stop) {
+      name_thread("palpate-record");
+      recorder_->run(stop);
+    });
+  }
+  net_thread_ = std::jthread([this] {
+    name_thread("palpate-net");
+    link_.run();
+  });
+  for (const Time start = now(); !link_.welcomed;) {
+    if (wait_for_interrupt(std::chrono::milliseconds(20))) return false;
+    if (now() - start < kWelcomePatience) continue;
+    if (link_.refused == static_cast<int>(protocol::RefuseReason::kNoFreeTool)) {
+      fail_at_run_time(
+          "{}the server at {} has no free tool: other clients or devices hold all of its [[tool]]s; end one "
+          "of "
+          "them, or add a [[tool]] to its scene",
+          name_, config_.server);
+    }
+    fail_at_run_time("no answer from a server at {} within 5 s; is `sim_server run` up, and UDP open there?",
+                     config_.server);
+  }
+  log::info("{}connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", name_, config_.server,
+            config_.device.name, rate_of(config_), config_.method);
+  return true;
+}
+
+void HeldTool::start(std::atomic<std::uint64_t>* heartbeat) {
+  loop_.heartbeat = heartbeat;
+  haptic_thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
+  if (const auto refused = make_realtime(haptic_thread_.native_handle(), "palpate-haptic", kPriority);
+      !refused.empty())
+    log::warning("{}{}", name_, refused);
+}
+
+/// The device first, then the link, so that its last poses still travel, then the recording of them.
+void HeldTool::stop() {
+  halt();
+  if (net_thread_.joinable()) link_.stop();
+  net_thread_ = {};
+  recording_thread_ = {};
+}
+
+/// A loop that stands still leaves its last force on the motors, and may never come back.
+void HeldTool::end_if_stuck() {
+  const std::uint64_t ticks = loop_.ticks;
+  standstills_ = ticks == ticks_ ? standstills_ + 1 : 0;
+  ticks_ = ticks;
+  if (standstills_ < kPatience) return;
+  log::error("{}the haptic loop stands still; the guardian takes the device over", name_);
+  std::abort();
+}
+
+/// Whoever presses into a wall that gives way should know that the wall is not to blame.
+void HeldTool::tell_weakness() {
+  const bool weak = loop_.weak;
+  if (weak && !weak_) {
+    const double gain = loop_.gain, law = loop_.law_newton;
+    const std::string why =
+        gain < FeltShare::kHalf
+            ? fmt::format(
+                  "the wall is too stiff for this rate and latency, so it is felt at {:.0f} % of its "
+                  "stiffness; a law with tangents, a faster loop or a softer organ help",
+                  100 * gain)
+            : fmt::format("more than [limits] force = {:g} N, or than it may change by",
+                          config_.device_limits().max_force);
+    log::warning("{}for half a second, less than half of the force has been felt ({:.2f} of {:.2f} N): {}",
+                 name_, loop_.newest_newton.load(), law, why);
+  }
+  weak_ = weak;
+}
+
+void HeldTool::look() {
+  end_if_stuck();
+  const std::int64_t age = loop_.newest_age_ns;
+  if (age > kOutage.count() && !silent_)
+    log::warning("{}no samples from {}: force goes to zero; asking again", name_, config_.server);
+  if (age >= 0 && age < kOutage.count() && silent_)
+    log::info("{}{} is back: soft start", name_, config_.server);
+  silent_ = age > kOutage.count();
+  const Fault fault = loop_.fault;
+  if (fault != Fault::kNone && fault_ == Fault::kNone) {
+    log::warning("{}force latched off ({}); when it is safe, re-arm with `kill -USR1 {}`", name_,
+                 name_of(fault), getpid());
+  }
+  fault_ = fault;
+  tell_weakness();
+  recording_.look();
+  if (const char* status = device_->status(); status != device_status_) {
+    if (status[0] != 0) log::info("{}{}", name_, status);
+    device_status_ = status;
+  }
+}
+
+std::string HeldTool::progress() const {
+  const std::int64_t age = std::max<std::int64_t>(loop_.newest_age_ns, 0);
+  return fmt::format("|F| {:5.2f} N  age {:5.1f} ms  ticks {} ({} missed)", loop_.newest_newton.load(),
+                     static_cast<double>(age) / 1e6, loop_.ticks.load(), loop_.missed.load());
+}
+
+Json HeldTool::report() const {
+  Json tool = tool_report(config_, pipeline_, observation_);
+  tool["loop"] = loop_report(rate_of(config_), loop_.stats());
+  tool["link"] = link_report(link_.stats());
+  tool["safety"]["cut_by_motors"] = device_->cut_by_motors();
+  if (recorder_) tool["recording"] = protocol::recording_report(*recorder_);
+  return tool;
+}
+
+void HeldTool::write_files() const {
+  if (!files_.trace) return;
+  TraceWriter trace(*files_.trace, observation_.scoring().names());
+  for (const TickRecord& tick : observation_.record()) trace.add(tick);
+  trace.finish();
+}
+
+}  // namespace palpate::client

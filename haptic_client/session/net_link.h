@@ -1,0 +1,43 @@
+#pragma once
+#include <atomic>
+
+#include "haptic_client/session/haptic_loop.h"
+#include "protocol/recorder.h"
+#include "protocol/udp_socket.h"
+
+namespace palpate::client {
+
+/// The network thread of the client: tool states out, force samples in, the session kept alive.
+class NetLink {
+ public:
+  /// `nonce`: a random number, drawn once per run. `recorder`: gets every datagram; may be null.
+  NetLink(protocol::UdpSocket& socket, const protocol::Endpoint& server, HapticMailboxes& mailboxes,
+          std::uint64_t nonce, protocol::Recorder* recorder);
+
+  /// Serves until `stop`, then says Bye.
+  void run();
+  void stop() { socket_.stop(); }
+
+  /// Read when `run` has returned.
+  const protocol::LinkStats& stats() const { return stats_; }
+  const protocol::ClientSession& session() const { return session_; }
+
+  /// For a watching thread: whether a server ever let us in, and why the last one did not (0: no answer).
+  std::atomic<bool> welcomed{false};
+  std::atomic<int> refused{0};
+
+ private:
+  void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
+  void on_tool_states();
+  void on_timer();
+  void send(const protocol::Header& header, const protocol::Message& message);
+
+  protocol::UdpSocket& socket_;
+  protocol::Endpoint server_, own_;
+  protocol::Recorder* recorder_;
+  HapticMailboxes& mailboxes_;
+  protocol::ClientSession session_;
+  protocol::LinkStats stats_;
+};
+
+}  // namespace palpate::client

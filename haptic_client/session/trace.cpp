@@ -1,0 +1,50 @@
+#include "haptic_client/session/trace.h"
+
+#include <fmt/format.h>
+#include <iterator>
+
+#include "common/error.h"
+
+namespace palpate::client {
+namespace {
+constexpr std::size_t kFlushAt = 1 << 16;  // bytes
+}
+
+TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws)
+    : name_(file), file_(file), out_(file_.path(), std::ios::binary), laws_(laws.size()) {
+  text_ = "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n";
+  for (const std::string& law : laws) text_ += fmt::format(",{}_n", law);
+  text_ += '\n';
+}
+
+void TraceWriter::add(const TickRecord& tick) {
+  const TickResult& result = tick.result;
+  const Time t{result.tool.t_ns};
+  if (!start_) start_ = t;
+  const Vec3 &p = result.tool.p_W, &f = result.f_D;
+  const auto out = std::back_inserter(text_);
+  fmt::format_to(out, "{},{:.9f},{},{},{},{},{},{},{}", result.tool.tick, to_seconds(t - *start_), p[0], p[1],
+                 p[2], f[0], f[1], f[2], result.tool.newest_sample);
+  if (result.used) {
+    fmt::format_to(out, ",{:.9f},{}", to_seconds(result.sample.t - *start_), result.sample.f.norm());
+  } else {
+    text_ += ",,";
+  }
+  for (std::size_t i = 0; i < laws_; ++i) fmt::format_to(out, ",{}", tick.laws[i].norm());
+  text_ += '\n';
+  if (text_.size() >= kFlushAt) flush();
+}
+
+void TraceWriter::flush() {
+  out_ << text_;
+  text_.clear();
+}
+
+void TraceWriter::finish() {
+  flush();
+  out_.close();
+  if (!out_) fail_at_run_time("{}: could not be written; is the disk full?", name_.string());
+  file_.commit();
+}
+
+}  // namespace palpate::client

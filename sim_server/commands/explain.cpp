@@ -1,0 +1,354 @@
+#include "sim_server/commands/explain.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/error.h"
+#include "common/progress.h"
+#include "common/text.h"
+#include "protocol/recorder.h"
+#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/scene_file/read_scene.h"
+#include "sim_server/simulation/setup_times.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kLongSetUp = 1e4;    // ms: a scene whose variants are not built to compare
+constexpr double kMostVariant = 2e9;  // bytes of compliance that a variant is built with
+constexpr double kUsualFriction = 0.3;
+constexpr double kBytesPerPair = 72;  // of two nodes' compliance: 3 x 3 doubles
+constexpr double kBytesOfMotion =
+    9 * 24 + 8;  // of a vertex, as `tensor_mass` keeps them: nine vectors, a mass
+constexpr std::string_view kReading = "reading the mesh", kResponding = "computing compliance";
+
+/// Which part each stage of set-up builds; a stage that is not here is a part of its own.
+struct StagePart {
+  std::string_view stage, part;
+};
+constexpr std::string_view kPreparing = "preparing ";  // and the part's own name
+constexpr std::array kStageParts{
+    StagePart{kReading, "mesh"},
+    StagePart{"extracting the surface", "surface"},
+    StagePart{"assembling the stiffness matrix", "stiffness matrix"},
+    StagePart{"factoring the stiffness matrix", "its factor"},
+    StagePart{kResponding, "compliance"},
+    StagePart{"computing moving supports", "moving supports"},
+    StagePart{"finding the modes of vibration", "modes"},
+    StagePart{"assembling the tensors", "tensors"},
+    StagePart{"finding the highest frequency", "tensors"},
+};
+
+/// What a variant is compared by. `setup_ms` is without reading the mesh, which all share.
+struct Cost {
+  double bytes = 0, setup_ms = 0, step_ms = 0;
+};
+
+double ms(Time t) {
+  return 1e3 * to_seconds(t);
+}
+
+Cost cost_of(const Simulation& simulation, const SetupTimes& times, const StepTimes& steps) {
+  Cost cost{0, ms(times.total() - times.of(kReading)), steps.contact_ns.quantile(0.5) / 1e6};
+  for (const MemoryPart& part : simulation.memory()) cost.bytes += static_cast<double>(part.bytes);
+  return cost;
+}
+
+/// Surface vertices whose compliance an elastic model of this scene keeps.
+std::size_t loaded_nodes(const Scene& scene, const Simulation& simulation) {
+  const std::vector<int> fixed = fixed_vertices(scene, simulation.mesh());
+  const std::vector<int> all = reachable_vertices(simulation.surface(), simulation.mesh(), scene.tools);
+  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](int v) {
+    return !std::binary_search(fixed.begin(), fixed.end(), simulation.surface().vertices[v]);
+  }));
+}
+
+const DeformationModelRow& model_of(const Scene& scene) {
+  return find_row(deformation_models(), scene.deformation.model, "deformation model",
+                  scene.deformation.where);
+}
+
+bool is_elastic(const Scene& scene) {
+  return model_of(scene).elastic;
+}
+
+/// By its material.
+bool deforms(const Scene& scene) {
+  return model_of(scene).elastic || model_of(scene).any_material;
+}
+
+/// By formula; what no elastic scene has is nothing.
+double compliance_bytes(const Scene& scene, const Simulation& simulation) {
+  if (!is_elastic(scene)) return 0;
+  const auto nodes = static_cast<double>(loaded_nodes(scene, simulation));
+  return kBytesPerPair * nodes * nodes;
+}
+
+/// The tool whose contact is called `part`, or null.
+const ToolSettings* tool_of(const Scene& scene, const std::string& part) {
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    if (part == contact_part(i, scene.tools.size())) return &scene.tools[i];
+  }
+  return nullptr;
+}
+
+std::string where_of(const Scene& scene, const std::string& part) {
+  if (const ToolSettings* tool = tool_of(scene, part)) return tool->where;
+  if (part == "mesh") return scene.mesh_where;
+  if (part == "surface") return "always";
+  return scene.deformation.where;
+}
+
+std::string shape_of(const Tool& tool) {
+  if (tool.trocar) return fmt::format("trocar, shaft radius {:g} mm", 1e3 * tool.trocar->shaft_radius);
+  return tool.is_sphere() ? "sphere" : fmt::format("capsule, length {:g} mm", 1e3 * tool.length);
+}
+
+std::string detail_of(const Scene& scene, const Simulation& simulation, const std::string& part) {
+  const TetMesh& mesh = simulation.mesh();
+  const Surface& surface = simulation.surface();
+  if (part == "mesh")
+    return fmt::format("{} vertices, {} tetrahedra", mesh.corners(), mesh.tetrahedra.size());
+  if (part == "modes") return fmt::format("{} of vibration", scene.deformation.modes);
+  if (part == "surface")
+    return fmt::format("{} vertices, {} triangles", surface.vertices.size(), surface.triangles.size());
+  if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
+  if (part == "stiffness matrix" || part == "its factor")
+    return is_elastic(scene) ? "freed after set-up" : "kept: part of motion";
+  if (const ToolSettings* tool = tool_of(scene, part)) {
+    const std::size_t reached = reachable_vertices(surface, mesh, {tool, 1}).size();
+    return fmt::format(
+        "{}, radius {:g} mm{}, reaches {} nodes{}", shape_of(tool->shape), 1e3 * tool->shape.radius,
+        tool->shape.friction > 0 ? fmt::format(", friction {:g}", tool->shape.friction) : "", reached,
+        !tool->reach   ? ": all"
+        : reached == 0 ? ": no collision tree"
+                       : "");
+  }
+  return {};
+}
+
+std::string part_of(const std::string& stage) {
+  if (stage.starts_with(kPreparing)) return stage.substr(kPreparing.size());
+  const auto known = std::find_if(kStageParts.begin(), kStageParts.end(),
+                                  [&](const StagePart& p) { return p.stage == stage; });
+  return known == kStageParts.end() ? stage : std::string(known->part);
+}
+
+/// The row called `name`, new at the end if it is not there yet.
+BuiltPart& row_of(std::vector<BuiltPart>& rows, const std::string& name, const Scene& scene,
+                  const Simulation& simulation) {
+  const auto found =
+      std::find_if(rows.begin(), rows.end(), [&](const BuiltPart& r) { return r.part == name; });
+  if (found != rows.end()) return *found;
+  return rows.emplace_back(BuiltPart{name, detail_of(scene, simulation, name), where_of(scene, name)});
+}
+
+/// Parts in the order in which they are set up, then those that take no time of their own.
+std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulation,
+                                   const SetupTimes& times) {
+  std::vector<BuiltPart> rows;
+  for (const SetupTimes::Stage& stage : times.stages()) {
+    row_of(rows, part_of(stage.name), scene, simulation).setup_ms += ms(stage.took);
+  }
+  for (const MemoryPart& part : simulation.memory()) {
+    BuiltPart& row = row_of(rows, part.name, scene, simulation);
+    row.bytes = part.bytes;
+    if (!part.detail.empty()) row.detail = part.detail;
+  }
+  for (const FixedRegion& region : scene.fixed) rows.push_back({"fixed", "nothing kept", region.where});
+  if (scene.material)
+    rows.push_back({"material", deforms(scene) ? "nothing kept" : "not used", scene.material_where});
+  return rows;
+}
+
+/// The scene as it is, built and stepped: what its variants are compared with.
+struct Own {
+  const Scene& scene;
+  const Progress& progress;
+  int steps;  // timed free, and in contact
+  Simulation simulation;
+  Press press;
+  Cost cost;
+  double compliance_ms = 0;  // of the set-up
+};
+
+/// What setting up a variant would take, ms: compliance goes with the nodes that can be loaded.
+double foreseen_ms(double compliance_of_variant, const Own& own) {
+  const double kept = compliance_bytes(own.scene, own.simulation);
+  const double more = kept > 0 ? std::sqrt(compliance_of_variant / kept) - 1 : 0;
+  return own.cost.setup_ms + std::max(more, 0.0) * own.compliance_ms;
+}
+
+/// What `variant` costs more, built and stepped in the same way.
+LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
+  const double compliance = compliance_bytes(variant, own.simulation);
+  if (compliance > kMostVariant) {
+    row.bytes = compliance - compliance_bytes(own.scene, own.simulation);
+    row.note = "not built: too large (bytes: computed, 72 r^2)";
+    return row;
+  }
+  if (foreseen_ms(compliance, own) > kLongSetUp) {
+    row.note = "not measured: it would take long to set up";
+    return row;
+  }
+  try {
+    SetupTimes times(own.progress);
+    Simulation simulation(variant, own.simulation.mesh(), std::ref(times));
+    const Cost cost =
+        cost_of(simulation, times, time_steps(variant, simulation, own.press, own.steps, own.progress));
+    row.bytes = cost.bytes - own.cost.bytes;
+    row.setup_ms = cost.setup_ms - own.cost.setup_ms;
+    row.step_ms = cost.step_ms - own.cost.step_ms;
+    row.note = "measured";
+  } catch (const Error& error) {
+    row.note = fmt::format("cannot be built: {}", error.what());
+  }
+  return row;
+}
+
+/// What no tool reaches; nothing where a tool reaches everything.
+std::optional<LeftOut> beyond_reach(const Own& own) {
+  const auto& tools = own.scene.tools;
+  if (!std::all_of(tools.begin(), tools.end(), [](const ToolSettings& tool) { return tool.reach; }))
+    return {};
+  Scene variant = own.scene;
+  for (ToolSettings& tool : variant.tools) tool.reach.reset();
+  return compare({.what = "the surface out of reach", .why = tools.front().reach_where}, variant, own);
+}
+
+LeftOut elasticity(const Own& own) {
+  LeftOut row{.what = "elasticity (quasi_static)", .why = own.scene.deformation.where};
+  if (!own.scene.material || own.scene.fixed.empty()) {
+    row.why = own.scene.material
+                  ? "no [[fixed]] section"
+                  : fmt::format("no [material]{} section", own.scene.fixed.empty() ? ", no [[fixed]]" : "");
+    row.note = "not built: needs [material] and [[fixed]]";
+    return row;
+  }
+  Scene variant = own.scene;
+  variant.deformation.model = "quasi_static";
+  return compare(row, variant, own);
+}
+
+/// Of all tools; nothing where one has some.
+std::optional<LeftOut> friction(const Own& own) {
+  Scene variant = own.scene;
+  for (ToolSettings& tool : variant.tools) {
+    if (tool.shape.friction > 0) return {};
+    tool.shape.friction = kUsualFriction;
+  }
+  return compare({.what = fmt::format("friction ({:g})", kUsualFriction), .why = variant.tools.front().where},
+                 variant, own);
+}
+
+/// The compliance of all free vertices, inside the organ and out of reach too.
+LeftOut whole_compliance(const Own& own) {
+  const TetMesh& mesh = own.simulation.mesh();
+  const std::size_t free = mesh.vertices.size() - fixed_vertices(own.scene, mesh).size();
+  const auto n = static_cast<double>(free);
+  return {.what = "compliance of the other free vertices",
+          .why = own.scene.deformation.where,
+          .bytes = kBytesPerPair * n * n - compliance_bytes(own.scene, own.simulation),
+          .note = fmt::format("computed: 72 n^2 for all {} free vertices, less what is kept", free)};
+}
+
+/// Of a model at rest: what motion would hold.
+LeftOut motion(const Own& own) {
+  const auto n = static_cast<double>(own.simulation.mesh().vertices.size());
+  return {.what = "motion (mass, velocities)",
+          .why = own.scene.deformation.where,
+          .bytes = kBytesOfMotion * n,
+          .note = fmt::format("computed: {:g} n; the model is at rest", kBytesOfMotion)};
+}
+
+/// Nothing is cut, so that nobody asks which tetrahedra share a face or an edge.
+LeftOut neighbour_tables(const Own& own) {
+  const auto vertices = static_cast<double>(own.simulation.mesh().corners()),
+             tetrahedra = static_cast<double>(own.simulation.mesh().tetrahedra.size()),
+             faces = static_cast<double>(own.simulation.surface().triangles.size()) /
+                     own.simulation.surface().per_face;
+  const bool has_edges = !own.simulation.mesh().mid_edges.empty();  // p2: the ends of each are there
+  const double edges = has_edges ? 0 : vertices + tetrahedra + faces / 2 - 1;  // Euler's, of a ball
+  return {.what = "edge and neighbour tables",
+          .why = own.scene.mesh_where,
+          .bytes = 4 * sizeof(int) * tetrahedra + 2 * sizeof(int) * edges,
+          .note = "computed: 4 neighbours a tetrahedron, 2 ends an edge; nothing is cut"};
+}
+
+/// What a step saves as long as no client's law asks for dF/dp.
+LeftOut tangents(Own& own) {
+  for (std::size_t i = 0; i < own.scene.tools.size(); ++i) own.simulation.want_tangent(i, false);
+  const StepTimes without = time_steps(own.scene, own.simulation, own.press, own.steps, own.progress);
+  for (std::size_t i = 0; i < own.scene.tools.size(); ++i) own.simulation.want_tangent(i, true);
+  return {.what = "tangents",
+          .why = "nobody, until a client's law subscribes",
+          .step_ms = own.cost.step_ms - without.contact_ns.quantile(0.5) / 1e6,
+          .note = "measured; the times below are with them"};
+}
+
+void add_unreached_tools(const Own& own, std::vector<LeftOut>& rows) {
+  for (std::size_t i = 0; i < own.scene.tools.size(); ++i) {
+    const ToolSettings& tool = own.scene.tools[i];
+    if (!tool.reach ||
+        !reachable_vertices(own.simulation.surface(), own.simulation.mesh(), {&tool, 1}).empty())
+      continue;
+    rows.push_back({.what = fmt::format("collision tree of tool {}", i + 1),
+                    .why = tool.reach_where,
+                    .note = "it reaches no part of the surface"});
+  }
+}
+
+std::vector<LeftOut> left_out(Own& own) {
+  std::vector<LeftOut> rows;
+  const std::string& model = own.scene.deformation.model;
+  if (const auto row = beyond_reach(own)) rows.push_back(*row);
+  if (const auto row = friction(own)) rows.push_back(*row);
+  if (model == "rigid") rows.push_back(elasticity(own));
+  if (is_elastic(own.scene)) rows.push_back(whole_compliance(own));
+  if (model == "rigid" || model == "quasi_static") rows.push_back(motion(own));
+  if (model == "tensor_mass")
+    rows.push_back({.what = "factor of the stiffness matrix",
+                    .why = own.scene.deformation.where,
+                    .note = "explicit steps solve nothing"});
+  rows.push_back(neighbour_tables(own));
+  add_unreached_tools(own, rows);
+  rows.push_back(tangents(own));
+  rows.push_back({.what = "recording",
+                  .why = "sim_server run --record",
+                  .bytes = static_cast<double>(protocol::Recorder::memory_bytes()),
+                  .note = "computed; and a thread"});
+  return rows;
+}
+
+}  // namespace
+
+Explanation explain(const Scene& scene, const Progress& progress, int steps) {
+  SetupTimes times(progress);
+  Own own{scene, progress, steps, Simulation(scene, std::ref(times)), {}, {}};
+  own.press = find_press(scene, own.simulation);
+  Explanation explanation{.scene = scene,
+                          .built = built_parts(scene, own.simulation, times),
+                          .left_out = {},
+                          .steps = time_steps(scene, own.simulation, own.press, steps, progress),
+                          .state_hash = own.simulation.state_hash(),
+                          .tetrahedra = own.simulation.mesh().tetrahedra.size()};
+  own.cost = cost_of(own.simulation, times, explanation.steps);
+  own.compliance_ms = ms(times.of(kResponding));
+  explanation.left_out = left_out(own);
+  return explanation;
+}
+
+int run_explain(const ExplainOptions& options) {
+  const Scene scene = read_scene(options.scene);
+  require_distinct({{"SCENE", options.scene}, {"--json", options.json}});
+  if (options.json) check_writable(*options.json);
+  const Explanation explanation = explain(scene, ProgressLine(), options.steps);
+  fmt::print("{}", options.why ? why_text(explanation, *options.why) : to_text(explanation));
+  if (options.json) write_json(*options.json, to_json(explanation));
+  return 0;
+}
+
+}  // namespace palpate::sim

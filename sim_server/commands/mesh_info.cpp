@@ -1,0 +1,62 @@
+#include "sim_server/commands/mesh_info.h"
+
+#include <fmt/core.h>
+#include <numbers>
+
+#include "common/log.h"
+#include "sim_server/mesh/gmsh_io.h"
+
+namespace palpate::sim {
+namespace {
+
+void print_sizes(const TetMesh& mesh) {
+  const MeshInfo info = describe(mesh);
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  const Vec3 size = info.max - info.min;
+  fmt::print("  vertices            {}\n  edges               {}\n  tetrahedra          {}\n", info.vertices,
+             info.edges, info.tetrahedra);
+  fmt::print("  boundary vertices   {}\n  boundary triangles  {}\n", info.boundary_vertices,
+             info.boundary_triangles);
+  fmt::print("  volume              {:.6g} m3 ({:.4g} litres)\n", info.volume, 1e3 * info.volume);
+  fmt::print("  size                {:.4g} x {:.4g} x {:.4g} m\n", size[0], size[1], size[2]);
+  fmt::print("  box                 [[{:.4g}, {:.4g}, {:.4g}], [{:.4g}, {:.4g}, {:.4g}]] m\n", info.min[0],
+             info.min[1], info.min[2], info.max[0], info.max[1], info.max[2]);
+  fmt::print("  edge length         {:.4g} / {:.4g} / {:.4g} mm (min, median, max)\n", 1e3 * info.min_edge,
+             1e3 * info.median_edge, 1e3 * info.max_edge);
+  fmt::print(
+      "  dihedral angles     {:.2f} to {:.2f} degrees; median of the smallest per tetrahedron {:.2f}\n",
+      kDegrees * info.min_dihedral, kDegrees * info.max_dihedral, kDegrees * info.median_min_dihedral);
+  if (size.maxCoeff() > 2) log::warning("the mesh is {:.3g} m long; is it in millimetres?", size.maxCoeff());
+}
+
+void print_faults(const MeshFaults& faults) {
+  if (faults.found.empty()) fmt::print("  faults              none\n");
+  for (const MeshFault& fault : faults.found) {
+    const char* cure = fault.cure == Cure::kMended     ? "mended"
+                       : fault.cure == Cure::kAccepted ? "accepted"
+                                                       : "refused";
+    fmt::print("  {:<20}{} ({}): {}{}{}\n", cure, fault.kind, fault.count, fault.example,
+               fault.remedy.empty() ? "" : "; ", fault.remedy);
+  }
+  if (!faults.surface_seen)
+    fmt::print("  not looked at       the surface, until what is refused here is gone\n");
+}
+
+}  // namespace
+
+int print_mesh_info(const std::string& file) {
+  const auto [mesh, faults] = check_mesh(file);
+  fmt::print("{}\n", file);
+  if (faults.refused()) {
+    fmt::print("  vertices            {}\n  tetrahedra          {}\n", mesh.vertices.size(),
+               mesh.tetrahedra.size());
+  } else {
+    print_sizes(mesh);
+  }
+  print_faults(faults);
+  std::fflush(stdout);  // before the error
+  require_usable(faults, file);
+  return 0;
+}
+
+}  // namespace palpate::sim

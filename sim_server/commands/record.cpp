@@ -1,0 +1,108 @@
+#include "sim_server/commands/record.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/clock.h"
+#include "common/config.h"
+#include "common/error.h"
+#include "common/log.h"
+#include "common/progress.h"
+#include "common/report.h"
+#include "sim_server/scene_file/read_scene.h"
+#include "sim_server/serving/virtual_session.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kUsualTicks = 500;         // Hz
+constexpr std::uint64_t kLookAround = 256;  // ticks between two looks at the progress line
+constexpr double kLongest = 1e5;            // s
+
+/// A CSV (t_s, x_m, y_m, z_m, world), or a client file whose [trajectory] says how to read one.
+Trajectory read_motion(const std::filesystem::path& file) {
+  if (file.extension() != ".toml") return Trajectory(TrajectorySettings{.file = file});
+  const Config client = Config::read(file);
+  const auto section = client.table("trajectory");
+  if (!section) fail("{}: has no [trajectory] section to take the motion from", file.string());
+  return Trajectory(read_trajectory_settings(*section));
+}
+
+void say_what_is_lost(const Trajectory& motion, const RecordOptions& options, double ticks_hz) {
+  if (motion.rate_hz() <= ticks_hz * 1.001) return;
+  log::info("{}: has {:.0f} rows a second, the capture keeps {:g}; `--ticks {:.0f}` keeps all",
+            options.trajectory.string(), motion.rate_hz(), ticks_hz, std::ceil(motion.rate_hz()));
+}
+
+std::uint64_t ticks_of(const Trajectory& motion, const RecordOptions& options, double ticks_hz) {
+  if (!options.seconds && motion.duration() > kLongest)
+    fail("{}: lasts {:g} s; `--seconds` says how much of it to record, up to {:g}",
+         options.trajectory.string(), motion.duration(), kLongest);
+  return static_cast<std::uint64_t>(options.seconds.value_or(motion.duration()) * ticks_hz + 1e-6) + 1;
+}
+
+void run_session(VirtualSession& session, std::uint64_t ticks, protocol::CaptureWriter& capture,
+                 const RecordOptions& options, ProgressLine& progress) {
+  for (std::uint64_t k = 0; k < ticks; ++k) {
+    session.tick(k);
+    if (k % kLookAround != 0) continue;
+    progress("recording", static_cast<double>(k) / static_cast<double>(ticks));
+  }
+  session.leave();
+  if (!capture.flush()) fail_at_run_time("{}: could not be written; is the disk full?", options.out.string());
+  progress("recording", 1);
+}
+
+Json make_report(const RecordOptions& options, const VirtualSession& session, double ticks_hz,
+                 const protocol::CaptureWriter& capture, const Simulation& simulation, double virtual_s) {
+  const VirtualSessionStats& stats = session.stats();
+  return {
+      {"scene", options.scene.string()},   {"trajectory", options.trajectory.string()},
+      {"rate_hz", options.rate_hz},        {"ticks_hz", ticks_hz},
+      {"delay_ms", options.delay_ms},      {"virtual_seconds", virtual_s},
+      {"packets", capture.packets()},      {"bytes", capture.bytes()},
+      {"tool_states", stats.tool_states},  {"force_samples", stats.force_samples},
+      {"contact_steps", stats.in_contact}, {"flagged", stats.flagged},
+      {"max_newton", stats.max_newton},    {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
+}
+
+}  // namespace
+
+int record(const RecordOptions& options) {
+  Scene scene = read_scene(options.scene);
+  scene.rate_hz = options.rate_hz;
+  const double ticks_hz = options.ticks_hz.value_or(std::max(kUsualTicks, options.rate_hz));
+  if (ticks_hz < options.rate_hz)
+    fail("--ticks: {} Hz is less than --rate {} Hz; every step answers a tool state", ticks_hz,
+         options.rate_hz);
+  const Trajectory motion = read_motion(options.trajectory);
+  const std::uint64_t ticks = ticks_of(motion, options, ticks_hz);
+  require_distinct({{"SCENE", options.scene},
+                    {"--trajectory", options.trajectory},
+                    {"--out", options.out},
+                    {"--report", options.report}});
+  if (options.report) check_writable(*options.report);
+  WholeFile out(options.out);
+  protocol::CaptureWriter capture(out.path());
+  say_what_is_lost(motion, options, ticks_hz);
+  ProgressLine progress;
+  Simulation simulation(scene, std::ref(progress));
+  VirtualSession session(simulation, motion, scene.tools.front().shape.radius,
+                         {options.rate_hz, ticks_hz, from_seconds(options.delay_ms / 1e3), options.parts},
+                         capture);
+  const Time start = now();
+  run_session(session, ticks, capture, options, progress);
+  out.commit();
+  const double took = to_seconds(now() - start), virtual_s = to_seconds(session.time_of(ticks - 1));
+  const VirtualSessionStats& stats = session.stats();
+  fmt::print(
+      "sim_server: {:.1f} s of virtual time in {:.2f} s; {} packets ({} tool states, {} force samples), {} "
+      "bytes; {} steps in contact, {} flagged, largest force {:.2f} N\n",
+      virtual_s, took, capture.packets(), stats.tool_states, stats.force_samples, capture.bytes(),
+      stats.in_contact, stats.flagged, stats.max_newton);
+  if (options.report)
+    write_json(*options.report, make_report(options, session, ticks_hz, capture, simulation, virtual_s));
+  return 0;
+}
+
+}  // namespace palpate::sim

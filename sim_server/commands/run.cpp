@@ -1,0 +1,225 @@
+#include "sim_server/commands/run.h"
+
+#include <nlohmann/json.hpp>
+#include <random>
+#include <thread>
+#include <unistd.h>
+
+#include "common/clock.h"
+#include "common/error.h"
+#include "common/interrupt.h"
+#include "common/log.h"
+#include "common/progress.h"
+#include "common/realtime.h"
+#include "common/report.h"
+#include "protocol/recording_report.h"
+#include "sim_server/scene_file/read_scene.h"
+#include "sim_server/serving/net_link.h"
+#include "sim_server/simulation/setup_times.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr int kPriority = 40;  // below the haptic loop of a client on the same machine
+
+void warn_if_refused(const std::string& refused) {
+  if (!refused.empty()) log::warning("{}", refused);
+}
+
+/// Clients let go of a force that is older than 300 ms.
+void warn_if_slow(const Scene& scene) {
+  if (scene.rate_hz > 0 && scene.rate_hz < 5) {
+    log::warning("{}: at {} steps per second the force fades between samples; 5 or more keep it",
+                 scene.source, scene.rate_hz);
+  }
+}
+
+void warn_if_huge(const TetMesh& mesh, const Scene& scene) {
+  const MeshInfo info = describe(mesh);
+  const double size = (info.max - info.min).maxCoeff();
+  if (size > 2) {
+    log::warning("{}: the mesh is {:.3g} m long; if it is in millimetres, scale it by 0.001",
+                 scene.mesh_file.string(), size);
+  }
+}
+
+/// Everything known about the scene before the loop starts.
+Json describe_scene(const Scene& scene, const Simulation& simulation, Time setup, const SetupTimes& parts) {
+  const MeshInfo info = describe(simulation.mesh());
+  Json memory = Json::object();
+  for (const MemoryPart& part : simulation.memory()) memory[part.name] = part.bytes;
+  return {{"scene", scene.source},
+          {"title", scene.title},
+          {"model", scene.deformation.model},
+          {"rate_hz", scene.rate_hz},
+          {"setup_ms", 1e3 * to_seconds(setup)},
+          {"setup_parts_ms", parts.to_json()},
+          {"mesh", {{"vertices", info.vertices}, {"edges", info.edges}, {"tetrahedra", info.tetrahedra}}},
+          {"memory_bytes", memory}};
+}
+
+Json timeline_report(const Timeline<StepCell>& timeline) {
+  Json cells = Json::array();
+  for (std::size_t i = 0; i < timeline.size(); ++i) {
+    const StepCell& cell = timeline[i];
+    cells.push_back({{"t_s", static_cast<double>(i) * to_seconds(timeline.width())},
+                     {"steps", cell.steps},
+                     {"step_ms_mean", cell.steps > 0 ? 1e-6 * cell.step_ns_sum / cell.steps : 0},
+                     {"step_ms_max", 1e-6 * cell.step_ns_max},
+                     {"late", cell.late}});
+  }
+  return {{"cell_s", to_seconds(timeline.width())}, {"cells", cells}};
+}
+
+Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& scene) {
+  Json tools = Json::array();
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    tools.push_back({{"radius_m", scene.tools[i].shape.radius},
+                     {"max_newton", stats.tools[i].max_newton},
+                     {"contact_steps", stats.tools[i].contact_steps},
+                     {"beyond_steps", stats.tools[i].beyond_steps},
+                     {"sessions", link.tools[i].so_far.load()}});
+  }
+  return tools;
+}
+
+void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simulation& simulation,
+             const Scene& scene, Time ran) {
+  const SimLoopStats& stats = loop.stats();
+  report["seconds"] = to_seconds(ran);
+  report["steps"] = stats.step_ns.count();
+  report["step_ms"] = quantiles(stats.step_ns, 1e6);
+  report["contact_step_ms"] = quantiles(stats.contact_step_ns, 1e6);
+  report["contact_steps"] = stats.contact_step_ns.count();
+  report["timeline"] = timeline_report(stats.timeline);
+  report["late"] = stats.late;
+  report["flagged"] = stats.flagged;
+  report["max_newton"] = stats.max_newton();
+  report["tools"] = tools_report(stats, link, scene);
+  int sessions = 0;
+  for (const auto& tool : link.tools) sessions += tool.so_far;
+  report["sessions"] = sessions;
+  const protocol::LinkStats& net = link.stats();
+  report["link"] = {{"sent", net.sent},           {"received", net.received},     {"lost", net.lost},
+                    {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"rejected", net.rejected}};
+  report["state_hash"] = fmt::format("{:016x}", simulation.state_hash());
+}
+
+void print_summary(const Json& report) {
+  const auto ms = [&](const char* key, const char* q) { return report[key][q].get<double>(); };
+  fmt::print(
+      "sim_server: {} steps, {} in contact; a step takes {:.3f} ms (p50), {:.3f} (p99), {:.3f} (max)\n",
+      report["steps"].get<long>(), report["contact_steps"].get<long>(), ms("step_ms", "p50"),
+      ms("step_ms", "p99"), ms("step_ms", "max"));
+  fmt::print(
+      "            in contact {:.3f} ms (p50), {:.3f} (p99); {} deadlines late; largest force {:.2f} N\n",
+      ms("contact_step_ms", "p50"), ms("contact_step_ms", "p99"), report["late"].get<long>(),
+      report["max_newton"].get<double>());
+  std::fflush(stdout);
+}
+
+/// Says which tools were taken and left since the last look.
+void tell_holders(const NetLink& link, std::vector<bool>& told) {
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const bool held = link.tools[i].held;
+    if (held == told[i]) continue;
+    const std::string tool = told.size() == 1 ? "the tool" : fmt::format("tool {} of {}", i + 1, told.size());
+    log::info("{}", held ? fmt::format("a client took {}", tool)
+                         : fmt::format("the client is gone; {} is free", tool));
+    told[i] = held;
+  }
+}
+
+/// Says, once for each tool, that it left what the scene says it stays in.
+void tell_beyond(const SimLoop& loop, const Scene& scene, std::vector<bool>& told) {
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (told[i] || !loop.went_beyond[i]) continue;
+    log::warning("{}: tool {} went beyond this, where nothing is built that it could feel; make it wider",
+                 scene.tools[i].reach_where, i + 1);
+    told[i] = true;
+  }
+}
+
+/// Waits for Ctrl-C or the end of `seconds`, telling who comes and goes.
+void watch(const NetLink& link, const SimLoop& loop, const Scene& scene, const protocol::Recorder* recorder,
+           std::optional<double> seconds) {
+  protocol::RecordingWatcher recording(recorder);
+  const Time start = now();
+  std::vector<bool> told(scene.tools.size(), false), told_beyond = told;
+  while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
+    if (seconds && to_seconds(now() - start) >= *seconds) return;
+    recording.look();
+    tell_holders(link, told);
+    tell_beyond(loop, scene, told_beyond);
+  }
+}
+
+void warn_if_out_of_reach(const Simulation& simulation, const Scene& scene) {
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    if (simulation.touchable(i).empty())
+      log::warning("{}: tool {} reaches no part of the surface and will feel nothing; is this in metres?",
+                   scene.tools[i].reach_where, i + 1);
+  }
+}
+
+std::uint64_t random_seed() {
+  std::random_device device;
+  return std::uint64_t{device()} << 32 | device();
+}
+
+}  // namespace
+
+int run_server(const ServerOptions& options) {
+  const Scene scene = read_scene(options.scene);
+  require_distinct({{"SCENE", options.scene}, {"--report", options.report}, {"--record", options.record}});
+  if (options.report) check_writable(*options.report);
+  protocol::UdpSocket socket(protocol::resolve(options.listen, "--listen"));
+  const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;
+  const Time begin = now();
+  SetupTimes progress{ProgressLine()};
+  Simulation simulation(scene, std::ref(progress));
+  warn_if_huge(simulation.mesh(), scene);
+  warn_if_slow(scene);
+  warn_if_out_of_reach(simulation, scene);
+  Json report = describe_scene(scene, simulation, now() - begin, progress);
+  std::vector<double> radii;
+  std::vector<SurfacePager> pagers;
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    radii.push_back(scene.tools[i].shape.radius);
+    pagers.emplace_back(simulation, i);
+  }
+  SimMailboxes mailboxes;
+  SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools);
+  NetLink link(socket, {scene.rate_hz, radii}, std::move(pagers), mailboxes, random_seed(), recorder.get());
+  const Time start = now();
+  {
+    std::jthread recording;
+    if (recorder) {
+      recording = std::jthread([&](const std::stop_token& stop) {
+        name_thread("palpate-record");
+        recorder->run(stop);
+      });
+    }
+    std::jthread net([&] {
+      name_thread("palpate-net");
+      link.run();
+    });
+    std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
+    warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kPriority));
+    warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
+    log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
+              report["setup_ms"].get<double>() / 1e3, protocol::to_string(socket.local()));
+    watch(link, loop, scene, recorder.get(), options.seconds);
+    sim.request_stop();
+    sim.join();
+    link.stop();
+    net.join();
+  }
+  add_run(report, loop, link, simulation, scene, now() - start);
+  if (recorder) report["recording"] = protocol::recording_report(*recorder);
+  print_summary(report);
+  if (options.report) write_json(*options.report, report);
+  return 0;
+}
+
+}  // namespace palpate::sim

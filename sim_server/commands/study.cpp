@@ -1,0 +1,169 @@
+#include "sim_server/commands/study.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/core.h>
+#include <fstream>
+
+#include "common/error.h"
+#include "common/hash.h"
+#include "common/progress.h"
+#include "common/report.h"
+#include "sim_server/scene_file/read_scene.h"
+#include "sim_server/study/study_errors.h"
+#include "sim_server/study/study_table.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kMargin = 1.5,
+                 kNear = 1;  // of the tool's radius, around its way: what it may touch, and does
+
+void add_file(Fnv1a& hash, const std::filesystem::path& file) {
+  std::ifstream bytes(file, std::ios::binary);
+  std::array<char, 1 << 16> block;
+  while (bytes.read(block.data(), block.size()), bytes.gcount() > 0)
+    hash.add(block.data(), static_cast<std::size_t>(bytes.gcount()));
+}
+
+/// Of all that traces depend on: the scene, the meshes, the motion and this program.
+std::string fingerprint(const StudyOptions& options, const StudyPlan& plan) {
+  Fnv1a hash;
+  add_file(hash, options.scene);
+  add_file(hash, plan.cases.front().scene.mesh_file);
+  for (const auto& mesh : options.meshes) add_file(hash, mesh);
+  if (options.trajectory) add_file(hash, *options.trajectory);
+  add_file(hash, "/proc/self/exe");
+  return fmt::format("{:016x}", hash.value());
+}
+
+[[noreturn]] void fail_untouched(const StudyOptions& options) {
+  fail(
+      "{}: the tool never touches the organ on this way, so that there is no force to compare; its "
+      "places are in m, in the scene's frame",
+      options.trajectory.value_or(options.scene).string());
+}
+
+/// Runs cases, or finds that they were run before.
+class Runner {
+ public:
+  /// `empty`: bytes of this program before it read anything.
+  Runner(const StudyOptions& options, const StudyPlan& plan, double empty)
+      : folder_(options.out / "traces" / fingerprint(options, plan)), empty_(empty) {
+    std::filesystem::create_directories(folder_);
+    progress_("finding where to press", 0);
+    const StudyCase& own = plan.cases.front();
+    const std::filesystem::path file = options.trajectory.value_or(folder_ / (own.name() + "-motion.csv"));
+    if (!options.trajectory && !std::filesystem::exists(file))
+      run_apart(own.name(), [&] { write_motion(file, press_and_slide(own)); });
+    motion_.emplace(TrajectorySettings{.file = file});
+    seconds_ = motion_->duration();
+    if (seconds_ < 4 / own.scene.rate_hz)
+      fail("{}: lasts {:g} s, which is less than four steps of the scene", file.string(), seconds_);
+    const double radius = own.scene.tools.front().shape.radius;
+    sites_ = compared_sites(own, around(*motion_, radius));
+    if (sites_.empty())  // it may be thinner than edges are long
+      sites_ = compared_sites(own, around(*motion_, radius + describe(mesh_of(own)).max_edge));
+    if (sites_.empty()) fail_untouched(options);
+  }
+
+  Trace run(const StudyCase& one, double share) {
+    progress_(fmt::format("{}: {}", one.axis, one.name()), share);
+    const std::filesystem::path file = folder_ / (one.name() + ".trace");
+    if (const std::optional<Trace> before = read_trace(file)) return *before;
+    const double bytes =
+        run_apart(one.name(), [&] { write_trace(file, run_case(one, *motion_, seconds_, sites_)); });
+    std::optional<Trace> trace = read_trace(file);
+    if (!trace) fail_at_run_time("{}: its trace {} is not whole", one.name(), file.string());
+    trace->peak_bytes = empty_ + bytes;
+    write_trace(file, *trace);
+    return *trace;
+  }
+
+  /// The case with a tool that reaches what the motion touches, and no more, where the mesh is fine: the rest
+  /// would be much, and for nothing.
+  StudyCase near_the_way(StudyCase one) const {
+    ToolSettings& tool = one.scene.tools.front();
+    tool.reach = around(*motion_, kMargin * tool.shape.radius);
+    return one;
+  }
+
+  const Trajectory& motion() const { return *motion_; }
+  void end() { progress_("studied", 1); }
+
+ private:
+  static void write_motion(const std::filesystem::path& file, const Trajectory& motion) {
+    std::string text = "t_s,x_m,y_m,z_m\n";
+    for (int i = 0; i <= static_cast<int>(1e3 * motion.duration() + 0.5); ++i) {
+      const Vec3 p = motion.at(1e-3 * i);
+      text += fmt::format("{},{},{},{}\n", 1e-3 * i, p[0], p[1], p[2]);
+    }
+    write_whole(file, text);
+  }
+
+  std::filesystem::path folder_;
+  std::optional<Trajectory> motion_;
+  double seconds_ = 0;
+  std::vector<Vec3> sites_;
+  double empty_;
+  ProgressLine progress_{"the same command goes on from there"};
+};
+
+StudyRow row_of(const Scene& scene, const StudyCase& one, const Trace& trace, const StudyErrors& errors) {
+  StudyRow row{.scene = scene.title.empty() ? scene.source : scene.title, .one = one, .errors = errors};
+  row.tetrahedra = trace.tetrahedra;
+  row.nodes = trace.nodes;
+  row.flagged = trace.flagged;
+  row.state_hash = trace.state_hash;
+  row.step_ms_p50 = trace.step_ms_p50;
+  row.step_ms_p99 = trace.step_ms_p99;
+  row.setup_ms = trace.setup_ms;
+  row.peak_bytes = trace.peak_bytes;
+  return row;
+}
+
+}  // namespace
+
+int study(const StudyOptions& options) {
+  const double empty = own_bytes();
+  const Scene scene = read_scene(options.scene);
+  StudyPlan plan = plan_study(scene, options);
+  std::error_code failed;
+  std::filesystem::create_directories(options.out, failed);
+  check_writable(options.out / "summary.json");
+  Runner runner(options, plan, empty);
+  refine_references(plan, around(runner.motion(), kNear * scene.tools.front().shape.radius));
+  const double latency = 1e-3 * options.latency_ms;
+  const Trace reference = runner.run(runner.near_the_way(plan.reference), 0),
+              check = runner.run(runner.near_the_way(plan.check), 0.1);
+  if (std::all_of(reference.forces.begin(), reference.forces.end(),
+                  [](const Vec3& f) { return f.isZero(0); }))
+    fail_untouched(options);
+  StudyResult result{.own = errors_of(check, reference, runner.motion(), latency), .rows = {}};
+  result.reference = plan.reference.name();
+  result.check = plan.check.name();
+  result.truth = reference;
+  for (std::size_t k = 0; k < plan.cases.size(); ++k) {
+    const StudyCase& one = plan.cases[k];
+    const double share = 0.2 + 0.8 * static_cast<double>(k) / static_cast<double>(plan.cases.size());
+    try {
+      const Trace trace = runner.run(one, share);
+      result.rows.push_back(row_of(scene, one, trace, errors_of(trace, reference, runner.motion(), latency)));
+    } catch (const CaseFailed& error) {
+      result.refused.emplace_back(one.name(), error.what());
+    }
+  }
+  runner.end();
+  if (result.rows.empty())
+    fail_at_run_time("{}: no case could be run; of the first: {}", options.scene.string(),
+                     result.refused.front().second);
+  mark_front(result.rows);
+  write_study(options, result);
+  fmt::print("{}", to_text(result));
+  if (scene.tools.size() > 1)
+    fmt::print("Only tool 1 of {} is moved and compared; the others are away.\n", scene.tools.size());
+  if (options.budget_ms) fmt::print("{}", advice(result, *options.budget_ms, scene));
+  return 0;
+}
+
+}  // namespace palpate::sim

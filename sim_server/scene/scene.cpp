@@ -1,0 +1,22 @@
+#include "sim_server/scene/scene.h"
+
+namespace palpate::sim {
+
+std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh) {
+  std::vector<char> is_fixed(mesh.vertices.size(), 0);
+  for (const FixedRegion& region : scene.fixed) {
+    if (region.axes != kAllAxes) continue;
+    for (const int vertex : vertices_in(region, mesh)) is_fixed[vertex] = 1;
+  }
+  for (std::size_t k = 0; k < mesh.mid_edges.size(); ++k) {
+    const auto [a, b] = mesh.mid_edges[k];
+    is_fixed[static_cast<std::size_t>(mesh.corners()) + k] = is_fixed[a] & is_fixed[b];
+  }
+  std::vector<int> fixed;
+  for (int v = 0; v < static_cast<int>(is_fixed.size()); ++v) {
+    if (is_fixed[v]) fixed.push_back(v);
+  }
+  return fixed;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,122 @@
+#pragma once
+/// What a scene is: what its file asks for, section by section. An absent section means: not built.
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/contact/tool.h"
+#include "sim_server/elasticity/material.h"
+#include "sim_server/scene/regions.h"
+#include "sim_server/scene/tool_reach.h"
+#include "sim_server/solvers/dynamics_settings.h"
+#include "sim_server/sparse/stiffness_matrix.h"
+
+namespace palpate::sim {
+
+/// `[[fixed.motion]]`: the displacement direction x amplitude x sin(2 pi t / period + phase), t the time of
+/// the simulation, which begins at 0.
+struct SupportMotion {
+  Vec3 direction;    ///< unit, world
+  double amplitude;  ///< m, [0, 1]
+  double period;     ///< s, [0.01, 1e4]
+  double phase = 0;  ///< rad, [-1e3, 1e3]
+};
+
+/// `[[fixed]]`: mesh vertices that the tissue does not move.
+struct FixedRegion : Region {
+  HeldAxes axes = kAllAxes;              ///< along which
+  std::vector<SupportMotion> motions{};  ///< prescribed, added up; none: they rest
+
+  bool moves() const { return !motions.empty(); }
+};
+
+/// `[[material.inclusion]]`: a part of the tissue, as the mesh resolves it, that differs by how stiff it is.
+struct Inclusion : Region {
+  double young_modulus = 0;  ///< Pa, [1e-3, 1e12]; fibres in it are stiffer by as much
+};
+
+/// `[[load]]`: what acts on the tissue besides tools.
+struct Load {
+  enum class Kind {
+    kGravity,   ///< `vector`: m/s^2, on all of it
+    kTraction,  ///< `vector`: Pa of the area at rest, on the boundary triangles whose corners are in
+                ///< `region`, or that its tag names
+    kPressure,  ///< `pressure`, on the same; of all but the linear law it turns and grows with the surface
+    kForce,     ///< `vector`: N in all, shared equally by the vertices of `region`
+    kDisplacement,  ///< `vector`: m from rest, where the vertices of `region` are held
+  };
+  Kind kind;
+  Region region{};
+  Vec3 vector = Vec3::Zero();
+  HeldAxes axes = kAllAxes;  ///< of a displacement: along which
+  double pressure = 0;       ///< Pa, against the outward normal
+};
+
+/// `[deformation]`.
+struct DeformationSettings {
+  std::string model;                         ///< a name of `deformation_models()`
+  double stiffness = 800;                    ///< N/m, (0, 1e6], model "rigid" only
+  std::optional<Vec3> spring_stiffness{};    ///< along x, y, z, N/m, [1e-3, 1e6], model "spring" only
+  std::optional<double> hardening_length{};  ///< m, [1e-4, 10], likewise; absent: linear
+  double rayleigh_mass = 10;                 ///< damping by mass, 1/s, [0, 1e4], model "tensor_mass" only
+  double rayleigh_stiffness = 1e-4;          ///< and by stiffness, s, [0, 1], likewise
+  bool second_order = false;                 ///< `integrator` = "bdf2", model "implicit" only
+  int max_newton = 5;                        ///< per step, [1, 100], likewise
+  double tolerance = 1e-5;  ///< of the forces at work, what Newton may leave, [1e-12, 0.1], likewise
+  DynamicsSettings::Solver solver = DynamicsSettings::Solver::kDirect;  ///< likewise
+  int modes = 40;         ///< that swing, [1, 1000], model "reduced" only
+  int refresh_steps = 8;  ///< from one factor of the background to the next, [1, 1000], likewise
+  std::string where;      ///< "FILE:LINE" of `model`
+
+  DynamicsSettings dynamics() const {
+    return {rayleigh_mass, rayleigh_stiffness, second_order, solver, refresh_steps, tolerance};
+  }
+};
+
+/// One `[[tool]]`.
+struct ToolSettings {
+  Tool shape;
+  std::optional<Reach> reach;  ///< absent: the whole organ
+  std::string where;           ///< "FILE:LINE" of this section
+  std::string reach_where;     ///< "FILE:LINE" of what tells `reach`; empty where it is absent
+  bool stays_within = false;   ///< `reach` is of its tip, by [tool.workspace] or [tool.cone]: leaving is told
+  /// Buttons of which any, while pressed, makes it hold the surface near it; 0: none does, [0, 65535].
+  std::uint16_t grasp_buttons = 0;
+  std::optional<Vec3> grasp_place{};  ///< tool centre, m, from where it holds the resting surface always
+  std::string grasp_where{};          ///< "FILE:LINE" of either; empty where both are absent
+  bool grasps() const { return grasp_buttons != 0 || grasp_place.has_value(); }
+};
+
+/// The most `[[tool]]` a scene may have.
+constexpr std::size_t kMaxTools = 8;
+
+struct Scene {
+  std::string title;
+  double rate_hz = 30;     ///< steps per second, 0 or [1, 10000]; 0 = as fast as the model allows
+  std::string rate_where;  ///< "FILE:LINE" of `rate_hz`; empty where it is absent
+  std::filesystem::path mesh_file;
+  std::string mesh_where;  ///< "FILE:LINE" of `[mesh] file`
+  std::vector<FixedRegion> fixed;
+  std::vector<Load> loads{};
+  std::optional<Material> material;
+  std::vector<Inclusion> inclusions{};
+  std::string material_where;  ///< "FILE:LINE" of `[material]`; empty where it is absent
+  DeformationSettings deformation;
+  std::vector<ToolSettings> tools = std::vector<ToolSettings>(1);  ///< 1 to `kMaxTools`
+  std::string source;                                              ///< the file, for messages
+
+  /// Whether nothing holds the body anywhere.
+  bool flies() const {
+    const auto displaces = [](const Load& load) { return load.kind == Load::Kind::kDisplacement; };
+    return fixed.empty() && std::none_of(loads.begin(), loads.end(), displaces);
+  }
+};
+
+/// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an
+/// unknown tag.
+std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh);
+
+}  // namespace palpate::sim

@@ -1,0 +1,172 @@
+#include "sim_server/scene_file/read_parts.h"
+
+#include <algorithm>
+#include <array>
+
+#include "common/error.h"
+#include "common/text.h"
+
+namespace palpate::sim {
+namespace {
+
+template <class Value>
+struct Named {
+  std::string_view name;
+  Value value;
+};
+constexpr std::array kLaws{
+    Named{"linear", ElasticLaw::kLinear},
+    Named{"corotational", ElasticLaw::kCorotational},
+    Named{"neo_hookean", ElasticLaw::kNeoHookean},
+    Named{"stvk", ElasticLaw::kStVenantKirchhoff},
+};
+constexpr std::array kElements{
+    Named{"p1", ElementKind::kLinear},
+    Named{"p1_nodal_pressure", ElementKind::kNodalPressure},
+    Named{"p2", ElementKind::kQuadratic},
+};
+
+constexpr std::array kSolvers{
+    Named{"direct", DynamicsSettings::Solver::kDirect},
+    Named{"pcg", DynamicsSettings::Solver::kConjugateGradients},
+    Named{"quasi_newton", DynamicsSettings::Solver::kQuasiNewton},
+};
+
+template <class Table, class Value>
+std::string_view name_in(const Table& table, Value value) {
+  return std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.value == value; })->name;
+}
+
+Fibres read_fibres(const Config& config) {
+  Fibres fibres{config.vector("direction", {-1e3, 1e3, "any length but 0"}),
+                config.number("modulus", {1e-3, 1e12, "Pa"})};
+  if (!(fibres.direction.norm() > 1e-6))
+    fail("{}: `direction` needs a length above 0", config.where("direction"));
+  fibres.direction.normalize();
+  config.reject_unknown();
+  return fibres;
+}
+
+std::vector<Relaxation> read_relaxations(const Config& material) {
+  std::vector<Relaxation> relaxations;
+  double shares = 0;
+  for (const Config& section : material.tables("relaxation")) {
+    relaxations.push_back({section.number("share", {1e-6, 0.999999, "of the stress at once"}),
+                           section.number("time", {1e-4, 1e6, "s"})});
+    section.reject_unknown();
+    shares += relaxations.back().share;
+    if (shares > 0.999999)
+      fail("{}: the shares of all [[material.relaxation]] are {:g} together; less than 1 leaves some stress",
+           section.where("share"), shares);
+  }
+  return relaxations;
+}
+
+}  // namespace
+
+Region read_region(const Config& config, const std::string& section) {
+  Region region;
+  region.where = config.where();
+  if (config.has("box")) {
+    const auto [min, max] = config.box("box");
+    region.box = Box{min, max};
+  }
+  region.surface_tag = config.text("surface_tag", "");
+  if (config.has("center") || config.has("radius"))
+    region.ball = Ball{config.vector("center", {.unit = "m"}), config.number("radius", {1e-9, 1e3, "m"})};
+  const int given = region.box.has_value() + region.ball.has_value() + !region.surface_tag.empty();
+  if (given != 1)
+    fail("{}: {} needs one of `box`, `surface_tag`, or `center` with `radius`, and has {}", region.where,
+         section, given == 0 ? "none" : "more");
+  return region;
+}
+
+HeldAxes read_axes(const Config& config) {
+  constexpr std::string_view kNames = "xyz";
+  int axes = 0;
+  for (const char c : config.text("axes", std::string(kNames))) {
+    const auto axis = kNames.find(c);
+    if (axis == std::string_view::npos)
+      fail("{}: `axes` is some of x, y, z, as in \"xz\"; absent: all", config.where("axes"));
+    axes |= 1 << axis;
+  }
+  if (axes == 0) fail("{}: `axes` holds along none; name some of x, y, z", config.where("axes"));
+  return static_cast<HeldAxes>(axes);
+}
+
+Load read_load(const Config& config) {
+  constexpr double kFast = 1e4, kHard = 1e12, kStrong = 1e9, kFar = 1e3;
+  Load load{};
+  int kinds = 0;
+  const auto vector = [&](const char* key, Load::Kind kind, double most, const char* unit) {
+    if (!config.has(key)) return;
+    load.kind = kind;
+    load.vector = config.vector(key, {-most, most, unit});
+    ++kinds;
+  };
+  vector("gravity", Load::Kind::kGravity, kFast, "m/s2");
+  vector("traction", Load::Kind::kTraction, kHard, "Pa");
+  vector("force", Load::Kind::kForce, kStrong, "N");
+  vector("displacement", Load::Kind::kDisplacement, kFar, "m");
+  if (config.has("pressure")) {
+    load.kind = Load::Kind::kPressure;
+    load.pressure = config.number("pressure", {-kHard, kHard, "Pa"});
+    ++kinds;
+  }
+  if (kinds != 1) {
+    fail("{}: [[load]] needs one of `gravity`, `traction`, `pressure`, `force`, `displacement`, and has {}",
+         config.where(), kinds == 0 ? "none" : "more; another [[load]] takes the rest");
+  }
+  if (load.kind == Load::Kind::kDisplacement) load.axes = read_axes(config);
+  if (load.kind != Load::Kind::kGravity) load.region = read_region(config, "[[load]]");
+  load.region.where = config.where();
+  config.reject_unknown();
+  return load;
+}
+
+std::string_view name_of(ElasticLaw law) {
+  return name_in(kLaws, law);
+}
+
+std::string_view name_of(ElementKind element) {
+  return name_in(kElements, element);
+}
+
+std::string_view name_of(DynamicsSettings::Solver solver) {
+  return name_in(kSolvers, solver);
+}
+
+void read_steps(const Config& config, DeformationSettings& settings) {
+  const std::string integrator = config.text("integrator", "backward_euler");
+  settings.second_order = integrator == "bdf2";
+  if (!settings.second_order && integrator != "backward_euler")
+    fail("{}: unknown integrator \"{}\"; known: backward_euler, bdf2", config.where("integrator"),
+         integrator);
+  settings.solver =
+      find_row(kSolvers, config.text("solver", "direct"), "solver", config.where("solver")).value;
+  settings.refresh_steps =
+      static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
+  if (settings.solver == DynamicsSettings::Solver::kDirect && config.says("refresh_steps"))
+    fail("{}: solver \"direct\" factors where it has to; refresh_steps is for pcg and quasi_newton",
+         config.where("refresh_steps"));
+  settings.max_newton =
+      static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
+  settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);
+}
+
+Material read_material(const Config& config) {
+  Material material;
+  material.law = find_row(kLaws, config.text("law", "linear"), "law", config.where("law")).value;
+  material.element =
+      find_row(kElements, config.text("element", "p1"), "element", config.where("element")).value;
+  material.young_modulus = config.number("young_modulus", {1e-3, 1e12, "Pa"});
+  // Below one half by more than rounding: lambda grows without bound there.
+  material.poisson_ratio = config.number("poisson_ratio", {0, 0.499999, "below 0.5, no unit"});
+  material.density = config.number("density", {1e-3, 1e5, "kg/m3"}, material.density);
+  if (const auto fibres = config.table("fibres")) material.fibres = read_fibres(*fibres);
+  material.relaxations = read_relaxations(config);
+  config.reject_unknown();
+  return material;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,31 @@
+#pragma once
+/// Sections of a scene file that have much in them.
+#include "common/config.h"
+#include "sim_server/scene/scene.h"
+
+namespace palpate::sim {
+
+/// `box`, `surface_tag`, or `center` and `radius`, of which a section has one; `section` is its name for
+/// messages. Leaves other keys to the caller. These all throw `Error`.
+Region read_region(const Config& config, const std::string& section);
+
+/// `axes`: "x", "xz", ..; absent: all.
+HeldAxes read_axes(const Config& config);
+
+/// `[[load]]`.
+Load read_load(const Config& config);
+
+/// `[material]`.
+Material read_material(const Config& config);
+
+/// As `law` and `element` of `[material]` say it.
+std::string_view name_of(ElasticLaw law);
+std::string_view name_of(ElementKind element);
+/// As `solver` of `[deformation]` says it.
+std::string_view name_of(DynamicsSettings::Solver solver);
+
+/// Of `[deformation]`, what models that take any material are asked for: `integrator`, `solver`,
+/// `refresh_steps`, `max_newton`, `tolerance`.
+void read_steps(const Config& config, DeformationSettings& settings);
+
+}  // namespace palpate::sim

@@ -1,0 +1,272 @@
+#include "sim_server/scene_file/read_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/config.h"
+#include "common/error.h"
+#include "common/text.h"
+#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/scene_file/read_inclusions.h"
+#include "sim_server/scene_file/read_parts.h"
+#include "sim_server/scene_file/read_reach.h"
+
+namespace palpate::sim {
+namespace {
+
+SupportMotion read_motion(const Config& config) {
+  SupportMotion motion{};
+  motion.direction = config.vector("direction", {-1e3, 1e3, "any length but 0"});
+  if (!(motion.direction.norm() > 1e-6))
+    fail("{}: `direction` needs a length above 0", config.where("direction"));
+  motion.direction.normalize();
+  motion.amplitude = config.number("amplitude", {0, 1, "m"});
+  motion.period = config.number("period", {0.01, 1e4, "s"});
+  motion.phase = config.number("phase", {-1e3, 1e3, "rad"}, motion.phase);
+  config.reject_unknown();
+  return motion;
+}
+
+FixedRegion read_fixed(const Config& config) {
+  FixedRegion region{read_region(config, "[[fixed]]"), read_axes(config), {}};
+  for (const Config& motion : config.tables("motion")) region.motions.push_back(read_motion(motion));
+  config.reject_unknown();
+  return region;
+}
+
+/// "quasi_static", or "tensor_mass, implicit": names of the models that can.
+template <class Can>
+std::string models_that(const Can& can) {
+  std::string names;
+  for (const DeformationModelRow& row : deformation_models()) {
+    if (can(row)) names += (names.empty() ? "" : ", ") + std::string(row.name);
+  }
+  return names;
+}
+
+/// Keys of [deformation] that only some models take.
+struct KeyOfSome {
+  const char* key;
+  bool DeformationModelRow::*taken;
+};
+constexpr std::array kKeysOfSome{KeyOfSome{"stiffness", &DeformationModelRow::penalty},
+                                 KeyOfSome{"spring_stiffness", &DeformationModelRow::hangs},
+                                 KeyOfSome{"hardening_length", &DeformationModelRow::hangs},
+                                 KeyOfSome{"rayleigh_mass", &DeformationModelRow::damped},
+                                 KeyOfSome{"rayleigh_stiffness", &DeformationModelRow::damped},
+                                 KeyOfSome{"modes", &DeformationModelRow::modal},
+                                 KeyOfSome{"integrator", &DeformationModelRow::any_material},
+                                 KeyOfSome{"solver", &DeformationModelRow::any_material},
+                                 KeyOfSome{"refresh_steps", &DeformationModelRow::any_material},
+                                 KeyOfSome{"max_newton", &DeformationModelRow::any_material},
+                                 KeyOfSome{"tolerance", &DeformationModelRow::any_material}};
+
+void refuse_keys_of_others(const Config& config, const DeformationModelRow& row) {
+  for (const auto& [key, taken] : kKeysOfSome) {
+    if (row.*taken || !config.says(key)) continue;
+    const std::string takers =
+        models_that([taken = taken](const DeformationModelRow& m) { return m.*taken; });
+    fail("{}: unknown key `[deformation] {}` of model \"{}\"; known to: {}; remove it", config.where(key),
+         key, row.name, takers.empty() ? "no model of this build" : takers);
+  }
+}
+
+DeformationSettings read_deformation(const Config& config) {
+  DeformationSettings settings;
+  settings.where = config.where("model");
+  settings.model = config.text("model");
+#ifndef PALPATE_WITH_SPECTRA
+  if (settings.model == "reduced")
+    fail("{}: model \"reduced\" is not in this build; configure it with -DPALPATE_SPECTRA=ON",
+         settings.where);
+#endif
+  const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
+  refuse_keys_of_others(config, row);
+  settings.stiffness = config.number("stiffness", {1e-3, 1e6, "N/m"}, settings.stiffness);
+  if (config.has("spring_stiffness"))
+    settings.spring_stiffness = config.vector("spring_stiffness", {1e-3, 1e6, "N/m"});
+  if (config.has("hardening_length"))
+    settings.hardening_length = config.number("hardening_length", {1e-4, 10, "m"});
+  if (row.damped) {
+    settings.rayleigh_mass = config.number("rayleigh_mass", {0, 1e4, "1/s"}, settings.rayleigh_mass);
+    settings.rayleigh_stiffness =
+        config.number("rayleigh_stiffness", {0, 1, "s"}, settings.rayleigh_stiffness);
+  }
+  if (row.modal)
+    settings.modes = static_cast<int>(config.integer("modes", {1, 1000, "modes"}, settings.modes));
+  if (row.any_material) read_steps(config, settings);
+  config.reject_unknown();
+  return settings;
+}
+
+/// That a model is for the material of the scene. One that does not deform passes over a plain one.
+void require_material_of(const Scene& scene, const DeformationModelRow& row) {
+  if (!scene.material) return;
+  const auto takes = [&material = *scene.material](const DeformationModelRow& m) {
+    return m.any_material || (m.elastic && (material.is_plain() || (m.any_linear && material.is_linear())));
+  };
+  if (takes(row)) return;
+  if (!row.elastic) {
+    if (scene.material->is_plain() && scene.inclusions.empty()) return;
+    fail(
+        "{}: model \"{}\" does not deform, by this law, element, fibres, inclusions or relaxation; for this "
+        "material: {}",
+        scene.material_where, row.name, models_that(takes));
+  }
+  const std::string_view also = row.any_linear ? "" : ", element \"p1\", no fibres";
+  fail("{}: model \"{}\" is for law \"linear\"{} and no relaxation; for this material: {}",
+       scene.material_where, row.name, also, models_that(takes));
+}
+
+/// Of a model that could have the body fly.
+void require_flight(const Scene& scene) {
+  if (scene.material && scene.material->law == ElasticLaw::kLinear)
+    fail(
+        "{}: no [[fixed]] holds the body, and law \"linear\" is for small turns: add a [[fixed]], or take "
+        "law "
+        "\"corotational\", by which it flies",
+        scene.source);
+  for (const ToolSettings& tool : scene.tools) {
+    if (tool.reach)
+      fail("{}: no [[fixed]] holds the body, so that all of it comes within reach; remove this",
+           tool.reach_where);
+  }
+}
+
+/// That the model does what the scene asks of it.
+void require_what_the_model_can(const Scene& scene) {
+  const auto& settings = scene.deformation;
+  const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
+  const auto any = [](const DeformationModelRow& m) { return m.any_material; };
+  if (!scene.loads.empty() && !row.any_material)
+    fail("{}: [[load]]: model \"{}\" bears tools only; {} would, or `sim_server solve`",
+         scene.loads.front().region.where, settings.model, models_that(any));
+  require_material_of(scene, row);
+  for (const FixedRegion& region : scene.fixed) {
+    if (region.axes != kAllAxes)
+      fail("{}: `axes`: only `sim_server solve` holds vertices along some axes; remove it", region.where);
+    if (region.moves() && !row.follows_supports)
+      fail("{}: [[fixed.motion]]: model \"{}\" does not move with its supports; {} do", region.where,
+           settings.model, models_that([](const DeformationModelRow& m) { return m.follows_supports; }));
+  }
+}
+
+void read_grasp(const Config& config, ToolSettings& tool) {
+  if (config.has("grasp_buttons")) {
+    tool.grasp_buttons =
+        static_cast<std::uint16_t>(config.integer("grasp_buttons", {1, 65535, "button bits"}));
+    tool.grasp_where = config.where("grasp_buttons");
+  }
+  if (!config.has("grasp_place")) return;
+  tool.grasp_place = config.vector("grasp_place", {.unit = "m"});
+  if (tool.grasp_buttons != 0)
+    fail("{}: a tool grasps by `grasp_buttons` or always, from `grasp_place` on; remove one",
+         config.where("grasp_place"));
+  tool.grasp_where = config.where("grasp_place");
+}
+
+/// What else a shape needs; what belongs to another is an unknown key.
+void read_shape(const Config& config, Tool& tool) {
+  const std::string shape = config.text("shape", "sphere");
+  if (shape == "sphere") return;
+  if (shape == "capsule") {
+    tool.length = config.number("length", {1e-4, 0.5, "m"});
+  } else if (shape == "trocar") {
+    Tool::Trocar trocar;
+    trocar.pivot_W = config.vector("pivot", {-1e3, 1e3, "m"});
+    trocar.shaft_radius =
+        config.number("shaft_radius", {1e-5, 0.05, "m"}, std::min(trocar.shaft_radius, tool.radius));
+    if (trocar.shaft_radius > tool.radius)
+      fail("{}: `shaft_radius` {:g} is more than `radius` {:g}, that of the tip",
+           config.where("shaft_radius"), trocar.shaft_radius, tool.radius);
+    tool.trocar = trocar;
+  } else {
+    fail("{}: unknown shape \"{}\"; known: sphere, capsule, trocar", config.where("shape"), shape);
+  }
+}
+
+ToolSettings read_tool(const Config& config) {
+  ToolSettings tool;
+  tool.where = config.where();
+  tool.shape.radius = config.number("radius", {1e-5, 0.05, "m"}, tool.shape.radius);
+  tool.shape.friction = config.number("friction", {0, 10, "no unit"}, tool.shape.friction);
+  read_shape(config, tool.shape);
+  read_reach(config, tool);
+  read_grasp(config, tool);
+  config.reject_unknown();
+  return tool;
+}
+
+/// The organ comes nearer by as much as its supports move.
+void reach_what_moves(Scene& scene) {
+  double way = 0;
+  for (const FixedRegion& region : scene.fixed) {
+    double own = 0;
+    for (const SupportMotion& motion : region.motions) own += motion.amplitude;
+    way = std::max(way, own);
+  }
+  for (ToolSettings& tool : scene.tools) {
+    if (tool.reach && way > 0) tool.reach = widened(*tool.reach, way);
+  }
+}
+
+std::vector<ToolSettings> read_tools(const Config& config) {
+  const auto sections = config.tables("tool");
+  if (sections.empty()) fail("{}: a scene needs a [[tool]]; add one with its `radius`", config.where());
+  if (sections.size() > kMaxTools)
+    fail("{}: a scene has at most {} [[tool]], this one has {}; remove some", sections[kMaxTools].where(),
+         kMaxTools, sections.size());
+  std::vector<ToolSettings> tools;
+  for (const Config& section : sections) tools.push_back(read_tool(section));
+  return tools;
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
+  const Config config = Config::read(file);
+  Scene scene;
+  scene.source = file.string();
+  scene.title = config.text("title", file.stem().string());
+  scene.rate_hz = config.number("rate_hz", {0, 10000, "Hz"}, scene.rate_hz);
+  if (config.has("rate_hz")) scene.rate_where = config.where("rate_hz");
+  if (scene.rate_hz > 0 && scene.rate_hz < 1)
+    fail("{}: `rate_hz` must be 0 or from 1 to 10000 Hz", config.where("rate_hz"));
+  const auto mesh = config.table("mesh");
+  if (!mesh) fail("{}: missing section [mesh] with `file`", config.where());
+  scene.mesh_file = mesh->file("file");
+  scene.mesh_where = mesh->where("file");
+  mesh->reject_unknown();
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(scene.mesh_file, ignored)) {
+    fail("{}: `[mesh] file`: {}: {}", mesh->where("file"), scene.mesh_file.string(),
+         std::filesystem::is_directory(scene.mesh_file, ignored) ? "a folder, not a mesh" : "no such file");
+  }
+  for (const Config& fixed : config.tables("fixed")) scene.fixed.push_back(read_fixed(fixed));
+  for (const Config& load : config.tables("load")) scene.loads.push_back(read_load(load));
+  if (const auto material = config.table("material")) {
+    scene.inclusions = read_inclusions(*material);
+    scene.material = read_material(*material);
+    scene.material_where = material->where();
+    if (!scene.inclusions.empty() && scene.material->element == ElementKind::kNodalPressure)
+      fail(
+          "{}: [[material.inclusion]]: element \"p1_nodal_pressure\" averages over tissue of one stiffness; "
+          "take "
+          "\"p1\" or \"p2\"",
+          scene.inclusions.front().where);
+  }
+  const auto deformation = config.table("deformation");
+  if (!deformation && purpose == Purpose::kServe)
+    fail("{}: missing section [deformation] with `model`", config.where());
+  if (deformation) scene.deformation = read_deformation(*deformation);
+  if (purpose == Purpose::kServe) require_what_the_model_can(scene);
+  if (purpose == Purpose::kServe || !config.tables("tool").empty()) scene.tools = read_tools(config);
+  if (purpose == Purpose::kServe && scene.flies() && scene.deformation.model == "implicit")
+    require_flight(scene);
+  config.reject_unknown();
+  reach_what_moves(scene);
+  return scene;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,54 @@
+#pragma once
+#include <atomic>
+#include <random>
+
+#include "protocol/recorder.h"
+#include "protocol/udp_socket.h"
+#include "sim_server/serving/sim_loop.h"
+#include "sim_server/serving/surface_pager.h"
+
+namespace palpate::sim {
+
+/// The network thread of the server: datagrams in, sessions kept, forces out.
+class NetLink {
+ public:
+  /// `pagers`: of each tool. `seed` draws the session numbers. `recorder`: gets every datagram; may be null.
+  NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, std::vector<SurfacePager> pagers,
+          SimMailboxes& mailboxes, std::uint64_t seed, protocol::Recorder* recorder);
+
+  /// Serves until `stop`, then says Bye to every member.
+  void run();
+  void stop() { socket_.stop(); }
+
+  /// Read when `run` has returned.
+  const protocol::LinkStats& stats() const { return stats_; }
+
+  /// For a watching thread: whether somebody holds each tool, and how many sessions held it so far.
+  struct ToolSessions {
+    std::atomic<bool> held{false};
+    std::atomic<int> so_far{0};
+  };
+  std::array<ToolSessions, kMaxTools> tools;
+
+ private:
+  void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
+  void on_forces();
+  void send_pages(const protocol::ToolState& state);
+  void note_holders();
+  void on_timer();
+  void tool_is_free(std::uint8_t tool);
+  void send(const protocol::Header& header, const protocol::Message& message, const protocol::Endpoint& to);
+
+  const protocol::Endpoint& own_towards(const protocol::Endpoint& peer);
+
+  protocol::UdpSocket& socket_;
+  protocol::Recorder* recorder_;
+  protocol::Endpoint peer_, own_;  // whom we last talked to, and how he sees us
+  protocol::ServerSessions sessions_;
+  std::vector<SurfacePager> pagers_;
+  SimMailboxes& mailboxes_;
+  std::mt19937_64 random_;
+  protocol::LinkStats stats_;
+};
+
+}  // namespace palpate::sim

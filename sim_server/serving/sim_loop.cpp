@@ -1,0 +1,118 @@
+#include "sim_server/serving/sim_loop.h"
+
+#include <algorithm>
+
+#include "common/clock.h"
+#include "sim_server/scene/tool_reach.h"
+
+namespace palpate::sim {
+namespace {
+constexpr Time kPollPeriod = std::chrono::microseconds(200);  // rate 0: how often to look for a new pose
+}
+
+StepCell& StepCell::operator+=(const StepCell& other) noexcept {
+  steps += other.steps;
+  step_ns_sum += other.step_ns_sum;
+  step_ns_max = std::max(step_ns_max, other.step_ns_max);
+  late += other.late;
+  return *this;
+}
+
+SimLoop::SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes,
+                 std::span<const ToolSettings> tools)
+    : served_(simulation),
+      mailboxes_(mailboxes),
+      tools_(tools),
+      period_(rate_hz > 0 ? from_seconds(1 / rate_hz) : Time::zero()),
+      inputs_(simulation.tools()) {
+  stats_.tools.resize(simulation.tools());
+}
+
+double SimLoopStats::max_newton() const noexcept {
+  double most = 0;
+  for (const ToolStats& tool : tools) most = std::max(most, tool.max_newton);
+  return most;
+}
+
+void SimLoop::run(const std::stop_token& stop) noexcept {
+  Time deadline = now(), last = deadline;
+  while (!stop.stop_requested()) {
+    const bool fresh = read_inputs();
+    const Time start = now();
+    if (period_ > Time::zero() || fresh) {
+      step(to_seconds(period_ > Time::zero() ? period_ : start - last));
+      last = start;
+    }
+    deadline += period_ > Time::zero() ? period_ : kPollPeriod;
+    if (const Time behind = now() - deadline; behind > Time::zero()) {
+      if (period_ > Time::zero()) {
+        const auto late = static_cast<std::uint64_t>(behind / period_ + 1);
+        stats_.late += late;
+        stats_.timeline.at(start).late += static_cast<double>(late);
+      }
+      deadline += behind;
+    }
+    sleep_until(deadline);
+  }
+}
+
+/// Whether any of them is new.
+bool SimLoop::read_inputs() noexcept {
+  bool any = false;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    inputs_[i].fresh = mailboxes_.tools[i].input.read(inputs_[i]);
+    any = any || inputs_[i].fresh;
+  }
+  return any;
+}
+
+void SimLoop::step(double dt) noexcept {
+  const Time start = now();
+  const auto outcomes = served_.step(inputs_, dt);
+  if (outcomes.empty()) return;
+  const Time took = now() - start;
+  count(outcomes, start, took);
+  bool answered = false;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (!outcomes[i].answer) continue;
+    ForceOutput output{inputs_[i].session, *outcomes[i].answer};
+    output.sample.step_ns = took.count();
+    mailboxes_.tools[i].force.write(output);
+    answered = true;
+  }
+  if (answered) mailboxes_.bell.ring();
+}
+
+void SimLoop::count_beyond(std::size_t tool) noexcept {
+  const ToolInput& input = inputs_[tool];
+  const bool lost = (input.state.flags & protocol::ToolState::kDeviceLost) != 0;
+  if (input.session == 0 || lost || !tools_[tool].stays_within) return;
+  if (!beyond(*tools_[tool].reach, input.state.p_W)) return;
+  ++stats_.tools[tool].beyond_steps;
+  went_beyond[tool].store(true, std::memory_order_relaxed);
+}
+
+void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept {
+  const auto took_ns = static_cast<double>(took.count());
+  bool contact = false, flagged = false;
+  double largest = 0;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const ToolForce& force = outcomes[i].force;
+    const double newton = force.force.norm();
+    ToolStats& tool = stats_.tools[i];
+    tool.contact_steps += force.contacts > 0 ? 1 : 0;
+    tool.max_newton = std::max(tool.max_newton, newton);
+    count_beyond(i);
+    contact = contact || force.contacts > 0;
+    flagged = flagged || force.flagged;
+    largest = std::max(largest, newton);
+  }
+  stats_.step_ns.add(took.count());
+  stats_.timeline.at(start) += {1, took_ns, took_ns, 0};
+  if (contact) stats_.contact_step_ns.add(took.count());
+  stats_.flagged += flagged ? 1 : 0;
+  newest_newton.store(largest, std::memory_order_relaxed);
+  steps_done.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace palpate::sim

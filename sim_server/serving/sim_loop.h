@@ -1,0 +1,92 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <stop_token>
+#include <vector>
+
+#include "common/doorbell.h"
+#include "common/histogram.h"
+#include "common/latest_value.h"
+#include "common/time.h"
+#include "common/timeline.h"
+#include "sim_server/serving/served_tools.h"
+
+namespace palpate::sim {
+
+/// The newest force, and for whose session.
+struct ForceOutput {
+  std::uint64_t session = 0;
+  protocol::ForceSample sample;
+};
+
+/// The mailboxes of one tool, so that none overtakes what is meant for another.
+struct ToolMailboxes {
+  LatestValue<ToolInput> input;    // network -> simulation
+  LatestValue<ForceOutput> force;  // simulation -> network
+};
+
+/// Between the simulation thread and the network thread. `bell` rings when forces wait.
+struct SimMailboxes {
+  std::array<ToolMailboxes, kMaxTools> tools;  // the first ones, as many as the scene has
+  Doorbell bell;
+};
+
+/// One stretch of a session.
+struct StepCell {
+  double steps = 0, step_ns_sum = 0, step_ns_max = 0, late = 0;
+  StepCell& operator+=(const StepCell& other) noexcept;
+};
+
+/// What one tool did.
+struct ToolStats {
+  std::uint64_t contact_steps = 0;
+  std::uint64_t beyond_steps = 0;  ///< with its tip beyond its workspace or cone, where nothing is built
+  double max_newton = 0;
+};
+
+/// What the loop measured; read it when the loop has ended.
+struct SimLoopStats {
+  Timeline<StepCell> timeline;
+  Histogram step_ns, contact_step_ns;  ///< all steps, and those with a tool in contact
+  std::uint64_t late = 0;              ///< deadlines passed over because a step took too long
+  std::uint64_t flagged = 0;           ///< steps without a settled answer
+  std::vector<ToolStats> tools;
+
+  /// Largest force on any tool, N.
+  double max_newton() const noexcept;
+};
+
+/// Steps the simulation on absolute deadlines: newest tool poses in, newest forces out. The only thread that
+/// touches the simulation while it runs.
+class SimLoop {
+ public:
+  /// `rate_hz` 0: steps as soon as a new pose of any tool is there.
+  /// `tools`: of the scene, which outlives this.
+  SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes,
+          std::span<const ToolSettings> tools);
+
+  /// Runs until asked to stop.
+  void run(const std::stop_token& stop) noexcept;
+
+  const SimLoopStats& stats() const { return stats_; }
+
+  /// Progress for a watching thread: steps done, and the largest force of the newest (N).
+  std::atomic<std::uint64_t> steps_done{0};
+  std::atomic<double> newest_newton{0};
+  std::array<std::atomic<bool>, kMaxTools> went_beyond{};  ///< of each tool, whether it ever was beyond
+
+ private:
+  bool read_inputs() noexcept;
+  void step(double dt) noexcept;
+  void count_beyond(std::size_t tool) noexcept;
+  void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
+
+  ServedTools served_;
+  SimMailboxes& mailboxes_;
+  std::span<const ToolSettings> tools_;
+  Time period_;
+  std::vector<ToolInput> inputs_;
+  SimLoopStats stats_;
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,36 @@
+#pragma once
+#include "protocol/surface_pages.h"
+#include "sim_server/simulation/simulation.h"
+
+namespace palpate::sim {
+
+/// The surface that one tool can touch, in pages (protocol/surface_pages.h) for clients that solve contact
+/// themselves. Reads only what a simulation never changes once it is built, so that a thread may answer
+/// requests from a pager of its own while another steps. Must not outlive the simulation.
+class SurfacePager {
+ public:
+  /// O(n log n) for n vertices. Allocates; nothing else here does.
+  SurfacePager(const Simulation& simulation, std::size_t tool);
+
+  /// Version 0: none, because the compliance of this tissue changes while it deforms, it is too large, or
+  /// the tool is no sphere.
+  /// `shift_W` is not filled in.
+  const protocol::SurfaceState& state() const { return state_; }
+
+  /// Fills in a page of `state().version`; false when it has none of that number. About 2 us.
+  bool page(std::uint32_t number, protocol::SurfacePage& out) noexcept;
+
+ private:
+  void put_in_order();
+  std::uint32_t hash() noexcept;
+  void fill_tile(std::uint32_t number, protocol::SurfacePage& out) noexcept;
+
+  const Simulation& simulation_;
+  std::uint8_t tool_;
+  std::vector<int> vertices_;        // surface vertex of each vertex of the model
+  std::vector<Triangle> triangles_;  // corners: vertices of the model
+  ContactPatch patch_;               // of two clusters
+  protocol::SurfaceState state_;
+};
+
+}  // namespace palpate::sim

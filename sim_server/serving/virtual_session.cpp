@@ -1,0 +1,140 @@
+#include "sim_server/serving/virtual_session.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.h"
+#include "common/hash.h"
+
+namespace palpate::sim {
+using namespace protocol;
+
+namespace {
+
+constexpr double kNow = 1e-9;  // s: rounding of tick and step times
+
+Endpoint documentation_address(std::uint8_t last, std::uint16_t port) {
+  return {.address = {192, 0, 2, last}, .port = port};
+}
+/// Captures of different motions or links are different sessions.
+std::uint64_t session_number(const Trajectory& motion, const VirtualLink& link) {
+  constexpr int kPlaces = 64;
+  Fnv1a hash;
+  hash.add(&link.rate_hz, sizeof link.rate_hz);
+  hash.add(&link.ticks_hz, sizeof link.ticks_hz);
+  hash.add(&link.delay, sizeof link.delay);
+  for (int i = 0; i <= kPlaces; ++i) {
+    const Vec3 p = motion.at(i * motion.duration() / kPlaces);
+    hash.add(p.data(), sizeof p);
+  }
+  return hash.value() | 1;
+}
+
+const Endpoint kClient = documentation_address(1, 45131), kServer = documentation_address(2, 45130);
+
+}  // namespace
+
+VirtualSession::VirtualSession(Simulation& simulation, const Trajectory& motion, double tool_radius,
+                               const VirtualLink& link, CaptureWriter& capture)
+    : served_(simulation),
+      inputs_(simulation.tools()),
+      motion_(motion),
+      link_(link),
+      capture_(capture),
+      server_(link.rate_hz, {tool_radius}),
+      session_(session_number(motion, link)),
+      pager_(simulation, 0) {}
+
+Time VirtualSession::time_of(std::uint64_t k) const {
+  return from_seconds(static_cast<double>(k) / link_.ticks_hz);
+}
+
+void VirtualSession::tick(std::uint64_t k) {
+  const Time t = now_ = time_of(k);
+  keep_session(t);
+  ToolState state{.tool = client_.welcome().tool, .tick = k + 1, .t_ns = t.count()};
+  state.p_W = newest_p_W_ = motion_.at(to_seconds(t));
+  if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motion_.at(to_seconds(time_of(k - 1))));
+  if (link_.parts) {
+    state.flags |= ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface;
+    state.pages_taken = pages_;
+    state.lead_ns = (link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
+  }
+  step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
+  // What arrives in this very tick (no delay) is named by its tool state, though it stands behind it.
+  for (const OnTheWay& next : on_the_way_) {
+    if (next.ready > t) break;
+    newest_ = next.sample.number;
+  }
+  state.newest_sample = newest_;
+  to_server(client_.next_header(), state, t);
+  ++stats_.tool_states;
+  deliver(t);
+}
+
+/// Step n is due at n / rate, and answers the newest tool state there is then.
+void VirtualSession::step(const ToolState& state, double steps_due) {
+  if (static_cast<double>(steps_) >= steps_due - kNow * link_.rate_hz) return;
+  ++steps_;
+  // The organ stands as it does when the tool was read, so it moves from one answered tool state to the next.
+  const double dt = to_seconds(Time{state.t_ns} - answered_);
+  answered_ = Time{state.t_ns};
+  inputs_.front() = {session_, state, true};
+  const auto& outcome = served_.step(inputs_, dt).front();
+  stats_.in_contact += outcome.force.contacts > 0 ? 1 : 0;
+  stats_.flagged += outcome.force.flagged ? 1 : 0;
+  stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
+  on_the_way_.push_back({Time{state.t_ns} + link_.delay, *outcome.answer});
+}
+
+void VirtualSession::deliver(Time t) {
+  while (!on_the_way_.empty() && on_the_way_.front().ready <= t) {
+    const OnTheWay next = on_the_way_.front();
+    on_the_way_.pop_front();
+    // Numbered only now: a Welcome in between does not overtake it.
+    auto* const member = server_.holder(next.sample.tool);
+    to_client({session_, ++member->sent}, next.sample, next.ready);
+    ++stats_.force_samples;
+    const bool tells = (next.sample.flags & ForceSample::kHasSurface) != 0;
+    if (tells && pages_ == 0 && link_.parts) send_surface(next.ready);
+  }
+}
+
+void VirtualSession::keep_session(Time t) {
+  if (const auto hello = client_.poll(t)) to_server({}, *hello, t);
+}
+
+/// All of it at once, as soon as the client knows that there is one.
+void VirtualSession::send_surface(Time t) {
+  auto* const member = server_.holder(client_.welcome().tool);
+  for (SurfacePage page; pager_.page(static_cast<std::uint32_t>(pages_), page); ++pages_)
+    to_client({session_, ++member->sent}, page, t);
+}
+
+void VirtualSession::leave() {
+  to_server(client_.next_header(), Bye{}, now_);
+}
+
+/// Over the wire and into the capture, as bytes.
+Datagram VirtualSession::travel(const Endpoint& from, const Endpoint& to, const Header& header,
+                                const Message& message, Time t) {
+  std::array<std::byte, kMaxDatagram> bytes;
+  const std::size_t size = encode(header, message, bytes);
+  capture_.write(t, from, to, {bytes.data(), size}, size);
+  Datagram datagram;
+  if (decode({bytes.data(), size}, datagram) != Verdict::kAccepted)
+    fail("the motion leads to {} m, farther than the protocol carries", newest_p_W_.norm());
+  return datagram;
+}
+
+void VirtualSession::to_server(const Header& header, const Message& message, Time t) {
+  const auto outcome =
+      server_.receive(travel(kClient, kServer, header, message, t), kClient, t, session_, server_stats_);
+  if (outcome.answer) to_client(outcome.answer->first, outcome.answer->second, t);
+}
+
+void VirtualSession::to_client(const Header& header, const Message& message, Time t) {
+  client_.receive(travel(kServer, kClient, header, message, t), t, client_stats_);
+}
+
+}  // namespace palpate::sim

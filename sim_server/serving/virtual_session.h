@@ -1,0 +1,75 @@
+#pragma once
+#include <deque>
+
+#include "common/trajectory.h"
+#include "protocol/capture.h"
+#include "protocol/session.h"
+#include "sim_server/serving/served_tools.h"
+#include "sim_server/serving/surface_pager.h"
+
+namespace palpate::sim {
+
+/// How a session in virtual time runs. Hz and s.
+struct VirtualLink {
+  double rate_hz, ticks_hz;
+  Time delay{};        ///< from reading the tool to having its force in the client
+  bool parts = false;  ///< whether the client asks for all that a sample can carry
+};
+
+/// Sums over a virtual session.
+struct VirtualSessionStats {
+  std::uint64_t tool_states = 0, force_samples = 0, in_contact = 0, flagged = 0;
+  double max_newton = 0;
+};
+
+/// A client and a server that talk without sockets and clock: the two ends of a session, tool 0 of the scene,
+/// which follows a motion exactly, and a capture of every datagram between them. With `parts`, the client
+/// gets the whole model of the surface right after its first sample. Client and server stand at
+/// 192.0.2.1:45131 and 192.0.2.2:45130 (addresses for documentation, RFC 5737).
+class VirtualSession {
+ public:
+  VirtualSession(Simulation& simulation, const Trajectory& motion, double tool_radius,
+                 const VirtualLink& link, protocol::CaptureWriter& capture);
+
+  /// Tick number `k` from 0, in order: client reads the tool, server steps if a step is due, samples arrive.
+  /// Throws `Error` for a motion or speed beyond what the protocol carries (1e9 m, m/s).
+  void tick(std::uint64_t k);
+  /// The client says Bye.
+  void leave();
+
+  /// The time of tick `k`.
+  Time time_of(std::uint64_t k) const;
+  const VirtualSessionStats& stats() const { return stats_; }
+
+ private:
+  struct OnTheWay {
+    Time ready;
+    protocol::ForceSample sample;
+  };
+  void keep_session(Time t);
+  void send_surface(Time t);
+  void step(const protocol::ToolState& state, double steps_due);
+  void deliver(Time t);
+  protocol::Datagram travel(const protocol::Endpoint& from, const protocol::Endpoint& to,
+                            const protocol::Header& header, const protocol::Message& message, Time t);
+  void to_server(const protocol::Header& header, const protocol::Message& message, Time t);
+  void to_client(const protocol::Header& header, const protocol::Message& message, Time t);
+
+  ServedTools served_;
+  std::vector<ToolInput> inputs_;  // the first is ours, nobody holds the others
+  const Trajectory& motion_;
+  VirtualLink link_;
+  protocol::CaptureWriter& capture_;
+  protocol::ServerSessions server_;
+  std::uint64_t session_;
+  protocol::ClientSession client_{1};
+  protocol::LinkStats server_stats_, client_stats_;
+  std::deque<OnTheWay> on_the_way_;
+  SurfacePager pager_;
+  std::uint64_t steps_ = 0, newest_ = 0, pages_ = 0;
+  Time now_{}, answered_{};  // of the newest tool state, and of the newest that a step answered
+  Vec3 newest_p_W_ = Vec3::Zero();
+  VirtualSessionStats stats_;
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,43 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "common/clock.h"
+#include "common/report.h"
+#include "sim_server/deformation/model_inputs.h"
+
+namespace palpate::sim {
+
+/// How long each stage of a set-up took: a `Progress` (pass it by `std::ref`) that hands every call on and
+/// counts the time from one call to the next for the stage that the first of them named. One thread.
+class SetupTimes {
+ public:
+  /// `tell`: who else wants to know. `clock`: what to ask for the time; for tests.
+  explicit SetupTimes(Progress tell = {}, Time (*clock)() = &now);
+
+  void operator()(std::string_view what, double share);
+
+  struct Stage {
+    std::string name;
+    Time took;
+  };
+  /// In the order of their beginnings; the newest is complete once the next, or its own end, was told.
+  const std::vector<Stage>& stages() const { return stages_; }
+  /// Time spent in the stage called `what`; zero if there was none.
+  Time of(std::string_view what) const;
+  /// All stages together.
+  Time total() const;
+  /// {stage: milliseconds}.
+  Json to_json() const;
+
+ private:
+  Stage& stage(std::string_view what);
+
+  Progress tell_;
+  Time (*clock_)();
+  std::vector<Stage> stages_;
+  std::string current_;  // stage; empty before the first
+  Time last_ = Time::zero();
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,270 @@
+#include "sim_server/simulation/simulation.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "common/error.h"
+#include "common/hash.h"
+#include "common/text.h"
+#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/elasticity/solid.h"
+#include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/scene/held_motion.h"
+#include "sim_server/scene/inclusions.h"
+#include "sim_server/simulation/set_up_memory.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kNear = 2;              // of the tool radius: how far off a surface is told
+constexpr double kTouch = 0.04;          // of the tool radius: how deep to ask how stiff it is
+constexpr double kRunAway = 3;           // of the organ's size: farther from rest no tissue goes
+constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
+
+std::vector<int> vertices_of(const std::vector<std::vector<Triangle>>& lists) {
+  std::vector<int> vertices;
+  for (const auto& triangles : lists) {
+    for (const Triangle& t : triangles) vertices.insert(vertices.end(), t.begin(), t.end());
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+/// Of each tool.
+std::vector<std::vector<Triangle>> touchable_by(std::span<const ToolSettings> tools, const Surface& surface,
+                                                const TetMesh& mesh) {
+  std::vector<std::vector<Triangle>> lists;
+  for (const ToolSettings& tool : tools) lists.push_back(touchable_triangles(surface, mesh, tool));
+  return lists;
+}
+
+/// A force of an organ that is no more: half of it a step.
+void fade(ToolForce& force) noexcept {
+  force.force *= 0.5;
+  force.torque *= 0.5;
+  force.tangent.setZero();
+  force.flagged = true;
+}
+
+/// Of the box around them, from corner to corner, m.
+double size_of(std::span<const Vec3> places) {
+  Vec3 least = places.front(), most = least;
+  for (const Vec3& p : places) {
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
+  }
+  return (most - least).norm();
+}
+
+/// `read_mesh`, told to `progress`.
+TetMesh read_mesh_of(const Scene& scene, const Progress& progress) {
+  progress("reading the mesh", 0);
+  return read_mesh(scene.mesh_file);
+}
+
+}  // namespace
+
+std::vector<int> reachable_vertices(const Surface& surface, const TetMesh& mesh,
+                                    std::span<const ToolSettings> tools) {
+  return vertices_of(touchable_by(tools, surface, mesh));
+}
+
+std::string contact_part(std::size_t tool, std::size_t tools) {
+  return tools == 1 ? "contact" : fmt::format("contact of tool {}", tool + 1);
+}
+
+Simulation::Simulation(const Scene& scene, const Progress& progress)
+    : Simulation(scene, read_mesh_of(scene, progress), progress) {}
+
+Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
+  put_inclusions(scene, mesh_);
+  progress("extracting the surface", 0);
+  if (scene.material) mesh_ = with_nodes(std::move(mesh_), scene.material->element);
+  surface_ = boundary_surface(mesh_);
+  for (const int vertex : surface_.vertices) rest_.push_back(mesh_.vertices[vertex]);
+  auto touchable = touchable_by(scene.tools, surface_, mesh_);
+  if (std::all_of(touchable.begin(), touchable.end(), [](const auto& list) { return list.empty(); }))
+    fail("{}: no triangle of the surface lies within the tool's reach", scene.tools.front().reach_where);
+  const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, mesh_);
+  require_memory_for(scene, Purpose::kServe, count_parts(mesh_, surface_));
+  const DeformationModelRow& row =
+      find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where);
+  const bool stays = (row.elastic || row.any_material) && !fixed.empty() && !supports_move(scene);
+  if (stays) farthest_ = kRunAway * size_of(rest_);
+  tissue_.model = row.make({scene, mesh_, surface_, fixed, reachable, progress});
+  const FreeMotion motion = tissue_.model->free_motion(0);
+  tissue_.free = tissue_.positions = motion.positions;
+  tissue_.velocities = motion.velocities;
+  std::size_t loads = 0;
+  tools_.reserve(scene.tools.size());
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    const std::string stage = "preparing " + contact_part(i, scene.tools.size());
+    progress(stage, 0);
+    tools_.emplace_back(scene.tools[i], tissue_.free, surface_, std::move(touchable[i]));
+    loads += static_cast<std::size_t>(tools_.back().max_nodes());
+    progress(stage, 1);
+  }
+  if (tools_.size() > 1) {
+    for (ToolContact& tool : tools_) tool.reserve(loads);
+  }
+  if (std::any_of(tools_.begin(), tools_.end(), [](const ToolContact& tool) { return tool.has_friction(); }))
+    tissue_.before.assign(tissue_.positions.begin(), tissue_.positions.end());
+  places_.resize(tools_.size());
+  ways_.resize(tools_.size(), Vec3::Zero());
+  forces_.resize(tools_.size());
+  tangents_wanted_.resize(tools_.size(), 1);
+}
+
+std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPose>> places_W,
+                                            double dt) noexcept {
+  assert(places_W.size() == tools_.size());
+  move_organ(dt);
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (!places_W[i]) lift_tool(i);
+  }
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (!places_W[i]) continue;
+    tools_[i].share(tools_, tissue_);
+    tools_[i].walk(*places_W[i], tissue_);
+  }
+  settle();
+  while (const auto motion = tissue_.model->relinearise()) {
+    take(*motion);
+    for (ToolContact& tool : tools_) {
+      if (!tool.placed()) continue;
+      tool.share(tools_, tissue_);
+      tool.settle(tissue_);
+    }
+    settle();
+  }
+  if (!tissue_.model->balanced()) flag_contacts();
+  const bool lost = ran_away();
+  if (!tissue_.before.empty())
+    std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (lost && tools_[i].placed()) {  // what was felt before fades
+      fade(forces_[i]);
+      continue;
+    }
+    if (tangents_wanted_[i]) tools_[i].differentiate();
+    forces_[i] = tools_[i].force();
+  }
+  return forces_;
+}
+
+/// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.
+bool Simulation::ran_away() const noexcept {
+  const double most = farthest_ * farthest_;
+  bool near = true;
+  for (std::size_t v = 0; v < rest_.size(); ++v)
+    near &= (tissue_.positions[v] - rest_[v]).squaredNorm() <= most;  // false of what is not a number, too
+  return !near;
+}
+
+/// The tools stay where they were on the organ, which goes by the mean of its velocities before and after
+/// (exact to the third order in `dt`): one that stands on a surface coming towards it is not left behind
+/// inside. From there they walk to where they are now.
+void Simulation::move_organ(double dt) noexcept {
+  const bool moves = !tissue_.velocities.empty();
+  for (std::size_t i = 0; moves && i < tools_.size(); ++i)
+    ways_[i] = 0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
+  take(tissue_.model->free_motion(dt));
+  for (std::size_t i = 0; moves && i < tools_.size(); ++i)
+    ways_[i] += 0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
+  for (std::size_t i = 0; moves && i < tools_.size(); ++i) tools_[i].carry(ways_[i], tissue_);
+  if (moves && !tissue_.before.empty())  // gone along, nothing has slipped
+    std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
+}
+
+void Simulation::take(const FreeMotion& motion) noexcept {
+  tissue_.free = motion.positions;
+  tissue_.velocities = motion.velocities;
+  if (!motion.loaded.empty()) tissue_.positions = motion.loaded;
+}
+
+Vec3 Simulation::surface_velocity(std::size_t tool, const Vec3& p_W) const noexcept {
+  return tools_[tool].surface_velocity(p_W, tissue_);
+}
+
+ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
+  places_.front() = pose;
+  return step(places_, dt).front();
+}
+
+/// Block Gauss-Seidel over the tools (for a linear tissue: on the complementarity problem of all contacts
+/// together, which is convex): each in turn solves its own contact on the surface that the others have
+/// pushed, until it stands still for all of them.
+void Simulation::settle() noexcept {
+  std::size_t still = 1;  // tools in a row that need nothing; the last one has just been solved
+  for (std::size_t turn = 0; still < tools_.size(); ++turn) {
+    ToolContact& tool = tools_[turn % tools_.size()];
+    ++still;
+    if (!tool.placed() || !tool.share(tools_, tissue_)) continue;
+    if (tool.exhausted() || turn >= kMaxSweeps * tools_.size()) {
+      flag_contacts();
+      return;
+    }
+    tool.settle(tissue_);
+    still = 1;
+  }
+}
+
+void Simulation::flag_contacts() noexcept {
+  for (ToolContact& tool : tools_) {
+    if (tool.force().contacts > 0) tool.flag();
+  }
+}
+
+Simulation::Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W,
+                                             const ToolForce* felt) noexcept {
+  ToolContact& contact = tools_[tool];
+  if (!contact.placed()) return {};
+  contact.share(tools_, tissue_);
+  const ToolForce there = felt != nullptr ? *felt : contact.probe(p_W, tissue_);
+  if (there.contacts > 0) {
+    const double size = there.force.norm();
+    return {there.force, there.tangent, {size > 0 ? Vec3(there.force / size) : Vec3(Vec3::Zero()), 0}};
+  }
+  Linearised linearised{.plane = contact.nearest(p_W, tissue_)};
+  if (linearised.plane.gap > kNear * contact.radius()) return {};
+  // A little beyond the first touch, so that it is known how stiff the surface is.
+  const double beyond = linearised.plane.gap + kTouch * contact.radius();
+  linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue_).tangent;
+  return linearised;
+}
+
+Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) noexcept {
+  ToolContact& contact = tools_[tool];
+  contact.share(tools_, tissue_);
+  const int vertex = contact.nearest_vertex(p_W, tissue_);
+  return contact.free()[vertex] - rest_[vertex];
+}
+
+void Simulation::lift_tool(std::size_t tool) noexcept {
+  forces_[tool] = {};
+  if (tools_[tool].placed()) tools_[tool].share(tools_, tissue_);
+  tools_[tool].lift(tissue_);
+}
+
+std::vector<MemoryPart> Simulation::memory() const {
+  std::vector<MemoryPart> parts = tissue_.model->memory();
+  parts.push_back({"mesh", mesh_.vertices.size() * sizeof(Vec3) +
+                               mesh_.tetrahedra.size() * sizeof(Tetrahedron) +
+                               mesh_.mid_edges.size() * sizeof(mesh_.mid_edges[0]) +
+                               mesh_.stiffness.size() * sizeof(double)});
+  parts.push_back(
+      {"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
+  for (std::size_t i = 0; i < tools_.size(); ++i)
+    parts.push_back({contact_part(i, tools_.size()), tools_[i].bytes()});
+  return parts;
+}
+
+std::uint64_t Simulation::state_hash() const noexcept {
+  Fnv1a hash;
+  hash.add(tissue_.positions.data(), tissue_.positions.size_bytes());
+  for (const ToolForce& force : forces_) hash.add(force.force);
+  return hash.value();
+}
+
+}  // namespace palpate::sim

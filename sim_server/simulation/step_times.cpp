@@ -1,0 +1,115 @@
+#include "sim_server/simulation/step_times.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/clock.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kDepth = 0.4;          // of the tool radius
+constexpr double kClear = 10;           // of the tool radius: how far above the organ the free tool moves
+constexpr double kSlide = 0.1;          // of the tool radius: amplitude of the sliding
+constexpr double kSlideSteps = 40;      // of one turn of it
+constexpr std::size_t kTries = 64;      // vertices to press on before giving up
+constexpr double kUsualPeriod = 0.033;  // s, where the scene names no rate
+
+double period_of(const Scene& scene) {
+  return scene.rate_hz > 0 ? 1 / scene.rate_hz : kUsualPeriod;
+}
+
+const Vec3& at(const Simulation& simulation, int vertex) {
+  return simulation.mesh().vertices[simulation.surface().vertices[vertex]];
+}
+
+/// Outward normals at rest, weighted by area.
+std::vector<Vec3> vertex_normals(const Simulation& simulation) {
+  std::vector<Vec3> normals(simulation.surface().vertices.size(), Vec3::Zero());
+  for (const Triangle& t : simulation.surface().triangles) {
+    const Vec3 &a = at(simulation, t[0]), &b = at(simulation, t[1]), &c = at(simulation, t[2]);
+    for (const int corner : t) normals[corner] += (b - a).cross(c - a);
+  }
+  for (Vec3& normal : normals) normal.normalize();
+  return normals;
+}
+
+/// Reachable vertices, the fixed ones only if there are no others, from the middle outwards.
+std::vector<int> candidates(const Scene& scene, const Simulation& simulation) {
+  std::vector<int> all = reachable_vertices(simulation.surface(), simulation.mesh(),
+                                            std::span(scene.tools).first(1)),
+                   free;
+  const std::vector<int> fixed = fixed_vertices(scene, simulation.mesh());
+  std::copy_if(all.begin(), all.end(), std::back_inserter(free), [&](int v) {
+    return !std::binary_search(fixed.begin(), fixed.end(), simulation.surface().vertices[v]);
+  });
+  if (!free.empty()) all = free;
+  Vec3 middle = Vec3::Zero();
+  for (const int v : all) middle += at(simulation, v) / static_cast<double>(all.size());
+  std::stable_sort(all.begin(), all.end(), [&](int a, int b) {
+    return (at(simulation, a) - middle).squaredNorm() < (at(simulation, b) - middle).squaredNorm();
+  });
+  all.resize(std::min(all.size(), kTries));
+  return all;
+}
+
+/// Comes from outside to `press`.
+ToolForce approach(const Scene& scene, Simulation& simulation, const Press& press) {
+  simulation.lift_tool();
+  simulation.step(press.place + 2 * scene.tools.front().shape.radius * press.normal, period_of(scene));
+  return simulation.step(press.place, period_of(scene));
+}
+
+ToolForce timed_step(Simulation& simulation, const Vec3& p_W, double dt, Histogram& ns) {
+  const Time start = now();
+  ToolForce force = simulation.step(p_W, dt);
+  ns.add((now() - start).count());
+  return force;
+}
+
+}  // namespace
+
+Press find_press(const Scene& scene, Simulation& simulation) {
+  const std::vector<Vec3> normals = vertex_normals(simulation);
+  std::vector<Press> unsettled;
+  for (const int vertex : candidates(scene, simulation)) {
+    const Vec3& normal = normals[vertex];
+    Press press{at(simulation, vertex) + (1 - kDepth) * scene.tools.front().shape.radius * normal, normal};
+    const ToolForce force = approach(scene, simulation, press);
+    simulation.lift_tool();
+    if (force.contacts > 0 && !force.flagged) return press;
+    unsettled.insert(force.contacts > 0 ? unsettled.begin() : unsettled.end(), press);
+  }
+  return unsettled.front();
+}
+
+StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& press, int steps,
+                     const Progress& progress) {
+  const double radius = scene.tools.front().shape.radius, dt = period_of(scene);
+  const auto slide = [&](int i) {
+    return kSlide * radius * std::sin(2 * std::numbers::pi * i / kSlideSteps);
+  };
+  Vec3 above = press.place;
+  for (const Vec3& x : simulation.positions()) above[1] = std::max(above[1], x[1] + kClear * radius);
+  StepTimes times;
+  const auto tell = [&](int done) { progress("timing steps", 0.5 * done / steps); };
+  tell(0);
+  simulation.lift_tool();
+  simulation.step(above, dt);
+  for (int i = 1; i <= steps; ++i) {
+    timed_step(simulation, above + slide(i) * Vec3::UnitX(), dt, times.free_ns);
+    tell(i);
+  }
+  const Vec3 tangent = press.normal.unitOrthogonal();
+  approach(scene, simulation, press);
+  for (int i = 1; i <= steps; ++i) {
+    const ToolForce force = timed_step(simulation, press.place + slide(i) * tangent, dt, times.contact_ns);
+    times.contacts += force.contacts > 0 ? 1 : 0;
+    times.flagged += force.flagged ? 1 : 0;
+    tell(steps + i);
+  }
+  return times;
+}
+
+}  // namespace palpate::sim

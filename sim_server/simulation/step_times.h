@@ -1,0 +1,30 @@
+#pragma once
+#include "common/histogram.h"
+#include "sim_server/simulation/simulation.h"
+
+namespace palpate::sim {
+
+/// Where a tool presses: its centre (m, world), and the outward normal of the surface at rest there.
+struct Press {
+  Vec3 place, normal;
+};
+
+/// A place in the middle of what the tool can reach, on a vertex that is not fixed if there is one, pressed
+/// to 40 % of the tool's radius. Tries 64 vertices, nearest to the middle first, until one gives settled
+/// contact; if none does, takes one that gives any. Leaves the tool lifted. Set-up only.
+Press find_press(const Scene& scene, Simulation& simulation);
+
+/// Times of steps on this machine, ns.
+struct StepTimes {
+  Histogram free_ns;     ///< with the tool high above the organ
+  Histogram contact_ns;  ///< with the tool at `Press`, sliding a tenth of its radius to and fro
+  int contacts = 0;      ///< of the latter steps, those in contact
+  int flagged = 0;       ///< of the latter steps, those without a settled answer
+};
+
+/// Takes `steps` steps free, then as many in contact, and leaves the tool there: `state_hash` then tells
+/// whether two runs agree. One thread; asks the clock twice a step.
+StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& press, int steps,
+                     const Progress& progress = kSilent);
+
+}  // namespace palpate::sim

@@ -1,0 +1,189 @@
+#include "sim_server/solvers/equilibrium.h"
+
+#include <cmath>
+#include <limits>
+
+#include "common/error.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kArmijo = 1e-4, kShortest = 1e-4;  // line search: descent, and the shortest step
+constexpr double kLook = 1e-7;  // of what the supports move: how far to look ahead for what that asks for
+// Of the size of the body: forces that move a node by less, without any other, are rounding at rest.
+constexpr double kStill = 1e-7;
+// Likewise: what a linear law leaves, whose steps of refinement cost little.
+constexpr double kSharp = 1e-12;
+constexpr double kFirstShift = 0.05, kLastShift = 1e3;  // of the stiffness at rest
+
+class Newton {
+ public:
+  Newton(const Solid& solid, const StaticLoad& load, const std::string& where,
+         const EquilibriumSettings& settings)
+      : solid_(solid),
+        load_(load),
+        settings_(settings),
+        dofs_(load.held),
+        stiffness_(solid.stiffness_matrix(dofs_)),
+        internal_(static_cast<std::size_t>(solid.nodes())),
+        external_(internal_.size()) {
+    solid.add_stiffness(solid.rest(), stiffness_);
+    usual_ = stiffness_.lower().diagonal().mean();
+    stiffness_.close_held(usual_);
+    factor_.emplace(stiffness_.lower(), where, SparseCholesky::Precision::kSingle);
+    Eigen::AlignedBox3d box;
+    for (const Vec3& x : solid.rest()) box.extend(x);
+    still_ = kStill * box.diagonal().norm() * usual_;
+  }
+
+  /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.
+  bool advance(std::vector<Vec3>& x, double from, double to) {
+    share_ = to;
+    if (load_.start.empty()) move_supports(x, to - from);
+    double before = std::numeric_limits<double>::infinity();
+    const double enough = is_linear() ? std::min(kSharp, settings_.tolerance) : settings_.tolerance;
+    for (int i = 0; i <= settings_.max_newton; ++i) {
+      const Eigen::VectorXd residual = unbalanced(x);
+      if (!std::isfinite(residual_)) return false;
+      const bool stuck = residual_ > 0.5 * before && residual_ <= settings_.rounding;
+      if (residual_ <= enough || stuck) return true;
+      before = residual_;
+      ++iterations_;
+      if (!step(x, residual)) return residual_ <= settings_.rounding;
+    }
+    return false;
+  }
+
+  int iterations() const { return iterations_; }
+  double residual() const { return residual_; }
+
+ private:
+  bool is_linear() const { return solid_.material().law == ElasticLaw::kLinear; }
+
+  /// f_ext - f_int over the free displacements, N.
+  Eigen::VectorXd unbalanced(const std::vector<Vec3>& x) {
+    solid_.forces(x, internal_);
+    std::fill(external_.begin(), external_.end(), Vec3::Zero());
+    if (load_.forces) load_.forces(x, external_);
+    Eigen::VectorXd residual(dofs_.count);
+    double at_work = still_ * still_;
+    for (std::size_t i = 0; i < internal_.size(); ++i) {
+      at_work += internal_[i].squaredNorm() + share_ * share_ * external_[i].squaredNorm();
+      if (dofs_.first[i] >= 0) residual.segment<3>(dofs_.first[i]) = share_ * external_[i] - internal_[i];
+    }
+    dofs_.hold(residual);
+    residual_ = residual.norm() / std::sqrt(at_work);
+    return residual;
+  }
+
+  bool factor_at(const std::vector<Vec3>& x) {
+    if (is_linear()) return true;  // as at rest, everywhere
+    stiffness_.set_zero();
+    solid_.add_stiffness(x, stiffness_);
+    stiffness_.close_held(usual_);
+    if (factor_->refactor(stiffness_.lower())) return true;
+    StiffnessMatrix at_rest = solid_.stiffness_matrix(dofs_);
+    solid_.add_stiffness(solid_.rest(), at_rest);
+    at_rest.close_held(usual_);
+    double added = 0;
+    for (double shift = kFirstShift; shift < kLastShift; shift *= 4) {
+      stiffness_.lower() += (shift - added) * at_rest.lower();
+      added = shift;
+      if (factor_->refactor(stiffness_.lower())) return true;
+    }
+    return false;
+  }
+
+  double potential(const std::vector<Vec3>& x) const {
+    double work = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) work += share_ * external_[i].dot(x[i] - solid_.rest()[i]);
+    return solid_.energy(x) - work;
+  }
+
+  bool step(std::vector<Vec3>& x, const Eigen::VectorXd& residual) {
+    if (!factor_at(x)) return false;
+    const Eigen::VectorXd way = factor_->solve(residual).col(0);
+    const std::vector<Vec3> from = x;
+    if (is_linear()) {
+      go(from, 1, way, x);
+      return true;
+    }
+    const double before = potential(x), slope = residual.dot(way), left = residual.norm();
+    for (double length = 1; length > kShortest; length /= 2) {
+      go(from, length, way, x);
+      if (potential(x) <= before - kArmijo * length * slope || unbalanced(x).norm() < left) return true;
+    }
+    x = from;
+    return false;
+  }
+
+  void go(const std::vector<Vec3>& from, double length, const Eigen::VectorXd& way,
+          std::vector<Vec3>& x) const {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (dofs_.first[i] >= 0) x[i] = from[i] + length * way.segment<3>(dofs_.first[i]);
+    }
+  }
+
+  /// The supports go on by a share of their way, and the body with them as its tangent says.
+  void move_supports(std::vector<Vec3>& x, double share) {
+    if (load_.moved.empty()) return;
+    const auto moved_by = [&](double part) {
+      std::vector<Vec3> moved = x;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        for (int axis = 0; axis < 3; ++axis)
+          moved[i][axis] += (load_.held[i] >> axis & 1) != 0 ? part * load_.moved[i][axis] : 0.0;
+      }
+      return moved;
+    };
+    const std::vector<Vec3> ahead = moved_by(kLook * share);
+    const Eigen::VectorXd before = unbalanced(x);
+    const Eigen::VectorXd pull = (unbalanced(ahead) - before) / kLook;
+    if (!factor_at(x)) return;
+    const Eigen::VectorXd way = factor_->solve(pull).col(0);
+    x = moved_by(share);
+    go(x, 1, way, x);
+  }
+
+  const Solid& solid_;
+  const StaticLoad& load_;
+  const EquilibriumSettings& settings_;
+  FreeDofs dofs_;
+  StiffnessMatrix stiffness_;
+  std::optional<SparseCholesky> factor_;
+  std::vector<Vec3> internal_, external_;
+  double usual_ = 0;  // on the diagonal at rest, N/m
+  double still_ = 0;  // a force that is none, N
+  double share_ = 0, residual_ = 0;
+  int iterations_ = 0;
+};
+
+}  // namespace
+
+Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const std::string& where,
+                             const std::function<void(double)>& progress,
+                             const EquilibriumSettings& settings) {
+  Newton newton(solid, load, where, settings);
+  Equilibrium found{.x = load.start.empty() ? solid.rest() : load.start};
+  const double smallest = std::pow(0.5, settings.max_halvings);
+  double done = 0, step = 1;
+  while (done < 1) {
+    std::vector<Vec3> x = found.x;
+    if (newton.advance(x, done, std::min(1.0, done + step))) {
+      done = std::min(1.0, done + step);
+      found.x = std::move(x);
+      ++found.increments;
+      step *= 2;
+      if (progress) progress(done);
+    } else if ((step /= 2) < smallest) {
+      fail(
+          "{}: no equilibrium found beyond {:.3g} % of the load: a smaller load, a stiffer material, finer "
+          "tetrahedra or law neo_hookean would help",
+          where, 100 * done);
+    }
+  }
+  found.iterations = newton.iterations();
+  found.residual = newton.residual();
+  return found;
+}
+
+}  // namespace palpate::sim

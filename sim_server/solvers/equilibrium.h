@@ -1,0 +1,44 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include "sim_server/elasticity/solid.h"
+#include "sim_server/sparse/sparse_cholesky.h"
+
+namespace palpate::sim {
+
+/// What acts on a body at rest.
+struct StaticLoad {
+  /// Forces on the nodes (N) of a body at `x` (nodes, m); they may follow it.
+  std::function<void(std::span<const Vec3> x, std::span<Vec3> f)> forces = {};
+  std::vector<HeldAxes> held = {};  ///< (nodes)
+  /// (nodes) From rest to where each is held, along those axes, m; empty: at rest.
+  std::vector<Vec3> moved = {};
+  /// (nodes) Where to look first, with what is held where it shall be, m; empty: at rest.
+  std::vector<Vec3> start = {};
+};
+
+/// How well an equilibrium is to be found.
+struct EquilibriumSettings {
+  double tolerance = 1e-10;  ///< of the forces at work: what may be left over
+  double rounding = 1e-7;    ///< likewise, where one more step does not make it less
+  int max_newton = 60;       ///< per increment
+  int max_halvings = 12;     ///< of the load, where Newton's method fails
+};
+
+/// Where a body came to rest.
+struct Equilibrium {
+  std::vector<Vec3> x;                 ///< (nodes) m
+  int increments = 0, iterations = 0;  ///< of the load; Newton steps in all
+  double residual = 0;                 ///< of the forces at work
+};
+
+/// The static equilibrium f_int(x) = f_ext(x) by Newton's method with line search on the energy, in one
+/// increment of the load, or as many as it takes. Where the tangent stiffness is not positive definite, as
+/// much of the stiffness at rest is added as makes it so. Throws `Error`, beginning with `where`, when the
+/// fixed nodes do not hold the body or no equilibrium is found. Told about its increments.
+Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const std::string& where,
+                             const std::function<void(double share)>& progress = {},
+                             const EquilibriumSettings& settings = {});
+
+}  // namespace palpate::sim

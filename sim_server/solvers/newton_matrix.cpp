@@ -1,0 +1,86 @@
+#include "sim_server/solvers/newton_matrix.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kFlies = 1;  // 1/s: the step of the matrix that shows whether a body that flies is sound
+
+StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
+  StiffnessMatrix matrix = solid.stiffness_matrix(dofs);
+  solid.add_stiffness(solid.rest(), matrix);
+  if (flies) matrix.add_to_diagonal(solid.masses(), kFlies * kFlies);
+  matrix.close_held(matrix.lower().diagonal().mean());
+  return matrix;
+}
+
+/// What a factor answers is looked at again, but for the linear law, where it is all there is.
+SparseCholesky::Precision precision_for(const Material& material) {
+  using Precision = SparseCholesky::Precision;
+  return material.law == ElasticLaw::kLinear ? Precision::kDouble : Precision::kSingle;
+}
+
+}  // namespace
+
+NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
+                           const std::string& where)
+    : alpha_(settings.rayleigh_mass),
+      beta_(settings.rayleigh_stiffness),
+      mass_(solid.masses()),
+      matrix_(at_rest(solid, dofs, settings.flies)),
+      usual_(matrix_.lower().diagonal().mean()),
+      factor_(matrix_.lower(), where, precision_for(solid.material())) {}
+
+void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c) {
+  c_ = c;
+  matrix_.set_zero();
+  solid.add_stiffness(x, matrix_, viscosity);
+  matrix_.lower() *= 1 + beta_ * c;
+  matrix_.add_to_diagonal(mass_, c * c + alpha_ * c);
+  matrix_.close_held(usual_);
+  bool definite = factor_.refactor(matrix_.lower());
+  for (double more = c * c; !definite && more < 1e6 * c * c; more *= 4) {
+    matrix_.add_to_diagonal(mass_, more);
+    definite = factor_.refactor(matrix_.lower());
+  }
+}
+
+void NewtonMatrix::check_precision() {
+  factor_.check_precision(matrix_.lower());
+}
+
+Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first, double enough) const {
+  const auto count = static_cast<Eigen::Index>(first.size());
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(matrix_.lower().rows(), 3 * count);
+  for (Eigen::Index k = 0; k < count; ++k) unit.block<3, 3>(first[k], 3 * k).setIdentity();
+  Eigen::MatrixXd found = solve(unit);
+  if (count == 0 || factor_.precision() == SparseCholesky::Precision::kDouble) return found;
+  const Eigen::MatrixXd sample = unit.leftCols<3>() - matrix_.times(found.leftCols<3>());
+  if (!(sample.norm() <= enough)) found += solve(unit - matrix_.times(found));
+  return found;
+}
+
+BackgroundMatrix::BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
+                                   const std::string& where)
+    : solid_(solid),
+      matrix_(solid, dofs, settings, where),
+      tolerance_(settings.tolerance),
+      bytes_(solid_.bytes() + matrix_.bytes()) {}
+
+void BackgroundMatrix::begin(std::span<const Vec3> x, const Viscosity& viscosity, double c,
+                             std::vector<int> first) {
+  x_.assign(x.begin(), x.end());
+  memory_.assign(viscosity.memory.begin(), viscosity.memory.end());
+  made_.first = std::move(first);
+  work_ = std::async(std::launch::async, [this, scale = viscosity.scale, c] {
+    matrix_.build(solid_, x_, {scale, memory_}, c);
+    made_.values = matrix_.columns(made_.first, tolerance_);
+  });
+}
+
+void BackgroundMatrix::take(NewtonMatrix& matrix) {
+  work_.get();
+  std::swap(matrix_, matrix);
+  std::swap(made_, taken_);
+}
+
+}  // namespace palpate::sim

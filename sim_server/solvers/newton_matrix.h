@@ -1,0 +1,83 @@
+#pragma once
+#include <future>
+
+#include "sim_server/elasticity/solid.h"
+#include "sim_server/solvers/dynamics_settings.h"
+#include "sim_server/sparse/sparse_cholesky.h"
+
+namespace palpate::sim {
+
+/// What Newton's method solves with in a step of implicit dynamics, A = (1 + beta c) K + (c^2 + alpha c) M
+/// of some place, and its factor. One thread at a time.
+class NewtonMatrix {
+ public:
+  /// K of the solid at rest, factored; of one that flies with some inertia. Throws `Error`, beginning with
+  /// `where`, when `dofs` do not hold it.
+  NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
+               const std::string& where);
+
+  /// A of the solid at `x` (nodes, m), factored. Where A is not positive definite, as of a body about to
+  /// buckle, with more inertia.
+  void build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c);
+  /// To be called where the last `build` has served badly: should that be for want of digits, the next will
+  /// be in double precision. Cost of a solve.
+  void check_precision();
+  /// A^-1 b of the factor, for columns b over the unknowns.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return factor_.solve(b); }
+  /// A^-1 of unit forces on the three unknowns from each of `first` on: (unknowns x 3 first.size()); of a
+  /// factor in single precision by one step of refinement, which squares its error, where the first three
+  /// leave more than `enough` of them.
+  Eigen::MatrixXd columns(std::span<const int> first, double enough) const;
+
+  /// c of the last `build`, 1/s; 0 before the first.
+  double c() const { return c_; }
+  /// Of the diagonal of K at rest, N/m.
+  double usual() const { return usual_; }
+  double largest() const { return matrix_.lower().diagonal().maxCoeff(); }
+  const std::vector<double>& masses() const { return mass_; }
+  std::size_t bytes() const { return matrix_.bytes() + factor_.bytes() + mass_.size() * sizeof(double); }
+
+ private:
+  double alpha_, beta_;
+  std::vector<double> mass_;  // of each node, kg
+  StiffnessMatrix matrix_;
+  double usual_;
+  SparseCholesky factor_;
+  double c_ = 0;
+};
+
+/// Columns of A^-1.
+struct Columns {
+  std::vector<int> first;  ///< (n) unknowns from each of which on three columns are
+  Eigen::MatrixXd values;  ///< (unknowns x 3n), m/N
+};
+
+/// A second `NewtonMatrix` that a thread of its own makes ready while steps go on with the first
+/// (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159). Has its own copy of all it reads.
+class BackgroundMatrix {
+ public:
+  BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
+                   const std::string& where);
+  /// Starts with A of the solid at `x`, and its columns from these unknowns on. The one begun before must be
+  /// taken.
+  void begin(std::span<const Vec3> x, const Viscosity& viscosity, double c, std::vector<int> first);
+  bool begun() const { return work_.valid(); }
+  /// Waits for it, and gives it for `matrix`.
+  void take(NewtonMatrix& matrix);
+  /// What came with the one taken last. Until the next is taken.
+  const Columns& columns() const { return taken_; }
+  /// Known beforehand: asked for while the thread works, too.
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  Solid solid_;
+  NewtonMatrix matrix_;
+  double tolerance_;
+  std::size_t bytes_;
+  std::vector<Vec3> x_;
+  std::vector<Mat3> memory_;
+  Columns made_, taken_;
+  std::future<void> work_;  // last: ends before what it works on
+};
+
+}  // namespace palpate::sim

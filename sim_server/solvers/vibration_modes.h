@@ -1,0 +1,22 @@
+#pragma once
+#include <span>
+#include <string>
+
+#include "sim_server/sparse/sparse_cholesky.h"
+
+namespace palpate::sim {
+
+/// How a body swings by itself.
+struct VibrationModes {
+  Eigen::VectorXd frequencies;  ///< (k) angular, rad/s, ascending
+  Eigen::MatrixXd shapes;       ///< (unknowns x k), 1/sqrt(kg): of unit mass, phi^T M phi = 1
+};
+
+/// The `count` lowest modes of K phi = w^2 M phi, by the implicitly restarted Lanczos method (Spectra) on
+/// M^1/2 K^-1 M^1/2, to 1e-10 of w^2. `stiffness`: the factor of K. `masses`: the diagonal of M, kg > 0, by
+/// unknowns. Starts from the same vector every time. Throws `Error`, beginning with `where`, where `count` is
+/// not below the number of unknowns. Cost: some 2 to 4 solves a mode. Allocates 2 `count` vectors.
+VibrationModes vibration_modes(const SparseCholesky& stiffness, const Eigen::VectorXd& masses, int count,
+                               const std::string& where);
+
+}  // namespace palpate::sim

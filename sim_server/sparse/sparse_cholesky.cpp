@@ -1,0 +1,204 @@
+#include "sim_server/sparse/sparse_cholesky.h"
+
+#include <atomic>
+#include <limits>
+#include <optional>
+
+#include "common/error.h"
+#include "common/log.h"
+
+#ifdef PALPATE_WITH_CHOLMOD
+#include "sim_server/sparse/supernodal_factor.h"
+#else
+#include <Eigen/SparseCholesky>
+#endif
+
+namespace palpate::sim {
+
+#ifdef PALPATE_WITH_CHOLMOD
+struct SparseCholesky::Factor {
+  Factor(const SparseMatrix& lower, Precision wanted) : pattern(lower), precision(wanted) {}
+
+  SupernodalPattern pattern;
+  Precision precision;
+  std::optional<SupernodalFactor<double>> fine;  // one of the two
+  std::optional<SupernodalFactor<float>> rough;
+
+  bool countable() const { return pattern.countable; }
+  std::size_t bytes() const {
+    const std::size_t number = precision == Precision::kSingle ? sizeof(float) : sizeof(double);
+    return pattern.values() * number + pattern.bytes();
+  }
+  /// What is taken besides while it is made.
+  std::size_t work_bytes(const SparseMatrix&) const {
+    return (pattern.subtrees.size() + 1) * pattern.order.size() * sizeof(int);
+  }
+
+  bool factorize(const SparseMatrix& lower) {
+    if (precision == Precision::kDouble) {
+      if (!fine) fine.emplace(pattern);
+      return fine->factor(lower);
+    }
+    if (!rough) rough.emplace(pattern);
+    return rough->factor(lower);
+  }
+
+  /// What double precision would take more than single.
+  std::size_t more_bytes() const { return pattern.values() * (sizeof(double) - sizeof(float)); }
+  /// From here on in this precision.
+  void take(Precision other) {
+    rough.reset();
+    fine.reset();
+    precision = other;
+  }
+
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const {
+    return rough ? Eigen::MatrixXd(rough->solve(b.cast<float>()).cast<double>()) : fine->solve(b);
+  }
+};
+#else
+/// Always in double precision.
+struct SparseCholesky::Factor {
+  Factor(const SparseMatrix& lower, Precision) { llt.analyzePattern(lower); }
+
+  struct Llt : Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> {
+    std::size_t bytes() const {
+      const auto columns = static_cast<std::size_t>(m_matrix.outerSize());
+      return static_cast<std::size_t>(m_matrix.outerIndexPtr()[columns]) * (sizeof(double) + sizeof(int)) +
+             3 * columns * sizeof(int);
+    }
+  };
+  Llt llt;
+  Precision precision = Precision::kDouble;
+
+  bool countable() const { return true; }
+  std::size_t bytes() const { return llt.bytes(); }
+  std::size_t work_bytes(const SparseMatrix& lower) const {
+    return static_cast<std::size_t>(lower.nonZeros()) * (sizeof(double) + sizeof(int));  // a copy
+  }
+  std::size_t more_bytes() const { return 0; }
+  void take(Precision) {}
+  bool factorize(const SparseMatrix& lower) {
+    llt.factorize(lower);
+    return llt.info() == Eigen::Success;
+  }
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return llt.solve(b); }
+};
+#endif
+
+namespace {
+
+constexpr double kSingular = 1e13;  // condition beyond which rounding has eaten the answer
+constexpr double kRough = 1e-3;     // of a load: so much unbalanced is more than single precision may leave
+
+/// Whether it can go on in double precision; warns where that is for want of memory.
+template <class Factor>
+bool can_be_finer(const Factor& factor) {
+  if (factor.precision == SparseCholesky::Precision::kDouble) return false;
+  if (static_cast<double>(factor.more_bytes()) <= free_memory()) return true;
+  static std::atomic_flag told;
+  if (!told.test_and_set()) {
+    log::warning(
+        "a Cholesky factor would need {} more for double precision, which are not free: it stays in single",
+        bytes_text(static_cast<double>(factor.more_bytes())));
+  }
+  return false;
+}
+
+/// Between the analysis of the pattern and the numbers.
+template <class Factor>
+void require_room(const Factor& factor, const SparseMatrix& lower, double free, const std::string& where) {
+  const std::string what = fmt::format("the Cholesky factor of {} unknowns", lower.rows());
+  if (!factor.countable()) fail("{}: {} has more than 2^31 entries; take a coarser mesh", where, what);
+  require_memory(static_cast<double>(factor.bytes() + factor.work_bytes(lower)), free, where, what,
+                 "take a coarser mesh");
+}
+
+/// A load that no smooth motion balances.
+Eigen::MatrixXd alternating(Eigen::Index n) {
+  return Eigen::VectorXd::NullaryExpr(n, [](Eigen::Index i) { return i % 2 == 0 ? 1.0 : -0.7; });
+}
+
+/// Of a load, the share that an answer leaves.
+double imbalance(const SparseMatrix& lower, const Eigen::MatrixXd& answer, const Eigen::MatrixXd& load) {
+  return (load - lower.selfadjointView<Eigen::Lower>() * answer).norm() / load.norm();
+}
+
+/// A singular matrix can pass as positive definite by rounding; its answers are huge then.
+bool nearly_singular(const SparseMatrix& lower, const Eigen::MatrixXd& answer) {
+  const double largest = lower.diagonal().maxCoeff() * answer.cwiseAbs().maxCoeff();
+  return !(largest < kSingular);
+}
+
+}  // namespace
+
+SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& where, Precision precision,
+                               double free)
+    : factor_(std::make_unique<Factor>(lower, precision)) {
+  if (lower.rows() == 0) return;
+  const Eigen::MatrixXd load = alternating(lower.rows());
+  Eigen::MatrixXd answer;
+  bool definite = false;
+  const auto factor = [&] {
+    require_room(*factor_, lower, free, where);
+    definite = factor_->factorize(lower);
+    answer = definite ? solve(load) : load;
+  };
+  factor();
+  const bool single = factor_->precision == Precision::kSingle;
+  if (single && (!definite || !(imbalance(lower, answer, load) < kRough))) {
+    factor_->take(Precision::kDouble);
+    factor();
+  }
+  if (!definite || nearly_singular(lower, answer)) {
+    fail(
+        "{}: the stiffness matrix is singular: the fixed nodes do not hold the body; a [[fixed]] with three "
+        "that are not in line would",
+        where);
+  }
+}
+
+SparseCholesky::~SparseCholesky() = default;
+SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
+SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
+
+bool SparseCholesky::refactor(const SparseMatrix& lower) {
+  definite_ = lower.rows() == 0 || factor_->factorize(lower);
+  if (definite_ || !can_be_finer(*factor_)) return definite_;
+  factor_->take(Precision::kDouble);  // for want of digits?
+  definite_ = factor_->factorize(lower);
+  if (!definite_) factor_->take(Precision::kSingle);
+  return definite_;
+}
+
+void SparseCholesky::check_precision(const SparseMatrix& lower) {
+  if (!definite_ || !can_be_finer(*factor_)) return;
+  const Eigen::MatrixXd load = alternating(lower.rows());
+  if (imbalance(lower, solve(load), load) < kRough) return;
+  factor_->take(Precision::kDouble);
+  definite_ = false;
+}
+
+Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
+  if (!definite_)
+    return Eigen::MatrixXd::Constant(b.rows(), b.cols(), std::numeric_limits<double>::quiet_NaN());
+  return b.rows() == 0 ? b : factor_->solve(b);
+}
+
+SparseCholesky::Precision SparseCholesky::precision() const {
+  return factor_->precision;
+}
+
+std::size_t SparseCholesky::bytes() const {
+  return factor_->bytes();
+}
+
+const char* SparseCholesky::library() {
+#ifdef PALPATE_WITH_CHOLMOD
+  return "CHOLMOD";
+#else
+  return "Eigen";
+#endif
+}
+
+}  // namespace palpate::sim

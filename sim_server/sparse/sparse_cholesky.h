@@ -1,0 +1,55 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "common/memory_budget.h"
+#include "sim_server/sparse/stiffness_matrix.h"
+
+namespace palpate::sim {
+
+/// Sparse Cholesky factorisation of a symmetric positive definite matrix: by order and pattern of CHOLMOD,
+/// with our own numbers on all cores (`SupernodalFactor`), or, built with PALPATE_CHOLMOD=OFF, by Eigen. This
+/// is the one file that knows which. Set-up and background threads only.
+class SparseCholesky {
+ public:
+  /// Of the numbers of the factor. Single takes half the memory and time, and serves where what is solved for
+  /// is looked at again: answers are right to some 1e-6 of their size times the condition of the matrix.
+  /// Where the first matrix leaves more than a thousandth of a load, or a later one is positive definite only
+  /// in double precision, double is taken instead, for good, as far as memory is free.
+  enum class Precision { kDouble, kSingle };
+
+  /// Factors the matrix whose lower triangle is given, in 3 x 3 blocks as `StiffnessMatrix` has them. Throws
+  /// `Error`, beginning with `where`, when its factor would take more than `free` bytes (told from its
+  /// pattern, before the numbers are allocated), when it is not positive definite, or singular but for
+  /// rounding.
+  SparseCholesky(const SparseMatrix& lower, const std::string& where,
+                 Precision precision = Precision::kDouble, double free = free_memory());
+  ~SparseCholesky();
+  SparseCholesky(SparseCholesky&&) noexcept;
+  SparseCholesky& operator=(SparseCholesky&&) noexcept;
+
+  /// Factors other values on the same pattern. False where the matrix is not positive definite: then the
+  /// factor is of no use until the next one, and what it answers is not a number.
+  bool refactor(const SparseMatrix& lower);
+
+  /// Of the matrix factored last: where the factor leaves more than a thousandth of a load, it is of no use,
+  /// and the next is in double precision. Cost of a solve.
+  void check_precision(const SparseMatrix& lower);
+
+  /// X = A^-1 B for dense B (n x k); allocates X. Several threads may ask at once.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+
+  /// Of the factor that there is.
+  Precision precision() const;
+  std::size_t bytes() const;
+
+  /// The library behind it, for reports.
+  static const char* library();
+
+ private:
+  struct Factor;
+  std::unique_ptr<Factor> factor_;
+  bool definite_ = true;
+};
+
+}  // namespace palpate::sim

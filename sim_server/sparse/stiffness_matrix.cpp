@@ -1,0 +1,147 @@
+#include "sim_server/sparse/stiffness_matrix.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace palpate::sim {
+
+FreeDofs::FreeDofs(int nodes, const std::vector<int>& fixed) : held(static_cast<std::size_t>(nodes), 0) {
+  for (const int node : fixed) held[node] = kAllAxes;
+  number();
+}
+
+FreeDofs::FreeDofs(std::vector<HeldAxes> held_axes) : held(std::move(held_axes)) {
+  number();
+}
+
+void FreeDofs::number() {
+  first.assign(held.size(), -1);
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] == kAllAxes) continue;
+    first[i] = count;
+    count += 3;
+  }
+}
+
+void FreeDofs::hold(Eigen::VectorXd& v) const noexcept {
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] == 0 || first[i] < 0) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((held[i] >> axis & 1) != 0) v[first[i] + axis] = 0;
+    }
+  }
+}
+
+StiffnessMatrix::StiffnessMatrix(const FreeDofs& dofs, std::span<const int> groups,
+                                 std::span<const int> first)
+    : held_(dofs.held), matrix_(dofs.count, dofs.count) {
+  for (const int dof : dofs.first) block_.push_back(dof < 0 ? -1 : dof / 3);
+  partly_held_ = std::any_of(held_.begin(), held_.end(), [](HeldAxes h) { return h != 0 && h != kAllAxes; });
+  const auto blocks = static_cast<std::size_t>(dofs.count / 3);
+  std::vector<std::vector<int>> below(blocks);  // block rows of each block column, from the diagonal down
+  for (std::size_t c = 0; c < blocks; ++c) below[c].push_back(static_cast<int>(c));
+  for (std::size_t g = 0; g + 1 < first.size(); ++g) {
+    for (int i = first[g]; i < first[g + 1]; ++i) {
+      for (int j = first[g]; j < first[g + 1]; ++j) {
+        const int row = block_[groups[i]], column = block_[groups[j]];
+        if (column >= 0 && row > column) below[column].push_back(row);
+      }
+    }
+  }
+  Eigen::Index entries = 0;
+  for (auto& rows : below) {
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    entries += 9 * static_cast<Eigen::Index>(rows.size());
+  }
+  matrix_.resizeNonZeros(entries);
+  int* const outer = matrix_.outerIndexPtr();
+  int* inner = matrix_.innerIndexPtr();
+  outer[0] = 0;
+  for (std::size_t c = 0; c < blocks; ++c) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int row : below[c]) {
+        for (int r = 0; r < 3; ++r) *inner++ = 3 * row + r;
+      }
+      const auto column = 3 * c + static_cast<std::size_t>(axis);
+      outer[column + 1] = outer[column] + 3 * static_cast<int>(below[c].size());
+    }
+  }
+  set_zero();
+}
+
+void StiffnessMatrix::set_zero() noexcept {
+  std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
+}
+
+void StiffnessMatrix::add(int i, int j, const Mat3& block) noexcept {
+  if (block_[i] < 0 || block_[j] < 0) return;
+  if (!partly_held_ || (held_[i] == 0 && held_[j] == 0)) return add_to(i, j, block);
+  Mat3 free = block;
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((held_[i] >> axis & 1) != 0) free.row(axis).setZero();
+    if ((held_[j] >> axis & 1) != 0) free.col(axis).setZero();
+  }
+  add_to(i, j, free);
+}
+
+void StiffnessMatrix::close_held(double value) noexcept {
+  for (std::size_t i = 0; partly_held_ && i < held_.size(); ++i) {
+    if (held_[i] == 0 || block_[i] < 0) continue;
+    Mat3 block = Mat3::Zero();
+    for (int axis = 0; axis < 3; ++axis) block(axis, axis) = (held_[i] >> axis & 1) != 0 ? value : 0.0;
+    add_to(static_cast<int>(i), static_cast<int>(i), block);
+  }
+}
+
+void StiffnessMatrix::add_to(int i, int j, const Mat3& block) noexcept {
+  int row = block_[i], column = block_[j];
+  const bool turned = row < column;
+  if (turned) std::swap(row, column);
+  const int* const outer = matrix_.outerIndexPtr();
+  const int begin = outer[3 * column], length = outer[3 * column + 1] - begin;
+  // Rows come in threes: 3 row stands where its block does.
+  int low = 0, high = length / 3 - 1;
+  while (low < high) {
+    const int middle = (low + high) / 2;
+    if (matrix_.innerIndexPtr()[begin + 3 * middle] < 3 * row) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  assert(matrix_.innerIndexPtr()[begin + 3 * low] == 3 * row);
+  double* const value = matrix_.valuePtr() + begin + 3 * low;
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) value[c * length + r] += turned ? block(c, r) : block(r, c);
+  }
+}
+
+void StiffnessMatrix::add_to_diagonal(std::span<const double> per_node, double factor) noexcept {
+  for (std::size_t i = 0; i < block_.size(); ++i) {
+    if (block_[i] >= 0)
+      add(static_cast<int>(i), static_cast<int>(i), factor * per_node[i] * Mat3::Identity());
+  }
+}
+
+Eigen::MatrixXd StiffnessMatrix::times(const Eigen::MatrixXd& x) const {
+  // By rows, so that the inner loops are over the columns of X.
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Rows by = x;
+  Rows sum = Rows::Zero(x.rows(), x.cols());
+  for (Eigen::Index column = 0; column < matrix_.outerSize(); ++column) {
+    for (SparseMatrix::InnerIterator entry(matrix_, column); entry; ++entry) {
+      if (entry.row() < column) continue;  // above the diagonal
+      sum.row(entry.row()) += entry.value() * by.row(column);
+      if (entry.row() > column) sum.row(column) += entry.value() * by.row(entry.row());
+    }
+  }
+  return sum;
+}
+
+std::size_t StiffnessMatrix::bytes() const {
+  return static_cast<std::size_t>(matrix_.nonZeros()) * (sizeof(double) + sizeof(int)) +
+         (static_cast<std::size_t>(matrix_.cols()) + block_.size()) * sizeof(int);
+}
+
+}  // namespace palpate::sim

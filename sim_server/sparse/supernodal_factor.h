@@ -1,0 +1,43 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "sim_server/sparse/supernodal_pattern.h"
+
+namespace palpate::sim {
+
+/// The numbers of a Cholesky factor L of a given pattern, A = L L^T, in `double` or, at half the memory and
+/// time, in `float`. Left-looking over dense blocks by BLAS (one thread a call): subtrees of the pattern on
+/// all cores, then the supernodes above them by bands of rows on all cores. Bands do not depend on the number
+/// of threads, nor do the bytes of L.
+template <class Scalar>
+class SupernodalFactor {
+ public:
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
+  /// The pattern must outlive the factor.
+  explicit SupernodalFactor(const SupernodalPattern& pattern);
+
+  /// False where the matrix is not positive definite in these numbers: then L is of no use. Allocates
+  /// scratch.
+  bool factor(const SparseMatrix& lower);
+  /// A^-1 B, (n x k). Several threads may ask at once. Allocates. 4 values k flops.
+  Matrix solve(const Matrix& b) const;
+
+  std::size_t bytes() const { return values_.size() * sizeof(Scalar); }
+
+ private:
+  bool eliminate(int s, bool large, std::vector<int>& local);
+  void assemble(int s, int from, int to, const std::vector<int>& local);
+  void forward(Matrix& x) const;
+  void backward(Matrix& x) const;
+  Scalar* block(int s) { return values_.data() + pattern_->values_begin[s]; }
+  const Scalar* block(int s) const { return values_.data() + pattern_->values_begin[s]; }
+
+  const SupernodalPattern* pattern_;
+  std::vector<Scalar> values_;
+};
+
+extern template class SupernodalFactor<double>;
+extern template class SupernodalFactor<float>;
+
+}  // namespace palpate::sim

@@ -1,0 +1,59 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "sim_server/sparse/stiffness_matrix.h"
+
+namespace palpate::sim {
+
+/// What a sparse Cholesky factor L of a matrix has for a pattern, before any number: the order in which
+/// unknowns are eliminated, and supernodes, which are neighbouring columns of L kept as one dense block (Ng
+/// and Peyton 1993, SIAM J. Sci. Comput. 14:1034). CHOLMOD's analysis finds both (Chen et al. 2008, ACM
+/// Trans. Math. Softw. 35:22). Set-up only.
+struct SupernodalPattern {
+  /// Rows `from` to `to` of a supernode are columns of another, which takes its update from there down.
+  struct Update {
+    int source, from, to;
+  };
+  /// Supernodes `begin` to `end` - 1, which take updates from each other alone.
+  struct Subtree {
+    int begin, end;
+  };
+
+  /// Of a matrix whose lower triangle is given in 3 x 3 blocks (`StiffnessMatrix`): the order is that of the
+  /// graph of its nodes, by AMD or METIS, of which gives the smaller factor. `countable` is false, and the
+  /// rest empty, where L has more than 2^31 entries. Throws `std::bad_alloc`.
+  explicit SupernodalPattern(const SparseMatrix& lower);
+
+  int supernodes() const { return static_cast<int>(first.size()) - 1; }
+  int columns(int s) const { return first[s + 1] - first[s]; }
+  /// Those of L's rows that a supernode has: its own columns, then others below.
+  std::span<const int> rows_of(int s) const {
+    return std::span(rows).subspan(rows_begin[s], rows_begin[s + 1] - rows_begin[s]);
+  }
+  std::span<const Update> updates_of(int s) const {
+    return std::span(updates).subspan(updates_begin[s], updates_begin[s + 1] - updates_begin[s]);
+  }
+  std::size_t values() const { return values_begin.back(); }  ///< entries of all blocks
+  std::size_t bytes() const;
+
+  bool countable = true;
+  std::vector<int> order;                 ///< (n) the unknown eliminated at each place
+  std::vector<int> first;                 ///< (supernodes + 1) first column
+  std::vector<int> rows;                  ///< one list after another
+  std::vector<std::size_t> rows_begin;    ///< (supernodes + 1)
+  std::vector<std::size_t> values_begin;  ///< (supernodes + 1) of blocks (rows x columns), by columns
+  std::vector<Update> updates;            ///< ascending by source
+  std::vector<std::size_t> updates_begin;
+  std::vector<int> place;  ///< of each entry of the matrix among the values; -1: not of the lower triangle
+  std::vector<Subtree> subtrees;  ///< as many of like work as keep a few cores busy
+  std::vector<int> top;           ///< the supernodes above them, ascending
+
+ private:
+  void find_updates();
+  void find_places(const SparseMatrix& lower);
+  void cut_subtrees();
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,67 @@
+#include "haptic_client/session/client_config.h"
+
+#include "common/error.h"
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::client;
+
+TEST_CASE("an empty client file means the defaults, and the file that ships is read") {
+  const test::TemporaryFolder folder;
+  const ClientConfig config = read_client_config(folder.write("c.toml", ""));
+  CHECK(config.server == "127.0.0.1:45130");
+  CHECK(config.rate_hz == 500);
+  CHECK_FALSE(config.device.trajectory);
+  CHECK(
+      read_client_config(std::string(PALPATE_SOURCE_DIR) + "/configs/clients/liver.toml").device.trajectory);
+}
+
+TEST_CASE("a SpaceMouse: its table is read, and the file that ships begins above the liver") {
+  const test::TemporaryFolder folder;
+  const ClientConfig config =
+      read_client_config(folder.write("c.toml", "[spacemouse]\nspeed = 0.001\nreach = 1\n"));
+  CHECK(config.device.spacemouse.speed == 0.001);
+  CHECK(config.device.spacemouse.reach == 1);
+  for (const char* wrong : {"speed = 2", "speed = 0", "reach = 1.1", "force = 1"})
+    CHECK_THROWS_AS(read_client_config(folder.write("c.toml", std::string("[spacemouse]\n") + wrong)), Error);
+  const ClientConfig shipped =
+      read_client_config(std::string(PALPATE_SOURCE_DIR) + "/configs/clients/spacemouse.toml");
+  CHECK(shipped.device.name == "spacemouse");
+  CHECK(shipped.workspace.to_world(Vec3::Zero()) == Vec3(-0.03, 0.09, 0.01));
+}
+
+TEST_CASE("a motion told in the world reaches the same place through any workspace") {
+  const test::TemporaryFolder folder;
+  folder.write("m.csv", "t_s,x_m,y_m,z_m\n0,10,20,30\n1,10,20,30\n");
+  const ClientConfig config =
+      read_client_config(folder.write("c.toml",
+                                      "[trajectory]\nfile = \"m.csv\"\nscale = 0.001\noffset = [1, 0, "
+                                      "0]\n[workspace]\nscale = 2\noffset = [0, 5, 0]\n"));
+  const Vec3 p_D = Trajectory(*config.device.trajectory).at(0.5);
+  CHECK((config.workspace.to_world(p_D) - Vec3(1.010, 0.020, 0.030)).norm() < 1e-12);
+}
+
+TEST_CASE("axes of the workspace: a rotation, and nothing else") {
+  const test::TemporaryFolder folder;
+  const auto axes = [&](const std::string& names) {
+    return read_client_config(folder.write("c.toml", "[workspace]\naxes = [" + names + "]\n")).workspace.axes;
+  };
+  Mat3 expected;
+  expected << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  CHECK(axes("\"x\", \"-z\", \"y\"") == expected);
+  CHECK_THROWS_WITH(axes("\"x\", \"y\", \"-z\""), Catch::Contains("c.toml:2") && Catch::Contains("mirror"));
+  CHECK_THROWS_WITH(axes("\"x\", \"y\", \"y\""), Catch::Contains("once each"));
+  CHECK_THROWS_WITH(axes("\"x\", \"y\", \"up\""), Catch::Contains("\"up\" is no axis"));
+}
+
+TEST_CASE("a motion told in the world reaches the same place through turned axes") {
+  const test::TemporaryFolder folder;
+  folder.write("m.csv", "t_s,x_m,y_m,z_m\n0,0.01,0.02,0.03\n1,0.01,0.02,0.03\n");
+  const ClientConfig config = read_client_config(folder.write(
+      "c.toml",
+      "[trajectory]\nfile = \"m.csv\"\n[workspace]\naxes = [\"x\", \"-z\", \"y\"]\noffset = [0, 5, "
+      "0]\n"));
+  const Vec3 p_D = Trajectory(*config.device.trajectory).at(0.5);
+  CHECK((config.workspace.to_world(p_D) - Vec3(0.01, 0.02, 0.03)).norm() < 1e-12);
+}

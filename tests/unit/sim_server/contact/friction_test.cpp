@@ -1,0 +1,211 @@
+// Friction on the organ: strides, probes, several tools.
+#include <cmath>
+#include <optional>
+
+#include "sim_server/mesh/shapes.h"
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/catch.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+constexpr double kDt = 0.03, kRadius = 0.005, kMu = 0.3;
+
+using Places = std::vector<std::optional<ToolPose>>;
+
+/// A block of soft tissue, 80 x 30 x 40 mm, top at y = 0, held at the bottom, nodes 5 mm apart.
+TetMesh block() {
+  std::vector<double> x, y, z;
+  for (int i = -8; i <= 8; ++i) x.push_back(0.005 * i);
+  for (int i = -6; i <= 0; ++i) y.push_back(0.005 * i);
+  for (int i = -4; i <= 4; ++i) z.push_back(0.005 * i);
+  return grid_block(x, y, z);
+}
+
+Scene scene(std::size_t tools, double friction, const std::string& model = "quasi_static") {
+  Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4},
+                               {Vec3(-1, -1, -1), Vec3(1, -0.0299, 1)}, kRadius);
+  scene.deformation.model = model;
+  scene.tools[0].shape.friction = friction;
+  scene.tools.resize(tools, scene.tools.front());
+  return scene;
+}
+
+struct Block : Simulation {
+  explicit Block(std::size_t tools = 1, double friction = kMu, const std::string& model = "quasi_static")
+      : Simulation(scene(tools, friction, model), block()) {}
+  std::vector<ToolForce> at(const Places& places) {
+    const auto forces = Simulation::step(places, kDt);
+    return {forces.begin(), forces.end()};
+  }
+};
+
+Vec3 press(double x, double depth, double z = 0.0013) {
+  return {x, kRadius - depth, z};
+}
+
+double relative(const Vec3& a, const Vec3& b) {
+  return (a - b).norm() / b.norm();
+}
+
+}  // namespace
+
+TEST_CASE("friction on a rigid organ: mu F_n against the slide, whatever the steps") {
+  for (const double step : {1e-4, 1e-3, 1e-2}) {
+    Block rigid(1, kMu, "rigid");
+    ToolForce force;
+    rigid.step(press(-0.02, -0.001), kDt);
+    for (double x = -0.02; x <= 0.02; x += step) force = rigid.step(press(x, 0.002), kDt);
+    CAPTURE(step);
+    CHECK_FALSE(force.flagged);
+    CHECK(force.force[1] == Approx(1.6).epsilon(1e-4));
+    CHECK(force.force[0] == Approx(-kMu * 1.6).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("friction: the way between two places is bent as the velocities say, wild ones hardly matter") {
+  // Round an arc of 4 mm radius, 30 degrees a step, 2 mm deep.
+  constexpr double kTurn = 0.5, kArc = 0.004;
+  const auto at = [](double phi) { return press(kArc * std::cos(phi), 0.002, kArc * std::sin(phi)); };
+  const auto velocity = [](double phi) -> Vec3 {
+    return kArc * kTurn / kDt * Vec3(-std::sin(phi), 0, std::cos(phi));
+  };
+  Block truth, straight, bent, wild;
+  for (Block* block : {&truth, &straight, &bent, &wild}) {
+    block->step(press(kArc, -0.001, 0), kDt);
+    block->step(at(0), kDt);
+  }
+  double by_line = 0, by_cubic = 0;
+  for (int i = 1; i <= 12; ++i) {
+    const double from = kTurn * (i - 1), to = kTurn * i;
+    const Vec3 way = at(to) - at(from);
+    Vec3 expected;
+    for (int k = 1; k <= 60; ++k) expected = truth.step(at(from + kTurn * k / 60), kDt / 60).force;
+    bent.bend_way(0, {kDt * velocity(from) - way, kDt * velocity(to) - way});
+    wild.bend_way(0,
+                  {1e200 * Vec3::UnitY(), i % 2 == 0 ? Vec3(1e300, 1e300, 1e300) : Vec3(0, std::nan(""), 0)});
+    const Vec3 line = straight.step(at(to), kDt).force;
+    by_line = std::max(by_line, relative(line, expected));
+    by_cubic = std::max(by_cubic, relative(bent.step(at(to), kDt).force, expected));
+    const ToolForce any = wild.step(at(to), kDt);
+    CHECK_FALSE(any.flagged);
+    CHECK(relative(any.force, line) < 0.1);
+  }
+  CAPTURE(by_line, by_cubic);
+  CHECK(by_cubic < 0.5 * by_line);
+}
+
+TEST_CASE("friction: a tool at rest holds its force for as long as it stays") {
+  Block organ;
+  organ.step(press(0, -0.001), kDt);
+  organ.step(press(0, 0.002), kDt);
+  const Vec3 slid = organ.step(press(0.004, 0.002), kDt).force;
+  Vec3 last = slid;
+  for (int i = 0; i < 2000; ++i) last = organ.step(press(0.004, 0.002), kDt).force;
+  CHECK(slid[0] < -0.05 * slid[1]);
+  CHECK(relative(last, slid) < 1e-5);  // 1e-10 m/N of creep in each
+}
+
+TEST_CASE("friction: looking ahead changes nothing, bit by bit, and foretells the step itself") {
+  Block plain, looked;
+  test::Random random(5);
+  Vec3 p = press(0, 0);
+  for (int i = 0; i < 60; ++i) {
+    p += random.vector(0.0015) - 0.0002 * Vec3::UnitY();
+    p[1] = std::clamp(p[1], 0.0015, 0.0055);
+    const Vec3 there = p;
+    const auto ahead = looked.linearise(0, there, nullptr);
+    const std::uint64_t before = looked.state_hash();
+    looked.linearise(0, p + random.vector(0.004), nullptr);
+    CHECK(looked.state_hash() == before);
+    const ToolForce expected = plain.step(there, kDt), force = looked.step(there, kDt);
+    CHECK(force.force == expected.force);
+    CHECK(looked.state_hash() == plain.state_hash());
+    if (i > 0 && expected.contacts > 0 && !expected.flagged) CHECK(ahead.force == expected.force);
+  }
+}
+
+TEST_CASE("friction: one tool moves the tissue under another that rests, it is dragged, and returns") {
+  Block two(2), alone;
+  alone.step(press(-0.006, 0.002), kDt);
+  const Vec3 before = two.at({press(-0.006, 0.002), {}})[0].force;
+  CHECK(relative(before, alone.step(press(-0.006, 0.002), kDt).force) < 1e-6);
+  // The other slides away from the first and carries tissue with it.
+  two.at({press(-0.006, 0.002), press(0.007, 0.002)});
+  for (int i = 0; i < 12; ++i) two.at({press(-0.006, 0.002), press(0.007 + 0.0005 * i, 0.002)});
+  const auto after = two.at({press(-0.006, 0.002), press(0.013, 0.002)});
+  CHECK_FALSE(after[0].flagged);
+  CHECK(after[0].force[0] > before[0] + 0.002 * before[1]);
+  const Vec3 left = two.at({press(-0.006, 0.002), {}})[0].force;
+  CHECK(left.allFinite());
+  CHECK(relative(left, before) < 0.1);
+}
+
+TEST_CASE("friction: tools that change places feel the same, whoever comes first") {
+  Block two(2), swapped(2);
+  std::vector<ToolForce> forces, others;
+  // In steps of a stride each: between strides the tools move in turns, which costs 0.2 % at ten times that.
+  for (int i = 0; i <= 120; ++i) {
+    const double s = i / 120.0;
+    const Vec3 a = press(-0.0065 + 0.002 * s, 0.0025 * std::min(1.0, 2 * s)),
+               b = press(0.0065, 0.002 * std::min(1.0, 2 * s), 0.0013 + 0.002 * s);
+    forces = two.at({a, b});
+    others = swapped.at({b, a});
+  }
+  CHECK(forces[0].contacts > 0);
+  CHECK(relative(forces[0].force, others[1].force) < 1e-4);
+  CHECK(relative(forces[1].force, others[0].force) < 1e-4);
+}
+
+TEST_CASE("friction: a tool with, and one without, on one organ") {
+  Scene mixed = scene(2, 0);
+  mixed.tools[1].shape.friction = kMu;
+  Simulation simulation(mixed, block());
+  Block alone(1, kMu);
+  Places places{{}, press(0, 0.002)};
+  simulation.step(places, kDt);
+  alone.step(*places[1], kDt);
+  places[1] = press(0.004, 0.002);
+  CHECK(simulation.step(places, kDt)[1].force == alone.step(*places[1], kDt).force);
+  places = {press(0.004, 0.002), {}};
+  const Vec3 smooth = simulation.step(places, kDt)[0].force;
+  CHECK(smooth == Block(1, 0).step(press(0.004, 0.002), kDt).force);
+}
+
+TEST_CASE("friction: any path gives finite forces, in settled answers but for a few") {
+  Block organ;
+  test::Random random(3);
+  int flagged = 0, touched = 0;
+  Vec3 p = press(-0.01, 0);
+  for (int i = 0; i < 500; ++i) {
+    p += random.vector(0.003);
+    p = p.cwiseMax(Vec3(-0.03, 0.0005, -0.01)).cwiseMin(Vec3(0.03, 0.01, 0.01));
+    const ToolForce force = organ.step(p, kDt);
+    REQUIRE(force.force.allFinite());
+    flagged += force.flagged ? 1 : 0;
+    touched += force.contacts > 0 ? 1 : 0;
+  }
+  CAPTURE(flagged, touched);
+  CHECK(touched > 200);
+  CHECK(flagged < 10);
+}
+
+TEST_CASE("friction: steps and looks ahead do not allocate, with two tools") {
+  Block two(2);
+  std::size_t allocations = 1;
+  {
+    const test::AllocationGuard guard;
+    const std::array<std::optional<ToolPose>, 2> here{press(-0.006, 0.002), press(0.006, 0.002)},
+        there{press(-0.009, 0.002), press(0.004, 0.003)};
+    two.step(here, kDt);
+    two.step(there, kDt);
+    two.linearise(0, press(-0.0095, 0.002), nullptr);
+    allocations = guard.count();
+  }
+  CHECK(allocations == 0);
+}

@@ -1,0 +1,198 @@
+// Tools that grasp, and the organ on a spring.
+#include <fmt/format.h>
+
+#include "common/error.h"
+#include "sim_server/mesh/shapes.h"
+#include "sim_server/scene_file/read_scene.h"
+#include "sim_server/serving/served_tools.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/catch.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+constexpr double kDt = 0.03;
+const Vec3 kPlace(0.001, 0.005, 0.0005);  // the tool touches the top, y = 0
+
+TetMesh block() {
+  std::vector<double> axis, depth;
+  for (int i = -5; i <= 5; ++i) axis.push_back(0.003 * i);
+  for (int i = -4; i <= 0; ++i) depth.push_back(0.003 * i);
+  return grid_block(axis, depth, axis);
+}
+
+Scene block_scene(const std::string& model = "quasi_static") {
+  Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4},
+                               {Vec3(-1, -1, -1), Vec3(1, -0.0119, 1)}, 0.005);
+  scene.deformation.model = model;
+  scene.tools[0].grasp_place = kPlace;
+  return scene;
+}
+
+const Vec3 kStiffness(40, 50, 60);
+constexpr double kHardening = 0.07;
+
+Scene spring_scene() {
+  Scene scene = block_scene("spring");
+  scene.deformation.spring_stiffness = kStiffness;
+  scene.deformation.hardening_length = kHardening;
+  return scene;
+}
+
+/// The spring's formula at a stretch `x`: what the tool feels, and its slope.
+Vec3 pull_of(const Vec3& x) {
+  const double ratio = x.dot(kStiffness.cwiseProduct(x)) / kStiffness.mean() / (kHardening * kHardening);
+  return -(1 + ratio) * kStiffness.cwiseProduct(x);
+}
+
+Mat3 slope_of(Simulation& organ, const Vec3& p) {
+  constexpr double kStep = 1e-6;
+  Mat3 slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 d = kStep * Vec3::Unit(axis);
+    slope.col(axis) = (organ.step(p + d, kDt).force - organ.step(p - d, kDt).force) / (2 * kStep);
+  }
+  return slope;
+}
+
+}  // namespace
+
+TEST_CASE("a grasped organ on a spring pulls by the spring's formula, with its exact tangent") {
+  Simulation organ(spring_scene(), block());
+  test::Random random(5);
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 x = random.vector(0.04);
+    const ToolForce felt = organ.step(kPlace + x, kDt);
+    CHECK_FALSE(felt.flagged);
+    CHECK((felt.force - pull_of(x)).norm() < 1e-6 * pull_of(x).norm());
+    Mat3 right;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 d = 1e-6 * Vec3::Unit(axis);
+      right.col(axis) = (pull_of(x + d) - pull_of(x - d)) / 2e-6;
+    }
+    CHECK((felt.tangent - right).norm() < 1e-6 * right.norm());
+    CHECK((felt.tangent - felt.tangent.transpose()).norm() < 1e-9 * right.norm());
+  }
+  CHECK(organ.step(kPlace, kDt).force.norm() < 1e-9);
+}
+
+TEST_CASE("grasped tissue: linear, both ways, with the slope of the force as tangent") {
+  Simulation organ(block_scene(), block());
+  const Vec3 x(0.002, 0.003, -0.001);  // up: away from the tissue
+  const ToolForce once = organ.step(kPlace + x, kDt), twice = organ.step(kPlace + 2 * x, kDt);
+  REQUIRE(once.contacts > 3);
+  CHECK(once.force[1] < -0.1);  // it pulls back
+  CHECK((twice.force - 2 * once.force).norm() < 1e-9 * twice.force.norm());
+  CHECK((once.tangent * x - once.force).norm() < 1e-9 * once.force.norm());
+  CHECK((organ.step(kPlace - x, kDt).force + once.force).norm() < 1e-9 * once.force.norm());
+  CHECK((slope_of(organ, kPlace + x) - once.tangent).norm() < 1e-6 * once.tangent.norm());
+  const ToolForce held = organ.step(kPlace + x, kDt);
+  int moved = 0;  // what it holds came along as one
+  for (std::size_t v = 0; v < organ.positions().size(); ++v) {
+    const Vec3& rest = organ.mesh().vertices[organ.surface().vertices[v]];
+    moved += (organ.positions()[v] - rest - x).norm() < 1e-6 ? 1 : 0;
+  }
+  CHECK(moved == held.contacts);
+}
+
+TEST_CASE("a grip on a wall that only answers to penetration has that stiffness") {
+  Scene scene = block_scene("rigid");
+  scene.deformation.stiffness = 700;
+  Simulation wall(scene, block());
+  const Vec3 x(0.001, 0.002, -0.003);
+  CHECK((wall.step(kPlace + x, kDt).force + 700 * x).norm() < 1e-5);
+}
+
+TEST_CASE("a button closes the jaws without a jump, and opens them") {
+  Scene scene = block_scene();
+  scene.tools[0].grasp_place.reset();
+  scene.tools[0].grasp_buttons = 6;
+  Simulation organ(scene, block());
+  const Vec3 pressed = kPlace - Vec3(0, 0.0015, 0), above = kPlace + Vec3(0, 0.002, 0);
+  const ToolForce contact = organ.step(pressed, kDt);
+  REQUIRE(contact.force[1] > 0.05);
+  organ.press_buttons(0, 1);  // not one of them
+  CHECK((organ.step(pressed, kDt).force - contact.force).norm() < 1e-6 * contact.force.norm());
+  CHECK(organ.step(above, kDt).force == Vec3::Zero());
+  organ.step(pressed, kDt);
+  organ.press_buttons(0, 4);
+  const ToolForce grasped = organ.step(pressed, kDt);
+  CHECK((grasped.force - contact.force).norm() < 1e-4 * contact.force.norm());
+  CHECK(organ.step(above, kDt).force[1] < -0.05);
+  organ.press_buttons(0, 0);
+  CHECK(organ.step(above, kDt).force == Vec3::Zero());
+  CHECK((organ.step(pressed, kDt).force - contact.force).norm() < 1e-4 * contact.force.norm());
+  // Closed on nothing, it holds nothing.
+  organ.step(kPlace + Vec3(0, 0.01, 0), kDt);
+  organ.press_buttons(0, 2);
+  CHECK(organ.step(kPlace + Vec3(0, 0.01, 0), kDt).force == Vec3::Zero());
+  CHECK((organ.step(pressed, kDt).force - contact.force).norm() < 1e-3 * contact.force.norm());
+}
+
+TEST_CASE("served: the buttons of a tool state grasp, parts are told without effect, or allocation") {
+  Scene scene = block_scene();
+  scene.tools[0].grasp_place.reset();
+  scene.tools[0].grasp_buttons = 1;
+  Simulation organ(scene, block());
+  ServedTools tools(organ);
+  std::vector<ToolInput> inputs{{7, {.tick = 1}, true}};
+  auto& state = inputs[0].state;
+  using protocol::ForceSample;
+  state.flags = protocol::ToolState::kWantsHere | protocol::ToolState::kWantsAhead;
+  state.lead_ns = 20'000'000;
+  state.v_W = {0.05, 0, 0};
+  state.p_W = kPlace;
+  state.buttons = 1;
+  tools.step(inputs, kDt);
+  state.p_W = kPlace + Vec3(0, 0.003, 0);
+  ForceSample sample;
+  std::size_t allocations = 1;
+  {
+    const test::AllocationGuard guard;
+    sample = *tools.step(inputs, kDt)[0].answer;
+    allocations = guard.count();
+  }
+  CHECK(allocations == 0);
+  CHECK((sample.flags & ForceSample::kInContact) != 0);
+  CHECK(sample.f_W[1] < -0.05);
+  CHECK(sample.here.gap == 0);
+  const Vec3 way = sample.ahead_p_W - sample.p_W;
+  CHECK(way[0] == Approx(0.001));
+  const auto& k = sample.here.tangent;
+  CHECK((sample.ahead_f_W - sample.f_W - way[0] * Vec3(k[0], k[1], k[2])).norm() < 1e-9);
+  CHECK((tools.step(inputs, kDt)[0].answer->f_W - sample.f_W).norm() < 1e-9);
+}
+
+TEST_CASE("a grip that cannot be is refused in one line") {
+  Scene scene = block_scene();
+  scene.tools[0].grasp_place = Vec3(0, 0.02, 0);
+  scene.tools[0].grasp_where = "scene.toml:9";
+  const auto set_up = [&](const Scene& wrong) {
+    try {
+      const Simulation organ(wrong, block());
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("none");
+  };
+  CHECK(
+      set_up(scene) ==
+      "scene.toml:9: no vertex of the surface that the tool may touch lies within 6.25 mm of `grasp_place`");
+  Scene spring = block_scene("spring");
+  spring.deformation.where = "scene.toml:5";
+  spring.deformation.spring_stiffness.reset();
+  CHECK(set_up(spring) == "scene.toml:5: model \"spring\" needs `spring_stiffness`, [x, y, z] in N/m");
+  const test::TemporaryFolder folder;
+  folder.write("organ.msh", "");
+  const auto file = folder.write("scene.toml",
+                                 "[mesh]\nfile = \"organ.msh\"\n[deformation]\nmodel = \"rigid\"\n[[tool]]\n"
+                                 "grasp_buttons = 1\ngrasp_place = [0, 0, 0]\n");
+  const std::string both =
+      file.string() + ":7: a tool grasps by `grasp_buttons` or always, from `grasp_place` on; remove one";
+  CHECK_THROWS_WITH(read_scene(file), both);
+}

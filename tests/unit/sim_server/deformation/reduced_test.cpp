@@ -1,0 +1,140 @@
+// The reduced model against a dense solution of the same tissue: slow modes in motion, the rest at once.
+#include "sim_server/deformation/reduced.h"
+
+#include <Eigen/Eigenvalues>
+
+#include "common/error.h"
+#include "sim_server/deformation/linear_statics.h"
+#include "sim_server/deformation/quasi_static.h"
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/solids.h"
+#include "tests/support/stiffness.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+
+namespace {
+
+constexpr double kPeriod = 1.0 / 30;
+
+struct Bench {
+  TetMesh mesh = grid_block(lines(-0.02, 0.02, 4), lines(-0.016, 0, 3), lines(-0.02, 0.02, 3));
+  Surface surface = boundary_surface(mesh);
+  Scene scene =
+      scene_of({.young_modulus = 8e3, .poisson_ratio = 0.4}, {Vec3(-1, -1, -1), Vec3(1, -0.0159, 1)}, 0.005);
+  std::vector<int> fixed, reachable;
+
+  explicit Bench(int modes) {
+    scene.rate_hz = 1 / kPeriod;
+    scene.deformation.model = "reduced";
+    scene.deformation.modes = modes;
+    scene.deformation.rayleigh_mass = 6;
+    scene.deformation.rayleigh_stiffness = 2e-3;  // the quick modes are overdamped, the slow ones swing
+    fixed = fixed_vertices(scene, mesh);
+    for (int v = 0; v < static_cast<int>(surface.vertices.size()); ++v) reachable.push_back(v);
+  }
+  ModelInputs inputs() const { return {scene, mesh, surface, fixed, reachable, kSilent}; }
+};
+
+/// All modes by a dense solver, and exact motion of each in many small steps of the trapezoidal rule.
+struct Dense {
+  FreeDofs dofs;
+  Eigen::VectorXd squares;
+  Eigen::MatrixXd modes;
+
+  explicit Dense(const Bench& bench) : dofs(static_cast<int>(bench.mesh.vertices.size()), bench.fixed) {
+    const Solid solid(bench.mesh, *bench.scene.material);
+    const std::vector<double> masses = solid.masses();
+    Eigen::VectorXd m(dofs.count);
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      if (dofs.first[i] >= 0) m.segment<3>(dofs.first[i]).setConstant(masses[i]);
+    }
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense_stiffness(solid, dofs),
+                                                                           Eigen::MatrixXd(m.asDiagonal()));
+    squares = solver.eigenvalues();
+    modes = solver.eigenvectors();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("reduced: modes and frequencies are those of a dense eigen-solver") {
+  const Bench bench(12);
+  const Dense dense(bench);
+  const LinearStatics statics(bench.inputs());
+  const VibrationModes modes = vibration_modes(statics.factor, statics.masses(), 12, "test");
+  const Eigen::VectorXd masses = statics.masses();
+  for (int k = 0; k < 12; ++k) {
+    CHECK(modes.frequencies[k] == Approx(std::sqrt(dense.squares[k])).epsilon(1e-8));
+    for (int j = 0; j <= k; ++j) {
+      const double product = modes.shapes.col(k).dot(masses.cwiseProduct(modes.shapes.col(j)));
+      CHECK(std::abs(product - (j == k ? 1 : 0)) < 1e-9);
+    }
+  }
+  CHECK_THROWS_AS(vibration_modes(statics.factor, masses, static_cast<int>(masses.size()), "test"), Error);
+}
+
+TEST_CASE("reduced: slow modes move as they do by themselves, all the rest stands where statics put it") {
+  for (const int count : {5, 30}) {
+    const Bench bench(count);
+    const Dense dense(bench);
+    Reduced model(bench.inputs());
+    const int pressed = *std::find_if(bench.reachable.begin(), bench.reachable.end(), [&](int v) {
+      return bench.mesh.vertices[bench.surface.vertices[v]][1] == 0;
+    });
+    const int node = bench.surface.vertices[pressed];
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(dense.squares.size()), v = q;
+    double peak = 0, off = 0;
+    for (int step = 0; step < 12; ++step) {
+      const Vec3 force = step < 6 ? Vec3(0.02, -0.05 - 0.01 * step, 0.01) : Vec3(Vec3::Zero());
+      model.free_motion(kPeriod);
+      const std::span<const Vec3> moved = model.apply(std::vector<NodalLoad>{{pressed, force}});
+      // Each mode for itself, in steps far shorter than it takes.
+      const Eigen::VectorXd p = dense.modes.middleRows<3>(dense.dofs.first[node]).transpose() * force;
+      for (Eigen::Index k = 0; k < q.size(); ++k) {
+        const double w2 = dense.squares[k], d = 6 + 2e-3 * w2;
+        if (k >= count) {
+          q[k] = p[k] / w2;
+          continue;
+        }
+        constexpr int kParts = 20000;
+        const double h = kPeriod / kParts;
+        for (int part = 0; part < kParts; ++part) {
+          const double a =
+              (p[k] - w2 * (q[k] + 0.5 * h * v[k]) - d * v[k]) / (1 + 0.5 * h * d + 0.25 * h * h * w2);
+          q[k] += h * v[k] + 0.5 * h * h * a;
+          v[k] += h * a;
+        }
+      }
+      const Eigen::VectorXd u = dense.modes * q;
+      for (std::size_t i = 0; i < moved.size(); ++i) {
+        const int first = dense.dofs.first[bench.surface.vertices[i]];
+        if (first < 0) continue;
+        const Vec3 way = moved[i] - bench.mesh.vertices[bench.surface.vertices[i]];
+        peak = std::max(peak, way.norm());
+        off = std::max(off, (way - u.segment<3>(first)).norm());
+      }
+    }
+    CAPTURE(count, peak, off);
+    CHECK(peak > 1e-4);
+    CHECK(off < 1e-6 * peak);
+  }
+}
+
+TEST_CASE("reduced: under a load that stays it comes to rest where quasi_static is, whatever the modes") {
+  const Bench bench(3);
+  Reduced model(bench.inputs());
+  QuasiStatic statics(bench.inputs());
+  const std::vector<NodalLoad> loads{{bench.reachable[7], Vec3(0.02, -0.05, 0.01)},
+                                     {bench.reachable.back(), Vec3(0, 0.03, 0)}};
+  std::span<const Vec3> moved;
+  for (int step = 0; step < 300; ++step) {
+    model.free_motion(kPeriod);
+    moved = model.apply(loads);
+  }
+  const std::span<const Vec3> expected = statics.apply(loads);
+  for (std::size_t i = 0; i < moved.size(); ++i) CHECK((moved[i] - expected[i]).norm() < 1e-12);
+}

@@ -1,0 +1,103 @@
+#include "sim_server/scene_file/read_scene.h"
+
+#include <fmt/format.h>
+
+#include "common/error.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+/// A scene file of five lines, then `deformation` and `tools`; read.
+struct SceneFile {
+  test::TemporaryFolder folder;
+  std::string file;
+
+  explicit SceneFile(const std::string& tools, const std::string& deformation = "model = \"rigid\"\n") {
+    folder.write("organ.msh", "");
+    file =
+        folder
+            .write("scene.toml",
+                   "[mesh]\nfile = \"organ.msh\"\n[[fixed]]\nbox = [[0, 0, 0], [1, 1, 1]]\n[deformation]\n" +
+                       deformation + tools)
+            .string();
+  }
+  std::string error() const {
+    try {
+      read_scene(file);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "none";
+  }
+};
+
+std::string tool_sections(int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += fmt::format("[[tool]]\nradius = 0.00{}\n", i + 1);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a scene has one to eight tools, each with its own radius and reach") {
+  const Scene scene = read_scene(
+      SceneFile(tool_sections(7) + "[[tool]]\nradius = 0.009\nreach = [[0, 0, 0], [1, 1, 1]]\n").file);
+  REQUIRE(scene.tools.size() == 8);
+  CHECK(scene.tools[1].shape.radius == 0.002);
+  CHECK(scene.tools[7].shape.radius == 0.009);
+  CHECK_FALSE(scene.tools[6].reach);
+  CHECK(scene.tools[7].reach);
+  CHECK(scene.tools[7].where.ends_with("scene.toml:21"));
+  CHECK(test::liver_scene().tools.size() == 1);
+}
+
+TEST_CASE("a scene without a tool, or with too many, is refused with what to do") {
+  const SceneFile none(""), nine(tool_sections(9)), wrong(tool_sections(2) + "radius_m = 1\n");
+  CHECK(none.error() == none.file + ":1: a scene needs a [[tool]]; add one with its `radius`");
+  CHECK(nine.error() == nine.file + ":23: a scene has at most 8 [[tool]], this one has 9; remove some");
+  CHECK(wrong.error().starts_with(wrong.file + ":11: unknown key"));
+}
+
+TEST_CASE("a tool slips freely unless the scene gives it friction") {
+  CHECK(read_scene(SceneFile(tool_sections(1)).file).tools[0].shape.friction == 0);
+  CHECK(read_scene(SceneFile(tool_sections(1) + "friction = 0.3\n").file).tools[0].shape.friction == 0.3);
+  const SceneFile wild(tool_sections(1) + "friction = 30\n");
+  CHECK(wild.error().starts_with(wild.file + ":9: "));
+}
+
+TEST_CASE("a capsule needs a length, a trocar a pivot and a shaft no thicker than the tip") {
+  const auto tool = [](const std::string& keys) { return SceneFile("[[tool]]\n" + keys); };
+  const Tool capsule =
+      read_scene(tool("shape = \"capsule\"\nradius = 0.004\nlength = 0.02\n").file).tools[0].shape;
+  CHECK(capsule.length == 0.02);
+  CHECK_FALSE(capsule.is_sphere());
+  const Tool trocar = read_scene(tool("shape = \"trocar\"\npivot = [0, 0.1, 0]\n").file).tools[0].shape;
+  REQUIRE(trocar.trocar);
+  CHECK(trocar.trocar->pivot_W == Vec3(0, 0.1, 0));
+  CHECK(trocar.trocar->shaft_radius == 0.003);
+  const SceneFile thick = tool("shape = \"trocar\"\npivot = [0, 0.1, 0]\nshaft_radius = 0.006\n"),
+                  stray = tool("length = 0.02\n"), unknown = tool("shape = \"cone\"\n");
+  CHECK(thick.error().starts_with(thick.file + ":10: `shaft_radius`"));
+  CHECK(stray.error().starts_with(stray.file + ":8: unknown key"));
+  CHECK(unknown.error().starts_with(unknown.file + ":8: unknown shape"));
+}
+
+TEST_CASE("only a model that has damping is asked for it") {
+  const auto scene = [](const std::string& deformation) { return SceneFile(tool_sections(1), deformation); };
+  const auto plain = read_scene(scene("model = \"tensor_mass\"\n").file).deformation;
+  CHECK(plain.rayleigh_mass == 10);
+  CHECK(plain.rayleigh_stiffness == 1e-4);
+  const std::string damped = "rayleigh_mass = 0\nrayleigh_stiffness = 1e-3\n";
+  const auto given = read_scene(scene("model = \"tensor_mass\"\n" + damped).file).deformation;
+  CHECK(given.rayleigh_mass == 0);
+  CHECK(given.rayleigh_stiffness == 1e-3);
+  const SceneFile none = scene("model = \"quasi_static\"\n" + damped),
+                  negative = scene("model = \"tensor_mass\"\nrayleigh_mass = -1\n");
+  CHECK(none.error().starts_with(none.file + ":7: unknown key"));
+  CHECK(negative.error().starts_with(negative.file + ":7: "));
+}

@@ -1,0 +1,118 @@
+#include "sim_server/serving/served_tools.h"
+
+#include "sim_server/mesh/shapes.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+/// Two tools of 5 mm over a wall at y = 0 that answers with 1000 N/m; held in the sessions 7 and 8.
+struct Served {
+  Simulation simulation{scene(), grid_block({-0.05, 0, 0.05}, {-0.05, 0}, {-0.05, 0, 0.05})};
+  ServedTools tools{simulation};
+  std::vector<ToolInput> inputs{2};
+
+  static Scene scene() {
+    Scene scene;
+    scene.deformation = {.model = "rigid", .stiffness = 1000, .where = "test"};
+    scene.tools.resize(2);
+    return scene;
+  }
+  Served() {
+    hold(0, 7, 0.004);
+    hold(1, 8, 0.003);
+  }
+  void hold(std::size_t tool, std::uint64_t session, double y) {
+    inputs[tool] = {session, {.tool = static_cast<std::uint8_t>(tool), .tick = 5}, true};
+    inputs[tool].state.p_W = {tool == 0 ? -0.02 : 0.02, y, 0.003};
+  }
+  std::span<const ServedTools::Outcome> step() { return tools.step(inputs, 0.03); }
+  double newton(std::size_t tool) { return step()[tool].force.force[1]; }
+};
+
+}  // namespace
+
+TEST_CASE("served tools: each session is answered with the force of its own tool") {
+  Served served;
+  const auto outcomes = served.step();
+  REQUIRE(outcomes[0].answer);
+  REQUIRE(outcomes[1].answer);
+  CHECK(outcomes[0].answer->tool == 0);
+  CHECK(outcomes[1].answer->tool == 1);
+  CHECK(outcomes[0].answer->f_W[1] == Approx(1).epsilon(1e-3));
+  CHECK(outcomes[1].answer->f_W[1] == Approx(2).epsilon(1e-3));
+  CHECK(outcomes[1].answer->p_W == served.inputs[1].state.p_W);
+}
+
+TEST_CASE("served tools: only a fresh pose gets an answer, numbered in its own session") {
+  Served served;
+  served.step();
+  served.inputs[0].fresh = false;
+  const auto outcomes = served.step();
+  CHECK_FALSE(outcomes[0].answer);
+  CHECK(outcomes[0].force.force[1] == Approx(1).epsilon(1e-3));
+  REQUIRE(outcomes[1].answer);
+  CHECK(outcomes[1].answer->number == 2);
+  served.inputs[0].fresh = true;
+  CHECK(served.step()[0].answer->number == 2);
+  served.hold(1, 9, 0.003);
+  const auto next = served.step();
+  CHECK(next[0].answer->number == 3);
+  CHECK(next[1].answer->number == 1);
+}
+
+TEST_CASE("served tools: a session that ends and a device that is lost lift their own tool only") {
+  Served served;
+  served.step();
+  served.inputs[0] = {};
+  auto outcomes = served.step();
+  CHECK(outcomes[0].force.contacts == 0);
+  CHECK_FALSE(outcomes[0].answer);
+  CHECK(outcomes[1].force.force[1] == Approx(2).epsilon(1e-3));
+  served.hold(0, 10, 0.004);
+  served.inputs[1].state.flags = protocol::ToolState::kDeviceLost;
+  outcomes = served.step();
+  CHECK(outcomes[0].force.force[1] == Approx(1).epsilon(1e-3));
+  REQUIRE(outcomes[1].answer);
+  CHECK(outcomes[1].answer->f_W == Vec3::Zero());
+  CHECK(outcomes[1].answer->flags == 0);
+}
+
+TEST_CASE("served tools: a tool that changes hands does not travel from one to the other") {
+  Served served;
+  served.hold(0, 7, 0.05);
+  served.step();
+  served.hold(0, 11, -0.045);  // inside; from above it would have been dragged down, 5 cm deep
+  CHECK(std::abs(served.newton(0)) < 20);
+  CHECK(served.newton(1) == Approx(2).epsilon(1e-3));
+}
+
+TEST_CASE("served tools: no tangent is made that nobody asked for, and the force is the same without") {
+  Served asks, asks_not;
+  asks.inputs[0].state.flags |= protocol::ToolState::kWantsHere;
+  asks.step(), asks_not.step();
+  const ToolForce &with = asks.simulation.tool(0).force(), &without = asks_not.simulation.tool(0).force();
+  REQUIRE(with.contacts > 0);
+  CHECK(with.tangent.norm() > 10);
+  CHECK(without.tangent == Mat3::Zero());
+  CHECK(with.force == without.force);
+}
+
+TEST_CASE("served tools: nothing happens while nobody holds any, and a step does not allocate") {
+  Served served;
+  served.step();
+  std::size_t allocations = 1;
+  {
+    const test::AllocationGuard guard;
+    served.step();
+    served.inputs[1] = {};
+    served.step();
+    allocations = guard.count();
+  }
+  CHECK(allocations == 0);
+  served.inputs[0] = {};
+  CHECK(served.step().empty());
+}

@@ -1,0 +1,177 @@
+#ifdef PALPATE_WITH_CAPTURE
+#include "sim_server/serving/virtual_session.h"
+
+#include <fstream>
+#include <iterator>
+
+#include "sim_server/mesh/shapes.h"
+#include "tests/support/catch.h"
+#include "tests/support/served_block.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace std::chrono_literals;
+using protocol::ForceSample;
+using protocol::ToolState;
+
+namespace {
+
+/// Straight down into the top of a wall that answers with 1000 N/m: a force known in closed form.
+struct Press {
+  Simulation simulation;
+  Trajectory motion{{0, 1}, {{0, 0.012, 0}, {0, 0.002, 0}}};  // 10 mm/s; the surface is met after 0.7 s
+
+  Press() : simulation(scene(), block()) {}
+  static TetMesh block() {
+    const std::vector<double> axis{-0.05, -0.02, 0.02, 0.05}, depth{-0.05, -0.02, 0};
+    return grid_block(axis, depth, axis);
+  }
+  static Scene scene() {
+    Scene scene;
+    scene.source = "test";
+    scene.deformation = {.model = "rigid", .stiffness = 1000, .where = "test"};
+    scene.tools[0].shape.radius = 0.005;
+    return scene;
+  }
+};
+
+struct Captured {
+  std::vector<ToolState> states;
+  std::vector<std::pair<Time, ForceSample>> samples;  // with the time they arrived
+};
+
+Captured run(const VirtualLink& link, double seconds, const std::filesystem::path& file) {
+  Press press;
+  {
+    protocol::CaptureWriter capture(file);
+    VirtualSession session(press.simulation, press.motion, 0.005, link, capture);
+    for (std::uint64_t k = 0; k <= static_cast<std::uint64_t>(seconds * link.ticks_hz); ++k) session.tick(k);
+    session.leave();
+  }
+  Captured found;
+  protocol::CaptureReader reader(file);
+  protocol::CapturedDatagram captured;
+  protocol::Datagram datagram;
+  while (reader.next(captured)) {
+    REQUIRE(protocol::decode(captured.bytes, datagram) == protocol::Verdict::kAccepted);
+    if (const auto* state = std::get_if<ToolState>(&datagram.message)) found.states.push_back(*state);
+    if (const auto* sample = std::get_if<ForceSample>(&datagram.message))
+      found.samples.emplace_back(captured.t, *sample);
+  }
+  return found;
+}
+
+/// In which order samples and pages of the surface came. Pages come in one go, in their own order.
+struct Order {
+  std::uint32_t pages = 0;
+  int nameless = 0, samples_before_pages = 0, samples_behind_pages = 0;
+};
+Order order_of(Simulation& simulation, const Trajectory& motion, double seconds) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "order.pcap";
+  const VirtualLink link{.rate_hz = 30, .ticks_hz = 500, .delay = 5ms, .parts = true};
+  {
+    protocol::CaptureWriter capture(file);
+    VirtualSession session(simulation, motion, 0.005, link, capture);
+    for (std::uint64_t k = 0; k <= static_cast<std::uint64_t>(seconds * link.ticks_hz); ++k) session.tick(k);
+  }
+  Order order;
+  protocol::CaptureReader reader(file);
+  protocol::CapturedDatagram captured;
+  protocol::Datagram datagram;
+  while (reader.next(captured)) {
+    REQUIRE(protocol::decode(captured.bytes, datagram) == protocol::Verdict::kAccepted);
+    if (const auto* sample = std::get_if<ForceSample>(&datagram.message)) {
+      const bool names = (sample->flags & ForceSample::kHasSurface) != 0;
+      order.nameless += names ? 0 : 1;
+      ++(order.pages == 0 ? order.samples_before_pages : order.samples_behind_pages);
+    }
+    if (const auto* page = std::get_if<protocol::SurfacePage>(&datagram.message)) {
+      CHECK(order.samples_behind_pages == 0);
+      CHECK(page->page == order.pages);
+      ++order.pages;
+    }
+  }
+  return order;
+}
+
+std::uint32_t whole_model(const Simulation& simulation) {
+  const auto state = SurfacePager(simulation, 0).state();
+  return protocol::SurfacePages{state.vertices, state.triangles}.count();
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("virtual time: step n answers the newest pose at n / rate, its force arrives after the delay") {
+  const test::TemporaryFolder folder;
+  const Captured found = run({.rate_hz = 30, .ticks_hz = 500, .delay = 35ms}, 1, folder.path() / "a.pcap");
+  REQUIRE(found.states.size() == 501);
+  REQUIRE(found.samples.size() == 29);  // 31 steps, of which the last two are still on the way
+  for (std::size_t n = 0; n < found.samples.size(); ++n) {
+    const auto& [arrived, sample] = found.samples[n];
+    const auto tick = static_cast<std::uint64_t>(static_cast<double>(n) / 30 * 500 + 1e-9);
+    CHECK(sample.number == n + 1);
+    CHECK(sample.tool_tick == tick + 1);
+    CHECK(Time{sample.tool_t_ns} == tick * 2ms);
+    CHECK(arrived == tick * 2ms + 35ms);
+    CHECK(sample.step_ns == 0);
+    // 10 mm/s down from 12 mm, tool radius 5 mm, 1000 N/m.
+    const double depth = std::max(0.0, 0.01 * static_cast<double>(tick) * 0.002 - 0.007);
+    CHECK(sample.f_W[1] == Approx(1000 * depth).margin(1e-9));
+  }
+  for (const ToolState& state : found.states) {
+    std::uint64_t newest = 0;
+    for (const auto& [arrived, sample] : found.samples) {
+      if (arrived <= Time{state.t_ns}) newest = sample.number;
+    }
+    CHECK(state.newest_sample == newest);
+    CHECK(state.p_W[1] == Approx(0.012 - 0.01 * 1e-9 * static_cast<double>(state.t_ns)));
+    if (state.tick > 1) CHECK(state.v_W[1] == Approx(-0.01));
+  }
+}
+
+TEST_CASE("virtual time without delay: the tick that is answered knows the answer") {
+  const test::TemporaryFolder folder;
+  const Captured found = run({.rate_hz = 100, .ticks_hz = 500, .delay = 0ms}, 0.5, folder.path() / "a.pcap");
+  for (const auto& [arrived, sample] : found.samples) {
+    CHECK(found.states[sample.tool_tick - 1].newest_sample == sample.number);
+    CHECK(arrived == Time{sample.tool_t_ns});
+  }
+  CHECK(found.samples.size() == 51);
+}
+
+TEST_CASE("virtual time: the pages of the surface come right after the first sample that names it") {
+  // Samples of a tool beyond the world are flagged and name nothing; those within do: from the third step on.
+  const Trajectory motion{{0, 0.05, 0.1, 0.3}, {{0, 1500, 0}, {0, 1100, 0}, {0, 0.007, 0}, {0, 0.004, 0}}};
+  Simulation block(test::block_scene(), test::block_mesh());
+  const Order order = order_of(block, motion, 0.3);
+  CHECK(order.samples_before_pages == 3);
+  CHECK(order.nameless == 2);
+  CHECK(order.pages == whole_model(block));
+  CHECK(order.samples_behind_pages > 3);
+}
+
+TEST_CASE("virtual time: of tissue that is held no sample names the surface, and no page comes") {
+  Scene scene = test::block_scene();
+  scene.tools[0].grasp_place = Vec3(0.001, 0.005, 0.0005);
+  Simulation block(scene, test::block_mesh());
+  const Order order = order_of(block, {{0, 0.3}, {{0.001, 0.005, 0.0005}, {0.001, 0.008, 0.0005}}}, 0.3);
+  CHECK(order.pages == 0);
+  CHECK(order.nameless == order.samples_before_pages);
+  CHECK(order.samples_before_pages > 5);
+}
+
+TEST_CASE("virtual time twice gives the same bytes") {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.pcap", "b.pcap"})
+    run({.rate_hz = 33.3, .ticks_hz = 500, .delay = 35ms}, 1, folder.path() / name);
+  CHECK(bytes_of(folder.path() / "a.pcap") == bytes_of(folder.path() / "b.pcap"));
+  CHECK(bytes_of(folder.path() / "a.pcap").size() > 500 * 150);
+}
+#endif

@@ -1,0 +1,127 @@
+#include "sim_server/simulation/set_up_memory.h"
+
+#include "common/error.h"
+#include "sim_server/elasticity/solid.h"
+#include "sim_server/elasticity/tensors.h"
+#include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/scene_file/read_scene.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/solids.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+TetMesh block() {
+  const auto at = test::lines(0, 0.1, 10);
+  return grid_block(at, at, at);
+}
+
+TetMesh liver() {
+  return read_mesh(std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver.msh");
+}
+
+MeshCounts counts_of(const TetMesh& mesh) {
+  return count_parts(mesh, boundary_surface(mesh));
+}
+
+Scene scene_with(const std::string& model, ElementKind element = ElementKind::kLinear) {
+  Scene scene = test::scene_of({.element = element}, {{-1, -1, -1}, {1, 1, 1}}, 0.01);
+  scene.deformation.model = model;
+  return scene;
+}
+
+std::string refusal(const Scene& scene, Purpose purpose, double free) {
+  // Made up: bytes are easy to add by hand.
+  const MeshCounts counts{.vertices = 1000, .edges = 6000, .faces = 10000, .tetrahedra = 5000};
+  try {
+    require_memory_for(scene, purpose, counts, free);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("the parts of a mesh are counted without looking for edges") {
+  const TetMesh one = grid_block({0, 1}, {0, 1}, {0, 1});
+  const MeshCounts counts = counts_of(one);
+  CHECK(counts.vertices == 8);
+  CHECK(counts.edges == 19);  // 12 of the cube, 6 diagonals of faces, one of the cube
+  CHECK(counts.faces == 18);  // 12 of the skin, 6 around the diagonal
+  CHECK(counts.tetrahedra == 6);
+  CHECK(counts_of(liver()).edges == describe(liver()).edges);
+}
+
+TEST_CASE("the estimate of a body's elements is what it holds") {
+  const auto element = GENERATE(ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic);
+  const TetMesh mesh = with_nodes(GENERATE(0, 1) == 0 ? block() : liver(), element);
+  const Solid solid(mesh, {.element = element});
+  CAPTURE(static_cast<int>(element), solid.bytes());
+  // The scratch of a batch is not counted; it does not grow with the mesh.
+  const TetMesh tiny = with_nodes(grid_block({0, 1}, {0, 1}, {0, 1}), element);
+  const double scratch =
+      static_cast<double>(Solid(tiny, {.element = element}).bytes()) - solid_bytes(counts_of(tiny), element);
+  CHECK(solid_bytes(counts_of(mesh), element) + scratch ==
+        Approx(static_cast<double>(solid.bytes())).epsilon(1e-3));
+}
+
+TEST_CASE("the estimate of a matrix is what it holds") {
+  const auto element = GENERATE(ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic);
+  const TetMesh mesh = with_nodes(GENERATE(0, 1) == 0 ? block() : liver(), element);
+  const Solid solid(mesh, {.element = element});
+  const auto held = static_cast<double>(solid.stiffness_matrix(FreeDofs(solid.nodes(), {})).bytes());
+  const double estimate = matrix_bytes(counts_of(mesh), element);
+  CAPTURE(static_cast<int>(element), estimate / held);
+  CHECK(estimate >= held * 0.999);
+  CHECK(estimate <= held * (element == ElementKind::kNodalPressure ? 1.25 : 1.01));
+}
+
+TEST_CASE("the estimate of tensors is what they hold, and the edges they are sorted from") {
+  const TetMesh mesh = GENERATE(0, 1) == 0 ? block() : liver();
+  const ElasticTensors tensors(mesh, {}, {});
+  CHECK(tensors_bytes(counts_of(mesh)) ==
+        Approx(static_cast<double>(tensors.bytes()) + 48. * static_cast<double>(mesh.tetrahedra.size()))
+            .epsilon(1e-3));
+}
+
+TEST_CASE("a scene beyond the machine is refused with the estimate, before anything is built") {
+  // Elements: 1000 24 + 5000 (16 + 8 + 96); matrix: 108 (1000 + 6000) + 16 1000; lists: 5000 54:
+  // 0.624 + 0.772 + 0.27 MB.
+  const Scene still = scene_with("quasi_static");
+  CHECK(refusal(still, Purpose::kServe, 1.667e6).empty());
+  CHECK(
+      refusal(still, Purpose::kServe, 1.665e6) ==
+      "test: the stiffness of 5000 tetrahedra would take 1.67 MB, and 1.67 MB are free; take a coarser mesh");
+  // 1000 (48 + 4) + 6000 (72 + 4) + 5000 48: 0.748 MB
+  CHECK(refusal(scene_with("tensor_mass"), Purpose::kServe, 0.749e6).empty());
+  CHECK_FALSE(refusal(scene_with("tensor_mass"), Purpose::kServe, 0.747e6).empty());
+  CHECK(refusal(scene_with("implicit"), Purpose::kServe, 1.667e6).empty());
+  CHECK_FALSE(refusal(scene_with("implicit"), Purpose::kServe, 1.665e6).empty());
+  Scene background = scene_with("implicit");  // elements and matrix twice: 0.624 + 0.772 MB more
+  background.deformation.solver = DynamicsSettings::Solver::kQuasiNewton;
+  CHECK(refusal(background, Purpose::kServe, 3.063e6).empty());
+  CHECK_FALSE(refusal(background, Purpose::kServe, 3.061e6).empty());
+  // Supports that move: tensor_mass makes a body as quasi_static does, implicit
+  // finds its shape with two more matrices: 1.666 + 2 0.772 MB.
+  Scene tensors = scene_with("tensor_mass"), implicit = scene_with("implicit");
+  tensors.fixed[0].motions = implicit.fixed[0].motions = {{Vec3::UnitX(), 0.01, 4}};
+  CHECK(refusal(tensors, Purpose::kServe, (0.748 + 1.667) * 1e6).empty());
+  CHECK_FALSE(refusal(tensors, Purpose::kServe, (0.748 + 1.665) * 1e6).empty());
+  CHECK(refusal(implicit, Purpose::kServe, 3.211e6).empty());
+  CHECK_FALSE(refusal(implicit, Purpose::kServe, 3.209e6).empty());
+  Scene weighed = scene_with("implicit");
+  weighed.loads.push_back({.kind = Load::Kind::kGravity, .vector = {0, -9.81, 0}});
+  CHECK_FALSE(refusal(weighed, Purpose::kServe, 3.209e6).empty());
+  // Vectors of modes: 3 1000 8 (3 40 + 20) bytes, 3.36 MB.
+  CHECK(refusal(scene_with("reduced"), Purpose::kServe, (1.667 + 3.36) * 1e6).empty());
+  CHECK_FALSE(refusal(scene_with("reduced"), Purpose::kServe, (1.665 + 3.36) * 1e6).empty());
+  CHECK(refusal(still, Purpose::kSolve, 2.439e6).empty());  // the matrix twice
+  CHECK_FALSE(refusal(still, Purpose::kSolve, 2.437e6).empty());
+  CHECK(refusal(scene_with("implicit", ElementKind::kQuadratic), Purpose::kServe, 1e6)
+            .find("another `element`") != std::string::npos);
+  CHECK(refusal(scene_with("rigid"), Purpose::kServe, 0).empty());
+}

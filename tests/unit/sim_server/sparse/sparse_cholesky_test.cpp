@@ -1,0 +1,146 @@
+#include "sim_server/sparse/sparse_cholesky.h"
+
+#include <Eigen/Cholesky>
+
+#ifdef PALPATE_WITH_TBB
+#include <oneapi/tbb/global_control.h>
+#endif
+
+#include "common/error.h"
+#include "sim_server/elasticity/solid.h"
+#include "tests/support/catch.h"
+#include "tests/support/solids.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+/// n on the diagonal, -0.5 elsewhere: positive definite, and its factor is full.
+SparseMatrix full(int n) {
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Constant(n, n, -0.5);
+  dense.diagonal().setConstant(n);
+  return SparseMatrix(dense.triangularView<Eigen::Lower>().toDenseMatrix().sparseView());
+}
+
+using Precision = SparseCholesky::Precision;
+
+/// Of a block of 0.12 x 0.12 x 0.12 m in `n` cells each way, held below.
+StiffnessMatrix stiffness_of_block(int n, double poisson_ratio = 0.4) {
+  const auto lines = test::lines(0, 0.12, n);
+  const TetMesh mesh = grid_block(lines, lines, lines);
+  std::vector<int> held;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (mesh.vertices[v].y() < 1e-9) held.push_back(static_cast<int>(v));
+  }
+  const Solid solid(mesh, {.young_modulus = 5e3, .poisson_ratio = poisson_ratio});
+  StiffnessMatrix matrix = solid.stiffness_matrix(FreeDofs(solid.nodes(), held));
+  solid.add_stiffness(solid.rest(), matrix);
+  return matrix;
+}
+
+Eigen::VectorXd load_of(Eigen::Index n) {
+  return Eigen::VectorXd::NullaryExpr(n, [](Eigen::Index i) { return std::sin(static_cast<double>(i)); });
+}
+
+double imbalance(const SparseMatrix& a, const Eigen::MatrixXd& x) {
+  const Eigen::VectorXd load = load_of(a.rows());
+  return (load - a.selfadjointView<Eigen::Lower>() * x.col(0)).norm() / load.norm();
+}
+
+}  // namespace
+
+TEST_CASE("a factor answers as a dense one does") {
+  const StiffnessMatrix matrix = stiffness_of_block(4);
+  const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix.lower()).selfadjointView<Eigen::Lower>();
+  Eigen::MatrixXd loads = Eigen::MatrixXd::Identity(dense.rows(), 7);
+  loads.col(3) = load_of(dense.rows());
+  const Eigen::MatrixXd exact = dense.llt().solve(loads);
+  const SparseCholesky factor(matrix.lower(), "test");
+  CHECK((factor.solve(loads) - exact).norm() < 1e-12 * exact.norm());
+  CHECK((factor.solve(loads.col(3)) - exact.col(3)).norm() < 1e-12 * exact.col(3).norm());
+  const SparseCholesky single(matrix.lower(), "test", Precision::kSingle);
+  CHECK((single.solve(loads) - exact).norm() < 1e-4 * exact.norm());
+}
+
+TEST_CASE("a stiffness matrix times many columns is what a dense one gives") {
+  const StiffnessMatrix matrix = stiffness_of_block(3);
+  const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix.lower()).selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd x = dense.leftCols(5);
+  CHECK((matrix.times(x) - dense * x).norm() < 1e-14 * dense.squaredNorm());
+}
+
+TEST_CASE("a factor is made again of other numbers") {
+  for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
+    StiffnessMatrix matrix = stiffness_of_block(6);
+    SparseCholesky factor(matrix.lower(), "test", precision);
+    const Eigen::VectorXd before = factor.solve(load_of(matrix.lower().rows()));
+    matrix.lower() *= 4;
+    REQUIRE(factor.refactor(matrix.lower()));
+    CHECK((4 * factor.solve(load_of(before.size())) - before).norm() < 1e-5 * before.norm());
+    matrix.lower() *= -1;
+    CHECK(!factor.refactor(matrix.lower()));
+    matrix.lower() *= -1;
+    CHECK(factor.refactor(matrix.lower()));
+    CHECK((4 * factor.solve(load_of(before.size())) - before).norm() < 1e-5 * before.norm());
+  }
+}
+
+TEST_CASE("where single precision is too little a factor takes double") {
+  const StiffnessMatrix matrix = stiffness_of_block(8, 0.499999);
+  const SparseCholesky factor(matrix.lower(), "test", Precision::kSingle);
+  CHECK(imbalance(matrix.lower(), factor.solve(load_of(matrix.lower().rows()))) < 1e-6);
+}
+
+TEST_CASE("a factor of many subtrees and bands has the same bytes on one core as on two") {
+  const StiffnessMatrix matrix = stiffness_of_block(14);
+  for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
+    const auto answer = [&](std::size_t threads) {
+#ifdef PALPATE_WITH_TBB
+      const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+#else
+      static_cast<void>(threads);
+#endif
+      return SparseCholesky(matrix.lower(), "test", precision).solve(load_of(matrix.lower().rows()));
+    };
+    const Eigen::MatrixXd one = answer(1), two = answer(2);
+    CHECK((one.array() == two.array()).all());
+    CHECK(imbalance(matrix.lower(), one) < (precision == Precision::kSingle ? 1e-4 : 1e-11));
+  }
+}
+
+TEST_CASE("a factor tells its bytes") {
+  const SparseCholesky factor(full(60), "test");
+  CHECK(factor.bytes() >= 60 * 61 / 2 * sizeof(double));  // the lower triangle
+  CHECK(factor.bytes() <= 60 * 60 * (sizeof(double) + sizeof(int)) + 60 * 16);
+  const SparseCholesky twice(full(120), "test");
+  CHECK(static_cast<double>(twice.bytes()) / static_cast<double>(factor.bytes()) == Approx(4).epsilon(0.1));
+}
+
+TEST_CASE("a factor that does not fit is refused before it is made") {
+  const SparseMatrix matrix = full(60);
+  const auto bytes = static_cast<double>(SparseCholesky(matrix, "test").bytes());
+  CHECK_NOTHROW(SparseCholesky(matrix, "test", SparseCholesky::Precision::kDouble, 3 * bytes));
+  try {
+    const SparseCholesky factor(matrix, "scene.toml", SparseCholesky::Precision::kDouble,
+                                bytes);  // and nothing to make it in
+    FAIL("not refused");
+  } catch (const Error& error) {
+    CHECK(error.exit_code() == 2);
+    const std::string said = error.what();
+    CHECK(said.find("scene.toml: the Cholesky factor of 60 unknowns would take 0.0") == 0);
+    CHECK(said.find(" MB, and " + bytes_text(bytes) + " are free; take a coarser mesh") != std::string::npos);
+  }
+}
+
+TEST_CASE("a factor of nothing answers nothing") {
+  SparseCholesky factor(SparseMatrix(0, 0), "test");
+  CHECK(factor.solve(Eigen::MatrixXd(0, 3)).size() == 0);
+  CHECK(factor.refactor(SparseMatrix(0, 0)));
+}
+
+TEST_CASE("double precision that does not fit is refused, too") {
+  const StiffnessMatrix matrix = stiffness_of_block(8, 0.499999);
+  const auto bytes = static_cast<double>(SparseCholesky(matrix.lower(), "test").bytes());
+  CHECK_THROWS_AS(SparseCholesky(matrix.lower(), "test", Precision::kSingle, 0.8 * bytes), Error);
+}
