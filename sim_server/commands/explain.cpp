@@ -280,9 +280,8 @@ LeftOut neighbour_tables(const Own& own) {
 
 /// What a step saves as long as no client's law asks for dF/dp.
 LeftOut tangents(Own& own) {
-  for (std::size_t i = 0; i < own.scene.tools.size(); ++i) own.simulation.want_tangent(i, false);
-  const StepTimes without = time_steps(own.scene, own.simulation, own.press, own.steps, own.progress);
-  for (std::size_t i = 0; i < own.scene.tools.size(); ++i) own.simulation.want_tangent(i, true);
+  const StepTimes without =
+      time_steps(own.scene, own.simulation, own.press, own.steps, own.progress, {.tangent = false});
   return {.what = "tangents",
           .why = "nobody, until a client's law subscribes",
           .step_ms = own.cost.step_ms - without.contact_ns.quantile(0.5) / 1e6,

@@ -100,7 +100,8 @@ bool ToolContact::share(std::span<const ToolContact> tools, Tissue& tissue) noex
   return moved;
 }
 
-void ToolContact::walk(const ToolPose& pose, Tissue& tissue) noexcept {
+void ToolContact::walk(const ToolPose& pose, const Bend& path, Tissue& tissue) noexcept {
+  bend_ = path;
   if (grip_ && grip_->opens()) lift(tissue);
   go(pose, tissue);
   bend_ = {};

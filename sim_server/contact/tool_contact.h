@@ -54,17 +54,16 @@ class ToolContact {
   /// model, and none while the others load nothing.
   bool share(std::span<const ToolContact> tools, Tissue& tissue) noexcept;
 
-  /// What of the device's buttons is pressed: the next `walk` grasps, or lets go.
-  void press_buttons(std::uint16_t buttons) noexcept {
+  /// What of the device's buttons is pressed, also while the tool is lifted: the next `walk` grasps, or lets
+  /// go.
+  void press(std::uint16_t buttons) noexcept {
     if (grip_) grip_->press(buttons);
   }
-  /// How the way of the next `walk` bends; only friction asks for it.
-  void bend(const Bend& way) noexcept { bend_ = way; }
-  /// Goes to `pose` on a straight line (with friction: as `bend` said), turning evenly, in strides on which
+  /// Goes to `pose` on a straight line (with friction: as `path` says), turning evenly, in strides on which
   /// no point of its axis goes farther than half its radius, so that a fast tool does not jump through the
   /// surface; shorter ones with friction, which follows the path. Slip is measured from where the tissue
   /// really was: at the end of the last step, then of each stride.
-  void walk(const ToolPose& pose, Tissue& tissue) noexcept;
+  void walk(const ToolPose& pose, const Bend& path, Tissue& tissue) noexcept;
   /// The organ has moved under it: the tool goes along by `way` (m) with its loads, so that it stands on the
   /// surface as before.
   void carry(const Vec3& way, Tissue& tissue) noexcept;

@@ -80,7 +80,7 @@ void NetLink::note_holders() {
 }
 
 void NetLink::tool_is_free(std::uint8_t tool) {
-  ToolInput nobody;
+  SessionInput nobody;
   nobody.state.tool = tool;
   mailboxes_.tools[tool].input.write(nobody);
 }

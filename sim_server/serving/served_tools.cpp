@@ -12,9 +12,8 @@ using protocol::ForceSample;
 namespace {
 
 constexpr double kLongestBend = 0.1;  // s between two states; after more, velocities tell nothing of the way
-constexpr double kFarthestAhead = 2e-3;  // m; facts of the study: without a cap, fast tools fare worse
 
-protocol::Linearisation on_the_wire(const Simulation::Linearised& l) noexcept {
+protocol::Linearisation on_the_wire(const Linearised& l) noexcept {
   const Mat3 k = 0.5 * (l.tangent + l.tangent.transpose());  // of friction, the part that stores energy
   return {.tangent = {k(0, 0), k(0, 1), k(0, 2), k(1, 1), k(1, 2), k(2, 2)},
           .normal_W = l.plane.normal_W,
@@ -42,13 +41,13 @@ Bend bend_between(const protocol::ToolState& before, const protocol::ToolState& 
 ServedTools::ServedTools(Simulation& simulation)
     : simulation_(simulation),
       holders_(simulation.tools()),
-      places_(simulation.tools()),
+      inputs_(simulation.tools()),
       outcomes_(simulation.tools()) {
   for (std::size_t i = 0; i < simulation.tools(); ++i)
     surfaces_.push_back(SurfacePager(simulation, i).state());
 }
 
-std::span<const ServedTools::Outcome> ServedTools::step(std::span<const ToolInput> inputs,
+std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionInput> inputs,
                                                         double dt) noexcept {
   assert(inputs.size() == holders_.size());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -56,71 +55,65 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const ToolInpu
       simulation_.lift_tool(i);  // in another hand, or nobody's: it does not travel from one to the other
       holders_[i] = {.session = inputs[i].session};
     }
-    // The pose of a lost device is the last one known, or none: it touches nothing.
-    const bool lost = (inputs[i].state.flags & protocol::ToolState::kDeviceLost) != 0;
-    simulation_.press_buttons(i, inputs[i].state.buttons);
-    simulation_.want_tangent(
-        i, inputs[i].fresh && (inputs[i].state.flags & protocol::ToolState::kWantsHere) != 0);
-    simulation_.bend_way(i, bend_between(holders_[i].before, inputs[i].state));
+    inputs_[i] = input_of(i, inputs[i]);
     holders_[i].before = inputs[i].state;
-    places_[i].reset();
-    if (inputs[i].session != 0 && !lost) places_[i] = pose_of(inputs[i].state);
   }
   if (std::all_of(holders_.begin(), holders_.end(), [](const Holder& h) { return h.session == 0; }))
     return {};
-  const std::span<const ToolForce> forces = simulation_.step(places_, dt);
-  for (std::size_t i = 0; i < inputs.size(); ++i) outcomes_[i] = {forces[i], answer(i, inputs[i], forces[i])};
+  const std::span<const ToolAnswer> answers = simulation_.step(inputs_, dt);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    outcomes_[i] = {answers[i], {}};
+    if (inputs[i].session != 0 && inputs[i].fresh)
+      outcomes_[i].answer = sample_of(i, inputs[i].state, answers[i]);
+  }
   return outcomes_;
 }
 
-std::optional<ForceSample> ServedTools::answer(std::size_t tool, const ToolInput& input,
-                                               const ToolForce& force) noexcept {
-  if (input.session == 0 || !input.fresh) return {};
-  const std::uint32_t flags =
-      (force.contacts > 0 ? ForceSample::kInContact : 0) | (force.flagged ? ForceSample::kFlagged : 0);
+/// What the simulation is told of a tool, and asked: an old state deserves no new answer.
+ToolInput ServedTools::input_of(std::size_t tool, const SessionInput& input) const noexcept {
+  const protocol::ToolState& state = input.state;
+  const auto says = [&](std::uint16_t flag) { return (state.flags & flag) != 0; };
+  const auto wants = [&](std::uint16_t flag) { return input.session != 0 && input.fresh && says(flag); };
+  ToolInput told{.buttons = state.buttons, .path = bend_between(holders_[tool].before, state)};
+  // The pose of a lost device is the last one known, or none: it touches nothing.
+  if (input.session != 0 && !says(protocol::ToolState::kDeviceLost)) told.pose = pose_of(state);
+  told.wants.here = wants(protocol::ToolState::kWantsHere);
+  told.wants.tangent = input.fresh && says(protocol::ToolState::kWantsHere);
+  if (wants(protocol::ToolState::kWantsAhead))
+    told.wants.ahead = ToolWants::Ahead{to_seconds(Time{state.lead_ns}), state.v_W};
+  told.wants.surface_shift = wants(protocol::ToolState::kWantsSurface) && surfaces_[tool].version != 0;
+  return told;
+}
+
+ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& state,
+                                   const ToolAnswer& answer) noexcept {
   ForceSample sample{.tool = static_cast<std::uint8_t>(tool),
                      .number = ++holders_[tool].samples,
-                     .tool_tick = input.state.tick,
-                     .tool_t_ns = input.state.t_ns,
-                     .p_W = input.state.p_W,
-                     .f_W = force.force,
-                     .torque_W = force.torque,
-                     .flags = flags};
-  if (places_[tool] && !force.flagged) add_parts(tool, input.state, force, sample);
-  return sample;
-}
-
-/// What this tool state asked for beyond the force; nothing is computed that nobody asked for.
-void ServedTools::add_parts(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
-                            ForceSample& sample) noexcept {
-  if ((state.flags & (protocol::ToolState::kWantsHere | protocol::ToolState::kWantsAhead)) != 0)
-    add_tangents(tool, state, force, sample);
-  if ((state.flags & protocol::ToolState::kWantsSurface) != 0 && surfaces_[tool].version != 0 &&
-      !simulation_.tool(tool).holds()) {  // what is grasped is no matter of contact
+                     .tool_tick = state.tick,
+                     .tool_t_ns = state.t_ns,
+                     .p_W = state.p_W,
+                     .f_W = answer.force,
+                     .torque_W = answer.torque};
+  const auto flag = [&](std::uint32_t bit, bool set) { sample.flags |= set ? bit : 0; };
+  flag(ForceSample::kInContact, answer.contacts > 0);
+  flag(ForceSample::kFlagged, answer.flagged);
+  flag(ForceSample::kHasHere, answer.here.has_value());
+  flag(ForceSample::kHasAhead, answer.ahead.has_value());
+  flag(ForceSample::kHasSurface, answer.surface_shift_W.has_value());
+  if (answer.here) {
+    sample.surface_v_W = answer.surface_v_W;
+    sample.here = on_the_wire(*answer.here);
+  }
+  if (answer.ahead) {
+    sample.ahead_p_W = answer.ahead->p_W;
+    sample.ahead_f_W = answer.ahead->there.force;
+    sample.ahead = on_the_wire(answer.ahead->there);
+  }
+  if (answer.surface_shift_W) {
     sample.surface = surfaces_[tool];
-    sample.surface.shift_W = simulation_.surface_shift(tool, state.p_W);
-    sample.flags |= ForceSample::kHasSurface;
+    sample.surface.shift_W = *answer.surface_shift_W;
   }
-}
-
-void ServedTools::add_tangents(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
-                               ForceSample& sample) noexcept {
-  const Vec3 surface_v_W = simulation_.surface_velocity(tool, state.p_W);
-  if ((state.flags & protocol::ToolState::kWantsHere) != 0) {
-    sample.surface_v_W = surface_v_W;
-    sample.here = on_the_wire(simulation_.linearise(tool, state.p_W, &force));
-    sample.flags |= ForceSample::kHasHere;
-  }
-  if ((state.flags & protocol::ToolState::kWantsAhead) != 0) {
-    const Vec3 way =
-        to_seconds(Time{state.lead_ns}) * (state.v_W - surface_v_W);  // on the organ as it stands
-    sample.ahead_p_W = state.p_W + std::min(1.0, kFarthestAhead / way.norm()) * way;
-    if (!sample.ahead_p_W.allFinite()) sample.ahead_p_W = state.p_W;
-    const Simulation::Linearised there = simulation_.linearise(tool, sample.ahead_p_W, nullptr);
-    sample.ahead_f_W = there.force;
-    sample.ahead = on_the_wire(there);
-    sample.flags |= ForceSample::kHasAhead;
-  }
+  return sample;
 }
 
 }  // namespace palpate::sim

@@ -7,8 +7,8 @@
 
 namespace palpate::sim {
 
-/// The newest pose of a tool, and in whose session; session 0: nobody holds it.
-struct ToolInput {
+/// The newest state of a tool, and in whose session; session 0: nobody holds it.
+struct SessionInput {
   std::uint64_t session = 0;
   protocol::ToolState state;
   /// It came since the last step; an old pose deserves no new answer, as the client must see its age.
@@ -30,24 +30,21 @@ class ServedTools {
   /// One step of `dt` (s), with an input for each tool. A tool that nobody holds, or whose device is lost, is
   /// lifted; the others feel nothing of that but the tissue. The outcomes, one for each tool, stay valid
   /// until the next step; there are none, and nothing happens, while nobody holds any tool.
-  std::span<const Outcome> step(std::span<const ToolInput> inputs, double dt) noexcept;
+  std::span<const Outcome> step(std::span<const SessionInput> inputs, double dt) noexcept;
 
  private:
   struct Holder {
     std::uint64_t session = 0, samples = 0;
     protocol::ToolState before{};  // of the step before
   };
-  void add_parts(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
-                 protocol::ForceSample& sample) noexcept;
-  void add_tangents(std::size_t tool, const protocol::ToolState& state, const ToolForce& force,
-                    protocol::ForceSample& sample) noexcept;
-  std::optional<protocol::ForceSample> answer(std::size_t tool, const ToolInput& input,
-                                              const ToolForce& force) noexcept;
+  ToolInput input_of(std::size_t tool, const SessionInput& input) const noexcept;
+  protocol::ForceSample sample_of(std::size_t tool, const protocol::ToolState& state,
+                                  const ToolAnswer& answer) noexcept;
 
   Simulation& simulation_;
   std::vector<protocol::SurfaceState> surfaces_;  // of each tool; version 0: none
   std::vector<Holder> holders_;
-  std::vector<std::optional<ToolPose>> places_;
+  std::vector<ToolInput> inputs_;
   std::vector<Outcome> outcomes_;
 };
 

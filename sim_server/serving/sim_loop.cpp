@@ -84,7 +84,7 @@ void SimLoop::step(double dt) noexcept {
 }
 
 void SimLoop::count_beyond(std::size_t tool) noexcept {
-  const ToolInput& input = inputs_[tool];
+  const SessionInput& input = inputs_[tool];
   const bool lost = (input.state.flags & protocol::ToolState::kDeviceLost) != 0;
   if (input.session == 0 || lost || !tools_[tool].stays_within) return;
   if (!beyond(*tools_[tool].reach, input.state.p_W)) return;

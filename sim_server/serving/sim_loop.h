@@ -21,8 +21,8 @@ struct ForceOutput {
 
 /// The mailboxes of one tool, so that none overtakes what is meant for another.
 struct ToolMailboxes {
-  LatestValue<ToolInput> input;    // network -> simulation
-  LatestValue<ForceOutput> force;  // simulation -> network
+  LatestValue<SessionInput> input;  // network -> simulation
+  LatestValue<ForceOutput> force;   // simulation -> network
 };
 
 /// Between the simulation thread and the network thread. `bell` rings when forces wait.
@@ -85,7 +85,7 @@ class SimLoop {
   SimMailboxes& mailboxes_;
   std::span<const ToolSettings> tools_;
   Time period_;
-  std::vector<ToolInput> inputs_;
+  std::vector<SessionInput> inputs_;
   SimLoopStats stats_;
 };
 

@@ -56,7 +56,7 @@ class VirtualSession {
   void to_client(const protocol::Header& header, const protocol::Message& message, Time t);
 
   ServedTools served_;
-  std::vector<ToolInput> inputs_;  // the first is ours, nobody holds the others
+  std::vector<SessionInput> inputs_;  // the first is ours, nobody holds the others
   const Trajectory& motion_;
   VirtualLink link_;
   protocol::CaptureWriter& capture_;

@@ -19,6 +19,7 @@ namespace {
 constexpr double kNear = 2;              // of the tool radius: how far off a surface is told
 constexpr double kTouch = 0.04;          // of the tool radius: how deep to ask how stiff it is
 constexpr double kRunAway = 3;           // of the organ's size: farther from rest no tissue goes
+constexpr double kFarthestAhead = 2e-3;  // m; without a bound, fast tools fare worse
 constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
 
 std::vector<int> vertices_of(const std::vector<std::vector<Triangle>>& lists) {
@@ -110,24 +111,44 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   }
   if (std::any_of(tools_.begin(), tools_.end(), [](const ToolContact& tool) { return tool.has_friction(); }))
     tissue_.before.assign(tissue_.positions.begin(), tissue_.positions.end());
-  places_.resize(tools_.size());
+  inputs_.resize(tools_.size());
   ways_.resize(tools_.size(), Vec3::Zero());
-  forces_.resize(tools_.size());
-  tangents_wanted_.resize(tools_.size(), 1);
+  answers_.resize(tools_.size());
 }
 
-std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPose>> places_W,
-                                            double dt) noexcept {
-  assert(places_W.size() == tools_.size());
+std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, double dt) noexcept {
+  assert(inputs.size() == tools_.size());
+  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].press(inputs[i].buttons);
   move_organ(dt);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (!places_W[i]) lift_tool(i);
+    if (!inputs[i].pose) lift_tool(i);
   }
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (!places_W[i]) continue;
+    if (!inputs[i].pose) continue;
     tools_[i].share(tools_, tissue_);
-    tools_[i].walk(*places_W[i], tissue_);
+    tools_[i].walk(*inputs[i].pose, inputs[i].path, tissue_);
   }
+  solve_contacts();
+  const bool lost = ran_away();
+  if (!tissue_.before.empty())
+    std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    const ToolForce before = answers_[i];
+    answers_[i] = {};
+    static_cast<ToolForce&>(answers_[i]) = before;
+    if (lost && tools_[i].placed()) {  // what was felt before fades
+      fade(answers_[i]);
+      continue;
+    }
+    if (inputs[i].wants.tangent) tools_[i].differentiate();
+    static_cast<ToolForce&>(answers_[i]) = tools_[i].force();
+  }
+  for (std::size_t i = 0; i < tools_.size(); ++i) tell_more(i, inputs[i]);
+  return answers_;
+}
+
+/// Contact of all tools, and again where a linearisation about where it led says something else.
+void Simulation::solve_contacts() noexcept {
   settle();
   while (const auto motion = tissue_.model->relinearise()) {
     take(*motion);
@@ -139,18 +160,25 @@ std::span<const ToolForce> Simulation::step(std::span<const std::optional<ToolPo
     settle();
   }
   if (!tissue_.model->balanced()) flag_contacts();
-  const bool lost = ran_away();
-  if (!tissue_.before.empty())
-    std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
-  for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (lost && tools_[i].placed()) {  // what was felt before fades
-      fade(forces_[i]);
-      continue;
-    }
-    if (tangents_wanted_[i]) tools_[i].differentiate();
-    forces_[i] = tools_[i].force();
+}
+
+/// What was asked of this tool beyond its force.
+void Simulation::tell_more(std::size_t tool, const ToolInput& input) noexcept {
+  ToolAnswer& answer = answers_[tool];
+  if (!input.pose || answer.flagged) return;
+  const Vec3& p_W = input.pose->p_W;
+  const ToolWants& wants = input.wants;
+  if (wants.here || wants.ahead) answer.surface_v_W = tools_[tool].surface_velocity(p_W, tissue_);
+  if (wants.here) answer.here = linearise(tool, p_W, &answer);
+  if (wants.ahead) {
+    const Vec3 way =
+        wants.ahead->seconds * (wants.ahead->v_W - answer.surface_v_W);  // on the organ as it stands
+    Vec3 there = p_W + std::min(1.0, kFarthestAhead / way.norm()) * way;
+    if (!there.allFinite()) there = p_W;
+    answer.ahead = {there, linearise(tool, there, nullptr)};
   }
-  return forces_;
+  if (wants.surface_shift && !tools_[tool].holds())  // what is grasped is no matter of contact
+    answer.surface_shift_W = surface_shift(tool, p_W);
 }
 
 /// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.
@@ -183,13 +211,9 @@ void Simulation::take(const FreeMotion& motion) noexcept {
   if (!motion.loaded.empty()) tissue_.positions = motion.loaded;
 }
 
-Vec3 Simulation::surface_velocity(std::size_t tool, const Vec3& p_W) const noexcept {
-  return tools_[tool].surface_velocity(p_W, tissue_);
-}
-
 ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
-  places_.front() = pose;
-  return step(places_, dt).front();
+  inputs_.front().pose = pose;
+  return step(inputs_, dt).front();
 }
 
 /// Block Gauss-Seidel over the tools (for a linear tissue: on the complementarity problem of all contacts
@@ -216,8 +240,7 @@ void Simulation::flag_contacts() noexcept {
   }
 }
 
-Simulation::Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W,
-                                             const ToolForce* felt) noexcept {
+Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) noexcept {
   ToolContact& contact = tools_[tool];
   if (!contact.placed()) return {};
   contact.share(tools_, tissue_);
@@ -242,7 +265,7 @@ Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) noexcept {
 }
 
 void Simulation::lift_tool(std::size_t tool) noexcept {
-  forces_[tool] = {};
+  answers_[tool] = {};
   if (tools_[tool].placed()) tools_[tool].share(tools_, tissue_);
   tools_[tool].lift(tissue_);
 }
@@ -263,7 +286,7 @@ std::vector<MemoryPart> Simulation::memory() const {
 std::uint64_t Simulation::state_hash() const noexcept {
   Fnv1a hash;
   hash.add(tissue_.positions.data(), tissue_.positions.size_bytes());
-  for (const ToolForce& force : forces_) hash.add(force.force);
+  for (const ToolForce& answer : answers_) hash.add(answer.force);
   return hash.value();
 }
 

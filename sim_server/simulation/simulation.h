@@ -16,9 +16,55 @@ inline const Progress kSilent = [](std::string_view, double) {};
 std::vector<int> reachable_vertices(const Surface& surface, const TetMesh& mesh,
                                     std::span<const ToolSettings> tools);
 
+/// The force on a tool near a place, to first order.
+struct Linearised {
+  Vec3 force = Vec3::Zero();    ///< N
+  Mat3 tangent = Mat3::Zero();  ///< N/m; free of contact: what it will be when it touches
+  SurfacePlane plane;           ///< of contact, or the nearest; no normal: none within twice the radius
+};
+
+/// What a step is asked to tell of one tool beyond its force. Nothing is computed that nobody asked for.
+struct ToolWants {
+  bool tangent = true;  ///< dF/dp of `ToolForce`
+  bool here = false;    ///< the linearisation at the tool's pose; with it goes `tangent`
+  /// The linearisation where the tool will be after `seconds` (>= 0) at `v_W` (m/s), relative to the organ as
+  /// it moves by itself, 2 mm away at most.
+  struct Ahead {
+    double seconds;
+    Vec3 v_W;
+  };
+  std::optional<Ahead> ahead = {};
+  bool surface_shift = false;  ///< of a tool that does not grasp
+};
+
+/// One tool in one step.
+struct ToolInput {
+  std::optional<ToolPose> pose = {};  ///< where its tip is now; none: it is lifted
+  std::uint16_t buttons = 0;          ///< of its device, pressed now: some tools grasp by them
+  Bend path = {};                     ///< how it came from the pose before; only friction asks for it
+  ToolWants wants = {};
+};
+
+/// What a step says of one tool: the force on it, and what was asked beyond that, if its pose was known and
+/// the force is not flagged.
+struct ToolAnswer : ToolForce {
+  /// How fast the organ's surface moves by itself where the tool touches, or else nearest to it, m/s, world.
+  /// Told with `here` and `ahead`; zero where all supports rest.
+  Vec3 surface_v_W = Vec3::Zero();
+  std::optional<Linearised> here = {};
+  struct Ahead {
+    Vec3 p_W;  ///< m
+    Linearised there;
+  };
+  std::optional<Ahead> ahead = {};
+  /// How far the surface nearest to the tool is from its place at rest, free of that tool but under all
+  /// others, m. O(vertices).
+  std::optional<Vec3> surface_shift_W = {};
+};
+
 /// The organ of a scene with its tools: one step, one page. Built from a scene (throws `Error`), then stepped
-/// by one thread; a step neither allocates, locks, logs nor throws, and depends on nothing but its arguments
-/// and the state.
+/// by one thread. A step does not throw, and depends on nothing but its arguments and the state. It does not
+/// allocate, lock or log either, but for a model that says so (`DeformationModel`).
 class Simulation {
  public:
   /// With the mesh file that the scene names.
@@ -26,41 +72,15 @@ class Simulation {
   /// With a mesh made elsewhere.
   Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent);
 
-  /// Advances the tissue by `dt` (s >= 0; the run begins at time 0) with the tools at `places_W`, one for
-  /// each tool; where there is none, that tool is lifted. The forces, one for each tool, stay valid until the
-  /// next step.
-  std::span<const ToolForce> step(std::span<const std::optional<ToolPose>> places_W, double dt) noexcept;
+  /// Advances the tissue by `dt` (s >= 0; the run begins at time 0) with one input for each tool. The
+  /// answers, one for each tool, stay valid until the next step.
+  std::span<const ToolAnswer> step(std::span<const ToolInput> inputs, double dt) noexcept;
   /// The same with tool 0 alone, the others lifted.
   ToolForce step(const ToolPose& pose, double dt) noexcept;
 
-  /// What of its device's buttons is pressed, from the next step on: some tools grasp by it.
-  void press_buttons(std::size_t tool, std::uint16_t buttons) noexcept {
-    tools_[tool].press_buttons(buttons);
-  }
-
-  /// Whether the next steps tell the tangent of that tool's force; at first they do.
-  void want_tangent(std::size_t tool, bool wanted) noexcept { tangents_wanted_[tool] = wanted; }
-
-  /// How that tool's way bends in the next step.
-  void bend_way(std::size_t tool, const Bend& way) noexcept { tools_[tool].bend(way); }
-
-  /// The force on a tool at `p_W` (m), near where it stands, to first order; without effect on anything.
-  struct Linearised {
-    Vec3 force = Vec3::Zero();    ///< N
-    Mat3 tangent = Mat3::Zero();  ///< N/m; free of contact: what it will be when it touches
-    SurfacePlane plane;           ///< of contact, or the nearest; no normal: none within twice the radius
-  };
-  /// `felt`: what `step` gave for that place, with its tangent; null: to be found out. At most two contact
-  /// solves.
+  /// What a tool would feel at `p_W` (m), near where it stands; without effect on anything. `felt`: what
+  /// `step` gave for that place, with its tangent; null: to be found out. At most two contact solves.
   Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) noexcept;
-
-  /// How fast the organ's surface moves by itself where that tool touches it at `p_W` (m), or else nearest to
-  /// there: m/s, world; zero where all supports rest.
-  Vec3 surface_velocity(std::size_t tool, const Vec3& p_W) const noexcept;
-
-  /// How far the surface nearest to a tool at `p_W` (m) is from its place at rest, free of that tool but
-  /// under all others, m. O(vertices).
-  Vec3 surface_shift(std::size_t tool, const Vec3& p_W) noexcept;
 
   /// Takes a tool away: the tissue goes free of it.
   void lift_tool(std::size_t tool = 0) noexcept;
@@ -85,6 +105,9 @@ class Simulation {
   void take(const FreeMotion& motion) noexcept;
   void settle() noexcept;
   void flag_contacts() noexcept;
+  void solve_contacts() noexcept;
+  void tell_more(std::size_t tool, const ToolInput& input) noexcept;
+  Vec3 surface_shift(std::size_t tool, const Vec3& p_W) noexcept;
   bool ran_away() const noexcept;
 
   TetMesh mesh_;
@@ -93,10 +116,9 @@ class Simulation {
   double farthest_ = 1e150;  // from there, m; so far: no bound but that of numbers
   Tissue tissue_;
   std::vector<ToolContact> tools_;
-  std::vector<Vec3> ways_;                       // of the surface at each tool in this step, m
-  std::vector<std::optional<ToolPose>> places_;  // for the step of tool 0 alone
-  std::vector<ToolForce> forces_;
-  std::vector<std::uint8_t> tangents_wanted_;
+  std::vector<Vec3> ways_;         // of the surface at each tool in this step, m
+  std::vector<ToolInput> inputs_;  // for the step of tool 0 alone
+  std::vector<ToolAnswer> answers_;
 };
 
 /// "contact", or "contact of tool 2" where there are several: the name of a tool's part in reports, and,

@@ -61,9 +61,11 @@ ToolForce approach(const Scene& scene, Simulation& simulation, const Press& pres
   return simulation.step(press.place, period_of(scene));
 }
 
-ToolForce timed_step(Simulation& simulation, const Vec3& p_W, double dt, Histogram& ns) {
+ToolForce timed_step(Simulation& simulation, std::span<ToolInput> inputs, const Vec3& p_W, double dt,
+                     Histogram& ns) {
+  inputs.front().pose = ToolPose(p_W);
   const Time start = now();
-  ToolForce force = simulation.step(p_W, dt);
+  ToolForce force = simulation.step(inputs, dt).front();
   ns.add((now() - start).count());
   return force;
 }
@@ -85,26 +87,29 @@ Press find_press(const Scene& scene, Simulation& simulation) {
 }
 
 StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& press, int steps,
-                     const Progress& progress) {
+                     const Progress& progress, const ToolWants& wants) {
   const double radius = scene.tools.front().shape.radius, dt = period_of(scene);
   const auto slide = [&](int i) {
     return kSlide * radius * std::sin(2 * std::numbers::pi * i / kSlideSteps);
   };
   Vec3 above = press.place;
   for (const Vec3& x : simulation.positions()) above[1] = std::max(above[1], x[1] + kClear * radius);
+  std::vector<ToolInput> inputs(simulation.tools());
+  inputs.front().wants = wants;
   StepTimes times;
   const auto tell = [&](int done) { progress("timing steps", 0.5 * done / steps); };
   tell(0);
   simulation.lift_tool();
   simulation.step(above, dt);
   for (int i = 1; i <= steps; ++i) {
-    timed_step(simulation, above + slide(i) * Vec3::UnitX(), dt, times.free_ns);
+    timed_step(simulation, inputs, above + slide(i) * Vec3::UnitX(), dt, times.free_ns);
     tell(i);
   }
   const Vec3 tangent = press.normal.unitOrthogonal();
   approach(scene, simulation, press);
   for (int i = 1; i <= steps; ++i) {
-    const ToolForce force = timed_step(simulation, press.place + slide(i) * tangent, dt, times.contact_ns);
+    const ToolForce force =
+        timed_step(simulation, inputs, press.place + slide(i) * tangent, dt, times.contact_ns);
     times.contacts += force.contacts > 0 ? 1 : 0;
     times.flagged += force.flagged ? 1 : 0;
     tell(steps + i);

@@ -46,7 +46,7 @@ struct Way {
 protocol::ForceSample answer_to(const ModelCase& choice, const Way& way, ToolForce* felt = nullptr) {
   Simulation simulation(block_scene(choice, way.friction), block(choice));
   ServedTools served(simulation);
-  std::vector<ToolInput> inputs{{7, {.flags = protocol::ToolState::kWantsHere}, true}};
+  std::vector<SessionInput> inputs{{7, {.flags = protocol::ToolState::kWantsHere}, true}};
   protocol::ToolState& state = inputs[0].state;
   for (int i = 0; i <= way.steps(); ++i) {
     ++state.tick;

@@ -120,7 +120,7 @@ struct PressAndSlide::Block {
     auto tools = std::make_shared<sim::ServedTools>(simulation);
     auto pager = std::make_shared<sim::SurfacePager>(simulation, 0);
     const auto step = [tools](const protocol::ToolState& state) {
-      const std::vector<sim::ToolInput> inputs{{1, state, true}};
+      const std::vector<sim::SessionInput> inputs{{1, state, true}};
       return tools->step(inputs, 0.03).front().answer;  // the tissue has no memory: any time step does
     };
     const protocol::SurfacePages whole{pager->state().vertices, pager->state().triangles};

@@ -54,22 +54,22 @@ class Watch {
 
   Run follow(const std::vector<Path>& paths, double seconds) {
     const int steps = static_cast<int>(std::lround(seconds / dt_));
-    std::vector<std::optional<ToolPose>> places(paths.size());
+    std::vector<ToolInput> inputs(paths.size());
     for (int i = 1; i <= steps && run_.finite; ++i) {
-      for (std::size_t k = 0; k < paths.size(); ++k) places[k] = place_at(paths[k], i * dt_);
-      see(simulation_.step(places, dt_));
+      for (std::size_t k = 0; k < paths.size(); ++k) inputs[k].pose = place_at(paths[k], i * dt_);
+      see(simulation_.step(inputs, dt_));
     }
     run_.last = felt_;
     run_.pressed_flagged = run_.ends_flagged;
-    for (auto& place : places) place.reset();
-    for (int i = 0; i < steps && run_.finite; ++i) see(simulation_.step(places, dt_));
+    for (ToolInput& input : inputs) input.pose.reset();
+    for (int i = 0; i < steps && run_.finite; ++i) see(simulation_.step(inputs, dt_));
     for (std::size_t v = 0; v < began_.size(); ++v)
       run_.off = std::max(run_.off, (simulation_.positions()[v] - began_[v]).norm());
     return run_;
   }
 
  private:
-  void see(std::span<const ToolForce> forces) {
+  void see(std::span<const ToolAnswer> forces) {
     ++run_.steps;
     run_.ends_flagged = false;
     felt_.clear();

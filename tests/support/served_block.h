@@ -74,7 +74,7 @@ class ServedBlock {
 
  private:
   sim::ServedTools served_;
-  std::vector<sim::ToolInput> inputs_;
+  std::vector<sim::SessionInput> inputs_;
   Time delay_, period_, due_{};
   std::uint64_t ticks_ = 0;
   std::deque<std::pair<Time, protocol::ForceSample>> on_the_way_;

@@ -134,8 +134,8 @@ TEST_CASE("local contact: what the other tool presses is felt through the tissue
   double peak = 0, sum = 0;
   for (int i = 0; i < 1500; ++i) {
     const Vec3 p(-0.004 + 0.002 * std::sin(0.004 * i), 0.0035, 0);
-    const std::array<std::optional<ToolPose>, 2> places{p, other};
-    const Vec3 right = truth.step(places, 0.002)[0].force, given = listener.tick(p);
+    const std::vector<sim::ToolInput> inputs{{.pose = p}, {.pose = other}};
+    const Vec3 right = truth.step(inputs, 0.002)[0].force, given = listener.tick(p);
     peak = std::max(peak, right.norm());
     if (i > 100) sum += (given - right).norm() / 1400;
   }

@@ -52,7 +52,7 @@ test::Server served(sim::Simulation& block) {
   auto tools = std::make_shared<sim::ServedTools>(block);
   auto pager = std::make_shared<sim::SurfacePager>(block, 0);
   const auto step = [tools](const protocol::ToolState& state) {
-    const std::vector<sim::ToolInput> inputs{{1, state, true}};
+    const std::vector<sim::SessionInput> inputs{{1, state, true}};
     return tools->step(inputs, 0.03).front().answer;
   };
   const auto pages = [pager](const protocol::ToolState& state) {

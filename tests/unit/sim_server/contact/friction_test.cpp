@@ -8,6 +8,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
+#include "tests/support/tool_inputs.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -40,7 +41,7 @@ struct Block : Simulation {
   explicit Block(std::size_t tools = 1, double friction = kMu, const std::string& model = "quasi_static")
       : Simulation(scene(tools, friction, model), block()) {}
   std::vector<ToolForce> at(const Places& places) {
-    const auto forces = Simulation::step(places, kDt);
+    const auto forces = Simulation::step(test::inputs(places), kDt);
     return {forces.begin(), forces.end()};
   }
 };
@@ -86,13 +87,12 @@ TEST_CASE("friction: the way between two places is bent as the velocities say, w
     const Vec3 way = at(to) - at(from);
     Vec3 expected;
     for (int k = 1; k <= 60; ++k) expected = truth.step(at(from + kTurn * k / 60), kDt / 60).force;
-    bent.bend_way(0, {kDt * velocity(from) - way, kDt * velocity(to) - way});
-    wild.bend_way(0,
-                  {1e200 * Vec3::UnitY(), i % 2 == 0 ? Vec3(1e300, 1e300, 1e300) : Vec3(0, std::nan(""), 0)});
+    const Bend path{kDt * velocity(from) - way, kDt * velocity(to) - way},
+        anything{1e200 * Vec3::UnitY(), i % 2 == 0 ? Vec3(1e300, 1e300, 1e300) : Vec3(0, std::nan(""), 0)};
     const Vec3 line = straight.step(at(to), kDt).force;
     by_line = std::max(by_line, relative(line, expected));
-    by_cubic = std::max(by_cubic, relative(bent.step(at(to), kDt).force, expected));
-    const ToolForce any = wild.step(at(to), kDt);
+    by_cubic = std::max(by_cubic, relative(test::step(bent, at(to), {.path = path}, kDt).force, expected));
+    const ToolForce any = test::step(wild, at(to), {.path = anything}, kDt);
     CHECK_FALSE(any.flagged);
     CHECK(relative(any.force, line) < 0.1);
   }
@@ -168,12 +168,12 @@ TEST_CASE("friction: a tool with, and one without, on one organ") {
   Simulation simulation(mixed, block());
   Block alone(1, kMu);
   Places places{{}, press(0, 0.002)};
-  simulation.step(places, kDt);
+  simulation.step(test::inputs(places), kDt);
   alone.step(*places[1], kDt);
   places[1] = press(0.004, 0.002);
-  CHECK(simulation.step(places, kDt)[1].force == alone.step(*places[1], kDt).force);
+  CHECK(simulation.step(test::inputs(places), kDt)[1].force == alone.step(*places[1], kDt).force);
   places = {press(0.004, 0.002), {}};
-  const Vec3 smooth = simulation.step(places, kDt)[0].force;
+  const Vec3 smooth = simulation.step(test::inputs(places), kDt)[0].force;
   CHECK(smooth == Block(1, 0).step(press(0.004, 0.002), kDt).force);
 }
 
@@ -197,11 +197,11 @@ TEST_CASE("friction: any path gives finite forces, in settled answers but for a 
 
 TEST_CASE("friction: steps and looks ahead do not allocate, with two tools") {
   Block two(2);
+  const std::vector<ToolInput> here{{.pose = press(-0.006, 0.002)}, {.pose = press(0.006, 0.002)}},
+      there{{.pose = press(-0.009, 0.002)}, {.pose = press(0.004, 0.003)}};
   std::size_t allocations = 1;
   {
     const test::AllocationGuard guard;
-    const std::array<std::optional<ToolPose>, 2> here{press(-0.006, 0.002), press(0.006, 0.002)},
-        there{press(-0.009, 0.002), press(0.004, 0.003)};
     two.step(here, kDt);
     two.step(there, kDt);
     two.linearise(0, press(-0.0095, 0.002), nullptr);

@@ -10,6 +10,7 @@
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tool_inputs.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -116,22 +117,22 @@ TEST_CASE("a button closes the jaws without a jump, and opens them") {
   const Vec3 pressed = kPlace - Vec3(0, 0.0015, 0), above = kPlace + Vec3(0, 0.002, 0);
   const ToolForce contact = organ.step(pressed, kDt);
   REQUIRE(contact.force[1] > 0.05);
-  organ.press_buttons(0, 1);  // not one of them
-  CHECK((organ.step(pressed, kDt).force - contact.force).norm() < 1e-6 * contact.force.norm());
-  CHECK(organ.step(above, kDt).force == Vec3::Zero());
-  organ.step(pressed, kDt);
-  organ.press_buttons(0, 4);
-  const ToolForce grasped = organ.step(pressed, kDt);
+  const auto step = [&](const Vec3& p, std::uint16_t buttons) {
+    return test::step(organ, p, {.buttons = buttons}, kDt);
+  };
+  constexpr std::uint16_t kOther = 1;  // not one of them
+  CHECK((step(pressed, kOther).force - contact.force).norm() < 1e-6 * contact.force.norm());
+  CHECK(step(above, kOther).force == Vec3::Zero());
+  step(pressed, kOther);
+  const ToolForce grasped = step(pressed, 4);
   CHECK((grasped.force - contact.force).norm() < 1e-4 * contact.force.norm());
-  CHECK(organ.step(above, kDt).force[1] < -0.05);
-  organ.press_buttons(0, 0);
-  CHECK(organ.step(above, kDt).force == Vec3::Zero());
-  CHECK((organ.step(pressed, kDt).force - contact.force).norm() < 1e-4 * contact.force.norm());
+  CHECK(step(above, 4).force[1] < -0.05);
+  CHECK(step(above, 0).force == Vec3::Zero());
+  CHECK((step(pressed, 0).force - contact.force).norm() < 1e-4 * contact.force.norm());
   // Closed on nothing, it holds nothing.
-  organ.step(kPlace + Vec3(0, 0.01, 0), kDt);
-  organ.press_buttons(0, 2);
-  CHECK(organ.step(kPlace + Vec3(0, 0.01, 0), kDt).force == Vec3::Zero());
-  CHECK((organ.step(pressed, kDt).force - contact.force).norm() < 1e-3 * contact.force.norm());
+  step(kPlace + Vec3(0, 0.01, 0), 0);
+  CHECK(step(kPlace + Vec3(0, 0.01, 0), 2).force == Vec3::Zero());
+  CHECK((step(pressed, 2).force - contact.force).norm() < 1e-3 * contact.force.norm());
 }
 
 TEST_CASE("served: the buttons of a tool state grasp, parts are told without effect, or allocation") {
@@ -140,7 +141,7 @@ TEST_CASE("served: the buttons of a tool state grasp, parts are told without eff
   scene.tools[0].grasp_buttons = 1;
   Simulation organ(scene, block());
   ServedTools tools(organ);
-  std::vector<ToolInput> inputs{{7, {.tick = 1}, true}};
+  std::vector<SessionInput> inputs{{7, {.tick = 1}, true}};
   auto& state = inputs[0].state;
   using protocol::ForceSample;
   state.flags = protocol::ToolState::kWantsHere | protocol::ToolState::kWantsAhead;

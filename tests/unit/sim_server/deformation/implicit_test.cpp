@@ -202,7 +202,7 @@ TEST_CASE("implicit: a body that nothing holds flies off with the momentum that 
   Vec3 impulse = Vec3::Zero();
   for (int i = 0; i < 40; ++i)
     impulse -= dt * simulation.step(Vec3(0.002, 0.0065 - 1e-4 * i, 0.001), dt).force;
-  const std::vector<std::optional<ToolPose>> away(1);
+  const std::vector<ToolInput> away(1);
   for (int i = 0; i < 200; ++i) simulation.step(away, dt);
   CHECK(impulse.y() < -1e-4);
   // The middle of all vertices is that of the block, stiff and whole, wherever it has turned.

@@ -9,6 +9,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/dense_tissue.h"
 #include "tests/support/scenes.h"
+#include "tests/support/tool_inputs.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -254,12 +255,12 @@ TEST_CASE("two tools on tensor_mass come to rest as on quasi_static, and let go"
   Simulation moving(two_tools("tensor_mass"), block()), still(two_tools("quasi_static"), block());
   const std::vector<std::optional<ToolPose>> places{ToolPose(Vec3(-0.007, 0.004, 0)),
                                                     ToolPose(Vec3(0.006, 0.0035, 0.001))};
-  const std::span<const ToolForce> expected = still.step(places, kPeriod);
-  for (int i = 0; i < 60; ++i) moving.step(places, kPeriod);
-  const std::span<const ToolForce> felt = moving.step(places, kPeriod);
+  const auto expected = still.step(test::inputs(places), kPeriod);
+  for (int i = 0; i < 60; ++i) moving.step(test::inputs(places), kPeriod);
+  const auto felt = moving.step(test::inputs(places), kPeriod);
   for (std::size_t i = 0; i < 2; ++i)
     CHECK((felt[i].force - expected[i].force).norm() < 0.01 * expected[i].force.norm());
-  const std::vector<std::optional<ToolPose>> nowhere(2);
+  const std::vector<ToolInput> nowhere(2);
   for (int i = 0; i < 60; ++i) moving.step(nowhere, kPeriod);
   CHECK(largest(moving.positions(), moving.rest()) < 1e-6);
 }

@@ -14,6 +14,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tool_inputs.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -182,7 +183,7 @@ TEST_CASE("tool reach: a tool that reaches nothing has no collision tree, and th
   for (int i = 0; i < 10; ++i) {
     const Vec3 place(-0.02, 0.11 - 0.005 * i, 0);
     const std::optional<ToolPose> places[] = {ToolPose(place), ToolPose(place + Vec3(0.001, 0, 0))};
-    const auto forces = two.step(places, 1.0 / 30);
+    const auto forces = two.step(test::inputs(places), 1.0 / 30);
     CHECK(forces[0].force == one.step(place, 1.0 / 30).force);
     CHECK(forces[1].force == Vec3::Zero());
   }

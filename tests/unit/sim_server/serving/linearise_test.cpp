@@ -81,7 +81,7 @@ TEST_CASE("parts of a sample: only those asked for, not of a lost device, and no
   const double top = touching(liver);
   liver.lift_tool();
   ServedTools tools(liver);
-  std::vector<ToolInput> inputs{{7, {.tick = 1}, true}};
+  std::vector<SessionInput> inputs{{7, {.tick = 1}, true}};
   auto& state = inputs[0].state;
   state.p_W = at(top - 0.003);
   using protocol::ForceSample;

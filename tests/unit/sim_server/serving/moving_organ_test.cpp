@@ -14,6 +14,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tool_inputs.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -92,13 +93,13 @@ TEST_CASE("moving supports: a common translation moves the body as one, at the v
   Simulation organ(block_scene({kBreath}), block());
   double t = 0;
   for (int i = 0; i < 20; ++i) {
-    organ.step(Vec3(0, 1, 0), 0.11);
+    const ToolAnswer far = test::step(organ, Vec3(0, 1, 0), {.wants = {.here = true}}, 0.11);
     t += 0.11;
     for (std::size_t v = 0; v < organ.positions().size(); ++v) {
       const Vec3 rest = organ.mesh().vertices[organ.surface().vertices[v]];
       CHECK((organ.positions()[v] - rest - at(kBreath, t)).norm() < 1e-12);
     }
-    CHECK((organ.surface_velocity(0, {0.003, 0.02, 0}) - speed_of(kBreath, t)).norm() < 1e-12);
+    CHECK((far.surface_v_W - speed_of(kBreath, t)).norm() < 1e-12);
   }
 }
 
@@ -112,16 +113,17 @@ TEST_CASE("a tool that moves with the organ feels what it felt at rest, a restin
     Simulation resting(still, block()), moving(breathing, block());
     for (int i = 1; i <= 40; ++i) {
       const double t = 0.05 * i;
-      const ToolForce right = resting.step(kPressed, 0.05),
-                      felt = moving.step(kPressed + at(kBreath, t), 0.05);
+      const ToolInput asks{.wants = {.here = true}};
+      const ToolAnswer right = test::step(resting, kPressed, asks, 0.05),
+                       felt = test::step(moving, kPressed + at(kBreath, t), asks, 0.05);
       CAPTURE(model, i);
       REQUIRE(right.force[1] > 0.1);
       CHECK((felt.force - right.force).norm() < inertia * right.force.norm());
       CHECK_FALSE(felt.flagged);
-      CHECK((moving.surface_velocity(0, kPressed + at(kBreath, t)) - speed_of(kBreath, t)).norm() <
+      CHECK((felt.surface_v_W - speed_of(kBreath, t)).norm() <
             1e-12 + 0.2 * inertia * kTau / kBreath.period * kBreath.amplitude);
+      CHECK(right.surface_v_W == Vec3::Zero());
     }
-    CHECK(resting.surface_velocity(0, kPressed) == Vec3::Zero());
   }
 }
 
@@ -191,7 +193,7 @@ TEST_CASE(
     "a sample tells the organ's velocity, and laws that hear it hold the force on a tool that goes along") {
   Simulation organ(block_scene({kBreath}), block());
   ServedTools tools(organ);
-  std::vector<ToolInput> inputs{{7, {.tick = 1}, true}};
+  std::vector<SessionInput> inputs{{7, {.tick = 1}, true}};
   auto& state = inputs[0].state;
   using protocol::ToolState;
   state.flags = ToolState::kWantsHere | ToolState::kWantsAhead;

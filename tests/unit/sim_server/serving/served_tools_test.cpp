@@ -13,7 +13,7 @@ namespace {
 struct Served {
   Simulation simulation{scene(), grid_block({-0.05, 0, 0.05}, {-0.05, 0}, {-0.05, 0, 0.05})};
   ServedTools tools{simulation};
-  std::vector<ToolInput> inputs{2};
+  std::vector<SessionInput> inputs{2};
 
   static Scene scene() {
     Scene scene;

@@ -41,7 +41,7 @@ Simulation let_go_of(const Scene& scene, double depth) {
   Simulation simulation(scene, block());
   for (int i = 0; i < 60; ++i)
     simulation.step(ToolPose(Vec3(0.001, kRadius - depth * std::min(1.0, i / 30.0), 0.002)), kDt);
-  const std::vector<std::optional<ToolPose>> away(1);
+  const std::vector<ToolInput> away(1);
   for (int i = 0; i < 60; ++i) simulation.step(away, kDt);
   return simulation;
 }

@@ -8,6 +8,7 @@
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/stiffness.h"
+#include "tests/support/tool_inputs.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -45,7 +46,7 @@ struct Block : Simulation {
   explicit Block(std::size_t tools, const std::string& model = "quasi_static")
       : Simulation(scene(tools, model), block()) {}
   std::vector<ToolForce> at(const Places& places) {
-    const auto forces = Simulation::step(places, kDt);
+    const auto forces = Simulation::step(test::inputs(places), kDt);
     return {forces.begin(), forces.end()};
   }
 };
@@ -275,11 +276,11 @@ TEST_CASE("tools of their own size and reach: compliance is kept for what either
   // Each touches where it reaches, with its own radius, and nowhere else.
   Simulation simulation(both, block());
   const Places swapped{Vec3(0.03, 0.002, 0), Vec3(-0.03, 0.002, 0)};
-  for (const ToolForce& force : simulation.step(swapped, kDt)) CHECK(force.contacts == 0);
+  for (const ToolForce& force : simulation.step(test::inputs(swapped), kDt)) CHECK(force.contacts == 0);
   simulation.lift_tool(0);
   simulation.lift_tool(1);
   const Places placed{Vec3(-0.03, 0.004, 0), Vec3(0.03, 0.004, 0)};
-  const auto forces = simulation.step(placed, kDt);
+  const auto forces = simulation.step(test::inputs(placed), kDt);
   CHECK(forces[0].contacts > 0);
   CHECK(forces[1].contacts == 0);
 }
@@ -323,12 +324,12 @@ TEST_CASE("steps of eight tools in contact do not allocate, and leave the tissue
   made.tools[0].shape.radius = 0.001;  // its own patch is small: the loads of the others need room with it
   Simulation eight(made, block());
   const std::uint64_t rest = eight.state_hash();
-  Places all(8), some(8), none(8);
+  std::vector<ToolInput> all(8), some(8), none(8);
   for (int i = 0; i < 8; ++i) {
-    all[i] = press(0.009 * i - 0.0315, 0.004);
-    if (i % 3 == 1) some[i] = press(0.009 * i - 0.0305, 0.003);
+    all[i].pose = press(0.009 * i - 0.0315, 0.004);
+    if (i % 3 == 1) some[i].pose = press(0.009 * i - 0.0305, 0.003);
   }
-  all[0] = Vec3(-0.0315, -0.001, 0.0013);
+  all[0].pose = Vec3(-0.0315, -0.001, 0.0013);
   std::size_t allocations = 1;
   int contacts = 0;
   {
