@@ -30,8 +30,9 @@ Vec3 Limiter::push(const Vec3& f_D, double dt) noexcept {
 }
 
 Vec3 Limiter::within(double share, const Vec3& f_D) const noexcept {
+  constexpr double kRounding = 1 - 1e-15;  // of the products below: never a bit beyond
   const double size = f_D.stableNorm(), most = share * settings_.max_force;  // stable: no overflow
-  return size <= most ? f_D : Vec3(f_D * (most / size));
+  return size <= most ? f_D : Vec3(f_D * (kRounding * most / size));
 }
 
 void Limiter::watch_for_storm(bool slewed, double dt) noexcept {
