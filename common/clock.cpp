@@ -7,7 +7,7 @@ namespace palpate {
 namespace {
 constexpr long kNanosecondsPerSecond = 1'000'000'000;
 
-Time read(clockid_t clock) noexcept {
+Time read_clock(clockid_t clock) noexcept {
   timespec t{};
   clock_gettime(clock, &t);
   return Time{t.tv_sec * kNanosecondsPerSecond + t.tv_nsec};
@@ -16,15 +16,15 @@ Time read(clockid_t clock) noexcept {
 }  // namespace
 
 Time now() noexcept {
-  return read(CLOCK_MONOTONIC);
+  return read_clock(CLOCK_MONOTONIC);
 }
 
 Time thread_time() noexcept {
-  return read(CLOCK_THREAD_CPUTIME_ID);
+  return read_clock(CLOCK_THREAD_CPUTIME_ID);
 }
 
 Time monotonic_epoch() noexcept {
-  return read(CLOCK_REALTIME) - now();
+  return read_clock(CLOCK_REALTIME) - now();
 }
 
 void sleep_until(Time deadline) noexcept {

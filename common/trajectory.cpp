@@ -9,8 +9,8 @@
 
 namespace palpate {
 namespace {
-constexpr double kClosed = 1e-3;  // m: an end this near the start means the motion repeats
-constexpr double kFar = 1e3;      // m
+constexpr double kClosed = 1e-3;         // m: an end this near the start means the motion repeats
+constexpr double kFarthestOffset = 1e3;  // m
 }  // namespace
 
 TrajectorySettings read_trajectory_settings(const Config& section) {
@@ -19,7 +19,7 @@ TrajectorySettings read_trajectory_settings(const Config& section) {
   const auto names = section.texts("columns", 4, {trajectory.columns.begin(), trajectory.columns.end()});
   std::copy(names.begin(), names.end(), trajectory.columns.begin());
   trajectory.scale = section.number("scale", {1e-9, 1e9, "m per unit"}, trajectory.scale);
-  trajectory.offset = section.vector("offset", {-kFar, kFar, "m"}, trajectory.offset);
+  trajectory.offset = section.vector("offset", {-kFarthestOffset, kFarthestOffset, "m"}, trajectory.offset);
   section.reject_unknown();
   return trajectory;
 }

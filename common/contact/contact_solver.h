@@ -113,8 +113,9 @@ class ContactSolver {
   void collect_nodes(int tip) noexcept;
   void differentiate_contacts(int tip) noexcept;
   void differentiate_friction(int contact, Eigen::Index row, std::span<const int> slot) noexcept;
-  void assemble_system(const ContactPatch& patch) noexcept;
   void differentiate_considered(const ContactPatch& patch) noexcept;
+  // and in contact_newton.cpp:
+  void assemble_system(const ContactPatch& patch) noexcept;
   bool respond(const ContactPatch& patch, const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept;
   bool newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
                    Eigen::Ref<Eigen::VectorXd> next) noexcept;

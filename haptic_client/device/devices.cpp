@@ -84,11 +84,15 @@ void choose_device(DeviceSettings& settings, const std::string& text, const std:
   settings.name = text.substr(0, colon);
   settings.port = colon == std::string::npos ? "" : text.substr(colon + 1);
   settings.where = where;
-  find_row(devices(), settings.name, "device", where);
+  row_of(settings);
 }
 
 std::span<const DeviceRow> devices() {
   return kDevices;
+}
+
+const DeviceRow& row_of(const DeviceSettings& settings) {
+  return find_row(devices(), settings.name, "device", settings.where);
 }
 
 }  // namespace palpate::client

@@ -36,5 +36,7 @@ struct DeviceRow {
   int (*make_safe)(const DeviceSettings&);
 };
 std::span<const DeviceRow> devices();
+/// The row of the device that is asked for. Throws `Error` for a name that is none.
+const DeviceRow& row_of(const DeviceSettings& settings);
 
 }  // namespace palpate::client

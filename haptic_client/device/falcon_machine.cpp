@@ -25,7 +25,7 @@ void ftdi(UsbTransport& port, std::uint8_t request, std::uint16_t value) {
 }
 
 constexpr Time kProbePeriod = 20ms, kBootPeriod = 60ms, kHandshakePatience = 300ms, kEchoPatience = 500ms;
-constexpr Time kSilence = 1s, kFresh = 50ms, kLookAgain = 500ms, kLoadAgain = 2s;
+constexpr Time kLongestSilence = 1s, kFresh = 50ms, kLookAgain = 500ms, kLoadAgain = 2s;
 constexpr int kProbes = 25, kBootTries = 100, kLoads = 5;
 constexpr const char* kHomeIt =
     "Falcon: pull the grip fully out, then push it fully in, to home it; if its light stays red, check that "
@@ -205,7 +205,7 @@ void FalconMachine::upload(UsbTransport& port, Time now) noexcept {
 }
 
 void FalconMachine::run(UsbTransport& port, Time now) noexcept {
-  if (now - heard_ > kSilence)
+  if (now - heard_ > kLongestSilence)
     return give_up(port, now, kLookAgain, "the Falcon stopped answering; trying again");
   if (!status_) return;
   if (phase_ == FalconPhase::kUnhomed && status_->all_homed()) {

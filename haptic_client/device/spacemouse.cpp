@@ -8,9 +8,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time kSilence = 100ms, kOpenAgain = 500ms;
-constexpr std::uint8_t kToInterface = 0x21, kSetReport = 9;  // of HID
-constexpr std::size_t kMostReport = 64;                      // bytes
+constexpr Time kStandsStill = 100ms, kOpenAgain = 500ms;
+constexpr std::uint8_t kHidToInterface = 0x21, kSetReport = 9;  // of HID
+constexpr std::size_t kMostReport = 64;                         // bytes
 
 }  // namespace
 
@@ -34,7 +34,7 @@ DeviceReading SpaceMouse::read(Time now) noexcept {
 
 /// What was told last held until now, but not longer than the silence that counts as standing still.
 void SpaceMouse::advance(Time now) noexcept {
-  const Time end = std::min(now, heard_ + kSilence);
+  const Time end = std::min(now, heard_ + kStandsStill);
   if (end > last_) {
     p_D_ += to_seconds(end - last_) * settings_.speed * state_.push_D;
     p_D_ = p_D_.cwiseMax(-settings_.reach).cwiseMin(settings_.reach);
@@ -63,7 +63,7 @@ bool SpaceMouse::keep_open(Time now) noexcept {
 
 void SpaceMouse::light(bool on) noexcept {
   const std::array report{std::byte{kSpaceMouseLight & 0xff}, std::byte{on}};
-  port_->control({.type = kToInterface,
+  port_->control({.type = kHidToInterface,
                   .request = kSetReport,
                   .value = kSpaceMouseLight,
                   .optional = true,

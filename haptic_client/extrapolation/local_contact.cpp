@@ -9,7 +9,7 @@ constexpr double kMostCorrection = 3;
 constexpr double kDoubt = 0.02;
 constexpr std::size_t kRemembered = 1024;             // ticks: a quarter of a second at 4 kHz
 constexpr Time kGap = std::chrono::milliseconds(12);  // longer than any tick
-constexpr double kSamePlace = 1e-3;                   // m: how far a tangent leads
+constexpr double kTangentReach = 1e-3;                // m: how far a tangent leads
 // How far the model may be off at the sample, of the larger force and at all, to be believed elsewhere.
 constexpr double kBelievable = 0.5, kAlways = 0.1;  // -, N
 
@@ -63,7 +63,7 @@ std::optional<Vec3> LocalContact::remembered(Time t, const Vec3& p_rest) const n
   for (std::size_t back = 1; back <= std::min(felts_, kRemembered); ++back) {
     const Felt& felt = felt_[(felts_ - back) % kRemembered];
     if (felt.t > t) continue;
-    if (t - felt.t > kGap || (felt.p_rest - p_rest).norm() > kSamePlace) return {};
+    if (t - felt.t > kGap || (felt.p_rest - p_rest).norm() > kTangentReach) return {};
     if (felt.force.isZero(0)) return felt.force;
     const Vec3 force = felt.force + felt.tangent * (p_rest - felt.p_rest);
     return force.dot(felt.force) > 0 ? force : Vec3(Vec3::Zero());

@@ -4,7 +4,7 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kFarthest = 1e3;  // m
+constexpr double kFarthestPlace = 1e3;  // m
 }
 
 Mat3 restoring_part(const Mat3& k) noexcept {
@@ -19,7 +19,7 @@ Mat3 restoring_part(const Mat3& k) noexcept {
 
 Vec3 force_at(const Linearised& l, const Vec3& p) noexcept {
   const Vec3 x = p - l.p;
-  if (!(x.cwiseAbs().maxCoeff() < kFarthest)) return l.f;
+  if (!(x.cwiseAbs().maxCoeff() < kFarthestPlace)) return l.f;
   if (l.f.isZero(0)) {
     const double depth = l.gap + l.normal.dot(x);
     return depth < 0 ? Vec3(depth * (l.k * l.normal)) : Vec3(Vec3::Zero());

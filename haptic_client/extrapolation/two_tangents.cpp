@@ -4,7 +4,7 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kSmallStep = 10e-6;  // m
+constexpr double kShortestWay = 10e-6;  // m
 }
 
 void TwoTangents::update(const Sample& sample) noexcept {
@@ -26,7 +26,7 @@ Vec3 TwoTangents::force(const Vec3& p, Time t) noexcept {
   if (!newest_.ahead || !newest_.here) return here;
   const Vec3 still = p - motion_.since_sample(t);  // where the organ stood at t_n
   const Vec3 d = newest_.ahead->p - newest_.p;
-  const double along = (still - newest_.p).dot(d) / (d.squaredNorm() + kSmallStep * kSmallStep);
+  const double along = (still - newest_.p).dot(d) / (d.squaredNorm() + kShortestWay * kShortestWay);
   if (!(along > 0)) return here;
   const double s = std::min(along, 1.0), w = s * s * (3 - 2 * s);
   return (1 - w) * here + w * force_at(*newest_.ahead, still);

@@ -83,7 +83,7 @@ std::vector<std::string> ClientConfig::scored_laws() const {
 
 Limiter::Settings ClientConfig::device_limits() const {
   Limiter::Settings settings = limits;
-  const DeviceLimits most = find_row(devices(), device.name, "device", device.where).limits(device);
+  const DeviceLimits most = row_of(device).limits(device);
   settings.max_force = std::min(settings.max_force, most.max_force);
   return settings;
 }

@@ -11,24 +11,19 @@
 
 #include "common/error.h"
 #include "common/log.h"
-#include "common/text.h"
 
 namespace palpate::client {
 namespace {
 
-const DeviceRow& row_of(const ClientConfig& config) {
-  return find_row(devices(), config.device.name, "device", config.device.where);
-}
-
-constexpr int kLook = 100;     // ms
-constexpr int kPatience = 15;  // looks without a heartbeat, once there was one
+constexpr int kLook = 100;      // ms
+constexpr int kMostStill = 15;  // looks without a heartbeat, once there was one
 
 enum class Ending { kGoodbye, kDied, kStopped };
 
 /// Waits until the client says goodbye, dies, or stands still.
 Ending wait_for_end(int pipe, const std::atomic<std::uint64_t>& beats) {
   std::uint64_t seen = 0;
-  for (int still = 0; still < kPatience;) {
+  for (int still = 0; still < kMostStill;) {
     pollfd end{pipe, POLLIN, 0};
     const int ready = poll(&end, 1, kLook);
     char byte;
@@ -43,7 +38,7 @@ Ending wait_for_end(int pipe, const std::atomic<std::uint64_t>& beats) {
 void make_safe(const ClientConfig& config) {
   const std::string name = config.device.name + (config.device.port.empty() ? "" : ":") + config.device.port;
   try {
-    if (row_of(config).make_safe(config.device) == 0)
+    if (row_of(config.device).make_safe(config.device) == 0)
       fail_at_run_time("it is not plugged in, or another program holds it");
     log::warning("the client died; zero force sent to {}", name);
   } catch (const std::exception& e) {
@@ -64,7 +59,7 @@ void guard(int pipe, pid_t client, const std::atomic<std::uint64_t>& beats,
     kill(client, SIGKILL);
   }
   for (const ClientConfig& config : configs) {  // at the same time: one must not wait for another
-    if (row_of(config).make_safe == nullptr) continue;
+    if (row_of(config.device).make_safe == nullptr) continue;
     const pid_t child = fork();
     if (child > 0) continue;
     make_safe(config);  // here, where there can be no other process
@@ -78,7 +73,7 @@ void guard(int pipe, pid_t client, const std::atomic<std::uint64_t>& beats,
 
 Guardian::Guardian(std::span<const ClientConfig> configs) {
   const bool needed = std::any_of(configs.begin(), configs.end(), [](const ClientConfig& config) {
-    return row_of(config).make_safe != nullptr;
+    return row_of(config.device).make_safe != nullptr;
   });
   if (!needed) return;
   void* const page = mmap(nullptr, sizeof *beats_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);

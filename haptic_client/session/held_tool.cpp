@@ -22,20 +22,16 @@ namespace {
 constexpr int kPriority = 80;
 constexpr double kTraceSeconds = 60;
 constexpr Time kWelcomePatience = std::chrono::seconds(5);
-constexpr int kPatience = 30;  // looks of 100 ms
+constexpr int kMostStandstills = 30;  // looks of 100 ms
 
 std::uint64_t random_number() {
   std::random_device device;
   return (std::uint64_t{device()} << 32 | device()) | 1;
 }
 
-const DeviceRow& row_of(const ClientConfig& config) {
-  return find_row(devices(), config.device.name, "device", config.device.where);
-}
-
 /// Ticks a second: as asked for, or what the device serves if that is less.
 double rate_of(const ClientConfig& config) {
-  return std::min(config.rate_hz, 1 / to_seconds(row_of(config).limits(config.device).min_period));
+  return std::min(config.rate_hz, 1 / to_seconds(row_of(config.device).limits(config.device).min_period));
 }
 
 std::size_t kept_ticks(const ClientConfig& config, const ToolFiles& files, std::optional<double> seconds) {
@@ -58,7 +54,7 @@ HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::stri
     : config_(config),
       files_(files),
       name_(std::move(name)),
-      device_(row_of(config).make(config.device)),
+      device_(row_of(config.device).make(config.device)),
       pipeline_(find_row(extrapolators(), config.method, "method", config.method_where).make(),
                 config.workspace, config.device_limits(), config.passivity, config.blend),
       observation_(config.scored_laws(), rate_of(config), config.score_where,
@@ -126,7 +122,7 @@ void HeldTool::end_if_stuck() {
   const std::uint64_t ticks = loop_.ticks;
   standstills_ = ticks == ticks_ ? standstills_ + 1 : 0;
   ticks_ = ticks;
-  if (standstills_ < kPatience) return;
+  if (standstills_ < kMostStandstills) return;
   log::error("{}the haptic loop stands still; the guardian takes the device over", name_);
   std::abort();
 }

@@ -8,8 +8,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kReach = 1.25;   // of the tool radius: tissue that touches, and a little around it
-constexpr double kStill = 1e-10;  // of the tool radius
+constexpr double kReach = 1.25;  // of the tool radius: tissue that touches, and a little around it
+constexpr double kFits = 1e-10;  // of the tool radius
 constexpr int kMaxRounds = 30;
 constexpr int kMaxVertices = 128;
 
@@ -103,7 +103,7 @@ Grip::Pull Grip::pull(const Vec3& p_W, Tissue& tissue, std::vector<NodalLoad>& l
   Pull pull{.vertices = static_cast<int>(held)};
   for (bool still = false; !still; ++pull.rounds) {
     tissue.positions = tissue.model->apply(loads);
-    still = misfit(p_W, tissue, own) <= kStill * reach_;
+    still = misfit(p_W, tissue, own) <= kFits * reach_;
     pull.converged = factor(tissue) && (still || pull.rounds < kMaxRounds);
     if (still || !pull.converged) break;
     auto change = misfit_.head(size);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kBalanced = 0.05;
 // Likewise: a body that its own motion leaves so well balanced rests.
 constexpr double kAtRest = 1e-6;
-constexpr double kMostBytes = 1e9;  // of columns, when a step begins
+constexpr double kMostColumnBytes = 1e9;  // of columns, when a step begins
 
 /// A body that nothing holds flies.
 DynamicsSettings settings_of(const ModelInputs& inputs) {
@@ -88,7 +88,7 @@ FreeMotion Implicit::free_motion(double dt) noexcept {
     }
     moving_ = true;
     touched_ = false;
-    if (static_cast<double>(columns_.size()) * sizeof(double) > kMostBytes) forget_columns();
+    if (static_cast<double>(columns_.size()) * sizeof(double) > kMostColumnBytes) forget_columns();
     if (!triangles_.empty()) foresee_columns();
     dynamics_.start_step(period_);
     if (supports_) {

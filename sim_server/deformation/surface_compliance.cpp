@@ -8,9 +8,9 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostBytes = 4e9;           // of compliance, however many are free
-constexpr std::size_t kCallsPerReport = 16;  // of progress: enough to keep cores busy
-constexpr std::size_t kTile = 64;            // rows and columns that stay in the cache
+constexpr double kMostComplianceBytes = 4e9;  // of compliance, however many are free
+constexpr std::size_t kCallsPerReport = 16;   // of progress: enough to keep cores busy
+constexpr std::size_t kTile = 64;             // rows and columns that stay in the cache
 
 void require_held_tissue(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
@@ -61,9 +61,9 @@ void SurfaceCompliance::require_room(double free) const {
   const double rows = 3 * static_cast<double>(vertices_.size()), bytes = rows * rows * sizeof(double);
   const std::string what = fmt::format("the compliance of {} reachable surface nodes", vertices_.size());
   const std::string remedy = "give [[tool]] a `reach` box around the part it touches";
-  if (bytes > kMostBytes)
+  if (bytes > kMostComplianceBytes)
     fail("{}: {} would take {}, and a scene is given no more than {} for it; {}", source_, what,
-         bytes_text(bytes), bytes_text(kMostBytes), remedy);
+         bytes_text(bytes), bytes_text(kMostComplianceBytes), remedy);
   require_memory(bytes, free, source_, what, remedy);
 }
 

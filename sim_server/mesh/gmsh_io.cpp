@@ -26,7 +26,7 @@ namespace {
 // Bytes for each of the file, checks of the mesh included; measured: 5 to 7.5.
 constexpr double kReadingTakes = 8;
 constexpr double kSmallFile = 1e6;  // bytes; to ask for the free memory would take longer than to read it
-constexpr std::int64_t kTriangle = 2, kTetrahedron = 4;  // element types of Gmsh
+constexpr std::int64_t kGmshTriangle = 2, kGmshTetrahedron = 4;  // element types of Gmsh
 
 /// How many nodes an element of Gmsh's `type` has; 0 for a type this reader has never heard of.
 int nodes_of_type(std::int64_t type) {
@@ -252,12 +252,12 @@ class MeshReader {
       cursor_.wrong("hexahedra, prisms or pyramids (type {}); mesh the solid with tetrahedra only", type);
     }
     if (count == 0) cursor_.wrong("unknown element type {}; save tetrahedra and triangles only", type);
-    if (type == kTetrahedron) {
+    if (type == kGmshTetrahedron) {
       Tetrahedron t{};
       for (int& vertex : t) vertex = node_index();
       // Format 2.2 repeats an element for each physical group it is in.
       if (all_.tetrahedra.empty() || all_.tetrahedra.back() != t) all_.tetrahedra.push_back(t);
-    } else if (type == kTriangle) {
+    } else if (type == kGmshTriangle) {
       std::vector<int>& vertices = vertices_of_group_[group];
       for (int i = 0; i < count; ++i) vertices.push_back(node_index());
     } else {

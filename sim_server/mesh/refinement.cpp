@@ -52,7 +52,7 @@ void tag_middles(const std::vector<Edge>& edges, TetMesh& fine) {
 /// Edges are ordered by length, those of equal length by their ends.
 using Ranked = std::pair<double, Edge>;
 
-Ranked longest_edge(const TetMesh& mesh, const Tetrahedron& t) {
+Ranked ranked_longest_edge(const TetMesh& mesh, const Tetrahedron& t) {
   Ranked most{-1, {}};
   for (const auto& [a, b] : kEdges) {
     const Edge edge = edge_of(t[a], t[b]);
@@ -68,7 +68,7 @@ std::vector<Edge> edges_to_cut(const TetMesh& mesh,
   std::vector<Ranked> longest;
   std::set<Edge> cut;
   for (const Tetrahedron& t : mesh.tetrahedra) {
-    longest.push_back(longest_edge(mesh, t));
+    longest.push_back(ranked_longest_edge(mesh, t));
     if (too_large(t, std::sqrt(longest.back().first))) cut.insert(longest.back().second);
   }
   const auto is_cut = [&](const Tetrahedron& t) {

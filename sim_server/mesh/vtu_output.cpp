@@ -11,7 +11,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr std::uint8_t kTetrahedron = 10, kQuadraticTetrahedron = 24;  // of VTK
+constexpr std::uint8_t kVtkTetrahedron = 10, kVtkQuadraticTetrahedron = 24;  // of VTK
 
 /// Arrays that stand at the end of the file, each after its size.
 class Appended {
@@ -56,7 +56,8 @@ void write_vtu(const std::filesystem::path& file, std::span<const Vec3> points, 
   const std::size_t count = cells.size() / static_cast<std::size_t>(points_per_cell);
   std::vector<int> ends(count);
   for (std::size_t i = 0; i < count; ++i) ends[i] = static_cast<int>(i + 1) * points_per_cell;
-  const std::vector<std::uint8_t> types(count, points_per_cell == 4 ? kTetrahedron : kQuadraticTetrahedron);
+  const std::vector<std::uint8_t> types(count,
+                                        points_per_cell == 4 ? kVtkTetrahedron : kVtkQuadraticTetrahedron);
   Appended appended;
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "

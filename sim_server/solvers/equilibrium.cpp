@@ -8,10 +8,10 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kArmijo = 1e-4, kShortest = 1e-4;  // line search: descent, and the shortest step
+constexpr double kArmijo = 1e-4, kShortestStep = 1e-4;  // line search: descent, and the shortest step
 constexpr double kLook = 1e-7;  // of what the supports move: how far to look ahead for what that asks for
 // Of the size of the body: forces that move a node by less, without any other, are rounding at rest.
-constexpr double kStill = 1e-7;
+constexpr double kRestsWithin = 1e-7;
 // Likewise: what a linear law leaves, whose steps of refinement cost little.
 constexpr double kSharp = 1e-12;
 constexpr double kFirstShift = 0.05, kLastShift = 1e3;  // of the stiffness at rest
@@ -33,7 +33,7 @@ class Newton {
     factor_.emplace(stiffness_.lower(), where, SparseCholesky::Precision::kSingle);
     Eigen::AlignedBox3d box;
     for (const Vec3& x : solid.rest()) box.extend(x);
-    still_ = kStill * box.diagonal().norm() * usual_;
+    still_ = kRestsWithin * box.diagonal().norm() * usual_;
   }
 
   /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.
@@ -109,7 +109,7 @@ class Newton {
       return true;
     }
     const double before = potential(x), slope = residual.dot(way), left = residual.norm();
-    for (double length = 1; length > kShortest; length /= 2) {
+    for (double length = 1; length > kShortestStep; length /= 2) {
       go(from, length, way, x);
       if (potential(x) <= before - kArmijo * length * slope || unbalanced(x).norm() < left) return true;
     }
