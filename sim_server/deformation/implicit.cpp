@@ -254,7 +254,7 @@ std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) noexcept
 
 std::vector<MemoryPart> Implicit::memory() const {
   std::vector<MemoryPart> parts{
-      {"elements", solid_.bytes()},
+      {"elements", solid_.bytes() + dynamics_.scratch_bytes()},
       {"motion", dynamics_.bytes()},
       {"compliance", static_cast<std::size_t>(columns_.size()) * sizeof(double)},
       {"positions", (rest_.size() + free_.size() + positions_.size() + external_.size()) * sizeof(Vec3) +

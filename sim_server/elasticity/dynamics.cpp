@@ -38,6 +38,7 @@ constexpr int kMostGradients = 20;
 Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,
                    const std::string& where)
     : solid_(solid),
+      scratch_(solid),
       settings_(settings),
       dofs_(std::move(held)),
       matrix_(solid, dofs_, settings, where),
@@ -117,7 +118,7 @@ Viscosity Dynamics::viscosity() const {
 }
 
 void Dynamics::factor() {
-  matrix_.build(solid_, x_, viscosity(), c_);
+  matrix_.build(solid_, x_, viscosity(), c_, scratch_);
   factored_at_ = x_;
   from_background_ = false;
   renewed();
@@ -154,7 +155,7 @@ const Columns& Dynamics::foreseen() const {
 
 /// f_int where the body is looked for now.
 void Dynamics::resist() {
-  if (!told_) solid_.forces(x_, internal_, viscosity());
+  if (!told_) solid_.forces(x_, internal_, viscosity(), scratch_);
   told_ = true;
 }
 
@@ -347,7 +348,7 @@ void Dynamics::finish_step() {
 
 void Dynamics::relax_stress(double h) {
   std::vector<Solid::State> states(solid_.points());
-  solid_.evaluate(x_, states);
+  solid_.evaluate(x_, states, {}, scratch_);
   const bool linear = solid_.material().law == ElasticLaw::kLinear;
   const auto& relaxations = solid_.material().relaxations;
   for (std::size_t p = 0; p < states.size(); ++p) {

@@ -83,6 +83,7 @@ class Dynamics {
   /// With which the body resists (nodes, N), viscosity counted, at the end of the last step.
   void forces(std::span<Vec3> f) const;
   std::size_t bytes() const;
+  std::size_t scratch_bytes() const { return scratch_.bytes(); }
 
  private:
   void factor();
@@ -103,6 +104,7 @@ class Dynamics {
   void relax_stress(double h);
 
   const Solid& solid_;
+  Solid::Scratch scratch_;
   DynamicsSettings settings_;
   FreeDofs dofs_;
   NewtonMatrix matrix_;

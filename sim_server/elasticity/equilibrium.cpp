@@ -21,13 +21,14 @@ class Newton {
   Newton(const Solid& solid, const StaticLoad& load, const std::string& where,
          const EquilibriumSettings& settings)
       : solid_(solid),
+        scratch_(solid),
         load_(load),
         settings_(settings),
         dofs_(load.held),
         stiffness_(solid.stiffness_matrix(dofs_)),
         internal_(static_cast<std::size_t>(solid.nodes())),
         external_(internal_.size()) {
-    solid.add_stiffness(solid.rest(), stiffness_);
+    solid.add_stiffness(solid.rest(), stiffness_, {}, scratch_);
     usual_ = stiffness_.lower().diagonal().mean();
     stiffness_.close_held(usual_);
     factor_.emplace(stiffness_.lower(), where, SparseCholesky::Precision::kSingle);
@@ -62,7 +63,7 @@ class Newton {
 
   /// f_ext - f_int over the free displacements, N.
   Eigen::VectorXd unbalanced(const std::vector<Vec3>& x) {
-    solid_.forces(x, internal_);
+    solid_.forces(x, internal_, {}, scratch_);
     std::fill(external_.begin(), external_.end(), Vec3::Zero());
     if (load_.forces) load_.forces(x, external_);
     Eigen::VectorXd residual(dofs_.count);
@@ -79,11 +80,11 @@ class Newton {
   bool factor_at(const std::vector<Vec3>& x) {
     if (is_linear()) return true;  // as at rest, everywhere
     stiffness_.set_zero();
-    solid_.add_stiffness(x, stiffness_);
+    solid_.add_stiffness(x, stiffness_, {}, scratch_);
     stiffness_.close_held(usual_);
     if (factor_->refactor(stiffness_.lower())) return true;
     StiffnessMatrix at_rest = solid_.stiffness_matrix(dofs_);
-    solid_.add_stiffness(solid_.rest(), at_rest);
+    solid_.add_stiffness(solid_.rest(), at_rest, {}, scratch_);
     at_rest.close_held(usual_);
     double added = 0;
     for (double shift = kFirstShift; shift < kLastShift; shift *= 4) {
@@ -94,10 +95,10 @@ class Newton {
     return false;
   }
 
-  double potential(const std::vector<Vec3>& x) const {
+  double potential(const std::vector<Vec3>& x) {
     double work = 0;
     for (std::size_t i = 0; i < x.size(); ++i) work += share_ * external_[i].dot(x[i] - solid_.rest()[i]);
-    return solid_.energy(x) - work;
+    return solid_.energy(x, scratch_) - work;
   }
 
   bool step(std::vector<Vec3>& x, const Eigen::VectorXd& residual) {
@@ -145,6 +146,7 @@ class Newton {
   }
 
   const Solid& solid_;
+  Solid::Scratch scratch_;
   const StaticLoad& load_;
   const EquilibriumSettings& settings_;
   FreeDofs dofs_;

@@ -30,10 +30,11 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
       usual_(matrix_.lower().diagonal().mean()),
       factor_(matrix_.lower(), where, precision_for(solid.material())) {}
 
-void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c) {
+void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c,
+                         Solid::Scratch& scratch) {
   c_ = c;
   matrix_.set_zero();
-  solid.add_stiffness(x, matrix_, viscosity);
+  solid.add_stiffness(x, matrix_, viscosity, scratch);
   matrix_.lower() *= 1 + beta_ * c;
   matrix_.add_to_diagonal(mass_, c * c + alpha_ * c);
   matrix_.close_held(usual_);
@@ -62,9 +63,10 @@ Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first, double enough)
 BackgroundMatrix::BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                                    const std::string& where)
     : solid_(solid),
+      scratch_(solid),
       matrix_(solid, dofs, settings, where),
       tolerance_(settings.tolerance),
-      bytes_(solid_.bytes() + matrix_.bytes()) {}
+      bytes_(scratch_.bytes() + matrix_.bytes()) {}
 
 void BackgroundMatrix::begin(std::span<const Vec3> x, const Viscosity& viscosity, double c,
                              std::vector<int> first) {
@@ -72,7 +74,7 @@ void BackgroundMatrix::begin(std::span<const Vec3> x, const Viscosity& viscosity
   memory_.assign(viscosity.memory.begin(), viscosity.memory.end());
   made_.first = std::move(first);
   work_ = std::async(std::launch::async, [this, scale = viscosity.scale, c] {
-    matrix_.build(solid_, x_, {scale, memory_}, c);
+    matrix_.build(solid_, x_, {scale, memory_}, c, scratch_);
     made_.values = matrix_.columns(made_.first, tolerance_);
   });
 }

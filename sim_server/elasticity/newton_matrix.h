@@ -18,7 +18,8 @@ class NewtonMatrix {
 
   /// A of the solid at `x` (nodes, m), factored. Where A is not positive definite, as of a body about to
   /// buckle, with more inertia.
-  void build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c);
+  void build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c,
+             Solid::Scratch& scratch);
   /// To be called where the last `build` has served badly: should that be for want of digits, the next will
   /// be in double precision. Cost of a solve.
   void check_precision();
@@ -53,7 +54,8 @@ struct Columns {
 };
 
 /// A second `NewtonMatrix` that a thread of its own makes ready while steps go on with the first
-/// (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159). Has its own copy of all it reads.
+/// (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159). The thread reads the body, which must
+/// outlive this, and its own copy of all that changes.
 class BackgroundMatrix {
  public:
   BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
@@ -70,7 +72,8 @@ class BackgroundMatrix {
   std::size_t bytes() const { return bytes_; }
 
  private:
-  Solid solid_;
+  const Solid& solid_;
+  Solid::Scratch scratch_;
   NewtonMatrix matrix_;
   double tolerance_;
   std::size_t bytes_;
