@@ -13,7 +13,7 @@ StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
   return matrix;
 }
 
-/// What a factor answers is looked at again, but for the linear law, where it is all there is.
+/// What the factor answers is corrected by later iterations, but of the linear law, which makes none.
 SparseCholesky::Precision precision_for(const Material& material) {
   using Precision = SparseCholesky::Precision;
   return material.law == ElasticLaw::kLinear ? Precision::kDouble : Precision::kSingle;
@@ -27,7 +27,7 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
       beta_(settings.rayleigh_stiffness),
       mass_(solid.masses()),
       matrix_(at_rest(solid, dofs, settings.flies)),
-      usual_(matrix_.lower().diagonal().mean()),
+      mean_diagonal_(matrix_.lower().diagonal().mean()),
       factor_(matrix_.lower(), where, precision_for(solid.material())) {}
 
 void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c,
@@ -37,7 +37,7 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Visc
   solid.add_stiffness(x, matrix_, viscosity, scratch);
   matrix_.lower() *= 1 + beta_ * c;
   matrix_.add_to_diagonal(mass_, c * c + alpha_ * c);
-  matrix_.close_held(usual_);
+  matrix_.close_held(mean_diagonal_);
   bool definite = factor_.refactor(matrix_.lower());
   for (double more = c * c; !definite && more < 1e6 * c * c; more *= 4) {
     matrix_.add_to_diagonal(mass_, more);
@@ -79,10 +79,10 @@ void BackgroundMatrix::begin(std::span<const Vec3> x, const Viscosity& viscosity
   });
 }
 
-void BackgroundMatrix::take(NewtonMatrix& matrix) {
+void BackgroundMatrix::exchange(NewtonMatrix& matrix) {
   work_.get();
   std::swap(matrix_, matrix);
-  std::swap(made_, taken_);
+  std::swap(made_, given_);
 }
 
 }  // namespace palpate::sim

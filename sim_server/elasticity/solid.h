@@ -13,7 +13,8 @@ namespace palpate::sim {
 TetMesh with_nodes(TetMesh mesh, ElementKind element);
 
 /// What viscosity adds to the stress at each quadrature point: the stress of now counts `scale` times, and
-/// `memory` (second Piola-Kirchhoff; Cauchy of the linear law; Pa) is what is left of the strains before.
+/// `memory` (second Piola-Kirchhoff; Cauchy of the linear law; Pa) is what the strains before have not yet
+/// lost.
 struct Viscosity {
   double scale = 1;
   std::span<const Mat3> memory = {};  ///< (points), or empty: none
