@@ -11,9 +11,9 @@ namespace {
 // Line search: the sufficient decrease, and the shortest trial step.
 constexpr double kArmijo = 1e-4, kShortestStep = 1e-4;
 // Share of what the supports move by which they are nudged, to find how the residual changes.
-constexpr double kNudge = 1e-7;
+constexpr double kSupportNudge = 1e-7;
 // Share of the size of the body: a force that moves a node by less counts as none.
-constexpr double kNegligibleWay = 1e-7;
+constexpr double kRestsWithin = 1e-7;
 // Relative residual to which a linear law is solved, whose steps of refinement cost little.
 constexpr double kSharp = 1e-12;
 constexpr double kFirstShift = 0.05, kLastShift = 1e3;  // of the stiffness at rest
@@ -36,7 +36,7 @@ class Newton {
     factor_.emplace(stiffness_.lower(), where, SparseCholesky::Precision::kSingle);
     Eigen::AlignedBox3d box;
     for (const Vec3& x : solid.rest()) box.extend(x);
-    negligible_force_ = kNegligibleWay * box.diagonal().norm() * mean_diagonal_;
+    negligible_force_ = kRestsWithin * box.diagonal().norm() * mean_diagonal_;
   }
 
   /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.
@@ -139,9 +139,9 @@ class Newton {
       }
       return moved;
     };
-    const std::vector<Vec3> ahead = moved_by(kNudge * share);
+    const std::vector<Vec3> ahead = moved_by(kSupportNudge * share);
     const Eigen::VectorXd before = residual_at(x);
-    const Eigen::VectorXd pull = (residual_at(ahead) - before) / kNudge;
+    const Eigen::VectorXd pull = (residual_at(ahead) - before) / kSupportNudge;
     if (!factor_at(x)) return;
     const Eigen::VectorXd d = factor_->solve(pull).col(0);
     x = moved_by(share);

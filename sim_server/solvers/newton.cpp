@@ -3,14 +3,14 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kShortestStep = 1e-4;  // of the search direction
+constexpr double kShortestTrialStep = 1e-4;  // of the search direction
 
 }  // namespace
 
 TrialStep line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& force,
                       const ResidualAlong& residual_along) {
   const double push = std::abs(force.dot(d));
-  for (double s = 1; s > kShortestStep; s /= 2) {
+  for (double s = 1; s > kShortestTrialStep; s /= 2) {
     const Residual trial = residual_along(s);
     if (trial.force.dot(d) >= -push && trial.relative != 1) return {s, trial.relative};
   }
