@@ -99,12 +99,12 @@ int step_to_balance(Dynamics& dynamics, const Loads& loads, double t, double h, 
   constexpr int kMostNewton = 50;
   constexpr double kRounding = 1e-6;  // of the forces at work
   dynamics.start_step(h);
-  loads.put_held(t, dynamics.put());
+  loads.put_held(t, dynamics.mutable_position());
   for (int k = 1; k <= kMostNewton; ++k) {
     std::fill(external.begin(), external.end(), Vec3::Zero());
     loads.add_forces(dynamics.position(), external);
-    if (dynamics.improve(external, tolerance) > tolerance) continue;
-    if (!(dynamics.unbalanced() <= std::max(tolerance, kRounding)))
+    if (dynamics.iterate(external, tolerance) > tolerance) continue;
+    if (!(dynamics.relative_residual() <= std::max(tolerance, kRounding)))
       return 0;  // flung about beyond all measure
     dynamics.finish_step();
     return k;

@@ -8,10 +8,8 @@
 namespace palpate::sim {
 namespace {
 
-// Of the forces at work: what may be left before the last correction of a step.
-constexpr double kBalanced = 0.05;
-// Likewise: a body that its own motion leaves so well balanced rests.
-constexpr double kAtRest = 1e-6;
+constexpr double kBalanced = 0.05;  // relative residual of the last iteration of a step that counts as solved
+constexpr double kAtRest = 1e-6;    // relative residual of the predictor of a body that rests
 constexpr double kMostColumnBytes = 1e9;  // of columns, when a step begins
 
 /// A body that nothing holds flies.
@@ -56,9 +54,9 @@ Implicit::Implicit(const ModelInputs& inputs)
     triangles_ = inputs.surface.triangles;
   free_ = positions_ = rest_;
   dynamics_.start_step(period_);
-  dynamics_.improve(external());
-  held_compliance_ = 1 / dynamics_.matrix().largest();
-  linearised();
+  dynamics_.iterate(external_forces());
+  held_compliance_ = 1 / dynamics_.matrix().largest_diagonal();
+  update_surface();
   if (supports_ || inputs.scene.flies()) free_ = positions_ = rest_;
   inputs.progress("factoring the stiffness matrix", 1);
 }
@@ -77,28 +75,29 @@ void Implicit::begin(const ModelInputs& inputs) {
       .moved = scene_loads_.moved()};
   std::vector<Vec3> x = solid_.rest(), v(x.size(), Vec3::Zero());
   for (const SupportResponse& response : responses) response.add(0, x, v);
-  dynamics_.stand_at(find_equilibrium(solid_, load, inputs.scene.source).x, std::move(v));
+  dynamics_.set_state(find_equilibrium(solid_, load, inputs.scene.source).x, v);
 }
 
 FreeMotion Implicit::free_motion(double dt) noexcept {
   if (dt > 0) {
-    if (moving_) {
-      follow_loads();
+    if (in_step_) {
+      apply_new_loads();
       dynamics_.finish_step();
     }
-    moving_ = true;
-    touched_ = false;
-    if (static_cast<double>(columns_.size()) * sizeof(double) > kMostColumnBytes) forget_columns();
-    if (!triangles_.empty()) foresee_columns();
+    in_step_ = true;
+    relinearised_ = false;
+    if (static_cast<double>(columns_.size()) * sizeof(double) > kMostColumnBytes) clear_columns();
+    if (!triangles_.empty()) request_columns();
     dynamics_.start_step(period_);
     if (supports_) {
       supports_->advance(period_);
-      scene_loads_.put_held(supports_->time(), dynamics_.put());
+      scene_loads_.put_held(supports_->time(), dynamics_.mutable_position());
     }
-    met_ = loads_;
-    looks_ = dynamics_.settle(external(), 1, tolerance_);
-    if (dynamics_.unbalanced() <= std::max(tolerance_, kAtRest) && !never_changes()) dynamics_.refresh();
-    linearised();
+    linearised_loads_ = loads_;
+    iterations_ = dynamics_.solve(external_forces(), 1, tolerance_);
+    if (dynamics_.relative_residual() <= std::max(tolerance_, kAtRest) && !law_is_linear())
+      dynamics_.refactor_if_moved();
+    update_surface();
   }
   return motion();
 }
@@ -107,17 +106,17 @@ FreeMotion Implicit::motion() const noexcept {
   return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>(), positions_};
 }
 
-/// All of the body goes where the loads of now lead by the linearisation that stands.
-void Implicit::follow_loads() noexcept {
-  if (loads_ == met_) return;
+/// Moves all of the body by what the linearisation foretells of the loads that are new to it.
+void Implicit::apply_new_loads() noexcept {
+  if (loads_ == linearised_loads_) return;
   Eigen::VectorXd change = Eigen::VectorXd::Zero(dynamics_.dofs().count);
   add_response(loads_, 1, change);
-  add_response(met_, -1, change);
-  met_ = loads_;
-  dynamics_.follow(change, external());
+  add_response(linearised_loads_, -1, change);
+  linearised_loads_ = loads_;
+  dynamics_.apply_increment(change, external_forces());
 }
 
-/// Adds what moves by loads, times `sign`, m by unknowns.
+/// Adds the displacement (m, by unknowns) that loads cause by the linearisation, times `sign`.
 void Implicit::add_response(std::span<const NodalLoad> loads, double sign,
                             Eigen::VectorXd& moved) const noexcept {
   std::vector<int> vertices;
@@ -129,41 +128,41 @@ void Implicit::add_response(std::span<const NodalLoad> loads, double sign,
 }
 
 std::optional<FreeMotion> Implicit::relinearise() noexcept {
-  if (never_changes() || ++looks_ > max_newton_) return {};
-  follow_loads();
-  if (!touched_) dynamics_.push_anew();
-  touched_ = true;
-  if (dynamics_.improve(external(), tolerance_) <= tolerance_) return {};
-  linearised();
+  if (law_is_linear() || ++iterations_ > max_newton_) return {};
+  apply_new_loads();
+  if (!relinearised_) dynamics_.loads_changed();
+  relinearised_ = true;
+  if (dynamics_.iterate(external_forces(), tolerance_) <= tolerance_) return {};
+  update_surface();
   return motion();
 }
 
 bool Implicit::balanced() const noexcept {
-  return never_changes() || (dynamics_.unbalanced() <= kBalanced && !dynamics_.inside_out());
+  return law_is_linear() || (dynamics_.relative_residual() <= kBalanced && !dynamics_.inside_out());
 }
 
-/// A new linearisation, or a new place of an old one: the surface there, and free of the loads it was made
-/// under.
-void Implicit::linearised() noexcept {
+/// After each iteration: the surface at the trial point, and without the loads that the linearisation was
+/// made under. Drops the columns of another factor.
+void Implicit::update_surface() noexcept {
   if (factors_ != dynamics_.factors()) {
     factors_ = dynamics_.factors();
-    drop_columns();
+    replace_columns();
   }
   for (std::size_t v = 0; v < node_.size(); ++v) positions_[v] = free_[v] = dynamics_.position()[node_[v]];
-  press(met_, -1, free_);
+  press(linearised_loads_, -1, free_);
 }
 
-/// What the scene and the tools push with (nodes, N).
-std::span<const Vec3> Implicit::external() noexcept {
+/// Of the scene and of the tools, at the trial point (nodes, N).
+std::span<const Vec3> Implicit::external_forces() noexcept {
   std::fill(external_.begin(), external_.end(), Vec3::Zero());
   scene_loads_.add_forces(dynamics_.position(), external_);
-  for (const NodalLoad& load : met_) external_[node_[load.vertex]] += load.force;
+  for (const NodalLoad& load : linearised_loads_) external_[node_[load.vertex]] += load.force;
   return external_;
 }
 
 /// Has the next factor of the background come with the columns asked for since the last one, and with those
-/// around them, where a tool that slides will ask.
-void Implicit::foresee_columns() noexcept {
+/// around them, which a tool that slides will need.
+void Implicit::request_columns() noexcept {
   std::vector<std::uint8_t> near = asked_;
   for (const Triangle& t : triangles_) {
     if ((asked_[t[0]] | asked_[t[1]] | asked_[t[2]]) != 0) near[t[0]] = near[t[1]] = near[t[2]] = 1;
@@ -172,25 +171,25 @@ void Implicit::foresee_columns() noexcept {
   for (std::size_t v = 0; v < dof_.size(); ++v) {
     if (near[v] != 0 && dof_[v] >= 0) first.push_back(dof_[v]);
   }
-  dynamics_.foresee(std::move(first));
+  dynamics_.request_columns(std::move(first));
 }
 
-/// So many were touched: those that are asked for again are solved for again.
-void Implicit::forget_columns() noexcept {
+/// Frees the memory of all columns; those that are asked for again are solved for again.
+void Implicit::clear_columns() noexcept {
   std::fill(slot_.begin(), slot_.end(), -1);
   slots_ = 0;
   columns_.resize(0, 0);
 }
 
-/// Of an older factor; takes those that came with the new one.
-void Implicit::drop_columns() noexcept {
+/// Drops the columns of the last factor for those that came with the new one, if any did.
+void Implicit::replace_columns() noexcept {
   std::fill(slot_.begin(), slot_.end(), -1);
   std::fill(asked_.begin(), asked_.end(), std::uint8_t{0});
   slots_ = 0;
-  const Columns& foreseen = dynamics_.foreseen();
-  for (std::size_t k = 0; k < foreseen.first.size(); ++k)
-    slot_[vertex_[static_cast<std::size_t>(foreseen.first[k] / 3)]] = static_cast<int>(k);
-  if (!foreseen.first.empty()) keep_columns(foreseen.values);
+  const Columns& ready = dynamics_.background_columns();
+  for (std::size_t k = 0; k < ready.first.size(); ++k)
+    slot_[vertex_[static_cast<std::size_t>(ready.first[k] / 3)]] = static_cast<int>(k);
+  if (!ready.first.empty()) keep_columns(ready.values);
 }
 
 void Implicit::find_columns(std::span<const int> vertices) const noexcept {
@@ -231,7 +230,7 @@ void Implicit::compliance(std::span<const int> vertices, ContactPatch& patch) co
   }
 }
 
-/// Moves `positions` by what loads do, times `sign`.
+/// Moves `positions` (surface vertices, m) by the displacement that loads cause, times `sign`.
 void Implicit::press(std::span<const NodalLoad> loads, double sign,
                      std::span<Vec3> positions) const noexcept {
   if (loads.empty()) return;
@@ -254,7 +253,7 @@ std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) noexcept
 
 std::vector<MemoryPart> Implicit::memory() const {
   std::vector<MemoryPart> parts{
-      {"elements", solid_.bytes()},
+      {"elements", solid_.bytes() + dynamics_.scratch_bytes()},
       {"motion", dynamics_.bytes()},
       {"compliance", static_cast<std::size_t>(columns_.size()) * sizeof(double)},
       {"positions", (rest_.size() + free_.size() + positions_.size() + external_.size()) * sizeof(Vec3) +

@@ -7,17 +7,16 @@ namespace palpate::sim {
 
 /// Tissue of any law in motion, by implicit steps of T = 1 / rate_hz of the scene (`Dynamics`): stable
 /// whatever the stiffness. At rest under the scene's [[load]] when the run begins; where nothing is fixed, at
-/// rest without, and it flies. A step looks for its end
-/// under the loads of the last one, linearises there, and answers the contact solver from that: compliance W
-/// = J A^-1 J^T, dt^2 of the mass-like matrix in it, which is also that over the sample interval, as loads
-/// are held over the step. Then it looks again where contact led, until Newton's method has settled with
-/// contact inside its loop, at most `max_newton` times. The factor of A is kept over steps as long as it
-/// serves (where the body rests, none is older than its shape), or made in the background and taken every
-/// `refresh_steps`: that takes more looks, but what they converge to is balanced against the true forces.
-/// Columns of W are solved for as they are asked for, and kept while the factor stands: for a linear law from
-/// then on; with a factor of the background come those that were asked for while it was made. Moving supports
-/// stand at the end of a step where they shall be then; the run begins with the body in equilibrium, at the
-/// velocities that it will have by them.
+/// rest without, and it flies. A step iterates once under the loads of the last one, linearises there, and
+/// answers the contact solver from that: compliance W = J A^-1 J^T, dt^2 of the mass-like matrix in it, which
+/// is also that over the sample interval, as loads are held over the step. Then it iterates again from where
+/// contact led, until Newton's method has converged with contact inside its loop, at most `max_newton` times.
+/// The factor of A is kept over steps as long as it serves (where the body rests, none is older than its
+/// shape), or made in the background and exchanged every `refresh_steps`: that takes more iterations, but
+/// they converge to the balance of the true forces. Columns of W are solved for as they are asked for, and
+/// kept while the factor stands: for a linear law from then on; with a factor of the background come those
+/// that were asked for while it was made. Moving supports stand at the end of a step where they shall be
+/// then; the run begins with the body in equilibrium, at the velocities that it will have by them.
 class Implicit : public DeformationModel {
  public:
   /// Throws `Error` without material or rate, or where what is held does not hold the body.
@@ -28,25 +27,25 @@ class Implicit : public DeformationModel {
   bool compliance_is_constant() const noexcept override { return false; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::optional<FreeMotion> relinearise() noexcept override;
-  /// Whether the last look found no more than 5 % of the forces at work unbalanced, and no element inverted
-  /// for good (`Dynamics::inside_out`).
+  /// Whether the last iteration found a relative residual of at most 5 %, and no element inverted for good
+  /// (`Dynamics::inside_out`).
   bool balanced() const noexcept override;
   std::vector<MemoryPart> memory() const override;
 
  private:
   void begin(const ModelInputs& inputs);
-  void follow_loads() noexcept;
+  void apply_new_loads() noexcept;
   FreeMotion motion() const noexcept;
-  void linearised() noexcept;
-  void foresee_columns() noexcept;
-  void drop_columns() noexcept;
-  void forget_columns() noexcept;
+  void update_surface() noexcept;
+  void request_columns() noexcept;
+  void replace_columns() noexcept;
+  void clear_columns() noexcept;
   void find_columns(std::span<const int> vertices) const noexcept;
   void keep_columns(const Eigen::MatrixXd& columns) const noexcept;
   void add_response(std::span<const NodalLoad> loads, double sign, Eigen::VectorXd& moved) const noexcept;
   void press(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const noexcept;
-  std::span<const Vec3> external() noexcept;
-  bool never_changes() const { return solid_.material().law == ElasticLaw::kLinear; }
+  std::span<const Vec3> external_forces() noexcept;
+  bool law_is_linear() const { return solid_.material().law == ElasticLaw::kLinear; }
 
   Solid solid_;
   Loads scene_loads_;
@@ -54,15 +53,15 @@ class Implicit : public DeformationModel {
   /// Where some move. Only for how fast the surface goes by them (by a linearisation about rest), and when.
   std::optional<MovingSupports> supports_;
   double period_, tolerance_;
-  int max_newton_, looks_ = 0;       // linearisations of this step
+  int max_newton_, iterations_ = 0;  // of Newton's method in this step
   int factors_ = 0;                  // of the columns
-  bool moving_ = false;              // a step has begun
-  bool touched_ = false;             // and was looked at again
+  bool in_step_ = false;             // a step has begun
+  bool relinearised_ = false;        // and has been linearised again
   std::vector<int> node_, dof_;      // per surface vertex: its node; its first unknown, or -1: held
-  std::vector<Triangle> triangles_;  // of the surface, where columns are foreseen
+  std::vector<Triangle> triangles_;  // of the surface, where columns are requested of the background
   std::vector<int> vertex_;          // per three unknowns: the surface vertex, or -1: inside
   std::vector<Vec3> rest_, free_, positions_, external_;  // m; surface vertices; N, nodes
-  std::vector<NodalLoad> loads_, met_;                    // now; those that the linearisation was made under
+  std::vector<NodalLoad> loads_, linearised_loads_;       // now; those that the linearisation was made under
   double held_compliance_ = 0;                            // m/N
   mutable std::vector<int> slot_;                         // per surface vertex: of its columns, or -1
   mutable std::vector<std::uint8_t> asked_;  // per surface vertex: for its columns, of this factor

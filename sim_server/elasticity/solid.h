@@ -13,7 +13,8 @@ namespace palpate::sim {
 TetMesh with_nodes(TetMesh mesh, ElementKind element);
 
 /// What viscosity adds to the stress at each quadrature point: the stress of now counts `scale` times, and
-/// `memory` (second Piola-Kirchhoff; Cauchy of the linear law; Pa) is what is left of the strains before.
+/// `memory` (second Piola-Kirchhoff; Cauchy of the linear law; Pa) is what the strains before have not yet
+/// lost.
 struct Viscosity {
   double scale = 1;
   std::span<const Mat3> memory = {};  ///< (points), or empty: none
@@ -29,10 +30,13 @@ struct Viscosity {
 /// - `kQuadratic`: ten nodes, straight edges with one more node in the middle of each, four points
 /// (Zienkiewicz
 ///   and Taylor 2000, volume 1, tables 8.5 and 9.3).
-/// Sums run over tetrahedra in their order, whatever the number of threads: the same bytes. After
-/// construction only the scratch of a call changes: one thread at a time.
+/// Sums run over tetrahedra in their order, whatever the number of threads: the same bytes. A body does not
+/// change after its construction; what a call writes to is the caller's `Scratch`, so that several threads
+/// may ask at once, each with its own. Calls without one make their own, which suits set-up and tests.
 class Solid {
  public:
+  class Scratch;
+
   /// Throws `Error` where `mesh` is not as `with_nodes` makes it for this material.
   Solid(const TetMesh& mesh, const Material& material);
 
@@ -42,10 +46,14 @@ class Solid {
   const Material& material() const { return material_; }
 
   /// Elastic energy at positions `x` (nodes, m), J; without viscosity.
+  double energy(std::span<const Vec3> x, Scratch& scratch) const;
   double energy(std::span<const Vec3> x) const;
   /// Forces (nodes, N) with which the body resists being at `x`: dE/dx.
+  void forces(std::span<const Vec3> x, std::span<Vec3> f, const Viscosity& viscosity, Scratch& scratch) const;
   void forces(std::span<const Vec3> x, std::span<Vec3> f, const Viscosity& viscosity = {}) const;
   /// Adds the derivative of `forces` to `k`.
+  void add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Viscosity& viscosity,
+                     Scratch& scratch) const;
   void add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Viscosity& viscosity = {}) const;
   /// A matrix with room for it.
   StiffnessMatrix stiffness_matrix(const FreeDofs& dofs) const;
@@ -76,7 +84,10 @@ class Solid {
     double energy;
   };
   /// The energy is the law's at once, whatever has relaxed.
+  void evaluate(std::span<const Vec3> x, std::span<State> at_points, const Viscosity& viscosity,
+                Scratch& scratch) const;
   void evaluate(std::span<const Vec3> x, std::span<State> at_points, const Viscosity& viscosity = {}) const;
+  /// Without any scratch.
   std::size_t bytes() const;
 
  private:
@@ -85,17 +96,16 @@ class Solid {
   void build_linear(const TetMesh& mesh);
   void build_quadratic(const TetMesh& mesh);
   void gather_patches();
-  void average_dilation(std::span<const Vec3> x) const;
-  double mean_dilation(const int* nodes) const;
+  void average_dilation(std::span<const Vec3> x, Scratch& scratch) const;
   FibreLaw fibre_law(const Mat3& F) const;
   template <class Law, class Work>
   void each_element(std::span<const Vec3> x, std::size_t begin, std::size_t end, const Work& work) const;
   template <class Law>
   void element_forces(const Element& element, const Mat3* F, const Mat3* R, Vec3* f,
-                      const Viscosity& viscosity) const;
+                      const Viscosity& viscosity, const Scratch& scratch) const;
   template <class Law>
   void element_stiffness(const Element& element, const Mat3* F, const Mat3* R, Mat3* k,
-                         const Viscosity& viscosity) const;
+                         const Viscosity& viscosity, const Scratch& scratch) const;
   void add_extras(const Element& element, int q, const Mat3& F, const Viscosity& viscosity, Mat3* k) const;
   void add_nodal_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, double scale) const;
   void collect_terms(std::size_t a, std::span<const Vec3> along,
@@ -111,9 +121,23 @@ class Solid {
   // Only for averaged dilation: the tetrahedra around each vertex, and its share of their volume.
   std::vector<int> around_, around_first_;
   std::vector<double> nodal_volume_;
-  mutable std::vector<double> dilation_, nodal_dilation_;
-  mutable std::vector<Vec3> force_scratch_;
-  mutable std::vector<Mat3> stiffness_scratch_;
+};
+
+/// What `Solid` writes to while it works: made once for a body and a thread, it spares each call the
+/// allocation.
+class Solid::Scratch {
+ public:
+  explicit Scratch(const Solid& solid);
+  std::size_t bytes() const;
+
+ private:
+  friend class Solid;
+  /// Mean over the four vertices of a tetrahedron, which sets the averaged pressure in it.
+  double mean_dilation(const int* nodes) const;
+
+  std::vector<double> dilation_, nodal_dilation_;  // only averaged: of each element, and of each vertex
+  std::vector<Vec3> forces_;                       // of a batch of elements, (elements x corners) N
+  std::vector<Mat3> blocks_;                       // of their stiffness, the lower triangles, N/m
 };
 
 }  // namespace palpate::sim

@@ -7,6 +7,14 @@ namespace palpate::sim {
 
 constexpr int kMostCorners = 10, kMostPoints = 4;
 
+/// Elements whose forces or stiffness wait in the scratch to be added up in their order.
+constexpr std::size_t kElementsOfBatch = 2048;
+
+/// 3 x 3 blocks of the lower triangle of an element's stiffness.
+constexpr std::size_t blocks_of(int corners) {
+  return static_cast<std::size_t>(corners * (corners + 1) / 2);
+}
+
 /// One tetrahedron with all it takes to work on it.
 struct Solid::Element {
   Element(const Solid& solid, std::size_t e)

@@ -1,6 +1,5 @@
 #include "sim_server/solvers/dynamics.h"
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "sim_server/elasticity/inversion.h"
@@ -8,391 +7,210 @@
 namespace palpate::sim {
 namespace {
 
-// Of what is unbalanced: a step with an old factor that leaves more is a reason to factor anew.
-constexpr double kWorthwhile = 0.3;
-// Likewise: so little may be rounding, where a fresh factor makes it no less.
-constexpr double kRounding = 1e-6;
-// Of what a fresh factor made no less: so much is the same rounding, and no reason to factor again.
-constexpr double kSame = 2;
-// Of the size of the body: what moves a node by less is no force at work, so that a body at rest is at rest.
-constexpr double kStill = 1e-9;
-constexpr double kMute = 1e-3;  // of such a force: what a fresh factor does not lessen is rounding as well
-// Likewise: a factor of a place that far off is of another place.
-constexpr double kElsewhere = 1e-4;
-// Likewise: by so much nodes are moved to learn how forces change.
-constexpr double kNudge = 1e-7;
-// Of the forces at work: where the last way of a step leaves more, velocities mean nothing, and it ends at
-// rest: each step from there lowers the energy, however far Newton's method is from balance.
-constexpr double kAdrift = 0.1;
-// Likewise: where no more is unbalanced, and loads change by no more, linearisation is trusted without
-// another look at the forces.
-constexpr double kCalm = 0.1;
-// Of a way that overshoots: the shortest part that is tried.
-constexpr double kShortest = 1e-4;
-// Conjugate gradients end when no more than this share is left, or after so many.
-constexpr double kInexact = 0.1;
-constexpr int kMostGradients = 20;
+// Shares of the size of the body. A force that moves a node by less than the first counts as none, so that a
+// body at rest is at rest; a factor of a place farther off than the second is of elsewhere; and so far nodes
+// are moved to find how forces change.
+constexpr double kNegligibleWay = 1e-9, kElsewhere = 1e-4, kNudge = 1e-7;
+// Relative residuals. Where the last trial step of a step leaves more than the first, velocities mean
+// nothing, and the step ends at rest: each step from there lowers the energy, however far Newton's method is
+// from balance. Where no more than the second is left, and loads change by no more, the linearisation is
+// trusted without a line search. A body whose step began with no more than the third has come to rest.
+constexpr double kAdrift = 0.1, kTrusted = 0.1, kAtRest = 1e-6;
+
+double size_of(const Solid& solid) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : solid.rest()) box.extend(x);
+  return box.diagonal().norm();
+}
+
+double largest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
+  double squared = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) squared = std::max(squared, (a[i] - b[i]).squaredNorm());
+  return std::sqrt(squared);
+}
+
+/// Of a linear law one factor serves for ever.
+bool factors_in_background(const Solid& solid, const DynamicsSettings& settings) {
+  return settings.solver != DynamicsSettings::Solver::kDirect && solid.material().law != ElasticLaw::kLinear;
+}
+
+bool learns(const Solid& solid, const DynamicsSettings& settings) {
+  return factors_in_background(solid, settings) && settings.solver == DynamicsSettings::Solver::kQuasiNewton;
+}
 
 }  // namespace
 
 Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,
                    const std::string& where)
     : solid_(solid),
-      settings_(settings),
-      dofs_(std::move(held)),
-      matrix_(solid, dofs_, settings, where),
-      x_(solid.rest()),
-      x_before_(x_),
-      v_before_(x_.size(), Vec3::Zero()),
-      x_then_(x_),
-      v_then_(v_before_),
-      from_(x_),
-      from_v_(v_before_),
-      internal_(x_.size(), Vec3::Zero()),
-      internal_before_(internal_),
-      internal_then_(internal_),
-      from_internal_(internal_) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : x_) box.extend(x);
-  reach_ = box.diagonal().norm();
-  still_ = kStill * reach_ * matrix_.usual();
-  // Of a linear law one factor serves for ever.
-  if (settings.solver != DynamicsSettings::Solver::kDirect && solid.material().law != ElasticLaw::kLinear)
-    background_.emplace(solid, dofs_, settings, where);
-  const std::size_t terms = solid.material().relaxations.size();
-  if (terms == 0) return;
-  stress_.assign(solid.points(), Mat3::Zero());
-  memory_ = stress_;
-  terms_.assign(terms * solid.points(), Mat3::Zero());
+      learns_(learns(solid, settings)),
+      motion_(solid, std::move(held), settings),
+      matrix_(solid, motion_.dofs(), settings, where),
+      size_(size_of(solid)),
+      policy_({.background = factors_in_background(solid, settings),
+               .forgives = learns_,
+               .refresh_steps = settings.refresh_steps,
+               .negligible_force = kNegligibleWay * size_ * matrix_.mean_diagonal()}) {
+  motion_.set_negligible_force(kNegligibleWay * size_ * matrix_.mean_diagonal());
+  if (factors_in_background(solid, settings)) background_.emplace(solid, motion_.dofs(), settings, where);
 }
 
-void Dynamics::stand_at(std::vector<Vec3> x, std::vector<Vec3> v) {
-  x_ = x_before_ = x_then_ = std::move(x);
-  told_ = told_before_ = false;
-  if (!v.empty()) v_before_ = std::move(v);
-  resist();
-  internal_before_ = internal_then_ = internal_;
+void Dynamics::set_state(std::vector<Vec3> x, std::span<const Vec3> v) {
+  motion_.restart(std::move(x), v);
 }
 
 void Dynamics::start_step(double h) {
-  h_ = h;
-  told_ = false;
-  quasi_newton_.begin();
-  if (learns()) too_old_ = false;
-  improved_ = false;
-  remains_ = 0;
-  predicted_ = true;
-  const bool second = settings_.second_order && steps_ > 0;
-  c_ = (second ? 1.5 : 1) / h;
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    from_[i] = second ? Vec3((4 * x_before_[i] - x_then_[i]) / 3) : x_before_[i];
-    from_v_[i] = second ? Vec3((4 * v_before_[i] - v_then_[i]) / 3) : v_before_[i];
-    from_internal_[i] =
-        second ? Vec3((4 * internal_before_[i] - internal_then_[i]) / 3) : internal_before_[i];
-    if (dofs_.first[i] >= 0) x_[i] = x_before_[i] + h * v_before_[i];
-  }
-  scale_ = 1;
-  if (!terms_.empty()) remember(h);
-  if (background_ && steps_ % settings_.refresh_steps == 0 && steps_ != exchanged_) {
-    exchanged_ = steps_;
-    exchange_factors();
-  }
-}
-
-/// What is left of the stresses before, at the end of a step of `h`.
-void Dynamics::remember(double h) {
-  std::fill(memory_.begin(), memory_.end(), Mat3::Zero());
-  const auto& relaxations = solid_.material().relaxations;
-  for (std::size_t k = 0; k < relaxations.size(); ++k) {
-    const auto& [share, time] = relaxations[k];
-    const double fade = std::exp(-h / time), gamma = -std::expm1(-h / time) * time / h;
-    scale_ += share * (gamma - 1);
-    for (std::size_t p = 0; p < memory_.size(); ++p)
-      memory_[p] += fade * terms_[k * memory_.size() + p] - share * gamma * stress_[p];
-  }
-}
-
-Viscosity Dynamics::viscosity() const {
-  return {scale_, memory_};
+  quasi_newton_.restart();
+  trial_residual_ = 0;
+  at_predictor_ = true;
+  motion_.begin_step(h);
+  if (policy_.begin_step(motion_.time().steps())) exchange_factors();
 }
 
 void Dynamics::factor() {
-  matrix_.build(solid_, x_, viscosity(), c_);
-  factored_at_ = x_;
+  matrix_.build(solid_, motion_.position(), motion_.viscosity(), motion_.time().c(), motion_.scratch());
+  factored_at_.assign(motion_.position().begin(), motion_.position().end());
   from_background_ = false;
-  renewed();
+  count_new_factor();
 }
 
-void Dynamics::refresh() {
-  if (background_) return;
-  double farthest = 0;
-  for (std::size_t i = 0; i < x_.size(); ++i)
-    farthest = std::max(farthest, (x_[i] - factored_at_[i]).squaredNorm());
-  if (std::sqrt(farthest) > kElsewhere * reach_) factor();
-}
-
-void Dynamics::renewed() {
-  too_old_ = false;
-  quasi_newton_.forget();
+void Dynamics::count_new_factor() {
+  quasi_newton_.clear();
   ++factors_;
+}
+
+void Dynamics::refactor_if_moved() {
+  if (background_ || largest_distance(motion_.position(), factored_at_) <= kElsewhere * size_) return;
+  factor();
+  policy_.replaced();
 }
 
 /// Takes the factor that the background has made, and has it begin the next from where the body is now.
 void Dynamics::exchange_factors() {
   if (background_->begun()) {
-    background_->take(matrix_);
+    background_->exchange(matrix_);
     from_background_ = true;
-    renewed();
+    count_new_factor();
+    policy_.replaced();
   }
-  background_->begin(x_before_, viscosity(), c_, foreseen_);
+  background_->begin(motion_.time().position(), motion_.viscosity(), motion_.time().c(), requested_columns_);
 }
 
-const Columns& Dynamics::foreseen() const {
+const Columns& Dynamics::background_columns() const {
   static const Columns none;
   return from_background_ ? background_->columns() : none;
 }
 
-/// f_int where the body is looked for now.
-void Dynamics::resist() {
-  if (!told_) solid_.forces(x_, internal_, viscosity());
-  told_ = true;
+Residual Dynamics::evaluate(std::span<const Vec3> external) {
+  Residual residual = motion_.residual(external);
+  relative_residual_ = residual.relative;
+  return residual;
 }
 
-/// f_ext less all the rest, over the unknowns, N.
-Eigen::VectorXd Dynamics::imbalance(std::span<const Vec3> external) {
-  resist();
-  const double alpha = settings_.rayleigh_mass, damped = settings_.rayleigh_stiffness * c_;
-  const std::vector<double>& mass = matrix_.masses();
-  Eigen::VectorXd left(dofs_.count);
-  double at_work = still_ * still_;
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    const Vec3 v = c_ * (x_[i] - from_[i]), inertia = mass[i] * (c_ * (v - from_v_[i]) + alpha * v);
-    at_work += internal_[i].squaredNorm() + external[i].squaredNorm() + inertia.squaredNorm();
-    if (dofs_.first[i] < 0) continue;
-    left.segment<3>(dofs_.first[i]) =
-        external[i] - internal_[i] - damped * (internal_[i] - from_internal_[i]) - inertia;
+double Dynamics::iterate(std::span<const Vec3> external, double tolerance) {
+  const double previous = relative_residual_;
+  if (at_predictor_) limit_predictor(external);
+  const bool other_c = matrix_.c() != motion_.time().c();
+  if (other_c) {
+    factor();
+    policy_.replaced();
   }
-  dofs_.hold(left);
-  at_work_ = std::sqrt(at_work);
-  left_ = left.norm() / at_work_;
-  seen_.assign(external.begin(), external.end());
-  return left;
-}
-
-void Dynamics::move(const Eigen::VectorXd& by) {
-  told_ = false;
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    if (dofs_.first[i] >= 0) x_[i] += by.segment<3>(dofs_.first[i]);
-  }
-}
-
-double Dynamics::improve(std::span<const Vec3> external, double tolerance) {
-  const double before = left_;
-  if (predicted_) shorten_prediction(external);
-  bool fresh = matrix_.c() != c_;
-  if (fresh) factor();
-  Eigen::VectorXd left = imbalance(external);
-  if (!std::isfinite(left_)) {  // flung about beyond all measure: it stays where it was
-    x_ = x_before_;
-    told_ = false;
-    left_ = remains_ = 1;
+  const Residual residual = evaluate(external);
+  if (!std::isfinite(residual.relative)) {
+    motion_.move_to(motion_.time().position());
+    relative_residual_ = trial_residual_ = 1;
     return 0;
   }
-  if (left_ <= tolerance) return left_;
-  if (left_ * at_work_ <= kSame * rounding_) return 0;
-  bool slow = false;
-  if (improved_ && left_ > kWorthwhile * before) {
-    if (fresh_ && (left_ <= kRounding || left_ * at_work_ <= kMute * still_)) {
-      rounding_ = left_ * at_work_;
-      return 0;
-    }
-    slow = true;
-    if (!background_) {
-      if (fresh_) matrix_.check_precision();
-      factor();
-      fresh = true;
-      left = imbalance(external);
-    }
-  }
-  improved_ = true;
-  if (learns()) learn(left, external);
-  too_old_ = too_old_ || slow;
-  fresh_ = fresh || too_old_;
-  Eigen::VectorXd way =
-      background_ && too_old_ ? conjugate_gradients(left, external) : quasi_newton_.step(matrix_, left);
-  if (!way.allFinite()) way = left / matrix_.largest();  // there is no factor: a little the right way
-  if (wary_ || left_ > kCalm) {
-    go(way, left, external);
+  if (residual.relative <= tolerance) return residual.relative;
+  using Decision = FactorPolicy::Decision;
+  const Decision decision = policy_.decide(residual, previous, other_c);
+  if (decision == Decision::kStop) return 0;
+  if (decision == Decision::kRefactorChecked) matrix_.check_precision();
+  if (decision != Decision::kKeep) factor();
+  const Eigen::VectorXd d = search_direction(residual, external);
+  if (cautious_ || residual.relative > kTrusted) {
+    search_along(d, residual, external);
   } else {
-    move(way);
-    remains_ = left_;
+    motion_.move_by(d);
+    trial_residual_ = residual.relative;
   }
-  return left_;
+  return residual.relative;
 }
 
-void Dynamics::follow(const Eigen::VectorXd& way, std::span<const Vec3> external) {
-  if (never_changes()) return move(way);
-  double changed = 0;
-  for (std::size_t i = 0; i < seen_.size(); ++i) changed += (external[i] - seen_[i]).squaredNorm();
-  if (!wary_ && left_ <= kCalm && std::sqrt(changed) <= kCalm * at_work_) return move(way);
-  const double unbalanced_before = left_;
-  const Eigen::VectorXd left = imbalance(external);
-  go(way, left, external);
-  left_ = unbalanced_before;
+int Dynamics::solve(std::span<const Vec3> external, int max_iterations, double tolerance) {
+  int iterations = 0;
+  while (iterations < max_iterations && iterate(external, tolerance) > tolerance) ++iterations;
+  return iterations;
 }
 
-/// Along `way` (m) from where `left` is unbalanced: all of it, or a half, a quarter ... of it, so that what
-/// is unbalanced there does not pull back harder. Forces that grow faster than their linearisation would else
-/// throw the body farther each time.
-void Dynamics::go(const Eigen::VectorXd& way, const Eigen::VectorXd& left, std::span<const Vec3> external) {
-  if (never_changes()) return move(way);
-  const double unbalanced_here = left_, pull = std::abs(left.dot(way));
-  const std::vector<Vec3> here = x_;
-  remains_ = 1;
-  for (double length = 1; remains_ == 1 && length > kShortest; length /= 2) {
-    x_ = here;
-    move(length * way);
-    if (imbalance(external).dot(way) >= -pull) remains_ = left_;
-  }
-  if (remains_ == 1) x_ = here;
-  told_ = told_ && remains_ < 1;
-  left_ = unbalanced_here;
+/// Where A could not be factored, a little along the residual.
+Eigen::VectorXd Dynamics::search_direction(const Residual& residual, std::span<const Vec3> external) {
+  if (learns_) quasi_newton_.add_point(motion_.unknowns(), -residual.force + motion_.by_unknowns(external));
+  Eigen::VectorXd d = policy_.uses_conjugate_gradients() ? inexact_direction(residual, external)
+                                                         : quasi_newton_.direction(matrix_, residual.force);
+  if (!d.allFinite()) d = residual.force / matrix_.largest_diagonal();
+  return d;
 }
 
-/// Where the velocity leads; since a step that ended far from balance, and until the body rests, only as far
-/// as elastic forces would not turn it on the way.
-void Dynamics::shorten_prediction(std::span<const Vec3> external) {
-  predicted_ = false;
-  if (never_changes() || !wary_) return;
-  Eigen::VectorXd way(dofs_.count);
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    if (dofs_.first[i] < 0) continue;
-    way.segment<3>(dofs_.first[i]) = h_ * v_before_[i];
-    x_[i] = x_before_[i];
-  }
-  told_ = told_before_ && terms_.empty();
-  if (told_) internal_ = internal_before_;
-  dofs_.hold(way);
-  go(way, imbalance(external), external);
+Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<const Vec3> external) {
+  const std::vector<Vec3> here(motion_.position().begin(), motion_.position().end());
+  const auto times = [&](const Eigen::VectorXd& v) {
+    return jacobian_times(v, residual.force, kNudge * size_, [&](double s) {
+      motion_.move_to(here, s * v);
+      return motion_.residual(external);
+    });
+  };
+  const auto precondition = [&](const Eigen::VectorXd& v) { return quasi_newton_.direction(matrix_, v); };
+  Eigen::VectorXd d = conjugate_gradients(residual.force, times, precondition);
+  motion_.move_to(here);
+  return d;
 }
 
-/// How the body resists where it is now.
-void Dynamics::learn(const Eigen::VectorXd& left, std::span<const Vec3> external) {
-  Eigen::VectorXd place = Eigen::VectorXd::Zero(dofs_.count), resistance = -left;
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    if (dofs_.first[i] < 0) continue;
-    place.segment<3>(dofs_.first[i]) = x_[i];
-    resistance.segment<3>(dofs_.first[i]) += external[i];
-  }
-  dofs_.hold(resistance);
-  quasi_newton_.learn(place, resistance);
+/// By `d` (m) from the trial point with this residual, as far as the line search lets it.
+void Dynamics::search_along(const Eigen::VectorXd& d, const Residual& residual,
+                            std::span<const Vec3> external) {
+  if (law_is_linear()) return motion_.move_by(d);
+  const std::vector<Vec3> here(motion_.position().begin(), motion_.position().end());
+  const TrialStep trial = line_search(d, residual.force, [&](double s) {
+    motion_.move_to(here, s * d);
+    return motion_.residual(external);
+  });
+  trial_residual_ = trial.relative;
+  if (trial.length == 0) motion_.move_to(here);
 }
 
-/// A way by which the body moves towards balance, m: A^-1 `left` to within a share of it, of A here and now.
-Eigen::VectorXd Dynamics::conjugate_gradients(const Eigen::VectorXd& left, std::span<const Vec3> external) {
-  const double enough = kInexact * left.norm();
-  Eigen::VectorXd way = Eigen::VectorXd::Zero(left.size()), rest = left, along = way;
-  double before = 1;
-  for (int i = 0; i < kMostGradients && rest.norm() > enough; ++i) {
-    const Eigen::VectorXd ahead = quasi_newton_.step(matrix_, rest);
-    const double now = rest.dot(ahead);
-    along = ahead + now / before * along;
-    before = now;
-    const Eigen::VectorXd pull = stiffness_times(along, left, external);
-    const double bend = along.dot(pull);
-    if (!(bend > 0)) return i == 0 ? along : way;  // about to buckle: as far as it goes
-    way += now / bend * along;
-    rest -= now / bend * pull;
-  }
-  return way;
+/// Since a step that ended far from balance, and until the body rests: the predictor only as far as forces
+/// would not turn the body back before it ends.
+void Dynamics::limit_predictor(std::span<const Vec3> external) {
+  at_predictor_ = false;
+  if (law_is_linear() || !cautious_) return;
+  const Eigen::VectorXd d = motion_.move_to_start();
+  search_along(d, motion_.residual(external), external);
 }
 
-/// A `way`, N, of A here and now, where `left` is unbalanced.
-Eigen::VectorXd Dynamics::stiffness_times(const Eigen::VectorXd& way, const Eigen::VectorXd& left,
-                                          std::span<const Vec3> external) {
-  const double share = kNudge * reach_ / way.cwiseAbs().maxCoeff(), unbalanced_here = left_;
-  const std::vector<Vec3> here = x_;
-  move(share * way);
-  Eigen::VectorXd change = (left - imbalance(external)) / share;
-  x_ = here;
-  told_ = false;
-  left_ = unbalanced_here;
-  return change;
-}
-
-int Dynamics::settle(std::span<const Vec3> external, int most, double tolerance) {
-  int steps = 0;
-  while (steps < most && improve(external, tolerance) > tolerance) ++steps;
-  return steps;
+void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> external) {
+  if (law_is_linear()) return motion_.move_by(d);
+  double squared = 0;
+  for (std::size_t i = 0; i < motion_.last_external().size(); ++i)
+    squared += (external[i] - motion_.last_external()[i]).squaredNorm();
+  if (!cautious_ && relative_residual_ <= kTrusted &&
+      std::sqrt(squared) <= kTrusted * motion_.last_force_scale())
+    return motion_.move_by(d);
+  search_along(d, motion_.residual(external), external);
 }
 
 void Dynamics::finish_step() {
-  if (settings_.rayleigh_stiffness > 0) resist();
-  told_before_ = told_;
-  std::swap(internal_then_, internal_before_);
-  std::swap(internal_before_, internal_);
-  told_ = false;
-  if (!terms_.empty()) relax_stress(h_);
-  const bool adrift = remains_ > kAdrift;
-  wary_ = adrift || (wary_ && left_ > kRounding);
-  for (std::size_t i = 0; i < x_.size(); ++i) {
-    const Vec3 v = adrift ? Vec3(Vec3::Zero()) : Vec3(c_ * (x_[i] - from_[i]));
-    x_then_[i] = adrift ? x_[i] : x_before_[i];
-    v_then_[i] = adrift ? v : v_before_[i];
-    x_before_[i] = x_[i];
-    v_before_[i] = v;
-  }
-  ++steps_;
-}
-
-void Dynamics::relax_stress(double h) {
-  std::vector<Solid::State> states(solid_.points());
-  solid_.evaluate(x_, states);
-  const bool linear = solid_.material().law == ElasticLaw::kLinear;
-  const auto& relaxations = solid_.material().relaxations;
-  for (std::size_t p = 0; p < states.size(); ++p) {
-    const Mat3 now = linear ? states[p].stress : Mat3(states[p].F.inverse() * states[p].stress);
-    if (!now.allFinite()) continue;  // turned flat: it remembers what was
-    for (std::size_t k = 0; k < relaxations.size(); ++k) {
-      const auto& [share, time] = relaxations[k];
-      const double gamma = -std::expm1(-h / time) * time / h;
-      Mat3& term = terms_[k * states.size() + p];
-      term = std::exp(-h / time) * term + share * gamma * (now - stress_[p]);
-    }
-    stress_[p] = now;
-  }
-}
-
-void Dynamics::forces(std::span<Vec3> f) const {
-  solid_.forces(x_, f, viscosity());
+  const bool adrift = trial_residual_ > kAdrift;
+  cautious_ = adrift || (cautious_ && relative_residual_ > kAtRest);
+  motion_.end_step(adrift);
 }
 
 bool Dynamics::inside_out() const {
-  return may_stay_inverted(solid_.material()) && any_inverted(solid_, x_);
-}
-
-void Dynamics::resistance(std::span<Vec3> f) const {
-  solid_.forces(x_, f, viscosity());
-  const double alpha = settings_.rayleigh_mass, damped = settings_.rayleigh_stiffness * c_;
-  const std::vector<double>& mass = matrix_.masses();
-  for (std::size_t i = 0; i < f.size(); ++i) {
-    const Vec3 v = c_ * (x_[i] - from_[i]);
-    if (damped > 0) f[i] += damped * (f[i] - from_internal_[i]);
-    f[i] += mass[i] * (c_ * (v - from_v_[i]) + alpha * v);
-  }
-}
-
-double Dynamics::kinetic_energy() const {
-  double sum = 0;
-  const std::vector<double>& mass = matrix_.masses();
-  for (std::size_t i = 0; i < mass.size(); ++i) sum += 0.5 * mass[i] * v_before_[i].squaredNorm();
-  return sum;
+  return may_stay_inverted(solid_.material()) && any_inverted(solid_, motion_.position());
 }
 
 std::size_t Dynamics::bytes() const {
-  return (x_.size() * 8) * sizeof(Vec3) + matrix_.bytes() +
-         (stress_.size() + memory_.size() + terms_.size()) * sizeof(Mat3) +
-         (background_ ? background_->bytes() : 0);
+  return motion_.bytes() + matrix_.bytes() + (background_ ? background_->bytes() : 0);
 }
 
 }  // namespace palpate::sim

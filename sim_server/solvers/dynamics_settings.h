@@ -7,16 +7,17 @@ struct DynamicsSettings {
   double rayleigh_mass = 0;       ///< alpha, 1/s, [0, 1e4]
   double rayleigh_stiffness = 0;  ///< beta, s, [0, 10]
   bool second_order = false;      ///< BDF2 instead of backward Euler
-  /// How A x = b is solved: by its own factor, or by one of the background taken every `refresh_steps`.
+  /// How A x = b is solved: by its own factor, or with one of the background, a new one every
+  /// `refresh_steps`.
   enum class Solver {
     kDirect,
     kConjugateGradients,  ///< preconditioned by that factor
-    kQuasiNewton,         ///< which mends it
+    kQuasiNewton,         ///< which corrects it
   };
   Solver solver = Solver::kDirect;
   int refresh_steps = 8;  ///< [1, 1000]
-  /// Of unit forces, what columns of compliance made in the background may leave, which are of where the body
-  /// was steps ago.
+  /// Norm of the residual that columns of compliance made in the background may leave of three unit forces.
+  /// They are of where the body was some steps before.
   double tolerance = 0;
   bool flies = false;  ///< nothing need hold the body: it has mass
 };

@@ -8,11 +8,13 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kArmijo = 1e-4, kShortestStep = 1e-4;  // line search: descent, and the shortest step
-constexpr double kLook = 1e-7;  // of what the supports move: how far to look ahead for what that asks for
-// Of the size of the body: forces that move a node by less, without any other, are rounding at rest.
+// Line search: the sufficient decrease, and the shortest trial step.
+constexpr double kArmijo = 1e-4, kShortestStep = 1e-4;
+// Share of what the supports move by which they are nudged, to find how the residual changes.
+constexpr double kSupportNudge = 1e-7;
+// Share of the size of the body: a force that moves a node by less counts as none.
 constexpr double kRestsWithin = 1e-7;
-// Likewise: what a linear law leaves, whose steps of refinement cost little.
+// Relative residual to which a linear law is solved, whose steps of refinement cost little.
 constexpr double kSharp = 1e-12;
 constexpr double kFirstShift = 0.05, kLastShift = 1e3;  // of the stiffness at rest
 
@@ -21,19 +23,20 @@ class Newton {
   Newton(const Solid& solid, const StaticLoad& load, const std::string& where,
          const EquilibriumSettings& settings)
       : solid_(solid),
+        scratch_(solid),
         load_(load),
         settings_(settings),
         dofs_(load.held),
         stiffness_(solid.stiffness_matrix(dofs_)),
         internal_(static_cast<std::size_t>(solid.nodes())),
         external_(internal_.size()) {
-    solid.add_stiffness(solid.rest(), stiffness_);
-    usual_ = stiffness_.lower().diagonal().mean();
-    stiffness_.close_held(usual_);
+    solid.add_stiffness(solid.rest(), stiffness_, {}, scratch_);
+    mean_diagonal_ = stiffness_.lower().diagonal().mean();
+    stiffness_.close_held(mean_diagonal_);
     factor_.emplace(stiffness_.lower(), where, SparseCholesky::Precision::kSingle);
     Eigen::AlignedBox3d box;
     for (const Vec3& x : solid.rest()) box.extend(x);
-    still_ = kRestsWithin * box.diagonal().norm() * usual_;
+    negligible_force_ = kRestsWithin * box.diagonal().norm() * mean_diagonal_;
   }
 
   /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.
@@ -43,48 +46,48 @@ class Newton {
     double before = std::numeric_limits<double>::infinity();
     const double enough = is_linear() ? std::min(kSharp, settings_.tolerance) : settings_.tolerance;
     for (int i = 0; i <= settings_.max_newton; ++i) {
-      const Eigen::VectorXd residual = unbalanced(x);
-      if (!std::isfinite(residual_)) return false;
-      const bool stuck = residual_ > 0.5 * before && residual_ <= settings_.rounding;
-      if (residual_ <= enough || stuck) return true;
-      before = residual_;
+      const Eigen::VectorXd residual = residual_at(x);
+      if (!std::isfinite(relative_residual_)) return false;
+      const bool stuck = relative_residual_ > 0.5 * before && relative_residual_ <= settings_.rounding;
+      if (relative_residual_ <= enough || stuck) return true;
+      before = relative_residual_;
       ++iterations_;
-      if (!step(x, residual)) return residual_ <= settings_.rounding;
+      if (!step(x, residual)) return relative_residual_ <= settings_.rounding;
     }
     return false;
   }
 
   int iterations() const { return iterations_; }
-  double residual() const { return residual_; }
+  double residual() const { return relative_residual_; }
 
  private:
   bool is_linear() const { return solid_.material().law == ElasticLaw::kLinear; }
 
   /// f_ext - f_int over the free displacements, N.
-  Eigen::VectorXd unbalanced(const std::vector<Vec3>& x) {
-    solid_.forces(x, internal_);
+  Eigen::VectorXd residual_at(const std::vector<Vec3>& x) {
+    solid_.forces(x, internal_, {}, scratch_);
     std::fill(external_.begin(), external_.end(), Vec3::Zero());
     if (load_.forces) load_.forces(x, external_);
     Eigen::VectorXd residual(dofs_.count);
-    double at_work = still_ * still_;
+    double squares = negligible_force_ * negligible_force_;
     for (std::size_t i = 0; i < internal_.size(); ++i) {
-      at_work += internal_[i].squaredNorm() + share_ * share_ * external_[i].squaredNorm();
+      squares += internal_[i].squaredNorm() + share_ * share_ * external_[i].squaredNorm();
       if (dofs_.first[i] >= 0) residual.segment<3>(dofs_.first[i]) = share_ * external_[i] - internal_[i];
     }
     dofs_.hold(residual);
-    residual_ = residual.norm() / std::sqrt(at_work);
+    relative_residual_ = residual.norm() / std::sqrt(squares);
     return residual;
   }
 
   bool factor_at(const std::vector<Vec3>& x) {
     if (is_linear()) return true;  // as at rest, everywhere
     stiffness_.set_zero();
-    solid_.add_stiffness(x, stiffness_);
-    stiffness_.close_held(usual_);
+    solid_.add_stiffness(x, stiffness_, {}, scratch_);
+    stiffness_.close_held(mean_diagonal_);
     if (factor_->refactor(stiffness_.lower())) return true;
     StiffnessMatrix at_rest = solid_.stiffness_matrix(dofs_);
-    solid_.add_stiffness(solid_.rest(), at_rest);
-    at_rest.close_held(usual_);
+    solid_.add_stiffness(solid_.rest(), at_rest, {}, scratch_);
+    at_rest.close_held(mean_diagonal_);
     double added = 0;
     for (double shift = kFirstShift; shift < kLastShift; shift *= 4) {
       stiffness_.lower() += (shift - added) * at_rest.lower();
@@ -94,37 +97,38 @@ class Newton {
     return false;
   }
 
-  double potential(const std::vector<Vec3>& x) const {
+  double potential(const std::vector<Vec3>& x) {
     double work = 0;
     for (std::size_t i = 0; i < x.size(); ++i) work += share_ * external_[i].dot(x[i] - solid_.rest()[i]);
-    return solid_.energy(x) - work;
+    return solid_.energy(x, scratch_) - work;
   }
 
   bool step(std::vector<Vec3>& x, const Eigen::VectorXd& residual) {
     if (!factor_at(x)) return false;
-    const Eigen::VectorXd way = factor_->solve(residual).col(0);
+    const Eigen::VectorXd d = factor_->solve(residual).col(0);
     const std::vector<Vec3> from = x;
     if (is_linear()) {
-      go(from, 1, way, x);
+      move_along(from, 1, d, x);
       return true;
     }
-    const double before = potential(x), slope = residual.dot(way), left = residual.norm();
+    const double before = potential(x), slope = residual.dot(d), norm = residual.norm();
     for (double length = 1; length > kShortestStep; length /= 2) {
-      go(from, length, way, x);
-      if (potential(x) <= before - kArmijo * length * slope || unbalanced(x).norm() < left) return true;
+      move_along(from, length, d, x);
+      if (potential(x) <= before - kArmijo * length * slope || residual_at(x).norm() < norm) return true;
     }
     x = from;
     return false;
   }
 
-  void go(const std::vector<Vec3>& from, double length, const Eigen::VectorXd& way,
-          std::vector<Vec3>& x) const {
+  void move_along(const std::vector<Vec3>& from, double length, const Eigen::VectorXd& d,
+                  std::vector<Vec3>& x) const {
     for (std::size_t i = 0; i < x.size(); ++i) {
-      if (dofs_.first[i] >= 0) x[i] = from[i] + length * way.segment<3>(dofs_.first[i]);
+      if (dofs_.first[i] >= 0) x[i] = from[i] + length * d.segment<3>(dofs_.first[i]);
     }
   }
 
-  /// The supports go on by a share of their way, and the body with them as its tangent says.
+  /// The supports move on by a share of all that they do, and the body with them as its tangent stiffness
+  /// says.
   void move_supports(std::vector<Vec3>& x, double share) {
     if (load_.moved.empty()) return;
     const auto moved_by = [&](double part) {
@@ -135,25 +139,26 @@ class Newton {
       }
       return moved;
     };
-    const std::vector<Vec3> ahead = moved_by(kLook * share);
-    const Eigen::VectorXd before = unbalanced(x);
-    const Eigen::VectorXd pull = (unbalanced(ahead) - before) / kLook;
+    const std::vector<Vec3> ahead = moved_by(kSupportNudge * share);
+    const Eigen::VectorXd before = residual_at(x);
+    const Eigen::VectorXd pull = (residual_at(ahead) - before) / kSupportNudge;
     if (!factor_at(x)) return;
-    const Eigen::VectorXd way = factor_->solve(pull).col(0);
+    const Eigen::VectorXd d = factor_->solve(pull).col(0);
     x = moved_by(share);
-    go(x, 1, way, x);
+    move_along(x, 1, d, x);
   }
 
   const Solid& solid_;
+  Solid::Scratch scratch_;
   const StaticLoad& load_;
   const EquilibriumSettings& settings_;
   FreeDofs dofs_;
   StiffnessMatrix stiffness_;
   std::optional<SparseCholesky> factor_;
   std::vector<Vec3> internal_, external_;
-  double usual_ = 0;  // on the diagonal at rest, N/m
-  double still_ = 0;  // a force that is none, N
-  double share_ = 0, residual_ = 0;
+  double mean_diagonal_ = 0;     // of the stiffness at rest, N/m
+  double negligible_force_ = 0;  // N
+  double share_ = 0, relative_residual_ = 0;
   int iterations_ = 0;
 };
 

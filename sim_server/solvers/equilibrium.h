@@ -14,14 +14,14 @@ struct StaticLoad {
   std::vector<HeldAxes> held = {};  ///< (nodes)
   /// (nodes) From rest to where each is held, along those axes, m; empty: at rest.
   std::vector<Vec3> moved = {};
-  /// (nodes) Where to look first, with what is held where it shall be, m; empty: at rest.
+  /// (nodes) The initial guess, with what is held where it shall be, m; empty: at rest.
   std::vector<Vec3> start = {};
 };
 
 /// How well an equilibrium is to be found.
 struct EquilibriumSettings {
-  double tolerance = 1e-10;  ///< of the forces at work: what may be left over
-  double rounding = 1e-7;    ///< likewise, where one more step does not make it less
+  double tolerance = 1e-10;  ///< relative residual at which an increment ends
+  double rounding = 1e-7;    ///< the same, where one more iteration does not lessen it
   int max_newton = 60;       ///< per increment
   int max_halvings = 12;     ///< of the load, where Newton's method fails
 };
@@ -30,7 +30,7 @@ struct EquilibriumSettings {
 struct Equilibrium {
   std::vector<Vec3> x;                 ///< (nodes) m
   int increments = 0, iterations = 0;  ///< of the load; Newton steps in all
-  double residual = 0;                 ///< of the forces at work
+  double residual = 0;                 ///< relative: its norm, as a share of all forces that act
 };
 
 /// The static equilibrium f_int(x) = f_ext(x) by Newton's method with line search on the energy, in one

@@ -13,7 +13,7 @@ StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
   return matrix;
 }
 
-/// What a factor answers is looked at again, but for the linear law, where it is all there is.
+/// What the factor answers is corrected by later iterations, but of the linear law, which makes none.
 SparseCholesky::Precision precision_for(const Material& material) {
   using Precision = SparseCholesky::Precision;
   return material.law == ElasticLaw::kLinear ? Precision::kDouble : Precision::kSingle;
@@ -27,16 +27,17 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
       beta_(settings.rayleigh_stiffness),
       mass_(solid.masses()),
       matrix_(at_rest(solid, dofs, settings.flies)),
-      usual_(matrix_.lower().diagonal().mean()),
+      mean_diagonal_(matrix_.lower().diagonal().mean()),
       factor_(matrix_.lower(), where, precision_for(solid.material())) {}
 
-void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c) {
+void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c,
+                         Solid::Scratch& scratch) {
   c_ = c;
   matrix_.set_zero();
-  solid.add_stiffness(x, matrix_, viscosity);
+  solid.add_stiffness(x, matrix_, viscosity, scratch);
   matrix_.lower() *= 1 + beta_ * c;
   matrix_.add_to_diagonal(mass_, c * c + alpha_ * c);
-  matrix_.close_held(usual_);
+  matrix_.close_held(mean_diagonal_);
   bool definite = factor_.refactor(matrix_.lower());
   for (double more = c * c; !definite && more < 1e6 * c * c; more *= 4) {
     matrix_.add_to_diagonal(mass_, more);
@@ -62,9 +63,10 @@ Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first, double enough)
 BackgroundMatrix::BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                                    const std::string& where)
     : solid_(solid),
+      scratch_(solid),
       matrix_(solid, dofs, settings, where),
       tolerance_(settings.tolerance),
-      bytes_(solid_.bytes() + matrix_.bytes()) {}
+      bytes_(scratch_.bytes() + matrix_.bytes()) {}
 
 void BackgroundMatrix::begin(std::span<const Vec3> x, const Viscosity& viscosity, double c,
                              std::vector<int> first) {
@@ -72,15 +74,15 @@ void BackgroundMatrix::begin(std::span<const Vec3> x, const Viscosity& viscosity
   memory_.assign(viscosity.memory.begin(), viscosity.memory.end());
   made_.first = std::move(first);
   work_ = std::async(std::launch::async, [this, scale = viscosity.scale, c] {
-    matrix_.build(solid_, x_, {scale, memory_}, c);
+    matrix_.build(solid_, x_, {scale, memory_}, c, scratch_);
     made_.values = matrix_.columns(made_.first, tolerance_);
   });
 }
 
-void BackgroundMatrix::take(NewtonMatrix& matrix) {
+void BackgroundMatrix::exchange(NewtonMatrix& matrix) {
   work_.get();
   std::swap(matrix_, matrix);
-  std::swap(made_, taken_);
+  std::swap(made_, given_);
 }
 
 }  // namespace palpate::sim

@@ -7,8 +7,8 @@
 
 namespace palpate::sim {
 
-/// What Newton's method solves with in a step of implicit dynamics, A = (1 + beta c) K + (c^2 + alpha c) M
-/// of some place, and its factor. One thread at a time.
+/// The matrix of Newton's method in a step of implicit dynamics, A = (1 + beta c) K + (c^2 + alpha c) M, at
+/// the place where it was built last, and its factor. One thread at a time.
 class NewtonMatrix {
  public:
   /// K of the solid at rest, factored; of one that flies with some inertia. Throws `Error`, beginning with
@@ -18,9 +18,10 @@ class NewtonMatrix {
 
   /// A of the solid at `x` (nodes, m), factored. Where A is not positive definite, as of a body about to
   /// buckle, with more inertia.
-  void build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c);
-  /// To be called where the last `build` has served badly: should that be for want of digits, the next will
-  /// be in double precision. Cost of a solve.
+  void build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c,
+             Solid::Scratch& scratch);
+  /// To be called where iterations with the factor of the last `build` converge slowly: should that be for
+  /// want of digits, the next is made in double precision. Costs a solve.
   void check_precision();
   /// A^-1 b of the factor, for columns b over the unknowns.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return factor_.solve(b); }
@@ -31,17 +32,17 @@ class NewtonMatrix {
 
   /// c of the last `build`, 1/s; 0 before the first.
   double c() const { return c_; }
-  /// Of the diagonal of K at rest, N/m.
-  double usual() const { return usual_; }
-  double largest() const { return matrix_.lower().diagonal().maxCoeff(); }
-  const std::vector<double>& masses() const { return mass_; }
+  /// Of K at rest, N/m.
+  double mean_diagonal() const { return mean_diagonal_; }
+  /// Of the A or K that is factored, N/m.
+  double largest_diagonal() const { return matrix_.lower().diagonal().maxCoeff(); }
   std::size_t bytes() const { return matrix_.bytes() + factor_.bytes() + mass_.size() * sizeof(double); }
 
  private:
   double alpha_, beta_;
   std::vector<double> mass_;  // of each node, kg
   StiffnessMatrix matrix_;
-  double usual_;
+  double mean_diagonal_;  // N/m
   SparseCholesky factor_;
   double c_ = 0;
 };
@@ -53,30 +54,32 @@ struct Columns {
 };
 
 /// A second `NewtonMatrix` that a thread of its own makes ready while steps go on with the first
-/// (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159). Has its own copy of all it reads.
+/// (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159). The thread reads the body, which must
+/// outlive this, and its own copy of all that changes.
 class BackgroundMatrix {
  public:
   BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                    const std::string& where);
-  /// Starts with A of the solid at `x`, and its columns from these unknowns on. The one begun before must be
-  /// taken.
+  /// Starts with A of the solid at `x`, and its columns from these unknowns on. The one begun before must
+  /// have been exchanged.
   void begin(std::span<const Vec3> x, const Viscosity& viscosity, double c, std::vector<int> first);
   bool begun() const { return work_.valid(); }
-  /// Waits for it, and gives it for `matrix`.
-  void take(NewtonMatrix& matrix);
-  /// What came with the one taken last. Until the next is taken.
-  const Columns& columns() const { return taken_; }
+  /// Waits for it, and exchanges it for `matrix`.
+  void exchange(NewtonMatrix& matrix);
+  /// What came with the one given last. Valid until the next exchange.
+  const Columns& columns() const { return given_; }
   /// Known beforehand: asked for while the thread works, too.
   std::size_t bytes() const { return bytes_; }
 
  private:
-  Solid solid_;
+  const Solid& solid_;
+  Solid::Scratch scratch_;
   NewtonMatrix matrix_;
   double tolerance_;
   std::size_t bytes_;
   std::vector<Vec3> x_;
   std::vector<Mat3> memory_;
-  Columns made_, taken_;
+  Columns made_, given_;
   std::future<void> work_;  // last: ends before what it works on
 };
 

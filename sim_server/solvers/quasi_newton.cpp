@@ -7,11 +7,11 @@ namespace {
 constexpr std::size_t kMostPairs = 8;
 }
 
-void QuasiNewton::learn(const Eigen::VectorXd& place, const Eigen::VectorXd& resistance) {
-  if (last_place_.size() > 0) {
-    Pair pair{place - last_place_, resistance - last_resistance_, 0};
-    pair.work = pair.way.dot(pair.change);
-    if (pair.work > 0) {
+void QuasiNewton::add_point(const Eigen::VectorXd& x, const Eigen::VectorXd& f) {
+  if (last_x_.size() > 0) {
+    Pair pair{x - last_x_, f - last_f_, 0};
+    pair.curvature = pair.s.dot(pair.y);
+    if (pair.curvature > 0) {
       if (pairs_.size() < kMostPairs) {
         pairs_.push_back(std::move(pair));
       } else {
@@ -20,21 +20,21 @@ void QuasiNewton::learn(const Eigen::VectorXd& place, const Eigen::VectorXd& res
       }
     }
   }
-  last_place_ = place;
-  last_resistance_ = resistance;
+  last_x_ = x;
+  last_f_ = f;
 }
 
-Eigen::VectorXd QuasiNewton::step(const NewtonMatrix& matrix, const Eigen::VectorXd& left) const {
-  Eigen::VectorXd rest = left;
-  std::vector<double> share(pairs_.size());
+Eigen::VectorXd QuasiNewton::direction(const NewtonMatrix& matrix, const Eigen::VectorXd& residual) const {
+  Eigen::VectorXd q = residual;
+  std::vector<double> alpha(pairs_.size());
   for (std::size_t k = pairs_.size(); k-- > 0;) {
-    share[k] = pairs_[k].way.dot(rest) / pairs_[k].work;
-    rest -= share[k] * pairs_[k].change;
+    alpha[k] = pairs_[k].s.dot(q) / pairs_[k].curvature;
+    q -= alpha[k] * pairs_[k].y;
   }
-  Eigen::VectorXd step = matrix.solve(rest).col(0);
+  Eigen::VectorXd r = matrix.solve(q).col(0);
   for (std::size_t k = 0; k < pairs_.size(); ++k)
-    step += (share[k] - pairs_[k].change.dot(step) / pairs_[k].work) * pairs_[k].way;
-  return step;
+    r += (alpha[k] - pairs_[k].y.dot(r) / pairs_[k].curvature) * pairs_[k].s;
+  return r;
 }
 
 }  // namespace palpate::sim

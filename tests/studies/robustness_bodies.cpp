@@ -51,13 +51,13 @@ Verdict let_go(const Column& column, bool quick, const Put& put) {
     if (held[i] == 0) x[i] = put(x[i], random);
   }
   Dynamics dynamics(solid, held, {.rayleigh_mass = 10, .rayleigh_stiffness = 1e-4}, "study");
-  dynamics.stand_at(x);
+  dynamics.set_state(x);
   const std::vector<Vec3> none(x.size(), Vec3::Zero());
   const int steps = quick ? 150 : 300;
   double most = 0;
   for (int i = 0; i < steps; ++i) {
     dynamics.start_step(kStep);
-    dynamics.settle(none, 5, 1e-5);
+    dynamics.solve(none, 5, 1e-5);
     dynamics.finish_step();
     most = std::max(most, farthest(solid.rest(), dynamics.position()) / kSize);
   }
@@ -68,7 +68,7 @@ Verdict let_go(const Column& column, bool quick, const Put& put) {
         "exploded", fmt::format("it came to {:.3g} of its size from rest", most), {}, {}, verdict.reference};
   }
   if (off > kHome) {
-    const bool said = dynamics.inside_out() || dynamics.unbalanced() > 0.05;
+    const bool said = dynamics.inside_out() || dynamics.relative_residual() > 0.05;
     verdict.outcome = said ? "flagged" : "exploded";
     verdict.reason =
         fmt::format("{:.0f} s later {} elements are still inverted: this law has a second rest there",
@@ -118,7 +118,7 @@ Verdict run_free_body(const Case& row, const Column& column, bool quick) {
     v[i] = Vec3(0.1, 0.2, -0.05) + Vec3(2, 1, 3).cross(solid.rest()[i]) + random.vector(0.05);
   Dynamics dynamics(solid, std::vector<HeldAxes>(none.size(), 0), {.rayleigh_stiffness = 1e-4, .flies = true},
                     "study");
-  dynamics.stand_at(solid.rest(), v);
+  dynamics.set_state(solid.rest(), v);
   const std::vector<double> mass = solid.masses();
   const auto momentum = [&] {
     Vec3 sum = Vec3::Zero();
@@ -131,8 +131,8 @@ Verdict run_free_body(const Case& row, const Column& column, bool quick) {
   bool settled = true;
   for (int i = 0; i < steps; ++i) {
     dynamics.start_step(kStep);
-    dynamics.settle(none, 20, 1e-9);
-    settled = settled && dynamics.unbalanced() < 0.05 && !dynamics.inside_out();
+    dynamics.solve(none, 20, 1e-9);
+    settled = settled && dynamics.relative_residual() < 0.05 && !dynamics.inside_out();
     dynamics.finish_step();
     most = std::max(most, (momentum() - before).norm() / before.norm());
   }

@@ -1,6 +1,8 @@
 // Bodies of all laws and elements: forces are the derivative of the energy, stiffness that of the forces.
 #include "sim_server/elasticity/solid.h"
 
+#include <future>
+
 #include "sim_server/elasticity/inversion.h"
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/catch.h"
@@ -193,4 +195,22 @@ TEST_CASE("a tetrahedron pushed through itself is inverted, a sliver that turns 
     x[3][2] = -1e-9;
     CHECK(any_inverted(solid, x) == told);
   }
+}
+
+TEST_CASE("solid: threads that ask at once, each with its own scratch, get what one gets") {
+  const Solid solid(shaken_block(), tissue(ElasticLaw::kNeoHookean, ElementKind::kNodalPressure));
+  const std::vector<Vec3> near = deformed(solid, 0.01), far = deformed(solid, 0.05);
+  const auto many = [&](const std::vector<Vec3>& x) {
+    Solid::Scratch scratch(solid);
+    std::vector<Vec3> sum(x.size(), Vec3::Zero()), f(x.size());
+    for (int i = 0; i < 300; ++i) {
+      solid.forces(x, f, {}, scratch);
+      for (std::size_t k = 0; k < f.size(); ++k) sum[k] += f[k];
+    }
+    return sum;
+  };
+  const std::vector<Vec3> alone_near = many(near), alone_far = many(far);
+  auto other = std::async(std::launch::async, many, far);
+  CHECK(many(near) == alone_near);
+  CHECK(other.get() == alone_far);
 }

@@ -61,11 +61,11 @@ TEST_CASE("run away: scattered or flattened, a body comes back to rest, or says 
           p = flat ? Vec3(Vec3(p[0], 0, p[2]) + random.vector(3e-8)) : p + random.vector(0.015);
       }
       Dynamics dynamics(solid, held, {.rayleigh_mass = 10, .rayleigh_stiffness = 1e-4}, "test");
-      dynamics.stand_at(x);
+      dynamics.set_state(x);
       const std::vector<Vec3> none(x.size(), Vec3::Zero());
       for (int step = 0; step < 150; ++step) {
         dynamics.start_step(kDt);
-        dynamics.settle(none, 5, 1e-5);
+        dynamics.solve(none, 5, 1e-5);
         dynamics.finish_step();
       }
       double off = 0;

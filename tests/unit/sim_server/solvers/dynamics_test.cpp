@@ -69,7 +69,7 @@ TEST_CASE("dynamics: steps of a mode follow its recursion: backward Euler and BD
     double q = 0, v = 0, q_then = 0, v_then = 0;
     for (int step = 0; step < 60; ++step) {
       dynamics.start_step(h);
-      dynamics.settle(force, 3, 1e-12);
+      dynamics.solve(force, 3, 1e-12);
       dynamics.finish_step();
       const bool two = second && step > 0;
       const double c = (two ? 1.5 : 1) / h, from = two ? (4 * q - q_then) / 3 : q,
@@ -106,7 +106,7 @@ TEST_CASE("dynamics: BDF2 is of second order against the closed form of a damped
     double t = 0;
     while (t < 0.2 - h / 2) {
       dynamics.start_step(h);
-      dynamics.settle(force, 3, 1e-12);
+      dynamics.solve(force, 3, 1e-12);
       dynamics.finish_step();
       t += h;
     }
@@ -134,7 +134,7 @@ TEST_CASE("dynamics: with damping every law comes to rest in its static equilibr
     Dynamics dynamics(solid, held_below(solid), {.rayleigh_mass = 20, .rayleigh_stiffness = 0.02}, "test");
     for (int step = 0; step < 200; ++step) {
       dynamics.start_step(0.03);
-      dynamics.settle(force, 30, 1e-12);
+      dynamics.solve(force, 30, 1e-12);
       dynamics.finish_step();
     }
     double off = 0, moved = 0;
@@ -165,21 +165,21 @@ TEST_CASE("dynamics: a quasi-Newton step answers what it learned last, and on a 
   double first = 0, left = 0;
   for (int i = 0; i < 12; ++i) {
     const Eigen::VectorXd resistance = times(place);
-    method.learn(place, resistance);
+    method.add_point(place, resistance);
     if (i > 0) {  // the secant equation
       const Eigen::VectorXd change = times(place - before);
-      CHECK((method.step(matrix, change) - (place - before)).norm() <
+      CHECK((method.direction(matrix, change) - (place - before)).norm() <
             1e-9 * (place - before).norm() + 1e-12 * place.norm());
     }
     left = (load - resistance).norm();
     if (i == 1) first = left;
     before = place;
-    place += method.step(matrix, load - resistance);
+    place += method.direction(matrix, load - resistance);
   }
   CAPTURE(first, left);
   CHECK(left < 1e-3 * first);  // the old matrix alone would take 0.3 of it off a step, at most
-  method.forget();
-  CHECK((method.step(matrix, load) - matrix.solve(load)).norm() == 0);
+  method.clear();
+  CHECK((method.direction(matrix, load) - matrix.solve(load)).norm() == 0);
 }
 
 TEST_CASE("dynamics: solved with a factor of the background, a step ends where a direct one does") {
@@ -192,7 +192,7 @@ TEST_CASE("dynamics: solved with a factor of the background, a step ends where a
       int looks = 0;
       for (int step = 0; step < 20; ++step) {  // bends far, so that a factor of before is of another place
         dynamics.start_step(0.02);
-        looks += dynamics.settle(pull(solid, Vec3(0.1 * std::min(step, 10), 0, 0)), 100, 1e-10);
+        looks += dynamics.solve(pull(solid, Vec3(0.1 * std::min(step, 10), 0, 0)), 100, 1e-10);
         dynamics.finish_step();
       }
       CAPTURE(static_cast<int>(solver), second);
@@ -220,7 +220,7 @@ TEST_CASE("dynamics: backward Euler never makes energy, whatever the law and the
     double before = 1e9;
     for (int step = 0; step < 60; ++step) {
       dynamics.start_step(0.02);
-      dynamics.settle(step < 10 ? force : none, 40, 1e-10);
+      dynamics.solve(step < 10 ? force : none, 40, 1e-10);
       dynamics.finish_step();
       if (step < 10) continue;
       const double energy = solid.energy(dynamics.position()) + dynamics.kinetic_energy();
@@ -246,14 +246,15 @@ TEST_CASE("dynamics: a strain that is held relaxes along its Prony series, under
     const double h = 0.05;
     for (int step = 1; step <= 60; ++step) {
       dynamics.start_step(h);
-      for (std::size_t i = 0; i < held.size(); ++i) dynamics.put()[i] = stretch * solid.rest()[i];
-      dynamics.settle(none, 5, 1e-12);
+      for (std::size_t i = 0; i < held.size(); ++i)
+        dynamics.mutable_position()[i] = stretch * solid.rest()[i];
+      dynamics.solve(none, 5, 1e-12);
       dynamics.finish_step();
       // The strain comes within the first step, evenly: each term has relaxed by gamma when it ends.
       double share = 1;
       for (const auto& [part, time] : relaxations)
         share += part * (std::exp(-(step - 1) * h / time) * (1 - std::exp(-h / time)) * time / h - 1);
-      dynamics.forces(f);
+      dynamics.internal_forces(f);
       solid.forces(dynamics.position(), at_once);
       REQUIRE((f[0] - share * at_once[0]).norm() < 1e-9 * at_once[0].norm());
     }
@@ -280,7 +281,7 @@ TEST_CASE("dynamics: rounding that no factor makes less is no reason to factor a
     for (int i = 0; i < 50; ++i) {
       if (i == 40) before = dynamics.factors();
       dynamics.start_step(0.05);
-      const int looks = dynamics.settle(force, 60, kNever);
+      const int looks = dynamics.solve(force, 60, kNever);
       if (i >= 40) CHECK(looks < 3);
       dynamics.finish_step();
     }

@@ -1,0 +1,89 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "sim_server/solvers/dynamics_settings.h"
+#include "sim_server/solvers/newton.h"
+#include "sim_server/solvers/prony_series.h"
+#include "sim_server/solvers/time_stepping.h"
+
+namespace palpate::sim {
+
+/// What has to balance at the end of each step of a body in motion,
+///   r(x) = f_ext - M (a + alpha v) - beta df/dt - f(x) = 0,
+/// and the trial point x (nodes, m) at which a solver evaluates it: f are the internal forces of the body
+/// with its viscosity (`PronySeries`), M is its lumped mass, v, a and df/dt follow from x by `TimeStepping`,
+/// and alpha and beta are Rayleigh's, with the stiffness of here and now. Evaluating allocates; one thread,
+/// which uses all cores for the elements.
+class EquationsOfMotion {
+ public:
+  /// At rest. The body must outlive this.
+  EquationsOfMotion(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings);
+
+  /// A force so small (N, > 0) that it counts as none beside the forces that act. Set before the first
+  /// residual.
+  void set_negligible_force(double force) { negligible_force_ = force; }
+  /// At `x` (nodes, m), as if it had always been there; at the velocities `v` (nodes, m/s), or those of
+  /// before.
+  void restart(std::vector<Vec3> x, std::span<const Vec3> v);
+  /// Begins a step of `h` (s > 0), with free nodes at the predictor x_n + h v_n.
+  void begin_step(double h);
+  /// Ends it at the trial point; `stop`: at rest there.
+  void end_step(bool stop);
+
+  /// r(x) at the trial point under these external forces (nodes, N).
+  Residual residual(std::span<const Vec3> external);
+  /// Of the last residual: its external forces (nodes, N) and its scale (N).
+  std::span<const Vec3> last_external() const { return external_; }
+  double last_force_scale() const { return force_scale_; }
+
+  std::span<const Vec3> position() const { return x_; }
+  /// To place the trial point, or nodes of it that are held.
+  std::span<Vec3> mutable_position();
+  /// To `x` (nodes, m).
+  void move_to(std::span<const Vec3> x);
+  /// To `x` (nodes, m) and from there by the increment `d` (m, by unknowns).
+  void move_to(std::span<const Vec3> x, const Eigen::VectorXd& d);
+  /// By the increment `d` (m, by unknowns).
+  void move_by(const Eigen::VectorXd& d);
+  /// Free nodes back to where the step begins. Returns the predictor's increment h v_n (m, by unknowns).
+  Eigen::VectorXd move_to_start();
+  /// Free nodes at the trial point, by unknowns, m; 0 elsewhere.
+  Eigen::VectorXd unknowns() const;
+  /// A force on each node (nodes, N), by unknowns; 0 where an axis is held.
+  Eigen::VectorXd by_unknowns(std::span<const Vec3> forces) const;
+
+  /// Elastic and viscous forces at the trial point (nodes, N).
+  void internal_forces(std::span<Vec3> f) const;
+  /// The same with damping and inertia: all with which a node withstands what acts on it (nodes, N).
+  void resistance(std::span<Vec3> f) const;
+  /// At the end of the last step, J.
+  double kinetic_energy() const;
+
+  const TimeStepping& time() const { return time_; }
+  Viscosity viscosity() const { return prony_.viscosity(); }
+  const FreeDofs& dofs() const { return dofs_; }
+  Solid::Scratch& scratch() { return scratch_; }
+  /// Without the scratch.
+  std::size_t bytes() const;
+  std::size_t scratch_bytes() const { return scratch_.bytes(); }
+
+ private:
+  void update_internal();
+  std::vector<Mat3> elastic_stress();
+  /// M (a + alpha v) of node i at the trial point, N.
+  Vec3 inertia(std::size_t i) const;
+
+  const Solid& solid_;
+  Solid::Scratch scratch_;
+  double alpha_, beta_;  // 1/s, s
+  FreeDofs dofs_;
+  std::vector<double> mass_;  // (nodes) kg
+  TimeStepping time_;
+  PronySeries prony_;
+  double negligible_force_ = 0, force_scale_ = 0;  // N
+  std::vector<Vec3> x_, internal_, external_;      // trial point; f there; of the last residual
+  bool internal_is_current_ = false;               // `internal_` is of the trial point
+  bool start_is_current_ = false;                  // the internal forces of `time_` are of where it was
+};
+
+}  // namespace palpate::sim

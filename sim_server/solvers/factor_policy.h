@@ -1,0 +1,68 @@
+#pragma once
+#include "sim_server/solvers/newton.h"
+
+namespace palpate::sim {
+
+/// Decides when the matrix A of Newton's method is factored, how a search direction is found with the factor
+/// that there is, and when what is left of a residual is rounding. It counts and compares; it factors
+/// nothing.
+///
+/// An iteration is slow where it leaves more than 30 % of the residual that the one before found under the
+/// same loads. What the factor is to the iteration that asks, and what a slow iteration leads to:
+///
+/// | state     | the factor is                            | on demand                | in the background    |
+/// |-----------|------------------------------------------|--------------------------|----------------------|
+/// | kFresh    | of the very place and c of the iteration | kRefactorChecked, kWorn  | conjugate gradients, |
+/// | kStale    | of elsewhere, and has served well since  | kRefactor, kWorn         | kWorn                |
+/// | kWorn     | one that a slow iteration has been with  | kRefactorChecked, kWorn  |                      |
+///
+/// An iteration that is not slow leaves kWorn as it is, and makes kFresh of a factor made for it and kStale
+/// of any other. A new factor (`replaced`) begins as kStale. Of the quasi-Newton method, which learns in each
+/// step, a factor that is kWorn is kStale again when the next step begins.
+///
+/// Rounding: where a slow iteration had a factor that is kFresh or kWorn and the residual is tiny, no factor
+/// lessens it. The iteration ends there (`kStop`), and so does from then on each that finds no more than
+/// twice that force.
+class FactorPolicy {
+ public:
+  enum class State { kFresh, kStale, kWorn };
+  enum class Decision {
+    kStop,             ///< the residual is rounding
+    kKeep,             ///< go on with the factor that there is
+    kRefactor,         ///< factor A here first
+    kRefactorChecked,  ///< the same, and see whether the last factor was in want of digits
+  };
+  struct Settings {
+    bool background = false;      ///< factors come from the background, none is made on demand
+    bool forgives = false;        ///< a factor that is worn is tried again in the next step
+    int refresh_steps = 8;        ///< between two factors of the background, >= 1
+    double negligible_force = 0;  ///< N: of a residual of 1e-3 of it nothing is expected
+  };
+  explicit FactorPolicy(const Settings& settings) : settings_(settings) {}
+
+  /// A step begins, after so many others: whether it takes the factor that the background has made, and has
+  /// the next one begun. Once for each number of steps.
+  bool begin_step(int steps_before);
+  /// The next residual is of other loads: that it is no smaller says nothing of the factor.
+  void loads_changed() { comparable_ = false; }
+  /// There is another factor, for another reason than a `Decision`.
+  void replaced() { state_ = State::kStale; }
+  /// For an iteration that finds `residual`, where the one before it found the relative residual `previous`.
+  /// `just_factored`: A has been factored for it, after `replaced`.
+  Decision decide(const Residual& residual, double previous, bool just_factored);
+
+  State state() const { return state_; }
+  /// Whether the search direction is to be found by conjugate gradients that the factor preconditions.
+  bool uses_conjugate_gradients() const { return settings_.background && state_ == State::kWorn; }
+
+ private:
+  bool is_rounding(const Residual& residual) const;
+
+  Settings settings_;
+  State state_ = State::kStale;
+  bool comparable_ = false;  // an iteration has been before, under the same loads
+  double rounding_ = 0;      // residual that no factor lessens, N; 0: not known
+  int exchanged_ = -1;       // steps before the last exchange
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,57 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+
+namespace palpate::sim {
+
+/// What is left of the forces that should balance, r(x), at some x. By unknowns.
+struct Residual {
+  Eigen::VectorXd force;   ///< N
+  double force_scale = 1;  ///< norm of all forces that act, N, > 0
+  double relative = 0;     ///< norm of `force`, as a share of `force_scale`
+};
+
+/// r(x + s d) for step lengths s along a direction d that is understood; x is where the solver stands.
+using ResidualAlong = std::function<Residual(double s)>;
+/// A v for the vectors v (by unknowns) of a solver.
+using LinearMap = std::function<Eigen::VectorXd(const Eigen::VectorXd& v)>;
+
+/// Where a line search ended.
+struct TrialStep {
+  double length = 0;    ///< s, (0, 1]; 0: no trial step was accepted
+  double relative = 1;  ///< relative residual there; 1: no trial step was accepted
+};
+
+/// Backtracking line search along the search direction `d` (m, by unknowns) from where the residual is
+/// `force` (N): the first s of 1, 1/2, 1/4 ... above 1e-4 at which
+///   d . r(x + s d) >= -|d . r(x)|,
+/// so that the forces there do not pull back harder than those here push on. Forces that grow faster than
+/// their linearisation would otherwise throw a body farther each time. Matthies and Strang (1979, Int. J.
+/// Numer. Meth. Engng 14:1613) ask the same projection to fall to one half; that costs more evaluations, and
+/// far from balance keeps nothing from being thrown. A trial step whose relative residual is exactly 1 is
+/// refused: nothing there answers the load. `residual_along` is last called at the step accepted.
+TrialStep line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& force,
+                      const ResidualAlong& residual_along);
+
+/// When conjugate gradients end.
+struct ConjugateGradientSettings {
+  double tolerance = 0.1;  ///< share of the norm of b that may be left, > 0
+  int max_iterations = 20;
+};
+
+/// The search direction of an inexact Newton method: x with A x = b to within a share of b, by conjugate
+/// gradients with preconditioner P ~ A^-1, from x = 0 (Nocedal and Wright 2006, algorithms 5.3 and 7.1).
+/// `times` is v -> A v and `precondition` is v -> P v. Where A turns out not to be positive definite along a
+/// direction, as of a body about to buckle: what was found before, or P b where that is nothing. One
+/// product and one preconditioning for each iteration.
+Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& b, const LinearMap& times,
+                                    const LinearMap& precondition,
+                                    const ConjugateGradientSettings& settings = {});
+
+/// A d for the Jacobian A = -dr/dx at x, from a difference of residuals (Knoll and Keyes 2004, J. Comput.
+/// Phys. 193:357), so that no matrix is assembled: (r(x) - r(x + s d)) / s with an s by which no unknown
+/// moves more than `nudge` (m, > 0). `force` is r(x), N. One call of `residual_along`.
+Eigen::VectorXd jacobian_times(const Eigen::VectorXd& d, const Eigen::VectorXd& force, double nudge,
+                               const ResidualAlong& residual_along);
+
+}  // namespace palpate::sim

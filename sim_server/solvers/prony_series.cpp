@@ -1,0 +1,54 @@
+#include "sim_server/solvers/prony_series.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::sim {
+namespace {
+
+double fade_of(const Relaxation& term, double h) {
+  return std::exp(-h / term.time);
+}
+double gamma_of(const Relaxation& term, double h) {
+  return -std::expm1(-h / term.time) * term.time / h;
+}
+
+}  // namespace
+
+PronySeries::PronySeries(std::span<const Relaxation> terms, std::size_t points)
+    : terms_(terms.begin(), terms.end()) {
+  if (terms.empty()) return;
+  elastic_.assign(points, Mat3::Zero());
+  memory_ = elastic_;
+  stress_.assign(terms.size() * points, Mat3::Zero());
+}
+
+void PronySeries::begin(double h) {
+  h_ = h;
+  scale_ = 1;
+  std::fill(memory_.begin(), memory_.end(), Mat3::Zero());
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    const double share = terms_[k].share, fade = fade_of(terms_[k], h), gamma = gamma_of(terms_[k], h);
+    scale_ += share * (gamma - 1);
+    for (std::size_t p = 0; p < memory_.size(); ++p)
+      memory_[p] += fade * stress_[k * memory_.size() + p] - share * gamma * elastic_[p];
+  }
+}
+
+void PronySeries::end(std::span<const Mat3> elastic) {
+  for (std::size_t p = 0; p < elastic_.size(); ++p) {
+    if (!elastic[p].allFinite()) continue;
+    for (std::size_t k = 0; k < terms_.size(); ++k) {
+      Mat3& stress = stress_[k * elastic_.size() + p];
+      stress = fade_of(terms_[k], h_) * stress +
+               terms_[k].share * gamma_of(terms_[k], h_) * (elastic[p] - elastic_[p]);
+    }
+    elastic_[p] = elastic[p];
+  }
+}
+
+std::size_t PronySeries::bytes() const {
+  return (elastic_.size() + memory_.size() + stress_.size()) * sizeof(Mat3);
+}
+
+}  // namespace palpate::sim

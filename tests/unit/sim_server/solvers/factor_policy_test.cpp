@@ -1,0 +1,101 @@
+// When to factor: the table in factor_policy.h, row by row.
+#include "sim_server/solvers/factor_policy.h"
+
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+using Decision = FactorPolicy::Decision;
+using State = FactorPolicy::State;
+
+/// Iterations of a policy, each with the relative residual that it finds of forces of 1 N.
+struct Iterations {
+  FactorPolicy policy;
+  double previous = 0;
+  Decision operator()(double relative, bool just_factored = false) {
+    if (just_factored) policy.replaced();
+    const Decision decision = policy.decide({{}, 1, relative}, previous, just_factored);
+    previous = relative;
+    return decision;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("factor policy: on demand, a slow iteration with a stale factor has A factored there") {
+  Iterations iterate{FactorPolicy({.refresh_steps = 1})};
+  CHECK_FALSE(iterate.policy.begin_step(0));  // never exchanged
+  CHECK(iterate(1, true) == Decision::kKeep);
+  CHECK(iterate.policy.state() == State::kFresh);
+  CHECK(iterate(0.1) == Decision::kKeep);
+  CHECK(iterate.policy.state() == State::kStale);
+  CHECK(iterate(0.02) == Decision::kKeep);
+  CHECK(iterate(0.0061) == Decision::kRefactor);  // more than 30 %
+  CHECK(iterate.policy.state() == State::kWorn);
+  CHECK_FALSE(iterate.policy.uses_conjugate_gradients());
+  CHECK(iterate(0.001) == Decision::kKeep);
+  CHECK(iterate.policy.state() == State::kWorn);
+  CHECK(iterate(0.001) == Decision::kRefactorChecked);
+  CHECK_FALSE(iterate.policy.begin_step(1));
+  CHECK(iterate.policy.state() == State::kWorn);  // over steps
+  iterate.policy.replaced();
+  CHECK(iterate.policy.state() == State::kStale);
+}
+
+TEST_CASE("factor policy: a slow iteration with a fresh factor has its digits checked") {
+  Iterations iterate{FactorPolicy({})};
+  iterate(1, true);
+  CHECK(iterate(0.9) == Decision::kRefactorChecked);
+}
+
+TEST_CASE("factor policy: the first iteration of a step, or under other loads, is never slow") {
+  Iterations iterate{FactorPolicy({})};
+  iterate(1);
+  iterate.policy.loads_changed();
+  CHECK(iterate(5) == Decision::kKeep);
+  iterate.policy.begin_step(3);
+  CHECK(iterate(5) == Decision::kKeep);
+  CHECK(iterate(5) == Decision::kRefactor);
+}
+
+TEST_CASE("factor policy: of the background, a slow iteration goes on by conjugate gradients") {
+  for (const bool forgives : {false, true}) {
+    Iterations iterate{FactorPolicy({.background = true, .forgives = forgives, .refresh_steps = 3})};
+    CHECK(iterate.policy.begin_step(0));
+    CHECK_FALSE(iterate.policy.begin_step(0));  // once
+    iterate(1);
+    CHECK_FALSE(iterate.policy.uses_conjugate_gradients());
+    CHECK(iterate(0.9) == Decision::kKeep);
+    CHECK(iterate.policy.uses_conjugate_gradients());
+    CHECK_FALSE(iterate.policy.begin_step(1));
+    CHECK(iterate.policy.uses_conjugate_gradients() == !forgives);
+    CHECK_FALSE(iterate.policy.begin_step(2));
+    iterate(1);
+    iterate(1);
+    CHECK(iterate.policy.uses_conjugate_gradients());
+    CHECK(iterate.policy.begin_step(3));
+    iterate.policy.replaced();
+    CHECK_FALSE(iterate.policy.uses_conjugate_gradients());
+  }
+}
+
+TEST_CASE("factor policy: a tiny residual that a fresh factor does not lessen is rounding from then on") {
+  Iterations iterate{FactorPolicy({.negligible_force = 1e-8})};
+  iterate(1e-6);
+  CHECK(iterate(0.9e-6) == Decision::kRefactor);  // the factor was stale
+  CHECK(iterate(0.8e-6) == Decision::kStop);
+  iterate.policy.begin_step(1);
+  CHECK(iterate(1.5e-6) == Decision::kStop);  // the same rounding
+  CHECK(iterate(1.7e-6) == Decision::kKeep);
+
+  // Next to nothing at all: 1e-3 of a negligible force, though a large share of what acts.
+  FactorPolicy still({.negligible_force = 1e-8});
+  CHECK(still.decide({{}, 1e-11, 1}, 0, true) == Decision::kKeep);
+  CHECK(still.decide({{}, 1e-11, 0.9}, 1, false) == Decision::kStop);
+  FactorPolicy moved({.negligible_force = 1e-8});
+  CHECK(moved.decide({{}, 2e-11, 1}, 0, true) == Decision::kKeep);
+  CHECK(moved.decide({{}, 2e-11, 0.9}, 1, false) == Decision::kRefactorChecked);
+}

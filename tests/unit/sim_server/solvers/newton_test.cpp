@@ -1,0 +1,122 @@
+// What Newton's method is made of, against closed forms: a line search, conjugate gradients, and products
+// with a Jacobian that is not assembled.
+#include "sim_server/solvers/newton.h"
+
+#include <Eigen/Dense>
+
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+Eigen::VectorXd one(double value) {
+  return Eigen::VectorXd::Constant(1, value);
+}
+
+/// A spring r(x + s d) = 1 - (s / s0)^3, which balances at s0 of the direction.
+ResidualAlong cubic(double balance, int* calls = nullptr) {
+  return [balance, calls](double s) {
+    if (calls != nullptr) ++*calls;
+    const double force = 1 - std::pow(s / balance, 3);
+    return Residual{one(force), 2, std::abs(force) / 2};
+  };
+}
+
+Eigen::MatrixXd with_spectrum(const Eigen::VectorXd& values) {
+  const Eigen::MatrixXd noise = Eigen::MatrixXd::Random(values.size(), values.size());
+  const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(noise).householderQ();
+  return q * values.asDiagonal() * q.transpose();
+}
+
+LinearMap product(const Eigen::MatrixXd& a, int* calls = nullptr) {
+  return [&a, calls](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+    if (calls != nullptr) ++*calls;
+    return a * v;
+  };
+}
+
+const Eigen::MatrixXd& identity() {
+  static const Eigen::MatrixXd i = Eigen::MatrixXd::Identity(12, 12);
+  return i;
+}
+
+}  // namespace
+
+TEST_CASE("newton: the line search halves until the spring pulls back no harder than it was pushed") {
+  // (s / s0)^3 <= 2 is what it asks for.
+  for (const auto& [balance, length] : {std::pair{1.0, 1.0}, {0.8, 1.0}, {0.79, 0.5}, {0.1, 0.125}}) {
+    int calls = 0;
+    const TrialStep trial = line_search(one(1), one(1), cubic(balance, &calls));
+    CAPTURE(balance);
+    CHECK(trial.length == length);
+    CHECK(trial.relative == Approx(std::abs(1 - std::pow(length / balance, 3)) / 2));
+    CHECK(calls == 1 + static_cast<int>(std::lround(-std::log2(length))));
+  }
+}
+
+TEST_CASE("newton: a line search gives up below 1e-4, and accepts no step where nothing answers the load") {
+  int calls = 0;
+  const TrialStep none = line_search(one(1), one(1), cubic(1e-6, &calls));
+  CHECK(none.length == 0);
+  CHECK(none.relative == 1);
+  CHECK(calls == 14);  // 2^-13 > 1e-4
+  const auto unanswered = [](double s) { return Residual{one(1), 1, s > 0.3 ? 1 : 0.5}; };
+  CHECK(line_search(one(1), one(1), unanswered).length == 0.25);
+  const auto no_number = [](double s) { return Residual{one(s > 0.3 ? std::nan("") : 0), 1, 0}; };
+  CHECK(line_search(one(1), one(1), no_number).length == 0.25);
+}
+
+TEST_CASE("newton: conjugate gradients solve in as many iterations as A has eigenvalues") {
+  Eigen::VectorXd values(12);
+  values << 1, 1, 1, 1, 5, 5, 5, 5, 5, 40, 40, 40;
+  const Eigen::MatrixXd a = with_spectrum(values);
+  const Eigen::VectorXd b = Eigen::VectorXd::Random(12), exact = a.ldlt().solve(b);
+  int calls = 0;
+  Eigen::VectorXd x = conjugate_gradients(b, product(a, &calls), product(identity()), {1e-11, 20});
+  CHECK(calls == 3);
+  CHECK((x - exact).norm() < 1e-9 * exact.norm());
+  // With A^-1 for preconditioner, one.
+  calls = 0;
+  const Eigen::MatrixXd inverse = a.inverse();
+  x = conjugate_gradients(b, product(a, &calls), product(inverse), {1e-11, 20});
+  CHECK(calls == 1);
+  CHECK((x - exact).norm() < 1e-9 * exact.norm());
+  // As exact as asked for, and no longer than allowed.
+  x = conjugate_gradients(b, product(a), product(identity()), {0.5, 20});
+  CHECK((b - a * x).norm() <= 0.5 * b.norm());
+  CHECK((x - exact).norm() > 1e-3 * exact.norm());
+  calls = 0;
+  conjugate_gradients(b, product(a, &calls), product(identity()), {1e-11, 2});
+  CHECK(calls == 2);
+}
+
+TEST_CASE("newton: where A is not positive definite, conjugate gradients stop with what they have") {
+  Eigen::VectorXd values = Eigen::VectorXd::Constant(12, 2);
+  const Eigen::VectorXd b = Eigen::VectorXd::Ones(12);
+  // At once: the preconditioned residual.
+  const Eigen::MatrixXd negative = -2 * identity(), half = 0.5 * identity();
+  CHECK(conjugate_gradients(b, product(negative), product(half), {}) == 0.5 * b);
+  // Later: the first iteration's step along b is b (b.b) / (b.A b) = 12 / 8 b.
+  values.setConstant(1);
+  values[0] = -3;
+  const Eigen::MatrixXd saddle = values.asDiagonal();
+  const Eigen::VectorXd x = conjugate_gradients(b, product(saddle), product(identity()), {});
+  CHECK((x - 1.5 * b).norm() < 1e-12);
+}
+
+TEST_CASE("newton: the product with the Jacobian is that of a difference whose size is the nudge") {
+  const Eigen::MatrixXd a = with_spectrum(Eigen::VectorXd::LinSpaced(12, 1, 9));
+  const Eigen::VectorXd d = Eigen::VectorXd::Random(12), force = Eigen::VectorXd::Random(12);
+  const double largest = d.cwiseAbs().maxCoeff(), nudge = 1e-3;
+  double step = 0;
+  // r(x + s d) = r - s A d - s^2 d / 2, whose difference is A d + s d / 2.
+  const auto along = [&](double s) {
+    step = s;
+    return Residual{force - s * (a * d) - 0.5 * s * s * d, 1, 1};
+  };
+  const Eigen::VectorXd found = jacobian_times(d, force, nudge, along);
+  CHECK(step * largest == Approx(nudge));
+  CHECK((found - (a * d + 0.5 * step * d)).norm() < 1e-10);
+}
