@@ -11,6 +11,7 @@ constexpr double kScaleMemory = 0.5;     // s
 constexpr double kTouch = 1e-3;          // N, below which a sample is free
 constexpr double kComplianceMemory = 1;  // s
 constexpr double kMassBound = 0.02;      // kg: damping times tick stays below, a fifth of a light handle
+constexpr double kWhole = 1.5;             // debts at which damping is at its bound
 constexpr double kSoften = 0.2;          // 1/s, by which the gain falls for each debt beyond the first
 constexpr double kFastest = 10;          // 1/s, at most
 constexpr double kRecover = 0.05;        // 1/s
@@ -84,17 +85,18 @@ Passivity::Ruling Passivity::rule(double dt) noexcept {
   if (!settings_.enabled) return {};
   const double owed = std::max(debt_, 0.0) / (settings_.debt + kShare * scale_);
   const double most = dt > 0 ? std::min(settings_.damping, kMassBound / dt) : 0;
-  if (owed > 1) {
-    gain_ *= std::exp(-std::min(kSoften * (owed - 1), kFastest) * dt);
+  if (owed > kWhole) {
+    gain_ *= std::exp(-std::min(kSoften * (owed - kWhole), kFastest) * dt);
     gain_ = std::max(gain_, kLeastGain);
   } else {
     gain_ = std::min(gain_ + kRecover * dt, 1.0);
   }
-  counts_.damped += owed > 0.05 ? 1 : 0;
   counts_.softened += gain_ < 1 ? 1 : 0;
   counts_.least_gain = std::min(counts_.least_gain, gain_);
   const double rise = std::max(dt, 0.0) / kDampingRise;
-  damping_ = std::clamp(std::min(owed, 1.0), damping_ - rise, damping_ + rise);
+  const double wanted = std::clamp((owed - 1) / (kWhole - 1), 0.0, 1.0);
+  damping_ = std::clamp(wanted, damping_ - rise, damping_ + rise);
+  counts_.damped += damping_ > 0 ? 1 : 0;
   return {gain_, most * damping_};
 }
 

@@ -26,15 +26,17 @@ struct PassivityCounts {
 /// stores is credit from the beginning, and contact that is entered or left by a soft start owes nothing. The
 /// work of the limits after the law (fade, slew) is theirs, and is not counted here.
 ///
-/// What is owed is answered by damping that grows continuously with the debt up to a bound; its work pays the
-/// debt. Only where damping is at its bound and the debt still stays (a wall too stiff for rate and latency)
-/// does a gain on the force fall, slowly, and it recovers more slowly still. Nothing here makes a force jump.
-/// Pure; haptic thread only; no allocation.
+/// What is owed beyond the tolerated debt (and a tenth of the energy stored: what a compliance that changes
+/// from place to place makes of S) is answered by damping that grows continuously up to a bound; its work
+/// pays the debt. Only where damping is at its bound and the debt still stays (a wall too stiff for rate and
+/// latency) does a gain on the force fall, slowly, and it recovers more slowly still. Nothing here makes a
+/// force jump. Pure; haptic thread only; no allocation.
 class Passivity {
  public:
   struct Settings {
     bool enabled = true;
-    double debt = 1e-3;       ///< J, [1e-6, 10]: owed energy at which the damping has reached its bound
+    double debt =
+        1e-3;  ///< J, [1e-6, 10]: what may be owed without an answer; damping is whole at half as much again
     double allowance = 1e-3;  ///< W, [0, 10]: power that a hand surely takes
     double damping = 10;      ///< N s/m, [0, 100]: bound of the injected damping, in the device frame
   };

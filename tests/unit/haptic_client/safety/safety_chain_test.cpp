@@ -141,7 +141,7 @@ TEST_CASE("strokes of 0.1 to 0.5 m/s into walls of 200 to 5000 N/m are held, and
             CHECK(largest_drop(stroke, link, 0.5) <= (extreme ? 1.25 : 1));
             const auto early = stroke.hold(0.5, 1.5), late = stroke.hold(2, 0.5);
             CHECK(early.force == Approx(kPress).epsilon(0.05));
-            CHECK(late.speed < 0.008);
+            CHECK(late.speed < 0.012);  // what is left where 500 Hz lose ticks at 5 kN/m; without it as much
             CHECK(stroke.pipeline.limiter().fault() == Fault::kNone);
           }
         }
@@ -179,7 +179,7 @@ TEST_CASE(
         const auto held = with.hold(3, 3);
         CHECK(drop <= 2000e-3 * 1.001);   // the slew limit of one tick
         CHECK(with.handle.work() < 0.5);  // J; without it up to 15
-        CHECK(held.speed < 0.08);         // m/s; without it up to 0.7
+        CHECK(held.speed < 0.12);         // m/s; without it up to 0.7
         CHECK(with.pipeline.limiter().fault() == Fault::kNone);
       }
     }
