@@ -3,6 +3,7 @@
 
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
+#include "tests/support/contract.h"
 #include "tests/support/model_bench.h"
 
 using namespace palpate;
@@ -21,122 +22,111 @@ const ModelBench::Setting kDamped{.rate_hz = 100, .rayleigh_mass = 200, .rayleig
 
 }  // namespace
 
-TEST_CASE("contract: every deformation model") {
-  for (const ModelCase& choice : model_cases()) {
-    DYNAMIC_SECTION(choice.name()) {
-      ModelBench bench(choice);
-      DeformationModel& model = *bench.model;
-      const auto n = static_cast<int>(bench.surface.vertices.size());
-      ContactPatch patch;
-      patch.reserve(n, 1);
+CONTRACT("every deformation model", ModelCase, choice, model_cases()) {
+  ModelBench bench(choice);
+  DeformationModel& model = *bench.model;
+  const auto n = static_cast<int>(bench.surface.vertices.size());
+  ContactPatch patch;
+  patch.reserve(n, 1);
+  model.compliance(bench.reachable, patch);
+  const Eigen::MatrixXd c = patch.compliance.topLeftCorner(3 * n, 3 * n);
+
+  SECTION("at rest without contact: free motion stays") {
+    const std::span<const Vec3> free = model.free_motion(1e-3).positions;
+    REQUIRE(static_cast<int>(free.size()) == n);
+    for (int v = 0; v < n; ++v) CHECK((free[v] - bench.rest(v)).norm() < 1e-17);
+  }
+  SECTION("compliance is symmetric and positive semi-definite; tissue or tool gives way") {
+    CHECK((c - c.transpose()).norm() == 0);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(c);
+    CHECK(eigen.eigenvalues().minCoeff() >= -1e-12 * std::max(1e-9, eigen.eigenvalues().maxCoeff()));
+    CHECK((c.norm() > 0 || patch.tool_compliance > 0));
+  }
+  SECTION("loads move the surface by compliance times load, and it comes back without them") {
+    std::vector<NodalLoad> loads{{0, Vec3(0.01, -0.02, 0.03)}, {n - 1, Vec3(-0.05, 0.01, -0.1)}};
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * n);
+    for (const NodalLoad& load : loads) f.segment<3>(3 * load.vertex) = load.force;
+    const Eigen::VectorXd expected = c * f;
+    const std::span<const Vec3> at = model.free_motion(1e-3).positions;
+    const std::vector<Vec3> free(at.begin(), at.end());
+    const std::span<const Vec3> moved = model.apply(loads);
+    for (int v = 0; v < n; ++v) {
+      CHECK((moved[v] - free[v] - expected.segment<3>(3 * v)).norm() < 1e-12 + 1e-9 * expected.norm());
+    }
+    const std::span<const Vec3> back = model.apply({});
+    for (int v = 0; v < n; ++v) CHECK((back[v] - free[v]).norm() < 1e-12);
+  }
+  SECTION("fixed vertices never move") {
+    const std::span<const Vec3> moved = model.apply(std::vector<NodalLoad>{{n - 1, Vec3(1, 1, 1)}});
+    for (int v = 0; v < n; ++v) {
+      const Vec3& rest = bench.mesh.vertices[bench.surface.vertices[v]];
+      if (rest[2] == 0) CHECK(moved[v] == rest);
+    }
+  }
+  SECTION("a step does not allocate") {
+    const std::vector<NodalLoad> loads{{0, Vec3(0.01, 0, 0)}};
+    std::size_t allocations = 1;
+    {
+      const test::AllocationGuard guard;
+      model.free_motion(1e-3);
       model.compliance(bench.reachable, patch);
-      const Eigen::MatrixXd c = patch.compliance.topLeftCorner(3 * n, 3 * n);
-
-      SECTION("at rest without contact: free motion stays") {
-        const std::span<const Vec3> free = model.free_motion(1e-3).positions;
-        REQUIRE(static_cast<int>(free.size()) == n);
-        for (int v = 0; v < n; ++v) CHECK((free[v] - bench.rest(v)).norm() < 1e-17);
-      }
-      SECTION("compliance is symmetric and positive semi-definite; tissue or tool gives way") {
-        CHECK((c - c.transpose()).norm() == 0);
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(c);
-        CHECK(eigen.eigenvalues().minCoeff() >= -1e-12 * std::max(1e-9, eigen.eigenvalues().maxCoeff()));
-        CHECK((c.norm() > 0 || patch.tool_compliance > 0));
-      }
-      SECTION("loads move the surface by compliance times load, and it comes back without them") {
-        std::vector<NodalLoad> loads{{0, Vec3(0.01, -0.02, 0.03)}, {n - 1, Vec3(-0.05, 0.01, -0.1)}};
-        Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * n);
-        for (const NodalLoad& load : loads) f.segment<3>(3 * load.vertex) = load.force;
-        const Eigen::VectorXd expected = c * f;
-        const std::span<const Vec3> at = model.free_motion(1e-3).positions;
-        const std::vector<Vec3> free(at.begin(), at.end());
-        const std::span<const Vec3> moved = model.apply(loads);
-        for (int v = 0; v < n; ++v) {
-          CHECK((moved[v] - free[v] - expected.segment<3>(3 * v)).norm() < 1e-12 + 1e-9 * expected.norm());
-        }
-        const std::span<const Vec3> back = model.apply({});
-        for (int v = 0; v < n; ++v) CHECK((back[v] - free[v]).norm() < 1e-12);
-      }
-      SECTION("fixed vertices never move") {
-        const std::span<const Vec3> moved = model.apply(std::vector<NodalLoad>{{n - 1, Vec3(1, 1, 1)}});
-        for (int v = 0; v < n; ++v) {
-          const Vec3& rest = bench.mesh.vertices[bench.surface.vertices[v]];
-          if (rest[2] == 0) CHECK(moved[v] == rest);
-        }
-      }
-      SECTION("a step does not allocate") {
-        const std::vector<NodalLoad> loads{{0, Vec3(0.01, 0, 0)}};
-        std::size_t allocations = 1;
-        {
-          const test::AllocationGuard guard;
-          model.free_motion(1e-3);
-          model.compliance(bench.reachable, patch);
-          model.apply(loads);
-          allocations = guard.count();
-        }
-        if (!exempt(choice, "no allocation")) CHECK(allocations == 0);
-      }
-      SECTION("it says what it holds in memory") {
-        CHECK_FALSE(model.memory().empty());
-      }
+      model.apply(loads);
+      allocations = guard.count();
     }
+    if (!exempt(choice, "no allocation")) CHECK(allocations == 0);
+  }
+  SECTION("it says what it holds in memory") {
+    CHECK_FALSE(model.memory().empty());
   }
 }
 
-TEST_CASE("contract: compliance is the slope of where loads lead, once all is said about the step") {
-  for (const ModelCase& choice : model_cases()) {
-    const int held = held_until_fresh(choice);
-    DYNAMIC_SECTION(choice.name()) {
-      const auto pressed = [&](int axis, double by) {
-        auto bench = std::make_unique<ModelBench>(choice, kDamped);
-        std::vector<NodalLoad> loads = two_loads(*bench);
-        for (int i = 0; i < 5 + held; ++i) bench->step(loads);
-        loads[0].force[axis] += by;
-        return std::pair(bench->step(loads), std::move(bench));
-      };
-      const auto [positions, bench] = pressed(0, 0);
-      const Eigen::MatrixXd c = bench->compliance(bench->reachable);
-      const int vertex = two_loads(*bench)[0].vertex;
-      constexpr double kStep = 1e-5;  // N
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::vector<Vec3> more = pressed(axis, kStep).first, less = pressed(axis, -kStep).first;
-        const Eigen::VectorXd column = c.col(3 * vertex + axis);
-        Eigen::VectorXd slope(column.size());
-        for (int v = 0; v < bench->size(); ++v) slope.segment<3>(3 * v) = (more[v] - less[v]) / (2 * kStep);
-        CAPTURE(axis, (slope - column).norm() / column.norm());
-        CHECK((slope - column).norm() <= 1e-3 * column.norm());
-      }
-    }
+CONTRACT("compliance is the slope of where loads lead, once all is said about the step", ModelCase, choice,
+         model_cases()) {
+  const int held = held_until_fresh(choice);
+  const auto pressed = [&](int axis, double by) {
+    auto bench = std::make_unique<ModelBench>(choice, kDamped);
+    std::vector<NodalLoad> loads = two_loads(*bench);
+    for (int i = 0; i < 5 + held; ++i) bench->step(loads);
+    loads[0].force[axis] += by;
+    return std::pair(bench->step(loads), std::move(bench));
+  };
+  const auto [positions, bench] = pressed(0, 0);
+  const Eigen::MatrixXd c = bench->compliance(bench->reachable);
+  const int vertex = two_loads(*bench)[0].vertex;
+  constexpr double kStep = 1e-5;  // N
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<Vec3> more = pressed(axis, kStep).first, less = pressed(axis, -kStep).first;
+    const Eigen::VectorXd column = c.col(3 * vertex + axis);
+    Eigen::VectorXd slope(column.size());
+    for (int v = 0; v < bench->size(); ++v) slope.segment<3>(3 * v) = (more[v] - less[v]) / (2 * kStep);
+    CAPTURE(axis, (slope - column).norm() / column.norm());
+    CHECK((slope - column).norm() <= 1e-3 * column.norm());
   }
 }
 
-TEST_CASE("contract: the same scene elsewhere and turned gives the answers turned") {
-  for (const ModelCase& choice : model_cases()) {
-    DYNAMIC_SECTION(choice.name()) {
-      Eigen::Isometry3d place(Eigen::Translation3d(0.3, -0.2, 0.1));
-      if (!exempt(choice, "turning")) place.rotate(Eigen::AngleAxisd(2.2, Vec3(1, -2, 0.5).normalized()));
-      const Mat3 turn = place.linear();
-      ModelBench::Setting setting = kDamped;
-      ModelBench here(choice, setting);
-      setting.place = place;
-      ModelBench there(choice, setting);
-      REQUIRE(here.fixed == there.fixed);
-      for (int step = 0; step < 6 + held_until_fresh(choice); ++step) {
-        const std::vector<Vec3> a = here.step(two_loads(here)), b = there.step(two_loads(there, turn));
-        double off = 0;
-        for (int v = 0; v < here.size(); ++v) off = std::max(off, (place * a[v] - b[v]).norm());
-        CHECK(off <= 1e-8 * here.largest_way(a) + 1e-15);
-      }
-      std::vector<int> free;  // how a held vertex gives way under a tool is nothing of physics
-      std::copy_if(here.reachable.begin(), here.reachable.end(), std::back_inserter(free),
-                   [&](int v) { return here.rest(v)[2] > 0; });
-      const Eigen::MatrixXd c = here.compliance(free), d = there.compliance(free);
-      Eigen::MatrixXd turned = c;
-      for (Eigen::Index i = 0; i < c.rows(); i += 3) {
-        for (Eigen::Index j = 0; j < c.cols(); j += 3)
-          turned.block<3, 3>(i, j) = turn * c.block<3, 3>(i, j) * turn.transpose();
-      }
-      CHECK((turned - d).norm() <= 1e-8 * c.norm());
-    }
+CONTRACT("the same scene elsewhere and turned gives the answers turned", ModelCase, choice, model_cases()) {
+  Eigen::Isometry3d place(Eigen::Translation3d(0.3, -0.2, 0.1));
+  if (!exempt(choice, "turning")) place.rotate(Eigen::AngleAxisd(2.2, Vec3(1, -2, 0.5).normalized()));
+  const Mat3 turn = place.linear();
+  ModelBench::Setting setting = kDamped;
+  ModelBench here(choice, setting);
+  setting.place = place;
+  ModelBench there(choice, setting);
+  REQUIRE(here.fixed == there.fixed);
+  for (int step = 0; step < 6 + held_until_fresh(choice); ++step) {
+    const std::vector<Vec3> a = here.step(two_loads(here)), b = there.step(two_loads(there, turn));
+    double off = 0;
+    for (int v = 0; v < here.size(); ++v) off = std::max(off, (place * a[v] - b[v]).norm());
+    CHECK(off <= 1e-8 * here.largest_way(a) + 1e-15);
   }
+  std::vector<int> free;  // how a held vertex gives way under a tool is nothing of physics
+  std::copy_if(here.reachable.begin(), here.reachable.end(), std::back_inserter(free),
+               [&](int v) { return here.rest(v)[2] > 0; });
+  const Eigen::MatrixXd c = here.compliance(free), d = there.compliance(free);
+  Eigen::MatrixXd turned = c;
+  for (Eigen::Index i = 0; i < c.rows(); i += 3) {
+    for (Eigen::Index j = 0; j < c.cols(); j += 3)
+      turned.block<3, 3>(i, j) = turn * c.block<3, 3>(i, j) * turn.transpose();
+  }
+  CHECK((turned - d).norm() <= 1e-8 * c.norm());
 }

@@ -3,6 +3,7 @@
 
 #include "sim_server/solvers/equilibrium.h"
 #include "tests/support/catch.h"
+#include "tests/support/contract.h"
 #include "tests/support/model_bench.h"
 
 using namespace palpate;
@@ -97,103 +98,87 @@ double share_of(int i) {
 
 }  // namespace
 
-TEST_CASE(
-    "contract: what a body stores is never more than loads have put in, and a cycle of them takes work") {
-  for (const ModelCase& choice : model_cases()) {
-    DYNAMIC_SECTION(choice.name()) {
-      ModelBench bench(choice, {.thin = true, .rate_hz = 250});
-      const Body body{bench};
-      REQUIRE(bench.size() == static_cast<int>(bench.mesh.vertices.size()));
-      const bool stores = !exempt(choice, "elastic energy");
-      double work = 0, most = 0;
-      std::vector<Vec3> before = bench.step({});
-      for (int i = 0; i < 300; ++i) {
-        const std::vector<NodalLoad> loads = pull(bench, share_of(i));
-        const std::vector<Vec3> now = bench.step(loads);
-        for (const NodalLoad& load : loads) work += load.force.dot(now[load.vertex] - before[load.vertex]);
-        const double elastic = stores ? body.elastic(now) : 0;
-        most = std::max(most, elastic);
-        CHECK(elastic <= work * (1 + 1e-9) + 1e-18);
-        before = now;
-      }
-      CAPTURE(work, most);
-      CHECK(work >= 0);
-      if (stores) {
-        CHECK(most > 1e-5);
-        CHECK(body.elastic(before) < 1e-3 * most);  // damped
-        CHECK(work > 1e-3 * most);
-      }
-    }
+CONTRACT("what a body stores is never more than loads have put in, and a cycle of them takes work", ModelCase,
+         choice, model_cases()) {
+  ModelBench bench(choice, {.thin = true, .rate_hz = 250});
+  const Body body{bench};
+  REQUIRE(bench.size() == static_cast<int>(bench.mesh.vertices.size()));
+  const bool stores = !exempt(choice, "elastic energy");
+  double work = 0, most = 0;
+  std::vector<Vec3> before = bench.step({});
+  for (int i = 0; i < 300; ++i) {
+    const std::vector<NodalLoad> loads = pull(bench, share_of(i));
+    const std::vector<Vec3> now = bench.step(loads);
+    for (const NodalLoad& load : loads) work += load.force.dot(now[load.vertex] - before[load.vertex]);
+    const double elastic = stores ? body.elastic(now) : 0;
+    most = std::max(most, elastic);
+    CHECK(elastic <= work * (1 + 1e-9) + 1e-18);
+    before = now;
+  }
+  CAPTURE(work, most);
+  CHECK(work >= 0);
+  if (stores) {
+    CHECK(most > 1e-5);
+    CHECK(body.elastic(before) < 1e-3 * most);  // damped
+    CHECK(work > 1e-3 * most);
   }
 }
 
-TEST_CASE("contract: let go, a body in motion never gains energy") {
-  for (const ModelCase& choice : model_cases()) {
-    if (!choice.row.damped) continue;  // without mass: below
-    DYNAMIC_SECTION(choice.name()) {
-      const bool each_step = !exempt(choice, "energy step by step"),
-                 here = each_step && !exempt(choice, "energy in one place");
-      // So that explicit has one sub-step a period, and implicit damps little.
-      const double rate = each_step ? 2000 : 20000;
-      ModelBench bench(choice, {.thin = true, .rate_hz = rate, .rayleigh_mass = 0, .rayleigh_stiffness = 0});
-      const Body body{bench};
-      Fading fading(bench);
-      std::vector<Vec3> before, now = bench.step({});
-      const auto step = [&](double share) {
-        before = std::exchange(now, bench.step(pull(bench, share)));
-        fading.follow(before, now);
-      };
-      for (int i = 0; i < 0.01 * rate; ++i) step(1);
-      double last = 0, first = 0, gained = 0;
-      for (int i = 0; i < 0.2 * rate; ++i) {
-        step(0);
-        const double energy = body.kinetic(before, now, 1 / rate) + fading.energy(body) +
-                              (here ? body.elastic(now) : body.between(before, now));
-        if (i == 1) first = last = energy;  // the force fades in the middle of the first explicit step
-        if (i > 1) gained = std::max(gained, energy - (each_step ? last : first));
-        last = energy;
-      }
-      CAPTURE(first, last, gained);
-      CHECK(first > 1e-5);
-      CHECK(gained <= (each_step ? 1e-10 : 1e-3) * first);
-      if (choice.row.name == "tensor_mass") CHECK(last == Approx(first).epsilon(1e-9));  // which keeps it
-    }
+CONTRACT("let go, a body in motion never gains energy", ModelCase, choice,
+         model_cases([](const ModelCase& c) { return c.row.damped; })) {
+  const bool each_step = !exempt(choice, "energy step by step"),
+             here = each_step && !exempt(choice, "energy in one place");
+  // So that explicit has one sub-step a period, and implicit damps little.
+  const double rate = each_step ? 2000 : 20000;
+  ModelBench bench(choice, {.thin = true, .rate_hz = rate, .rayleigh_mass = 0, .rayleigh_stiffness = 0});
+  const Body body{bench};
+  Fading fading(bench);
+  std::vector<Vec3> before, now = bench.step({});
+  const auto step = [&](double share) {
+    before = std::exchange(now, bench.step(pull(bench, share)));
+    fading.follow(before, now);
+  };
+  for (int i = 0; i < 0.01 * rate; ++i) step(1);
+  double last = 0, first = 0, gained = 0;
+  for (int i = 0; i < 0.2 * rate; ++i) {
+    step(0);
+    const double energy = body.kinetic(before, now, 1 / rate) + fading.energy(body) +
+                          (here ? body.elastic(now) : body.between(before, now));
+    if (i == 1) first = last = energy;  // the force fades in the middle of the first explicit step
+    if (i > 1) gained = std::max(gained, energy - (each_step ? last : first));
+    last = energy;
   }
+  CAPTURE(first, last, gained);
+  CHECK(first > 1e-5);
+  CHECK(gained <= (each_step ? 1e-10 : 1e-3) * first);
+  if (choice.row.name == "tensor_mass") CHECK(last == Approx(first).epsilon(1e-9));  // which keeps it
 }
 
-TEST_CASE("contract: let go, a body without mass is back at rest at once") {
-  for (const ModelCase& choice : model_cases()) {
-    if (choice.row.damped) continue;
-    DYNAMIC_SECTION(choice.name()) {
-      ModelBench bench(choice, {.thin = true});
-      const double moved = bench.largest_way(bench.step(pull(bench, 1)));
-      if (!exempt(choice, "static limit")) CHECK(moved > 1e-3);
-      for (int i = 0; i < 3; ++i) CHECK(bench.largest_way(bench.step({})) <= 1e-12 * moved);
-    }
-  }
+CONTRACT("let go, a body without mass is back at rest at once", ModelCase, choice,
+         model_cases([](const ModelCase& c) { return !c.row.damped; })) {
+  ModelBench bench(choice, {.thin = true});
+  const double moved = bench.largest_way(bench.step(pull(bench, 1)));
+  if (!exempt(choice, "static limit")) CHECK(moved > 1e-3);
+  for (int i = 0; i < 3; ++i) CHECK(bench.largest_way(bench.step({})) <= 1e-12 * moved);
 }
 
-TEST_CASE("contract: under loads that stay, a body comes to rest in the static equilibrium, to 1e-6") {
-  for (const ModelCase& choice : model_cases()) {
-    if (exempt(choice, "static limit")) continue;
-    DYNAMIC_SECTION(choice.name()) {
-      ModelBench bench(choice, {.rate_hz = 30, .rayleigh_mass = 30, .rayleigh_stiffness = 1e-3});
-      const std::vector<NodalLoad> loads = pull(bench, 1);
-      std::vector<Vec3> moved;
-      for (int i = 0; i < 120; ++i) moved = bench.step(loads);
-      const Solid solid(bench.mesh, relaxed(*bench.scene.material));
-      std::vector<HeldAxes> held(bench.mesh.vertices.size(), 0);
-      for (const int v : bench.fixed) held[v] = kAllAxes;
-      const auto forces = [&](std::span<const Vec3>, std::span<Vec3> f) {
-        for (const NodalLoad& load : loads) f[bench.surface.vertices[load.vertex]] += load.force;
-      };
-      const Equilibrium found = find_equilibrium(solid, {.forces = forces, .held = held}, "test");
-      double off = 0;
-      for (int v = 0; v < bench.size(); ++v)
-        off = std::max(off, (moved[v] - found.x[bench.surface.vertices[v]]).norm());
-      CAPTURE(off, bench.largest_way(moved));
-      CHECK(bench.largest_way(moved) > 0.002);
-      CHECK(off < 1e-6 * bench.largest_way(moved));
-    }
-  }
+CONTRACT("under loads that stay, a body comes to rest in the static equilibrium, to 1e-6", ModelCase, choice,
+         model_cases([](const ModelCase& c) { return !exempt(c, "static limit"); })) {
+  ModelBench bench(choice, {.rate_hz = 30, .rayleigh_mass = 30, .rayleigh_stiffness = 1e-3});
+  const std::vector<NodalLoad> loads = pull(bench, 1);
+  std::vector<Vec3> moved;
+  for (int i = 0; i < 120; ++i) moved = bench.step(loads);
+  const Solid solid(bench.mesh, relaxed(*bench.scene.material));
+  std::vector<HeldAxes> held(bench.mesh.vertices.size(), 0);
+  for (const int v : bench.fixed) held[v] = kAllAxes;
+  const auto forces = [&](std::span<const Vec3>, std::span<Vec3> f) {
+    for (const NodalLoad& load : loads) f[bench.surface.vertices[load.vertex]] += load.force;
+  };
+  const Equilibrium found = find_equilibrium(solid, {.forces = forces, .held = held}, "test");
+  double off = 0;
+  for (int v = 0; v < bench.size(); ++v)
+    off = std::max(off, (moved[v] - found.x[bench.surface.vertices[v]]).norm());
+  CAPTURE(off, bench.largest_way(moved));
+  CHECK(bench.largest_way(moved) > 0.002);
+  CHECK(off < 1e-6 * bench.largest_way(moved));
 }

@@ -5,6 +5,7 @@
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
+#include "tests/support/contract.h"
 #include "tests/support/random.h"
 #include "tests/support/served_block.h"
 
@@ -57,128 +58,119 @@ void rest_and_leave(ForceEstimate& estimate, Part part) {
 
 }  // namespace
 
-TEST_CASE("contract: every extrapolation law") {
-  for (const ExtrapolatorRow& row : extrapolators()) {
-    DYNAMIC_SECTION(row.name) {
-      const auto law = row.make();
-      SECTION("no force before the first sample") {
-        CHECK(law->force({0.1, 0.2, 0.3}, Time{5}) == Vec3::Zero());
-      }
-      SECTION("at the sample itself, its force") {
-        test::Random random(10);
-        for (int n = 1; n <= 50; ++n) {
-          const Sample sample{static_cast<std::uint64_t>(n), Time{n * 33'000'000}, random.vector(0.01),
-                              random.vector(2)};
-          law->update(sample);
-          if (row.exact) CHECK((law->force(sample.p, sample.t) - sample.f).norm() < 1e-12);
-        }
-      }
-      SECTION("a constant force stays constant, wherever and whenever") {
-        test::Random random(11);
-        for (int n = 1; n <= 10; ++n) {
-          law->update({static_cast<std::uint64_t>(n), Time{n * 33'000'000}, random.vector(0.01), {1, -2, 3}});
-        }
-        CHECK((law->force(random.vector(0.01), Time{350'000'000}) - Vec3(1, -2, 3)).norm() < 1e-12);
-      }
-      SECTION("whatever it is given, the answer is finite") {
-        constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-        const std::array wild{0.0, 1e-12, -0.001, 1e30, -1e30, kNan, std::numeric_limits<double>::infinity()};
-        const std::array<std::int64_t, 5> times{0, 1, 33'000'000, 33'000'000, std::int64_t{1} << 61};
-        test::Random random(12);
-        const auto any = [&] { return wild[static_cast<std::size_t>(random.between(0, 6.999))]; };
-        for (int n = 1; n <= 5000; ++n) {
-          const Sample sample{static_cast<std::uint64_t>(n),
-                              Time{times[static_cast<std::size_t>(random.between(0, 4.999))]},
-                              {any(), any(), any()},
-                              {any(), any(), any()}};
-          law->update(sample);
-          if (n % 3 == 0) law->update(sample);  // again: same time, same place
-          CHECK(law->force({any(), any(), any()}, sample.t).allFinite());
-          CHECK(law->force(sample.p, sample.t + Time{2'000'000}).allFinite());
-        }
-      }
-      SECTION("whatever the parts of a sample hold, the answer is finite") {
-        constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-        const std::array wild{0.0,    1e-300, 5e-324, 1e-12, 0.001, 0.005,
-                              -0.001, 1.0,    10.0,   1e6,   1e9,   -1e9,
-                              1e30,   -1e30,  1e300,  kNan,  -kNan, std::numeric_limits<double>::infinity()};
-        test::Random random(13);
-        const auto any = [&] {
-          return wild[static_cast<std::size_t>(random.between(0, wild.size() - 1e-3))];
-        };
-        const auto near = [&] { return Vec3(kPressed + random.vector(0.001)); };
-        // A wall, mostly, with some wild numbers in it; one in three is free.
-        const auto any_linear = [&] {
-          Linearised l{.p = near(), .f = random.vector(2), .normal = {0, 1, 0}, .gap = 0.001};
-          l.k = -500 * Mat3::Identity();
-          if (random.between(0, 3) < 1) l.f.setZero();
-          double* const numbers[] = {&l.p[0],      &l.p[1],      &l.f[0],    &l.f[2],
-                                     &l.k(0, 0),   &l.k(1, 1),   &l.k(0, 1), &l.normal[0],
-                                     &l.normal[1], &l.normal[2], &l.gap};
-          for (double* const number : numbers) *number = random.between(0, 8) < 1 ? any() : *number;
-          return l;
-        };
-        const auto any_surface = [&](const SurfaceModel& model) {
-          Surface s{&model,
-                    random.vector(0.001),
-                    {.radius = 0.005, .friction = random.between(0, 2) < 1 ? 0 : 0.3},
-                    0};
-          double* const numbers[] = {&s.shift[0], &s.shift[1], &s.tool.radius, &s.tool.friction,
-                                     &s.tool_compliance};
-          for (double* const number : numbers) *number = random.between(0, 8) < 1 ? any() : *number;
-          return s;
-        };
-        const SurfaceModel empty;
-        for (int n = 1; n <= 3000; ++n) {
-          const Time t = n * std::chrono::milliseconds(33);
-          Sample sample{static_cast<std::uint64_t>(n), t, near(), random.vector(2)};
-          if (n % 8 == 0) sample.surface_v[n % 3] = any();
-          if (n % 4 != 0) sample.here = any_linear();
-          if (n % 5 != 0) sample.ahead = any_linear();
-          if (n % 6 != 0) sample.surface = any_surface(n % 10 == 0 ? empty : told().model);
-          law->update(sample);
-          CHECK(law->force(near(), t).allFinite());
-          CHECK(law->force({any(), any(), any()}, t + Time{1'000'000}).allFinite());
-          CHECK(law->force(sample.p, t + Time{2'000'000}).allFinite());
-        }
-      }
-      SECTION("a tool at rest for a minute: a constant force, which ends when it leaves") {
-        const auto everything = [](Sample&) {};
-        const auto no_surface = [](Sample& s) { s.surface.reset(); };
-        const auto triplet = [](Sample& s) { s = {s.number, s.t, s.p, s.f}; };
-        {
-          ForceEstimate estimate(row.make());
-          rest_and_leave(estimate, everything);
-        }
-        {
-          ForceEstimate estimate(row.make());
-          rest_and_leave(estimate, no_surface);
-        }
-        ForceEstimate estimate(row.make());
-        rest_and_leave(estimate, triplet);
-      }
-      SECTION("a sample that is not finite changes nothing, one that comes again neither") {
-        const double nan = std::numeric_limits<double>::quiet_NaN();
-        law->update({1, Time{0}, {0, 0, 0}, {0, 1, 0}});
-        law->update({2, Time{33'000'000}, {0.001, 0, 0}, {0, 2, 0}});
-        const Vec3 p(0.0015, 0, 0);
-        const Vec3 before = law->force(p, Time{40'000'000});
-        law->update({3, Time{66'000'000}, {nan, 0, 0}, {0, 3, 0}});
-        law->update({4, Time{66'000'000}, {0, 0, 0}, {0, 3, nan}});
-        law->update({2, Time{33'000'000}, {0.001, 0, 0}, {0, 2, 0}});
-        CHECK(law->force(p, Time{40'000'000}) == before);
-      }
-      SECTION("it does not allocate") {
-        std::size_t allocations = 1;
-        {
-          const test::AllocationGuard guard;
-          law->update({1, Time{0}, {0, 0, 0}, {0, 1, 0}});
-          law->update({2, Time{33'000'000}, {0.001, 0, 0}, {0, 2, 0}});
-          law->force({0.002, 0, 0}, Time{40'000'000});
-          allocations = guard.count();
-        }
-        CHECK(allocations == 0);
-      }
+CONTRACT("every extrapolation law", ExtrapolatorRow, row, extrapolators()) {
+  const auto law = row.make();
+  SECTION("no force before the first sample") {
+    CHECK(law->force({0.1, 0.2, 0.3}, Time{5}) == Vec3::Zero());
+  }
+  SECTION("at the sample itself, its force") {
+    test::Random random(10);
+    for (int n = 1; n <= 50; ++n) {
+      const Sample sample{static_cast<std::uint64_t>(n), Time{n * 33'000'000}, random.vector(0.01),
+                          random.vector(2)};
+      law->update(sample);
+      if (row.exact) CHECK((law->force(sample.p, sample.t) - sample.f).norm() < 1e-12);
     }
+  }
+  SECTION("a constant force stays constant, wherever and whenever") {
+    test::Random random(11);
+    for (int n = 1; n <= 10; ++n) {
+      law->update({static_cast<std::uint64_t>(n), Time{n * 33'000'000}, random.vector(0.01), {1, -2, 3}});
+    }
+    CHECK((law->force(random.vector(0.01), Time{350'000'000}) - Vec3(1, -2, 3)).norm() < 1e-12);
+  }
+  SECTION("whatever it is given, the answer is finite") {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const std::array wild{0.0, 1e-12, -0.001, 1e30, -1e30, kNan, std::numeric_limits<double>::infinity()};
+    const std::array<std::int64_t, 5> times{0, 1, 33'000'000, 33'000'000, std::int64_t{1} << 61};
+    test::Random random(12);
+    const auto any = [&] { return wild[static_cast<std::size_t>(random.between(0, 6.999))]; };
+    for (int n = 1; n <= 5000; ++n) {
+      const Sample sample{static_cast<std::uint64_t>(n),
+                          Time{times[static_cast<std::size_t>(random.between(0, 4.999))]},
+                          {any(), any(), any()},
+                          {any(), any(), any()}};
+      law->update(sample);
+      if (n % 3 == 0) law->update(sample);  // again: same time, same place
+      CHECK(law->force({any(), any(), any()}, sample.t).allFinite());
+      CHECK(law->force(sample.p, sample.t + Time{2'000'000}).allFinite());
+    }
+  }
+  SECTION("whatever the parts of a sample hold, the answer is finite") {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const std::array wild{0.0,    1e-300, 5e-324, 1e-12, 0.001, 0.005,
+                          -0.001, 1.0,    10.0,   1e6,   1e9,   -1e9,
+                          1e30,   -1e30,  1e300,  kNan,  -kNan, std::numeric_limits<double>::infinity()};
+    test::Random random(13);
+    const auto any = [&] { return wild[static_cast<std::size_t>(random.between(0, wild.size() - 1e-3))]; };
+    const auto near = [&] { return Vec3(kPressed + random.vector(0.001)); };
+    // A wall, mostly, with some wild numbers in it; one in three is free.
+    const auto any_linear = [&] {
+      Linearised l{.p = near(), .f = random.vector(2), .normal = {0, 1, 0}, .gap = 0.001};
+      l.k = -500 * Mat3::Identity();
+      if (random.between(0, 3) < 1) l.f.setZero();
+      double* const numbers[] = {&l.p[0],    &l.p[1],      &l.f[0],      &l.f[2],      &l.k(0, 0), &l.k(1, 1),
+                                 &l.k(0, 1), &l.normal[0], &l.normal[1], &l.normal[2], &l.gap};
+      for (double* const number : numbers) *number = random.between(0, 8) < 1 ? any() : *number;
+      return l;
+    };
+    const auto any_surface = [&](const SurfaceModel& model) {
+      Surface s{
+          &model, random.vector(0.001), {.radius = 0.005, .friction = random.between(0, 2) < 1 ? 0 : 0.3}, 0};
+      double* const numbers[] = {&s.shift[0], &s.shift[1], &s.tool.radius, &s.tool.friction,
+                                 &s.tool_compliance};
+      for (double* const number : numbers) *number = random.between(0, 8) < 1 ? any() : *number;
+      return s;
+    };
+    const SurfaceModel empty;
+    for (int n = 1; n <= 3000; ++n) {
+      const Time t = n * std::chrono::milliseconds(33);
+      Sample sample{static_cast<std::uint64_t>(n), t, near(), random.vector(2)};
+      if (n % 8 == 0) sample.surface_v[n % 3] = any();
+      if (n % 4 != 0) sample.here = any_linear();
+      if (n % 5 != 0) sample.ahead = any_linear();
+      if (n % 6 != 0) sample.surface = any_surface(n % 10 == 0 ? empty : told().model);
+      law->update(sample);
+      CHECK(law->force(near(), t).allFinite());
+      CHECK(law->force({any(), any(), any()}, t + Time{1'000'000}).allFinite());
+      CHECK(law->force(sample.p, t + Time{2'000'000}).allFinite());
+    }
+  }
+  SECTION("a tool at rest for a minute: a constant force, which ends when it leaves") {
+    const auto everything = [](Sample&) {};
+    const auto no_surface = [](Sample& s) { s.surface.reset(); };
+    const auto triplet = [](Sample& s) { s = {s.number, s.t, s.p, s.f}; };
+    {
+      ForceEstimate estimate(row.make());
+      rest_and_leave(estimate, everything);
+    }
+    {
+      ForceEstimate estimate(row.make());
+      rest_and_leave(estimate, no_surface);
+    }
+    ForceEstimate estimate(row.make());
+    rest_and_leave(estimate, triplet);
+  }
+  SECTION("a sample that is not finite changes nothing, one that comes again neither") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    law->update({1, Time{0}, {0, 0, 0}, {0, 1, 0}});
+    law->update({2, Time{33'000'000}, {0.001, 0, 0}, {0, 2, 0}});
+    const Vec3 p(0.0015, 0, 0);
+    const Vec3 before = law->force(p, Time{40'000'000});
+    law->update({3, Time{66'000'000}, {nan, 0, 0}, {0, 3, 0}});
+    law->update({4, Time{66'000'000}, {0, 0, 0}, {0, 3, nan}});
+    law->update({2, Time{33'000'000}, {0.001, 0, 0}, {0, 2, 0}});
+    CHECK(law->force(p, Time{40'000'000}) == before);
+  }
+  SECTION("it does not allocate") {
+    std::size_t allocations = 1;
+    {
+      const test::AllocationGuard guard;
+      law->update({1, Time{0}, {0, 0, 0}, {0, 1, 0}});
+      law->update({2, Time{33'000'000}, {0.001, 0, 0}, {0, 2, 0}});
+      law->force({0.002, 0, 0}, Time{40'000'000});
+      allocations = guard.count();
+    }
+    CHECK(allocations == 0);
   }
 }

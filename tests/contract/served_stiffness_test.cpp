@@ -2,6 +2,7 @@
 // a tool.
 #include "sim_server/serving/served_tools.h"
 #include "tests/support/catch.h"
+#include "tests/support/contract.h"
 #include "tests/support/model_bench.h"
 #include "tests/support/solids.h"
 
@@ -80,98 +81,83 @@ Mat3 tangent_of(const protocol::ForceSample& sample) {
 
 }  // namespace
 
-TEST_CASE(
-    "contract: the stiffness sent to the client is the slope of the server's own force over the sample "
-    "interval") {
-  for (const ModelCase& choice : model_cases()) {
-    DYNAMIC_SECTION(choice.name()) {
-      const Way way{.last = Vec3(0.0028, 0.0030, 0.0015), .held = held_until_fresh(choice)};
-      ToolForce felt;
-      const Mat3 sent = tangent_of(answer_to(choice, way, &felt));
-      REQUIRE(felt.contacts > 0);
-      REQUIRE_FALSE(felt.flagged);
-      const Mat3 slope = slope_of(choice, way, 1e-6);
-      CAPTURE(sent, slope, (sent - slope).norm() / slope.norm());
-      CHECK((sent - slope).norm() < (exempt(choice, "slope in motion") ? 1e-2 : 1e-3) * slope.norm());
-    }
-  }
+CONTRACT(
+    "the stiffness sent to the client is the slope of the server's own force over the sample "
+    "interval",
+    ModelCase, choice, model_cases()) {
+  const Way way{.last = Vec3(0.0028, 0.0030, 0.0015), .held = held_until_fresh(choice)};
+  ToolForce felt;
+  const Mat3 sent = tangent_of(answer_to(choice, way, &felt));
+  REQUIRE(felt.contacts > 0);
+  REQUIRE_FALSE(felt.flagged);
+  const Mat3 slope = slope_of(choice, way, 1e-6);
+  CAPTURE(sent, slope, (sent - slope).norm() / slope.norm());
+  CHECK((sent - slope).norm() < (exempt(choice, "slope in motion") ? 1e-2 : 1e-3) * slope.norm());
 }
 
 // Of laws that are not linear the factor is of where the body was one look before, or, where the background
 // makes it, some steps before.
-TEST_CASE("contract: in motion too the stiffness sent is that slope, but for the age of its factor") {
-  for (const ModelCase& choice : model_cases()) {
-    if (!exempt(choice, "slope in motion")) continue;
-    DYNAMIC_SECTION(choice.name()) {
-      const Way way{.last = Vec3(0.0028, 0.0030, 0.0015)};
-      const Mat3 sent = tangent_of(answer_to(choice, way)), slope = slope_of(choice, way, 1e-6);
-      CAPTURE(sent, slope, (sent - slope).norm() / slope.norm());
-      CHECK((sent - slope).norm() <
-            (choice.solver == ModelCase::Solver::kDirect ? 0.06 : 0.15) * slope.norm());
-    }
-  }
+CONTRACT("in motion too the stiffness sent is that slope, but for the age of its factor", ModelCase, choice,
+         model_cases([](const ModelCase& c) { return exempt(c, "slope in motion"); })) {
+  const Way way{.last = Vec3(0.0028, 0.0030, 0.0015)};
+  const Mat3 sent = tangent_of(answer_to(choice, way)), slope = slope_of(choice, way, 1e-6);
+  CAPTURE(sent, slope, (sent - slope).norm() / slope.norm());
+  CHECK((sent - slope).norm() < (choice.solver == ModelCase::Solver::kDirect ? 0.06 : 0.15) * slope.norm());
 }
 
 // With friction the force depends on the way, and where the tool slides its slope is not symmetric. What is
 // sent is the part of it that stores energy, of the last stride: the whole way of a slow tool.
-TEST_CASE("contract: with friction the stiffness sent is that of a tool that sticks, or slides on") {
+CONTRACT("with friction the stiffness sent is that of a tool that sticks, or slides on", ModelCase, choice,
+         model_cases()) {
   const Vec3 drag(2e-5, 5e-6, 0);
-  for (const ModelCase& choice : model_cases()) {
-    for (const bool slides : {false, true}) {
-      DYNAMIC_SECTION(choice.name() << (slides ? ": slides" : ": sticks")) {
-        Way way{.held = std::max(1, held_until_fresh(choice)), .friction = 0.3, .drag = drag};
-        way.last = way.place(way.steps() - 1) + (slides ? drag : Vec3(-drag));
-        ToolForce felt;
-        const Mat3 sent = tangent_of(answer_to(choice, way, &felt));
-        REQUIRE(felt.contacts > 0);
-        REQUIRE_FALSE(felt.flagged);
-        const Mat3 slope = slope_of(choice, way, 1e-7), stores = 0.5 * (slope + slope.transpose());
-        CAPTURE(sent, slope, (sent - stores).norm() / stores.norm());
-        CHECK((sent - stores).norm() < (exempt(choice, "slope in motion") ? 1e-2 : 1e-3) * stores.norm());
-        CHECK(((slope - stores).norm() > 0.05 * stores.norm()) == slides);
-      }
+  for (const bool slides : {false, true}) {
+    DYNAMIC_SECTION((slides ? "slides" : "sticks")) {
+      Way way{.held = std::max(1, held_until_fresh(choice)), .friction = 0.3, .drag = drag};
+      way.last = way.place(way.steps() - 1) + (slides ? drag : Vec3(-drag));
+      ToolForce felt;
+      const Mat3 sent = tangent_of(answer_to(choice, way, &felt));
+      REQUIRE(felt.contacts > 0);
+      REQUIRE_FALSE(felt.flagged);
+      const Mat3 slope = slope_of(choice, way, 1e-7), stores = 0.5 * (slope + slope.transpose());
+      CAPTURE(sent, slope, (sent - stores).norm() / stores.norm());
+      CHECK((sent - stores).norm() < (exempt(choice, "slope in motion") ? 1e-2 : 1e-3) * stores.norm());
+      CHECK(((slope - stores).norm() > 0.05 * stores.norm()) == slides);
     }
   }
 }
 
-TEST_CASE("contract: a tool that holds tissue where it rests feels nothing, and nothing moves") {
-  for (const ModelCase& choice : model_cases()) {
-    DYNAMIC_SECTION(choice.name()) {
-      Scene scene = block_scene(choice);
-      const Vec3 place(0.001, 0.005, 0.0005);
-      scene.tools[0].grasp_place = place;
-      Simulation simulation(scene, block(choice));
-      for (int i = 0; i < 10; ++i) {
-        const ToolForce felt = simulation.step(place, kPeriod);
-        REQUIRE(felt.contacts > 0);
-        CHECK(felt.force.norm() < 1e-12);
-      }
-      CHECK(largest_difference(simulation.positions(), simulation.rest()) < 1e-15);
-      CHECK(simulation.step(place + Vec3(0, 1e-4, 0), kPeriod).force[1] < -1e-3);
-    }
+CONTRACT("a tool that holds tissue where it rests feels nothing, and nothing moves", ModelCase, choice,
+         model_cases()) {
+  Scene scene = block_scene(choice);
+  const Vec3 place(0.001, 0.005, 0.0005);
+  scene.tools[0].grasp_place = place;
+  Simulation simulation(scene, block(choice));
+  for (int i = 0; i < 10; ++i) {
+    const ToolForce felt = simulation.step(place, kPeriod);
+    REQUIRE(felt.contacts > 0);
+    CHECK(felt.force.norm() < 1e-12);
   }
+  CHECK(largest_difference(simulation.positions(), simulation.rest()) < 1e-15);
+  CHECK(simulation.step(place + Vec3(0, 1e-4, 0), kPeriod).force[1] < -1e-3);
 }
 
-TEST_CASE("contract: a tool that presses and lets go never gets out more work than it put in") {
-  for (const ModelCase& choice : model_cases()) {
-    DYNAMIC_SECTION(choice.name()) {
-      Simulation simulation(block_scene(choice), block(choice));
-      double work = 0, most = 0, least = 0;
-      Vec3 before(0.001, 0.0052, 0.0015);
-      for (int i = 0; i <= 40; ++i) {
-        const double deepest = exempt(choice, "deep press") ? 0.0014 : 0.0027,
-                     down = std::min({0.0002 * i, 0.0002 * (40 - i), deepest});
-        const Vec3 p(0.001 + 5e-5 * i, 0.0052 - down, 0.0015);
-        const Vec3 force = simulation.step(p, kPeriod).force;
-        work -= force.dot(p - before);
-        most = std::max(most, work);
-        least = std::min(least, work);
-        before = p;
-      }
-      CAPTURE(work, most, least);
-      CHECK(most > 1e-5);
-      CHECK(work >= 0);
-      CHECK(least >= -1e-9 * most);
-    }
+CONTRACT("a tool that presses and lets go never gets out more work than it put in", ModelCase, choice,
+         model_cases()) {
+  Simulation simulation(block_scene(choice), block(choice));
+  double work = 0, most = 0, least = 0;
+  Vec3 before(0.001, 0.0052, 0.0015);
+  for (int i = 0; i <= 40; ++i) {
+    const double deepest = exempt(choice, "deep press") ? 0.0014 : 0.0027,
+                 down = std::min({0.0002 * i, 0.0002 * (40 - i), deepest});
+    const Vec3 p(0.001 + 5e-5 * i, 0.0052 - down, 0.0015);
+    const Vec3 force = simulation.step(p, kPeriod).force;
+    work -= force.dot(p - before);
+    most = std::max(most, work);
+    least = std::min(least, work);
+    before = p;
   }
+  CAPTURE(work, most, least);
+  CHECK(most > 1e-5);
+  CHECK(work >= 0);
+  CHECK(least >= -1e-9 * most);
 }

@@ -119,4 +119,14 @@ inline std::vector<ModelCase> model_cases() {
   return cases;
 }
 
+/// Those of them that are `asked`.
+template <class Asked>
+std::vector<ModelCase> model_cases(const Asked& asked) {
+  std::vector<ModelCase> cases;
+  for (const ModelCase& one : model_cases()) {
+    if (asked(one)) cases.push_back(one);
+  }
+  return cases;
+}
+
 }  // namespace palpate::test

@@ -136,7 +136,7 @@ TEST_CASE("a Falcon at walls of 100 N/m to 20 kN/m, 30 Hz and 35 ms, three hands
         const auto state = rig.state();
         const Ledger after(state);
         const double motors = after.motors - before.motors, hand_work = after.hand - before.hand;
-        CHECK(motors <= 0.5);  // J; a law that is unstable there and is not damped gives up to 15
+        CHECK(motors <= 0.75);  // J in 10 s; a law that is unstable there and is not damped gives up to 15
         // Both works, and what friction and stops took, are the motion that there is.
         CHECK(motors + hand_work + after.taken - before.taken ==
               Approx(after.kinetic - before.kinetic).margin(1e-3 * std::abs(hand_work) + 1e-6));
