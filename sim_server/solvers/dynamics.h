@@ -1,9 +1,9 @@
 #pragma once
 #include <optional>
 
-#include "sim_server/solvers/quasi_newton.h"
 #include "sim_server/solvers/equations_of_motion.h"
 #include "sim_server/solvers/factor_policy.h"
+#include "sim_server/solvers/quasi_newton.h"
 
 namespace palpate::sim {
 
