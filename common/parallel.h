@@ -15,9 +15,9 @@ namespace palpate {
 template <class Work>
 void parallel_blocks(std::size_t n, std::size_t block, const Work& work) {
 #ifdef PALPATE_WITH_TBB
-  using Range = oneapi::tbb::blocked_range<std::size_t>;
+  using Block = oneapi::tbb::blocked_range<std::size_t>;
   const std::size_t blocks = (n + block - 1) / block;
-  oneapi::tbb::parallel_for(Range(0, blocks, 1), [&](const Range& range) {
+  oneapi::tbb::parallel_for(Block(0, blocks, 1), [&](const Block& range) {
     for (std::size_t b = range.begin(); b != range.end(); ++b) work(b * block, std::min(n, (b + 1) * block));
   });
 #else

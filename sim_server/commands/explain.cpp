@@ -66,23 +66,9 @@ std::size_t loaded_nodes(const Scene& scene, const Simulation& simulation) {
   }));
 }
 
-const DeformationModelRow& model_of(const Scene& scene) {
-  return find_row(deformation_models(), scene.deformation.model, "deformation model",
-                  scene.deformation.where);
-}
-
-bool is_elastic(const Scene& scene) {
-  return model_of(scene).elastic;
-}
-
-/// By its material.
-bool deforms(const Scene& scene) {
-  return model_of(scene).elastic || model_of(scene).any_material;
-}
-
 /// By formula; what no elastic scene has is nothing.
 double compliance_bytes(const Scene& scene, const Simulation& simulation) {
-  if (!is_elastic(scene)) return 0;
+  if (!model_of(scene.deformation).keeps_compliance()) return 0;
   const auto nodes = static_cast<double>(loaded_nodes(scene, simulation));
   return kBytesPerPair * nodes * nodes;
 }
@@ -112,12 +98,11 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
   const Surface& surface = simulation.surface();
   if (part == "mesh")
     return fmt::format("{} vertices, {} tetrahedra", mesh.corners(), mesh.tetrahedra.size());
-  if (part == "modes") return fmt::format("{} of vibration", scene.deformation.modes);
   if (part == "surface")
     return fmt::format("{} vertices, {} triangles", surface.vertices.size(), surface.triangles.size());
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
   if (part == "stiffness matrix" || part == "its factor")
-    return is_elastic(scene) ? "freed after set-up" : "kept: part of motion";
+    return model_of(scene.deformation).keeps_compliance() ? "freed after set-up" : "kept: part of motion";
   if (const ToolSettings* tool = tool_of(scene, part)) {
     const std::size_t reached = reachable_vertices(surface, mesh, {tool, 1}).size();
     return fmt::format(
@@ -160,7 +145,8 @@ std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulat
   }
   for (const FixedRegion& region : scene.fixed) rows.push_back({"fixed", "nothing kept", region.where});
   if (scene.material)
-    rows.push_back({"material", deforms(scene) ? "nothing kept" : "not used", scene.material_where});
+    rows.push_back({"material", model_of(scene.deformation).deforms() ? "nothing kept" : "not used",
+                    scene.material_where});
   return rows;
 }
 
@@ -219,8 +205,12 @@ std::optional<LeftOut> beyond_reach(const Own& own) {
   return compare({.what = "the surface out of reach", .why = tools.front().reach_where}, variant, own);
 }
 
+/// The simplest model that deforms: at rest at every instant.
 LeftOut elasticity(const Own& own) {
-  LeftOut row{.what = "elasticity (quasi_static)", .why = own.scene.deformation.where};
+  const auto rows = deformation_models();
+  const auto model =
+      std::ranges::find_if(rows, [](const DeformationModelRow& m) { return m.deforms() && !m.moves; });
+  LeftOut row{.what = fmt::format("elasticity ({})", model->name), .why = own.scene.deformation.where};
   if (!own.scene.material || own.scene.fixed.empty()) {
     row.why = own.scene.material
                   ? "no [[fixed]] section"
@@ -229,7 +219,7 @@ LeftOut elasticity(const Own& own) {
     return row;
   }
   Scene variant = own.scene;
-  variant.deformation.model = "quasi_static";
+  variant.deformation.model = model->name;
   return compare(row, variant, own);
 }
 
@@ -302,16 +292,16 @@ void add_unreached_tools(const Own& own, std::vector<LeftOut>& rows) {
 
 std::vector<LeftOut> left_out(Own& own) {
   std::vector<LeftOut> rows;
-  const std::string& model = own.scene.deformation.model;
+  const DeformationModelRow& model = model_of(own.scene.deformation);
   if (const auto row = beyond_reach(own)) rows.push_back(*row);
   if (const auto row = friction(own)) rows.push_back(*row);
-  if (model == "rigid") rows.push_back(elasticity(own));
-  if (is_elastic(own.scene)) rows.push_back(whole_compliance(own));
-  if (model == "rigid" || model == "quasi_static") rows.push_back(motion(own));
-  if (model == "tensor_mass")
-    rows.push_back({.what = "factor of the stiffness matrix",
+  if (!model.deforms() && !model.moves) rows.push_back(elasticity(own));
+  if (model.keeps_compliance()) rows.push_back(whole_compliance(own));
+  if (!model.moves) rows.push_back(motion(own));
+  if (model.unneeded)
+    rows.push_back({.what = std::string(model.unneeded->what),
                     .why = own.scene.deformation.where,
-                    .note = "explicit steps solve nothing"});
+                    .note = std::string(model.unneeded->note)});
   rows.push_back(neighbour_tables(own));
   add_unreached_tools(own, rows);
   rows.push_back(tangents(own));

@@ -12,6 +12,8 @@
 #include "common/text.h"
 #include "sim_server/commands/solve_results.h"
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/implicit.h"
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/vtu_output.h"
 #include "sim_server/scene/inclusions.h"
@@ -60,21 +62,21 @@ class Series {
   std::vector<std::pair<double, std::filesystem::path>> frames_;
 };
 
-/// How a motion is stepped: as model "implicit" of the scene says; for models that only serve tools by BDF2,
-/// with their damping where they have one.
+/// How a motion is stepped: as the scene says, where its model is implicit; for models that only serve tools
+/// by BDF2, with their damping where they have one.
 struct Stepping {
   DynamicsSettings dynamics{.second_order = true};
   double tolerance = 1e-9;
   std::string name = "BDF2";
   explicit Stepping(const DeformationSettings& settings) {
-    if (settings.model == "implicit") {
-      dynamics = settings.dynamics();
-      tolerance = settings.tolerance;
+    const DeformationModelRow* row = settings.model.empty() ? nullptr : &model_of(settings);
+    if (row != nullptr && row->takes<ImplicitSettings>()) {
+      dynamics = dynamics_settings(settings);
+      tolerance = settings.of<ImplicitSettings>().tolerance;
       if (!dynamics.second_order) name = "backward Euler";
-    } else if (!settings.model.empty() &&
-               find_row(deformation_models(), settings.model, "deformation model", settings.where).damped) {
-      dynamics.rayleigh_mass = settings.rayleigh_mass;
-      dynamics.rayleigh_stiffness = settings.rayleigh_stiffness;
+    } else if (row != nullptr && row->takes<RayleighDamping>()) {
+      dynamics.rayleigh_mass = settings.of<RayleighDamping>().mass;
+      dynamics.rayleigh_stiffness = settings.of<RayleighDamping>().stiffness;
       name += " with the damping of " + settings.model;
     } else {
       name += ", undamped";

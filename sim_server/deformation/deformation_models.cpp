@@ -1,12 +1,14 @@
 #include "sim_server/deformation/deformation_models.h"
 
+#include <algorithm>
 #include <array>
+#include <fmt/core.h>
 
+#include "common/error.h"
+#include "common/text.h"
 #include "sim_server/deformation/implicit.h"
 #include "sim_server/deformation/quasi_static.h"
-#ifdef PALPATE_WITH_SPECTRA
 #include "sim_server/deformation/reduced.h"
-#endif
 #include "sim_server/deformation/rigid.h"
 #include "sim_server/deformation/spring.h"
 #include "sim_server/deformation/tensor_mass.h"
@@ -14,54 +16,103 @@
 namespace palpate::sim {
 namespace {
 
-template <class Model>
-std::unique_ptr<DeformationModel> make(const ModelInputs& inputs) {
-  return std::make_unique<Model>(inputs);
+/// `row` with what the class of a model and its settings do. `Settings`: structs with `kKeys`, `read` and
+/// `to_text`.
+template <class Model, class... Settings>
+constexpr DeformationModelRow row_of(DeformationModelRow row) {
+  row.make = [](const ModelInputs& inputs) -> std::unique_ptr<DeformationModel> {
+    return std::make_unique<Model>(inputs);
+  };
+  row.estimated_bytes = &Model::estimated_bytes;
+  row.keys = [] {
+    std::vector<std::string_view> keys;
+    (keys.insert(keys.end(), Settings::kKeys.begin(), Settings::kKeys.end()), ...);
+    return keys;
+  };
+  row.read = [](const Config& config, DeformationSettings& settings) {
+    ((settings.of<Settings>() = Settings::read(config)), ...);
+  };
+  row.to_text = [](const DeformationSettings& settings) {
+    return (std::string() + ... + settings.of<Settings>().to_text());
+  };
+  row.has_settings = []([[maybe_unused]] std::type_index type) { return ((type == typeid(Settings)) || ...); };
+  return row;
 }
 
 constexpr std::array kModels{
-    DeformationModelRow{.name = "rigid",
-                        .summary = "no deformation; force = stiffness x penetration depth",
-                        .make = &make<Rigid>,
-                        .penalty = true},
-    DeformationModelRow{.name = "quasi_static",
-                        .summary = "linear elastic equilibrium by pre-computed compliance",
-                        .make = &make<QuasiStatic>,
-                        .elastic = true,
-                        .follows_supports = true,
-                        .any_linear = true},
-    DeformationModelRow{.name = "tensor_mass",
-                        .summary = "linear elastic motion, explicit, by a tensor per vertex and edge",
-                        .make = &make<TensorMass>,
-                        .elastic = true,
-                        .follows_supports = true,
-                        .damped = true},
-    DeformationModelRow{.name = "implicit",
-                        .summary = "motion of any law, element and load, by implicit steps",
-                        .make = &make<Implicit>,
-                        .follows_supports = true,
-                        .any_material = true,
-                        .damped = true},
+    row_of<Rigid, RigidSettings>(
+        {.name = "rigid", .summary = "no deformation; force = stiffness x penetration depth"}),
+    row_of<QuasiStatic>({.name = "quasi_static",
+                         .summary = "linear elastic equilibrium by pre-computed compliance",
+                         .materials = Materials::kLinear}),
+    row_of<TensorMass, RayleighDamping>(
+        {.name = "tensor_mass",
+         .summary = "linear elastic motion, explicit, by a tensor per vertex and edge",
+         .materials = Materials::kPlain,
+         .moves = true,
+         .unneeded = {{"factor of the stiffness matrix", "explicit steps solve nothing"}}}),
+    row_of<Implicit, RayleighDamping, ImplicitSettings>(
+        {.name = "implicit",
+         .summary = "motion of any law, element and load, by implicit steps",
+         .materials = Materials::kAny,
+         .moves = true,
+         .flies = true}),
 #ifdef PALPATE_WITH_SPECTRA
-    DeformationModelRow{.name = "reduced",
-                        .summary = "linear elastic: the slowest modes swing, the rest follows at once",
-                        .make = &make<Reduced>,
-                        .elastic = true,
-                        .follows_supports = true,
-                        .any_linear = true,
-                        .damped = true,
-                        .modal = true},
+    row_of<Reduced, RayleighDamping, ReducedSettings>(
+        {.name = "reduced",
+         .summary = "linear elastic: the slowest modes swing, the rest follows at once",
+         .materials = Materials::kLinear,
+         .moves = true}),
 #endif
-    DeformationModelRow{.name = "spring",
-                        .summary = "no deformation; the organ hangs on a spring that hardens",
-                        .make = &make<Spring>,
-                        .hangs = true},
+    row_of<Spring, SpringSettings>({.name = "spring",
+                                    .summary = "no deformation; the organ hangs on a spring that hardens",
+                                    .moves = true}),
 };
+
+bool takes(const DeformationModelRow& row, std::string_view key) {
+  return std::ranges::count(row.keys(), key) > 0;
+}
+
+void refuse_keys_of_others(const Config& config, const DeformationModelRow& row) {
+  for (const DeformationModelRow& other : kModels) {
+    for (const std::string_view key : other.keys()) {
+      if (takes(row, key) || !config.says(std::string(key))) continue;
+      fail("{}: unknown key `[deformation] {}` of model \"{}\"; known to: {}; remove it",
+           config.where(std::string(key)), key, row.name,
+           models_that([key](const DeformationModelRow& m) { return takes(m, key); }));
+    }
+  }
+}
 
 }  // namespace
 
 std::span<const DeformationModelRow> deformation_models() {
   return kModels;
+}
+
+const DeformationModelRow& model_of(const DeformationSettings& settings) {
+#ifndef PALPATE_WITH_SPECTRA
+  if (settings.model == "reduced")
+    fail("{}: model \"reduced\" is not in this build; configure it with -DPALPATE_SPECTRA=ON",
+         settings.where);
+#endif
+  return find_row(kModels, settings.model, "deformation model", settings.where);
+}
+
+DeformationSettings read_deformation(const Config& config) {
+  DeformationSettings settings;
+  settings.where = config.where("model");
+  settings.model = config.text("model");
+  const DeformationModelRow& row = model_of(settings);
+  refuse_keys_of_others(config, row);
+  row.read(config, settings);
+  config.reject_unknown();
+  return settings;
+}
+
+std::string to_text(const DeformationSettings& settings) {
+  return fmt::format("[deformation]\nmodel = \"{}\"\n{}", settings.model,
+                     model_of(settings).to_text(settings));
 }
 
 }  // namespace palpate::sim

@@ -1,27 +1,78 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <typeindex>
+#include <vector>
 
+#include "common/config.h"
 #include "sim_server/deformation/deformation_model.h"
+#include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/model_inputs.h"
 
 namespace palpate::sim {
 
-/// One row per model: a new one is one file and one row.
+/// The materials that a model is for, each with those before it.
+enum class Materials {
+  kNone,    ///< it does not deform, and passes over a plain material
+  kPlain,   ///< law "linear", element "p1", no fibres
+  kLinear,  ///< law "linear" with any element and fibres
+  kAny,     ///< any law, element, fibres and relaxation, and any [[load]]
+};
+
+/// One row a model: a new one is one file and one row, and nothing outside this folder knows its name. What
+/// a row does by functions is filled in by `row_of` in `deformation_models.cpp` from the model's class and
+/// its settings.
 struct DeformationModelRow {
   std::string_view name;
   std::string_view summary;
-  std::unique_ptr<DeformationModel> (*make)(const ModelInputs&);
-  bool elastic = false;           ///< it needs a [material], and keeps the compliance of what tools reach
-  bool follows_supports = false;  ///< it moves with a [[fixed.motion]]
-  bool any_linear = false;        ///< all elements, and fibres, of the linear law
-  bool any_material = false;      ///< all laws, elements, fibres, relaxation, and [[load]]
-  bool damped = false;            ///< it has Rayleigh damping
-  bool modal = false;             ///< it takes a number of `modes`
-  bool penalty = false;           ///< it takes the `stiffness` of a contact
-  bool hangs = false;             ///< it takes the `spring_stiffness` of what holds the organ
+  Materials materials = Materials::kNone;
+  bool moves = false;  ///< the organ has inertia, or goes as one piece; false: at rest at every instant
+  bool flies = false;  ///< nothing need hold the body: it has mass
+  /// What other models build and this one need not, for `explain`.
+  struct Unneeded {
+    std::string_view what, note;
+  };
+  std::optional<Unneeded> unneeded{};
+
+  std::unique_ptr<DeformationModel> (*make)(const ModelInputs&) = nullptr;
+  /// Bytes that its elements and matrices will take; of a scene with a [material].
+  double (*estimated_bytes)(const Scene&, const MeshCounts&) = nullptr;
+  /// The keys of [deformation] that it takes besides `model`; reads them, in their ranges; and as text again.
+  std::vector<std::string_view> (*keys)() = nullptr;
+  void (*read)(const Config&, DeformationSettings&) = nullptr;
+  std::string (*to_text)(const DeformationSettings&) = nullptr;
+  bool (*has_settings)(std::type_index) = nullptr;
+
+  bool deforms() const { return materials != Materials::kNone; }
+  /// It keeps the compliance of all that tools reach, computed beforehand.
+  bool keeps_compliance() const { return deforms() && materials != Materials::kAny; }
+  /// Whether it reads the settings of this type, as `ImplicitSettings`.
+  template <class Settings>
+  bool takes() const {
+    return has_settings(typeid(Settings));
+  }
 };
 std::span<const DeformationModelRow> deformation_models();
+
+/// The row of `settings.model`. Throws `Error` where there is none.
+const DeformationModelRow& model_of(const DeformationSettings& settings);
+
+/// "quasi_static", or "tensor_mass, implicit": names of the models that can.
+template <class Can>
+std::string models_that(const Can& can) {
+  std::string names;
+  for (const DeformationModelRow& row : deformation_models()) {
+    if (can(row)) names += (names.empty() ? "" : ", ") + std::string(row.name);
+  }
+  return names;
+}
+
+/// `[deformation]`: the model and its settings. Throws `Error`, of a key of other models with their names.
+DeformationSettings read_deformation(const Config& config);
+/// The same section as text.
+std::string to_text(const DeformationSettings& settings);
 
 }  // namespace palpate::sim

@@ -1,16 +1,10 @@
 #pragma once
 #include <vector>
 
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/elasticity/tensors.h"
 
 namespace palpate::sim {
-
-/// Rayleigh damping: the damping matrix is mass M + stiffness K (Bathe 1996, section 9.3.3). A mode of
-/// angular frequency w has the damping ratio (mass / w + stiffness w) / 2.
-struct RayleighDamping {
-  double mass = 0;       ///< 1/s, >= 0
-  double stiffness = 0;  ///< s, >= 0
-};
 
 /// The highest angular frequency of M^-1 K, rad/s, from below: the power method from a fixed start until the
 /// Rayleigh quotient grows by less than one in a million, or 1000 products.

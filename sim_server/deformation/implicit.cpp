@@ -1,8 +1,13 @@
 #include "sim_server/deformation/implicit.h"
 
 #include <algorithm>
+#include <array>
+#include <fmt/core.h>
 
 #include "common/error.h"
+#include "common/text.h"
+#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/scene/held_motion.h"
 #include "sim_server/solvers/equilibrium.h"
 
 namespace palpate::sim {
@@ -12,9 +17,19 @@ constexpr double kBalanced = 0.05;  // relative residual of the last iteration o
 constexpr double kAtRest = 1e-6;    // relative residual of the predictor of a body that rests
 constexpr double kMostColumnBytes = 1e9;  // of columns, when a step begins
 
+struct NamedSolver {
+  std::string_view name;
+  DynamicsSettings::Solver value;
+};
+constexpr std::array kSolvers{
+    NamedSolver{"direct", DynamicsSettings::Solver::kDirect},
+    NamedSolver{"pcg", DynamicsSettings::Solver::kConjugateGradients},
+    NamedSolver{"quasi_newton", DynamicsSettings::Solver::kQuasiNewton},
+};
+
 /// A body that nothing holds flies.
 DynamicsSettings settings_of(const ModelInputs& inputs) {
-  DynamicsSettings settings = inputs.scene.deformation.dynamics();
+  DynamicsSettings settings = dynamics_settings(inputs.scene.deformation);
   settings.flies = inputs.scene.flies();
   return settings;
 }
@@ -29,13 +44,61 @@ const Material& material_of(const ModelInputs& inputs) {
 
 }  // namespace
 
+ImplicitSettings ImplicitSettings::read(const Config& config) {
+  ImplicitSettings settings;
+  const std::string integrator = config.text("integrator", "backward_euler");
+  settings.second_order = integrator == "bdf2";
+  if (!settings.second_order && integrator != "backward_euler")
+    fail("{}: unknown integrator \"{}\"; known: backward_euler, bdf2", config.where("integrator"),
+         integrator);
+  settings.solver =
+      find_row(kSolvers, config.text("solver", "direct"), "solver", config.where("solver")).value;
+  settings.refresh_steps =
+      static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
+  if (settings.solver == DynamicsSettings::Solver::kDirect && config.says("refresh_steps"))
+    fail("{}: solver \"direct\" factors where it has to; refresh_steps is for pcg and quasi_newton",
+         config.where("refresh_steps"));
+  settings.max_newton =
+      static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
+  settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);
+  return settings;
+}
+
+std::string ImplicitSettings::to_text() const {
+  std::string text;
+  if (second_order) text += "integrator = \"bdf2\"\n";
+  if (solver != DynamicsSettings::Solver::kDirect) {
+    const auto row =
+        std::ranges::find_if(kSolvers, [this](const NamedSolver& s) { return s.value == solver; });
+    text += fmt::format("solver = \"{}\"\nrefresh_steps = {}\n", row->name, refresh_steps);
+  }
+  return text + fmt::format("tolerance = {:g}\nmax_newton = {}\n", tolerance, max_newton);
+}
+
+DynamicsSettings dynamics_settings(const DeformationSettings& settings) {
+  const auto& damping = settings.of<RayleighDamping>();
+  const auto& steps = settings.of<ImplicitSettings>();
+  return {damping.mass, damping.stiffness,   steps.second_order,
+          steps.solver, steps.refresh_steps, steps.tolerance};
+}
+
+double Implicit::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
+  const ElementKind element = scene.material->element;
+  // To find the shape under loads or on supports that move, of now and at rest besides.
+  const bool loaded = !scene.loads.empty() || supports_move(scene);
+  const double bytes = body_bytes(counts, element, loaded ? 3 : 1);
+  const bool background =
+      scene.deformation.of<ImplicitSettings>().solver != DynamicsSettings::Solver::kDirect;
+  return bytes + (background ? matrix_bytes(counts, element) : 0);
+}
+
 Implicit::Implicit(const ModelInputs& inputs)
     : solid_(inputs.mesh, material_of(inputs)),
       scene_loads_(inputs.scene, inputs.mesh, inputs.surface, solid_),
       dynamics_(solid_, scene_loads_.held(), settings_of(inputs), inputs.scene.source),
       period_(step_period(inputs.scene)),
-      tolerance_(inputs.scene.deformation.tolerance),
-      max_newton_(inputs.scene.deformation.max_newton),
+      tolerance_(inputs.scene.deformation.of<ImplicitSettings>().tolerance),
+      max_newton_(inputs.scene.deformation.of<ImplicitSettings>().max_newton),
       node_(inputs.surface.vertices),
       external_(static_cast<std::size_t>(solid_.nodes())),
       slot_(node_.size(), -1),
@@ -50,7 +113,7 @@ Implicit::Implicit(const ModelInputs& inputs)
   for (std::size_t v = 0; v < dof_.size(); ++v) {
     if (dof_[v] >= 0) vertex_[static_cast<std::size_t>(dof_[v] / 3)] = static_cast<int>(v);
   }
-  if (inputs.scene.deformation.solver != DynamicsSettings::Solver::kDirect)
+  if (inputs.scene.deformation.of<ImplicitSettings>().solver != DynamicsSettings::Solver::kDirect)
     triangles_ = inputs.surface.triangles;
   free_ = positions_ = rest_;
   dynamics_.start_step(period_);

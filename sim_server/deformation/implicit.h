@@ -1,9 +1,32 @@
 #pragma once
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "common/config.h"
+#include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/moving_supports.h"
 #include "sim_server/scene/loads.h"
 #include "sim_server/solvers/dynamics.h"
 
 namespace palpate::sim {
+
+/// How each step is found, and how far.
+struct ImplicitSettings {
+  bool second_order = false;  ///< `integrator` = "bdf2"; else "backward_euler"
+  DynamicsSettings::Solver solver = DynamicsSettings::Solver::kDirect;
+  int refresh_steps = 8;    ///< from one factor of the background to the next, [1, 1000]
+  int max_newton = 5;       ///< iterations of Newton's method in a step, [1, 100]
+  double tolerance = 1e-5;  ///< the relative residual that they may leave, [1e-12, 0.1]
+
+  static constexpr std::array<std::string_view, 5> kKeys{"integrator", "solver", "refresh_steps",
+                                                         "max_newton", "tolerance"};
+  static ImplicitSettings read(const Config& config);
+  std::string to_text() const;
+};
+
+/// The damping and the steps of a scene of this model, as `Dynamics` asks for them.
+DynamicsSettings dynamics_settings(const DeformationSettings& settings);
 
 /// Tissue of any law in motion, by implicit steps of T = 1 / rate_hz of the scene (`Dynamics`): stable
 /// whatever the stiffness. At rest under the scene's [[load]] when the run begins; where nothing is fixed, at
@@ -21,6 +44,8 @@ class Implicit : public DeformationModel {
  public:
   /// Throws `Error` without material or rate, or where what is held does not hold the body.
   explicit Implicit(const ModelInputs& inputs);
+  /// Before anything is allocated.
+  static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   /// Any `dt` > 0 is taken for one period.
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;

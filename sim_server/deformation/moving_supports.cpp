@@ -105,14 +105,13 @@ std::vector<SupportResponse> support_responses(const ModelInputs& inputs, const 
   const auto motions = held_motions(inputs.scene, inputs.mesh, dofs.held);
   if (motions.empty()) return responses;
   inputs.progress("computing moving supports", 0);
-  const DeformationSettings& settings = inputs.scene.deformation;
+  const auto& damping = inputs.scene.deformation.of<RayleighDamping>();
   const SparseMatrix stiffness = whole_stiffness(solid);
   const Eigen::VectorXd mass = masses_of(solid, dofs);
   for (const HeldMotion& held : motions) {
     Eigen::VectorXcd x = flexibility(pull_of(held, stiffness, dofs)).col(0).cast<Complex>();
     const double w = 2 * std::numbers::pi / held.motion.period;
-    const Complex s =
-        Complex(-w * w, w * settings.rayleigh_mass) / Complex(1, w * settings.rayleigh_stiffness);
+    const Complex s = Complex(-w * w, w * damping.mass) / Complex(1, w * damping.stiffness);
     if (following == Following::kSwinging && !swing(flexibility, mass, s, x))
       fail("{}: [[fixed.motion]]: at a period of {:g} s the tissue swings beyond all measure; {}", held.where,
            held.motion.period, "give it damping, or another period");

@@ -15,6 +15,10 @@ QuasiStatic::QuasiStatic(const ModelInputs& inputs) : compliance_(inputs) {
   inputs.progress("computing compliance", 1);
 }
 
+double QuasiStatic::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
+  return body_bytes(counts, scene.material->element, 1);
+}
+
 FreeMotion QuasiStatic::free_motion(double dt) noexcept {
   return supports_ ? supports_->advance(dt) : FreeMotion{rest_};
 }

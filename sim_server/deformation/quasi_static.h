@@ -1,4 +1,5 @@
 #pragma once
+#include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/moving_supports.h"
 #include "sim_server/deformation/surface_compliance.h"
 
@@ -13,6 +14,8 @@ class QuasiStatic : public DeformationModel {
  public:
   /// Throws `Error` as `SurfaceCompliance`, or when K is singular.
   explicit QuasiStatic(const ModelInputs& inputs);
+  /// Before anything is allocated.
+  static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   bool compliance_is_constant() const noexcept override { return true; }

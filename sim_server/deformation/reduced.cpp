@@ -1,6 +1,7 @@
 #include "sim_server/deformation/reduced.h"
 
 #include <cmath>
+#include <fmt/core.h>
 
 #include "sim_server/deformation/linear_statics.h"
 
@@ -19,6 +20,23 @@ std::pair<double, double> decay(double w, double g, double period) {
 
 }  // namespace
 
+ReducedSettings ReducedSettings::read(const Config& config) {
+  ReducedSettings settings;
+  settings.modes = static_cast<int>(config.integer("modes", {1, 1000, "modes"}, settings.modes));
+  return settings;
+}
+
+std::string ReducedSettings::to_text() const {
+  return fmt::format("modes = {}\n", modes);
+}
+
+double Reduced::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
+  const ElementKind element = scene.material->element;
+  // Vectors that modes are found among, and what is kept of them.
+  const double vectors = 3.0 * scene.deformation.of<ReducedSettings>().modes + 20;
+  return body_bytes(counts, element, 1) + 3 * nodes_of(counts, element) * sizeof(double) * vectors;
+}
+
 Reduced::Step Reduced::step_of(double w, double damping, double period) {
   const double g = 0.5 * damping;
   const auto [even, odd] = decay(w, g, period);
@@ -34,6 +52,7 @@ Reduced::Step Reduced::step_of(double w, double damping, double period) {
 
 Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene)), compliance_(inputs) {
   const DeformationSettings& settings = inputs.scene.deformation;
+  const auto& damping = settings.of<RayleighDamping>();
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
   const LinearStatics statics(inputs);
   supports_ = statics.supports(inputs, Following::kSwinging);
@@ -41,7 +60,7 @@ Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene))
   positions_ = free_;
   inputs.progress("finding the modes of vibration", 0);
   const VibrationModes modes =
-      vibration_modes(statics.factor, statics.masses(), settings.modes, settings.where);
+      vibration_modes(statics.factor, statics.masses(), settings.of<ReducedSettings>().modes, settings.where);
   const auto count = modes.frequencies.size();
   shapes_ = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(rest_.size()), count);
   for (std::size_t v = 0; v < rest_.size(); ++v) {
@@ -52,7 +71,7 @@ Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene))
   Eigen::VectorXd beyond_statics(count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const double w = modes.frequencies[k];
-    steps_.push_back(step_of(w, settings.rayleigh_mass + settings.rayleigh_stiffness * w * w, period_));
+    steps_.push_back(step_of(w, damping.mass + damping.stiffness * w * w, period_));
     beyond_statics[k] = steps_.back().q_of_p - 1 / (w * w);
   }
   q_ = v_ = p_ = q_free_ = Eigen::VectorXd::Zero(count);
@@ -101,11 +120,12 @@ void Reduced::press(std::span<const NodalLoad> loads) noexcept {
 }
 
 std::vector<MemoryPart> Reduced::memory() const {
-  std::vector<MemoryPart> parts{
-      {"compliance", compliance_.bytes()},
-      {"modes", static_cast<std::size_t>(shapes_.size() + 5 * q_.size()) * sizeof(double) +
-                    steps_.size() * sizeof(Step)},
-      {"positions", 3 * rest_.size() * sizeof(Vec3) + compliance_.index_bytes()}};
+  std::vector<MemoryPart> parts{{"compliance", compliance_.bytes()},
+                                {"modes",
+                                 static_cast<std::size_t>(shapes_.size() + 5 * q_.size()) * sizeof(double) +
+                                     steps_.size() * sizeof(Step),
+                                 fmt::format("{} of vibration", q_.size())},
+                                {"positions", 3 * rest_.size() * sizeof(Vec3) + compliance_.index_bytes()}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
   return parts;
 }

@@ -1,9 +1,24 @@
 #pragma once
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "common/config.h"
+#include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/moving_supports.h"
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/deformation/surface_compliance.h"
 #include "sim_server/solvers/vibration_modes.h"
 
 namespace palpate::sim {
+
+struct ReducedSettings {
+  int modes = 40;  ///< that swing, [1, 1000]
+
+  static constexpr std::array<std::string_view, 1> kKeys{"modes"};
+  static ReducedSettings read(const Config& config);
+  std::string to_text() const;
+};
 
 /// Linear tissue of which only the slowest `modes` swing; all the rest follows the loads at once, as in
 /// statics (residual flexibility: MacNeal 1971, Comput. Struct. 1:581; Craig 1981, Structural Dynamics,
@@ -19,6 +34,8 @@ class Reduced : public DeformationModel {
  public:
   /// Throws `Error` as `SurfaceCompliance`, or when K is singular, `rate_hz` 0, or modes not to be had.
   explicit Reduced(const ModelInputs& inputs);
+  /// Before anything is allocated.
+  static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   /// Any `dt` > 0 is taken for one period.
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;

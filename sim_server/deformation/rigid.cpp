@@ -1,8 +1,20 @@
 #include "sim_server/deformation/rigid.h"
 
+#include <fmt/core.h>
+
 namespace palpate::sim {
 
-Rigid::Rigid(const ModelInputs& inputs) : stiffness_(inputs.scene.deformation.stiffness) {
+RigidSettings RigidSettings::read(const Config& config) {
+  RigidSettings settings;
+  settings.stiffness = config.number("stiffness", {1e-3, 1e6, "N/m"}, settings.stiffness);
+  return settings;
+}
+
+std::string RigidSettings::to_text() const {
+  return fmt::format("stiffness = {:g}\n", stiffness);
+}
+
+Rigid::Rigid(const ModelInputs& inputs) : stiffness_(inputs.scene.deformation.of<RigidSettings>().stiffness) {
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
 }
 

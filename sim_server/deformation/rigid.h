@@ -1,8 +1,22 @@
 #pragma once
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "common/config.h"
 #include "sim_server/deformation/deformation_model.h"
+#include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/model_inputs.h"
 
 namespace palpate::sim {
+
+struct RigidSettings {
+  double stiffness = 800;  ///< of a contact, N/m, [1e-3, 1e6]
+
+  static constexpr std::array<std::string_view, 1> kKeys{"stiffness"};
+  static RigidSettings read(const Config& config);
+  std::string to_text() const;
+};
 
 /// No deformation: the empirical penetration force, F = k (depth) (named by Picinbono and Lombardo 1999 as
 /// [3]). The compliance 1/k sits between the tool position and a tip that stays on the surface (the
@@ -11,6 +25,8 @@ namespace palpate::sim {
 class Rigid : public DeformationModel {
  public:
   explicit Rigid(const ModelInputs& inputs);
+  /// It has no elements.
+  static double estimated_bytes(const Scene&, const MeshCounts&) { return 0; }
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   bool compliance_is_constant() const noexcept override { return true; }

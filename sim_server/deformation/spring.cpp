@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/core.h>
 
 #include "common/error.h"
 
@@ -21,11 +22,29 @@ double hardening(double c) noexcept {
 
 }  // namespace
 
+SpringSettings SpringSettings::read(const Config& config) {
+  SpringSettings settings;
+  if (config.has("spring_stiffness"))
+    settings.stiffness = config.vector("spring_stiffness", {1e-3, 1e6, "N/m"});
+  if (config.has("hardening_length"))
+    settings.hardening_length = config.number("hardening_length", {1e-4, 10, "m"});
+  return settings;
+}
+
+std::string SpringSettings::to_text() const {
+  std::string text;
+  if (stiffness)
+    text += fmt::format("spring_stiffness = [{:g}, {:g}, {:g}]\n", stiffness->x(), stiffness->y(),
+                        stiffness->z());
+  if (hardening_length) text += fmt::format("hardening_length = {:g}\n", *hardening_length);
+  return text;
+}
+
 Spring::Spring(const ModelInputs& inputs) : held_(inputs.surface.vertices.size(), 0) {
-  const DeformationSettings& settings = inputs.scene.deformation;
-  if (!settings.spring_stiffness)
-    fail("{}: model \"spring\" needs `spring_stiffness`, [x, y, z] in N/m", settings.where);
-  stiffness_ = *settings.spring_stiffness;
+  const auto& settings = inputs.scene.deformation.of<SpringSettings>();
+  if (!settings.stiffness)
+    fail("{}: model \"spring\" needs `spring_stiffness`, [x, y, z] in N/m", inputs.scene.deformation.where);
+  stiffness_ = *settings.stiffness;
   if (settings.hardening_length) per_length2_ = 1 / (*settings.hardening_length * *settings.hardening_length);
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
   for (std::size_t v = 0; v < held_.size(); ++v)

@@ -1,8 +1,24 @@
 #pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/config.h"
 #include "sim_server/deformation/deformation_model.h"
+#include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/model_inputs.h"
 
 namespace palpate::sim {
+
+struct SpringSettings {
+  std::optional<Vec3> stiffness{};           ///< `spring_stiffness`: along x, y, z, N/m, [1e-3, 1e6]
+  std::optional<double> hardening_length{};  ///< m, [1e-4, 10]; absent: linear
+
+  static constexpr std::array<std::string_view, 2> kKeys{"spring_stiffness", "hardening_length"};
+  static SpringSettings read(const Config& config);
+  std::string to_text() const;
+};
 
 /// No deformation: the organ hangs as one piece on a spring that is stiffer along some axes and hardens with
 /// the stretch s; it does not turn. With K diagonal, k its mean, d the hardening length,
@@ -14,6 +30,8 @@ class Spring : public DeformationModel {
  public:
   /// Throws `Error` without a `spring_stiffness`.
   explicit Spring(const ModelInputs& inputs);
+  /// It has no elements.
+  static double estimated_bytes(const Scene&, const MeshCounts&) { return 0; }
   FreeMotion free_motion(double dt) noexcept override;
   /// T^-1 for every pair of free vertices, under the loads of now.
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;

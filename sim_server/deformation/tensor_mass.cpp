@@ -22,8 +22,8 @@ ElasticTensors assemble(const ModelInputs& inputs) {
   return {inputs.mesh, *scene.material, inputs.fixed};
 }
 
-RayleighDamping damping_of(const Scene& scene) {
-  return {scene.deformation.rayleigh_mass, scene.deformation.rayleigh_stiffness};
+const RayleighDamping& damping_of(const Scene& scene) {
+  return scene.deformation.of<RayleighDamping>();
 }
 
 }  // namespace
@@ -46,6 +46,10 @@ TensorMass::TensorMass(const ModelInputs& inputs)
   loads_.reserve(kMaxTools * inputs.reachable.size());
   choose_sub_step(inputs);
   precompute(inputs);
+}
+
+double TensorMass::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
+  return tensors_bytes(counts) + (supports_move(scene) ? body_bytes(counts, scene.material->element, 1) : 0);
 }
 
 void TensorMass::choose_sub_step(const ModelInputs& inputs) {

@@ -1,4 +1,5 @@
 #pragma once
+#include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/explicit_motion.h"
 #include "sim_server/deformation/moving_supports.h"
 #include "sim_server/deformation/surface_compliance.h"
@@ -21,6 +22,8 @@ class TensorMass : public DeformationModel {
  public:
   /// Throws `Error` as `SurfaceCompliance`, or where the scene names no rate.
   explicit TensorMass(const ModelInputs& inputs);
+  /// Before anything is allocated.
+  static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   /// Any `dt` > 0 is taken for one period: callers step at the scene's rate, though their times may jitter
   /// about it. The loads of the last `apply` are those of the period that ends; the next runs free of any.
   FreeMotion free_motion(double dt) noexcept override;

@@ -9,9 +9,9 @@
 
 #include "common/contact/tool.h"
 #include "sim_server/elasticity/material.h"
+#include "sim_server/scene/deformation_settings.h"
 #include "sim_server/scene/regions.h"
 #include "sim_server/scene/tool_reach.h"
-#include "sim_server/solvers/dynamics_settings.h"
 #include "sim_server/sparse/stiffness_matrix.h"
 
 namespace palpate::sim {
@@ -53,27 +53,6 @@ struct Load {
   Vec3 vector = Vec3::Zero();
   HeldAxes axes = kAllAxes;  ///< of a displacement: along which
   double pressure = 0;       ///< Pa, against the outward normal
-};
-
-/// `[deformation]`.
-struct DeformationSettings {
-  std::string model;                         ///< a name of `deformation_models()`
-  double stiffness = 800;                    ///< N/m, (0, 1e6], model "rigid" only
-  std::optional<Vec3> spring_stiffness{};    ///< along x, y, z, N/m, [1e-3, 1e6], model "spring" only
-  std::optional<double> hardening_length{};  ///< m, [1e-4, 10], likewise; absent: linear
-  double rayleigh_mass = 10;                 ///< damping by mass, 1/s, [0, 1e4], model "tensor_mass" only
-  double rayleigh_stiffness = 1e-4;          ///< and by stiffness, s, [0, 1], likewise
-  bool second_order = false;                 ///< `integrator` = "bdf2", model "implicit" only
-  int max_newton = 5;                        ///< per step, [1, 100], likewise
-  double tolerance = 1e-5;  ///< of the forces at work, what Newton may leave, [1e-12, 0.1], likewise
-  DynamicsSettings::Solver solver = DynamicsSettings::Solver::kDirect;  ///< likewise
-  int modes = 40;         ///< that swing, [1, 1000], model "reduced" only
-  int refresh_steps = 8;  ///< from one factor of the background to the next, [1, 1000], likewise
-  std::string where;      ///< "FILE:LINE" of `model`
-
-  DynamicsSettings dynamics() const {
-    return {rayleigh_mass, rayleigh_stiffness, second_order, solver, refresh_steps, tolerance};
-  }
 };
 
 /// One `[[tool]]`.

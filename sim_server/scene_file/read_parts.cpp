@@ -26,12 +26,6 @@ constexpr std::array kElements{
     Named{"p2", ElementKind::kQuadratic},
 };
 
-constexpr std::array kSolvers{
-    Named{"direct", DynamicsSettings::Solver::kDirect},
-    Named{"pcg", DynamicsSettings::Solver::kConjugateGradients},
-    Named{"quasi_newton", DynamicsSettings::Solver::kQuasiNewton},
-};
-
 template <class Table, class Value>
 std::string_view name_in(const Table& table, Value value) {
   return std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.value == value; })->name;
@@ -130,28 +124,6 @@ std::string_view name_of(ElasticLaw law) {
 
 std::string_view name_of(ElementKind element) {
   return name_in(kElements, element);
-}
-
-std::string_view name_of(DynamicsSettings::Solver solver) {
-  return name_in(kSolvers, solver);
-}
-
-void read_steps(const Config& config, DeformationSettings& settings) {
-  const std::string integrator = config.text("integrator", "backward_euler");
-  settings.second_order = integrator == "bdf2";
-  if (!settings.second_order && integrator != "backward_euler")
-    fail("{}: unknown integrator \"{}\"; known: backward_euler, bdf2", config.where("integrator"),
-         integrator);
-  settings.solver =
-      find_row(kSolvers, config.text("solver", "direct"), "solver", config.where("solver")).value;
-  settings.refresh_steps =
-      static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
-  if (settings.solver == DynamicsSettings::Solver::kDirect && config.says("refresh_steps"))
-    fail("{}: solver \"direct\" factors where it has to; refresh_steps is for pcg and quasi_newton",
-         config.where("refresh_steps"));
-  settings.max_newton =
-      static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
-  settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);
 }
 
 Material read_material(const Config& config) {

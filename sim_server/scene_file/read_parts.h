@@ -21,11 +21,5 @@ Material read_material(const Config& config);
 /// As `law` and `element` of `[material]` say it.
 std::string_view name_of(ElasticLaw law);
 std::string_view name_of(ElementKind element);
-/// As `solver` of `[deformation]` says it.
-std::string_view name_of(DynamicsSettings::Solver solver);
-
-/// Of `[deformation]`, what models that take any material are asked for: `integrator`, `solver`,
-/// `refresh_steps`, `max_newton`, `tolerance`.
-void read_steps(const Config& config, DeformationSettings& settings);
 
 }  // namespace palpate::sim

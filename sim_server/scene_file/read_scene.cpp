@@ -1,12 +1,10 @@
 #include "sim_server/scene_file/read_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/config.h"
 #include "common/error.h"
-#include "common/text.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_inclusions.h"
 #include "sim_server/scene_file/read_parts.h"
@@ -35,86 +33,23 @@ FixedRegion read_fixed(const Config& config) {
   return region;
 }
 
-/// "quasi_static", or "tensor_mass, implicit": names of the models that can.
-template <class Can>
-std::string models_that(const Can& can) {
-  std::string names;
-  for (const DeformationModelRow& row : deformation_models()) {
-    if (can(row)) names += (names.empty() ? "" : ", ") + std::string(row.name);
-  }
-  return names;
-}
-
-/// Keys of [deformation] that only some models take.
-struct KeyOfSome {
-  const char* key;
-  bool DeformationModelRow::*taken;
-};
-constexpr std::array kKeysOfSome{KeyOfSome{"stiffness", &DeformationModelRow::penalty},
-                                 KeyOfSome{"spring_stiffness", &DeformationModelRow::hangs},
-                                 KeyOfSome{"hardening_length", &DeformationModelRow::hangs},
-                                 KeyOfSome{"rayleigh_mass", &DeformationModelRow::damped},
-                                 KeyOfSome{"rayleigh_stiffness", &DeformationModelRow::damped},
-                                 KeyOfSome{"modes", &DeformationModelRow::modal},
-                                 KeyOfSome{"integrator", &DeformationModelRow::any_material},
-                                 KeyOfSome{"solver", &DeformationModelRow::any_material},
-                                 KeyOfSome{"refresh_steps", &DeformationModelRow::any_material},
-                                 KeyOfSome{"max_newton", &DeformationModelRow::any_material},
-                                 KeyOfSome{"tolerance", &DeformationModelRow::any_material}};
-
-void refuse_keys_of_others(const Config& config, const DeformationModelRow& row) {
-  for (const auto& [key, taken] : kKeysOfSome) {
-    if (row.*taken || !config.says(key)) continue;
-    const std::string takers =
-        models_that([taken = taken](const DeformationModelRow& m) { return m.*taken; });
-    fail("{}: unknown key `[deformation] {}` of model \"{}\"; known to: {}; remove it", config.where(key),
-         key, row.name, takers.empty() ? "no model of this build" : takers);
-  }
-}
-
-DeformationSettings read_deformation(const Config& config) {
-  DeformationSettings settings;
-  settings.where = config.where("model");
-  settings.model = config.text("model");
-#ifndef PALPATE_WITH_SPECTRA
-  if (settings.model == "reduced")
-    fail("{}: model \"reduced\" is not in this build; configure it with -DPALPATE_SPECTRA=ON",
-         settings.where);
-#endif
-  const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
-  refuse_keys_of_others(config, row);
-  settings.stiffness = config.number("stiffness", {1e-3, 1e6, "N/m"}, settings.stiffness);
-  if (config.has("spring_stiffness"))
-    settings.spring_stiffness = config.vector("spring_stiffness", {1e-3, 1e6, "N/m"});
-  if (config.has("hardening_length"))
-    settings.hardening_length = config.number("hardening_length", {1e-4, 10, "m"});
-  if (row.damped) {
-    settings.rayleigh_mass = config.number("rayleigh_mass", {0, 1e4, "1/s"}, settings.rayleigh_mass);
-    settings.rayleigh_stiffness =
-        config.number("rayleigh_stiffness", {0, 1, "s"}, settings.rayleigh_stiffness);
-  }
-  if (row.modal)
-    settings.modes = static_cast<int>(config.integer("modes", {1, 1000, "modes"}, settings.modes));
-  if (row.any_material) read_steps(config, settings);
-  config.reject_unknown();
-  return settings;
-}
-
 /// That a model is for the material of the scene. One that does not deform passes over a plain one.
 void require_material_of(const Scene& scene, const DeformationModelRow& row) {
   if (!scene.material) return;
-  const auto takes = [&material = *scene.material](const DeformationModelRow& m) {
-    return m.any_material || (m.elastic && (material.is_plain() || (m.any_linear && material.is_linear())));
-  };
+  const Material& material = *scene.material;
+  const Materials needed = material.is_plain()    ? Materials::kPlain
+                           : material.is_linear() ? Materials::kLinear
+                                                  : Materials::kAny;
+  const auto takes = [needed](const DeformationModelRow& m) { return m.materials >= needed; };
   if (takes(row)) return;
-  if (!row.elastic) {
-    if (scene.material->is_plain() && scene.inclusions.empty()) return;
+  if (!row.deforms()) {
+    if (material.is_plain() && scene.inclusions.empty()) return;
     fail(
         "{}: model \"{}\" does not deform, by this law, element, fibres, inclusions or relaxation; for this "
         "material: {}",
         scene.material_where, row.name, models_that(takes));
   }
-  const std::string_view also = row.any_linear ? "" : ", element \"p1\", no fibres";
+  const std::string_view also = row.materials == Materials::kLinear ? "" : ", element \"p1\", no fibres";
   fail("{}: model \"{}\" is for law \"linear\"{} and no relaxation; for this material: {}",
        scene.material_where, row.name, also, models_that(takes));
 }
@@ -137,18 +72,18 @@ void require_flight(const Scene& scene) {
 /// That the model does what the scene asks of it.
 void require_what_the_model_can(const Scene& scene) {
   const auto& settings = scene.deformation;
-  const auto& row = find_row(deformation_models(), settings.model, "deformation model", settings.where);
-  const auto any = [](const DeformationModelRow& m) { return m.any_material; };
-  if (!scene.loads.empty() && !row.any_material)
+  const DeformationModelRow& row = model_of(settings);
+  const auto any = [](const DeformationModelRow& m) { return m.materials == Materials::kAny; };
+  if (!scene.loads.empty() && !any(row))
     fail("{}: [[load]]: model \"{}\" bears tools only; {} would, or `sim_server solve`",
          scene.loads.front().region.where, settings.model, models_that(any));
   require_material_of(scene, row);
   for (const FixedRegion& region : scene.fixed) {
     if (region.axes != kAllAxes)
       fail("{}: `axes`: only `sim_server solve` holds vertices along some axes; remove it", region.where);
-    if (region.moves() && !row.follows_supports)
+    if (region.moves() && !row.deforms())
       fail("{}: [[fixed.motion]]: model \"{}\" does not move with its supports; {} do", region.where,
-           settings.model, models_that([](const DeformationModelRow& m) { return m.follows_supports; }));
+           settings.model, models_that([](const DeformationModelRow& m) { return m.deforms(); }));
   }
 }
 
@@ -262,8 +197,7 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   if (deformation) scene.deformation = read_deformation(*deformation);
   if (purpose == Purpose::kServe) require_what_the_model_can(scene);
   if (purpose == Purpose::kServe || !config.tables("tool").empty()) scene.tools = read_tools(config);
-  if (purpose == Purpose::kServe && scene.flies() && scene.deformation.model == "implicit")
-    require_flight(scene);
+  if (purpose == Purpose::kServe && scene.flies() && model_of(scene.deformation).flies) require_flight(scene);
   config.reject_unknown();
   reach_what_moves(scene);
   return scene;

@@ -89,9 +89,8 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
     fail("{}: no triangle of the surface lies within the tool's reach", scene.tools.front().reach_where);
   const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, mesh_);
   require_memory_for(scene, Purpose::kServe, count_parts(mesh_, surface_));
-  const DeformationModelRow& row =
-      find_row(deformation_models(), scene.deformation.model, "deformation model", scene.deformation.where);
-  const bool stays = (row.elastic || row.any_material) && !fixed.empty() && !supports_move(scene);
+  const DeformationModelRow& row = model_of(scene.deformation);
+  const bool stays = row.deforms() && !fixed.empty() && !supports_move(scene);
   if (stays) farthest_ = kRunAway * size_of(rest_);
   tissue_.model = row.make({scene, mesh_, surface_, fixed, reachable, progress});
   const FreeMotion motion = tissue_.model->free_motion(0);

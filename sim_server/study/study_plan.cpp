@@ -7,8 +7,8 @@
 #include <fmt/core.h>
 
 #include "common/error.h"
-#include "common/text.h"
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/implicit.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/refinement.h"
 #include "sim_server/scene/inclusions.h"
@@ -31,28 +31,19 @@ constexpr std::array kStepsOfElements{0.5, 2.0};        // likewise: where a bet
 constexpr std::array kTolerances{1e-1, 1e-2, 1e-3, 1e-5, 1e-8};
 constexpr std::array kElements{ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic};
 
-const DeformationModelRow& row_of(const Scene& scene) {
-  return find_row(deformation_models(), scene.deformation.model, "deformation model",
-                  scene.deformation.where);
-}
-
-bool has_tissue(const DeformationModelRow& row) {
-  return row.elastic || row.any_material;
-}
-
 bool takes(const DeformationModelRow& row, ElementKind element) {
-  return element == ElementKind::kLinear || row.any_linear || row.any_material;
+  return element == ElementKind::kLinear || row.materials >= Materials::kLinear;
 }
 
 /// The scene as `model` can do it: by the linear law where it knows no other.
 Scene with_model(Scene scene, const DeformationModelRow& row) {
   scene.deformation.model = row.name;
-  if (row.any_material) return scene;
+  if (row.materials == Materials::kAny) return scene;
   scene.material->law = ElasticLaw::kLinear;
   scene.material->relaxations.clear();
   scene.loads.clear();
   if (!takes(row, scene.material->element)) scene.material->element = ElementKind::kLinear;
-  if (!row.any_linear) scene.material->fibres.reset();
+  if (row.materials < Materials::kLinear) scene.material->fibres.reset();
   return scene;
 }
 
@@ -80,12 +71,12 @@ class Planner {
     cases_ = &plan.cases;
     add("scene", base_, 0);
     for (const DeformationModelRow& row : deformation_models()) {
-      if (has_tissue(row)) add("model", with_model(base_, row), 0);
+      if (row.deforms()) add("model", with_model(base_, row), 0);
     }
     for (const ElementKind element : kElements) {
       if (element == ElementKind::kNodalPressure && !base_.inclusions.empty()) continue;  // of one stiffness
       Scene other = base_;
-      if (!takes(row_of(base_), element)) other = with_model(base_, implicit());
+      if (!takes(model_of(base_.deformation), element)) other = with_model(base_, of_any_material());
       other.material->element = element;
       add("element", other, 0);
       for (const double step : kStepsOfElements) {
@@ -95,14 +86,16 @@ class Planner {
       }
     }
     add_meshes();
-    if (row_of(base_).any_material) add_tolerances();
+    if (model_of(base_.deformation).takes<ImplicitSettings>()) add_tolerances();
     add_references(plan);
     return plan;
   }
 
  private:
-  static const DeformationModelRow& implicit() {
-    return find_row(deformation_models(), std::string("implicit"), "deformation model", "");
+  /// The model that any scene can be held against.
+  static const DeformationModelRow& of_any_material() {
+    const auto rows = deformation_models();
+    return *std::ranges::find(rows, Materials::kAny, &DeformationModelRow::materials);
   }
 
   void add(const std::string& axis, const Scene& scene, double refinements) {
@@ -144,20 +137,18 @@ class Planner {
   void add_tolerances() {
     for (const double tolerance : kTolerances) {
       Scene other = base_;
-      other.deformation.tolerance = tolerance;
-      other.deformation.max_newton = 100;
+      auto& steps = other.deformation.of<ImplicitSettings>();
+      steps.tolerance = tolerance;
+      steps.max_newton = 100;
       add("tolerance", other, 0);
     }
   }
 
   /// A scene at rest is held against statics, one in motion against motion.
   void add_references(StudyPlan& plan) const {
-    const bool quick = options_.quick, rests = base_.deformation.model == "quasi_static";
-    Scene exact = rests ? base_ : with_model(base_, implicit());
-    exact.deformation.second_order = true;
-    exact.deformation.solver = DynamicsSettings::Solver::kDirect;
-    exact.deformation.tolerance = 1e-7;
-    exact.deformation.max_newton = 60;
+    const bool quick = options_.quick, rests = !model_of(base_.deformation).moves;
+    Scene exact = rests ? base_ : with_model(base_, of_any_material());
+    exact.deformation.of<ImplicitSettings>() = {.second_order = true, .max_newton = 60, .tolerance = 1e-7};
     exact.rate_hz *= kReferenceSteps;
     exact.material->element = ElementKind::kQuadratic;
     plan.reference = {"reference", exact, 0};
@@ -185,8 +176,10 @@ std::string StudyCase::name() const {
                   name_of(scene.material->element), scene.mesh_file.stem().string(), refinements);
   if (edge > 0) name += fmt::format("-{:.3g}mm", 1e3 * edge);
   name += fmt::format("-{:.4g}ms", 1e3 / scene.rate_hz);
-  if (by.model == "implicit")
-    name += fmt::format("-{:g}-{}{}", by.tolerance, by.max_newton, by.second_order ? "-bdf2" : "");
+  if (model_of(by).takes<ImplicitSettings>()) {
+    const auto& steps = by.of<ImplicitSettings>();
+    name += fmt::format("-{:g}-{}{}", steps.tolerance, steps.max_newton, steps.second_order ? "-bdf2" : "");
+  }
   return name;
 }
 
@@ -233,9 +226,9 @@ Simulation simulation_of(const StudyCase& one, const Progress& progress) {
 }
 
 StudyPlan plan_study(const Scene& scene, const StudyOptions& options) {
-  if (!scene.material || !has_tissue(row_of(scene)))
-    fail("{}: model \"{}\" has no tissue to study; take quasi_static, tensor_mass, reduced or implicit",
-         scene.deformation.where, scene.deformation.model);
+  if (!scene.material || !model_of(scene.deformation).deforms())
+    fail("{}: model \"{}\" has no tissue to study; take one of: {}", scene.deformation.where,
+         scene.deformation.model, models_that([](const DeformationModelRow& m) { return m.deforms(); }));
   if (scene.flies())
     fail("{}: nothing holds the body, so that errors would grow as it flies; add a [[fixed]]", scene.source);
   return Planner(scene, options).plan();

@@ -7,6 +7,7 @@
 #include "common/report.h"
 #include "common/text.h"
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/implicit.h"
 #include "sim_server/scene_file/read_parts.h"
 
 namespace palpate::sim {
@@ -17,7 +18,7 @@ double dt_ms(const StudyRow& row) {
 }
 
 bool by_iterations(const StudyRow& row) {
-  return row.one.scene.deformation.model == "implicit";
+  return model_of(row.one.scene.deformation).takes<ImplicitSettings>();
 }
 
 /// What is the same on every run.
@@ -34,7 +35,8 @@ Json facts_of(const StudyRow& row) {
              {"tetrahedra", row.tetrahedra},
              {"nodes", row.nodes},
              {"dt_ms", dt_ms(row)}};
-  facts["tolerance"] = by_iterations(row) ? Json(scene.deformation.tolerance) : Json(nullptr);
+  facts["tolerance"] =
+      by_iterations(row) ? Json(scene.deformation.of<ImplicitSettings>().tolerance) : Json(nullptr);
   facts["force_error_percent"] = row.errors.force;
   facts["surface_error_percent"] = row.errors.surface;
   facts["felt_error_percent"] = row.errors.felt;
@@ -86,21 +88,6 @@ std::string without(const Scene& scene, const Scene& asked) {
   return text;
 }
 
-/// The keys of [deformation] that this model takes.
-std::string deformation_text(const DeformationSettings& by) {
-  const DeformationModelRow& row = find_row(deformation_models(), by.model, "deformation model", by.where);
-  std::string text = fmt::format("[deformation]\nmodel = \"{}\"\n", by.model);
-  if (row.damped)
-    text += fmt::format("rayleigh_mass = {:g}\nrayleigh_stiffness = {:g}\n", by.rayleigh_mass,
-                        by.rayleigh_stiffness);
-  if (row.modal) text += fmt::format("modes = {}\n", by.modes);
-  if (!row.any_material) return text;
-  if (by.second_order) text += "integrator = \"bdf2\"\n";
-  if (by.solver != DynamicsSettings::Solver::kDirect)
-    text += fmt::format("solver = \"{}\"\nrefresh_steps = {}\n", name_of(by.solver), by.refresh_steps);
-  return text + fmt::format("tolerance = {:g}\nmax_newton = {}\n", by.tolerance, by.max_newton);
-}
-
 /// To be pasted into the scene that was `asked` about.
 std::string settings_of(const StudyRow& row, const Scene& asked) {
   const Scene& scene = row.one.scene;
@@ -112,7 +99,7 @@ std::string settings_of(const StudyRow& row, const Scene& asked) {
                       std::filesystem::proximate(scene.mesh_file, folder).generic_string());
   text += fmt::format("\n[material]\nlaw = \"{}\"\nelement = \"{}\"\n", name_of(scene.material->law),
                       name_of(scene.material->element));
-  return text + deformation_text(scene.deformation);
+  return text + to_text(scene.deformation);
 }
 
 }  // namespace

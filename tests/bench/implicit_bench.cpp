@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/clock.h"
+#include "sim_server/deformation/implicit.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/liver.h"
@@ -52,9 +53,9 @@ Case liver_case() {
 Case block_case(int n, double rate_hz, int refresh_steps, Solver solver = Solver::kQuasiNewton) {
   Scene scene = test::scene_of({.young_modulus = 5e3, .poisson_ratio = 0.45, .density = 1060},
                                {Vec3(-1, -1, -1), Vec3(1, -0.0269, 1)}, 0.008);
-  scene.deformation.solver = solver;
-  scene.deformation.refresh_steps = refresh_steps;
-  scene.deformation.tolerance = 1e-2;
+  scene.deformation.of<sim::ImplicitSettings>().solver = solver;
+  scene.deformation.of<sim::ImplicitSettings>().refresh_steps = refresh_steps;
+  scene.deformation.of<sim::ImplicitSettings>().tolerance = 1e-2;
   const int high = static_cast<int>(std::lround(0.45 * n));
   return {.scene = corotational(scene, rate_hz),
           .mesh = grid_block(test::lines(-0.03, 0.03, n), test::lines(-0.027, 0, high),
@@ -82,9 +83,9 @@ Run felt(const Case& on, const Scene& scene, int steps) {
 /// Of the largest force, %.
 double largest_error(const Case& on, const Run& run) {
   Scene exact = on.scene;
-  exact.deformation.solver = Solver::kDirect;
-  exact.deformation.tolerance = 1e-8;
-  exact.deformation.max_newton = 60;
+  exact.deformation.of<sim::ImplicitSettings>().solver = Solver::kDirect;
+  exact.deformation.of<sim::ImplicitSettings>().tolerance = 1e-8;
+  exact.deformation.of<sim::ImplicitSettings>().max_newton = 60;
   const Run truth = felt(on, exact, static_cast<int>(run.forces.size()));
   double error = 0, most = 0;
   for (std::size_t i = 0; i < run.forces.size(); ++i) {

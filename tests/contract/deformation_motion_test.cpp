@@ -125,7 +125,7 @@ CONTRACT("what a body stores is never more than loads have put in, and a cycle o
 }
 
 CONTRACT("let go, a body in motion never gains energy", ModelCase, choice,
-         model_cases([](const ModelCase& c) { return c.row.damped; })) {
+         model_cases([](const ModelCase& c) { return c.row.takes<sim::RayleighDamping>(); })) {
   const bool each_step = !exempt(choice, "energy step by step"),
              here = each_step && !exempt(choice, "energy in one place");
   // So that explicit has one sub-step a period, and implicit damps little.
@@ -155,7 +155,7 @@ CONTRACT("let go, a body in motion never gains energy", ModelCase, choice,
 }
 
 CONTRACT("let go, a body without mass is back at rest at once", ModelCase, choice,
-         model_cases([](const ModelCase& c) { return !c.row.damped; })) {
+         model_cases([](const ModelCase& c) { return !c.row.takes<sim::RayleighDamping>(); })) {
   ModelBench bench(choice, {.thin = true});
   const double moved = bench.largest_way(bench.step(pull(bench, 1)));
   if (!exempt(choice, "static limit")) CHECK(moved > 1e-3);

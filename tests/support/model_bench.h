@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/elasticity/solid.h"
 #include "tests/support/model_cases.h"
 #include "tests/support/scenes.h"
@@ -33,8 +34,8 @@ struct ModelBench {
                                 : sim::grid_block({0, 0.01, 0.02, 0.03}, {0, 0.01, 0.02}, {0, 0.012, 0.025}),
                    choice.element);
     scene.rate_hz = setting.rate_hz;
-    scene.deformation.rayleigh_mass = setting.rayleigh_mass;
-    scene.deformation.rayleigh_stiffness = setting.rayleigh_stiffness;
+    scene.deformation.of<sim::RayleighDamping>().mass = setting.rayleigh_mass;
+    scene.deformation.of<sim::RayleighDamping>().stiffness = setting.rayleigh_stiffness;
     scene.fixed[0].box.reset();  // a ball turns with the scene: this one is so large that it is flat
     scene.fixed[0].ball = sim::Ball{setting.place * Vec3(0.015, 0.01, -10), 10.001};
     for (Vec3& x : mesh.vertices) x = setting.place * x;

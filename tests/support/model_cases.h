@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/implicit.h"
+#include "sim_server/deformation/reduced.h"
 
 namespace palpate::test {
 
@@ -50,12 +52,12 @@ struct ModelCase {
     scene.material->element = element;
     if (fibres) scene.material->fibres = sim::Fibres{Vec3(1, 0.5, 2).normalized(), 1.2e4};
     if (relaxes) scene.material->relaxations = {{0.3, 0.02}, {0.1, 0.008}};
-    scene.deformation.second_order = second_order;
-    scene.deformation.solver = solver;
-    scene.deformation.refresh_steps = 2;
-    scene.deformation.modes = 8;
-    scene.deformation.tolerance = 1e-11;
-    scene.deformation.max_newton = 60;
+    scene.deformation.of<sim::ImplicitSettings>().second_order = second_order;
+    scene.deformation.of<sim::ImplicitSettings>().solver = solver;
+    scene.deformation.of<sim::ImplicitSettings>().refresh_steps = 2;
+    scene.deformation.of<sim::ReducedSettings>().modes = 8;
+    scene.deformation.of<sim::ImplicitSettings>().tolerance = 1e-11;
+    scene.deformation.of<sim::ImplicitSettings>().max_newton = 60;
   }
 };
 
@@ -98,12 +100,12 @@ inline std::vector<ModelCase> model_cases() {
   std::vector<ModelCase> cases;
   for (const sim::DeformationModelRow& row : sim::deformation_models()) {
     cases.push_back({row});
-    if (row.any_linear) {
+    if (row.materials == sim::Materials::kLinear) {
       cases.push_back({.row = row, .element = ElementKind::kQuadratic});
       cases.push_back({.row = row, .element = ElementKind::kNodalPressure});
       cases.push_back({.row = row, .fibres = true});
     }
-    if (!row.any_material) continue;
+    if (row.materials != sim::Materials::kAny) continue;
     for (const ElasticLaw law :
          {ElasticLaw::kCorotational, ElasticLaw::kStVenantKirchhoff, ElasticLaw::kNeoHookean})
       cases.push_back({row, law});

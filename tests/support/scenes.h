@@ -1,4 +1,5 @@
 #pragma once
+#include "sim_server/deformation/spring.h"
 #include "sim_server/scene/scene.h"
 #include "sim_server/scene_file/read_scene.h"
 
@@ -20,7 +21,7 @@ inline sim::Scene scene_of(const sim::Material& material, const sim::Box& fixed,
   scene.source = "test";
   scene.material = material;
   scene.deformation.model = "quasi_static";
-  scene.deformation.spring_stiffness = Vec3(40, 50, 60);  // of no effect on other models
+  scene.deformation.of<sim::SpringSettings>().stiffness = Vec3(40, 50, 60);  // of no effect on other models
   scene.fixed.push_back({fixed, "", "test"});
   scene.tools[0].shape.radius = tool_radius;
   return scene;

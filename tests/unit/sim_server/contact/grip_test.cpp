@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
+#include "sim_server/deformation/rigid.h"
+#include "sim_server/deformation/spring.h"
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/served_tools.h"
@@ -40,8 +42,8 @@ constexpr double kHardening = 0.07;
 
 Scene spring_scene() {
   Scene scene = block_scene("spring");
-  scene.deformation.spring_stiffness = kStiffness;
-  scene.deformation.hardening_length = kHardening;
+  scene.deformation.of<SpringSettings>().stiffness = kStiffness;
+  scene.deformation.of<SpringSettings>().hardening_length = kHardening;
   return scene;
 }
 
@@ -103,7 +105,7 @@ TEST_CASE("grasped tissue: linear, both ways, with the slope of the force as tan
 
 TEST_CASE("a grip on a wall that only answers to penetration has that stiffness") {
   Scene scene = block_scene("rigid");
-  scene.deformation.stiffness = 700;
+  scene.deformation.of<RigidSettings>().stiffness = 700;
   Simulation wall(scene, block());
   const Vec3 x(0.001, 0.002, -0.003);
   CHECK((wall.step(kPlace + x, kDt).force + 700 * x).norm() < 1e-5);
@@ -186,7 +188,7 @@ TEST_CASE("a grip that cannot be is refused in one line") {
       "scene.toml:9: no vertex of the surface that the tool may touch lies within 6.25 mm of `grasp_place`");
   Scene spring = block_scene("spring");
   spring.deformation.where = "scene.toml:5";
-  spring.deformation.spring_stiffness.reset();
+  spring.deformation.of<SpringSettings>().stiffness.reset();
   CHECK(set_up(spring) == "scene.toml:5: model \"spring\" needs `spring_stiffness`, [x, y, z] in N/m");
   const test::TemporaryFolder folder;
   folder.write("organ.msh", "");

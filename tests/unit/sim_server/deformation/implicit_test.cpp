@@ -2,6 +2,7 @@
 #include "sim_server/deformation/implicit.h"
 
 #include "common/error.h"
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
@@ -24,8 +25,8 @@ Scene block_scene(std::string_view model, ElasticLaw law = ElasticLaw::kLinear, 
   Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4, .law = law},
                          {Vec3(-1, -1, -1), Vec3(1, -0.0159, 1)}, 0.005);
   scene.deformation.model = model;
-  scene.deformation.rayleigh_mass = 20;
-  scene.deformation.rayleigh_stiffness = 0.01;
+  scene.deformation.of<RayleighDamping>().mass = 20;
+  scene.deformation.of<RayleighDamping>().stiffness = 0.01;
   scene.tools[0].shape.friction = friction;
   return scene;
 }
@@ -58,8 +59,8 @@ TEST_CASE(
   for (const ElasticLaw law :
        {ElasticLaw::kCorotational, ElasticLaw::kStVenantKirchhoff, ElasticLaw::kNeoHookean}) {
     Scene scene = block_scene("implicit", law);
-    scene.deformation.tolerance = 1e-9;
-    scene.deformation.max_newton = 30;
+    scene.deformation.of<ImplicitSettings>().tolerance = 1e-9;
+    scene.deformation.of<ImplicitSettings>().max_newton = 30;
     Simulation simulation(scene, block());
     // Saint Venant and Kirchhoff's collapses under more.
     const ToolForce felt = pressed(simulation, law == ElasticLaw::kStVenantKirchhoff ? 0.002 : 0.004);
@@ -88,8 +89,8 @@ TEST_CASE(
 
 TEST_CASE("implicit: the force does not depend on how old the factor is") {
   Scene scene = block_scene("implicit", ElasticLaw::kCorotational);
-  scene.deformation.tolerance = 1e-8;
-  scene.deformation.max_newton = 60;
+  scene.deformation.of<ImplicitSettings>().tolerance = 1e-8;
+  scene.deformation.of<ImplicitSettings>().max_newton = 60;
   Simulation once(scene, block()), again(scene, block());
   // The second has been bent elsewhere before: its factor is another's.
   for (int i = 0; i < 30; ++i) again.step({Vec3(-0.012, 0.001, -0.01)}, 1.0 / 30);
@@ -117,8 +118,8 @@ TEST_CASE("implicit: with a factor of the background the force is that of a fact
     for (const double friction : {0.0, 0.2}) {
       Scene scene = block_scene("implicit", law, friction);
       const DeformationSettings usual = scene.deformation;
-      scene.deformation.tolerance = 1e-9;
-      scene.deformation.max_newton = 60;
+      scene.deformation.of<ImplicitSettings>().tolerance = 1e-9;
+      scene.deformation.of<ImplicitSettings>().max_newton = 60;
       std::vector<Vec3> exact;
       drawn(scene, exact);
       double most = 0;
@@ -126,8 +127,8 @@ TEST_CASE("implicit: with a factor of the background the force is that of a fact
       REQUIRE(most > 0.4);
       for (const Solver solver : {Solver::kConjugateGradients, Solver::kQuasiNewton}) {
         if (friction > 0) scene.deformation = usual;
-        scene.deformation.solver = solver;
-        scene.deformation.refresh_steps = 4;
+        scene.deformation.of<ImplicitSettings>().solver = solver;
+        scene.deformation.of<ImplicitSettings>().refresh_steps = 4;
         std::vector<Vec3> forces, again;
         const std::uint64_t hash = drawn(scene, forces);
         CHECK(drawn(scene, again) == hash);  // whenever the background is ready
@@ -185,10 +186,10 @@ TEST_CASE("implicit: a body that nothing holds flies off with the momentum that 
   scene.fixed.clear();
   scene.rate_hz = 500;
   scene.deformation.model = "implicit";
-  scene.deformation.rayleigh_mass = 0;
-  scene.deformation.rayleigh_stiffness = 2e-3;
-  scene.deformation.tolerance = 1e-10;
-  scene.deformation.max_newton = 60;
+  scene.deformation.of<RayleighDamping>().mass = 0;
+  scene.deformation.of<RayleighDamping>().stiffness = 2e-3;
+  scene.deformation.of<ImplicitSettings>().tolerance = 1e-10;
+  scene.deformation.of<ImplicitSettings>().max_newton = 60;
   Simulation simulation(scene, grid_block(test::lines(-0.015, 0.015, 4), test::lines(-0.015, 0, 2),
                                           test::lines(-0.015, 0.015, 4)));
   const auto middle = [&] {

@@ -2,6 +2,7 @@
 #ifdef PALPATE_WITH_TBB
 #include <oneapi/tbb/global_control.h>
 
+#include "sim_server/deformation/implicit.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
@@ -17,8 +18,8 @@ namespace {
 Scene liver_block(DynamicsSettings::Solver solver) {
   Scene scene = scene_of({.law = ElasticLaw::kCorotational}, {Vec3(-1, -1, -1), Vec3(1, -0.0239, 1)}, 0.006);
   scene.deformation.model = "implicit";
-  scene.deformation.solver = solver;
-  scene.deformation.refresh_steps = 3;
+  scene.deformation.of<ImplicitSettings>().solver = solver;
+  scene.deformation.of<ImplicitSettings>().refresh_steps = 3;
   return scene;
 }
 

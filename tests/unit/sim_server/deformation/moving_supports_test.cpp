@@ -8,6 +8,9 @@
 
 #include "common/error.h"
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/implicit.h"
+#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/deformation/reduced.h"
 #include "sim_server/scene/loads.h"
 #include "sim_server/simulation/simulation.h"
 #include "sim_server/solvers/equilibrium.h"
@@ -96,9 +99,9 @@ struct Oscillator {
     direction = eigen.eigenvectors().col(0);
     frequency = std::sqrt(eigen.eigenvalues()[0] / solid.masses()[vertex]);
     scene.deformation.model = model;
-    scene.deformation.rayleigh_mass = 0.2 * frequency;
-    scene.deformation.rayleigh_stiffness = 0.3 / frequency;
-    scene.deformation.modes = 1;
+    scene.deformation.of<RayleighDamping>().mass = 0.2 * frequency;
+    scene.deformation.of<RayleighDamping>().stiffness = 0.3 / frequency;
+    scene.deformation.of<ReducedSettings>().modes = 1;
   }
   /// All that is fixed, at `ratio` of the frequency.
   const SupportMotion& shake(double ratio) {
@@ -110,8 +113,9 @@ struct Oscillator {
   ///   w0^2 (1 + i w beta) / (w0^2 - w^2 + i w (alpha + beta w0^2)).
   std::pair<double, double> exact(double t) const {
     const SupportMotion& motion = scene.fixed[0].motions[0];
-    const double w = kTau / motion.period, w0 = frequency, alpha = scene.deformation.rayleigh_mass,
-                 beta = scene.deformation.rayleigh_stiffness;
+    const double w = kTau / motion.period, w0 = frequency,
+                 alpha = scene.deformation.of<RayleighDamping>().mass,
+                 beta = scene.deformation.of<RayleighDamping>().stiffness;
     const Complex answer =
         w0 * w0 * Complex(1, w * beta) / Complex(w0 * w0 - w * w, w * (alpha + beta * w0 * w0));
     const Complex turned = motion.amplitude * answer * std::polar(1.0, w * t + motion.phase);
@@ -147,7 +151,7 @@ TEST_CASE("moving supports: implicit steps come to the oscillator, of first orde
   const auto error = [](double ratio, int per_period, bool second) {
     Oscillator one("implicit");
     one.scene.rate_hz = per_period / one.shake(ratio).period;
-    one.scene.deformation.second_order = second;
+    one.scene.deformation.of<ImplicitSettings>().second_order = second;
     const Bench bench(one.scene, one.mesh);
     double most = 0;
     for (int step = 1; step <= 13 * per_period; ++step) {
@@ -172,8 +176,8 @@ TEST_CASE("moving supports: implicit steps come to the oscillator, of first orde
 TEST_CASE("moving supports: a whole block swings as a dense complex solution says") {
   for (const std::string_view model : built({"tensor_mass", "reduced"})) {
     Scene scene = block_scene(model);
-    scene.deformation.rayleigh_mass = 5;
-    scene.deformation.rayleigh_stiffness = 3e-4;
+    scene.deformation.of<RayleighDamping>().mass = 5;
+    scene.deformation.of<RayleighDamping>().stiffness = 3e-4;
     const ElasticTensors tensors(block(), *scene.material, fixed_vertices(scene, block()));
     const DenseTissue dense(block(), *scene.material, tensors);
     const double slowest = std::sqrt(dense.squares[0]);
@@ -304,7 +308,8 @@ TEST_CASE("moving supports: what is held stands where displacement and motion ad
 TEST_CASE("moving supports: what would swing beyond all measure is refused in one line") {
   for (const std::string_view model : {"tensor_mass", "implicit"}) {
     Oscillator one(model);
-    one.scene.deformation.rayleigh_mass = one.scene.deformation.rayleigh_stiffness = 0;
+    one.scene.deformation.of<RayleighDamping>().mass = one.scene.deformation.of<RayleighDamping>().stiffness =
+        0;
     one.shake(1);
     one.scene.fixed[0].where = "bottom";
     std::string said = "none";

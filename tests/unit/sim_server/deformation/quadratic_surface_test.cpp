@@ -2,6 +2,9 @@
 #include <map>
 
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/implicit.h"
+#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/deformation/reduced.h"
 #include "sim_server/elasticity/solid.h"
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/catch.h"
@@ -26,10 +29,10 @@ struct Bar {
   Bar() {
     for (int v = 0; v < static_cast<int>(surface.vertices.size()); ++v) reachable.push_back(v);
     scene.rate_hz = 30;
-    scene.deformation.modes = 12;
-    scene.deformation.tolerance = 1e-12;
-    scene.deformation.rayleigh_mass = 20;
-    scene.deformation.rayleigh_stiffness = 0.02;  // it creeps to where the load leads
+    scene.deformation.of<ReducedSettings>().modes = 12;
+    scene.deformation.of<ImplicitSettings>().tolerance = 1e-12;
+    scene.deformation.of<RayleighDamping>().mass = 20;
+    scene.deformation.of<RayleighDamping>().stiffness = 0.02;  // it creeps to where the load leads
   }
   const Vec3& rest(int v) const { return mesh.vertices[surface.vertices[v]]; }
 
@@ -59,7 +62,7 @@ TEST_CASE("a bar of quadratic elements, pulled evenly at its surface, gets longe
   const double longer = kPull * kLong / (kTissue.young_modulus * kArea);
   int models = 0;
   for (const DeformationModelRow& row : deformation_models()) {
-    if (!row.any_linear && !row.any_material) continue;
+    if (row.materials < Materials::kLinear) continue;
     ++models;
     bar.scene.deformation.model = row.name;
     const auto model = row.make(

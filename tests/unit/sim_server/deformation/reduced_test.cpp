@@ -6,6 +6,7 @@
 #include "common/error.h"
 #include "sim_server/deformation/linear_statics.h"
 #include "sim_server/deformation/quasi_static.h"
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
@@ -30,9 +31,10 @@ struct Bench {
   explicit Bench(int modes) {
     scene.rate_hz = 1 / kPeriod;
     scene.deformation.model = "reduced";
-    scene.deformation.modes = modes;
-    scene.deformation.rayleigh_mass = 6;
-    scene.deformation.rayleigh_stiffness = 2e-3;  // the quick modes are overdamped, the slow ones swing
+    scene.deformation.of<ReducedSettings>().modes = modes;
+    scene.deformation.of<RayleighDamping>().mass = 6;
+    scene.deformation.of<RayleighDamping>().stiffness =
+        2e-3;  // the quick modes are overdamped, the slow ones swing
     fixed = fixed_vertices(scene, mesh);
     for (int v = 0; v < static_cast<int>(surface.vertices.size()); ++v) reachable.push_back(v);
   }

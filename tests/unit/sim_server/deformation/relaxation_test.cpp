@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim_server/deformation/implicit.h"
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
@@ -30,9 +31,9 @@ Scene grasped(std::string_view model, ElasticLaw law, std::vector<Relaxation> re
                           .relaxations = std::move(relaxations)},
                          {Vec3(-1, -1, -1), Vec3(1, -0.0119, 1)}, 0.005);
   scene.deformation.model = model;
-  scene.deformation.rayleigh_mass = scene.deformation.rayleigh_stiffness = 0;
-  scene.deformation.tolerance = 1e-10;
-  scene.deformation.max_newton = 50;
+  scene.deformation.of<RayleighDamping>().mass = scene.deformation.of<RayleighDamping>().stiffness = 0;
+  scene.deformation.of<ImplicitSettings>().tolerance = 1e-10;
+  scene.deformation.of<ImplicitSettings>().max_newton = 50;
   scene.tools[0].grasp_place = kPlace;
   scene.rate_hz = rate_hz;
   return scene;

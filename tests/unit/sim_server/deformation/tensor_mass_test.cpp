@@ -3,6 +3,7 @@
 
 #include "common/error.h"
 #include "sim_server/deformation/quasi_static.h"
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/allocation_guard.h"
@@ -80,7 +81,8 @@ TEST_CASE("tensor_mass: a period is cut into as few sub-steps as the highest fre
   const TensorMass model(bench.inputs());
   const double longest =
       longest_sub_step(highest_frequency(ElasticTensors(bench.mesh, *bench.scene.material, bench.fixed)),
-                       {bench.scene.deformation.rayleigh_mass, bench.scene.deformation.rayleigh_stiffness});
+                       {bench.scene.deformation.of<RayleighDamping>().mass,
+                        bench.scene.deformation.of<RayleighDamping>().stiffness});
   CHECK(model.sub_steps() * model.sub_step() == Approx(kPeriod).epsilon(1e-14));
   CHECK(model.sub_step() < 0.96 * longest);
   CHECK(model.sub_step() * model.sub_steps() / (model.sub_steps() - 1) > 0.94 * longest);
@@ -91,8 +93,8 @@ TEST_CASE("tensor_mass: what loads do in a period is what stepping through it do
   TensorMass model(bench.inputs());
   const Material& material = *bench.scene.material;
   const ElasticTensors tensors(bench.mesh, material, bench.fixed);
-  ExplicitMotion twin(tensors,
-                      {bench.scene.deformation.rayleigh_mass, bench.scene.deformation.rayleigh_stiffness});
+  ExplicitMotion twin(tensors, {bench.scene.deformation.of<RayleighDamping>().mass,
+                                bench.scene.deformation.of<RayleighDamping>().stiffness});
   const auto off = [&](std::span<const Vec3> positions, const std::vector<int>& vertices) {
     double most = 0;
     for (const int v : vertices) {
@@ -146,7 +148,8 @@ TEST_CASE("tensor_mass: under a constant load it comes to rest where quasi_stati
 
 TEST_CASE("tensor_mass: without damping its compliance is positive all the same") {
   Bench bench;
-  bench.scene.deformation.rayleigh_mass = bench.scene.deformation.rayleigh_stiffness = 0;
+  bench.scene.deformation.of<RayleighDamping>().mass =
+      bench.scene.deformation.of<RayleighDamping>().stiffness = 0;
   for (const double rate : {30.0, 200.0, 5000.0}) {
     bench.scene.rate_hz = rate;
     const TensorMass model(bench.inputs());
@@ -274,7 +277,7 @@ TEST_CASE(
   Simulation still(scene, mesh);
   const Vec3 expected = still.step(place, 1).force;
   scene.deformation.model = "tensor_mass";
-  scene.deformation.rayleigh_mass = 200;
+  scene.deformation.of<RayleighDamping>().mass = 200;
   for (const double rate : {10000.0, 3000.0, 1500.0}) {
     CAPTURE(rate);
     scene.rate_hz = rate;

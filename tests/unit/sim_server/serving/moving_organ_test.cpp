@@ -48,7 +48,7 @@ Scene block_scene(std::vector<SupportMotion> motions, std::string_view model = "
 std::vector<std::string_view> models() {
   std::vector<std::string_view> names;
   for (const DeformationModelRow& row : deformation_models()) {
-    if (row.follows_supports) names.push_back(row.name);
+    if (row.deforms()) names.push_back(row.name);
   }
   return names;
 }
