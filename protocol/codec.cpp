@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "common/contact/tool.h"
 #include "protocol/surface_pages.h"
 #include "protocol/wire.h"
 
@@ -11,7 +12,6 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
 constexpr std::array<std::uint8_t, 3> kReserved{};
-constexpr std::uint8_t kMaxTools = 16;
 constexpr double kMaxMagnitude = 1e9;  // of any position, speed or force: beyond is a bug or an attack
 constexpr std::int64_t kMaxLead = 10'000'000'000;  // ns
 

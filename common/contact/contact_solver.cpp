@@ -44,7 +44,7 @@ ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
   gap_.resize(rows);
   lambda_.resize(rows);
   next_.resize(unknowns);
-  way_.resize(unknowns);
+  increment_.resize(unknowns);
   node_force_.resize(3 * max_nodes);
   moved_.resize(unknowns, 3);
   rhs_.resize(rows, 3);
@@ -63,7 +63,7 @@ Vec3 ContactSolver::direction(int contact, int row) const {
   return row == 0 ? contacts_[contact].normal : Vec3(frames_[contact].col(row));
 }
 
-/// How far the tip went over the surface at a contact in this stride.
+/// How far the tip went over the surface at a contact in this increment.
 Vec3 ContactSolver::travel(const Contact& c) const {
   Vec3 travel = c.at_tip(tip_ - tip_was_) + turned_ * c.arm;
   for (int i = 0; i < c.size; ++i) travel -= c.weight[i] * (deformed_[c.node[i]] - was_[c.node[i]]);
@@ -71,7 +71,7 @@ Vec3 ContactSolver::travel(const Contact& c) const {
 }
 
 void ContactSolver::start_stride(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
-                                 const StrideStart& start) noexcept {
+                                 const IncrementStart& start) noexcept {
   friction_ = tool.friction;
   pivots_ = tool.trocar.has_value();
   felt_.clear();
@@ -119,13 +119,13 @@ void ContactSolver::linearise(const ContactPatch& patch, const Vec3& p_W,
 }
 
 ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
-                                  Eigen::Ref<Eigen::VectorXd> u, const StrideStart& start,
+                                  Eigen::Ref<Eigen::VectorXd> u, const IncrementStart& start,
                                   const Effort& effort) noexcept {
   start_stride(patch, tool, pose, start);
   const int m = patch.nodes();
   ContactForce result;
   result.converged = false;
-  auto next = next_.head(3 * (m + 1)), way = way_.head(3 * (m + 1));
+  auto next = next_.head(3 * (m + 1)), increment = increment_.head(3 * (m + 1));
   double change = effort.expected * tool.radius, last_change = tool.radius, step = kFirstStep;
   int newton_failures = 0, plain_left = 0, onward_run = 0;
   bool newton_worked = false;
@@ -145,10 +145,10 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, c
     // Plain iteration, where Newton fails (ever longer, each time it does): shorter steps where it swings,
     // longer ones where it creeps (towards a snap-through, say), never so long that the surface could pass
     // the tip.
-    const bool onward = result.iterations == 1 || way.dot(next - u) > 0;
+    const bool onward = result.iterations == 1 || increment.dot(next - u) > 0;
     onward_run = onward ? onward_run + 1 : 0;
     step = std::clamp(step * (onward ? 1.3 : 0.5), 0.1, onward_run > 6 ? 4.0 : 1.0);
-    way = std::min(step, kLongestMove * tool.radius / change) * (next - u);
+    increment = std::min(step, kLongestMove * tool.radius / change) * (next - u);
     if (newton_worked && change > last_change) plain_left = 2 << ++newton_failures;
     last_change = change;
     newton_worked = --plain_left < 0 && newton_step(patch, u, next) &&
@@ -156,7 +156,7 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, c
     if (newton_worked) {
       u = next;
     } else {
-      u += way;
+      u += increment;
     }
   }
   u = next;

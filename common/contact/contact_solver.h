@@ -33,10 +33,10 @@ struct ContactForce {
       true;  ///< false: the answer is finite, the geometry still moved by more than the tolerance
 };
 
-/// Where a stride began; slip is measured from there, and there is no other memory of friction: a node
-/// without contact carries none. What `solve` found is the start of the next stride: nodes at `free` + u, the
-/// tip at the pose + u_tip. So a path is a chain of solves, on the server and wherever it is replayed.
-struct StrideStart {
+/// Where a increment began; slip is measured from there, and there is no other memory of friction: a node
+/// without contact carries none. What `solve` found is the start of the next increment: nodes at `free` + u,
+/// the tip at the pose + u_tip. So a path is a chain of solves, on the server and wherever it is replayed.
+struct IncrementStart {
   std::span<const Vec3> nodes;  ///< (m) the patch nodes, m, world; more do no harm
   Vec3 tip = Vec3::Zero();      ///< the tool's tip, m, world
   Quat q_W = Quat::Identity();  ///< the tool's orientation
@@ -45,7 +45,7 @@ struct StrideStart {
 /// Unilateral contact of a tool with an elastic triangle patch, with Coulomb friction where the tool has
 /// some. Finds displacements u of the nodes and of the tool tip, and forces f = lambda n + t, with
 ///   u = C W^T f,   lambda >= 0,   gap(x + u) >= 0,   lambda . gap = 0,
-///   |t| <= mu lambda,   t = -mu lambda s / |s| where it slips by s in the stride, s = 0 where it sticks,
+///   |t| <= mu lambda,   t = -mu lambda s / |s| where it slips by s in the increment, s = 0 where it sticks,
 /// gap = distance to each feature minus radius, W = tip minus the contact point's share of each node, C the
 /// compliance of patch and tip together, s the part of W (position - position at the start) across the normal
 /// n (Duriez et al. 2006: backward Euler of Coulomb's law). The gap is that of the *deformed* surface: each
@@ -73,7 +73,7 @@ class ContactSolver {
   /// friction, and only then. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful of contacts,
   /// with friction some ten times that.
   ContactForce solve(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
-                     Eigen::Ref<Eigen::VectorXd> u, const StrideStart& start = {},
+                     Eigen::Ref<Eigen::VectorXd> u, const IncrementStart& start = {},
                      const Effort& effort = kUsualEffort) noexcept;
   static const Effort kUsualEffort;
 
@@ -82,7 +82,7 @@ class ContactSolver {
 
   /// Tangent dF/dp of the last solve (N/m), by the implicit function theorem on the touching features, with
   /// the curvature of their gaps. Symmetric without friction. With it: how F follows the end of this same
-  /// stride; where contacts slip it is not symmetric, as friction turns with the slide and grows with the
+  /// increment; where contacts slip it is not symmetric, as friction turns with the slide and grows with the
   /// pressure, and where they slip by little it is steep across the slide. Zero when nothing touches or where
   /// it is not defined.
   Mat3 tangent(const ContactPatch& patch) noexcept;
@@ -92,7 +92,7 @@ class ContactSolver {
 
   /// Compliance in series with every contact (m/N): ten thousand times stiffer than a liver's contact, it
   /// keeps the Delassus operator positive definite where contacts coincide or nodes are fixed. Across the
-  /// normal a thousandth of it, as there it is a creep, by that much per N and stride.
+  /// normal a thousandth of it, as there it is a creep, by that much per N and increment.
   static constexpr double kContactCompliance = 1e-9, kFrictionCompliance = 1e-10;
 
  private:
@@ -100,7 +100,7 @@ class ContactSolver {
   Vec3 direction(int contact, int row) const;
   Vec3 travel(const Contact& c) const;
   void start_stride(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
-                    const StrideStart& start) noexcept;
+                    const IncrementStart& start) noexcept;
   void linearise(const ContactPatch& patch, const Vec3& p_W,
                  const Eigen::Ref<const Eigen::VectorXd>& u) noexcept;
   bool solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
@@ -136,14 +136,14 @@ class ContactSolver {
   std::vector<Vec3> deformed_;
   Eigen::MatrixXd response_;  // C W^T, (3 (m + 1) x rows)
   Eigen::MatrixXd delassus_;
-  Eigen::VectorXd gap_, lambda_, slack_, next_, way_, node_force_;
+  Eigen::VectorXd gap_, lambda_, slack_, next_, increment_, node_force_;
   int force_size_ = 0;
-  // The stride: friction coefficient, where its nodes and the tip began, and where the tip is.
+  // The increment: friction coefficient, where its nodes and the tip began, and where the tip is.
   double friction_ = 0;
   bool pivots_ = false;
   std::vector<Vec3> was_;
   Vec3 tip_was_ = Vec3::Zero(), tip_ = Vec3::Zero();
-  Mat3 turned_ = Mat3::Zero();  // what the tool's turn in the stride did to an arm of now
+  Mat3 turned_ = Mat3::Zero();  // what the tool's turn in the increment did to an arm of now
   // Second order: the contacts considered, their nodes (the tip last), and matrices over those nodes.
   std::vector<int> considered_, nodes_, slot_of_node_;
   int unloaded_ = 0;  // of nodes_, the first ones

@@ -27,7 +27,7 @@ CoulombSolver::CoulombSolver(int capacity)
       rhs_(3 * capacity, 3),
       slack_(3 * capacity),
       trial_(3 * capacity),
-      way_(3 * capacity),
+      direction_(3 * capacity),
       from_(3 * capacity),
       rho_(2 * capacity),
       status_(static_cast<std::size_t>(capacity)) {
@@ -148,7 +148,7 @@ bool CoulombSolver::solve_closed(const Source& constant, Target&& z) noexcept {
 bool CoulombSolver::newton(const Matrix& g_matrix, const Vector& g, double mu,
                            Eigen::Ref<Eigen::VectorXd> z) noexcept {
   const auto n = z.size();
-  auto trial = trial_.head(n), way = way_.head(n), from = from_.head(n), slack = slack_.head(n);
+  auto trial = trial_.head(n), direction = direction_.head(n), from = from_.head(n), slack = slack_.head(n);
   trial = z;
   for (int i = 0; i < kMaxNewton; ++i) {
     compute_slack(g_matrix, g, trial);
@@ -159,20 +159,20 @@ bool CoulombSolver::newton(const Matrix& g_matrix, const Vector& g, double mu,
     }
     classify(trial, slack, mu);
     assemble(g_matrix, mu);
-    if (!solve_closed(g, way)) return false;
+    if (!solve_closed(g, direction)) return false;
     from = trial;
-    trial = way;
+    trial = direction;
     if (i < kFreely) continue;
     // It goes in circles, from stick to slip and back perhaps: shorter steps, if they gain.
-    way -= from;
+    direction -= from;
     int halvings = 0;
     for (; halvings < kHalvings; ++halvings) {
       compute_slack(g_matrix, g, trial);
       if (residual(g, mu, trial) < kGain * left) break;
-      way *= 0.5;
-      trial = from + way;
+      direction *= 0.5;
+      trial = from + direction;
     }
-    if (halvings == kHalvings) trial = from + (1 << kHalvings) * way;
+    if (halvings == kHalvings) trial = from + (1 << kHalvings) * direction;
   }
   return false;
 }

@@ -6,11 +6,11 @@ namespace palpate {
 
 /// Unilateral contact with Coulomb friction on a small dense operator. For each of n contacts there are three
 /// force components z = (lambda, beta_1, beta_2), N, and three slacks w = G z + g, m: the gap, and the slip
-/// of the tool over the surface during a stride. Finds z with
+/// of the tool over the surface during a increment. Finds z with
 ///   lambda >= 0, w_n >= 0, lambda w_n = 0    and    |beta| <= mu lambda, beta = -mu lambda w_t / |w_t| where
 ///   w_t != 0
-/// (Duriez, Dubois, Kheddar and Andriot 2006, IEEE TVCG 12:36, eq. 4 and 5: slip over the stride stands for
-/// velocity, which is backward Euler). G need not be symmetric. Solved by semismooth Newton steps on the
+/// (Duriez, Dubois, Kheddar and Andriot 2006, IEEE TVCG 12:36, eq. 4 and 5: slip over the increment stands
+/// for velocity, which is backward Euler). G need not be symmetric. Solved by semismooth Newton steps on the
 /// augmented Lagrangian form (Alart and Curnier 1991, Comput. Methods Appl. Mech. Eng. 92:353), usually 2 to
 /// 6 solves of a dense system of the closed contacts; where that does not end, from a better place, which
 /// block Gauss-Seidel sweeps find. Allocates only in the constructor; one thread; the same input gives the
@@ -57,7 +57,7 @@ class CoulombSolver {
 
   Eigen::MatrixXd system_;
   Eigen::Matrix<double, Eigen::Dynamic, 3> rhs_;
-  Eigen::VectorXd slack_, trial_, way_, from_,
+  Eigen::VectorXd slack_, trial_, direction_, from_,
       rho_;  // rho: two per contact, N/m, along the normal and across it
   std::vector<Status> status_;
   std::vector<int> closed_;

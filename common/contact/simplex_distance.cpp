@@ -106,8 +106,8 @@ SimplexHessian distance_hessian(std::span<const Vec3> x, std::span<const double>
   }
   if (weights != nullptr) weights->setZero();
   if (m == 1 && sliding == nullptr) return h;
-  // Free weights b_1 .. b_(m-1), b_0 = 1 - their sum, and last the way of the sliding point: d rho = -e_l
-  // db_l, with edges e_l = x_l - x_0 at right angles to the normal, as minus the axis is.
+  // Free weights b_1 .. b_(m-1), b_0 = 1 - their sum, and last the distance of the sliding point: d rho =
+  // -e_l db_l, with edges e_l = x_l - x_0 at right angles to the normal, as minus the axis is.
   std::array<Vec3, 2> e;
   int free = 0;
   Eigen::Matrix<double, 12, 2> mixed = Eigen::Matrix<double, 12, 2>::Zero();

@@ -39,8 +39,8 @@ NearestOnSegment nearest_on_segment(const Vec3& p, const Vec3& q, const Vec3& a,
 double segment_triangle_distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                  const Vec3& c) noexcept;
 
-/// A point on a line that follows p: pivot + share (p - pivot) where it has a pivot, else p + any way along
-/// the axis; the share, or the way, is free, as the weights b are.
+/// A point on a line that follows p: pivot + share (p - pivot) where it has a pivot, else p + any distance
+/// along the axis; the share, or the distance, is free, as the weights b are.
 struct SlidingPoint {
   Vec3 axis;     ///< from the pivot to p, or along the axis
   double share;  ///< 1 without a pivot

@@ -1,9 +1,13 @@
 #pragma once
+#include <cstddef>
 #include <optional>
 
 #include "common/types.h"
 
 namespace palpate {
+
+/// The most tools that a scene may have, and that a datagram may name: 0 to `kMaxTools` - 1.
+constexpr std::size_t kMaxTools = 8;
 
 /// The rigid thing that touches. The device moves one point of it, its tip: the centre of its ball.
 ///   sphere   the ball alone.

@@ -88,14 +88,14 @@ std::optional<Vec3> grip_position(const Vec3& angles, const Vec3& guess) noexcep
     if (missing.cwiseAbs().maxCoeff() <= kAgree) return p;
     const auto j = jacobian(p);
     if (!j) return {};
-    Vec3 way = j->inverse() * missing;
-    if (!way.allFinite()) return {};
+    Vec3 change = j->inverse() * missing;
+    if (!change.allFinite()) return {};
     const auto nearer = [&] {
-      const auto there = leg_angles(p + way);
+      const auto there = leg_angles(p + change);
       return there && (angles - *there).norm() < missing.norm();
     };
-    for (int half = 0; half < kMostHalvings && !nearer(); ++half) way *= 0.5;
-    p += way;
+    for (int half = 0; half < kMostHalvings && !nearer(); ++half) change *= 0.5;
+    p += change;
     here = leg_angles(p);
   }
   return {};

@@ -65,8 +65,8 @@ const char* spacemouse_name(const UsbId& id) noexcept {
 double spacemouse_response(int raw) noexcept {
   const int size = std::min(raw < 0 ? -raw : raw, kSpaceMouseFull) - kSpaceMouseDeadBand;
   if (size <= 0) return 0;
-  const double way = static_cast<double>(size) / (kSpaceMouseFull - kSpaceMouseDeadBand);
-  return raw < 0 ? -way * way : way * way;
+  const double share = static_cast<double>(size) / (kSpaceMouseFull - kSpaceMouseDeadBand);
+  return raw < 0 ? -share * share : share * share;
 }
 
 bool take_spacemouse_report(std::span<const std::byte> report, SpaceMouseState& state) noexcept {

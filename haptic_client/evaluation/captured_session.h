@@ -44,7 +44,7 @@ class CapturedSession {
   struct Missing {
     std::uint64_t ticks = 0;      ///< numbers skipped
     std::uint64_t samples = 0;    ///< used by a tick, but not in the file
-    std::uint64_t pages = 0;      ///< likewise
+    std::uint64_t pages = 0;      ///< of the surface that a tick knew, but not in the file
     std::uint64_t backwards = 0;  ///< ticks left out: their time jumps out of the row, back or ahead
   };
   const Missing& missing() const { return missing_; }

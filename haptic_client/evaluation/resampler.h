@@ -21,8 +21,8 @@ class Resampler {
   std::uint64_t k_ = 0;
   std::optional<CapturedTick> before_, after_;    // around the tick to give
   std::optional<protocol::ForceSample> arrived_;  // known since the last tick given
-  std::vector<protocol::SurfacePage> pages_;      // likewise
-  std::uint16_t flags_ = 0;                       // likewise
+  std::vector<protocol::SurfacePage> pages_;      // come since then
+  std::uint16_t flags_ = 0;                       // of the ticks since then
   Time start_{};                                  // of the grid
   std::uint64_t start_k_ = 0;                     // the tick there
 };

@@ -8,7 +8,7 @@
 
 namespace palpate::client {
 namespace {
-/// A tick waits for the next sample (an outage at most) to be computed and to arrive (likewise).
+/// A tick waits for the next sample (an outage at most) to be computed, and as long for it to arrive.
 constexpr double kLongestWait = 3 * to_seconds(kOutage);  // s
 }  // namespace
 

@@ -15,8 +15,8 @@ constexpr int kMostNodes = 96, kMostTriangles = 160;
 constexpr double kMargin = 0.25, kStride = 0.12;
 constexpr double kMostStrides = 16, kMostEntering = 32;  // a tick
 // How far from a solved place the force follows its tangent, and how well a place is solved: shares of how
-// deep the tool presses, and at most of its radius. Friction follows the path more closely. Where the stride
-// before foresees where the surface goes, one look at it is mostly enough.
+// deep the tool presses, and at most of its radius. Friction follows the path more closely. Where the
+// increment before foresees where the surface goes, one look at it is mostly enough.
 constexpr double kNear = 0.03, kTolerance = 0.002, kMostNear = 0.01, kMostTolerance = 1e-3;
 constexpr double kLeastDepth = 1e-4;  // of the tool radius
 
@@ -40,7 +40,7 @@ ContactOnPatch::ContactOnPatch()
 
 void ContactOnPatch::lift() noexcept {
   state_ = {};
-  way_.setZero();
+  motion_.setZero();
   loads_.clear();
 }
 
@@ -53,15 +53,15 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) no
   }
   const double most = state_.placed ? kMostStrides : kMostEntering;
   if (!state_.placed) enter(surface, p);
-  if (const Vec3 way = p - state_.place; state_.contacts > 0 && way.norm() <= near(surface)) {
-    const Vec3 force = state_.force + state_.tangent * way;
+  if (const Vec3 motion = p - state_.place; state_.contacts > 0 && motion.norm() <= near(surface)) {
+    const Vec3 force = state_.force + state_.tangent * motion;
     return force.dot(state_.force) > 0 ? force : Vec3(Vec3::Zero());
   }
-  const Vec3 from = state_.place, way = p - state_.place;
-  const double strides = std::max(std::ceil(way.norm() / longest), 1.0);
-  bool found = strides <= most;
-  for (double i = 1; found && i <= strides; ++i)
-    found = stride(surface, i == strides ? p : Vec3(from + (i / strides) * way));
+  const Vec3 from = state_.place, motion = p - state_.place;
+  const double increments = std::max(std::ceil(motion.norm() / longest), 1.0);
+  bool found = increments <= most;
+  for (double i = 1; found && i <= increments; ++i)
+    found = increment(surface, i == increments ? p : Vec3(from + (i / increments) * motion));
   if (found) return state_.force;
   lift();
   return {};
@@ -88,9 +88,9 @@ ContactSolver::Effort ContactOnPatch::effort(const Surface& surface) const noexc
   return {.max_iterations = 30, .tolerance = std::min(kTolerance * depth, kMostTolerance), .expected = 1e-3};
 }
 
-bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
+bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
   if ((p - center_).norm() > kStride * surface.tool.radius && !take_patch(surface, p)) return false;
-  const Vec3 tip = state_.place + state_.tip_offset, way = p - state_.place, before = state_.force;
+  const Vec3 tip = state_.place + state_.tip_offset, motion = p - state_.place, before = state_.force;
   const int touched = state_.contacts;
   state_.place = p;
   state_.force.setZero();
@@ -100,7 +100,7 @@ bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
   begin_.clear();
   for (int i = 0; i < patch_.nodes(); ++i) begin_.push_back(patch_.free[i] + u_.segment<3>(3 * i));
   ContactSolver& solving = solver(surface);
-  const bool foreseen = foresee(way);
+  const bool foreseen = foresee(motion);
   const ContactForce contact =
       solving.solve(patch_, surface.tool, p, displacement(), {begin_, tip}, effort(surface));
   note_loads(solving);
@@ -108,7 +108,7 @@ bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
   state_.contacts = contact.contacts;
   state_.depth = displacement().cwiseAbs().maxCoeff();
   if (foreseen && touched == state_.contacts) {
-    learn_tangent(way, before);
+    learn_tangent(motion, before);
   } else if (state_.contacts > 0) {
     state_.tangent = solving.tangent(patch_);
   }
@@ -116,24 +116,24 @@ bool ContactOnPatch::stride(const Surface& surface, const Vec3& p) noexcept {
          displacement().allFinite();
 }
 
-/// Moves the surface on as it went in the last stride, by as much of that as `way` repeats; false where there
-/// is none on this patch.
-bool ContactOnPatch::foresee(const Vec3& way) noexcept {
+/// Moves the surface on as it went in the last increment, by as much of that as `motion` repeats; false where
+/// there is none on this patch.
+bool ContactOnPatch::foresee(const Vec3& motion) noexcept {
   auto u = displacement();
   auto before = u_before_.head(u.size());
-  const double last = way_.squaredNorm();
-  const double share = last > 0 ? std::clamp(way.dot(way_) / last, 0.0, 1.5) : 0;
-  way_ = way;
+  const double last = motion_.squaredNorm();
+  const double share = last > 0 ? std::clamp(motion.dot(motion_) / last, 0.0, 1.5) : 0;
+  motion_ = motion;
   before = (1 + share) * u - share * before;
-  before.swap(u);  // in place: `before` is where the stride begins
+  before.swap(u);  // in place: `before` is where the increment begins
   return last > 0;
 }
 
-/// Broyden's (1965) update: the tangent that gives the change of force along `way`.
-void ContactOnPatch::learn_tangent(const Vec3& way, const Vec3& force_before) noexcept {
-  const double size = way.squaredNorm();
+/// Broyden's (1965) update: the tangent that gives the change of force along `motion`.
+void ContactOnPatch::learn_tangent(const Vec3& motion, const Vec3& force_before) noexcept {
+  const double size = motion.squaredNorm();
   if (!(size > 0)) return;
-  state_.tangent += (state_.force - force_before - state_.tangent * way) / size * way.transpose();
+  state_.tangent += (state_.force - force_before - state_.tangent * motion) / size * motion.transpose();
 }
 
 /// What the patch nodes carry now, which is all that is needed to go on from here.
@@ -146,10 +146,11 @@ void ContactOnPatch::note_loads(const ContactSolver& solved) noexcept {
   state_.tip_offset = u_.segment<3>(3 * patch_.nodes());
 }
 
-/// How the nodes of the patch went in the last stride, so that the next patch knows; returns that of the tip.
+/// How the nodes of the patch went in the last increment, so that the next patch knows; returns that of the
+/// tip.
 Vec3 ContactOnPatch::note_ways(std::size_t vertices) noexcept {
   std::fill_n(went_.begin(), vertices, Vec3::Zero());
-  if (way_.isZero(0)) return Vec3::Zero();
+  if (motion_.isZero(0)) return Vec3::Zero();
   const auto went = [&](int slot) -> Vec3 {
     return u_.segment<3>(3 * slot) - u_before_.segment<3>(3 * slot);
   };
@@ -159,7 +160,7 @@ Vec3 ContactOnPatch::note_ways(std::size_t vertices) noexcept {
 
 /// The patch around a tool at `p`, under the loads that are on the surface.
 bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept {
-  if (version_ != surface.model->version()) way_.setZero();
+  if (version_ != surface.model->version()) motion_.setZero();
   version_ = surface.model->version();
   center_ = p;
   const Vec3 tip_went = note_ways(surface.model->rest().size());

@@ -16,9 +16,9 @@ class ContactOnPatch {
   ContactOnPatch();
 
   /// Goes to `p` (m) and gives the force on the tool there (N); nothing where the model does not know all
-  /// that may be touched on the way, the contact does not settle, or the way is too long for one tick: then
-  /// it stands nowhere. In contact it solves anew where the tool has gone 3 % of how deep it presses, at most
-  /// 1 % of its radius (with friction a quarter of that), and follows the tangent in between.
+  /// that may be touched on the path, the contact does not settle, or the motion is too long for one tick:
+  /// then it stands nowhere. In contact it solves anew where the tool has gone 3 % of how deep it presses, at
+  /// most 1 % of its radius (with friction a quarter of that), and follows the tangent in between.
   std::optional<Vec3> go(const Surface& surface, const Vec3& p) noexcept;
   /// The force at `p`; then it stands where it stood, on a patch around that.
   std::optional<Vec3> probe(const Surface& surface, const Vec3& p) noexcept;
@@ -34,14 +34,14 @@ class ContactOnPatch {
   };
   double near(const Surface& surface) const noexcept;
   ContactSolver::Effort effort(const Surface& surface) const noexcept;
-  bool stride(const Surface& surface, const Vec3& p) noexcept;
+  bool increment(const Surface& surface, const Vec3& p) noexcept;
   bool take_patch(const Surface& surface, const Vec3& p) noexcept;
   bool displace_near(const Surface& surface, const Vec3& p) noexcept;
   bool take_triangles(const Surface& surface, const Vec3& p) noexcept;
   bool take_compliance(const SurfaceModel& model) noexcept;
   Vec3 note_ways(std::size_t vertices) noexcept;
-  bool foresee(const Vec3& way) noexcept;
-  void learn_tangent(const Vec3& way, const Vec3& force_before) noexcept;
+  bool foresee(const Vec3& motion) noexcept;
+  void learn_tangent(const Vec3& motion, const Vec3& force_before) noexcept;
   void note_loads(const ContactSolver& solved) noexcept;
   void enter(const Surface& surface, const Vec3& p) noexcept;
   Eigen::Ref<Eigen::VectorXd> displacement() noexcept { return u_.head(3 * (patch_.nodes() + 1)); }
@@ -54,14 +54,14 @@ class ContactOnPatch {
   ContactPatch patch_;
   std::vector<int> vertices_;        // of the model, of each patch node
   std::vector<int> slot_of_vertex_;  // and back; -1: none
-  std::vector<Vec3> begin_;          // where the patch nodes were when the stride began, m
+  std::vector<Vec3> begin_;          // where the patch nodes were when the increment began, m
   std::vector<Load> loads_, kept_loads_;
   std::vector<Vec3> moved_;     // displacement of vertices, m; where near_ says so
-  std::vector<Vec3> went_;      // of vertices in the last stride, m; 0 where not known
+  std::vector<Vec3> went_;      // of vertices in the last increment, m; 0 where not known
   std::vector<char> near_;      // whether a vertex is near enough to be looked at
   Eigen::VectorXd u_;           // of the patch nodes, then of the tip
-  Eigen::VectorXd u_before_;    // when the last stride began
-  Vec3 way_ = Vec3::Zero();     // the last stride; 0: not known
+  Eigen::VectorXd u_before_;    // when the last increment began
+  Vec3 motion_ = Vec3::Zero();  // the last increment; 0: not known
   std::uint32_t version_ = 0;   // of the model that the patch is of
   Vec3 center_ = Vec3::Zero();  // of the patch
   struct State {

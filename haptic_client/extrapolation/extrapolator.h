@@ -45,7 +45,8 @@ inline bool usable(const Sample& sample) noexcept {
   return sample.p.allFinite() && sample.f.allFinite();
 }
 
-/// Likewise of its parts: they are what a server can mean, in SI units; the bounds of the protocol.
+/// Whether a law may look at this part of a sample: it is within the bounds of the protocol, what a server
+/// can mean in SI units.
 inline bool usable(const Linearised& l) noexcept {
   const auto bounded = [](const auto& m) { return (m.array().abs() <= 1e9).all(); };
   return bounded(l.p) && bounded(l.f) && bounded(l.k) && bounded(l.normal) && l.gap >= 0 && l.gap <= 1e9;

@@ -37,7 +37,8 @@ constexpr std::array kExtrapolators{
     ExtrapolatorRow{"local_contact", "the contact solved here, on the server's model of the surface",
                     &make<LocalContact>},
     ExtrapolatorRow{"kalman", "a Kalman filter on the force (the paper turns it down)", &make<Kalman>, false},
-    ExtrapolatorRow{"interpolate_with_delay", "the line between samples, two periods late (likewise)",
+    ExtrapolatorRow{"interpolate_with_delay",
+                    "the line between samples, two periods late (the paper turns it down)",
                     &make<InterpolateWithDelay>, false},
 };
 

@@ -57,7 +57,7 @@ class SurfaceModel {
   std::vector<std::array<int, 3>> triangles_;
   std::vector<char> shape_known_;            // by page
   std::vector<Vec3> center_;                 // of each cluster, m
-  std::vector<double> radius_;               // likewise
+  std::vector<double> radius_;               // of the same, m
   std::vector<std::uint16_t> slot_of_tile_;  // by page from first_tile()
   std::vector<Tile> tiles_;
   std::size_t next_slot_ = 0;

@@ -109,7 +109,7 @@ class Pipeline {
   FeltShare felt_share_;
   double law_newton_ = 0;
   protocol::ToolState sensed_;  // tick 0: none yet
-  protocol::ToolState felt_;    // likewise
+  protocol::ToolState felt_;    // tick 0: none yet
   bool rearm_asked_ = false;
   PipelineStats stats_;
 };

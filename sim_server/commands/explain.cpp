@@ -23,25 +23,6 @@ constexpr double kUsualFriction = 0.3;
 constexpr double kBytesPerPair = 72;  // of two nodes' compliance: 3 x 3 doubles
 constexpr double kBytesOfMotion =
     9 * 24 + 8;  // of a vertex, as `tensor_mass` keeps them: nine vectors, a mass
-constexpr std::string_view kReading = "reading the mesh", kResponding = "computing compliance";
-
-/// Which part each stage of set-up builds; a stage that is not here is a part of its own.
-struct StagePart {
-  std::string_view stage, part;
-};
-constexpr std::string_view kPreparing = "preparing ";  // and the part's own name
-constexpr std::array kStageParts{
-    StagePart{kReading, "mesh"},
-    StagePart{"extracting the surface", "surface"},
-    StagePart{"assembling the stiffness matrix", "stiffness matrix"},
-    StagePart{"factoring the stiffness matrix", "its factor"},
-    StagePart{kResponding, "compliance"},
-    StagePart{"computing moving supports", "moving supports"},
-    StagePart{"finding the modes of vibration", "modes"},
-    StagePart{"assembling the tensors", "tensors"},
-    StagePart{"finding the highest frequency", "tensors"},
-};
-
 /// What a variant is compared by. `setup_ms` is without reading the mesh, which all share.
 struct Cost {
   double bytes = 0, setup_ms = 0, step_ms = 0;
@@ -52,7 +33,7 @@ double ms(Time t) {
 }
 
 Cost cost_of(const Simulation& simulation, const SetupTimes& times, const StepTimes& steps) {
-  Cost cost{0, ms(times.total() - times.of(kReading)), steps.contact_ns.quantile(0.5) / 1e6};
+  Cost cost{0, ms(times.total() - times.of(name_of(Stage::kMesh))), steps.contact_ns.quantile(0.5) / 1e6};
   for (const MemoryPart& part : simulation.memory()) cost.bytes += static_cast<double>(part.bytes);
   return cost;
 }
@@ -115,11 +96,13 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
   return {};
 }
 
-std::string part_of(const std::string& stage) {
-  if (stage.starts_with(kPreparing)) return stage.substr(kPreparing.size());
-  const auto known = std::find_if(kStageParts.begin(), kStageParts.end(),
-                                  [&](const StagePart& p) { return p.stage == stage; });
-  return known == kStageParts.end() ? stage : std::string(known->part);
+/// The part that a stage of set-up makes.
+std::string part_of(const std::string& stage, std::size_t tools) {
+  for (std::size_t i = 0; i < tools; ++i) {
+    if (stage == contact_stage(i, tools)) return contact_part(i, tools);
+  }
+  const auto row = std::ranges::find(kStages, stage, &StageRow::name);
+  return row == kStages.end() ? stage : std::string(row->part);
 }
 
 /// The row called `name`, new at the end if it is not there yet.
@@ -136,7 +119,7 @@ std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulat
                                    const SetupTimes& times) {
   std::vector<BuiltPart> rows;
   for (const SetupTimes::Stage& stage : times.stages()) {
-    row_of(rows, part_of(stage.name), scene, simulation).setup_ms += ms(stage.took);
+    row_of(rows, part_of(stage.name, scene.tools.size()), scene, simulation).setup_ms += ms(stage.took);
   }
   for (const MemoryPart& part : simulation.memory()) {
     BuiltPart& row = row_of(rows, part.name, scene, simulation);
@@ -325,7 +308,7 @@ Explanation explain(const Scene& scene, const Progress& progress, int steps) {
                           .state_hash = own.simulation.state_hash(),
                           .tetrahedra = own.simulation.mesh().tetrahedra.size()};
   own.cost = cost_of(own.simulation, times, explanation.steps);
-  own.compliance_ms = ms(times.of(kResponding));
+  own.compliance_ms = ms(times.of(name_of(Stage::kCompliance)));
   explanation.left_out = left_out(own);
   return explanation;
 }

@@ -102,6 +102,8 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   const protocol::LinkStats& net = link.stats();
   report["link"] = {{"sent", net.sent},           {"received", net.received},     {"lost", net.lost},
                     {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"rejected", net.rejected}};
+  report["failed_steps"] = {{"out_of_memory", simulation.failures().out_of_memory},
+                            {"other", simulation.failures().other}};
   report["state_hash"] = fmt::format("{:016x}", simulation.state_hash());
 }
 

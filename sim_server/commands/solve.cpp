@@ -118,7 +118,7 @@ int steps_of(const SolveOptions& options) {
   return static_cast<int>(std::ceil(*options.seconds / options.step - 1e-9));
 }
 
-/// From rest, with all loads there at once, what is displaced moved at once, and what swings on its way.
+/// From rest, with all loads there at once, what is displaced moved at once, and what swings on its path.
 Outcome move_for(const SolveOptions& options, const Scene& scene, const Solid& solid, const Loads& loads,
                  ProgressLine& progress) {
   const Stepping stepping(scene.deformation);
@@ -189,7 +189,7 @@ int solve(const SolveOptions& options) {
   require_output(options.out, "--out", ".vtu");
   if (options.series) require_output(*options.series, "--series", ".pvd");
   ProgressLine progress;
-  progress("reading the mesh", 0);
+  progress(name_of(Stage::kMesh), 0);
   TetMesh mesh = with_nodes(read_mesh(scene.mesh_file), scene.material->element);
   put_inclusions(scene, mesh);
   const Surface surface = boundary_surface(mesh);

@@ -17,7 +17,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kMargin = 1.5,
-                 kNear = 1;  // of the tool's radius, around its way: what it may touch, and does
+                 kNear = 1;  // of the tool's radius, around its path: what it may touch, and does
 
 void add_file(Fnv1a& hash, const std::filesystem::path& file) {
   std::ifstream bytes(file, std::ios::binary);
@@ -39,7 +39,7 @@ std::string fingerprint(const StudyOptions& options, const StudyPlan& plan) {
 
 [[noreturn]] void fail_untouched(const StudyOptions& options) {
   fail(
-      "{}: the tool never touches the organ on this way, so that there is no force to compare; its "
+      "{}: the tool never touches the organ on this path, so that there is no force to compare; its "
       "places are in m, in the scene's frame",
       options.trajectory.value_or(options.scene).string());
 }

@@ -60,14 +60,14 @@ void Grip::open() noexcept {
 }
 
 /// What is missing to the place of each vertex, into `misfit_`; the largest component.
-double Grip::misfit(const Vec3& p_W, const Tissue& tissue, std::span<const NodalLoad> own) noexcept {
+double Grip::misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const NodalLoad> own) {
   Vec3 sum = Vec3::Zero();
   for (const NodalLoad& load : own) sum += load.force;
   const Vec3 tip = p_W - patch_.tool_compliance * sum;
   double largest = 0;
   for (std::size_t i = 0; i < own.size(); ++i) {
-    const Vec3 missing =
-        tip + offsets_[i] - tissue.positions[vertices_[i]] - ContactSolver::kContactCompliance * own[i].force;
+    const Vec3 missing = tip + offsets_[i] - tissue.positions()[vertices_[i]] -
+                         ContactSolver::kContactCompliance * own[i].force;
     misfit_.segment<3>(3 * static_cast<Eigen::Index>(i)) = missing;
     largest = std::max(largest, missing.cwiseAbs().maxCoeff());
   }
@@ -75,8 +75,8 @@ double Grip::misfit(const Vec3& p_W, const Tissue& tissue, std::span<const Nodal
 }
 
 /// The compliance under the loads of now, as its Cholesky factor.
-bool Grip::factor(const Tissue& tissue) noexcept {
-  tissue.model->compliance(vertices_, patch_);
+bool Grip::factor(const ToolTissue& tissue) {
+  tissue.model().compliance(vertices_, patch_);
   const auto m = static_cast<Eigen::Index>(vertices_.size());
   auto system = patch_.compliance.topLeftCorner(3 * m, 3 * m);
   for (Eigen::Index j = 0; j < m; ++j) {
@@ -88,21 +88,14 @@ bool Grip::factor(const Tissue& tissue) noexcept {
   return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(in_place).info() == Eigen::Success;
 }
 
-Grip::Pull Grip::pull(const Vec3& p_W, Tissue& tissue, std::vector<NodalLoad>& loads,
-                      std::size_t others) noexcept {
+Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
   const std::size_t held = vertices_.size();
   const auto size = 3 * static_cast<Eigen::Index>(held);
-  const auto same = [](const NodalLoad& load, int vertex) { return load.vertex == vertex; };
-  if (!std::equal(loads.begin() + static_cast<long>(others), loads.end(), vertices_.begin(), vertices_.end(),
-                  same)) {
-    loads.erase(loads.begin() + static_cast<long>(others), loads.end());
-    for (const int vertex : vertices_) loads.push_back({vertex, Vec3::Zero()});
-  }
-  const std::span<NodalLoad> own(loads.data() + others, held);
+  const std::span<NodalLoad> own = tissue.loads_on(vertices_);
   const auto lower = patch_.compliance.topLeftCorner(size, size).triangularView<Eigen::Lower>();
   Pull pull{.vertices = static_cast<int>(held)};
   for (bool still = false; !still; ++pull.rounds) {
-    tissue.positions = tissue.model->apply(loads);
+    tissue.press();
     still = misfit(p_W, tissue, own) <= kFits * reach_;
     pull.converged = factor(tissue) && (still || pull.rounds < kMaxRounds);
     if (still || !pull.converged) break;

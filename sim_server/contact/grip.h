@@ -12,7 +12,8 @@ namespace palpate::sim {
 /// the tool's, and E = (I ... I)^T, the loads f on the tissue hold
 ///   free + C f = E p + offsets - c_t E E^T f
 /// and the tool feels F = -E^T f, with the exact tangent dF/dp = -E^T (C + c_t E E^T)^-1 E. Newton's method:
-/// one round where the tissue is linear. Only set-up allocates, nothing throws. One thread.
+/// one round where the tissue is linear. Only set-up allocates; what the model throws passes through. One
+/// thread.
 class Grip {
  public:
   /// `rest`: surface vertices, m. At most `max_nodes`, and 128, are held. Throws `Error` where there is
@@ -38,15 +39,14 @@ class Grip {
     int vertices = 0, rounds = 0;
     bool converged = true;
   };
-  /// With the tool centre at `p_W`. `loads`: the first `others` are held, those behind are replaced by its
-  /// own; the tissue is left under all of them.
-  Pull pull(const Vec3& p_W, Tissue& tissue, std::vector<NodalLoad>& loads, std::size_t others) noexcept;
+  /// With the tool centre at `p_W`; the loads of the tool are replaced by those of what it holds.
+  Pull pull(const Vec3& p_W, ToolTissue tissue);
 
   std::size_t bytes() const;
 
  private:
-  double misfit(const Vec3& p_W, const Tissue& tissue, std::span<const NodalLoad> own) noexcept;
-  bool factor(const Tissue& tissue) noexcept;
+  double misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const NodalLoad> own);
+  bool factor(const ToolTissue& tissue);
 
   std::uint16_t buttons_;
   double reach_;  // m from the tool centre

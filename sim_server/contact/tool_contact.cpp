@@ -8,29 +8,21 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kStride = 0.5;  // of the tool radius: how far the tool goes between two contact solves
+constexpr double kIncrement = 0.5;  // of the tool radius: how far the tool goes between two contact solves
 // With friction, which follows the path: shorter, as many as a step has time for.
-constexpr double kFrictionStride = 0.01, kFrictionStrides = 16;
+constexpr double kFrictionIncrement = 0.01, kFrictionIncrements = 16;
 constexpr double kGather = 2.0;      // of the tool radius: how far from the tip the patch extends
-constexpr double kGatherDear = 1.5;  // likewise, where each node more costs solves of the whole tissue
-constexpr double kMaxStrides = 256;
-// Likewise: how far it presses on in one step, where the tissue is known only near its shape of before.
+constexpr double kGatherDear = 1.5;  // the same where each node more costs solves of the whole tissue
+constexpr double kMaxIncrements = 256;
+// Of the tool radius: how far it presses on in one step, where the tissue is known only near its last shape.
 constexpr double kFarthestPress = 2.0;
-constexpr double kEscape = 3.0;  // of the tool radius: how far outside its free organ contact may go on
-// Contact linearisations a step may use, on the way and to settle with other tools, before it answers from
+constexpr double kFarthestDrag = 3.0;  // of the tool radius: how far outside its free organ contact may go on
+// Contact linearisations a step may use, on its path and to settle with other tools, before it answers from
 // where it got to.
 constexpr int kMaxIterations = 400, kMaxSettling = 400;
 constexpr double kFarthest = 1e3;   // m
 constexpr double kMaxPlaces = 64;   // on the axis of a tool that appears: whether they are inside
 constexpr double kNearPivot = 0.1;  // share of the shaft next to the pivot that hardly moves with the tip
-constexpr double kStill = 1e-8;     // of the tool radius: a surface that moved less did not move
-
-double largest_move(std::span<const Vec3> from, std::span<const Vec3> to) noexcept {
-  double largest = 0;
-  for (std::size_t i = 0; i < from.size(); ++i)
-    largest = std::max(largest, (to[i] - from[i]).cwiseAbs().maxCoeff());
-  return largest;
-}
 
 /// How much of the tool's axis can be near the organ, m.
 double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
@@ -58,65 +50,37 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
     : tool_(tool.shape),
       finder_(rest, touchable.empty() ? touchable : surface.triangles, touchable, kGather * tool.shape.radius,
               longest_axis(tool.shape, rest)),
-      solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0),
-      free_(rest) {
+      solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0) {
   if (tool.grasps()) grip_.emplace(tool, rest, touchable, finder_.max_nodes());
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   filled_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   displacement_.resize(3 * (finder_.max_nodes() + 1));
-  loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   kept_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   if (!has_friction()) return;
   surface_was_.assign(rest.begin(), rest.end());
   nodes_were_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
 }
 
-void ToolContact::reserve(std::size_t loads) {
-  loads_.reserve(loads);
-  pushed_.assign(free_.begin(), free_.end());
-}
-
-bool ToolContact::share(std::span<const ToolContact> tools, Tissue& tissue) noexcept {
-  const auto loaded = [&](const ToolContact& tool) { return &tool != this && !tool.own_loads().empty(); };
-  if (others_ == 0 && std::none_of(tools.begin(), tools.end(), loaded)) {
-    free_ = tissue.free;
-    return false;
-  }
-  loads_.erase(loads_.begin(), loads_.begin() + static_cast<long>(others_));
-  const std::size_t own = loads_.size();
-  for (const ToolContact& tool : tools) {
-    if (!loaded(tool)) continue;
-    const auto theirs = tool.own_loads();
-    loads_.insert(loads_.end(), theirs.begin(), theirs.end());
-  }
-  others_ = loads_.size() - own;
-  std::rotate(loads_.begin(), loads_.begin() + static_cast<long>(own), loads_.end());
-  tissue.positions = tissue.model->apply(std::span(loads_).first(others_));
-  const bool moved = largest_move(free_, tissue.positions) > kStill * tool_.radius;
-  if (moved || free_.data() != pushed_.data())
-    std::copy(tissue.positions.begin(), tissue.positions.end(), pushed_.begin());
-  free_ = pushed_;
-  if (own > 0) tissue.positions = tissue.model->apply(loads_);
-  return moved;
-}
-
-void ToolContact::walk(const ToolPose& pose, const Bend& path, Tissue& tissue) noexcept {
+void ToolContact::advance_to(const ToolPose& pose, const Bend& path, ToolTissue tissue) {
   bend_ = path;
-  if (grip_ && grip_->opens()) lift(tissue);
-  go(pose, tissue);
+  if (grip_ && grip_->opens()) {
+    release(tissue);
+    lift();
+  }
+  move_to(pose, tissue);
   bend_ = {};
   if (!grip_ || !grip_->closes() || !placed_ || !arrived_) return;
-  grip_->close(place_.p_W, tissue.positions);
-  if (holds()) pull(place_, tissue);
+  grip_->close(place_.p_W, tissue.positions());
+  if (holds()) solve_grasp(place_, tissue);
 }
 
 /// What it holds comes with it, straight to `pose`.
-void ToolContact::pull(const ToolPose& pose, Tissue& tissue) noexcept {
+void ToolContact::solve_grasp(const ToolPose& pose, ToolTissue tissue) {
   placed_ = arrived_ = true;
   place_ = pose;
   tip_offset_.setZero();
-  const Grip::Pull pull = grip_->pull(pose.p_W, tissue, loads_, others_);
-  if (!pull.force.allFinite()) return give_up(tissue);
+  const Grip::Pull pull = grip_->pull(pose.p_W, tissue);
+  if (!pull.force.allFinite()) return reject(tissue);
   force_ = {.force = pull.force,
             .tangent = pull.tangent,
             .contacts = pull.vertices,
@@ -124,55 +88,55 @@ void ToolContact::pull(const ToolPose& pose, Tissue& tissue) noexcept {
             .flagged = !pull.converged};
 }
 
-void ToolContact::go(const ToolPose& pose, Tissue& tissue) noexcept {
+void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
   if (!pose.p_W.allFinite() || pose.p_W.cwiseAbs().maxCoeff() > kFarthest || !pose.q_W.coeffs().allFinite())
-    return give_up(tissue);
-  if (holds()) return pull(pose, tissue);
-  const bool anew =
-      !placed_ || (pose.p_W - place_.p_W).norm() > kMaxStrides * kStride * tool_.radius || escaped(pose);
+    return reject(tissue);
+  if (holds()) return solve_grasp(pose, tissue);
+  const bool anew = !placed_ || (pose.p_W - place_.p_W).norm() > kMaxIncrements * kIncrement * tool_.radius ||
+                    escaped(pose, tissue);
   if (anew || !arrived_) bend_ = {};
-  if (anew) enter(pose, tissue);
-  const Vec3 way = pose.p_W - place_.p_W;
+  if (anew) place_outside(pose, tissue);
+  const Vec3 motion = pose.p_W - place_.p_W;
   const ToolPose from = place_;
-  const double strides = strides_to(pose);
-  const bool anywhere = tissue.model->compliance_is_constant();
-  const double stride = way.norm() / strides / tool_.radius;
+  const double increments = increments_to(pose);
+  const bool anywhere = tissue.model().compliance_is_constant();
+  const double increment = motion.norm() / increments / tool_.radius;
   ContactForce contact;
   int iterations = 0;
   double pressed = 0;  // of the tool radius, in contact
-  for (double i = 1; i <= strides && iterations < kMaxIterations; ++i) {
+  for (double i = 1; i <= increments && iterations < kMaxIterations; ++i) {
     if (pressed > kFarthestPress && !anywhere) break;
-    start_stride(i == 1, tissue);
-    const double share = i / strides;
-    place_ = i == strides
-                 ? pose
-                 : ToolPose(from.p_W + share * way + aside(share, way), from.q_W.slerp(share, pose.q_W));
+    start_increment(i == 1, tissue);
+    const double share = i / increments;
+    place_ = i == increments ? pose
+                             : ToolPose(from.p_W + share * motion + path_offset(share, motion),
+                                        from.q_W.slerp(share, pose.q_W));
     const bool touched = pressed > 0 || force_.contacts > 0;
-    contact = touch(tissue);
+    contact = solve_contact(tissue);
     iterations += contact.iterations;
-    if (contact.contacts > 0) pressed += stride;
-    if (contact.contacts == 0 && touched && fell_in(tissue)) break;
+    if (contact.contacts > 0) pressed += increment;
+    if (contact.contacts == 0 && touched && recover_from_inside(tissue)) break;
   }
   // Else the next step goes on from here.
   arrived_ = place_.p_W == pose.p_W && place_.q_W.coeffs() == pose.q_W.coeffs();
-  conclude(contact, iterations, tissue);
+  set_force(contact, iterations, tissue);
 }
 
-double ToolContact::strides_to(const ToolPose& pose) const noexcept {
+double ToolContact::increments_to(const ToolPose& pose) const noexcept {
   // A far end goes around the tip on an arc, which is longer than its chord.
   const double turn = tool_.length > 0 ? tool_.length * place_.q_W.angularDistance(pose.q_W) : 0;
-  const double way = (pose.p_W - place_.p_W).norm() + turn;
-  const double strides = std::clamp(std::ceil(way / (kStride * tool_.radius)), 1.0, kMaxStrides);
-  if (!has_friction()) return strides;
-  const double wanted = std::ceil(way / (kFrictionStride * tool_.radius));
-  return std::max(strides, std::min(wanted, kFrictionStrides));
+  const double motion = (pose.p_W - place_.p_W).norm() + turn;
+  const double increments = std::clamp(std::ceil(motion / (kIncrement * tool_.radius)), 1.0, kMaxIncrements);
+  if (!has_friction()) return increments;
+  const double wanted = std::ceil(motion / (kFrictionIncrement * tool_.radius));
+  return std::max(increments, std::min(wanted, kFrictionIncrements));
 }
 
-/// At a share of the way: how far the cubic through both poses and velocities is from the line (Hermite).
-/// Never farther than a quarter of the way, or of a stride without friction, whatever the velocities.
-Vec3 ToolContact::aside(double share, const Vec3& way) const noexcept {
+/// At a share of the path: how far the cubic through both poses and velocities is from the line (Hermite).
+/// Never farther than a quarter of it, or of a increment without friction, whatever the velocities.
+Vec3 ToolContact::path_offset(double share, const Vec3& motion) const noexcept {
   if (!has_friction()) return Vec3::Zero();
-  const double most = std::min(way.norm(), kStride * tool_.radius);
+  const double most = std::min(motion.norm(), kIncrement * tool_.radius);
   const auto bounded = [most](const Vec3& bend) -> Vec3 {
     const double size = bend.norm();
     if (!std::isfinite(size)) return Vec3::Zero();
@@ -181,16 +145,12 @@ Vec3 ToolContact::aside(double share, const Vec3& way) const noexcept {
   return share * (1 - share) * ((1 - share) * bounded(bend_.begin) - share * bounded(bend_.end));
 }
 
-void ToolContact::carry(const Vec3& way, Tissue& tissue) noexcept {
-  if (placed_) place_.p_W += way;
-  tissue.positions = tissue.model->apply(loads_);
-}
-
-Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue) const noexcept {
+Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue,
+                                   std::span<const NodalLoad> loads) const noexcept {
   if (tissue.velocities.empty()) return Vec3::Zero();
   Vec3 sum = Vec3::Zero();
   double weights = 0;
-  for (const NodalLoad& load : own_loads()) {
+  for (const NodalLoad& load : loads) {
     const double weight = load.force.norm();
     sum += weight * tissue.velocities[load.vertex];
     weights += weight;
@@ -199,21 +159,21 @@ Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue) const 
   return finder_.foot(tissue.positions, p_W).of(tissue.velocities);
 }
 
-void ToolContact::settle(Tissue& tissue) noexcept {
-  if (holds()) return pull(place_, tissue);
-  ContactForce contact = touch(tissue);
-  const bool may_be_in =
-      force_.contacts > 0 && (contact.contacts == 0 || !tissue.model->compliance_is_constant());
+void ToolContact::settle(ToolTissue tissue) {
+  if (holds()) return solve_grasp(place_, tissue);
+  ContactForce contact = solve_contact(tissue);
+  const bool may_be_inside =
+      force_.contacts > 0 && (contact.contacts == 0 || !tissue.model().compliance_is_constant());
   const int iterations = force_.iterations + contact.iterations;
-  if (may_be_in && fell_in(tissue)) {
+  if (may_be_inside && recover_from_inside(tissue)) {
     arrived_ = false;
     contact = {};
   }
-  conclude(contact, iterations, tissue);
+  set_force(contact, iterations, tissue);
 }
 
-void ToolContact::conclude(const ContactForce& contact, int iterations, Tissue& tissue) noexcept {
-  if (!contact.force.allFinite()) return give_up(tissue);
+void ToolContact::set_force(const ContactForce& contact, int iterations, ToolTissue tissue) {
+  if (!contact.force.allFinite()) return reject(tissue);
   force_ = {.force = contact.force,
             .torque = contact.torque,
             .contacts = contact.contacts,
@@ -229,13 +189,13 @@ bool ToolContact::exhausted() const {
   return force_.iterations >= kMaxIterations + kMaxSettling;
 }
 
-ToolForce ToolContact::probe(const Vec3& p_W, Tissue& tissue) noexcept {
+ToolForce ToolContact::probe(const Vec3& p_W, ToolTissue tissue) {
   const ToolForce force = force_;
   const Vec3 tip_offset = tip_offset_;
   const ToolPose place = place_;
   const bool placed = placed_, arrived = arrived_;
-  kept_.assign(own_loads().begin(), own_loads().end());
-  go({p_W, place_.q_W}, tissue);
+  kept_.assign(tissue.loads().begin(), tissue.loads().end());
+  move_to({p_W, place_.q_W}, tissue);
   differentiate();
   const ToolForce there = force_;
   force_ = force;
@@ -243,17 +203,16 @@ ToolForce ToolContact::probe(const Vec3& p_W, Tissue& tissue) noexcept {
   tip_offset_ = tip_offset;
   placed_ = placed;
   arrived_ = arrived;
-  drop_own_loads();
-  loads_.insert(loads_.end(), kept_.begin(), kept_.end());
-  tissue.positions = tissue.model->apply(loads_);
+  tissue.set_loads(kept_);
+  tissue.press();
   return there;
 }
 
 SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const noexcept {
-  const Vec3 way = p_W - finder_.nearest(tissue.positions, p_W);
-  const double distance = way.norm();
+  const Vec3 offset = p_W - finder_.nearest(tissue.positions, p_W);
+  const double distance = offset.norm();
   if (!(distance > 0)) return {};
-  const SurfacePlane tip{way / distance, std::max(distance - tool_.radius, 0.0)};
+  const SurfacePlane tip{offset / distance, std::max(distance - tool_.radius, 0.0)};
   if (tool_.is_sphere()) return tip;
   const Vec3 far = far_end(tool_, {p_W, place_.q_W});
   const NearestOnSegment axis = finder_.nearest(tissue.positions, p_W, far);
@@ -268,13 +227,14 @@ SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const n
 }
 
 /// No answer: the tool is taken away, and enters afresh with the next step.
-void ToolContact::give_up(Tissue& tissue) noexcept {
-  lift(tissue);
+void ToolContact::reject(ToolTissue tissue) {
+  release(tissue);
+  lift();
   flag();
 }
 
-void ToolContact::lift(Tissue& tissue) noexcept {
-  release(tissue);
+void ToolContact::lift() noexcept {
+  tip_offset_.setZero();
   placed_ = false;
   force_ = {};
   if (grip_) grip_->open();
@@ -282,17 +242,17 @@ void ToolContact::lift(Tissue& tissue) noexcept {
 
 /// Whether a tool in contact has left the free organ so far behind that it only drags the surface along with
 /// it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
-bool ToolContact::escaped(const ToolPose& pose) const noexcept {
+bool ToolContact::escaped(const ToolPose& pose, const ToolTissue& tissue) const noexcept {
   if (force_.contacts == 0) return false;
   const Vec3 &p = pose.p_W, far = far_end(tool_, pose);
-  const double distance =
-      tool_.is_sphere() ? (finder_.nearest(free_, p) - p).norm() : finder_.nearest(free_, p, far).distance;
-  return distance > kEscape * tool_.radius && !finder_.inside(free_, p);
+  const double distance = tool_.is_sphere() ? (finder_.nearest(tissue.free(), p) - p).norm()
+                                            : finder_.nearest(tissue.free(), p, far).distance;
+  return distance > kFarthestDrag * tool_.radius && !finder_.inside(tissue.free(), p);
 }
 
 /// The tool appears at `pose`. If part of its axis is inside the organ, it is taken to have come in through
 /// the surface nearest to the deepest place of the axis, as it is turned now.
-void ToolContact::enter(const ToolPose& pose, Tissue& tissue) noexcept {
+void ToolContact::place_outside(const ToolPose& pose, ToolTissue tissue) {
   release(tissue);
   placed_ = true;
   place_ = pose;
@@ -302,86 +262,83 @@ void ToolContact::enter(const ToolPose& pose, Tissue& tissue) noexcept {
   for (double i = 0; i <= pieces; ++i) {
     const double share = pieces > 0 ? i / pieces : 0;
     const Vec3 x = pose.p_W + share * axis;
-    if ((tool_.trocar && 1 - share < kNearPivot) || !finder_.inside(tissue.positions, x)) continue;
-    const Vec3 door = finder_.nearest(tissue.positions, x);
-    if ((door - x).norm() <= deepest) continue;
-    deepest = (door - x).norm();
-    place_.p_W = place_before(pose, x, share, door);
+    if ((tool_.trocar && 1 - share < kNearPivot) || !finder_.inside(tissue.positions(), x)) continue;
+    const Vec3 entry = finder_.nearest(tissue.positions(), x);
+    if ((entry - x).norm() <= deepest) continue;
+    deepest = (entry - x).norm();
+    place_.p_W = place_at_entry(pose, x, share, entry);
   }
 }
 
 /// Whether the tissue has closed over a tool that touched it, as after a change of shape beyond what its
 /// compliance foretold. Then the tool stands before the surface again, without a load, and has not arrived.
-bool ToolContact::fell_in(Tissue& tissue) noexcept {
+bool ToolContact::recover_from_inside(ToolTissue tissue) {
   const ToolPose there = place_;
-  if (!finder_.inside(tissue.positions, there.p_W + tip_offset_)) return false;
-  enter(there, tissue);
+  if (!finder_.inside(tissue.positions(), there.p_W + tip_offset_)) return false;
+  place_outside(there, tissue);
   return place_.p_W != there.p_W;
 }
 
-/// Where the tip was when the place `inside` on the axis, at that share of it, stood before `door`.
-Vec3 ToolContact::place_before(const ToolPose& pose, const Vec3& inside, double share,
-                               const Vec3& door) const noexcept {
-  const Vec3 outward = (door - inside).normalized();
-  const Vec3 outside = door + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
+/// Where the tip was when the place `inside` on the axis, at that share of it, stood before `entry`.
+Vec3 ToolContact::place_at_entry(const ToolPose& pose, const Vec3& inside, double share,
+                                 const Vec3& entry) const noexcept {
+  const Vec3 outward = (entry - inside).normalized();
+  const Vec3 outside = entry + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
   if (tool_.trocar && share > 0)
     return tool_.trocar->pivot_W + (outside - tool_.trocar->pivot_W) / (1 - share);
   return outside + (pose.p_W - inside);
 }
 
-void ToolContact::start_stride(bool first, const Tissue& tissue) noexcept {
+void ToolContact::start_increment(bool first, const ToolTissue& tissue) {
   if (!has_friction()) return;
   tip_was_ = {place_.p_W + tip_offset_, place_.q_W};
-  stride_from_ = tissue.before;
+  increment_from_ = tissue.before();
   if (first) return;
-  std::copy(tissue.positions.begin(), tissue.positions.end(), surface_was_.begin());
-  stride_from_ = surface_was_;
+  std::copy(tissue.positions().begin(), tissue.positions().end(), surface_was_.begin());
+  increment_from_ = surface_was_;
 }
 
-ContactForce ToolContact::touch(Tissue& tissue) noexcept {
+ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   const ToolPose tip(place_.p_W + tip_offset_, place_.q_W);
-  const double reach = (tissue.model->compliance_is_constant() ? kGather : kGatherDear) * tool_.radius;
-  finder_.gather(tissue.positions, free_, tip.p_W, far_end(tool_, tip), reach, patch_);
+  const double reach = (tissue.model().compliance_is_constant() ? kGather : kGatherDear) * tool_.radius;
+  finder_.gather(tissue.positions(), tissue.free(), tip.p_W, far_end(tool_, tip), reach, patch_);
   if (patch_.triangles.empty()) {
     release(tissue);
     return {};
   }
   const std::span<const int> vertices = finder_.vertices();
-  if (!tissue.model->compliance_is_constant() || !std::ranges::equal(vertices, filled_)) {
-    tissue.model->compliance(vertices, patch_);
+  if (!tissue.model().compliance_is_constant() || !std::ranges::equal(vertices, filled_)) {
+    tissue.model().compliance(vertices, patch_);
     filled_.assign(vertices.begin(), vertices.end());
   }
   const int m = patch_.nodes();
   auto u = displacement_.head(3 * (m + 1));
-  for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = tissue.positions[vertices[i]] - patch_.free[i];
+  for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = tissue.positions()[vertices[i]] - patch_.free[i];
   u.tail<3>() = tip_offset_;
   nodes_were_.clear();
   if (has_friction()) {
-    for (const int vertex : vertices) nodes_were_.push_back(stride_from_[vertex]);
+    for (const int vertex : vertices) nodes_were_.push_back(increment_from_[vertex]);
   }
   const ContactForce contact =
       solver_.solve(patch_, tool_, place_, u, {nodes_were_, tip_was_.p_W, tip_was_.q_W});
   tip_offset_ = u.tail<3>();
-  drop_own_loads();
+  tissue.drop_loads();
   const auto forces = solver_.node_forces();
   for (int i = 0; i < m; ++i) {
-    if (!forces.segment<3>(3 * i).isZero(0)) loads_.push_back({vertices[i], forces.segment<3>(3 * i)});
+    if (!forces.segment<3>(3 * i).isZero(0)) tissue.add_load({vertices[i], forces.segment<3>(3 * i)});
   }
-  tissue.positions = tissue.model->apply(loads_);
+  tissue.press();
   return contact;
 }
 
-void ToolContact::release(Tissue& tissue) noexcept {
+void ToolContact::release(ToolTissue tissue) {
   tip_offset_.setZero();
-  if (!own_loads().empty()) {
-    drop_own_loads();
-    tissue.positions = tissue.model->apply(loads_);
-  }
+  tissue.release();
 }
 
 std::size_t ToolContact::bytes() const {
   return solver_.bytes() + static_cast<std::size_t>(patch_.compliance.size()) * sizeof(double) +
-         (pushed_.size() + surface_was_.size()) * sizeof(Vec3) + (grip_ ? grip_->bytes() : 0);
+         surface_was_.size() * sizeof(Vec3) + (grip_ ? grip_->bytes() : 0);
 }
 
 }  // namespace palpate::sim

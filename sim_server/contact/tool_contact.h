@@ -14,10 +14,10 @@ struct ToolForce {
   int contacts = 0;    ///< touching faces, edges and vertices; or vertices that it grasps
   int iterations = 0;  ///< contact linearisations, all sub-places together
   /// No settled answer: a wild position (then there is no force), contact that did not converge, several
-  /// tools that did not come to an equilibrium, tissue that found no balance or closed over the tool, a way
-  /// too long for one step (then the force belongs to the place the tool got to), or an organ that ran away:
-  /// some of its surface at no finite place, or, though held, three times its size from rest (then the force
-  /// is half that of the step before).
+  /// tools that did not come to an equilibrium, tissue that found no balance or closed over the tool, a
+  /// motion too long for one step (then the force belongs to the place the tool got to), or an organ that ran
+  /// away: some of its surface at no finite place, or, though held, three times its size from rest (then the
+  /// force is half that of the step before).
   bool flagged = false;
 };
 
@@ -27,7 +27,7 @@ struct SurfacePlane {
   double gap = 0;                ///< how far the tip can go against the normal, m; 0 where the tool touches
 };
 
-/// How the way of a tool from one pose to the next departs from a straight line: how much farther it would
+/// How the path of a tool from one pose to the next departs from a straight line: how much farther it would
 /// have come at the velocity that it had at the beginning, and at the end, m.
 struct Bend {
   Vec3 begin = Vec3::Zero(), end = Vec3::Zero();
@@ -37,44 +37,38 @@ struct Bend {
 std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
                                           const ToolSettings& tool);
 
-/// One tool and its contact with the tissue: where it is, what it feels, how it loads the surface. What is
-/// free to it is the tissue under the loads of all other tools. Only set-up allocates, nothing throws. One
-/// thread.
+/// One tool and its contact with the tissue: where it is, what it feels, how it loads the surface. Only
+/// set-up allocates; what the model throws passes through. One thread.
 class ToolContact {
  public:
   /// `rest`: surface vertices at rest.
   ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
               std::vector<Triangle> touchable);
 
-  /// For a tool that is not alone: makes room for the loads of all tools. Set-up only.
-  void reserve(std::size_t loads);
-
-  /// Takes over the loads that the other ones of `tools` put on the tissue by now; before anything below.
-  /// Returns whether that moved what is free to this tool by more than 1e-8 of its radius. Two `apply` of the
-  /// model, and none while the others load nothing.
-  bool share(std::span<const ToolContact> tools, Tissue& tissue) noexcept;
-
-  /// What of the device's buttons is pressed, also while the tool is lifted: the next `walk` grasps, or lets
-  /// go.
+  /// What of the device's buttons is pressed, also while the tool is lifted: the next `advance_to` grasps, or
+  /// lets go.
   void press(std::uint16_t buttons) noexcept {
     if (grip_) grip_->press(buttons);
   }
-  /// Goes to `pose` on a straight line (with friction: as `path` says), turning evenly, in strides on which
-  /// no point of its axis goes farther than half its radius, so that a fast tool does not jump through the
-  /// surface; shorter ones with friction, which follows the path. Slip is measured from where the tissue
-  /// really was: at the end of the last step, then of each stride.
-  void walk(const ToolPose& pose, const Bend& path, Tissue& tissue) noexcept;
-  /// The organ has moved under it: the tool goes along by `way` (m) with its loads, so that it stands on the
-  /// surface as before.
-  void carry(const Vec3& way, Tissue& tissue) noexcept;
-  /// How fast the organ's surface moves by itself where the tool touches (the mean by force), or else at the
-  /// point nearest to `p_W`; m/s, world.
-  Vec3 surface_velocity(const Vec3& p_W, const Tissue& tissue) const noexcept;
-  /// Solves its last stride again, on the surface as it is free by now.
-  void settle(Tissue& tissue) noexcept;
+  /// Goes to `pose` on a straight line (with friction: as `path` says), turning evenly, in increments on
+  /// which no point of its axis goes farther than half its radius, so that a fast tool does not jump through
+  /// the surface; shorter ones with friction, which follows the path. Slip is measured from where the tissue
+  /// really was: at the end of the last step, then of each increment.
+  void advance_to(const ToolPose& pose, const Bend& path, ToolTissue tissue);
+  /// The organ has moved under it: the tool goes along by `motion` (m), so that it stands on the surface as
+  /// before.
+  void carry(const Vec3& motion) noexcept {
+    if (placed_) place_.p_W += motion;
+  }
+  /// How fast the organ's surface moves by itself where the tool touches, with these loads (the mean by
+  /// force), or else at the point nearest to `p_W`; m/s, world.
+  Vec3 surface_velocity(const Vec3& p_W, const Tissue& tissue,
+                        std::span<const NodalLoad> loads) const noexcept;
+  /// Solves its last increment again, on the surface as it is free by now.
+  void settle(ToolTissue tissue);
   /// What it would feel at `p_W` (m), turned as it is; then it stands where it stood, and nothing has
   /// changed, bit by bit.
-  ToolForce probe(const Vec3& p_W, Tissue& tissue) noexcept;
+  ToolForce probe(const Vec3& p_W, ToolTissue tissue);
   /// The surface nearest to a tool, all of it, with its tip at `p_W` outside the tissue, as it is now.
   /// O(vertices).
   SurfacePlane nearest(const Vec3& p_W, const Tissue& tissue) const noexcept;
@@ -82,8 +76,8 @@ class ToolContact {
   int nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept {
     return finder_.nearest_vertex(tissue.positions, p_W);
   }
-  /// Away from the tissue: no loads, no force.
-  void lift(Tissue& tissue) noexcept;
+  /// Away from the tissue, on which it has no load any more: no force.
+  void lift() noexcept;
   /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.
   void differentiate() noexcept;
   /// Says that `force` is not settled.
@@ -99,28 +93,25 @@ class ToolContact {
   double radius() const { return tool_.radius; }
   const Tool& shape() const { return tool_; }
   std::span<const Triangle> touchable() const { return finder_.touchable(); }
-  /// Surface vertices without this tool, after `share`, m.
-  std::span<const Vec3> free() const { return free_; }
   bool has_friction() const { return tool_.friction > 0; }
   int max_nodes() const { return finder_.max_nodes(); }
   std::size_t bytes() const;
 
  private:
-  void go(const ToolPose& pose, Tissue& tissue) noexcept;
-  void pull(const ToolPose& pose, Tissue& tissue) noexcept;
-  void give_up(Tissue& tissue) noexcept;
-  bool escaped(const ToolPose& pose) const noexcept;
-  void enter(const ToolPose& pose, Tissue& tissue) noexcept;
-  bool fell_in(Tissue& tissue) noexcept;
-  void start_stride(bool first, const Tissue& tissue) noexcept;
-  Vec3 place_before(const ToolPose& pose, const Vec3& inside, double share, const Vec3& door) const noexcept;
-  double strides_to(const ToolPose& pose) const noexcept;
-  Vec3 aside(double share, const Vec3& way) const noexcept;
-  ContactForce touch(Tissue& tissue) noexcept;
-  void release(Tissue& tissue) noexcept;
-  void conclude(const ContactForce& contact, int iterations, Tissue& tissue) noexcept;
-  std::span<const NodalLoad> own_loads() const { return std::span(loads_).subspan(others_); }
-  void drop_own_loads() noexcept { loads_.erase(loads_.begin() + static_cast<long>(others_), loads_.end()); }
+  void move_to(const ToolPose& pose, ToolTissue tissue);
+  void solve_grasp(const ToolPose& pose, ToolTissue tissue);
+  void reject(ToolTissue tissue);
+  bool escaped(const ToolPose& pose, const ToolTissue& tissue) const noexcept;
+  void place_outside(const ToolPose& pose, ToolTissue tissue);
+  bool recover_from_inside(ToolTissue tissue);
+  void start_increment(bool first, const ToolTissue& tissue);
+  Vec3 place_at_entry(const ToolPose& pose, const Vec3& inside, double share,
+                      const Vec3& entry) const noexcept;
+  double increments_to(const ToolPose& pose) const noexcept;
+  Vec3 path_offset(double share, const Vec3& motion) const noexcept;
+  ContactForce solve_contact(ToolTissue tissue);
+  void release(ToolTissue tissue);
+  void set_force(const ContactForce& contact, int iterations, ToolTissue tissue);
 
   Tool tool_;
   ContactFinder finder_;
@@ -128,16 +119,12 @@ class ToolContact {
   ContactPatch patch_;
   std::vector<int> filled_;         // surface vertices whose compliance the patch holds
   std::optional<Grip> grip_;        // for a tool that grasps
-  std::span<const Vec3> free_;      // the tissue's, or pushed_
-  std::vector<Vec3> pushed_;        // free under the loads of the other tools; empty where there are none
-  std::vector<NodalLoad> loads_;    // of the other tools, then its own
-  std::size_t others_ = 0;          // how many of them are the others'
   std::vector<NodalLoad> kept_;     // its own, while it probes
   Eigen::VectorXd displacement_;    // of the patch nodes, then of the tip
   ToolPose place_;                  // of the last step
   Vec3 tip_offset_ = Vec3::Zero();  // where the tip is, minus place_
-  // Where the last stride began; only with friction: the tissue's `before`, or surface_was_, and the tip.
-  std::span<const Vec3> stride_from_;
+  // Where the last increment began; only with friction: the tissue's `before`, or surface_was_, and the tip.
+  std::span<const Vec3> increment_from_;
   std::vector<Vec3> surface_was_, nodes_were_;
   ToolPose tip_was_;
   Bend bend_;

@@ -33,18 +33,20 @@ struct MemoryPart {
 
 /// A tissue. Every model answers the same questions (where would you go, how compliant are you, here are the
 /// loads: move), so that one contact solver serves them all. Vertices are those of the surface (`Surface`),
-/// positions in m in the world frame. One thread; no answer allocates or throws.
+/// positions in m in the world frame. One thread. Answers of the models that are computed beforehand neither
+/// allocate nor throw; one that solves in each step (`Implicit`) allocates, may start threads, and throws
+/// what those do (`std::bad_alloc`), which `Simulation::step` catches.
 class DeformationModel {
  public:
   virtual ~DeformationModel() = default;
 
   /// Where would you go freely in `dt` (s), without any contact?
-  virtual FreeMotion free_motion(double dt) noexcept = 0;
+  virtual FreeMotion free_motion(double dt) = 0;
 
   /// How compliant are you at these vertices? Fills the leading (3m x 3m) of `patch.compliance` (m/N:
   /// displacement at the end of the step per force held over it; symmetric, positive semi-definite) and
   /// `patch.tool_compliance`.
-  virtual void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept = 0;
+  virtual void compliance(std::span<const int> vertices, ContactPatch& patch) const = 0;
 
   /// Whether `compliance` always gives the same, whatever was done before; then any thread may ask for it at
   /// any time, into a patch of its own.
@@ -52,11 +54,11 @@ class DeformationModel {
 
   /// Here are the loads: move. Positions (n) under them, valid until the next call. Replaces the loads
   /// before.
-  virtual std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept = 0;
+  virtual std::span<const Vec3> apply(std::span<const NodalLoad> loads) = 0;
 
   /// Looks again at where the loads of the last `apply` led: where a linearisation about that place would say
   /// something else, the free motion of that, under the same loads; nothing where all is said.
-  virtual std::optional<FreeMotion> relinearise() noexcept { return {}; }
+  virtual std::optional<FreeMotion> relinearise() { return {}; }
 
   /// Whether the last step came to balance: false where it is an answer held for want of a better one.
   virtual bool balanced() const noexcept { return true; }

@@ -38,7 +38,7 @@ const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"implicit\" needs a [material] section", scene.source);
   step_period(scene);  // before any work
-  inputs.progress("assembling the stiffness matrix", 0);
+  inputs.progress(name_of(Stage::kStiffness), 0);
   return *scene.material;
 }
 
@@ -104,7 +104,7 @@ Implicit::Implicit(const ModelInputs& inputs)
       slot_(node_.size(), -1),
       asked_(node_.size()) {
   begin(inputs);
-  inputs.progress("factoring the stiffness matrix", 0);
+  inputs.progress(name_of(Stage::kFactor), 0);
   for (const int node : node_) {
     dof_.push_back(dynamics_.dofs().first[node]);
     rest_.push_back(dynamics_.position()[node]);
@@ -121,7 +121,7 @@ Implicit::Implicit(const ModelInputs& inputs)
   held_compliance_ = 1 / dynamics_.matrix().largest_diagonal();
   update_surface();
   if (supports_ || inputs.scene.flies()) free_ = positions_ = rest_;
-  inputs.progress("factoring the stiffness matrix", 1);
+  inputs.progress(name_of(Stage::kFactor), 1);
 }
 
 /// Where the body is at time 0, and how fast it goes.
@@ -131,7 +131,7 @@ void Implicit::begin(const ModelInputs& inputs) {
       support_responses(inputs, solid_, dynamics_.dofs(), flexibility, Following::kSwinging);
   if (!responses.empty()) supports_.emplace(inputs, responses);
   if (inputs.scene.flies() || (inputs.scene.loads.empty() && !supports_)) return;
-  inputs.progress("finding the shape under its loads", 0);
+  inputs.progress(name_of(Stage::kLoadedShape), 0);
   const StaticLoad load{
       .forces = [this](std::span<const Vec3> x, std::span<Vec3> f) { scene_loads_.add_forces(x, f); },
       .held = scene_loads_.held(),
@@ -141,7 +141,7 @@ void Implicit::begin(const ModelInputs& inputs) {
   dynamics_.set_state(find_equilibrium(solid_, load, inputs.scene.source).x, v);
 }
 
-FreeMotion Implicit::free_motion(double dt) noexcept {
+FreeMotion Implicit::free_motion(double dt) {
   if (dt > 0) {
     if (in_step_) {
       apply_new_loads();
@@ -165,12 +165,12 @@ FreeMotion Implicit::free_motion(double dt) noexcept {
   return motion();
 }
 
-FreeMotion Implicit::motion() const noexcept {
+FreeMotion Implicit::motion() const {
   return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>(), positions_};
 }
 
 /// Moves all of the body by what the linearisation foretells of the loads that are new to it.
-void Implicit::apply_new_loads() noexcept {
+void Implicit::apply_new_loads() {
   if (loads_ == linearised_loads_) return;
   Eigen::VectorXd change = Eigen::VectorXd::Zero(dynamics_.dofs().count);
   add_response(loads_, 1, change);
@@ -180,8 +180,7 @@ void Implicit::apply_new_loads() noexcept {
 }
 
 /// Adds the displacement (m, by unknowns) that loads cause by the linearisation, times `sign`.
-void Implicit::add_response(std::span<const NodalLoad> loads, double sign,
-                            Eigen::VectorXd& moved) const noexcept {
+void Implicit::add_response(std::span<const NodalLoad> loads, double sign, Eigen::VectorXd& moved) const {
   std::vector<int> vertices;
   for (const NodalLoad& load : loads) vertices.push_back(load.vertex);
   find_columns(vertices);
@@ -190,7 +189,7 @@ void Implicit::add_response(std::span<const NodalLoad> loads, double sign,
   }
 }
 
-std::optional<FreeMotion> Implicit::relinearise() noexcept {
+std::optional<FreeMotion> Implicit::relinearise() {
   if (law_is_linear() || ++iterations_ > max_newton_) return {};
   apply_new_loads();
   if (!relinearised_) dynamics_.loads_changed();
@@ -206,7 +205,7 @@ bool Implicit::balanced() const noexcept {
 
 /// After each iteration: the surface at the trial point, and without the loads that the linearisation was
 /// made under. Drops the columns of another factor.
-void Implicit::update_surface() noexcept {
+void Implicit::update_surface() {
   if (factors_ != dynamics_.factors()) {
     factors_ = dynamics_.factors();
     replace_columns();
@@ -216,7 +215,7 @@ void Implicit::update_surface() noexcept {
 }
 
 /// Of the scene and of the tools, at the trial point (nodes, N).
-std::span<const Vec3> Implicit::external_forces() noexcept {
+std::span<const Vec3> Implicit::external_forces() {
   std::fill(external_.begin(), external_.end(), Vec3::Zero());
   scene_loads_.add_forces(dynamics_.position(), external_);
   for (const NodalLoad& load : linearised_loads_) external_[node_[load.vertex]] += load.force;
@@ -225,7 +224,7 @@ std::span<const Vec3> Implicit::external_forces() noexcept {
 
 /// Has the next factor of the background come with the columns asked for since the last one, and with those
 /// around them, which a tool that slides will need.
-void Implicit::request_columns() noexcept {
+void Implicit::request_columns() {
   std::vector<std::uint8_t> near = asked_;
   for (const Triangle& t : triangles_) {
     if ((asked_[t[0]] | asked_[t[1]] | asked_[t[2]]) != 0) near[t[0]] = near[t[1]] = near[t[2]] = 1;
@@ -238,14 +237,14 @@ void Implicit::request_columns() noexcept {
 }
 
 /// Frees the memory of all columns; those that are asked for again are solved for again.
-void Implicit::clear_columns() noexcept {
+void Implicit::clear_columns() {
   std::fill(slot_.begin(), slot_.end(), -1);
   slots_ = 0;
   columns_.resize(0, 0);
 }
 
 /// Drops the columns of the last factor for those that came with the new one, if any did.
-void Implicit::replace_columns() noexcept {
+void Implicit::replace_columns() {
   std::fill(slot_.begin(), slot_.end(), -1);
   std::fill(asked_.begin(), asked_.end(), std::uint8_t{0});
   slots_ = 0;
@@ -255,7 +254,7 @@ void Implicit::replace_columns() noexcept {
   if (!ready.first.empty()) keep_columns(ready.values);
 }
 
-void Implicit::find_columns(std::span<const int> vertices) const noexcept {
+void Implicit::find_columns(std::span<const int> vertices) const {
   std::vector<int> missing;
   for (const int v : vertices) {
     asked_[v] = 1;
@@ -266,7 +265,7 @@ void Implicit::find_columns(std::span<const int> vertices) const noexcept {
   if (!missing.empty()) keep_columns(dynamics_.matrix().columns(missing, tolerance_));
 }
 
-void Implicit::keep_columns(const Eigen::MatrixXd& columns) const noexcept {
+void Implicit::keep_columns(const Eigen::MatrixXd& columns) const {
   const Eigen::Index before = 3 * slots_;
   if (columns_.cols() < before + columns.cols())
     columns_.conservativeResize(dynamics_.dofs().count, 2 * (before + columns.cols()));
@@ -274,7 +273,7 @@ void Implicit::keep_columns(const Eigen::MatrixXd& columns) const noexcept {
   slots_ += static_cast<int>(columns.cols() / 3);
 }
 
-void Implicit::compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
+void Implicit::compliance(std::span<const int> vertices, ContactPatch& patch) const {
   patch.tool_compliance = 0;
   find_columns(vertices);
   const auto m = static_cast<Eigen::Index>(vertices.size());
@@ -294,8 +293,7 @@ void Implicit::compliance(std::span<const int> vertices, ContactPatch& patch) co
 }
 
 /// Moves `positions` (surface vertices, m) by the displacement that loads cause, times `sign`.
-void Implicit::press(std::span<const NodalLoad> loads, double sign,
-                     std::span<Vec3> positions) const noexcept {
+void Implicit::press(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const {
   if (loads.empty()) return;
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(dynamics_.dofs().count);
   add_response(loads, sign, moved);
@@ -307,7 +305,7 @@ void Implicit::press(std::span<const NodalLoad> loads, double sign,
   }
 }
 
-std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) noexcept {
+std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) {
   loads_.assign(loads.begin(), loads.end());
   std::copy(free_.begin(), free_.end(), positions_.begin());
   press(loads_, 1, positions_);

@@ -47,11 +47,11 @@ class Implicit : public DeformationModel {
   /// Before anything is allocated.
   static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   /// Any `dt` > 0 is taken for one period.
-  FreeMotion free_motion(double dt) noexcept override;
-  void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  FreeMotion free_motion(double dt) override;
+  void compliance(std::span<const int> vertices, ContactPatch& patch) const override;
   bool compliance_is_constant() const noexcept override { return false; }
-  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
-  std::optional<FreeMotion> relinearise() noexcept override;
+  std::span<const Vec3> apply(std::span<const NodalLoad> loads) override;
+  std::optional<FreeMotion> relinearise() override;
   /// Whether the last iteration found a relative residual of at most 5 %, and no element inverted for good
   /// (`Dynamics::inside_out`).
   bool balanced() const noexcept override;
@@ -59,17 +59,17 @@ class Implicit : public DeformationModel {
 
  private:
   void begin(const ModelInputs& inputs);
-  void apply_new_loads() noexcept;
-  FreeMotion motion() const noexcept;
-  void update_surface() noexcept;
-  void request_columns() noexcept;
-  void replace_columns() noexcept;
-  void clear_columns() noexcept;
-  void find_columns(std::span<const int> vertices) const noexcept;
-  void keep_columns(const Eigen::MatrixXd& columns) const noexcept;
-  void add_response(std::span<const NodalLoad> loads, double sign, Eigen::VectorXd& moved) const noexcept;
-  void press(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const noexcept;
-  std::span<const Vec3> external_forces() noexcept;
+  void apply_new_loads();
+  FreeMotion motion() const;
+  void update_surface();
+  void request_columns();
+  void replace_columns();
+  void clear_columns();
+  void find_columns(std::span<const int> vertices) const;
+  void keep_columns(const Eigen::MatrixXd& columns) const;
+  void add_response(std::span<const NodalLoad> loads, double sign, Eigen::VectorXd& moved) const;
+  void press(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const;
+  std::span<const Vec3> external_forces();
   bool law_is_linear() const { return solid_.material().law == ElasticLaw::kLinear; }
 
   Solid solid_;

@@ -7,14 +7,14 @@ constexpr std::size_t kColumnsAtOnce =
     48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
 
 Solid solid_of(const ModelInputs& inputs) {
-  inputs.progress("assembling the stiffness matrix", 0);
+  inputs.progress(name_of(Stage::kStiffness), 0);
   return {inputs.mesh, *inputs.scene.material};
 }
 
 SparseCholesky factor_stiffness(const ModelInputs& inputs, const Solid& solid, const FreeDofs& dofs) {
   StiffnessMatrix stiffness = solid.stiffness_matrix(dofs);
   solid.add_stiffness(solid.rest(), stiffness);
-  inputs.progress("factoring the stiffness matrix", 0);
+  inputs.progress(name_of(Stage::kFactor), 0);
   return {stiffness.lower(), inputs.scene.source};
 }
 

@@ -1,16 +1,10 @@
 #pragma once
-#include <functional>
-#include <string_view>
-
 #include "common/memory_budget.h"
+#include "sim_server/deformation/setup_stages.h"
 #include "sim_server/mesh/surface.h"
 #include "sim_server/scene/scene.h"
 
 namespace palpate::sim {
-
-/// Told about set-up work: what is being done, and which share of it (0 to 1). Called at the beginning of
-/// each stage at least; with 1 at the end of the last, so that stages cover the whole set-up (`SetupTimes`).
-using Progress = std::function<void(std::string_view what, double share)>;
 
 /// What a model is built from. `fixed`: mesh vertices that move only with their [[fixed.motion]].
 /// `reachable`: surface vertices the tool can load.

@@ -14,8 +14,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kMostSteps = 2000;
-constexpr double kSolved = 1e-12;  // of the static answer: what may be left
-constexpr double kWild = 1e4;      // likewise: farther swings nothing
+constexpr double kSolved = 1e-12;  // relative residual, of the static answer
+constexpr double kWild = 1e4;      // of the static answer: farther swings nothing
 
 /// The stiffness at rest of all nodes, none held; the lower triangle.
 SparseMatrix whole_stiffness(const Solid& solid) {
@@ -26,9 +26,9 @@ SparseMatrix whole_stiffness(const Solid& solid) {
 
 /// -K_fd e over the unknowns, N/m.
 Eigen::VectorXd pull_of(const HeldMotion& held, const SparseMatrix& stiffness, const FreeDofs& dofs) {
-  Eigen::VectorXd way = Eigen::VectorXd::Zero(stiffness.rows()), pull(dofs.count);
-  for (const auto& [node, e] : held.nodes) way.segment<3>(3 * static_cast<Eigen::Index>(node)) = e;
-  const Eigen::VectorXd force = stiffness.selfadjointView<Eigen::Lower>() * way;
+  Eigen::VectorXd displacement = Eigen::VectorXd::Zero(stiffness.rows()), pull(dofs.count);
+  for (const auto& [node, e] : held.nodes) displacement.segment<3>(3 * static_cast<Eigen::Index>(node)) = e;
+  const Eigen::VectorXd force = stiffness.selfadjointView<Eigen::Lower>() * displacement;
   for (std::size_t i = 0; i < dofs.first.size(); ++i) {
     if (dofs.first[i] >= 0)
       pull.segment<3>(dofs.first[i]) = -force.segment<3>(3 * static_cast<Eigen::Index>(i));
@@ -52,18 +52,18 @@ bool swing(const Flexibility& flexibility, const Eigen::VectorXd& mass, Complex 
     return a.cwiseProduct(mass).cwiseProduct(b).sum();
   };
   const double statics = x.norm(), enough = kSolved * statics;
-  Eigen::VectorXcd left = x - applied(x), along = left;
-  Complex before = product(left, left);
-  for (int i = 0; i < kMostSteps && left.norm() > enough; ++i) {
+  Eigen::VectorXcd residual = x - applied(x), along = residual;
+  Complex before = product(residual, residual);
+  for (int i = 0; i < kMostSteps && residual.norm() > enough; ++i) {
     const Eigen::VectorXcd ahead = applied(along);
-    const Complex way = before / product(along, ahead);
-    x += way * along;
-    left -= way * ahead;
-    const Complex now = product(left, left);
-    along = left + now / before * along;
+    const Complex step = before / product(along, ahead);
+    x += step * along;
+    residual -= step * ahead;
+    const Complex now = product(residual, residual);
+    along = residual + now / before * along;
     before = now;
   }
-  return left.norm() <= enough && x.norm() <= kWild * statics;
+  return residual.norm() <= enough && x.norm() <= kWild * statics;
 }
 
 SupportResponse response_of(const HeldMotion& held, const Eigen::VectorXcd& x, const FreeDofs& dofs) {
@@ -104,7 +104,7 @@ std::vector<SupportResponse> support_responses(const ModelInputs& inputs, const 
   std::vector<SupportResponse> responses;
   const auto motions = held_motions(inputs.scene, inputs.mesh, dofs.held);
   if (motions.empty()) return responses;
-  inputs.progress("computing moving supports", 0);
+  inputs.progress(name_of(Stage::kSupports), 0);
   const auto& damping = inputs.scene.deformation.of<RayleighDamping>();
   const SparseMatrix stiffness = whole_stiffness(solid);
   const Eigen::VectorXd mass = masses_of(solid, dofs);

@@ -12,7 +12,7 @@ QuasiStatic::QuasiStatic(const ModelInputs& inputs) : compliance_(inputs) {
   const LinearStatics statics(inputs);
   statics.fill(compliance_, inputs);
   supports_ = statics.supports(inputs, Following::kAtOnce);
-  inputs.progress("computing compliance", 1);
+  inputs.progress(name_of(Stage::kCompliance), 1);
 }
 
 double QuasiStatic::estimated_bytes(const Scene& scene, const MeshCounts& counts) {

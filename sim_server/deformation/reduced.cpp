@@ -58,7 +58,7 @@ Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene))
   supports_ = statics.supports(inputs, Following::kSwinging);
   free_.assign(unloaded().begin(), unloaded().end());
   positions_ = free_;
-  inputs.progress("finding the modes of vibration", 0);
+  inputs.progress(name_of(Stage::kModes), 0);
   const VibrationModes modes =
       vibration_modes(statics.factor, statics.masses(), settings.of<ReducedSettings>().modes, settings.where);
   const auto count = modes.frequencies.size();
@@ -79,7 +79,7 @@ Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene))
   loads_.reserve(kMaxTools * inputs.reachable.size());
   statics.fill(compliance_, inputs);
   compliance_.add(shapes_, beyond_statics);
-  inputs.progress("computing compliance", 1);
+  inputs.progress(name_of(Stage::kCompliance), 1);
 }
 
 FreeMotion Reduced::free_motion(double dt) noexcept {

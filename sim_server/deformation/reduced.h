@@ -27,8 +27,8 @@ struct ReducedSettings {
 /// over T = 1 / rate_hz of the scene under loads that are held: no step is too long. Set-up finds the modes
 /// and
 ///   W = J K^-1 J^T + sum_k J phi_k (r_k - 1 / w_k^2) (J phi_k)^T,
-/// r_k the way of mode k within T per force on it. A step takes a few columns of W and one pass over modes
-/// and surface vertices. What moving supports do is added to that, of all modes and exact in time
+/// r_k the displacement of mode k within T per force on it. A step takes a few columns of W and one pass over
+/// modes and surface vertices. What moving supports do is added to that, of all modes and exact in time
 /// (`support_responses`).
 class Reduced : public DeformationModel {
  public:

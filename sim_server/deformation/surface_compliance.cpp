@@ -72,7 +72,7 @@ void SurfaceCompliance::compute(std::size_t at_once, const Respond& respond, con
   require_room(free_memory());
   compliance_.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(rows));
   for (std::size_t from = 0; from < rows; from += report) {
-    progress("computing compliance", static_cast<double>(from) / static_cast<double>(rows));
+    progress(name_of(Stage::kCompliance), static_cast<double>(from) / static_cast<double>(rows));
     parallel_blocks(std::min(report, rows - from), at_once, [&](std::size_t begin, std::size_t end) {
       const auto first = static_cast<Eigen::Index>(from + begin);
       respond(first, compliance_.middleCols(first, static_cast<Eigen::Index>(end - begin)));

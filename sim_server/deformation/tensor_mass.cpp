@@ -18,7 +18,7 @@ constexpr double kSafety = 0.95;       // of the longest stable sub-step; the fr
 ElasticTensors assemble(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   step_period(scene);  // before any work
-  inputs.progress("assembling the tensors", 0);
+  inputs.progress(name_of(Stage::kTensors), 0);
   return {inputs.mesh, *scene.material, inputs.fixed};
 }
 
@@ -41,7 +41,7 @@ TensorMass::TensorMass(const ModelInputs& inputs)
     first_.push_back(place < 0 ? -1 : 3 * place);
   }
   free_ = rest_;
-  stand();
+  update_free();
   positions_ = free_;
   loads_.reserve(kMaxTools * inputs.reachable.size());
   choose_sub_step(inputs);
@@ -53,7 +53,7 @@ double TensorMass::estimated_bytes(const Scene& scene, const MeshCounts& counts)
 }
 
 void TensorMass::choose_sub_step(const ModelInputs& inputs) {
-  inputs.progress("finding the highest frequency", 0);
+  inputs.progress(name_of(Stage::kFrequency), 0);
   const double longest = kSafety * longest_sub_step(highest_frequency(tensors_), damping_of(inputs.scene));
   const double period = step_period(inputs.scene), steps = std::ceil(period / longest);
   if (steps > kMostSubSteps) {
@@ -82,7 +82,7 @@ void TensorMass::precompute(const ModelInputs& inputs) {
     }
   };
   compliance_.compute(kWide, respond, inputs.progress);
-  inputs.progress("computing compliance", 1);
+  inputs.progress(name_of(Stage::kCompliance), 1);
 }
 
 FreeMotion TensorMass::free_motion(double dt) noexcept {
@@ -90,7 +90,7 @@ FreeMotion TensorMass::free_motion(double dt) noexcept {
     end_period();
     run_period(motion_, force_);
     if (supports_) supports_->advance(sub_steps_ * sub_step_);
-    stand();
+    update_free();
     press(loads_);
   }
   return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>(), positions_};
@@ -104,7 +104,7 @@ void TensorMass::run_period(ExplicitMotion& motion, const std::vector<double>& f
 }
 
 /// Where the body goes free of loads: by itself, and by its supports.
-void TensorMass::stand() noexcept {
+void TensorMass::update_free() noexcept {
   const std::span<const Vec3> from = supports_ ? supports_->positions() : rest_;
   std::copy(from.begin(), from.end(), free_.begin());
   for (std::size_t v = 0; v < rest_.size(); ++v) {

@@ -41,7 +41,7 @@ class TensorMass : public DeformationModel {
   void run_period(ExplicitMotion& motion, const std::vector<double>& force) const noexcept;
   void end_period() noexcept;
   void calm_loaded() noexcept;
-  void stand() noexcept;
+  void update_free() noexcept;
   void press(std::span<const NodalLoad> loads) noexcept;
 
   SurfaceCompliance compliance_;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMostTurns = 20;
 constexpr double kTurned = 1e-14;  // square of what the last turn changed
-constexpr double kNear = 0.01;     // likewise: from here on it converges as fast unscaled
+constexpr double kNear = 0.01;     // square of such a change: from here on it converges as fast unscaled
 constexpr double kFlat = 1e-3;     // of the cube of its size: too flat for Newton
 
 #define PALPATE_INLINE [[gnu::always_inline]] inline

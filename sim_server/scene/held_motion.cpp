@@ -16,11 +16,11 @@ std::vector<int> region_of_corners(const Scene& scene, const TetMesh& mesh) {
   return region;
 }
 
-Vec3 along_axes(Vec3 way, int axes) {
+Vec3 along_axes(Vec3 displacement, int axes) {
   for (int axis = 0; axis < 3; ++axis) {
-    if ((axes >> axis & 1) == 0) way[axis] = 0;
+    if ((axes >> axis & 1) == 0) displacement[axis] = 0;
   }
-  return way;
+  return displacement;
 }
 
 }  // namespace
@@ -48,8 +48,8 @@ std::vector<HeldMotion> held_motions(const Scene& scene, const TetMesh& mesh,
     for (const SupportMotion& motion : scene.fixed[r].motions) {
       HeldMotion one{motion, {}, scene.fixed[r].where};
       const auto add = [&](std::size_t node, double part) {
-        const Vec3 way = part * along_axes(motion.direction, scene.fixed[r].axes & held[node]);
-        if (!way.isZero(0)) one.nodes.emplace_back(static_cast<int>(node), way);
+        const Vec3 displacement = part * along_axes(motion.direction, scene.fixed[r].axes & held[node]);
+        if (!displacement.isZero(0)) one.nodes.emplace_back(static_cast<int>(node), displacement);
       };
       for (std::size_t v = 0; v < region_of.size(); ++v) add(v, share(v));
       for (std::size_t k = 0; k < mesh.mid_edges.size(); ++k)

@@ -11,7 +11,7 @@ namespace palpate::sim {
 /// One `[[fixed.motion]]` and the nodes it moves.
 struct HeldMotion {
   SupportMotion motion;
-  /// Each and its way per displacement of the support, no unit, along the axes on which it is held.
+  /// Each and its displacement per displacement of the support, no unit, along the axes on which it is held.
   std::vector<std::pair<int, Vec3>> nodes{};
   std::string where{};  ///< "FILE:LINE" of its [[fixed]]
 };

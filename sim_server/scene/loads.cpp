@@ -72,7 +72,8 @@ void Loads::hold(const Scene& scene, const TetMesh& mesh) {
 std::vector<Vec3> Loads::moved(double t) const {
   std::vector<Vec3> moved = moved_;
   for (const HeldMotion& held : motions_) {
-    for (const auto& [node, way] : held.nodes) moved[node] += displacement_at(held.motion, t) * way;
+    for (const auto& [node, direction] : held.nodes)
+      moved[node] += displacement_at(held.motion, t) * direction;
   }
   return moved;
 }
@@ -85,7 +86,7 @@ void Loads::put_held(double t, std::span<Vec3> x) const noexcept {
   }
   for (const HeldMotion& held : motions_) {
     const double displacement = displacement_at(held.motion, t);
-    for (const auto& [node, way] : held.nodes) x[node] += displacement * way;
+    for (const auto& [node, direction] : held.nodes) x[node] += displacement * direction;
   }
 }
 

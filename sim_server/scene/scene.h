@@ -69,9 +69,6 @@ struct ToolSettings {
   bool grasps() const { return grasp_buttons != 0 || grasp_place.has_value(); }
 };
 
-/// The most `[[tool]]` a scene may have.
-constexpr std::size_t kMaxTools = 8;
-
 struct Scene {
   std::string title;
   double rate_hz = 30;     ///< steps per second, 0 or [1, 10000]; 0 = as fast as the model allows

@@ -135,14 +135,14 @@ ToolSettings read_tool(const Config& config) {
 
 /// The organ comes nearer by as much as its supports move.
 void reach_what_moves(Scene& scene) {
-  double way = 0;
+  double farthest = 0;
   for (const FixedRegion& region : scene.fixed) {
     double own = 0;
     for (const SupportMotion& motion : region.motions) own += motion.amplitude;
-    way = std::max(way, own);
+    farthest = std::max(farthest, own);
   }
   for (ToolSettings& tool : scene.tools) {
-    if (tool.reach && way > 0) tool.reach = widened(*tool.reach, way);
+    if (tool.reach && farthest > 0) tool.reach = widened(*tool.reach, farthest);
   }
 }
 

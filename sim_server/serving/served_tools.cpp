@@ -11,7 +11,7 @@ using protocol::ForceSample;
 
 namespace {
 
-constexpr double kLongestBend = 0.1;  // s between two states; after more, velocities tell nothing of the way
+constexpr double kLongestBend = 0.1;  // s between two states; after more, velocities tell nothing of the path
 
 protocol::Linearisation on_the_wire(const Linearised& l) noexcept {
   const Mat3 k = 0.5 * (l.tangent + l.tangent.transpose());  // of friction, the part that stores energy
@@ -32,8 +32,8 @@ ToolPose pose_of(const protocol::ToolState& state) noexcept {
 Bend bend_between(const protocol::ToolState& before, const protocol::ToolState& now) noexcept {
   const double dt = 1e-9 * (static_cast<double>(now.t_ns) - static_cast<double>(before.t_ns));
   if (!(dt > 0 && dt < kLongestBend)) return {};
-  const Vec3 way = now.p_W - before.p_W;
-  return {dt * before.v_W - way, dt * now.v_W - way};
+  const Vec3 chord = now.p_W - before.p_W;
+  return {dt * before.v_W - chord, dt * now.v_W - chord};
 }
 
 }  // namespace

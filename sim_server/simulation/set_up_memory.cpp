@@ -9,9 +9,8 @@ namespace palpate::sim {
 void require_memory_for(const Scene& scene, Purpose purpose, const MeshCounts& counts, double free) {
   if (!scene.material) return;  // the model asks for one, where it needs it
   const ElementKind element = scene.material->element;
-  double bytes = purpose == Purpose::kSolve
-                     ? body_bytes(counts, element, 2)  // of now, and at rest
-                     : model_of(scene.deformation).estimated_bytes(scene, counts);
+  double bytes = purpose == Purpose::kSolve ? body_bytes(counts, element, 2)  // of now, and at rest
+                                            : model_of(scene.deformation).estimated_bytes(scene, counts);
   if (!scene.inclusions.empty())
     bytes += 2 * counts.tetrahedra * sizeof(double);  // in the mesh and in its solid
   require_memory(bytes, free, scene.source,

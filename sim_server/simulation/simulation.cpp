@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <new>
 
 #include "common/error.h"
 #include "common/hash.h"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double kNear = 2;              // of the tool radius: how far off a surface is told
 constexpr double kTouch = 0.04;          // of the tool radius: how deep to ask how stiff it is
+constexpr double kStill = 1e-8;          // of the tool radius: a surface that moved less did not move
 constexpr double kRunAway = 3;           // of the organ's size: farther from rest no tissue goes
 constexpr double kFarthestAhead = 2e-3;  // m; without a bound, fast tools fare worse
 constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
@@ -60,7 +62,7 @@ double size_of(std::span<const Vec3> places) {
 
 /// `read_mesh`, told to `progress`.
 TetMesh read_mesh_of(const Scene& scene, const Progress& progress) {
-  progress("reading the mesh", 0);
+  progress(name_of(Stage::kMesh), 0);
   return read_mesh(scene.mesh_file);
 }
 
@@ -75,12 +77,16 @@ std::string contact_part(std::size_t tool, std::size_t tools) {
   return tools == 1 ? "contact" : fmt::format("contact of tool {}", tool + 1);
 }
 
+std::string contact_stage(std::size_t tool, std::size_t tools) {
+  return "preparing " + contact_part(tool, tools);
+}
+
 Simulation::Simulation(const Scene& scene, const Progress& progress)
     : Simulation(scene, read_mesh_of(scene, progress), progress) {}
 
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
   put_inclusions(scene, mesh_);
-  progress("extracting the surface", 0);
+  progress(name_of(Stage::kSurface), 0);
   if (scene.material) mesh_ = with_nodes(std::move(mesh_), scene.material->element);
   surface_ = boundary_surface(mesh_);
   for (const int vertex : surface_.vertices) rest_.push_back(mesh_.vertices[vertex]);
@@ -96,27 +102,54 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;
   tissue_.velocities = motion.velocities;
-  std::size_t loads = 0;
+  std::vector<int> most_loads;
+  std::vector<double> still;
   tools_.reserve(scene.tools.size());
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
-    const std::string stage = "preparing " + contact_part(i, scene.tools.size());
+    const std::string stage = contact_stage(i, scene.tools.size());
     progress(stage, 0);
     tools_.emplace_back(scene.tools[i], tissue_.free, surface_, std::move(touchable[i]));
-    loads += static_cast<std::size_t>(tools_.back().max_nodes());
+    most_loads.push_back(tools_.back().max_nodes());
+    still.push_back(kStill * tools_.back().radius());
     progress(stage, 1);
   }
-  if (tools_.size() > 1) {
-    for (ToolContact& tool : tools_) tool.reserve(loads);
-  }
+  tissue_.reserve(most_loads, still);
   if (std::any_of(tools_.begin(), tools_.end(), [](const ToolContact& tool) { return tool.has_friction(); }))
     tissue_.before.assign(tissue_.positions.begin(), tissue_.positions.end());
   inputs_.resize(tools_.size());
-  ways_.resize(tools_.size(), Vec3::Zero());
+  surface_motion_.resize(tools_.size(), Vec3::Zero());
   answers_.resize(tools_.size());
 }
 
 std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, double dt) noexcept {
   assert(inputs.size() == tools_.size());
+  try {
+    advance(inputs, dt);
+    failed_ = false;
+  } catch (const std::bad_alloc&) {
+    ++failures_.out_of_memory;
+    hold_answers(inputs);
+  } catch (...) {
+    ++failures_.other;
+    hold_answers(inputs);
+  }
+  return answers_;
+}
+
+/// After a step that threw. The forces of a tissue that answers no more fade.
+void Simulation::hold_answers(std::span<const ToolInput> inputs) noexcept {
+  for (std::size_t i = 0; i < answers_.size(); ++i) {
+    ToolForce held = inputs[i].pose ? answers_[i] : ToolForce{};
+    if (failed_) fade(held);
+    held.tangent.setZero();
+    held.flagged = inputs[i].pose.has_value();
+    answers_[i] = {};
+    static_cast<ToolForce&>(answers_[i]) = held;
+  }
+  failed_ = true;
+}
+
+void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
   for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].press(inputs[i].buttons);
   move_organ(dt);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
@@ -124,8 +157,7 @@ std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, 
   }
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!inputs[i].pose) continue;
-    tools_[i].share(tools_, tissue_);
-    tools_[i].walk(*inputs[i].pose, inputs[i].path, tissue_);
+    tools_[i].advance_to(*inputs[i].pose, inputs[i].path, tissue_.met_by(i));
   }
   solve_contacts();
   const bool lost = ran_away();
@@ -142,19 +174,16 @@ std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, 
     if (inputs[i].wants.tangent) tools_[i].differentiate();
     static_cast<ToolForce&>(answers_[i]) = tools_[i].force();
   }
-  for (std::size_t i = 0; i < tools_.size(); ++i) tell_more(i, inputs[i]);
-  return answers_;
+  for (std::size_t i = 0; i < tools_.size(); ++i) add_wanted(i, inputs[i]);
 }
 
 /// Contact of all tools, and again where a linearisation about where it led says something else.
-void Simulation::solve_contacts() noexcept {
+void Simulation::solve_contacts() {
   settle();
   while (const auto motion = tissue_.model->relinearise()) {
-    take(*motion);
-    for (ToolContact& tool : tools_) {
-      if (!tool.placed()) continue;
-      tool.share(tools_, tissue_);
-      tool.settle(tissue_);
+    set_free(*motion);
+    for (std::size_t i = 0; i < tools_.size(); ++i) {
+      if (tools_[i].placed()) tools_[i].settle(tissue_.met_by(i));
     }
     settle();
   }
@@ -162,17 +191,18 @@ void Simulation::solve_contacts() noexcept {
 }
 
 /// What was asked of this tool beyond its force.
-void Simulation::tell_more(std::size_t tool, const ToolInput& input) noexcept {
+void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   ToolAnswer& answer = answers_[tool];
   if (!input.pose || answer.flagged) return;
   const Vec3& p_W = input.pose->p_W;
   const ToolWants& wants = input.wants;
-  if (wants.here || wants.ahead) answer.surface_v_W = tools_[tool].surface_velocity(p_W, tissue_);
+  if (wants.here || wants.ahead)
+    answer.surface_v_W = tools_[tool].surface_velocity(p_W, tissue_, tissue_.loads_of(tool));
   if (wants.here) answer.here = linearise(tool, p_W, &answer);
   if (wants.ahead) {
-    const Vec3 way =
+    const Vec3 motion =
         wants.ahead->seconds * (wants.ahead->v_W - answer.surface_v_W);  // on the organ as it stands
-    Vec3 there = p_W + std::min(1.0, kFarthestAhead / way.norm()) * way;
+    Vec3 there = p_W + std::min(1.0, kFarthestAhead / motion.norm()) * motion;
     if (!there.allFinite()) there = p_W;
     answer.ahead = {there, linearise(tool, there, nullptr)};
   }
@@ -192,19 +222,24 @@ bool Simulation::ran_away() const noexcept {
 /// The tools stay where they were on the organ, which goes by the mean of its velocities before and after
 /// (exact to the third order in `dt`): one that stands on a surface coming towards it is not left behind
 /// inside. From there they walk to where they are now.
-void Simulation::move_organ(double dt) noexcept {
+void Simulation::move_organ(double dt) {
   const bool moves = !tissue_.velocities.empty();
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
-    ways_[i] = 0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
-  take(tissue_.model->free_motion(dt));
+    surface_motion_[i] =
+        0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.loads_of(i));
+  set_free(tissue_.model->free_motion(dt));
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
-    ways_[i] += 0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_);
-  for (std::size_t i = 0; moves && i < tools_.size(); ++i) tools_[i].carry(ways_[i], tissue_);
+    surface_motion_[i] +=
+        0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.loads_of(i));
+  for (std::size_t i = 0; moves && i < tools_.size(); ++i) {
+    tools_[i].carry(surface_motion_[i]);
+    tissue_.press(i);
+  }
   if (moves && !tissue_.before.empty())  // gone along, nothing has slipped
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
 }
 
-void Simulation::take(const FreeMotion& motion) noexcept {
+void Simulation::set_free(const FreeMotion& motion) {
   tissue_.free = motion.positions;
   tissue_.velocities = motion.velocities;
   if (!motion.loaded.empty()) tissue_.positions = motion.loaded;
@@ -218,17 +253,20 @@ ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
 /// Block Gauss-Seidel over the tools (for a linear tissue: on the complementarity problem of all contacts
 /// together, which is convex): each in turn solves its own contact on the surface that the others have
 /// pushed, until it stands still for all of them.
-void Simulation::settle() noexcept {
+void Simulation::settle() {
   std::size_t still = 1;  // tools in a row that need nothing; the last one has just been solved
   for (std::size_t turn = 0; still < tools_.size(); ++turn) {
-    ToolContact& tool = tools_[turn % tools_.size()];
+    const std::size_t i = turn % tools_.size();
+    ToolContact& tool = tools_[i];
     ++still;
-    if (!tool.placed() || !tool.share(tools_, tissue_)) continue;
+    if (!tool.placed()) continue;
+    const ToolTissue tissue = tissue_.met_by(i);
+    if (!tissue.moved()) continue;
     if (tool.exhausted() || turn >= kMaxSweeps * tools_.size()) {
       flag_contacts();
       return;
     }
-    tool.settle(tissue_);
+    tool.settle(tissue);
     still = 1;
   }
 }
@@ -239,11 +277,11 @@ void Simulation::flag_contacts() noexcept {
   }
 }
 
-Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) noexcept {
+Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) {
   ToolContact& contact = tools_[tool];
   if (!contact.placed()) return {};
-  contact.share(tools_, tissue_);
-  const ToolForce there = felt != nullptr ? *felt : contact.probe(p_W, tissue_);
+  const ToolTissue tissue = tissue_.met_by(tool);
+  const ToolForce there = felt != nullptr ? *felt : contact.probe(p_W, tissue);
   if (there.contacts > 0) {
     const double size = there.force.norm();
     return {there.force, there.tangent, {size > 0 ? Vec3(there.force / size) : Vec3(Vec3::Zero()), 0}};
@@ -252,21 +290,20 @@ Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolFo
   if (linearised.plane.gap > kNear * contact.radius()) return {};
   // A little beyond the first touch, so that it is known how stiff the surface is.
   const double beyond = linearised.plane.gap + kTouch * contact.radius();
-  linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue_).tangent;
+  linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue).tangent;
   return linearised;
 }
 
-Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) noexcept {
-  ToolContact& contact = tools_[tool];
-  contact.share(tools_, tissue_);
-  const int vertex = contact.nearest_vertex(p_W, tissue_);
-  return contact.free()[vertex] - rest_[vertex];
+Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) {
+  const ToolTissue tissue = tissue_.met_by(tool);
+  const int vertex = tools_[tool].nearest_vertex(p_W, tissue_);
+  return tissue.free()[vertex] - rest_[vertex];
 }
 
-void Simulation::lift_tool(std::size_t tool) noexcept {
+void Simulation::lift_tool(std::size_t tool) {
   answers_[tool] = {};
-  if (tools_[tool].placed()) tools_[tool].share(tools_, tissue_);
-  tools_[tool].lift(tissue_);
+  if (!tissue_.loads_of(tool).empty()) tissue_.met_by(tool).release();
+  tools_[tool].lift();
 }
 
 std::vector<MemoryPart> Simulation::memory() const {
@@ -278,7 +315,7 @@ std::vector<MemoryPart> Simulation::memory() const {
   parts.push_back(
       {"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
   for (std::size_t i = 0; i < tools_.size(); ++i)
-    parts.push_back({contact_part(i, tools_.size()), tools_[i].bytes()});
+    parts.push_back({contact_part(i, tools_.size()), tools_[i].bytes() + tissue_.bytes_of(i)});
   return parts;
 }
 

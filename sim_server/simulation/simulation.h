@@ -62,9 +62,17 @@ struct ToolAnswer : ToolForce {
   std::optional<Vec3> surface_shift_W = {};
 };
 
+/// Steps that could not be finished because the model threw, by reason.
+struct StepFailures {
+  std::uint64_t out_of_memory = 0;
+  std::uint64_t other = 0;
+};
+
 /// The organ of a scene with its tools: one step, one page. Built from a scene (throws `Error`), then stepped
-/// by one thread. A step does not throw, and depends on nothing but its arguments and the state. It does not
-/// allocate, lock or log either, but for a model that says so (`DeformationModel`).
+/// by one thread. A step depends on nothing but its arguments and the state, and does not throw: where the
+/// model does, its answers are those of the step before, flagged (half of their forces each further time in
+/// a row), and the failure is counted. A step does not allocate, lock or log, but for a model that says that
+/// it does (`DeformationModel`).
 class Simulation {
  public:
   /// With the mesh file that the scene names.
@@ -78,12 +86,13 @@ class Simulation {
   /// The same with tool 0 alone, the others lifted.
   ToolForce step(const ToolPose& pose, double dt) noexcept;
 
-  /// What a tool would feel at `p_W` (m), near where it stands; without effect on anything. `felt`: what
+  /// What a tool would feel at `p_W` (m), near where it stands; without effect on anything. Throws what the
+  /// model throws. `felt`: what
   /// `step` gave for that place, with its tangent; null: to be found out. At most two contact solves.
-  Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) noexcept;
+  Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt);
 
-  /// Takes a tool away: the tissue goes free of it.
-  void lift_tool(std::size_t tool = 0) noexcept;
+  /// Takes a tool away: the tissue goes free of it. Throws what the model throws.
+  void lift_tool(std::size_t tool = 0);
 
   std::size_t tools() const { return tools_.size(); }
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
@@ -99,15 +108,18 @@ class Simulation {
 
   /// FNV-1a hash of the surface positions and the last forces, bit by bit: equal runs have equal hashes.
   std::uint64_t state_hash() const noexcept;
+  const StepFailures& failures() const { return failures_; }
 
  private:
-  void move_organ(double dt) noexcept;
-  void take(const FreeMotion& motion) noexcept;
-  void settle() noexcept;
+  void advance(std::span<const ToolInput> inputs, double dt);
+  void hold_answers(std::span<const ToolInput> inputs) noexcept;
+  void move_organ(double dt);
+  void set_free(const FreeMotion& motion);
+  void settle();
   void flag_contacts() noexcept;
-  void solve_contacts() noexcept;
-  void tell_more(std::size_t tool, const ToolInput& input) noexcept;
-  Vec3 surface_shift(std::size_t tool, const Vec3& p_W) noexcept;
+  void solve_contacts();
+  void add_wanted(std::size_t tool, const ToolInput& input);
+  Vec3 surface_shift(std::size_t tool, const Vec3& p_W);
   bool ran_away() const noexcept;
 
   TetMesh mesh_;
@@ -116,13 +128,16 @@ class Simulation {
   double farthest_ = 1e150;  // from there, m; so far: no bound but that of numbers
   Tissue tissue_;
   std::vector<ToolContact> tools_;
-  std::vector<Vec3> ways_;         // of the surface at each tool in this step, m
-  std::vector<ToolInput> inputs_;  // for the step of tool 0 alone
+  std::vector<Vec3> surface_motion_;  // of the surface at each tool in this step, m
+  std::vector<ToolInput> inputs_;     // for the step of tool 0 alone
   std::vector<ToolAnswer> answers_;
+  StepFailures failures_;
+  bool failed_ = false;  // the last step
 };
 
-/// "contact", or "contact of tool 2" where there are several: the name of a tool's part in reports, and,
-/// after "preparing ", of the stage of set-up that makes it.
+/// "contact", or "contact of tool 2" where there are several: the name of a tool's part in reports.
 std::string contact_part(std::size_t tool, std::size_t tools);
+/// The stage of set-up that makes it: "preparing contact".
+std::string contact_stage(std::size_t tool, std::size_t tools);
 
 }  // namespace palpate::sim

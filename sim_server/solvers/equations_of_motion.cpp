@@ -155,7 +155,8 @@ double EquationsOfMotion::kinetic_energy() const {
 }
 
 std::size_t EquationsOfMotion::bytes() const {
-  return (x_.size() * 8) * sizeof(Vec3) + prony_.bytes();
+  return (x_.size() + internal_.size() + external_.size()) * sizeof(Vec3) + mass_.size() * sizeof(double) +
+         time_.bytes() + prony_.bytes();
 }
 
 }  // namespace palpate::sim

@@ -48,6 +48,9 @@ class TimeStepping {
   std::span<const Vec3> position() const { return x_; }
   std::span<const Vec3> velocity() const { return v_; }
   std::span<const Vec3> internal_force() const { return f_; }
+  std::size_t bytes() const {
+    return 3 * (x_.size() + earlier_x_.size() + predictor_x_.size()) * sizeof(Vec3);
+  }
 
  private:
   bool second_order_;

@@ -27,7 +27,7 @@ constexpr double kShortEdge = 0.2, kShortEdgeRubbed = 0.6, kShorter = 0.7, kGrow
 constexpr int kReferenceSteps = 4;                      // to one of the scene
 constexpr double kUsualRate = 30;                       // Hz, where the scene names none
 constexpr std::array kSteps{0.25, 0.5, 1.0, 2.0, 4.0};  // of the scene's, s
-constexpr std::array kStepsOfElements{0.5, 2.0};        // likewise: where a better element comes too late
+constexpr std::array kStepsOfElements{0.5, 2.0};  // of the scene's: where a better element comes too late
 constexpr std::array kTolerances{1e-1, 1e-2, 1e-3, 1e-5, 1e-8};
 constexpr std::array kElements{ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic};
 

@@ -14,7 +14,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kDepth = 0.5, kSlide = 1.0;  // of the tool's radius
-constexpr double kClear = 0.3;                // likewise: above the surface, at both ends
+constexpr double kClear = 0.3;                // of the tool's radius: above the surface, at both ends
 constexpr double kPress = 0.5, kWhole = 2.0;  // s
 constexpr double kRows = 1000;                // of the motion, Hz
 constexpr std::size_t kMostSites = 1500;

@@ -59,7 +59,7 @@ struct Trial {
   std::vector<Path> paths;                   // of each tool
   std::vector<Path> slow;                    // to the same end, for the reference; empty: `paths`
   double seconds = 3;                        // of the paths, then as long again without tools
-  double reference_seconds = 3;              // likewise, at least
+  double reference_seconds = 3;              // of the reference, at least
   double depth = 0.003;                      // m: how deep the first tool is in the block at rest, at the end
   bool only_implicit_refers = false;         // only `implicit` bears what acts here
   std::optional<double> felt_by_rigid = {};  // of stiffness x depth; else 1

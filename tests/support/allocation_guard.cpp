@@ -8,8 +8,13 @@
 namespace {
 thread_local std::size_t g_count = 0;
 thread_local bool g_counting = false;
+thread_local std::size_t g_left = 0;  // allocations until one fails; 0: none does
 void count_one() {
   if (g_counting) ++g_count;
+}
+/// Whether this one fails.
+[[maybe_unused]] bool fails() {
+  return g_left > 0 && --g_left == 0;
 }
 }  // namespace
 
@@ -26,19 +31,19 @@ void* __libc_realloc(void* p, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 void* malloc(std::size_t size) {
   count_one();
-  return __libc_malloc(size);
+  return fails() ? nullptr : __libc_malloc(size);
 }
 void* calloc(std::size_t count, std::size_t size) {
   count_one();
-  return __libc_calloc(count, size);
+  return fails() ? nullptr : __libc_calloc(count, size);
 }
 void* realloc(void* p, std::size_t size) {
   count_one();
-  return __libc_realloc(p, size);
+  return fails() ? nullptr : __libc_realloc(p, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
   count_one();
-  return __libc_memalign(alignment, size);
+  return fails() ? nullptr : __libc_memalign(alignment, size);
 }
 }
 #endif
@@ -54,6 +59,16 @@ AllocationGuard::~AllocationGuard() {
 }
 std::size_t AllocationGuard::count() const {
   return g_count;
+}
+
+AllocationFailure::AllocationFailure(std::size_t n) {
+  g_left = n;
+}
+AllocationFailure::~AllocationFailure() {
+  g_left = 0;
+}
+bool AllocationFailure::happened() const {
+  return g_left == 0;
 }
 
 }  // namespace palpate::test

@@ -11,4 +11,13 @@ class AllocationGuard {
   std::size_t count() const;
 };
 
+/// The n-th allocation of this thread while it lives, from 1, finds no memory; no effect under a sanitizer,
+/// which owns the allocator.
+class AllocationFailure {
+ public:
+  explicit AllocationFailure(std::size_t n);
+  ~AllocationFailure();
+  bool happened() const;
+};
+
 }  // namespace palpate::test

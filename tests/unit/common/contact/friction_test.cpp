@@ -321,7 +321,7 @@ TEST_CASE("friction: a contact that was lost is forgotten") {
 TEST_CASE("friction: a solve and its tangent do not allocate") {
   Path path(half_space(5, 0.0008, 3e4));
   path.go(pressed(4e-4));
-  const StrideStart start{path.nodes, path.tip};
+  const IncrementStart start{path.nodes, path.tip};
   std::size_t allocations = 1;
   {
     const test::AllocationGuard guard;

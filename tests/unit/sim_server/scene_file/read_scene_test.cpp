@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
 #include "tests/support/temporary_folder.h"
@@ -90,12 +91,12 @@ TEST_CASE("a capsule needs a length, a trocar a pivot and a shaft no thicker tha
 TEST_CASE("only a model that has damping is asked for it") {
   const auto scene = [](const std::string& deformation) { return SceneFile(tool_sections(1), deformation); };
   const auto plain = read_scene(scene("model = \"tensor_mass\"\n").file).deformation;
-  CHECK(plain.rayleigh_mass == 10);
-  CHECK(plain.rayleigh_stiffness == 1e-4);
+  CHECK(plain.of<RayleighDamping>().mass == 10);
+  CHECK(plain.of<RayleighDamping>().stiffness == 1e-4);
   const std::string damped = "rayleigh_mass = 0\nrayleigh_stiffness = 1e-3\n";
   const auto given = read_scene(scene("model = \"tensor_mass\"\n" + damped).file).deformation;
-  CHECK(given.rayleigh_mass == 0);
-  CHECK(given.rayleigh_stiffness == 1e-3);
+  CHECK(given.of<RayleighDamping>().mass == 0);
+  CHECK(given.of<RayleighDamping>().stiffness == 1e-3);
   const SceneFile none = scene("model = \"quasi_static\"\n" + damped),
                   negative = scene("model = \"tensor_mass\"\nrayleigh_mass = -1\n");
   CHECK(none.error().starts_with(none.file + ":7: unknown key"));

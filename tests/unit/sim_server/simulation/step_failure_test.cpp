@@ -1,0 +1,74 @@
+// A step that finds no memory ends neither the program nor the session.
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/solids.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+
+namespace {
+
+constexpr double kDt = 1.0 / 30, kRadius = 0.004;
+const ToolPose kPressed(Vec3(0.001, kRadius - 0.002, 0.002));
+
+/// A block of corotational tissue, pressed by 2 mm until it rests.
+Simulation pressed_block() {
+  Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.45, .law = ElasticLaw::kCorotational},
+                         {Vec3(-1, -1, -1), Vec3(1, -0.0149, 1)}, kRadius);
+  scene.deformation.model = "implicit";
+  Simulation simulation(scene,
+                        grid_block(lines(-0.015, 0.015, 4), lines(-0.015, 0, 2), lines(-0.015, 0.015, 4)));
+  for (int i = 0; i < 20; ++i) simulation.step(kPressed, kDt);
+  return simulation;
+}
+
+}  // namespace
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_CASE("a step that runs out of memory holds the last answer, flagged and counted") {
+  const Vec3 rests = pressed_block().step(kPressed, kDt).force;
+  REQUIRE(rests.norm() > 0.05);
+  std::uint64_t failed = 0;
+  bool last = false;
+  for (std::size_t n = 1; !last; n = n + 1 + n / 4) {
+    CAPTURE(n);
+    Simulation simulation = pressed_block();
+    ToolForce told;
+    {
+      const AllocationFailure failure(n);
+      told = simulation.step(kPressed, kDt);
+      last = !failure.happened();
+    }
+    if (last) break;
+    // What a library makes of it by itself may settle in the end.
+    const bool threw = simulation.failures().out_of_memory + simulation.failures().other == 1;
+    failed += threw ? 1 : 0;
+    CHECK((told.force - rests).norm() < 0.01 * rests.norm());
+    if (threw) CHECK(told.flagged);
+    if (threw) CHECK(told.tangent.isZero());
+    for (int i = 0; i < 20; ++i) told = simulation.step(kPressed, kDt);
+    CHECK_FALSE(told.flagged);
+    CHECK((told.force - rests).norm() < 0.01 * rests.norm());
+  }
+  CHECK(failed > 5);
+}
+
+TEST_CASE("the force of a tissue that answers no more fades, and a lifted tool feels none of it") {
+  Simulation simulation = pressed_block();
+  double before = simulation.step(kPressed, kDt).force.norm();
+  for (int i = 0; i < 5; ++i) {
+    const AllocationFailure failure(1);
+    const ToolForce told = simulation.step(kPressed, kDt);
+    CHECK(told.flagged);
+    CHECK(told.force.norm() == Approx(i == 0 ? before : before / 2).epsilon(1e-3));
+    before = told.force.norm();
+  }
+  CHECK(simulation.failures().out_of_memory == 5);
+  const AllocationFailure failure(1);
+  const std::vector<ToolInput> away(1);
+  CHECK(simulation.step(away, kDt).front().force.isZero());
+}
+#endif
