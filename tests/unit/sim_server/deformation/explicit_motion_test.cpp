@@ -15,6 +15,8 @@ using namespace palpate::sim;
 
 namespace {
 
+constexpr RayleighDamping kUndamped{0, 0};
+
 const Material kSoft{5e3, 0.45, 1060};
 const std::vector<double> kNone(3 * 24, 0.0);  // forces
 
@@ -109,9 +111,9 @@ TEST_CASE("explicit motion: the highest frequency, and the sub-step at which a m
   const double highest = tissue.dense.highest(), found = highest_frequency(tissue.tensors);
   CHECK(found <= highest * (1 + 1e-12));
   CHECK(found > highest * 0.999);
-  CHECK(longest_sub_step(highest, {}) == Approx(2 / highest).epsilon(1e-14));
-  for (const RayleighDamping damping : {RayleighDamping{0, 0}, RayleighDamping{50, 0},
-                                        RayleighDamping{0, 1e-4}, RayleighDamping{200, 2e-3}}) {
+  CHECK(longest_sub_step(highest, kUndamped) == Approx(2 / highest).epsilon(1e-14));
+  for (const RayleighDamping damping :
+       {kUndamped, RayleighDamping{50, 0}, RayleighDamping{0, 1e-4}, RayleighDamping{200, 2e-3}}) {
     const double limit = longest_sub_step(highest, damping);
     for (const double share : {0.999, 1.001}) {
       ExplicitMotion motion(tissue.tensors, damping);
@@ -125,7 +127,7 @@ TEST_CASE("explicit motion: the highest frequency, and the sub-step at which a m
 
 TEST_CASE("explicit motion: unstable at 1.3 times the undamped limit") {
   const Tissue tissue;
-  ExplicitMotion motion(tissue.tensors, {});
+  ExplicitMotion motion(tissue.tensors, kUndamped);
   start_in(motion, Eigen::VectorXd::Constant(tissue.dense.mass.size(), 1e-3));
   for (int i = 0; i < 100; ++i) motion.run(1, 1.3 * 2 / tissue.dense.highest(), kNone);
   CHECK_FALSE(as_vector(motion.state.u).norm() < 1e10);
@@ -136,7 +138,7 @@ TEST_CASE("explicit motion: frequencies of free vibration are those of the dense
   const double h = 0.05 / tissue.dense.highest();
   for (const int mode : {0, 1, 2, 5, 20, 40, static_cast<int>(tissue.dense.mass.size()) - 1}) {
     const double w = std::sqrt(tissue.dense.squares[mode]);
-    const Recursion found = watch(tissue, mode, {}, h, 4000);
+    const Recursion found = watch(tissue, mode, kUndamped, h, 4000);
     CHECK(found.strayed < 1e-9);
     CHECK(found.a == Approx(1).epsilon(1e-12));
     CHECK(std::acos(found.t / 2) / h == Approx(w).epsilon(2e-4));                     // the tissue's
@@ -159,8 +161,8 @@ TEST_CASE("explicit motion: a mode decays by half of mass + stiffness w^2") {
 
 TEST_CASE("explicit motion: energy stays without damping over 1e4 sub-steps, and falls with it") {
   const Tissue tissue;
-  const double h = 0.95 * longest_sub_step(tissue.dense.highest(), {});
-  ExplicitMotion motion(tissue.tensors, {});
+  const double h = 0.95 * longest_sub_step(tissue.dense.highest(), kUndamped);
+  ExplicitMotion motion(tissue.tensors, kUndamped);
   test::Random random(5);
   for (double& u : motion.state.u) u = random.between(-1e-3, 1e-3);
   const double kept = kept_energy(tissue, motion, h), first = energy(tissue, motion);
@@ -187,10 +189,10 @@ TEST_CASE("explicit motion: energy stays without damping over 1e4 sub-steps, and
 TEST_CASE(
     "explicit motion: a force held for a time t gives each mode f / w^2 (1 - cos w t), never less than 0") {
   const Tissue tissue;
-  const double h = 0.95 * longest_sub_step(tissue.dense.highest(), {});
+  const double h = 0.95 * longest_sub_step(tissue.dense.highest(), kUndamped);
   for (const int steps : {1, 2, 7, 50}) {
     for (int mode = 0; mode < tissue.dense.mass.size(); ++mode) {
-      ExplicitMotion motion(tissue.tensors, {});
+      ExplicitMotion motion(tissue.tensors, kUndamped);
       const Eigen::VectorXd shape = tissue.dense.modes.col(mode),
                             force = tissue.dense.mass.cwiseProduct(shape);
       motion.run(steps, h, {force.begin(), force.end()});
@@ -205,8 +207,8 @@ TEST_CASE(
 TEST_CASE(
     "explicit motion: one sub-step is half an acceleration, two runs are one, rest under a load is rest") {
   const Tissue tissue;
-  const double h = 0.9 * longest_sub_step(tissue.dense.highest(), {});
-  ExplicitMotion once(tissue.tensors, {}), twice(tissue.tensors, {});
+  const double h = 0.9 * longest_sub_step(tissue.dense.highest(), kUndamped);
+  ExplicitMotion once(tissue.tensors, kUndamped), twice(tissue.tensors, kUndamped);
   std::vector<double> force = kNone;
   force[4] = 0.1;
   once.run(1, h, force);

@@ -4,6 +4,8 @@
 
 #include "common/error.h"
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/deformation/reduced.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"

@@ -1,5 +1,6 @@
 #include "sim_server/serving/served_tools.h"
 
+#include "sim_server/deformation/rigid.h"
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
@@ -17,7 +18,9 @@ struct Served {
 
   static Scene scene() {
     Scene scene;
-    scene.deformation = {.model = "rigid", .stiffness = 1000, .where = "test"};
+    scene.deformation.model = "rigid";
+    scene.deformation.where = "test";
+    scene.deformation.of<RigidSettings>().stiffness = 1000;
     scene.tools.resize(2);
     return scene;
   }

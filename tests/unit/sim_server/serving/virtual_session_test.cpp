@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "sim_server/deformation/rigid.h"
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/catch.h"
 #include "tests/support/served_block.h"
@@ -30,7 +31,9 @@ struct Press {
   static Scene scene() {
     Scene scene;
     scene.source = "test";
-    scene.deformation = {.model = "rigid", .stiffness = 1000, .where = "test"};
+    scene.deformation.model = "rigid";
+    scene.deformation.where = "test";
+    scene.deformation.of<RigidSettings>().stiffness = 1000;
     scene.tools[0].shape.radius = 0.005;
     return scene;
   }
