@@ -1,8 +1,7 @@
 #include "common/contact/complementarity.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
-
-#include "common/contact/dense_solve.h"
 
 namespace palpate {
 namespace {
@@ -34,7 +33,11 @@ bool ComplementaritySolver::solve_on_basis(const Eigen::Ref<const Eigen::MatrixX
     rhs[c] = -gap[column];
   }
   lambda.setZero();
-  if (!cholesky_solve(matrix, rhs)) return false;
+  Eigen::Ref<Eigen::MatrixXd> in_place(matrix);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(in_place);
+  if (factor.info() != Eigen::Success) return false;
+  factor.solveInPlace(rhs);
+  if (!rhs.allFinite()) return false;
   for (Eigen::Index c = 0; c < n; ++c) lambda[basis_[static_cast<std::size_t>(c)]] = rhs[c];
   return true;
 }

@@ -4,28 +4,6 @@
 
 namespace palpate {
 
-bool cholesky_solve(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> b) noexcept {
-  const Eigen::Index n = a.rows();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    if (!(a(j, j) > 0)) return false;
-    const double pivot = std::sqrt(a(j, j));
-    a(j, j) = pivot;
-    const Eigen::Index below = n - j - 1;
-    a.col(j).tail(below) /= pivot;
-    for (Eigen::Index k = j + 1; k < n; ++k) a.col(k).tail(n - k) -= a(k, j) * a.col(j).tail(n - k);
-  }
-  for (Eigen::Index c = 0; c < b.cols(); ++c) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      b(j, c) /= a(j, j);
-      b.col(c).tail(n - j - 1) -= b(j, c) * a.col(j).tail(n - j - 1);
-    }
-    for (Eigen::Index j = n - 1; j >= 0; --j) {
-      b(j, c) = (b(j, c) - a.col(j).tail(n - j - 1).dot(b.col(c).tail(n - j - 1))) / a(j, j);
-    }
-  }
-  return b.allFinite();
-}
-
 bool gauss_solve(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> b) noexcept {
   const Eigen::Index n = a.rows();
   for (Eigen::Index j = 0; j < n; ++j) {

@@ -21,6 +21,7 @@ QUICK = ["--benchmark_repetitions=3", "--benchmark_min_time=0.02"]
 SUFFIX = re.compile(r"/(iterations:\d+|manual_time|real_time|repeats:\d+|min_time:[^/]*)")
 UNITS = (("s", 1e9), ("ms", 1e6), ("us", 1e3), ("ns", 1))
 BASE_LAW = "constant"
+OURS = "ours"  # last part of the name of a row whose neighbours are libraries that do the same
 LEFT_OUT = "left out: "  # what a row says that the scene has no use for
 FRAME_NS, TICK_NS = 1e9 / 30, 1e9 / 4000  # the scene's rate, and the quickest a client may ask for
 COUNTERS = (("p50", ".0f", " us"), ("p99", ".0f", " us"), ("rate", ".0f", "/s"), ("reads", ".0f", " GB/s"),
@@ -134,6 +135,9 @@ def ratios_of(rows):
             add(f"{name} : stream/{rest}", value, ns.get(f"stream/{rest}"))
         if group == "setup" and rest != "total" and "setup/total" in ns:
             add(f"{name} : setup/total", value, ns["setup/total"])
+        case, _, whose = name.rpartition("/")
+        if whose != OURS:
+            add(f"{name} : {OURS}", value, ns.get(f"{case}/{OURS}"))
         session = SESSION.match(name)
         if session:
             add(f"{name} : real time", value, float(session[1]) * 1e9)

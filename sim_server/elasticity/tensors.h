@@ -12,7 +12,9 @@ namespace palpate::sim {
 /// equation 12):
 ///   K_ij = V (lambda g_i g_j^T + mu g_j g_i^T + mu (g_i . g_j) I),   K_ji = K_ij^T.
 /// Vertices are numbered along a space-filling curve, so that what meets lies close together in memory: 76
-/// bytes an edge and 52 a vertex, about 100 a tetrahedron.
+/// bytes an edge and 52 a vertex, about 100 a tetrahedron. A product takes 0.25 of the time of Eigen's with
+/// the same sparse matrix by rows, 0.3 to 0.6 of that with its lower triangle, and for eight vectors 0.4 of
+/// that by rows (`scripts/bench tensors`).
 class ElasticTensors {
  public:
   /// O(m log m). Summed in tetrahedron order, so the same mesh gives the same bits.

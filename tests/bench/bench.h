@@ -22,6 +22,8 @@ void add_server_rows();
 void add_setup_rows();
 void add_tensor_rows();
 void add_implicit_rows();
+void add_kernel_rows();
+void add_cholesky_rows();
 void add_falcon_rows();
 
 /// Adds a row called `name`. `run` takes the state; an `Error` of it skips the row and says why.

@@ -16,6 +16,10 @@ int main(int argc, char** argv) {
     add_setup_rows();
     add_tensor_rows();
     add_implicit_rows();
+    add_kernel_rows();
+#ifdef PALPATE_WITH_CHOLMOD
+    add_cholesky_rows();
+#endif
 #ifdef PALPATE_WITH_USB
     add_falcon_rows();
 #endif
