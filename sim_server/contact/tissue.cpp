@@ -23,6 +23,9 @@ void Tissue::reserve(std::span<const int> most_loads, std::span<const double> st
     tools_[i].free = free;
     tools_[i].still = still[i];
     if (tools_.size() > 1) tools_[i].pushed.assign(free.begin(), free.end());
+    for (auto* const array :
+         {&tools_[i].solved, &tools_[i].shift, &tools_[i].positions_here, &tools_[i].free_here})
+      array->assign(free.begin(), free.end());
   }
 }
 
@@ -56,6 +59,57 @@ bool Tissue::meet(std::size_t tool) {
   mine.free = mine.pushed;
   if (own > 0) press(tool);
   return moved;
+}
+
+std::span<const Vec3> ToolTissue::free() const {
+  const auto& mine = tissue_.tools_[tool_];
+  return mine.left > 0 ? std::span<const Vec3>(mine.free_here) : mine.free;
+}
+
+std::span<const Vec3> ToolTissue::positions() const {
+  const auto& mine = tissue_.tools_[tool_];
+  return mine.left > 0 ? std::span<const Vec3>(mine.positions_here) : tissue_.positions;
+}
+
+void ToolTissue::press() {
+  tissue_.press(tool_);
+  auto& mine = tissue_.tools_[tool_];
+  if (mine.left == 0) return;
+  for (std::size_t v = 0; v < mine.shift.size(); ++v)
+    mine.positions_here[v] = tissue_.positions[v] - mine.left * mine.shift[v];
+}
+
+double ToolTissue::surface_motion(const Vec3& p, const Vec3& q, double reach) {
+  auto& mine = tissue_.tools_[tool_];
+  const Vec3 axis = q - p;
+  const double length2 = axis.squaredNorm();
+  double most = 0;
+  for (std::size_t v = 0; v < mine.shift.size(); ++v) {
+    const Vec3 from = mine.solved[v] + mine.carried;
+    mine.shift[v] = tissue_.positions[v] - from;
+    const double went = mine.shift[v].norm();
+    if (went <= most) continue;
+    const double along = length2 > 0 ? std::clamp((from - p).dot(axis) / length2, 0.0, 1.0) : 0;
+    if ((from - p - along * axis).norm() - went < reach) most = went;
+  }
+  return most;
+}
+
+void ToolTissue::set_share_left(double left) {
+  auto& mine = tissue_.tools_[tool_];
+  mine.left = left;
+  if (left == 0) return;
+  for (std::size_t v = 0; v < mine.shift.size(); ++v) {
+    mine.positions_here[v] = tissue_.positions[v] - left * mine.shift[v];
+    mine.free_here[v] = mine.free[v] - left * mine.shift[v];
+  }
+}
+
+void ToolTissue::mark_solved() noexcept {
+  auto& mine = tissue_.tools_[tool_];
+  mine.left = 0;
+  mine.carried.setZero();
+  std::copy(tissue_.positions.begin(), tissue_.positions.end(), mine.solved.begin());
 }
 
 void ToolTissue::set_loads(std::span<const NodalLoad> loads) {

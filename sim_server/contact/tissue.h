@@ -29,6 +29,8 @@ class Tissue {
   std::span<const NodalLoad> loads_of(std::size_t tool) const noexcept { return tools_[tool].own(); }
   /// What is kept for this tool alone.
   std::size_t bytes_of(std::size_t tool) const { return tools_[tool].pushed.size() * sizeof(Vec3); }
+  /// The tool went along with the organ by `motion` (m): so did what it last met.
+  void carry(std::size_t tool, const Vec3& motion) noexcept { tools_[tool].carried += motion; }
   /// `positions`, under the loads of now.
   void press(std::size_t tool) { positions = model->apply(tools_[tool].loads); }
 
@@ -40,6 +42,11 @@ class Tissue {
     std::span<const Vec3> free;    // the tissue's, or `pushed`
     std::vector<Vec3> pushed;      // free under the loads of the other tools; empty where there are none
     double still = 0;              // m
+    std::vector<Vec3> solved;      // positions when its contact was last solved
+    Vec3 carried = Vec3::Zero();   // how far it and the organ have gone since, m
+    std::vector<Vec3> shift;       // how far the surface has gone since then besides, m
+    double left = 0;               // the share of `shift` that is still to come
+    std::vector<Vec3> positions_here, free_here;  // of the surface, at that
     std::span<const NodalLoad> own() const { return std::span(loads).subspan(others); }
   };
   bool meet(std::size_t tool);
@@ -52,10 +59,10 @@ class Tissue {
 class ToolTissue {
  public:
   const DeformationModel& model() const { return *tissue_.model; }
-  std::span<const Vec3> free() const { return tissue_.tools_[tool_].free; }
+  std::span<const Vec3> free() const;
   /// Whether that has moved, compared with the last time this tool met it.
   bool moved() const { return moved_; }
-  std::span<const Vec3> positions() const { return tissue_.positions; }
+  std::span<const Vec3> positions() const;
   std::span<const Vec3> before() const { return tissue_.before; }
 
   std::span<const NodalLoad> loads() const { return tissue_.loads_of(tool_); }
@@ -67,7 +74,17 @@ class ToolTissue {
   void add_load(const NodalLoad& load) { tissue_.tools_[tool_].loads.push_back(load); }
   void drop_loads() { set_loads({}); }
   /// The tissue goes where all loads press it.
-  void press() { tissue_.press(tool_); }
+  void press();
+
+  /// How far (m) the surface has gone since the contact of this tool was last solved, where it may have come
+  /// within `reach` (m) of the tool's axis from `p` to `q`, in all: what a step of a tissue in motion, a new
+  /// linearisation or other tools did. The tool has not met that yet: let it come in parts. O(vertices).
+  double surface_motion(const Vec3& p, const Vec3& q, double reach);
+  /// Puts the surface where that share of this motion is still to come, from 1 to 0. Of its answers,
+  /// `positions` and `free` are there.
+  void set_share_left(double left);
+  /// The contact of this tool is solved with the surface as it is.
+  void mark_solved() noexcept;
   /// It goes free of this tool, if that loaded it.
   void release();
 

@@ -11,8 +11,9 @@ namespace {
 constexpr double kIncrement = 0.5;  // of the tool radius: how far the tool goes between two contact solves
 // With friction, which follows the path: shorter, as many as a step has time for.
 constexpr double kFrictionIncrement = 0.01, kFrictionIncrements = 16;
-constexpr double kGather = 2.0;      // of the tool radius: how far from the tip the patch extends
-constexpr double kGatherDear = 1.5;  // the same where each node more costs solves of the whole tissue
+constexpr double kFarthestJump = 0.1;  // of the tool radius: what the surface may move by at once
+constexpr double kGather = 2.0;        // of the tool radius: how far from the tip the patch extends
+constexpr double kGatherDear = 1.5;    // the same where each node more costs solves of the whole tissue
 constexpr double kMaxIncrements = 256;
 // Of the tool radius: how far it presses on in one step, where the tissue is known only near its last shape.
 constexpr double kFarthestPress = 2.0;
@@ -80,6 +81,7 @@ void ToolContact::solve_grasp(const ToolPose& pose, ToolTissue tissue) {
   place_ = pose;
   tip_offset_.setZero();
   const Grip::Pull pull = grip_->pull(pose.p_W, tissue);
+  tissue.mark_solved();
   if (!pull.force.allFinite()) return reject(tissue);
   force_ = {.force = pull.force,
             .tangent = pull.tangent,
@@ -98,7 +100,8 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
   if (anew) place_outside(pose, tissue);
   const Vec3 motion = pose.p_W - place_.p_W;
   const ToolPose from = place_;
-  const double increments = increments_to(pose);
+  const double surface = anew ? 0 : surface_motion(tissue);
+  const double increments = std::max(increments_to(pose), increments_for(motion.norm(), surface));
   const bool anywhere = tissue.model().compliance_is_constant();
   const double increment = motion.norm() / increments / tool_.radius;
   ContactForce contact;
@@ -108,6 +111,7 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
     if (pressed > kFarthestPress && !anywhere) break;
     start_increment(i == 1, tissue);
     const double share = i / increments;
+    if (surface > 0) tissue.set_share_left(1 - share);
     place_ = i == increments ? pose
                              : ToolPose(from.p_W + share * motion + path_offset(share, motion),
                                         from.q_W.slerp(share, pose.q_W));
@@ -117,9 +121,23 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
     if (contact.contacts > 0) pressed += increment;
     if (contact.contacts == 0 && touched && recover_from_inside(tissue)) break;
   }
+  tissue.set_share_left(0);
   // Else the next step goes on from here.
   arrived_ = place_.p_W == pose.p_W && place_.q_W.coeffs() == pose.q_W.coeffs();
   set_force(contact, iterations, tissue);
+}
+
+/// How far the surface near the tool has gone since contact was last solved, m; 0: not so far that the tool
+/// need meet it in parts.
+double ToolContact::surface_motion(ToolTissue tissue) const {
+  const double surface = tissue.surface_motion(place_.p_W, far_end(tool_, place_), kGather * tool_.radius);
+  return surface > kFarthestJump * tool_.radius ? surface : 0;
+}
+
+/// Where the surface comes along by `surface` (m) while the tool goes by `motion` (m).
+double ToolContact::increments_for(double motion, double surface) const noexcept {
+  if (surface == 0) return 1;
+  return std::clamp(std::ceil((motion + surface) / (kIncrement * tool_.radius)), 1.0, kMaxIncrements);
 }
 
 double ToolContact::increments_to(const ToolPose& pose) const noexcept {
@@ -161,10 +179,16 @@ Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue,
 
 void ToolContact::settle(ToolTissue tissue) {
   if (holds()) return solve_grasp(place_, tissue);
-  ContactForce contact = solve_contact(tissue);
+  const double surface = surface_motion(tissue), increments = increments_for(0, surface);
+  ContactForce contact;
+  int iterations = force_.iterations;
+  for (double i = 1; i <= increments; ++i) {
+    if (surface > 0) tissue.set_share_left(1 - i / increments);
+    contact = solve_contact(tissue);
+    iterations += contact.iterations;
+  }
   const bool may_be_inside =
       force_.contacts > 0 && (contact.contacts == 0 || !tissue.model().compliance_is_constant());
-  const int iterations = force_.iterations + contact.iterations;
   if (may_be_inside && recover_from_inside(tissue)) {
     arrived_ = false;
     contact = {};
@@ -173,6 +197,7 @@ void ToolContact::settle(ToolTissue tissue) {
 }
 
 void ToolContact::set_force(const ContactForce& contact, int iterations, ToolTissue tissue) {
+  tissue.mark_solved();
   if (!contact.force.allFinite()) return reject(tissue);
   force_ = {.force = contact.force,
             .torque = contact.torque,
@@ -205,6 +230,7 @@ ToolForce ToolContact::probe(const Vec3& p_W, ToolTissue tissue) {
   arrived_ = arrived;
   tissue.set_loads(kept_);
   tissue.press();
+  tissue.mark_solved();
   return there;
 }
 

@@ -107,6 +107,8 @@ class ToolContact {
   void start_increment(bool first, const ToolTissue& tissue);
   Vec3 place_at_entry(const ToolPose& pose, const Vec3& inside, double share,
                       const Vec3& entry) const noexcept;
+  double surface_motion(ToolTissue tissue) const;
+  double increments_for(double motion, double surface) const noexcept;
   double increments_to(const ToolPose& pose) const noexcept;
   Vec3 path_offset(double share, const Vec3& motion) const noexcept;
   ContactForce solve_contact(ToolTissue tissue);

@@ -233,6 +233,7 @@ void Simulation::move_organ(double dt) {
         0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.loads_of(i));
   for (std::size_t i = 0; moves && i < tools_.size(); ++i) {
     tools_[i].carry(surface_motion_[i]);
+    tissue_.carry(i, surface_motion_[i]);
     tissue_.press(i);
   }
   if (moves && !tissue_.before.empty())  // gone along, nothing has slipped
