@@ -18,20 +18,22 @@ struct TrajectorySettings {
   std::array<std::string, 4> columns{"t_s", "x_m", "y_m", "z_m"};  ///< time (s) and position
   double scale = 1;              ///< metres per unit of the position columns
   Vec3 offset = Vec3::Zero();    ///< added after scaling, m
+  bool repeat = false;           ///< after its end from the start again; it must end within 1 mm of that
   Mat3 axes = Mat3::Identity();  ///< turns the columns; not a key of the file
 };
 
-/// Reads a `[trajectory]` section: file, columns, scale, offset. Throws `Error`.
+/// Reads a `[trajectory]` section: file, columns, scale, offset, repeat. Throws `Error`.
 TrajectorySettings read_trajectory_settings(const Config& section);
 
-/// A path through space: straight between rows, at rest before the first; after the last it repeats if it
-/// ends within 1 mm of where it began, else it stays there. m, s, in the frame of the settings.
+/// A path through space: straight between rows, at rest before the first and after the last, or
+/// then from the start again. m, s, in the frame of the settings.
 class Trajectory {
  public:
-  /// Reads a CSV. Throws `Error` for a bad row (file and line) or times that do not increase (file and row).
+  /// Reads a CSV. Throws `Error` for a bad row (file and line), times that do not increase (file and row), or
+  /// a motion that is to repeat and ends elsewhere than it began.
   explicit Trajectory(const TrajectorySettings& settings);
   /// From rows, times increasing; for tests and for a hand that holds still (one row).
-  Trajectory(std::vector<double> t_s, std::vector<Vec3> p);
+  Trajectory(std::vector<double> t_s, std::vector<Vec3> p, bool repeats = false);
 
   /// Position at `t` seconds after the start. O(log rows), no allocation.
   Vec3 at(double t) const noexcept;
@@ -44,6 +46,7 @@ class Trajectory {
  private:
   std::vector<double> t_;
   std::vector<Vec3> p_;
+  bool repeats_;
 };
 
 }  // namespace palpate

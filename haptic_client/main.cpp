@@ -57,7 +57,7 @@ CLI::App* add_run(CLI::App& app, std::vector<std::string>& files, Overrides& ove
   command->add_option("--falcon-firmware", overrides.firmware,
                       "Image for a Falcon that has none since power-up");
   command->add_option("--method", overrides.method, "How to extrapolate the force, see below");
-  command->add_option("--rate", overrides.rate_hz, "Haptic ticks per second, 100 to 4000 (default 500)")
+  command->add_option("--rate", overrides.rate_hz, "Haptic ticks per second, 100 to 4000 (default 500; 1000 for a Falcon)")
       ->check(CLI::Range(client::kMinRate, client::kMaxRate));
   command->add_option("--seconds", options.seconds, "Stop after so many seconds");
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
@@ -146,6 +146,9 @@ std::vector<client::ClientConfig> read_configs(const std::vector<std::string>& f
     configs.push_back(read_config(file, overrides));
     if (!overrides.devices.empty())
       client::choose_device(configs.back().device, overrides.devices[i], "--device");
+    const client::DeviceSettings& device = configs.back().device;
+    if (file.empty() && !overrides.rate_hz)
+      configs.back().rate_hz = client::row_of(device).limits(device).usual_rate_hz;
   }
   return configs;
 }

@@ -58,7 +58,7 @@ bool ContactSolver::respond(const ContactPatch& patch,
   auto delassus = delassus_.topLeftCorner(n, n);
   delassus.noalias() = jacobian * response;
   for (Eigen::Index row = 0; row < n; ++row)
-    delassus(row, row) += row % rows == 0 ? kContactCompliance : kFrictionCompliance;
+    delassus(row, row) += row % rows == 0 ? contact_compliance_ : friction_compliance_;
   return true;
 }
 
@@ -120,7 +120,7 @@ bool ContactSolver::differentiate_forces(
   for (Eigen::Index i = 0; i < n; i += 3) {
     const int k = considered_[static_cast<std::size_t>(i / 3)];
     force.segment<3>(i) = lambda_.segment<3>(3 * k);
-    slack.segment<3>(i) = kFrictionCompliance * force.segment<3>(i);
+    slack.segment<3>(i) = friction_compliance_ * force.segment<3>(i);
     slack.segment<2>(i + 1) += frames_[k].rightCols<2>().transpose() * travel(contacts_[k]);
     slack[i] = 0;
   }

@@ -63,6 +63,12 @@ Vec3 ContactSolver::direction(int contact, int row) const {
   return row == 0 ? contacts_[contact].normal : Vec3(frames_[contact].col(row));
 }
 
+double ContactSolver::contact_compliance(const ContactPatch& patch, int nodes) noexcept {
+  constexpr double kMost = 1e-9, kShare = 1e-6;  // m/N; of a node's
+  const auto of_nodes = patch.compliance.diagonal().head(3 * nodes);
+  return std::min(kMost, kShare * (of_nodes.mean() + patch.tool_compliance));
+}
+
 /// How far the tip went over the surface at a contact in this increment.
 Vec3 ContactSolver::travel(const Contact& c) const {
   Vec3 travel = c.at_tip(tip_ - tip_was_) + turned_ * c.arm;
@@ -70,8 +76,8 @@ Vec3 ContactSolver::travel(const Contact& c) const {
   return travel;
 }
 
-void ContactSolver::start_stride(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
-                                 const IncrementStart& start) noexcept {
+void ContactSolver::start_increment(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
+                                    const IncrementStart& start) noexcept {
   friction_ = tool.friction;
   pivots_ = tool.trocar.has_value();
   felt_.clear();
@@ -114,14 +120,16 @@ void ContactSolver::linearise(const ContactPatch& patch, const Vec3& p_W,
     const auto response = response_.col(column).head(3 * (m + 1));
     for (int row = 0; row < rows * n; ++row)
       delassus_(row, column) = along(contacts_[row / rows], direction(row / rows, row % rows), m, response);
-    delassus_(column, column) += column % rows == 0 ? kContactCompliance : kFrictionCompliance;
+    delassus_(column, column) += column % rows == 0 ? contact_compliance_ : friction_compliance_;
   }
 }
 
 ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
                                   Eigen::Ref<Eigen::VectorXd> u, const IncrementStart& start,
                                   const Effort& effort) noexcept {
-  start_stride(patch, tool, pose, start);
+  start_increment(patch, tool, pose, start);
+  contact_compliance_ = contact_compliance(patch, patch.nodes());
+  friction_compliance_ = contact_compliance_ / 10;
   const int m = patch.nodes();
   ContactForce result;
   result.converged = false;

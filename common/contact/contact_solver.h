@@ -33,7 +33,7 @@ struct ContactForce {
       true;  ///< false: the answer is finite, the geometry still moved by more than the tolerance
 };
 
-/// Where a increment began; slip is measured from there, and there is no other memory of friction: a node
+/// Where an increment began; slip is measured from there, and there is no other memory of friction: a node
 /// without contact carries none. What `solve` found is the start of the next increment: nodes at `free` + u,
 /// the tip at the pose + u_tip. So a path is a chain of solves, on the server and wherever it is replayed.
 struct IncrementStart {
@@ -90,17 +90,18 @@ class ContactSolver {
   /// What its matrices hold, bytes.
   std::size_t bytes() const;
 
-  /// Compliance in series with every contact (m/N): ten thousand times stiffer than a liver's contact, it
-  /// keeps the Delassus operator positive definite where contacts coincide or nodes are fixed. Across the
-  /// normal a thousandth of it, as there it is a creep, by that much per N and increment.
-  static constexpr double kContactCompliance = 1e-9, kFrictionCompliance = 1e-10;
+  /// Compliance in series with every contact of a patch of so many nodes, m/N: it keeps the Delassus operator
+  /// positive definite where contacts coincide or nodes are fixed. A millionth of the mean compliance of a
+  /// node along an axis (and of the tool), at most 1e-9, ten thousand times stiffer than a liver's contact.
+  /// Across the normal a tenth of it, as there it is a creep, by that much per N and increment.
+  static double contact_compliance(const ContactPatch& patch, int nodes) noexcept;
 
  private:
   int rows_of_contact() const { return friction_ > 0 ? 3 : 1; }
   Vec3 direction(int contact, int row) const;
   Vec3 travel(const Contact& c) const;
-  void start_stride(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
-                    const IncrementStart& start) noexcept;
+  void start_increment(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
+                       const IncrementStart& start) noexcept;
   void linearise(const ContactPatch& patch, const Vec3& p_W,
                  const Eigen::Ref<const Eigen::VectorXd>& u) noexcept;
   bool solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
@@ -122,6 +123,7 @@ class ContactSolver {
   bool differentiate_forces(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
   Mat3 tangent_of_considered(const ContactPatch& patch) noexcept;
 
+  double contact_compliance_ = 0, friction_compliance_ = 0;  // m/N, of this patch
   // Rows are those of the contacts in turn: one each, along the normal; with friction two more, across it.
   ComplementaritySolver complementarity_;
   CoulombSolver coulomb_;

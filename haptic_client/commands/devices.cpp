@@ -37,8 +37,10 @@ int print_plugged_in() {
   known.insert(known.end(), spacemouse_ids().begin(), spacemouse_ids().end());
   std::vector<UsbDevice> found = find_usb({kFalconIds});
   for (UsbDevice& mouse : find_usb({spacemouse_ids(), true})) found.push_back(std::move(mouse));
-  if (found.empty())
+  if (found.empty()) {
     fmt::print("no device that Palpate knows is plugged in; known: Novint Falcon, 3Dconnexion 6-DoF mice\n");
+    return 1;
+  }
   std::set<std::string> rules;
   for (const UsbDevice& device : found) {
     const bool falcon = is_falcon(device.id);

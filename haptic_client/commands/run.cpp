@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <list>
 #include <nlohmann/json.hpp>
 #include <poll.h>
@@ -60,6 +61,28 @@ void check_together(const std::vector<ClientConfig>& configs) {
   }
 }
 
+/// A device may be plugged in later; but one that is looked for in the wrong place never will be.
+/// Returns, for each tool, whether it is so.
+std::vector<bool> tell_missing_ports(const std::vector<ClientConfig>& configs) {
+  std::vector<bool> missing(configs.size(), false);
+  for (std::size_t i = 0; i < configs.size(); ++i) {
+    const DeviceSettings& device = configs[i].device;
+    if (device.port.empty() || row_of(device).ports == nullptr) continue;
+    const std::vector<std::string> ports = row_of(device).ports();
+    if (std::ranges::count(ports, device.port) > 0) continue;
+    missing[i] = true;
+    log::warning(
+        "{}: no {} at port {}; {}; waiting for it to be plugged in", device.where, device.name, device.port,
+        ports.empty() ? "there is none at any other" : fmt::format("there are: {}", fmt::join(ports, ", ")));
+  }
+  return missing;
+}
+
+/// Whether the device gave nothing in the whole run.
+bool never_there(const Json& tool) {
+  return tool["loop"]["ticks"] > 0 && tool["safety"]["lost"] == tool["loop"]["ticks"];
+}
+
 /// Whether a line can be printed without waiting: nobody who reads slowly may keep us from Ctrl-C.
 bool takes_output() {
   pollfd out{STDOUT_FILENO, POLLOUT, 0};
@@ -106,6 +129,7 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   for (const ToolFiles& tool : files) {
     if (tool.trace) check_writable(*tool.trace);
   }
+  const std::vector<bool> missing = tell_missing_ports(configs);
   Guardian guardian(configs);  // before any thread; goes after the tools
   std::list<HeldTool> tools;
   for (std::size_t i = 0; i < configs.size(); ++i)
@@ -126,6 +150,11 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   print_report(report);
   for (const HeldTool& tool : tools) tool.write_files();
   if (options.report) write_json(*options.report, report);
+  for (std::size_t i = 0; i < configs.size(); ++i) {
+    if (!missing[i] || !never_there(report["tools"][i])) continue;
+    fail_at_run_time("{}: no {} came to port {}; `haptic_client devices` lists what is there",
+                     configs[i].device.where, configs[i].device.name, configs[i].device.port);
+  }
   return 0;
 }
 

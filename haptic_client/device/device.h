@@ -16,6 +16,7 @@ struct DeviceReading {
 struct DeviceLimits {
   double max_force = 8;                              ///< N
   Time min_period = std::chrono::microseconds(250);  ///< shortest loop period it serves
+  double usual_rate_hz = 500;                        ///< ticks a second where nobody asks for a rate
 };
 
 /// A force-feedback device. Called by the haptic thread only; never blocks longer than its own exchange,

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "common/clock.h"
 #include "common/error.h"
 #include "common/text.h"
 #include "haptic_client/device/usb_port.h"
@@ -41,14 +42,22 @@ std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
 /// All that are there, if no port was asked for: which one the dead process had is not known.
 int make_falcon_safe(const DeviceSettings& settings) {
 #ifdef PALPATE_WITH_USB
-  std::vector<std::unique_ptr<UsbTransport>> ports;
-  if (settings.port.empty()) {
-    for (const UsbDevice& device : find_usb({kFalconIds}))
-      ports.push_back(std::make_unique<UsbPort>(UsbKind{kFalconIds}, device.path));
-  } else {
-    ports.push_back(usb_port(settings, {kFalconIds}));
+  if (!settings.port.empty()) {
+    std::vector<std::unique_ptr<UsbTransport>> port;
+    port.push_back(usb_port(settings, {kFalconIds}));
+    return silence_falcons(port);
   }
-  return silence_falcons(ports);
+  constexpr int kLooks = 10;  // in a second: one that is just being enumerated again is there soon
+  int silenced = 0;
+  for (int look = 0; look < kLooks && silenced == 0; ++look) {
+    if (look > 0) sleep_until(now() + std::chrono::milliseconds(100));
+    std::vector<std::unique_ptr<UsbTransport>> ports;
+    for (const UsbDevice& device : find_usb({kFalconIds})) {
+      if (device.access.empty()) ports.push_back(std::make_unique<UsbPort>(UsbKind{kFalconIds}, device.path));
+    }
+    silenced = silence_falcons(ports);
+  }
+  return silenced;
 #else
   (void)settings;
   return 0;
@@ -56,7 +65,7 @@ int make_falcon_safe(const DeviceSettings& settings) {
 }
 
 DeviceLimits limits_of_falcon(const DeviceSettings&) {
-  return {.max_force = 8, .min_period = std::chrono::milliseconds(1)};
+  return {.max_force = 8, .min_period = std::chrono::milliseconds(1), .usual_rate_hz = 1000};
 }
 
 std::unique_ptr<Device> make_spacemouse(const DeviceSettings& settings) {
@@ -67,14 +76,27 @@ DeviceLimits limits_of_spacemouse(const DeviceSettings&) {
   return {};
 }
 
+std::vector<std::string> ports_of(const UsbKind& kind) {
+  std::vector<std::string> ports;
+#ifdef PALPATE_WITH_USB
+  for (const UsbDevice& device : find_usb(kind)) ports.push_back(device.path);
+#else
+  (void)kind;
+#endif
+  return ports;
+}
+
 constexpr std::array kDevices{
     DeviceRow{"simulated", "a hand (mass, spring, damper) that follows a recorded motion",
               &limits_of_simulated, &make_simulated, nullptr},
     DeviceRow{"falcon", "Novint Falcon over libusb; falcon:2-1 is the one at bus 2, port 1",
-              &limits_of_falcon, &make_falcon, &make_falcon_safe},
+              &limits_of_falcon, &make_falcon, &make_falcon_safe, [] { return ports_of({kFalconIds}); }},
     DeviceRow{"spacemouse",
               "3Dconnexion 6-DoF mouse over libusb: moves the tool, gives no force; also spacemouse:PORT",
-              &limits_of_spacemouse, &make_spacemouse, nullptr},
+              &limits_of_spacemouse, &make_spacemouse, nullptr,
+              [] {
+                return ports_of({spacemouse_ids(), true});
+              }},
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "haptic_client/device/device.h"
 #include "haptic_client/device/falcon.h"
@@ -34,6 +35,8 @@ struct DeviceRow {
   /// Takes the device over from a process that died, and sends it zero force; returns how many there were.
   /// May take a second. Throws `Error`. Null: it has no motors, or they end with the process.
   int (*make_safe)(const DeviceSettings&);
+  /// The ports at which there are such devices now. Null: it has no port.
+  std::vector<std::string> (*ports)() = nullptr;
 };
 std::span<const DeviceRow> devices();
 /// The row of the device that is asked for. Throws `Error` for a name that is none.

@@ -126,9 +126,15 @@ std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulat
     row.bytes = part.bytes;
     if (!part.detail.empty()) row.detail = part.detail;
   }
-  for (const FixedRegion& region : scene.fixed) rows.push_back({"fixed", "nothing kept", region.where});
+  const std::string wall =
+      fmt::format("nothing kept; under a tool each vertex is a wall of {:g} N/m", held_stiffness(scene));
+  for (const FixedRegion& region : scene.fixed) rows.push_back({"fixed", wall, region.where});
   if (scene.material)
-    rows.push_back({"material", model_of(scene.deformation).deforms() ? "nothing kept" : "not used",
+    rows.push_back({"material",
+                    !model_of(scene.deformation).deforms() ? "not used"
+                    : scene.material->locks()
+                        ? "nothing kept; \"p1\" locks at this poisson_ratio: take \"p2\""
+                        : "nothing kept",
                     scene.material_where});
   return rows;
 }

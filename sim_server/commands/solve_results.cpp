@@ -41,26 +41,25 @@ double von_mises(const Mat3& stress) {
   return std::sqrt(1.5) * deviator.norm();
 }
 
-/// Of the nodes that are held, along the axes in which they are, N.
-Vec3 held_force(const Loads& loads, std::span<const Vec3> left, std::span<const int> nodes) {
+/// Of nodes along the axes in which they are held, N.
+Vec3 held_force(std::span<const Vec3> residual, std::span<const std::pair<int, HeldAxes>> nodes) {
   Vec3 sum = Vec3::Zero();
-  for (const int i : nodes) {
-    for (int axis = 0; axis < 3; ++axis)
-      sum[axis] += (loads.held()[i] >> axis & 1) != 0 ? left[i][axis] : 0.0;
+  for (const auto& [i, axes] : nodes) {
+    for (int axis = 0; axis < 3; ++axis) sum[axis] += (axes >> axis & 1) != 0 ? residual[i][axis] : 0.0;
   }
   return sum;
 }
 
 void print_forces(const Loads& loads, const std::vector<HeldRegion>& regions, const Outcome& outcome) {
-  std::vector<Vec3> left = outcome.resistance, external(left.size(), Vec3::Zero());
+  std::vector<Vec3> residual = outcome.resistance, external(residual.size(), Vec3::Zero());
   loads.add_forces(outcome.x, external);
-  std::vector<int> all(left.size());
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    left[i] -= external[i];
-    all[i] = static_cast<int>(i);
+  std::vector<std::pair<int, HeldAxes>> all;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    residual[i] -= external[i];
+    all.emplace_back(static_cast<int>(i), loads.held()[i]);
   }
-  const auto print = [&](const std::string& name, std::span<const int> nodes) {
-    const Vec3 force = held_force(loads, left, nodes);
+  const auto print = [&](const std::string& name, std::span<const std::pair<int, HeldAxes>> nodes) {
+    const Vec3 force = held_force(residual, nodes);
     fmt::print("  {:<22} {:.9g} {:.9g} {:.9g} N\n", name, force[0], force[1], force[2]);
   };
   print("force of the supports", all);
@@ -149,22 +148,31 @@ void write_outcome(const std::filesystem::path& file, const Solid& solid, const 
 
 std::vector<HeldRegion> held_regions(const Scene& scene, const TetMesh& mesh) {
   std::vector<HeldRegion> regions;
-  std::vector<int> owner(mesh.vertices.size(), -1);
-  const auto add = [&](const std::string& what, const Region& region) {
+  std::vector<std::array<int, 3>> owner(mesh.vertices.size(), {-1, -1, -1});  // of each axis
+  const auto add = [&](const std::string& what, const Region& region, HeldAxes axes) {
     const auto own = static_cast<int>(regions.size());
-    for (const int v : vertices_in(region, mesh)) owner[v] = own;
+    for (const int v : vertices_in(region, mesh)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((axes >> axis & 1) != 0) owner[v][axis] = own;
+      }
+    }
     regions.push_back({what + " " + region.where, {}});
   };
-  for (const FixedRegion& region : scene.fixed) add("[[fixed]]", region);
+  for (const FixedRegion& region : scene.fixed) add("[[fixed]]", region, region.axes);
   for (const Load& load : scene.loads) {
-    if (load.kind == Load::Kind::kDisplacement) add("[[load]]", load.region);
+    if (load.kind == Load::Kind::kDisplacement) add("[[load]]", load.region, load.axes);
   }
   for (std::size_t k = 0; k < mesh.mid_edges.size(); ++k) {
     const auto [a, b] = mesh.mid_edges[k];
-    owner[static_cast<std::size_t>(mesh.corners()) + k] = std::min(owner[a], owner[b]);
+    for (int axis = 0; axis < 3; ++axis)
+      owner[static_cast<std::size_t>(mesh.corners()) + k][axis] = std::min(owner[a][axis], owner[b][axis]);
   }
   for (std::size_t i = 0; i < owner.size(); ++i) {
-    if (owner[i] >= 0) regions[owner[i]].nodes.push_back(static_cast<int>(i));
+    for (int r = 0; r < static_cast<int>(regions.size()); ++r) {
+      int axes = 0;
+      for (int axis = 0; axis < 3; ++axis) axes |= owner[i][axis] == r ? 1 << axis : 0;
+      if (axes != 0) regions[r].nodes.emplace_back(static_cast<int>(i), static_cast<HeldAxes>(axes));
+    }
   }
   return regions;
 }

@@ -29,10 +29,10 @@ struct Probe {
 /// the `corners`, which come first among the nodes.
 Probe find_probe(const std::string& text, const Solid& solid, int corners);
 
-/// Nodes that a [[fixed]] or a [[load]] with `displacement` holds, and no later one.
+/// What a [[fixed]] or a [[load]] with `displacement` holds, along each axis, and no later one does.
 struct HeldRegion {
-  std::string name;  ///< with "FILE:LINE"
-  std::vector<int> nodes;
+  std::string name;                               ///< with "FILE:LINE"
+  std::vector<std::pair<int, HeldAxes>> nodes{};  ///< each with the axes along which this holds it
 };
 std::vector<HeldRegion> held_regions(const Scene& scene, const TetMesh& mesh);
 

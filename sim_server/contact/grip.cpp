@@ -66,8 +66,8 @@ double Grip::misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const N
   const Vec3 tip = p_W - patch_.tool_compliance * sum;
   double largest = 0;
   for (std::size_t i = 0; i < own.size(); ++i) {
-    const Vec3 missing = tip + offsets_[i] - tissue.positions()[vertices_[i]] -
-                         ContactSolver::kContactCompliance * own[i].force;
+    const Vec3 missing =
+        tip + offsets_[i] - tissue.positions()[vertices_[i]] - contact_compliance_ * own[i].force;
     misfit_.segment<3>(3 * static_cast<Eigen::Index>(i)) = missing;
     largest = std::max(largest, missing.cwiseAbs().maxCoeff());
   }
@@ -83,7 +83,8 @@ bool Grip::factor(const ToolTissue& tissue) {
     for (Eigen::Index i = 0; i < m; ++i)
       system.block<3, 3>(3 * i, 3 * j).diagonal().array() += patch_.tool_compliance;
   }
-  system.diagonal().array() += ContactSolver::kContactCompliance;
+  contact_compliance_ = ContactSolver::contact_compliance(patch_, static_cast<int>(m));
+  system.diagonal().array() += contact_compliance_;
   Eigen::Ref<Eigen::MatrixXd> in_place(system);
   return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(in_place).info() == Eigen::Success;
 }

@@ -96,6 +96,7 @@ Implicit::Implicit(const ModelInputs& inputs)
     : solid_(inputs.mesh, material_of(inputs)),
       scene_loads_(inputs.scene, inputs.mesh, inputs.surface, solid_),
       dynamics_(solid_, scene_loads_.held(), settings_of(inputs), inputs.scene.source),
+      held_compliance_(1 / held_stiffness(inputs.scene)),
       period_(step_period(inputs.scene)),
       tolerance_(inputs.scene.deformation.of<ImplicitSettings>().tolerance),
       max_newton_(inputs.scene.deformation.of<ImplicitSettings>().max_newton),
@@ -118,7 +119,6 @@ Implicit::Implicit(const ModelInputs& inputs)
   free_ = positions_ = rest_;
   dynamics_.start_step(period_);
   dynamics_.iterate(external_forces());
-  held_compliance_ = 1 / dynamics_.matrix().largest_diagonal();
   update_surface();
   if (supports_ || inputs.scene.flies()) free_ = positions_ = rest_;
   inputs.progress(name_of(Stage::kFactor), 1);
@@ -210,7 +210,11 @@ void Implicit::update_surface() {
     factors_ = dynamics_.factors();
     replace_columns();
   }
-  for (std::size_t v = 0; v < node_.size(); ++v) positions_[v] = free_[v] = dynamics_.position()[node_[v]];
+  for (std::size_t v = 0; v < node_.size(); ++v) positions_[v] = dynamics_.position()[node_[v]];
+  for (const NodalLoad& load : linearised_loads_) {  // what holds the body is no part of its motion
+    if (dof_[load.vertex] < 0) positions_[load.vertex] += held_compliance_ * load.force;
+  }
+  std::copy(positions_.begin(), positions_.end(), free_.begin());
   press(linearised_loads_, -1, free_);
 }
 

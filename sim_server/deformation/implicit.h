@@ -77,6 +77,7 @@ class Implicit : public DeformationModel {
   Dynamics dynamics_;
   /// Where some move. Only for how fast the surface goes by them (by a linearisation about rest), and when.
   std::optional<MovingSupports> supports_;
+  double held_compliance_;  // m/N, of a fixed vertex under the tool itself
   double period_, tolerance_;
   int max_newton_, iterations_ = 0;  // of Newton's method in this step
   int factors_ = 0;                  // of the columns
@@ -87,7 +88,6 @@ class Implicit : public DeformationModel {
   std::vector<int> vertex_;          // per three unknowns: the surface vertex, or -1: inside
   std::vector<Vec3> rest_, free_, positions_, external_;  // m; surface vertices; N, nodes
   std::vector<NodalLoad> loads_, linearised_loads_;       // now; those that the linearisation was made under
-  double held_compliance_ = 0;                            // m/N
   mutable std::vector<int> slot_;                         // per surface vertex: of its columns, or -1
   mutable std::vector<std::uint8_t> asked_;  // per surface vertex: for its columns, of this factor
   mutable int slots_ = 0;

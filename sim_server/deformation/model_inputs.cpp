@@ -1,8 +1,18 @@
 #include "sim_server/deformation/model_inputs.h"
 
+#include <algorithm>
+
 #include "common/error.h"
 
 namespace palpate::sim {
+
+double held_stiffness(const Scene& scene) {
+  constexpr double kLeast = 2000, kOfTissue = 10;  // N/m; no unit
+  double radius = 0;
+  for (const ToolSettings& tool : scene.tools) radius = std::max(radius, tool.shape.radius);
+  const double modulus = scene.material ? scene.material->young_modulus : 0;
+  return std::max(kLeast, kOfTissue * modulus * radius);
+}
 
 double step_period(const Scene& scene) {
   if (scene.rate_hz <= 0) {

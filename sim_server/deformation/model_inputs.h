@@ -18,6 +18,13 @@ struct ModelInputs {
   double free_bytes = free_memory();  ///< that it may take
 };
 
+/// How stiff a vertex of a [[fixed]] is under a tool, N/m, whatever the model: 2000, which the limits of
+/// clients and devices can render (`[limits] force` at 4 mm), or ten times Young's modulus times the largest
+/// tool's radius where that is more, so that what holds a tissue is harder than it. An infinitely hard wall
+/// would be a kick. A force between vertices is shared by them: the wall is at most three times as stiff as
+/// one.
+double held_stiffness(const Scene& scene);
+
 /// 1 / rate_hz of the scene, s, for a model whose steps all take that long. Throws `Error` where it is 0.
 double step_period(const Scene& scene);
 

@@ -4,6 +4,7 @@
 
 #include "common/error.h"
 #include "common/parallel.h"
+#include "sim_server/mesh/loose_parts.h"
 
 namespace palpate::sim {
 namespace {
@@ -22,6 +23,10 @@ void require_held_tissue(const ModelInputs& inputs) {
         "contains some",
         scene.source);
   }
+  const std::vector<LoosePart> loose = loose_parts(inputs.mesh, inputs.fixed);
+  if (!loose.empty())
+    fail("{}: {}; a [[fixed]] that holds three of their vertices, not in one line, would hold them",
+         scene.source, to_text(loose.front()));
 }
 
 /// Equal by theory to its transpose; makes it so to the last bit, for contact and for Cholesky.
@@ -42,7 +47,9 @@ void symmetrise(Eigen::MatrixXd& m) {
 }  // namespace
 
 SurfaceCompliance::SurfaceCompliance(const ModelInputs& inputs)
-    : source_(inputs.scene.source), row_(inputs.surface.vertices.size(), -1) {
+    : source_(inputs.scene.source),
+      row_(inputs.surface.vertices.size(), -1),
+      held_compliance_(1 / held_stiffness(inputs.scene)) {
   require_held_tissue(inputs);
   for (const int vertex : inputs.reachable) {
     if (std::binary_search(inputs.fixed.begin(), inputs.fixed.end(), inputs.surface.vertices[vertex]))
@@ -79,7 +86,6 @@ void SurfaceCompliance::compute(std::size_t at_once, const Respond& respond, con
     });
   }
   symmetrise(compliance_);
-  held_compliance_ = compliance_.diagonal().minCoeff();
 }
 
 void SurfaceCompliance::add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd& weights) {
@@ -92,7 +98,6 @@ void SurfaceCompliance::add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd
     compliance_.middleCols(from, count).noalias() += here * weighted.middleCols(from, count);
   });
   symmetrise(compliance_);
-  held_compliance_ = compliance_.diagonal().minCoeff();
 }
 
 void SurfaceCompliance::fill(std::span<const int> vertices, ContactPatch& patch) const noexcept {

@@ -12,8 +12,7 @@ namespace palpate::sim {
 /// How compliant a linear tissue is where tools can reach it: W (3r x 3r, m/N, symmetric), the displacement
 /// of each of the r free reachable surface vertices per force on each. 27 MB for 614 of them. A surface
 /// vertex out of reach does not give way; it is not computed. A fixed one does not move with the tissue, but
-/// where the tool presses on it, it gives way like the stiffest free vertex: an infinitely hard wall in soft
-/// tissue would be neither true nor safe.
+/// where the tool presses on it, it gives way as `held_stiffness` says.
 class SurfaceCompliance {
  public:
   /// Numbers the rows; W is not there yet. Throws `Error` without material or fixed nodes, where all
@@ -53,7 +52,7 @@ class SurfaceCompliance {
   std::vector<int> row_;        // per surface vertex
   std::vector<int> vertices_;   // surface vertex of each block row
   Eigen::MatrixXd compliance_;  // W
-  double held_compliance_ = 0;  // m/N, of a fixed vertex under the tool itself: that of the stiffest free one
+  double held_compliance_;      // m/N, of a fixed vertex under the tool itself
 };
 
 }  // namespace palpate::sim

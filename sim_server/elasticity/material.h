@@ -40,6 +40,10 @@ struct Material {
   }
   /// Linear law, any element, with fibres or without: stress goes with strain, and that is all.
   bool is_linear() const { return law == ElasticLaw::kLinear && relaxations.empty(); }
+  /// Whether linear elements are much too stiff for it, as it hardly changes its volume (Hughes 2000, The
+  /// Finite Element Method, section 4.4): a thick sphere under pressure by half at nu 0.499, ten times at
+  /// 0.4999.
+  bool locks() const { return element == ElementKind::kLinear && poisson_ratio >= 0.49; }
   /// First Lame parameter, Pa.
   double lame_lambda() const {
     return young_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio));

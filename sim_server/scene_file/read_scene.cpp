@@ -5,6 +5,7 @@
 
 #include "common/config.h"
 #include "common/error.h"
+#include "common/log.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_inclusions.h"
 #include "sim_server/scene_file/read_parts.h"
@@ -85,6 +86,15 @@ void require_what_the_model_can(const Scene& scene) {
       fail("{}: [[fixed.motion]]: model \"{}\" does not move with its supports; {} do", region.where,
            settings.model, models_that([](const DeformationModelRow& m) { return m.deforms(); }));
   }
+}
+
+void warn_of_locking(const Scene& scene) {
+  if (!scene.material || !scene.material->locks()) return;
+  log::warning(
+      "{}: element \"p1\" locks at poisson_ratio {:g}: it is too stiff, the more the nearer to 0.5 (by half "
+      "at "
+      "0.499, ten times at 0.4999); take element \"p2\", or \"p1_nodal_pressure\" where little bends",
+      scene.material_where, scene.material->poisson_ratio);
 }
 
 void read_grasp(const Config& config, ToolSettings& tool) {
@@ -200,6 +210,7 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   if (purpose == Purpose::kServe && scene.flies() && model_of(scene.deformation).flies) require_flight(scene);
   config.reject_unknown();
   reach_what_moves(scene);
+  warn_of_locking(scene);
   return scene;
 }
 

@@ -224,3 +224,29 @@ TEST_CASE("solve: a tag that the mesh has not, and a region without a triangle, 
   CHECK(refused(kFixed + "[[load]]\nforce = [0, 1, 0]\ncenter = [0, 1, 0]\nradius = 0.01\n")
             .find("no vertex of the mesh lies in this ball") != std::string::npos);
 }
+
+TEST_CASE("solve: each support bears what it holds, also where supports share vertices on different axes") {
+  // Held along y at the bottom, along x and z at two sides: free to swell, so that only the bottom bears.
+  SolveBench bench;
+  for (const char* element : {"p1", "p2"}) {
+    bench.solve(
+        "[[fixed]]\naxes = \"y\"\nsurface_tag = \"bottom\"\n"
+        "[[fixed]]\naxes = \"x\"\nbox = [[-1, -1, -1], [0.0001, 1, 1]]\n"
+        "[[fixed]]\naxes = \"z\"\nbox = [[-1, -1, -1], [1, 1, 0.0001]]\n"
+        "[[load]]\ntraction = [0, 50, 0]\nsurface_tag = \"top\"\n",
+        {}, fmt::format("poisson_ratio = 0.3\nelement = \"{}\"", element));
+    CAPTURE(element, bench.said);
+    const double whole = 50 * kArea;
+    std::size_t at = bench.said.find("of [[fixed]]");
+    for (const double bears : {-whole, 0.0, 0.0}) {
+      REQUIRE(at != std::string::npos);
+      Place force{};
+      const std::string line = bench.said.substr(at, bench.said.find('\n', at) - at);
+      const std::string numbers = line.substr(line.find(".toml:") + 6);
+      REQUIRE(std::sscanf(numbers.c_str(), "%*d %lf %lf %lf", &force[0], &force[1], &force[2]) == 3);
+      CHECK(force[1] == Approx(bears).margin(1e-6 * whole));
+      CHECK(std::abs(force[0]) + std::abs(force[2]) < 1e-6 * whole);
+      at = bench.said.find("of [[fixed]]", at + 1);
+    }
+  }
+}

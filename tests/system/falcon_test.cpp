@@ -128,6 +128,38 @@ TEST_CASE("devices: what is plugged in, and the rule that gives access where it 
   CHECK(said.find(rules.substr(rule, rules.find('\n', rule) - rule)) != std::string::npos);
 }
 
+TEST_CASE("devices: none that is known is told by the exit code too") {
+  Emulator falcons({"falcon:2-1"});
+  falcons.command("unplug 2-1");
+  auto list = falcons.start("haptic_client", {"devices"});
+  CHECK(list->wait() == 1);
+  CHECK(list->output().find("no device that Palpate knows") != std::string::npos);
+}
+
+TEST_CASE("Falcon: asked for at a port where none is, it says where there is one, and fails in the end") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcons({"falcon:2-1"}, {"--loaded", "--homed"});
+  auto client = falcons.start("haptic_client", {"run", bench.client, "--device", "falcon:9-9", "--server",
+                                                wall.address, "--seconds", "0.5"});
+  CHECK(client->wait() == 1);
+  const std::string said = client->output();
+  CAPTURE(said);
+  CHECK(said.find("--device: no falcon at port 9-9; there are: 2-1") != std::string::npos);
+  CHECK(said.find("no falcon came to port 9-9") != std::string::npos);
+}
+
+TEST_CASE("Falcon: without a client file it runs at its own 1000 Hz") {
+  const Bench bench;
+  Wall wall(bench);
+  Emulator falcons({"falcon:2-1"}, {"--loaded", "--homed"});
+  const std::string report = (bench.folder.path() / "report.json").string();
+  auto client = falcons.start("haptic_client", {"run", "--device", "falcon", "--server", wall.address,
+                                                "--seconds", "0.5", "--report", report});
+  CHECK(client->wait() == 0);
+  CHECK(Json::parse(bytes_of(report))["tools"][0]["loop"]["rate_hz"] == 1000);
+}
+
 TEST_CASE("Falcon: of two, the one that was asked for") {
   const Bench bench;
   Wall wall(bench);

@@ -38,7 +38,7 @@ TEST_CASE("a pause of the loop does not fling the hand") {
 }
 
 TEST_CASE("trajectories: interpolation, ends, repetition, scale and offset") {
-  const Trajectory closed({0, 1, 2}, {Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0, 0, 0)}),
+  const Trajectory closed({0, 1, 2}, {Vec3(0, 0, 0), Vec3(0.1, 0, 0), Vec3(0, 0, 0)}, true),
       open({5, 6}, {Vec3(0, 0, 0), Vec3(0.1, 0, 0)});
   CHECK(closed.at(0.5)[0] == Approx(0.05));
   CHECK(closed.at(2.5)[0] == Approx(0.05));
@@ -51,4 +51,15 @@ TEST_CASE("trajectories: interpolation, ends, repetition, scale and offset") {
   CHECK((read.at(0.5) - Vec3(0.003, 0.0015, 1.002)).norm() < 1e-15);
   const auto bad = folder.write("bad.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n0,1,1,1\n");
   CHECK_THROWS_AS(Trajectory({.file = bad}), Error);
+}
+
+TEST_CASE("trajectories: one that ends near its start stays at its end unless it is asked to repeat") {
+  const test::TemporaryFolder folder;
+  const auto press = folder.write("press.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,-0.0005,0\n");
+  const Trajectory once({.file = press}), again({.file = press, .repeat = true});
+  CHECK(once.at(7.25)[1] == -0.0005);
+  CHECK(again.at(7.25)[1] == Approx(-0.000125));
+  const auto far = folder.write("far.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,-0.5,0\n");
+  CHECK_THROWS_WITH(Trajectory({.file = far, .repeat = true}),
+                    Catch::Contains("ends 500 mm from where it began"));
 }

@@ -130,7 +130,7 @@ TEST_CASE("two tools: where they come to rest, all contacts together are in equi
   CHECK(relative(-on_a, forces[0].force) < 1e-6);
   CHECK(relative(-on_b, forces[1].force) < 1e-6);
   CHECK(elsewhere < 1e-6 * forces[0].force.norm());
-  // 1e-9 m/N stand in series with every contact (ContactSolver::kContactCompliance).
+  // 1e-9 m/N stand in series with every contact (ContactSolver::contact_compliance).
   CHECK(distance(two, a) == Approx(kRadius).margin(2e-9));
   CHECK(distance(two, b) == Approx(kRadius).margin(2e-9));
 }

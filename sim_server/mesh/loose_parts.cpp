@@ -1,0 +1,117 @@
+#include "sim_server/mesh/loose_parts.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <fmt/core.h>
+#include <numeric>
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kInLine = 1e-6;  // sine of an angle below which three places are in one line
+
+/// (m) The part of each tetrahedron, numbered from 0: those that share a face are of one.
+std::vector<int> part_of_tetrahedra(const TetMesh& mesh) {
+  struct Face {
+    std::array<int, 3> vertices;
+    int tetrahedron;
+  };
+  std::vector<Face> faces;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    for (int skip = 0; skip < 4; ++skip) {
+      Face face{{}, static_cast<int>(t)};
+      for (int i = 0, k = 0; i < 4; ++i) {
+        if (i != skip) face.vertices[k++] = mesh.tetrahedra[t][i];
+      }
+      std::ranges::sort(face.vertices);
+      faces.push_back(face);
+    }
+  }
+  std::ranges::sort(faces, {}, &Face::vertices);
+  std::vector<int> parent(mesh.tetrahedra.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (std::size_t f = 1; f < faces.size(); ++f) {
+    if (faces[f].vertices == faces[f - 1].vertices)
+      parent[root(faces[f].tetrahedron)] = root(faces[f - 1].tetrahedron);
+  }
+  std::vector<int> number(parent.size(), -1), part;
+  int parts = 0;
+  for (int t = 0; t < static_cast<int>(parent.size()); ++t) {
+    int& own = number[root(t)];
+    if (own < 0) own = parts++;
+    part.push_back(own);
+  }
+  return part;
+}
+
+LoosePart::Hold hold_of(const std::vector<Vec3>& places, bool& holds) {
+  holds = false;
+  if (places.empty()) return LoosePart::Hold::kNone;
+  Vec3 line = Vec3::Zero();
+  for (const Vec3& p : places) {
+    const Vec3 from = p - places.front();
+    if (from.squaredNorm() > line.squaredNorm()) line = from;
+  }
+  if (line.isZero(0)) return LoosePart::Hold::kPlace;
+  for (const Vec3& p : places)
+    holds = holds || line.cross(p - places.front()).norm() > kInLine * line.squaredNorm();
+  return LoosePart::Hold::kLine;
+}
+
+}  // namespace
+
+std::vector<LoosePart> loose_parts(const TetMesh& mesh, std::span<const int> held) {
+  const std::vector<int> part = part_of_tetrahedra(mesh);
+  const int parts = part.empty() ? 0 : 1 + *std::ranges::max_element(part);
+  std::vector<std::vector<int>> vertices(static_cast<std::size_t>(parts));  // of each part
+  std::vector<LoosePart> found(static_cast<std::size_t>(parts));
+  for (std::size_t t = 0; t < part.size(); ++t) {
+    auto& own = vertices[part[t]];
+    own.insert(own.end(), mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
+    ++found[part[t]].tetrahedra;
+  }
+  for (auto& own : vertices) {
+    std::ranges::sort(own);
+    own.erase(std::ranges::unique(own).begin(), own.end());
+  }
+  std::vector<char> stands(mesh.vertices.size(), 0), is_held(vertices.size(), 0);
+  for (const int v : held) stands[v] = 1;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t p = 0; p < vertices.size(); ++p) {
+      if (is_held[p] != 0) continue;
+      std::vector<Vec3> places;
+      for (const int v : vertices[p]) {
+        if (stands[v] != 0) places.push_back(mesh.vertices[v]);
+      }
+      bool holds = false;
+      found[p].hold = hold_of(places, holds);
+      found[p].place = places.empty() ? mesh.vertices[vertices[p].front()] : places.front();
+      if (!holds) continue;
+      is_held[p] = 1;
+      changed = true;
+      for (const int v : vertices[p]) stands[v] = 1;
+    }
+  }
+  std::vector<LoosePart> loose;
+  for (std::size_t p = 0; p < found.size(); ++p) {
+    if (is_held[p] == 0) loose.push_back(found[p]);
+  }
+  std::ranges::stable_sort(loose, std::greater<>(), &LoosePart::tetrahedra);
+  return loose;
+}
+
+std::string to_text(const LoosePart& part) {
+  const std::string_view by = part.hold == LoosePart::Hold::kNone    ? "are held by nothing, as at"
+                              : part.hold == LoosePart::Hold::kPlace ? "can turn about the one place"
+                                                                     : "hang on a hinge at";
+  return fmt::format("{} tetrahedra {} {:.4g},{:.4g},{:.4g}", part.tetrahedra, by, part.place[0],
+                     part.place[1], part.place[2]);
+}
+
+}  // namespace palpate::sim

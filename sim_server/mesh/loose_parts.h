@@ -1,0 +1,28 @@
+#pragma once
+/// Parts of a mesh that could still move when some vertices are held.
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim_server/mesh/tet_mesh.h"
+
+namespace palpate::sim {
+
+/// Tetrahedra that hang together by whole faces, and are held by too little.
+struct LoosePart {
+  std::size_t tetrahedra = 0;
+  /// By what it is held: nothing, one place (it can turn about it), or places in one line (a hinge).
+  enum class Hold { kNone, kPlace, kLine };
+  Hold hold = Hold::kNone;
+  Vec3 place = Vec3::Zero();  ///< the first of them, m; of a part that nothing holds: one of its vertices
+};
+
+/// Those of `mesh` that are loose when `held` (vertices) are fixed, largest first. A part is held by fixed
+/// vertices, and by those that it shares with a part that is itself held, where three of them are not in one
+/// line; parts that meet in an edge or a vertex only are joined by a hinge. O(m log m).
+std::vector<LoosePart> loose_parts(const TetMesh& mesh, std::span<const int> held);
+
+/// "3 of its tetrahedra hang on a hinge at 0.1,0,0".
+std::string to_text(const LoosePart& part);
+
+}  // namespace palpate::sim
