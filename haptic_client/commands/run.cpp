@@ -62,25 +62,24 @@ void check_together(const std::vector<ClientConfig>& configs) {
 }
 
 /// A device may be plugged in later; but one that is looked for in the wrong place never will be.
-/// Returns, for each tool, whether it is so.
-std::vector<bool> tell_missing_ports(const std::vector<ClientConfig>& configs) {
-  std::vector<bool> missing(configs.size(), false);
-  for (std::size_t i = 0; i < configs.size(); ++i) {
-    const DeviceSettings& device = configs[i].device;
+void tell_missing_ports(const std::vector<ClientConfig>& configs) {
+  for (const ClientConfig& config : configs) {
+    const DeviceSettings& device = config.device;
     if (device.port.empty() || row_of(device).ports == nullptr) continue;
     const std::vector<std::string> ports = row_of(device).ports();
     if (std::ranges::count(ports, device.port) > 0) continue;
-    missing[i] = true;
     log::warning(
         "{}: no {} at port {}; {}; waiting for it to be plugged in", device.where, device.name, device.port,
         ports.empty() ? "there is none at any other" : fmt::format("there are: {}", fmt::join(ports, ", ")));
   }
-  return missing;
 }
 
-/// Whether the device gave nothing in the whole run.
-bool never_there(const Json& tool) {
-  return tool["loop"]["ticks"] > 0 && tool["safety"]["lost"] == tool["loop"]["ticks"];
+/// Whether the device was asked for at a port, gave nothing in the whole run, and is not there at its end.
+bool never_there(const ClientConfig& config, const Json& tool) {
+  const DeviceSettings& device = config.device;
+  if (device.port.empty() || row_of(device).ports == nullptr) return false;
+  if (tool["loop"]["ticks"] == 0 || tool["safety"]["lost"] != tool["loop"]["ticks"]) return false;
+  return std::ranges::count(row_of(device).ports(), device.port) == 0;
 }
 
 /// Whether a line can be printed without waiting: nobody who reads slowly may keep us from Ctrl-C.
@@ -129,7 +128,7 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   for (const ToolFiles& tool : files) {
     if (tool.trace) check_writable(*tool.trace);
   }
-  const std::vector<bool> missing = tell_missing_ports(configs);
+  tell_missing_ports(configs);
   Guardian guardian(configs);  // before any thread; goes after the tools
   std::list<HeldTool> tools;
   for (std::size_t i = 0; i < configs.size(); ++i)
@@ -151,9 +150,10 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   for (const HeldTool& tool : tools) tool.write_files();
   if (options.report) write_json(*options.report, report);
   for (std::size_t i = 0; i < configs.size(); ++i) {
-    if (!missing[i] || !never_there(report["tools"][i])) continue;
-    fail_at_run_time("{}: no {} came to port {}; `haptic_client devices` lists what is there",
-                     configs[i].device.where, configs[i].device.name, configs[i].device.port);
+    const DeviceSettings& device = configs[i].device;
+    if (never_there(configs[i], report["tools"][i]))
+      fail_at_run_time("{}: no {} came to port {}; `haptic_client devices` lists what is there", device.where,
+                       device.name, device.port);
   }
   return 0;
 }

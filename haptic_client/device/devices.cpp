@@ -77,13 +77,12 @@ DeviceLimits limits_of_spacemouse(const DeviceSettings&) {
 }
 
 std::vector<std::string> ports_of(const UsbKind& kind) {
-  std::vector<std::string> ports;
 #ifdef PALPATE_WITH_USB
-  for (const UsbDevice& device : find_usb(kind)) ports.push_back(device.path);
+  return find_usb_ports(kind);
 #else
   (void)kind;
+  return {};
 #endif
-  return ports;
 }
 
 constexpr std::array kDevices{

@@ -141,6 +141,15 @@ std::vector<UsbDevice> find_usb(const UsbKind& kind) {
   return found;
 }
 
+std::vector<std::string> find_usb_ports(const UsbKind& kind) {
+  libusb_context* context = begin_usb();
+  std::vector<std::string> ports;
+  for_each(context, kind.ids,
+           [&](libusb_device* device, const UsbId&) { ports.emplace_back(path_of(device).data()); });
+  libusb_exit(context);
+  return ports;
+}
+
 struct UsbPort::Libusb {
   /// A transfer and its bytes, made once an opening: a tick does not allocate.
   struct Transfer {

@@ -27,6 +27,8 @@ struct UsbDevice {
 /// takes its interface for a moment unless the kernel's driver has it, to see whether a program does. Throws
 /// `Error` when there is no USB at all.
 std::vector<UsbDevice> find_usb(const UsbKind& kind);
+/// Their paths alone: opens nothing.
+std::vector<std::string> find_usb_ports(const UsbKind& kind);
 
 /// An interface of a device through libusb, asynchronously (the only file that knows libusb): four IN
 /// transfers of a packet each are always pending, OUT and control transfers go without waiting, unplugging is

@@ -1,5 +1,8 @@
 #include "sim_server/deformation/linear_statics.h"
 
+#include "common/error.h"
+#include "sim_server/mesh/loose_parts.h"
+
 namespace palpate::sim {
 namespace {
 
@@ -7,6 +10,7 @@ constexpr std::size_t kColumnsAtOnce =
     48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
 
 Solid solid_of(const ModelInputs& inputs) {
+  require_no_loose_part(inputs);
   inputs.progress(name_of(Stage::kStiffness), 0);
   return {inputs.mesh, *inputs.scene.material};
 }
@@ -19,6 +23,13 @@ SparseCholesky factor_stiffness(const ModelInputs& inputs, const Solid& solid, c
 }
 
 }  // namespace
+
+void require_no_loose_part(const ModelInputs& inputs) {
+  const std::vector<LoosePart> loose = loose_parts(inputs.mesh, inputs.fixed);
+  if (!loose.empty())
+    fail("{}: {}; a [[fixed]] that holds three of their vertices, not in one line, would hold them",
+         inputs.scene.source, to_text(loose.front()));
+}
 
 LinearStatics::LinearStatics(const ModelInputs& inputs)
     : solid(solid_of(inputs)),

@@ -6,6 +6,9 @@
 
 namespace palpate::sim {
 
+/// Throws `Error` where some of the body could still turn or go, as the linear law has no answer to that.
+void require_no_loose_part(const ModelInputs& inputs);
+
 /// The stiffness K of a linear tissue at rest, factored: what its models pre-compute from.
 struct LinearStatics {
   Solid solid;

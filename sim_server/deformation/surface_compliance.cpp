@@ -4,7 +4,6 @@
 
 #include "common/error.h"
 #include "common/parallel.h"
-#include "sim_server/mesh/loose_parts.h"
 
 namespace palpate::sim {
 namespace {
@@ -23,10 +22,6 @@ void require_held_tissue(const ModelInputs& inputs) {
         "contains some",
         scene.source);
   }
-  const std::vector<LoosePart> loose = loose_parts(inputs.mesh, inputs.fixed);
-  if (!loose.empty())
-    fail("{}: {}; a [[fixed]] that holds three of their vertices, not in one line, would hold them",
-         scene.source, to_text(loose.front()));
 }
 
 /// Equal by theory to its transpose; makes it so to the last bit, for contact and for Cholesky.

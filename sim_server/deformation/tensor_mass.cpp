@@ -18,6 +18,7 @@ constexpr double kSafety = 0.95;       // of the longest stable sub-step; the fr
 ElasticTensors assemble(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   step_period(scene);  // before any work
+  require_no_loose_part(inputs);
   inputs.progress(name_of(Stage::kTensors), 0);
   return {inputs.mesh, *scene.material, inputs.fixed};
 }

@@ -227,8 +227,8 @@ Simulation simulation_of(const StudyCase& one, const Progress& progress) {
 
 StudyPlan plan_study(const Scene& scene, const StudyOptions& options) {
   if (!scene.material || !model_of(scene.deformation).deforms())
-    fail("{}: model \"{}\" has no tissue to study; take one of: {}", scene.deformation.where,
-         scene.deformation.model, models_that([](const DeformationModelRow& m) { return m.deforms(); }));
+    fail("{}: model \"{}\" has no tissue to study; take {}", scene.deformation.where, scene.deformation.model,
+         models_that([](const DeformationModelRow& m) { return m.deforms(); }));
   if (scene.flies())
     fail("{}: nothing holds the body, so that errors would grow as it flies; add a [[fixed]]", scene.source);
   return Planner(scene, options).plan();
