@@ -1,5 +1,6 @@
 #include "sim_server/contact/tool_contact.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -17,13 +18,22 @@ constexpr double kGatherDear = 1.5;    // the same where each node more costs so
 constexpr double kMaxIncrements = 256;
 // Of the tool radius: how far it presses on in one step, where the tissue is known only near its last shape.
 constexpr double kFarthestPress = 2.0;
-constexpr double kFarthestDrag = 3.0;  // of the tool radius: how far outside its free organ contact may go on
+// How far outside its free organ contact may go on: of the tool radius, and of the organ's size, whichever is
+// more. A thin organ that bends is soon outside itself.
+constexpr double kFarthestDrag = 3.0, kFarthestBend = 0.5;
 // Contact linearisations a step may use, on its path and to settle with other tools, before it answers from
 // where it got to.
 constexpr int kMaxIterations = 400, kMaxSettling = 400;
 constexpr double kFarthest = 1e3;   // m
 constexpr double kMaxPlaces = 64;   // on the axis of a tool that appears: whether they are inside
 constexpr double kNearPivot = 0.1;  // share of the shaft next to the pivot that hardly moves with the tip
+
+/// Of the box around them, from corner to corner, m.
+double diagonal_of(std::span<const Vec3> places) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : places) box.extend(x);
+  return box.diagonal().norm();
+}
 
 /// How much of the tool's axis can be near the organ, m.
 double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
@@ -51,7 +61,8 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
     : tool_(tool.shape),
       finder_(rest, touchable.empty() ? touchable : surface.triangles, touchable, kGather * tool.shape.radius,
               longest_axis(tool.shape, rest)),
-      solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0) {
+      solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0),
+      farthest_drag_(std::max(kFarthestDrag * tool.shape.radius, kFarthestBend * diagonal_of(rest))) {
   if (tool.grasps()) grip_.emplace(tool, rest, touchable, finder_.max_nodes());
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   filled_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
@@ -94,8 +105,9 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
   if (!pose.p_W.allFinite() || pose.p_W.cwiseAbs().maxCoeff() > kFarthest || !pose.q_W.coeffs().allFinite())
     return reject(tissue);
   if (holds()) return solve_grasp(pose, tissue);
-  const bool anew = !placed_ || (pose.p_W - place_.p_W).norm() > kMaxIncrements * kIncrement * tool_.radius ||
-                    escaped(pose, tissue);
+  const bool lost = placed_ && escaped(pose, tissue);
+  const bool anew =
+      !placed_ || lost || (pose.p_W - place_.p_W).norm() > kMaxIncrements * kIncrement * tool_.radius;
   if (anew || !arrived_) bend_ = {};
   if (anew) place_outside(pose, tissue);
   const Vec3 motion = pose.p_W - place_.p_W;
@@ -125,6 +137,7 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
   // Else the next step goes on from here.
   arrived_ = place_.p_W == pose.p_W && place_.q_W.coeffs() == pose.q_W.coeffs();
   set_force(contact, iterations, tissue);
+  if (lost) flag();
 }
 
 /// How far the surface near the tool has gone since contact was last solved, m; 0: not so far that the tool
@@ -273,7 +286,7 @@ bool ToolContact::escaped(const ToolPose& pose, const ToolTissue& tissue) const 
   const Vec3 &p = pose.p_W, far = far_end(tool_, pose);
   const double distance = tool_.is_sphere() ? (finder_.nearest(tissue.free(), p) - p).norm()
                                             : finder_.nearest(tissue.free(), p, far).distance;
-  return distance > kFarthestDrag * tool_.radius && !finder_.inside(tissue.free(), p);
+  return distance > farthest_drag_ && !finder_.inside(tissue.free(), p);
 }
 
 /// The tool appears at `pose`. If part of its axis is inside the organ, it is taken to have come in through

@@ -119,6 +119,7 @@ class ToolContact {
   ContactFinder finder_;
   ContactSolver solver_;
   ContactPatch patch_;
+  double farthest_drag_;            // m, outside its free organ
   std::vector<int> filled_;         // surface vertices whose compliance the patch holds
   std::optional<Grip> grip_;        // for a tool that grasps
   std::vector<NodalLoad> kept_;     // its own, while it probes
