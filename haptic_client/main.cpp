@@ -57,7 +57,9 @@ CLI::App* add_run(CLI::App& app, std::vector<std::string>& files, Overrides& ove
   command->add_option("--falcon-firmware", overrides.firmware,
                       "Image for a Falcon that has none since power-up");
   command->add_option("--method", overrides.method, "How to extrapolate the force, see below");
-  command->add_option("--rate", overrides.rate_hz, "Haptic ticks per second, 100 to 4000 (default 500; 1000 for a Falcon)")
+  command
+      ->add_option("--rate", overrides.rate_hz,
+                   "Haptic ticks per second, 100 to 4000 (default 500; 1000 for a Falcon)")
       ->check(CLI::Range(client::kMinRate, client::kMaxRate));
   command->add_option("--seconds", options.seconds, "Stop after so many seconds");
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
