@@ -35,7 +35,9 @@ constexpr DeformationModelRow row_of(DeformationModelRow row) {
   row.to_text = [](const DeformationSettings& settings) {
     return (std::string() + ... + settings.of<Settings>().to_text());
   };
-  row.has_settings = []([[maybe_unused]] std::type_index type) { return ((type == typeid(Settings)) || ...); };
+  row.has_settings = []([[maybe_unused]] std::type_index type) {
+    return ((type == typeid(Settings)) || ...);
+  };
   return row;
 }
 
