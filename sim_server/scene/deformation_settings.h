@@ -6,9 +6,9 @@
 
 namespace palpate::sim {
 
-/// `[deformation]`: which model, and what its row of `deformation_models()` read for it. A scene need not know
-/// the settings of any model: each model has a struct of its own, known here by its type alone, whose members
-/// begin at their defaults.
+/// `[deformation]`: which model, and what its row of `deformation_models()` read for it. A scene need not
+/// know the settings of any model: each model has a struct of its own, known here by its type alone, whose
+/// members begin at their defaults.
 class DeformationSettings {
  public:
   std::string model;  ///< a name of `deformation_models()`

@@ -92,8 +92,7 @@ void warn_of_locking(const Scene& scene) {
   if (!scene.material || !scene.material->locks()) return;
   log::warning(
       "{}: element \"p1\" locks at poisson_ratio {:g}: it is too stiff, the more the nearer to 0.5 (by half "
-      "at "
-      "0.499, ten times at 0.4999); take element \"p2\", or \"p1_nodal_pressure\" where little bends",
+      "at 0.499, ten times at 0.4999); take element \"p2\", or \"p1_nodal_pressure\" where little bends",
       scene.material_where, scene.material->poisson_ratio);
 }
 

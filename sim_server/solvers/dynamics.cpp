@@ -210,7 +210,8 @@ bool Dynamics::inside_out() const {
 }
 
 std::size_t Dynamics::bytes() const {
-  return motion_.bytes() + matrix_.bytes() + factored_at_.size() * sizeof(Vec3) + (background_ ? background_->bytes() : 0);
+  return motion_.bytes() + matrix_.bytes() + factored_at_.size() * sizeof(Vec3) +
+         (background_ ? background_->bytes() : 0);
 }
 
 }  // namespace palpate::sim
