@@ -21,10 +21,11 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 
 COLOURS = {"stable": "#b8e0c2", "flagged": "#fbe3a1", "refused": "#c9d6ea", "not_applicable": "#f2f2f2",
-           "exploded": "#e4604e"}
+           "wrong": "#e4604e", "exploded": "#9c2f6e"}
 MEANINGS = {"stable": "stable: error of the force at the end, or of the shape where no tool is", "flagged": "flagged: a defined answer, told to be unsettled",
             "refused": "refused: the program says what to change", "not_applicable": "makes no sense for this model",
-            "exploded": "exploded"}
+            "wrong": "wrong: an unflagged force off by more than the bound, or of the wrong sign; a surface that stays off",
+            "exploded": "exploded: not finite, or no answer"}
 # What a refusal is about, in a word.
 WHY = {"sub-steps": "too many\nsub-steps", "no fixed nodes": "nothing\nholds it", "small turns": "nothing\nholds it",
        "is for law": "material\nit cannot", "does not deform": "material\nit cannot", "bears tools only": "tools\nonly",

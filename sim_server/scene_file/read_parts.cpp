@@ -31,6 +31,13 @@ std::string_view name_in(const Table& table, Value value) {
   return std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.value == value; })->name;
 }
 
+template <class Table>
+auto values_of(const Table& table) {
+  std::vector<std::remove_cvref_t<decltype(table[0].value)>> values;
+  for (const auto& row : table) values.push_back(row.value);
+  return values;
+}
+
 Fibres read_fibres(const Config& config) {
   Fibres fibres{config.vector("direction", {-1e3, 1e3, "any length but 0"}),
                 config.number("modulus", {1e-3, 1e12, "Pa"})};
@@ -124,6 +131,14 @@ std::string_view name_of(ElasticLaw law) {
 
 std::string_view name_of(ElementKind element) {
   return name_in(kElements, element);
+}
+
+std::vector<ElasticLaw> elastic_laws() {
+  return values_of(kLaws);
+}
+
+std::vector<ElementKind> element_kinds() {
+  return values_of(kElements);
 }
 
 Material read_material(const Config& config) {

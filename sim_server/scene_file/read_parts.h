@@ -1,5 +1,7 @@
 #pragma once
 /// Sections of a scene file that have much in them.
+#include <vector>
+
 #include "common/config.h"
 #include "sim_server/scene/scene.h"
 
@@ -21,5 +23,8 @@ Material read_material(const Config& config);
 /// As `law` and `element` of `[material]` say it.
 std::string_view name_of(ElasticLaw law);
 std::string_view name_of(ElementKind element);
+/// All that can be said there, in the order in which they are told.
+std::vector<ElasticLaw> elastic_laws();
+std::vector<ElementKind> element_kinds();
 
 }  // namespace palpate::sim

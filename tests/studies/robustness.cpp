@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
+#include "common/log.h"
 #include "common/report.h"
 #include "common/text.h"
 
@@ -65,6 +66,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}", kUsage);
     return 2;
   }
+  log::start("robustness_study");
   try {
     if (lists) {
       list(quick);

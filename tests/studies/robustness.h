@@ -3,10 +3,9 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "common/contact/tool.h"
+#include "sim_server/deformation/deformation_models.h"
 #include "sim_server/elasticity/material.h"
 #include "sim_server/mesh/tet_mesh.h"
 
@@ -14,16 +13,25 @@ namespace palpate::studies {
 
 /// A deformation model, with a law where it takes several.
 struct Column {
-  std::string_view name, model, law;
+  std::string name;
+  const sim::DeformationModelRow* row;
   sim::ElasticLaw elastic;
-  bool implicit() const { return model == "implicit"; }
-  bool linear() const { return law == "linear"; }
+  /// A body of free vertices in motion, of any law.
+  bool any_law() const { return row->materials == sim::Materials::kAny; }
+  bool linear() const { return elastic == sim::ElasticLaw::kLinear; }
+  /// Nothing of it gives way: force = stiffness x depth, also of what is held.
+  bool stands() const { return !row->deforms() && !row->moves; }
 };
+/// Every row of `deformation_models`, with every law where it takes any.
 const std::vector<Column>& columns();
+
+/// How far an unflagged force of a settled hold may be from what is expected, as a share of that; more is
+/// `wrong`. Rows that compare meshes or elements state a bound of their own (`Trial::bound`).
+constexpr double kBound = 0.05;
 
 /// What came of one cell.
 struct Verdict {
-  std::string outcome;                  ///< stable, refused, flagged, exploded, not_applicable
+  std::string outcome;                  ///< stable, refused, flagged, wrong, exploded, not_applicable
   std::string reason;                   ///< one sentence; of a refusal, what the program said
   std::optional<double> error_percent;  ///< against `reference`; none where that did not settle
   std::optional<double> max_newton;     ///< the largest force on any tool, N
@@ -52,7 +60,12 @@ struct Waypoint {
 };
 using Path = std::vector<Waypoint>;
 
-/// A motion of tools on a block: what most cases are.
+/// From the least to the most, N.
+struct Range {
+  double least, most;
+};
+
+/// A motion of tools on a body: what most cases are.
 struct Trial {
   SceneFile file;
   sim::TetMesh mesh;
@@ -60,25 +73,74 @@ struct Trial {
   std::vector<Path> slow;                    // to the same end, for the reference; empty: `paths`
   double seconds = 3;                        // of the paths, then as long again without tools
   double reference_seconds = 3;              // of the reference, at least
-  double depth = 0.003;                      // m: how deep the first tool is in the block at rest, at the end
-  bool only_implicit_refers = false;         // only `implicit` bears what acts here
+  int phases = 1;                            // of the motion against the steps, each a run
+  double depth = 0.003;                      // m: how deep the first tool is in the body at rest, at the end
+  Vec3 outward = Vec3::UnitY();              // the force on the first tool never points against that
+  double bound = kBound;                     // of the force, see there
+  bool only_implicit_refers = false;         // only a model of any law bears what acts here
   std::optional<double> felt_by_rigid = {};  // of stiffness x depth; else 1
+  std::optional<Range> felt = {};            // closed form, of all models whose held vertices are walls
+  bool must_refuse = false;                  // models that cannot fly: nothing else is an answer
+
+  // What is expected: the forces of the scene that `refer` makes of this one, times `times`; `most` times
+  // that at most, where only a range is known.
+  std::function<void(Trial&)> refer = {};
+  std::string refers_to = {};  // in words
+  double times = 1, most = 1;
 };
 
 /// A row of the table.
 struct Case {
-  std::string_view name, what;  ///< for people, with units
-  bool quick;                   ///< also in a quick study
+  std::string name, what;  ///< for people, with units
+  bool quick;              ///< also in a quick study
   Verdict (*run)(const Case& row, const Column& column, bool quick);
-  void (*change)(Trial& trial) = nullptr;  ///< from the usual press
+  std::function<void(Trial&)> change = {};  ///< from the usual press
 };
 const std::vector<Case>& cases();
+/// The usual block, made of other tissue, moved otherwise, with other tools (`robustness_extremes.cpp`).
+std::vector<Case> extreme_cases();
+/// Bodies of other shapes: sheets, fins, flaps (`robustness_shapes.cpp`).
+std::vector<Case> shape_cases();
 
 /// Runs the usual press as `row` changes it.
 Verdict run_trial(const Case& row, const Column& column, bool quick);
 
 /// The block of most cases: 30 x 15 x 30 mm, edges of 5 mm, top at y = 0.
 sim::TetMesh usual_block();
+
+/// From 2 mm above the block to `depth` below its top, within `t` s.
+Path press(double radius, double depth, double t = 1);
+/// From `from` to `to` at `speed` (m/s), 0.1 s after the beginning.
+Path stroke(const Vec3& from, const Vec3& to, double speed);
+/// The lines of a [[tool]].
+std::string tool(double radius, const std::string& more = "");
+
+/// What a run showed.
+struct Run {
+  /// The forces on the tools at a step of the hold, N.
+  struct Held {
+    double t;  // s
+    std::vector<Vec3> force;
+    bool flagged;
+  };
+  std::vector<Held> hold;  // from when the last tool arrived until all are taken away
+  double arrived = 0;      // s
+  std::vector<Vec3> last;  // the force on each tool while it was there, N
+  double max_newton = 0;   // of all steps
+  double wildest = 0;      // of those that were not flagged
+  int steps = 0, flagged = 0;
+  bool pressed_flagged = false;  // when `last` was felt
+  bool finite = true, ends_flagged = false;
+  bool locks = false;  // the program warned at the start that its elements lock
+  double off = 0;      // from where the surface began, when the tools have been away, m
+};
+
+/// Follows `paths`; then, where `lift`, as long again without tools. Throws `Error` where the program
+/// refuses.
+Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool lift);
+
+/// What is held against the runs of a trial, one for each phase: the worst of them.
+Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& column);
 
 // Bodies without tools (`robustness_bodies.cpp`).
 Verdict run_scattered(const Case& row, const Column& column, bool quick);

@@ -1,0 +1,222 @@
+// What a run of the robustness study is held against, and what came of it.
+#include <algorithm>
+#include <cmath>
+#include <fmt/core.h>
+
+#include "common/error.h"
+#include "tests/studies/robustness.h"
+
+namespace palpate::studies {
+namespace {
+
+using namespace palpate::sim;
+
+constexpr double kAbsurd = 10;        // of the largest force expected, unflagged on the way: wrong
+constexpr double kReturned = 0.05;    // of the depth: how far from rest a surface may be that was let go
+constexpr double kSmallest = 1e-9;    // N: less is no force
+constexpr double kTellWhy = 0.01;     // an error of a force that nothing flagged: more is looked into
+constexpr double kOtherRest = 0.5;    // of the force: a rest that is farther off is no neighbour
+constexpr double kSamePlace = 1e-3;   // of the force: two runs that ended in one place
+constexpr double kAside = 0.0005;     // m
+constexpr double kGivenToRest = 0.5;  // of the hold: before, what moves may still swing
+
+/// The forces as they should be, and the largest on the way.
+struct Expected {
+  std::string what;
+  std::vector<Range> newton;  // of each tool
+  std::vector<Vec3> force;    // of each tool; empty: only its size is known
+  double most = 0;
+  bool settled = true;
+};
+
+const Column& first_column(bool (*is)(const Column&)) {
+  return *std::find_if(columns().begin(), columns().end(), is);
+}
+
+/// What stands for the truth: the same scene, to the same end, slowly and by another model where there is
+/// one.
+struct Truth {
+  Trial trial;
+  const Column* column;
+  std::string what;
+
+  Run follow(const std::vector<Path>& paths) const { return studies::follow(trial, *column, paths, false); }
+};
+
+Truth truth_of(const Trial& trial, const Column& column) {
+  Trial slow = trial;
+  slow.file.rate_hz = 30;
+  slow.file.max_newton = 60;
+  slow.file.tolerance = 1e-9;
+  slow.file.rayleigh_mass = SceneFile{}.rayleigh_mass;
+  slow.file.rayleigh_stiffness = SceneFile{}.rayleigh_stiffness;
+  slow.seconds = std::max(trial.seconds, trial.reference_seconds);
+  if (!trial.slow.empty()) slow.paths = trial.slow;
+  if (trial.refer) trial.refer(slow);
+  const bool same = !column.linear() || trial.only_implicit_refers;
+  // The equilibrium itself; of that, the same matrix by steps of a motion.
+  const auto at_rest = [](const Column& c) { return c.row->deforms() && !c.row->moves; };
+  const Column& other =
+      same ? column
+           : (at_rest(column) ? first_column([](const Column& c) { return c.any_law() && c.linear(); })
+                              : first_column(at_rest));
+  std::string what =
+      same ? "pressed slowly, Newton's method to 1e-9" : fmt::format("{}, pressed slowly", other.name);
+  if (!trial.refers_to.empty()) what += ": " + trial.refers_to;
+  return {std::move(slow), &other, what};
+}
+
+Expected closed_form(const std::string& what, std::size_t tools, const Range& range) {
+  return {what, std::vector<Range>(tools, range), {}, range.most};
+}
+
+Expected expected_of(const Trial& trial, const Column& column) {
+  const std::size_t tools = trial.paths.size();
+  if (trial.felt && !column.stands())
+    return closed_form("closed form: the stiffness of held vertices x depth", tools, *trial.felt);
+  if (!column.row->deforms()) {
+    const double newton = trial.felt_by_rigid.value_or(1) * 800 * trial.depth;
+    return closed_form("closed form: stiffness x depth", tools, {newton, newton});
+  }
+  const Truth truth = truth_of(trial, column);
+  const Run run = truth.follow(truth.trial.paths);
+  Expected expected{truth.what, {}, {}, trial.times * trial.most * run.max_newton};
+  for (const Vec3& force : run.last) {
+    const double newton = trial.times * force.norm();
+    expected.newton.push_back({newton, trial.most * newton});
+    if (trial.most == 1) expected.force.push_back(trial.times * force);
+  }
+  expected.settled = run.finite && !run.pressed_flagged;
+  if (!expected.settled) expected.what += ": flagged at its end, so that there is no error to tell";
+  if (run.flagged > 0) expected.what += fmt::format(" (flagged in {} of {} steps)", run.flagged, run.steps);
+  return expected;
+}
+
+double error_of(const std::vector<Vec3>& force, const Expected& expected) {
+  double error = 0;
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    const Range& range = expected.newton[k];
+    const double newton = force[k].norm();
+    const double off = expected.force.empty() ? std::max({0.0, range.least - newton, newton - range.most})
+                                              : (force[k] - expected.force[k]).norm();
+    error = std::max(error, off / std::max(range.least, kSmallest));
+  }
+  return error;
+}
+
+/// Whether the truth ends where `run` did, too, if its tools come from a little aside: two facets may both
+/// bear a tool, and then the way to the end decides. Says so, or nothing. A force that is far off, or none,
+/// is no such neighbour, whoever else finds it.
+std::string another_rest(const Run& run, const Trial& trial, const Column& column) {
+  const Truth truth = truth_of(trial, column);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      std::vector<Path> paths = truth.trial.paths;
+      for (Path& path : paths) {
+        const Waypoint end = path.back();
+        path.back().place[axis] += sign * kAside;
+        path.push_back({(end.t + truth.trial.seconds) / 2, end.place});
+      }
+      const Run other = truth.follow(paths);
+      Expected there{"", {}, {}};
+      for (const Vec3& force : other.last) {
+        there.force.push_back(trial.times * force);
+        there.newton.push_back({trial.times * force.norm(), trial.times * force.norm()});
+      }
+      if (!other.pressed_flagged && error_of(run.last, there) < kSamePlace)
+        return fmt::format(
+            "the tools have more than one place to rest, and this is another: {} ends there, too, where they "
+            "come from {} mm aside ({}{})",
+            truth.column->name, 1e3 * kAside, sign < 0 ? '-' : '+', "xyz"[axis]);
+    }
+  }
+  return {};
+}
+
+/// What is wrong at some time of the hold, unflagged; nothing: all is well. `lenient`: the error is that of
+/// another rest.
+std::string wrong_in_hold(const Run& run, const Trial& trial, const Expected& expected, bool lenient) {
+  const double until = run.hold.back().t;
+  for (const Run::Held& held : run.hold) {
+    if (held.flagged) continue;
+    const double share = run.arrived < until ? (held.t - run.arrived) / (until - run.arrived) : 1;
+    const double scale = std::max(expected.newton.front().least, kSmallest);
+    if (held.force.front().dot(trial.outward) < -trial.bound * scale)
+      return fmt::format("{:.3g} N towards the body at {:.2f} s, and not flagged",
+                         -held.force.front().dot(trial.outward), held.t);
+    const double error = error_of(held.force, expected);
+    if (expected.settled && !lenient && share >= kGivenToRest && error > trial.bound)
+      return fmt::format("{:.3g} N where {:.3g} N is right, {:.2g} % off at {:.2f} s, and not flagged",
+                         held.force.front().norm(), expected.newton.front().least, 100 * error, held.t);
+  }
+  return {};
+}
+
+/// What is wrong of one run, or nothing.
+std::string wrong_of(const Run& run, const Trial& trial, const Expected& expected, bool lenient) {
+  if (run.wildest > kAbsurd * expected.most + kSmallest)
+    return fmt::format("{:.3g} N without a flag; the reference has {:.3g} N at most", run.wildest,
+                       expected.most);
+  if (run.off > kReturned * trial.depth && !run.ends_flagged)
+    return fmt::format("let go, its surface stays up to {:.3g} mm off, and not flagged", 1e3 * run.off);
+  return wrong_in_hold(run, trial, expected, lenient);
+}
+
+Verdict judge_one(const Run& run, const Trial& trial, const Column& column, const Expected& expected) {
+  Verdict verdict{"stable", "", {}, run.max_newton, expected.what};
+  if (!run.finite)
+    return {"exploded", "a force, tangent or position that is not finite", {}, {}, expected.what};
+  if (expected.settled) verdict.error_percent = 100 * error_of(run.last, expected);
+  std::string elsewhere;
+  const double error = verdict.error_percent.value_or(0) / 100;
+  if (!run.pressed_flagged && error > kTellWhy && error < kOtherRest && column.row->deforms() && !trial.felt)
+    elsewhere = another_rest(run, trial, column);
+  const std::string wrong = wrong_of(run, trial, expected, !elsewhere.empty());
+  if (!wrong.empty() && run.locks) {
+    verdict.outcome = "flagged";
+    verdict.reason = "warned at the start that its elements lock, with those to take instead: " + wrong;
+  } else if (!wrong.empty()) {
+    verdict.outcome = "wrong";
+    verdict.reason = wrong;
+  } else if (run.flagged > 0) {
+    verdict.outcome = "flagged";
+    verdict.reason =
+        fmt::format("{} of {} steps flagged, answered with what was found so far; {}", run.flagged, run.steps,
+                    run.pressed_flagged ? "the force at the end, too" : "the force at the end was not");
+  }
+  if (!elsewhere.empty()) verdict.reason += (verdict.reason.empty() ? "" : "; ") + elsewhere;
+  return verdict;
+}
+
+int rank(const Verdict& verdict) {
+  const std::vector<std::string> worse{"stable", "flagged", "wrong", "exploded"};
+  return static_cast<int>(std::find(worse.begin(), worse.end(), verdict.outcome) - worse.begin());
+}
+
+}  // namespace
+
+Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& column) {
+  if (trial.must_refuse && column.row->deforms() && !column.row->flies)
+    return {"wrong", "accepted, though nothing holds it from turning", {}, runs.front().max_newton, ""};
+  Expected expected;
+  try {
+    expected = expected_of(trial, column);
+  } catch (const Error& e) {
+    expected.what = fmt::format("none: {}", e.what());
+    expected.settled = false;
+    expected.most = 1e300;
+    expected.newton.assign(trial.paths.size(), {0, 0});
+  }
+  Verdict worst;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Verdict verdict = judge_one(runs[i], trial, column, expected);
+    const bool worse = i == 0 || rank(verdict) > rank(worst) ||
+                       (rank(verdict) == rank(worst) && verdict.error_percent > worst.error_percent);
+    if (worse) worst = verdict;
+    if (worse && i > 0 && rank(verdict) > 0)
+      worst.reason = fmt::format("begun {} of {} of a step later: {}", i, runs.size(), worst.reason);
+  }
+  return worst;
+}
+
+}  // namespace palpate::studies
