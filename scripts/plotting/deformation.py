@@ -31,6 +31,11 @@ MARKS = {"p1": "o", "p1_nodal_pressure": "s", "p2": "D"}
 BETTER = {"fontsize": 8, "color": "0.35", "ha": "left", "va": "bottom"}
 
 
+def colour_of(model):
+    """A model that has none of its own is drawn in grey."""
+    return COLOURS.get(model, "tab:gray")
+
+
 def label_of(row):
     parts = [row["model"]]
     if row["law"] != "linear":
@@ -82,7 +87,7 @@ def name_points(axes, points):
 def draw_front(axes, rows):
     for row in rows:
         axes.loglog(row["step_ms_p50"], above(row["force_error_percent"]), MARKS[row["element"]],
-                    color=COLOURS[row["model"]], alpha=1 if row["on_front"] else 0.45,
+                    color=colour_of(row["model"]), alpha=1 if row["on_front"] else 0.45,
                     markerfacecolor="white" if row["flagged_steps"] else None)
     if any(r["flagged_steps"] for r in rows):
         axes.plot([], [], "o", color="0.4", markerfacecolor="white", label="some steps did not settle")
@@ -91,7 +96,7 @@ def draw_front(axes, rows):
                 linewidth=0.8, zorder=0)
     named = {of_setting(r): r for r in reversed(front)}  # the fastest of each, whatever its step
     for model in dict.fromkeys(r["model"] for r in rows):
-        axes.plot([], [], "o", color=COLOURS[model], label=model)
+        axes.plot([], [], "o", color=colour_of(model), label=model)
     for element in dict.fromkeys(r["element"] for r in rows):
         axes.plot([], [], MARKS[element], color="0.4", label=element)
     percents(axes)
@@ -133,7 +138,7 @@ def draw_along(axes, rows, along):
     for row in shown:
         points = along.get(row["case"], [])
         axes.semilogy([t for t, _ in points], [above(e) for _, e in points], linewidth=1,
-                      color=COLOURS[row["model"]], linestyle={"p1": "-", "p2": ":"}.get(row["element"], "--"),
+                      color=colour_of(row["model"]), linestyle={"p1": "-", "p2": ":"}.get(row["element"], "--"),
                       label=label_of(row))
     low, high = axes.get_ylim()
     axes.set_ylim(bottom=max(low, high / 1e4))  # nothing touches where it falls off
@@ -146,7 +151,7 @@ def draw_along(axes, rows, along):
 def draw_price(axes, rows):
     shown = [r for r in rows if r["axis"] in ("scene", "model", "element", "mesh")]
     for row in shown:
-        axes.loglog(row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6, MARKS[row["element"]], color=COLOURS[row["model"]])
+        axes.loglog(row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6, MARKS[row["element"]], color=colour_of(row["model"]))
     axes.margins(x=0.3, y=0.1)
     axes.set_xlabel("set-up (s)")
     axes.set_ylabel("peak memory of the process (MB)")
@@ -200,7 +205,7 @@ def draw_cost(folder):
         for model in dict.fromkeys(r["model"] for r in rows):
             points = sorted((r["tetrahedra"], unit * r[key]) for r in rows if r["model"] == model)
             text = f"{model}, exponent {exponent(points):.2f}" if len(points) > 1 else model
-            sheet.loglog(*zip(*points), "-o", color=COLOURS[model], label=text)
+            sheet.loglog(*zip(*points), "-o", color=colour_of(model), label=text)
         sheet.set_xlabel("tetrahedra")
         sheet.set_ylabel(what)
         sheet.grid(True, which="major", linewidth=0.3)

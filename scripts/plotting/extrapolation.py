@@ -335,6 +335,10 @@ def main():
     except Unusable as problem:
         print(f"extrapolation.py: {problem}", file=sys.stderr)
         return 2
+    except KeyError as missing:
+        print(f"extrapolation.py: {arguments.folder}: its tables have no column {missing}; this draws what "
+              "`scripts/study extrapolation --out DIR` wrote", file=sys.stderr)
+        return 2
     except ImportError:
         print("extrapolation.py: matplotlib is missing: apt-get install python3-matplotlib", file=sys.stderr)
         return 2
