@@ -32,7 +32,8 @@ void ContactSolver::assemble_system(const ContactPatch& patch) noexcept {
       compliance.bottomRightCorner(loaded, loaded) * curvature_.block(first, first, loaded, loaded);
 }
 
-/// C~ A, then C~ of `loads` (3 x nodes, k <= 3), in the columns of `response_`; and B C~ A + eps.
+/// C~ A, then C~ of `loads` (3 x nodes, k <= 3), in the columns of `response_`; B C~ A + eps; and the sign of
+/// the determinant of I - C S.
 bool ContactSolver::respond(const ContactPatch& patch,
                             const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept {
   assemble_system(patch);
@@ -49,7 +50,8 @@ bool ContactSolver::respond(const ContactPatch& patch,
   response_.block(0, n, size, loads.cols()).noalias() = compliance * loads;
   const Eigen::Index first = 3 * unloaded_, loaded = size - first, columns = n + loads.cols();
   auto at_loads = response_.block(first, 0, loaded, columns);
-  if (!gauss_solve(system_.topLeftCorner(loaded, loaded), at_loads)) return false;
+  system_sign_ = gauss_solve(system_.topLeftCorner(loaded, loaded), at_loads);
+  if (system_sign_ == 0) return false;
   if (first > 0) {
     auto bent = bent_.topLeftCorner(loaded, columns);
     bent.noalias() = curvature_.block(first, first, loaded, loaded) * at_loads;
@@ -60,6 +62,56 @@ bool ContactSolver::respond(const ContactPatch& patch,
   for (Eigen::Index row = 0; row < n; ++row)
     delassus(row, row) += row % rows == 0 ? contact_compliance_ : friction_compliance_;
   return true;
+}
+
+/// Forces of a Newton step without friction, in the rows of the contacts, with the active set of the plain
+/// step: contacts that would pull leave it, and those that would be passed enter it. The Delassus operator
+/// need not be positive definite: a force may push nodes aside harder than the tissue alone holds them, if
+/// the contacts do. False where no active set is found, and where the state would be a saddle of the energy:
+/// K - S (K = C^-1) has r negative directions more there than B C~ A, and the determinants of I - C S and of
+/// B C~ A then differ in sign for an odd r (inertia of the KKT matrix, Nocedal and Wright 2006,
+/// theorem 16.3).
+bool ContactSolver::solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>& gap,
+                                        Eigen::Ref<Eigen::VectorXd> force) noexcept {
+  constexpr int kExchanges = 4;
+  const auto n = gap.size();
+  const auto delassus = delassus_.topLeftCorner(n, n);
+  active_.clear();
+  for (int k = 0; k < n; ++k) {
+    if (lambda_[k] > 0) active_.push_back(k);
+  }
+  for (int exchange = 0; exchange < kExchanges; ++exchange) {
+    const auto size = static_cast<Eigen::Index>(active_.size());
+    if (size > system_.rows()) return false;
+    auto matrix = system_.topLeftCorner(size, size);  // whose own values have been used
+    auto solution = rhs_.col(2).head(size);
+    for (Eigen::Index j = 0; j < size; ++j) {
+      solution[j] = -gap[active_[j]];
+      for (Eigen::Index i = 0; i < size; ++i) matrix(i, j) = delassus(active_[i], active_[j]);
+    }
+    if (gauss_solve(matrix, solution) * system_sign_ <= 0) return false;
+    force.setZero();
+    for (Eigen::Index i = 0; i < size; ++i) force[active_[i]] = solution[i];
+    auto slack = slack_.head(n);
+    slack = gap;
+    slack.noalias() += delassus * force;
+    bool settled = true;
+    active_.clear();
+    for (int k = 0; k < n; ++k) {
+      const bool was_active = force[k] != 0, active = was_active ? force[k] > 0 : slack[k] < 0;
+      if (active) active_.push_back(k);
+      settled &= active == was_active;
+    }
+    if (settled) return true;
+  }
+  return false;
+}
+
+/// False where there are no such forces, or where they are those of a state that is not stable.
+bool ContactSolver::solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
+                                          Eigen::Ref<Eigen::VectorXd> force) noexcept {
+  if (friction_ > 0) return solve_contacts(gap, force);
+  return solve_on_active_set(gap, force) || (system_sign_ > 0 && solve_contacts(gap, force));
 }
 
 bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
@@ -85,7 +137,7 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
     gap.noalias() += spread_.topLeftCorner(size, n).transpose() * local;
     gap.noalias() -= jacobian * local;
   }
-  if (!solve_contacts(gap, lambda)) return false;
+  if (!solve_newton_contacts(gap, lambda)) return false;
   remember(lambda);
   // Force at the new geometry, to first order: A z+ + S (u+ - u).
   const auto response = response_.topLeftCorner(size, n);
@@ -114,7 +166,7 @@ bool ContactSolver::differentiate_forces(
   const auto n = change.rows();
   if (friction_ == 0) {
     change = -change;
-    return gauss_solve(delassus_.topLeftCorner(n, n), change);
+    return gauss_solve(delassus_.topLeftCorner(n, n), change) != 0;
   }
   auto force = gap_.head(n), slack = slack_.head(n);
   for (Eigen::Index i = 0; i < n; i += 3) {

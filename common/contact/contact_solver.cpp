@@ -50,11 +50,12 @@ ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
   rhs_.resize(rows, 3);
   contacts_.reserve(static_cast<std::size_t>(max_triangles));
   considered_.reserve(static_cast<std::size_t>(max_triangles));
+  active_.reserve(static_cast<std::size_t>(max_triangles));
   deformed_.reserve(static_cast<std::size_t>(max_nodes));
   nodes_.reserve(static_cast<std::size_t>(max_nodes + 1));
+  slack_.resize(rows);
   if (!friction) return;
   felt_.reserve(static_cast<std::size_t>(max_triangles));
-  slack_.resize(rows);
   frames_.reserve(static_cast<std::size_t>(max_triangles));
   was_.reserve(static_cast<std::size_t>(max_nodes));
 }

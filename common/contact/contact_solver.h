@@ -118,6 +118,10 @@ class ContactSolver {
   // and in contact_newton.cpp:
   void assemble_system(const ContactPatch& patch) noexcept;
   bool respond(const ContactPatch& patch, const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept;
+  bool solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>& gap,
+                           Eigen::Ref<Eigen::VectorXd> force) noexcept;
+  bool solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
+                             Eigen::Ref<Eigen::VectorXd> force) noexcept;
   bool newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
                    Eigen::Ref<Eigen::VectorXd> next) noexcept;
   bool differentiate_forces(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
@@ -147,8 +151,9 @@ class ContactSolver {
   Vec3 tip_was_ = Vec3::Zero(), tip_ = Vec3::Zero();
   Mat3 turned_ = Mat3::Zero();  // what the tool's turn in the increment did to an arm of now
   // Second order: the contacts considered, their nodes (the tip last), and matrices over those nodes.
-  std::vector<int> considered_, nodes_, slot_of_node_;
-  int unloaded_ = 0;  // of nodes_, the first ones
+  std::vector<int> considered_, active_, nodes_, slot_of_node_;
+  int system_sign_ = 1;  // of the determinant of I - C S
+  int unloaded_ = 0;     // of nodes_, the first ones
   Eigen::MatrixXd curvature_, compliance_, bent_, system_, jacobian_,
       spread_;  // spread: W^T, only with friction
   Eigen::Matrix<double, Eigen::Dynamic, 3> moved_, rhs_;

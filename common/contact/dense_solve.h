@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// Solves A X = B by Gaussian elimination with row pivoting, both overwritten. False when A is singular.
-/// O(2/3 n^3 + 2 n^2 k).
-bool gauss_solve(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> b) noexcept;
+/// Solves A X = B by Gaussian elimination with row pivoting, both overwritten. 0 when A is singular,
+/// else the sign of its determinant. O(2/3 n^3 + 2 n^2 k).
+int gauss_solve(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> b) noexcept;
 
 }  // namespace palpate

@@ -6,7 +6,7 @@
 
 #include "common/error.h"
 #include "haptic_client/device/devices.h"
-#include "haptic_client/device/usb_port.h"
+#include "haptic_client/device/usb_bus.h"
 
 namespace palpate::client {
 namespace {

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 #include <libusb-1.0/libusb.h>
-#include <optional>
 
 #include "common/clock.h"
-#include "common/error.h"
 #include "common/spsc_ring.h"
 #include "haptic_client/device/usb_lookout.h"
 
@@ -15,140 +12,14 @@ namespace palpate::client {
 namespace {
 
 constexpr unsigned kTimeout = 1000;                          // ms, of OUT and control
-constexpr std::size_t kMostIn = 512, kMostOut = 64;          // bytes of a packet
+constexpr std::size_t kMostOut = 64;                         // bytes of a packet
 constexpr std::size_t kPending = 4, kReceived = 64;          // IN transfers; packets that wait to be read
 constexpr std::size_t kRequests = 16;                        // on the way at once
 constexpr std::uint8_t kToInterface = 1, kRecipient = 0x1f;  // of bmRequestType
 
-using Path = std::array<char, 32>;  // "2-1.4", zero at the end
-
-Path path_of(libusb_device* device) {
-  std::array<std::uint8_t, 7> ports{};
-  const int count = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
-  Path path{};
-  const auto last = path.end() - 1;
-  auto at = fmt::format_to_n(path.begin(), last - path.begin(), "{}", libusb_get_bus_number(device)).out;
-  for (int i = 0; i < count; ++i)
-    at = fmt::format_to_n(at, last - at, "{}{}", i == 0 ? '-' : '.', ports[static_cast<std::size_t>(i)]).out;
-  return path;
-}
-
-const char* in_words(int error) {
-  switch (error) {
-    case LIBUSB_ERROR_ACCESS:
-      return "no permission for the USB device; `haptic_client devices` prints the udev rule that gives it";
-    case LIBUSB_ERROR_BUSY:
-      return "another program holds the USB device; end it";
-    case LIBUSB_ERROR_NO_DEVICE:
-      return "";
-    default:
-      return "the USB device cannot be opened; unplug it and plug it in again";
-  }
-}
-
 constexpr const char* kFailed = "a USB transfer failed (cable, hub?); opening the device again";
 
-/// In the order of their paths.
-template <class Use>
-void for_each(libusb_context* context, std::span<const UsbId> ids, Use use) {
-  libusb_device** list = nullptr;
-  const auto count = libusb_get_device_list(context, &list);
-  if (count > 0) std::sort(list, list + count, [](auto* a, auto* b) { return path_of(a) < path_of(b); });
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    libusb_device_descriptor descriptor{};
-    if (libusb_get_device_descriptor(list[i], &descriptor) != 0) continue;
-    const UsbId id{descriptor.idVendor, descriptor.idProduct};
-    if (std::find(ids.begin(), ids.end(), id) != ids.end()) use(list[i], id);
-  }
-  if (list != nullptr) libusb_free_device_list(list, 1);
-}
-
-libusb_context* begin_usb() {
-  libusb_context* context = nullptr;
-  if (const int error = libusb_init(&context); error != 0)
-    fail_at_run_time("USB cannot be used ({})", libusb_strerror(static_cast<libusb_error>(error)));
-  return context;
-}
-
-/// Where packets go.
-struct Endpoint {
-  std::uint8_t address = 0;  // 0: there is none
-  std::uint8_t type = 0;     // libusb_endpoint_transfer_type
-  std::size_t size = 0;      // bytes of its largest packet
-};
-
-struct Interface {
-  int number = 0;
-  Endpoint in, out;
-};
-
-/// The first endpoint of a direction that carries bulk or interrupt transfers.
-Endpoint first_endpoint(const libusb_interface_descriptor& setting, std::uint8_t direction, bool bulk_too) {
-  for (int i = 0; i < setting.bNumEndpoints; ++i) {
-    const auto& e = setting.endpoint[i];
-    const auto type = static_cast<std::uint8_t>(e.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK);
-    const std::size_t size = e.wMaxPacketSize & 0x7ffu;
-    const bool fits =
-        type == LIBUSB_TRANSFER_TYPE_INTERRUPT || (bulk_too && type == LIBUSB_TRANSFER_TYPE_BULK);
-    if ((e.bEndpointAddress & LIBUSB_ENDPOINT_DIR_MASK) == direction && fits && size > 0)
-      return {e.bEndpointAddress, type, size};
-  }
-  return {};
-}
-
-std::optional<Interface> choose_interface(libusb_device* device, bool hid) {
-  libusb_config_descriptor* config = nullptr;
-  if (libusb_get_active_config_descriptor(device, &config) != 0) return {};
-  std::optional<Interface> chosen;
-  for (int i = 0; i < config->bNumInterfaces && !chosen; ++i) {
-    if (config->interface[i].num_altsetting < 1) continue;
-    const auto& setting = config->interface[i].altsetting[0];
-    if (hid && setting.bInterfaceClass != LIBUSB_CLASS_HID) continue;
-    const Endpoint in = first_endpoint(setting, LIBUSB_ENDPOINT_IN, !hid);
-    if (in.address == 0 || in.size > kMostIn) continue;
-    chosen = {setting.bInterfaceNumber, in, first_endpoint(setting, LIBUSB_ENDPOINT_OUT, true)};
-  }
-  libusb_free_config_descriptor(config);
-  return chosen;
-}
-
-/// Whether a program could use it now: 0 or libusb's error. The kernel's driver would give way, and is left
-/// alone here.
-int try_to_use(libusb_device* device, bool hid) {
-  libusb_device_handle* handle = nullptr;
-  int error = libusb_open(device, &handle);
-  if (error != 0) return error;
-  const auto interface = choose_interface(device, hid);
-  if (interface && libusb_kernel_driver_active(handle, interface->number) != 1) {
-    error = libusb_claim_interface(handle, interface->number);
-    if (error == 0) libusb_release_interface(handle, interface->number);
-  }
-  libusb_close(handle);
-  return error;
-}
-
 }  // namespace
-
-std::vector<UsbDevice> find_usb(const UsbKind& kind) {
-  libusb_context* context = begin_usb();
-  std::vector<UsbDevice> found;
-  for_each(context, kind.ids, [&](libusb_device* device, const UsbId& id) {
-    const int error = try_to_use(device, kind.hid);
-    found.push_back(
-        {path_of(device).data(), id, error == 0 ? "" : in_words(error), error == LIBUSB_ERROR_ACCESS});
-  });
-  libusb_exit(context);
-  return found;
-}
-
-std::vector<std::string> find_usb_ports(const UsbKind& kind) {
-  libusb_context* context = begin_usb();
-  std::vector<std::string> ports;
-  for_each(context, kind.ids,
-           [&](libusb_device* device, const UsbId&) { ports.emplace_back(path_of(device).data()); });
-  libusb_exit(context);
-  return ports;
-}
 
 struct UsbPort::Libusb {
   /// A transfer and its bytes, made once an opening: a tick does not allocate.
@@ -156,19 +27,19 @@ struct UsbPort::Libusb {
     Libusb* owner = nullptr;
     libusb_transfer* libusb = nullptr;
     bool flying = false, optional = false;
-    std::array<unsigned char, kMostIn> bytes{};
+    std::array<unsigned char, kMostUsbIn> bytes{};
   };
   struct Packet {
     std::size_t size = 0;
-    std::array<std::byte, kMostIn> bytes{};
+    std::array<std::byte, kMostUsbIn> bytes{};
   };
 
   UsbKind kind;
   std::string wanted;  // path
   libusb_context* context = nullptr;
   libusb_device_handle* handle = nullptr;
-  Path path{};
-  Interface interface {};
+  UsbPath path{};
+  UsbInterface interface {};
   std::array<Transfer, kPending> incoming{};
   Transfer out{};
   std::array<Transfer, kRequests> requests{};
@@ -259,7 +130,7 @@ struct UsbPort::Libusb {
   }
 
   /// Bulk or interrupt, as the endpoint is.
-  void fill(Transfer& transfer, const Endpoint& endpoint, std::size_t size, libusb_transfer_cb_fn done,
+  void fill(Transfer& transfer, const UsbEndpoint& endpoint, std::size_t size, libusb_transfer_cb_fn done,
             unsigned timeout) {
     libusb_fill_bulk_transfer(transfer.libusb, handle, endpoint.address, transfer.bytes.data(),
                               static_cast<int>(size), done, &transfer, timeout);
@@ -303,7 +174,7 @@ bool UsbPort::open(Time now) noexcept {
   u.handle_events(0);  // tells what was plugged in
   if (!u.lookout.due(now)) return false;
   int error = LIBUSB_ERROR_NO_DEVICE;
-  for_each(u.context, u.kind.ids, [&](libusb_device* device, const UsbId&) {
+  for_each_usb(u.context, u.kind.ids, [&](libusb_device* device, const UsbId&) {
     if (u.handle == nullptr && (u.wanted.empty() || path_of(device).data() == u.wanted))
       error = u.claim(device);
   });

@@ -52,6 +52,16 @@ def read_rows(path):
     return rows
 
 
+def require_study(rows, path):
+    """That these are the rows of a study, and that the block, which most drawings are of, is among them."""
+    missing = {"world", "reference", "method", "blended", "speed_m_s", "rate_hz", "delay_ms"} - set(rows[0])
+    what = f"no column {min(missing)}" if missing else ""
+    if not missing and not chosen(rows, world="block", reference="truth", speed_m_s=SPEED, rate_hz=RATE):
+        what = f"no rows of the block against the truth at {SPEED:g} m/s and {RATE:g} Hz"
+    if what:
+        raise Unusable(f"{path}: {what}; this draws what scripts/study extrapolation --out DIR wrote")
+
+
 def chosen(rows, **wanted):
     return [row for row in rows if all(row[key] == value for key, value in wanted.items())]
 
@@ -301,6 +311,7 @@ def draw(folder):
     pyplot.rcParams.update({"font.size": 12, "axes.spines.top": False, "axes.spines.right": False,
                             "axes.axisbelow": True, "text.parse_math": False})
     rows = read_rows(folder / "summary.csv")
+    require_study(rows, folder / "summary.csv")
     styles = style_of_laws(values(rows, "method"))
     paper_table(rows, folder)
     law_table(rows, folder)
@@ -334,10 +345,6 @@ def main():
         draw(arguments.folder)
     except Unusable as problem:
         print(f"extrapolation.py: {problem}", file=sys.stderr)
-        return 2
-    except KeyError as missing:
-        print(f"extrapolation.py: {arguments.folder}: its tables have no column {missing}; this draws what "
-              "`scripts/study extrapolation --out DIR` wrote", file=sys.stderr)
         return 2
     except ImportError:
         print("extrapolation.py: matplotlib is missing: apt-get install python3-matplotlib", file=sys.stderr)

@@ -195,11 +195,14 @@ void ToolContact::settle(ToolTissue tissue) {
   const double surface = surface_motion(tissue), increments = increments_for(0, surface);
   ContactForce contact;
   int iterations = force_.iterations;
-  for (double i = 1; i <= increments; ++i) {
+  double i = 1;
+  for (; i <= increments && iterations < kMaxIterations + kMaxSettling; ++i) {
     if (surface > 0) tissue.set_share_left(1 - i / increments);
     contact = solve_contact(tissue);
     iterations += contact.iterations;
   }
+  tissue.set_share_left(0);
+  if (i <= increments) contact.converged = false;
   const bool may_be_inside =
       force_.contacts > 0 && (contact.contacts == 0 || !tissue.model().compliance_is_constant());
   if (may_be_inside && recover_from_inside(tissue)) {

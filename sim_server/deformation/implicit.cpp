@@ -14,6 +14,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kBalanced = 0.05;  // relative residual of the last iteration of a step that counts as solved
+constexpr int kMoreIterations = 2;  // times `max_newton`, where the residual does not count as solved by then
 constexpr double kAtRest = 1e-6;    // relative residual of the predictor of a body that rests
 constexpr double kMostColumnBytes = 1e9;  // of columns, when a step begins
 
@@ -190,7 +191,8 @@ void Implicit::add_response(std::span<const NodalLoad> loads, double sign, Eigen
 }
 
 std::optional<FreeMotion> Implicit::relinearise() {
-  if (law_is_linear() || ++iterations_ > max_newton_) return {};
+  const int most = dynamics_.relative_residual() > kBalanced ? kMoreIterations * max_newton_ : max_newton_;
+  if (law_is_linear() || ++iterations_ > most) return {};
   apply_new_loads();
   if (!relinearised_) dynamics_.loads_changed();
   relinearised_ = true;

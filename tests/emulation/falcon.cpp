@@ -47,6 +47,7 @@ UsbResult Falcon::request(const UsbSetup& setup, const Bytes&, double now) {
 int Falcon::write(std::uint8_t endpoint, const Bytes& data, double now) {
   if (endpoint != kOut) return -EPIPE;
   advance(now);
+  ++writes_;
   chip_.write(data, now);
   return 0;
 }

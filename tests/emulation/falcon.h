@@ -53,7 +53,7 @@ class Falcon : public UsbDevice {
   Ft232r chip_;
   int buttons_ = 0, leds_ = 0, largest_dac_ = 0, largest_dac_unhomed_ = 0;
   std::array<int, 3> wished_dac_{}, frozen_{};
-  std::uint64_t packets_ = 0, opens_ = 0;
+  std::uint64_t packets_ = 0, opens_ = 0, writes_ = 0;
   double mechanics_until_ = 0;                                       // s of the wall clock
   std::multimap<std::uint64_t, std::pair<std::string, Words>> due_;  // by packet number
 };

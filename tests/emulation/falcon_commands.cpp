@@ -134,6 +134,7 @@ std::string Falcon::state(double now) {
   json.add("kinetic", mechanics_.kinetic_energy());
   json.add("packets", static_cast<double>(packets_));
   json.add("opens", static_cast<double>(opens_));
+  json.add("writes", static_cast<double>(writes_));
   json.add("largest_dac", static_cast<double>(largest_dac_));
   json.add("largest_dac_unhomed", static_cast<double>(largest_dac_unhomed_));
   json.add("time", mechanics_.time());

@@ -84,8 +84,8 @@ TEST_CASE("a capsule that turns by a right angle in one step presses the surface
 }
 
 TEST_CASE("a capsule whose turn takes more than a step has says so, and gets there in the next ones") {
-  Simulation fast = organ({.radius = kRadius, .length = 0.02}),
-             slow = organ({.radius = kRadius, .length = 0.02});
+  Simulation fast = organ({.radius = kRadius, .length = 0.03}),
+             slow = organ({.radius = kRadius, .length = 0.03});
   const auto turned = [](double angle) { return Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ())) * kLevel; };
   const Vec3 p(0, 0.011, 0.0013);  // in the end 14 mm deep
   fast.step({p, turned(0)}, kDt);

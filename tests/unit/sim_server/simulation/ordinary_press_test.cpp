@@ -1,0 +1,56 @@
+// Presses that a hand makes, into soft tissue and by more than the tool's radius, are solved in every step.
+#include "sim_server/deformation/implicit.h"
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/solids.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+
+namespace {
+
+constexpr double kDt = 1.0 / 30, kRadius = 0.006, kDepth = 0.01, kClear = 0.01;
+
+struct Press {
+  double force = 0;                // N, upwards, at the end
+  int flagged = 0, most_work = 0;  // steps; contact linearisations of one step
+};
+
+/// 60 x 40 x 60 mm of 10 kPa, edges of 5 mm, pressed to `kDepth` at `speed` (m/s) from `begin` (s) on, then
+/// held for 0.5 s.
+Press press_block(ElasticLaw law, double speed, double begin) {
+  Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.45, .law = law},
+                         {Vec3(-1, -1, -1), Vec3(1, -0.0399, 1)}, kRadius);
+  scene.deformation.model = "implicit";
+  Simulation simulation(scene,
+                        grid_block(lines(-0.03, 0.03, 12), lines(-0.04, 0, 8), lines(-0.03, 0.03, 12)));
+  Press press;
+  for (double t = 0; t < begin + (kDepth + kClear) / speed + 0.5; t += kDt) {
+    const double gone = std::clamp((t - begin) * speed, 0.0, kDepth + kClear);
+    const ToolForce told = simulation.step(ToolPose(Vec3(0.0011, kRadius + kClear - gone, 0.0007)), kDt);
+    press.force = told.force.y();
+    press.flagged += told.flagged ? 1 : 0;
+    press.most_work = std::max(press.most_work, told.iterations);
+  }
+  return press;
+}
+
+}  // namespace
+
+TEST_CASE("ordinary presses: every step is solved, with the force of a slow press at the end") {
+  for (const ElasticLaw law : {ElasticLaw::kCorotational, ElasticLaw::kNeoHookean}) {
+    const double right = press_block(law, 0.02, 0.1).force;
+    REQUIRE(right > 0.5);
+    for (const double speed : {0.05, 0.1, 0.15}) {
+      for (const double phase : {0.0, 0.5}) {
+        const Press press = press_block(law, speed, 0.1 + phase * kDt);
+        CAPTURE(static_cast<int>(law), speed, phase, press.most_work);
+        CHECK(press.flagged == 0);
+        CHECK(press.force == Approx(right).epsilon(0.005));
+        CHECK(press.most_work < 400);
+      }
+    }
+  }
+}
