@@ -21,6 +21,8 @@ struct Column {
   bool linear() const { return elastic == sim::ElasticLaw::kLinear; }
   /// Nothing of it gives way: force = stiffness x depth, also of what is held.
   bool stands() const { return !row->deforms() && !row->moves; }
+  /// At rest at every instant: the force depends on the path, not on how long it took.
+  bool at_rest() const { return !row->deforms() || !row->moves; }
 };
 /// Every row of `deformation_models`, with every law where it takes any.
 const std::vector<Column>& columns();
@@ -117,23 +119,27 @@ std::string tool(double radius, const std::string& more = "");
 
 /// What a run showed.
 struct Run {
-  /// The forces on the tools at a step of the hold, N.
+  /// The forces on the tools at a step while they are there, N.
   struct Held {
     double t;  // s
     std::vector<Vec3> force;
     bool flagged;
   };
-  std::vector<Held> hold;  // from when the last tool arrived until all are taken away
-  double arrived = 0;      // s
+  std::vector<Held> held;  // from the first step until all are taken away
+  double arrived = 0;      // s: the last tool
   std::vector<Vec3> last;  // the force on each tool while it was there, N
   double max_newton = 0;   // of all steps
   double wildest = 0;      // of those that were not flagged
   int steps = 0, flagged = 0;
+  int phase = 0;                 // of `Trial::phases`
   bool pressed_flagged = false;  // when `last` was felt
   bool finite = true, ends_flagged = false;
   bool locks = false;  // the program warned at the start that its elements lock
   double off = 0;      // from where the surface began, when the tools have been away, m
 };
+
+/// The motion `share` of a step later.
+std::vector<Path> later(std::vector<Path> paths, double share, double rate_hz);
 
 /// Follows `paths`; then, where `lift`, as long again without tools. Throws `Error` where the program
 /// refuses.

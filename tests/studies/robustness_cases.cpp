@@ -68,6 +68,7 @@ void most_of_the_thickness(Trial& trial) {
 void pinched(Trial& trial) {
   trial.file.tools = {tool(kRadius), tool(kRadius)};
   trial.depth = 0.005;
+  trial.outward = -Vec3::UnitX();
   trial.paths.clear();
   for (const double side : {-1.0, 1.0}) {
     const double from = 0.015 + kRadius + 0.002, to = 0.015 + kRadius - trial.depth;

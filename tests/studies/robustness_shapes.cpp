@@ -67,6 +67,15 @@ void two_sheets(Trial& trial) {
   trial.most = 2;
 }
 
+/// Two blocks that share an edge and no more; the left one is held.
+void hinge(Trial& trial) {
+  const auto either = [](const Vec3& x) { return (x.x() < 0) == (x.y() < -0.0075); };
+  trial.mesh =
+      carved(test::lines(-0.015, 0.015, 6), test::lines(-0.015, 0, 4), test::lines(-0.015, 0.015, 6), either);
+  trial.paths = {{{0, Vec3(0.011, 0.006, 0.002)}, {1, Vec3(0.011, 0.001, 0.002)}}};
+  trial.must_refuse = true;
+}
+
 /// 2 mm thick and 10 mm high along the middle of the usual block.
 void fin(Trial& trial) {
   const auto on = [](const Vec3& x) { return x.y() < 0 || std::abs(x.x()) < 0.001; };
@@ -115,7 +124,7 @@ Change flap(bool from_above, double speed) {
 std::vector<Case> shape_cases() {
   std::vector<Case> rows;
   for (const double thickness : {0.001, 0.003, 0.006}) {
-    for (const double speed : {0.1, 0.35, 1.0})
+    for (const double speed : {0.05, 0.23, 0.35, 0.6, 1.0, 2.0})
       rows.push_back(
           {fmt::format("sheet_{:g}_mm_{:g}", 1e3 * thickness, speed),
            fmt::format("{:g} mm thick, pressed 15 mm at {:g} m/s, four phases", 1e3 * thickness, speed),
@@ -123,6 +132,7 @@ std::vector<Case> shape_cases() {
   }
   rows.push_back({"two_sheets", "1.5 mm thick, 1 mm apart, tool radius 6 mm, pressed 15 mm", true, run_trial,
                   two_sheets});
+  rows.push_back({"hinge", "two blocks joined by one edge, the free one pressed", false, run_trial, hinge});
   rows.push_back(
       {"fin_aside", "2 mm thick, 10 mm high, pushed 4 mm at 0.05 m/s", true, run_trial, fin_aside(0.05)});
   rows.push_back({"fin_aside_fast", "the same at 0.5 m/s", false, run_trial, fin_aside(0.5)});

@@ -18,6 +18,7 @@ constexpr double kTellWhy = 0.01;     // an error of a force that nothing flagge
 constexpr double kOtherRest = 0.5;    // of the force: a rest that is farther off is no neighbour
 constexpr double kSamePlace = 1e-3;   // of the force: two runs that ended in one place
 constexpr double kAside = 0.0005;     // m
+constexpr int kSlower = 8;            // a multiple of all `Trial::phases`
 constexpr double kGivenToRest = 0.5;  // of the hold: before, what moves may still swing
 
 /// The forces as they should be, and the largest on the way.
@@ -27,6 +28,8 @@ struct Expected {
   std::vector<Vec3> force;    // of each tool; empty: only its size is known
   double most = 0;
   bool settled = true;
+  std::optional<Run> slower =
+      {};  // of a model at rest at every instant: the same path, `kSlower` times as slowly
 };
 
 const Column& first_column(bool (*is)(const Column&)) {
@@ -55,7 +58,7 @@ Truth truth_of(const Trial& trial, const Column& column) {
   if (trial.refer) trial.refer(slow);
   const bool same = !column.linear() || trial.only_implicit_refers;
   // The equilibrium itself; of that, the same matrix by steps of a motion.
-  const auto at_rest = [](const Column& c) { return c.row->deforms() && !c.row->moves; };
+  const auto at_rest = [](const Column& c) { return c.row->deforms() && c.at_rest(); };
   const Column& other =
       same ? column
            : (at_rest(column) ? first_column([](const Column& c) { return c.any_law() && c.linear(); })
@@ -66,8 +69,28 @@ Truth truth_of(const Trial& trial, const Column& column) {
   return {std::move(slow), &other, what};
 }
 
+/// The whole motion, `kSlower` times as slowly.
+Run more_slowly(Trial trial, const Column& column) {
+  trial.seconds *= kSlower;
+  for (Path& path : trial.paths) {
+    for (Waypoint& waypoint : path) waypoint.t *= kSlower;
+  }
+  return follow(trial, column, trial.paths, false);
+}
+
 Expected closed_form(const std::string& what, std::size_t tools, const Range& range) {
   return {what, std::vector<Range>(tools, range), {}, range.most};
+}
+
+/// From the run of a truth.
+Expected forces_of(const Run& run, const Trial& trial) {
+  Expected expected{"", {}, {}, trial.times * trial.most * run.max_newton};
+  for (const Vec3& force : run.last) {
+    const double newton = trial.times * force.norm();
+    expected.newton.push_back({newton, trial.most * newton});
+    if (trial.most == 1) expected.force.push_back(trial.times * force);
+  }
+  return expected;
 }
 
 Expected expected_of(const Trial& trial, const Column& column) {
@@ -80,12 +103,8 @@ Expected expected_of(const Trial& trial, const Column& column) {
   }
   const Truth truth = truth_of(trial, column);
   const Run run = truth.follow(truth.trial.paths);
-  Expected expected{truth.what, {}, {}, trial.times * trial.most * run.max_newton};
-  for (const Vec3& force : run.last) {
-    const double newton = trial.times * force.norm();
-    expected.newton.push_back({newton, trial.most * newton});
-    if (trial.most == 1) expected.force.push_back(trial.times * force);
-  }
+  Expected expected = forces_of(run, trial);
+  expected.what = truth.what;
   expected.settled = run.finite && !run.pressed_flagged;
   if (!expected.settled) expected.what += ": flagged at its end, so that there is no error to tell";
   if (run.flagged > 0) expected.what += fmt::format(" (flagged in {} of {} steps)", run.flagged, run.steps);
@@ -104,10 +123,10 @@ double error_of(const std::vector<Vec3>& force, const Expected& expected) {
   return error;
 }
 
-/// Whether the truth ends where `run` did, too, if its tools come from a little aside: two facets may both
-/// bear a tool, and then the way to the end decides. Says so, or nothing. A force that is far off, or none,
-/// is no such neighbour, whoever else finds it.
-std::string another_rest(const Run& run, const Trial& trial, const Column& column) {
+/// What the truth finds where its tools come from a little aside, if it ends where `run` did then: two facets
+/// may both bear a tool, and the way to the end decides. A force that is far off, or none, is no such
+/// neighbour, whoever else finds it.
+std::optional<Expected> another_rest(const Run& run, const Trial& trial, const Column& column) {
   const Truth truth = truth_of(trial, column);
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1.0, 1.0}) {
@@ -118,48 +137,66 @@ std::string another_rest(const Run& run, const Trial& trial, const Column& colum
         path.push_back({(end.t + truth.trial.seconds) / 2, end.place});
       }
       const Run other = truth.follow(paths);
-      Expected there{"", {}, {}};
-      for (const Vec3& force : other.last) {
-        there.force.push_back(trial.times * force);
-        there.newton.push_back({trial.times * force.norm(), trial.times * force.norm()});
-      }
-      if (!other.pressed_flagged && error_of(run.last, there) < kSamePlace)
-        return fmt::format(
-            "the tools have more than one place to rest, and this is another: {} ends there, too, where they "
-            "come from {} mm aside ({}{})",
-            truth.column->name, 1e3 * kAside, sign < 0 ? '-' : '+', "xyz"[axis]);
+      Expected there = forces_of(other, trial);
+      if (other.pressed_flagged || error_of(run.last, there) > kSamePlace) continue;
+      there.what = fmt::format(
+          "the tools have more than one place to rest, and this is another: {} ends there, too, where they "
+          "come from {} mm aside ({}{})",
+          truth.column->name, 1e3 * kAside, sign < 0 ? '-' : '+', "xyz"[axis]);
+      return there;
     }
   }
   return {};
 }
 
-/// What is wrong at some time of the hold, unflagged; nothing: all is well. `lenient`: the error is that of
-/// another rest.
-std::string wrong_in_hold(const Run& run, const Trial& trial, const Expected& expected, bool lenient) {
-  const double until = run.hold.back().t;
-  for (const Run::Held& held : run.hold) {
+/// What is wrong at some time while the tools are there, unflagged; nothing: all is well.
+std::string wrong_on_the_way(const Run& run, const Trial& trial, const Expected& expected) {
+  const double until = run.held.back().t;
+  const double scale = std::max(expected.newton.front().least, kSmallest);
+  for (const Run::Held& held : run.held) {
     if (held.flagged) continue;
-    const double share = run.arrived < until ? (held.t - run.arrived) / (until - run.arrived) : 1;
-    const double scale = std::max(expected.newton.front().least, kSmallest);
-    if (held.force.front().dot(trial.outward) < -trial.bound * scale)
-      return fmt::format("{:.3g} N towards the body at {:.2f} s, and not flagged",
-                         -held.force.front().dot(trial.outward), held.t);
+    const double inward = -held.force.front().dot(trial.outward);
+    if (inward > trial.bound * scale)
+      return fmt::format("{:.3g} N towards the body at {:.2f} s, and not flagged", inward, held.t);
+    const bool settled = held.t >= run.arrived + kGivenToRest * (until - run.arrived);
     const double error = error_of(held.force, expected);
-    if (expected.settled && !lenient && share >= kGivenToRest && error > trial.bound)
+    if (expected.settled && settled && error > trial.bound)
       return fmt::format("{:.3g} N where {:.3g} N is right, {:.2g} % off at {:.2f} s, and not flagged",
                          held.force.front().norm(), expected.newton.front().least, 100 * error, held.t);
   }
   return {};
 }
 
+/// Of a model that is at rest at every instant: what it finds on the way, where the same way in finer steps
+/// finds something else.
+std::string wrong_between(const Run& run, const Trial& trial, const Expected& expected) {
+  if (!expected.slower) return {};
+  const std::vector<Run::Held>& right = expected.slower->held;
+  const double scale = std::max(expected.newton.front().least, kSmallest);
+  for (std::size_t i = 0; i < run.held.size(); ++i) {
+    // A step of the slower run ends where this one does, whatever the phase.
+    const auto at = static_cast<int>(i + 1) * kSlower - run.phase * kSlower / trial.phases - 1;
+    if (at < 0 || at >= static_cast<int>(right.size()) || run.held[i].flagged || right[at].flagged) continue;
+    for (std::size_t k = 0; k < right[at].force.size(); ++k) {
+      const double off = (run.held[i].force[k] - right[at].force[k]).norm() / scale;
+      if (off > trial.bound)
+        return fmt::format(
+            "{:.3g} N at {:.2f} s, where {} times as many steps there give {:.3g} N, and not flagged",
+            run.held[i].force[k].norm(), run.held[i].t, kSlower, right[at].force[k].norm());
+    }
+  }
+  return {};
+}
+
 /// What is wrong of one run, or nothing.
-std::string wrong_of(const Run& run, const Trial& trial, const Expected& expected, bool lenient) {
+std::string wrong_of(const Run& run, const Trial& trial, const Expected& expected) {
   if (run.wildest > kAbsurd * expected.most + kSmallest)
     return fmt::format("{:.3g} N without a flag; the reference has {:.3g} N at most", run.wildest,
                        expected.most);
   if (run.off > kReturned * trial.depth && !run.ends_flagged)
     return fmt::format("let go, its surface stays up to {:.3g} mm off, and not flagged", 1e3 * run.off);
-  return wrong_in_hold(run, trial, expected, lenient);
+  const std::string wrong = wrong_on_the_way(run, trial, expected);
+  return wrong.empty() ? wrong_between(run, trial, expected) : wrong;
 }
 
 Verdict judge_one(const Run& run, const Trial& trial, const Column& column, const Expected& expected) {
@@ -167,11 +204,13 @@ Verdict judge_one(const Run& run, const Trial& trial, const Column& column, cons
   if (!run.finite)
     return {"exploded", "a force, tangent or position that is not finite", {}, {}, expected.what};
   if (expected.settled) verdict.error_percent = 100 * error_of(run.last, expected);
-  std::string elsewhere;
+  std::optional<Expected> elsewhere;
   const double error = verdict.error_percent.value_or(0) / 100;
-  if (!run.pressed_flagged && error > kTellWhy && error < kOtherRest && column.row->deforms() && !trial.felt)
+  const double tell_why = trial.bound == kBound ? kTellWhy : trial.bound;
+  if (!run.pressed_flagged && error > tell_why && error < kOtherRest && column.row->deforms() && !trial.felt)
     elsewhere = another_rest(run, trial, column);
-  const std::string wrong = wrong_of(run, trial, expected, !elsewhere.empty());
+  if (elsewhere) elsewhere->most = expected.most;
+  const std::string wrong = wrong_of(run, trial, elsewhere.value_or(expected));
   if (!wrong.empty() && run.locks) {
     verdict.outcome = "flagged";
     verdict.reason = "warned at the start that its elements lock, with those to take instead: " + wrong;
@@ -184,7 +223,7 @@ Verdict judge_one(const Run& run, const Trial& trial, const Column& column, cons
         fmt::format("{} of {} steps flagged, answered with what was found so far; {}", run.flagged, run.steps,
                     run.pressed_flagged ? "the force at the end, too" : "the force at the end was not");
   }
-  if (!elsewhere.empty()) verdict.reason += (verdict.reason.empty() ? "" : "; ") + elsewhere;
+  if (elsewhere) verdict.reason += (verdict.reason.empty() ? "" : "; ") + elsewhere->what;
   return verdict;
 }
 
@@ -207,6 +246,7 @@ Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& co
     expected.most = 1e300;
     expected.newton.assign(trial.paths.size(), {0, 0});
   }
+  if (column.at_rest()) expected.slower = more_slowly(trial, column);
   Verdict worst;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Verdict verdict = judge_one(runs[i], trial, column, expected);
