@@ -77,12 +77,14 @@ struct Trial {
   double reference_seconds = 3;              // of the reference, at least
   int phases = 1;                            // of the motion against the steps, each a run
   double depth = 0.003;                      // m: how deep the first tool is in the body at rest, at the end
-  Vec3 outward = Vec3::UnitY();              // the force on the first tool never points against that
+  std::vector<Vec3> outward{Vec3::UnitY()};  // of each tool: the force on it never points against that
   double bound = kBound;                     // of the force, see there
   bool only_implicit_refers = false;         // only a model of any law bears what acts here
   std::optional<double> felt_by_rigid = {};  // of stiffness x depth; else 1
   std::optional<Range> felt = {};            // closed form, of all models whose held vertices are walls
-  bool must_refuse = false;                  // models that cannot fly: nothing else is an answer
+  bool path_matters = false;    // where it rests: a reference that was flagged on its way tells nothing
+  bool no_rest_unbent = false;  // an organ that moves, but does not deform, has no place to rest: flagged
+  bool must_refuse = false;     // models that cannot fly: nothing else is an answer
 
   // What is expected: the forces of the scene that `refer` makes of this one, times `times`; `most` times
   // that at most, where only a range is known.

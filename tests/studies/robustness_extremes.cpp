@@ -77,7 +77,7 @@ Change stroke_at(double speed) {
 Change held_face(double radius, double depth, const Vec3& at, const Range& felt) {
   return [=](Trial& trial) {
     trial.depth = depth;
-    trial.outward = -Vec3::UnitY();
+    trial.outward = {-Vec3::UnitY()};
     trial.file.tools = {tool(radius)};
     const Vec3 end = at + Vec3(0, -0.015 - radius + depth, 0);
     trial.paths = {{{0, end - Vec3(0, 0.005, 0)}, {1, end}}};

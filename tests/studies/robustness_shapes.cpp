@@ -85,7 +85,7 @@ void fin(Trial& trial) {
 
 void push(Trial& trial, const Vec3& end, const Vec3& outward, double depth, double speed) {
   trial.depth = depth;
-  trial.outward = outward;
+  trial.outward = {outward};
   const Vec3 from = end + (depth + 0.005) * outward;
   trial.paths = {stroke(from, end, speed)};
   trial.slow = {stroke(from, end, 0.01)};

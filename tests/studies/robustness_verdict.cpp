@@ -28,6 +28,7 @@ struct Expected {
   std::vector<Vec3> force;    // of each tool; empty: only its size is known
   double most = 0;
   bool settled = true;
+  bool impossible = false;  // nothing but a flag is right
   std::optional<Run> slower =
       {};  // of a model at rest at every instant: the same path, `kSlower` times as slowly
 };
@@ -97,6 +98,12 @@ Expected expected_of(const Trial& trial, const Column& column) {
   const std::size_t tools = trial.paths.size();
   if (trial.felt && !column.stands())
     return closed_form("closed form: the stiffness of held vertices x depth", tools, *trial.felt);
+  if (trial.no_rest_unbent && !column.row->deforms() && column.row->moves) {
+    Expected none = closed_form("none: there is no place to rest", tools, {0, 1e300});
+    none.settled = false;
+    none.impossible = true;
+    return none;
+  }
   if (!column.row->deforms()) {
     const double newton = trial.felt_by_rigid.value_or(1) * 800 * trial.depth;
     return closed_form("closed form: stiffness x depth", tools, {newton, newton});
@@ -105,8 +112,8 @@ Expected expected_of(const Trial& trial, const Column& column) {
   const Run run = truth.follow(truth.trial.paths);
   Expected expected = forces_of(run, trial);
   expected.what = truth.what;
-  expected.settled = run.finite && !run.pressed_flagged;
-  if (!expected.settled) expected.what += ": flagged at its end, so that there is no error to tell";
+  expected.settled = run.finite && !run.pressed_flagged && !(trial.path_matters && run.flagged > 0);
+  if (!expected.settled) expected.what += ": flagged, so that there is no error to tell";
   if (run.flagged > 0) expected.what += fmt::format(" (flagged in {} of {} steps)", run.flagged, run.steps);
   return expected;
 }
@@ -155,9 +162,14 @@ std::string wrong_on_the_way(const Run& run, const Trial& trial, const Expected&
   const double scale = std::max(expected.newton.front().least, kSmallest);
   for (const Run::Held& held : run.held) {
     if (held.flagged) continue;
-    const double inward = -held.force.front().dot(trial.outward);
-    if (inward > trial.bound * scale)
-      return fmt::format("{:.3g} N towards the body at {:.2f} s, and not flagged", inward, held.t);
+    for (std::size_t k = 0; k < held.force.size(); ++k) {
+      const double inward = -held.force[k].dot(trial.outward[k]);
+      if (inward > trial.bound * scale)
+        return fmt::format("{:.3g} N towards the body at {:.2f} s, and not flagged", inward, held.t);
+    }
+    if (expected.impossible && held.t > run.arrived)
+      return fmt::format("{:.3g} N at {:.2f} s, where it has no place to rest, and not flagged",
+                         held.force.front().norm(), held.t);
     const bool settled = held.t >= run.arrived + kGivenToRest * (until - run.arrived);
     const double error = error_of(held.force, expected);
     if (expected.settled && settled && error > trial.bound)
