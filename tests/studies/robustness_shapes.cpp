@@ -4,36 +4,13 @@
 
 #include "sim_server/mesh/shapes.h"
 #include "tests/studies/robustness.h"
+#include "tests/support/carved.h"
 #include "tests/support/solids.h"
 
 namespace palpate::studies {
 namespace {
 
 using Change = std::function<void(Trial&)>;
-using Inside = std::function<bool(const Vec3&)>;
-
-/// The cells of a grid whose middles are inside.
-sim::TetMesh carved(const std::vector<double>& x, const std::vector<double>& y, const std::vector<double>& z,
-                    const Inside& inside) {
-  const sim::TetMesh whole = sim::grid_block(x, y, z);
-  sim::TetMesh mesh;
-  std::vector<int> number(whole.vertices.size(), -1);
-  for (sim::Tetrahedron t : whole.tetrahedra) {
-    Vec3 middle = Vec3::Zero();
-    for (const int v : t) middle += whole.vertices[v] / 4;
-    if (!inside(middle)) continue;
-    for (int& v : t) {
-      if (number[v] < 0) {
-        number[v] = static_cast<int>(mesh.vertices.size());
-        mesh.vertices.push_back(whole.vertices[v]);
-      }
-      v = number[v];
-    }
-    mesh.tetrahedra.push_back(t);
-  }
-  return mesh;
-}
-
 constexpr double kBall = 0.006;  // m, of the tool on sheets
 constexpr const char* kTwoEdges =
     "[[fixed]]\nbox = [[-1, -1, -1], [-0.0299, 1, 1]]\n[[fixed]]\nbox = [[0.0299, -1, -1], [1, 1, 1]]\n";
@@ -61,7 +38,7 @@ void two_sheets(Trial& trial) {
   sheet(0.0015, 0.2)(trial);
   const auto side = test::lines(-0.03, 0.03, 14);
   const auto both = [](const Vec3& x) { return x.y() > -0.0015 || x.y() < -0.0025; };
-  trial.mesh = carved(side, {-0.004, -0.0025, -0.0015, 0}, side, both);
+  trial.mesh = test::carved(side, {-0.004, -0.0025, -0.0015, 0}, side, both);
   trial.refers_to = "the upper sheet alone; at most twice that";
   trial.refer = [side](Trial& one) { one.mesh = sim::grid_block(side, {-0.0015, 0}, side); };
   trial.most = 2;
@@ -70,8 +47,8 @@ void two_sheets(Trial& trial) {
 /// Two blocks that share an edge and no more; the left one is held.
 void hinge(Trial& trial) {
   const auto either = [](const Vec3& x) { return (x.x() < 0) == (x.y() < -0.0075); };
-  trial.mesh =
-      carved(test::lines(-0.015, 0.015, 6), test::lines(-0.015, 0, 4), test::lines(-0.015, 0.015, 6), either);
+  trial.mesh = test::carved(test::lines(-0.015, 0.015, 6), test::lines(-0.015, 0, 4),
+                            test::lines(-0.015, 0.015, 6), either);
   trial.paths = {{{0, Vec3(0.011, 0.006, 0.002)}, {1, Vec3(0.011, 0.001, 0.002)}}};
   trial.must_refuse = true;
 }
@@ -79,8 +56,9 @@ void hinge(Trial& trial) {
 /// 2 mm thick and 10 mm high along the middle of the usual block.
 void fin(Trial& trial) {
   const auto on = [](const Vec3& x) { return x.y() < 0 || std::abs(x.x()) < 0.001; };
-  trial.mesh = carved({-0.015, -0.01, -0.005, -0.001, 0.001, 0.005, 0.01, 0.015},
-                      {-0.015, -0.01, -0.005, 0, 0.0033, 0.0067, 0.01}, test::lines(-0.015, 0.015, 6), on);
+  trial.mesh =
+      test::carved({-0.015, -0.01, -0.005, -0.001, 0.001, 0.005, 0.01, 0.015},
+                   {-0.015, -0.01, -0.005, 0, 0.0033, 0.0067, 0.01}, test::lines(-0.015, 0.015, 6), on);
 }
 
 void push(Trial& trial, const Vec3& end, const Vec3& outward, double depth, double speed) {
@@ -111,8 +89,8 @@ void ridge(Trial& trial) {
 Change flap(bool from_above, double speed) {
   return [=](Trial& trial) {
     const auto on = [](const Vec3& x) { return x.x() < 0.015 || x.y() > -0.002; };
-    trial.mesh = carved({-0.015, -0.01, -0.005, 0, 0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.035},
-                        {-0.015, -0.01, -0.005, -0.002, 0}, test::lines(-0.015, 0.015, 6), on);
+    trial.mesh = test::carved({-0.015, -0.01, -0.005, 0, 0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.035},
+                              {-0.015, -0.01, -0.005, -0.002, 0}, test::lines(-0.015, 0.015, 6), on);
     const double depth = 0.008, side = from_above ? 1 : -1;
     const double end = from_above ? 0.004 - depth : -0.002 - 0.004 + depth;
     push(trial, Vec3(0.0281, end, 0.0007), Vec3(0, side, 0), depth, speed);

@@ -64,8 +64,8 @@ Truth truth_of(const Trial& trial, const Column& column) {
       same ? column
            : (at_rest(column) ? first_column([](const Column& c) { return c.any_law() && c.linear(); })
                               : first_column(at_rest));
-  std::string what =
-      same ? "pressed slowly, Newton's method to 1e-9" : fmt::format("{}, pressed slowly", other.name);
+  std::string what = same ? fmt::format("pressed slowly, Newton's method to {:g}", slow.file.tolerance)
+                          : fmt::format("{}, pressed slowly", other.name);
   if (!trial.refers_to.empty()) what += ": " + trial.refers_to;
   return {std::move(slow), &other, what};
 }
