@@ -84,7 +84,7 @@ struct Trial {
   std::optional<Range> felt = {};            // closed form, of all models whose held vertices are walls
   bool path_matters = false;    // where it rests: a reference that was flagged on its way tells nothing
   bool no_rest_unbent = false;  // an organ that moves, but does not deform, has no place to rest: flagged
-  bool must_refuse = false;     // models that cannot fly: nothing else is an answer
+  bool must_refuse = false;     // of models that deform, nothing else is an answer
 
   // What is expected: the forces of the scene that `refer` makes of this one, times `times`; `most` times
   // that at most, where only a range is known.

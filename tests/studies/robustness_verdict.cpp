@@ -247,7 +247,7 @@ int rank(const Verdict& verdict) {
 }  // namespace
 
 Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& column) {
-  if (trial.must_refuse && column.row->deforms() && !column.row->flies)
+  if (trial.must_refuse && column.row->deforms())
     return {"wrong", "accepted, though nothing holds it from turning", {}, runs.front().max_newton, ""};
   Expected expected;
   try {
@@ -259,9 +259,20 @@ Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& co
     expected.newton.assign(trial.paths.size(), {0, 0});
   }
   if (column.at_rest()) expected.slower = more_slowly(trial, column);
+  // A warning that elements lock excuses what they find at rest, not what is found on the way there.
+  Trial locked = trial;
+  locked.refer = {};
+  locked.refers_to = "with elements that lock";
+  std::optional<Expected> of_locked;
+  if (runs.front().locks) of_locked = expected_of(locked, column);
   Verdict worst;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Verdict verdict = judge_one(runs[i], trial, column, expected);
+    Verdict verdict = judge_one(runs[i], trial, column, expected);
+    const std::string wrong = of_locked ? wrong_of(runs[i], locked, *of_locked) : "";
+    if (!wrong.empty()) {
+      verdict.outcome = "wrong";
+      verdict.reason = fmt::format("{} ({})", wrong, of_locked->what);
+    }
     const bool worse = i == 0 || rank(verdict) > rank(worst) ||
                        (rank(verdict) == rank(worst) && verdict.error_percent > worst.error_percent);
     if (worse) worst = verdict;
