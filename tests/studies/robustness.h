@@ -82,6 +82,7 @@ struct Trial {
   bool only_implicit_refers = false;         // only a model of any law bears what acts here
   std::optional<double> felt_by_rigid = {};  // of stiffness x depth; else 1
   std::optional<Range> felt = {};            // closed form, of all models whose held vertices are walls
+  double other_rest = 0.5;                   // of the force: a rest that is farther off is no neighbour
   bool path_matters = false;    // where it rests: a reference that was flagged on its way tells nothing
   bool no_rest_unbent = false;  // an organ that moves, but does not deform, has no place to rest: flagged
   bool must_refuse = false;     // of models that deform, nothing else is an answer

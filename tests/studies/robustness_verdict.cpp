@@ -15,7 +15,6 @@ constexpr double kAbsurd = 10;        // of the largest force expected, unflagge
 constexpr double kReturned = 0.05;    // of the depth: how far from rest a surface may be that was let go
 constexpr double kSmallest = 1e-9;    // N: less is no force
 constexpr double kTellWhy = 0.01;     // an error of a force that nothing flagged: more is looked into
-constexpr double kOtherRest = 0.5;    // of the force: a rest that is farther off is no neighbour
 constexpr double kSamePlace = 1e-3;   // of the force: two runs that ended in one place
 constexpr double kAside = 0.0005;     // m
 constexpr int kSlower = 8;            // a multiple of all `Trial::phases`
@@ -219,7 +218,8 @@ Verdict judge_one(const Run& run, const Trial& trial, const Column& column, cons
   std::optional<Expected> elsewhere;
   const double error = verdict.error_percent.value_or(0) / 100;
   const double tell_why = trial.bound == kBound ? kTellWhy : trial.bound;
-  if (!run.pressed_flagged && error > tell_why && error < kOtherRest && column.row->deforms() && !trial.felt)
+  if (!run.pressed_flagged && error > tell_why && error < trial.other_rest && column.row->deforms() &&
+      !trial.felt)
     elsewhere = another_rest(run, trial, column);
   if (elsewhere) elsewhere->most = expected.most;
   const std::string wrong = wrong_of(run, trial, elsewhere.value_or(expected));
