@@ -28,13 +28,14 @@ MEANINGS = {"stable": "stable: error of the force at the end, or of the shape wh
             "exploded": "exploded: not finite, or no answer"}
 # What a refusal is about, in a word.
 WHY = {"sub-steps": "too many\nsub-steps", "no fixed nodes": "nothing\nholds it", "small turns": "nothing\nholds it",
+       "can turn about": "it can\nturn", "hang on a hinge": "it can\nturn",
        "is for law": "material\nit cannot", "does not deform": "material\nit cannot", "bears tools only": "tools\nonly",
        "not in this build": "not in\nthis build"}
 
 
 def number(value):
     """Errors below 0.01 % are none to a hand."""
-    return "< 0.01 %" if value < 0.01 else f"{value:.2g} %" if value < 1e4 else f"{value:.0e} %"
+    return "< 0.01 %" if value < 0.01 else f"{value:.2g} %" if value < 100 else f"{value:.0f} %" if value < 1e4 else f"{value:.0e} %"
 
 
 def in_cell(row):

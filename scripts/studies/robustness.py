@@ -8,13 +8,19 @@ most: one that crashes or hangs is "exploded", and the others go on.
 Writes into --out: summary.json and robustness.csv (a row for each cell) and robustness.txt.
 The same bytes each time. Columns:
   case, model       a row of tests/studies/robustness_cases.cpp; a model, for implicit with its law
-  outcome           stable, refused (by the program, which says what to change), flagged (a defined
-                    answer was held and said to be unsettled, or the program warned at the start), wrong
-                    (unflagged, and off by more than 5 % of the reference in the second half of the hold, 25 %
-                    where a row compares elements; or at any time of the hold towards the body by as much; or
-                    ten times the largest force of the reference on the way; or a surface that does not come
-                    back; or a body accepted that must be refused), exploded (a force, tangent or place that is
-                    not finite, or an end without an answer), or not_applicable
+  outcome           one of
+                    stable          all is well
+                    refused         by the program, which says what to change
+                    flagged         a defined answer was held and said to be unsettled, or the program warned at the
+                                    start that its elements lock
+                    wrong           unflagged, and one of: off by more than 5 % of the reference in the second half of
+                                    the hold (25 % where a row compares elements); towards the body by as much at any
+                                    time; ten times the largest force of the reference at any time; of a model at rest
+                                    at every instant, off by 5 % at any time from the same way in eight times as many
+                                    steps; a surface that does not come back when the tools are gone. Or a body was
+                                    accepted that must be refused
+                    exploded        a force, tangent or place that is not finite, or an end without an answer
+                    not_applicable  makes no sense for this model
   reason            one sentence; also of a stable cell whose tools rest in another place than those of the reference
   error_percent     of the force at the end, against the reference; of bodies without a tool, see there
   max_force_newton  the largest on any tool, flagged or not
@@ -29,6 +35,7 @@ import csv
 import json
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 from workers import Failed, Workers
@@ -98,7 +105,8 @@ def main():
         writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
-    text = table_of(rows, cases, models)
+    counts = Counter(row["outcome"] for row in rows)
+    text = f"{len(rows)} cells: {', '.join(f'{counts[o]} {o}' for o in SIGNS if counts[o])}\n\n" + table_of(rows, cases, models)
     (options.out / "robustness.txt").write_text(text, encoding="ascii")
     print(text, end="")
     return 1 if any(row["outcome"] in ("wrong", "exploded") for row in rows) else 0

@@ -6,6 +6,7 @@
 
 #include "common/error.h"
 #include "common/text.h"
+#include "sim_server/deformation/linear_statics.h"
 #include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/scene/held_motion.h"
 #include "sim_server/solvers/equilibrium.h"
@@ -35,10 +36,19 @@ DynamicsSettings settings_of(const ModelInputs& inputs) {
   return settings;
 }
 
+/// Whether its [[fixed]], held along all axes, are all that holds the body.
+bool held_by_vertices(const Scene& scene) {
+  const auto displaces = [](const Load& load) { return load.kind == Load::Kind::kDisplacement; };
+  const auto on_rails = [](const FixedRegion& fixed) { return fixed.axes != kAllAxes; };
+  return !scene.fixed.empty() && std::ranges::none_of(scene.fixed, on_rails) &&
+         std::ranges::none_of(scene.loads, displaces);
+}
+
 const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"implicit\" needs a [material] section", scene.source);
   step_period(scene);  // before any work
+  if (held_by_vertices(scene)) require_no_loose_part(inputs);
   inputs.progress(name_of(Stage::kStiffness), 0);
   return *scene.material;
 }

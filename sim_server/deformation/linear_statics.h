@@ -6,7 +6,7 @@
 
 namespace palpate::sim {
 
-/// Throws `Error` where some of the body could still turn or go, as the linear law has no answer to that.
+/// Throws `Error` where some of the body could still turn or go, with the part and what would hold it.
 void require_no_loose_part(const ModelInputs& inputs);
 
 /// The stiffness K of a linear tissue at rest, factored: what its models pre-compute from.

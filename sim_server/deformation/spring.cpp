@@ -40,7 +40,8 @@ std::string SpringSettings::to_text() const {
   return text;
 }
 
-Spring::Spring(const ModelInputs& inputs) : held_(inputs.surface.vertices.size(), 0) {
+Spring::Spring(const ModelInputs& inputs)
+    : held_(inputs.surface.vertices.size(), 0), held_compliance_(1 / held_stiffness(inputs.scene)) {
   const auto& settings = inputs.scene.deformation.of<SpringSettings>();
   if (!settings.stiffness)
     fail("{}: model \"spring\" needs `spring_stiffness`, [x, y, z] in N/m", inputs.scene.deformation.where);
@@ -71,7 +72,8 @@ void Spring::compliance(std::span<const int> vertices, ContactPatch& patch) cons
   for (Eigen::Index j = 0; j < m; ++j) {
     for (Eigen::Index i = 0; i < m; ++i) {
       const bool held = held_[vertices[i]] != 0 || held_[vertices[j]] != 0;
-      patch.compliance.block<3, 3>(3 * i, 3 * j) = held ? Mat3(Mat3::Zero()) : block;
+      const Mat3 of_held = (i == j ? held_compliance_ : 0.0) * Mat3::Identity();
+      patch.compliance.block<3, 3>(3 * i, 3 * j) = held ? of_held : block;
     }
   }
 }
@@ -85,6 +87,9 @@ std::span<const Vec3> Spring::apply(std::span<const NodalLoad> loads) noexcept {
   moved_ = linear / hardening(force.dot(linear) / stiffness_.mean() * per_length2_);
   for (std::size_t v = 0; v < rest_.size(); ++v)
     positions_[v] = held_[v] != 0 ? rest_[v] : Vec3(rest_[v] + moved_);
+  for (const NodalLoad& load : loads) {
+    if (held_[load.vertex] != 0) positions_[load.vertex] += held_compliance_ * load.force;
+  }
   return positions_;
 }
 

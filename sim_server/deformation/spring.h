@@ -25,7 +25,8 @@ struct SpringSettings {
 ///   F = g K x,   g = 1 + s^2 / d^2,   s^2 = x . K x / k,
 /// the gradient of k (s^2 / 2 + s^4 / (4 d^2)): conservative, with the tangent T = g K + 2 / (k d^2) K x (K
 /// x)^T. Backwards, g is the root of g^3 - g^2 = F . K^-1 F / (k d^2). Where a tool grasps it, it stands for
-/// an organ whose force changes over a known length: no mesh, no contact set. Vertices of a [[fixed]] stay.
+/// an organ whose force changes over a known length: no mesh, no contact set. Vertices of a [[fixed]] stay,
+/// but for what gives way under a tool itself (`held_stiffness`).
 class Spring : public DeformationModel {
  public:
   /// Throws `Error` without a `spring_stiffness`.
@@ -44,6 +45,7 @@ class Spring : public DeformationModel {
 
   std::vector<Vec3> rest_, positions_;
   std::vector<char> held_;     // per surface vertex: whether it is fixed
+  double held_compliance_;     // m/N, of a fixed vertex under the tool itself
   Vec3 stiffness_;             // K, N/m
   double per_length2_ = 0;     // 1 / d^2, 1/m^2; 0: linear
   Vec3 moved_ = Vec3::Zero();  // x, m

@@ -21,6 +21,8 @@ struct Column {
   bool linear() const { return elastic == sim::ElasticLaw::kLinear; }
   /// Nothing of it gives way: force = stiffness x depth, also of what is held.
   bool stands() const { return !row->deforms() && !row->moves; }
+  /// At rest at every instant: the force depends on the path, not on how long it took.
+  bool at_rest() const { return !row->deforms() || !row->moves; }
 };
 /// Every row of `deformation_models`, with every law where it takes any.
 const std::vector<Column>& columns();
@@ -75,12 +77,15 @@ struct Trial {
   double reference_seconds = 3;              // of the reference, at least
   int phases = 1;                            // of the motion against the steps, each a run
   double depth = 0.003;                      // m: how deep the first tool is in the body at rest, at the end
-  Vec3 outward = Vec3::UnitY();              // the force on the first tool never points against that
+  std::vector<Vec3> outward{Vec3::UnitY()};  // of each tool: the force on it never points against that
   double bound = kBound;                     // of the force, see there
   bool only_implicit_refers = false;         // only a model of any law bears what acts here
   std::optional<double> felt_by_rigid = {};  // of stiffness x depth; else 1
   std::optional<Range> felt = {};            // closed form, of all models whose held vertices are walls
-  bool must_refuse = false;                  // models that cannot fly: nothing else is an answer
+  double other_rest = 0.5;                   // of the force: a rest that is farther off is no neighbour
+  bool path_matters = false;    // where it rests: a reference that was flagged on its way tells nothing
+  bool no_rest_unbent = false;  // an organ that moves, but does not deform, has no place to rest: flagged
+  bool must_refuse = false;     // of models that deform, nothing else is an answer
 
   // What is expected: the forces of the scene that `refer` makes of this one, times `times`; `most` times
   // that at most, where only a range is known.
@@ -117,23 +122,27 @@ std::string tool(double radius, const std::string& more = "");
 
 /// What a run showed.
 struct Run {
-  /// The forces on the tools at a step of the hold, N.
+  /// The forces on the tools at a step while they are there, N.
   struct Held {
     double t;  // s
     std::vector<Vec3> force;
     bool flagged;
   };
-  std::vector<Held> hold;  // from when the last tool arrived until all are taken away
-  double arrived = 0;      // s
+  std::vector<Held> held;  // from the first step until all are taken away
+  double arrived = 0;      // s: the last tool
   std::vector<Vec3> last;  // the force on each tool while it was there, N
   double max_newton = 0;   // of all steps
   double wildest = 0;      // of those that were not flagged
   int steps = 0, flagged = 0;
+  int phase = 0;                 // of `Trial::phases`
   bool pressed_flagged = false;  // when `last` was felt
   bool finite = true, ends_flagged = false;
   bool locks = false;  // the program warned at the start that its elements lock
   double off = 0;      // from where the surface began, when the tools have been away, m
 };
+
+/// The motion `share` of a step later.
+std::vector<Path> later(std::vector<Path> paths, double share, double rate_hz);
 
 /// Follows `paths`; then, where `lift`, as long again without tools. Throws `Error` where the program
 /// refuses.

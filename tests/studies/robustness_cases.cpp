@@ -68,6 +68,8 @@ void most_of_the_thickness(Trial& trial) {
 void pinched(Trial& trial) {
   trial.file.tools = {tool(kRadius), tool(kRadius)};
   trial.depth = 0.005;
+  trial.outward = {-Vec3::UnitX(), Vec3::UnitX()};
+  trial.no_rest_unbent = true;
   trial.paths.clear();
   for (const double side : {-1.0, 1.0}) {
     const double from = 0.015 + kRadius + 0.002, to = 0.015 + kRadius - trial.depth;
@@ -91,6 +93,7 @@ void rubbed(Trial& trial, double friction) {
   trial.file.tools = {tool(kRadius, fmt::format("friction = {}", friction))};
   trial.paths = {press(kRadius, trial.depth)};
   trial.paths[0].push_back({2, trial.paths[0].back().place + Vec3(0.004, 0, 0)});
+  trial.path_matters = true;
   // In depths: one along the normal; across it what friction bears, and no more than it is drawn by.
   trial.felt_by_rigid = std::hypot(1, std::min(friction, 0.004 / trial.depth));
 }

@@ -42,7 +42,7 @@ class Watch {
     for (int i = 1; i <= steps && run_.finite; ++i) {
       for (std::size_t k = 0; k < paths.size(); ++k) inputs[k].pose = place_at(paths[k], i * dt_);
       see(simulation_.step(inputs, dt_));
-      if (i * dt_ > run_.arrived || i == steps) run_.hold.push_back({i * dt_, felt_, run_.ends_flagged});
+      run_.held.push_back({i * dt_, felt_, run_.ends_flagged});
     }
     run_.last = felt_;
     run_.pressed_flagged = run_.ends_flagged;
@@ -77,14 +77,6 @@ class Watch {
   std::vector<Vec3> began_, felt_;
   Run run_;
 };
-
-/// The motion `share` of a step later.
-std::vector<Path> later(std::vector<Path> paths, double share, double rate_hz) {
-  for (Path& path : paths) {
-    for (Waypoint& waypoint : path) waypoint.t += share / rate_hz;
-  }
-  return paths;
-}
 
 }  // namespace
 
@@ -141,6 +133,13 @@ std::string tool(double radius, const std::string& more) {
   return fmt::format("radius = {}\n{}", radius, more);
 }
 
+std::vector<Path> later(std::vector<Path> paths, double share, double rate_hz) {
+  for (Path& path : paths) {
+    for (Waypoint& waypoint : path) waypoint.t += share / rate_hz;
+  }
+  return paths;
+}
+
 Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool lift) {
   const test::TemporaryFolder folder;
   folder.write(kMesh, "");  // that it is there: the mesh is made here
@@ -174,6 +173,7 @@ Verdict run_trial(const Case& row, const Column& column, bool quick) {
     for (int phase = 0; phase < trial.phases; ++phase) {
       const double share = static_cast<double>(phase) / trial.phases;
       runs.push_back(follow(trial, column, later(trial.paths, share, trial.file.rate_hz), phase == 0));
+      runs.back().phase = phase;
     }
     return judge(runs, trial, column);
   } catch (const Error& e) {

@@ -15,9 +15,9 @@ constexpr double kAbsurd = 10;        // of the largest force expected, unflagge
 constexpr double kReturned = 0.05;    // of the depth: how far from rest a surface may be that was let go
 constexpr double kSmallest = 1e-9;    // N: less is no force
 constexpr double kTellWhy = 0.01;     // an error of a force that nothing flagged: more is looked into
-constexpr double kOtherRest = 0.5;    // of the force: a rest that is farther off is no neighbour
 constexpr double kSamePlace = 1e-3;   // of the force: two runs that ended in one place
 constexpr double kAside = 0.0005;     // m
+constexpr int kSlower = 8;            // a multiple of all `Trial::phases`
 constexpr double kGivenToRest = 0.5;  // of the hold: before, what moves may still swing
 
 /// The forces as they should be, and the largest on the way.
@@ -27,6 +27,9 @@ struct Expected {
   std::vector<Vec3> force;    // of each tool; empty: only its size is known
   double most = 0;
   bool settled = true;
+  bool impossible = false;  // nothing but a flag is right
+  std::optional<Run> slower =
+      {};  // of a model at rest at every instant: the same path, `kSlower` times as slowly
 };
 
 const Column& first_column(bool (*is)(const Column&)) {
@@ -55,39 +58,61 @@ Truth truth_of(const Trial& trial, const Column& column) {
   if (trial.refer) trial.refer(slow);
   const bool same = !column.linear() || trial.only_implicit_refers;
   // The equilibrium itself; of that, the same matrix by steps of a motion.
-  const auto at_rest = [](const Column& c) { return c.row->deforms() && !c.row->moves; };
+  const auto at_rest = [](const Column& c) { return c.row->deforms() && c.at_rest(); };
   const Column& other =
       same ? column
            : (at_rest(column) ? first_column([](const Column& c) { return c.any_law() && c.linear(); })
                               : first_column(at_rest));
-  std::string what =
-      same ? "pressed slowly, Newton's method to 1e-9" : fmt::format("{}, pressed slowly", other.name);
+  std::string what = same ? fmt::format("pressed slowly, Newton's method to {:g}", slow.file.tolerance)
+                          : fmt::format("{}, pressed slowly", other.name);
   if (!trial.refers_to.empty()) what += ": " + trial.refers_to;
   return {std::move(slow), &other, what};
+}
+
+/// The whole motion, `kSlower` times as slowly.
+Run more_slowly(Trial trial, const Column& column) {
+  trial.seconds *= kSlower;
+  for (Path& path : trial.paths) {
+    for (Waypoint& waypoint : path) waypoint.t *= kSlower;
+  }
+  return follow(trial, column, trial.paths, false);
 }
 
 Expected closed_form(const std::string& what, std::size_t tools, const Range& range) {
   return {what, std::vector<Range>(tools, range), {}, range.most};
 }
 
+/// From the run of a truth.
+Expected forces_of(const Run& run, const Trial& trial) {
+  Expected expected{"", {}, {}, trial.times * trial.most * run.max_newton};
+  for (const Vec3& force : run.last) {
+    const double newton = trial.times * force.norm();
+    expected.newton.push_back({newton, trial.most * newton});
+    if (trial.most == 1) expected.force.push_back(trial.times * force);
+  }
+  return expected;
+}
+
 Expected expected_of(const Trial& trial, const Column& column) {
   const std::size_t tools = trial.paths.size();
   if (trial.felt && !column.stands())
     return closed_form("closed form: the stiffness of held vertices x depth", tools, *trial.felt);
+  if (trial.no_rest_unbent && !column.row->deforms() && column.row->moves) {
+    Expected none = closed_form("none: there is no place to rest", tools, {0, 1e300});
+    none.settled = false;
+    none.impossible = true;
+    return none;
+  }
   if (!column.row->deforms()) {
     const double newton = trial.felt_by_rigid.value_or(1) * 800 * trial.depth;
     return closed_form("closed form: stiffness x depth", tools, {newton, newton});
   }
   const Truth truth = truth_of(trial, column);
   const Run run = truth.follow(truth.trial.paths);
-  Expected expected{truth.what, {}, {}, trial.times * trial.most * run.max_newton};
-  for (const Vec3& force : run.last) {
-    const double newton = trial.times * force.norm();
-    expected.newton.push_back({newton, trial.most * newton});
-    if (trial.most == 1) expected.force.push_back(trial.times * force);
-  }
-  expected.settled = run.finite && !run.pressed_flagged;
-  if (!expected.settled) expected.what += ": flagged at its end, so that there is no error to tell";
+  Expected expected = forces_of(run, trial);
+  expected.what = truth.what;
+  expected.settled = run.finite && !run.pressed_flagged && !(trial.path_matters && run.flagged > 0);
+  if (!expected.settled) expected.what += ": flagged, so that there is no error to tell";
   if (run.flagged > 0) expected.what += fmt::format(" (flagged in {} of {} steps)", run.flagged, run.steps);
   return expected;
 }
@@ -104,10 +129,10 @@ double error_of(const std::vector<Vec3>& force, const Expected& expected) {
   return error;
 }
 
-/// Whether the truth ends where `run` did, too, if its tools come from a little aside: two facets may both
-/// bear a tool, and then the way to the end decides. Says so, or nothing. A force that is far off, or none,
-/// is no such neighbour, whoever else finds it.
-std::string another_rest(const Run& run, const Trial& trial, const Column& column) {
+/// What the truth finds where its tools come from a little aside, if it ends where `run` did then: two facets
+/// may both bear a tool, and the way to the end decides. A force that is far off, or none, is no such
+/// neighbour, whoever else finds it.
+std::optional<Expected> another_rest(const Run& run, const Trial& trial, const Column& column) {
   const Truth truth = truth_of(trial, column);
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1.0, 1.0}) {
@@ -118,48 +143,71 @@ std::string another_rest(const Run& run, const Trial& trial, const Column& colum
         path.push_back({(end.t + truth.trial.seconds) / 2, end.place});
       }
       const Run other = truth.follow(paths);
-      Expected there{"", {}, {}};
-      for (const Vec3& force : other.last) {
-        there.force.push_back(trial.times * force);
-        there.newton.push_back({trial.times * force.norm(), trial.times * force.norm()});
-      }
-      if (!other.pressed_flagged && error_of(run.last, there) < kSamePlace)
-        return fmt::format(
-            "the tools have more than one place to rest, and this is another: {} ends there, too, where they "
-            "come from {} mm aside ({}{})",
-            truth.column->name, 1e3 * kAside, sign < 0 ? '-' : '+', "xyz"[axis]);
+      Expected there = forces_of(other, trial);
+      if (other.pressed_flagged || error_of(run.last, there) > kSamePlace) continue;
+      there.what = fmt::format(
+          "the tools have more than one place to rest, and this is another: {} ends there, too, where they "
+          "come from {} mm aside ({}{})",
+          truth.column->name, 1e3 * kAside, sign < 0 ? '-' : '+', "xyz"[axis]);
+      return there;
     }
   }
   return {};
 }
 
-/// What is wrong at some time of the hold, unflagged; nothing: all is well. `lenient`: the error is that of
-/// another rest.
-std::string wrong_in_hold(const Run& run, const Trial& trial, const Expected& expected, bool lenient) {
-  const double until = run.hold.back().t;
-  for (const Run::Held& held : run.hold) {
+/// What is wrong at some time while the tools are there, unflagged; nothing: all is well.
+std::string wrong_on_the_way(const Run& run, const Trial& trial, const Expected& expected) {
+  const double until = run.held.back().t;
+  const double scale = std::max(expected.newton.front().least, kSmallest);
+  for (const Run::Held& held : run.held) {
     if (held.flagged) continue;
-    const double share = run.arrived < until ? (held.t - run.arrived) / (until - run.arrived) : 1;
-    const double scale = std::max(expected.newton.front().least, kSmallest);
-    if (held.force.front().dot(trial.outward) < -trial.bound * scale)
-      return fmt::format("{:.3g} N towards the body at {:.2f} s, and not flagged",
-                         -held.force.front().dot(trial.outward), held.t);
+    for (std::size_t k = 0; k < held.force.size(); ++k) {
+      const double inward = -held.force[k].dot(trial.outward[k]);
+      if (inward > trial.bound * scale)
+        return fmt::format("{:.3g} N towards the body at {:.2f} s, and not flagged", inward, held.t);
+    }
+    if (expected.impossible && held.t > run.arrived)
+      return fmt::format("{:.3g} N at {:.2f} s, where it has no place to rest, and not flagged",
+                         held.force.front().norm(), held.t);
+    const bool settled = held.t >= run.arrived + kGivenToRest * (until - run.arrived);
     const double error = error_of(held.force, expected);
-    if (expected.settled && !lenient && share >= kGivenToRest && error > trial.bound)
+    if (expected.settled && settled && error > trial.bound)
       return fmt::format("{:.3g} N where {:.3g} N is right, {:.2g} % off at {:.2f} s, and not flagged",
                          held.force.front().norm(), expected.newton.front().least, 100 * error, held.t);
   }
   return {};
 }
 
+/// Of a model that is at rest at every instant: what it finds on the way, where the same way in finer steps
+/// finds something else.
+std::string wrong_between(const Run& run, const Trial& trial, const Expected& expected) {
+  if (!expected.slower) return {};
+  const std::vector<Run::Held>& right = expected.slower->held;
+  const double scale = std::max(expected.newton.front().least, kSmallest);
+  for (std::size_t i = 0; i < run.held.size(); ++i) {
+    // A step of the slower run ends where this one does, whatever the phase.
+    const auto at = static_cast<int>(i + 1) * kSlower - run.phase * kSlower / trial.phases - 1;
+    if (at < 0 || at >= static_cast<int>(right.size()) || run.held[i].flagged || right[at].flagged) continue;
+    for (std::size_t k = 0; k < right[at].force.size(); ++k) {
+      const double off = (run.held[i].force[k] - right[at].force[k]).norm() / scale;
+      if (off > trial.bound)
+        return fmt::format(
+            "{:.3g} N at {:.2f} s, where {} times as many steps there give {:.3g} N, and not flagged",
+            run.held[i].force[k].norm(), run.held[i].t, kSlower, right[at].force[k].norm());
+    }
+  }
+  return {};
+}
+
 /// What is wrong of one run, or nothing.
-std::string wrong_of(const Run& run, const Trial& trial, const Expected& expected, bool lenient) {
+std::string wrong_of(const Run& run, const Trial& trial, const Expected& expected) {
   if (run.wildest > kAbsurd * expected.most + kSmallest)
     return fmt::format("{:.3g} N without a flag; the reference has {:.3g} N at most", run.wildest,
                        expected.most);
   if (run.off > kReturned * trial.depth && !run.ends_flagged)
     return fmt::format("let go, its surface stays up to {:.3g} mm off, and not flagged", 1e3 * run.off);
-  return wrong_in_hold(run, trial, expected, lenient);
+  const std::string wrong = wrong_on_the_way(run, trial, expected);
+  return wrong.empty() ? wrong_between(run, trial, expected) : wrong;
 }
 
 Verdict judge_one(const Run& run, const Trial& trial, const Column& column, const Expected& expected) {
@@ -167,11 +215,14 @@ Verdict judge_one(const Run& run, const Trial& trial, const Column& column, cons
   if (!run.finite)
     return {"exploded", "a force, tangent or position that is not finite", {}, {}, expected.what};
   if (expected.settled) verdict.error_percent = 100 * error_of(run.last, expected);
-  std::string elsewhere;
+  std::optional<Expected> elsewhere;
   const double error = verdict.error_percent.value_or(0) / 100;
-  if (!run.pressed_flagged && error > kTellWhy && error < kOtherRest && column.row->deforms() && !trial.felt)
+  const double tell_why = trial.bound == kBound ? kTellWhy : trial.bound;
+  if (!run.pressed_flagged && error > tell_why && error < trial.other_rest && column.row->deforms() &&
+      !trial.felt)
     elsewhere = another_rest(run, trial, column);
-  const std::string wrong = wrong_of(run, trial, expected, !elsewhere.empty());
+  if (elsewhere) elsewhere->most = expected.most;
+  const std::string wrong = wrong_of(run, trial, elsewhere.value_or(expected));
   if (!wrong.empty() && run.locks) {
     verdict.outcome = "flagged";
     verdict.reason = "warned at the start that its elements lock, with those to take instead: " + wrong;
@@ -184,7 +235,7 @@ Verdict judge_one(const Run& run, const Trial& trial, const Column& column, cons
         fmt::format("{} of {} steps flagged, answered with what was found so far; {}", run.flagged, run.steps,
                     run.pressed_flagged ? "the force at the end, too" : "the force at the end was not");
   }
-  if (!elsewhere.empty()) verdict.reason += (verdict.reason.empty() ? "" : "; ") + elsewhere;
+  if (elsewhere) verdict.reason += (verdict.reason.empty() ? "" : "; ") + elsewhere->what;
   return verdict;
 }
 
@@ -196,7 +247,7 @@ int rank(const Verdict& verdict) {
 }  // namespace
 
 Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& column) {
-  if (trial.must_refuse && column.row->deforms() && !column.row->flies)
+  if (trial.must_refuse && column.row->deforms())
     return {"wrong", "accepted, though nothing holds it from turning", {}, runs.front().max_newton, ""};
   Expected expected;
   try {
@@ -207,9 +258,21 @@ Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& co
     expected.most = 1e300;
     expected.newton.assign(trial.paths.size(), {0, 0});
   }
+  if (column.at_rest()) expected.slower = more_slowly(trial, column);
+  // A warning that elements lock excuses what they find at rest, not what is found on the way there.
+  Trial locked = trial;
+  locked.refer = {};
+  locked.refers_to = "with elements that lock";
+  std::optional<Expected> of_locked;
+  if (runs.front().locks) of_locked = expected_of(locked, column);
   Verdict worst;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Verdict verdict = judge_one(runs[i], trial, column, expected);
+    Verdict verdict = judge_one(runs[i], trial, column, expected);
+    const std::string wrong = of_locked ? wrong_of(runs[i], locked, *of_locked) : "";
+    if (!wrong.empty()) {
+      verdict.outcome = "wrong";
+      verdict.reason = fmt::format("{} ({})", wrong, of_locked->what);
+    }
     const bool worse = i == 0 || rank(verdict) > rank(worst) ||
                        (rank(verdict) == rank(worst) && verdict.error_percent > worst.error_percent);
     if (worse) worst = verdict;

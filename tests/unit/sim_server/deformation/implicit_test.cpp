@@ -5,6 +5,7 @@
 #include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/simulation.h"
+#include "tests/support/carved.h"
 #include "tests/support/catch.h"
 #include "tests/support/column.h"
 #include "tests/support/scenes.h"
@@ -254,5 +255,14 @@ TEST_CASE("implicit: a body that a displacement alone holds is served in its sha
       most = std::max(most, (simulation.positions()[v] - simulation.rest()[v] - shift).norm());
     CHECK(most < 1e-9);
     simulation.step(Vec3(0, 0.1, 0), 1 / scene.rate_hz);
+  }
+}
+
+TEST_CASE("implicit: two blocks that share an edge are refused, with the hinge and where it is") {
+  const auto either = [](const Vec3& x) { return (x.x() < 0) == (x.y() < -0.008); };
+  const TetMesh crossed = carved(lines(-0.02, 0.02, 4), lines(-0.016, 0, 4), lines(-0.02, 0.02, 2), either);
+  for (const ElasticLaw law : {ElasticLaw::kLinear, ElasticLaw::kNeoHookean}) {
+    CHECK_THROWS_WITH(Simulation(block_scene("implicit", law), crossed),
+                      Catch::Contains("hang on a hinge at 0,-0.008,"));
   }
 }
