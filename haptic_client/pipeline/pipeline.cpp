@@ -100,7 +100,10 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
     passivity_.moved(now, workspace_.motion_to_device(tool.p_W - felt_.p_W),
                      workspace_.motion_to_device(estimate_.newest().surface_v), dt);
   result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
-  stats_.stepped_down += result.tool.newest_sample > 0 && estimate_.stepped_down() ? 1 : 0;
+  if (result.tool.newest_sample > 0) {
+    stats_.stepped_down += estimate_.stepped_down() ? 1 : 0;
+    stats_.stand_ins.add(estimate_.stand_in());
+  }
   felt_ = tool;
   return result;
 }
