@@ -2,12 +2,18 @@
 #include <string>
 #include <string_view>
 
+#include "common/time.h"
+
 namespace palpate {
 
+/// How much longer work takes of which `share` (0 to 1) took `elapsed`, if it goes on so: ", about 50 s
+/// left". Empty within the first 2 s, and where nothing is done yet.
+std::string time_left(double share, Time elapsed);
+
 /// Tells on stderr how long work goes on: on a terminal one running line with a percentage, elsewhere one
-/// line a stage. Call it with the name of the stage and the share of it that is done (0 to 1), as often as
-/// you like; 1 ends a stage. Ctrl-C ends the work here, by an `Error` (run time) that ends with what that
-/// means. Main thread.
+/// line a stage and one every 10 s that it lasts; both with the time left. Call it with the name of the stage
+/// and the share of it that is done (0 to 1), as often as you like; 1 ends a stage. Ctrl-C ends the work
+/// here, by an `Error` (run time) that ends with what that means. Main thread.
 class ProgressLine {
  public:
   explicit ProgressLine(std::string when_interrupted = "nothing was written")
@@ -16,7 +22,8 @@ class ProgressLine {
 
  private:
   std::string when_interrupted_, stage_;
-  int shown_ = -1;  // percent
+  int shown_ = -1;         // percent
+  Time began_{}, told_{};  // the stage; the last line
 };
 
 }  // namespace palpate

@@ -130,7 +130,8 @@ CLI::App* add_evaluate(CLI::App& app, client::EvaluateOptions& options) {
       ->add_option("--compliance", options.compliance,
                    "Laws see a surface model so many times as compliant as it was sent (default 1)")
       ->check(CLI::Range(0.01, 100.0));
-  command->footer("Example: haptic_client evaluate liver.pcap --truth truth.pcap --out out/evaluation");
+  command->footer("Methods:\n" + list_of(client::extrapolators()) +
+                  "Example: haptic_client evaluate liver.pcap --truth truth.pcap --out out/evaluation");
   return command;
 }
 

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 #include "common/program.h"
 #include "sim_server/commands/explain.h"
@@ -7,10 +8,19 @@
 #include "sim_server/commands/run.h"
 #include "sim_server/commands/solve.h"
 #include "sim_server/commands/study.h"
+#include "sim_server/deformation/deformation_models.h"
 
 namespace {
 
 using namespace palpate;
+
+/// "  name   what it is" for each model.
+std::string models() {
+  std::string text = "Models ([deformation] model):\n";
+  for (const auto& row : sim::deformation_models())
+    text += fmt::format("  {:<24}{}\n", row.name, row.summary);
+  return text;
+}
 
 CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
   auto* command = app.add_subcommand("run", "Serve a scene until Ctrl-C");
@@ -23,6 +33,7 @@ CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
   command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
   command->footer(
+      models() +
       "Example: sim_server run configs/scenes/liver.toml --listen 0.0.0.0:45130 --report server.json");
   return command;
 }
@@ -48,6 +59,7 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
                     "Forces only: no tangents and surfaces, which some laws use (smaller)");
   command->add_option("--report", options.report, "Write figures of the recording to this JSON file");
   command->footer(
+      models() +
       "Examples:\n"
       "  sim_server record configs/scenes/liver.toml --trajectory configs/clients/liver.toml --rate 33.3 "
       "--delay-ms 35 --out liver.pcap\n"
@@ -96,10 +108,10 @@ CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
   command
       ->add_option("--steps", options.steps, "How many steps to time, free of the organ and in contact each")
       ->capture_default_str();
-  command->footer(
-      "Examples:\n"
-      "  sim_server explain configs/scenes/liver.toml --json explain.json\n"
-      "  sim_server explain configs/scenes/liver.toml --why compliance");
+  command->footer(models() +
+                  "Examples:\n"
+                  "  sim_server explain configs/scenes/liver.toml --json explain.json\n"
+                  "  sim_server explain configs/scenes/liver.toml --why compliance");
   return command;
 }
 
@@ -124,7 +136,8 @@ CLI::App* add_study(CLI::App& app, sim::StudyOptions& options) {
                    "Of the link, from the end of a step to its force in the client, ms")
       ->capture_default_str();
   command->add_flag("--quick", options.quick, "Fewer steps, no finer meshes, a coarser reference: a minute");
-  command->footer("Example: sim_server study configs/scenes/liver.toml --out out/liver --budget-ms 33");
+  command->footer(models() +
+                  "Example: sim_server study configs/scenes/liver.toml --out out/liver --budget-ms 33");
   return command;
 }
 

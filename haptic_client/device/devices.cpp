@@ -36,7 +36,7 @@ std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
   std::vector<std::byte> firmware;
   if (!settings.falcon.firmware.empty()) firmware = read_firmware(settings.falcon.firmware);
   return std::make_unique<Falcon>(usb_port(settings, {kFalconIds}), std::move(firmware),
-                                  settings.falcon.torque_constant);
+                                  settings.falcon.torque_constant, settings.falcon.frozen_fade);
 }
 
 /// All that are there, if no port was asked for: which one the dead process had is not known.

@@ -71,9 +71,10 @@ int silence_falcons(std::span<const std::unique_ptr<UsbTransport>> ports) {
   return silenced;
 }
 
-Falcon::Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmware, double torque_constant)
+Falcon::Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmware, double torque_constant,
+               double frozen_fade)
     : port_(std::move(port)),
-      machine_(std::move(firmware)),
+      machine_(std::move(firmware), from_seconds(frozen_fade)),
       torque_constant_(torque_constant),
       p_D_(falcon::kCentre) {}
 

@@ -15,6 +15,8 @@ struct FalconSettings {
   /// DAC units per N m of leg torque, [100, 50000]. Uncertain by 2 to 4 times from device to device: begin
   /// low.
   double torque_constant = 2300;
+  /// s, [0.5, 3600]: how long encoders may stand still under force before it fades in 1 s; 0: for ever.
+  double frozen_fade = 0;
 };
 
 /// Bytes of a firmware image. Throws `Error` when it cannot be read or cannot be one (1 kB to 64 kB).
@@ -32,7 +34,8 @@ int silence_falcons(std::span<const std::unique_ptr<UsbTransport>> ports);
 /// is what answered the command of the tick before.
 class Falcon : public Device {
  public:
-  Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmware, double torque_constant);
+  Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmware, double torque_constant,
+         double frozen_fade = 0);
   ~Falcon() override;
   DeviceReading read(Time now) noexcept override;
   void write(const Vec3& f_D) noexcept override;

@@ -33,6 +33,12 @@ constexpr const char* kHomeIt =
 constexpr const char* kUnplugged = "the Falcon was unplugged; plug it in again";
 constexpr const char* kFrozen =
     "no encoder of the Falcon moved for 3 s under force; if the hand did, unplug it and plug it in again";
+constexpr const char* kFading =
+    "no encoder of the Falcon moved for as long as `frozen_fade` allows: its force fades until one does; if "
+    "the "
+    "hand moves, unplug it and plug it in again";
+constexpr const char* kMovesAgain = "the Falcon moves again: its force rises";
+constexpr double kFadeTime = 1;         // s, from all of the force to none and back
 constexpr int kPacketsATick = 64;       // more than the bus carries in a tick: a flood does not hold it up
 constexpr Time kStill = 3s;             // a hand that holds against a force is never so still
 constexpr std::int16_t kPushing = 200;  // DAC units: more than what friction holds
@@ -42,6 +48,8 @@ constexpr std::int16_t kPushing = 200;  // DAC units: more than what friction ho
 void FalconMachine::enter(FalconPhase phase, Time now) noexcept {
   phase_ = phase;
   entered_ = heard_ = now;
+  gain_ = 1;
+  ran_ = Time::zero();
   asked_ = false;
   tries_ = 0;
   answered_ = 0;
@@ -215,8 +223,23 @@ void FalconMachine::run(UsbTransport& port, Time now) noexcept {
     message_ = "the Falcon lost its home: pull the grip fully out, then push it fully in";
     phase_ = FalconPhase::kUnhomed;
   }
+  watch_encoders(now);
+}
+
+/// Tells of encoders that stand still under force; where that was asked for, the force fades with them, and
+/// rises again when one moves.
+void FalconMachine::watch_encoders(Time now) noexcept {
   if (!pushes_) moved_ = now;
-  if (now - moved_ > kStill) message_ = kFrozen;
+  const double dt = ran_ > Time::zero() ? to_seconds(now - ran_) : 0;
+  ran_ = now;
+  if (frozen_fade_ == Time::zero()) {
+    if (now - moved_ > kStill) message_ = kFrozen;
+    return;
+  }
+  const bool frozen = now - moved_ > frozen_fade_;
+  if (frozen) message_ = kFading;
+  if (!frozen && message_ == kFading) message_ = kMovesAgain;
+  gain_ = std::clamp(gain_ + (frozen ? -dt : dt) / kFadeTime, 0.0, 1.0);
 }
 
 void FalconMachine::command(UsbTransport& port, const std::array<std::int16_t, 3>& torque) noexcept {
@@ -227,6 +250,7 @@ void FalconMachine::command(UsbTransport& port, const std::array<std::int16_t, 3
   if (ready) command.torque = torque;
   pushes_ = std::any_of(command.torque.begin(), command.torque.end(),
                         [](std::int16_t t) { return t >= kPushing || t <= -kPushing; });
+  for (std::int16_t& t : command.torque) t = static_cast<std::int16_t>(gain_ * t);
   port.write(encode_falcon(command));
 }
 

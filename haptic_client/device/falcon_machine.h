@@ -25,11 +25,14 @@ enum class FalconPhase : std::uint8_t {
 class FalconMachine {
  public:
   /// `firmware`: image for the boot loader; empty: only a device that has one already can be used.
-  explicit FalconMachine(std::vector<std::byte> firmware) : firmware_(std::move(firmware)) {}
+  /// `frozen_fade`: how long encoders may stand still under force before it fades; 0: for ever.
+  explicit FalconMachine(std::vector<std::byte> firmware, Time frozen_fade = Time::zero())
+      : firmware_(std::move(firmware)), frozen_fade_(frozen_fade) {}
 
   /// Takes what came from the device and goes on.
   void poll(UsbTransport& port, Time now) noexcept;
-  /// Sends the motors' command (DAC units); zero where the device is not ready.
+  /// Sends the motors' command (DAC units), less where encoders stand still for too long; zero where the
+  /// device is not ready.
   void command(UsbTransport& port, const std::array<std::int16_t, 3>& torque) noexcept;
 
   /// Sets the line as running firmware wants it.
@@ -52,14 +55,17 @@ class FalconMachine {
   void handshake(UsbTransport& port, Time now) noexcept;
   void upload(UsbTransport& port, Time now) noexcept;
   void run(UsbTransport& port, Time now) noexcept;
+  void watch_encoders(Time now) noexcept;
   void lose(UsbTransport& port, Time now) noexcept;
   void give_up(UsbTransport& port, Time now, Time wait, const char* message) noexcept;
   bool send(UsbTransport& port, std::span<const std::byte> bytes, Time now) noexcept;
 
   std::vector<std::byte> firmware_;
+  Time frozen_fade_;
+  double gain_ = 1;  // of the torques
   FalconPhase phase_ = FalconPhase::kClosed;
   std::atomic<const char*> message_{"looking for a Falcon"};
-  Time entered_{}, sent_{}, heard_{}, moved_{}, retry_at_{}, lost_{};
+  Time entered_{}, sent_{}, heard_{}, moved_{}, ran_{}, retry_at_{}, lost_{};
   bool known_ = false;         // it was there once
   bool failing_ = false;       // it refused its firmware, and was told so
   bool pushes_ = false;        // a torque that a hand feels

@@ -50,6 +50,8 @@ void Scoring::tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums
   if (taken != nullptr) take(*taken, p_W, t, sums);
   for (std::size_t i = 0; i < laws_.size(); ++i) force_[i] = laws_[i].force(p_W, t);
   ticked_ = laws_.front().newest().number > 0;
+  ticks_ += ticked_ ? 1 : 0;
+  for (std::size_t i = 0; ticked_ && i < laws_.size(); ++i) stand_ins_[i].add(laws_[i].stand_in());
   newest_ = {t, Vec3::Zero(), force_};
   place_ = p_W;
 }

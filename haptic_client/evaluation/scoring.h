@@ -44,6 +44,9 @@ class Scoring {
   double energy_percent(std::size_t law) const noexcept {
     return exchanged_ > 0 ? 100 * excess_[law] / (exchanged_ / 2) : 0;
   }
+  /// Which simpler laws stood in for it, in how many of `ticks()`.
+  const StandIns& stand_ins(std::size_t law) const noexcept { return stand_ins_[law]; }
+  std::uint64_t ticks() const noexcept { return ticks_; }    ///< since the first sample
   std::uint64_t scored() const noexcept { return scored_; }  ///< ticks
   /// What the laws give at the newest tick, N, world.
   const std::array<Vec3, kMaxLaws>& forces() const noexcept { return force_; }
@@ -62,6 +65,8 @@ class Scoring {
   std::vector<ForceEstimate> laws_;
   std::vector<ErrorTable> tables_;
   std::array<Vec3, kMaxLaws> force_;
+  std::array<StandIns, kMaxLaws> stand_ins_;
+  std::uint64_t ticks_ = 0;
   std::vector<Pending> pending_;  // a ring: ticks that wait for the sample after them
   std::size_t first_ = 0, waiting_ = 0;
   std::uint64_t scored_ = 0;

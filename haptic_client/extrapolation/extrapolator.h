@@ -1,6 +1,9 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string_view>
 
 #include "common/contact/tool.h"
 #include "common/time.h"
@@ -95,6 +98,32 @@ class Extrapolator {
   virtual Wants wants() const noexcept { return {}; }
   /// Whether a simpler law stands in for it, because the newest sample lacks what it uses.
   virtual bool stepped_down() const noexcept { return false; }
+  /// The name of that law, a row of `extrapolators()`; empty: it is at work itself.
+  virtual std::string_view stand_in() const noexcept { return {}; }
+};
+
+/// How many ticks each simpler law stood in for one.
+class StandIns {
+ public:
+  struct Row {
+    std::string_view law;
+    std::uint64_t ticks = 0;
+  };
+  /// A tick, in which `law` stood in; empty: none did.
+  void add(std::string_view law) noexcept {
+    if (law.empty()) return;
+    for (Row& row : rows_) {
+      if (!row.law.empty() && row.law != law) continue;
+      row.law = law;
+      ++row.ticks;
+      return;
+    }
+  }
+  /// Without a name: not used.
+  std::span<const Row> rows() const noexcept { return rows_; }
+
+ private:
+  std::array<Row, 4> rows_{};  // a law steps down to two others at most
 };
 
 /// The two newest samples, which is all that the paper's laws know. A sample that is not `usable`, or not

@@ -30,6 +30,7 @@ class ForceEstimate {
 
   Wants wants() const noexcept { return law_->wants(); }
   bool stepped_down() const noexcept { return law_->stepped_down(); }
+  std::string_view stand_in() const noexcept { return law_->stand_in(); }
   /// Number 0: none yet.
   const Sample& newest() const noexcept { return newest_; }
   /// Between the two newest samples; 0 with less than two since the last outage.

@@ -30,6 +30,10 @@ class LocalContact : public Extrapolator {
   Vec3 force(const Vec3& p, Time t) noexcept override;
   Wants wants() const noexcept override { return {.here = true, .ahead = true, .surface = true}; }
   bool stepped_down() const noexcept override { return !known_; }
+  std::string_view stand_in() const noexcept override {
+    if (known_) return {};
+    return without_.stepped_down() ? without_.stand_in() : "two_tangents";
+  }
 
  private:
   void compare(const Vec3& local) noexcept;

@@ -12,8 +12,6 @@ namespace {
 
 constexpr SurfacePages kLargest{SurfaceModel::kMostVertices, 2 * SurfaceModel::kMostVertices};
 constexpr std::uint16_t kNoSlot = 0xffff;
-constexpr std::size_t kMostClusters = 120;  // around the tool: all pairs of them have room
-static_assert(kMostClusters * (kMostClusters + 1) / 2 <= SurfaceModel::kRoom);
 constexpr double kStillComplete = 2e-3;  // m
 constexpr std::uint32_t kPatienceMs = 200;
 
@@ -23,12 +21,10 @@ SurfaceModel::SurfaceModel()
     : shape_known_(kLargest.first_tile()),
       slot_of_tile_(kLargest.count() - kLargest.first_tile(), kNoSlot),
       tiles_(kRoom),
-      asked_ms_(kLargest.count()) {
+      asked_ms_(kLargest.count()),
+      near_(kLargest.vertices) {
   rest_.reserve(kLargest.vertices);
   triangles_.reserve(kLargest.triangles);
-  center_.reserve(kLargest.clusters());
-  radius_.reserve(kLargest.clusters());
-  near_.reserve(kLargest.clusters());
 }
 
 void SurfaceModel::announce(const protocol::SurfaceState& state) noexcept {
@@ -75,24 +71,7 @@ void SurfaceModel::take_shape(const SurfacePage& page) noexcept {
     }
   }
   shape_known_[page.page] = 1;
-  if (--shape_missing_ == 0) find_clusters();
-}
-
-/// The balls around the clusters, when all positions are known.
-void SurfaceModel::find_clusters() noexcept {
-  center_.clear();
-  radius_.clear();
-  for (std::size_t first = 0; first < rest_.size(); first += SurfacePages::kCluster) {
-    const auto members =
-        std::span(rest_).subspan(first, std::min<std::size_t>(SurfacePages::kCluster, rest_.size() - first));
-    Vec3 sum = Vec3::Zero();
-    for (const Vec3& x : members) sum += x;
-    const Vec3 center = sum / static_cast<double>(members.size());
-    double radius = 0;
-    for (const Vec3& x : members) radius = std::max(radius, (x - center).norm());
-    center_.push_back(center);
-    radius_.push_back(radius);
-  }
+  if (--shape_missing_ == 0) near_.take(rest_);
 }
 
 void SurfaceModel::take_tile(const SurfacePage& page) noexcept {
@@ -149,15 +128,6 @@ class SurfaceModel::Wishes {
   std::size_t count_ = 0;
 };
 
-void SurfaceModel::find_near_clusters(const Vec3& p) noexcept {
-  near_.clear();
-  for (std::uint32_t c = 0; c < center_.size(); ++c)
-    near_.emplace_back((center_[c] - p).norm() - radius_[c], c);
-  const std::size_t most = std::min(kMostClusters, near_.size());
-  std::partial_sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(most), near_.end());
-  near_.resize(most);
-}
-
 bool SurfaceModel::choose_missing(const Vec3& p, double reach, Time now,
                                   std::span<std::uint32_t> pages) noexcept {
   Wishes wishes(pages, asked_ms_, now);
@@ -167,15 +137,12 @@ bool SurfaceModel::choose_missing(const Vec3& p, double reach, Time now,
   }
   if (shape_missing_ > 0) return wishes.any();
   if (complete_at_ && (*complete_at_ - p).norm() < kStillComplete) return false;
-  find_near_clusters(p);
-  for (std::size_t i = 0; i < near_.size() && !wishes.full(); ++i) {
-    for (std::size_t j = 0; j <= i && !wishes.full(); ++j) {
-      const auto [a, b] = std::pair(near_[i].second, near_[j].second);
-      const bool far = (center_[a] - center_[b]).norm() > 2 * reach + radius_[a] + radius_[b];
-      const std::uint32_t page = pages_.tile(a, b);
-      if (!far && slot_of_tile_[page - pages_.first_tile()] == kNoSlot) wishes.add(page);
-    }
-  }
+  near_.look(p);
+  near_.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t page = pages_.tile(a, b);
+    if (slot_of_tile_[page - pages_.first_tile()] == kNoSlot) wishes.add(page);
+    return !wishes.full();
+  });
   if (!wishes.missing) complete_at_ = p;
   return wishes.any();
 }

@@ -5,7 +5,7 @@
 
 #include "common/time.h"
 #include "common/types.h"
-#include "protocol/surface_pages.h"
+#include "protocol/near_tiles.h"
 
 namespace palpate::client {
 
@@ -15,8 +15,8 @@ namespace palpate::client {
 /// allocates. Haptic thread.
 class SurfaceModel {
  public:
-  static constexpr std::size_t kMostVertices = 4000;  ///< of a model that it takes
-  static constexpr std::size_t kRoom = 8192;          ///< tiles of compliance, 900 bytes each
+  static constexpr std::size_t kMostVertices = 4000;                ///< of a model that it takes
+  static constexpr std::size_t kRoom = protocol::NearTiles::kKept;  ///< tiles of compliance, 900 bytes each
 
   SurfaceModel();
 
@@ -47,8 +47,6 @@ class SurfaceModel {
   };
   void take_shape(const protocol::SurfacePage& page) noexcept;
   void take_tile(const protocol::SurfacePage& page) noexcept;
-  void find_clusters() noexcept;
-  void find_near_clusters(const Vec3& p) noexcept;
   class Wishes;
 
   protocol::SurfacePages pages_;
@@ -56,14 +54,12 @@ class SurfaceModel {
   std::vector<Vec3> rest_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<char> shape_known_;            // by page
-  std::vector<Vec3> center_;                 // of each cluster, m
-  std::vector<double> radius_;               // of the same, m
   std::vector<std::uint16_t> slot_of_tile_;  // by page from first_tile()
   std::vector<Tile> tiles_;
   std::size_t next_slot_ = 0;
-  std::vector<std::uint32_t> asked_ms_;                 // by page: when it was asked for last
-  std::vector<std::pair<double, std::uint32_t>> near_;  // distance (m) of clusters, the nearest first
-  std::optional<Vec3> complete_at_;                     // a place for which nothing was missing
+  std::vector<std::uint32_t> asked_ms_;  // by page: when it was asked for last
+  protocol::NearTiles near_;
+  std::optional<Vec3> complete_at_;  // a place for which nothing was missing
 };
 
 }  // namespace palpate::client

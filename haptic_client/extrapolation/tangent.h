@@ -25,6 +25,7 @@ class Tangent : public Extrapolator {
   Vec3 force(const Vec3& p, Time t) noexcept override;
   Wants wants() const noexcept override { return {.here = true}; }
   bool stepped_down() const noexcept override { return !newest_.here; }
+  std::string_view stand_in() const noexcept override { return newest_.here ? "" : "learned_stiffness"; }
 
  private:
   LearnedStiffness learned_;

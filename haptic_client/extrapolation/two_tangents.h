@@ -16,6 +16,9 @@ class TwoTangents : public Extrapolator {
   Vec3 force(const Vec3& p, Time t) noexcept override;
   Wants wants() const noexcept override { return {.here = true, .ahead = true}; }
   bool stepped_down() const noexcept override { return !newest_.here || !newest_.ahead; }
+  std::string_view stand_in() const noexcept override {
+    return newest_.here && !newest_.ahead ? "tangent" : first_.stand_in();
+  }
 
  private:
   Tangent first_;

@@ -11,10 +11,8 @@ namespace {
 constexpr double kVelocityFilter = 0.005;                  // s, time constant of the velocity estimate
 constexpr int kLeadFilter = 8;                             // samples
 constexpr Time kAskPeriod = std::chrono::milliseconds(8);  // a thousand pages a second at most
-constexpr double kCovered = 3;                             // of the tool radius: what is asked for first
-constexpr Time kForesight = std::chrono::milliseconds(200);
-constexpr double kDamperShare = 0.25;  // of the largest force: all dampers together
-constexpr double kFadeDamping = 2;     // N s/m, in the device frame, while the force fades
+constexpr double kDamperShare = 0.25;                      // of the largest force: all dampers together
+constexpr double kFadeDamping = 2;  // N s/m, in the device frame, while the force fades
 
 Linearised linearised(const Vec3& p, const Vec3& f, const protocol::Linearisation& l) noexcept {
   const auto& k = l.tangent;
@@ -102,7 +100,10 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
     passivity_.moved(now, workspace_.motion_to_device(tool.p_W - felt_.p_W),
                      workspace_.motion_to_device(estimate_.newest().surface_v), dt);
   result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
-  stats_.stepped_down += result.tool.newest_sample > 0 && estimate_.stepped_down() ? 1 : 0;
+  if (result.tool.newest_sample > 0) {
+    stats_.stepped_down += estimate_.stepped_down() ? 1 : 0;
+    stats_.stand_ins.add(estimate_.stand_in());
+  }
   felt_ = tool;
   return result;
 }
@@ -114,7 +115,7 @@ void Pipeline::ask_for_pages(ToolState& tool, Time now) noexcept {
   if (!surface || model_->version() == 0 || now - asked_ < kAskPeriod) return;
   asked_ = now;
   const Vec3 p_rest = tool.p_W - surface->shift;
-  const double reach = kCovered * surface->tool.radius + to_seconds(kForesight) * tool.v_W.norm();
+  const double reach = protocol::NearTiles::reach(surface->tool.radius, tool.v_W.norm());
   if (!model_->choose_missing(p_rest, reach, now, tool.pages)) return;
   tool.flags |= ToolState::kAsksPages;
   tool.surface_version = model_->version();

@@ -33,6 +33,7 @@ struct PipelineStats {
   std::uint64_t samples = 0;       ///< used
   std::uint64_t overtaken = 0;     ///< dropped: not newer than what was there
   std::uint64_t stepped_down = 0;  ///< ticks in which a simpler law stood in for the chosen one
+  StandIns stand_ins;              ///< which law did
   std::uint64_t pages = 0;         ///< of the surface, taken
   std::uint64_t lost = 0;          ///< ticks in which the device gave nothing usable
   std::uint64_t clutched = 0;      ///< ticks

@@ -26,6 +26,7 @@ FalconSettings read_falcon(const Config& config) {
   if (config.has("firmware")) falcon.firmware = config.file("firmware");
   falcon.torque_constant =
       config.number("torque_constant", {100, 50000, "DAC units per N m"}, falcon.torque_constant);
+  if (config.has("frozen_fade")) falcon.frozen_fade = config.number("frozen_fade", {0.5, 3600, "s"}, 0);
   config.reject_unknown();
   return falcon;
 }
@@ -73,9 +74,10 @@ void put_in_device_frame(TrajectorySettings& trajectory, const Workspace& worksp
 }  // namespace
 
 std::vector<std::string> ClientConfig::scored_laws() const {
-  std::vector<std::string> laws;
-  for (const std::string& law :
-       score.value_or(std::vector<std::string>{"constant", "linear_time", "linear_position", method})) {
+  std::vector<std::string> laws,
+      asked = score.value_or(std::vector<std::string>{"constant", "linear_time", "linear_position"});
+  if (!score || !score->empty()) asked.push_back(method);
+  for (const std::string& law : asked) {
     if (std::find(laws.begin(), laws.end(), law) == laws.end()) laws.push_back(law);
   }
   return laws;

@@ -17,7 +17,8 @@ struct ClientConfig {
   double rate_hz = 500;                  ///< haptic ticks per second, [100, 4000]
   std::string method = "local_contact";  ///< a name of `extrapolators()`
   std::string method_where = "default";
-  /// Laws that run beside it and are scored; absent: the paper's three and the chosen one; empty: none.
+  /// Laws that run beside it and are scored, and the chosen one with them; absent: the paper's three and
+  /// that; empty: none.
   std::optional<std::vector<std::string>> score;
   std::string score_where = "default";
   double blend = 0.01;  ///< s, [0, 0.1]: time constant of what a new sample changes, of all laws; 0: at once

@@ -12,6 +12,14 @@ double per(double sum, double count) {
   return count > 0 ? sum / count : 0;
 }
 
+Json stand_ins_report(const StandIns& stand_ins) {
+  Json laws = Json::object();
+  for (const auto& [law, ticks] : stand_ins.rows()) {
+    if (ticks > 0) laws[std::string(law)] = ticks;
+  }
+  return laws;
+}
+
 Json methods_report(const Scoring& scoring) {
   Json methods = Json::object();
   for (std::size_t i = 0; i < scoring.names().size(); ++i) {
@@ -25,6 +33,8 @@ Json methods_report(const Scoring& scoring) {
                                    {"paper_mean_percent", m.paper_mean_percent},
                                    {"paper_max_percent", m.paper_max_percent},
                                    {"paper_max_force_percent", m.paper_max_force_percent},
+                                   {"ticks", scoring.ticks()},
+                                   {"stand_ins", stand_ins_report(scoring.stand_ins(i))},
                                    {"ns_per_tick", cost_of(scoring.names()[i]).tick_ns}};
   }
   return methods;
@@ -89,23 +99,49 @@ void print_drift(const Json& tool) {
   if (!text.empty()) fmt::print("  drift   first to last quarter: {}\n", text);
 }
 
+/// "two_tangents stood in for local_contact in 300 ticks, learned_stiffness in 2".
+std::string stand_ins_text(const Json& stand_ins, const std::string& law) {
+  std::string text;
+  for (const auto& [name, ticks] : stand_ins.items())
+    text += text.empty() ? fmt::format("{} stood in for {} in {} ticks", name, law, ticks.get<long>())
+                         : fmt::format(", {} in {}", name, ticks.get<long>());
+  return text;
+}
+
+/// The law that was at work in the row of another for all of the time, in brackets.
+std::string row_name(const std::string& law, const Json& scores) {
+  for (const auto& [name, ticks] : scores["stand_ins"].items()) {
+    if (ticks.get<long>() > 0 && ticks == scores["ticks"]) return fmt::format("{} (as {})", law, name);
+  }
+  return law;
+}
+
+void print_stand_ins(const Json& methods) {
+  for (const auto& [name, scores] : methods.items()) {
+    if (!scores["stand_ins"].empty())
+      fmt::print("          {} of {}: what the samples brought was not enough for more\n",
+                 stand_ins_text(scores["stand_ins"], name), scores["ticks"].get<long>());
+  }
+}
+
 void print_scores(const Json& tool) {
   const Json &methods = tool["methods"], &motion = tool["motion"];
   if (methods.empty()) return;
   fmt::print(
       "  score   {} ticks against the line between the samples, latency included; {:.1f} samples a second\n",
       tool["scored_ticks"].get<long>(), motion["sample_rate_hz"].get<double>());
-  fmt::print("          {:24}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
+  fmt::print("          {:40}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
              "paper: % of the interpolated force", "");
-  fmt::print("          {:24}{:>11}{:>11}{:>11}   {:>12}{:>12}{:>12}   {:>7}\n", "law", "mean", "p99", "max",
+  fmt::print("          {:40}{:>11}{:>11}{:>11}   {:>12}{:>12}{:>12}   {:>7}\n", "law", "mean", "p99", "max",
              "average", "maximal", "max force", "ns/tick");
   for (const auto& [name, m] : methods.items()) {
     const auto number = [&m = m](const char* key) { return m[key].get<double>(); };
-    fmt::print("          {:24}{:11.3f}{:11.3f}{:11.2f}   {:12.3f}{:12.1f}{:12.1f}   {:7.1f}\n", name,
-               number("mean_percent"), number("p99_percent"), number("max_percent"),
+    fmt::print("          {:40}{:11.3f}{:11.3f}{:11.2f}   {:12.3f}{:12.1f}{:12.1f}   {:7.1f}\n",
+               row_name(name, m), number("mean_percent"), number("p99_percent"), number("max_percent"),
                number("paper_mean_percent"), number("paper_max_percent"), number("paper_max_force_percent"),
                number("ns_per_tick"));
   }
+  print_stand_ins(methods);
 }
 
 void print_loop(const Json& loop) {
@@ -129,8 +165,11 @@ void print_tool(const Json& tool) {
       number(force, "samples"), number(age, "p50"), number(age, "p99"), number(age, "max"),
       number(force, "max_newton"));
   if (number(force, "stepped_down") > 0 || number(force, "surface_pages") > 0) {
-    fmt::print("  law     a simpler one stood in for it in {:.0f} ticks; {:.0f} pages of the surface came\n",
-               number(force, "stepped_down"), number(force, "surface_pages"));
+    fmt::print("  law     {}; {:.0f} pages of the surface came\n",
+               number(force, "stepped_down") > 0
+                   ? stand_ins_text(force["stand_ins"], tool["method"].get<std::string>())
+                   : "itself in all ticks",
+               number(force, "surface_pages"));
   }
   fmt::print("  motion  {:.4f} m/s mean, {:.4f} max; {:.2f} mm between samples\n",
              number(motion, "mean_speed_m_s"), number(motion, "max_speed_m_s"),
@@ -183,6 +222,7 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
            {{"samples", stats.samples},
             {"overtaken", stats.overtaken},
             {"stepped_down", stats.stepped_down},
+            {"stand_ins", stand_ins_report(stats.stand_ins)},
             {"surface_pages", stats.pages},
             {"age_ms", quantiles(stats.age_ns, 1e6)},
             {"max_newton", stats.max_newton}}},

@@ -56,14 +56,26 @@ void run_session(VirtualSession& session, std::uint64_t ticks, protocol::Capture
 Json make_report(const RecordOptions& options, const VirtualSession& session, double ticks_hz,
                  const protocol::CaptureWriter& capture, const Simulation& simulation, double virtual_s) {
   const VirtualSessionStats& stats = session.stats();
-  return {
-      {"scene", options.scene.string()},   {"trajectory", options.trajectory.string()},
-      {"rate_hz", options.rate_hz},        {"ticks_hz", ticks_hz},
-      {"delay_ms", options.delay_ms},      {"virtual_seconds", virtual_s},
-      {"packets", capture.packets()},      {"bytes", capture.bytes()},
-      {"tool_states", stats.tool_states},  {"force_samples", stats.force_samples},
-      {"contact_steps", stats.in_contact}, {"flagged", stats.flagged},
-      {"max_newton", stats.max_newton},    {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
+  return {{"scene", options.scene.string()},
+          {"trajectory", options.trajectory.string()},
+          {"rate_hz", options.rate_hz},
+          {"ticks_hz", ticks_hz},
+          {"delay_ms", options.delay_ms},
+          {"virtual_seconds", virtual_s},
+          {"packets", capture.packets()},
+          {"bytes", capture.bytes()},
+          {"tool_states", stats.tool_states},
+          {"force_samples", stats.force_samples},
+          {"contact_steps", stats.in_contact},
+          {"flagged", stats.flagged},
+          {"flagged_by",
+           {{"threw", simulation.flagged().threw},
+            {"ran_away", simulation.flagged().ran_away},
+            {"not_balanced", simulation.flagged().not_balanced},
+            {"tools", simulation.flagged().tools},
+            {"contact", simulation.flagged().contact}}},
+          {"max_newton", stats.max_newton},
+          {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
 }
 
 }  // namespace
@@ -97,9 +109,10 @@ int record(const RecordOptions& options) {
   const VirtualSessionStats& stats = session.stats();
   fmt::print(
       "sim_server: {:.1f} s of virtual time in {:.2f} s; {} packets ({} tool states, {} force samples), {} "
-      "bytes; {} steps in contact, {} flagged, largest force {:.2f} N\n",
+      "bytes; {} steps in contact, {} flagged{}, largest force {:.2f} N\n",
       virtual_s, took, capture.packets(), stats.tool_states, stats.force_samples, capture.bytes(),
-      stats.in_contact, stats.flagged, stats.max_newton);
+      stats.in_contact, stats.flagged, stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "",
+      stats.max_newton);
   if (options.report)
     write_json(*options.report, make_report(options, session, ticks_hz, capture, simulation, virtual_s));
   return 0;

@@ -83,6 +83,14 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
   return tools;
 }
 
+Json flagged_by(const FlaggedSteps& flagged) {
+  return {{"threw", flagged.threw},
+          {"ran_away", flagged.ran_away},
+          {"not_balanced", flagged.not_balanced},
+          {"tools", flagged.tools},
+          {"contact", flagged.contact}};
+}
+
 void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simulation& simulation,
              const Scene& scene, Time ran) {
   const SimLoopStats& stats = loop.stats();
@@ -94,6 +102,7 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["timeline"] = timeline_report(stats.timeline);
   report["late"] = stats.late;
   report["flagged"] = stats.flagged;
+  report["flagged_by"] = flagged_by(simulation.flagged());
   report["max_newton"] = stats.max_newton();
   report["tools"] = tools_report(stats, link, scene);
   int sessions = 0;
@@ -107,7 +116,7 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["state_hash"] = fmt::format("{:016x}", simulation.state_hash());
 }
 
-void print_summary(const Json& report) {
+void print_summary(const Json& report, const FlaggedSteps& flagged) {
   const auto ms = [&](const char* key, const char* q) { return report[key][q].get<double>(); };
   fmt::print(
       "sim_server: {} steps, {} in contact; a step takes {:.3f} ms (p50), {:.3f} (p99), {:.3f} (max)\n",
@@ -117,6 +126,8 @@ void print_summary(const Json& report) {
       "            in contact {:.3f} ms (p50), {:.3f} (p99); {} deadlines late; largest force {:.2f} N\n",
       ms("contact_step_ms", "p50"), ms("contact_step_ms", "p99"), report["late"].get<long>(),
       report["max_newton"].get<double>());
+  if (const std::string why = flagged.to_text(); !why.empty())
+    fmt::print("            steps with a flagged force: {}\n", why);
   std::fflush(stdout);
 }
 
@@ -219,7 +230,7 @@ int run_server(const ServerOptions& options) {
   }
   add_run(report, loop, link, simulation, scene, now() - start);
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
-  print_summary(report);
+  print_summary(report, simulation.flagged());
   if (options.report) write_json(*options.report, report);
   return 0;
 }

@@ -9,7 +9,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kMostComplianceBytes = 4e9;  // of compliance, however many are free
-constexpr std::size_t kCallsPerReport = 16;   // of progress: enough to keep cores busy
+constexpr std::size_t kMostCalls = 16;        // between two reports of progress: enough to keep cores busy
 constexpr std::size_t kTile = 64;             // rows and columns that stay in the cache
 
 void require_held_tissue(const ModelInputs& inputs) {
@@ -69,8 +69,10 @@ void SurfaceCompliance::require_room(double free) const {
   require_memory(bytes, free, source_, what, remedy);
 }
 
-void SurfaceCompliance::compute(std::size_t at_once, const Respond& respond, const Progress& progress) {
-  const std::size_t rows = 3 * vertices_.size(), report = kCallsPerReport * at_once;
+void SurfaceCompliance::compute(std::size_t at_once, const Respond& respond, const Progress& progress,
+                                std::size_t calls_per_report) {
+  const std::size_t rows = 3 * vertices_.size(),
+                    report = std::clamp<std::size_t>(calls_per_report, 1, kMostCalls) * at_once;
   require_room(free_memory());
   compliance_.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(rows));
   for (std::size_t from = 0; from < rows; from += report) {

@@ -24,8 +24,9 @@ class SurfaceCompliance {
   using Respond = std::function<void(Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> columns)>;
   /// Set-up: asks for W, `at_once` columns with one call, on all cores; the same bytes on any number of them.
   /// Allocates W, and throws `Error` where what was built meanwhile left no room for it; tells `progress`
-  /// from the calling thread.
-  void compute(std::size_t at_once, const Respond& respond, const Progress& progress);
+  /// from the calling thread, after so many calls (16 at most; fewer where a call takes long).
+  void compute(std::size_t at_once, const Respond& respond, const Progress& progress,
+               std::size_t calls_per_report = 16);
 
   /// Adds sum_k weights_k s_k s_k^T, s_k: shape k over the rows. `shapes`: (3 surface vertices x k). Set-up,
   /// on all cores.

@@ -11,9 +11,10 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostSubSteps = 2e4;  // no step of so many is in time
-constexpr int kFew = 8;                // sub-steps: longer periods let waves carry off what is left
-constexpr double kSafety = 0.95;       // of the longest stable sub-step; the frequency is known from below
+constexpr double kMostSubSteps = 2e4;   // no step of so many is in time
+constexpr int kFew = 8;                 // sub-steps: longer periods let waves carry off what is left
+constexpr double kWorkPerReport = 1e8;  // edges x sub-steps between two reports: some seconds
+constexpr double kSafety = 0.95;        // of the longest stable sub-step; the frequency is known from below
 
 ElasticTensors assemble(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
@@ -82,7 +83,10 @@ void TensorMass::precompute(const ModelInputs& inputs) {
       for (Eigen::Index r = 0; r < columns.rows(); ++r) columns(r, c) = motion.state.u[number(r, c)];
     }
   };
-  compliance_.compute(kWide, respond, inputs.progress);
+  // A call of a second on one core where edges are many and sub-steps short; then each two are told.
+  const double work = static_cast<double>(sub_steps_) * static_cast<double>(tensors_.edges());
+  const auto calls = static_cast<std::size_t>(std::clamp(kWorkPerReport / work, 2.0, 16.0));
+  compliance_.compute(kWide, respond, inputs.progress, calls);
   inputs.progress(name_of(Stage::kCompliance), 1);
 }
 

@@ -2,26 +2,12 @@
 
 #include <algorithm>
 #include <functional>
-#include <numeric>
 #include <tuple>
+
+#include "sim_server/mesh/disjoint_sets.h"
 
 namespace palpate::sim {
 namespace {
-
-/// Sets of the numbers from 0 to n - 1.
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  /// The representative of the set that holds `i`; halves the path on the way.
-  int of(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int i, int j) { parent_[of(i)] = of(j); }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// An edge of a triangle; the corners (3 x triangle + corner) that stand at its ends.
 struct Side {
@@ -48,18 +34,11 @@ std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
 }  // namespace
 
 std::vector<int> body_of_vertices(const TetMesh& mesh) {
-  Sets sets(mesh.vertices.size());
+  DisjointSets sets(mesh.vertices.size());
   for (const Tetrahedron& t : mesh.tetrahedra) {
     for (const int vertex : t) sets.join(vertex, t[0]);
   }
-  std::vector<int> number(mesh.vertices.size(), -1), body;
-  int bodies = 0;
-  for (int v = 0; v < static_cast<int>(number.size()); ++v) {
-    int& own = number[sets.of(v)];
-    if (own < 0) own = bodies++;
-    body.push_back(own);
-  }
-  return body;
+  return sets.numbers();
 }
 
 std::vector<int> body_sizes(const TetMesh& mesh) {
@@ -74,7 +53,7 @@ std::vector<int> body_sizes(const TetMesh& mesh) {
 NonManifold non_manifold(const std::vector<Triangle>& triangles) {
   NonManifold found;
   const std::vector<Side> sides = sorted_sides(triangles);
-  Sets fans(3 * triangles.size());  // of corners
+  DisjointSets fans(3 * triangles.size());  // of corners
   for (auto first = sides.begin(); first != sides.end();) {
     const auto last = std::find_if(first, sides.end(), [&](const Side& side) {
       return side.low != first->low || side.high != first->high;

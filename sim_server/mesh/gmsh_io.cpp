@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <cstdlib>
@@ -19,6 +18,7 @@
 #include "common/log.h"
 #include "common/memory_budget.h"
 #include "sim_server/mesh/cursor.h"
+#include "sim_server/mesh/other_formats.h"
 
 namespace palpate::sim {
 namespace {
@@ -311,32 +311,6 @@ class MeshReader {
   std::map<std::int64_t, std::string> name_of_physical_;  // of dimension 2
 };
 
-/// Says what a file that does not start with $MeshFormat is, and how to make a mesh of it.
-[[noreturn]] void fail_other_format(const std::filesystem::path& file, std::string_view bytes) {
-  const std::string path = file.string();
-  if (bytes.empty()) fail("{}: an empty file, not a mesh", path);
-  if (bytes.starts_with("$NOD")) {
-    fail("{}: a Gmsh MSH 1 file; 2.2 and 4.1 are read; {}", path, gmsh_command(path));
-  }
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".toml")
-    fail("{}: a file of settings, not a mesh; a scene names its mesh in [mesh] file", path);
-  const std::string kind = extension.empty() || extension == ".msh" ? "no known format" : extension + " file";
-  if (extension == ".obj" || extension == ".stl" || extension == ".ply" || extension == ".off") {
-    fail(
-        "{}: {}, a surface without an inside; fill it with tetrahedra: `meshio convert \"{}\" OUT.stl`, then "
-        "`gmsh -3` on a .geo file of: {}",
-        path, kind, path, R"(Merge "OUT.stl"; Surface Loop(1) = {1}; Volume(1) = {1};)");
-  }
-  // gmsh22, as meshio writes 4.1 only for elements of a single type.
-  fail(
-      "{}: {}, not a Gmsh mesh (no $MeshFormat at the start); convert it: "
-      "`meshio convert \"{}\" OUT.msh --output-format gmsh22`",
-      path, kind, path);
-}
-
 std::string read_bytes(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) fail("{}: no such file", file.string());
@@ -368,6 +342,8 @@ TetMesh read_mesh(const std::filesystem::path& file) {
   require_usable(checked.faults, file.string());
   const std::string mended = mended_in_short(checked.faults);
   if (!mended.empty()) log::info("{}: {}", file.string(), mended);
+  const std::string slivers = slivers_in_short(checked.faults);
+  if (!slivers.empty()) log::warning("{}: {}", file.string(), slivers);
   return std::move(checked.mesh);
 }
 

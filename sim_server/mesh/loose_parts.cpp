@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <fmt/core.h>
-#include <numeric>
+
+#include "sim_server/mesh/disjoint_sets.h"
 
 namespace palpate::sim {
 namespace {
@@ -29,24 +30,12 @@ std::vector<int> part_of_tetrahedra(const TetMesh& mesh) {
     }
   }
   std::ranges::sort(faces, {}, &Face::vertices);
-  std::vector<int> parent(mesh.tetrahedra.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets parts(mesh.tetrahedra.size());
   for (std::size_t f = 1; f < faces.size(); ++f) {
     if (faces[f].vertices == faces[f - 1].vertices)
-      parent[root(faces[f].tetrahedron)] = root(faces[f - 1].tetrahedron);
+      parts.join(faces[f].tetrahedron, faces[f - 1].tetrahedron);
   }
-  std::vector<int> number(parent.size(), -1), part;
-  int parts = 0;
-  for (int t = 0; t < static_cast<int>(parent.size()); ++t) {
-    int& own = number[root(t)];
-    if (own < 0) own = parts++;
-    part.push_back(own);
-  }
-  return part;
+  return parts.numbers();
 }
 
 LoosePart::Hold hold_of(const std::vector<Vec3>& places, bool& holds) {
@@ -63,7 +52,77 @@ LoosePart::Hold hold_of(const std::vector<Vec3>& places, bool& holds) {
   return LoosePart::Hold::kLine;
 }
 
+/// Two parts, the lower number first, and a vertex of both.
+struct Joint {
+  std::array<int, 2> parts;
+  int vertex;
+  auto operator<=>(const Joint&) const = default;
+};
+
+/// All of them, in order. Where many parts meet in a vertex, only those of neighbouring numbers.
+std::vector<Joint> joints_of(const TetMesh& mesh, const std::vector<int>& part) {
+  constexpr std::ptrdiff_t kMany = 16;
+  std::vector<std::pair<int, int>> uses;  // vertex, part
+  for (std::size_t t = 0; t < part.size(); ++t) {
+    for (const int v : mesh.tetrahedra[t]) uses.emplace_back(v, part[t]);
+  }
+  std::ranges::sort(uses);
+  uses.erase(std::ranges::unique(uses).begin(), uses.end());
+  std::vector<Joint> joints;
+  for (auto first = uses.begin(); first != uses.end();) {
+    const auto last =
+        std::find_if(first, uses.end(), [&](const auto& use) { return use.first != first->first; });
+    const std::ptrdiff_t around = last - first > kMany ? 1 : last - first;
+    for (auto a = first; a != last; ++a) {
+      for (auto b = a + 1; b != last && b - a <= around; ++b)
+        joints.push_back({{a->second, b->second}, first->first});
+    }
+    first = last;
+  }
+  std::ranges::sort(joints);
+  return joints;
+}
+
+/// Calls `work(parts, vertices)` for each two parts that share some.
+template <class Work>
+void for_pairs(const std::vector<Joint>& joints, const Work& work) {
+  for (auto first = joints.begin(); first != joints.end();) {
+    std::vector<int> vertices;
+    auto joint = first;
+    for (; joint != joints.end() && joint->parts == first->parts; ++joint) vertices.push_back(joint->vertex);
+    work(first->parts, vertices);
+    first = joint;
+  }
+}
+
 }  // namespace
+
+std::vector<Hinge> hinges(const TetMesh& mesh) {
+  std::vector<int> part = part_of_tetrahedra(mesh);
+  std::vector<Joint> joints;
+  for (bool joined = true; joined;) {
+    joined = false;
+    const int count = part.empty() ? 0 : 1 + *std::ranges::max_element(part);
+    if (count < 2) return {};
+    DisjointSets parts(static_cast<std::size_t>(count));
+    joints = joints_of(mesh, part);
+    for_pairs(joints, [&](const std::array<int, 2>& two, const std::vector<int>& vertices) {
+      std::vector<Vec3> places;
+      for (const int v : vertices) places.push_back(mesh.vertices[v]);
+      bool holds = false;
+      hold_of(places, holds);
+      if (holds) joined |= parts.join(two[0], two[1]);
+    });
+    const std::vector<int> number = parts.numbers();
+    for (int& p : part) p = number[p];
+  }
+  std::vector<Hinge> found;
+  for_pairs(joints, [&](const std::array<int, 2>& two, const std::vector<int>& vertices) {
+    const auto size = [&](int p) { return static_cast<std::size_t>(std::ranges::count(part, p)); };
+    found.push_back({{size(two[0]), size(two[1])}, vertices});
+  });
+  return found;
+}
 
 std::vector<LoosePart> loose_parts(const TetMesh& mesh, std::span<const int> held) {
   const std::vector<int> part = part_of_tetrahedra(mesh);

@@ -1,5 +1,6 @@
 #pragma once
 /// Parts of a mesh that could still move when some vertices are held.
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,5 +25,16 @@ std::vector<LoosePart> loose_parts(const TetMesh& mesh, std::span<const int> hel
 
 /// "3 of its tetrahedra hang on a hinge at 0.1,0,0".
 std::string to_text(const LoosePart& part);
+
+/// Two parts that meet in vertices of one line only: about it one can turn against the other.
+struct Hinge {
+  std::array<std::size_t, 2> tetrahedra;  ///< how many each part has
+  std::vector<int> vertices;              ///< which both have, ascending
+};
+
+/// Where parts of one body (tetrahedra that hang together by whole faces, and what shares three vertices with
+/// them that are not in one line) meet in an edge, a vertex, or several in one line only. O(m log m) where
+/// parts are few.
+std::vector<Hinge> hinges(const TetMesh& mesh);
 
 }  // namespace palpate::sim

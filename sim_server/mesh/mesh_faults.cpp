@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/ranges.h>
+#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "common/error.h"
 #include "sim_server/mesh/coincident_vertices.h"
 #include "sim_server/mesh/connectivity.h"
+#include "sim_server/mesh/loose_parts.h"
 #include "sim_server/mesh/surface.h"
 
 namespace palpate::sim {
@@ -16,6 +18,7 @@ namespace {
 
 // |6V| of a flat tetrahedron, relative to the cube of its longest edge: rounding leaves about 1e-16.
 constexpr double kFlat = 1e-12;
+constexpr double kDegrees = 180 / std::numbers::pi;  // in a radian
 
 std::string text(const Vec3& x) {
   return fmt::format("({:g}, {:g}, {:g})", x[0], x[1], x[2]);
@@ -171,6 +174,66 @@ void find_bodies(const TetMesh& mesh, Finds& finds) {
       sizes.size());
 }
 
+/// The part with fewer tetrahedra is the one that hangs on the other.
+std::string text_of(const TetMesh& mesh, const Hinge& hinge) {
+  constexpr std::size_t kShown = 6;
+  const auto& on = hinge.vertices;
+  const std::vector<int> shown(on.begin(), on.begin() + std::min(kShown, on.size()));
+  const auto [fewer, more] = std::minmax(hinge.tetrahedra[0], hinge.tetrahedra[1]);
+  return fmt::format("parts of {} and {} tetrahedra are joined by {} {}{} alone, at {}{}", more, fewer,
+                     on.size() == 1 ? "vertex" : "vertices", fmt::join(shown, " "),
+                     on.size() > kShown ? " ..." : "", text(mesh.vertices[on.front()]),
+                     on.size() == 1 ? "" : " to " + text(mesh.vertices[on.back()]));
+}
+
+void find_hinges(const TetMesh& mesh, Finds& finds) {
+  for (const Hinge& hinge : hinges(mesh))
+    finds.add(Cure::kAccepted, "hinges",
+              "one can turn against the other: hold each by a [[fixed]] of its own, or join them over a face",
+              [&] { return text_of(mesh, hinge); });
+}
+
+double middle_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The worst is the example. The shortest height h tells what slivers cost: they are stiff as 1/h on masses
+/// that they share with their neighbours, so that the highest frequency goes as the root of that; with
+/// damping in proportion to the stiffness, sub-steps go as its square. Measured on a liver of 16584
+/// tetrahedra with a height of 0.0086 of the median: 19 and 110 times the sub-steps of a mesh without
+/// slivers.
+void find_slivers(const TetMesh& mesh, std::vector<MeshFault>& all) {
+  std::size_t count = 0, worst = 0;
+  double least = kSliver;
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    const double angle = smallest_dihedral(mesh, mesh.tetrahedra[e]);
+    if (!(angle < kSliver)) continue;
+    ++count;
+    if (!(angle < least)) continue;
+    least = angle;
+    worst = e;
+  }
+  if (count == 0) return;
+  std::vector<double> heights;
+  for (const Tetrahedron& t : mesh.tetrahedra) heights.push_back(shortest_height(mesh, t));
+  const double middle = middle_of(heights);
+  const double shortest = *std::min_element(heights.begin(), heights.end());
+  all.push_back(
+      {Cure::kAccepted, count, "slivers",
+       fmt::format(
+           "tetrahedron {} (vertices {}) at {} has a dihedral angle of {:.2g} degrees, below {:.0f}; the "
+           "shortest height of all is {:.2g} mm, {:.2g} of the median: model \"tensor_mass\" needs some "
+           "{:.0f} times the sub-steps (with `rayleigh_stiffness` up to {:.0f} times), and equations are "
+           "as much as {:.0f} times worse conditioned",
+           worst, fmt::join(mesh.tetrahedra[worst], " "), text(mesh.vertices[mesh.tetrahedra[worst][0]]),
+           least * kDegrees, kSliver * kDegrees, 1e3 * shortest, shortest / middle,
+           std::sqrt(middle / shortest), middle / shortest, middle / shortest),
+       "mesh it again with optimisation (Gmsh: `-optimize_netgen`), its surface too if that has slivers "
+       "(`ClassifySurfaces`)"});
+}
+
 void find_surface_faults(const TetMesh& mesh, Finds& finds) {
   const OuterFaces faces = outer_faces(mesh);
   for (const OverlappingFace& face : faces.overlaps)
@@ -191,6 +254,7 @@ void find_surface_faults(const TetMesh& mesh, Finds& finds) {
         Cure::kAccepted, "vertices of several sheets", "",
         [&] { return fmt::format("the surface meets itself at {}", text(mesh.vertices[meets.vertex])); },
         meets.vertices);
+  if (meets.edges + meets.vertices > 0) find_hinges(mesh, finds);
 }
 
 }  // namespace
@@ -227,6 +291,7 @@ MeshFaults mend(TetMesh& mesh) {
   }
   find_bodies(mesh, finds);
   if (faults.surface_seen) find_surface_faults(upright, finds);
+  if (!faults.refused()) find_slivers(mesh, faults.found);
   return faults;
 }
 
@@ -240,6 +305,15 @@ void require_usable(const MeshFaults& faults, const std::string& source) {
        each ? fmt::format(", the first of {} {}", first->count, first->kind) : "", first->remedy,
        kinds > 1 ? fmt::format(" (the first of {} kinds of faults: `sim_server mesh info` lists all)", kinds)
                  : "");
+}
+
+std::string slivers_in_short(const MeshFaults& faults) {
+  for (const MeshFault& f : faults.found) {
+    if (f.kind == "slivers")
+      return fmt::format("{}{}; {}", f.example, f.count > 1 ? fmt::format(", the worst of {}", f.count) : "",
+                         f.remedy);
+  }
+  return "";
 }
 
 std::string mended_in_short(const MeshFaults& faults) {

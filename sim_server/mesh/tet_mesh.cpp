@@ -19,6 +19,15 @@ double dihedral(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return std::atan2(m.cross(n).norm(), m.dot(n));
 }
 
+std::array<double, 6> dihedrals(const TetMesh& mesh, const Tetrahedron& t) {
+  const std::vector<Vec3>& x = mesh.vertices;
+  std::array<double, 6> angles{};
+  std::transform(kDihedrals.begin(), kDihedrals.end(), angles.begin(), [&](const std::array<int, 4>& e) {
+    return dihedral(x[t[e[0]]], x[t[e[1]]], x[t[e[2]]], x[t[e[3]]]);
+  });
+  return angles;
+}
+
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -50,13 +59,9 @@ void describe_edges(const TetMesh& mesh, MeshInfo& info) {
 }
 
 void describe_tetrahedra(const TetMesh& mesh, MeshInfo& info) {
-  const std::vector<Vec3>& x = mesh.vertices;
   std::vector<double> smallest;
   for (const Tetrahedron& t : mesh.tetrahedra) {
-    std::array<double, 6> angles{};
-    std::transform(kDihedrals.begin(), kDihedrals.end(), angles.begin(), [&](const std::array<int, 4>& e) {
-      return dihedral(x[t[e[0]]], x[t[e[1]]], x[t[e[2]]], x[t[e[3]]]);
-    });
+    const auto angles = dihedrals(mesh, t);
     const auto [least, most] = std::minmax_element(angles.begin(), angles.end());
     smallest.push_back(*least);
     info.max_dihedral = std::max(info.max_dihedral, *most);
@@ -100,6 +105,21 @@ void sort_tags(TetMesh& mesh) {
 double six_volumes(const TetMesh& mesh, const Tetrahedron& t) {
   const std::vector<Vec3>& x = mesh.vertices;
   return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).dot(x[t[3]] - x[t[0]]);
+}
+
+double smallest_dihedral(const TetMesh& mesh, const Tetrahedron& t) {
+  const auto angles = dihedrals(mesh, t);
+  return *std::min_element(angles.begin(), angles.end());
+}
+
+double shortest_height(const TetMesh& mesh, const Tetrahedron& t) {
+  double largest = 0;  // twice the area of a face
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 &a = mesh.vertices[t[i]], &b = mesh.vertices[t[(i + 1) % 4]],
+               &c = mesh.vertices[t[(i + 2) % 4]];
+    largest = std::max(largest, (b - a).cross(c - a).norm());
+  }
+  return std::abs(six_volumes(mesh, t)) / largest;
 }
 
 MeshInfo describe(const TetMesh& mesh) {

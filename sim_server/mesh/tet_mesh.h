@@ -46,6 +46,12 @@ void sort_tags(TetMesh& mesh);
 /// Six times the signed volume of tetrahedron `t`, m^3.
 double six_volumes(const TetMesh& mesh, const Tetrahedron& t);
 
+/// The smallest of the six dihedral angles of `t`, radians; of one that is flat 0.
+double smallest_dihedral(const TetMesh& mesh, const Tetrahedron& t);
+
+/// The shortest distance from a corner of `t` to the face across from it, m.
+double shortest_height(const TetMesh& mesh, const Tetrahedron& t);
+
 /// What `sim_server mesh info` prints of a mesh that is in order.
 struct MeshInfo {
   int vertices = 0, edges = 0, tetrahedra = 0, boundary_vertices = 0, boundary_triangles = 0;

@@ -77,6 +77,12 @@ std::uint32_t SurfacePager::hash() noexcept {
   return static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32) | 1;
 }
 
+std::vector<Vec3> SurfacePager::rest() const {
+  std::vector<Vec3> rest;
+  for (const int vertex : vertices_) rest.push_back(simulation_.rest()[vertex]);
+  return rest;
+}
+
 bool SurfacePager::page(std::uint32_t number, SurfacePage& out) noexcept {
   const SurfacePages pages{state_.vertices, state_.triangles};
   if (state_.version == 0 || number >= pages.count()) return false;

@@ -17,6 +17,9 @@ class SurfacePager {
   /// `shift_W` is not filled in.
   const protocol::SurfaceState& state() const { return state_; }
 
+  /// Where its vertices are at rest, in their order, m. Allocates.
+  std::vector<Vec3> rest() const;
+
   /// Fills in a page of `state().version`; false when it has none of that number. About 2 us.
   bool page(std::uint32_t number, protocol::SurfacePage& out) noexcept;
 

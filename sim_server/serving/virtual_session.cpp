@@ -43,7 +43,8 @@ VirtualSession::VirtualSession(Simulation& simulation, const Trajectory& motion,
       capture_(capture),
       server_(link.rate_hz, {tool_radius}),
       session_(session_number(motion, link)),
-      pager_(simulation, 0) {}
+      pager_(simulation, 0),
+      near_(pager_.state().vertices) {}
 
 Time VirtualSession::time_of(std::uint64_t k) const {
   return from_seconds(static_cast<double>(k) / link_.ticks_hz);
@@ -55,6 +56,7 @@ void VirtualSession::tick(std::uint64_t k) {
   ToolState state{.tool = client_.welcome().tool, .tick = k + 1, .t_ns = t.count()};
   state.p_W = newest_p_W_ = motion_.at(to_seconds(t));
   if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motion_.at(to_seconds(time_of(k - 1))));
+  newest_v_W_ = state.v_W;
   if (link_.parts) {
     state.flags |= ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface;
     state.pages_taken = pages_;
@@ -96,7 +98,7 @@ void VirtualSession::deliver(Time t) {
     to_client({session_, ++member->sent}, next.sample, next.ready);
     ++stats_.force_samples;
     const bool tells = (next.sample.flags & ForceSample::kHasSurface) != 0;
-    if (tells && pages_ == 0 && link_.parts) send_surface(next.ready);
+    if (tells && link_.parts) send_surface(next.sample, next.ready);
   }
 }
 
@@ -104,11 +106,37 @@ void VirtualSession::keep_session(Time t) {
   if (const auto hello = client_.poll(t)) to_server({}, *hello, t);
 }
 
-/// All of it at once, as soon as the client knows that there is one.
-void VirtualSession::send_surface(Time t) {
+/// What the client lacks of it by now, around where the tool is, in the frame of the organ at rest.
+void VirtualSession::send_surface(const ForceSample& sample, Time t) {
+  const SurfacePages pages{pager_.state().vertices, pager_.state().triangles};
+  if (pages_ == 0) {
+    for (std::uint32_t page = 0; page < pages.first_tile(); ++page) send_page(page, t);
+    near_.take(pager_.rest());
+    has_.assign(pages.count() - pages.first_tile(), 0);
+  }
+  const double reach = NearTiles::reach(sample.surface.tool_radius, newest_v_W_.norm());
+  near_.look(newest_p_W_ - sample.surface.shift_W);
+  if (near_.distance() > reach && sample.f_W.isZero(0)) return;
+  near_.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
+    const std::uint32_t page = pages.tile(a, b), tile = page - pages.first_tile();
+    if (has_[tile] != 0) return true;
+    if (sent_.size() == NearTiles::kKept) {
+      has_[sent_.front()] = 0;
+      sent_.pop_front();
+    }
+    has_[tile] = 1;
+    sent_.push_back(tile);
+    send_page(page, t);
+    return true;
+  });
+}
+
+void VirtualSession::send_page(std::uint32_t number, Time t) {
+  SurfacePage page;
+  if (!pager_.page(number, page)) return;
   auto* const member = server_.holder(client_.welcome().tool);
-  for (SurfacePage page; pager_.page(static_cast<std::uint32_t>(pages_), page); ++pages_)
-    to_client({session_, ++member->sent}, page, t);
+  to_client({session_, ++member->sent}, page, t);
+  ++pages_;
 }
 
 void VirtualSession::leave() {

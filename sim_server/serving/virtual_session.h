@@ -3,6 +3,7 @@
 
 #include "common/trajectory.h"
 #include "protocol/capture.h"
+#include "protocol/near_tiles.h"
 #include "protocol/session.h"
 #include "sim_server/serving/served_tools.h"
 #include "sim_server/serving/surface_pager.h"
@@ -24,8 +25,9 @@ struct VirtualSessionStats {
 
 /// A client and a server that talk without sockets and clock: the two ends of a session, tool 0 of the scene,
 /// which follows a motion exactly, and a capture of every datagram between them. With `parts`, the client
-/// gets the whole model of the surface right after its first sample. Client and server stand at
-/// 192.0.2.1:45131 and 192.0.2.2:45130 (addresses for documentation, RFC 5737).
+/// gets the shape of the surface right after its first sample, and its compliance where the tool comes near
+/// it: at once what our client would ask for there (protocol/near_tiles.h), and nothing where it stays away.
+/// Client and server stand at 192.0.2.1:45131 and 192.0.2.2:45130 (addresses for documentation, RFC 5737).
 class VirtualSession {
  public:
   VirtualSession(Simulation& simulation, const Trajectory& motion, double tool_radius,
@@ -47,7 +49,8 @@ class VirtualSession {
     protocol::ForceSample sample;
   };
   void keep_session(Time t);
-  void send_surface(Time t);
+  void send_surface(const protocol::ForceSample& sample, Time t);
+  void send_page(std::uint32_t number, Time t);
   void step(const protocol::ToolState& state, double steps_due);
   void deliver(Time t);
   protocol::Datagram travel(const protocol::Endpoint& from, const protocol::Endpoint& to,
@@ -66,9 +69,12 @@ class VirtualSession {
   protocol::LinkStats server_stats_, client_stats_;
   std::deque<OnTheWay> on_the_way_;
   SurfacePager pager_;
+  protocol::NearTiles near_;
+  std::deque<std::uint32_t> sent_;  // tiles that the client still has, the oldest first
+  std::vector<char> has_;           // by tile: whether it is among them
   std::uint64_t steps_ = 0, newest_ = 0, pages_ = 0;
   Time now_{}, answered_{};  // of the newest tool state, and of the newest that a step answered
-  Vec3 newest_p_W_ = Vec3::Zero();
+  Vec3 newest_p_W_ = Vec3::Zero(), newest_v_W_ = Vec3::Zero();
   VirtualSessionStats stats_;
 };
 

@@ -133,7 +133,31 @@ std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, 
     ++failures_.other;
     hold_answers(inputs);
   }
+  count_flagged();
   return answers_;
+}
+
+void Simulation::count_flagged() noexcept {
+  if (std::ranges::none_of(answers_, &ToolAnswer::flagged)) return;
+  std::uint64_t& reason = failed_                      ? flagged_.threw
+                          : lost_                      ? flagged_.ran_away
+                          : !tissue_.model->balanced() ? flagged_.not_balanced
+                          : !tools_settled_            ? flagged_.tools
+                                                       : flagged_.contact;
+  ++reason;
+}
+
+std::string FlaggedSteps::to_text() const {
+  std::string text;
+  const auto add = [&](std::uint64_t steps, std::string_view reason) {
+    if (steps > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", steps, reason);
+  };
+  add(threw, "failed");
+  add(ran_away, "ran away");
+  add(not_balanced, "not balanced");
+  add(tools, "tools not settled together");
+  add(contact, "contact not settled");
+  return text;
 }
 
 /// After a step that threw. The forces of a tissue that answers no more fade.
@@ -159,15 +183,16 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
     if (!inputs[i].pose) continue;
     tools_[i].advance_to(*inputs[i].pose, inputs[i].path, tissue_.met_by(i));
   }
+  tools_settled_ = true;
   solve_contacts();
-  const bool lost = ran_away();
+  lost_ = ran_away();
   if (!tissue_.before.empty())
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     const ToolForce before = answers_[i];
     answers_[i] = {};
     static_cast<ToolForce&>(answers_[i]) = before;
-    if (lost && tools_[i].placed()) {  // what was felt before fades
+    if (lost_ && tools_[i].placed()) {  // what was felt before fades
       fade(answers_[i]);
       continue;
     }
@@ -267,6 +292,7 @@ void Simulation::settle() {
     const ToolTissue tissue = tissue_.met_by(i);
     if (!tissue.moved()) continue;
     if (tool.exhausted() || turn >= kMaxSweeps * tools_.size()) {
+      tools_settled_ = false;
       flag_contacts();
       return;
     }

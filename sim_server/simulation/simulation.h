@@ -68,6 +68,17 @@ struct StepFailures {
   std::uint64_t other = 0;
 };
 
+/// Steps with a flagged answer, by the first of these reasons that holds.
+struct FlaggedSteps {
+  std::uint64_t threw = 0;         ///< the model did (`StepFailures`)
+  std::uint64_t ran_away = 0;      ///< the surface is farther from rest than any tissue goes
+  std::uint64_t not_balanced = 0;  ///< the model found no equilibrium under the loads
+  std::uint64_t tools = 0;         ///< the contacts of several tools did not settle together
+  std::uint64_t contact = 0;       ///< that of one tool did not, or it cannot be told where it touches
+  /// "3 not balanced, 1 contact not settled"; empty: none.
+  std::string to_text() const;
+};
+
 /// The organ of a scene with its tools: one step, one page. Built from a scene (throws `Error`), then stepped
 /// by one thread. A step depends on nothing but its arguments and the state, and does not throw: where the
 /// model does, its answers are those of the step before, flagged (half of their forces each further time in
@@ -109,9 +120,11 @@ class Simulation {
   /// FNV-1a hash of the surface positions and the last forces, bit by bit: equal runs have equal hashes.
   std::uint64_t state_hash() const noexcept;
   const StepFailures& failures() const { return failures_; }
+  const FlaggedSteps& flagged() const { return flagged_; }
 
  private:
   void advance(std::span<const ToolInput> inputs, double dt);
+  void count_flagged() noexcept;
   void hold_answers(std::span<const ToolInput> inputs) noexcept;
   void move_organ(double dt);
   void set_free(const FreeMotion& motion);
@@ -132,7 +145,9 @@ class Simulation {
   std::vector<ToolInput> inputs_;     // for the step of tool 0 alone
   std::vector<ToolAnswer> answers_;
   StepFailures failures_;
-  bool failed_ = false;  // the last step
+  FlaggedSteps flagged_;
+  bool tools_settled_ = true, lost_ = false;  // in this step
+  bool failed_ = false;                       // the last step
 };
 
 /// "contact", or "contact of tool 2" where there are several: the name of a tool's part in reports.

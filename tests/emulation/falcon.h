@@ -32,6 +32,8 @@ class Falcon : public UsbDevice {
   void power_up(double now) override;
   std::string command(const std::string& verb, const Words& arguments, double now) override;
   std::string state(double now) override;
+  /// What the host asked of each motor in its last packet.
+  const std::array<int, 3>& wished_dac() const { return wished_dac_; }
 
  protected:
   void set_fault(const std::string& name, int value) override;

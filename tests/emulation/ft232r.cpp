@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <string_view>
 
 namespace palpate::emulation {
 namespace {
@@ -11,7 +12,19 @@ namespace {
 constexpr std::size_t kPacket = 64, kPayload = 62;  // bytes
 constexpr double kFrame = 1e-3, kJoinWait = 3e-3;   // s
 constexpr std::size_t kSplitAt = 14, kReply = 16;   // bytes, of the faults `split` and `join`
+constexpr std::size_t kEepromWords = 64;            // of 16 bits
 constexpr std::uint8_t kStatusAlways = 0x01, kCts = 0x10, kSenderEmpty = 0x60;
+
+/// A string descriptor at byte `at`, and where and how long it is at `entry`; the place behind it.
+std::size_t put_text(Bytes& bytes, std::size_t entry, std::size_t at, std::string_view text) {
+  constexpr std::uint8_t kString = 3, kMapped = 0x80;
+  const std::size_t size = 2 + 2 * text.size();
+  bytes[entry] = static_cast<std::uint8_t>(kMapped | at);
+  bytes[entry + 1] = bytes[at] = static_cast<std::uint8_t>(size);
+  bytes[at + 1] = kString;
+  for (std::size_t i = 0; i < text.size(); ++i) bytes[at + 2 + 2 * i] = static_cast<std::uint8_t>(text[i]);
+  return at + size;
+}
 
 }  // namespace
 
@@ -22,6 +35,25 @@ double baud_of_divisor(std::uint16_t divisor) {
   return 3e6 / ((divisor & 0x3fff) + kFraction[divisor >> 14]);
 }
 
+/// The layout and the checksum are those that libftdi reads and writes (ftdi_eeprom_build): ids, power and
+/// strings by place, and at the end a word over all others.
+Bytes eeprom_of_falcon() {
+  Bytes bytes(2 * kEepromWords, 0);
+  const Bytes head{0x00, 0x00, 0x03, 0x04, 0x48, 0xcb, 0x00, 0x06, 0xa0, 45, 0x08, 0x00, 0x00, 0x02};
+  std::copy(head.begin(), head.end(), bytes.begin());
+  const std::size_t product = put_text(bytes, 0x0e, 0x18, "FTDI"),
+                    serial = put_text(bytes, 0x10, product, "FALCON HAPTIC");
+  put_text(bytes, 0x12, serial, "");
+  unsigned checksum = 0xaaaa;
+  for (std::size_t i = 0; i + 1 < kEepromWords; ++i) {
+    checksum ^= static_cast<unsigned>(bytes[2 * i]) | static_cast<unsigned>(bytes[2 * i + 1]) << 8;
+    checksum = (checksum << 1 | checksum >> 15) & 0xffff;
+  }
+  bytes[bytes.size() - 2] = static_cast<std::uint8_t>(checksum & 0xff);
+  bytes[bytes.size() - 1] = static_cast<std::uint8_t>(checksum >> 8);
+  return bytes;
+}
+
 void Ft232r::power_up() {
   fifo_.clear();
   baud_ = 9600;
@@ -29,7 +61,7 @@ void Ft232r::power_up() {
 }
 
 UsbResult Ft232r::request(const UsbSetup& setup, double) {
-  constexpr std::uint8_t kIn = 0xc0, kOut = 0x40, kModemStatus = 5, kGetLatency = 10;
+  constexpr std::uint8_t kIn = 0xc0, kOut = 0x40, kModemStatus = 5, kGetLatency = 10, kReadEeprom = 0x90;
   if (faults_.stall > 0) {
     --faults_.stall;
     return {-EPIPE, {}};
@@ -40,6 +72,11 @@ UsbResult Ft232r::request(const UsbSetup& setup, double) {
     Bytes status;
     append_status(status);
     return {0, status};
+  }
+  if (setup.type == kIn && setup.request == kReadEeprom) {  // `index`: which word
+    if (setup.index >= kEepromWords) return {-EPIPE, {}};
+    const auto first = eeprom_.begin() + 2 * setup.index;
+    return {0, {first, first + 2}};
   }
   if (setup.type != kOut || !set(setup)) return {-EPIPE, {}};
   return {};

@@ -11,6 +11,9 @@ namespace palpate::emulation {
 /// 2 Mbaud.
 double baud_of_divisor(std::uint16_t divisor);
 
+/// The 128 bytes of the chip's memory in a Falcon: its ids and names, as an FT232R keeps them.
+Bytes eeprom_of_falcon();
+
 /// FT232R: a USB bridge to a serial line. Every IN packet is at most 64 bytes and begins with two status
 /// bytes. Data leaves when 62 bytes are there, or when the latency timer has run out since the packet before;
 /// with a timer of 1 ms as soon as it is there. Without data the timer sends the status alone.
@@ -51,6 +54,7 @@ class Ft232r {
   bool set(const UsbSetup& setup);
 
   FalconFaults& faults_;
+  const Bytes eeprom_ = eeprom_of_falcon();
   Line line_;
   bool wall_;
   std::deque<Byte> fifo_;

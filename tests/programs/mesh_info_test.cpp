@@ -113,3 +113,19 @@ TEST_CASE("mesh info: a body that is there twice, each with vertices of its own,
             "(0, 0, 0), but cannot be merged: two tetrahedra lie in one place"));
   CHECK(has(said, "sim_server: error: " + file + ": vertices 0 and 4 are both at (0, 0, 0)"));
 }
+
+TEST_CASE("mesh info names hinges by their vertices and the worst sliver by its angle, exit 0") {
+  const TemporaryFolder folder;
+  // The second shares the edge along x with the first, and is flat: atan(0.01) is 0.57 degrees.
+  const std::string file =
+      mesh_file(folder, std::string(kCorner) + "5 0 -1 0\n6 0 -1 -0.01\n", "1 4 0 1 2 3 4\n2 4 0 1 2 5 6\n");
+  const std::string said = output_of("sim_server", {"mesh", "info", file}, 0);
+  CAPTURE(said);
+  CHECK(has(
+      said,
+      "  accepted            hinges (1): parts of 1 and 1 tetrahedra are joined by vertices 0 1 alone, at "
+      "(0, 0, 0) to (1, 0, 0); one can turn against the other"));
+  CHECK(has(said,
+            "  accepted            slivers (1): tetrahedron 1 (vertices 0 1 4 5) at (0, 0, 0) has a dihedral"
+            " angle of 0.57 degrees, below 1;"));
+}

@@ -1,4 +1,6 @@
 // When a Falcon whose encoders stand still is told of, over a transport in memory.
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "haptic_client/device/falcon.h"
@@ -18,10 +20,10 @@ struct Rig {
   std::unique_ptr<Falcon> falcon;
   int tick = 0;
 
-  Rig() {
+  explicit Rig(double frozen_fade = 0) {
     auto own = std::make_unique<test::EmulatedPort>(emulated);
     port = own.get();
-    falcon = std::make_unique<Falcon>(std::move(own), std::vector<std::byte>{}, 10000);
+    falcon = std::make_unique<Falcon>(std::move(own), std::vector<std::byte>{}, 10000, frozen_fade);
     command("hand place 0 0 0.12");
   }
   void command(const std::string& line) {
@@ -29,6 +31,13 @@ struct Rig {
     std::istringstream in(line);
     for (std::string word; in >> word;) words.push_back(word);
     emulated.command(words.front(), {words.begin() + 1, words.end()}, 0);
+  }
+  /// The largest torque of its motors now, DAC units.
+  double torque() {
+    double largest = 0;
+    for (const int dac : emulated.wished_dac())
+      largest = std::max(largest, std::abs(static_cast<double>(dac)));
+    return largest;
   }
   /// What it says after so many seconds under `newton`.
   std::string run(double seconds, double newton) {
@@ -56,4 +65,24 @@ TEST_CASE("a Falcon that stands still is told of under force only, and not when 
   CHECK(rig.run(0.3, 3).find("no encoder of the Falcon moved for 3 s") == 0);
   rig.command("fault freeze 0");
   CHECK(rig.run(10, 3).find("no encoder of the Falcon moved for 3 s") == 0);  // said once
+}
+
+TEST_CASE("a Falcon whose encoders stand still loses its force where that was asked for, and has it back") {
+  Rig rig(2);
+  rig.command("hand tremor 0.0001 tremor_rate 9");
+  CHECK(rig.run(10, 3) == kReady);
+  const double felt = rig.torque();
+  CHECK(felt > 200);
+  rig.command("fault freeze");
+  rig.run(1.9, 3);
+  CHECK(rig.torque() == Approx(felt).epsilon(0.1));
+  CHECK(rig.run(0.65, 3).find("its force fades until one does") != std::string::npos);
+  CHECK(rig.torque() == Approx(0.45 * felt).epsilon(0.15));  // 0.55 s into a fade of 1 s
+  rig.run(5, 3);
+  CHECK(rig.torque() == 0);  // and stays away, though nothing pushes any more
+  rig.command("fault freeze 0");
+  CHECK(rig.run(0.5, 3) == "the Falcon moves again: its force rises");
+  CHECK(rig.torque() == Approx(0.5 * felt).epsilon(0.15));
+  rig.run(2, 3);
+  CHECK(rig.torque() == Approx(felt).epsilon(0.1));
 }

@@ -46,6 +46,38 @@ TEST_CASE("ft232r: baud rates of the divisors a Falcon needs") {
   CHECK(baud_of_divisor(0xc001 + 0x0f) == Approx(3e6 / 16.125));
 }
 
+TEST_CASE("ft232r: its memory tells the ids and names of a Falcon, with the checksum that libftdi asks for") {
+  Bench bench;
+  std::vector<unsigned> words;
+  for (std::uint16_t index = 0; index < 64; ++index) {
+    const auto word = bench.chip.request({0xc0, 0x90, 0, index, 2}, bench.now);
+    REQUIRE(word.status == 0);
+    REQUIRE(word.data.size() == 2);
+    words.push_back(word.data[0] | static_cast<unsigned>(word.data[1]) << 8);
+  }
+  CHECK(words[1] == 0x0403);
+  CHECK(words[2] == 0xcb48);
+  CHECK(words[3] == 0x0600);
+  unsigned checksum = 0xaaaa;  // libftdi, ftdi_eeprom_decode
+  for (std::size_t i = 0; i < 63; ++i) {
+    checksum ^= words[i];
+    checksum = ((checksum << 1) | (checksum >> 15)) & 0xffff;
+  }
+  CHECK(checksum == words[63]);
+  const auto text_at = [&](std::size_t entry) {  // word: place with bit 7, size of the descriptor
+    std::string text;
+    const unsigned at = words[entry] & 0x7f, size = words[entry] >> 8;
+    for (unsigned i = 2; i < size; i += 2) {
+      const unsigned byte = at + i;
+      text.push_back(static_cast<char>(words[byte / 2] >> (byte % 2 * 8) & 0xff));
+    }
+    return text;
+  };
+  CHECK(text_at(7) == "FTDI");
+  CHECK(text_at(8) == "FALCON HAPTIC");
+  CHECK(bench.chip.request({0xc0, 0x90, 0, 64, 2}, bench.now).status == -EPIPE);
+}
+
 TEST_CASE("ft232r: two status bytes alone whenever the latency timer has run out") {
   Bench bench;
   REQUIRE(bench.set(9, 16) == 0);

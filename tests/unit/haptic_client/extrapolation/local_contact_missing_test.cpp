@@ -129,6 +129,7 @@ TEST_CASE(
     const Vec3 given = listener.tick(p);
     if (p[1] > 0.0145) continue;
     CHECK(listener.law.stepped_down());
+    CHECK(listener.law.stand_in() == "two_tangents");
     CHECK(given == listener.simpler);
     pressed += given.norm() > 0.5 ? 1 : 0;
   }

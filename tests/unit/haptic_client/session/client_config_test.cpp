@@ -17,6 +17,31 @@ TEST_CASE("an empty client file means the defaults, and the file that ships is r
       read_client_config(std::string(PALPATE_SOURCE_DIR) + "/configs/clients/liver.toml").device.trajectory);
 }
 
+TEST_CASE(
+    "the chosen law is scored with those that the file lists, once, and with none where it lists none") {
+  const test::TemporaryFolder folder;
+  const auto scored = [&](const std::string& text, const std::string& method) {
+    ClientConfig config = read_client_config(folder.write("c.toml", text));
+    if (!method.empty()) config.method = method;
+    return config.scored_laws();
+  };
+  using Laws = std::vector<std::string>;
+  CHECK(scored("", "") == Laws{"constant", "linear_time", "linear_position", "local_contact"});
+  CHECK(scored("score = [\"constant\"]", "tangent") == Laws{"constant", "tangent"});
+  CHECK(scored("score = [\"tangent\", \"constant\"]", "tangent") == Laws{"tangent", "constant"});
+  CHECK(scored("score = []", "tangent").empty());
+}
+
+TEST_CASE("a Falcon's force fades at frozen encoders where its table says when") {
+  const test::TemporaryFolder folder;
+  const auto fade = [&](const std::string& text) {
+    return read_client_config(folder.write("c.toml", text)).device.falcon.frozen_fade;
+  };
+  CHECK(fade("") == 0);
+  CHECK(fade("[falcon]\nfrozen_fade = 10\n") == 10);
+  CHECK_THROWS_WITH(fade("[falcon]\nfrozen_fade = 0.1\n"), Catch::Contains("c.toml:2"));
+}
+
 TEST_CASE("a SpaceMouse: its table is read, and the file that ships begins above the liver") {
   const test::TemporaryFolder folder;
   const ClientConfig config =

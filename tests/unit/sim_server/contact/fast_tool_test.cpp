@@ -3,6 +3,7 @@
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -13,16 +14,11 @@ constexpr double kDt = 0.03, kRadius = 0.005;
 
 /// 80 x 30 x 40 mm, top at y = 0, held at the bottom, nodes 5 mm apart.
 TetMesh block() {
-  std::vector<double> x, y, z;
-  for (int i = -8; i <= 8; ++i) x.push_back(0.005 * i);
-  for (int i = -6; i <= 0; ++i) y.push_back(0.005 * i);
-  for (int i = -4; i <= 4; ++i) z.push_back(0.005 * i);
-  return grid_block(x, y, z);
+  return test::soft_block({0.08, 0.03, 0.04}, {16, 6, 8});
 }
 
 Simulation organ(const Tool& tool) {
-  Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4},
-                               {Vec3(-1, -1, -1), Vec3(1, -0.0299, 1)}, kRadius);
+  Scene scene = test::soft_block_scene(0.03, "quasi_static", ElasticLaw::kLinear, kRadius);
   scene.tools[0].shape = tool;
   return Simulation(scene, block());
 }

@@ -11,6 +11,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tool_inputs.h"
 
@@ -23,16 +24,11 @@ constexpr double kDt = 0.03;
 const Vec3 kPlace(0.001, 0.005, 0.0005);  // the tool touches the top, y = 0
 
 TetMesh block() {
-  std::vector<double> axis, depth;
-  for (int i = -5; i <= 5; ++i) axis.push_back(0.003 * i);
-  for (int i = -4; i <= 0; ++i) depth.push_back(0.003 * i);
-  return grid_block(axis, depth, axis);
+  return test::soft_block({0.03, 0.012, 0.03}, {10, 4, 10});
 }
 
 Scene block_scene(const std::string& model = "quasi_static") {
-  Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4},
-                               {Vec3(-1, -1, -1), Vec3(1, -0.0119, 1)}, 0.005);
-  scene.deformation.model = model;
+  Scene scene = test::soft_block_scene(0.012, model);
   scene.tools[0].grasp_place = kPlace;
   return scene;
 }

@@ -9,6 +9,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/column.h"
 #include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/solids.h"
 #include "tests/support/temporary_folder.h"
 
@@ -19,13 +20,11 @@ using namespace palpate::test;
 namespace {
 
 TetMesh block() {
-  return grid_block(lines(-0.02, 0.02, 10), lines(-0.016, 0, 4), lines(-0.02, 0.02, 10));
+  return test::soft_block({0.04, 0.016, 0.04}, {10, 4, 10});
 }
 
 Scene block_scene(std::string_view model, ElasticLaw law = ElasticLaw::kLinear, double friction = 0) {
-  Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4, .law = law},
-                         {Vec3(-1, -1, -1), Vec3(1, -0.0159, 1)}, 0.005);
-  scene.deformation.model = model;
+  Scene scene = test::soft_block_scene(0.016, model, law);
   scene.deformation.of<RayleighDamping>().mass = 20;
   scene.deformation.of<RayleighDamping>().stiffness = 0.01;
   scene.tools[0].shape.friction = friction;

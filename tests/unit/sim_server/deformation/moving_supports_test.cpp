@@ -17,6 +17,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/dense_tissue.h"
 #include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/solids.h"
 
 using namespace palpate;
@@ -31,7 +32,7 @@ constexpr double kTau = 2 * std::numbers::pi;
 const Box kBottom{Vec3(-1, -1, -1), Vec3(1, -0.0159, 1)};
 
 TetMesh block() {
-  return grid_block(lines(-0.02, 0.02, 6), lines(-0.016, 0, 3), lines(-0.02, 0.02, 6));
+  return test::soft_block({0.04, 0.016, 0.04}, {6, 3, 6});
 }
 
 Scene block_scene(std::string_view model) {

@@ -9,6 +9,7 @@
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/solids.h"
 
 using namespace palpate;
@@ -20,7 +21,7 @@ namespace {
 const Vec3 kPlace(0.001, 0.005, 0.0005);  // the tool touches the top, y = 0
 
 TetMesh block() {
-  return grid_block(lines(-0.015, 0.015, 6), lines(-0.012, 0, 3), lines(-0.015, 0.015, 6));
+  return test::soft_block({0.03, 0.012, 0.03}, {6, 3, 6});
 }
 
 Scene grasped(std::string_view model, ElasticLaw law, std::vector<Relaxation> relaxations, double rate_hz) {

@@ -10,6 +10,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/dense_tissue.h"
 #include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/tool_inputs.h"
 
 using namespace palpate;
@@ -27,13 +28,11 @@ std::vector<double> lines(double from, double step, int count) {
 
 /// A soft block, top at y = 0, 40 x 16 x 40 mm, held at its bottom.
 TetMesh block() {
-  return grid_block(lines(-0.02, 0.004, 10), lines(-0.016, 0.004, 4), lines(-0.02, 0.004, 10));
+  return test::soft_block({0.04, 0.016, 0.04}, {10, 4, 10});
 }
 
 Scene block_scene(std::string_view model) {
-  Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4},
-                               {Vec3(-1, -1, -1), Vec3(1, -0.0159, 1)}, 0.005);
-  scene.deformation.model = model;
+  Scene scene = test::soft_block_scene(0.016, model);
   return scene;
 }
 

@@ -56,6 +56,22 @@ TEST_CASE("a body is loose until three of its vertices are held that are not in 
   CHECK(held_by([](const Vec3& x) { return x.sum() == 1; }).empty());  // three corners
 }
 
+TEST_CASE("hinges are named by their vertices; parts that share three not in one line are one") {
+  CHECK(hinges(grid_block({0, 1, 2}, {0, 1}, {0, 1})).empty());
+  TetMesh mesh = hinged_cubes();
+  const auto found = hinges(mesh);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].tetrahedra == std::array<std::size_t, 2>{6, 6});
+  CHECK(found[0].vertices == vertices(mesh, [](const Vec3& x) { return x[0] == 1 && x[1] == 1; }));
+  // A tetrahedron that bridges them: it meets each in an edge besides, so in three vertices not in one line.
+  const auto at = [&](const Vec3& p) {
+    return vertices(mesh, [&](const Vec3& x) { return x == p; }).front();
+  };
+  const std::array<int, 4> corners{at({1, 0, 0}), at({2, 1, 0}), at({1, 1, 0}), at({1, 1, 1})};
+  mesh.tetrahedra.push_back(corners);
+  CHECK(hinges(mesh).empty());
+}
+
 TEST_CASE("two bodies that meet in an edge are joined by a hinge, which holds no turn") {
   const TetMesh mesh = hinged_cubes();
   const auto left = vertices(mesh, [](const Vec3& x) { return x[0] == 0; });

@@ -1,6 +1,8 @@
 #include "sim_server/mesh/mesh_faults.h"
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "common/error.h"
@@ -36,6 +38,17 @@ std::string error_of(TetMesh mesh) {
     return error.what();
   }
   return "";
+}
+
+/// The first of two faults of `mesh`; the second is the hinge that it makes.
+MeshFault fault_with_hinge(TetMesh& mesh, const std::string& hinge) {
+  const MeshFaults faults = mend(mesh);
+  REQUIRE(faults.found.size() == 2);
+  CHECK(faults.found[1].cure == Cure::kAccepted);
+  CHECK(faults.found[1].kind == "hinges");
+  CHECK(faults.found[1].count == 1);
+  CHECK(faults.found[1].example == hinge);
+  return faults.found.front();
 }
 
 /// The only fault of `mesh`, which becomes what was made of it.
@@ -185,10 +198,11 @@ TEST_CASE("the surface is looked at after bodies were joined", "[mesh]") {
   mesh.vertices.insert(mesh.vertices.end(), {Vec3(3, 1, 0.5), Vec3(2.5, 2, 0.5)});
   mesh.tetrahedra.push_back({11, 15, 16, 17});  // on the edge from (2, 1, 0) to (2, 1, 1)
   const MeshFaults faults = mend(mesh);
-  REQUIRE(faults.found.size() == 2);
+  REQUIRE(faults.found.size() == 3);
   CHECK(faults.found[0].remedy == "merged");
   CHECK(faults.found[1].cure == Cure::kAccepted);
   CHECK(faults.found[1].example == "the surface meets itself along the edge from (2, 1, 0) to (2, 1, 1)");
+  CHECK(faults.found[2].kind == "hinges");
 }
 
 TEST_CASE("tetrahedra each with vertices of their own become one body", "[mesh]") {
@@ -288,7 +302,8 @@ TEST_CASE("a surface that meets itself is accepted, and told", "[mesh]") {
   SECTION("along an edge") {
     mesh.vertices.insert(mesh.vertices.end(), {Vec3(0, -1, 0), Vec3(0, 0, -1)});
     mesh.tetrahedra.push_back({0, 1, 4, 5});
-    const MeshFault fault = only_fault(mesh);
+    const MeshFault fault = fault_with_hinge(
+        mesh, "parts of 1 and 1 tetrahedra are joined by vertices 0 1 alone, at (0, 0, 0) to (1, 0, 0)");
     CHECK(fault.cure == Cure::kAccepted);
     CHECK(fault.count == 1);
     CHECK(fault.kind == "edges on more than two triangles");
@@ -297,11 +312,30 @@ TEST_CASE("a surface that meets itself is accepted, and told", "[mesh]") {
   SECTION("at a vertex") {
     mesh.vertices.insert(mesh.vertices.end(), {Vec3(-1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, -1)});
     mesh.tetrahedra.push_back({0, 4, 6, 5});
-    const MeshFault fault = only_fault(mesh);
+    const MeshFault fault =
+        fault_with_hinge(mesh, "parts of 1 and 1 tetrahedra are joined by vertex 0 alone, at (0, 0, 0)");
     CHECK(fault.cure == Cure::kAccepted);
     CHECK(fault.count == 1);
     CHECK(fault.example == "the surface meets itself at (0, 0, 0)");
   }
+}
+
+TEST_CASE("a sliver is told of below a dihedral angle of one degree, with what it does", "[mesh]") {
+  TetMesh mesh = corner_tetrahedron();
+  const auto apex_at = [&](double degrees) {  // the slanted face stands on the line x + y = 1
+    mesh.vertices.back()[2] = std::tan(degrees * std::numbers::pi / 180) * std::sqrt(0.5);
+  };
+  apex_at(1.01);
+  CHECK(mend(mesh).found.empty());
+  apex_at(0.5);
+  const MeshFault fault = only_fault(mesh);
+  CHECK(fault.cure == Cure::kAccepted);
+  CHECK(fault.count == 1);
+  CHECK(fault.kind == "slivers");
+  CHECK(has(fault.example,
+            "tetrahedron 0 (vertices 0 1 2 3) at (0, 0, 0) has a dihedral angle of 0.5 degrees, below 1;"));
+  CHECK(has(fault.example, "the shortest height of all is 6.2 mm"));  // sqrt(1/2) tan(0.5 degrees) m
+  CHECK(has(fault.remedy, "-optimize_netgen"));
 }
 
 TEST_CASE("all that is wrong is told at once", "[mesh]") {

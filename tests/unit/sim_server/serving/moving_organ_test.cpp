@@ -13,6 +13,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tool_inputs.h"
 
@@ -26,18 +27,14 @@ const SupportMotion kBreath{Vec3(0.6, 0.8, 0), 0.005, 4};
 const Vec3 kPressed(0.001, 0.0035, 0.002);  // 1.5 mm deep at rest
 
 TetMesh block() {
-  std::vector<double> axis, depth;
-  for (int i = -5; i <= 5; ++i) axis.push_back(0.004 * i);
-  for (int i = -4; i <= 0; ++i) depth.push_back(0.004 * i);
-  return grid_block(axis, depth, axis);
+  return test::soft_block({0.04, 0.016, 0.04}, {10, 4, 10});
 }
 
 /// A soft block, top at y = 0, on a bottom that moves as told; a tool of 5 mm. Of the models that have
 /// inertia, steps of `dt` (s).
 Scene block_scene(std::vector<SupportMotion> motions, std::string_view model = "quasi_static",
                   double dt = 0.05) {
-  Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4},
-                               {Vec3(-1, -1, -1), Vec3(1, -0.0159, 1)}, 0.005);
+  Scene scene = test::soft_block_scene(0.016);
   scene.fixed[0].motions = std::move(motions);
   scene.deformation.model = model;
   scene.rate_hz = 1 / dt;

@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "sim_server/deformation/rigid.h"
 #include "sim_server/mesh/shapes.h"
@@ -65,12 +66,16 @@ Captured run(const VirtualLink& link, double seconds, const std::filesystem::pat
   return found;
 }
 
-/// In which order samples and pages of the surface came. Pages come in one go, in their own order.
+/// In which order samples and pages of the surface came. Each page comes once: first those of the shape, in
+/// one go, in their own order, then those of compliance.
 struct Order {
   std::uint32_t pages = 0;
+  std::set<std::uint32_t> numbers = {};
   int nameless = 0, samples_before_pages = 0, samples_behind_pages = 0;
 };
 Order order_of(Simulation& simulation, const Trajectory& motion, double seconds) {
+  const auto state = SurfacePager(simulation, 0).state();
+  const protocol::SurfacePages all{state.vertices, state.triangles};
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "order.pcap";
   const VirtualLink link{.rate_hz = 30, .ticks_hz = 500, .delay = 5ms, .parts = true};
@@ -91,17 +96,19 @@ Order order_of(Simulation& simulation, const Trajectory& motion, double seconds)
       ++(order.pages == 0 ? order.samples_before_pages : order.samples_behind_pages);
     }
     if (const auto* page = std::get_if<protocol::SurfacePage>(&datagram.message)) {
-      CHECK(order.samples_behind_pages == 0);
-      CHECK(page->page == order.pages);
+      const bool shape = page->page < all.first_tile();
+      if (shape) CHECK(order.samples_behind_pages == 0);
+      if (shape) CHECK(page->page == order.pages);
+      CHECK(order.numbers.insert(page->page).second);
       ++order.pages;
     }
   }
   return order;
 }
 
-std::uint32_t whole_model(const Simulation& simulation) {
+protocol::SurfacePages whole_model(const Simulation& simulation) {
   const auto state = SurfacePager(simulation, 0).state();
-  return protocol::SurfacePages{state.vertices, state.triangles}.count();
+  return {state.vertices, state.triangles};
 }
 
 std::string bytes_of(const std::filesystem::path& file) {
@@ -156,8 +163,34 @@ TEST_CASE("virtual time: the pages of the surface come right after the first sam
   const Order order = order_of(block, motion, 0.3);
   CHECK(order.samples_before_pages == 3);
   CHECK(order.nameless == 2);
-  CHECK(order.pages == whole_model(block));
+  CHECK(order.pages == whole_model(block).count());
   CHECK(order.samples_behind_pages > 3);
+}
+
+TEST_CASE("virtual time: of a surface that the tool stays away from, the shape comes and no compliance") {
+  Simulation block(test::block_scene(), test::block_mesh());
+  const Order order = order_of(block, {{0, 0.3}, {{0, 0.1, 0}, {0.02, 0.1, 0}}}, 0.3);
+  CHECK(order.pages == whole_model(block).first_tile());
+  CHECK(order.nameless == 0);
+  CHECK(order.samples_behind_pages > 5);
+}
+
+TEST_CASE("virtual time: of a long surface, compliance comes where the tool is") {
+  // A bar of 400 mm, pressed at one end by a tool that stands: three radii, 15 mm, are near.
+  Scene scene = test::block_scene();
+  std::vector<double> along;
+  for (int i = 0; i <= 80; ++i) along.push_back(0.005 * i);
+  Simulation bar(scene, grid_block(along, {-0.016, -0.008, 0}, {-0.01, 0, 0.01}));
+  const Order order = order_of(bar, {{0, 0.3}, {{0.02, 0.006, 0}, {0.02, 0.004, 0}}}, 0.3);
+  const auto all = whole_model(bar);
+  CHECK(order.pages > all.first_tile());
+  CHECK(order.pages - all.first_tile() < (all.count() - all.first_tile()) / 4);  // of 90 mm in 400
+  const std::vector<Vec3> rest = SurfacePager(bar, 0).rest();
+  for (std::uint32_t i = 0; i < rest.size(); ++i) {
+    if ((rest[i] - Vec3(0.02, 0, 0)).norm() > 0.01) continue;
+    const std::uint32_t own = i / protocol::SurfacePages::kCluster;
+    CHECK(order.numbers.count(all.tile(own, own)) == 1);
+  }
 }
 
 TEST_CASE("virtual time: of tissue that is held no sample names the surface, and no page comes") {

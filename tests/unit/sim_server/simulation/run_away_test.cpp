@@ -4,6 +4,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/solids.h"
 
 using namespace palpate;
@@ -18,7 +19,7 @@ constexpr std::array kLaws{ElasticLaw::kCorotational, ElasticLaw::kNeoHookean,
 
 /// 30 x 15 x 30 mm, top at y = 0.
 TetMesh block() {
-  return grid_block(lines(-0.015, 0.015, 6), lines(-0.015, 0, 3), lines(-0.015, 0.015, 6));
+  return test::soft_block({0.03, 0.015, 0.03}, {6, 3, 6});
 }
 
 Scene block_scene(const std::string& model, ElasticLaw law, double poisson_ratio = 0.45) {

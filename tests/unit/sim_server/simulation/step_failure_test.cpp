@@ -67,6 +67,8 @@ TEST_CASE("the force of a tissue that answers no more fades, and a lifted tool f
     before = told.force.norm();
   }
   CHECK(simulation.failures().out_of_memory == 5);
+  CHECK(simulation.flagged().threw == 5);
+  CHECK(simulation.flagged().to_text() == "5 failed");
   const std::vector<ToolInput> away(1);
   const AllocationFailure failure(1);
   CHECK(simulation.step(away, kDt).front().force.isZero());

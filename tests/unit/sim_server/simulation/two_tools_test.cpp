@@ -7,6 +7,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/stiffness.h"
 #include "tests/support/tool_inputs.h"
 
@@ -22,17 +23,11 @@ using Places = std::vector<std::optional<ToolPose>>;
 /// A block of soft tissue, 80 x 30 x 40 mm around x = z = 0, top at y = 0, held at the bottom, nodes 5 mm
 /// apart.
 TetMesh block() {
-  std::vector<double> x, y, z;
-  for (int i = -8; i <= 8; ++i) x.push_back(0.005 * i);
-  for (int i = -6; i <= 0; ++i) y.push_back(0.005 * i);
-  for (int i = -4; i <= 4; ++i) z.push_back(0.005 * i);
-  return grid_block(x, y, z);
+  return test::soft_block({0.08, 0.03, 0.04}, {16, 6, 8});
 }
 
 Scene scene(std::size_t tools, const std::string& model = "quasi_static") {
-  Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4},
-                               {Vec3(-1, -1, -1), Vec3(1, -0.0299, 1)}, kRadius);
-  scene.deformation.model = model;
+  Scene scene = test::soft_block_scene(0.03, model, ElasticLaw::kLinear, kRadius);
   scene.tools.resize(tools, scene.tools.front());
   return scene;
 }
