@@ -40,6 +40,8 @@ TEST_CASE("robustness study: where two facets may bear a tool, a cell says that 
   CHECK(row.at("error_percent").get<double>() > 1);
   CHECK(row.at("reason").get<std::string>().find("more than one place to rest") != std::string::npos);
   CHECK(row_of("teleported", "quasi_static").at("reason") == "");
+  CHECK(row_of("pinched", "tensor_mass").at("outcome") == "stable");
+  CHECK(row_of("pinched", "quasi_static").at("reason") == "");
 }
 
 TEST_CASE("robustness study: a refused cell says what to change, a flagged one how often it was") {
