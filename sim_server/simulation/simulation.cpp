@@ -205,11 +205,9 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
 /// Contact of all tools, and again where a linearisation about where it led says something else.
 void Simulation::solve_contacts() {
   settle();
-  while (true) {
-    if (std::ranges::any_of(tools_, &ToolContact::exhausted)) return flag_contacts();
-    const auto motion = tissue_.model->relinearise();
-    if (!motion) break;
+  while (const auto motion = tissue_.model->relinearise()) {
     set_free(*motion);
+    if (std::ranges::any_of(tools_, &ToolContact::exhausted)) return flag_contacts();
     for (std::size_t i = 0; i < tools_.size(); ++i) {
       if (tools_[i].placed()) tools_[i].settle(tissue_.met_by(i));
     }
