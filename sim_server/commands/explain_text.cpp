@@ -116,8 +116,8 @@ std::string steps_text(const Explanation& explanation) {
                             row("in contact", steps.contact_ns)},
                            1, 2);
   if (const auto wanted = steps.contact_ns.count(); steps.contacts < wanted || steps.flagged > 0) {
-    text += fmt::format("  only {} of the {} steps in contact touched; {} did not settle\n", steps.contacts,
-                        wanted, steps.flagged);
+    text += fmt::format("  only {} of the {} steps in contact touched; {} did not settle{}{}\n",
+                        steps.contacts, wanted, steps.flagged, steps.why.empty() ? "" : ": ", steps.why);
   }
   const Scene& scene = explanation.scene;
   const std::string asked =

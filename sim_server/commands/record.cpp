@@ -68,12 +68,7 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
           {"force_samples", stats.force_samples},
           {"contact_steps", stats.in_contact},
           {"flagged", stats.flagged},
-          {"flagged_by",
-           {{"threw", simulation.flagged().threw},
-            {"ran_away", simulation.flagged().ran_away},
-            {"not_balanced", simulation.flagged().not_balanced},
-            {"tools", simulation.flagged().tools},
-            {"contact", simulation.flagged().contact}}},
+          {"flagged_by", simulation.flagged().to_json()},
           {"max_newton", stats.max_newton},
           {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
 }

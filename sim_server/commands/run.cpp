@@ -83,14 +83,6 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
   return tools;
 }
 
-Json flagged_by(const FlaggedSteps& flagged) {
-  return {{"threw", flagged.threw},
-          {"ran_away", flagged.ran_away},
-          {"not_balanced", flagged.not_balanced},
-          {"tools", flagged.tools},
-          {"contact", flagged.contact}};
-}
-
 void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simulation& simulation,
              const Scene& scene, Time ran) {
   const SimLoopStats& stats = loop.stats();
@@ -102,7 +94,7 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["timeline"] = timeline_report(stats.timeline);
   report["late"] = stats.late;
   report["flagged"] = stats.flagged;
-  report["flagged_by"] = flagged_by(simulation.flagged());
+  report["flagged_by"] = simulation.flagged().to_json();
   report["max_newton"] = stats.max_newton();
   report["tools"] = tools_report(stats, link, scene);
   int sessions = 0;

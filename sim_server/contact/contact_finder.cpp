@@ -35,7 +35,8 @@ bool reaches(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const V
 }  // namespace
 
 ContactFinder::ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed,
-                             std::vector<Triangle> touchable, double reach, double length)
+                             std::vector<Triangle> touchable, double reach, double length,
+                             std::span<const int> held)
     : closed_(std::move(closed)),
       triangles_(std::move(touchable)),
       bvh_(rest, triangles_),
@@ -48,6 +49,9 @@ ContactFinder::ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> c
     }
     max_triangles_ = std::max(max_triangles_, near);
   }
+  const auto is_held = [&](int vertex) { return std::ranges::binary_search(held, vertex); };
+  for (const Triangle& t : triangles_) opens_.push_back(std::ranges::all_of(t, is_held) ? 0 : 1);
+  if (std::ranges::count(opens_, 1) == 0) opens_.assign(triangles_.size(), 1);
   const int all = static_cast<int>(triangles_.size());
   // An axis may lie along a part as dense as that, but hardly all of it.
   const double balls = std::min(kMostBalls, 1 + length / (2 * reach));
@@ -109,16 +113,28 @@ Vec3 ContactFinder::Foot::of(std::span<const Vec3> at_vertices) const noexcept {
   return weight[0] * a + weight[1] * b + weight[2] * c;
 }
 
+ContactFinder::Foot ContactFinder::closest_on(int triangle, std::span<const Vec3> positions,
+                                              const Vec3& p) const noexcept {
+  const Triangle& t = triangles_[triangle];
+  const auto w = closest_point(p, positions[t[0]], positions[t[1]], positions[t[2]]).weight;
+  return {t, {w[0], w[1], w[2]}};
+}
+
 ContactFinder::Foot ContactFinder::foot(std::span<const Vec3> positions, const Vec3& p) const noexcept {
-  const auto closest = [&](int i) {
-    const Triangle& t = triangles_[i];
-    const auto w = closest_point(p, positions[t[0]], positions[t[1]], positions[t[2]]).weight;
-    return Foot{t, {w[0], w[1], w[2]}};
-  };
   bvh_.refit(positions);
-  const int i =
-      bvh_.nearest(box_around(p, p, 0), [&](int k) { return (p - closest(k).of(positions)).squaredNorm(); });
-  return i < 0 ? Foot{} : closest(i);
+  const int i = bvh_.nearest(box_around(p, p, 0), [&](int k) {
+    return (p - closest_on(k, positions, p).of(positions)).squaredNorm();
+  });
+  return i < 0 ? Foot{} : closest_on(i, positions, p);
+}
+
+Vec3 ContactFinder::entry(std::span<const Vec3> positions, const Vec3& p) const noexcept {
+  bvh_.refit(positions);
+  const int i = bvh_.nearest(box_around(p, p, 0), [&](int k) {
+    return opens_[k] ? (p - closest_on(k, positions, p).of(positions)).squaredNorm()
+                     : std::numeric_limits<double>::max();
+  });
+  return i < 0 ? p : closest_on(i, positions, p).of(positions);
 }
 
 NearestOnSegment ContactFinder::nearest(std::span<const Vec3> positions, const Vec3& p,

@@ -15,9 +15,9 @@ class ContactFinder {
   /// `rest`: surface vertices at rest. `closed`: all triangles of the surface, `touchable`: those the tool
   /// may touch. `reach`, `length`: the largest distance and axis that `gather` will be asked for, m; the room
   /// it needs is sized by the densest such ball at rest, for an axis by as many of them as it is long, with
-  /// some to spare.
+  /// some to spare. `held`: surface vertices that are held to something, ascending.
   ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed, std::vector<Triangle> touchable,
-                double reach, double length = 0);
+                double reach, double length = 0, std::span<const int> held = {});
 
   std::span<const Triangle> touchable() const { return triangles_; }
   int max_nodes() const { return max_nodes_; }
@@ -47,6 +47,10 @@ class ContactFinder {
   Vec3 nearest(std::span<const Vec3> positions, const Vec3& p) const noexcept {
     return foot(positions, p).of(positions);
   }
+  /// Where a tool that is inside, at `p`, is taken to have come in: the nearest place that is touchable but
+  /// for what is held, as there is something else on that side; of all that is touchable, if all is held.
+  /// O(vertices).
+  Vec3 entry(std::span<const Vec3> positions, const Vec3& p) const noexcept;
   /// Where the axis from `p` to `q` and what is touchable come nearest to each other. O(vertices).
   NearestOnSegment nearest(std::span<const Vec3> positions, const Vec3& p, const Vec3& q) const noexcept;
   /// The corner of touchable triangles nearest to `p`. There must be one. O(vertices).
@@ -58,7 +62,10 @@ class ContactFinder {
   bool try_gather(std::span<const Vec3> positions, const Vec3& p, const Vec3& q, double reach,
                   ContactPatch& patch) noexcept;
 
+  Foot closest_on(int triangle, std::span<const Vec3> positions, const Vec3& p) const noexcept;
+
   std::vector<Triangle> closed_, triangles_;
+  std::vector<char> opens_;  // of triangles_: whether a tool can come in there
   mutable Bvh bvh_;  // of triangles_; fitted anew for each question, as the surface is another each time
   std::vector<int> vertices_, slot_of_vertex_;
   int max_nodes_ = 0, max_triangles_ = 0;

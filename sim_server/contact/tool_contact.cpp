@@ -1,9 +1,10 @@
 #include "sim_server/contact/tool_contact.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "sim_server/mesh/bounding_box.h"
 #include "sim_server/scene/tool_reach.h"
 
 namespace palpate::sim {
@@ -28,13 +29,6 @@ constexpr double kFarthest = 1e3;   // m
 constexpr double kMaxPlaces = 64;   // on the axis of a tool that appears: whether they are inside
 constexpr double kNearPivot = 0.1;  // share of the shaft next to the pivot that hardly moves with the tip
 
-/// Of the box around them, from corner to corner, m.
-double diagonal_of(std::span<const Vec3> places) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : places) box.extend(x);
-  return box.diagonal().norm();
-}
-
 /// How much of the tool's axis can be near the organ, m.
 double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
   if (!tool.trocar) return tool.length;
@@ -57,17 +51,17 @@ std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh&
 }
 
 ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
-                         std::vector<Triangle> touchable)
+                         std::vector<Triangle> touchable, std::span<const int> held)
     : tool_(tool.shape),
       finder_(rest, touchable.empty() ? touchable : surface.triangles, touchable, kGather * tool.shape.radius,
-              longest_axis(tool.shape, rest)),
+              longest_axis(tool.shape, rest), held),
       solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0),
       farthest_drag_(std::max(kFarthestDrag * tool.shape.radius, kFarthestBend * diagonal_of(rest))) {
   if (tool.grasps()) grip_.emplace(tool, rest, touchable, finder_.max_nodes());
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   filled_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   displacement_.resize(3 * (finder_.max_nodes() + 1));
-  kept_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+  kept_loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   if (!has_friction()) return;
   surface_was_.assign(rest.begin(), rest.end());
   nodes_were_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
@@ -81,37 +75,37 @@ void ToolContact::advance_to(const ToolPose& pose, const Bend& path, ToolTissue 
   }
   move_to(pose, tissue);
   bend_ = {};
-  if (!grip_ || !grip_->closes() || !placed_ || !arrived_) return;
-  grip_->close(place_.p_W, tissue.positions());
-  if (holds()) solve_grasp(place_, tissue);
+  if (!grip_ || !grip_->closes() || !now_.placed || !now_.arrived) return;
+  grip_->close(now_.place.p_W, tissue.positions());
+  if (holds()) solve_grasp(now_.place, tissue);
 }
 
 /// What it holds comes with it, straight to `pose`.
 void ToolContact::solve_grasp(const ToolPose& pose, ToolTissue tissue) {
-  placed_ = arrived_ = true;
-  place_ = pose;
-  tip_offset_.setZero();
+  now_.placed = now_.arrived = true;
+  now_.place = pose;
+  now_.tip_offset.setZero();
   const Grip::Pull pull = grip_->pull(pose.p_W, tissue);
   tissue.mark_solved();
   if (!pull.force.allFinite()) return reject(tissue);
-  force_ = {.force = pull.force,
-            .tangent = pull.tangent,
-            .contacts = pull.vertices,
-            .iterations = pull.rounds,
-            .flagged = !pull.converged};
+  now_.force = {.force = pull.force,
+                .tangent = pull.tangent,
+                .contacts = pull.vertices,
+                .iterations = pull.rounds,
+                .flagged = !pull.converged};
 }
 
 void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
   if (!pose.p_W.allFinite() || pose.p_W.cwiseAbs().maxCoeff() > kFarthest || !pose.q_W.coeffs().allFinite())
     return reject(tissue);
   if (holds()) return solve_grasp(pose, tissue);
-  const bool lost = placed_ && escaped(pose, tissue);
+  const bool lost = now_.placed && escaped(pose, tissue);
   const bool anew =
-      !placed_ || lost || (pose.p_W - place_.p_W).norm() > kMaxIncrements * kIncrement * tool_.radius;
-  if (anew || !arrived_) bend_ = {};
+      !now_.placed || lost || (pose.p_W - now_.place.p_W).norm() > kMaxIncrements * kIncrement * tool_.radius;
+  if (anew || !now_.arrived) bend_ = {};
   if (anew) place_outside(pose, tissue);
-  const Vec3 motion = pose.p_W - place_.p_W;
-  const ToolPose from = place_;
+  const Vec3 motion = pose.p_W - now_.place.p_W;
+  const ToolPose from = now_.place;
   const double surface = anew ? 0 : surface_motion(tissue);
   const double increments = std::max(increments_to(pose), increments_for(motion.norm(), surface));
   const bool anywhere = tissue.model().compliance_is_constant();
@@ -124,10 +118,10 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
     start_increment(i == 1, tissue);
     const double share = i / increments;
     if (surface > 0) tissue.set_share_left(1 - share);
-    place_ = i == increments ? pose
-                             : ToolPose(from.p_W + share * motion + path_offset(share, motion),
-                                        from.q_W.slerp(share, pose.q_W));
-    const bool touched = pressed > 0 || force_.contacts > 0;
+    now_.place = i == increments ? pose
+                                 : ToolPose(from.p_W + share * motion + path_offset(share, motion),
+                                            from.q_W.slerp(share, pose.q_W));
+    const bool touched = pressed > 0 || now_.force.contacts > 0;
     contact = solve_contact(tissue);
     iterations += contact.iterations;
     if (contact.contacts > 0) pressed += increment;
@@ -135,7 +129,7 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
   }
   tissue.set_share_left(0);
   // Else the next step goes on from here.
-  arrived_ = place_.p_W == pose.p_W && place_.q_W.coeffs() == pose.q_W.coeffs();
+  now_.arrived = now_.place.p_W == pose.p_W && now_.place.q_W.coeffs() == pose.q_W.coeffs();
   set_force(contact, iterations, tissue);
   if (lost) flag();
 }
@@ -143,7 +137,8 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
 /// How far the surface near the tool has gone since contact was last solved, m; 0: not so far that the tool
 /// need meet it in parts.
 double ToolContact::surface_motion(ToolTissue tissue) const {
-  const double surface = tissue.surface_motion(place_.p_W, far_end(tool_, place_), kGather * tool_.radius);
+  const double surface =
+      tissue.surface_motion(now_.place.p_W, far_end(tool_, now_.place), kGather * tool_.radius);
   return surface > kFarthestJump * tool_.radius ? surface : 0;
 }
 
@@ -155,8 +150,8 @@ double ToolContact::increments_for(double motion, double surface) const noexcept
 
 double ToolContact::increments_to(const ToolPose& pose) const noexcept {
   // A far end goes around the tip on an arc, which is longer than its chord.
-  const double turn = tool_.length > 0 ? tool_.length * place_.q_W.angularDistance(pose.q_W) : 0;
-  const double motion = (pose.p_W - place_.p_W).norm() + turn;
+  const double turn = tool_.length > 0 ? tool_.length * now_.place.q_W.angularDistance(pose.q_W) : 0;
+  const double motion = (pose.p_W - now_.place.p_W).norm() + turn;
   const double increments = std::clamp(std::ceil(motion / (kIncrement * tool_.radius)), 1.0, kMaxIncrements);
   if (!has_friction()) return increments;
   const double wanted = std::ceil(motion / (kFrictionIncrement * tool_.radius));
@@ -191,10 +186,10 @@ Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue,
 }
 
 void ToolContact::settle(ToolTissue tissue) {
-  if (holds()) return solve_grasp(place_, tissue);
+  if (holds()) return solve_grasp(now_.place, tissue);
   const double surface = surface_motion(tissue), increments = increments_for(0, surface);
   ContactForce contact;
-  int iterations = force_.iterations;
+  int iterations = now_.force.iterations;
   double i = 1;
   for (; i <= increments && iterations < kMaxIterations + kMaxSettling; ++i) {
     if (surface > 0) tissue.set_share_left(1 - i / increments);
@@ -204,9 +199,9 @@ void ToolContact::settle(ToolTissue tissue) {
   tissue.set_share_left(0);
   if (i <= increments) contact.converged = false;
   const bool may_be_inside =
-      force_.contacts > 0 && (contact.contacts == 0 || !tissue.model().compliance_is_constant());
+      now_.force.contacts > 0 && (contact.contacts == 0 || !tissue.model().compliance_is_constant());
   if (may_be_inside && recover_from_inside(tissue)) {
-    arrived_ = false;
+    now_.arrived = false;
     contact = {};
   }
   set_force(contact, iterations, tissue);
@@ -215,38 +210,50 @@ void ToolContact::settle(ToolTissue tissue) {
 void ToolContact::set_force(const ContactForce& contact, int iterations, ToolTissue tissue) {
   tissue.mark_solved();
   if (!contact.force.allFinite()) return reject(tissue);
-  force_ = {.force = contact.force,
-            .torque = contact.torque,
-            .contacts = contact.contacts,
-            .iterations = iterations,
-            .flagged = !contact.converged || !arrived_};
+  now_.force = {.force = contact.force,
+                .torque = contact.torque,
+                .contacts = contact.contacts,
+                .iterations = iterations,
+                .flagged = !contact.converged || !now_.arrived};
+  if (!now_.force.flagged) remember_side(tissue);
+}
+
+void ToolContact::remember_side(const ToolTissue& tissue) noexcept {
+  now_.side = -1;
+  double most = 0;
+  for (const NodalLoad& load : tissue.loads()) {
+    if (load.force.squaredNorm() <= most) continue;
+    most = load.force.squaredNorm();
+    now_.side = load.vertex;
+  }
 }
 
 void ToolContact::differentiate() noexcept {
-  if (!holds() && force_.contacts > 0) force_.tangent = solver_.tangent(patch_);
+  if (!holds() && now_.force.contacts > 0) now_.force.tangent = solver_.tangent(patch_);
 }
 
 bool ToolContact::exhausted() const {
-  return force_.iterations >= kMaxIterations + kMaxSettling;
+  return now_.force.iterations >= kMaxIterations + kMaxSettling;
+}
+
+void ToolContact::keep(std::span<const NodalLoad> loads) {
+  kept_ = now_;
+  kept_loads_.assign(loads.begin(), loads.end());
+}
+
+void ToolContact::restore(ToolTissue tissue) {
+  now_ = kept_;
+  tissue.set_loads(kept_loads_);
+  tissue.press();
+  tissue.mark_solved();
 }
 
 ToolForce ToolContact::probe(const Vec3& p_W, ToolTissue tissue) {
-  const ToolForce force = force_;
-  const Vec3 tip_offset = tip_offset_;
-  const ToolPose place = place_;
-  const bool placed = placed_, arrived = arrived_;
-  kept_.assign(tissue.loads().begin(), tissue.loads().end());
-  move_to({p_W, place_.q_W}, tissue);
+  keep(tissue.loads());
+  move_to({p_W, now_.place.q_W}, tissue);
   differentiate();
-  const ToolForce there = force_;
-  force_ = force;
-  place_ = place;
-  tip_offset_ = tip_offset;
-  placed_ = placed;
-  arrived_ = arrived;
-  tissue.set_loads(kept_);
-  tissue.press();
-  tissue.mark_solved();
+  const ToolForce there = now_.force;
+  restore(tissue);
   return there;
 }
 
@@ -256,7 +263,7 @@ SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const n
   if (!(distance > 0)) return {};
   const SurfacePlane tip{offset / distance, std::max(distance - tool_.radius, 0.0)};
   if (tool_.is_sphere()) return tip;
-  const Vec3 far = far_end(tool_, {p_W, place_.q_W});
+  const Vec3 far = far_end(tool_, {p_W, now_.place.q_W});
   const NearestOnSegment axis = finder_.nearest(tissue.positions, p_W, far);
   if (!(axis.distance > 0)) return {};
   const double radius = tool_.trocar ? tool_.trocar->shaft_radius : tool_.radius;
@@ -276,49 +283,53 @@ void ToolContact::reject(ToolTissue tissue) {
 }
 
 void ToolContact::lift() noexcept {
-  tip_offset_.setZero();
-  placed_ = false;
-  force_ = {};
+  now_.tip_offset.setZero();
+  now_.placed = false;
+  now_.side = -1;
+  now_.force = {};
   if (grip_) grip_->open();
 }
 
 /// Whether a tool in contact has left the free organ so far behind that it only drags the surface along with
 /// it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
 bool ToolContact::escaped(const ToolPose& pose, const ToolTissue& tissue) const noexcept {
-  if (force_.contacts == 0) return false;
+  if (now_.force.contacts == 0) return false;
   const Vec3 &p = pose.p_W, far = far_end(tool_, pose);
   const double distance = tool_.is_sphere() ? (finder_.nearest(tissue.free(), p) - p).norm()
                                             : finder_.nearest(tissue.free(), p, far).distance;
   return distance > farthest_drag_ && !finder_.inside(tissue.free(), p);
 }
 
-/// The tool appears at `pose`. If part of its axis is inside the organ, it is taken to have come in through
-/// the surface nearest to the deepest place of the axis, as it is turned now.
+/// The tool appears at `pose`. If part of its axis is inside the organ, it is taken to have come in where it
+/// last touched the surface, or else through the surface nearest to the deepest place of the axis, as it is
+/// turned now, but for what is held.
 void ToolContact::place_outside(const ToolPose& pose, ToolTissue tissue) {
   release(tissue);
-  placed_ = true;
-  place_ = pose;
+  now_.placed = true;
+  now_.place = pose;
   const Vec3 axis = far_end(tool_, pose) - pose.p_W;
   const double pieces = std::min(std::ceil(axis.norm() / tool_.radius), kMaxPlaces);
-  double deepest = -1;
+  const bool touched = now_.side >= 0;
+  double chosen = touched ? std::numeric_limits<double>::max() : -1;  // m
   for (double i = 0; i <= pieces; ++i) {
     const double share = pieces > 0 ? i / pieces : 0;
     const Vec3 x = pose.p_W + share * axis;
     if ((tool_.trocar && 1 - share < kNearPivot) || !finder_.inside(tissue.positions(), x)) continue;
-    const Vec3 entry = finder_.nearest(tissue.positions(), x);
-    if ((entry - x).norm() <= deepest) continue;
-    deepest = (entry - x).norm();
-    place_.p_W = place_at_entry(pose, x, share, entry);
+    const Vec3 entry = touched ? tissue.positions()[now_.side] : finder_.entry(tissue.positions(), x);
+    const double distance = (entry - x).norm();
+    if (touched ? distance >= chosen : distance <= chosen) continue;
+    chosen = distance;
+    now_.place.p_W = place_at_entry(pose, x, share, entry);
   }
 }
 
 /// Whether the tissue has closed over a tool that touched it, as after a change of shape beyond what its
 /// compliance foretold. Then the tool stands before the surface again, without a load, and has not arrived.
 bool ToolContact::recover_from_inside(ToolTissue tissue) {
-  const ToolPose there = place_;
-  if (!finder_.inside(tissue.positions(), there.p_W + tip_offset_)) return false;
+  const ToolPose there = now_.place;
+  if (!finder_.inside(tissue.positions(), there.p_W + now_.tip_offset)) return false;
   place_outside(there, tissue);
-  return place_.p_W != there.p_W;
+  return now_.place.p_W != there.p_W;
 }
 
 /// Where the tip was when the place `inside` on the axis, at that share of it, stood before `entry`.
@@ -333,7 +344,7 @@ Vec3 ToolContact::place_at_entry(const ToolPose& pose, const Vec3& inside, doubl
 
 void ToolContact::start_increment(bool first, const ToolTissue& tissue) {
   if (!has_friction()) return;
-  tip_was_ = {place_.p_W + tip_offset_, place_.q_W};
+  tip_was_ = {now_.place.p_W + now_.tip_offset, now_.place.q_W};
   increment_from_ = tissue.before();
   if (first) return;
   std::copy(tissue.positions().begin(), tissue.positions().end(), surface_was_.begin());
@@ -341,7 +352,7 @@ void ToolContact::start_increment(bool first, const ToolTissue& tissue) {
 }
 
 ContactForce ToolContact::solve_contact(ToolTissue tissue) {
-  const ToolPose tip(place_.p_W + tip_offset_, place_.q_W);
+  const ToolPose tip(now_.place.p_W + now_.tip_offset, now_.place.q_W);
   const double reach = (tissue.model().compliance_is_constant() ? kGather : kGatherDear) * tool_.radius;
   finder_.gather(tissue.positions(), tissue.free(), tip.p_W, far_end(tool_, tip), reach, patch_);
   if (patch_.triangles.empty()) {
@@ -356,14 +367,14 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   const int m = patch_.nodes();
   auto u = displacement_.head(3 * (m + 1));
   for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = tissue.positions()[vertices[i]] - patch_.free[i];
-  u.tail<3>() = tip_offset_;
+  u.tail<3>() = now_.tip_offset;
   nodes_were_.clear();
   if (has_friction()) {
     for (const int vertex : vertices) nodes_were_.push_back(increment_from_[vertex]);
   }
   const ContactForce contact =
-      solver_.solve(patch_, tool_, place_, u, {nodes_were_, tip_was_.p_W, tip_was_.q_W});
-  tip_offset_ = u.tail<3>();
+      solver_.solve(patch_, tool_, now_.place, u, {nodes_were_, tip_was_.p_W, tip_was_.q_W});
+  now_.tip_offset = u.tail<3>();
   tissue.drop_loads();
   const auto forces = solver_.node_forces();
   for (int i = 0; i < m; ++i) {
@@ -374,7 +385,7 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
 }
 
 void ToolContact::release(ToolTissue tissue) {
-  tip_offset_.setZero();
+  now_.tip_offset.setZero();
   tissue.release();
 }
 

@@ -14,11 +14,12 @@ struct ToolForce {
   int contacts = 0;    ///< touching faces, edges and vertices; or vertices that it grasps
   int iterations = 0;  ///< contact linearisations, all sub-places together
   /// No settled answer: a wild position (then there is no force), contact that did not converge, several
-  /// tools that did not come to an equilibrium, tissue that found no balance or closed over the tool, a
-  /// motion too long for one step (then the force belongs to the place the tool got to), or an organ that ran
-  /// away: some of its surface at no finite place, or, though held, three times its size from rest (then the
-  /// force is half that of the step before), contact given up because the surface was dragged too far from
-  /// its free place, or a model that threw (then the force is that of the step before).
+  /// tools that did not come to an equilibrium (then all stay, with their forces, where they were), tissue
+  /// that found no balance or closed over the tool, a motion too long for one step (then the force belongs to
+  /// the place the tool got to), or an organ that ran away: some of its surface at no finite place, or,
+  /// though held, three times its size from rest (then the force is half that of the step before), contact
+  /// given up because the surface was dragged too far from its free place, or a model that threw (then the
+  /// force is that of the step before).
   bool flagged = false;
 };
 
@@ -42,9 +43,9 @@ std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh&
 /// set-up allocates; what the model throws passes through. One thread.
 class ToolContact {
  public:
-  /// `rest`: surface vertices at rest.
+  /// `rest`: surface vertices at rest; `held`: those of them that are held to something, ascending.
   ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
-              std::vector<Triangle> touchable);
+              std::vector<Triangle> touchable, std::span<const int> held);
 
   /// What of the device's buttons is pressed, also while the tool is lifted: the next `advance_to` grasps, or
   /// lets go.
@@ -59,7 +60,7 @@ class ToolContact {
   /// The organ has moved under it: the tool goes along by `motion` (m), so that it stands on the surface as
   /// before.
   void carry(const Vec3& motion) noexcept {
-    if (placed_) place_.p_W += motion;
+    if (now_.placed) now_.place.p_W += motion;
   }
   /// How fast the organ's surface moves by itself where the tool touches, with these loads (the mean by
   /// force), or else at the point nearest to `p_W`; m/s, world.
@@ -67,6 +68,10 @@ class ToolContact {
                         std::span<const NodalLoad> loads) const noexcept;
   /// Solves its last increment again, on the surface as it is free by now.
   void settle(ToolTissue tissue);
+  /// Remembers where it stands and what it feels, with its `loads`; `restore` takes it, and the tissue, back
+  /// there, bit by bit.
+  void keep(std::span<const NodalLoad> loads);
+  void restore(ToolTissue tissue);
   /// What it would feel at `p_W` (m), turned as it is; then it stands where it stood, and nothing has
   /// changed, bit by bit.
   ToolForce probe(const Vec3& p_W, ToolTissue tissue);
@@ -82,15 +87,15 @@ class ToolContact {
   /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.
   void differentiate() noexcept;
   /// Says that `force` is not settled.
-  void flag() noexcept { force_.flagged = true; }
+  void flag() noexcept { now_.force.flagged = true; }
 
-  bool placed() const { return placed_; }
+  bool placed() const { return now_.placed; }
   /// Whether it has tissue in its jaws.
   bool holds() const { return grip_ && grip_->holds(); }
   /// Whether this step has used up its contact linearisations.
   bool exhausted() const;
-  const ToolForce& force() const { return force_; }
-  const Vec3& place() const { return place_.p_W; }
+  const ToolForce& force() const { return now_.force; }
+  const Vec3& place() const { return now_.place.p_W; }
   double radius() const { return tool_.radius; }
   const Tool& shape() const { return tool_; }
   std::span<const Triangle> touchable() const { return finder_.touchable(); }
@@ -104,6 +109,7 @@ class ToolContact {
   void reject(ToolTissue tissue);
   bool escaped(const ToolPose& pose, const ToolTissue& tissue) const noexcept;
   void place_outside(const ToolPose& pose, ToolTissue tissue);
+  void remember_side(const ToolTissue& tissue) noexcept;
   bool recover_from_inside(ToolTissue tissue);
   void start_increment(bool first, const ToolTissue& tissue);
   Vec3 place_at_entry(const ToolPose& pose, const Vec3& inside, double share,
@@ -120,20 +126,27 @@ class ToolContact {
   ContactFinder finder_;
   ContactSolver solver_;
   ContactPatch patch_;
-  double farthest_drag_;            // m, outside its free organ
-  std::vector<int> filled_;         // surface vertices whose compliance the patch holds
-  std::optional<Grip> grip_;        // for a tool that grasps
-  std::vector<NodalLoad> kept_;     // its own, while it probes
-  Eigen::VectorXd displacement_;    // of the patch nodes, then of the tip
-  ToolPose place_;                  // of the last step
-  Vec3 tip_offset_ = Vec3::Zero();  // where the tip is, minus place_
+  double farthest_drag_;          // m, outside its free organ
+  std::vector<int> filled_;       // surface vertices whose compliance the patch holds
+  std::optional<Grip> grip_;      // for a tool that grasps
+  Eigen::VectorXd displacement_;  // of the patch nodes, then of the tip
   // Where the last increment began; only with friction: the tissue's `before`, or surface_was_, and the tip.
   std::span<const Vec3> increment_from_;
   std::vector<Vec3> surface_was_, nodes_were_;
   ToolPose tip_was_;
   Bend bend_;
-  bool placed_ = false, arrived_ = false;
-  ToolForce force_;
+  /// Where it stands and what it feels.
+  struct State {
+    ToolPose place;                  // of the last step
+    Vec3 tip_offset = Vec3::Zero();  // where the tip is, minus `place`
+    bool placed = false, arrived = false;
+    // The surface vertex that bore most of it when contact was last settled; -1: it touched nothing. Should
+    // the tool be inside later, it is taken back to that side.
+    int side = -1;
+    ToolForce force;
+  };
+  State now_, kept_;
+  std::vector<NodalLoad> kept_loads_;
 };
 
 }  // namespace palpate::sim

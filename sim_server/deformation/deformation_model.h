@@ -62,6 +62,9 @@ class DeformationModel {
 
   /// Whether the last step came to balance: false where it is an answer held for want of a better one.
   virtual bool balanced() const noexcept { return true; }
+  /// Whether that is because some element stays turned inside out, which a law that softens in compression
+  /// lets it do.
+  virtual bool inside_out() const noexcept { return false; }
 
   /// What this model holds in memory.
   virtual std::vector<MemoryPart> memory() const = 0;

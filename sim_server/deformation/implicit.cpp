@@ -14,7 +14,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kBalanced = 0.05;  // relative residual of the last iteration of a step that counts as solved
+constexpr double kBalanced = 0.01;  // relative residual of the last iteration of a step that counts as solved
 constexpr int kMoreIterations = 2;  // times `max_newton`, where the residual does not count as solved by then
 constexpr double kAtRest = 1e-6;    // relative residual of the predictor of a body that rests
 constexpr double kMostColumnBytes = 1e9;  // of columns, when a step begins

@@ -34,7 +34,7 @@ DynamicsSettings dynamics_settings(const DeformationSettings& settings);
 /// answers the contact solver from that: compliance W = J A^-1 J^T, dt^2 of the mass-like matrix in it, which
 /// is also that over the sample interval, as loads are held over the step. Then it iterates again from where
 /// contact led, until Newton's method has converged with contact inside its loop, at most `max_newton` times,
-/// twice as often where more than 5 % of the forces are left unbalanced then.
+/// twice as often where more than 1 % of the forces are left unbalanced then.
 /// The factor of A is kept over steps as long as it serves (where the body rests, none is older than its
 /// shape), or made in the background and exchanged every `refresh_steps`: that takes more iterations, but
 /// they converge to the balance of the true forces. Columns of W are solved for as they are asked for, and
@@ -53,9 +53,10 @@ class Implicit : public DeformationModel {
   bool compliance_is_constant() const noexcept override { return false; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) override;
   std::optional<FreeMotion> relinearise() override;
-  /// Whether the last iteration found a relative residual of at most 5 %, and no element inverted for good
+  /// Whether the last iteration found a relative residual of at most 1 %, and no element inverted for good
   /// (`Dynamics::inside_out`).
   bool balanced() const noexcept override;
+  bool inside_out() const noexcept override { return !law_is_linear() && dynamics_.inside_out(); }
   std::vector<MemoryPart> memory() const override;
 
  private:

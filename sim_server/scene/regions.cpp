@@ -4,6 +4,7 @@
 
 #include "common/error.h"
 #include "common/text.h"
+#include "sim_server/mesh/bounding_box.h"
 
 namespace palpate::sim {
 
@@ -25,8 +26,7 @@ std::vector<int> vertices_in(const Region& region, const TetMesh& mesh) {
     if (region.contains(mesh.vertices[v])) inside.push_back(v);
   }
   if (inside.empty()) {
-    Eigen::AlignedBox3d box;
-    for (const Vec3& x : mesh.vertices) box.extend(x);
+    const Eigen::AlignedBox3d box = bounding_box(mesh.vertices);
     fail(
         "{}: no vertex of the mesh lies in this {}; is it in metres? The mesh is from {:.4g},{:.4g},{:.4g} "
         "to "

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <new>
+#include <nlohmann/json.hpp>
 
 #include "common/error.h"
 #include "common/hash.h"
 #include "common/text.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/elasticity/solid.h"
+#include "sim_server/mesh/bounding_box.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/scene/held_motion.h"
 #include "sim_server/scene/inclusions.h"
@@ -17,10 +19,11 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kNear = 2;              // of the tool radius: how far off a surface is told
-constexpr double kTouch = 0.04;          // of the tool radius: how deep to ask how stiff it is
-constexpr double kStill = 1e-8;          // of the tool radius: a surface that moved less did not move
-constexpr double kRunAway = 3;           // of the organ's size: farther from rest no tissue goes
+constexpr double kNear = 2;          // of the tool radius: how far off a surface is told
+constexpr double kTouch = 0.04;      // of the tool radius: how deep to ask how stiff it is
+constexpr double kStill = 1e-8;      // of the tool radius: a surface that moved less did not move
+constexpr double kUnsettled = 1e-3;  // of the tool radius: by how much others push the surface, as one turn
+constexpr double kRunAway = 3;       // of the organ's size: farther from rest no tissue goes
 constexpr double kFarthestAhead = 2e-3;  // m; without a bound, fast tools fare worse
 constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
 
@@ -42,22 +45,21 @@ std::vector<std::vector<Triangle>> touchable_by(std::span<const ToolSettings> to
   return lists;
 }
 
+/// The surface vertices that are these vertices of the mesh; both ascending.
+std::vector<int> on_surface(std::span<const int> vertices, const Surface& surface) {
+  std::vector<int> found;
+  for (int v = 0; v < static_cast<int>(surface.vertices.size()); ++v) {
+    if (std::ranges::binary_search(vertices, surface.vertices[v])) found.push_back(v);
+  }
+  return found;
+}
+
 /// A force of an organ that is no more: half of it a step.
 void fade(ToolForce& force) noexcept {
   force.force *= 0.5;
   force.torque *= 0.5;
   force.tangent.setZero();
   force.flagged = true;
-}
-
-/// Of the box around them, from corner to corner, m.
-double size_of(std::span<const Vec3> places) {
-  Vec3 least = places.front(), most = least;
-  for (const Vec3& p : places) {
-    least = least.cwiseMin(p);
-    most = most.cwiseMax(p);
-  }
-  return (most - least).norm();
 }
 
 /// `read_mesh`, told to `progress`.
@@ -97,18 +99,19 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   require_memory_for(scene, Purpose::kServe, count_parts(mesh_, surface_));
   const DeformationModelRow& row = model_of(scene.deformation);
   const bool stays = row.deforms() && !fixed.empty() && !supports_move(scene);
-  if (stays) farthest_ = kRunAway * size_of(rest_);
+  if (stays) farthest_ = kRunAway * diagonal_of(rest_);
   tissue_.model = row.make({scene, mesh_, surface_, fixed, reachable, progress});
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;
   tissue_.velocities = motion.velocities;
+  const std::vector<int> held = on_surface(fixed, surface_);
   std::vector<int> most_loads;
   std::vector<double> still;
   tools_.reserve(scene.tools.size());
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
     const std::string stage = contact_stage(i, scene.tools.size());
     progress(stage, 0);
-    tools_.emplace_back(scene.tools[i], tissue_.free, surface_, std::move(touchable[i]));
+    tools_.emplace_back(scene.tools[i], tissue_.free, surface_, std::move(touchable[i]), held);
     most_loads.push_back(tools_.back().max_nodes());
     still.push_back(kStill * tools_.back().radius());
     progress(stage, 1);
@@ -139,11 +142,12 @@ std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, 
 
 void Simulation::count_flagged() noexcept {
   if (std::ranges::none_of(answers_, &ToolAnswer::flagged)) return;
-  std::uint64_t& reason = failed_                      ? flagged_.threw
-                          : lost_                      ? flagged_.ran_away
-                          : !tissue_.model->balanced() ? flagged_.not_balanced
-                          : !tools_settled_            ? flagged_.tools
-                                                       : flagged_.contact;
+  std::uint64_t& reason = failed_                       ? flagged_.threw
+                          : lost_                       ? flagged_.ran_away
+                          : tissue_.model->inside_out() ? flagged_.inside_out
+                          : !tissue_.model->balanced()  ? flagged_.not_balanced
+                          : !tools_settled_             ? flagged_.tools
+                                                        : flagged_.contact;
   ++reason;
 }
 
@@ -154,10 +158,17 @@ std::string FlaggedSteps::to_text() const {
   };
   add(threw, "failed");
   add(ran_away, "ran away");
+  add(inside_out, "with elements inside out (law \"neo_hookean\" lets none turn)");
   add(not_balanced, "not balanced");
   add(tools, "tools not settled together");
   add(contact, "contact not settled");
   return text;
+}
+
+Json FlaggedSteps::to_json() const {
+  return {{"threw", threw},           {"ran_away", ran_away},
+          {"inside_out", inside_out}, {"not_balanced", not_balanced},
+          {"tools", tools},           {"contact", contact}};
 }
 
 /// After a step that threw. The forces of a tissue that answers no more fade.
@@ -178,6 +189,7 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
   move_organ(dt);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!inputs[i].pose) lift_tool(i);
+    if (tools_.size() > 1) tools_[i].keep(tissue_.loads_of(i));
   }
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!inputs[i].pose) continue;
@@ -185,6 +197,7 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
   }
   tools_settled_ = true;
   solve_contacts();
+  if (!tools_settled_) restore_touching();
   lost_ = ran_away();
   if (!tissue_.before.empty())
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
@@ -303,6 +316,27 @@ void Simulation::flag_contacts() noexcept {
   for (ToolContact& tool : tools_) {
     if (tool.force().contacts > 0) tool.flag();
   }
+}
+
+/// Several tools that found no equilibrium, and still push the surface from under each other: what they press
+/// with by now may be anything, and the next step would begin with that. They stay where they were, with what
+/// they felt there.
+void Simulation::restore_touching() {
+  const auto touches = [](const ToolContact& tool) { return tool.force().contacts > 0; };
+  const auto still_pushed = [&](std::size_t i) {
+    const Vec3& p = tools_[i].place();
+    return tissue_.met_by(i).surface_motion(p, p, kNear * tools_[i].radius()) >
+           kUnsettled * tools_[i].radius();
+  };
+  bool pushed = false;
+  for (std::size_t i = 0; i < tools_.size(); ++i) pushed = (touches(tools_[i]) && still_pushed(i)) || pushed;
+  if (!pushed || std::ranges::count_if(tools_, touches) < 2) return;
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    const bool touched = touches(tools_[i]);
+    tools_[i].restore(tissue_.met_by(i));
+    if (touched || touches(tools_[i])) tools_[i].flag();
+  }
+  for (std::size_t i = 0; i < tools_.size(); ++i) tissue_.met_by(i).mark_solved();  // with all loads back
 }
 
 Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) {

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/report.h"
 #include "sim_server/contact/tool_contact.h"
 #include "sim_server/deformation/model_inputs.h"
 #include "sim_server/mesh/tet_mesh.h"
@@ -72,11 +73,14 @@ struct StepFailures {
 struct FlaggedSteps {
   std::uint64_t threw = 0;         ///< the model did (`StepFailures`)
   std::uint64_t ran_away = 0;      ///< the surface is farther from rest than any tissue goes
+  std::uint64_t inside_out = 0;    ///< elements stay turned inside out: too much for this law of the tissue
   std::uint64_t not_balanced = 0;  ///< the model found no equilibrium under the loads
   std::uint64_t tools = 0;         ///< the contacts of several tools did not settle together
   std::uint64_t contact = 0;       ///< that of one tool did not, or it cannot be told where it touches
-  /// "3 not balanced, 1 contact not settled"; empty: none.
+  /// "3 not balanced, 1 contact not settled", with what helps; empty: none.
   std::string to_text() const;
+  /// Of reports: {"threw": ...}.
+  Json to_json() const;
 };
 
 /// The organ of a scene with its tools: one step, one page. Built from a scene (throws `Error`), then stepped
@@ -131,6 +135,7 @@ class Simulation {
   void settle();
   void flag_contacts() noexcept;
   void solve_contacts();
+  void restore_touching();
   void add_wanted(std::size_t tool, const ToolInput& input);
   Vec3 surface_shift(std::size_t tool, const Vec3& p_W);
   bool ran_away() const noexcept;

@@ -114,6 +114,7 @@ StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& pr
     times.flagged += force.flagged ? 1 : 0;
     tell(steps + i);
   }
+  times.why = simulation.flagged().to_text();
   return times;
 }
 

@@ -20,6 +20,7 @@ struct StepTimes {
   Histogram contact_ns;  ///< with the tool at `Press`, sliding a tenth of its radius to and fro
   int contacts = 0;      ///< of the latter steps, those in contact
   int flagged = 0;       ///< of the latter steps, those without a settled answer
+  std::string why = {};  ///< they have none, in words (`FlaggedSteps`)
 };
 
 /// Takes `steps` steps free, then as many in contact, and leaves the tool there: `state_hash` then tells

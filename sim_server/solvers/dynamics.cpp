@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sim_server/elasticity/inversion.h"
+#include "sim_server/mesh/bounding_box.h"
 
 namespace palpate::sim {
 namespace {
@@ -16,12 +17,6 @@ constexpr double kNegligibleWay = 1e-9, kElsewhere = 1e-4, kNudge = 1e-7;
 // from balance. Where no more than the second is left, and loads change by no more, the linearisation is
 // trusted without a line search. A body whose step began with no more than the third has come to rest.
 constexpr double kAdrift = 0.1, kTrusted = 0.1, kAtRest = 1e-6;
-
-double size_of(const Solid& solid) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : solid.rest()) box.extend(x);
-  return box.diagonal().norm();
-}
 
 double largest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
   double squared = 0;
@@ -46,7 +41,7 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
       learns_(learns(solid, settings)),
       motion_(solid, std::move(held), settings),
       matrix_(solid, motion_.dofs(), settings, where),
-      size_(size_of(solid)),
+      size_(diagonal_of(solid.rest())),
       policy_({.background = factors_in_background(solid, settings),
                .forgives = learns_,
                .refresh_steps = settings.refresh_steps,

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "common/error.h"
+#include "sim_server/mesh/bounding_box.h"
 
 namespace palpate::sim {
 namespace {
@@ -34,9 +35,7 @@ class Newton {
     mean_diagonal_ = stiffness_.lower().diagonal().mean();
     stiffness_.close_held(mean_diagonal_);
     factor_.emplace(stiffness_.lower(), where, SparseCholesky::Precision::kSingle);
-    Eigen::AlignedBox3d box;
-    for (const Vec3& x : solid.rest()) box.extend(x);
-    negligible_force_ = kRestsWithin * box.diagonal().norm() * mean_diagonal_;
+    negligible_force_ = kRestsWithin * diagonal_of(solid.rest()) * mean_diagonal_;
   }
 
   /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.

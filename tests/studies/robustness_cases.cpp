@@ -141,7 +141,7 @@ const std::vector<Case>& cases() {
         {"tool_10_m_s", "down at 10 m/s", true, run_trial, fast},
         {"teleported", "from outside to 10.5 mm deep in one step", false, run_trial, teleported},
         {"deep", "80 % of the thickness", false, run_trial, most_of_the_thickness},
-        {"pinched", "between two tools, each 5 mm deep", false, run_trial, pinched},
+        {"pinched", "between two tools, each 5 mm deep", true, run_trial, pinched},
         {"scattered", "all free vertices at random", true, run_scattered},
         {"to_a_point", "all free vertices in one point, to 1e-6", false, run_collapsed_to_point},
         {"to_a_plane", "all free vertices in one plane, to 1e-6", true, run_collapsed_to_plane},

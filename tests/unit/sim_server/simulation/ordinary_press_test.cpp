@@ -1,4 +1,6 @@
 // Presses that a hand makes, into soft tissue and by more than the tool's radius, are solved in every step.
+#include <nlohmann/json.hpp>
+
 #include "sim_server/deformation/implicit.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
@@ -38,6 +40,25 @@ Press press_block(ElasticLaw law, double speed, double begin) {
 }
 
 }  // namespace
+
+TEST_CASE(
+    "a law that softens in compression turns elements inside out: that is told, with the law that does not") {
+  for (const ElasticLaw law : {ElasticLaw::kStVenantKirchhoff, ElasticLaw::kNeoHookean}) {
+    Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.45, .law = law},
+                           {Vec3(-1, -1, -1), Vec3(1, -0.0399, 1)}, kRadius);
+    scene.deformation.model = "implicit";
+    Simulation simulation(scene,
+                          grid_block(lines(-0.03, 0.03, 6), lines(-0.04, 0, 4), lines(-0.03, 0.03, 6)));
+    for (int i = 0; i < 40; ++i)
+      simulation.step(ToolPose(Vec3(0.0011, kRadius + 0.002 - std::min(0.02, i * 0.001), 0.0007)), kDt);
+    const FlaggedSteps& flagged = simulation.flagged();
+    CAPTURE(static_cast<int>(law), flagged.to_text());
+    const bool softens = law == ElasticLaw::kStVenantKirchhoff;
+    CHECK((flagged.inside_out > 0) == softens);
+    CHECK((flagged.to_text().find("neo_hookean") != std::string::npos) == softens);
+    CHECK(flagged.to_json()["inside_out"].get<std::uint64_t>() == flagged.inside_out);
+  }
+}
 
 TEST_CASE("ordinary presses: every step is solved, with the force of a slow press at the end") {
   for (const ElasticLaw law : {ElasticLaw::kCorotational, ElasticLaw::kNeoHookean}) {

@@ -1,0 +1,78 @@
+// A tool comes to stand on the side of the surface that it touched, whatever the solver went through, or its
+// answers are flagged: it is never found on another side.
+#include "sim_server/deformation/implicit.h"
+#include "sim_server/deformation/spring.h"
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/solids.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+
+namespace {
+
+constexpr double kDt = 1.0 / 30, kRadius = 0.004;
+
+/// 30 x 15 x 30 mm of 10 kPa, edges of 5 mm, top at y = 0, held at its bottom.
+Simulation block(const Scene& scene) {
+  return {scene, grid_block(lines(-0.015, 0.015, 6), lines(-0.015, 0, 3), lines(-0.015, 0.015, 6))};
+}
+
+Scene block_scene(std::string_view model, ElasticLaw law) {
+  Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.45, .law = law},
+                         {Vec3(-1, -1, -1), Vec3(1, -0.0149, 1)}, kRadius);
+  scene.deformation.model = model;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a tool that the tissue closed over is taken back to the side it touched, not to the nearest") {
+  // 10.5 mm into 15 mm, so that elements turn inside out on the way; the held bottom is 4.5 mm below the
+  // tool.
+  const Vec3 deep(0.001, kRadius - 0.0105, 0.002);
+  for (const ElasticLaw law : {ElasticLaw::kCorotational, ElasticLaw::kNeoHookean}) {
+    Simulation at_once = block(block_scene("implicit", law)), slowly = block(block_scene("implicit", law));
+    double most = 0;
+    for (int i = 0; i < 60; ++i)
+      most = std::max(most, slowly.step(ToolPose(deep + (1 - i / 59.0) * Vec3(0, 0.0125, 0)), kDt).force.y());
+    REQUIRE(most > 1);
+    for (int i = 0; i < 90; ++i) {
+      const ToolForce told = at_once.step(ToolPose(deep), kDt);
+      CAPTURE(static_cast<int>(law), i, told.force.transpose(), most);
+      CHECK((told.flagged || told.force.y() > 0));
+      CHECK((told.flagged || told.force.norm() < 3 * most));
+    }
+  }
+}
+
+TEST_CASE("two tools that pinch what cannot give way stay where they were, flagged, and find back") {
+  // A body on a spring of 800 N/m: no place is left for it once both tools are 1 mm beyond its sides.
+  Scene scene = block_scene("spring", ElasticLaw::kLinear);
+  scene.deformation.of<SpringSettings>().stiffness = Vec3(800, 800, 800);
+  scene.tools.push_back(scene.tools.front());
+  Simulation simulation = block(scene);
+  const double touching = 0.015 + kRadius;
+  const auto step = [&](double left, double right) {  // how far each presses into the sides at rest, m
+    const std::vector<ToolInput> inputs{{.pose = ToolPose(Vec3(-touching + left, -0.005, 0.002))},
+                                        {.pose = ToolPose(Vec3(touching - right, -0.005, 0.002))}};
+    return simulation.step(inputs, kDt);
+  };
+  step(-0.002, -0.002);
+  CHECK(step(0.001, -0.002)[0].force.x() == Approx(-0.8));
+  for (int i = 0; i <= 40; ++i) {
+    const double depth = 0.005 * std::min(1.0, i / 20.0);
+    const auto felt = step(depth, depth);
+    CAPTURE(i, felt[0].force.transpose(), felt[1].force.transpose());
+    if (i > 0) CHECK((felt[0].flagged && felt[1].flagged));
+    CHECK(felt[0].force.x() < 1e-9);
+    CHECK(felt[1].force.x() > -1e-9);
+    CHECK(felt[0].force.norm() < 8);
+  }
+  const auto alone = step(-0.002, 0.001);
+  CHECK(alone[0].force.norm() == 0);
+  CHECK(alone[1].force.x() == Approx(0.8));
+  CHECK_FALSE(alone[1].flagged);
+}
