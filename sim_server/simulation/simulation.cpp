@@ -62,6 +62,13 @@ void fade(ToolForce& force) noexcept {
   force.flagged = true;
 }
 
+/// Supports that carry tissue and tool along make neither slip on the other; what the tissue does besides, as
+/// it swings, does.
+void carry_before(Tissue& tissue, double dt) noexcept {
+  if (tissue.velocities.empty()) return;
+  for (std::size_t v = 0; v < tissue.before.size(); ++v) tissue.before[v] += dt * tissue.velocities[v];
+}
+
 /// `read_mesh`, told to `progress`.
 TetMesh read_mesh_of(const Scene& scene, const Progress& progress) {
   progress(name_of(Stage::kMesh), 0);
@@ -266,7 +273,9 @@ void Simulation::move_organ(double dt) {
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
     surface_motion_[i] =
         0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.loads_of(i));
+  carry_before(tissue_, 0.5 * dt);
   set_free(tissue_.model->free_motion(dt));
+  carry_before(tissue_, 0.5 * dt);
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
     surface_motion_[i] +=
         0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.loads_of(i));
@@ -275,8 +284,6 @@ void Simulation::move_organ(double dt) {
     tissue_.carry(i, surface_motion_[i]);
     tissue_.press(i);
   }
-  if (moves && !tissue_.before.empty())  // gone along, nothing has slipped
-    std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
 }
 
 void Simulation::set_free(const FreeMotion& motion) {

@@ -8,6 +8,7 @@
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/elasticity/material.h"
 #include "sim_server/mesh/tet_mesh.h"
+#include "sim_server/simulation/simulation.h"
 
 namespace palpate::studies {
 
@@ -98,7 +99,7 @@ struct Trial {
 struct Case {
   std::string name, what;  ///< for people, with units
   bool quick;              ///< also in a quick study
-  Verdict (*run)(const Case& row, const Column& column, bool quick);
+  std::function<Verdict(const Case& row, const Column& column, bool quick)> run;
   std::function<void(Trial&)> change = {};  ///< from the usual press
 };
 const std::vector<Case>& cases();
@@ -106,6 +107,8 @@ const std::vector<Case>& cases();
 std::vector<Case> extreme_cases();
 /// Bodies of other shapes: sheets, fins, flaps (`robustness_shapes.cpp`).
 std::vector<Case> shape_cases();
+/// Tools that rub, turn and grasp, and supports that move (`robustness_worlds.cpp`).
+std::vector<Case> world_cases();
 
 /// Runs the usual press as `row` changes it.
 Verdict run_trial(const Case& row, const Column& column, bool quick);
@@ -140,6 +143,11 @@ struct Run {
   bool locks = false;  // the program warned at the start that its elements lock
   double off = 0;      // from where the surface began, when the tools have been away, m
 };
+
+/// Hands the simulation of a scene to `use`. Throws `Error` where the program refuses it, with the same words
+/// every time.
+void with_simulation(const SceneFile& file, const sim::TetMesh& mesh, const Column& column,
+                     const std::function<void(const sim::Scene&, sim::Simulation&)>& use);
 
 /// The motion `share` of a step later.
 std::vector<Path> later(std::vector<Path> paths, double share, double rate_hz);

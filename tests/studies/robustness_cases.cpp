@@ -155,7 +155,7 @@ const std::vector<Case>& cases() {
         {"needle", "tool radius 0.2 mm, 1 mm deep", false, run_trial, needle},
         {"blunt", "tool radius 30 mm, as wide as the block", false, run_trial, blunt},
         {"nan_pose", "the pose is NaN for 0.2 s", true, run_trial, lost_pose}};
-    for (const std::vector<Case>& more : {extreme_cases(), shape_cases()})
+    for (const std::vector<Case>& more : {extreme_cases(), shape_cases(), world_cases()})
       found.insert(found.end(), more.begin(), more.end());
     return found;
   }();

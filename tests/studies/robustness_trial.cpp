@@ -8,7 +8,6 @@
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/scene_file/read_parts.h"
 #include "sim_server/scene_file/read_scene.h"
-#include "sim_server/simulation/simulation.h"
 #include "tests/studies/robustness.h"
 #include "tests/support/solids.h"
 #include "tests/support/temporary_folder.h"
@@ -140,23 +139,31 @@ std::vector<Path> later(std::vector<Path> paths, double share, double rate_hz) {
   return paths;
 }
 
-Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool lift) {
+void with_simulation(const SceneFile& file, const TetMesh& body, const Column& column,
+                     const std::function<void(const Scene&, Simulation&)>& use) {
   const test::TemporaryFolder folder;
   folder.write(kMesh, "");  // that it is there: the mesh is made here
   try {
-    const Scene scene = read_scene(folder.write("scene.toml", trial.file.text(column, kMesh)));
-    TetMesh mesh = trial.mesh;
+    const Scene scene = read_scene(folder.write("scene.toml", file.text(column, kMesh)));
+    TetMesh mesh = body;
     require_usable(mend(mesh), kMesh);
     Simulation simulation(scene, std::move(mesh));
-    Run run = Watch(simulation, trial.file.rate_hz).follow(paths, trial.seconds, lift);
-    run.locks = column.row->deforms() && scene.material && scene.material->locks();
-    return run;
+    use(scene, simulation);
   } catch (const Error& e) {
     std::string said = e.what();  // without the name of the folder, which is another every time
     const std::string path = folder.path().string() + "/";
     for (std::size_t at; (at = said.find(path)) != std::string::npos;) said.erase(at, path.size());
     throw Error(said, static_cast<Error::Kind>(e.exit_code()));
   }
+}
+
+Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool lift) {
+  Run run;
+  with_simulation(trial.file, trial.mesh, column, [&](const Scene& scene, Simulation& simulation) {
+    run = Watch(simulation, trial.file.rate_hz).follow(paths, trial.seconds, lift);
+    run.locks = column.row->deforms() && scene.material && scene.material->locks();
+  });
+  return run;
 }
 
 Verdict run_trial(const Case& row, const Column& column, bool quick) {

@@ -141,6 +141,26 @@ TEST_CASE("friction does not feel a tool and an organ that go along together") {
   }
 }
 
+TEST_CASE("friction feels what the tissue slips as it swings, also on supports that move") {
+  // Pressed down and along in 0.1 s, in steps so short that the tissue is still on its way at the end of
+  // each.
+  for (const std::string_view model : models()) {
+    Scene scene = block_scene({kBreath}, model, 0.001), still = block_scene({}, model, 0.001);
+    scene.tools[0].shape.friction = still.tools[0].shape.friction = 0.3;
+    Simulation organ(scene, block()), resting(still, block());
+    double most = 0, off = 0;
+    for (int i = 1; i <= 100; ++i) {
+      const Vec3 p = kPressed + (1 - 0.01 * i) * Vec3(-0.001, 0.002, 0);
+      const ToolForce felt = organ.step(p + at(kBreath, 0.001 * i), 0.001), right = resting.step(p, 0.001);
+      most = std::max(most, right.force.norm());
+      off = std::max(off, (felt.force - right.force).norm());
+    }
+    CAPTURE(model);
+    REQUIRE(most > 0.1);
+    CHECK(off < 0.005 * most);  // what a quarter Hz bends of a block of 25 Hz, as above
+  }
+}
+
 TEST_CASE("a surface that comes up 6 mm in one step takes the tool in front of it along") {
   const SupportMotion fast{Vec3::UnitY(), 0.03, 1.0};
   for (const std::string_view model : models()) {

@@ -1,0 +1,220 @@
+// Tools that turn, rub and grasp, watched and compared.
+#include "tests/studies/robustness_watch.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <fmt/core.h>
+
+#include "common/error.h"
+#include "sim_server/mesh/shapes.h"
+#include "sim_server/mesh/surface.h"
+#include "sim_server/scene/scene.h"
+#include "sim_server/solvers/equilibrium.h"
+#include "tests/support/solids.h"
+
+namespace palpate::studies {
+namespace {
+
+using namespace palpate::sim;
+
+constexpr double kNothing = 1e-9;  // N, N m: less is no force, and no torque
+
+void see_step(const Simulation& simulation, std::span<const ToolInput> inputs,
+              std::span<const ToolAnswer> answers, double t, Watched& watched) {
+  Felt felt{t, {}, {}, {}, !simulation.model().balanced()};
+  for (std::size_t k = 0; k < answers.size(); ++k) {
+    const ToolAnswer& answer = answers[k];
+    felt.poses.push_back(inputs[k].pose.value_or(ToolPose{}));
+    felt.force.push_back(answer.force);
+    felt.torque.push_back(answer.torque);
+    felt.flagged = felt.flagged || answer.flagged;
+    watched.finite =
+        watched.finite && answer.force.allFinite() && answer.torque.allFinite() && answer.tangent.allFinite();
+  }
+  for (const Vec3& x : simulation.positions()) watched.finite = watched.finite && x.allFinite();
+  for (const Vec3& force : felt.force) {
+    if (!felt.flagged) watched.max_newton = std::max(watched.max_newton, force.norm());
+  }
+  watched.flagged += felt.flagged ? 1 : 0;
+  watched.steps.push_back(std::move(felt));
+}
+
+constexpr double kEdge = 0.005;  // m, of the mesh
+
+}  // namespace
+
+World block_of(const Setting& setting) {
+  World world;
+  world.file.young_modulus = setting.modulus;
+  world.file.poisson_ratio = setting.nu;
+  world.file.rate_hz = setting.rate_hz;
+  world.file.fixed = fmt::format("[[fixed]]\nbox = [[-1, {0}, -1], [1, {0}, 1]]\n", -setting.thickness);
+  const int layers = std::max(1, static_cast<int>(std::lround(setting.thickness / kEdge)));
+  const auto side = test::lines(-0.015, 0.015, 6);
+  world.mesh = sim::grid_block(side, test::lines(-setting.thickness, 0, layers), side);
+  return world;
+}
+
+double Way::seconds() const {
+  double length = 0;
+  for (std::size_t i = 1; i < places.size(); ++i) length += (places[i] - places[i - 1]).norm();
+  return length / speed;
+}
+
+Vec3 Way::at(double t) const {
+  double left = t * speed;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const Vec3 piece = places[i] - places[i - 1];
+    if (left <= piece.norm()) return places[i - 1] + left / piece.norm() * piece;
+    left -= piece.norm();
+  }
+  return places.back();
+}
+
+/// Down from 2 mm above the block, then along.
+Way press_and_draw(const Setting& setting, const Vec3& along) {
+  const Vec3 above(0.001, kToolRadius + 0.002, 0.002), in(0.001, kToolRadius - setting.depth, 0.002);
+  return {{above, in, in + along}, setting.speed};
+}
+
+ToolInput at(const Vec3& p, const Quat& q) {
+  return {.pose = ToolPose(p, q)};
+}
+
+Watched watch(const World& world, const Column& column) {
+  Watched watched;
+  with_simulation(world.file, world.mesh, column, [&](const Scene&, Simulation& simulation) {
+    const std::vector<Vec3> began(simulation.positions().begin(), simulation.positions().end());
+    const double dt = 1 / world.file.rate_hz;
+    const int steps = static_cast<int>(std::lround(world.seconds / dt));
+    for (int i = 1; i <= steps && watched.finite; ++i) {
+      const std::vector<ToolInput> inputs = world.hands(i * dt);
+      see_step(simulation, inputs, simulation.step(inputs, dt), i * dt, watched);
+    }
+    for (std::size_t v = 0; v < began.size(); ++v)
+      watched.off = std::max(watched.off, (simulation.positions()[v] - began[v]).norm());
+  });
+  return watched;
+}
+
+Vectors force_of(const Felt& felt) {
+  return {felt.force.front()};
+}
+
+Vectors force_and_torque_of(const Felt& felt) {
+  return {felt.force.front(), felt.torque.front()};
+}
+
+Expected as_in(Watched other, Told told, double from) {
+  return [other = std::move(other), told = std::move(told), from](std::size_t i) -> std::optional<Vectors> {
+    if (i >= other.steps.size() || other.steps[i].flagged || other.steps[i].t < from) return {};
+    return told(other.steps[i]);
+  };
+}
+
+Expected at_the_end(const World& world, Vectors right, double seconds) {
+  const double from = (world.seconds - seconds) * world.file.rate_hz;
+  return [right = std::move(right), from](std::size_t step) -> std::optional<Vectors> {
+    if (static_cast<double>(step) < from) return {};
+    return right;
+  };
+}
+
+Verdict compare(const Watched& watched, const Told& told, const Expected& expected, double bound,
+                const std::string& reference) {
+  Verdict verdict{"stable", "", {}, watched.max_newton, reference};
+  if (!watched.finite)
+    return {"exploded", "a force, torque, tangent or position that is not finite", {}, {}, reference};
+  Vectors off, scale;
+  std::vector<std::size_t> worst;
+  for (std::size_t i = 0; i < watched.steps.size(); ++i) {
+    const std::optional<Vectors> right = expected(i);
+    if (!right) continue;
+    const Vectors found = told(watched.steps[i]);
+    off.resize(right->size(), Vec3::Zero());
+    scale.resize(right->size(), Vec3(Vec3::Constant(kNothing)));
+    worst.resize(right->size(), 0);
+    for (std::size_t k = 0; k < right->size(); ++k) {
+      if ((*right)[k].norm() > scale[k].norm()) scale[k] = (*right)[k];
+      if (watched.steps[i].flagged || (found[k] - (*right)[k]).norm() <= off[k].norm()) continue;
+      off[k] = found[k] - (*right)[k];
+      worst[k] = i;
+    }
+  }
+  for (std::size_t k = 0; k < off.size(); ++k) {
+    const double error = off[k].norm() / scale[k].norm();
+    verdict.error_percent = std::max(verdict.error_percent.value_or(0), 100 * error);
+    if (error <= bound) continue;
+    verdict.outcome = "wrong";
+    verdict.reason =
+        fmt::format("{} off by {:.2g} % of the largest, {:.3g}, at {:.3f} s, and not flagged",
+                    k == 0 ? "force" : "torque", 100 * error, scale[k].norm(), watched.steps[worst[k]].t);
+    return verdict;
+  }
+  if (watched.flagged > 0) {
+    verdict.outcome = "flagged";
+    verdict.reason = fmt::format("{} of {} steps flagged", watched.flagged, watched.steps.size());
+  }
+  return verdict;
+}
+
+Vectors reactions(const World& world, const Column& column, const std::vector<Gripped>& grips) {
+  Vectors felt(grips.size(), Vec3::Zero());
+  with_simulation(world.file, world.mesh, column, [&](const Scene& scene, Simulation& simulation) {
+    const Solid solid(simulation.mesh(), *scene.material);
+    StaticLoad load{.held = std::vector<HeldAxes>(solid.rest().size(), 0),
+                    .moved = std::vector<Vec3>(solid.rest().size(), Vec3::Zero())};
+    for (const int node : fixed_vertices(scene, simulation.mesh())) load.held[node] = kAllAxes;
+    std::vector<std::pair<int, std::size_t>> gripped;
+    for (const int node : simulation.surface().vertices) {
+      for (std::size_t k = 0; k < grips.size(); ++k) {
+        if (load.held[node] != 0 || (solid.rest()[node] - grips[k].place).norm() > grips[k].reach) continue;
+        load.held[node] = kAllAxes;
+        load.moved[node] = grips[k].moved;
+        gripped.emplace_back(node, k);
+      }
+    }
+    const Equilibrium rest = find_equilibrium(solid, load, "study");
+    std::vector<Vec3> force(solid.rest().size());
+    solid.forces(rest.x, force);
+    for (const auto& [node, k] : gripped) felt[k] -= force[node];
+  });
+  return felt;
+}
+
+Work work_of(const Watched& watched) {
+  Work work;
+  for (std::size_t i = 1; i < watched.steps.size(); ++i) {
+    const Felt &from = watched.steps[i - 1], &to = watched.steps[i];
+    for (std::size_t k = 0; k < to.poses.size(); ++k) {
+      const Eigen::AngleAxisd turn(to.poses[k].q_W * from.poses[k].q_W.conjugate());
+      const double done = 0.5 * (from.force[k] + to.force[k]).dot(to.poses[k].p_W - from.poses[k].p_W) +
+                          0.5 * turn.angle() * (from.torque[k] + to.torque[k]).dot(turn.axis());
+      work.sum += done;
+      work.size += std::abs(done);
+    }
+  }
+  return work;
+}
+
+void add_rows(std::vector<Case>& rows, const std::string& name, const std::string& what, Judge judge,
+              const std::vector<Setting>& settings, bool quick) {
+  for (const Setting& setting : settings) {
+    rows.push_back(world_row(name + setting.name, what + setting.what, quick && &setting == &settings.front(),
+                             [=](const Column& column) { return judge(setting, column); }));
+  }
+}
+
+Case world_row(const std::string& name, const std::string& what, bool quick,
+               std::function<Verdict(const Column& column)> judge) {
+  return {name, what, quick, [judge = std::move(judge)](const Case&, const Column& column, bool) -> Verdict {
+            try {
+              return judge(column);
+            } catch (const Error& e) {
+              return {"refused", e.what(), {}, {}, ""};
+            }
+          }};
+}
+
+}  // namespace palpate::studies
