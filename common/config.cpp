@@ -162,6 +162,13 @@ std::filesystem::path Config::file(const std::string& key) const {
   return std::filesystem::path(node_->file).parent_path() / text(key);
 }
 
+std::vector<std::filesystem::path> Config::files(const std::string& key) const {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& text : texts(key, {}, {}))
+    files.push_back(std::filesystem::path(node_->file).parent_path() / text);
+  return files;
+}
+
 std::optional<Config> Config::table(const std::string& key) const {
   const toml::node* node = node_->find(key);
   if (node == nullptr) return {};

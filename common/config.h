@@ -42,6 +42,8 @@ class Config {
   std::pair<Vec3, Vec3> box(const std::string& key) const;
   /// A path; a relative one starts from the folder of this file.
   std::filesystem::path file(const std::string& key) const;
+  /// Any number of them, in an array; none where it is absent.
+  std::vector<std::filesystem::path> files(const std::string& key) const;
 
   /// The sub-table `key`, or nothing where it is absent: then what it describes is not built.
   std::optional<Config> table(const std::string& key) const;

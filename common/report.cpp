@@ -1,5 +1,6 @@
 #include "common/report.h"
 
+#include <array>
 #include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -40,11 +41,38 @@ bool written_directly(const fs::path& file) {
          (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status));
 }
 
+struct Kind {
+  const char* extension;
+  const char* what;
+  std::optional<Contents> contents;  ///< none: nothing of ours writes such files
+};
+
+constexpr std::array<Kind, 7> kKinds{{{".toml", "a scene or a client file", {}},
+                                      {".msh", "a mesh", {}},
+                                      {".csv", "a table or a motion", Contents::kTable},
+                                      {".json", "a report", Contents::kReport},
+                                      {".pcap", "a capture", Contents::kCapture},
+                                      {".vtu", "a mesh for ParaView", Contents::kShapes},
+                                      {".pvd", "a series for ParaView", Contents::kShapes}}};
+
+/// A file that is there keeps its place where its name says that it is of another kind. A link is as what it
+/// points to.
+void refuse_another_kind(const fs::path& file, const fs::path& target, Contents contents) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(target, ignored)) return;
+  for (const Kind& kind : kKinds) {
+    if (target.extension() == kind.extension && kind.contents != contents)
+      fail("{}: is there already, by its name as {}, which would be lost; name another file", file.string(),
+           kind.what);
+  }
+}
+
 }  // namespace
 
-WholeFile::WholeFile(const fs::path& file)
+WholeFile::WholeFile(const fs::path& file, Contents contents)
     : file_(written_directly(file) ? file : without_links(file)), part_(file_) {
   const bool direct = written_directly(file);
+  refuse_another_kind(file, file_, contents);
   if (!direct) part_ += fmt::format(".{}.part", getpid());
   std::error_code ignored;
   const bool usable = direct ? access(file_.c_str(), W_OK) == 0
@@ -73,20 +101,28 @@ void require_distinct(const std::vector<NamedFile>& files) {
   }
 }
 
-void check_writable(const fs::path& file) {
-  const WholeFile probe(file);
+void check_writable(const fs::path& file, Contents contents) {
+  const WholeFile probe(file, contents);
 }
 
-void write_whole(const fs::path& file, const std::string& text) {
-  WholeFile whole(file);
+namespace {
+
+void write_whole(const fs::path& file, const std::string& text, Contents contents) {
+  WholeFile whole(file, contents);
   std::ofstream out(whole.path(), std::ios::binary);
   out << text << std::flush;
   if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
   whole.commit();
 }
 
+}  // namespace
+
+void write_csv(const fs::path& file, const std::string& text) {
+  write_whole(file, text, Contents::kTable);
+}
+
 void write_json(const fs::path& file, const Json& json) {
-  write_whole(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_whole(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", Contents::kReport);
 }
 
 std::string csv_of(const Json& rows) {

@@ -15,15 +15,19 @@ using Json = nlohmann::ordered_json;
 /// (1e3 for microseconds, 1e6 for milliseconds).
 Json quantiles(const Histogram& histogram, double unit_ns);
 
+/// What a program of ours writes into a file.
+enum class Contents { kReport, kTable, kCapture, kShapes };
+
 /// A file that appears whole, or when it is worth a name, or not at all: what is written goes to `path()`
 /// beside it; `commit` gives it its name; going out of scope without that removes it. A link stays a link:
 /// what it points to is replaced. What is no regular file (a device, a pipe, /dev/stdout) is written
 /// directly.
 class WholeFile {
  public:
-  /// Throws `Error` (input) if it cannot be written. Does not open what is written directly: a pipe is opened
-  /// once, by whoever writes.
-  explicit WholeFile(const std::filesystem::path& file);
+  /// Throws `Error` (input) if it cannot be written, or would take the place of a file whose name says that
+  /// it is something else, as a mesh. Does not open what is written directly: a pipe is opened once, by
+  /// whoever writes.
+  explicit WholeFile(const std::filesystem::path& file, Contents contents);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
@@ -36,9 +40,9 @@ class WholeFile {
   std::filesystem::path file_, part_;
 };
 
-/// A file that a command line names, and the option that names it.
+/// A file that a command line, or a file that it names, names, and the option that names it.
 struct NamedFile {
-  const char* option;
+  std::string option;  ///< or "FILE:LINE" of the key
   std::optional<std::filesystem::path> file;
 };
 
@@ -46,12 +50,12 @@ struct NamedFile {
 void require_distinct(const std::vector<NamedFile>& files);
 
 /// Throws `Error` now, rather than after the run, if `file` could not be written.
-void check_writable(const std::filesystem::path& file);
+void check_writable(const std::filesystem::path& file, Contents contents);
 
-/// Writes `text` whole or not at all. Throws `Error`.
-void write_whole(const std::filesystem::path& file, const std::string& text);
+/// Writes a table of `csv_of`, whole or not at all. Throws `Error`.
+void write_csv(const std::filesystem::path& file, const std::string& text);
 
-/// `write_whole` of a JSON document, indented.
+/// Writes a JSON document, indented, whole or not at all. Throws `Error`.
 void write_json(const std::filesystem::path& file, const Json& json);
 
 /// An array of flat objects with the same keys as CSV: a line of keys, then a line an object.

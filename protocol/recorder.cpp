@@ -11,7 +11,11 @@ constexpr Time kWritePeriod = std::chrono::milliseconds(20);
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& file)
-    : path_(file), file_(file), capture_(file_.path()), ring_(kRoom), epoch_(monotonic_epoch()) {}
+    : path_(file),
+      file_(file, Contents::kCapture),
+      capture_(file_.path()),
+      ring_(kRoom),
+      epoch_(monotonic_epoch()) {}
 
 void Recorder::note(Time t, const Endpoint& from, const Endpoint& to,
                     std::span<const std::byte> bytes) noexcept {

@@ -175,7 +175,7 @@ int evaluate(const EvaluateOptions& options) {
   std::filesystem::create_directories(options.out, error);
   if (!std::filesystem::is_directory(options.out, error))
     fail("{}: is no folder, and could not be made one", options.out.string());
-  check_writable(options.out / "summary.json");
+  check_writable(options.out / "summary.json", Contents::kReport);
   ProgressLine progress;
   std::optional<Truth> truth;
   if (options.truth)
@@ -191,7 +191,7 @@ int evaluate(const EvaluateOptions& options) {
   }
   print(rows);
   write_json(options.out / "summary.json", rows);
-  write_whole(options.out / "summary.csv", csv_of(rows));
+  write_csv(options.out / "summary.csv", csv_of(rows));
   return 0;
 }
 

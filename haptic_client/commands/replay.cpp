@@ -134,8 +134,8 @@ double nominal_rate(double captured_hz, double asked_hz) {
 
 int replay(const ClientConfig& config, const ReplayOptions& options) {
   require_distinct({{"CAPTURE", options.capture}, {"--out", options.out}, {"--report", options.report}});
-  if (options.report) check_writable(*options.report);
-  if (options.out) check_writable(*options.out);
+  if (options.report) check_writable(*options.report, Contents::kReport);
+  if (options.out) check_writable(*options.out, Contents::kTable);
   ProgressLine progress;
   const CaptureSurvey found =
       survey(options.capture, [&](double share) { progress("reading the capture", share); });

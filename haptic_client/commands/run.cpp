@@ -74,12 +74,13 @@ void tell_missing_ports(const std::vector<ClientConfig>& configs) {
   }
 }
 
-/// Whether the device was asked for at a port, gave nothing in the whole run, and is not there at its end.
+/// Whether the device gave nothing in the whole run, and is not there at its end.
 bool never_there(const ClientConfig& config, const Json& tool) {
   const DeviceSettings& device = config.device;
-  if (device.port.empty() || row_of(device).ports == nullptr) return false;
+  if (row_of(device).ports == nullptr) return false;
   if (tool["loop"]["ticks"] == 0 || tool["safety"]["lost"] != tool["loop"]["ticks"]) return false;
-  return std::ranges::count(row_of(device).ports(), device.port) == 0;
+  const std::vector<std::string> ports = row_of(device).ports();
+  return device.port.empty() ? ports.empty() : std::ranges::count(ports, device.port) == 0;
 }
 
 /// Whether a line can be printed without waiting: nobody who reads slowly may keep us from Ctrl-C.
@@ -124,9 +125,15 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
     written.insert(written.end(), {{"--trace", files.back().trace}, {"--record", files.back().record}});
   }
   require_distinct(written);
-  if (options.report) check_writable(*options.report);
+  for (const ClientConfig& config : configs) {  // several may follow the same one
+    if (!config.device.trajectory) continue;
+    std::vector<NamedFile> with_motion = written;
+    with_motion.push_back({"the [trajectory] of the client file", config.device.trajectory->file});
+    require_distinct(with_motion);
+  }
+  if (options.report) check_writable(*options.report, Contents::kReport);
   for (const ToolFiles& tool : files) {
-    if (tool.trace) check_writable(*tool.trace);
+    if (tool.trace) check_writable(*tool.trace, Contents::kTable);
   }
   tell_missing_ports(configs);
   Guardian guardian(configs);  // before any thread; goes after the tools
@@ -152,8 +159,11 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   for (std::size_t i = 0; i < configs.size(); ++i) {
     const DeviceSettings& device = configs[i].device;
     if (never_there(configs[i], report["tools"][i]))
-      fail_at_run_time("{}: no {} came to port {}; `haptic_client devices` lists what is there", device.where,
-                       device.name, device.port);
+      fail_at_run_time(
+          "{}: no {} came{}; `haptic_client devices` lists what is there, `--device simulated` is a hand "
+          "without "
+          "one, `scripts/run --emulate {}` emulates one",
+          device.where, device.name, device.port.empty() ? "" : " to port " + device.port, device.name);
   }
   return 0;
 }

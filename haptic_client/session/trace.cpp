@@ -11,7 +11,7 @@ constexpr std::size_t kFlushAt = 1 << 16;  // bytes
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws)
-    : name_(file), file_(file), out_(file_.path(), std::ios::binary), laws_(laws.size()) {
+    : name_(file), file_(file, Contents::kTable), out_(file_.path(), std::ios::binary), laws_(laws.size()) {
   text_ = "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n";
   for (const std::string& law : laws) text_ += fmt::format(",{}_n", law);
   text_ += '\n';

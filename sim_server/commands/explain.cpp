@@ -322,7 +322,7 @@ Explanation explain(const Scene& scene, const Progress& progress, int steps) {
 int run_explain(const ExplainOptions& options) {
   const Scene scene = read_scene(options.scene);
   require_distinct({{"SCENE", options.scene}, {"--json", options.json}});
-  if (options.json) check_writable(*options.json);
+  if (options.json) check_writable(*options.json, Contents::kReport);
   const Explanation explanation = explain(scene, ProgressLine(), options.steps);
   fmt::print("{}", options.why ? why_text(explanation, *options.why) : to_text(explanation));
   if (options.json) write_json(*options.json, to_json(explanation));

@@ -26,7 +26,7 @@ void print_sizes(const TetMesh& mesh) {
   fmt::print(
       "  dihedral angles     {:.2f} to {:.2f} degrees; median of the smallest per tetrahedron {:.2f}\n",
       kDegrees * info.min_dihedral, kDegrees * info.max_dihedral, kDegrees * info.median_min_dihedral);
-  if (size.maxCoeff() > 2) log::warning("the mesh is {:.3g} m long; is it in millimetres?", size.maxCoeff());
+  if (const std::string odd = odd_size(mesh); !odd.empty()) log::warning("{}", odd);
 }
 
 void print_faults(const MeshFaults& faults) {

@@ -85,11 +85,12 @@ int record(const RecordOptions& options) {
   const Trajectory motion = read_motion(options.trajectory);
   const std::uint64_t ticks = ticks_of(motion, options, ticks_hz);
   require_distinct({{"SCENE", options.scene},
+                    {scene.mesh_where, scene.mesh_file},
                     {"--trajectory", options.trajectory},
                     {"--out", options.out},
                     {"--report", options.report}});
-  if (options.report) check_writable(*options.report);
-  WholeFile out(options.out);
+  if (options.report) check_writable(*options.report, Contents::kReport);
+  WholeFile out(options.out, Contents::kCapture);
   protocol::CaptureWriter capture(out.path());
   say_what_is_lost(motion, options, ticks_hz);
   ProgressLine progress;

@@ -34,15 +34,6 @@ void warn_if_slow(const Scene& scene) {
   }
 }
 
-void warn_if_huge(const TetMesh& mesh, const Scene& scene) {
-  const MeshInfo info = describe(mesh);
-  const double size = (info.max - info.min).maxCoeff();
-  if (size > 2) {
-    log::warning("{}: the mesh is {:.3g} m long; if it is in millimetres, scale it by 0.001",
-                 scene.mesh_file.string(), size);
-  }
-}
-
 /// Everything known about the scene before the loop starts.
 Json describe_scene(const Scene& scene, const Simulation& simulation, Time setup, const SetupTimes& parts) {
   const MeshInfo info = describe(simulation.mesh());
@@ -71,6 +62,12 @@ Json timeline_report(const Timeline<StepCell>& timeline) {
   return {{"cell_s", to_seconds(timeline.width())}, {"cells", cells}};
 }
 
+/// Of a tool that was held, but never touched.
+Json missed_by(const ToolStats& tool) {
+  if (tool.contact_steps > 0 || !tool.nearest_m) return nullptr;
+  return *tool.nearest_m;
+}
+
 Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& scene) {
   Json tools = Json::array();
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
@@ -78,6 +75,7 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
                      {"max_newton", stats.tools[i].max_newton},
                      {"contact_steps", stats.tools[i].contact_steps},
                      {"beyond_steps", stats.tools[i].beyond_steps},
+                     {"missed_by_m", missed_by(stats.tools[i])},
                      {"sessions", link.tools[i].so_far.load()}});
   }
   return tools;
@@ -120,6 +118,15 @@ void print_summary(const Json& report, const FlaggedSteps& flagged) {
       report["max_newton"].get<double>());
   if (const std::string why = flagged.to_text(); !why.empty())
     fmt::print("            steps with a flagged force: {}\n", why);
+  for (std::size_t i = 0; i < report["tools"].size(); ++i) {
+    const Json& missed = report["tools"][i]["missed_by_m"];
+    if (missed.is_null()) continue;
+    fmt::print(
+        "            tool {} never touched the organ: it came within {:.1f} mm of it; is the client file "
+        "made "
+        "for this scene ([session] clients)?\n",
+        i + 1, 1e3 * missed.get<double>());
+  }
   std::fflush(stdout);
 }
 
@@ -176,14 +183,16 @@ std::uint64_t random_seed() {
 
 int run_server(const ServerOptions& options) {
   const Scene scene = read_scene(options.scene);
-  require_distinct({{"SCENE", options.scene}, {"--report", options.report}, {"--record", options.record}});
-  if (options.report) check_writable(*options.report);
+  require_distinct({{"SCENE", options.scene},
+                    {scene.mesh_where, scene.mesh_file},
+                    {"--report", options.report},
+                    {"--record", options.record}});
+  if (options.report) check_writable(*options.report, Contents::kReport);
   protocol::UdpSocket socket(protocol::resolve(options.listen, "--listen"));
   const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;
   const Time begin = now();
   SetupTimes progress{ProgressLine()};
   Simulation simulation(scene, std::ref(progress));
-  warn_if_huge(simulation.mesh(), scene);
   warn_if_slow(scene);
   warn_if_out_of_reach(simulation, scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);

@@ -161,7 +161,7 @@ void require_output(const std::filesystem::path& file, const char* option, std::
   const bool named = file.extension() == extension || std::filesystem::is_character_file(file, ignored);
   if (!named)
     fail("{}: \"{}\" is to end in {}, by which ParaView knows it", option, file.string(), extension);
-  check_writable(file);
+  check_writable(file, Contents::kShapes);
 }
 
 /// A motion of a countable number of steps, none of whose frames stands where the end is to be written.
@@ -190,7 +190,7 @@ int solve(const SolveOptions& options) {
   if (options.series) require_output(*options.series, "--series", ".pvd");
   ProgressLine progress;
   progress(name_of(Stage::kMesh), 0);
-  TetMesh mesh = with_nodes(read_mesh(scene.mesh_file), scene.material->element);
+  TetMesh mesh = with_nodes(read_mesh_of(scene), scene.material->element);
   put_inclusions(scene, mesh);
   const Surface surface = boundary_surface(mesh);
   require_memory_for(scene, Purpose::kSolve, count_parts(mesh, surface));

@@ -98,7 +98,7 @@ class Runner {
       const Vec3 p = motion.at(1e-3 * i);
       text += fmt::format("{},{},{},{}\n", 1e-3 * i, p[0], p[1], p[2]);
     }
-    write_whole(file, text);
+    write_csv(file, text);
   }
 
   std::filesystem::path folder_;
@@ -130,7 +130,7 @@ int study(const StudyOptions& options) {
   StudyPlan plan = plan_study(scene, options);
   std::error_code failed;
   std::filesystem::create_directories(options.out, failed);
-  check_writable(options.out / "summary.json");
+  check_writable(options.out / "summary.json", Contents::kReport);
   Runner runner(options, plan, empty);
   refine_references(plan, around(runner.motion(), kNear * scene.tools.front().shape.radius));
   const double latency = 1e-3 * options.latency_ms;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/error.h"
+#include "sim_server/mesh/bounding_box.h"
 #include "sim_server/mesh/coincident_vertices.h"
 #include "sim_server/mesh/connectivity.h"
 #include "sim_server/mesh/loose_parts.h"
@@ -305,6 +306,19 @@ void require_usable(const MeshFaults& faults, const std::string& source) {
        each ? fmt::format(", the first of {} {}", first->count, first->kind) : "", first->remedy,
        kinds > 1 ? fmt::format(" (the first of {} kinds of faults: `sim_server mesh info` lists all)", kinds)
                  : "");
+}
+
+std::string odd_size(const TetMesh& mesh) {
+  constexpr double kLongest = 5, kShortest = 0.005;  // m
+  if (mesh.vertices.empty()) return {};
+  const double size = bounding_box(mesh.vertices).sizes().maxCoeff();
+  if (size > kLongest)
+    return fmt::format(
+        "the mesh is {:.3g} m long; is its unit the millimetre? then set `scale = 0.001` in [mesh]", size);
+  if (size < kShortest)
+    return fmt::format("the mesh is {:.3g} m long; if its unit is not the metre, set `scale` in [mesh]",
+                       size);
+  return {};
 }
 
 std::string slivers_in_short(const MeshFaults& faults) {

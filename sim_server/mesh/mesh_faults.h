@@ -46,6 +46,10 @@ void require_usable(const MeshFaults& faults, const std::string& source);
 /// that were tried: above 11 degrees).
 constexpr double kSliver = 1.7453292519943295e-2;  // rad: 1 degree
 
+/// A sentence that names the likely unit, where a mesh in metres is longer than 5 m or shorter than 5 mm;
+/// else empty.
+std::string odd_size(const TetMesh& mesh);
+
 /// The sentence about slivers, with what they do and what to do; empty where there are none.
 std::string slivers_in_short(const MeshFaults& faults);
 

@@ -40,7 +40,7 @@ class Appended {
 };
 
 void write_whole(const std::filesystem::path& file, const std::string& content) {
-  WholeFile whole(file);
+  WholeFile whole(file, Contents::kShapes);
   std::ofstream out(whole.path(), std::ios::binary);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();

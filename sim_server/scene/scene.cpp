@@ -1,6 +1,17 @@
 #include "sim_server/scene/scene.h"
 
+#include "common/log.h"
+#include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/mesh/mesh_faults.h"
+
 namespace palpate::sim {
+
+TetMesh read_mesh_of(const Scene& scene) {
+  TetMesh mesh = read_mesh(scene.mesh_file);
+  for (Vec3& x : mesh.vertices) x *= scene.mesh_scale;
+  if (const std::string odd = odd_size(mesh); !odd.empty()) log::warning("{}: {}", scene.mesh_where, odd);
+  return mesh;
+}
 
 std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh) {
   std::vector<char> is_fixed(mesh.vertices.size(), 0);

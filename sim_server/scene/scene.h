@@ -75,6 +75,7 @@ struct Scene {
   std::string rate_where;  ///< "FILE:LINE" of `rate_hz`; empty where it is absent
   std::filesystem::path mesh_file;
   std::string mesh_where;  ///< "FILE:LINE" of `[mesh] file`
+  double mesh_scale = 1;   ///< metres per unit of the mesh file, [1e-6, 1e3]
   std::vector<FixedRegion> fixed;
   std::vector<Load> loads{};
   std::optional<Material> material;
@@ -82,7 +83,9 @@ struct Scene {
   std::string material_where;  ///< "FILE:LINE" of `[material]`; empty where it is absent
   DeformationSettings deformation;
   std::vector<ToolSettings> tools = std::vector<ToolSettings>(1);  ///< 1 to `kMaxTools`
-  std::string source;                                              ///< the file, for messages
+  /// Client files made for this scene, one per tool; the server itself does not read them.
+  std::vector<std::filesystem::path> clients{};
+  std::string source;  ///< the file, for messages
 
   /// Whether nothing holds the body anywhere.
   bool flies() const {
@@ -90,6 +93,10 @@ struct Scene {
     return fixed.empty() && std::none_of(loads.begin(), loads.end(), displaces);
   }
 };
+
+/// The mesh file that the scene names, in metres, with a warning where it is of no size that an organ has.
+/// Throws `Error` as `read_mesh`.
+TetMesh read_mesh_of(const Scene& scene);
 
 /// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an
 /// unknown tag.

@@ -96,6 +96,17 @@ void warn_of_locking(const Scene& scene) {
       scene.material_where, scene.material->poisson_ratio);
 }
 
+/// Fat and brain have some hundred pascals, bone ten gigapascals.
+void warn_of_stiffness(const Scene& scene) {
+  constexpr double kLeast = 100, kMost = 1e9;  // Pa
+  if (!scene.material) return;
+  const double modulus = scene.material->young_modulus;
+  if (modulus >= kLeast && modulus <= kMost) return;
+  log::warning("{}: young_modulus {:g} Pa is {} than any soft tissue has; is it in {}? 1 kPa is 1e3",
+               scene.material_where, modulus, modulus < kLeast ? "less" : "more",
+               modulus < kLeast ? "kPa" : "other units than Pa");
+}
+
 void read_grasp(const Config& config, ToolSettings& tool) {
   if (config.has("grasp_buttons")) {
     tool.grasp_buttons =
@@ -166,6 +177,18 @@ std::vector<ToolSettings> read_tools(const Config& config) {
   return tools;
 }
 
+/// The client files made for the scene.
+std::vector<std::filesystem::path> read_clients(const Config& config) {
+  std::vector<std::filesystem::path> clients = config.files("clients");
+  for (const std::filesystem::path& client : clients) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(client, ignored))
+      fail("{}: `clients`: {}: no such file", config.where("clients"), client.string());
+  }
+  config.reject_unknown();
+  return clients;
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
@@ -181,6 +204,7 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   if (!mesh) fail("{}: missing section [mesh] with `file`", config.where());
   scene.mesh_file = mesh->file("file");
   scene.mesh_where = mesh->where("file");
+  scene.mesh_scale = mesh->number("scale", {1e-6, 1e3, "m per unit of the file"}, scene.mesh_scale);
   mesh->reject_unknown();
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(scene.mesh_file, ignored)) {
@@ -207,9 +231,11 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   if (purpose == Purpose::kServe) require_what_the_model_can(scene);
   if (purpose == Purpose::kServe || !config.tables("tool").empty()) scene.tools = read_tools(config);
   if (purpose == Purpose::kServe && scene.flies() && model_of(scene.deformation).flies) require_flight(scene);
+  if (const auto session = config.table("session")) scene.clients = read_clients(*session);
   config.reject_unknown();
   reach_what_moves(scene);
   warn_of_locking(scene);
+  warn_of_stiffness(scene);
   return scene;
 }
 

@@ -8,7 +8,8 @@
 namespace palpate::sim {
 namespace {
 constexpr Time kPollPeriod = std::chrono::microseconds(200);  // rate 0: how often to look for a new pose
-}
+constexpr Time kLookPeriod = std::chrono::milliseconds(100);  // how near a tool is that has not touched yet
+}  // namespace
 
 StepCell& StepCell::operator+=(const StepCell& other) noexcept {
   steps += other.steps;
@@ -20,7 +21,8 @@ StepCell& StepCell::operator+=(const StepCell& other) noexcept {
 
 SimLoop::SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes,
                  std::span<const ToolSettings> tools)
-    : served_(simulation),
+    : simulation_(simulation),
+      served_(simulation),
       mailboxes_(mailboxes),
       tools_(tools),
       period_(rate_hz > 0 ? from_seconds(1 / rate_hz) : Time::zero()),
@@ -92,6 +94,18 @@ void SimLoop::count_beyond(std::size_t tool) noexcept {
   went_beyond[tool].store(true, std::memory_order_relaxed);
 }
 
+/// For who never touches: how much was missing.
+void SimLoop::look_how_near(Time now) noexcept {
+  if (now < next_look_) return;
+  next_look_ = now + kLookPeriod;
+  for (std::size_t i = 0; i < stats_.tools.size(); ++i) {
+    ToolStats& tool = stats_.tools[i];
+    if (tool.contact_steps > 0) continue;
+    const std::optional<double> gap = simulation_.gap(i);
+    if (gap && (!tool.nearest_m || *gap < *tool.nearest_m)) tool.nearest_m = gap;
+  }
+}
+
 void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept {
   const auto took_ns = static_cast<double>(took.count());
   bool contact = false, flagged = false;
@@ -107,6 +121,7 @@ void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, 
     flagged = flagged || force.flagged;
     largest = std::max(largest, newton);
   }
+  look_how_near(start + took);
   stats_.step_ns.add(took.count());
   stats_.timeline.at(start) += {1, took_ns, took_ns, 0};
   if (contact) stats_.contact_step_ns.add(took.count());

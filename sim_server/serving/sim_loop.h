@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <atomic>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct ToolStats {
   std::uint64_t contact_steps = 0;
   std::uint64_t beyond_steps = 0;  ///< with its tip beyond its workspace or cone, where nothing is built
   double max_newton = 0;
+  std::optional<double> nearest_m{};  ///< before it first touched, looked at ten times a second
 };
 
 /// What the loop measured; read it when the loop has ended.
@@ -79,12 +81,14 @@ class SimLoop {
   bool read_inputs() noexcept;
   void step(double dt) noexcept;
   void count_beyond(std::size_t tool) noexcept;
+  void look_how_near(Time now) noexcept;
   void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
 
+  const Simulation& simulation_;
   ServedTools served_;
   SimMailboxes& mailboxes_;
   std::span<const ToolSettings> tools_;
-  Time period_;
+  Time period_, next_look_{};
   std::vector<SessionInput> inputs_;
   SimLoopStats stats_;
 };

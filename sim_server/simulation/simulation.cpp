@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <new>
-#include <nlohmann/json.hpp>
 
 #include "common/error.h"
 #include "common/hash.h"
@@ -69,10 +68,10 @@ void carry_before(Tissue& tissue, double dt) noexcept {
   for (std::size_t v = 0; v < tissue.before.size(); ++v) tissue.before[v] += dt * tissue.velocities[v];
 }
 
-/// `read_mesh`, told to `progress`.
-TetMesh read_mesh_of(const Scene& scene, const Progress& progress) {
+/// `read_mesh_of`, told to `progress`.
+TetMesh read_mesh_told(const Scene& scene, const Progress& progress) {
   progress(name_of(Stage::kMesh), 0);
-  return read_mesh(scene.mesh_file);
+  return read_mesh_of(scene);
 }
 
 }  // namespace
@@ -91,7 +90,7 @@ std::string contact_stage(std::size_t tool, std::size_t tools) {
 }
 
 Simulation::Simulation(const Scene& scene, const Progress& progress)
-    : Simulation(scene, read_mesh_of(scene, progress), progress) {}
+    : Simulation(scene, read_mesh_told(scene, progress), progress) {}
 
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
   put_inclusions(scene, mesh_);
@@ -156,26 +155,6 @@ void Simulation::count_flagged() noexcept {
                           : !tools_settled_             ? flagged_.tools
                                                         : flagged_.contact;
   ++reason;
-}
-
-std::string FlaggedSteps::to_text() const {
-  std::string text;
-  const auto add = [&](std::uint64_t steps, std::string_view reason) {
-    if (steps > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", steps, reason);
-  };
-  add(threw, "failed");
-  add(ran_away, "ran away");
-  add(inside_out, "with elements inside out (law \"neo_hookean\" lets none turn)");
-  add(not_balanced, "not balanced");
-  add(tools, "tools not settled together");
-  add(contact, "contact not settled");
-  return text;
-}
-
-Json FlaggedSteps::to_json() const {
-  return {{"threw", threw},           {"ran_away", ran_away},
-          {"inside_out", inside_out}, {"not_balanced", not_balanced},
-          {"tools", tools},           {"contact", contact}};
 }
 
 /// After a step that threw. The forces of a tissue that answers no more fade.
@@ -361,6 +340,11 @@ Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolFo
   const double beyond = linearised.plane.gap + kTouch * contact.radius();
   linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue).tangent;
   return linearised;
+}
+
+std::optional<double> Simulation::gap(std::size_t tool) const noexcept {
+  if (!tools_[tool].placed() || tools_[tool].touchable().empty()) return {};
+  return tools_[tool].nearest(tools_[tool].place(), tissue_).gap;
 }
 
 Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) {

@@ -2,11 +2,11 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/report.h"
 #include "sim_server/contact/tool_contact.h"
 #include "sim_server/deformation/model_inputs.h"
 #include "sim_server/mesh/tet_mesh.h"
 #include "sim_server/scene/scene.h"
+#include "sim_server/simulation/flagged_steps.h"
 
 namespace palpate::sim {
 
@@ -69,20 +69,6 @@ struct StepFailures {
   std::uint64_t other = 0;
 };
 
-/// Steps with a flagged answer, by the first of these reasons that holds.
-struct FlaggedSteps {
-  std::uint64_t threw = 0;         ///< the model did (`StepFailures`)
-  std::uint64_t ran_away = 0;      ///< the surface is farther from rest than any tissue goes
-  std::uint64_t inside_out = 0;    ///< elements stay turned inside out: too much for this law of the tissue
-  std::uint64_t not_balanced = 0;  ///< the model found no equilibrium under the loads
-  std::uint64_t tools = 0;         ///< the contacts of several tools did not settle together
-  std::uint64_t contact = 0;       ///< that of one tool did not, or it cannot be told where it touches
-  /// "3 not balanced, 1 contact not settled", with what helps; empty: none.
-  std::string to_text() const;
-  /// Of reports: {"threw": ...}.
-  Json to_json() const;
-};
-
 /// The organ of a scene with its tools: one step, one page. Built from a scene (throws `Error`), then stepped
 /// by one thread. A step depends on nothing but its arguments and the state, and does not throw: where the
 /// model does, its answers are those of the step before, flagged (half of their forces each further time in
@@ -111,6 +97,9 @@ class Simulation {
 
   std::size_t tools() const { return tools_.size(); }
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
+  /// How far a tool is from the surface that it can touch, as it stands, m; nothing of one that is lifted.
+  /// O(vertices).
+  std::optional<double> gap(std::size_t tool) const noexcept;
   /// Triangles that a tool can touch; corners: surface vertices.
   std::span<const Triangle> touchable(std::size_t tool) const { return tools_[tool].touchable(); }
   const DeformationModel& model() const { return *tissue_.model; }

@@ -60,7 +60,7 @@ class Planner {
  public:
   Planner(const Scene& scene, const StudyOptions& options) : base_(scene), options_(options) {
     if (base_.rate_hz <= 0) base_.rate_hz = kUsualRate;
-    mesh_ = read_mesh(base_.mesh_file);
+    mesh_ = read_mesh_of(base_);
     for (std::size_t k = 0; k < base_.fixed.size(); ++k) {
       vertices_in(base_.fixed[k], mesh_);  // there are some
     }
@@ -116,7 +116,7 @@ class Planner {
                before.mesh_file.string());
       }
       other.mesh_file = file;
-      const TetMesh mesh = read_mesh(file);
+      const TetMesh mesh = read_mesh_of(other);
       for (const FixedRegion& region : base_.fixed) vertices_in(region, mesh);  // there are some
       meshes.emplace_back(other, 0);
     }
@@ -205,7 +205,7 @@ void refine_references(StudyPlan& plan, const Box& near) {
 }
 
 TetMesh mesh_of(const StudyCase& one) {
-  TetMesh mesh = read_mesh(one.scene.mesh_file);
+  TetMesh mesh = read_mesh_of(one.scene);
   for (std::size_t k = 0; k < one.scene.fixed.size(); ++k)
     mesh.surface_tags[fixed_tag(k)] = vertices_in(one.scene.fixed[k], mesh);
   put_inclusions(one.scene, mesh);  // of all refinements those of the mesh

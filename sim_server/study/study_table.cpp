@@ -163,10 +163,10 @@ void write_study(const StudyOptions& options, const StudyResult& result) {
   }
   Json refused = Json::array();
   for (const auto& [name, why] : result.refused) refused.push_back({{"case", name}, {"reason", why}});
-  write_whole(options.out / "rows.csv", csv_of(facts));
-  write_whole(options.out / "timing.csv", csv_of(times));
-  write_whole(options.out / "along.csv", csv_of(along));
-  write_whole(options.out / "reference.csv", csv_of(steps_of(result.truth)));
+  write_csv(options.out / "rows.csv", csv_of(facts));
+  write_csv(options.out / "timing.csv", csv_of(times));
+  write_csv(options.out / "along.csv", csv_of(along));
+  write_csv(options.out / "reference.csv", csv_of(steps_of(result.truth)));
   write_json(options.out / "summary.json", {{"reference",
                                              {{"case", result.reference},
                                               {"check", result.check},

@@ -72,7 +72,7 @@ void pass(File& file, T& trace) {
 }  // namespace
 
 void write_trace(const std::filesystem::path& path, const Trace& trace) {
-  WholeFile whole(path);
+  WholeFile whole(path, Contents::kTable);
   Writer writer{std::ofstream(whole.path(), std::ios::binary)};
   writer.number(kMagic);
   pass(writer, trace);

@@ -210,7 +210,7 @@ void study(bool quick, const std::filesystem::path& out) {
   std::vector<Json> rows(all.size());
   for_all(all.size(), "laws",
           [&](std::size_t k, PressAndSlide& slides) { rows[k] = row_of(all[k], direct(all[k]), slides); });
-  write_whole(out / "stability.csv", csv_of(Json(rows)));
+  write_csv(out / "stability.csv", csv_of(Json(rows)));
   write_json(out / "summary.json", rows);
 }
 

@@ -268,3 +268,53 @@ TEST_CASE("wrong input: one line that says what, where and what to do, exit 2, n
   CHECK_FALSE(std::filesystem::exists(folder.path() / "s.json"));
   CHECK_FALSE(std::filesystem::exists(folder.path() / "r.json"));
 }
+
+TEST_CASE("what is there already is kept: an output never takes the place of a mesh, a scene or a motion") {
+  const TemporaryFolder folder;
+  const std::string root = PALPATE_SOURCE_DIR;
+  const auto copied = [&](const std::string& from) {
+    const auto file = folder.path() / std::filesystem::path(from).filename();
+    std::filesystem::copy_file(root + "/configs/" + from, file);
+    return file.string();
+  };
+  const auto contents = [](const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string mesh = copied("meshes/block.msh"), motion = copied("trajectories/block_palpation.csv"),
+                    other = copied("scenes/liver_weight.toml");
+  const std::string scene =
+      folder.write("scene.toml", "[mesh]\nfile = \"block.msh\"\n[deformation]\nmodel = \"rigid\"\n[[tool]]\n")
+          .string();
+  const std::string client =
+      folder.write("client.toml", "[trajectory]\nfile = \"block_palpation.csv\"\n").string();
+  const std::string mesh_was = contents(mesh), motion_was = contents(motion), other_was = contents(other);
+  for (const std::string& out : {mesh, other, motion}) {
+    CAPTURE(out);
+    const std::string said =
+        output_of("sim_server", {"record", scene, "--trajectory", client, "--rate", "30", "--out", out}, 2);
+    CHECK(said.find(out) != std::string::npos);
+  }
+  const std::string traced = output_of("haptic_client", {"run", client, "--trace", motion}, 2);
+  CHECK(traced.find("name the same file") != std::string::npos);
+  output_of("haptic_client", {"run", client, "--report", motion}, 2);
+  output_of("sim_server", {"run", scene, "--listen", "127.0.0.1:0", "--report", mesh}, 2);
+  CHECK(contents(mesh) == mesh_was);
+  CHECK(contents(motion) == motion_was);
+  CHECK(contents(other) == other_was);
+}
+
+TEST_CASE("a tool that was held, but never touched: the server says so, and how near it came") {
+  const TemporaryFolder folder;
+  const std::string report = (folder.path() / "server.json").string();
+  Server server({"--report", report}, "127.0.0.1:0",
+                std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/block.toml");
+  // The hand holds still at (0, 0.1, 0); the block's top is y = 0, the tool's radius 6 mm.
+  const std::string client = folder.write("client.toml", "").string();
+  Process process("haptic_client", {"run", client, "--server", server.address, "--seconds", "1"});
+  CHECK(process.wait() == 0);
+  server.process.signal(SIGINT);
+  CHECK(server.process.wait() == 0);
+  CHECK(read_json(report)["tools"][0]["missed_by_m"].get<double>() == Approx(0.094).epsilon(0.01));
+  CHECK(server.process.output().find("never touched the organ") != std::string::npos);
+}

@@ -4,6 +4,7 @@
 
 #include "common/error.h"
 #include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/mesh/mesh_faults.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
 #include "tests/support/temporary_folder.h"
@@ -101,4 +102,34 @@ TEST_CASE("only a model that has damping is asked for it") {
                   negative = scene("model = \"tensor_mass\"\nrayleigh_mass = -1\n");
   CHECK(none.error().starts_with(none.file + ":7: unknown key"));
   CHECK(negative.error().starts_with(negative.file + ":7: "));
+}
+
+TEST_CASE(
+    "[session] clients: paths beside the scene, which must be there; the server reads no more of them") {
+  const SceneFile file("[[tool]]\n[session]\nclients = [\"a.toml\", \"b.toml\"]\n");
+  file.folder.write("a.toml", "");
+  CHECK(file.error().find("b.toml: no such file") != std::string::npos);
+  file.folder.write("b.toml", "what is not even TOML");
+  const Scene scene = read_scene(file.file);
+  REQUIRE(scene.clients.size() == 2);
+  CHECK(scene.clients[1].filename() == "b.toml");
+  CHECK(read_scene(SceneFile("[[tool]]\n").file).clients.empty());
+}
+
+TEST_CASE("scale of a mesh: one in millimetres is used in metres, one of no organ's size is told") {
+  const test::TemporaryFolder folder;
+  const std::string mesh =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 100 0 0\n3 0 80 0\n4 0 0 60\n$EndNodes\n"
+      "$Elements\n1\n1 4 2 0 0 1 2 3 4\n$EndElements\n";
+  folder.write("organ.msh", mesh);
+  const auto scene_of_scale = [&](const std::string& scale) {
+    return read_scene(folder.write("scene.toml", "[mesh]\nfile = \"organ.msh\"\n" + scale +
+                                                     "[deformation]\nmodel = \"rigid\"\n[[tool]]\n"));
+  };
+  const TetMesh scaled = read_mesh_of(scene_of_scale("scale = 0.001\n"));
+  CHECK((scaled.vertices[1] - Vec3(0.1, 0, 0)).norm() < 1e-15);
+  CHECK(odd_size(scaled).empty());
+  CHECK(odd_size(read_mesh_of(scene_of_scale(""))).find("scale = 0.001") != std::string::npos);
+  CHECK(odd_size(read_mesh_of(scene_of_scale("scale = 1e-5\n"))).find("0.001 m long") != std::string::npos);
+  CHECK_THROWS_AS(scene_of_scale("scale = 0\n"), Error);
 }

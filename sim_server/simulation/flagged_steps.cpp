@@ -1,0 +1,29 @@
+#include "sim_server/simulation/flagged_steps.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+namespace palpate::sim {
+
+std::string FlaggedSteps::to_text() const {
+  std::string text;
+  const auto add = [&](std::uint64_t steps, std::string_view reason) {
+    if (steps > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", steps, reason);
+  };
+  add(threw, "failed");
+  add(ran_away, "ran away");
+  add(inside_out, "with elements inside out (law \"neo_hookean\" lets none turn)");
+  add(not_balanced, "not balanced");
+  add(tools, "tools not settled together");
+  add(contact, "contact not settled");
+  return text;
+}
+
+Json FlaggedSteps::to_json() const {
+  return {{"threw", threw},           {"ran_away", ran_away},
+          {"inside_out", inside_out}, {"not_balanced", not_balanced},
+          {"tools", tools},           {"contact", contact}};
+}
+
+}  // namespace palpate::sim
