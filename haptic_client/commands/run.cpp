@@ -142,7 +142,9 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
     tools.emplace_back(configs[i], files[i], name_of_tool(configs[i], i + 1, configs.size()),
                        options.seconds);
   // One after the other, so that the first tool of the scene is the first one here.
-  if (std::all_of(tools.begin(), tools.end(), [](HeldTool& tool) { return tool.connect(); })) {
+  const bool connected =
+      std::all_of(tools.begin(), tools.end(), [](HeldTool& tool) { return tool.connect(); });
+  if (connected) {
     for (HeldTool& tool : tools) tool.start(guardian.heartbeat());
     // After the threads, whose stacks a small limit would not hold.
     if (const std::string refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
@@ -153,7 +155,11 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   for (HeldTool& tool : tools) tool.stop();
   Json report = {{"server", configs.front().server}, {"tools", Json::array()}};
   for (const HeldTool& tool : tools) report["tools"].push_back(tool.report());
-  print_report(report);
+  if (connected)
+    print_report(report);
+  else
+    fmt::print("haptic_client: ended before a server at {} had answered; nothing was felt\n",
+               configs.front().server);
   for (const HeldTool& tool : tools) tool.write_files();
   if (options.report) write_json(*options.report, report);
   for (std::size_t i = 0; i < configs.size(); ++i) {

@@ -177,6 +177,8 @@ TEST_CASE("Ctrl-C while waiting for a server ends the client, exit 0, with its r
   client.signal(SIGINT);
   CHECK(client.wait() == 0);
   CHECK(read_json(report)["tools"][0]["loop"]["ticks"] == 0);
+  CHECK(client.output().find("nothing was felt") != std::string::npos);
+  CHECK(client.output().find("largest force") == std::string::npos);
 }
 
 TEST_CASE("no server: exit 1 after 5 s with what to look at, port in use: exit 1") {
