@@ -56,7 +56,7 @@ TEST_CASE("a body is loose until three of its vertices are held that are not in 
   CHECK(held_by([](const Vec3& x) { return x.sum() == 1; }).empty());  // three corners
 }
 
-TEST_CASE("hinges are named by their vertices; parts that share three not in one line are one") {
+TEST_CASE("hinges are named by their vertices, parts that share three not in one line are one") {
   CHECK(hinges(grid_block({0, 1, 2}, {0, 1}, {0, 1})).empty());
   TetMesh mesh = hinged_cubes();
   const auto found = hinges(mesh);

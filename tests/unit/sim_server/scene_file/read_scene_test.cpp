@@ -104,8 +104,7 @@ TEST_CASE("only a model that has damping is asked for it") {
   CHECK(negative.error().starts_with(negative.file + ":7: "));
 }
 
-TEST_CASE(
-    "[session] clients: paths beside the scene, which must be there; the server reads no more of them") {
+TEST_CASE("clients of a scene: paths beside the scene, which must be there, and are not read") {
   const SceneFile file("[[tool]]\n[session]\nclients = [\"a.toml\", \"b.toml\"]\n");
   file.folder.write("a.toml", "");
   CHECK(file.error().find("b.toml: no such file") != std::string::npos);
