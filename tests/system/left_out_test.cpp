@@ -208,7 +208,7 @@ TEST_CASE("explain --why names the line that asks for a part, or leaves it out")
   const auto [built, line] = why("compliance");
   CHECK(built == 0);
   CHECK(line.find("model = \"quasi_static\"") != std::string::npos);
-  CHECK(line.find("liver_falcon.toml:19") != std::string::npos);
+  CHECK(line.find("liver_falcon.toml:22") != std::string::npos);
   const auto [left, out] = why("the surface out of reach");
   CHECK(left == 0);
   CHECK(out.find("[tool.workspace]") != std::string::npos);
