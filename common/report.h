@@ -40,9 +40,9 @@ class WholeFile {
   std::filesystem::path file_, part_;
 };
 
-/// A file that a command line, or a file that it names, names, and the option that names it.
+/// A file that a command line names, or that a scene or client file on it names, and what names it.
 struct NamedFile {
-  std::string option;  ///< or "FILE:LINE" of the key
+  std::string option;  ///< "--out", or "FILE:LINE" of a key
   std::optional<std::filesystem::path> file;
 };
 
