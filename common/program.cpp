@@ -1,13 +1,29 @@
 #include "common/program.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <fmt/core.h>
 
 #include "common/error.h"
 #include "common/interrupt.h"
 #include "common/log.h"
+#include "common/text.h"
 
 namespace palpate {
+namespace {
+
+/// `; did you mean "run"?` where the first word is no subcommand of a program that wants one.
+std::string meant(const CLI::App& app, int argc, char** argv) {
+  if (app.get_require_subcommand_min() == 0 || argc < 2 || argv[1][0] == '-') return {};
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  if (std::ranges::find(names, argv[1]) != names.end()) return {};
+  return fmt::format(": \"{}\" is none{}", argv[1], suggestion(argv[1], names));
+}
+
+}  // namespace
 
 int run_program(const char* name, int argc, char** argv, int (*body)(int argc, char** argv)) {
   log::start(name);
@@ -31,7 +47,7 @@ std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    log::error("{}; try --help", e.what());
+    log::error("{}{}; try --help", e.what(), meant(app, argc, argv));
     return 2;
   }
 }

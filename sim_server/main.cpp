@@ -22,6 +22,17 @@ std::string models() {
   return text;
 }
 
+void add_cache_options(CLI::App* command, sim::CacheOptions& options) {
+  command->add_option("--cache", options.folder,
+                      "Folder that keeps what set-ups computed (default: $XDG_CACHE_HOME/palpate, or "
+                      "~/.cache/palpate)");
+}
+
+void add_cache_or_none(CLI::App* command, sim::CacheOptions& options) {
+  add_cache_options(command, options);
+  command->add_flag("--no-cache", options.none, "Compute everything anew, and keep nothing");
+}
+
 CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
   auto* command = app.add_subcommand("run", "Serve a scene until Ctrl-C");
   command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
@@ -32,6 +43,7 @@ CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
   command->add_option("--seconds", options.seconds, "Stop after so many seconds");
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
   command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
+  add_cache_or_none(command, options.cache);
   command->footer(
       models() +
       "Example: sim_server run configs/scenes/liver.toml --listen 0.0.0.0:45130 --report server.json");
@@ -58,6 +70,7 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
   command->add_flag("!--plain", options.parts,
                     "Forces only: no tangents and surfaces, which some laws use (smaller)");
   command->add_option("--report", options.report, "Write figures of the recording to this JSON file");
+  add_cache_or_none(command, options.cache);
   command->footer(
       models() +
       "Examples:\n"
@@ -100,6 +113,7 @@ CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
       app.add_subcommand("explain", "What a scene builds, what it leaves out, and what that saves");
   command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
   command->add_option("--json", options.json, "Write the same to this JSON file");
+  add_cache_or_none(command, options.cache);
   command
       ->add_option(
           "--why", options.why,
@@ -154,6 +168,20 @@ CLI::App* add_mesh_info(CLI::App& app, std::string& file) {
   return info;
 }
 
+/// `cache list` and `cache clear`.
+std::pair<CLI::App*, CLI::App*> add_cache(CLI::App& app, sim::CacheOptions& options) {
+  auto* cache = app.add_subcommand("cache", "What set-ups have computed, kept on disk");
+  cache->require_subcommand(1);
+  cache->footer("Examples: sim_server cache list\n          sim_server cache clear");
+  auto* list = cache->add_subcommand("list", "What is kept, how large it is, and what it saves");
+  auto* clear = cache->add_subcommand("clear", "Remove all of it; the next set-ups compute it again");
+  for (auto* command : {list, clear}) {
+    add_cache_options(command, options);
+    command->footer("Example: sim_server cache " + command->get_name());
+  }
+  return {list, clear};
+}
+
 void check(const sim::SolveOptions& options) {
   if (options.seconds) require_within(*options.seconds, 1e-6, 1e6, "--seconds", "s");
   require_within(options.step, 1e-6, 1e3, "--step", "s");
@@ -192,8 +220,12 @@ int run(int argc, char** argv) {
   sim::StudyOptions studying;
   const auto* study = add_study(app, studying);
   const auto* mesh_info = add_mesh_info(app, mesh_file);
+  sim::CacheOptions cached;
+  const auto [list, clear] = add_cache(app, cached);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*mesh_info) return sim::print_mesh_info(mesh_file);
+  if (*list) return sim::list_cache(cached);
+  if (*clear) return sim::clear_cache(cached);
   if (*explain) {
     check(explaining);
     return sim::run_explain(explaining);

@@ -25,15 +25,16 @@ bool ComplementaritySolver::solve_on_basis(const Eigen::Ref<const Eigen::MatrixX
     if (active_[static_cast<std::size_t>(i)]) basis_.push_back(i);
   }
   const auto n = static_cast<Eigen::Index>(basis_.size());
-  auto matrix = factor_.topLeftCorner(n, n);
+  factor_.shape(n, n);
   auto rhs = slack_.head(n);
   for (Eigen::Index c = 0; c < n; ++c) {
     const int column = basis_[static_cast<std::size_t>(c)];
-    for (Eigen::Index r = c; r < n; ++r) matrix(r, c) = g_matrix(basis_[static_cast<std::size_t>(r)], column);
+    for (Eigen::Index r = c; r < n; ++r)
+      factor_(r, c) = g_matrix(basis_[static_cast<std::size_t>(r)], column);
     rhs[c] = -gap[column];
   }
   lambda.setZero();
-  Eigen::Ref<Eigen::MatrixXd> in_place(matrix);
+  Eigen::Ref<Eigen::MatrixXd> in_place(factor_);
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(in_place);
   if (factor.info() != Eigen::Success) return false;
   factor.solveInPlace(rhs);

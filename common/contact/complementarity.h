@@ -2,6 +2,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "common/contact/bounded_matrix.h"
+
 namespace palpate {
 
 /// Linear complementarity problem with a symmetric positive definite matrix:
@@ -23,7 +25,7 @@ class ComplementaritySolver {
   bool solve(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix, const Eigen::Ref<const Eigen::VectorXd>& gap,
              Eigen::Ref<Eigen::VectorXd> lambda) noexcept;
 
-  std::size_t bytes() const { return sizeof(double) * static_cast<std::size_t>(factor_.size()); }
+  std::size_t bytes() const { return factor_.bytes(); }
 
  private:
   bool pivot_blocks(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
@@ -39,7 +41,7 @@ class ComplementaritySolver {
                       const Eigen::Ref<const Eigen::VectorXd>& gap,
                       Eigen::Ref<Eigen::VectorXd> lambda) noexcept;
 
-  Eigen::MatrixXd factor_;
+  BoundedMatrix factor_;
   Eigen::VectorXd slack_, feasible_;
   std::vector<char> active_;
   std::vector<int> basis_;

@@ -51,11 +51,14 @@ void ContactSolver::differentiate_contacts(int tip) noexcept {
   const int rows = rows_of_contact();
   const auto n = rows * static_cast<Eigen::Index>(considered_.size()),
              size = 3 * static_cast<Eigen::Index>(nodes_.size());
-  auto curvature = curvature_.topLeftCorner(size, size);
-  auto jacobian = jacobian_.topLeftCorner(n, size);
-  curvature.setZero();
-  jacobian.setZero();
-  if (rows > 1) spread_.topLeftCorner(size, n).setZero();
+  curvature_.shape(size, size);
+  curvature_.setZero();
+  jacobian_.shape(n, size);
+  jacobian_.setZero();
+  if (rows > 1) {
+    spread_.shape(size, n);
+    spread_.setZero();
+  }
   for (Eigen::Index row = 0; row < n; row += rows) {
     const int k = considered_[static_cast<std::size_t>(row / rows)];
     const Contact& c = contacts_[k];
@@ -64,10 +67,10 @@ void ContactSolver::differentiate_contacts(int tip) noexcept {
     for (int i = 0; i < c.size; ++i) {
       x[i] = deformed_[c.node[i]];
       slot[i] = slot_of_node_[c.node[i]];
-      jacobian.block<1, 3>(row, 3 * slot[i]) = -c.weight[i] * c.normal.transpose();
+      jacobian_.block<1, 3>(row, 3 * slot[i]) = -c.weight[i] * c.normal.transpose();
     }
     slot[c.size] = slot_of_node_[tip];
-    jacobian.block<1, 3>(row, 3 * slot[c.size]) = c.at_tip(c.normal).transpose();
+    jacobian_.block<1, 3>(row, 3 * slot[c.size]) = c.at_tip(c.normal).transpose();
     if (rows > 1) {
       differentiate_friction(k, row, {slot.data(), static_cast<std::size_t>(c.size) + 1});
       continue;
@@ -77,7 +80,7 @@ void ContactSolver::differentiate_contacts(int tip) noexcept {
     const SimplexHessian h = hessian_of(c, pivots_, {x.data(), static_cast<std::size_t>(c.size)}, nullptr);
     for (int i = 0; i <= c.size; ++i) {
       for (int j = 0; j <= c.size; ++j) {
-        curvature.block<3, 3>(3 * slot[i], 3 * slot[j]) += force * h.block<3, 3>(3 * i, 3 * j);
+        curvature_.block<3, 3>(3 * slot[i], 3 * slot[j]) += force * h.block<3, 3>(3 * i, 3 * j);
       }
     }
   }
@@ -127,9 +130,14 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
   }
 }
 
-void ContactSolver::differentiate_considered(const ContactPatch& patch) noexcept {
+/// False where more is near the tool than there is room for.
+bool ContactSolver::differentiate_considered(const ContactPatch& patch) noexcept {
   collect_nodes(patch.nodes());
+  if (static_cast<int>(nodes_.size()) > most_nodes_ + 1 ||
+      static_cast<int>(considered_.size()) > most_contacts_)
+    return false;
   differentiate_contacts(patch.nodes());
+  return true;
 }
 
 }  // namespace palpate

@@ -12,55 +12,102 @@
 #include "common/contact/dense_solve.h"
 
 namespace palpate {
+namespace {
+constexpr double kNearby = 2;  // of what moves: a gap that wide is not closed
+}  // namespace
+
+/// Calls `visit` with the place among the nodes considered of each node of a contact, then of the tip.
+template <class Visit>
+void ContactSolver::each_slot(Eigen::Index contact, const Visit& visit) const {
+  const Contact& c = contacts_[considered_[static_cast<std::size_t>(contact)]];
+  for (int i = 0; i < c.size; ++i) visit(slot_of_node_[c.node[i]]);
+  visit(static_cast<int>(nodes_.size()) - 1);
+}
+
+/// Calls `visit` with the first row and column of each block (3 x 3) of S that is not zero, among those of
+/// the loaded nodes.
+template <class Visit>
+void ContactSolver::each_block_of_curvature(const Visit& visit) const {
+  for (Eigen::Index j = 3 * unloaded_; j < curvature_.cols(); j += 3) {
+    for (Eigen::Index i = 3 * unloaded_; i < curvature_.rows(); i += 3) {
+      if (const Mat3 block = curvature_.block<3, 3>(i, j); !block.isZero(0)) visit(i, j, block);
+    }
+  }
+}
 
 /// C over the nodes considered; and I - C S over the loaded ones, as elsewhere it is C S to their right and
 /// I.
 void ContactSolver::assemble_system(const ContactPatch& patch) noexcept {
   const auto count = static_cast<Eigen::Index>(nodes_.size()), size = 3 * count;
-  auto compliance = compliance_.topLeftCorner(size, size);
-  compliance.setZero();
+  compliance_.shape(size, size);
+  compliance_.setZero();
   for (Eigen::Index j = 0; j + 1 < count; ++j) {
     for (Eigen::Index i = 0; i + 1 < count; ++i) {
-      compliance.block<3, 3>(3 * i, 3 * j) = patch.compliance.block<3, 3>(3 * nodes_[i], 3 * nodes_[j]);
+      compliance_.block<3, 3>(3 * i, 3 * j) = patch.compliance.block<3, 3>(3 * nodes_[i], 3 * nodes_[j]);
     }
   }
-  compliance.bottomRightCorner<3, 3>().diagonal().setConstant(patch.tool_compliance);
+  compliance_.bottomRightCorner<3, 3>().diagonal().setConstant(patch.tool_compliance);
   const Eigen::Index first = 3 * unloaded_, loaded = size - first;
-  auto system = system_.topLeftCorner(loaded, loaded);
-  system.setIdentity();
-  system.noalias() -=
-      compliance.bottomRightCorner(loaded, loaded) * curvature_.block(first, first, loaded, loaded);
+  system_.shape(loaded, loaded);
+  system_.setIdentity();
+  each_block_of_curvature([&](Eigen::Index i, Eigen::Index j, const Mat3& block) {
+    system_.middleCols<3>(j - first) -= compliance_.block(first, i, loaded, 3).lazyProduct(block);
+  });
 }
 
-/// C~ A, then C~ of `loads` (3 x nodes, k <= 3), in the columns of `response_`; B C~ A + eps; and the sign of
-/// the determinant of I - C S.
+/// C of the forces of the contacts, or of their gaps (C B^T), over the rows from `first` on.
+void ContactSolver::spread_over(Eigen::Index first, bool forces,
+                                Eigen::Ref<Eigen::MatrixXd> moved) const noexcept {
+  const int rows = rows_of_contact();
+  moved.setZero();
+  for (Eigen::Index row = 0; row < moved.cols(); ++row) {
+    each_slot(row / rows, [&](int slot) {
+      const Vec3 load = forces && rows > 1 ? Vec3(spread_.block<3, 1>(3 * slot, row))
+                                           : Vec3(jacobian_.block<1, 3>(row, 3 * slot).transpose());
+      moved.col(row) += compliance_.block(first, 3 * slot, moved.rows(), 3).lazyProduct(load);
+    });
+  }
+}
+
+/// C~ of the forces of the contacts, A, then of `loads` (3 x nodes, k <= 3), over the loaded nodes, in the
+/// columns of `response_`; B of that, and eps, in `delassus_` (n x n + k); and the sign of the determinant of
+/// I - C S. With the compliance that the curvature adds over the loaded nodes alone: C~ = C + C S C~.
 bool ContactSolver::respond(const ContactPatch& patch,
                             const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept {
   assemble_system(patch);
   const int rows = rows_of_contact();
   const auto n = rows * static_cast<Eigen::Index>(considered_.size()), size = loads.rows();
-  const auto compliance = compliance_.topLeftCorner(size, size);
-  const auto jacobian = jacobian_.topLeftCorner(n, size);
-  auto response = response_.topLeftCorner(size, n);  // the columns of the solve are no longer needed
-  if (rows > 1) {
-    response.noalias() = compliance * spread_.topLeftCorner(size, n);
-  } else {
-    response.noalias() = compliance * jacobian.transpose();
-  }
-  response_.block(0, n, size, loads.cols()).noalias() = compliance * loads;
   const Eigen::Index first = 3 * unloaded_, loaded = size - first, columns = n + loads.cols();
-  auto at_loads = response_.block(first, 0, loaded, columns);
-  system_sign_ = gauss_solve(system_.topLeftCorner(loaded, loaded), at_loads);
-  if (system_sign_ == 0) return false;
-  if (first > 0) {
-    auto bent = bent_.topLeftCorner(loaded, columns);
-    bent.noalias() = curvature_.block(first, first, loaded, loaded) * at_loads;
-    response_.topLeftCorner(first, columns).noalias() += compliance.topRightCorner(first, loaded) * bent;
+  response_.shape(size, columns);
+  spread_over(0, true, response_.leftCols(n));
+  response_.rightCols(loads.cols()).noalias() = compliance_ * loads;
+  delassus_.shape(n, columns);
+  delassus_.setZero();
+  for (Eigen::Index column = 0; column < columns; ++column) {
+    for (Eigen::Index row = 0; row < n; ++row) {
+      each_slot(row / rows, [&](int slot) {
+        delassus_(row, column) +=
+            jacobian_.block<1, 3>(row, 3 * slot).dot(response_.col(column).segment<3>(3 * slot));
+      });
+    }
   }
-  auto delassus = delassus_.topLeftCorner(n, n);
-  delassus.noalias() = jacobian * response;
+  toward_.shape(loaded, n);  // C B^T
+  if (rows > 1) {
+    spread_over(first, false, toward_);
+  } else {
+    toward_ = response_.bottomLeftCorner(loaded, n);
+  }
+  auto at_loads = response_.bottomRows(loaded);
+  system_sign_ = gauss_solve(system_, at_loads);
+  if (system_sign_ == 0) return false;
+  bent_.shape(loaded, columns);
+  bent_.setZero();
+  each_block_of_curvature([&](Eigen::Index i, Eigen::Index j, const Mat3& block) {
+    bent_.middleRows<3>(i - first) += block.lazyProduct(at_loads.middleRows<3>(j - first));
+  });
+  delassus_.noalias() += toward_.transpose() * bent_;
   for (Eigen::Index row = 0; row < n; ++row)
-    delassus(row, row) += row % rows == 0 ? contact_compliance_ : friction_compliance_;
+    delassus_(row, row) += row % rows == 0 ? contact_compliance_ : friction_compliance_;
   return true;
 }
 
@@ -75,26 +122,25 @@ bool ContactSolver::solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>&
                                         Eigen::Ref<Eigen::VectorXd> force) noexcept {
   constexpr int kExchanges = 4;
   const auto n = gap.size();
-  const auto delassus = delassus_.topLeftCorner(n, n);
   active_.clear();
   for (int k = 0; k < n; ++k) {
-    if (lambda_[k] > 0) active_.push_back(k);
+    if (lambda_[considered_[static_cast<std::size_t>(k)]] > 0) active_.push_back(k);
   }
   for (int exchange = 0; exchange < kExchanges; ++exchange) {
     const auto size = static_cast<Eigen::Index>(active_.size());
-    if (size > system_.rows()) return false;
-    auto matrix = system_.topLeftCorner(size, size);  // whose own values have been used
+    if (static_cast<std::size_t>(size * size) * sizeof(double) > system_.bytes()) return false;
+    system_.shape(size, size);  // whose own values have been used
     auto solution = rhs_.col(2).head(size);
     for (Eigen::Index j = 0; j < size; ++j) {
       solution[j] = -gap[active_[j]];
-      for (Eigen::Index i = 0; i < size; ++i) matrix(i, j) = delassus(active_[i], active_[j]);
+      for (Eigen::Index i = 0; i < size; ++i) system_(i, j) = delassus_(active_[i], active_[j]);
     }
-    if (gauss_solve(matrix, solution) * system_sign_ <= 0) return false;
+    if (gauss_solve(system_, solution) * system_sign_ <= 0) return false;
     force.setZero();
     for (Eigen::Index i = 0; i < size; ++i) force[active_[i]] = solution[i];
     auto slack = slack_.head(n);
     slack = gap;
-    slack.noalias() += delassus * force;
+    slack.noalias() += delassus_.leftCols(n) * force;
     bool settled = true;
     active_.clear();
     for (int k = 0; k < n; ++k) {
@@ -114,49 +160,61 @@ bool ContactSolver::solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd
   return solve_on_active_set(gap, force) || (system_sign_ > 0 && solve_contacts(gap, force));
 }
 
-bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
-                                Eigen::Ref<Eigen::VectorXd> next) noexcept {
+/// The contacts that a Newton step may close or open where the plain step moves things by `change` (m): those
+/// with a force, and those whose gap it leaves small. With friction all.
+void ContactSolver::consider_near(double change) noexcept {
   considered_.clear();
-  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) considered_.push_back(k);
+  const auto n = static_cast<Eigen::Index>(contacts_.size());
+  if (friction_ == 0) {
+    auto slack = slack_.head(n);
+    slack = gap_.head(n);
+    slack.noalias() += delassus_ * lambda_.head(n);
+  }
+  for (int k = 0; k < n; ++k) {
+    if (friction_ > 0 || lambda_[k] > 0 || slack_[k] < kNearby * change) considered_.push_back(k);
+  }
+}
+
+bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
+                                double change, Eigen::Ref<Eigen::VectorXd> next) noexcept {
+  consider_near(change);
   if (considered_.empty()) return false;
-  differentiate_considered(patch);
+  if (!differentiate_considered(patch)) return false;
   const auto n = rows_of_contact() * static_cast<Eigen::Index>(considered_.size()),
              size = 3 * static_cast<Eigen::Index>(nodes_.size());
-  const auto jacobian = jacobian_.topLeftCorner(n, size);
-  auto local = moved_.col(0).head(size), load = moved_.col(1).head(size), bent = moved_.col(2).head(size);
+  const Eigen::Index loaded = size - 3 * unloaded_;
+  auto local = moved_.col(0).head(size), load = moved_.col(1).head(size);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     local.segment<3>(3 * static_cast<Eigen::Index>(i)) = u.segment<3>(3 * nodes_[i]);
   }
-  load.noalias() = curvature_.topLeftCorner(size, size) * local;
+  load.noalias() = curvature_ * local;
   if (!respond(patch, load)) return false;
-  bent = response_.col(n).head(size);  // C~ S u
   auto gap = rhs_.col(0).head(n), lambda = rhs_.col(1).head(n);
-  gap = gap_.head(n);  // which is w - A^T u already
-  gap.noalias() -= jacobian * bent;
+  for (Eigen::Index row = 0; row < n; ++row) {  // w - A^T u, which `gap_` holds
+    const int rows = rows_of_contact(), k = considered_[static_cast<std::size_t>(row / rows)];
+    gap[row] = gap_[rows * k + row % rows];
+  }
+  gap -= delassus_.col(n);  // B C~ S u
   if (friction_ > 0) {
-    gap.noalias() += spread_.topLeftCorner(size, n).transpose() * local;
-    gap.noalias() -= jacobian * local;
+    gap.noalias() += spread_.transpose() * local;
+    gap.noalias() -= jacobian_ * local;
   }
   if (!solve_newton_contacts(gap, lambda)) return false;
   remember(lambda);
   // Force at the new geometry, to first order: A z+ + S (u+ - u).
-  const auto response = response_.topLeftCorner(size, n);
-  bent = -bent - local;  // becomes u+ - u
-  bent.noalias() += response * lambda;
-  load.noalias() = curvature_.topLeftCorner(size, size) * bent;
+  auto moved = moved_.col(2).head(loaded);  // u+ - u of the loaded nodes
+  moved = -response_.col(n).tail(loaded) - local.tail(loaded);
+  moved.noalias() += response_.bottomLeftCorner(loaded, n) * lambda;
+  load.noalias() = curvature_.rightCols(loaded) * moved;
   if (friction_ > 0) {
-    load.noalias() += spread_.topLeftCorner(size, n) * lambda;
+    load.noalias() += spread_ * lambda;
   } else {
-    load.noalias() += jacobian.transpose() * lambda;
+    load.noalias() += jacobian_.transpose() * lambda;
   }
-  next.setZero();
-  const auto rows = 3 * static_cast<Eigen::Index>(patch.nodes());
-  for (Eigen::Index i = 0; i + 1 < static_cast<Eigen::Index>(nodes_.size()); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      next.head(rows) += load[3 * i + axis] * patch.compliance.col(3 * nodes_[i] + axis).head(rows);
-    }
-  }
-  next.tail<3>() = patch.tool_compliance * load.tail<3>();
+  node_force_.head(3 * patch.nodes()).setZero();
+  for (Eigen::Index i = 0; i + 1 < static_cast<Eigen::Index>(nodes_.size()); ++i)
+    node_force_.segment<3>(3 * nodes_[i]) = load.segment<3>(3 * i);
+  displace(patch, load.tail<3>(), next);
   return next.allFinite();
 }
 
@@ -166,7 +224,7 @@ bool ContactSolver::differentiate_forces(
   const auto n = change.rows();
   if (friction_ == 0) {
     change = -change;
-    return gauss_solve(delassus_.topLeftCorner(n, n), change) != 0;
+    return gauss_solve(delassus_.leftCols(n), change) != 0;
   }
   auto force = gap_.head(n), slack = slack_.head(n);
   for (Eigen::Index i = 0; i < n; i += 3) {
@@ -176,7 +234,7 @@ bool ContactSolver::differentiate_forces(
     slack.segment<2>(i + 1) += frames_[k].rightCols<2>().transpose() * travel(contacts_[k]);
     slack[i] = 0;
   }
-  return coulomb_.differentiate(delassus_.topLeftCorner(n, n), force, slack, friction_, change);
+  return coulomb_.differentiate(delassus_.leftCols(n), force, slack, friction_, change);
 }
 
 Mat3 ContactSolver::tangent(const ContactPatch& patch) noexcept {
@@ -187,26 +245,24 @@ Mat3 ContactSolver::tangent(const ContactPatch& patch) noexcept {
 }
 
 Mat3 ContactSolver::tangent_of_considered(const ContactPatch& patch) noexcept {
-  differentiate_considered(patch);
+  if (!differentiate_considered(patch)) return Mat3::Zero();
   const auto n = rows_of_contact() * static_cast<Eigen::Index>(considered_.size()),
              size = 3 * static_cast<Eigen::Index>(nodes_.size());
-  const auto jacobian = jacobian_.topLeftCorner(n, size);
-  const auto curvature = curvature_.topLeftCorner(size, size);
   auto moved = moved_.topRows(size);  // E + C~ S E: how the geometry follows the tool at fixed forces
-  if (!respond(patch, curvature.rightCols<3>())) return Mat3::Zero();
-  moved = response_.block(0, n, size, 3);
+  if (!respond(patch, curvature_.rightCols<3>())) return Mat3::Zero();
+  moved = response_.rightCols<3>();
   moved.bottomRows<3>() += Mat3::Identity();
   auto force_change = rhs_.topRows(n);
-  force_change.noalias() = jacobian * moved;
+  force_change.noalias() = jacobian_ * moved;
   if (!differentiate_forces(force_change)) return Mat3::Zero();
-  moved.noalias() += response_.topLeftCorner(size, n) * force_change;
+  moved.noalias() += response_.leftCols(n) * force_change;
   Mat3 k;
   if (friction_ > 0) {
-    k.noalias() = spread_.block(size - 3, 0, 3, n) * force_change;
+    k.noalias() = spread_.bottomRows<3>() * force_change;
   } else {
-    k = jacobian.rightCols<3>().transpose() * force_change;
+    k = jacobian_.rightCols<3>().transpose() * force_change;
   }
-  k.noalias() += curvature.bottomRows<3>() * moved;
+  k.noalias() += curvature_.bottomRows<3>() * moved;
   return k;
 }
 

@@ -10,6 +10,9 @@ constexpr double kLongestMove = 0.2;  // of the tool radius, per iteration
 constexpr double kFirstStep = 2.0 / 3;
 // How far beyond the radius features are considered: a multiple of what moved last, within shares of the
 // radius.
+// Of the largest patch: how much may be near enough to touch, where Newton steps are taken; never fewer.
+constexpr double kTouching = 0.5;
+constexpr int kFewest = 96;
 constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
 
 /// Displacement difference tip minus surface along a direction: a row of W u.
@@ -27,20 +30,30 @@ const ContactSolver::Effort ContactSolver::kUsualEffort{};
 void ContactPatch::reserve(int max_nodes, int max_triangles) {
   free.reserve(static_cast<std::size_t>(max_nodes));
   triangles.reserve(static_cast<std::size_t>(max_triangles));
-  compliance.resize(3 * max_nodes, 3 * max_nodes);
+  compliance.reserve(3 * max_nodes, 3 * max_nodes);
+  filled.reserve(static_cast<std::size_t>(max_nodes));
+}
+
+void ContactPatch::require(int node) noexcept {
+  if (source == nullptr || filled[node] != 0) return;
+  source->fill(node, *this);
+  filled[node] = 1;
 }
 
 ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
     : complementarity_(max_triangles),
       coulomb_(friction ? max_triangles : 0),
       slot_of_node_(static_cast<std::size_t>(max_nodes + 1)) {
-  const int unknowns = 3 * (max_nodes + 1), rows = friction ? 3 * max_triangles : max_triangles;
-  for (Eigen::MatrixXd* square : {&curvature_, &compliance_, &system_}) square->resize(unknowns, unknowns);
-  response_.resize(unknowns, rows + 3);
-  bent_.resize(unknowns, rows + 3);
-  jacobian_.resize(rows, unknowns);
-  if (friction) spread_.resize(unknowns, rows);
-  delassus_.resize(rows, rows);
+  const int unknowns = 3 * (max_nodes + 1), per_contact = friction ? 3 : 1,
+            rows = per_contact * max_triangles;
+  most_nodes_ = std::min(max_nodes, std::max(kFewest, static_cast<int>(kTouching * max_nodes)));
+  most_contacts_ = std::min(max_triangles, std::max(kFewest, static_cast<int>(kTouching * max_triangles)));
+  const int touching = 3 * (most_nodes_ + 1), touched = per_contact * most_contacts_;
+  for (BoundedMatrix* square : {&curvature_, &compliance_, &system_}) square->reserve(touching, touching);
+  for (BoundedMatrix* tall : {&response_, &bent_, &toward_}) tall->reserve(touching, touched + 3);
+  jacobian_.reserve(touched, touching);
+  if (friction) spread_.reserve(touching, touched);
+  delassus_.reserve(rows, rows + 3);
   gap_.resize(rows);
   lambda_.resize(rows);
   next_.resize(unknowns);
@@ -91,7 +104,8 @@ void ContactSolver::start_increment(const ContactPatch& patch, const Tool& tool,
     turned_ = Mat3::Identity() - (start.q_W * pose.q_W.conjugate()).toRotationMatrix();
 }
 
-void ContactSolver::linearise(const ContactPatch& patch, const Vec3& p_W,
+/// Gaps, and slips, of the contacts as they would be without forces; and the Delassus operator.
+void ContactSolver::linearise(ContactPatch& patch, const Vec3& p_W,
                               const Eigen::Ref<const Eigen::VectorXd>& u) noexcept {
   const int m = patch.nodes(), n = static_cast<int>(contacts_.size()), rows = rows_of_contact();
   tip_ = p_W + u.tail<3>();
@@ -102,30 +116,43 @@ void ContactSolver::linearise(const ContactPatch& patch, const Vec3& p_W,
       const Vec3 across = c.normal.unitOrthogonal();
       frames_.emplace_back() << c.normal, across, c.normal.cross(across);
     }
+    for (int i = 0; i < c.size; ++i) patch.require(c.node[i]);
     for (int row = 0; row < rows; ++row) {
       const Vec3 d = direction(k, row);
-      auto column = response_.col(rows * k + row).head(3 * (m + 1));
-      column.setZero();
-      for (int i = 0; i < c.size; ++i) {
-        for (int axis = 0; axis < 3; ++axis) {
-          const double load = -c.weight[i] * d[axis];
-          column.head(3 * m) += load * patch.compliance.col(3 * c.node[i] + axis).head(3 * m);
-        }
-      }
-      column.tail<3>() = patch.tool_compliance * c.at_tip(d);
       const double now = row == 0 ? c.distance - c.radius : d.dot(travel(c));
       gap_[rows * k + row] = now - along(c, d, m, u);
     }
   }
-  for (int column = 0; column < rows * n; ++column) {
-    const auto response = response_.col(column).head(3 * (m + 1));
-    for (int row = 0; row < rows * n; ++row)
-      delassus_(row, column) = along(contacts_[row / rows], direction(row / rows, row % rows), m, response);
-    delassus_(column, column) += column % rows == 0 ? contact_compliance_ : friction_compliance_;
-  }
+  assemble_delassus(patch);
 }
 
-ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
+/// W C W^T, and the compliance of the contacts themselves.
+void ContactSolver::assemble_delassus(const ContactPatch& patch) noexcept {
+  const int n = static_cast<int>(contacts_.size()), rows = rows_of_contact();
+  delassus_.shape(rows * n, rows * n);
+  for (int column = 0; column < n; ++column) {
+    const Contact& b = contacts_[column];
+    for (int row = 0; row <= column; ++row) {
+      const Contact& a = contacts_[row];
+      Mat3 moved = Mat3::Zero();  // of `a`'s share of the surface, per force on that of `b`
+      for (int j = 0; j < b.size; ++j) {
+        for (int i = 0; i < a.size; ++i)
+          moved += a.weight[i] * b.weight[j] * patch.compliance.block<3, 3>(3 * a.node[i], 3 * b.node[j]);
+      }
+      for (int s = 0; s < rows; ++s) {
+        for (int r = 0; r < rows; ++r) {
+          const Vec3 da = direction(row, r), db = direction(column, s);
+          const double value = da.dot(moved * db) + patch.tool_compliance * a.at_tip(da).dot(b.at_tip(db));
+          delassus_(rows * row + r, rows * column + s) = delassus_(rows * column + s, rows * row + r) = value;
+        }
+      }
+    }
+  }
+  for (int row = 0; row < rows * n; ++row)
+    delassus_(row, row) += row % rows == 0 ? contact_compliance_ : friction_compliance_;
+}
+
+ContactForce ContactSolver::solve(ContactPatch& patch, const Tool& tool, const ToolPose& pose,
                                   Eigen::Ref<Eigen::VectorXd> u, const IncrementStart& start,
                                   const Effort& effort) noexcept {
   start_increment(patch, tool, pose, start);
@@ -147,7 +174,7 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, c
     find_contacts_on_patch(deformed_, patch.triangles, tool, {pose.p_W + u.tail<3>(), pose.q_W}, margin,
                            contacts_);
     linearise(patch, pose.p_W, u);
-    solve_linearised(m, next);
+    solve_linearised(patch, next);
     change = (next - u).cwiseAbs().maxCoeff();
     result.converged = change <= effort.tolerance * tool.radius;
     if (result.converged || result.iterations == effort.max_iterations) break;
@@ -160,7 +187,7 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, c
     increment = std::min(step, kLongestMove * tool.radius / change) * (next - u);
     if (newton_worked && change > last_change) plain_left = 2 << ++newton_failures;
     last_change = change;
-    newton_worked = --plain_left < 0 && newton_step(patch, u, next) &&
+    newton_worked = --plain_left < 0 && newton_step(patch, u, change, next) &&
                     (next - u).cwiseAbs().maxCoeff() < kLongestMove * tool.radius;
     if (newton_worked) {
       u = next;
@@ -176,10 +203,10 @@ ContactForce ContactSolver::solve(const ContactPatch& patch, const Tool& tool, c
 /// Forces in the rows of the contacts, on the Delassus operator as it stands.
 bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                    Eigen::Ref<Eigen::VectorXd> force) noexcept {
-  const auto n = gap.size();
-  if (friction_ == 0) return complementarity_.solve(delassus_.topLeftCorner(n, n), gap, force);
+  const auto delassus = delassus_.leftCols(gap.size());
+  if (friction_ == 0) return complementarity_.solve(delassus, gap, force);
   recall(force);
-  return coulomb_.solve(delassus_.topLeftCorner(n, n), gap, friction_, force);
+  return coulomb_.solve(delassus, gap, friction_, force);
 }
 
 /// Keeps the forces of this iteration, as what to start from in the next, whose contacts are not all the
@@ -204,15 +231,35 @@ void ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
 }
 
 /// Contact forces of the linearised problem, and the displacements they give.
-void ContactSolver::solve_linearised(int nodes, Eigen::Ref<Eigen::VectorXd> next) noexcept {
+void ContactSolver::solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) noexcept {
   const auto n = static_cast<Eigen::Index>(contacts_.size()) * rows_of_contact();
   auto lambda = lambda_.head(n);
   solve_contacts(gap_.head(n), lambda);
   remember(lambda);
-  next.setZero();
-  for (Eigen::Index k = 0; k < n; ++k) {
-    if (lambda[k] != 0) next += lambda[k] * response_.col(k).head(3 * (nodes + 1));
+  auto load = node_force_.head(3 * patch.nodes());
+  load.setZero();
+  Vec3 tip_load = Vec3::Zero();
+  for (int row = 0; row < n; ++row) {
+    if (lambda[row] == 0) continue;
+    const int rows = rows_of_contact();
+    const Contact& c = contacts_[row / rows];
+    const Vec3 force = lambda[row] * direction(row / rows, row % rows);
+    for (int i = 0; i < c.size; ++i) load.segment<3>(3 * c.node[i]) -= c.weight[i] * force;
+    tip_load += c.at_tip(force);
   }
+  displace(patch, tip_load, next);
+}
+
+/// The displacement under the loads in `node_force_`, and one on the tip.
+void ContactSolver::displace(const ContactPatch& patch, const Vec3& tip_load,
+                             Eigen::Ref<Eigen::VectorXd> next) const noexcept {
+  const Eigen::Index size = 3 * patch.nodes();
+  auto moved = next.head(size);
+  moved.setZero();
+  for (Eigen::Index k = 0; k < size; ++k) {
+    if (node_force_[k] != 0) moved += node_force_[k] * patch.compliance.col(k).head(size);
+  }
+  next.tail<3>() = patch.tool_compliance * tip_load;
 }
 
 void ContactSolver::collect_result(int nodes, ContactForce& result) noexcept {
@@ -237,10 +284,9 @@ void ContactSolver::collect_result(int nodes, ContactForce& result) noexcept {
 }
 
 std::size_t ContactSolver::bytes() const {
-  const auto dense = [](const Eigen::MatrixXd& m) { return static_cast<std::size_t>(m.size()); };
-  return coulomb_.bytes() + complementarity_.bytes() +
-         sizeof(double) * (dense(delassus_) + dense(response_) + dense(curvature_) + dense(compliance_) +
-                           dense(bent_) + dense(system_) + dense(jacobian_) + dense(spread_));
+  return coulomb_.bytes() + complementarity_.bytes() + delassus_.bytes() + response_.bytes() +
+         curvature_.bytes() + compliance_.bytes() + bent_.bytes() + toward_.bytes() + system_.bytes() +
+         jacobian_.bytes() + spread_.bytes();
 }
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/bounded_matrix.h"
 #include "common/contact/complementarity.h"
 #include "common/contact/coulomb.h"
 #include "common/contact/narrow_phase.h"
@@ -10,17 +11,36 @@
 
 namespace palpate {
 
+struct ContactPatch;
+
+/// Tells the compliance of the nodes of a patch column by column.
+class ComplianceSource {
+ public:
+  virtual ~ComplianceSource() = default;
+  /// Fills the diagonal blocks (3 x 3) and `tool_compliance` of a patch whose nodes are `patch.vertices`.
+  virtual void begin(ContactPatch& patch) const noexcept = 0;
+  /// Fills columns 3 node to 3 node + 2.
+  virtual void fill(int node, ContactPatch& patch) const noexcept = 0;
+};
+
 /// The piece of surface near a tool, with all that is needed to solve its contact: the server takes it out of
 /// the organ, and the same few arrays would travel to a client.
 struct ContactPatch {
   std::vector<Vec3> free;                     ///< (m) node positions without contact, m, world
   std::vector<std::array<int, 3>> triangles;  ///< corners index `free`
-  Eigen::MatrixXd compliance;                 ///< leading (3m x 3m): displacement per force at the nodes, m/N
+  BoundedMatrix compliance;                   ///< leading (3m x 3m): displacement per force at the nodes, m/N
   double tool_compliance = 0;  ///< m/N, isotropic, between the tool position and its tip; 0 = rigid
+  /// Tells columns of `compliance` as contact asks for them: of most nodes none are needed. Absent: all are
+  /// there. `begin` of the source has been called since the nodes were gathered.
+  const ComplianceSource* source = nullptr;
+  std::span<const int> vertices;  ///< (m) with a source: the vertices of the surface that the nodes are
+  std::vector<char> filled;       ///< (m) with a source: whether the columns of a node are there
 
   int nodes() const { return static_cast<int>(free.size()); }
   /// Makes room for `max_nodes` and `max_triangles`, once; afterwards nothing here allocates within them.
   void reserve(int max_nodes, int max_triangles);
+  /// Makes sure of the columns of a node.
+  void require(int node) noexcept;
 };
 
 /// Outcome of one contact solve.
@@ -72,7 +92,7 @@ class ContactSolver {
   /// gets the solution, which does not depend on it but by rounding. `start` is read where the tool has
   /// friction, and only then. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful of contacts,
   /// with friction some ten times that.
-  ContactForce solve(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
+  ContactForce solve(ContactPatch& patch, const Tool& tool, const ToolPose& pose,
                      Eigen::Ref<Eigen::VectorXd> u, const IncrementStart& start = {},
                      const Effort& effort = kUsualEffort) noexcept;
   static const Effort kUsualEffort;
@@ -102,32 +122,41 @@ class ContactSolver {
   Vec3 travel(const Contact& c) const;
   void start_increment(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
                        const IncrementStart& start) noexcept;
-  void linearise(const ContactPatch& patch, const Vec3& p_W,
-                 const Eigen::Ref<const Eigen::VectorXd>& u) noexcept;
+  void linearise(ContactPatch& patch, const Vec3& p_W, const Eigen::Ref<const Eigen::VectorXd>& u) noexcept;
+  void assemble_delassus(const ContactPatch& patch) noexcept;
+  void displace(const ContactPatch& patch, const Vec3& tip_load,
+                Eigen::Ref<Eigen::VectorXd> next) const noexcept;
   bool solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                       Eigen::Ref<Eigen::VectorXd> force) noexcept;
   void remember(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept;
   void recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept;
-  void solve_linearised(int nodes, Eigen::Ref<Eigen::VectorXd> next) noexcept;
+  void solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) noexcept;
   void collect_result(int nodes, ContactForce& result) noexcept;
   // Second order, in contact_derivatives.cpp:
   void collect_nodes(int tip) noexcept;
   void differentiate_contacts(int tip) noexcept;
   void differentiate_friction(int contact, Eigen::Index row, std::span<const int> slot) noexcept;
-  void differentiate_considered(const ContactPatch& patch) noexcept;
+  bool differentiate_considered(const ContactPatch& patch) noexcept;
   // and in contact_newton.cpp:
+  template <class Visit>
+  void each_slot(Eigen::Index contact, const Visit& visit) const;
+  template <class Visit>
+  void each_block_of_curvature(const Visit& visit) const;
   void assemble_system(const ContactPatch& patch) noexcept;
+  void spread_over(Eigen::Index first, bool forces, Eigen::Ref<Eigen::MatrixXd> moved) const noexcept;
   bool respond(const ContactPatch& patch, const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept;
   bool solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>& gap,
                            Eigen::Ref<Eigen::VectorXd> force) noexcept;
   bool solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                              Eigen::Ref<Eigen::VectorXd> force) noexcept;
-  bool newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
+  void consider_near(double change) noexcept;
+  bool newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u, double change,
                    Eigen::Ref<Eigen::VectorXd> next) noexcept;
   bool differentiate_forces(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
   Mat3 tangent_of_considered(const ContactPatch& patch) noexcept;
 
   double contact_compliance_ = 0, friction_compliance_ = 0;  // m/N, of this patch
+  int most_nodes_, most_contacts_;                           // of a Newton step and of the tangent
   // Rows are those of the contacts in turn: one each, along the normal; with friction two more, across it.
   ComplementaritySolver complementarity_;
   CoulombSolver coulomb_;
@@ -140,8 +169,8 @@ class ContactSolver {
   };
   std::vector<Felt> felt_;  // with friction: what touched in the iteration before
   std::vector<Vec3> deformed_;
-  Eigen::MatrixXd response_;  // C W^T, (3 (m + 1) x rows)
-  Eigen::MatrixXd delassus_;
+  BoundedMatrix response_;  // C~ A, then C~ of other loads, in the rows of the loaded nodes
+  BoundedMatrix delassus_;  // and B C~ of other loads, to its right
   Eigen::VectorXd gap_, lambda_, slack_, next_, increment_, node_force_;
   int force_size_ = 0;
   // The increment: friction coefficient, where its nodes and the tip began, and where the tip is.
@@ -154,8 +183,8 @@ class ContactSolver {
   std::vector<int> considered_, active_, nodes_, slot_of_node_;
   int system_sign_ = 1;  // of the determinant of I - C S
   int unloaded_ = 0;     // of nodes_, the first ones
-  Eigen::MatrixXd curvature_, compliance_, bent_, system_, jacobian_,
-      spread_;  // spread: W^T, only with friction
+  BoundedMatrix curvature_, compliance_, bent_, toward_, system_, jacobian_;
+  BoundedMatrix spread_;  // W^T, only with friction
   Eigen::Matrix<double, Eigen::Dynamic, 3> moved_, rhs_;
 };
 

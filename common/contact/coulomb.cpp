@@ -101,6 +101,7 @@ void CoulombSolver::classify(const Vector& z, const Vector& w, double mu) noexce
 ///   (I - kappa P) beta - mu lambda d + kappa rho P G_t z = -kappa rho P g_t,   P = I - d d^T.
 void CoulombSolver::assemble(const Matrix& g_matrix, double mu) noexcept {
   const auto n = static_cast<Eigen::Index>(closed_.size());
+  system_.shape(3 * n, 3 * n);
   for (Eigen::Index c = 0; c < n; ++c) {
     for (Eigen::Index r = 0; r < n; ++r) {
       system_.block<3, 3>(3 * r, 3 * c) = g_matrix.block<3, 3>(3 * closed_[r], 3 * closed_[c]);
@@ -119,7 +120,7 @@ void CoulombSolver::assemble(const Matrix& g_matrix, double mu) noexcept {
     auto own = system_.block<2, 3>(3 * r + 1, 3 * r);
     own.col(0) -= mu * status.direction;
     own.rightCols<2>() += Eigen::Matrix2d::Identity() - status.share * normal * normal.transpose();
-    system_.middleRows(3 * r + 1, 2).leftCols(3 * n) /= rho;
+    system_.middleRows<2>(3 * r + 1) /= rho;
   }
 }
 
@@ -140,7 +141,7 @@ bool CoulombSolver::solve_closed(const Source& constant, Target&& z) noexcept {
     }
   }
   z.setZero();
-  if (!gauss_solve(system_.topLeftCorner(3 * n, 3 * n), rhs)) return false;
+  if (!gauss_solve(system_, rhs)) return false;
   for (Eigen::Index r = 0; r < n; ++r) z.middleRows(3 * closed_[r], 3) = rhs.middleRows(3 * r, 3);
   return true;
 }

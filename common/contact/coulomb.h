@@ -1,6 +1,7 @@
 #pragma once
-#include <Eigen/Core>
 #include <vector>
+
+#include "common/contact/bounded_matrix.h"
 
 namespace palpate {
 
@@ -33,7 +34,7 @@ class CoulombSolver {
                      const Eigen::Ref<const Eigen::VectorXd>& z, const Eigen::Ref<const Eigen::VectorXd>& w,
                      double mu, Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
 
-  std::size_t bytes() const { return sizeof(double) * static_cast<std::size_t>(system_.size()); }
+  std::size_t bytes() const { return system_.bytes(); }
 
  private:
   using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
@@ -55,7 +56,7 @@ class CoulombSolver {
   template <class Source, class Target>
   bool solve_closed(const Source& constant, Target&& z) noexcept;
 
-  Eigen::MatrixXd system_;
+  BoundedMatrix system_;
   Eigen::Matrix<double, Eigen::Dynamic, 3> rhs_;
   Eigen::VectorXd slack_, trial_, direction_, from_,
       rho_;  // rho: two per contact, N/m, along the normal and across it

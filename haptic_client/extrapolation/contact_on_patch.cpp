@@ -241,6 +241,7 @@ bool ContactOnPatch::take_triangles(const Surface& surface, const Vec3& p) noexc
 }
 
 bool ContactOnPatch::take_compliance(const SurfaceModel& model) noexcept {
+  patch_.compliance.shape(3 * patch_.nodes(), 3 * patch_.nodes());
   for (int j = 0; j < patch_.nodes(); ++j) {
     for (int i = 0; i <= j; ++i) {
       const auto block = model.compliance(vertices_[i], vertices_[j]);

@@ -104,3 +104,25 @@ def unit(a):
 
 def normal_of(a, b, c):
     return unit(cross(minus(b, a), minus(c, a)))
+
+
+def nearest_on(triangle, p):
+    """The point of the triangle nearest to p (Ericson, Real-Time Collision Detection)."""
+    a, b, c = triangle
+    ab, ac, ap, bp, cp = minus(b, a), minus(c, a), minus(p, a), minus(p, b), minus(p, c)
+    d1, d2, d3, d4, d5, d6 = (dot(ab, ap), dot(ac, ap), dot(ab, bp), dot(ac, bp),
+                              dot(ab, cp), dot(ac, cp))
+    if d1 <= 0 and d2 <= 0:
+        return a
+    if d3 >= 0 and d4 <= d3:
+        return b
+    if d6 >= 0 and d5 <= d6:
+        return c
+    va, vb, vc = d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2
+    if vc <= 0 <= d1 and d3 <= 0:
+        return plus(a, times(d1 / (d1 - d3), ab))
+    if vb <= 0 <= d2 and d6 <= 0:
+        return plus(a, times(d2 / (d2 - d6), ac))
+    if va <= 0 and d4 >= d3 and d5 >= d6:
+        return plus(b, times((d4 - d3) / ((d4 - d3) + (d5 - d6)), minus(c, b)))
+    return plus(a, plus(times(vb / (va + vb + vc), ab), times(vc / (va + vb + vc), ac)))

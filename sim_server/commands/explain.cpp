@@ -144,6 +144,7 @@ struct Own {
   const Scene& scene;
   const Progress& progress;
   int steps;  // timed free, and in contact
+  const SetupCache* cache;
   Simulation simulation;
   Press press;
   Cost cost;
@@ -171,7 +172,7 @@ LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
   }
   try {
     SetupTimes times(own.progress);
-    Simulation simulation(variant, own.simulation.mesh(), std::ref(times));
+    Simulation simulation(variant, own.simulation.mesh(), std::ref(times), own.cache);
     const Cost cost =
         cost_of(simulation, times, time_steps(variant, simulation, own.press, own.steps, own.progress));
     row.bytes = cost.bytes - own.cost.bytes;
@@ -303,9 +304,9 @@ std::vector<LeftOut> left_out(Own& own) {
 
 }  // namespace
 
-Explanation explain(const Scene& scene, const Progress& progress, int steps) {
+Explanation explain(const Scene& scene, const Progress& progress, int steps, const SetupCache* cache) {
   SetupTimes times(progress);
-  Own own{scene, progress, steps, Simulation(scene, std::ref(times)), {}, {}};
+  Own own{scene, progress, steps, cache, Simulation(scene, std::ref(times), cache), {}, {}};
   own.press = find_press(scene, own.simulation);
   Explanation explanation{.scene = scene,
                           .built = built_parts(scene, own.simulation, times),
@@ -323,7 +324,8 @@ int run_explain(const ExplainOptions& options) {
   const Scene scene = read_scene(options.scene);
   require_distinct({{"SCENE", options.scene}, {"--json", options.json}});
   if (options.json) check_writable(*options.json, Contents::kReport);
-  const Explanation explanation = explain(scene, ProgressLine(), options.steps);
+  const auto cache = open_cache(options.cache);
+  const Explanation explanation = explain(scene, ProgressLine(), options.steps, cache ? &*cache : nullptr);
   fmt::print("{}", options.why ? why_text(explanation, *options.why) : to_text(explanation));
   if (options.json) write_json(*options.json, to_json(explanation));
   return 0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/report.h"
+#include "sim_server/commands/cache.h"
 #include "sim_server/simulation/simulation.h"
 #include "sim_server/simulation/step_times.h"
 
@@ -16,6 +17,7 @@ struct ExplainOptions {
   std::optional<std::filesystem::path> json;
   std::optional<std::string> why;  ///< of this part alone
   int steps = 200;                 ///< timed, free and in contact each
+  CacheOptions cache;
 };
 
 /// Something a scene builds.
@@ -49,7 +51,8 @@ struct Explanation {
 /// Builds the scene and, where that takes no more than 10 s, a variant for each thing it leaves out, and
 /// steps them all, `steps` free and as many in contact each. Throws `Error` where the scene itself cannot be
 /// built. Takes as long as all those set-ups, and the memory of two of them.
-Explanation explain(const Scene& scene, const Progress& progress = kSilent, int steps = 200);
+Explanation explain(const Scene& scene, const Progress& progress = kSilent, int steps = 200,
+                    const SetupCache* cache = nullptr);
 
 /// Which line of the scene asks for a part, or leaves it out, and what it costs or saves. Throws `Error`
 /// naming the parts that there are.

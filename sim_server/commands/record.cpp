@@ -94,7 +94,8 @@ int record(const RecordOptions& options) {
   protocol::CaptureWriter capture(out.path());
   say_what_is_lost(motion, options, ticks_hz);
   ProgressLine progress;
-  Simulation simulation(scene, std::ref(progress));
+  const auto cache = open_cache(options.cache);
+  Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr);
   VirtualSession session(simulation, motion, scene.tools.front().shape.radius,
                          {options.rate_hz, ticks_hz, from_seconds(options.delay_ms / 1e3), options.parts},
                          capture);

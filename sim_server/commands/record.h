@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "sim_server/commands/cache.h"
+
 namespace palpate::sim {
 
 /// What `sim_server record` was asked for.
@@ -13,6 +15,7 @@ struct RecordOptions {
   std::optional<double> seconds;   ///< absent: the motion once
   bool parts = true;  ///< whether the samples carry all they can: tangents, surface, a second place
   std::optional<std::filesystem::path> report;
+  CacheOptions cache;
 };
 
 /// Runs a scene in virtual time along a recorded motion and writes what would have travelled as a capture:

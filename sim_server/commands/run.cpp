@@ -13,6 +13,7 @@
 #include "common/realtime.h"
 #include "common/report.h"
 #include "protocol/recording_report.h"
+#include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/net_link.h"
 #include "sim_server/simulation/setup_times.h"
@@ -68,6 +69,16 @@ Json missed_by(const ToolStats& tool) {
   return *tool.nearest_m;
 }
 
+/// What the mesh is estimated to cost the force of a tool.
+Json felt_report(const ToolStats& tool, const Scene& scene) {
+  if (!tool.elements_per_radius || !scene.material || !model_of(scene.deformation).deforms()) return nullptr;
+  const double elements = *tool.elements_per_radius;
+  const auto percent = estimated_mesh_error(scene.material->element, elements);
+  return {{"elements_per_radius", elements},
+          {"mesh_percent", percent ? Json(*percent) : Json(nullptr)},
+          {"how", "estimated by elements to a radius of the tool where it pressed"}};
+}
+
 Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& scene) {
   Json tools = Json::array();
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
@@ -76,6 +87,7 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
                      {"contact_steps", stats.tools[i].contact_steps},
                      {"beyond_steps", stats.tools[i].beyond_steps},
                      {"missed_by_m", missed_by(stats.tools[i])},
+                     {"felt", felt_report(stats.tools[i], scene)},
                      {"sessions", link.tools[i].so_far.load()}});
   }
   return tools;
@@ -106,6 +118,20 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["state_hash"] = fmt::format("{:016x}", simulation.state_hash());
 }
 
+/// Of each tool that pressed on tissue.
+void print_mesh_errors(const Json& report) {
+  for (std::size_t i = 0; i < report["tools"].size(); ++i) {
+    const Json& felt = report["tools"][i]["felt"];
+    if (felt.is_null() || felt["mesh_percent"].is_null()) continue;
+    fmt::print(
+        "            tool {}: the mesh, {:.1f} elements to a radius of the tool where it pressed, costs the "
+        "force\n"
+        "            an estimated {:.0f} %; `sim_server study {}` measures it\n",
+        i + 1, felt["elements_per_radius"].get<double>(), felt["mesh_percent"].get<double>(),
+        report["scene"].get<std::string>());
+  }
+}
+
 void print_summary(const Json& report, const FlaggedSteps& flagged) {
   const auto ms = [&](const char* key, const char* q) { return report[key][q].get<double>(); };
   fmt::print(
@@ -127,6 +153,7 @@ void print_summary(const Json& report, const FlaggedSteps& flagged) {
         "for this scene ([session] clients)?\n",
         i + 1, 1e3 * missed.get<double>());
   }
+  print_mesh_errors(report);
   std::fflush(stdout);
 }
 
@@ -192,7 +219,8 @@ int run_server(const ServerOptions& options) {
   const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;
   const Time begin = now();
   SetupTimes progress{ProgressLine()};
-  Simulation simulation(scene, std::ref(progress));
+  const auto cache = open_cache(options.cache);
+  Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr);
   warn_if_slow(scene);
   warn_if_out_of_reach(simulation, scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);

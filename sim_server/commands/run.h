@@ -3,6 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "sim_server/commands/cache.h"
+
 namespace palpate::sim {
 
 /// What `sim_server run` was asked for.
@@ -12,6 +14,7 @@ struct ServerOptions {
   std::optional<double> seconds;                ///< stop after so long; absent: at Ctrl-C
   std::optional<std::filesystem::path> report;  ///< JSON written at the end
   std::optional<std::filesystem::path> record;  ///< capture of every datagram
+  CacheOptions cache;
 };
 
 /// Builds the scene, serves it until Ctrl-C, writes the report. Throws `Error`. Returns the exit code.

@@ -45,21 +45,35 @@ Outcome find_rest(const Scene& scene, const Solid& solid, const Loads& loads, Pr
   return outcome;
 }
 
-/// Files of a series: beside it, numbered.
+/// Files of a series: beside it, numbered. Without `finish`, as after Ctrl-C, they are removed.
 class Series {
  public:
   explicit Series(const SolveOptions& options) : options_(options) {}
+  ~Series() {
+    if (finished_) return;
+    for (const auto& [t, name] : frames_) {
+      std::error_code ignored;
+      std::filesystem::remove(options_.series->parent_path() / name, ignored);
+    }
+  }
+  Series(const Series&) = delete;
+  Series& operator=(const Series&) = delete;
+
   void add(double t, const Solid& solid, const Outcome& outcome) {
     const std::filesystem::path name =
         fmt::format("{}_{:04}.vtu", options_.series->stem().string(), frames_.size());
     write_outcome(options_.series->parent_path() / name, solid, outcome);
     frames_.emplace_back(t, name);
   }
-  void finish() const { write_pvd(*options_.series, frames_); }
+  void finish() {
+    write_pvd(*options_.series, frames_);
+    finished_ = true;
+  }
 
  private:
   const SolveOptions& options_;
   std::vector<std::pair<double, std::filesystem::path>> frames_;
+  bool finished_ = false;
 };
 
 /// How a motion is stepped: as the scene says, where its model is implicit; for models that only serve tools

@@ -116,7 +116,7 @@ Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
 }
 
 std::size_t Grip::bytes() const {
-  return static_cast<std::size_t>(patch_.compliance.size()) * sizeof(double);
+  return patch_.compliance.bytes();
 }
 
 }  // namespace palpate::sim

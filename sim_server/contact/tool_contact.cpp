@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "sim_server/mesh/bounding_box.h"
-#include "sim_server/scene/tool_reach.h"
 
 namespace palpate::sim {
 namespace {
@@ -14,8 +13,8 @@ constexpr double kIncrement = 0.5;  // of the tool radius: how far the tool goes
 // With friction, which follows the path: shorter, as many as a step has time for.
 constexpr double kFrictionIncrement = 0.01, kFrictionIncrements = 16;
 constexpr double kFarthestJump = 0.1;  // of the tool radius: what the surface may move by at once
-constexpr double kGather = 2.0;        // of the tool radius: how far from the tip the patch extends
-constexpr double kGatherDear = 1.5;    // the same where each node more costs solves of the whole tissue
+constexpr double kGather = 1.5;        // of the tool radius: how far from the tip the patch extends
+constexpr double kRoomOfAxis = 2.0;    // the same, as room is made for a tool that lies along the surface
 constexpr double kMaxIncrements = 256;
 // Of the tool radius: how far it presses on in one step, where the tissue is known only near its last shape.
 constexpr double kFarthestPress = 2.0;
@@ -39,21 +38,11 @@ double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
 
 }  // namespace
 
-std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
-                                          const ToolSettings& tool) {
-  if (!tool.reach) return surface.triangles;
-  std::vector<Triangle> touchable;
-  for (const Triangle& t : surface.triangles) {
-    const auto corner = [&](int i) -> const Vec3& { return mesh.vertices[surface.vertices[t[i]]]; };
-    if (may_meet(*tool.reach, corner(0), corner(1), corner(2))) touchable.push_back(t);
-  }
-  return touchable;
-}
-
 ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
                          std::vector<Triangle> touchable, std::span<const int> held)
     : tool_(tool.shape),
-      finder_(rest, touchable.empty() ? touchable : surface.triangles, touchable, kGather * tool.shape.radius,
+      finder_(rest, touchable.empty() ? touchable : surface.triangles, touchable,
+              (tool.shape.is_sphere() ? kGather : kRoomOfAxis) * tool.shape.radius,
               longest_axis(tool.shape, rest), held),
       solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0),
       farthest_drag_(std::max(kFarthestDrag * tool.shape.radius, kFarthestBend * diagonal_of(rest))) {
@@ -351,9 +340,19 @@ void ToolContact::start_increment(bool first, const ToolTissue& tissue) {
   increment_from_ = surface_was_;
 }
 
+/// Of the vertices in `filled_`: column by column where that is possible, as most are never needed.
+void ToolContact::take_compliance(const DeformationModel& model) {
+  patch_.compliance.shape(3 * patch_.nodes(), 3 * patch_.nodes());
+  patch_.source = model.compliance_source();
+  if (patch_.source == nullptr) return model.compliance(filled_, patch_);
+  patch_.vertices = filled_;
+  patch_.filled.assign(filled_.size(), 0);
+  patch_.source->begin(patch_);
+}
+
 ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   const ToolPose tip(now_.place.p_W + now_.tip_offset, now_.place.q_W);
-  const double reach = (tissue.model().compliance_is_constant() ? kGather : kGatherDear) * tool_.radius;
+  const double reach = kGather * tool_.radius;
   finder_.gather(tissue.positions(), tissue.free(), tip.p_W, far_end(tool_, tip), reach, patch_);
   if (patch_.triangles.empty()) {
     release(tissue);
@@ -361,8 +360,8 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   }
   const std::span<const int> vertices = finder_.vertices();
   if (!tissue.model().compliance_is_constant() || !std::ranges::equal(vertices, filled_)) {
-    tissue.model().compliance(vertices, patch_);
     filled_.assign(vertices.begin(), vertices.end());
+    take_compliance(tissue.model());
   }
   const int m = patch_.nodes();
   auto u = displacement_.head(3 * (m + 1));
@@ -390,8 +389,8 @@ void ToolContact::release(ToolTissue tissue) {
 }
 
 std::size_t ToolContact::bytes() const {
-  return solver_.bytes() + static_cast<std::size_t>(patch_.compliance.size()) * sizeof(double) +
-         surface_was_.size() * sizeof(Vec3) + (grip_ ? grip_->bytes() : 0);
+  return solver_.bytes() + patch_.compliance.bytes() + surface_was_.size() * sizeof(Vec3) +
+         (grip_ ? grip_->bytes() : 0);
 }
 
 }  // namespace palpate::sim

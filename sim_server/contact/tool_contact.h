@@ -35,10 +35,6 @@ struct Bend {
   Vec3 begin = Vec3::Zero(), end = Vec3::Zero();
 };
 
-/// Triangles of the surface that come near enough to the reach box of the tool to be touched there.
-std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
-                                          const ToolSettings& tool);
-
 /// One tool and its contact with the tissue: where it is, what it feels, how it loads the surface. Only
 /// set-up allocates; what the model throws passes through. One thread.
 class ToolContact {
@@ -118,6 +114,7 @@ class ToolContact {
   double increments_for(double motion, double surface) const noexcept;
   double increments_to(const ToolPose& pose) const noexcept;
   Vec3 path_offset(double share, const Vec3& motion) const noexcept;
+  void take_compliance(const DeformationModel& model);
   ContactForce solve_contact(ToolTissue tissue);
   void release(ToolTissue tissue);
   void set_force(const ContactForce& contact, int iterations, ToolTissue tissue);

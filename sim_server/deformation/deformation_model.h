@@ -48,6 +48,9 @@ class DeformationModel {
   /// `patch.tool_compliance`.
   virtual void compliance(std::span<const int> vertices, ContactPatch& patch) const = 0;
 
+  /// The same column by column, of models that know it beforehand; else nothing.
+  virtual const ComplianceSource* compliance_source() const noexcept { return nullptr; }
+
   /// Whether `compliance` always gives the same, whatever was done before; then any thread may ask for it at
   /// any time, into a patch of its own.
   virtual bool compliance_is_constant() const noexcept = 0;

@@ -1,13 +1,11 @@
 #include "sim_server/deformation/linear_statics.h"
 
+#include "common/clock.h"
 #include "common/error.h"
 #include "sim_server/mesh/loose_parts.h"
 
 namespace palpate::sim {
 namespace {
-
-constexpr std::size_t kColumnsAtOnce =
-    48;  // right-hand sides per solve: fills the BLAS, keeps progress alive
 
 Solid solid_of(const ModelInputs& inputs) {
   require_no_loose_part(inputs);
@@ -15,11 +13,25 @@ Solid solid_of(const ModelInputs& inputs) {
   return {inputs.mesh, *inputs.scene.material};
 }
 
-SparseCholesky factor_stiffness(const ModelInputs& inputs, const Solid& solid, const FreeDofs& dofs) {
+StiffnessMatrix stiffness_of(const Solid& solid, const FreeDofs& dofs) {
   StiffnessMatrix stiffness = solid.stiffness_matrix(dofs);
   solid.add_stiffness(solid.rest(), stiffness);
-  inputs.progress(name_of(Stage::kFactor), 0);
-  return {stiffness.lower(), inputs.scene.source};
+  return stiffness;
+}
+
+template <class T>
+std::span<const T> values(const T* first, Eigen::Index count) {
+  return {first, static_cast<std::size_t>(count)};
+}
+
+/// Of all that rows and columns of K^-1 follow from.
+Digest key_of(const SparseMatrix& k, std::span<const int> rows) {
+  Fingerprint fingerprint;
+  fingerprint.add(values(k.outerIndexPtr(), k.outerSize() + 1));
+  fingerprint.add(values(k.innerIndexPtr(), k.nonZeros()));
+  fingerprint.add(values(k.valuePtr(), k.nonZeros()));
+  fingerprint.add(rows);
+  return fingerprint.digest();
 }
 
 }  // namespace
@@ -34,28 +46,45 @@ void require_no_loose_part(const ModelInputs& inputs) {
 LinearStatics::LinearStatics(const ModelInputs& inputs)
     : solid(solid_of(inputs)),
       dofs(solid.nodes(), inputs.fixed),
-      factor(factor_stiffness(inputs, solid, dofs)) {}
+      stiffness(stiffness_of(solid, dofs)),
+      inputs_(inputs) {}
 
-std::optional<MovingSupports> LinearStatics::supports(const ModelInputs& inputs, Following following) const {
-  const auto flexibility = [this](const Eigen::MatrixXd& forces) { return factor.solve(forces); };
-  const auto responses = support_responses(inputs, solid, dofs, flexibility, following);
-  if (responses.empty()) return {};
-  return MovingSupports(inputs, responses);
+const SparseCholesky& LinearStatics::factor() const {
+  if (factor_) return *factor_;
+  inputs_.progress(name_of(Stage::kFactor), 0);
+  return factor_.emplace(stiffness.lower(), inputs_.scene.source);
 }
 
-void LinearStatics::fill(SurfaceCompliance& compliance, const ModelInputs& inputs) const {
-  const auto dof = [&](Eigen::Index row) {
-    return dofs.first[inputs.surface.vertices[compliance.vertices()[row / 3]]] + row % 3;
-  };
-  const auto respond = [&](Eigen::Index from, Eigen::Ref<Eigen::MatrixXd> columns) {
-    Eigen::MatrixXd load = Eigen::MatrixXd::Zero(dofs.count, columns.cols());
-    for (Eigen::Index c = 0; c < columns.cols(); ++c) load(dof(from + c), c) = 1;
-    const Eigen::MatrixXd moved = factor.solve(load);
-    for (Eigen::Index c = 0; c < columns.cols(); ++c) {
-      for (Eigen::Index r = 0; r < columns.rows(); ++r) columns(r, c) = moved(dof(r), c);
-    }
-  };
-  compliance.compute(kColumnsAtOnce, respond, inputs.progress);
+std::optional<MovingSupports> LinearStatics::supports(Following following) const {
+  const auto flexibility = [this](const Eigen::MatrixXd& forces) { return factor().solve(forces); };
+  const auto responses = support_responses(inputs_, solid, dofs, flexibility, following);
+  if (responses.empty()) return {};
+  return MovingSupports(inputs_, responses);
+}
+
+void LinearStatics::fill(SurfaceCompliance& compliance) const {
+  std::vector<int> rows;  // of K, for each of the compliance
+  for (const int vertex : compliance.vertices()) {
+    const int first = dofs.first[inputs_.surface.vertices[vertex]];
+    rows.insert(rows.end(), {first, first + 1, first + 2});
+  }
+  if (inputs_.cache == nullptr) return compute(compliance, rows);
+  const Digest key = key_of(stiffness.lower(), rows);
+  if (auto kept = inputs_.cache->find(key); kept && compliance.take(std::move(*kept))) return;
+  const Time begin = now();
+  compute(compliance, rows);
+  const std::string what = fmt::format("compliance of {} nodes, {}", compliance.vertices().size(),
+                                       inputs_.scene.mesh_file.filename().string());
+  inputs_.cache->keep({.key = key, .seconds = to_seconds(now() - begin), .what = what}, compliance.matrix());
+  compliance.was_kept();
+}
+
+void LinearStatics::compute(SurfaceCompliance& compliance, std::span<const int> rows) const {
+  const SparseCholesky& of_stiffness = factor();
+  compliance.compute([&](Eigen::Ref<Eigen::MatrixXd> w) {
+    of_stiffness.inverse_block(rows, w,
+                               [&](double share) { inputs_.progress(name_of(Stage::kCompliance), share); });
+  });
 }
 
 }  // namespace palpate::sim

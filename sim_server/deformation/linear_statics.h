@@ -9,20 +9,29 @@ namespace palpate::sim {
 /// Throws `Error` where some of the body could still turn or go, with the part and what would hold it.
 void require_no_loose_part(const ModelInputs& inputs);
 
-/// The stiffness K of a linear tissue at rest, factored: what its models pre-compute from.
+/// The stiffness K of a linear tissue at rest: what its models pre-compute from. Set-up only; the inputs must
+/// outlive it.
 struct LinearStatics {
   Solid solid;
   FreeDofs dofs;
-  SparseCholesky factor;  ///< of K over `dofs`
+  StiffnessMatrix stiffness;  ///< K over `dofs`
 
-  /// Tells the progress of `inputs`. Throws `Error` where K is singular.
+  /// Tells the progress of `inputs`.
   explicit LinearStatics(const ModelInputs& inputs);
+  /// Of K; made when first asked for. Throws `Error` where K is singular.
+  const SparseCholesky& factor() const;
   /// What moves the surface where some [[fixed]] has a motion.
-  std::optional<MovingSupports> supports(const ModelInputs& inputs, Following following) const;
+  std::optional<MovingSupports> supports(Following following) const;
   /// Of each unknown, kg, lumped.
   Eigen::VectorXd masses() const { return masses_of(solid, dofs); }
-  /// Fills `compliance` with J K^-1 J^T, on all cores.
-  void fill(SurfaceCompliance& compliance, const ModelInputs& inputs) const;
+  /// Fills `compliance` with J K^-1 J^T, on all cores, or with what the cache of the inputs has of it.
+  void fill(SurfaceCompliance& compliance) const;
+
+ private:
+  void compute(SurfaceCompliance& compliance, std::span<const int> rows) const;
+
+  const ModelInputs& inputs_;
+  mutable std::optional<SparseCholesky> factor_;
 };
 
 }  // namespace palpate::sim

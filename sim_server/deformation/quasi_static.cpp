@@ -10,8 +10,8 @@ QuasiStatic::QuasiStatic(const ModelInputs& inputs) : compliance_(inputs) {
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
   positions_ = rest_;
   const LinearStatics statics(inputs);
-  statics.fill(compliance_, inputs);
-  supports_ = statics.supports(inputs, Following::kAtOnce);
+  statics.fill(compliance_);
+  supports_ = statics.supports(Following::kAtOnce);
   inputs.progress(name_of(Stage::kCompliance), 1);
 }
 
@@ -36,7 +36,7 @@ std::span<const Vec3> QuasiStatic::apply(std::span<const NodalLoad> loads) noexc
 
 std::vector<MemoryPart> QuasiStatic::memory() const {
   std::vector<MemoryPart> parts{
-      {"compliance", compliance_.bytes()},
+      {"compliance", compliance_.bytes(), compliance_.detail()},
       {"positions", (rest_.size() + positions_.size()) * sizeof(Vec3) + compliance_.index_bytes()}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
   return parts;

@@ -18,6 +18,7 @@ class QuasiStatic : public DeformationModel {
   static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  const ComplianceSource* compliance_source() const noexcept override { return &compliance_; }
   bool compliance_is_constant() const noexcept override { return true; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::vector<MemoryPart> memory() const override;

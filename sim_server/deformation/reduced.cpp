@@ -55,12 +55,12 @@ Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene))
   const auto& damping = settings.of<RayleighDamping>();
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
   const LinearStatics statics(inputs);
-  supports_ = statics.supports(inputs, Following::kSwinging);
+  supports_ = statics.supports(Following::kSwinging);
   free_.assign(unloaded().begin(), unloaded().end());
   positions_ = free_;
   inputs.progress(name_of(Stage::kModes), 0);
-  const VibrationModes modes =
-      vibration_modes(statics.factor, statics.masses(), settings.of<ReducedSettings>().modes, settings.where);
+  const VibrationModes modes = vibration_modes(statics.factor(), statics.masses(),
+                                               settings.of<ReducedSettings>().modes, settings.where);
   const auto count = modes.frequencies.size();
   shapes_ = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(rest_.size()), count);
   for (std::size_t v = 0; v < rest_.size(); ++v) {
@@ -77,7 +77,7 @@ Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene))
   q_ = v_ = p_ = q_free_ = Eigen::VectorXd::Zero(count);
   moved_.setZero(shapes_.rows());
   loads_.reserve(kMaxTools * inputs.reachable.size());
-  statics.fill(compliance_, inputs);
+  statics.fill(compliance_);
   compliance_.add(shapes_, beyond_statics);
   inputs.progress(name_of(Stage::kCompliance), 1);
 }
@@ -120,7 +120,7 @@ void Reduced::press(std::span<const NodalLoad> loads) noexcept {
 }
 
 std::vector<MemoryPart> Reduced::memory() const {
-  std::vector<MemoryPart> parts{{"compliance", compliance_.bytes()},
+  std::vector<MemoryPart> parts{{"compliance", compliance_.bytes(), compliance_.detail()},
                                 {"modes",
                                  static_cast<std::size_t>(shapes_.size() + 5 * q_.size()) * sizeof(double) +
                                      steps_.size() * sizeof(Step),

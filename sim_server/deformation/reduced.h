@@ -39,6 +39,7 @@ class Reduced : public DeformationModel {
   /// Any `dt` > 0 is taken for one period.
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  const ComplianceSource* compliance_source() const noexcept override { return &compliance_; }
   bool compliance_is_constant() const noexcept override { return true; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::vector<MemoryPart> memory() const override;

@@ -25,7 +25,7 @@ void require_held_tissue(const ModelInputs& inputs) {
 }
 
 /// Equal by theory to its transpose; makes it so to the last bit, for contact and for Cholesky.
-void symmetrise(Eigen::MatrixXd& m) {
+void symmetrise(Eigen::Ref<Eigen::MatrixXd> m) {
   const auto n = static_cast<std::size_t>(m.rows());
   parallel_blocks(n, kTile, [&](std::size_t begin, std::size_t end) {
     const auto row = static_cast<Eigen::Index>(begin), rows = static_cast<Eigen::Index>(end - begin);
@@ -69,12 +69,37 @@ void SurfaceCompliance::require_room(double free) const {
   require_memory(bytes, free, source_, what, remedy);
 }
 
+void SurfaceCompliance::compute(const std::function<void(Eigen::Ref<Eigen::MatrixXd>)>& make) {
+  allocate();
+  make(compliance_);
+}
+
+void SurfaceCompliance::allocate() {
+  const auto rows = static_cast<Eigen::Index>(3 * vertices_.size());
+  require_room(free_memory());
+  computed_.resize(rows, rows);
+  new (&compliance_) Eigen::Map<Eigen::MatrixXd>(computed_.data(), rows, rows);
+}
+
+bool SurfaceCompliance::take(MappedMatrix&& kept) {
+  const auto rows = static_cast<Eigen::Index>(3 * vertices_.size());
+  const auto matrix = kept.matrix();
+  if (matrix.rows() != rows || matrix.cols() != rows) return false;
+  new (&compliance_) Eigen::Map<Eigen::MatrixXd>(const_cast<double*>(matrix.data()), rows, rows);
+  kept_ = std::move(kept);
+  note_ = fmt::format("from the set-up cache, which saved {:.1f} s", kept_->header().seconds);
+  return true;
+}
+
+std::string SurfaceCompliance::detail() const {
+  return fmt::format("{} nodes{}{}", vertices_.size(), note_.empty() ? "" : ", ", note_);
+}
+
 void SurfaceCompliance::compute(std::size_t at_once, const Respond& respond, const Progress& progress,
                                 std::size_t calls_per_report) {
   const std::size_t rows = 3 * vertices_.size(),
                     report = std::clamp<std::size_t>(calls_per_report, 1, kMostCalls) * at_once;
-  require_room(free_memory());
-  compliance_.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(rows));
+  allocate();
   for (std::size_t from = 0; from < rows; from += report) {
     progress(name_of(Stage::kCompliance), static_cast<double>(from) / static_cast<double>(rows));
     parallel_blocks(std::min(report, rows - from), at_once, [&](std::size_t begin, std::size_t end) {
@@ -97,20 +122,31 @@ void SurfaceCompliance::add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd
   symmetrise(compliance_);
 }
 
+/// How one vertex moves per force on another, m/N.
+Mat3 SurfaceCompliance::block(int vertex, int other) const noexcept {
+  const int row = row_[vertex], column = row_[other];
+  if (row >= 0 && column >= 0) return compliance_.block<3, 3>(row, column);
+  return (vertex == other ? held_compliance_ : 0.0) * Mat3::Identity();
+}
+
 void SurfaceCompliance::fill(std::span<const int> vertices, ContactPatch& patch) const noexcept {
   patch.tool_compliance = 0;
   const auto m = static_cast<Eigen::Index>(vertices.size());
   for (Eigen::Index j = 0; j < m; ++j) {
-    for (Eigen::Index i = 0; i < m; ++i) {
-      const int row = row_[vertices[i]], column = row_[vertices[j]];
-      auto block = patch.compliance.block<3, 3>(3 * i, 3 * j);
-      if (row < 0 || column < 0) {
-        block = (i == j ? held_compliance_ : 0.0) * Mat3::Identity();
-      } else {
-        block = compliance_.block<3, 3>(row, column);
-      }
-    }
+    for (Eigen::Index i = 0; i < m; ++i)
+      patch.compliance.block<3, 3>(3 * i, 3 * j) = block(vertices[i], vertices[j]);
   }
+}
+
+void SurfaceCompliance::begin(ContactPatch& patch) const noexcept {
+  patch.tool_compliance = 0;
+  for (int i = 0; i < patch.nodes(); ++i)
+    patch.compliance.block<3, 3>(3 * i, 3 * i) = block(patch.vertices[i], patch.vertices[i]);
+}
+
+void SurfaceCompliance::fill(int node, ContactPatch& patch) const noexcept {
+  for (int i = 0; i < patch.nodes(); ++i)
+    patch.compliance.block<3, 3>(3 * i, 3 * node) = block(patch.vertices[i], patch.vertices[node]);
 }
 
 void SurfaceCompliance::move(std::span<const NodalLoad> loads, std::span<Vec3> positions) const noexcept {

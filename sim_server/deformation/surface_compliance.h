@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace palpate::sim {
 /// of each of the r free reachable surface vertices per force on each. 27 MB for 614 of them. A surface
 /// vertex out of reach does not give way; it is not computed. A fixed one does not move with the tissue, but
 /// where the tool presses on it, it gives way as `held_stiffness` says.
-class SurfaceCompliance {
+class SurfaceCompliance : public ComplianceSource {
  public:
   /// Numbers the rows; W is not there yet. Throws `Error` without material or fixed nodes, where all
   /// reachable vertices are fixed, or where W would take more than 4 GB, or than there are free.
@@ -28,6 +29,18 @@ class SurfaceCompliance {
   void compute(std::size_t at_once, const Respond& respond, const Progress& progress,
                std::size_t calls_per_report = 16);
 
+  /// The same where one call makes all of W, equal to its transpose.
+  void compute(const std::function<void(Eigen::Ref<Eigen::MatrixXd> w)>& make);
+
+  /// Takes W from the cache. False where it is not of this size: then nothing is changed.
+  bool take(MappedMatrix&& kept);
+  /// W.
+  Eigen::Ref<const Eigen::MatrixXd> matrix() const { return compliance_; }
+  /// "1934 nodes, from the set-up cache, which saved 3.2 s".
+  std::string detail() const;
+  /// W has been put into the cache.
+  void was_kept() { note_ = "now in the set-up cache"; }
+
   /// Adds sum_k weights_k s_k s_k^T, s_k: shape k over the rows. `shapes`: (3 surface vertices x k). Set-up,
   /// on all cores.
   void add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd& weights);
@@ -39,6 +52,8 @@ class SurfaceCompliance {
 
   /// As `DeformationModel::compliance`.
   void fill(std::span<const int> vertices, ContactPatch& patch) const noexcept;
+  void begin(ContactPatch& patch) const noexcept override;
+  void fill(int node, ContactPatch& patch) const noexcept override;
   /// Moves `positions` (surface vertices, m) by what `loads` do. O(r x loads).
   void move(std::span<const NodalLoad> loads, std::span<Vec3> positions) const noexcept;
 
@@ -47,13 +62,18 @@ class SurfaceCompliance {
   std::size_t index_bytes() const { return (row_.size() + vertices_.size()) * sizeof(int); }
 
  private:
+  void allocate();
+  Mat3 block(int vertex, int other) const noexcept;
   void require_room(double free) const;
 
-  std::string source_;          // of the scene, for errors
-  std::vector<int> row_;        // per surface vertex
-  std::vector<int> vertices_;   // surface vertex of each block row
-  Eigen::MatrixXd compliance_;  // W
-  double held_compliance_;      // m/N, of a fixed vertex under the tool itself
+  std::string source_;         // of the scene, for errors
+  std::vector<int> row_;       // per surface vertex
+  std::vector<int> vertices_;  // surface vertex of each block row
+  Eigen::MatrixXd computed_;   // one of the two holds W
+  std::optional<MappedMatrix> kept_;
+  std::string note_;
+  Eigen::Map<Eigen::MatrixXd> compliance_{nullptr, 0, 0};  // W
+  double held_compliance_;                                 // m/N, of a fixed vertex under the tool itself
 };
 
 }  // namespace palpate::sim

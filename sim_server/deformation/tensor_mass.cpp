@@ -36,7 +36,7 @@ TensorMass::TensorMass(const ModelInputs& inputs)
       motion_(tensors_, damping_of(inputs.scene)),
       begin_(motion_.state),
       force_(begin_.f) {
-  if (supports_move(inputs.scene)) supports_ = LinearStatics(inputs).supports(inputs, Following::kSwinging);
+  if (supports_move(inputs.scene)) supports_ = LinearStatics(inputs).supports(Following::kSwinging);
   for (const int vertex : inputs.surface.vertices) {
     rest_.push_back(inputs.mesh.vertices[vertex]);
     const int place = tensors_.places()[vertex];

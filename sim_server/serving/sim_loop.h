@@ -11,6 +11,7 @@
 #include "common/time.h"
 #include "common/timeline.h"
 #include "sim_server/serving/served_tools.h"
+#include "sim_server/simulation/mesh_resolution.h"
 
 namespace palpate::sim {
 
@@ -43,7 +44,8 @@ struct ToolStats {
   std::uint64_t contact_steps = 0;
   std::uint64_t beyond_steps = 0;  ///< with its tip beyond its workspace or cone, where nothing is built
   double max_newton = 0;
-  std::optional<double> nearest_m{};  ///< before it first touched, looked at ten times a second
+  std::optional<double> nearest_m{};            ///< before it first touched, looked at ten times a second
+  std::optional<double> elements_per_radius{};  ///< where it pressed (`MeshResolution`)
 };
 
 /// What the loop measured; read it when the loop has ended.
@@ -90,6 +92,7 @@ class SimLoop {
   std::span<const ToolSettings> tools_;
   Time period_, next_look_{};
   std::vector<SessionInput> inputs_;
+  std::vector<MeshResolution> resolution_;  // of each tool
   SimLoopStats stats_;
 };
 

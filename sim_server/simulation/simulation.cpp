@@ -13,6 +13,7 @@
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/scene/held_motion.h"
 #include "sim_server/scene/inclusions.h"
+#include "sim_server/scene/tool_reach.h"
 #include "sim_server/simulation/set_up_memory.h"
 
 namespace palpate::sim {
@@ -34,6 +35,18 @@ std::vector<int> vertices_of(const std::vector<std::vector<Triangle>>& lists) {
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;
+}
+
+/// Triangles of the surface that come near enough to the reach box of the tool to be touched there.
+std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
+                                          const ToolSettings& tool) {
+  if (!tool.reach) return surface.triangles;
+  std::vector<Triangle> touchable;
+  for (const Triangle& t : surface.triangles) {
+    const auto corner = [&](int i) -> const Vec3& { return mesh.vertices[surface.vertices[t[i]]]; };
+    if (may_meet(*tool.reach, corner(0), corner(1), corner(2))) touchable.push_back(t);
+  }
+  return touchable;
 }
 
 /// Of each tool.
@@ -89,10 +102,11 @@ std::string contact_stage(std::size_t tool, std::size_t tools) {
   return "preparing " + contact_part(tool, tools);
 }
 
-Simulation::Simulation(const Scene& scene, const Progress& progress)
-    : Simulation(scene, read_mesh_told(scene, progress), progress) {}
+Simulation::Simulation(const Scene& scene, const Progress& progress, const SetupCache* cache)
+    : Simulation(scene, read_mesh_told(scene, progress), progress, cache) {}
 
-Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
+Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress, const SetupCache* cache)
+    : mesh_(std::move(mesh)) {
   put_inclusions(scene, mesh_);
   progress(name_of(Stage::kSurface), 0);
   if (scene.material) mesh_ = with_nodes(std::move(mesh_), scene.material->element);
@@ -106,7 +120,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   const DeformationModelRow& row = model_of(scene.deformation);
   const bool stays = row.deforms() && !fixed.empty() && !supports_move(scene);
   if (stays) farthest_ = kRunAway * diagonal_of(rest_);
-  tissue_.model = row.make({scene, mesh_, surface_, fixed, reachable, progress});
+  tissue_.model = row.make({scene, mesh_, surface_, fixed, reachable, progress, free_memory(), cache});
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;
   tissue_.velocities = motion.velocities;

@@ -77,9 +77,11 @@ struct StepFailures {
 class Simulation {
  public:
   /// With the mesh file that the scene names.
-  explicit Simulation(const Scene& scene, const Progress& progress = kSilent);
+  explicit Simulation(const Scene& scene, const Progress& progress = kSilent,
+                      const SetupCache* cache = nullptr);
   /// With a mesh made elsewhere.
-  Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent);
+  Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent,
+             const SetupCache* cache = nullptr);
 
   /// Advances the tissue by `dt` (s >= 0; the run begins at time 0) with one input for each tool. The
   /// answers, one for each tool, stay valid until the next step.
@@ -97,6 +99,8 @@ class Simulation {
 
   std::size_t tools() const { return tools_.size(); }
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
+  /// What a tool puts on the surface by now.
+  std::span<const NodalLoad> loads(std::size_t tool) const noexcept { return tissue_.loads_of(tool); }
   /// How far a tool is from the surface that it can touch, as it stands, m; nothing of one that is lifted.
   /// O(vertices).
   std::optional<double> gap(std::size_t tool) const noexcept;

@@ -55,6 +55,11 @@ struct SparseCholesky::Factor {
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const {
     return rough ? Eigen::MatrixXd(rough->solve(b.cast<float>()).cast<double>()) : fine->solve(b);
   }
+  void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
+                     const std::function<void(double)>& progress) const {
+    if (rough) return rough->inverse_block(unknowns, block, progress);
+    fine->inverse_block(unknowns, block, progress);
+  }
 };
 #else
 /// Always in double precision.
@@ -83,6 +88,19 @@ struct SparseCholesky::Factor {
     return llt.info() == Eigen::Success;
   }
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return llt.solve(b); }
+  void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
+                     const std::function<void(double)>& progress) const {
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(llt.rows());
+    for (std::size_t j = 0; j < unknowns.size(); ++j) {
+      progress(static_cast<double>(j) / static_cast<double>(unknowns.size()));
+      load[unknowns[j]] = 1;
+      const Eigen::VectorXd moved = llt.solve(load);
+      load[unknowns[j]] = 0;
+      for (std::size_t i = j; i < unknowns.size(); ++i)
+        block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = moved[unknowns[i]];
+    }
+    block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
+  }
 };
 #endif
 
@@ -183,6 +201,15 @@ Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
   if (!definite_)
     return Eigen::MatrixXd::Constant(b.rows(), b.cols(), std::numeric_limits<double>::quiet_NaN());
   return b.rows() == 0 ? b : factor_->solve(b);
+}
+
+void SparseCholesky::inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
+                                   const std::function<void(double)>& progress) const {
+  if (!definite_) {
+    block.setConstant(std::numeric_limits<double>::quiet_NaN());
+  } else if (!unknowns.empty()) {
+    factor_->inverse_block(unknowns, block, progress);
+  }
 }
 
 SparseCholesky::Precision SparseCholesky::precision() const {

@@ -1,5 +1,7 @@
 #pragma once
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "common/memory_budget.h"
@@ -38,6 +40,11 @@ class SparseCholesky {
 
   /// X = A^-1 B for dense B (n x k); allocates X. Several threads may ask at once.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+
+  /// Fills `block` (m x m) with the rows and columns `unknowns` of A^-1, equal to its transpose. On all
+  /// cores, the same bytes on any number of them; tells `progress` the share done, from the calling thread.
+  void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
+                     const std::function<void(double)>& progress) const;
 
   /// Of the factor that there is.
   Precision precision() const;

@@ -4,46 +4,10 @@
 #include <atomic>
 
 #include "common/parallel.h"
-
-// BLAS and LAPACK, by their Fortran names.
-extern "C" {
-#define PALPATE_BLAS(S, p)                                                                                 \
-  void p##gemm_(const char*, const char*, const int*, const int*, const int*, const S*, const S*,          \
-                const int*, const S*, const int*, const S*, S*, const int*);                               \
-  void p##gemv_(const char*, const int*, const int*, const S*, const S*, const int*, const S*, const int*, \
-                const S*, S*, const int*);                                                                 \
-  void p##trsm_(const char*, const char*, const char*, const char*, const int*, const int*, const S*,      \
-                const S*, const int*, S*, const int*);                                                     \
-  void p##trsv_(const char*, const char*, const char*, const int*, const S*, const int*, S*, const int*);  \
-  void p##potrf_(const char*, const int*, S*, const int*, int*);
-PALPATE_BLAS(double, d)
-PALPATE_BLAS(float, s)
-#undef PALPATE_BLAS
-// Present in every OpenBLAS, absent from other BLAS libraries: hence weak.
-void openblas_set_num_threads(int threads) __attribute__((weak));
-}
+#include "sim_server/sparse/blas.h"
 
 namespace palpate::sim {
 namespace {
-
-template <class Scalar>
-struct Blas;
-template <>
-struct Blas<double> {
-  static constexpr auto gemm = dgemm_;
-  static constexpr auto gemv = dgemv_;
-  static constexpr auto trsm = dtrsm_;
-  static constexpr auto trsv = dtrsv_;
-  static constexpr auto potrf = dpotrf_;
-};
-template <>
-struct Blas<float> {
-  static constexpr auto gemm = sgemm_;
-  static constexpr auto gemv = sgemv_;
-  static constexpr auto trsm = strsm_;
-  static constexpr auto trsv = strsv_;
-  static constexpr auto potrf = spotrf_;
-};
 
 constexpr int kBand = 256;  // rows of a supernode that one task works on
 

@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Core>
+#include <functional>
+#include <span>
 
 #include "sim_server/sparse/supernodal_pattern.h"
 
@@ -24,10 +26,18 @@ class SupernodalFactor {
   bool factor(const SparseMatrix& lower);
   /// A^-1 B, (n x k). Several threads may ask at once. Allocates. 4 values k flops.
   Matrix solve(const Matrix& b) const;
+  /// Fills `block` (m x m) with the rows and columns `unknowns` of A^-1, equal to its transpose. On all
+  /// cores, the same bytes on any number of them; tells `progress` the share done, from the calling thread.
+  /// Columns are taken in the order of elimination: a load's forward elimination touches only the supernodes
+  /// above it in the tree, and by symmetry rows before it are not computed.
+  void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
+                     const std::function<void(double)>& progress) const;
 
   std::size_t bytes() const { return values_.size() * sizeof(Scalar); }
 
  private:
+  class InverseColumns;
+
   bool eliminate(int s, bool large, std::vector<int>& local);
   void assemble(int s, int from, int to, const std::vector<int>& local);
   void forward(Matrix& x) const;

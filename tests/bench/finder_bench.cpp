@@ -97,7 +97,7 @@ void add_rows(const std::string& mesh, const Skin& skin) {
 }  // namespace
 
 void add_finder_rows() {
-  add_rows("liver", Skin(read_mesh(PALPATE_SOURCE_DIR "/configs/meshes/liver.msh")));
+  add_rows("liver", Skin(read_mesh(PALPATE_SOURCE_DIR "/configs/meshes/liver_paper.msh")));
   for (const int cells : {2, 10, 90}) add_rows("block", Skin(block(cells)));
 }
 

@@ -122,7 +122,7 @@ ContactPatch flat_patch(int side) {
 void run_contact_alone(benchmark::State& state) {
   constexpr int kSide = 7;
   constexpr Tool kTool{0.005};
-  const ContactPatch patch = flat_patch(kSide);
+  ContactPatch patch = flat_patch(kSide);
   ContactSolver solver(kSide * kSide, static_cast<int>(patch.triangles.size()));
   const auto places = slide({0.0004, 0.6 * kTool.radius, 0.0007}, Vec3::UnitX(), kTool.radius);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(3 * (kSide * kSide + 1));
@@ -139,7 +139,7 @@ void run_virtual_session(benchmark::State& state) {
   Liver* const on = liver(state, "quasi_static");
   if (on == nullptr) return;
   const Trajectory motion(
-      TrajectorySettings{.file = PALPATE_SOURCE_DIR "/configs/trajectories/liver_palpation.csv"});
+      TrajectorySettings{.file = PALPATE_SOURCE_DIR "/configs/trajectories/liver_paper.csv"});
   const auto record = [&](const std::filesystem::path& file) {
     on->simulation.lift_tool();
     protocol::CaptureWriter capture(file);

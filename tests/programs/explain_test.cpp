@@ -64,8 +64,8 @@ TEST_CASE("explain takes as many steps as it is asked for, and tells that it doe
 TEST_CASE("the report of a run tells set-up by stage, and the stages fit into the whole") {
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "server.json").string();
-  Process process("sim_server",
-                  {"run", kScene, "--listen", "127.0.0.1:0", "--seconds", "0.2", "--report", file});
+  Process process("sim_server", {"run", kScene, "--no-cache", "--listen", "127.0.0.1:0", "--seconds", "0.2",
+                                 "--report", file});
   CHECK(process.wait() == 0);
   const Json json = read_json(file);
   double sum = 0;
@@ -76,4 +76,35 @@ TEST_CASE("the report of a run tells set-up by stage, and the stages fit into th
   }
   CHECK(json["setup_parts_ms"].size() == 6);
   CHECK(sum <= json["setup_ms"].get<double>());
+}
+
+TEST_CASE(
+    "explain tells whether the set-up came from the cache; with it and without, the steps are the same") {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "explain.json").string(),
+                    cache = (folder.path() / "cache").string();
+  const auto explained = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"explain", kScene, "--steps", "20", "--json", file};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    output_of("sim_server", arguments, 0);
+    const Json json = read_json(file);
+    for (const Json& part : json["built"]) {
+      if (part["part"] == "compliance")
+        return std::pair(part["detail"].get<std::string>(), json["state_hash"].get<std::string>());
+    }
+    return std::pair<std::string, std::string>();
+  };
+  const auto plain = explained({"--no-cache"}), first = explained({"--cache", cache}),
+             second = explained({"--cache", cache});
+  CHECK(plain.first == "566 nodes");
+  CHECK(first.first == "566 nodes, now in the set-up cache");
+  CHECK(second.first.find("566 nodes, from the set-up cache, which saved ") == 0);
+  CHECK(first.second == plain.second);
+  CHECK(second.second == plain.second);
+  CHECK(output_of("sim_server", {"cache", "list", "--cache", cache}, 0).find("1 entries, 23") !=
+        std::string::npos);
+  CHECK(output_of("sim_server", {"cache", "clear", "--cache", cache}, 0).find("1 files removed") !=
+        std::string::npos);
+  CHECK(output_of("sim_server", {"cache", "list", "--cache", cache}, 0).find("0 entries") !=
+        std::string::npos);
 }

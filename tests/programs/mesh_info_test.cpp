@@ -35,7 +35,7 @@ bool has(const std::string& text, const std::string& part) {
 
 TEST_CASE("mesh info of the shipped liver: no faults, exit 0") {
   Process process("sim_server",
-                  {"mesh", "info", std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver.msh"});
+                  {"mesh", "info", std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh"});
   CHECK(process.wait() == 0);
   CHECK(has(process.output(), "faults              none"));
 }

@@ -1,8 +1,12 @@
 // sim_server solve --seconds: relaxation, damping, flight and what supports bear, against closed forms; a
 // step that finds no balance.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <thread>
 
+#include "tests/support/process.h"
 #include "tests/support/solve_bench.h"
 #include "tests/support/vtu.h"
 
@@ -91,4 +95,19 @@ TEST_CASE(
   CHECK(said.find("--step") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(bench.out));
   CHECK(bytes_of(series).find("motion_0000.vtu") != std::string::npos);
+}
+
+TEST_CASE("solve: a series that is interrupted leaves no frames behind") {
+  SolveBench bench;
+  const std::string series = bench.path("motion.pvd"), frame = bench.path("motion_0000.vtu");
+  Process solving("sim_server", bench.arguments(kFixed + "[[load]]\ntraction = [0, 50, 0]\n" + kTop,
+                                                {"--seconds", "1000", "--step", "0.001", "--series", series},
+                                                "poisson_ratio = 0", "column.msh"));
+  for (int k = 0; k < 2000 && !std::filesystem::exists(frame); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  REQUIRE(std::filesystem::exists(frame));
+  solving.signal(SIGINT);
+  CHECK(solving.wait() != 0);
+  CHECK_FALSE(std::filesystem::exists(frame));
+  CHECK_FALSE(std::filesystem::exists(series));
 }

@@ -10,8 +10,8 @@
 
 namespace palpate::test {
 
-inline const std::string kScene = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver.toml";
-inline const std::string kClient = std::string(PALPATE_SOURCE_DIR) + "/configs/clients/liver.toml";
+inline const std::string kScene = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_paper.toml";
+inline const std::string kClient = std::string(PALPATE_SOURCE_DIR) + "/configs/clients/liver_paper.toml";
 
 /// A server of the liver on a port of its own (or a given one), ready.
 struct Server {

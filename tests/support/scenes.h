@@ -11,7 +11,7 @@ inline sim::Scene example_scene(const std::string& name) {
 }
 
 inline sim::Scene liver_scene() {
-  return example_scene("liver");
+  return example_scene("liver_paper");
 }
 
 /// A scene around a mesh made in memory: quasi-static unless said otherwise, fixed where `fixed` contains a

@@ -22,8 +22,9 @@ const std::string kScenes = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/"
 
 /// A liver by some model, without anything that it does not need.
 std::string minimal(const std::string& model) {
-  std::string text = "[mesh]\nfile = \"" + kScenes + "../meshes/liver.msh\"\n[deformation]\nmodel = \"" +
-                     model + "\"\n[[tool]]\nradius = 0.005\n";
+  std::string text = "[mesh]\nfile = \"" + kScenes +
+                     "../meshes/liver_paper.msh\"\n[deformation]\nmodel = \"" + model +
+                     "\"\n[[tool]]\nradius = 0.005\n";
   if (model != "rigid")
     text +=
         "[material]\nyoung_modulus = 1e4\npoisson_ratio = 0.4\n"
@@ -191,7 +192,7 @@ TEST_CASE("left out: a tool that goes beyond its workspace is told of, and count
 }
 
 TEST_CASE("left out: what a workspace leaves out is not in resident memory either") {
-  const std::string whole = kScenes + "liver.toml", some = kScenes + "liver_falcon.toml";
+  const std::string whole = kScenes + "liver_paper.toml", some = kScenes + "liver_falcon.toml";
   const long saved = explained(whole)["bytes"].get<long>() - explained(some)["bytes"].get<long>();
   CHECK(saved > 5'000'000);
   const long resident = Waiting(whole).resident() - Waiting(some).resident();

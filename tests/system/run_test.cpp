@@ -209,7 +209,7 @@ TEST_CASE("garbage on the server's port is counted, and changes nothing") {
 TEST_CASE("wrong input: one line that says what, where and what to do, exit 2, nothing left behind") {
   const TemporaryFolder folder;
   const std::string mesh =
-      "[mesh]\nfile = \"" + std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver.msh\"\n";
+      "[mesh]\nfile = \"" + std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh\"\n";
   const std::string fixed = "[[fixed]]\nbox = [[-1, -1, -1], [1, 1, -0.06]]\n";
   const std::string rest =
       "[material]\nyoung_modulus = 1e4\npoisson_ratio = 0.45\n[deformation]\nmodel = "
@@ -267,6 +267,8 @@ TEST_CASE("wrong input: one line that says what, where and what to do, exit 2, n
   says(output_of("haptic_client", {"run", "--server", "nowhere"}, 2), "expected HOST:PORT");
   says(output_of("sim_server", {"run", kScene, "--report", "/nowhere/s.json"}, 2), "cannot be written");
   says(output_of("sim_server", {"dance"}, 2), "--help");
+  says(output_of("sim_server", {"rnu", kScene}, 2), "did you mean \"run\"?");
+  says(output_of("haptic_client", {"evalate", "x.pcap"}, 2), "did you mean \"evaluate\"?");
   CHECK_FALSE(std::filesystem::exists(folder.path() / "s.json"));
   CHECK_FALSE(std::filesystem::exists(folder.path() / "r.json"));
 }

@@ -24,7 +24,7 @@ ContactPatch single_triangle(double c, double tool_compliance = 0) {
 }  // namespace
 
 TEST_CASE("out of reach: no force, nothing moves") {
-  const ContactPatch patch = single_triangle(1e-3);
+  ContactPatch patch = single_triangle(1e-3);
   ContactSolver solver(3, 1);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(12);
   const ContactForce contact = solver.solve(patch, {kRadius}, Vec3(0, kRadius + 1e-6, 0), u);
@@ -37,7 +37,7 @@ TEST_CASE("out of reach: no force, nothing moves") {
 TEST_CASE("pressing the centroid of a face sinks it evenly: F = depth / (c / 3)") {
   // Each corner carries a third, so the compliance at the centroid is 3 (1/3)^2 c.
   const double c = 2e-3, depth = 0.002;
-  const ContactPatch patch = single_triangle(c);
+  ContactPatch patch = single_triangle(c);
   ContactSolver solver(3, 1);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(12);
   const ContactForce contact = solver.solve(patch, {kRadius}, Vec3(0, kRadius - depth, 0), u);
@@ -52,7 +52,7 @@ TEST_CASE("pressing the centroid of a face sinks it evenly: F = depth / (c / 3)"
 }
 
 TEST_CASE("a rigid face with a soft tip is the penetration force k x depth") {
-  const ContactPatch patch = single_triangle(0, 1.0 / 800);
+  ContactPatch patch = single_triangle(0, 1.0 / 800);
   ContactSolver solver(3, 1);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(12);
   const ContactForce contact = solver.solve(patch, {kRadius}, Vec3(0.001, kRadius - 0.002, 0.001), u);
@@ -76,7 +76,7 @@ TEST_CASE("the tangent of a rigid vertex is that of a spring to a ball around it
 }
 
 TEST_CASE("a solve and its tangent do not allocate") {
-  const ContactPatch patch = single_triangle(1e-3, 1e-4);
+  ContactPatch patch = single_triangle(1e-3, 1e-4);
   ContactSolver solver(3, 1);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(12);
   std::size_t allocations = 1;

@@ -13,8 +13,8 @@ TEST_CASE("an empty client file means the defaults, and the file that ships is r
   CHECK(config.server == "127.0.0.1:45130");
   CHECK(config.rate_hz == 500);
   CHECK_FALSE(config.device.trajectory);
-  CHECK(
-      read_client_config(std::string(PALPATE_SOURCE_DIR) + "/configs/clients/liver.toml").device.trajectory);
+  CHECK(read_client_config(std::string(PALPATE_SOURCE_DIR) + "/configs/clients/liver_paper.toml")
+            .device.trajectory);
 }
 
 TEST_CASE(

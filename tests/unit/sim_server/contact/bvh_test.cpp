@@ -40,7 +40,7 @@ struct Skin {
 };
 
 TetMesh liver() {
-  return read_mesh(PALPATE_SOURCE_DIR "/configs/meshes/liver.msh");
+  return read_mesh(PALPATE_SOURCE_DIR "/configs/meshes/liver_paper.msh");
 }
 
 /// A cube of edges 8 mm, 80 mm wide, drawn into a ball: many of its triangles are equally far from its

@@ -17,7 +17,7 @@ TetMesh block() {
 }
 
 TetMesh liver() {
-  return read_mesh(std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver.msh");
+  return read_mesh(std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh");
 }
 
 MeshCounts counts_of(const TetMesh& mesh) {

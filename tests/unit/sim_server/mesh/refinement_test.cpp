@@ -62,7 +62,7 @@ TEST_CASE("what is tagged stays tagged, and no more") {
 }
 
 TEST_CASE("of an irregular mesh too, all parts fit together, and each is as stiff as what it was cut from") {
-  TetMesh liver = read_mesh(std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver.msh");
+  TetMesh liver = read_mesh(std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh");
   const double volume = describe(liver).volume;
   for (const Tetrahedron& t : liver.tetrahedra)
     liver.stiffness.push_back(liver.vertices[t[0]].x() > 0 ? 2 : 1);

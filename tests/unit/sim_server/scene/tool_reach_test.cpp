@@ -25,7 +25,7 @@ constexpr double kNearer = 0.02;  // m: tissue that deforms
 
 Scene scene_with(const std::string& tool, const std::string& fixed = "") {
   const test::TemporaryFolder folder;
-  const std::string mesh = std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver.msh";
+  const std::string mesh = std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh";
   const auto file = folder.write("scene.toml", "[mesh]\nfile = \"" + mesh +
                                                    "\"\n[deformation]\nmodel = \"quasi_static\"\n"
                                                    "[material]\nyoung_modulus = 1e4\npoisson_ratio = 0.4\n"
@@ -153,7 +153,7 @@ TEST_CASE("tool reach: the scenes that ship leave much of the liver out, and los
       };
       CHECK(10 * nodes(some, scene) < 8 * nodes(all, whole));
       const Trajectory motion(TrajectorySettings{.file = std::string(PALPATE_SOURCE_DIR) +
-                                                         "/configs/trajectories/liver_palpation.csv"});
+                                                         "/configs/trajectories/liver_paper.csv"});
       double most = 0, off = 0;
       for (int i = 0; i < 600; ++i) {
         const Vec3 place = motion.at(i / 30.0);

@@ -50,6 +50,28 @@ double imbalance(const SparseMatrix& a, const Eigen::MatrixXd& x) {
 
 }  // namespace
 
+TEST_CASE("a block of the inverse is that of the dense inverse, and symmetric to the last bit") {
+  const StiffnessMatrix matrix = stiffness_of_block(7);
+  const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix.lower()).selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd exact = dense.llt().solve(Eigen::MatrixXd::Identity(dense.rows(), dense.cols()));
+  const SparseCholesky factor(matrix.lower(), "test");
+  for (const int apart : {1, 3, 17, 500}) {  // all of it, and ever fewer rows, not in their order
+    CAPTURE(apart);
+    std::vector<int> unknowns;
+    for (int k = 0; k < dense.rows(); k += apart) unknowns.push_back(static_cast<int>(dense.rows()) - 1 - k);
+    const auto m = static_cast<Eigen::Index>(unknowns.size());
+    Eigen::MatrixXd block(m, m);
+    double last = -1;
+    factor.inverse_block(unknowns, block, [&](double share) {
+      CHECK(share > last);
+      last = share;
+    });
+    CHECK(last >= 0);
+    CHECK((block - exact(unknowns, unknowns)).cwiseAbs().maxCoeff() < 1e-11 * exact.cwiseAbs().maxCoeff());
+    CHECK(block == block.transpose());
+  }
+}
+
 TEST_CASE("a factor answers as a dense one does") {
   const StiffnessMatrix matrix = stiffness_of_block(4);
   const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix.lower()).selfadjointView<Eigen::Lower>();

@@ -1,0 +1,56 @@
+#include "sim_server/commands/cache.h"
+
+#include <chrono>
+#include <fmt/core.h>
+
+#include "common/error.h"
+#include "common/log.h"
+#include "common/memory_budget.h"
+
+namespace palpate::sim {
+namespace {
+
+SetupCache known_cache(const CacheOptions& options) {
+  const auto folder = options.folder ? options.folder : SetupCache::usual_folder();
+  if (!folder) fail("cache: neither $XDG_CACHE_HOME nor $HOME names a folder; name one with --cache DIR");
+  return SetupCache(*folder);
+}
+
+double hours_since(std::filesystem::file_time_type then) {
+  return std::chrono::duration<double, std::ratio<3600>>(std::filesystem::file_time_type::clock::now() - then)
+      .count();
+}
+
+}  // namespace
+
+std::optional<SetupCache> open_cache(const CacheOptions& options) {
+  if (options.none) return {};
+  if (!options.folder && !SetupCache::usual_folder()) {
+    log::warning("no set-up cache: neither $XDG_CACHE_HOME nor $HOME names a folder; --cache DIR does");
+    return {};
+  }
+  return known_cache(options);
+}
+
+int list_cache(const CacheOptions& options) {
+  const SetupCache cache = known_cache(options);
+  double bytes = 0;
+  const auto entries = cache.list();
+  for (const SetupCache::Entry& entry : entries) {
+    bytes += entry.bytes;
+    fmt::print("  {:<52}  {:>9}  saves {:>6.1f} s  used {:.1f} h ago\n",
+               entry.header ? entry.header->what : entry.file.filename().string() + " (spoilt)",
+               bytes_text(entry.bytes), entry.header ? entry.header->seconds : 0.0, hours_since(entry.used));
+  }
+  fmt::print("{}: {} entries, {}\n", cache.folder().string(), entries.size(), bytes_text(bytes));
+  return 0;
+}
+
+int clear_cache(const CacheOptions& options) {
+  const SetupCache cache = known_cache(options);
+  const auto [count, bytes] = cache.clear();
+  fmt::print("{}: {} files removed, {}\n", cache.folder().string(), count, bytes_text(bytes));
+  return 0;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,47 @@
+#pragma once
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "sim_server/setup_cache/fingerprint.h"
+
+namespace palpate::sim {
+
+/// What the header of an entry says.
+struct EntryHeader {
+  Digest key{};
+  std::uint64_t rows = 0, cols = 0;
+  double seconds = 0;  ///< that computing it took
+  std::string what;    ///< for lists, at most 200 bytes: "compliance of ..."
+};
+
+/// A matrix in a file, mapped copy-on-write: what is written to it stays in this process. Movable.
+class MappedMatrix {
+ public:
+  MappedMatrix(void* begin, std::size_t bytes, const EntryHeader& header);
+  ~MappedMatrix();
+  MappedMatrix(MappedMatrix&& other) noexcept;
+  MappedMatrix& operator=(MappedMatrix&& other) noexcept;
+
+  Eigen::Map<Eigen::MatrixXd> matrix() const;
+  const EntryHeader& header() const { return header_; }
+
+ private:
+  void* begin_;
+  std::size_t bytes_;
+  EntryHeader header_;
+};
+
+/// Writes an entry under another name, syncs and renames it: whole or not at all. Throws `Error`.
+void write_entry(const std::filesystem::path& file, const EntryHeader& header,
+                 const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+
+/// Maps the entry with this key. Throws `Error` with what is wrong with it: nothing of it is trusted before
+/// its size and both checksums agree. O(bytes).
+MappedMatrix map_entry(const std::filesystem::path& file, const Digest& key);
+
+/// The header alone; nothing where there is none that is sound.
+std::optional<EntryHeader> read_header(const std::filesystem::path& file);
+
+}  // namespace palpate::sim

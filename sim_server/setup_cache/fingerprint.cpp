@@ -1,0 +1,94 @@
+#include "sim_server/setup_cache/fingerprint.h"
+
+#define XXH_INLINE_ALL
+#include <fmt/core.h>
+#include <fstream>
+#include <iterator>
+#include <xxhash.h>
+
+#include "common/hash.h"
+
+namespace palpate::sim {
+namespace {
+
+/// The lines of /proc/cpuinfo that say what the first processor is and can do.
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  std::string line, said;
+  while (std::getline(info, line) && !line.empty()) {
+    if (line.starts_with("model name") || line.starts_with("flags") || line.starts_with("Features"))
+      said += line;
+  }
+  return said;
+}
+
+/// Of the running program's file; of no bytes where it cannot be read.
+Digest program() {
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  return digest_of(std::as_bytes(std::span(bytes)));
+}
+
+}  // namespace
+
+#ifdef PALPATE_WITH_XXHASH
+class ContentHash {
+ public:
+  ContentHash() { XXH3_128bits_reset(state_); }
+  ~ContentHash() { XXH3_freeState(state_); }
+  ContentHash(const ContentHash&) = delete;
+  ContentHash& operator=(const ContentHash&) = delete;
+  void add(const void* data, std::size_t size) { XXH3_128bits_update(state_, data, size); }
+  Digest digest() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(state_);
+    return {hash.high64, hash.low64};
+  }
+
+ private:
+  XXH3_state_t* state_ = XXH3_createState();
+};
+#else
+class ContentHash {
+ public:
+  void add(const void* data, std::size_t size) { hash_.add(data, size); }
+  Digest digest() const { return {hash_.value(), 0}; }
+
+ private:
+  Fnv1a hash_;
+};
+#endif
+
+struct Fingerprint::State {
+  ContentHash hash;
+};
+
+std::string to_text(const Digest& digest) {
+  return fmt::format("{:016x}{:016x}", digest[0], digest[1]);
+}
+
+Digest digest_of(std::span<const std::byte> bytes) {
+  ContentHash hash;
+  hash.add(bytes.data(), bytes.size());
+  return hash.digest();
+}
+
+Fingerprint::Fingerprint() : state_(std::make_unique<State>()) {
+  static const Digest self = program();
+  static const std::string cpu = processor();
+  add(std::span<const std::uint64_t>(self));
+  add(std::span<const char>(cpu));
+}
+
+Fingerprint::~Fingerprint() = default;
+
+void Fingerprint::add_bytes(std::span<const std::byte> bytes) {
+  const std::uint64_t size = bytes.size();  // so that two spans are not one
+  state_->hash.add(&size, sizeof(size));
+  state_->hash.add(bytes.data(), bytes.size());
+}
+
+Digest Fingerprint::digest() const {
+  return state_->hash.digest();
+}
+
+}  // namespace palpate::sim

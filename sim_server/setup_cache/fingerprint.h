@@ -1,0 +1,40 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace palpate::sim {
+
+/// 128 bits of XXH3 (Collet), or 64 of FNV-1a where that is not built in.
+using Digest = std::array<std::uint64_t, 2>;
+
+/// 32 hexadecimal digits.
+std::string to_text(const Digest& digest);
+
+/// Of some bytes.
+Digest digest_of(std::span<const std::byte> bytes);
+
+/// A hash of all that a result follows from. Begins with the program's own bytes and the processor's name and
+/// features: another build, or another processor, rounds otherwise.
+class Fingerprint {
+ public:
+  Fingerprint();
+  ~Fingerprint();
+
+  template <class T>
+  void add(std::span<const T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    add_bytes(std::as_bytes(values));
+  }
+  Digest digest() const;
+
+ private:
+  void add_bytes(std::span<const std::byte> bytes);
+
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace palpate::sim

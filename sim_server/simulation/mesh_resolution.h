@@ -1,0 +1,35 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim_server/deformation/deformation_model.h"
+#include "sim_server/elasticity/material.h"
+#include "sim_server/mesh/surface.h"
+
+namespace palpate::sim {
+
+/// How fine the mesh is where a tool presses on it, in elements to a radius of the tool: its radius over the
+/// mean edge of the elements at each loaded vertex, at rest, weighted by its load. One thread.
+class MeshResolution {
+ public:
+  /// `rest`: vertices of the surface, m; `radius` of the tool, m. O(vertices).
+  MeshResolution(const Surface& surface, std::span<const Vec3> rest, double radius);
+
+  /// Adds what the tool loads in one step. O(loads); does not allocate.
+  void add(std::span<const NodalLoad> loads) noexcept;
+  /// Mean over all loads so far; nothing before the first.
+  std::optional<double> elements_per_radius() const noexcept;
+
+ private:
+  std::vector<double> fineness_;  // of each vertex: radius / mean edge
+  double sum_ = 0, weight_ = 0;
+};
+
+/// What a mesh of so many elements to a radius of the tool costs the force, % of its root mean square: from a
+/// table measured on a liver under a sphere (simulation/README.md), interpolated in logarithms, held at its
+/// ends. A guess for another shape; `sim_server study` measures that. Nothing for elements that are not in
+/// the table.
+std::optional<double> estimated_mesh_error(ElementKind element, double elements_per_radius) noexcept;
+
+}  // namespace palpate::sim

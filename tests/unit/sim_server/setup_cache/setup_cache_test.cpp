@@ -1,0 +1,176 @@
+#include "sim_server/setup_cache/setup_cache.h"
+
+#include <chrono>
+#include <fstream>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "common/error.h"
+#include "sim_server/scene_file/read_scene.h"
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Digest key_of(std::uint64_t number) {
+  Fingerprint fingerprint;
+  fingerprint.add(std::span<const std::uint64_t>(&number, 1));
+  return fingerprint.digest();
+}
+
+Eigen::MatrixXd numbers(int n) {
+  return Eigen::MatrixXd::NullaryExpr(n, n, [](Eigen::Index i, Eigen::Index j) {
+    return 0.1 * static_cast<double>(i) - 0.3 * static_cast<double>(j);
+  });
+}
+
+fs::path file_of(const fs::path& folder, std::uint64_t number) {
+  return folder / (to_text(key_of(number)) + ".setup");
+}
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_bytes(const fs::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+}  // namespace
+
+TEST_CASE("setup cache: what is kept is found, bit by bit, and stays as it is when a finder writes on it") {
+  const test::TemporaryFolder folder;
+  const SetupCache cache(folder.path() / "not" / "there");
+  CHECK_FALSE(cache.find(key_of(1)));
+  cache.keep({.key = key_of(1), .seconds = 2.5, .what = "compliance of 5 nodes"}, numbers(15));
+  CHECK_FALSE(cache.find(key_of(2)));
+  for (int again = 0; again < 2; ++again) {
+    const auto found = cache.find(key_of(1));
+    REQUIRE(found);
+    CHECK(found->matrix() == numbers(15));
+    CHECK(found->header().seconds == 2.5);
+    CHECK(found->header().what == "compliance of 5 nodes");
+    found->matrix().setZero();  // copy-on-write
+  }
+}
+
+TEST_CASE("setup cache: an entry with any byte of header or numbers changed, or cut, is never taken") {
+  const test::TemporaryFolder folder;
+  const SetupCache cache(folder.path());
+  const auto keep = [&] { cache.keep({.key = key_of(7), .seconds = 1, .what = "seven"}, numbers(12)); };
+  keep();
+  const fs::path file = file_of(folder.path(), 7);
+  const std::string whole = bytes_of(file);
+  REQUIRE(whole.size() == 4096 + 12 * 12 * sizeof(double));
+  const std::size_t header = 304;  // bytes that mean something; the rest of the page is padding
+  for (std::size_t at = 0; at < whole.size(); at += at < header ? 1 : at < 4096 ? 4096 - header : 7) {
+    if (at >= header && at < 4096) continue;
+    CAPTURE(at);
+    std::string spoilt = whole;
+    spoilt[at] = static_cast<char>(spoilt[at] ^ 0x40);
+    write_bytes(file, spoilt);
+    CHECK_FALSE(cache.find(key_of(7)));
+    CHECK_FALSE(fs::exists(file));  // removed, to be made again
+  }
+  for (const std::size_t size : {std::size_t{0}, std::size_t{10}, std::size_t{4096}, whole.size() - 1}) {
+    CAPTURE(size);
+    write_bytes(file, whole.substr(0, size));
+    CHECK_FALSE(cache.find(key_of(7)));
+  }
+  write_bytes(file, whole + "x");
+  CHECK_FALSE(cache.find(key_of(7)));
+  keep();
+  CHECK(cache.find(key_of(7)));
+  fs::rename(file, file_of(folder.path(), 8));  // another's name
+  CHECK_FALSE(cache.find(key_of(8)));
+}
+
+TEST_CASE("setup cache: beyond its bound the entries not used for longest go, the newest stays") {
+  const test::TemporaryFolder folder;
+  const double entry = 4096 + 8 * 20 * 20;
+  const SetupCache cache(folder.path(), 2.5 * entry);
+  const auto now = fs::file_time_type::clock::now();
+  for (std::uint64_t k = 1; k <= 2; ++k) {
+    cache.keep({.key = key_of(k), .what = ""}, numbers(20));
+    fs::last_write_time(file_of(folder.path(), k), now - std::chrono::hours(10 - k));
+  }
+  REQUIRE(cache.find(key_of(1)));  // so 2 is the oldest
+  cache.keep({.key = key_of(3), .what = ""}, numbers(20));
+  CHECK(cache.find(key_of(1)));
+  CHECK_FALSE(cache.find(key_of(2)));
+  CHECK(cache.find(key_of(3)));
+  CHECK(cache.list().size() == 2);
+  const auto [files, bytes] = cache.clear();
+  CHECK(files == 2);
+  CHECK(bytes == 2 * entry);
+  CHECK(cache.list().empty());
+}
+
+TEST_CASE("setup cache: clear removes what it wrote, and nothing else") {
+  const test::TemporaryFolder folder;
+  const SetupCache cache(folder.path());
+  cache.keep({.key = key_of(1), .what = ""}, numbers(3));
+  write_bytes(folder.path() / "notes.txt", "mine");
+  write_bytes(folder.path() / "0123.setup.77.part", "half");  // of a writer that was interrupted
+  CHECK(cache.clear().first == 2);
+  CHECK(bytes_of(folder.path() / "notes.txt") == "mine");
+}
+
+TEST_CASE("setup cache: a folder that cannot be written to costs a warning, no more") {
+  const test::TemporaryFolder folder;
+  write_bytes(folder.path() / "file", "");
+  const SetupCache cache(folder.path() / "file" / "folder");
+  cache.keep({.key = key_of(1), .what = ""}, numbers(3));
+  CHECK_FALSE(cache.find(key_of(1)));
+  CHECK(cache.list().empty());
+}
+
+TEST_CASE("setup cache: a fingerprint tells spans, their ends and their order apart") {
+  const auto of = [](std::vector<int> a, std::vector<int> b) {
+    Fingerprint fingerprint;
+    fingerprint.add(std::span<const int>(a));
+    fingerprint.add(std::span<const int>(b));
+    return fingerprint.digest();
+  };
+  CHECK(of({1, 2}, {3}) == of({1, 2}, {3}));
+  CHECK(of({1, 2}, {3}) != of({1}, {2, 3}));
+  CHECK(of({1, 2}, {3}) != of({3}, {1, 2}));
+  CHECK(of({1, 2}, {3}) != of({1, 2}, {4}));
+}
+
+TEST_CASE(
+    "setup cache: a simulation from the cache is the same, bit by bit; another tissue or reach is not "
+    "found") {
+  const test::TemporaryFolder folder;
+  const SetupCache cache(folder.path());
+  const std::string scenes = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/";
+  for (const char* name : {"liver_paper", "liver_reduced"}) {
+    DYNAMIC_SECTION(name) {
+      const Scene scene = read_scene(scenes + name + ".toml");
+      const auto pressed = [&](Simulation& simulation) {
+        const Vec3 top = simulation.rest()[static_cast<std::size_t>(simulation.surface().triangles[0][0])];
+        for (int k = 0; k < 10; ++k) simulation.step(Vec3(top + Vec3(0, 0.006 - 0.001 * k, 0)), 1.0 / 30);
+        return simulation.state_hash();
+      };
+      Simulation plain(scene), first(scene, kSilent, &cache);
+      const std::size_t entries = cache.list().size();
+      Simulation second(scene, kSilent, &cache);
+      CHECK(cache.list().size() == entries);
+      CHECK(second.memory().front().detail.find("from the set-up cache") != std::string::npos);
+      const std::uint64_t hash = pressed(plain);
+      CHECK(pressed(first) == hash);
+      CHECK(pressed(second) == hash);
+      Scene softer = scene;
+      softer.material->young_modulus *= 0.999;
+      Simulation third(softer, kSilent, &cache);
+      CHECK(cache.list().size() == entries + 1);
+    }
+  }
+}
