@@ -40,6 +40,16 @@ Json methods_report(const Scoring& scoring) {
   return methods;
 }
 
+/// What the laws were held against: the force between samples, of most ticks, and each kind's share.
+Json reference_report(const Scoring& scoring) {
+  Json report = {{"name", name_of(scoring.mostly_between())}};
+  for (const auto kind : {ReferenceKind::kContact, ReferenceKind::kHermite, ReferenceKind::kLine}) {
+    report["shares"][std::string(name_of(kind))] =
+        per(static_cast<double>(scoring.between(kind)), static_cast<double>(scoring.scored()));
+  }
+  return report;
+}
+
 Json timeline_report(const SessionTimeline& timeline, const Scoring& scoring) {
   Json cells = Json::array();
   for (std::size_t i = 0; i < timeline.size(); ++i) {
@@ -124,14 +134,26 @@ void print_stand_ins(const Json& methods) {
   }
 }
 
+/// "contact 98 %, hermite 2 %".
+std::string reference_text(const Json& reference) {
+  std::string text;
+  for (const auto& [name, share] : reference["shares"].items()) {
+    if (share.get<double>() > 0)
+      text += fmt::format("{}{} {:.3g} %", text.empty() ? "" : ", ", name, 100 * share.get<double>());
+  }
+  return text.empty() ? "none yet" : text;
+}
+
 void print_scores(const Json& tool) {
   const Json &methods = tool["methods"], &motion = tool["motion"];
   if (methods.empty()) return;
   fmt::print(
-      "  score   {} ticks against the line between the samples, latency included; {:.1f} samples a second\n",
-      tool["scored_ticks"].get<long>(), motion["sample_rate_hz"].get<double>());
+      "  score   {} ticks against the force between the samples ({}), latency included; {:.1f} samples a "
+      "second\n",
+      tool["scored_ticks"].get<long>(), reference_text(tool["reference"]),
+      motion["sample_rate_hz"].get<double>());
   fmt::print("          {:40}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
-             "paper: % of the interpolated force", "");
+             "paper: % of the force on the line", "");
   fmt::print("          {:40}{:>11}{:>11}{:>11}   {:>12}{:>12}{:>12}   {:>7}\n", "law", "mean", "p99", "max",
              "average", "maximal", "max force", "ns/tick");
   for (const auto& [name, m] : methods.items()) {
@@ -245,6 +267,7 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
             {"not_finite", limiter.not_finite},
             {"storms", limiter.storms}}},
           {"scored_ticks", observation.scoring().scored()},
+          {"reference", reference_report(observation.scoring())},
           {"methods", methods_report(observation.scoring())},
           {"timeline", timeline_report(observation.timeline(), observation.scoring())}};
 }

@@ -108,6 +108,7 @@ class Tool:
     timeline: Timeline
     errors: dict                 # {law: [% per cell]}
     scores: dict                 # {law: {key: %}}
+    reference: str = ""          # what the laws were held against, of most ticks
     rate_hz: float = 0           # 0: not known
     server: Timeline = None
     server_rate_hz: float = 0
@@ -139,6 +140,8 @@ def read_tool(report, server, node, index, count):
     if not timeline.edges:
         raise Unusable(f"{report.file}: {line.path}.cells is empty: no session to draw")
     tool = Tool(report.file, "", method, timeline, errors_of(line, laws), scores)
+    if "reference" in node:
+        tool.reference = node["reference"]["name"].text()
     for place in (node["loop"] if "loop" in node else None,
                   report["capture"] if "capture" in report else None):
         if place and "rate_hz" in place:

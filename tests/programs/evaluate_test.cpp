@@ -83,10 +83,22 @@ TEST_CASE("evaluate: on the liver, 33 Hz and 35 ms, two tangents are far ahead o
   CHECK(one["jump_percent"].get<double>() < 1e-6);                 // blended
   CHECK(one["bytes_per_sample"].get<double>() == Approx(28 + 341).epsilon(0.2));
   CHECK(row(rows, "constant", true)["bytes_per_sample"].get<double>() < 160);  // uses none of the tangents
-  // Without a truth the line between the samples is the reference: as in a replay.
-  const Json lines = evaluate("c", {"--method", "constant"});
-  CHECK(lines.size() == 2);
-  CHECK(lines[0]["reference"] == "line");
+  CHECK(one["between"] == "contact");
+  // What a session scores itself against is off by less than a tenth of what the best law is.
+  for (const char* key : {"mean_percent", "p99_percent", "max_percent"}) {
+    CAPTURE(key);
+    CHECK(10 * one["between_" + std::string(key)].get<double>() <
+          row(rows, "local_contact", false)[key].get<double>());
+  }
+  // Without a truth the force between the samples is the reference: as in a replay.
+  const Json curves = evaluate("c", {"--method", "constant"}), solved = evaluate("d", {});
+  CHECK(curves.size() == 2);
+  CHECK(curves[0]["reference"] == "hermite");
+  CHECK(solved[0]["reference"] == "contact");
+  for (const char* law : {"constant", "linear_position", "two_tangents", "local_contact"}) {
+    CAPTURE(law);
+    CHECK(row(solved, law, false)["mean_percent"].get<double>() == Approx(mean(law)).epsilon(0.1));
+  }
 }
 
 TEST_CASE(
