@@ -1,5 +1,6 @@
 #include "haptic_client/session/client_report.h"
 
+#include <algorithm>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -20,22 +21,41 @@ Json stand_ins_report(const StandIns& stand_ins) {
   return laws;
 }
 
+/// Which law was really at work where `law` was asked for: the one of most ticks, and each one's share of
+/// them, the largest first. Empty before the first sample.
+Json at_work_report(const std::string& law, const StandIns& stand_ins, std::uint64_t ticks) {
+  std::vector<std::pair<std::uint64_t, std::string>> laws{{ticks, law}};
+  for (const auto& [name, stood_in] : stand_ins.rows()) {
+    if (stood_in == 0) continue;
+    laws.front().first -= std::min(stood_in, laws.front().first);
+    laws.emplace_back(stood_in, name);
+  }
+  std::stable_sort(laws.begin(), laws.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  Json report = {{"law", ticks > 0 ? laws.front().second : ""}, {"laws", Json::object()}};
+  for (const auto& [felt, name] : laws) {
+    if (felt > 0) report["laws"][name] = per(static_cast<double>(felt), static_cast<double>(ticks));
+  }
+  return report;
+}
+
 Json methods_report(const Scoring& scoring) {
   Json methods = Json::object();
   for (std::size_t i = 0; i < scoring.names().size(); ++i) {
     const ErrorMetrics m = scoring.metrics(i);
-    methods[scoring.names()[i]] = {{"mean_percent", m.mean_percent},
-                                   {"p99_percent", m.p99_percent},
-                                   {"max_percent", m.max_percent},
-                                   {"exceed_percent", m.exceed_percent},
-                                   {"jump_percent", m.jump_percent},
-                                   {"rough_percent", m.rough_percent},
-                                   {"paper_mean_percent", m.paper_mean_percent},
-                                   {"paper_max_percent", m.paper_max_percent},
-                                   {"paper_max_force_percent", m.paper_max_force_percent},
-                                   {"ticks", scoring.ticks()},
-                                   {"stand_ins", stand_ins_report(scoring.stand_ins(i))},
-                                   {"ns_per_tick", cost_of(scoring.names()[i]).tick_ns}};
+    methods[scoring.names()[i]] = {
+        {"mean_percent", m.mean_percent},
+        {"p99_percent", m.p99_percent},
+        {"max_percent", m.max_percent},
+        {"exceed_percent", m.exceed_percent},
+        {"jump_percent", m.jump_percent},
+        {"rough_percent", m.rough_percent},
+        {"paper_mean_percent", m.paper_mean_percent},
+        {"paper_max_percent", m.paper_max_percent},
+        {"paper_max_force_percent", m.paper_max_force_percent},
+        {"ticks", scoring.ticks()},
+        {"at_work", at_work_report(scoring.names()[i], scoring.stand_ins(i), scoring.ticks())},
+        {"stand_ins", stand_ins_report(scoring.stand_ins(i))},
+        {"ns_per_tick", cost_of(scoring.names()[i]).tick_ns}};
   }
   return methods;
 }
@@ -118,12 +138,28 @@ std::string stand_ins_text(const Json& stand_ins, const std::string& law) {
   return text;
 }
 
-/// The law that was at work in the row of another for all of the time, in brackets.
+/// 99.75 of 99.7512 %, and never 100 of less than all.
+std::string percent_text(double share) {
+  return share < 1 ? fmt::format("{:.4g} %", std::min(100 * share, 99.99)) : "100 %";
+}
+
+/// The law that was really at work in most ticks of the row of another, in brackets.
 std::string row_name(const std::string& law, const Json& scores) {
-  for (const auto& [name, ticks] : scores["stand_ins"].items()) {
-    if (ticks.get<long>() > 0 && ticks == scores["ticks"]) return fmt::format("{} (as {})", law, name);
-  }
-  return law;
+  const auto at_work = scores["at_work"]["law"].get<std::string>();
+  if (at_work.empty() || at_work == law) return law;
+  const double share = scores["at_work"]["laws"][at_work].get<double>();
+  return fmt::format("{} (as {} {})", law, at_work, percent_text(share));
+}
+
+/// "two_tangents 99.75 %, local_contact 0.25 % (asked for: local_contact)".
+std::string felt_text(const Json& tool) {
+  const auto method = tool["method"].get<std::string>();
+  std::string text;
+  for (const auto& [name, share] : tool["felt"]["laws"].items())
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, percent_text(share.get<double>()));
+  if (text.empty()) return fmt::format("nothing; asked for: {}", method);
+  if (tool["felt"]["law"] == method) return text;
+  return fmt::format("{} (asked for: {})", text, method);
 }
 
 void print_stand_ins(const Json& methods) {
@@ -152,13 +188,13 @@ void print_scores(const Json& tool) {
       "second\n",
       tool["scored_ticks"].get<long>(), reference_text(tool["reference"]),
       motion["sample_rate_hz"].get<double>());
-  fmt::print("          {:40}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
+  fmt::print("          {:46}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
              "paper: % of the force on the line", "");
-  fmt::print("          {:40}{:>11}{:>11}{:>11}   {:>12}{:>12}{:>12}   {:>7}\n", "law", "mean", "p99", "max",
+  fmt::print("          {:46}{:>11}{:>11}{:>11}   {:>12}{:>12}{:>12}   {:>7}\n", "law", "mean", "p99", "max",
              "average", "maximal", "max force", "ns/tick");
   for (const auto& [name, m] : methods.items()) {
     const auto number = [&m = m](const char* key) { return m[key].get<double>(); };
-    fmt::print("          {:40}{:11.3f}{:11.3f}{:11.2f}   {:12.3f}{:12.1f}{:12.1f}   {:7.1f}\n",
+    fmt::print("          {:46}{:11.3f}{:11.3f}{:11.2f}   {:12.3f}{:12.1f}{:12.1f}   {:7.1f}\n",
                row_name(name, m), number("mean_percent"), number("p99_percent"), number("max_percent"),
                number("paper_mean_percent"), number("paper_max_percent"), number("paper_max_force_percent"),
                number("ns_per_tick"));
@@ -240,6 +276,7 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
   return {{"device", config.device.name},
           {"port", config.device.port},
           {"method", config.method},
+          {"felt", at_work_report(config.method, stats.stand_ins, stats.told)},
           {"force",
            {{"samples", stats.samples},
             {"overtaken", stats.overtaken},
@@ -288,8 +325,7 @@ Json link_report(const protocol::LinkStats& net) {
 
 void print_report(const Json& report) {
   for (const Json& tool : report["tools"]) {
-    fmt::print("haptic_client: {} with {}\n", tool["device"].get<std::string>(),
-               tool["method"].get<std::string>());
+    fmt::print("haptic_client: {}, felt: {}\n", tool["device"].get<std::string>(), felt_text(tool));
     if (tool.contains("loop")) print_loop(tool["loop"]);
     print_tool(tool);
     print_scores(tool);

@@ -78,7 +78,7 @@ def draw_errors(axis, tool, unit, styles):
         # The felt law is wide and below, so that a law that coincides with it is seen on it.
         axis.stairs(values, edges, baseline=None, color=colour, linestyle="-" if felt else line,
                     linewidth=4.5 if felt else 1.5, zorder=2 if felt else 3,
-                    label=f"{law} (felt)" if felt else law)
+                    label=f"{tool.names[law]}, felt" if felt else tool.names[law])
     gaps = any(math.isnan(value) for values in tool.errors.values() for value in values)
     axis.set_title("Error of the laws" + (" (gaps: no contact or no samples)" if gaps else ""), loc="left")
     axis.set_ylabel("% of RMS force")
@@ -174,7 +174,7 @@ def draw_scores(axis, tool, styles):
         weight = "bold" if felt else "normal"
         axis.plot((0.003, 0.03), (row + 0.5, row + 0.5), color=colour, linestyle="-" if felt else line,
                   linewidth=4.5 if felt else 1.5, solid_capstyle="butt")
-        axis.text(0.04, row + 0.5, f"{law} (felt)" if felt else law, weight=weight, **size)
+        axis.text(0.04, row + 0.5, f"{tool.names[law]}, felt" if felt else tool.names[law], weight=weight, **size)
         for x, key, _, decimals in columns:
             value = scores[key]
             axis.text(x, row + 0.5, f"{value:.{decimals}f}" if value < 1e6 else f"{value:.2e}", ha="right",
