@@ -78,7 +78,7 @@ def draw_errors(axis, tool, unit, styles):
         # The felt law is wide and below, so that a law that coincides with it is seen on it.
         axis.stairs(values, edges, baseline=None, color=colour, linestyle="-" if felt else line,
                     linewidth=4.5 if felt else 1.5, zorder=2 if felt else 3,
-                    label=f"{tool.names[law]}, felt" if felt else tool.names[law])
+                    label=f"{law} (felt)" if felt else law)
     gaps = any(math.isnan(value) for values in tool.errors.values() for value in values)
     axis.set_title("Error of the laws" + (" (gaps: no contact or no samples)" if gaps else ""), loc="left")
     axis.set_ylabel("% of RMS force")
