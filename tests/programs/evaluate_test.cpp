@@ -116,7 +116,12 @@ TEST_CASE(
              stiffer = evaluate("stiffer", {"--compliance", "0.7"});
   CHECK(same == told);
   for (const bool blended : {false, true}) {
-    CHECK(row(stiffer, "two_tangents", blended) == row(told, "two_tangents", blended));
+    // The reference is solved on that model, too, but corrected at every sample; the line knows no model.
+    const Json &other = row(told, "two_tangents", blended), &same_law = row(stiffer, "two_tangents", blended);
+    for (const char* key : {"paper_mean_percent", "paper_max_percent", "paper_max_force_percent"})
+      CHECK(same_law[key] == other[key]);
+    CHECK(same_law["mean_percent"].get<double>() ==
+          Approx(other["mean_percent"].get<double>()).epsilon(1e-3));
     const Json &right = row(told, "local_contact", blended), &wrong = row(stiffer, "local_contact", blended);
     CHECK(wrong["mean_percent"] != right["mean_percent"]);
     CHECK(wrong["model_bytes"] == right["model_bytes"]);
