@@ -121,7 +121,7 @@ CLI::App* add_evaluate(CLI::App& app, client::EvaluateOptions& options) {
   command->add_option(
       "--truth", options.truth,
       "Capture of the same motion at 200 samples a second or more: `sim_server record ... --rate "
-      "2000 --plain` (default: the line between the samples)");
+      "2000 --plain` (default: the force between the samples)");
   command->add_option("--out", options.out, "Folder for summary.json and summary.csv")->required();
   command->add_option("--method", options.methods, "Laws (default: all)")->allow_extra_args(false);
   command->add_option("--world", options.world, "Name for the first column (default: the capture's)");

@@ -70,6 +70,7 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   e.run = static_cast<std::size_t>(longest - found.runs.begin());
   e.ticks_hz = ticks_per_second(*longest);
   e.plain = scorings(laws, e.ticks_hz, 0, truth);
+  e.plain.front().judge_between_samples();
   e.blended = scorings(laws, e.ticks_hz, options.blend_ms / 1e3, truth);
   CapturedSession session(file, e.run);
   std::optional<protocol::ToolState> before;
@@ -127,6 +128,8 @@ Json row_of(const Scoring& scoring, std::size_t law, const LawCost& cost) {
 
 void add_rows(Json& rows, const std::string& world, const Evaluation& e, bool with_truth,
               const std::vector<LawCost>& costs) {
+  const std::string between(name_of(e.plain.front().mostly_between()));
+  const ErrorMetrics own = e.plain.front().between_metrics();
   for (const bool blended : {false, true}) {
     std::size_t number = 0;
     for (const Scoring& scoring : blended ? e.blended : e.plain) {
@@ -136,17 +139,35 @@ void add_rows(Json& rows, const std::string& world, const Evaluation& e, bool wi
                     {"speed_m_s", e.path / e.seconds},
                     {"rate_hz", samples / e.seconds},
                     {"delay_ms", 1e3 * e.age / samples},
-                    {"reference", with_truth ? "truth" : "line"},
+                    {"reference", with_truth ? "truth" : between},
                     {"method", scoring.names()[law]},
                     {"blended", blended}};
         row.update(row_of(scoring, law, costs[number]));
         row["bytes_per_sample"] = e.bytes[number] / samples;
         row["model_bytes"] = wants_of(scoring.names()[law]).surface ? e.model_bytes : 0;
+        row["between"] = between;
+        row["between_mean_percent"] = own.mean_percent;
+        row["between_p99_percent"] = own.p99_percent;
+        row["between_max_percent"] = own.max_percent;
         ++number;
         rows.push_back(row);
       }
     }
   }
+}
+
+/// What the laws of the rows from `begin` on were held against.
+void print_reference(const Json& rows, std::size_t begin) {
+  const Json& row = rows[begin];
+  const auto number = [&](const char* key) { return row[key].get<double>(); };
+  fmt::print("{}: reference {}", row["world"].get<std::string>(), row["reference"].get<std::string>());
+  if (row["reference"] == "truth")
+    fmt::print(
+        "; the force between samples ({}), which a session has instead, is off by {:.4f} % mean, {:.3f} p99, "
+        "{:.2f} max",
+        row["between"].get<std::string>(), number("between_mean_percent"), number("between_p99_percent"),
+        number("between_max_percent"));
+  fmt::print("\n");
 }
 
 void print(const Json& rows) {
@@ -186,8 +207,10 @@ int evaluate(const EvaluateOptions& options) {
     std::vector<LawCost> costs;
     for (const std::string& law : laws)
       costs.push_back(wants_of(law).surface ? cost_on(law, capture, e.run) : cost_of(law));
+    const std::size_t begin = rows.size();
     add_rows(rows, options.world.empty() ? capture.stem().string() : options.world, e, truth.has_value(),
              costs);
+    print_reference(rows, begin);
   }
   print(rows);
   write_json(options.out / "summary.json", rows);

@@ -9,7 +9,7 @@ namespace palpate::client {
 /// What `haptic_client evaluate` was asked for.
 struct EvaluateOptions {
   std::vector<std::filesystem::path> captures;
-  std::optional<std::filesystem::path> truth;  ///< absent: the line between the samples is the reference
+  std::optional<std::filesystem::path> truth;  ///< absent: the force between the samples (`BetweenSamples`)
   std::filesystem::path out;                   ///< folder; made if it is not there
   std::vector<std::string> methods;            ///< empty: every law there is
   std::string world;                           ///< name of what was touched; empty: the name of the capture

@@ -1,5 +1,6 @@
 #include "haptic_client/evaluation/scoring.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/error.h"
@@ -21,13 +22,15 @@ ErrorSums& ErrorSums::operator+=(const ErrorSums& other) noexcept {
 
 Scoring::Scoring(const std::vector<std::string>& laws, double rate_hz, const std::string& where, double blend,
                  const Truth* truth)
-    : names_(laws), truth_(truth) {
+    : names_(laws), rate_hz_(rate_hz), truth_(truth) {
   if (laws.size() > kMaxLaws) fail("{}: at most {} laws can be scored, not {}", where, kMaxLaws, laws.size());
   force_.fill(Vec3::Zero());
   for (const std::string& name : laws) {
     laws_.emplace_back(find_row(extrapolators(), name, "method", where).make(), blend);
     tables_.emplace_back(rate_hz);
+    paper_.emplace_back(rate_hz);
   }
+  if (truth == nullptr && wants().surface) contact_ = std::make_unique<FollowedContact>(rate_hz);
   if (!laws.empty()) pending_.resize(static_cast<std::size_t>(kLongestWait * rate_hz) + 1);
 }
 
@@ -37,22 +40,42 @@ Wants Scoring::wants() const noexcept {
   return all;
 }
 
+void Scoring::judge_between_samples() {
+  if (truth_ == nullptr || laws_.empty()) return;
+  own_.emplace(rate_hz_);
+  if (wants().surface) contact_ = std::make_unique<FollowedContact>(rate_hz_);
+}
+
+ErrorMetrics Scoring::metrics(std::size_t law) const noexcept {
+  ErrorMetrics m = tables_[law].metrics();
+  const ErrorMetrics line = paper_[law].metrics();
+  m.paper_mean_percent = line.paper_mean_percent;
+  m.paper_max_percent = line.paper_max_percent;
+  m.paper_max_force_percent = line.paper_max_force_percent;
+  return m;
+}
+
+ReferenceKind Scoring::mostly_between() const noexcept {
+  const auto most = std::max_element(between_.begin(), between_.end());
+  return static_cast<ReferenceKind>(most - between_.begin());
+}
+
 void Scoring::tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums) noexcept {
   if (laws_.empty()) return;
+  PathTick path{t, p_W};
+  if (contact_) path.contact = contact_->go(p_W, t);
   if (ticked_) {
     newest_.moved = p_W - place_;
-    if (truth_ == nullptr) {
-      wait(newest_);
-    } else if (const auto right = truth_->at(newest_.t)) {
-      score(newest_, *right, sums);
-    }
+    if (truth_ != nullptr) newest_.right = truth_->at(newest_.path.t);
+    if (newest_.right) score(newest_, *newest_.right, sums);
+    wait(newest_);
   }
-  if (taken != nullptr) take(*taken, p_W, t, sums);
+  if (taken != nullptr) take(*taken, path, sums);
   for (std::size_t i = 0; i < laws_.size(); ++i) force_[i] = laws_[i].force(p_W, t);
   ticked_ = laws_.front().newest().number > 0;
   ticks_ += ticked_ ? 1 : 0;
   for (std::size_t i = 0; ticked_ && i < laws_.size(); ++i) stand_ins_[i].add(laws_[i].stand_in());
-  newest_ = {t, Vec3::Zero(), force_};
+  newest_ = {path, Vec3::Zero(), force_, {}};
   place_ = p_W;
 }
 
@@ -64,21 +87,37 @@ void Scoring::wait(const Pending& tick) noexcept {
   pending_[(first_ + waiting_++) % pending_.size()] = tick;
 }
 
-void Scoring::take(const Sample& sample, const Vec3& p_W, Time t, ErrorSums& sums) noexcept {
+void Scoring::take(const Sample& sample, const PathTick& now, ErrorSums& sums) noexcept {
   const Sample before = laws_.front().newest();
   for (std::size_t i = 0; i < laws_.size(); ++i) {
-    const Vec3 old = laws_[i].force(p_W, t);
-    laws_[i].take(sample, p_W, t);
-    if (laws_[i].period() > Time::zero()) tables_[i].add_jump((laws_[i].force(p_W, t) - old).norm());
+    const Vec3 old = laws_[i].force(now.p, now.t);
+    laws_[i].take(sample, now.p, now.t);
+    if (laws_[i].period() > Time::zero()) tables_[i].add_jump((laws_[i].force(now.p, now.t) - old).norm());
   }
+  if (contact_) contact_->take(sample);
   const bool connected = laws_.front().period() > Time::zero();
-  for (; waiting_ > 0 && pending_[first_].t < sample.t; --waiting_) {
-    const Pending& tick = pending_[first_];
-    if (connected && tick.t >= before.t) {
-      const double share = to_seconds(tick.t - before.t) / to_seconds(sample.t - before.t);
-      score(tick, before.f + share * (sample.f - before.f), sums);
-    }
+  for (; waiting_ > 0 && pending(0).path.t < (connected ? before.t : sample.t); --waiting_)
     first_ = (first_ + 1) % pending_.size();
+  if (connected) score_between(before, sample, now, sums);
+}
+
+/// All that waits is of the time from `before` on; `now` is the tick after it.
+void Scoring::score_between(const Sample& before, const Sample& after, const PathTick& now,
+                            ErrorSums& sums) noexcept {
+  BetweenSamples between(before, after);
+  std::size_t ready = 0;
+  for (; ready < waiting_ && pending(ready).path.t < after.t; ++ready) between.add(pending(ready).path);
+  between.close(ready < waiting_ ? pending(ready).path : now);
+  for (; ready > 0; --ready) {
+    const Pending& tick = pending(0);
+    const Reference line(between.line(tick.path.t));
+    for (std::size_t i = 0; i < laws_.size(); ++i) paper_[i].add(tick.force[i], line);
+    const Vec3 f = between.at(tick.path);
+    ++between_[static_cast<std::size_t>(between.kind())];
+    if (truth_ == nullptr) score(tick, f, sums);
+    if (own_ && tick.right) own_->add(f, Reference(*tick.right));
+    first_ = (first_ + 1) % pending_.size();
+    --waiting_;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "haptic_client/evaluation/error_table.h"
+#include "haptic_client/evaluation/followed_contact.h"
 #include "haptic_client/evaluation/truth.h"
 #include "haptic_client/extrapolation/force_estimate.h"
 
@@ -18,18 +19,23 @@ struct ErrorSums {
 };
 
 /// Runs laws in the shadow of the one that is felt, on the same samples and motion, and scores each when the
-/// next sample arrives: the reference is the straight line in time between two samples (the reference of
-/// Picinbono and Lombardo 1999, section 4), compared with what the law gave at each tick t_n <= t < t_(n+1),
-/// with the samples it had then. So the latency of the link counts, as it does for the hand; a capture
-/// without latency gives the paper's own protocol. Nothing is scored across an outage. Haptic thread, after
-/// the force was written; no allocation.
+/// next sample arrives: the reference is the force on the path really taken between two samples
+/// (`BetweenSamples`), compared with what the law gave at each tick t_n <= t < t_(n+1), with the samples it
+/// had then. So the latency of the link counts, as it does for the hand. The `paper_` errors have the
+/// straight line in time (Picinbono and Lombardo 1999, section 4) as their reference; a capture without
+/// latency gives the paper's own protocol. Nothing is scored across an outage. Haptic thread, after the force
+/// was written; no allocation.
 class Scoring {
  public:
   /// `laws`: at most `kMaxLaws` names of `extrapolators()`; none: nothing is done. `where`: for the `Error`
   /// about a name.
-  /// `blend` (s): see `ForceEstimate`. `truth`: the reference instead of the line; must outlive this.
+  /// `blend` (s): see `ForceEstimate`. `truth`: the reference instead, of the `paper_` errors too; must
+  /// outlive this.
   Scoring(const std::vector<std::string>& laws, double rate_hz, const std::string& where, double blend = 0,
           const Truth* truth = nullptr);
+
+  /// With a truth: holds the force between samples against it, too. Before the first tick.
+  void judge_between_samples();
 
   /// One tick with the tool at `p_W` (m) at `t`; `taken`: the sample that the pipeline took in this tick, or
   /// null. What gets scored is added to `sums`.
@@ -38,7 +44,15 @@ class Scoring {
   /// What the laws use beyond the triplet.
   Wants wants() const noexcept;
   const std::vector<std::string>& names() const noexcept { return names_; }
-  ErrorMetrics metrics(std::size_t law) const noexcept { return tables_[law].metrics(); }
+  ErrorMetrics metrics(std::size_t law) const noexcept;
+  /// How many ticks between samples had which force there, and what most had; without a truth they were
+  /// scored against it.
+  std::uint64_t between(ReferenceKind kind) const noexcept {
+    return between_[static_cast<std::size_t>(kind)];
+  }
+  ReferenceKind mostly_between() const noexcept;
+  /// The own error of that force; nothing unless `judge_between_samples`.
+  ErrorMetrics between_metrics() const noexcept { return own_ ? own_->metrics() : ErrorMetrics{}; }
   /// Work that the law did on the tool beyond that of the reference, in percent of what the reference
   /// exchanged with it both ways; on a closed path in an elastic tissue that energy comes from nowhere.
   double energy_percent(std::size_t law) const noexcept {
@@ -53,17 +67,25 @@ class Scoring {
 
  private:
   struct Pending {
-    Time t{};
+    PathTick path;
     Vec3 moved;  // until the next tick, m
     std::array<Vec3, kMaxLaws> force;
+    std::optional<Vec3> right = {};  // by the truth, N
   };
-  void take(const Sample& sample, const Vec3& p_W, Time t, ErrorSums& sums) noexcept;
+  void take(const Sample& sample, const PathTick& now, ErrorSums& sums) noexcept;
+  void score_between(const Sample& before, const Sample& after, const PathTick& now,
+                     ErrorSums& sums) noexcept;
   void score(const Pending& tick, const Vec3& reference, ErrorSums& sums) noexcept;
   void wait(const Pending& tick) noexcept;
+  const Pending& pending(std::size_t i) const noexcept { return pending_[(first_ + i) % pending_.size()]; }
 
   std::vector<std::string> names_;
   std::vector<ForceEstimate> laws_;
-  std::vector<ErrorTable> tables_;
+  std::vector<ErrorTable> tables_, paper_;                // the latter against the line
+  std::unique_ptr<FollowedContact> contact_;              // null: no law asks for the surface
+  std::array<std::uint64_t, kReferenceKinds> between_{};  // ticks
+  std::optional<ErrorTable> own_;                         // of the force between samples, against the truth
+  double rate_hz_;
   std::array<Vec3, kMaxLaws> force_;
   std::array<StandIns, kMaxLaws> stand_ins_;
   std::uint64_t ticks_ = 0;

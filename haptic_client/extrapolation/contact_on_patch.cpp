@@ -14,16 +14,13 @@ constexpr int kMostNodes = 96, kMostTriangles = 160;
 // may go on it, as what it presses may move as far again.
 constexpr double kMargin = 0.25, kStride = 0.12;
 constexpr double kMostStrides = 16, kMostEntering = 32;  // a tick
-// How far from a solved place the force follows its tangent, and how well a place is solved: shares of how
-// deep the tool presses, and at most of its radius. Friction follows the path more closely. Where the
-// increment before foresees where the surface goes, one look at it is mostly enough.
-constexpr double kNear = 0.03, kTolerance = 0.002, kMostNear = 0.01, kMostTolerance = 1e-3;
-constexpr double kLeastDepth = 1e-4;  // of the tool radius
+constexpr double kLeastDepth = 1e-4;                     // of the tool radius
 
 }  // namespace
 
-ContactOnPatch::ContactOnPatch()
-    : without_friction_(kMostNodes, kMostTriangles),
+ContactOnPatch::ContactOnPatch(const Accuracy& accuracy)
+    : accuracy_(accuracy),
+      without_friction_(kMostNodes, kMostTriangles),
       with_friction_(kMostNodes, kMostTriangles, true),
       slot_of_vertex_(SurfaceModel::kMostVertices, -1),
       moved_(SurfaceModel::kMostVertices),
@@ -77,15 +74,18 @@ std::optional<Vec3> ContactOnPatch::probe(const Surface& surface, const Vec3& p)
   return force;
 }
 
-/// How far from the solved place the tangent leads, m.
+/// How far from the solved place the tangent leads, m. Friction follows the path more closely.
 double ContactOnPatch::near(const Surface& surface) const noexcept {
-  const double near = std::min(kNear * state_.depth, kMostNear * surface.tool.radius);
+  const double near = std::min(accuracy_.near * state_.depth, accuracy_.most_near * surface.tool.radius);
   return surface.tool.friction > 0 ? near / 4 : near;
 }
 
 ContactSolver::Effort ContactOnPatch::effort(const Surface& surface) const noexcept {
   const double depth = std::max(state_.depth / surface.tool.radius, kLeastDepth);
-  return {.max_iterations = 30, .tolerance = std::min(kTolerance * depth, kMostTolerance), .expected = 1e-3};
+  // Where the increment before foresees where the surface goes, one look at it is mostly enough.
+  return {.max_iterations = 30,
+          .tolerance = std::min(accuracy_.tolerance * depth, accuracy_.most_tolerance),
+          .expected = 1e-3};
 }
 
 bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {

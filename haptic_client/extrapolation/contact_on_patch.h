@@ -13,12 +13,19 @@ namespace palpate::client {
 /// matrices of a solver without friction (3.6) and one with it (10.4), the patch's compliance (0.7).
 class ContactOnPatch {
  public:
-  ContactOnPatch();
+  /// How far from a solved place the force follows its tangent, and how well a place is solved: shares of how
+  /// deep the tool presses, and at most of its radius.
+  struct Accuracy {
+    double near = 0.03, most_near = 0.01, tolerance = 0.002, most_tolerance = 1e-3;
+  };
+  explicit ContactOnPatch(const Accuracy& accuracy);
+  ContactOnPatch() : ContactOnPatch(Accuracy{}) {}
 
   /// Goes to `p` (m) and gives the force on the tool there (N); nothing where the model does not know all
   /// that may be touched on the path, the contact does not settle, or the motion is too long for one tick:
   /// then it stands nowhere. In contact it solves anew where the tool has gone 3 % of how deep it presses, at
-  /// most 1 % of its radius (with friction a quarter of that), and follows the tangent in between.
+  /// most 1 % of its radius (`Accuracy`; with friction a quarter of that), and follows the tangent in
+  /// between.
   std::optional<Vec3> go(const Surface& surface, const Vec3& p) noexcept;
   /// The force at `p`; then it stands where it stood, on a patch around that.
   std::optional<Vec3> probe(const Surface& surface, const Vec3& p) noexcept;
@@ -50,6 +57,7 @@ class ContactOnPatch {
     return surface.tool.friction > 0 ? with_friction_ : without_friction_;
   }
 
+  Accuracy accuracy_;
   ContactSolver without_friction_, with_friction_;
   ContactPatch patch_;
   std::vector<int> vertices_;        // of the model, of each patch node

@@ -1,5 +1,6 @@
 #include "haptic_client/extrapolation/force_estimate.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate::client {
@@ -14,6 +15,8 @@ bool ForceEstimate::take(const Sample& sample, const Vec3& p, Time now) noexcept
     law_->restart();  // no line leads from before it to here
     period_ = Time::zero();
   }
+  const Time age = std::min(now - sample.t, kOutage);
+  usual_age_ = period_ > Time::zero() ? usual_age_ + (age - usual_age_) / kAgeFilter : age;
   newest_ = sample;
   law_->update(sample);
   if (blend_ > 0) blend_from(before, law_force(p, now), now);
@@ -37,7 +40,14 @@ void ForceEstimate::blend_from(const Vec3& before, const Vec3& after, Time t) no
 Vec3 ForceEstimate::law_force(const Vec3& p, Time t) noexcept {
   if (newest_.f.isZero(0) && !sees_surface_) return Vec3::Zero();
   law_->begin_tick(t);
-  return law_->force(p, t - newest_.t <= kPatience * period_ ? t : newest_.t);
+  return law_->force(p, law_time(t));
+}
+
+/// What a law takes for `t`. A sample alone says nothing of time.
+Time ForceEstimate::law_time(Time t) const noexcept {
+  if (period_ == Time::zero()) return newest_.t;
+  const Time patience = std::min(usual_age_ + kPatience * period_, kOutage), age = t - newest_.t;
+  return newest_.t + std::clamp(2 * patience - age, Time::zero(), std::min(age, patience));
 }
 
 }  // namespace palpate::client

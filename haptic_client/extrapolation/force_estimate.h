@@ -7,11 +7,11 @@
 namespace palpate::client {
 
 /// An extrapolation law with what stands around every law alike, so that the law that is felt and those that
-/// only run beside it are treated the same: it sees each sample once and in order; time stands still for it
-/// when the newest sample is older than three periods; it starts afresh after an outage; and where the newest
-/// sample saw the tool free, there is no force (a law that looks back would go on pulling: sticky tissue),
-/// unless the law knows where the surface is.
-/// Pure; haptic thread only; no allocation.
+/// only run beside it are treated the same: it sees each sample once and in order; when no sample has come
+/// for three periods longer than usual, time turns for it and runs back to that of the newest one, as fast as
+/// it ran on, and stands still there; it starts afresh after an outage; and where the newest sample saw the
+/// tool free, there is no force (a law that looks back would go on pulling: sticky tissue), unless the law
+/// knows where the surface is. Pure; haptic thread only; no allocation.
 class ForceEstimate {
  public:
   /// `blend`: how long what a new sample changes, or a simpler law that stands in, takes to come in (time
@@ -37,9 +37,11 @@ class ForceEstimate {
   Time period() const noexcept { return period_; }
 
  private:
-  static constexpr int kPatience = 3;  // periods
+  static constexpr int kPatience = 3;   // periods
+  static constexpr int kAgeFilter = 8;  // samples
   std::unique_ptr<Extrapolator> law_;
   Vec3 law_force(const Vec3& p, Time t) noexcept;
+  Time law_time(Time t) const noexcept;
   void blend_from(const Vec3& before, const Vec3& after, Time t) noexcept;
 
   bool sees_surface_;
@@ -50,6 +52,7 @@ class ForceEstimate {
   bool stepped_down_ = false;
   Sample newest_;
   Time period_{};
+  Time usual_age_{};  // of a sample that arrives, filtered
 };
 
 }  // namespace palpate::client

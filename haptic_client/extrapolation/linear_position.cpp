@@ -1,17 +1,19 @@
 #include "haptic_client/extrapolation/linear_position.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate::client {
 namespace {
-constexpr double kSamePlace = 1e-9;  // m
+constexpr double kSmallestStep = 20e-6;  // m: about what devices resolve
 }
 
 Vec3 LinearPosition::force(const Vec3& p, Time) noexcept {
   const auto& [newest, before, count] = samples_;
   const Vec3 d = newest.p - before.p;
-  if (count < 2 || d.squaredNorm() < kSamePlace * kSamePlace || !p.allFinite()) return newest.f;
-  const double along = (p - newest.p).dot(d) / d.squaredNorm();
+  const double step = d.norm();
+  if (count < 2 || !(step > 0) || !p.allFinite()) return newest.f;
+  const double along = (p - newest.p).dot(d) / (step * std::max(step, kSmallestStep));
   return newest.f + (ratio_ == Ratio::kSigned ? along : std::abs(along)) * (newest.f - before.f);
 }
 

@@ -32,6 +32,7 @@ struct PipelineStats {
   Histogram age_ns;                ///< of the newest sample, each tick that has one
   std::uint64_t samples = 0;       ///< used
   std::uint64_t overtaken = 0;     ///< dropped: not newer than what was there
+  std::uint64_t told = 0;          ///< ticks since the first sample
   std::uint64_t stepped_down = 0;  ///< ticks in which a simpler law stood in for the chosen one
   StandIns stand_ins;              ///< which law did
   std::uint64_t pages = 0;         ///< of the surface, taken

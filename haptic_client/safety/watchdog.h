@@ -7,8 +7,8 @@
 namespace palpate::client {
 
 /// The safety ladder for old forces (one policy everywhere): by the age of the newest sample,
-///   up to 3 periods   everything
-///   up to 300 ms      no extrapolation in time (`ForceEstimate`); laws of position are still springs
+///   up to 3 periods beyond the usual   everything
+///   up to 300 ms      extrapolation in time goes back (`ForceEstimate`); laws of position are still springs
 ///   beyond            the force fades to zero within 100 ms, a damper on while it does
 /// and when samples come again, or for the first time, it rises over 1 s. Pure; haptic thread only.
 class Watchdog {

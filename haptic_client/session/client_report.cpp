@@ -1,5 +1,6 @@
 #include "haptic_client/session/client_report.h"
 
+#include <algorithm>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -20,24 +21,53 @@ Json stand_ins_report(const StandIns& stand_ins) {
   return laws;
 }
 
+/// Which law was really at work where `law` was asked for: the one of most ticks, and each one's share of
+/// them, the largest first. Empty before the first sample.
+Json at_work_report(const std::string& law, const StandIns& stand_ins, std::uint64_t ticks) {
+  std::vector<std::pair<std::uint64_t, std::string>> laws{{ticks, law}};
+  for (const auto& [name, stood_in] : stand_ins.rows()) {
+    if (stood_in == 0) continue;
+    laws.front().first -= std::min(stood_in, laws.front().first);
+    laws.emplace_back(stood_in, name);
+  }
+  std::stable_sort(laws.begin(), laws.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  Json report = {{"law", ticks > 0 ? laws.front().second : ""}, {"laws", Json::object()}};
+  for (const auto& [felt, name] : laws) {
+    if (felt > 0) report["laws"][name] = per(static_cast<double>(felt), static_cast<double>(ticks));
+  }
+  return report;
+}
+
 Json methods_report(const Scoring& scoring) {
   Json methods = Json::object();
   for (std::size_t i = 0; i < scoring.names().size(); ++i) {
     const ErrorMetrics m = scoring.metrics(i);
-    methods[scoring.names()[i]] = {{"mean_percent", m.mean_percent},
-                                   {"p99_percent", m.p99_percent},
-                                   {"max_percent", m.max_percent},
-                                   {"exceed_percent", m.exceed_percent},
-                                   {"jump_percent", m.jump_percent},
-                                   {"rough_percent", m.rough_percent},
-                                   {"paper_mean_percent", m.paper_mean_percent},
-                                   {"paper_max_percent", m.paper_max_percent},
-                                   {"paper_max_force_percent", m.paper_max_force_percent},
-                                   {"ticks", scoring.ticks()},
-                                   {"stand_ins", stand_ins_report(scoring.stand_ins(i))},
-                                   {"ns_per_tick", cost_of(scoring.names()[i]).tick_ns}};
+    methods[scoring.names()[i]] = {
+        {"mean_percent", m.mean_percent},
+        {"p99_percent", m.p99_percent},
+        {"max_percent", m.max_percent},
+        {"exceed_percent", m.exceed_percent},
+        {"jump_percent", m.jump_percent},
+        {"rough_percent", m.rough_percent},
+        {"paper_mean_percent", m.paper_mean_percent},
+        {"paper_max_percent", m.paper_max_percent},
+        {"paper_max_force_percent", m.paper_max_force_percent},
+        {"ticks", scoring.ticks()},
+        {"at_work", at_work_report(scoring.names()[i], scoring.stand_ins(i), scoring.ticks())},
+        {"stand_ins", stand_ins_report(scoring.stand_ins(i))},
+        {"ns_per_tick", cost_of(scoring.names()[i]).tick_ns}};
   }
   return methods;
+}
+
+/// What the laws were held against: the force between samples, of most ticks, and each kind's share.
+Json reference_report(const Scoring& scoring) {
+  Json report = {{"name", name_of(scoring.mostly_between())}};
+  for (const auto kind : {ReferenceKind::kContact, ReferenceKind::kHermite, ReferenceKind::kLine}) {
+    report["shares"][std::string(name_of(kind))] =
+        per(static_cast<double>(scoring.between(kind)), static_cast<double>(scoring.scored()));
+  }
+  return report;
 }
 
 Json timeline_report(const SessionTimeline& timeline, const Scoring& scoring) {
@@ -108,12 +138,28 @@ std::string stand_ins_text(const Json& stand_ins, const std::string& law) {
   return text;
 }
 
-/// The law that was at work in the row of another for all of the time, in brackets.
+/// 99.75 of 99.7512 %, and never 100 of less than all.
+std::string percent_text(double share) {
+  return share < 1 ? fmt::format("{:.4g} %", std::min(100 * share, 99.99)) : "100 %";
+}
+
+/// The law that was really at work in most ticks of the row of another, in brackets.
 std::string row_name(const std::string& law, const Json& scores) {
-  for (const auto& [name, ticks] : scores["stand_ins"].items()) {
-    if (ticks.get<long>() > 0 && ticks == scores["ticks"]) return fmt::format("{} (as {})", law, name);
-  }
-  return law;
+  const auto at_work = scores["at_work"]["law"].get<std::string>();
+  if (at_work.empty() || at_work == law) return law;
+  const double share = scores["at_work"]["laws"][at_work].get<double>();
+  return fmt::format("{} (as {} {})", law, at_work, percent_text(share));
+}
+
+/// "two_tangents 99.75 %, local_contact 0.25 % (asked for: local_contact)".
+std::string felt_text(const Json& tool) {
+  const auto method = tool["method"].get<std::string>();
+  std::string text;
+  for (const auto& [name, share] : tool["felt"]["laws"].items())
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, percent_text(share.get<double>()));
+  if (text.empty()) return fmt::format("nothing; asked for: {}", method);
+  if (tool["felt"]["law"] == method) return text;
+  return fmt::format("{} (asked for: {})", text, method);
 }
 
 void print_stand_ins(const Json& methods) {
@@ -124,19 +170,31 @@ void print_stand_ins(const Json& methods) {
   }
 }
 
+/// "contact 98 %, hermite 2 %".
+std::string reference_text(const Json& reference) {
+  std::string text;
+  for (const auto& [name, share] : reference["shares"].items()) {
+    if (share.get<double>() > 0)
+      text += fmt::format("{}{} {:.3g} %", text.empty() ? "" : ", ", name, 100 * share.get<double>());
+  }
+  return text.empty() ? "none yet" : text;
+}
+
 void print_scores(const Json& tool) {
   const Json &methods = tool["methods"], &motion = tool["motion"];
   if (methods.empty()) return;
   fmt::print(
-      "  score   {} ticks against the line between the samples, latency included; {:.1f} samples a second\n",
-      tool["scored_ticks"].get<long>(), motion["sample_rate_hz"].get<double>());
-  fmt::print("          {:40}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
-             "paper: % of the interpolated force", "");
-  fmt::print("          {:40}{:>11}{:>11}{:>11}   {:>12}{:>12}{:>12}   {:>7}\n", "law", "mean", "p99", "max",
+      "  score   {} ticks against the force between the samples ({}), latency included; {:.1f} samples a "
+      "second\n",
+      tool["scored_ticks"].get<long>(), reference_text(tool["reference"]),
+      motion["sample_rate_hz"].get<double>());
+  fmt::print("          {:46}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
+             "paper: % of the force on the line", "");
+  fmt::print("          {:46}{:>11}{:>11}{:>11}   {:>12}{:>12}{:>12}   {:>7}\n", "law", "mean", "p99", "max",
              "average", "maximal", "max force", "ns/tick");
   for (const auto& [name, m] : methods.items()) {
     const auto number = [&m = m](const char* key) { return m[key].get<double>(); };
-    fmt::print("          {:40}{:11.3f}{:11.3f}{:11.2f}   {:12.3f}{:12.1f}{:12.1f}   {:7.1f}\n",
+    fmt::print("          {:46}{:11.3f}{:11.3f}{:11.2f}   {:12.3f}{:12.1f}{:12.1f}   {:7.1f}\n",
                row_name(name, m), number("mean_percent"), number("p99_percent"), number("max_percent"),
                number("paper_mean_percent"), number("paper_max_percent"), number("paper_max_force_percent"),
                number("ns_per_tick"));
@@ -218,6 +276,7 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
   return {{"device", config.device.name},
           {"port", config.device.port},
           {"method", config.method},
+          {"felt", at_work_report(config.method, stats.stand_ins, stats.told)},
           {"force",
            {{"samples", stats.samples},
             {"overtaken", stats.overtaken},
@@ -245,6 +304,7 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
             {"not_finite", limiter.not_finite},
             {"storms", limiter.storms}}},
           {"scored_ticks", observation.scoring().scored()},
+          {"reference", reference_report(observation.scoring())},
           {"methods", methods_report(observation.scoring())},
           {"timeline", timeline_report(observation.timeline(), observation.scoring())}};
 }
@@ -265,8 +325,7 @@ Json link_report(const protocol::LinkStats& net) {
 
 void print_report(const Json& report) {
   for (const Json& tool : report["tools"]) {
-    fmt::print("haptic_client: {} with {}\n", tool["device"].get<std::string>(),
-               tool["method"].get<std::string>());
+    fmt::print("haptic_client: {}, felt: {}\n", tool["device"].get<std::string>(), felt_text(tool));
     if (tool.contains("loop")) print_loop(tool["loop"]);
     print_tool(tool);
     print_scores(tool);

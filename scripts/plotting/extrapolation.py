@@ -101,7 +101,7 @@ def write_table(folder, name, title, header, lines):
 
 def paper_table(rows, folder):
     """% of the force on the line between the samples, 33.3 Hz, no delay."""
-    rows = chosen(rows, reference="line", blended=False)
+    rows = chosen(rows, reference="paper", blended=False)
     header, lines = ["law"], []
     for who in ("published", "grasp", "liver", "block"):
         header += [f"{who} average %", f"{who} maximal %", f"{who} max-force %"]

@@ -36,7 +36,7 @@ class Goal(NamedTuple):
 
 TISSUE = {"reference": "truth", "rate_hz": 33.3, "blended": False}
 BLOCK = {**TISSUE, "world": "block", "speed_m_s": 0.017, "delay_ms": 35}
-GRASP = {**BLOCK, "world": "grasp", "reference": "line", "delay_ms": 0}
+GRASP = {**BLOCK, "world": "grasp", "reference": "paper", "delay_ms": 0}
 FAST = {**BLOCK, "speed_m_s": 0.05}
 LOOP = {**BLOCK, "speed_m_s": 0.02}
 BLENDED = {**BLOCK, "blended": True}

@@ -157,8 +157,9 @@ def draw_scores(axis, tool, styles):
     size = {"fontsize": 12, "va": "center"}
     grey = {"color": "#555555", **size}
     columns = []
-    for ends, scores, heading in (((0.41, 0.51, 0.63), PAPER_SCORES, "paper: % of the interpolated force"),
-                                  ((0.77, 0.885, 1.0), SCORES, "error of the force")):
+    against = f"error of the force, against: {tool.reference}" if tool.reference else "error of the force"
+    for ends, scores, heading in (((0.41, 0.51, 0.63), PAPER_SCORES, "paper: % of the force on the line"),
+                                  ((0.77, 0.885, 1.0), SCORES, against)):
         begin = ends[0] - 0.09
         axis.text((begin + ends[-1]) / 2, 0.4, heading, ha="center", **grey)
         axis.plot((begin, ends[-1]), (0.95, 0.95), color="#BBBBBB", linewidth=0.8)
@@ -173,7 +174,7 @@ def draw_scores(axis, tool, styles):
         weight = "bold" if felt else "normal"
         axis.plot((0.003, 0.03), (row + 0.5, row + 0.5), color=colour, linestyle="-" if felt else line,
                   linewidth=4.5 if felt else 1.5, solid_capstyle="butt")
-        axis.text(0.04, row + 0.5, f"{law} (felt)" if felt else law, weight=weight, **size)
+        axis.text(0.04, row + 0.5, f"{tool.names[law]}, felt" if felt else tool.names[law], weight=weight, **size)
         for x, key, _, decimals in columns:
             value = scores[key]
             axis.text(x, row + 0.5, f"{value:.{decimals}f}" if value < 1e6 else f"{value:.2e}", ha="right",

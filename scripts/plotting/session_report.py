@@ -104,10 +104,12 @@ class Tool:
     """What a picture shows."""
     file: Path
     heading: str
-    felt: str
+    felt: str                    # the row that was felt
+    names: dict                  # {law: what stands in its row}
     timeline: Timeline
     errors: dict                 # {law: [% per cell]}
     scores: dict                 # {law: {key: %}}
+    reference: str = ""          # what the laws were held against, of most ticks
     rate_hz: float = 0           # 0: not known
     server: Timeline = None
     server_rate_hz: float = 0
@@ -129,16 +131,50 @@ def read_tools(report, server):
     return [read_tool(report, server, node, i, len(tools)) for i, node in enumerate(tools)]
 
 
+def share_text(share):
+    """Never 100 % of less than all."""
+    return f"{min(100 * share, 99.99):.4g} %" if share < 1 else "100 %"
+
+
+def at_work(node):
+    """Name and share of the law that was really at work in most ticks; None where nothing was."""
+    law = node["law"].text()
+    return (law, node["laws"][law].number()) if law else None
+
+
+def names_of(methods):
+    """{law: its name, and in brackets the law that was really at work in most of its ticks}."""
+    names = {}
+    for law in methods.keys():
+        found = at_work(methods[law]["at_work"]) if "at_work" in methods[law] else None
+        names[law] = law if not found or found[0] == law else f"{law} (as {found[0]} {share_text(found[1])})"
+    return names
+
+
+def felt_of(node, laws):
+    """What was felt, for the title, and its row: that of the law really felt, or of the one asked for."""
+    method = node["method"].text()
+    found = at_work(node["felt"]) if "felt" in node else None
+    if not found:
+        return method, method
+    law, share = found
+    text = f"{law} {share_text(share)}" if share < 1 else law
+    return text if law == method else f"{text} (asked: {method})", law if law in laws else method
+
+
 def read_tool(report, server, node, index, count):
-    method, methods, line = node["method"].text(), node["methods"], node["timeline"]
+    methods, line = node["methods"], node["timeline"]
     laws = methods.keys()
+    felt_name, felt_row = felt_of(node, laws)
     scores = {law: {key: methods[law][key].number() for key, _, _ in PAPER_SCORES + SCORES}
               for law in laws}
     timeline = Timeline.read(line, ("ticks", "missed", "tick_us_mean", "tick_us_max", "samples",
                                     "step_ms_mean", "step_ms_max"), ("ticks", "missed"))
     if not timeline.edges:
         raise Unusable(f"{report.file}: {line.path}.cells is empty: no session to draw")
-    tool = Tool(report.file, "", method, timeline, errors_of(line, laws), scores)
+    tool = Tool(report.file, "", felt_row, names_of(methods), timeline, errors_of(line, laws), scores)
+    if "reference" in node:
+        tool.reference = node["reference"]["name"].text()
     for place in (node["loop"] if "loop" in node else None,
                   report["capture"] if "capture" in report else None):
         if place and "rate_hz" in place:
@@ -158,7 +194,7 @@ def read_tool(report, server, node, index, count):
     scene = " ".join(scene.split()) or "session"
     if len(scene) > LONGEST_NAME:
         scene = scene[:LONGEST_NAME - 1] + "\N{HORIZONTAL ELLIPSIS}"
-    parts = [scene, f"felt: {method}", f"{tool.rate_hz:g} Hz" if tool.rate_hz else "",
+    parts = [scene, f"felt: {felt_name}", f"{tool.rate_hz:g} Hz" if tool.rate_hz else "",
              duration(timeline.edges[-1] - timeline.edges[0]),
              f"tool {index + 1} of {count}" if count > 1 else ""]
     tool.heading = "   \N{MIDDLE DOT}   ".join(part for part in parts if part)

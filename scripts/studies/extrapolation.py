@@ -81,7 +81,7 @@ class Cell(NamedTuple):
     trajectory: Path
     seconds: float     # recorded
     captures: tuple    # (rate in Hz, delay in ms)
-    line: bool         # whether also against the line between samples, the paper's reference
+    line: bool         # whether also by the paper's protocol, against the line between samples
     wrong: bool = False  # whether also with a wrong compliance
 
     @property
@@ -155,7 +155,7 @@ class Study:
             rows = self.evaluate(scoring_weight, cell, captures, folder, "--truth", folder / "truth.pcap")
             if cell.line:
                 paper = {key: captures[key] for key in captures if round(key[0], 1) == RATE and key[1] == 0}
-                rows += self.evaluate(scoring_weight, cell, paper, folder)
+                rows += [{**row, "reference": "paper"} for row in self.evaluate(scoring_weight, cell, paper, folder)]
             for share in WRONG if cell.wrong else ():
                 told = {key: captures[key] for key in captures if key == (RATE, USUAL_DELAYS[0])}
                 rows += self.evaluate(0, cell._replace(world=f"compliance_{share}"), told, folder, "--truth",

@@ -70,6 +70,19 @@ TEST_CASE("with one sample, or two at the same place or time, the answer is F_n"
   }
 }
 
+TEST_CASE("linear in position: a step of less than 20 um counts as one of 20 um") {
+  // A tool that creeps 3 nm while the organ under it changes the force by 0.1 N, and then goes 1 mm.
+  for (const char* name : {"linear_position", "linear_position_signed"}) {
+    CAPTURE(name);
+    auto l = law(name);
+    l->update({1, 0ms, {0, 0, 0}, {0, 1, 0}});
+    l->update({2, 40ms, {3e-9, 0, 0}, {0, 1.1, 0}});
+    CHECK(l->force({3e-9 + 1e-3, 0, 0}, 50ms)[1] == Approx(1.1 + 0.1 * 1e-3 / 20e-6));
+    l->update({3, 80ms, {3e-9 + 20e-6, 0, 0}, {0, 1.3, 0}});
+    CHECK(l->force({3e-9 + 30e-6, 0, 0}, 90ms)[1] == Approx(1.4));  // as printed from there on
+  }
+}
+
 TEST_CASE("kalman: on a straight ramp without noise it is linear in time, from a few samples on") {
   Kalman kalman;
   const auto ramp = [](double t) { return Vec3(1 + 2 * t, -t, 0.5); };

@@ -40,10 +40,39 @@ struct StoodInForASample : StoodInFor {
 
 }  // namespace
 
-TEST_CASE("time stands still for a law when the newest sample is older than three periods") {
-  ForceEstimate estimate = rising();
-  CHECK(estimate.force({0, 0, 0}, 160ms)[1] == Approx(5));
-  CHECK(estimate.force({0, 0, 0}, 161ms)[1] == Approx(2));
+/// 25 N/s, sampled every 40 ms, samples `latency` old when they arrive; the newest is of 400 ms.
+ForceEstimate rising_late(Time latency) {
+  ForceEstimate estimate(std::make_unique<LinearTime>());
+  for (int i = 0; i <= 10; ++i) {
+    const Time t = i * 40ms;
+    const Sample sample{static_cast<std::uint64_t>(i + 1), t, {0, 0, 0}, {0, 1 + 25 * to_seconds(t), 0}};
+    REQUIRE(estimate.take(sample, Vec3::Zero(), t + latency));
+  }
+  return estimate;
+}
+
+TEST_CASE("samples that are always late are extrapolated in time until they are three periods later still") {
+  for (const Time latency : {0ms, 80ms, 150ms}) {
+    ForceEstimate estimate = rising_late(latency);
+    const Time most = latency + 120ms;
+    for (Time age = latency; age <= most; age += 2ms) {
+      CAPTURE(latency.count(), age.count());
+      CHECK(estimate.force({0, 0, 0}, 400ms + age)[1] == Approx(11 + 25 * to_seconds(age)));
+    }
+  }
+}
+
+TEST_CASE("time turns for a law when no sample comes, runs back as fast as it ran, and stands still") {
+  ForceEstimate estimate = rising_late(80ms);
+  double before = 11 + 25 * 0.080;
+  for (Time age = 80ms; age < 500ms; age += 1ms) {
+    CAPTURE(age.count());
+    const double given = estimate.force({0, 0, 0}, 400ms + age)[1];
+    CHECK(std::abs(given - before) <= 25 * 0.001 * (1 + 1e-9));
+    if (age >= 400ms) CHECK(given == Approx(11));
+    before = given;
+  }
+  CHECK(estimate.force({0, 0, 0}, 400ms + 300ms)[1] == Approx(11 + 25 * 0.100));  // 200 ms on, 100 back
 }
 
 TEST_CASE("a sample that is not later, from the future, from before time, or not finite changes nothing") {

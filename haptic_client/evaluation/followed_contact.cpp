@@ -1,0 +1,38 @@
+#include "haptic_client/evaluation/followed_contact.h"
+
+#include <algorithm>
+
+namespace palpate::client {
+namespace {
+constexpr double kOften = 1000;  // Hz: faster ticks share a solved place
+
+/// A tenth of what the law allows itself.
+ContactOnPatch::Accuracy accuracy(double rate_hz) {
+  const double wider = std::max(1.0, rate_hz / kOften);
+  return {.near = 0.003 * wider, .most_near = 0.001 * wider, .tolerance = 2e-4, .most_tolerance = 1e-4};
+}
+}  // namespace
+
+FollowedContact::FollowedContact(double rate_hz)
+    : contact_(std::make_unique<ContactOnPatch>(accuracy(rate_hz))) {}
+
+void FollowedContact::take(const Sample& sample) noexcept {
+  if (!usable(sample)) return;
+  const Sample known = with_usable_parts(sample);
+  surface_ = known.surface;
+  motion_.update(known);
+  if (!surface_ || surface_->tool.friction > 0) {
+    surface_.reset();
+    contact_->lift();
+  }
+}
+
+std::optional<PathTick::Contact> FollowedContact::go(const Vec3& p, Time t) noexcept {
+  if (!surface_) return {};
+  const Vec3 shift = surface_->shift + motion_.since_sample(t);
+  const auto force = contact_->go(*surface_, p - shift);
+  if (!force) return {};
+  return PathTick::Contact{shift, *force, contact_->tangent()};
+}
+
+}  // namespace palpate::client
