@@ -5,6 +5,9 @@
 namespace palpate::client {
 namespace {
 constexpr double kOften = 1000;  // Hz: faster ticks share a solved place
+// After a place that could not be solved (more of the surface is near than there is room for, say) it rests
+// for so many ticks: each try goes in from outside again, which takes longer than a tick has.
+constexpr int kPauseTicks = 100;
 
 /// A tenth of what the law allows itself.
 ContactOnPatch::Accuracy accuracy(double rate_hz) {
@@ -28,10 +31,13 @@ void FollowedContact::take(const Sample& sample) noexcept {
 }
 
 std::optional<PathTick::Contact> FollowedContact::go(const Vec3& p, Time t) noexcept {
-  if (!surface_) return {};
+  if (!surface_ || --pause_ > 0) return {};
   const Vec3 shift = surface_->shift + motion_.since_sample(t);
   const auto force = contact_->go(*surface_, p - shift);
-  if (!force) return {};
+  if (!force) {
+    pause_ = kPauseTicks;
+    return {};
+  }
   return PathTick::Contact{shift, *force, contact_->tangent()};
 }
 

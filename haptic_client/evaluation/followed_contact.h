@@ -21,6 +21,7 @@ class FollowedContact {
   std::unique_ptr<ContactOnPatch> contact_;
   std::optional<Surface> surface_;
   OrganMotion motion_;
+  int pause_ = 0;  // ticks
 };
 
 }  // namespace palpate::client
