@@ -35,7 +35,7 @@ std::string minimal(const std::string& model) {
 Json explained(const std::string& scene) {
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "explain.json").string();
-  Process process("sim_server", {"explain", scene, "--json", file});
+  Process process("sim_server", {"explain", "--no-cache", scene, "--json", file});
   CHECK(process.wait(120) == 0);
   CAPTURE(process.output());
   return read_json(file);
@@ -202,7 +202,7 @@ TEST_CASE("left out: what a workspace leaves out is not in resident memory eithe
 
 TEST_CASE("explain --why names the line that asks for a part, or leaves it out") {
   const auto why = [](const std::string& part) {
-    Process process("sim_server", {"explain", kScenes + "liver_falcon.toml", "--why", part});
+    Process process("sim_server", {"explain", "--no-cache", kScenes + "liver_falcon.toml", "--why", part});
     const int code = process.wait(120);
     return std::pair(code, process.output());
   };
