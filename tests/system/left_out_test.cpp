@@ -60,7 +60,8 @@ struct Waiting {
   Process process;
   Waiting(const std::string& scene, std::vector<std::string> more = {})
       : process("sim_server", [&] {
-          std::vector<std::string> all{"run", scene, "--listen", "127.0.0.1:0", "--seconds", "30"};
+          std::vector<std::string> all{"run",         "--no-cache", scene, "--listen",
+                                       "127.0.0.1:0", "--seconds",  "30"};
           all.insert(all.end(), more.begin(), more.end());
           return all;
         }()) {
