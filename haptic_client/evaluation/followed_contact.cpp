@@ -31,7 +31,8 @@ void FollowedContact::take(const Sample& sample) noexcept {
 }
 
 std::optional<PathTick::Contact> FollowedContact::go(const Vec3& p, Time t) noexcept {
-  if (!surface_ || --pause_ > 0) return {};
+  if (pause_ > 0) --pause_;
+  if (!surface_ || pause_ > 0) return {};
   const Vec3 shift = surface_->shift + motion_.since_sample(t);
   const auto force = contact_->go(*surface_, p - shift);
   if (!force) {
