@@ -79,7 +79,7 @@ TEST_CASE("the report of a run tells set-up by stage, and the stages fit into th
 }
 
 TEST_CASE(
-    "explain tells whether the set-up came from the cache; with it and without, the steps are the same") {
+    "explain tells whether the set-up came from the cache, and with it and without, the steps are the same") {
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "explain.json").string(),
                     cache = (folder.path() / "cache").string();

@@ -153,7 +153,7 @@ TEST_CASE("between samples: without tangents, or with such as nothing agrees wit
   }
 }
 
-TEST_CASE("a score against the curve is that against the law itself; the paper's stays with the line") {
+TEST_CASE("a score against the curve is that against the law itself, and the paper's stays with the line") {
   Scoring scoring({"linear_time"}, 1000, "test");
   ErrorTable truth(1000), line(1000);
   ErrorSums sums;

@@ -146,7 +146,7 @@ TEST_CASE("setup cache: a fingerprint tells spans, their ends and their order ap
 }
 
 TEST_CASE(
-    "setup cache: a simulation from the cache is the same, bit by bit; another tissue or reach is not "
+    "setup cache: a simulation from the cache is the same, bit by bit, and another tissue or reach is not "
     "found") {
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path());
