@@ -1,6 +1,7 @@
 #include "common/text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <numeric>
 
@@ -21,6 +22,10 @@ int edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return row.back();
+}
+
+std::string two_figures(double value) {
+  return std::abs(value) < 99.5 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
 }
 
 std::string suggestion(std::string_view name, std::span<const std::string> candidates) {

@@ -12,6 +12,9 @@ int edit_distance(std::string_view a, std::string_view b);
 /// `; did you mean "X"?` for the candidate nearest to `name`, or `; known: a, b, c` when none is near.
 std::string suggestion(std::string_view name, std::span<const std::string> candidates);
 
+/// A number with two figures, or all those before the point: "0.24", "3.5", "189".
+std::string two_figures(double value);
+
 /// The row called `name` in a registry table (any range of structs with a `name` member). Throws `Error` that
 /// says `what` was looked up, where it was asked for, and the nearest known name.
 template <class Table>

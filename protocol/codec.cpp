@@ -13,6 +13,7 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
 constexpr std::array<std::uint8_t, 3> kReserved{};
 constexpr double kMaxMagnitude = 1e9;  // of any position, speed or force: beyond is a bug or an attack
+constexpr float kMaxPercent = 1e6F;    // of an error of a force
 constexpr std::int64_t kMaxLead = 10'000'000'000;  // ns
 
 bool small(const Vec3& v) noexcept {
@@ -49,10 +50,13 @@ bool valid(const SurfaceState& m) noexcept {
          m.tool_friction >= 0 && m.tool_friction <= 10 && m.tool_compliance >= 0 &&
          m.tool_compliance <= 1e6 && small(m.shift_W);
 }
+bool valid(const DiscretisationError& m) noexcept {
+  return m.source <= ErrorSource::kNone && m.percent >= 0 && m.percent <= kMaxPercent;
+}
 bool valid(const ForceSample& m) noexcept {
   return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W) &&
          small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) && small(m.ahead_f_W) &&
-         valid(m.ahead) && valid(m.surface);
+         valid(m.ahead) && valid(m.surface) && valid(m.errors.mesh) && valid(m.errors.time_step);
 }
 bool valid(const SurfacePage& m) noexcept {
   return m.tool < kMaxTools && m.page != ToolState::kNoPage &&

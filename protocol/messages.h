@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <variant>
 
+#include "common/discretisation_error.h"
 #include "common/types.h"
 
 namespace palpate::protocol {
@@ -70,7 +71,7 @@ struct ToolState {
   static constexpr MessageType kType = MessageType::kToolState;
   /// Bits of `flags`: what this tick saw, and which parts of the answer it asks for.
   static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2, kClutched = 4, kWantsHere = 8,
-                                 kWantsAhead = 16, kWantsSurface = 32, kAsksPages = 64;
+                                 kWantsAhead = 16, kWantsSurface = 32, kAsksPages = 64, kWantsErrors = 128;
   static constexpr std::uint32_t kNoPage = 0xffffffff;
   std::uint8_t tool = 0;
   std::uint64_t tick = 0;           ///< haptic tick, from 1
@@ -124,8 +125,9 @@ struct SurfaceState {
 
 struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
-  /// Bits of `flags`; the last three: which parts follow.
-  static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8, kHasSurface = 16;
+  /// Bits of `flags`; the last four: which parts follow.
+  static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8, kHasSurface = 16,
+                                 kHasErrors = 32;
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
   std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:
@@ -142,6 +144,7 @@ struct ForceSample {
   Vec3 ahead_f_W = Vec3::Zero();    ///< kHasAhead: the force there, N
   Linearisation ahead{};            ///< kHasAhead: at that place
   SurfaceState surface{};           ///< kHasSurface
+  DiscretisationErrors errors{};    ///< kHasErrors
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
@@ -149,6 +152,10 @@ struct ForceSample {
     if ((m.flags & kHasHere) != 0) v(m.surface_v_W), Linearisation::fields(m.here, v);
     if ((m.flags & kHasAhead) != 0) v(m.ahead_p_W), v(m.ahead_f_W), Linearisation::fields(m.ahead, v);
     if ((m.flags & kHasSurface) != 0) SurfaceState::fields(m.surface, v);
+    if ((m.flags & kHasErrors) != 0) {
+      v(m.errors.mesh.source), v(m.errors.mesh.percent);
+      v(m.errors.time_step.source), v(m.errors.time_step.percent);
+    }
   }
 };
 

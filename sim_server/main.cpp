@@ -129,7 +129,7 @@ CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
   return command;
 }
 
-CLI::App* add_study(CLI::App& app, sim::StudyOptions& options) {
+CLI::App* add_study(CLI::App& app, sim::StudyOptions& options, sim::CacheOptions& cache) {
   auto* command = app.add_subcommand(
       "study", "Error against run time: models, elements, meshes, steps and tolerances around a scene's own");
   command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
@@ -150,6 +150,7 @@ CLI::App* add_study(CLI::App& app, sim::StudyOptions& options) {
                    "Of the link, from the end of a step to its force in the client, ms")
       ->capture_default_str();
   command->add_flag("--quick", options.quick, "Fewer steps, no finer meshes, a coarser reference: a minute");
+  add_cache_or_none(command, cache);
   command->footer(models() +
                   "Example: sim_server study configs/scenes/liver.toml --out out/liver --budget-ms 33");
   return command;
@@ -218,9 +219,9 @@ int run(int argc, char** argv) {
   sim::SolveOptions solving;
   const auto* solve = add_solve(app, solving);
   sim::StudyOptions studying;
-  const auto* study = add_study(app, studying);
-  const auto* mesh_info = add_mesh_info(app, mesh_file);
   sim::CacheOptions cached;
+  const auto* study = add_study(app, studying, cached);
+  const auto* mesh_info = add_mesh_info(app, mesh_file);
   const auto [list, clear] = add_cache(app, cached);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*mesh_info) return sim::print_mesh_info(mesh_file);
@@ -236,7 +237,7 @@ int run(int argc, char** argv) {
   }
   if (*study) {
     check(studying);
-    return sim::study(studying);
+    return sim::study(studying, cached);
   }
   if (*record) {
     check(recording);

@@ -3,6 +3,7 @@
 
 #include "common/timeline.h"
 #include "haptic_client/evaluation/scoring.h"
+#include "haptic_client/evaluation/told_errors.h"
 #include "haptic_client/pipeline/pipeline.h"
 
 namespace palpate::client {
@@ -35,12 +36,14 @@ class Observation {
 
   const Scoring& scoring() const noexcept { return scoring_; }
   const SessionTimeline& timeline() const noexcept { return timeline_; }
+  const ToldErrors& told_errors() const noexcept { return told_errors_; }
   /// The kept ticks, oldest first.
   std::vector<TickRecord> record() const;
 
  private:
   Scoring scoring_;
   SessionTimeline timeline_;
+  ToldErrors told_errors_;
   std::vector<TickRecord> ring_;
   std::uint64_t recorded_ = 0;
 };

@@ -67,13 +67,14 @@ inline Sample with_usable_parts(Sample sample) noexcept {
   return sample;
 }
 
-/// Parts of a sample that a law can use.
+/// Parts of a sample that a law can use; `errors` are for reports.
 struct Wants {
-  bool here = false, ahead = false, surface = false;
+  bool here = false, ahead = false, surface = false, errors = false;
   Wants& operator|=(const Wants& other) {
     here = here || other.here;
     ahead = ahead || other.ahead;
     surface = surface || other.surface;
+    errors = errors || other.errors;
     return *this;
   }
 };

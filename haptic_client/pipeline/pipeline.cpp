@@ -57,6 +57,7 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   if (wants_.here) sensed_.flags |= ToolState::kWantsHere;
   if (wants_.ahead) sensed_.flags |= ToolState::kWantsAhead;
   if (wants_.surface) sensed_.flags |= ToolState::kWantsSurface;
+  if (wants_.errors) sensed_.flags |= ToolState::kWantsErrors;
   sensed_.lead_ns = wants_.ahead ? lead_.count() : 0;
   if ((reading.buttons & workspace_.clutch) != 0) sensed_.flags |= ToolState::kClutched;
   if (!reading.valid || !reading.p_D.allFinite()) {
@@ -93,6 +94,7 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
     result.used = true;
     result.sample = estimate_.newest();
     result.step = Time{arrived->step_ns};
+    if ((arrived->flags & ForceSample::kHasErrors) != 0) result.errors = arrived->errors;
   }
   result.tool.newest_sample = estimate_.newest().number;
   if (model_) ask_for_pages(result.tool, now);

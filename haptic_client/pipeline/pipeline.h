@@ -24,7 +24,8 @@ struct TickResult {
   protocol::ToolState tool;  ///< to the server
   bool used = false;         ///< `sample` arrived, was newer, and is the newest now
   Sample sample{};
-  Time step{};  ///< that the server spent on it
+  Time step{};                                      ///< that the server spent on it
+  std::optional<DiscretisationErrors> errors = {};  ///< of its force, where the server told them
 };
 
 /// Sums over a session, for the report.

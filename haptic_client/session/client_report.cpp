@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "haptic_client/evaluation/law_cost.h"
+#include "haptic_client/session/whole_error.h"
 
 namespace palpate::client {
 namespace {
@@ -273,10 +274,12 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
   const PipelineStats& stats = pipeline.stats();
   const LimiterCounts& limiter = pipeline.limiter().counts();
   const auto pairs = static_cast<double>(stats.sample_pairs);
+  Json felt = at_work_report(config.method, stats.stand_ins, stats.told);
+  felt.update(whole_error_report(config.method, observation));
   return {{"device", config.device.name},
           {"port", config.device.port},
           {"method", config.method},
-          {"felt", at_work_report(config.method, stats.stand_ins, stats.told)},
+          {"felt", felt},
           {"force",
            {{"samples", stats.samples},
             {"overtaken", stats.overtaken},
@@ -329,6 +332,7 @@ void print_report(const Json& report) {
     if (tool.contains("loop")) print_loop(tool["loop"]);
     print_tool(tool);
     print_scores(tool);
+    print_whole_error(tool);
     print_drift(tool);
     if (tool.contains("link")) print_link(tool["link"]);
     if (tool.contains("recording")) {

@@ -66,6 +66,7 @@ HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::stri
       recording_(recorder_.get()),
       link_(socket_, server_, mailboxes_, random_number(), recorder_.get()) {
   pipeline_.ask_for(observation_.scoring().wants());
+  pipeline_.ask_for({.errors = true});
 }
 
 HeldTool::~HeldTool() {

@@ -12,7 +12,7 @@ constexpr std::size_t kFlushAt = 1 << 16;  // bytes
 
 TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws)
     : name_(file), file_(file, Contents::kTable), out_(file_.path(), std::ios::binary), laws_(laws.size()) {
-  text_ = "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n";
+  text_ = "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n,mesh_percent,motion_percent";
   for (const std::string& law : laws) text_ += fmt::format(",{}_n", law);
   text_ += '\n';
 }
@@ -30,9 +30,18 @@ void TraceWriter::add(const TickRecord& tick) {
   } else {
     text_ += ",,";
   }
+  const DiscretisationErrors errors = result.errors.value_or(DiscretisationErrors{});
+  add_error(errors.mesh);
+  add_error(errors.time_step);
   for (std::size_t i = 0; i < laws_; ++i) fmt::format_to(out, ",{}", tick.laws[i].norm());
   text_ += '\n';
   if (text_.size() >= kFlushAt) flush();
+}
+
+/// Empty where it is unknown.
+void TraceWriter::add_error(const DiscretisationError& error) {
+  text_ += ',';
+  if (error.known()) fmt::format_to(std::back_inserter(text_), "{}", error.percent);
 }
 
 void TraceWriter::flush() {

@@ -21,6 +21,7 @@ class TraceWriter {
   void finish();
 
  private:
+  void add_error(const DiscretisationError& error);
   void flush();
 
   std::filesystem::path name_;

@@ -104,6 +104,7 @@ class Tool:
     """What a picture shows."""
     file: Path
     heading: str
+    error: str                   # what mesh, time step and extrapolation cost the force felt; empty: not told
     felt: str                    # the row that was felt
     names: dict                  # {law: what stands in its row}
     timeline: Timeline
@@ -162,6 +163,29 @@ def felt_of(node, laws):
     return text if law == method else f"{text} (asked: {method})", law if law in laws else method
 
 
+# Key of the percentage, of its source, and what it is of.
+PARTS_OF_ERROR = (("mesh_percent", "mesh", "mesh"), ("motion_percent", "motion", "time step"),
+                  ("extrapolation_percent", "extrapolation", "extrapolation"))
+
+
+def two_figures(value):
+    """Or all those before the point."""
+    return f"{value:.2g}" if value < 99.5 else f"{value:.0f}"
+
+
+def error_of(node):
+    """"mesh 3.5 % (estimated), time step 0 % (none), extrapolation 0.24 % (measured)"; empty of an older report."""
+    felt = node["felt"] if "felt" in node else None
+    if not felt or "mesh_percent" not in felt:
+        return ""
+    parts = []
+    for key, how, name in PARTS_OF_ERROR:
+        percent = felt[key].number(or_null=True)
+        source = felt["how"][how].text().split()[0].rstrip(":")
+        parts.append(f"{name} unknown" if math.isnan(percent) else f"{name} {two_figures(percent)} % ({source})")
+    return "error of the force felt, of its RMS:   " + "   ".join(parts)
+
+
 def read_tool(report, server, node, index, count):
     methods, line = node["methods"], node["timeline"]
     laws = methods.keys()
@@ -172,7 +196,7 @@ def read_tool(report, server, node, index, count):
                                     "step_ms_mean", "step_ms_max"), ("ticks", "missed"))
     if not timeline.edges:
         raise Unusable(f"{report.file}: {line.path}.cells is empty: no session to draw")
-    tool = Tool(report.file, "", felt_row, names_of(methods), timeline, errors_of(line, laws), scores)
+    tool = Tool(report.file, "", error_of(node), felt_row, names_of(methods), timeline, errors_of(line, laws), scores)
     if "reference" in node:
         tool.reference = node["reference"]["name"].text()
     for place in (node["loop"] if "loop" in node else None,

@@ -11,6 +11,7 @@
 #include "common/report.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/virtual_session.h"
+#include "sim_server/study/studied_errors.h"
 
 namespace palpate::sim {
 namespace {
@@ -96,9 +97,10 @@ int record(const RecordOptions& options) {
   ProgressLine progress;
   const auto cache = open_cache(options.cache);
   Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr);
+  const ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
   VirtualSession session(simulation, motion, scene.tools.front().shape.radius,
                          {options.rate_hz, ticks_hz, from_seconds(options.delay_ms / 1e3), options.parts},
-                         capture);
+                         capture, &errors);
   const Time start = now();
   run_session(session, ticks, capture, options, progress);
   out.commit();

@@ -12,11 +12,13 @@
 #include "common/progress.h"
 #include "common/realtime.h"
 #include "common/report.h"
+#include "common/text.h"
 #include "protocol/recording_report.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/net_link.h"
 #include "sim_server/simulation/setup_times.h"
+#include "sim_server/study/studied_errors.h"
 
 namespace palpate::sim {
 namespace {
@@ -69,17 +71,23 @@ Json missed_by(const ToolStats& tool) {
   return *tool.nearest_m;
 }
 
-/// What the mesh is estimated to cost the force of a tool.
-Json felt_report(const ToolStats& tool, const Scene& scene) {
-  if (!tool.elements_per_radius || !scene.material || !model_of(scene.deformation).deforms()) return nullptr;
-  const double elements = *tool.elements_per_radius;
-  const auto percent = estimated_mesh_error(scene.material->element, elements);
-  return {{"elements_per_radius", elements},
-          {"mesh_percent", percent ? Json(*percent) : Json(nullptr)},
-          {"how", "estimated by elements to a radius of the tool where it pressed"}};
+Json percent_of(const DiscretisationError& error) {
+  return error.known() ? Json(error.percent) : Json(nullptr);
 }
 
-Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& scene) {
+/// What mesh and time step cost the force of a tool that pressed on tissue.
+Json felt_report(const ErrorOfForce& errors, std::size_t tool) {
+  const auto elements = errors.elements_per_radius(tool);
+  if (!elements) return nullptr;
+  const DiscretisationErrors all = errors.of_all_steps(tool);
+  return {{"elements_per_radius", *elements},
+          {"mesh_percent", percent_of(all.mesh)},
+          {"motion_percent", percent_of(all.time_step)},
+          {"how", {{"mesh", name_of(all.mesh.source)}, {"motion", name_of(all.time_step.source)}}}};
+}
+
+Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& scene,
+                  const ErrorOfForce& errors) {
   Json tools = Json::array();
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
     tools.push_back({{"radius_m", scene.tools[i].shape.radius},
@@ -87,14 +95,14 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
                      {"contact_steps", stats.tools[i].contact_steps},
                      {"beyond_steps", stats.tools[i].beyond_steps},
                      {"missed_by_m", missed_by(stats.tools[i])},
-                     {"felt", felt_report(stats.tools[i], scene)},
+                     {"felt", felt_report(errors, i)},
                      {"sessions", link.tools[i].so_far.load()}});
   }
   return tools;
 }
 
 void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simulation& simulation,
-             const Scene& scene, Time ran) {
+             const Scene& scene, const ErrorOfForce& errors, Time ran) {
   const SimLoopStats& stats = loop.stats();
   report["seconds"] = to_seconds(ran);
   report["steps"] = stats.step_ns.count();
@@ -106,7 +114,7 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["flagged"] = stats.flagged;
   report["flagged_by"] = simulation.flagged().to_json();
   report["max_newton"] = stats.max_newton();
-  report["tools"] = tools_report(stats, link, scene);
+  report["tools"] = tools_report(stats, link, scene, errors);
   int sessions = 0;
   for (const auto& tool : link.tools) sessions += tool.so_far;
   report["sessions"] = sessions;
@@ -118,17 +126,25 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["state_hash"] = fmt::format("{:016x}", simulation.state_hash());
 }
 
+/// "the mesh an unknown part of the force", "the mesh 3.5 % of the force (estimated)".
+std::string cost_text(const char* what, const Json& felt, const char* percent, const char* how) {
+  if (felt[percent].is_null()) return fmt::format("{} an unknown part of the force", what);
+  return fmt::format("{} {} % of the force ({})", what, two_figures(felt[percent].get<double>()),
+                     felt["how"][how].get<std::string>());
+}
+
 /// Of each tool that pressed on tissue.
-void print_mesh_errors(const Json& report) {
+void print_errors(const Json& report) {
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
     const Json& felt = report["tools"][i]["felt"];
-    if (felt.is_null() || felt["mesh_percent"].is_null()) continue;
-    fmt::print(
-        "            tool {}: the mesh, {:.1f} elements to a radius of the tool where it pressed, costs the "
-        "force\n"
-        "            an estimated {:.0f} %; `sim_server study {}` measures it\n",
-        i + 1, felt["elements_per_radius"].get<double>(), felt["mesh_percent"].get<double>(),
-        report["scene"].get<std::string>());
+    if (felt.is_null()) continue;
+    fmt::print("            tool {}, {:.1f} elements to its radius where it pressed: {}, {}\n", i + 1,
+               felt["elements_per_radius"].get<double>(),
+               cost_text("the mesh costs", felt, "mesh_percent", "mesh"),
+               cost_text("the time step", felt, "motion_percent", "motion"));
+    if (felt["how"]["mesh"] != name_of(ErrorSource::kMeasured))
+      fmt::print("            `sim_server study {} --out DIR` measures both for this scene\n",
+                 report["scene"].get<std::string>());
   }
 }
 
@@ -153,7 +169,7 @@ void print_summary(const Json& report, const FlaggedSteps& flagged) {
         "for this scene ([session] clients)?\n",
         i + 1, 1e3 * missed.get<double>());
   }
-  print_mesh_errors(report);
+  print_errors(report);
   std::fflush(stdout);
 }
 
@@ -201,6 +217,19 @@ void warn_if_out_of_reach(const Simulation& simulation, const Scene& scene) {
   }
 }
 
+/// Fewer elements than one to a radius cannot follow the tip.
+void warn_if_coarse(const ErrorOfForce& errors, const Simulation& simulation, const Scene& scene) {
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    const auto finest = errors.finest(i, simulation.touchable(i));
+    if (!finest || *finest >= 1) continue;
+    log::warning(
+        "{}: where the mesh is finest, {:.2g} elements come to a radius of tool {}; below 1 the force is far "
+        "off; "
+        "`sim_server study {} --out DIR` says how far",
+        scene.mesh_where, *finest, i + 1, scene.source);
+  }
+}
+
 std::uint64_t random_seed() {
   std::random_device device;
   return std::uint64_t{device()} << 32 | device();
@@ -223,6 +252,8 @@ int run_server(const ServerOptions& options) {
   Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr);
   warn_if_slow(scene);
   warn_if_out_of_reach(simulation, scene);
+  ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
+  warn_if_coarse(errors, simulation, scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);
   std::vector<double> radii;
   std::vector<SurfacePager> pagers;
@@ -231,7 +262,7 @@ int run_server(const ServerOptions& options) {
     pagers.emplace_back(simulation, i);
   }
   SimMailboxes mailboxes;
-  SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools);
+  SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools, errors);
   NetLink link(socket, {scene.rate_hz, radii}, std::move(pagers), mailboxes, random_seed(), recorder.get());
   const Time start = now();
   {
@@ -257,7 +288,7 @@ int run_server(const ServerOptions& options) {
     link.stop();
     net.join();
   }
-  add_run(report, loop, link, simulation, scene, now() - start);
+  add_run(report, loop, link, simulation, scene, errors, now() - start);
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
   print_summary(report, simulation.flagged());
   if (options.report) write_json(*options.report, report);

@@ -5,11 +5,14 @@
 #include <fmt/core.h>
 #include <fstream>
 
+#include "common/clock.h"
 #include "common/error.h"
 #include "common/hash.h"
+#include "common/log.h"
 #include "common/progress.h"
 #include "common/report.h"
 #include "sim_server/scene_file/read_scene.h"
+#include "sim_server/study/studied_errors.h"
 #include "sim_server/study/study_errors.h"
 #include "sim_server/study/study_table.h"
 
@@ -122,9 +125,45 @@ StudyRow row_of(const Scene& scene, const StudyCase& one, const Trace& trace, co
   return row;
 }
 
+/// The scene as it is, with the shortest steps that were run.
+const StudyCase* with_shortest_steps(const StudyCase& own, std::span<const StudyRow> rows) {
+  const StudyCase* shortest = nullptr;
+  for (const StudyRow& row : rows) {
+    StudyCase same = own;
+    same.scene.rate_hz = row.one.scene.rate_hz;
+    if (row.one.name() != same.name()) continue;
+    if (shortest == nullptr || row.one.scene.rate_hz > shortest->scene.rate_hz) shortest = &row.one;
+  }
+  return shortest;
+}
+
+/// Keeps what the study says of the scene as it is, for the reports of sessions: the error of the scene with
+/// the shortest steps is that of its mesh, and what its own steps give beside them that of the time step.
+void keep_for_sessions(const CacheOptions& options, Runner& runner, const Scene& scene,
+                       const StudyResult& result, const Trace& reference, double seconds) {
+  const auto own = std::ranges::find(result.rows, "scene", [](const StudyRow& row) { return row.one.axis; });
+  const auto cache = open_cache(options);
+  if (!cache || own == result.rows.end()) return;
+  const StudyCase* shortest = with_shortest_steps(own->one, result.rows);
+  const Trace by_shortest = runner.run(*shortest, 1);
+  const StudyErrors mesh = errors_of(by_shortest, reference, runner.motion(), 0),
+                    step = errors_of(runner.run(own->one, 1), by_shortest, runner.motion(), 0);
+  if (result.own.force > 0.5 * mesh.force) {
+    log::info(
+        "not kept for the reports of sessions: the reference itself may be {:.2g} % off, the mesh {:.2g} %",
+        result.own.force, mesh.force);
+    return;
+  }
+  const auto measured = [](double percent) {
+    return DiscretisationError{ErrorSource::kMeasured, static_cast<float>(percent)};
+  };
+  keep_studied(*cache, scene, {measured(mesh.force), measured(step.force)}, seconds);
+}
+
 }  // namespace
 
-int study(const StudyOptions& options) {
+int study(const StudyOptions& options, const CacheOptions& cache) {
+  const Time begin = now();
   const double empty = own_bytes();
   const Scene scene = read_scene(options.scene);
   StudyPlan plan = plan_study(scene, options);
@@ -159,6 +198,7 @@ int study(const StudyOptions& options) {
                      result.refused.front().second);
   mark_front(result.rows);
   write_study(options, result);
+  keep_for_sessions(cache, runner, scene, result, reference, to_seconds(now() - begin));
   fmt::print("{}", to_text(result));
   if (scene.tools.size() > 1)
     fmt::print("Only tool 1 of {} is moved and compared; the others are away.\n", scene.tools.size());

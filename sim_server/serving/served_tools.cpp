@@ -38,8 +38,9 @@ Bend bend_between(const protocol::ToolState& before, const protocol::ToolState& 
 
 }  // namespace
 
-ServedTools::ServedTools(Simulation& simulation)
+ServedTools::ServedTools(Simulation& simulation, const ErrorOfForce* errors)
     : simulation_(simulation),
+      errors_(errors),
       holders_(simulation.tools()),
       inputs_(simulation.tools()),
       outcomes_(simulation.tools()) {
@@ -112,6 +113,10 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
   if (answer.surface_shift_W) {
     sample.surface = surfaces_[tool];
     sample.surface.shift_W = *answer.surface_shift_W;
+  }
+  if (errors_ != nullptr && (state.flags & protocol::ToolState::kWantsErrors) != 0) {
+    sample.flags |= ForceSample::kHasErrors;
+    sample.errors = errors_->of_step(tool, simulation_.loads(tool));
   }
   return sample;
 }

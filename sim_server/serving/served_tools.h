@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "protocol/messages.h"
-#include "sim_server/simulation/simulation.h"
+#include "sim_server/simulation/error_of_force.h"
 
 namespace palpate::sim {
 
@@ -19,7 +19,8 @@ struct SessionInput {
 /// clock, thread or socket, so it runs the same in the loop and in virtual time. One thread; no allocation.
 class ServedTools {
  public:
-  explicit ServedTools(Simulation& simulation);
+  /// `errors`: of the force, for answers that are to tell them; null: none does. Both outlive this.
+  explicit ServedTools(Simulation& simulation, const ErrorOfForce* errors = nullptr);
 
   /// What came of a step for one tool. `answer`: to a fresh pose only; the caller knows `step_ns`.
   struct Outcome {
@@ -42,6 +43,7 @@ class ServedTools {
                                   const ToolAnswer& answer) noexcept;
 
   Simulation& simulation_;
+  const ErrorOfForce* errors_;
   std::vector<protocol::SurfaceState> surfaces_;  // of each tool; version 0: none
   std::vector<Holder> holders_;
   std::vector<ToolInput> inputs_;

@@ -20,16 +20,15 @@ StepCell& StepCell::operator+=(const StepCell& other) noexcept {
 }
 
 SimLoop::SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes,
-                 std::span<const ToolSettings> tools)
+                 std::span<const ToolSettings> tools, ErrorOfForce& errors)
     : simulation_(simulation),
-      served_(simulation),
+      served_(simulation, &errors),
       mailboxes_(mailboxes),
       tools_(tools),
       period_(rate_hz > 0 ? from_seconds(1 / rate_hz) : Time::zero()),
-      inputs_(simulation.tools()) {
+      inputs_(simulation.tools()),
+      errors_(errors) {
   stats_.tools.resize(simulation.tools());
-  for (const ToolSettings& tool : tools)
-    resolution_.emplace_back(simulation.surface(), simulation.rest(), tool.shape.radius);
 }
 
 double SimLoopStats::max_newton() const noexcept {
@@ -118,8 +117,7 @@ void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, 
     ToolStats& tool = stats_.tools[i];
     tool.contact_steps += force.contacts > 0 ? 1 : 0;
     tool.max_newton = std::max(tool.max_newton, newton);
-    resolution_[i].add(simulation_.loads(i));
-    tool.elements_per_radius = resolution_[i].elements_per_radius();
+    errors_.add_step(i, simulation_.loads(i));
     count_beyond(i);
     contact = contact || force.contacts > 0;
     flagged = flagged || force.flagged;

@@ -11,7 +11,6 @@
 #include "common/time.h"
 #include "common/timeline.h"
 #include "sim_server/serving/served_tools.h"
-#include "sim_server/simulation/mesh_resolution.h"
 
 namespace palpate::sim {
 
@@ -44,8 +43,7 @@ struct ToolStats {
   std::uint64_t contact_steps = 0;
   std::uint64_t beyond_steps = 0;  ///< with its tip beyond its workspace or cone, where nothing is built
   double max_newton = 0;
-  std::optional<double> nearest_m{};            ///< before it first touched, looked at ten times a second
-  std::optional<double> elements_per_radius{};  ///< where it pressed (`MeshResolution`)
+  std::optional<double> nearest_m{};  ///< before it first touched, looked at ten times a second
 };
 
 /// What the loop measured; read it when the loop has ended.
@@ -65,9 +63,9 @@ struct SimLoopStats {
 class SimLoop {
  public:
   /// `rate_hz` 0: steps as soon as a new pose of any tool is there.
-  /// `tools`: of the scene, which outlives this.
+  /// `tools`: of the scene, which outlives this. `errors`: gets each step, and is told to clients.
   SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes,
-          std::span<const ToolSettings> tools);
+          std::span<const ToolSettings> tools, ErrorOfForce& errors);
 
   /// Runs until asked to stop.
   void run(const std::stop_token& stop) noexcept;
@@ -92,7 +90,7 @@ class SimLoop {
   std::span<const ToolSettings> tools_;
   Time period_, next_look_{};
   std::vector<SessionInput> inputs_;
-  std::vector<MeshResolution> resolution_;  // of each tool
+  ErrorOfForce& errors_;
   SimLoopStats stats_;
 };
 

@@ -35,8 +35,8 @@ const Endpoint kClient = documentation_address(1, 45131), kServer = documentatio
 }  // namespace
 
 VirtualSession::VirtualSession(Simulation& simulation, const Trajectory& motion, double tool_radius,
-                               const VirtualLink& link, CaptureWriter& capture)
-    : served_(simulation),
+                               const VirtualLink& link, CaptureWriter& capture, const ErrorOfForce* errors)
+    : served_(simulation, errors),
       inputs_(simulation.tools()),
       motion_(motion),
       link_(link),
@@ -58,7 +58,8 @@ void VirtualSession::tick(std::uint64_t k) {
   if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motion_.at(to_seconds(time_of(k - 1))));
   newest_v_W_ = state.v_W;
   if (link_.parts) {
-    state.flags |= ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface;
+    state.flags |=
+        ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface | ToolState::kWantsErrors;
     state.pages_taken = pages_;
     state.lead_ns = (link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
   }

@@ -31,7 +31,8 @@ struct VirtualSessionStats {
 class VirtualSession {
  public:
   VirtualSession(Simulation& simulation, const Trajectory& motion, double tool_radius,
-                 const VirtualLink& link, protocol::CaptureWriter& capture);
+                 const VirtualLink& link, protocol::CaptureWriter& capture,
+                 const ErrorOfForce* errors = nullptr);
 
   /// Tick number `k` from 0, in order: client reads the tool, server steps if a step is due, samples arrive.
   /// Throws `Error` for a motion or speed beyond what the protocol carries (1e9 m, m/s).

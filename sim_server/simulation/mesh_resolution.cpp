@@ -48,18 +48,40 @@ MeshResolution::MeshResolution(const Surface& surface, std::span<const Vec3> res
   }
 }
 
-void MeshResolution::add(std::span<const NodalLoad> loads) noexcept {
+MeshResolution::Sums MeshResolution::sums_of(std::span<const NodalLoad> loads) const noexcept {
+  Sums sums;
   for (const NodalLoad& load : loads) {
     const double weight = load.force.norm();
     if (!std::isfinite(weight)) continue;
-    sum_ += weight * fineness_[load.vertex];
-    weight_ += weight;
+    sums.elements += weight * fineness_[load.vertex];
+    sums.weight += weight;
   }
+  return sums;
+}
+
+std::optional<double> MeshResolution::of(std::span<const NodalLoad> loads) const noexcept {
+  const Sums sums = sums_of(loads);
+  if (sums.weight == 0) return {};
+  return sums.elements / sums.weight;
+}
+
+std::optional<double> MeshResolution::finest(std::span<const Triangle> touchable) const {
+  std::optional<double> most;
+  for (const Triangle& t : touchable) {
+    for (const int vertex : t) most = std::max(most.value_or(0), fineness_[vertex]);
+  }
+  return most;
+}
+
+void MeshResolution::add(std::span<const NodalLoad> loads) noexcept {
+  const Sums sums = sums_of(loads);
+  all_.elements += sums.elements;
+  all_.weight += sums.weight;
 }
 
 std::optional<double> MeshResolution::elements_per_radius() const noexcept {
-  if (weight_ == 0) return {};
-  return sum_ / weight_;
+  if (all_.weight == 0) return {};
+  return all_.elements / all_.weight;
 }
 
 std::optional<double> estimated_mesh_error(ElementKind element, double elements_per_radius) noexcept {

@@ -16,6 +16,10 @@ class MeshResolution {
   /// `rest`: vertices of the surface, m; `radius` of the tool, m. O(vertices).
   MeshResolution(const Surface& surface, std::span<const Vec3> rest, double radius);
 
+  /// Mean over what the tool loads in one step; nothing where it loads nothing. O(loads); does not allocate.
+  std::optional<double> of(std::span<const NodalLoad> loads) const noexcept;
+  /// Where the mesh is finest of what a tool can touch; nothing where it can touch nothing. O(triangles).
+  std::optional<double> finest(std::span<const Triangle> touchable) const;
   /// Adds what the tool loads in one step. O(loads); does not allocate.
   void add(std::span<const NodalLoad> loads) noexcept;
   /// Mean over all loads so far; nothing before the first.
@@ -23,7 +27,11 @@ class MeshResolution {
 
  private:
   std::vector<double> fineness_;  // of each vertex: radius / mean edge
-  double sum_ = 0, weight_ = 0;
+  struct Sums {
+    double elements = 0, weight = 0;
+  };
+  Sums sums_of(std::span<const NodalLoad> loads) const noexcept;
+  Sums all_;
 };
 
 /// What a mesh of so many elements to a radius of the tool costs the force, % of its root mean square: from a

@@ -65,6 +65,9 @@ std::vector<Message> one_of_each() {
                         .tool_friction = 0.25,
                         .tool_compliance = 2,
                         .shift_W = {0, -0.5, 0}};
+  ForceSample with_errors = force;
+  with_errors.flags = ForceSample::kHasErrors;
+  with_errors.errors = {{ErrorSource::kEstimated, 3.5F}, {ErrorSource::kNone, 0}};
   SurfacePage page{.tool = 1, .version = 0xa1b2c3d4, .page = 0x0708};
   page.values.front() = 0.5F;
   page.values.back() = -2;
@@ -78,7 +81,8 @@ std::vector<Message> one_of_each() {
           whole,
           fetching,
           on_surface,
-          page};
+          page,
+          with_errors};
 }
 
 }  // namespace
@@ -151,6 +155,12 @@ TEST_CASE("golden bytes: written down by hand from protocol/README.md") {
         "0000000000000000"
         "000000000000e0bf"
         "0000000000000000");
+  CHECK(hex(encoded(kHeader, messages[11])).substr(2 * (28 + 105)) ==
+        "20000000"  // flags, then: source and percent of the mesh, source and percent of the time step
+        "01"
+        "00006040"
+        "03"
+        "00000000");
   CHECK(hex(encoded(kHeader, messages[10])) == front("0a", "8d03") + "01" + "d4c3b2a1" + "08070000" +
                                                    "0000003f" + std::string(2 * 4 * 223, '0') + "000000c0");
   CHECK(hex(encoded(kHeader, messages[6])).substr(2 * (28 + 107)) ==

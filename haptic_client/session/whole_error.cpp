@@ -1,0 +1,69 @@
+#include "haptic_client/session/whole_error.h"
+
+#include <algorithm>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/text.h"
+
+namespace palpate::client {
+namespace {
+
+Json percent_of(const DiscretisationError& error) {
+  return error.known() ? Json(error.percent) : Json(nullptr);
+}
+
+std::string how_of(const DiscretisationError& error) {
+  switch (error.source) {
+    case ErrorSource::kUnknown:
+      return "unknown: nobody has measured it; `sim_server study SCENE --out DIR` does";
+    case ErrorSource::kEstimated:
+      return "estimated by elements to a radius of the tool where it pressed; `sim_server study SCENE --out "
+             "DIR` "
+             "measures it";
+    case ErrorSource::kMeasured:
+      return "measured by a study of this scene, along its motion";
+    case ErrorSource::kNone:
+      return "none: the force follows from the place of the tool alone";
+  }
+  return "";
+}
+
+}  // namespace
+
+Json whole_error_report(const std::string& method, const Observation& observation) {
+  const DiscretisationErrors told = observation.told_errors().mean();
+  const Scoring& scoring = observation.scoring();
+  Json report = {{"mesh_percent", percent_of(told.mesh)},
+                 {"motion_percent", percent_of(told.time_step)},
+                 {"extrapolation_percent", nullptr},
+                 {"how",
+                  {{"mesh", told.mesh.source == ErrorSource::kNone ? "none: this tissue has no mesh"
+                                                                   : how_of(told.mesh)},
+                   {"motion", how_of(told.time_step)},
+                   {"extrapolation", "unknown: no tick was scored"}}}};
+  const auto row = std::ranges::find(scoring.names(), method);
+  if (row == scoring.names().end() || scoring.scored() == 0) return report;
+  const auto at = static_cast<std::size_t>(row - scoring.names().begin());
+  report["extrapolation_percent"] = scoring.metrics(at).mean_percent;
+  report["how"]["extrapolation"] =
+      fmt::format("measured here, latency included, against the force between samples ({})",
+                  name_of(scoring.mostly_between()));
+  return report;
+}
+
+void print_whole_error(const Json& tool) {
+  const Json& felt = tool["felt"];
+  if (felt["laws"].empty()) return;
+  fmt::print(
+      "  error   of the force, % of its root mean square; the law of the tissue itself is not in it\n");
+  const auto row = [&](const char* name, const char* percent, const char* how) {
+    const std::string number = felt[percent].is_null() ? "?" : two_figures(felt[percent].get<double>());
+    fmt::print("          {:<14}{:>7}   {}\n", name, number, felt["how"][how].get<std::string>());
+  };
+  row("mesh", "mesh_percent", "mesh");
+  row("time step", "motion_percent", "motion");
+  row("extrapolation", "extrapolation_percent", "extrapolation");
+}
+
+}  // namespace palpate::client

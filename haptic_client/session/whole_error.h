@@ -1,0 +1,14 @@
+#pragma once
+#include "common/report.h"
+#include "haptic_client/evaluation/observation.h"
+
+namespace palpate::client {
+
+/// `felt.mesh_percent`, `.motion_percent`, `.extrapolation_percent` and `.how` of a tool that felt `method`;
+/// null where nobody knows. Of extrapolation, what the row of `method` scored.
+Json whole_error_report(const std::string& method, const Observation& observation);
+
+/// The same as a table, for people, on stdout; nothing before the first sample of a force.
+void print_whole_error(const Json& tool);
+
+}  // namespace palpate::client

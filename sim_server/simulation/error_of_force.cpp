@@ -1,0 +1,51 @@
+#include "sim_server/simulation/error_of_force.h"
+
+#include "sim_server/deformation/deformation_models.h"
+
+namespace palpate::sim {
+namespace {
+
+/// Friction remembers the path, and tissue in motion where it was: their force depends on the steps taken.
+bool steps_matter(const Scene& scene, const ToolSettings& tool) {
+  return model_of(scene.deformation).moves || tool.shape.friction > 0;
+}
+
+}  // namespace
+
+ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
+                           const std::optional<DiscretisationErrors>& studied) {
+  const bool deforms = scene.material && model_of(scene.deformation).deforms();
+  for (const ToolSettings& tool : scene.tools) {
+    DiscretisationErrors errors = studied.value_or(DiscretisationErrors{});
+    if (!deforms) errors.mesh.source = ErrorSource::kNone;
+    if (!steps_matter(scene, tool)) errors.time_step = {.source = ErrorSource::kNone};
+    std::optional<ElementKind> element;
+    if (deforms && !tool.grasps()) element = scene.material->element;  // the estimate is of tips that press
+    tools_.push_back({errors, element, {simulation.surface(), simulation.rest(), tool.shape.radius}});
+  }
+}
+
+std::optional<double> ErrorOfForce::finest(std::size_t tool, std::span<const Triangle> touchable) const {
+  return tools_[tool].element ? tools_[tool].mesh.finest(touchable) : std::nullopt;
+}
+
+DiscretisationErrors ErrorOfForce::of_step(std::size_t tool,
+                                           std::span<const NodalLoad> loads) const noexcept {
+  return of(tool, tools_[tool].mesh.of(loads));
+}
+
+DiscretisationErrors ErrorOfForce::of_all_steps(std::size_t tool) const noexcept {
+  return of(tool, elements_per_radius(tool));
+}
+
+DiscretisationErrors ErrorOfForce::of(std::size_t tool,
+                                      std::optional<double> elements_per_radius) const noexcept {
+  const OfTool& of = tools_[tool];
+  DiscretisationErrors errors = of.known;
+  if (errors.mesh.known() || !of.element || !elements_per_radius) return errors;
+  if (const auto percent = estimated_mesh_error(*of.element, *elements_per_radius))
+    errors.mesh = {ErrorSource::kEstimated, static_cast<float>(*percent)};
+  return errors;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,44 @@
+#pragma once
+#include "common/discretisation_error.h"
+#include "sim_server/simulation/mesh_resolution.h"
+#include "sim_server/simulation/simulation.h"
+
+namespace palpate::sim {
+
+/// What mesh and time step cost the force on each tool of a scene. Measured where a study of the scene is
+/// known. Else the mesh's share is estimated in each step from how fine it is where the tool presses
+/// (`estimated_mesh_error`); that of the time step is unknown, but where the force follows from the poses of
+/// the step alone, so that no step is too long. One thread.
+class ErrorOfForce {
+ public:
+  /// `studied`: of this scene. `simulation` is read here only. O(vertices x tools).
+  ErrorOfForce(const Scene& scene, const Simulation& simulation,
+               const std::optional<DiscretisationErrors>& studied = {});
+
+  /// In a step in which a tool loads the surface so. O(loads); does not allocate.
+  DiscretisationErrors of_step(std::size_t tool, std::span<const NodalLoad> loads) const noexcept;
+  /// Adds a step, which is then part of `elements_per_radius` and `of_all_steps`.
+  void add_step(std::size_t tool, std::span<const NodalLoad> loads) noexcept { tools_[tool].mesh.add(loads); }
+
+  /// Elements to a radius of a tool that can press, where the mesh is finest of what it can touch; nothing
+  /// where no mesh of elements is touched so.
+  std::optional<double> finest(std::size_t tool, std::span<const Triangle> touchable) const;
+  /// Mean where a tool has pressed; nothing before it has.
+  std::optional<double> elements_per_radius(std::size_t tool) const noexcept {
+    return tools_[tool].mesh.elements_per_radius();
+  }
+  /// Of all steps so far in which a tool pressed.
+  DiscretisationErrors of_all_steps(std::size_t tool) const noexcept;
+
+ private:
+  DiscretisationErrors of(std::size_t tool, std::optional<double> elements_per_radius) const noexcept;
+
+  struct OfTool {
+    DiscretisationErrors known;          // whatever it touches
+    std::optional<ElementKind> element;  // for the estimate; nothing where there is none
+    MeshResolution mesh;
+  };
+  std::vector<OfTool> tools_;
+};
+
+}  // namespace palpate::sim

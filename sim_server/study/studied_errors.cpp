@@ -1,0 +1,45 @@
+#include "sim_server/study/studied_errors.h"
+
+#include <fmt/core.h>
+#include <fstream>
+#include <iterator>
+
+namespace palpate::sim {
+namespace {
+
+void add_file(Fingerprint& print, const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
+  print.add(std::span(bytes));
+}
+
+/// Apart from those of matrices by its first word.
+Digest key_of_study(const Scene& scene) {
+  constexpr std::string_view kWhat = "study";
+  Fingerprint print;
+  print.add(std::span(kWhat));
+  add_file(print, scene.source);
+  add_file(print, scene.mesh_file);
+  return print.digest();
+}
+
+}  // namespace
+
+void keep_studied(const SetupCache& cache, const Scene& scene, const DiscretisationErrors& errors,
+                  double seconds) {
+  const Eigen::RowVector2d percent(errors.mesh.percent, errors.time_step.percent);
+  const std::string what =
+      fmt::format("study of {}", std::filesystem::path(scene.source).filename().string());
+  cache.keep({.key = key_of_study(scene), .seconds = seconds, .what = what}, percent);
+}
+
+std::optional<DiscretisationErrors> find_studied(const SetupCache& cache, const Scene& scene) {
+  const auto kept = cache.find(key_of_study(scene));
+  if (!kept || kept->matrix().rows() != 1 || kept->matrix().cols() != 2) return {};
+  const auto measured = [&](int column) {
+    return DiscretisationError{ErrorSource::kMeasured, static_cast<float>(kept->matrix()(0, column))};
+  };
+  return DiscretisationErrors{measured(0), measured(1)};
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,68 @@
+#ifdef PALPATE_WITH_CAPTURE
+// What a session is told about the whole error of its force, before and after a study of its scene: the real
+// programs, virtual time.
+#include "tests/support/column.h"
+#include "tests/support/programs.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate::test;
+using Json = nlohmann::json;
+
+namespace {
+
+struct PressedColumn {
+  TemporaryFolder folder;
+  std::string cache = (folder.path() / "cache").string(), scene, said;
+
+  PressedColumn() {
+    folder.write("column.msh", column());
+    folder.write("motion.csv", "t_s,x_m,y_m,z_m\n0,0.05,0.45,0.05\n1,0.05,0.42,0.05\n2,0.05,0.45,0.05\n");
+    scene = folder
+                .write("scene.toml",
+                       "rate_hz = 30\n[mesh]\nfile = \"column.msh\"\n[material]\nyoung_modulus = "
+                       "2e4\npoisson_ratio = 0.3\n[[fixed]]\nbox = [[-1, -1, -1], [1, 0.001, "
+                       "1]]\n[[tool]]\nradius = 0.03\n[deformation]\nmodel = \"quasi_static\"\n")
+                .string();
+  }
+  /// What the report of a client says of the force it felt.
+  Json felt() {
+    const std::string capture = (folder.path() / "c.pcap").string(),
+                      report = (folder.path() / "report.json").string();
+    output_of("sim_server",
+              {"record", scene, "--trajectory", (folder.path() / "motion.csv").string(), "--rate", "30",
+               "--out", capture, "--cache", cache},
+              0);
+    said = output_of("haptic_client",
+                     {"replay", capture, "--client", kClient, "--method", "two_tangents", "--report", report},
+                     0);
+    return read_json(report)["tools"][0]["felt"];
+  }
+};
+
+}  // namespace
+
+TEST_CASE("whole error: estimated, then measured by a study, with the extrapolation beside it", "[large]") {
+  PressedColumn pressed;
+  Json felt = pressed.felt();
+  // Edges of 0.1 m under a radius of 0.03 m: less than 0.4 elements, the end of the table of linear ones.
+  CHECK(felt["mesh_percent"] == 189);
+  CHECK(felt["motion_percent"] == 0);
+  CHECK(felt["extrapolation_percent"].get<double>() > 0);
+  CHECK_THAT(felt["how"]["mesh"].get<std::string>(), Catch::StartsWith("estimated"));
+  CHECK_THAT(felt["how"]["motion"].get<std::string>(), Catch::StartsWith("none"));
+  CHECK_THAT(pressed.said, Catch::Contains("mesh              189   estimated"));
+
+  const std::string out = (pressed.folder.path() / "out").string();
+  output_of("sim_server", {"study", pressed.scene, "--out", out, "--quick", "--cache", pressed.cache}, 0,
+            120);
+  felt = pressed.felt();
+  CHECK_THAT(felt["how"]["mesh"].get<std::string>(), Catch::StartsWith("measured by a study"));
+  // At rest no step is too long, so that all that the study finds of the scene as it is comes from its mesh.
+  for (const Json& row : read_json(out + "/summary.json")["rows"]) {
+    if (row["axis"] == "scene")
+      CHECK(felt["mesh_percent"] == Approx(row["force_error_percent"].get<double>()));
+  }
+  CHECK_THAT(output_of("sim_server", {"cache", "list", "--cache", pressed.cache}, 0),
+             Catch::Contains("study of scene.toml"));
+}
+#endif

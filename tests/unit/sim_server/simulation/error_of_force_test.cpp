@@ -1,0 +1,93 @@
+#include "sim_server/simulation/error_of_force.h"
+
+#include <numbers>
+
+#include "sim_server/study/studied_errors.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+constexpr double kRadius = 0.005;
+
+/// Two equilateral triangles apart from each other, with edges of h and of 2 h.
+struct TwoTriangles {
+  double h = 0.002;
+  Surface surface{{0, 1, 2, 3, 4, 5}, {{0, 1, 2}, {3, 4, 5}}, 1};
+  std::vector<Vec3> rest;
+  TwoTriangles() {
+    for (const double edge : {h, 2 * h}) {
+      for (const double angle : {0.0, 2 * std::numbers::pi / 3, 4 * std::numbers::pi / 3})
+        rest.push_back(edge / std::sqrt(3) * Vec3(std::cos(angle), std::sin(angle), 0));
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("mesh resolution: the radius over the edges that meet where the tool presses, by its loads") {
+  const TwoTriangles two;
+  MeshResolution mesh(two.surface, two.rest, kRadius);
+  CHECK_FALSE(mesh.elements_per_radius());
+  CHECK_FALSE(mesh.of(std::span<const NodalLoad>{}));
+  const std::vector<NodalLoad> fine{{0, {0, 3, 0}}}, coarse{{4, {0, 0, 1}}};
+  CHECK(*mesh.of(fine) == Approx(kRadius / two.h));
+  CHECK(*mesh.of(coarse) == Approx(kRadius / (2 * two.h)));
+  mesh.add(fine), mesh.add(coarse);
+  CHECK(*mesh.elements_per_radius() == Approx((3 * 2.5 + 1.25) / 4));
+  CHECK(*mesh.finest(two.surface.triangles) == Approx(2.5));
+  CHECK(*mesh.finest(std::span(two.surface.triangles).subspan(1)) == Approx(1.25));
+  CHECK_FALSE(mesh.finest({}));
+}
+
+TEST_CASE("mesh resolution: where edges have a vertex in their middle, an element is what the edge spans") {
+  TwoTriangles two;
+  two.surface.per_face = 4;  // these are the quarters of faces with edges twice as long
+  CHECK(*MeshResolution(two.surface, two.rest, kRadius).of(std::vector<NodalLoad>{{0, {1, 0, 0}}}) ==
+        Approx(kRadius / (2 * two.h)));
+}
+
+TEST_CASE("error of the force: friction and tissue in motion depend on the steps taken, the others do not") {
+  const auto source = [](const std::string& model, double friction) {
+    Scene scene = test::liver_scene();
+    scene.deformation.model = model;
+    scene.tools.front().shape.friction = friction;
+    const Simulation simulation(scene);
+    const std::vector<NodalLoad> loads{{0, {0, 1, 0}}};
+    const DiscretisationErrors errors = ErrorOfForce(scene, simulation).of_step(0, loads);
+    CHECK(errors.mesh.source == ErrorSource::kEstimated);
+    CHECK(errors.mesh.percent >
+          29);  // p1, less than four elements to a radius: the table of simulation/README.md
+    CHECK(errors.time_step.percent == 0);
+    return errors.time_step.source;
+  };
+  CHECK(source("quasi_static", 0) == ErrorSource::kNone);
+  CHECK(source("quasi_static", 0.3) == ErrorSource::kUnknown);
+  CHECK(source("tensor_mass", 0) == ErrorSource::kUnknown);
+}
+
+TEST_CASE(
+    "error of the force: a study takes the place of estimates, as long as scene and mesh are the same") {
+  const test::TemporaryFolder folder;
+  const SetupCache cache(folder.path() / "cache");
+  Scene scene = test::liver_scene();
+  scene.source = folder.write("scene.toml", "rate_hz = 30").string();
+  CHECK_FALSE(find_studied(cache, scene));
+  keep_studied(cache, scene, {{ErrorSource::kMeasured, 12.5F}, {ErrorSource::kMeasured, 0.25F}}, 60);
+  const auto found = find_studied(cache, scene);
+  REQUIRE(found);
+  CHECK(found->mesh.percent == 12.5F);
+  CHECK(found->time_step.percent == 0.25F);
+  const Simulation simulation(scene);
+  const std::vector<NodalLoad> loads{{0, {0, 1, 0}}};
+  const DiscretisationErrors errors = ErrorOfForce(scene, simulation, found).of_step(0, loads);
+  CHECK(errors.mesh.source == ErrorSource::kMeasured);
+  CHECK(errors.mesh.percent == 12.5F);
+  CHECK(errors.time_step.source == ErrorSource::kNone);  // this scene makes none
+  folder.write("scene.toml", "rate_hz = 31");
+  CHECK_FALSE(find_studied(cache, scene));
+}
