@@ -46,7 +46,6 @@ bool ComplementaritySolver::solve_on_basis(const Eigen::Ref<const Eigen::MatrixX
 bool ComplementaritySolver::solve(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
                                   const Eigen::Ref<const Eigen::VectorXd>& gap,
                                   Eigen::Ref<Eigen::VectorXd> lambda) noexcept {
-  lambda.setZero();
   if (gap.size() == 0) return true;
   const bool solved = pivot_blocks(g_matrix, gap, lambda) || add_one_by_one(g_matrix, gap, lambda);
   lambda = lambda.cwiseMax(0);
@@ -57,7 +56,8 @@ bool ComplementaritySolver::pivot_blocks(const Eigen::Ref<const Eigen::MatrixXd>
                                          const Eigen::Ref<const Eigen::VectorXd>& gap,
                                          Eigen::Ref<Eigen::VectorXd> lambda) noexcept {
   const int n = static_cast<int>(gap.size());
-  for (int i = 0; i < n; ++i) active_[static_cast<std::size_t>(i)] = gap[i] < 0;
+  const bool guessed = lambda.maxCoeff() > 0;
+  for (int i = 0; i < n; ++i) active_[static_cast<std::size_t>(i)] = guessed ? lambda[i] > 0 : gap[i] < 0;
   // What rounding alone can make of a zero; without it two coinciding contacts could trade places for ever.
   const double slack_noise = kNoise * gap.cwiseAbs().maxCoeff();
   const double force_noise = slack_noise / g_matrix.diagonal().maxCoeff();

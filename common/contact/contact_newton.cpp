@@ -200,7 +200,13 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
     gap.noalias() -= jacobian_ * local;
   }
   if (!solve_newton_contacts(gap, lambda)) return false;
-  remember(lambda);
+  auto forces = lambda_.head(rows_of_contact() * static_cast<Eigen::Index>(contacts_.size()));
+  forces.setZero();
+  for (Eigen::Index row = 0; row < n; ++row) {
+    const int rows = rows_of_contact(), k = considered_[static_cast<std::size_t>(row / rows)];
+    forces[rows * k + row % rows] = lambda[row];
+  }
+  remember(forces);
   // Force at the new geometry, to first order: A z+ + S (u+ - u).
   auto moved = moved_.col(2).head(loaded);  // u+ - u of the loaded nodes
   moved = -response_.col(n).tail(loaded) - local.tail(loaded);

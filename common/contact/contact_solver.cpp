@@ -67,8 +67,8 @@ ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
   deformed_.reserve(static_cast<std::size_t>(max_nodes));
   nodes_.reserve(static_cast<std::size_t>(max_nodes + 1));
   slack_.resize(rows);
-  if (!friction) return;
   felt_.reserve(static_cast<std::size_t>(max_triangles));
+  if (!friction) return;
   frames_.reserve(static_cast<std::size_t>(max_triangles));
   was_.reserve(static_cast<std::size_t>(max_nodes));
 }
@@ -94,7 +94,7 @@ void ContactSolver::start_increment(const ContactPatch& patch, const Tool& tool,
                                     const IncrementStart& start) noexcept {
   friction_ = tool.friction;
   pivots_ = tool.trocar.has_value();
-  felt_.clear();
+  felt_.clear();  // whose nodes are those of another patch
   if (friction_ == 0) return;
   assert(spread_.size() > 0);  // it was made for friction
   was_.assign(start.nodes.begin(), start.nodes.begin() + patch.nodes());
@@ -204,8 +204,8 @@ ContactForce ContactSolver::solve(ContactPatch& patch, const Tool& tool, const T
 bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                    Eigen::Ref<Eigen::VectorXd> force) noexcept {
   const auto delassus = delassus_.leftCols(gap.size());
-  if (friction_ == 0) return complementarity_.solve(delassus, gap, force);
   recall(force);
+  if (friction_ == 0) return complementarity_.solve(delassus, gap, force);
   return coulomb_.solve(delassus, gap, friction_, force);
 }
 
@@ -213,20 +213,27 @@ bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
 /// same.
 void ContactSolver::remember(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept {
   felt_.clear();
-  for (int k = 0; k < static_cast<int>(frames_.size()); ++k) {
-    if (force[3 * k] > 0)
-      felt_.push_back({contacts_[k].node, contacts_[k].part, frames_[k] * force.segment<3>(3 * k)});
+  const int rows = rows_of_contact();
+  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
+    if (!(force[rows * k] > 0)) continue;
+    const Vec3 felt = rows > 1 ? Vec3(frames_[k] * force.segment<3>(3 * k)) : force[k] * contacts_[k].normal;
+    felt_.push_back({contacts_[k].node, contacts_[k].part, felt});
   }
 }
 
 void ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
   force.setZero();
-  for (int k = 0; k < static_cast<int>(frames_.size()); ++k) {
+  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
     const auto same = [&](const Felt& felt) {
       return felt.node == contacts_[k].node && felt.part == contacts_[k].part;
     };
     const auto felt = std::find_if(felt_.begin(), felt_.end(), same);
-    if (felt != felt_.end()) force.segment<3>(3 * k) = frames_[k].transpose() * felt->force;
+    if (felt == felt_.end()) continue;
+    if (friction_ > 0) {
+      force.segment<3>(3 * k) = frames_[k].transpose() * felt->force;
+    } else {
+      force[k] = felt->force.norm();
+    }
   }
 }
 

@@ -167,7 +167,7 @@ class ContactSolver {
     Contact::Part part;
     Vec3 force;
   };
-  std::vector<Felt> felt_;  // with friction: what touched in the iteration before
+  std::vector<Felt> felt_;  // what touched in the iteration before
   std::vector<Vec3> deformed_;
   BoundedMatrix response_;  // C~ A, then C~ of other loads, in the rows of the loaded nodes
   BoundedMatrix delassus_;  // and B C~ of other loads, to its right

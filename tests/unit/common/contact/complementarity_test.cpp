@@ -43,6 +43,9 @@ TEST_CASE("contact forces agree with the enumeration of all active sets") {
     const Eigen::MatrixXd g = random_positive_definite(random, n);
     Eigen::VectorXd gap(n), lambda(n);
     for (int i = 0; i < n; ++i) gap[i] = random.between(-1, 1);
+    // From no guess, and from one that is wrong: what is in contact has a gap below 0.
+    lambda.setZero();
+    if (trial % 2 == 1) lambda = gap;
     REQUIRE(solver.solve(g, gap, lambda));
     REQUIRE((lambda - by_enumeration(g, gap)).cwiseAbs().maxCoeff() < 1e-8);
   }
@@ -56,7 +59,7 @@ TEST_CASE("large, nearly singular problems end feasible and complementary, witho
   Eigen::MatrixXd a(kSize, 40);
   for (int i = 0; i < a.size(); ++i) a.data()[i] = random.between(0, 1);
   const Eigen::MatrixXd g = a * a.transpose() + 1e-6 * Eigen::MatrixXd::Identity(kSize, kSize);
-  Eigen::VectorXd gap(kSize), lambda(kSize);
+  Eigen::VectorXd gap(kSize), lambda = Eigen::VectorXd::Zero(kSize);
   for (int i = 0; i < kSize; ++i) gap[i] = random.between(-1, 0.5);
   bool solved = false;
   std::size_t allocations = 0;
@@ -77,7 +80,7 @@ TEST_CASE("a matrix that is not positive definite is refused with a harmless ans
   ComplementaritySolver solver(2);
   Eigen::Matrix2d g;
   g << -1, 0, 0, 1;
-  Eigen::VectorXd gap = Eigen::Vector2d(-1, -1), lambda(2);
+  Eigen::VectorXd gap = Eigen::Vector2d(-1, -1), lambda = Eigen::Vector2d::Zero();
   CHECK_FALSE(solver.solve(g, gap, lambda));
   CHECK(lambda.allFinite());
   CHECK(lambda.minCoeff() >= 0);
