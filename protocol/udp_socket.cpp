@@ -151,10 +151,10 @@ void UdpSocket::stop() {
   asio_->context.stop();
 }
 
-bool UdpSocket::send(std::span<const std::byte> datagram, const Endpoint& to) noexcept {
+std::error_code UdpSocket::send(std::span<const std::byte> datagram, const Endpoint& to) noexcept {
   std::error_code failed;
   asio_->socket.send_to(asio::buffer(datagram.data(), datagram.size()), to_asio(to), 0, failed);
-  return !failed;
+  return failed;
 }
 
 }  // namespace palpate::protocol

@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <system_error>
 
 #include "common/doorbell.h"
 #include "common/time.h"
@@ -46,8 +47,8 @@ class UdpSocket {
   /// Ends `run`; any thread.
   void stop();
 
-  /// Sends without waiting; false when the system would not take it. Thread of `run`, or when none runs.
-  bool send(std::span<const std::byte> datagram, const Endpoint& to) noexcept;
+  /// Sends without waiting; says why where the system would not take it. Thread of `run`, or when none runs.
+  std::error_code send(std::span<const std::byte> datagram, const Endpoint& to) noexcept;
 
  private:
   struct Asio;

@@ -20,9 +20,10 @@ class ComplementaritySolver {
   /// `capacity`: the largest problem `solve` will be given.
   explicit ComplementaritySolver(int capacity);
 
-  /// Writes lambda (n), which holds a guess: the exchanges begin with those in contact that have a force in it,
-  /// or where there is none with those whose gap is negative. The solution is the same. False when the matrix was not positive definite or the bound on exchanges was
-  /// reached; lambda is then finite and >= 0 but not the solution. O(n^3) per exchange.
+  /// Writes lambda (n), which holds a guess: the exchanges begin with those in contact that have a force in
+  /// it, or where there is none with those whose gap is negative. The solution is the same. False when the
+  /// matrix was not positive definite or the bound on exchanges was reached; lambda is then finite and >= 0
+  /// but not the solution. O(n^3) per exchange.
   bool solve(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix, const Eigen::Ref<const Eigen::VectorXd>& gap,
              Eigen::Ref<Eigen::VectorXd> lambda) noexcept;
 

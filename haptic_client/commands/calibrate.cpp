@@ -29,6 +29,7 @@ constexpr double kLeastMass = 0.05, kMostMass = 0.5;  // kg
 constexpr double kLowestTorqueConstant = 2300;        // DAC units per N m, that is plausible
 constexpr double kMostTilt = 10;                      // degrees
 constexpr int kPatience = 30;                         // looks of 100 ms
+constexpr int kLooks = 10, kAbsences = 5;             // looks between two at what is plugged in; of those
 
 /// Haptic thread: ticks until the calibration has ended or is asked to stop; writes zero force last.
 void run_loop(const std::stop_token& stop, Device& device, Calibration& calibration, Time period,
@@ -64,11 +65,29 @@ std::string what_to_do(const CalibrationProgress& progress, double mass) {
   return "";
 }
 
-/// Talks to the user while the loop runs; true on Ctrl-C.
-bool guide(LatestValue<CalibrationProgress>& newest, const Device& device, double mass) {
+/// Looks once a second, until there is a reading, whether the device is there; throws `Error` when it was not
+/// five times in a row (as it is away for a moment when it gets its firmware).
+class Presence {
+ public:
+  explicit Presence(const DeviceSettings& settings) : settings_(settings) {}
+  void look(const CalibrationProgress& progress) {
+    if (progress.stage != Stage::kHome || ++looks_ % kLooks != 0) return;
+    absences_ = is_plugged_in(settings_) ? 0 : absences_ + 1;
+    if (absences_ == kAbsences) fail_at_run_time("{}", no_device_text(settings_));
+  }
+
+ private:
+  const DeviceSettings& settings_;
+  int looks_ = 0, absences_ = 0;
+};
+
+/// Talks to the user while the loop runs; true on Ctrl-C. Throws `Error` where there is no device.
+bool guide(LatestValue<CalibrationProgress>& newest, const Device& device, const DeviceSettings& settings,
+           double mass) {
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   std::string said, status;
   CalibrationProgress progress;
+  Presence presence(settings);
   for (int standstills = 0; progress.stage != Stage::kEnd;) {
     if (wait_for_interrupt(std::chrono::milliseconds(100))) return true;
     standstills = newest.read(progress) ? 0 : standstills + 1;
@@ -76,6 +95,7 @@ bool guide(LatestValue<CalibrationProgress>& newest, const Device& device, doubl
       log::error("the haptic loop stands still; the guardian takes the device over");
       std::abort();
     }
+    presence.look(progress);
     const std::string text = what_to_do(progress, mass);
     if (!text.empty() && text != said) fmt::print("{}{}\n", terminal ? "\r\033[K" : "", said = text);
     if (device.status() != status)
@@ -169,7 +189,7 @@ int calibrate(ClientConfig config, double mass) {
         !refused.empty())
       log::warning("{}", refused);
     if (const auto refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
-    interrupted = guide(progress, *device, mass);
+    interrupted = guide(progress, *device, config.device, mass);
   }
   if (interrupted) fail_at_run_time("interrupted; nothing was measured, the force is off");
   if (calibration.trouble() != Trouble::kNone) explain(calibration, config, mass, device->status());

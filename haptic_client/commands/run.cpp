@@ -77,10 +77,8 @@ void tell_missing_ports(const std::vector<ClientConfig>& configs) {
 /// Whether the device gave nothing in the whole run, and is not there at its end.
 bool never_there(const ClientConfig& config, const Json& tool) {
   const DeviceSettings& device = config.device;
-  if (row_of(device).ports == nullptr) return false;
   if (tool["loop"]["ticks"] == 0 || tool["safety"]["lost"] != tool["loop"]["ticks"]) return false;
-  const std::vector<std::string> ports = row_of(device).ports();
-  return device.port.empty() ? ports.empty() : std::ranges::count(ports, device.port) == 0;
+  return !is_plugged_in(device);
 }
 
 /// Whether a line can be printed without waiting: nobody who reads slowly may keep us from Ctrl-C.
@@ -164,12 +162,7 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   if (options.report) write_json(*options.report, report);
   for (std::size_t i = 0; i < configs.size(); ++i) {
     const DeviceSettings& device = configs[i].device;
-    if (never_there(configs[i], report["tools"][i]))
-      fail_at_run_time(
-          "{}: no {} came{}; `haptic_client devices` lists what is there, `--device simulated` is a hand "
-          "without "
-          "one, `scripts/run --emulate {}` emulates one",
-          device.where, device.name, device.port.empty() ? "" : " to port " + device.port, device.name);
+    if (never_there(configs[i], report["tools"][i])) fail_at_run_time("{}", no_device_text(device));
   }
   return 0;
 }

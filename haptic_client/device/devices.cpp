@@ -112,6 +112,20 @@ std::span<const DeviceRow> devices() {
   return kDevices;
 }
 
+bool is_plugged_in(const DeviceSettings& settings) {
+  const DeviceRow& row = row_of(settings);
+  if (row.ports == nullptr) return true;
+  const std::vector<std::string> ports = row.ports();
+  return settings.port.empty() ? !ports.empty() : std::ranges::count(ports, settings.port) > 0;
+}
+
+std::string no_device_text(const DeviceSettings& settings) {
+  return fmt::format(
+      "{}: no {} came{}; `haptic_client devices` lists what is there, `--device simulated` is a hand without "
+      "one, `scripts/run --emulate {}` emulates one",
+      settings.where, settings.name, settings.port.empty() ? "" : " to port " + settings.port, settings.name);
+}
+
 const DeviceRow& row_of(const DeviceSettings& settings) {
   return find_row(devices(), settings.name, "device", settings.where);
 }

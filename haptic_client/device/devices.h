@@ -39,6 +39,10 @@ struct DeviceRow {
   std::vector<std::string> (*ports)() = nullptr;
 };
 std::span<const DeviceRow> devices();
+/// Whether such a device is plugged in now, at its port where it names one; true of those without a port.
+bool is_plugged_in(const DeviceSettings& settings);
+/// "FILE:LINE: no falcon came; ...", with what can be done instead.
+std::string no_device_text(const DeviceSettings& settings);
 /// The row of the device that is asked for. Throws `Error` for a name that is none.
 const DeviceRow& row_of(const DeviceSettings& settings);
 

@@ -94,6 +94,11 @@ bool HeldTool::connect() {
           "them, or add a [[tool]] to its scene",
           name_, config_.server);
     }
+    if (const int reason = link_.unsendable; reason != 0) {
+      fail_at_run_time(
+          "nothing can be sent to {}: {}; is the address right, and this machine in the same network?",
+          config_.server, std::generic_category().message(reason));
+    }
     fail_at_run_time("no answer from a server at {} within 5 s; is `sim_server run` up, and UDP open there?",
                      config_.server);
   }

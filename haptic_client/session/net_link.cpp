@@ -59,7 +59,12 @@ void NetLink::send(const protocol::Header& header, const protocol::Message& mess
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   const std::size_t size = protocol::encode(header, message, bytes);
   if (recorder_ != nullptr) recorder_->note(now(), own_, server_, {bytes.data(), size});
-  if (socket_.send({bytes.data(), size}, server_)) ++stats_.sent;
+  if (const std::error_code failed = socket_.send({bytes.data(), size}, server_)) {
+    unsendable = failed.value();
+  } else {
+    ++stats_.sent;
+    unsendable = 0;
+  }
 }
 
 }  // namespace palpate::client

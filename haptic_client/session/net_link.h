@@ -25,6 +25,8 @@ class NetLink {
   /// For a watching thread: whether a server ever let us in, and why the last one did not (0: no answer).
   std::atomic<bool> welcomed{false};
   std::atomic<int> refused{0};
+  /// `errno` of the newest datagram, if the system would not send it: there is no way to the server.
+  std::atomic<int> unsendable{0};
 
  private:
   void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);

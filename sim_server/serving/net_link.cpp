@@ -97,7 +97,7 @@ void NetLink::send(const protocol::Header& header, const protocol::Message& mess
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   const std::size_t size = protocol::encode(header, message, bytes);
   if (recorder_ != nullptr) recorder_->note(now(), own_towards(to), to, {bytes.data(), size});
-  if (socket_.send({bytes.data(), size}, to)) ++stats_.sent;
+  if (!socket_.send({bytes.data(), size}, to)) ++stats_.sent;
 }
 
 }  // namespace palpate::sim

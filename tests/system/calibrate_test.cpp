@@ -94,3 +94,10 @@ TEST_CASE("calibrate: wrong use is one clear line") {
   CHECK(said({"calibrate", "falkon", "--mass", "0.2"}).find("falcon") != std::string::npos);
   CHECK(output_of("haptic_client", {"calibrate", "--help"}, 0).find("Example: ") != std::string::npos);
 }
+
+TEST_CASE("calibrate: where no Falcon is plugged in, one line says so, and what else there is") {
+  Emulator falcon{{"falcon:2-1"}, {"--loaded"}};
+  const auto client = falcon.start("haptic_client", {"calibrate", "falcon:3-7", "--mass", "0.2"});
+  CHECK(client->wait(12) == 1);
+  CHECK_THAT(client->output(), Catch::Contains("no falcon came to port 3-7; `haptic_client devices` lists"));
+}

@@ -15,7 +15,7 @@ constexpr double kDt = 1.0 / 30, kRadius = 0.004;
 const ToolPose kPressed(Vec3(0.001, kRadius - 0.002, 0.002));
 
 /// A block of corotational tissue, pressed by 2 mm until it rests.
-Simulation pressed_block() {
+[[maybe_unused]] Simulation pressed_block() {
   Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.45, .law = ElasticLaw::kCorotational},
                          {Vec3(-1, -1, -1), Vec3(1, -0.0149, 1)}, kRadius);
   scene.deformation.model = "implicit";
