@@ -21,6 +21,7 @@ import statistics
 import sys
 from pathlib import Path
 
+from pictures import add_format, files_of, style_of_laws
 from session_report import PAPER_SCORES, SCORES, Unusable, read_json, read_tools
 
 WIDTH_PX, DPI = 1600, 100
@@ -29,15 +30,6 @@ WIDE_TIMES, WIDE_ERRORS = 10, 30  # largest to median: from here on a logarithmi
 NEAR = 3           # a deadline this far above the slowest is worth a line
 TIME_UNITS = ((3 * 3600, 3600, "h"), (180, 60, "min"), (0, 1, "s"))  # from, in seconds, name
 
-# The colour-blind-safe palette of Okabe and Ito, without its yellow; (colour, line style).
-LAW_STYLES = {
-    "constant": ("#E69F00", "-"),
-    "linear_time": ("#0072B2", "-"),
-    "linear_position": ("#D55E00", "-"),
-    "linear_position_signed": ("#000000", (0, (2, 1.5))),
-}
-OTHER_STYLES = (("#009E73", "-"), ("#CC79A7", "-"), ("#56B4E9", "-"), ("#7F7F7F", "-"), ("#332288", "--"),
-                ("#AA4499", "--"), ("#999933", "--"))
 TICK_COLOUR, STEP_COLOUR, SERVER_COLOUR = "#0072B2", "#009E73", "#000000"
 MISSED_COLOUR, PERIOD_COLOUR = "#882255", "#7F7F7F"
 
@@ -63,11 +55,6 @@ def scale_axis(axis, wide, typical, *others):
         ticker.LogLocator(subs=(1, 2, 5) if decades < 1.5 else (1, 3) if decades < 2.5 else (1,)))
     axis.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:.10g}"))
     axis.yaxis.set_minor_formatter(ticker.NullFormatter())
-
-
-def style_of_laws(laws):
-    others = iter(OTHER_STYLES * len(laws))
-    return {law: LAW_STYLES.get(law) or next(others) for law in laws}
 
 
 def draw_errors(axis, tool, unit, styles):
@@ -181,8 +168,8 @@ def draw_scores(axis, tool, styles):
                       weight=weight, **size)
 
 
-def draw(tool):
-    """Return the picture, as the bytes of a PNG."""
+def draw(tool, paths):
+    """{path: bytes}, each in the format that its name ends in."""
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot
@@ -226,10 +213,13 @@ def draw(tool):
     axes[len(panels) - 1].set_xlabel(f"time ({name})" + "".join(f"   [{note}]" for note in tool.notes))
     if tool.scores:
         draw_scores(axes[-1], tool, styles)
-    picture = io.BytesIO()
-    figure.savefig(picture, format="png", dpi=DPI, facecolor="white")
+    pictures = {}
+    for path in paths:
+        picture = io.BytesIO()
+        figure.savefig(picture, format=path.suffix[1:], dpi=DPI, facecolor="white")
+        pictures[path] = picture.getvalue()
     pyplot.close(figure)
-    return picture.getvalue()
+    return pictures
 
 
 def write_all(pictures):
@@ -263,6 +253,7 @@ def main():
     parser.add_argument("output", type=Path, metavar="OUT.png")
     parser.add_argument("--server", type=Path, metavar="SERVER.json",
                         help="report of the sim_server: its title, every step, late deadlines")
+    add_format(parser)
     arguments = parser.parse_args()
 
     try:
@@ -271,8 +262,11 @@ def main():
             raise Unusable(f"{output}: the name must end in .png")
         tools = read_tools(read_json(arguments.report),
                            read_json(arguments.server) if arguments.server else None)
-        write_all({output.with_stem(output.stem + (f"-{i}" if i > 1 else "")): draw(tool)
-                   for i, tool in enumerate(tools, 1)})
+        pictures = {}
+        for i, tool in enumerate(tools, 1):
+            png = output.with_stem(output.stem + (f"-{i}" if i > 1 else ""))
+            pictures |= draw(tool, files_of(png, arguments.plot_format))
+        write_all(pictures)
     except Unusable as problem:
         print(f"session.py: {problem}", file=sys.stderr)
         return 2

@@ -1,0 +1,71 @@
+"""What the pictures of Palpate share: colours, names in words, and how they are saved."""
+
+import os
+
+FORMATS = ("png", "pdf", "svg")
+DPI = 100
+
+# The colour-blind-safe palette of Okabe and Ito, without its yellow; (colour, line style).
+LAW_STYLES = {
+    "constant": ("#E69F00", "-"),
+    "linear_time": ("#0072B2", "-"),
+    "linear_position": ("#D55E00", "-"),
+    "linear_position_signed": ("#000000", (0, (2, 1.5))),
+}
+OTHER_STYLES = (("#009E73", "-"), ("#CC79A7", "-"), ("#56B4E9", "-"), ("#7F7F7F", "-"), ("#332288", "--"),
+                ("#AA4499", "--"), ("#999933", "--"))
+# Keys whose words are not just the key with spaces.
+WORDS = {
+    "linear_time": "linear in time", "linear_position": "linear in position",
+    "linear_position_signed": "linear in position, signed", "learned_stiffness": "learned stiffness",
+}
+
+
+class CannotSave(Exception):
+    """A picture cannot be written; the text is for the user."""
+
+
+def in_words(key):
+    return WORDS.get(key) or key.replace("_", " ")
+
+
+def style_of_laws(laws):
+    others = iter(OTHER_STYLES * len(laws))
+    return {law: LAW_STYLES.get(law) or next(others) for law in laws}
+
+
+def add_format(parser):
+    parser.add_argument("--plot-format", choices=FORMATS, default="png",
+                        help="write each picture in this format, too, beside the PNG")
+
+
+def files_of(png, extra):
+    """Where a picture goes: PNG always, and beside it what --plot-format asks for."""
+    return [png] if extra == "png" else [png, png.with_suffix(f".{extra}")]
+
+
+def prepare(**more):
+    """The one look of all pictures; call before anything is drawn. Text in a PDF stays text."""
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+    pyplot.rcParams.update({"axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True,
+                            "text.parse_math": False, "pdf.fonttype": 42, "svg.fonttype": "none", **more})
+    return pyplot
+
+
+def save(figure, png, extra="png", dpi=DPI):
+    """Writes each file whole or not at all, and closes the figure."""
+    from matplotlib import pyplot
+    for path in files_of(png, extra):
+        if path.is_dir():
+            raise CannotSave(f"{path}: is a directory")
+        draft = path.with_name(f".{path.name}.{os.getpid()}")
+        try:
+            figure.savefig(draft, format=path.suffix[1:], dpi=dpi, facecolor="white")
+            draft.replace(path)
+        except OSError as error:
+            raise CannotSave(f"{path}: {error.strerror or error}") from None
+        finally:
+            draft.unlink(missing_ok=True)
+    pyplot.close(figure)

@@ -1,0 +1,70 @@
+// The pictures that scripts draw: what they say, read from an SVG, whose text is text.
+#include <cstdio>
+#include <fmt/core.h>
+#include <fstream>
+#include <iterator>
+
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate::test;
+
+namespace {
+
+/// Exit code and output of a script of plotting/.
+std::pair<int, std::string> plotted(const std::string& arguments) {
+  const std::string command =
+      "/usr/bin/python3 -B " + std::string(PALPATE_SOURCE_DIR) + "/scripts/plotting/" + arguments + " 2>&1";
+  FILE* const out = popen(command.c_str(), "r");
+  REQUIRE(out != nullptr);
+  std::string text;
+  for (int c = std::fgetc(out); c != EOF; c = std::fgetc(out)) text += static_cast<char>(c);
+  return {WEXITSTATUS(pclose(out)), text};
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Half a second at 100 Hz; from 0.2 s on the force grows by 1 N in 0.1 s and stays. A sample each 50 ms, of
+/// 20 ms ago. The law "near" is 0.002 N above it, "nearer" 0.003; "late" is what it was 20 ms ago.
+std::string trace() {
+  const auto force = [](double t) { return std::clamp((t - 0.2) / 0.1, 0.0, 1.0); };
+  std::string text = "tick,t_s,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n,late_n,near_n,nearer_n\n";
+  for (int i = 0; i < 50; ++i) {
+    const double t = 0.01 * i, f = force(t), late = force(t - 0.02);
+    const std::string sample =
+        i % 5 == 2 ? fmt::format("{},{:.3f},{}", 1 + i / 5, t - 0.02, late) : fmt::format("{},,", 1 + i / 5);
+    text += fmt::format("{},{:.3f},0,{},0,{},{},{},{}\n", i + 1, t, late, sample, late, f + 0.002, f + 0.003);
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "force.py: an SVG beside the PNG names rate and delay, each error, and lines that lie on each other") {
+  const TemporaryFolder folder;
+  const std::string csv = folder.write("trace.csv", trace()).string(),
+                    png = (folder.path() / "force.png").string();
+  const auto [code, said] = plotted("force.py " + csv + " " + png + " --plot-format svg");
+  CAPTURE(said);
+  REQUIRE(code == 0);
+  CHECK(std::filesystem::file_size(png) > 10000);
+  const std::string drawn = text_of(folder.path() / "force.svg");
+  CHECK_THAT(drawn, Catch::Contains("server 20 Hz"));
+  CHECK_THAT(drawn, Catch::Contains("delay 20 ms"));
+  CHECK_THAT(drawn, Catch::Contains(">late<"));
+  CHECK_THAT(drawn, Catch::Contains(">near<") && Catch::Contains(">= nearer<"));
+  CHECK_THAT(drawn, Catch::Contains("mN on average"));
+}
+
+TEST_CASE("force.py: a format it does not write, and an output that is no PNG, are refused, exit 2") {
+  const TemporaryFolder folder;
+  const std::string csv = folder.write("trace.csv", trace()).string();
+  CHECK(plotted("force.py " + csv + " " + (folder.path() / "f.png").string() + " --plot-format gif").first ==
+        2);
+  CHECK(plotted("force.py " + csv + " " + (folder.path() / "f.pdf").string()).first == 2);
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "f.png"));
+}
