@@ -18,7 +18,7 @@ import statistics
 import sys
 from pathlib import Path
 
-from session import style_of_laws
+from pictures import style_of_laws
 
 SPEED, RATE = 0.017, 33.3
 DPI = 100
