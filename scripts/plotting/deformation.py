@@ -15,15 +15,11 @@ import argparse
 import csv
 import json
 import math
+import re
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.ticker import LogFormatter  # noqa: E402
-from matplotlib.transforms import Bbox  # noqa: E402
+from pictures import CannotSave, add_format, in_words, plain_numbers, prepare, quick_note, save
 
 LEAST = 1e-3  # %: what is less is drawn there
 COLOURS = {"quasi_static": "tab:blue", "tensor_mass": "tab:orange", "implicit": "tab:green", "reduced": "tab:purple"}
@@ -37,12 +33,22 @@ def colour_of(model):
 
 
 def label_of(row):
-    parts = [row["model"]]
+    parts = [in_words(row["model"])]
     if row["law"] != "linear":
-        parts.append(row["law"])
+        parts.append(in_words(row["law"]))
     if row["element"] != "p1":
-        parts.append(row["element"])
+        parts.append(in_words(row["element"]))
     return ", ".join(parts) + f", {row['tetrahedra']} tetrahedra"
+
+
+def case_in_words(name):
+    """MODEL-LAW-ELEMENT-MESH-rN-DTms-TOLERANCE-ITERATIONS-INTEGRATION, for people; any other name as it is."""
+    parts = re.fullmatch(r"(\w+)-(\w+)-(\w+)-(.+)-r(\d+)-([\d.]+)ms-(.+)", name)
+    if not parts:
+        return name
+    model, law, element, mesh, refined, step, _ = parts.groups()
+    once = {"0": "", "1": " refined once,"}.get(refined, f" refined {refined} times,")
+    return f"{in_words(model)}, {in_words(law)}, {in_words(element)} on {mesh},{once} steps of {float(step):.3g} ms"
 
 
 def of_setting(row):
@@ -59,12 +65,12 @@ def percents(axes):
     if high < 10 * low:
         middle = math.sqrt(low * high)
         axes.set_ylim(middle / math.sqrt(10), middle * math.sqrt(10))
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.5)))
+    plain_numbers(axes)
 
 
 def name_points(axes, points):
     """Writes each name beside its point (x, y, name): inside the axes, on no other name, point or legend."""
+    from matplotlib.transforms import Bbox
     renderer = axes.figure.canvas.get_renderer()
     taken = [axes.get_legend().get_window_extent(renderer)] if axes.get_legend() else []
     marks = [place for line in axes.lines for place in line.get_xydata()]
@@ -96,9 +102,9 @@ def draw_front(axes, rows):
                 linewidth=0.8, zorder=0)
     named = {of_setting(r): r for r in reversed(front)}  # the fastest of each, whatever its step
     for model in dict.fromkeys(r["model"] for r in rows):
-        axes.plot([], [], "o", color=colour_of(model), label=model)
+        axes.plot([], [], "o", color=colour_of(model), label=in_words(model))
     for element in dict.fromkeys(r["element"] for r in rows):
-        axes.plot([], [], MARKS[element], color="0.4", label=element)
+        axes.plot([], [], MARKS[element], color="0.4", label=in_words(element))
     percents(axes)
     axes.margins(x=0.25)
     axes.legend(fontsize=7)
@@ -142,6 +148,7 @@ def draw_along(axes, rows, along):
                       label=label_of(row))
     low, high = axes.get_ylim()
     axes.set_ylim(bottom=max(low, high / 1e4))  # nothing touches where it falls off
+    plain_numbers(axes)
     axes.legend(fontsize=7)
     axes.set_xlabel("time (s): pressed, slid to and fro, lifted")
     axes.set_ylabel("error of the force, of its mean size (%)")
@@ -153,6 +160,7 @@ def draw_price(axes, rows):
     for row in shown:
         axes.loglog(row["setup_ms"] / 1e3, row["peak_bytes"] / 1e6, MARKS[row["element"]], color=colour_of(row["model"]))
     axes.margins(x=0.3, y=0.1)
+    plain_numbers(axes)
     axes.set_xlabel("set-up (s)")
     axes.set_ylabel("peak memory of the process (MB)")
     axes.set_title("What it costs before the first step\n(better: lower and to the left)", fontsize=9)
@@ -167,27 +175,28 @@ def read_along(file):
     return along
 
 
-def draw_scene(folder):
+def draw_scene(folder, note, extra):
+    from matplotlib import pyplot
     found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     rows, truth = found["rows"], found["reference"]
-    figure, axes = plt.subplots(2, 2, figsize=(15, 10), layout="constrained")
+    figure, axes = pyplot.subplots(2, 2, figsize=(15, 10), layout="constrained")
     front = draw_front(axes[0][0], rows)
     draw_felt(axes[0][1], rows)
     draw_along(axes[1][0], rows, read_along(folder / "along.csv"))
     dear = draw_price(axes[1][1], rows)
     closed = truth.get("closed_form_percent")
-    figure.suptitle(f"{rows[0]['scene']}: against {truth['case']}\n(the reference itself: {truth['check']} differs "
+    figure.suptitle(f"{rows[0]['scene']}: against {case_in_words(truth['case'])}\n(the reference itself: {case_in_words(truth['check'])} differs "
                     f"from it by {truth['force_error_percent']:.2g} % in force"
                     + (f", is off the closed form of a sphere on an endless layer by {closed:+.2g} %" if closed else "")
-                    + f"; link {found['latency_ms']:g} ms)", fontsize=11)
+                    + f"; link {found['latency_ms']:g} ms)"
+                    + (f"\n{note}" if note else ""), fontsize=11)
     for sheet in axes.flat:
         sheet.grid(True, which="major", linewidth=0.3)
     figure.canvas.draw()
     figure.set_layout_engine("none")  # names are placed where the axes are now
     name_points(axes[0][0], front)
     name_points(axes[1][1], dear)
-    figure.savefig(folder / "study.png", dpi=110)
-    plt.close(figure)
+    save(figure, folder / "study.png", extra, 110)
 
 
 def exponent(points):
@@ -197,34 +206,46 @@ def exponent(points):
     return sum((a - x) * (b - y) for a, b in zip(xs, ys)) / sum((a - x) ** 2 for a in xs)
 
 
-def draw_cost(folder):
+def draw_cost(folder, note, extra):
+    from matplotlib import pyplot
     rows = json.loads((folder / "cost.json").read_text(encoding="utf-8"))
-    figure, axes = plt.subplots(1, 2, figsize=(12, 5), layout="constrained")
+    figure, axes = pyplot.subplots(1, 2, figsize=(12, 5), layout="constrained")
     for sheet, key, unit, what in ((axes[0], "step_ms_p50", 1, "median time of a step in contact (ms)"),
                                    (axes[1], "setup_ms", 1e-3, "set-up (s)")):
         for model in dict.fromkeys(r["model"] for r in rows):
             points = sorted((r["tetrahedra"], unit * r[key]) for r in rows if r["model"] == model)
-            text = f"{model}, exponent {exponent(points):.2f}" if len(points) > 1 else model
+            text = in_words(model) + (f", exponent {exponent(points):.2f}" if len(points) > 1 else "")
             sheet.loglog(*zip(*points), "-o", color=colour_of(model), label=text)
         sheet.set_xlabel("tetrahedra")
         sheet.set_ylabel(what)
+        plain_numbers(sheet)
         sheet.grid(True, which="major", linewidth=0.3)
         sheet.legend(fontsize=8)
-    figure.suptitle("Cost against the size of the mesh (better: lower, and flatter)", fontsize=11)
-    figure.savefig(folder / "cost.png", dpi=110)
-    plt.close(figure)
+    figure.suptitle("Cost against the size of the mesh (better: lower, and flatter)"
+                    + (f"\n{note}" if note else ""), fontsize=11)
+    save(figure, folder / "cost.png", extra, 110)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("dir", type=Path, metavar="DIR")
-    folder = parser.parse_args().dir
+    add_format(parser)
+    arguments = parser.parse_args()
+    folder = arguments.dir
     folders = [f for f in (folder, *sorted(folder.glob("*/"))) if (f / "along.csv").exists()]
     try:
+        prepare()
+        note = quick_note(folder)
         for one in folders:
-            draw_scene(one)
+            draw_scene(one, note, arguments.plot_format)
         if (folder / "cost.json").exists():
-            draw_cost(folder)
+            draw_cost(folder, note, arguments.plot_format)
+    except CannotSave as problem:
+        print(f"deformation.py: {problem}", file=sys.stderr)
+        return 2
+    except ImportError:
+        print("deformation.py: matplotlib is missing: apt-get install python3-matplotlib", file=sys.stderr)
+        return 2
     except (OSError, ValueError, KeyError, TypeError) as error:
         print(f"deformation.py: {folder}: {error}; sim_server study makes it", file=sys.stderr)
         return 2

@@ -18,10 +18,9 @@ import statistics
 import sys
 from pathlib import Path
 
-from pictures import style_of_laws
+from pictures import CannotSave, add_format, in_words, plain_numbers, prepare, quick_note, save, style_of_laws
 
 SPEED, RATE = 0.017, 33.3
-DPI = 100
 # Picinbono and Lombardo (1999): average and maximal error, maximal force, %.
 PUBLISHED = {"constant": (1.1, 56, 133), "linear_time": (0.3, 9, 109), "linear_position": (0.1, 7, 106)}
 PAPER_KEYS = ("paper_mean_percent", "paper_max_percent", "paper_max_force_percent")
@@ -147,34 +146,26 @@ def world_table(rows, folder):
                 "(average of the motions; max: the worst of them)", header, lines)
 
 
-def save(figure, path):
-    from matplotlib import pyplot
-    try:
-        figure.savefig(path, dpi=DPI, facecolor="white")
-    except OSError as error:
-        raise Unusable(f"{path}: {error.strerror}") from None
-    pyplot.close(figure)
+class Sheets:
+    """Where the pictures of a study go, and what each says of it below."""
+
+    def __init__(self, folder, extra):
+        self.folder, self.extra, self.note = folder, extra, quick_note(folder)
+
+    def save(self, figure, name):
+        if self.note:
+            figure.supxlabel(self.note, color="#B00020", weight="bold")
+        save(figure, self.folder / f"{name}.png", self.extra)
 
 
-def plain_numbers(panel):
-    """Logarithmic axes with numbers, not powers."""
-    from matplotlib import ticker
-    for axis in (panel.xaxis, panel.yaxis):
-        if axis.get_scale() == "log":
-            low, high = axis.get_view_interval()
-            axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 3, 5) if high < 1000 * low else (1,)))
-            axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(ticker.NullFormatter())
-
-
-def draw_errors(rows, styles, x_of, x_name, name, folder):
+def draw_errors(rows, styles, x_of, x_name, name, sheets):
     """Mean and p99 (rows) against x, a panel for each delay; left out with a single x."""
     from matplotlib import pyplot
     delays = sorted(values(rows, "delay_ms"))
     if len({x_of(row) for row in rows}) < 2:
         return
     columns = delays if x_name != "delay (ms)" else [None]
-    figure, panels = pyplot.subplots(2, len(columns), figsize=(5.5 * len(columns) + 3, 10), dpi=DPI, sharey="row",
+    figure, panels = pyplot.subplots(2, len(columns), figsize=(5.5 * len(columns) + 3, 10), sharey="row",
                                      squeeze=False, layout="constrained")
     for column, delay in enumerate(columns):
         here = rows if delay is None else chosen(rows, delay_ms=delay)
@@ -183,7 +174,7 @@ def draw_errors(rows, styles, x_of, x_name, name, folder):
                 mine = chosen(here, method=law)
                 xs = sorted({x_of(row) for row in mine})
                 ys = [average([row for row in mine if x_of(row) == x])[key] for x in xs]
-                panel.plot(xs, ys, "o", linestyle=line, color=colour, label=law, markersize=4)
+                panel.plot(xs, ys, "o", linestyle=line, color=colour, label=in_words(law), markersize=4)
             panel.set(yscale="log", xlabel=x_name)
             if x_name != "delay (ms)":
                 panel.set_xscale("log")
@@ -193,8 +184,9 @@ def draw_errors(rows, styles, x_of, x_name, name, folder):
                 panel.set_ylabel(f"{key.removesuffix('_percent')} error (% of {unit} force)")
         if delay is not None:
             panels[0, column].set_title(f"delay {delay:g} ms")
+    figure.suptitle("Error of each law against the true force: block, average of the motions")
     panels[0, -1].legend(loc="upper left", bbox_to_anchor=(1.02, 1), fontsize=11)
-    save(figure, folder / f"{name}.png")
+    sheets.save(figure, name)
 
 
 def pareto(points):
@@ -205,17 +197,17 @@ def pareto(points):
 
 def model_bytes_note(laws):
     """A second line for the axis: what comes once besides, of each law that has such a thing."""
-    once = [f"{law} {found['model_bytes'] / 1e6:.2g} MB" for law, found in laws.items() if found["model_bytes"] > 0]
+    once = [f"{in_words(law)} {found['model_bytes'] / 1e6:.2g} MB" for law, found in laws.items() if found["model_bytes"] > 0]
     return f"\nand once, for the model of the surface: {', '.join(once)}" if once else ""
 
 
-def draw_cost(rows, styles, folder):
+def draw_cost(rows, styles, sheets):
     """Mean and p99 against time per tick and bytes per second, at the delay nearest to 35 ms."""
     from matplotlib import pyplot
     rows = chosen(rows, world="block", speed_m_s=SPEED, rate_hz=RATE)
     delay = min(values(rows, "delay_ms"), key=lambda d: abs(d - 35))
     laws = {law: average(chosen(rows, method=law, delay_ms=delay)) for law in styles}
-    figure, panels = pyplot.subplots(2, 2, figsize=(16, 11), dpi=DPI, sharey="row", layout="constrained")
+    figure, panels = pyplot.subplots(2, 2, figsize=(16, 11), sharey="row", layout="constrained")
     costs = (("ns per tick: median (line: to p99 where a few ticks do the work)", lambda a: a["ns_per_tick"]),
              ("bytes per second" + model_bytes_note(laws), lambda a: RATE * a["bytes_per_sample"]))
     for column, (cost_name, cost) in enumerate(costs):
@@ -226,7 +218,7 @@ def draw_cost(rows, styles, folder):
                        solid_capstyle="round", label="Pareto front: ringed")
             for x, y, law in points:
                 on = any(law == best for _, _, best in front)
-                panel.plot(x, y, "o", color=styles[law][0], markersize=11, markeredgewidth=2.5, label=law,
+                panel.plot(x, y, "o", color=styles[law][0], markersize=11, markeredgewidth=2.5, label=in_words(law),
                            markeredgecolor="black" if on else styles[law][0])
                 if column == 0 and laws[law]["ns_per_tick_p99"] > 0:
                     panel.plot([x, laws[law]["ns_per_tick_p99"]], [y, y], "-|", color=styles[law][0], markersize=11)
@@ -237,7 +229,7 @@ def draw_cost(rows, styles, folder):
             panel.grid(alpha=0.3, which="both")
     panels[0, -1].legend(loc="upper left", bbox_to_anchor=(1.02, 1), fontsize=11)
     figure.suptitle(f"Error against cost: block, {RATE:g} Hz, {SPEED:g} m/s, {delay:g} ms, average of the motions")
-    save(figure, folder / "error_cost.png")
+    sheets.save(figure, "error_cost")
 
 
 def forces_of(trace, name):
@@ -265,9 +257,9 @@ def polar(panel, forces, **style):
     panel.grid(alpha=0.3)
 
 
-def draw_figure3(trace, what, folder):
+def draw_figure3(trace, what, sheets):
     from matplotlib import pyplot
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(16, 6), dpi=DPI, layout="constrained", width_ratios=(2, 1))
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(16, 6), layout="constrained", width_ratios=(2, 1))
     true = forces_of(trace, "true")
     left.plot([row["t_s"] for row in trace], norms(true), color=TRUE_COLOUR, linewidth=4, label="true force")
     samples = draw_samples(left, trace)
@@ -278,22 +270,22 @@ def draw_figure3(trace, what, folder):
     left.legend(loc="upper right")
     polar(right, true, color="#333333", linewidth=1)
     right.set_title("the same, as a curve of the force")
-    save(figure, folder / "figure3.png")
+    sheets.save(figure, "figure3")
 
 
-def draw_figure4(traces, law, colour, folder):
+def draw_figure4(traces, law, colour, sheets):
     """A row for each trace: force against time with the samples; difference to the reference."""
     from matplotlib import pyplot
-    figure, panels = pyplot.subplots(len(traces), 2, figsize=(16, 5.5 * len(traces)), dpi=DPI, squeeze=False,
+    figure, panels = pyplot.subplots(len(traces), 2, figsize=(16, 5.5 * len(traces)), squeeze=False,
                                      layout="constrained", width_ratios=(2, 1))
     for (what, trace), (left, right) in zip(traces.items(), panels):
         times, true, mine = [row["t_s"] for row in trace], forces_of(trace, "true"), forces_of(trace, law)
         off = [[a - b for a, b in zip(*pair)] for pair in zip(mine, true)]
         left.plot(times, norms(true), color=TRUE_COLOUR, linewidth=4, label="reference: the true force")
         draw_samples(left, trace)
-        left.plot(times, norms(mine), color=colour, linewidth=1.3, label=law)
+        left.plot(times, norms(mine), color=colour, linewidth=1.3, label=in_words(law))
         left.plot(times, norms(off), color="#332288", linewidth=0.8, label="difference")
-        left.set(xlabel="time (s)", ylabel="|F| (N)", title=f"{law}; {what}")
+        left.set(xlabel="time (s)", ylabel="|F| (N)", title=f"{in_words(law)}; {what}")
         left.set_ylim(top=1.5 * max(norms(true)))  # room for the legend
         left.grid(alpha=0.3)
         left.legend(loc="upper right", fontsize=10)
@@ -301,15 +293,12 @@ def draw_figure4(traces, law, colour, folder):
         right.set_title(f"difference to the reference, mean {statistics.fmean(norms(off)):.4f} N")
         reach = 0.35 * max(norms(true))  # the same for every law, or they could not be compared
         right.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
-    save(figure, folder / f"figure4_{law}.png")
+    sheets.save(figure, f"figure4_{law}")
 
 
-def draw(folder):
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-    pyplot.rcParams.update({"font.size": 12, "axes.spines.top": False, "axes.spines.right": False,
-                            "axes.axisbelow": True, "text.parse_math": False})
+def draw(folder, extra):
+    prepare(**{"font.size": 12})
+    sheets = Sheets(folder, extra)
     rows = read_rows(folder / "summary.csv")
     require_study(rows, folder / "summary.csv")
     styles = style_of_laws(values(rows, "method"))
@@ -318,32 +307,33 @@ def draw(folder):
     world_table(rows, folder)
     rows = chosen(rows, world="block", reference="truth", blended=False)
     draw_errors(chosen(rows, speed_m_s=SPEED), styles, lambda row: row["rate_hz"], "simulation rate (Hz)",
-                "error_rate", folder)
+                "error_rate", sheets)
     draw_errors(chosen(rows, rate_hz=RATE), styles, lambda row: row["speed_m_s"], "mean speed of the tool (m/s)",
-                "error_speed", folder)
+                "error_speed", sheets)
     draw_errors(chosen(rows, speed_m_s=SPEED, rate_hz=RATE), styles, lambda row: row["delay_ms"], "delay (ms)",
-                "error_delay", folder)
+                "error_delay", sheets)
     draw_errors(rows, styles, lambda row: 1000 * row["speed_m_s"] / row["rate_hz"], "mm between samples",
-                "error_spacing", folder)
-    draw_cost(rows, styles, folder)
+                "error_spacing", sheets)
+    draw_cost(rows, styles, sheets)
     traces = {}
     for path in sorted(folder.glob("figures_*.csv")):
         rate, delay = path.stem.removeprefix("figures_").split("_")
         traces[f"{rate.removesuffix('hz')} Hz, delay {delay.removesuffix('ms')} ms"] = read_rows(path)
     if traces:
-        draw_figure3(*reversed(next(iter(traces.items()))), folder)
+        draw_figure3(*reversed(next(iter(traces.items()))), sheets)
         for law, (colour, _) in styles.items():
-            draw_figure4(traces, law, colour, folder)
+            draw_figure4(traces, law, colour, sheets)
 
 
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="DIR")
+    add_format(parser)
     arguments = parser.parse_args()
     try:
-        draw(arguments.folder)
-    except Unusable as problem:
+        draw(arguments.folder, arguments.plot_format)
+    except (Unusable, CannotSave) as problem:
         print(f"extrapolation.py: {problem}", file=sys.stderr)
         return 2
     except ImportError:

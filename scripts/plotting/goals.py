@@ -4,7 +4,7 @@
 DIR holds summary.json of scripts/study extrapolation or stability. Prints a table, and
 writes it beside that as goals.txt. Errors are a mean over the motions of a world, but the
 worst of maxima, jumps and energies, and the least stable of hands, count. What a quick
-study leaves out is "-".
+study leaves out is "-", and it says of no goal that it is met: it has too few cases.
 
 Exit status: 0 written, whether the goals are met or not; 2 the folder cannot be used.
 """
@@ -15,6 +15,8 @@ import statistics
 import sys
 from pathlib import Path
 from typing import NamedTuple
+
+from pictures import quick_note
 
 ERRORS = ("mean_percent", "p99_percent", "max_percent")
 MEAN, ENERGY, PAPER = ("mean_percent",), ("energy_percent",), ("paper_mean_percent",)
@@ -98,8 +100,8 @@ def measured(rows, wanted, key):
     return COMBINE.get(key, statistics.fmean)(found) if found else None
 
 
-def line_of(goal, rows):
-    """(where, law, what, goal, measured, met), all text."""
+def line_of(goal, rows, quick):
+    """(where, law, what, goal, measured, met), all text; met: "-" of a quick study."""
     wanted = {"method": goal.law, **goal.rows}
     values = [measured(rows, wanted, key) for key in goal.keys]
     if goal.of and values[0] is not None:
@@ -111,16 +113,16 @@ def line_of(goal, rows):
     met = (all(value <= most for value, most in zip(values, goal.most))
            and all(value >= least for value, least in zip(values, goal.least)))
     numbers = " / ".join(f"{x:.3g}" if abs(x) < 1000 else f"{x:.0f}" for x in values)
-    return goal.where, goal.law, goal.what, ", ".join(limits), numbers, "yes" if met else "NO"
+    return goal.where, goal.law, goal.what, ", ".join(limits), numbers, "-" if quick else "yes" if met else "NO"
 
 
-def table_of(rows):
+def table_of(rows, quick=False):
     goals = EXTRAPOLATION
     if "stable_to_n_m" in rows[0]:
         goals = STABILITY
         for row in rows:
             row["stable_percent"] = 100 * row["stable_to_n_m"] / row["direct_limit_n_m"]
-    lines = [("where", "law", "what", "goal", "measured", "met"), *(line_of(goal, rows) for goal in goals)]
+    lines = [("where", "law", "what", "goal", "measured", "met"), *(line_of(goal, rows, quick) for goal in goals)]
     widths = [max(map(len, column)) for column in zip(*lines)]
     return "\n".join("  ".join(f"{cell:<{width}}" for cell, width in zip(line, widths)).rstrip() for line in lines)
 
@@ -130,7 +132,10 @@ def main():
     parser.add_argument("folder", type=Path, metavar="DIR")
     folder = parser.parse_args().folder
     try:
-        table = table_of(json.loads((folder / "summary.json").read_text(encoding="ascii")))
+        note = quick_note(folder)
+        table = table_of(json.loads((folder / "summary.json").read_text(encoding="ascii")), bool(note))
+        if note:
+            table = f"{note}: the goals are for the whole study, none is met or missed here.\n\n{table}"
         (folder / "goals.txt").write_text(table + "\n", encoding="ascii")
     except (OSError, ValueError, LookupError, TypeError) as error:
         print(f"goals.py: {folder}: {error}; scripts/study makes it", file=sys.stderr)

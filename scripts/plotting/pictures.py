@@ -1,5 +1,6 @@
 """What the pictures of Palpate share: colours, names in words, and how they are saved."""
 
+import json
 import os
 
 FORMATS = ("png", "pdf", "svg")
@@ -17,7 +18,9 @@ OTHER_STYLES = (("#009E73", "-"), ("#CC79A7", "-"), ("#56B4E9", "-"), ("#7F7F7F"
 # Keys whose words are not just the key with spaces.
 WORDS = {
     "linear_time": "linear in time", "linear_position": "linear in position",
-    "linear_position_signed": "linear in position, signed", "learned_stiffness": "learned stiffness",
+    "linear_position_signed": "linear in position, signed",
+    "quasi_static": "quasi-static", "stvk": "St. Venant-Kirchhoff", "neo_hookean": "neo-Hookean",
+    "p1": "linear elements", "p2": "quadratic elements", "p1_nodal_pressure": "linear elements, nodal pressure",
 }
 
 
@@ -32,6 +35,26 @@ def in_words(key):
 def style_of_laws(laws):
     others = iter(OTHER_STYLES * len(laws))
     return {law: LAW_STYLES.get(law) or next(others) for law in laws}
+
+
+def quick_note(folder):
+    """What a picture of a study's folder says of --quick; empty of a whole study."""
+    try:
+        quick = json.loads((folder / "study.json").read_text(encoding="ascii")).get("quick") is True
+    except (OSError, ValueError, AttributeError):
+        quick = False
+    return "quick study (--quick): too few cases to judge by" if quick else ""
+
+
+def plain_numbers(panel):
+    """Logarithmic axes with numbers, not powers."""
+    from matplotlib import ticker
+    for axis in (panel.xaxis, panel.yaxis):
+        if axis.get_scale() == "log":
+            low, high = axis.get_view_interval()
+            axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 3, 5) if high < 1000 * low else (1,)))
+            axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(ticker.NullFormatter())
 
 
 def add_format(parser):

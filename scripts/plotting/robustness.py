@@ -14,11 +14,7 @@ import sys
 import textwrap
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.patches import Patch  # noqa: E402
+from pictures import CannotSave, add_format, in_words, prepare, quick_note, save
 
 COLOURS = {"stable": "#b8e0c2", "flagged": "#fbe3a1", "refused": "#c9d6ea", "not_applicable": "#f2f2f2",
            "wrong": "#e4604e", "exploded": "#9c2f6e"}
@@ -49,36 +45,47 @@ def in_cell(row):
     return "\n".join(textwrap.wrap(row["reason"].split(",")[0], 16)[:2])
 
 
-def draw(rows, file):
+def draw(rows, file, note, extra):
+    from matplotlib import pyplot
+    from matplotlib.patches import Patch, Rectangle
     cases, models = list(dict.fromkeys(r["case"] for r in rows)), list(dict.fromkeys(r["model"] for r in rows))
     said = {r["case"]: r["what"] for r in rows}
-    figure, axes = plt.subplots(figsize=(4.6 + 1.25 * len(models), 1.9 + 0.42 * len(cases)), layout="constrained")
+    figure, axes = pyplot.subplots(figsize=(4.6 + 1.25 * len(models), 1.9 + 0.42 * len(cases)), layout="constrained")
     for row in rows:
         x, y = models.index(row["model"]), cases.index(row["case"])
-        axes.add_patch(plt.Rectangle((x - 0.48, y - 0.46), 0.96, 0.92, color=COLOURS[row["outcome"]], lw=0))
+        axes.add_patch(Rectangle((x - 0.48, y - 0.46), 0.96, 0.92, color=COLOURS[row["outcome"]], lw=0))
         axes.text(x, y, in_cell(row), ha="center", va="center", fontsize=7.5, linespacing=0.95)
     axes.set_xlim(-0.5, len(models) - 0.5)
     axes.set_ylim(len(cases) - 0.5, -0.5)
-    axes.set_xticks(range(len(models)), [m.replace(" ", "\n") for m in models], fontsize=9)
-    axes.set_yticks(range(len(cases)), [c.replace("_", " ") + "\n" + said[c] for c in cases], fontsize=8, linespacing=0.95)
+    axes.set_xticks(range(len(models)), [in_words(m).replace(" ", "\n") for m in models], fontsize=9)
+    axes.set_yticks(range(len(cases)), [in_words(c) + "\n" + said[c] for c in cases], fontsize=8, linespacing=0.95)
     axes.xaxis.tick_top()
     axes.tick_params(length=0)
     for spine in axes.spines.values():
         spine.set_visible(False)
-    axes.set_title("Extreme scenes: what each model makes of them", fontsize=12, pad=12)
+    axes.set_title("Extreme scenes: what each model makes of them" + (f"\n{note}" if note else ""), fontsize=12, pad=12)
     used = [o for o in COLOURS if any(r["outcome"] == o for r in rows)]
     axes.legend(handles=[Patch(color=COLOURS[o], label=MEANINGS[o]) for o in used], loc="upper center", ncol=2,
                 bbox_to_anchor=(0.5, -0.01), fontsize=8, frameon=False)
-    figure.savefig(file, dpi=110)
-    plt.close(figure)
+    save(figure, file, extra, 110)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("dir", type=Path, metavar="DIR")
-    folder = parser.parse_args().dir
+    add_format(parser)
+    arguments = parser.parse_args()
+    folder = arguments.dir
     try:
-        draw(json.loads((folder / "summary.json").read_text(encoding="ascii")), folder / "robustness.png")
+        prepare()
+        draw(json.loads((folder / "summary.json").read_text(encoding="ascii")), folder / "robustness.png",
+             quick_note(folder), arguments.plot_format)
+    except CannotSave as problem:
+        print(f"robustness.py: {problem}", file=sys.stderr)
+        return 2
+    except ImportError:
+        print("robustness.py: matplotlib is missing: apt-get install python3-matplotlib", file=sys.stderr)
+        return 2
     except (OSError, ValueError, KeyError, TypeError) as error:
         print(f"robustness.py: {folder}: {error}; scripts/study robustness makes it", file=sys.stderr)
         return 2

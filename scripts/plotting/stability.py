@@ -15,10 +15,7 @@ import math
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+from pictures import CannotSave, add_format, in_words, prepare, quick_note, save
 
 LOWEST = 0.003  # of the direct limit: the end of the colours
 
@@ -38,11 +35,12 @@ def share_of(row):
     return max(row["stable_to_n_m"] / row["direct_limit_n_m"], LOWEST) if row else math.nan
 
 
-def draw(rows, world, file):
+def draw(rows, world, file, note, extra):
+    from matplotlib import pyplot
     laws = [law for (law,) in unique(rows, "method")]
     columns = unique(rows, "operator", "rate_hz", "delay_ms")
     found = {(r["method"], r["operator"], r["rate_hz"], r["delay_ms"], r["passivity"]): r for r in rows}
-    figure, axes = plt.subplots(figsize=(4 + 0.95 * len(columns), 1.6 + 0.5 * len(laws)),
+    figure, axes = pyplot.subplots(figsize=(4 + 0.95 * len(columns), 1.6 + 0.5 * len(laws)),
                                  layout="constrained")
     shares = [[share_of(found.get((law, *c, False))) for c in columns] for law in laws]
     image = axes.imshow([[math.log10(min(s, 1)) for s in line] for line in shares], aspect="auto", cmap="RdYlGn",
@@ -53,29 +51,40 @@ def draw(rows, world, file):
                 continue
             plain, passive = (found[(law, *c, p)]["stable_to_n_m"] for p in (False, True))
             axes.text(j, i, f"{plain:.0f}\n{passive:.0f}", ha="center", va="center", fontsize=7)
-    axes.set_xticks(range(len(columns)), [f"{o}\n{r:g} Hz, {d:g} ms" for o, r, d in columns], fontsize=7, rotation=45,
+    axes.set_xticks(range(len(columns)), [f"{in_words(o)}\n{r:g} Hz, {d:g} ms" for o, r, d in columns], fontsize=7, rotation=45,
                     ha="right")
-    axes.set_yticks(range(len(laws)), laws, fontsize=8)
-    axes.set_title(f"{world.replace('_', ' ')}: stable up to (N/m)\nwithout passivity, below with it", fontsize=10)
+    axes.set_yticks(range(len(laws)), map(in_words, laws), fontsize=8)
+    axes.set_title(f"{in_words(world)}: stable up to (N/m)\nwithout passivity, below with it"
+                   + (f"\n{note}" if note else ""), fontsize=10)
     bar = figure.colorbar(image, ticks=[math.log10(x) for x in (0.003, 0.01, 0.03, 0.1, 0.3, 1)])
     bar.ax.set_yticklabels(["0.3 %", "1 %", "3 %", "10 %", "30 %", "100 %"])
     bar.set_label("of the direct limit, without passivity", fontsize=8)
-    figure.savefig(file, dpi=110)
-    plt.close(figure)
+    save(figure, file, extra, 110)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("dir", type=Path, metavar="DIR")
-    folder = parser.parse_args().dir
+    add_format(parser)
+    arguments = parser.parse_args()
+    folder = arguments.dir
     try:
         rows = [with_wrong_model(row) for row in json.loads((folder / "summary.json").read_text(encoding="ascii"))]
         worlds = [world for (world,) in unique(rows, "world")]
     except (OSError, ValueError, KeyError, TypeError) as error:
         print(f"stability.py: {folder}: {error}; scripts/study stability makes it", file=sys.stderr)
         return 2
-    for world in worlds:
-        draw([row for row in rows if row["world"] == world], world, folder / f"stability_{world}.png")
+    try:
+        prepare(**{"axes.spines.top": True, "axes.spines.right": True})
+        for world in worlds:
+            draw([row for row in rows if row["world"] == world], world, folder / f"stability_{world}.png",
+                 quick_note(folder), arguments.plot_format)
+    except CannotSave as problem:
+        print(f"stability.py: {problem}", file=sys.stderr)
+        return 2
+    except ImportError:
+        print("stability.py: matplotlib is missing: apt-get install python3-matplotlib", file=sys.stderr)
+        return 2
     return 0
 
 

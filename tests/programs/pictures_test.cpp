@@ -68,3 +68,46 @@ TEST_CASE("force.py: a format it does not write, and an output that is no PNG, a
   CHECK(plotted("force.py " + csv + " " + (folder.path() / "f.pdf").string()).first == 2);
   CHECK_FALSE(std::filesystem::exists(folder.path() / "f.png"));
 }
+
+namespace {
+
+/// A study of stability of one wall, in which the law that calls the tangent holds what the direct loop
+/// holds.
+void write_stability_study(const TemporaryFolder& folder, bool quick) {
+  folder.write(
+      "summary.json",
+      R"([{"method": "tangent", "world": "linear", "operator": "typical", "rate_hz": 30, "delay_ms": 38,
+                    "passivity": false, "stable_to_n_m": 950, "direct_limit_n_m": 1000},
+                   {"method": "tangent", "world": "linear", "operator": "typical", "rate_hz": 30, "delay_ms": 38,
+                    "passivity": true, "stable_to_n_m": 950, "direct_limit_n_m": 1000}])");
+  folder.write("study.json",
+               fmt::format("{{\"study\": \"stability\", \"quick\": {}}}", quick ? "true" : "false"));
+}
+
+}  // namespace
+
+TEST_CASE("goals.py: a whole study meets a goal or misses it, a quick one can do neither, and says so") {
+  const TemporaryFolder folder;
+  write_stability_study(folder, false);
+  const std::string whole = plotted("goals.py " + folder.path().string()).second;
+  CHECK_THAT(whole, Catch::Contains(">= 90    95        yes") && !Catch::Contains("quick"));
+  write_stability_study(folder, true);
+  const std::string quick = plotted("goals.py " + folder.path().string()).second;
+  CAPTURE(quick);
+  CHECK_THAT(quick, Catch::Contains("--quick") && Catch::Contains("95") && !Catch::Contains("yes"));
+  CHECK(text_of(folder.path() / "goals.txt") == quick);
+}
+
+TEST_CASE(
+    "stability.py: an SVG beside the PNG names laws and hands in words, and says --quick of a quick study") {
+  const TemporaryFolder folder;
+  for (const bool quick : {false, true}) {
+    write_stability_study(folder, quick);
+    CAPTURE(quick);
+    REQUIRE(plotted("stability.py " + folder.path().string() + " --plot-format svg").first == 0);
+    CHECK(std::filesystem::exists(folder.path() / "stability_linear.png"));
+    const std::string drawn = text_of(folder.path() / "stability_linear.svg");
+    CHECK_THAT(drawn, Catch::Contains(">tangent<") && Catch::Contains("950"));
+    CHECK((drawn.find("--quick") != std::string::npos) == quick);
+  }
+}
