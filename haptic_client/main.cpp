@@ -127,6 +127,11 @@ CLI::App* add_evaluate(CLI::App& app, client::EvaluateOptions& options) {
   command->add_option("--world", options.world, "Name for the first column (default: the capture's)");
   command->add_option("--blend-ms", options.blend_ms, "Time constant of the blended rows (default 10 ms)");
   command
+      ->add_option("--keep", options.keep,
+                   "Laws get one force sample of so many: 4 makes 20 Hz of 80 Hz, and the reference the line "
+                   "between those that are left, as in the paper (default 1)")
+      ->check(CLI::Range(1, 1000));
+  command
       ->add_option("--compliance", options.compliance,
                    "Laws see a surface model so many times as compliant as it was sent (default 1)")
       ->check(CLI::Range(0.01, 100.0));

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "common/error.h"
 #include "common/program.h"
 #include "sim_server/commands/explain.h"
 #include "sim_server/commands/mesh_info.h"
@@ -54,9 +55,14 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
   auto* command = app.add_subcommand("record", "Run a scene along a motion in virtual time, into a capture");
   command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
   command
-      ->add_option("--trajectory", options.trajectory,
-                   "Motion of the tool: a CSV (t_s, x_m, y_m, z_m), or a client file with a [trajectory]")
-      ->required();
+      ->add_option(
+          "--trajectory", options.trajectories,
+          "Motion of a tool: a CSV (t_s, x_m, y_m, z_m), or a client file with a [trajectory]; once for "
+          "each tool of the scene, in their order, those without one stay lifted")
+      ->required()
+      ->allow_extra_args(false);
+  command->add_option("--tool", options.tool, "Which tool's session the capture holds, from 1")
+      ->capture_default_str();
   command->add_option("--rate", options.rate_hz, "Steps a second, 1 to 20000 Hz; 2000 is the truth")
       ->required();
   command->add_option("--out", options.out, "Capture to write (pcap)")->required();
@@ -203,6 +209,7 @@ void check(const sim::RecordOptions& options) {
   require_within(options.delay_ms, 0, 10000, "--delay-ms", "ms");
   if (options.ticks_hz) require_within(*options.ticks_hz, 1, 20000, "--ticks", "Hz");
   if (options.seconds) require_within(*options.seconds, 1e-3, 1e5, "--seconds", "s");
+  if (options.tool < 1) fail("--tool counts from 1");
 }
 
 int run(int argc, char** argv) {

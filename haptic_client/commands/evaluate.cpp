@@ -82,6 +82,7 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   for (const std::string& law : laws) wants.push_back(wants_of(law));
   for (CapturedTick tick; session.next(tick);) {
     const Time t{tick.state.t_ns};
+    if (tick.arrived && (tick.arrived->number - 1) % options.keep != 0) tick.arrived.reset();
     std::optional<Sample> sample;
     for (const protocol::SurfacePage& page : tick.pages)
       model.take(with_compliance(page, pages, options.compliance));

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,7 +15,8 @@ struct EvaluateOptions {
   std::vector<std::string> methods;            ///< empty: every law there is
   std::string world;                           ///< name of what was touched; empty: the name of the capture
   double blend_ms = 10;                        ///< of the blended rows, (0, 100]
-  double compliance = 1;  ///< the surface model that laws see is so many times as compliant, [0.01, 100]
+  std::uint64_t keep = 1;  ///< laws get one sample of so many, the first to begin with, [1, 1000]
+  double compliance = 1;   ///< the surface model that laws see is so many times as compliant, [0.01, 100]
 };
 
 /// Runs every law on the captures (the longest session of each), as it is and blended, and scores it at the

@@ -19,7 +19,8 @@ each, from the fixed seeds of scripts/trajectories; the mean speed is a study's 
   moving    the block breathes and the tool follows it, likewise
   grasp     a grasped organ, 60 s: the paper's regime; its motion is known at the samples
             only, as in the paper, and its rate is 100/3 Hz
-  liver     the paper's liver, 60 s of palpation
+  liver     a liver that is palpated, 60 s
+  pull_quasi_static, pull_tensor_mass   the paper's own experiment (paper_experiment.py)
 
 Writes into --out: summary.json and summary.csv (a row for each configuration and law),
 figures_*.csv (forces of all laws over a few seconds, for the drawings). The same each
@@ -36,6 +37,7 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
+import paper_experiment
 from workers import Failed, Workers, run_program
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -207,6 +209,14 @@ def make_motions(folder, speeds):
     return made
 
 
+def run_paper(study, run, motions, quick):
+    with tempfile.TemporaryDirectory(dir=study.folder) as name:
+        folder = Path(name)
+        rows = paper_experiment.perform(run, motions, paper_experiment.scene_of(run.model, folder), quick, study.workers,
+                                        BIN, folder)
+    return [{key: row[key] for key in KEYS} for row in rows]
+
+
 def write_summary(rows, out):
     (out / "summary.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="ascii")
     with open(out / "summary.csv", "w", newline="", encoding="ascii") as file:
@@ -224,11 +234,15 @@ def run(quick, out):
                      FIGURES, False)
         workers = Workers("study", 0)
         study = Study(folder, workers)
-        workers.total = sum(map(weight_of, cells)) + weight_of(drawn)
+        paper, pulls = paper_experiment.runs_of(quick), paper_experiment.make_motions(folder, quick)
+        workers.total = (sum(map(weight_of, cells)) + weight_of(drawn)
+                         + sum(paper_experiment.weight_of(run, quick) for run in paper))
         # The longest first, so that no worker is left alone with one at the end.
         order = sorted(range(len(cells)), key=lambda i: -weight_of(cells[i]))
         rows_of = dict(zip(order, workers.run(lambda i: study.run(cells[i]), order)))
         rows = [row for i in range(len(cells)) for row in rows_of[i]]
+        for found in workers.run(lambda one: run_paper(study, one, pulls, quick), paper):
+            rows += found
         study.figures(drawn, list(dict.fromkeys(row["method"] for row in rows)), out)
         workers.finish()
     write_summary(rows, out)

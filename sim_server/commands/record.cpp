@@ -29,16 +29,39 @@ Trajectory read_motion(const std::filesystem::path& file) {
   return Trajectory(read_trajectory_settings(*section));
 }
 
+/// In the order of the tools; a tool that is captured needs one.
+std::vector<Trajectory> read_motions(const RecordOptions& options, const Scene& scene) {
+  if (options.trajectories.size() > scene.tools.size())
+    fail("--trajectory: {} motions, but {} has {} [[tool]]{}", options.trajectories.size(),
+         options.scene.string(), scene.tools.size(), scene.tools.size() == 1 ? "" : "s");
+  if (options.tool > options.trajectories.size())
+    fail("--tool {}: has no motion; give --trajectory once for each tool of the scene, in their order",
+         options.tool);
+  std::vector<Trajectory> motions;
+  for (const auto& file : options.trajectories) motions.push_back(read_motion(file));
+  return motions;
+}
+
+void require_files_apart(const RecordOptions& options, const Scene& scene) {
+  for (const auto& trajectory : options.trajectories)
+    require_distinct({{"SCENE", options.scene},
+                      {scene.mesh_where, scene.mesh_file},
+                      {"--trajectory", trajectory},
+                      {"--out", options.out},
+                      {"--report", options.report}});
+}
+
 void say_what_is_lost(const Trajectory& motion, const RecordOptions& options, double ticks_hz) {
   if (motion.rate_hz() <= ticks_hz * 1.001) return;
   log::info("{}: has {:.0f} rows a second, the capture keeps {:g}; `--ticks {:.0f}` keeps all",
-            options.trajectory.string(), motion.rate_hz(), ticks_hz, std::ceil(motion.rate_hz()));
+            options.trajectories[options.tool - 1].string(), motion.rate_hz(), ticks_hz,
+            std::ceil(motion.rate_hz()));
 }
 
 std::uint64_t ticks_of(const Trajectory& motion, const RecordOptions& options, double ticks_hz) {
   if (!options.seconds && motion.duration() > kLongest)
     fail("{}: lasts {:g} s; `--seconds` says how much of it to record, up to {:g}",
-         options.trajectory.string(), motion.duration(), kLongest);
+         options.trajectories[options.tool - 1].string(), motion.duration(), kLongest);
   return static_cast<std::uint64_t>(options.seconds.value_or(motion.duration()) * ticks_hz + 1e-6) + 1;
 }
 
@@ -58,7 +81,8 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
                  const protocol::CaptureWriter& capture, const Simulation& simulation, double virtual_s) {
   const VirtualSessionStats& stats = session.stats();
   return {{"scene", options.scene.string()},
-          {"trajectory", options.trajectory.string()},
+          {"trajectory", options.trajectories[options.tool - 1].string()},
+          {"tool", options.tool},
           {"rate_hz", options.rate_hz},
           {"ticks_hz", ticks_hz},
           {"delay_ms", options.delay_ms},
@@ -83,13 +107,10 @@ int record(const RecordOptions& options) {
   if (ticks_hz < options.rate_hz)
     fail("--ticks: {} Hz is less than --rate {} Hz; every step answers a tool state", ticks_hz,
          options.rate_hz);
-  const Trajectory motion = read_motion(options.trajectory);
+  const std::vector<Trajectory> motions = read_motions(options, scene);
+  const Trajectory& motion = motions[options.tool - 1];
   const std::uint64_t ticks = ticks_of(motion, options, ticks_hz);
-  require_distinct({{"SCENE", options.scene},
-                    {scene.mesh_where, scene.mesh_file},
-                    {"--trajectory", options.trajectory},
-                    {"--out", options.out},
-                    {"--report", options.report}});
+  require_files_apart(options, scene);
   if (options.report) check_writable(*options.report, Contents::kReport);
   WholeFile out(options.out, Contents::kCapture);
   protocol::CaptureWriter capture(out.path());
@@ -98,9 +119,10 @@ int record(const RecordOptions& options) {
   const auto cache = open_cache(options.cache);
   Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr);
   const ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
-  VirtualSession session(simulation, motion, scene.tools.front().shape.radius,
-                         {options.rate_hz, ticks_hz, from_seconds(options.delay_ms / 1e3), options.parts},
-                         capture, &errors);
+  VirtualSession session(
+      simulation, motions, scene.tools[options.tool - 1].shape.radius,
+      {options.rate_hz, ticks_hz, from_seconds(options.delay_ms / 1e3), options.parts, options.tool - 1},
+      capture, &errors);
   const Time start = now();
   run_session(session, ticks, capture, options, progress);
   out.commit();

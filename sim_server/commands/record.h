@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "sim_server/commands/cache.h"
 
@@ -8,17 +9,19 @@ namespace palpate::sim {
 
 /// What `sim_server record` was asked for.
 struct RecordOptions {
-  std::filesystem::path scene, trajectory, out;
-  double rate_hz = 30;  ///< steps a second, [1, 20000]
+  std::filesystem::path scene, out;
+  std::vector<std::filesystem::path> trajectories;  ///< of the tools of the scene, in order
+  std::size_t tool = 1;                             ///< whose session is captured, from 1
+  double rate_hz = 30;                              ///< steps a second, [1, 20000]
   double delay_ms = 0;  ///< from reading the tool to having its force in the client, ms, [0, 10000]
   std::optional<double> ticks_hz;  ///< tool states a second, at least `rate_hz`; absent: 500 or `rate_hz`
-  std::optional<double> seconds;   ///< absent: the motion once
+  std::optional<double> seconds;   ///< absent: the motion of that tool once
   bool parts = true;  ///< whether the samples carry all they can: tangents, surface, a second place
   std::optional<std::filesystem::path> report;
   CacheOptions cache;
 };
 
-/// Runs a scene in virtual time along a recorded motion and writes what would have travelled as a capture:
+/// Runs a scene in virtual time along recorded motions and writes what would have travelled as a capture:
 /// the same simulation, sessions and bytes as `run`, without sockets and clock, as fast as they go. Virtual
 /// time begins at 0; step n answers the newest tool state at n / rate, and its sample is in the client
 /// `delay` after that tool state was read. The same arguments give the same bytes. Throws `Error`. Returns

@@ -34,16 +34,17 @@ const Endpoint kClient = documentation_address(1, 45131), kServer = documentatio
 
 }  // namespace
 
-VirtualSession::VirtualSession(Simulation& simulation, const Trajectory& motion, double tool_radius,
-                               const VirtualLink& link, CaptureWriter& capture, const ErrorOfForce* errors)
+VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajectory> motions,
+                               double tool_radius, const VirtualLink& link, CaptureWriter& capture,
+                               const ErrorOfForce* errors)
     : served_(simulation, errors),
       inputs_(simulation.tools()),
-      motion_(motion),
+      motions_(motions.first(std::min(motions.size(), simulation.tools()))),
       link_(link),
       capture_(capture),
       server_(link.rate_hz, {tool_radius}),
-      session_(session_number(motion, link)),
-      pager_(simulation, 0),
+      session_(session_number(motions[link.tool], link)),
+      pager_(simulation, link.tool),
       near_(pager_.state().vertices) {}
 
 Time VirtualSession::time_of(std::uint64_t k) const {
@@ -54,8 +55,8 @@ void VirtualSession::tick(std::uint64_t k) {
   const Time t = now_ = time_of(k);
   keep_session(t);
   ToolState state{.tool = client_.welcome().tool, .tick = k + 1, .t_ns = t.count()};
-  state.p_W = newest_p_W_ = motion_.at(to_seconds(t));
-  if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motion_.at(to_seconds(time_of(k - 1))));
+  state.p_W = newest_p_W_ = motions_[link_.tool].at(to_seconds(t));
+  if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motions_[link_.tool].at(to_seconds(time_of(k - 1))));
   newest_v_W_ = state.v_W;
   if (link_.parts) {
     state.flags |=
@@ -82,12 +83,26 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
   // The organ stands as it does when the tool was read, so it moves from one answered tool state to the next.
   const double dt = to_seconds(Time{state.t_ns} - answered_);
   answered_ = Time{state.t_ns};
-  inputs_.front() = {session_, state, true};
-  const auto& outcome = served_.step(inputs_, dt).front();
+  move_others(state);
+  inputs_[link_.tool] = {session_, state, true};
+  const auto& outcome = served_.step(inputs_, dt)[link_.tool];
   stats_.in_contact += outcome.force.contacts > 0 ? 1 : 0;
   stats_.flagged += outcome.force.flagged ? 1 : 0;
   stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
   on_the_way_.push_back({Time{state.t_ns} + link_.delay, *outcome.answer});
+  on_the_way_.back().sample.tool = state.tool;
+}
+
+/// The other tools, to where they are at the time of this one's state.
+void VirtualSession::move_others(const ToolState& state) {
+  const double t = to_seconds(Time{state.t_ns}), tick = 1 / link_.ticks_hz;
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    if (i == link_.tool) continue;
+    ToolState other{.tool = static_cast<std::uint8_t>(i), .tick = state.tick, .t_ns = state.t_ns};
+    other.p_W = motions_[i].at(t);
+    if (t >= tick) other.v_W = link_.ticks_hz * (other.p_W - motions_[i].at(t - tick));
+    inputs_[i] = {session_ + 1 + i, other, true};
+  }
 }
 
 void VirtualSession::deliver(Time t) {

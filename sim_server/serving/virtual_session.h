@@ -13,8 +13,9 @@ namespace palpate::sim {
 /// How a session in virtual time runs. Hz and s.
 struct VirtualLink {
   double rate_hz, ticks_hz;
-  Time delay{};        ///< from reading the tool to having its force in the client
-  bool parts = false;  ///< whether the client asks for all that a sample can carry
+  Time delay{};          ///< from reading the tool to having its force in the client
+  bool parts = false;    ///< whether the client asks for all that a sample can carry
+  std::size_t tool = 0;  ///< of the scene, that the session holds
 };
 
 /// Sums over a virtual session.
@@ -23,14 +24,17 @@ struct VirtualSessionStats {
   double max_newton = 0;
 };
 
-/// A client and a server that talk without sockets and clock: the two ends of a session, tool 0 of the scene,
-/// which follows a motion exactly, and a capture of every datagram between them. With `parts`, the client
+/// A client and a server that talk without sockets and clock: the two ends of the session of one tool, which
+/// follows a motion exactly, and a capture of every datagram between them. Other tools that have a motion
+/// follow theirs, in sessions that are not captured; those without one are lifted. With `parts`, the client
 /// gets the shape of the surface right after its first sample, and its compliance where the tool comes near
 /// it: at once what our client would ask for there (protocol/near_tiles.h), and nothing where it stays away.
 /// Client and server stand at 192.0.2.1:45131 and 192.0.2.2:45130 (addresses for documentation, RFC 5737).
 class VirtualSession {
  public:
-  VirtualSession(Simulation& simulation, const Trajectory& motion, double tool_radius,
+  /// `motions`: of the tools of the scene, in order, at least up to `link.tool`; outlive this. `tool_radius`:
+  /// of that tool, m.
+  VirtualSession(Simulation& simulation, std::span<const Trajectory> motions, double tool_radius,
                  const VirtualLink& link, protocol::CaptureWriter& capture,
                  const ErrorOfForce* errors = nullptr);
 
@@ -53,6 +57,7 @@ class VirtualSession {
   void send_surface(const protocol::ForceSample& sample, Time t);
   void send_page(std::uint32_t number, Time t);
   void step(const protocol::ToolState& state, double steps_due);
+  void move_others(const protocol::ToolState& state);
   void deliver(Time t);
   protocol::Datagram travel(const protocol::Endpoint& from, const protocol::Endpoint& to,
                             const protocol::Header& header, const protocol::Message& message, Time t);
@@ -60,8 +65,8 @@ class VirtualSession {
   void to_client(const protocol::Header& header, const protocol::Message& message, Time t);
 
   ServedTools served_;
-  std::vector<SessionInput> inputs_;  // the first is ours, nobody holds the others
-  const Trajectory& motion_;
+  std::vector<SessionInput> inputs_;  // nobody holds those without a motion
+  std::span<const Trajectory> motions_;
   VirtualLink link_;
   protocol::CaptureWriter& capture_;
   protocol::ServerSessions server_;

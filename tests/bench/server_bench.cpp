@@ -143,7 +143,7 @@ void run_virtual_session(benchmark::State& state) {
   const auto record = [&](const std::filesystem::path& file) {
     on->simulation.lift_tool();
     protocol::CaptureWriter capture(file);
-    VirtualSession session(on->simulation, motion, on->radius(), kLink, capture);
+    VirtualSession session(on->simulation, {&motion, 1}, on->radius(), kLink, capture);
     for (std::uint64_t k = 0; k < kTicks; ++k) session.tick(k);
     session.leave();
   };

@@ -58,6 +58,49 @@ TEST_CASE("evaluate: on a grasped organ, the paper's protocol gives the paper's 
   CHECK(mean("tangent") <= 0.015);
 }
 
+TEST_CASE(
+    "evaluate --keep 4 of a capture at 80 Hz is what a capture at 20 Hz gives, where tissue is at rest") {
+  const Study study;
+  const std::string root = PALPATE_SOURCE_DIR;
+  for (const char* rate : {"80", "20"}) {
+    output_of(
+        "sim_server",
+        {"record", root + "/configs/scenes/grasp.toml", "--trajectory", root + "/configs/clients/grasp.toml",
+         "--rate", rate, "--seconds", "20", "--out", study.file(rate)},
+        0);
+  }
+  const auto scores = [&](const char* capture, const char* keep) {
+    output_of("haptic_client", {"evaluate", study.file(capture), "--keep", keep, "--out", study.file("out")},
+              0);
+    return read_json(study.folder.path() / "out" / "summary.json");
+  };
+  const Json fast = scores("80", "1"), kept = scores("80", "4"), slow = scores("20", "1");
+  for (const char* law : {"constant", "linear_time", "linear_position"}) {
+    const Json& a = row(kept, law, false);
+    const Json& b = row(slow, law, false);
+    for (const char* key : {"paper_mean_percent", "paper_max_percent"}) {
+      CAPTURE(law, key);
+      CHECK(a[key].get<double>() == Approx(b[key].get<double>()).epsilon(1e-3));
+      CHECK(row(fast, law, false)[key].get<double>() < 0.7 * a[key].get<double>());
+    }
+  }
+}
+
+TEST_CASE("record: a tool without a motion, and more motions than tools, are told of, exit 2") {
+  const Study study;
+  CHECK_THAT(output_of("sim_server",
+                       {"record", kScene, "--trajectory", kClient, "--rate", "30", "--tool", "2", "--out",
+                        study.file("a.pcap")},
+                       2),
+             Catch::Contains("--tool 2") && Catch::Contains("--trajectory once for each tool"));
+  CHECK_THAT(output_of("sim_server",
+                       {"record", kScene, "--trajectory", kClient, "--trajectory", kClient, "--rate", "30",
+                        "--out", study.file("a.pcap")},
+                       2),
+             Catch::Contains("2 motions"));
+  CHECK_FALSE(std::filesystem::exists(study.folder.path() / "a.pcap"));
+}
+
 TEST_CASE("evaluate: on the liver, 33 Hz and 35 ms, two tangents are far ahead of the paper's laws") {
   const Study study;
   study.record("truth.pcap", {"--rate", "2000", "--plain"});

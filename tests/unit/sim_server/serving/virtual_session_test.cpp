@@ -49,7 +49,7 @@ Captured run(const VirtualLink& link, double seconds, const std::filesystem::pat
   Press press;
   {
     protocol::CaptureWriter capture(file);
-    VirtualSession session(press.simulation, press.motion, 0.005, link, capture);
+    VirtualSession session(press.simulation, {&press.motion, 1}, 0.005, link, capture);
     for (std::uint64_t k = 0; k <= static_cast<std::uint64_t>(seconds * link.ticks_hz); ++k) session.tick(k);
     session.leave();
   }
@@ -81,7 +81,7 @@ Order order_of(Simulation& simulation, const Trajectory& motion, double seconds)
   const VirtualLink link{.rate_hz = 30, .ticks_hz = 500, .delay = 5ms, .parts = true};
   {
     protocol::CaptureWriter capture(file);
-    VirtualSession session(simulation, motion, 0.005, link, capture);
+    VirtualSession session(simulation, {&motion, 1}, 0.005, link, capture);
     for (std::uint64_t k = 0; k <= static_cast<std::uint64_t>(seconds * link.ticks_hz); ++k) session.tick(k);
   }
   Order order;
@@ -201,6 +201,47 @@ TEST_CASE("virtual time: of tissue that is held no sample names the surface, and
   CHECK(order.pages == 0);
   CHECK(order.nameless == order.samples_before_pages);
   CHECK(order.samples_before_pages > 5);
+}
+
+TEST_CASE("virtual time: two tools that hold one organ feel each other, by the same stiffness both ways") {
+  const Vec3 places[] = {{-0.009, 0.005, 0.0005}, {0.011, 0.005, 0.0005}};
+  Scene scene = test::block_scene();
+  scene.tools.resize(2, scene.tools.front());
+  for (std::size_t i = 0; i < 2; ++i) scene.tools[i].grasp_place = places[i];
+  constexpr double kMoved = 0.001;  // m
+  // What a tool feels of the other one's motion along an axis: Maxwell and Betti, F1 of u2 = F2 of u1.
+  const auto felt = [&](std::size_t tool, int axis) {
+    Simulation block(scene, test::block_mesh());
+    std::vector<Trajectory> motions;
+    for (std::size_t i = 0; i < 2; ++i)
+      motions.emplace_back(
+          std::vector{0.0, 0.2},
+          std::vector{places[i], Vec3(places[i] + (i == tool ? 0 : kMoved) * Vec3::Unit(axis))});
+    const test::TemporaryFolder folder;
+    protocol::CaptureWriter capture(folder.path() / "two.pcap");
+    const VirtualLink link{.rate_hz = 30, .ticks_hz = 500, .tool = tool};
+    VirtualSession session(block, motions, 0.005, link, capture);
+    for (std::uint64_t k = 0; k <= 120; ++k) session.tick(k);
+    REQUIRE(capture.flush());
+    ForceSample newest;
+    protocol::CaptureReader reader(folder.path() / "two.pcap");
+    protocol::CapturedDatagram captured;
+    protocol::Datagram datagram;
+    while (reader.next(captured)) {
+      REQUIRE(protocol::decode(captured.bytes, datagram) == protocol::Verdict::kAccepted);
+      if (const auto* sample = std::get_if<ForceSample>(&datagram.message)) newest = *sample;
+    }
+    CHECK(newest.tool == 0);  // of its session
+    return newest.f_W;
+  };
+  Mat3 first, second;
+  for (int axis = 0; axis < 3; ++axis) {
+    first.col(axis) = felt(0, axis) / kMoved;
+    second.col(axis) = felt(1, axis) / kMoved;
+  }
+  CAPTURE(first, second);
+  CHECK(first.norm() > 1);  // N/m
+  CHECK((first - second.transpose()).norm() < 1e-6 * first.norm());
 }
 
 TEST_CASE("virtual time twice gives the same bytes") {
