@@ -53,10 +53,15 @@ bool valid(const SurfaceState& m) noexcept {
 bool valid(const DiscretisationError& m) noexcept {
   return m.source <= ErrorSource::kNone && m.percent >= 0 && m.percent <= kMaxPercent;
 }
+bool valid(const OtherTools& m) noexcept {
+  return small(m.v_W) &&
+         std::all_of(m.compliance.begin(), m.compliance.end(), [](double c) { return std::abs(c) <= 1e6; });
+}
 bool valid(const ForceSample& m) noexcept {
   return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W) &&
          small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) && small(m.ahead_f_W) &&
-         valid(m.ahead) && valid(m.surface) && valid(m.errors.mesh) && valid(m.errors.time_step);
+         valid(m.ahead) && valid(m.surface) && valid(m.errors.mesh) && valid(m.errors.time_step) &&
+         valid(m.others);
 }
 bool valid(const SurfacePage& m) noexcept {
   return m.tool < kMaxTools && m.page != ToolState::kNoPage &&

@@ -123,11 +123,23 @@ struct SurfaceState {
   }
 };
 
+/// How the other tools on the organ move the surface near this one, to first order.
+struct OtherTools {
+  Vec3 v_W = Vec3::Zero();  ///< at that velocity, with the force of this tool held, m/s
+  /// And by so much for each N more that this tool presses the tissue with, as they give way: m/N, symmetric,
+  /// in the order of `tangent`.
+  std::array<double, 6> compliance = {};
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.v_W), v(m.compliance);
+  }
+};
+
 struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
-  /// Bits of `flags`; the last four: which parts follow.
+  /// Bits of `flags`; the last five: which parts follow.
   static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8, kHasSurface = 16,
-                                 kHasErrors = 32;
+                                 kHasErrors = 32, kHasOthers = 64;
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
   std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:
@@ -138,13 +150,14 @@ struct ForceSample {
   Vec3 torque_W = Vec3::Zero();  ///< torque on the tool about its centre, N m
   std::int64_t step_ns = 0;      ///< time the server spent on the step
   std::uint32_t flags = 0;
-  Vec3 surface_v_W = Vec3::Zero();  ///< kHasHere: of the organ's surface near the tool, m/s
+  Vec3 surface_v_W = Vec3::Zero();  ///< kHasHere: of the surface near the tool, by its supports alone, m/s
   Linearisation here{};             ///< kHasHere: at p_W
   Vec3 ahead_p_W = Vec3::Zero();    ///< kHasAhead: where the tool was expected `lead` later, m
   Vec3 ahead_f_W = Vec3::Zero();    ///< kHasAhead: the force there, N
   Linearisation ahead{};            ///< kHasAhead: at that place
   SurfaceState surface{};           ///< kHasSurface
   DiscretisationErrors errors{};    ///< kHasErrors
+  OtherTools others{};              ///< kHasOthers
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
@@ -156,6 +169,7 @@ struct ForceSample {
       v(m.errors.mesh.source), v(m.errors.mesh.percent);
       v(m.errors.time_step.source), v(m.errors.time_step.percent);
     }
+    if ((m.flags & kHasOthers) != 0) OtherTools::fields(m.others, v);
   }
 };
 

@@ -30,6 +30,12 @@ struct Surface {
   double tool_compliance = 0;  ///< m/N
 };
 
+/// How the other tools on the organ move the surface near this one, to first order.
+struct OtherTools {
+  Vec3 v = Vec3::Zero();           ///< m/s, world, with the force of this tool held
+  Mat3 compliance = Mat3::Zero();  ///< m/N, symmetric: for each N more that this tool presses the tissue with
+};
+
 /// What the simulation says: the triplet (t_n, P_n, F_n) of Picinbono and Lombardo (1999), and what a law
 /// asked for beyond it.
 struct Sample {
@@ -37,10 +43,11 @@ struct Sample {
   Time t{};                              ///< when the tool was at `p`, client clock
   Vec3 p = Vec3::Zero();                 ///< tool position, m, world
   Vec3 f = Vec3::Zero();                 ///< force on the tool there, N, world
-  Vec3 surface_v = Vec3::Zero();         ///< of the organ there, m/s, world
+  Vec3 surface_v = Vec3::Zero();         ///< of the organ there, by all that moves it, m/s, world
   std::optional<Linearised> here = {};   ///< at `p`
   std::optional<Linearised> ahead = {};  ///< where the tool was expected by now
   std::optional<Surface> surface = {};
+  std::optional<OtherTools> others = {};  ///< what `surface_v` has of them, and more
 };
 
 /// Whether a law may look at the sample at all: its vectors are finite.
@@ -59,11 +66,15 @@ inline bool usable(const Surface& s) noexcept {
   return (s.shift.array().abs() <= 1e9).all() && tool.is_sphere() && tool.radius > 0 && tool.radius <= 1 &&
          tool.friction >= 0 && tool.friction <= 10 && s.tool_compliance >= 0 && s.tool_compliance <= 1e6;
 }
+inline bool usable(const OtherTools& o) noexcept {
+  return (o.v.array().abs() <= 1e9).all() && (o.compliance.array().abs() <= 1e6).all();
+}
 /// The sample without those parts that are not.
 inline Sample with_usable_parts(Sample sample) noexcept {
   if (sample.here && !usable(*sample.here)) sample.here.reset();
   if (sample.ahead && !usable(*sample.ahead)) sample.ahead.reset();
   if (sample.surface && !usable(*sample.surface)) sample.surface.reset();
+  if (sample.others && !usable(*sample.others)) sample.others.reset();
   return sample;
 }
 

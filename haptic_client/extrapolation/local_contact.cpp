@@ -24,6 +24,7 @@ void LocalContact::update(const Sample& sample) noexcept {
   without_.update(sample);
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = with_usable_parts(sample);
+  felt_last_ = newest_.f;
   motion_.update(newest_);
   known_ = following_ = false;
   if (!newest_.surface) {
@@ -109,13 +110,14 @@ void LocalContact::restart() noexcept {
 
 Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
   if (known_ || following_) {
-    const Vec3 p_rest = at_rest(p, t);
+    const Vec3 p_rest = at_rest(p, t) - given_way(felt_last_);
     const auto local = contact_.go(*newest_.surface, p_rest);
     if (local) {
       remember(std::max(now_, t), p_rest, *local);
       if (!known_) return without_.force(p, t);
-      if (!(local_size_ > 0)) return kappa_ * *local;
-      return kappa_ * *local + std::min(kMostCorrection, local->norm() / local_size_) * across_;
+      felt_last_ = kappa_ * *local;
+      if (local_size_ > 0) felt_last_ += std::min(kMostCorrection, local->norm() / local_size_) * across_;
+      return felt_last_;
     }
     known_ = following_ = false;  // until the next sample: no going back and forth
     forget();
@@ -126,6 +128,13 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
 /// Where `p` is when the organ is at rest.
 Vec3 LocalContact::at_rest(const Vec3& p, Time t) const noexcept {
   return p - newest_.surface->shift - motion_.since_sample(t);
+}
+
+/// How far the other tools give way to what this one pressed with, `felt` (N), at the last tick.
+Vec3 LocalContact::given_way(const Vec3& felt) const noexcept {
+  if (!newest_.others) return Vec3::Zero();
+  const Vec3 way = newest_.others->compliance * (newest_.f - felt);
+  return way * std::min(1.0, kTangentReach / way.norm());
 }
 
 }  // namespace palpate::client

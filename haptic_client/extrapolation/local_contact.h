@@ -43,6 +43,7 @@ class LocalContact : public Extrapolator {
   void remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept;
   std::optional<Vec3> remembered(Time t, const Vec3& p_rest) const noexcept;
   Vec3 at_rest(const Vec3& p, Time t) const noexcept;
+  Vec3 given_way(const Vec3& felt) const noexcept;
 
   /// F_loc as it was felt.
   struct Felt {
@@ -59,6 +60,7 @@ class LocalContact : public Extrapolator {
   double local_size_ = 0;           // |F_loc(P_n')|, N
   double kappa_ = 1, largest_ = 0;  // -, N: of all samples
   Vec3 across_ = Vec3::Zero();      // r, N
+  Vec3 felt_last_ = Vec3::Zero();   // N, at the last tick that it solved
   std::vector<Felt> felt_;          // a ring
   std::size_t felts_ = 0;           // so far
   bool known_ = false;              // whether the model says what is felt, since the newest sample

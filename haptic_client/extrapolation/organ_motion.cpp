@@ -5,6 +5,7 @@
 namespace palpate::client {
 namespace {
 constexpr double kFastest = 10;  // m/s
+constexpr double kSteady = 0.5;  // of a velocity
 constexpr double kHardest = 20;  // m/s^2: a beating heart has about 5
 }  // namespace
 
@@ -15,9 +16,13 @@ void OrganMotion::update(const Sample& sample) noexcept {
   known_ = sample.here && sample.surface_v.norm() <= kFastest;
   if (!known_) return;
   v_ = sample.surface_v;
+  if (sample.others) others_ = sample.others->v;
   const Time period = t_ - before.t_;
   if (!before.known_ || period <= Time::zero() || period > kOutage) return;
-  const Vec3 a = (v_ - before.v_) / to_seconds(period);
+  const Vec3 faster = others_ - before.others_;
+  Vec3 change = (v_ - before.v_) - faster;  // by the supports
+  if (faster.norm() <= kSteady * others_.norm()) change += faster;
+  const Vec3 a = change / to_seconds(period);
   if (a.norm() <= kHardest) a_ = a;
 }
 

@@ -8,7 +8,8 @@ namespace palpate::client {
 /// v the velocity of its surface that samples tell. Of a smooth motion with jerk j, off by at most
 /// max |j| ((t - t_n)^3 / 6 + (t_n - t_(n-1)) (t - t_n)^2 / 4). An organ at rest stays where it is, bit by
 /// bit. Without acceleration where the two samples do not belong together: after an outage, or where it would
-/// be more than any organ's (the tool has come to something else). About 2 ns.
+/// be more than any organ's (the tool has come to something else). What other tools add to v has no
+/// acceleration where it changes by more than half of itself: one of them has come, or gone. About 2 ns.
 class OrganMotion {
  public:
   /// A sample later than the one before. Without `here` it says nothing of motion, and the organ rests.
@@ -25,6 +26,7 @@ class OrganMotion {
   Time t_{};  // t_n
   bool known_ = false;
   Vec3 v_ = Vec3::Zero(), a_ = Vec3::Zero();  // m/s, m/s^2
+  Vec3 others_ = Vec3::Zero();                // of v_, by other tools
 };
 
 }  // namespace palpate::client

@@ -14,11 +14,14 @@ constexpr Time kAskPeriod = std::chrono::milliseconds(8);  // a thousand pages a
 constexpr double kDamperShare = 0.25;                      // of the largest force: all dampers together
 constexpr double kFadeDamping = 2;  // N s/m, in the device frame, while the force fades
 
+Mat3 symmetric(const std::array<double, 6>& k) noexcept {
+  Mat3 m;
+  m << k[0], k[1], k[2], k[1], k[3], k[4], k[2], k[4], k[5];
+  return m;
+}
+
 Linearised linearised(const Vec3& p, const Vec3& f, const protocol::Linearisation& l) noexcept {
-  const auto& k = l.tangent;
-  Linearised out{.p = p, .f = f, .normal = l.normal_W, .gap = l.gap};
-  out.k << k[0], k[1], k[2], k[1], k[3], k[4], k[2], k[4], k[5];
-  return out;
+  return {.p = p, .f = f, .k = symmetric(l.tangent), .normal = l.normal_W, .gap = l.gap};
 }
 
 double seconds_between(const ToolState& before, Time t) {
@@ -31,6 +34,10 @@ Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
   Sample sample{s.number, Time{s.tool_t_ns}, s.p_W, s.f_W, s.surface_v_W};
   if ((s.flags & ForceSample::kHasHere) != 0) sample.here = linearised(s.p_W, s.f_W, s.here);
   if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = linearised(s.ahead_p_W, s.ahead_f_W, s.ahead);
+  if ((s.flags & ForceSample::kHasOthers) != 0) {
+    sample.others = OtherTools{s.others.v_W, symmetric(s.others.compliance)};
+    sample.surface_v += s.others.v_W;
+  }
   if ((s.flags & ForceSample::kHasSurface) != 0 && model != nullptr) {
     model->announce(s.surface);
     sample.surface = Surface{model,

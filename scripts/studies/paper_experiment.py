@@ -47,16 +47,17 @@ def runs_of(quick):
 
 
 def make_motions(folder, quick):
-    """{(stretch, tool): a client file that says how to read the motion}."""
+    """{(stretch, at_samples, tool): a client file that says how to read the motion}."""
     made = {}
-    for stretch in {run.stretch for run in runs_of(quick)}:
+    for stretch, at_samples in {(run.stretch, run.at_samples) for run in runs_of(quick)}:
         for tool, place in enumerate(PLACES):
-            motion = folder / f"pull_{stretch}_{tool}.csv"
+            motion = folder / f"pull_{stretch}_{at_samples:d}_{tool}.csv"
             run_program(sys.executable, MAKE_MOTION, "--seed", 1 + tool, "--stretch", stretch, "--seconds",
-                        QUICK_SECONDS if quick else SECONDS, "--output", motion)
-            made[stretch, tool] = motion.with_suffix(".toml")
-            made[stretch, tool].write_text(f'[trajectory]\nfile = "{motion}"\ncolumns = ["t_s", "x_mm", "y_mm", "z_mm"]\n'
-                                           f"scale = 0.001\noffset = {place}\n", encoding="ascii")
+                        QUICK_SECONDS if quick else SECONDS, "--output", motion,
+                        *(("--rate", LONG_RUN_HZ) if at_samples else ()))
+            client = made[stretch, at_samples, tool] = motion.with_suffix(".toml")
+            client.write_text(f'[trajectory]\nfile = "{motion}"\ncolumns = ["t_s", "x_mm", "y_mm", "z_mm"]\n'
+                              f"scale = 0.001\noffset = {place}\n", encoding="ascii")
     return made
 
 
@@ -76,12 +77,13 @@ def perform(run, motions, scene, quick, workers, programs, folder):
     """Rows of `haptic_client evaluate`, of the long run and, where all is usual, of the lower rates."""
     rows = []
 
+    both = [part for tool in (0, 1) for part in ("--trajectory", motions[run.stretch, run.at_samples, tool])]
+
     def score(rate, keep):
         capture, out = folder / f"{rate:.0f}.pcap", folder / f"{rate:.0f}_{keep}"
         if keep == 1:
-            run_program(programs / "sim_server", "record", scene, "--trajectory", motions[run.stretch, 0],
-                        "--trajectory", motions[run.stretch, 1], "--tool", run.tool + 1, "--rate", rate, "--out",
-                        capture, *(("--ticks", rate) if run.at_samples else ()))
+            run_program(programs / "sim_server", "record", scene, *both, "--tool", run.tool + 1, "--rate", rate, "--out",
+                        capture)
         run_program(programs / "haptic_client", "evaluate", capture, "--keep", keep, "--world",
                     f"pull_{run.model}", "--out", out)
         for row in json.loads((out / "summary.json").read_text(encoding="ascii")):

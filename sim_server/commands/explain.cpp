@@ -13,6 +13,7 @@
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/setup_times.h"
+#include "sim_server/simulation/touchable.h"
 
 namespace palpate::sim {
 namespace {

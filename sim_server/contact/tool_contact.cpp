@@ -160,18 +160,18 @@ Vec3 ToolContact::path_offset(double share, const Vec3& motion) const noexcept {
   return share * (1 - share) * ((1 - share) * bounded(bend_.begin) - share * bounded(bend_.end));
 }
 
-Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue,
+Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue, std::span<const Vec3> velocities,
                                    std::span<const NodalLoad> loads) const noexcept {
-  if (tissue.velocities.empty()) return Vec3::Zero();
+  if (velocities.empty()) return Vec3::Zero();
   Vec3 sum = Vec3::Zero();
   double weights = 0;
   for (const NodalLoad& load : loads) {
     const double weight = load.force.norm();
-    sum += weight * tissue.velocities[load.vertex];
+    sum += weight * velocities[load.vertex];
     weights += weight;
   }
   if (weights > 0) return sum / weights;
-  return finder_.foot(tissue.positions, p_W).of(tissue.velocities);
+  return finder_.foot(tissue.positions, p_W).of(velocities);
 }
 
 void ToolContact::settle(ToolTissue tissue) {

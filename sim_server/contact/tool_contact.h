@@ -58,9 +58,9 @@ class ToolContact {
   void carry(const Vec3& motion) noexcept {
     if (now_.placed) now_.place.p_W += motion;
   }
-  /// How fast the organ's surface moves by itself where the tool touches, with these loads (the mean by
-  /// force), or else at the point nearest to `p_W`; m/s, world.
-  Vec3 surface_velocity(const Vec3& p_W, const Tissue& tissue,
+  /// Of velocities of the surface vertices (m/s; none: it rests), that where the tool touches, with these
+  /// loads (the mean by force), or else at the point nearest to `p_W`.
+  Vec3 surface_velocity(const Vec3& p_W, const Tissue& tissue, std::span<const Vec3> velocities,
                         std::span<const NodalLoad> loads) const noexcept;
   /// Solves its last increment again, on the surface as it is free by now.
   void settle(ToolTissue tissue);

@@ -75,7 +75,8 @@ ToolInput ServedTools::input_of(std::size_t tool, const SessionInput& input) con
   const protocol::ToolState& state = input.state;
   const auto says = [&](std::uint16_t flag) { return (state.flags & flag) != 0; };
   const auto wants = [&](std::uint16_t flag) { return input.session != 0 && input.fresh && says(flag); };
-  ToolInput told{.buttons = state.buttons, .path = bend_between(holders_[tool].before, state)};
+  ToolInput told{
+      .buttons = state.buttons, .v_W = state.v_W, .path = bend_between(holders_[tool].before, state)};
   // The pose of a lost device is the last one known, or none: it touches nothing.
   if (input.session != 0 && !says(protocol::ToolState::kDeviceLost)) told.pose = pose_of(state);
   told.wants.here = wants(protocol::ToolState::kWantsHere);
@@ -109,6 +110,11 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
     sample.ahead_p_W = answer.ahead->p_W;
     sample.ahead_f_W = answer.ahead->there.force;
     sample.ahead = on_the_wire(answer.ahead->there);
+  }
+  flag(ForceSample::kHasOthers, answer.others.has_value());
+  if (answer.others) {
+    const Mat3& c = answer.others->compliance;
+    sample.others = {answer.others->v_W, {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}};
   }
   if (answer.surface_shift_W) {
     sample.surface = surfaces_[tool];

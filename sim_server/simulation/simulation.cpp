@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <new>
+#include <numeric>
 
 #include "common/error.h"
 #include "common/hash.h"
@@ -13,8 +14,8 @@
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/scene/held_motion.h"
 #include "sim_server/scene/inclusions.h"
-#include "sim_server/scene/tool_reach.h"
 #include "sim_server/simulation/set_up_memory.h"
+#include "sim_server/simulation/touchable.h"
 
 namespace palpate::sim {
 namespace {
@@ -26,36 +27,6 @@ constexpr double kUnsettled = 1e-3;  // of the tool radius: by how much others p
 constexpr double kRunAway = 3;       // of the organ's size: farther from rest no tissue goes
 constexpr double kFarthestAhead = 2e-3;  // m; without a bound, fast tools fare worse
 constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
-
-std::vector<int> vertices_of(const std::vector<std::vector<Triangle>>& lists) {
-  std::vector<int> vertices;
-  for (const auto& triangles : lists) {
-    for (const Triangle& t : triangles) vertices.insert(vertices.end(), t.begin(), t.end());
-  }
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
-}
-
-/// Triangles of the surface that come near enough to the reach box of the tool to be touched there.
-std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh& mesh,
-                                          const ToolSettings& tool) {
-  if (!tool.reach) return surface.triangles;
-  std::vector<Triangle> touchable;
-  for (const Triangle& t : surface.triangles) {
-    const auto corner = [&](int i) -> const Vec3& { return mesh.vertices[surface.vertices[t[i]]]; };
-    if (may_meet(*tool.reach, corner(0), corner(1), corner(2))) touchable.push_back(t);
-  }
-  return touchable;
-}
-
-/// Of each tool.
-std::vector<std::vector<Triangle>> touchable_by(std::span<const ToolSettings> tools, const Surface& surface,
-                                                const TetMesh& mesh) {
-  std::vector<std::vector<Triangle>> lists;
-  for (const ToolSettings& tool : tools) lists.push_back(touchable_triangles(surface, mesh, tool));
-  return lists;
-}
 
 /// The surface vertices that are these vertices of the mesh; both ascending.
 std::vector<int> on_surface(std::span<const int> vertices, const Surface& surface) {
@@ -88,11 +59,6 @@ TetMesh read_mesh_told(const Scene& scene, const Progress& progress) {
 }
 
 }  // namespace
-
-std::vector<int> reachable_vertices(const Surface& surface, const TetMesh& mesh,
-                                    std::span<const ToolSettings> tools) {
-  return vertices_of(touchable_by(tools, surface, mesh));
-}
 
 std::string contact_part(std::size_t tool, std::size_t tools) {
   return tools == 1 ? "contact" : fmt::format("contact of tool {}", tool + 1);
@@ -139,6 +105,9 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   tissue_.reserve(most_loads, still);
   if (std::any_of(tools_.begin(), tools_.end(), [](const ToolContact& tool) { return tool.has_friction(); }))
     tissue_.before.assign(tissue_.positions.begin(), tissue_.positions.end());
+  const auto all_loads = static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
+  if (tools_.size() > 1) coupling_.emplace(tools_.size(), rest_.size(), all_loads);
+  velocities_.resize(tools_.size(), Vec3::Zero());
   inputs_.resize(tools_.size());
   surface_motion_.resize(tools_.size(), Vec3::Zero());
   answers_.resize(tools_.size());
@@ -212,7 +181,21 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
     if (inputs[i].wants.tangent) tools_[i].differentiate();
     static_cast<ToolForce&>(answers_[i]) = tools_[i].force();
   }
+  couple(inputs);
   for (std::size_t i = 0; i < tools_.size(); ++i) add_wanted(i, inputs[i]);
+}
+
+/// How the tools move the surface under each other, if any of them is to be told.
+void Simulation::couple(std::span<const ToolInput> inputs) {
+  coupled_ = coupling_ && std::ranges::any_of(inputs, [](const ToolInput& input) {
+               return input.pose && (input.wants.here || input.wants.ahead);
+             });
+  if (!coupled_) return;
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    tools_[i].differentiate();
+    velocities_[i] = inputs[i].pose ? inputs[i].v_W : Vec3::Zero();
+  }
+  coupling_->update(tissue_, tools_, velocities_);
 }
 
 /// Contact of all tools, and again where a linearisation about where it led says something else.
@@ -229,21 +212,36 @@ void Simulation::solve_contacts() {
   if (!tissue_.model->balanced()) flag_contacts();
 }
 
+/// At `there`, with the places of the other tools held, not their loads: they give way, and the surface comes
+/// along. The tangent is symmetric, as on the wire.
+Linearised Simulation::against_others(std::size_t tool, const Vec3& p_W, const Vec3& there,
+                                      const ToolForce* felt) {
+  if (!coupled_) return linearise(tool, there, felt);
+  const Mat3 against = coupling_->against(tool);
+  Linearised l = linearise(tool, p_W + against * (there - p_W), felt);
+  const Mat3 k = l.tangent * against;
+  l.tangent = 0.5 * (k + k.transpose());
+  return l;
+}
+
 /// What was asked of this tool beyond its force.
 void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   ToolAnswer& answer = answers_[tool];
   if (!input.pose || answer.flagged) return;
   const Vec3& p_W = input.pose->p_W;
   const ToolWants& wants = input.wants;
-  if (wants.here || wants.ahead)
-    answer.surface_v_W = tools_[tool].surface_velocity(p_W, tissue_, tissue_.loads_of(tool));
-  if (wants.here) answer.here = linearise(tool, p_W, &answer);
+  if (wants.here || wants.ahead) {
+    answer.surface_v_W =
+        tools_[tool].surface_velocity(p_W, tissue_, tissue_.velocities, tissue_.loads_of(tool));
+    if (coupled_ && coupling_->presses(tool)) answer.others = coupling_->others(tool);
+  }
+  if (wants.here) answer.here = against_others(tool, p_W, p_W, &answer);
   if (wants.ahead) {
-    const Vec3 motion =
-        wants.ahead->seconds * (wants.ahead->v_W - answer.surface_v_W);  // on the organ as it stands
+    const Vec3 v_W = answer.others ? Vec3(answer.surface_v_W + answer.others->v_W) : answer.surface_v_W;
+    const Vec3 motion = wants.ahead->seconds * (wants.ahead->v_W - v_W);  // on the organ as it stands
     Vec3 there = p_W + std::min(1.0, kFarthestAhead / motion.norm()) * motion;
     if (!there.allFinite()) there = p_W;
-    answer.ahead = {there, linearise(tool, there, nullptr)};
+    answer.ahead = {there, against_others(tool, p_W, there, nullptr)};
   }
   if (wants.surface_shift && !tools_[tool].holds())  // what is grasped is no matter of contact
     answer.surface_shift_W = surface_shift(tool, p_W);
@@ -265,13 +263,15 @@ void Simulation::move_organ(double dt) {
   const bool moves = !tissue_.velocities.empty();
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
     surface_motion_[i] =
-        0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.loads_of(i));
+        0.5 * dt *
+        tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.velocities, tissue_.loads_of(i));
   carry_before(tissue_, 0.5 * dt);
   set_free(tissue_.model->free_motion(dt));
   carry_before(tissue_, 0.5 * dt);
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
     surface_motion_[i] +=
-        0.5 * dt * tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.loads_of(i));
+        0.5 * dt *
+        tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.velocities, tissue_.loads_of(i));
   for (std::size_t i = 0; moves && i < tools_.size(); ++i) {
     tools_[i].carry(surface_motion_[i]);
     tissue_.carry(i, surface_motion_[i]);

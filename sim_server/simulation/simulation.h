@@ -7,15 +7,11 @@
 #include "sim_server/mesh/tet_mesh.h"
 #include "sim_server/scene/scene.h"
 #include "sim_server/simulation/flagged_steps.h"
+#include "sim_server/simulation/tool_coupling.h"
 
 namespace palpate::sim {
 
 inline const Progress kSilent = [](std::string_view, double) {};
-
-/// Surface vertices that any of the tools can touch, ascending: the corners of the triangles whose box meets
-/// `reach`.
-std::vector<int> reachable_vertices(const Surface& surface, const TetMesh& mesh,
-                                    std::span<const ToolSettings> tools);
 
 /// The force on a tool near a place, to first order.
 struct Linearised {
@@ -42,6 +38,7 @@ struct ToolWants {
 struct ToolInput {
   std::optional<ToolPose> pose = {};  ///< where its tip is now; none: it is lifted
   std::uint16_t buttons = 0;          ///< of its device, pressed now: some tools grasp by them
+  Vec3 v_W = Vec3::Zero();            ///< of its tip, m/s: how fast it pushes the organ under other tools
   Bend path = {};                     ///< how it came from the pose before; only friction asks for it
   ToolWants wants = {};
 };
@@ -52,6 +49,8 @@ struct ToolAnswer : ToolForce {
   /// How fast the organ's surface moves by itself where the tool touches, or else nearest to it, m/s, world.
   /// Told with `here` and `ahead`; zero where all supports rest.
   Vec3 surface_v_W = Vec3::Zero();
+  /// How the other tools move it besides. Told with `here` and `ahead`, where several tools are there.
+  std::optional<OtherTools> others = {};
   std::optional<Linearised> here = {};
   struct Ahead {
     Vec3 p_W;  ///< m
@@ -129,6 +128,8 @@ class Simulation {
   void flag_contacts() noexcept;
   void solve_contacts();
   void restore_touching();
+  void couple(std::span<const ToolInput> inputs);
+  Linearised against_others(std::size_t tool, const Vec3& p_W, const Vec3& there, const ToolForce* felt);
   void add_wanted(std::size_t tool, const ToolInput& input);
   Vec3 surface_shift(std::size_t tool, const Vec3& p_W);
   bool ran_away() const noexcept;
@@ -139,13 +140,15 @@ class Simulation {
   double farthest_ = 1e150;  // from there, m; so far: no bound but that of numbers
   Tissue tissue_;
   std::vector<ToolContact> tools_;
-  std::vector<Vec3> surface_motion_;  // of the surface at each tool in this step, m
-  std::vector<ToolInput> inputs_;     // for the step of tool 0 alone
+  std::optional<ToolCoupling> coupling_;  // of several tools
+  std::vector<Vec3> velocities_;          // of the tools, m/s
+  std::vector<Vec3> surface_motion_;      // of the surface at each tool in this step, m
+  std::vector<ToolInput> inputs_;         // for the step of tool 0 alone
   std::vector<ToolAnswer> answers_;
   StepFailures failures_;
   FlaggedSteps flagged_;
-  bool tools_settled_ = true, lost_ = false;  // in this step
-  bool failed_ = false;                       // the last step
+  bool tools_settled_ = true, lost_ = false, coupled_ = false;  // in this step
+  bool failed_ = false;                                         // the last step
 };
 
 /// "contact", or "contact of tool 2" where there are several: the name of a tool's part in reports.

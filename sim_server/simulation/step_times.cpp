@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/clock.h"
+#include "sim_server/simulation/touchable.h"
 
 namespace palpate::sim {
 namespace {

@@ -68,6 +68,9 @@ std::vector<Message> one_of_each() {
   ForceSample with_errors = force;
   with_errors.flags = ForceSample::kHasErrors;
   with_errors.errors = {{ErrorSource::kEstimated, 3.5F}, {ErrorSource::kNone, 0}};
+  ForceSample among_others = force;
+  among_others.flags = ForceSample::kHasOthers;
+  among_others.others = {{0.5, 0, -1}, {-1, -2, -3, -4, -5, -6}};
   SurfacePage page{.tool = 1, .version = 0xa1b2c3d4, .page = 0x0708};
   page.values.front() = 0.5F;
   page.values.back() = -2;
@@ -82,7 +85,8 @@ std::vector<Message> one_of_each() {
           fetching,
           on_surface,
           page,
-          with_errors};
+          with_errors,
+          among_others};
 }
 
 }  // namespace
@@ -161,6 +165,17 @@ TEST_CASE("golden bytes: written down by hand from protocol/README.md") {
         "00006040"
         "03"
         "00000000");
+  CHECK(hex(encoded(kHeader, messages[12])).substr(2 * (28 + 105)) ==
+        "40000000"  // flags, then: velocity, compliance
+        "000000000000e03f"
+        "0000000000000000"
+        "000000000000f0bf"
+        "000000000000f0bf"
+        "00000000000000c0"
+        "00000000000008c0"
+        "00000000000010c0"
+        "00000000000014c0"
+        "00000000000018c0");
   CHECK(hex(encoded(kHeader, messages[10])) == front("0a", "8d03") + "01" + "d4c3b2a1" + "08070000" +
                                                    "0000003f" + std::string(2 * 4 * 223, '0') + "000000c0");
   CHECK(hex(encoded(kHeader, messages[6])).substr(2 * (28 + 107)) ==

@@ -86,3 +86,18 @@ TEST_CASE("organ motion: finite whatever it is told") {
     CHECK(after({moving(1s, {wild, 0, 0})}).since_sample(2s) == Vec3::Zero());
   }
 }
+
+TEST_CASE("organ motion: what other tools add has no acceleration where one of them has come or gone") {
+  const auto pushed = [](Time t, const Vec3& v) {
+    Sample sample = moving(t, kSlow + v);
+    sample.others = OtherTools{.v = v};
+    return sample;
+  };
+  const auto ahead = [](const OrganMotion& motion) { return motion.since_sample(70ms); };  // 40 ms on
+  const Vec3 v(0, -0.01, 0);
+  CHECK((ahead(after({pushed(0ms, Vec3::Zero()), pushed(30ms, v)})) - 0.04 * (kSlow + v)).norm() < 1e-15);
+  CHECK((ahead(after({pushed(0ms, v), pushed(30ms, Vec3::Zero())})) - 0.04 * kSlow).norm() < 1e-15);
+  const Vec3 faster = 1.5 * v;  // the same tools, faster: followed as the supports are
+  const Vec3 right = 0.04 * (kSlow + faster) + 0.5 * 0.04 * 0.04 * (faster - v) / 0.03;
+  CHECK((ahead(after({pushed(0ms, v), pushed(30ms, faster)})) - right).norm() < 1e-15);
+}

@@ -52,7 +52,9 @@ class Wild {
     s.tool_t_ns = (now - Time{static_cast<Time::rep>(below(400'000'000))}).count();
     if (once_in(100)) s.tool_t_ns = std::numeric_limits<std::int64_t>::min();
     if (once_in(100)) s.tool_t_ns = std::numeric_limits<std::int64_t>::max();
-    s.flags = static_cast<std::uint32_t>(below(32));
+    s.flags = static_cast<std::uint32_t>(below(128));
+    s.others.v_W = vector();
+    for (double& c : s.others.compliance) c = once_in(20) ? number() : ordinary(0.01);
     s.surface_v_W = vector(), s.here = linearisation();
     s.ahead_p_W = place(), s.ahead_f_W = vector(), s.ahead = linearisation();
     s.surface = {.version = static_cast<std::uint32_t>(below(40) == 0 ? below(3) : 1),

@@ -11,6 +11,7 @@
 #include "common/trajectory.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/simulation.h"
+#include "sim_server/simulation/touchable.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 #include "tests/support/temporary_folder.h"
