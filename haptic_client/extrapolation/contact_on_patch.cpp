@@ -198,7 +198,9 @@ bool ContactOnPatch::displace_near(const Surface& surface, const Vec3& p) noexce
     largest = std::max(largest, moved_[load.vertex].norm());
   }
   const double reach = (1 + 2 * kMargin) * surface.tool.radius + largest;
+  const double surely = reach + model.longest_edge();
   for (const auto& t : model.triangles()) {
+    if ((rest[t[0]] - p).squaredNorm() > surely * surely) continue;
     if (near_[t[0]] != 0 && near_[t[1]] != 0 && near_[t[2]] != 0) continue;
     const auto w = closest_point(p, rest[t[0]], rest[t[1]], rest[t[2]]).weight;
     if ((w[0] * rest[t[0]] + w[1] * rest[t[1]] + w[2] * rest[t[2]] - p).squaredNorm() > reach * reach)

@@ -135,7 +135,7 @@ class StandIns {
   std::span<const Row> rows() const noexcept { return rows_; }
 
  private:
-  std::array<Row, 4> rows_{};  // a law steps down to two others at most
+  std::array<Row, 8> rows_{};  // as many as `best_recent` has
 };
 
 /// The two newest samples, which is all that the paper's laws know. A sample that is not `usable`, or not

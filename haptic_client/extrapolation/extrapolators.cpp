@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "haptic_client/extrapolation/best_recent.h"
 #include "haptic_client/extrapolation/constant.h"
 #include "haptic_client/extrapolation/interpolate_with_delay.h"
 #include "haptic_client/extrapolation/kalman.h"
@@ -21,6 +22,20 @@ std::unique_ptr<Extrapolator> make() {
 }
 
 using Ratio = LinearPosition::Ratio;
+
+/// Those that have something of their own to say, the most informed last.
+std::unique_ptr<Extrapolator> make_best_recent() {
+  std::vector<BestRecent::Law> laws;
+  laws.push_back({"constant", make<Constant>()});
+  laws.push_back({"linear_time", make<LinearTime>()});
+  laws.push_back({"linear_position_signed", make<LinearPosition, Ratio::kSigned>()});
+  laws.push_back({"learned_stiffness", make<LearnedStiffness>()});
+  laws.push_back({"tangent", make<Tangent>()});
+  laws.push_back({"two_tangents", make<TwoTangents>()});
+  laws.push_back({"local_contact", make<LocalContact>()});
+  return std::make_unique<BestRecent>(std::move(laws));
+}
+
 constexpr std::array kExtrapolators{
     ExtrapolatorRow{"constant", "the newest force (the paper's first law)", &make<Constant>},
     ExtrapolatorRow{"linear_time", "linear in time (the paper's second law)", &make<LinearTime>},
@@ -36,6 +51,8 @@ constexpr std::array kExtrapolators{
                     &make<TwoTangents>},
     ExtrapolatorRow{"local_contact", "the contact solved here, on the server's model of the surface",
                     &make<LocalContact>},
+    ExtrapolatorRow{"best_recent", "of constant to local_contact, the one whose recent predictions were best",
+                    &make_best_recent, true, true},
     ExtrapolatorRow{"kalman", "a Kalman filter on the force (the paper turns it down)", &make<Kalman>, false},
     ExtrapolatorRow{"interpolate_with_delay",
                     "the line between samples, two periods late (the paper turns it down)",

@@ -12,7 +12,8 @@ struct ExtrapolatorRow {
   std::string_view name;
   std::string_view summary;
   std::unique_ptr<Extrapolator> (*make)();
-  bool exact = true;  ///< gives the sample's force at the sample's place and time
+  bool exact = true;     ///< gives the sample's force at the sample's place and time
+  bool chooses = false;  ///< among other rows: it is always one of them that is at work
 };
 std::span<const ExtrapolatorRow> extrapolators();
 

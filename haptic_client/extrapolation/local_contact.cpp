@@ -7,9 +7,7 @@ namespace {
 constexpr double kMostCorrection = 3;
 // Of the largest force: below it, F_loc says little of how wrong the model is.
 constexpr double kDoubt = 0.02;
-constexpr std::size_t kRemembered = 1024;             // ticks: a quarter of a second at 4 kHz
-constexpr Time kGap = std::chrono::milliseconds(12);  // longer than any tick
-constexpr double kTangentReach = 1e-3;                // m: how far a tangent leads
+constexpr double kTangentReach = 1e-3;  // m: how far a tangent leads
 // How far the model may be off at the sample, of the larger force and at all, to be believed elsewhere.
 constexpr double kBelievable = 0.5, kAlways = 0.1;  // -, N
 
@@ -17,8 +15,6 @@ bool believable(const Vec3& local, const Vec3& right) noexcept {
   return (local - right).norm() <= kBelievable * std::max(local.norm(), right.norm()) + kAlways;
 }
 }  // namespace
-
-LocalContact::LocalContact() : felt_(kRemembered) {}
 
 void LocalContact::update(const Sample& sample) noexcept {
   without_.update(sample);
@@ -28,7 +24,7 @@ void LocalContact::update(const Sample& sample) noexcept {
   motion_.update(newest_);
   known_ = following_ = false;
   if (!newest_.surface) {
-    forget();
+    felt_.forget();
     return;
   }
   const Vec3 p_rest = at_rest(sample.p, sample.t);
@@ -40,7 +36,7 @@ void LocalContact::update(const Sample& sample) noexcept {
   if (!local) local = contact_.probe(*newest_.surface, p_rest);
   known_ = local && believable(*local, sample.f);
   if (!known_) {
-    forget();
+    felt_.forget();  // the path is lost, and with it what sticks: it is no measure of what would be from here
     return;
   }
   compare(*local);
@@ -48,28 +44,18 @@ void LocalContact::update(const Sample& sample) noexcept {
   if (free && newest_.surface->tool.friction == 0) compare_ahead();
 }
 
-/// The path is lost, and with it what sticks: what was felt before is no measure of what would be from here.
-void LocalContact::forget() noexcept {
-  felts_ = 0;
-}
-
 void LocalContact::remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept {
-  if (felts_ > 0 && felt_[(felts_ - 1) % kRemembered].t >= t) return;
-  felt_[felts_++ % kRemembered] = {t, p_rest, local, contact_.tangent()};
+  if (Felt* const felt = felt_.add(t)) *felt = {p_rest, local, contact_.tangent()};
 }
 
 /// What was felt at the tick of time `t`, or the one before it; at `p_rest`, which is where the tool is
 /// thought to have been by now.
 std::optional<Vec3> LocalContact::remembered(Time t, const Vec3& p_rest) const noexcept {
-  for (std::size_t back = 1; back <= std::min(felts_, kRemembered); ++back) {
-    const Felt& felt = felt_[(felts_ - back) % kRemembered];
-    if (felt.t > t) continue;
-    if (t - felt.t > kGap || (felt.p_rest - p_rest).norm() > kTangentReach) return {};
-    if (felt.force.isZero(0)) return felt.force;
-    const Vec3 force = felt.force + felt.tangent * (p_rest - felt.p_rest);
-    return force.dot(felt.force) > 0 ? force : Vec3(Vec3::Zero());
-  }
-  return {};
+  const Felt* const felt = felt_.at(t);
+  if (felt == nullptr || (felt->p_rest - p_rest).norm() > kTangentReach) return {};
+  if (felt->force.isZero(0)) return felt->force;
+  const Vec3 force = felt->force + felt->tangent * (p_rest - felt->p_rest);
+  return force.dot(felt->force) > 0 ? force : Vec3(Vec3::Zero());
 }
 
 /// What the server says is `right` the model takes for `local`, somewhere.
@@ -99,7 +85,7 @@ void LocalContact::compare_ahead() noexcept {
 void LocalContact::restart() noexcept {
   without_.restart();
   contact_.lift();
-  felts_ = 0;
+  felt_.forget();
   now_ = {};
   newest_ = {};
   motion_.restart();
@@ -120,7 +106,7 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
       return felt_last_;
     }
     known_ = following_ = false;  // until the next sample: no going back and forth
-    forget();
+    felt_.forget();
   }
   return without_.force(p, t);
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include "haptic_client/extrapolation/contact_on_patch.h"
+#include "haptic_client/extrapolation/tick_memory.h"
 #include "haptic_client/extrapolation/two_tangents.h"
 
 namespace palpate::client {
@@ -23,7 +24,6 @@ namespace palpate::client {
 /// touch 140 us.
 class LocalContact : public Extrapolator {
  public:
-  LocalContact();
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
   void begin_tick(Time now) noexcept override { now_ = now; }
@@ -39,7 +39,6 @@ class LocalContact : public Extrapolator {
   void compare(const Vec3& local) noexcept;
   void learn_factor(const Vec3& right, const Vec3& local) noexcept;
   void compare_ahead() noexcept;
-  void forget() noexcept;
   void remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept;
   std::optional<Vec3> remembered(Time t, const Vec3& p_rest) const noexcept;
   Vec3 at_rest(const Vec3& p, Time t) const noexcept;
@@ -47,7 +46,6 @@ class LocalContact : public Extrapolator {
 
   /// F_loc as it was felt.
   struct Felt {
-    Time t;
     Vec3 p_rest, force;  // m, N
     Mat3 tangent;        // N/m
   };
@@ -61,9 +59,8 @@ class LocalContact : public Extrapolator {
   double kappa_ = 1, largest_ = 0;  // -, N: of all samples
   Vec3 across_ = Vec3::Zero();      // r, N
   Vec3 felt_last_ = Vec3::Zero();   // N, at the last tick that it solved
-  std::vector<Felt> felt_;          // a ring
-  std::size_t felts_ = 0;           // so far
-  bool known_ = false;              // whether the model says what is felt, since the newest sample
+  TickMemory<Felt> felt_;
+  bool known_ = false;      // whether the model says what is felt, since the newest sample
   bool following_ = false;  // or follows the path unfelt, as with friction nothing can be compared yet
 };
 

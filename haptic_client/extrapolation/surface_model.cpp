@@ -11,18 +11,14 @@ using protocol::ToolState;
 namespace {
 
 constexpr SurfacePages kLargest{SurfaceModel::kMostVertices, 2 * SurfaceModel::kMostVertices};
-constexpr std::uint16_t kNoSlot = 0xffff;
 constexpr double kStillComplete = 2e-3;  // m
 constexpr std::uint32_t kPatienceMs = 200;
+constexpr std::size_t kAsked = 4096;  // pages remembered; 200 are asked for in that time
 
 }  // namespace
 
 SurfaceModel::SurfaceModel()
-    : shape_known_(kLargest.first_tile()),
-      slot_of_tile_(kLargest.count() - kLargest.first_tile(), kNoSlot),
-      tiles_(kRoom),
-      asked_ms_(kLargest.count()),
-      near_(kLargest.vertices) {
+    : shape_known_(kLargest.first_tile()), tiles_(kRoom), asked_(kAsked), near_(kLargest.vertices) {
   rest_.reserve(kLargest.vertices);
   triangles_.reserve(kLargest.triangles);
 }
@@ -38,8 +34,8 @@ void SurfaceModel::announce(const protocol::SurfaceState& state) noexcept {
   triangles_.assign(state.triangles, {});
   shape_missing_ = pages_.first_tile();
   std::fill(shape_known_.begin(), shape_known_.end(), 0);
-  std::fill(slot_of_tile_.begin(), slot_of_tile_.end(), kNoSlot);
-  std::fill(asked_ms_.begin(), asked_ms_.end(), 0);
+  slots_.clear();
+  std::fill(asked_.begin(), asked_.end(), Asked{});
   for (Tile& tile : tiles_) tile.page = 0;
   complete_at_.reset();
 }
@@ -71,20 +67,28 @@ void SurfaceModel::take_shape(const SurfacePage& page) noexcept {
     }
   }
   shape_known_[page.page] = 1;
-  if (--shape_missing_ == 0) near_.take(rest_);
+  if (--shape_missing_ == 0) complete_shape();
+}
+
+void SurfaceModel::complete_shape() noexcept {
+  near_.take(rest_);
+  longest_edge_ = 0;
+  for (const auto& t : triangles_) {
+    for (int i = 0; i < 3; ++i)
+      longest_edge_ = std::max(longest_edge_, (rest_[t[i]] - rest_[t[(i + 1) % 3]]).norm());
+  }
 }
 
 void SurfaceModel::take_tile(const SurfacePage& page) noexcept {
-  std::uint16_t& slot = slot_of_tile_[page.page - pages_.first_tile()];
-  if (slot != kNoSlot) return;
+  if (slots_.find(page.page) != PageSlots::kNone) return;
   Tile& tile = tiles_[next_slot_];
   if (tile.page != 0) {
-    slot_of_tile_[tile.page - pages_.first_tile()] = kNoSlot;
+    slots_.erase(tile.page);
     complete_at_.reset();
   }
   tile.page = page.page;
   tile.values = page.values;
-  slot = static_cast<std::uint16_t>(next_slot_);
+  slots_.put(page.page, static_cast<std::uint16_t>(next_slot_));
   next_slot_ = (next_slot_ + 1) % tiles_.size();
 }
 
@@ -95,8 +99,8 @@ std::optional<Mat3> SurfaceModel::compliance(int i, int j) const noexcept {
     const auto other = compliance(j, i);
     return other ? std::optional<Mat3>(other->transpose()) : std::nullopt;
   }
-  const std::uint16_t slot = slot_of_tile_[pages_.tile(a, b) - pages_.first_tile()];
-  if (slot == kNoSlot) return {};
+  const std::uint16_t slot = slots_.find(pages_.tile(a, b));
+  if (slot == PageSlots::kNone) return {};
   using Block = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
   const float* const first = &tiles_[slot].values[3 * (i % kCluster) * 3 * kCluster + 3 * (j % kCluster)];
   return Eigen::Map<const Block, 0, Eigen::OuterStride<3 * kCluster>>(first).cast<double>();
@@ -105,8 +109,8 @@ std::optional<Mat3> SurfaceModel::compliance(int i, int j) const noexcept {
 /// Collects pages to ask for.
 class SurfaceModel::Wishes {
  public:
-  Wishes(std::span<std::uint32_t> pages, std::vector<std::uint32_t>& asked_ms, Time now)
-      : pages_(pages), asked_ms_(asked_ms), now_ms_(static_cast<std::uint32_t>(now.count() / 1'000'000) + 1) {
+  Wishes(std::span<std::uint32_t> pages, std::vector<Asked>& asked, Time now)
+      : pages_(pages), asked_(asked), now_ms_(static_cast<std::uint32_t>(now.count() / 1'000'000) + 1) {
     std::fill(pages.begin(), pages.end(), ToolState::kNoPage);
   }
   bool full() const { return count_ == pages_.size(); }
@@ -114,23 +118,23 @@ class SurfaceModel::Wishes {
   /// Whether this page, which is missing, has been asked for.
   void add(std::uint32_t page) {
     missing = true;
-    std::uint32_t& asked = asked_ms_[page];
-    if (full() || (asked != 0 && now_ms_ - asked < kPatienceMs)) return;
-    asked = now_ms_;
+    Asked& asked = asked_[page % kAsked];
+    if (full() || (asked.page == page && now_ms_ - asked.ms < kPatienceMs)) return;
+    asked = {page, now_ms_};
     pages_[count_++] = page;
   }
   bool missing = false;  ///< something is, asked for or not
 
  private:
   std::span<std::uint32_t> pages_;
-  std::vector<std::uint32_t>& asked_ms_;
+  std::vector<Asked>& asked_;
   std::uint32_t now_ms_;
   std::size_t count_ = 0;
 };
 
 bool SurfaceModel::choose_missing(const Vec3& p, double reach, Time now,
                                   std::span<std::uint32_t> pages) noexcept {
-  Wishes wishes(pages, asked_ms_, now);
+  Wishes wishes(pages, asked_, now);
   if (version_ == 0 || !p.allFinite()) return false;
   for (std::uint32_t page = 0; shape_missing_ > 0 && page < pages_.first_tile(); ++page) {
     if (shape_known_[page] == 0) wishes.add(page);
@@ -140,7 +144,7 @@ bool SurfaceModel::choose_missing(const Vec3& p, double reach, Time now,
   near_.look(p);
   near_.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
     const std::uint32_t page = pages_.tile(a, b);
-    if (slot_of_tile_[page - pages_.first_tile()] == kNoSlot) wishes.add(page);
+    if (slots_.find(page) == PageSlots::kNone) wishes.add(page);
     return !wishes.full();
   });
   if (!wishes.missing) complete_at_ = p;

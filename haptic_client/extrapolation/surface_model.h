@@ -5,17 +5,18 @@
 
 #include "common/time.h"
 #include "common/types.h"
+#include "haptic_client/extrapolation/page_slots.h"
 #include "protocol/near_tiles.h"
 
 namespace palpate::client {
 
 /// What is known here of the surface that the tool can touch: its shape at rest and how compliant it is, as
 /// it comes in pages from the server (protocol/surface_pages.h). Knows which pages it lacks, the nearest
-/// first; of a surface larger than it has room for it forgets the oldest. Nothing but the constructor
-/// allocates. Haptic thread.
+/// first; it keeps those near the tool, and forgets the oldest. Nothing but the constructor allocates, 11 MB
+/// whatever the size of the surface. Haptic thread.
 class SurfaceModel {
  public:
-  static constexpr std::size_t kMostVertices = 4000;                ///< of a model that it takes
+  static constexpr std::size_t kMostVertices = protocol::kMostSurfaceVertices;  ///< of a model that it takes
   static constexpr std::size_t kRoom = protocol::NearTiles::kKept;  ///< tiles of compliance, 900 bytes each
 
   SurfaceModel();
@@ -37,6 +38,8 @@ class SurfaceModel {
   bool has_shape() const noexcept { return version_ != 0 && shape_missing_ == 0; }
   std::span<const Vec3> rest() const noexcept { return rest_; }
   std::span<const std::array<int, 3>> triangles() const noexcept { return triangles_; }
+  /// No edge of a triangle is longer, m.
+  double longest_edge() const noexcept { return longest_edge_; }
   /// How vertex i moves per force on vertex j, m/N; nothing where that is not known.
   std::optional<Mat3> compliance(int i, int j) const noexcept;
 
@@ -45,7 +48,11 @@ class SurfaceModel {
     std::uint32_t page = 0;  // 0: empty; that page is one of the shape
     std::array<float, protocol::SurfacePage::kValues> values{};
   };
+  struct Asked {
+    std::uint32_t page = protocol::ToolState::kNoPage, ms = 0;
+  };
   void take_shape(const protocol::SurfacePage& page) noexcept;
+  void complete_shape() noexcept;
   void take_tile(const protocol::SurfacePage& page) noexcept;
   class Wishes;
 
@@ -53,11 +60,12 @@ class SurfaceModel {
   std::uint32_t version_ = 0, shape_missing_ = 0;
   std::vector<Vec3> rest_;
   std::vector<std::array<int, 3>> triangles_;
-  std::vector<char> shape_known_;            // by page
-  std::vector<std::uint16_t> slot_of_tile_;  // by page from first_tile()
+  std::vector<char> shape_known_;  // by page
+  double longest_edge_ = 0;
+  PageSlots slots_{kRoom};  // of tiles
   std::vector<Tile> tiles_;
   std::size_t next_slot_ = 0;
-  std::vector<std::uint32_t> asked_ms_;  // by page: when it was asked for last
+  std::vector<Asked> asked_;  // by page, several of which share a place: the last one that was asked for
   protocol::NearTiles near_;
   std::optional<Vec3> complete_at_;  // a place for which nothing was missing
 };

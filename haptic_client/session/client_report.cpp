@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/text.h"
 #include "haptic_client/evaluation/law_cost.h"
+#include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/session/whole_error.h"
 
 namespace palpate::client {
@@ -130,12 +132,23 @@ void print_drift(const Json& tool) {
   if (!text.empty()) fmt::print("  drift   first to last quarter: {}\n", text);
 }
 
-/// "two_tangents stood in for local_contact in 300 ticks, learned_stiffness in 2".
+bool chooses(const std::string& law) {
+  return find_row(extrapolators(), law, "method", "report").chooses;
+}
+
+/// "two_tangents stood in for local_contact in 300 ticks, learned_stiffness in 2"; of a law that chooses,
+/// "best_recent was two_tangents in 300 ticks".
 std::string stand_ins_text(const Json& stand_ins, const std::string& law) {
   std::string text;
-  for (const auto& [name, ticks] : stand_ins.items())
-    text += text.empty() ? fmt::format("{} stood in for {} in {} ticks", name, law, ticks.get<long>())
-                         : fmt::format(", {} in {}", name, ticks.get<long>());
+  for (const auto& [name, ticks] : stand_ins.items()) {
+    if (!text.empty()) {
+      text += fmt::format(", {} in {}", name, ticks.get<long>());
+    } else if (chooses(law)) {
+      text = fmt::format("{} was {} in {} ticks", law, name, ticks.get<long>());
+    } else {
+      text = fmt::format("{} stood in for {} in {} ticks", name, law, ticks.get<long>());
+    }
+  }
   return text;
 }
 
@@ -160,14 +173,16 @@ std::string felt_text(const Json& tool) {
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, percent_text(share.get<double>()));
   if (text.empty()) return fmt::format("nothing; asked for: {}", method);
   if (tool["felt"]["law"] == method) return text;
+  if (chooses(method)) return fmt::format("{} ({})", text, method);
   return fmt::format("{} (asked for: {})", text, method);
 }
 
 void print_stand_ins(const Json& methods) {
   for (const auto& [name, scores] : methods.items()) {
-    if (!scores["stand_ins"].empty())
-      fmt::print("          {} of {}: what the samples brought was not enough for more\n",
-                 stand_ins_text(scores["stand_ins"], name), scores["ticks"].get<long>());
+    if (scores["stand_ins"].empty()) continue;
+    fmt::print("          {} of {}{}\n", stand_ins_text(scores["stand_ins"], name),
+               scores["ticks"].get<long>(),
+               chooses(name) ? "" : ": what the samples brought was not enough for more");
   }
 }
 
@@ -223,9 +238,9 @@ void print_tool(const Json& tool) {
       "  force   {:.0f} samples, age {:.1f} ms (p50), {:.1f} (p99), {:.1f} (max); largest force {:.2f} N\n",
       number(force, "samples"), number(age, "p50"), number(age, "p99"), number(age, "max"),
       number(force, "max_newton"));
-  if (number(force, "stepped_down") > 0 || number(force, "surface_pages") > 0) {
+  if (!force["stand_ins"].empty() || number(force, "surface_pages") > 0) {
     fmt::print("  law     {}; {:.0f} pages of the surface came\n",
-               number(force, "stepped_down") > 0
+               !force["stand_ins"].empty()
                    ? stand_ins_text(force["stand_ins"], tool["method"].get<std::string>())
                    : "itself in all ticks",
                number(force, "surface_pages"));

@@ -79,7 +79,8 @@ TEST_CASE(
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "report.json").string();
   Server server;
-  Process client("haptic_client", client_arguments(server.address, {"--seconds", "5", "--report", file}));
+  Process client("haptic_client", client_arguments(server.address, {"--method", "local_contact", "--seconds",
+                                                                    "5", "--report", file}));
   CHECK(client.wait() == 0);
   const Json tool = read_json(file)["tools"][0];
   CHECK(tool["method"] == "local_contact");

@@ -26,7 +26,7 @@ TEST_CASE(
     return config.scored_laws();
   };
   using Laws = std::vector<std::string>;
-  CHECK(scored("", "") == Laws{"constant", "linear_time", "linear_position", "local_contact"});
+  CHECK(scored("", "") == Laws{"constant", "linear_time", "linear_position", "best_recent"});
   CHECK(scored("score = [\"constant\"]", "tangent") == Laws{"constant", "tangent"});
   CHECK(scored("score = [\"tangent\", \"constant\"]", "tangent") == Laws{"tangent", "constant"});
   CHECK(scored("score = []", "tangent").empty());

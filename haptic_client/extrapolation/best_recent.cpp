@@ -1,0 +1,76 @@
+#include "haptic_client/extrapolation/best_recent.h"
+
+#include <algorithm>
+
+namespace palpate::client {
+namespace {
+constexpr double kSamples = 32;  // that the mean error is of
+constexpr double kBetter = 0.8;  // of the error of the law that is felt
+}  // namespace
+
+BestRecent::BestRecent(std::vector<Law> laws) : laws_(std::move(laws)), chosen_(laws_.size() - 1) {
+  for (const Law& law : laws_) {
+    const Wants wants = law.law->wants();
+    sees_surface_.push_back(wants.here || wants.ahead || wants.surface ? 1 : 0);
+  }
+}
+
+void BestRecent::update(const Sample& sample) noexcept {
+  if (usable(sample)) {
+    if (const Forces* const given = ticks_.at(sample.t)) judge(*given, sample.f);
+    free_ = sample.f.isZero(0);
+  }
+  for (Law& law : laws_) law.law->update(sample);
+}
+
+void BestRecent::judge(const Forces& given, const Vec3& right) noexcept {
+  const auto pushes = [&](std::size_t i) { return !given[i].isZero(0); };
+  bool any = !right.isZero(0);
+  for (std::size_t i = 0; i < laws_.size(); ++i) any = any || pushes(i);
+  if (!any) return;
+  judged_ = std::min(judged_ + 1, kSamples);
+  std::size_t best = laws_.size() - 1;
+  for (std::size_t i = laws_.size(); i-- > 0;) {
+    error_[i] += ((given[i] - right).norm() - error_[i]) / judged_;
+    if (error_[i] < error_[best]) best = i;
+  }
+  if (error_[best] < kBetter * error_[chosen_]) chosen_ = best;
+}
+
+void BestRecent::restart() noexcept {
+  for (Law& law : laws_) law.law->restart();
+  error_ = {};
+  judged_ = 0;
+  chosen_ = laws_.size() - 1;
+  free_ = true;
+  ticks_.forget();
+}
+
+void BestRecent::begin_tick(Time now) noexcept {
+  now_ = now;
+  for (Law& law : laws_) law.law->begin_tick(now);
+}
+
+Vec3 BestRecent::force(const Vec3& p, Time t) noexcept {
+  Forces given{};
+  for (std::size_t i = 0; i < laws_.size(); ++i) {
+    // A law that looks back alone would go on pulling where the tool is free.
+    const bool none = free_ && sees_surface_[i] == 0;
+    given[i] = none ? Vec3(Vec3::Zero()) : laws_[i].law->force(p, t);
+  }
+  if (Forces* const tick = ticks_.add(std::max(now_, t))) *tick = given;
+  return given[chosen_];
+}
+
+Wants BestRecent::wants() const noexcept {
+  Wants all;
+  for (const Law& law : laws_) all |= law.law->wants();
+  return all;
+}
+
+std::string_view BestRecent::stand_in() const noexcept {
+  const std::string_view inner = laws_[chosen_].law->stand_in();
+  return inner.empty() ? laws_[chosen_].name : inner;
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,44 @@
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "common/time.h"
+
+namespace palpate::client {
+
+/// What was so at the last ticks, to be held against a sample that comes later: a quarter of a second at 4
+/// kHz. Only the constructor allocates.
+template <class Entry>
+class TickMemory {
+ public:
+  TickMemory() : ring_(kTicks) {}
+
+  /// Room for a tick at `t`; null where one as late is there.
+  Entry* add(Time t) noexcept {
+    if (written_ > 0 && ring_[(written_ - 1) % kTicks].t >= t) return nullptr;
+    Row& row = ring_[written_++ % kTicks];
+    row.t = t;
+    return &row.entry;
+  }
+  /// The tick at `t`, or the one before; null where that is longer ago than any tick takes.
+  const Entry* at(Time t) const noexcept {
+    for (std::size_t back = 1; back <= std::min(written_, kTicks); ++back) {
+      const Row& row = ring_[(written_ - back) % kTicks];
+      if (row.t <= t) return t - row.t <= kLongestTick ? &row.entry : nullptr;
+    }
+    return nullptr;
+  }
+  void forget() noexcept { written_ = 0; }
+
+ private:
+  static constexpr std::size_t kTicks = 1024;
+  static constexpr Time kLongestTick = std::chrono::milliseconds(12);
+  struct Row {
+    Time t;
+    Entry entry;
+  };
+  std::vector<Row> ring_;
+  std::size_t written_ = 0;
+};
+
+}  // namespace palpate::client

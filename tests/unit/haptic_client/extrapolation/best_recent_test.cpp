@@ -1,0 +1,97 @@
+#include "haptic_client/extrapolation/best_recent.h"
+
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::client;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// Gives the force it is told to, whatever the samples say.
+struct Told : Extrapolator {
+  explicit Told(const double* force) : force_n(force) {}
+  void update(const Sample&) noexcept override {}
+  void restart() noexcept override {}
+  Vec3 force(const Vec3&, Time) noexcept override { return {0, *force_n, 0}; }
+  const double* force_n;
+};
+
+/// Two laws: what they give, N; the second is trusted more.
+struct Two {
+  double first = 0, second = 0;
+  Time now{};
+  std::uint64_t number = 0;
+  std::unique_ptr<BestRecent> law;
+
+  Two() {
+    std::vector<BestRecent::Law> laws;
+    laws.push_back({"first", std::make_unique<Told>(&first)});
+    laws.push_back({"second", std::make_unique<Told>(&second)});
+    law = std::make_unique<BestRecent>(std::move(laws));
+  }
+  /// Ticks of 2 ms; every 30 ms a sample of 20 ms ago, when the force was 1 N.
+  void go(double seconds, double right = 1) {
+    for (const Time end = now + from_seconds(seconds); now < end; now += 2ms) {
+      if (now.count() % 30'000'000 == 0 && now > 20ms)
+        law->update({.number = ++number, .t = now - 20ms, .f = {0, right, 0}});
+      law->begin_tick(now);
+      law->force(Vec3::Zero(), now);
+    }
+  }
+  double felt() { return law->force(Vec3::Zero(), now)[1]; }
+};
+
+}  // namespace
+
+TEST_CASE("best recent: without a sample, and of equals, the most trusted law") {
+  Two laws;
+  laws.first = laws.second = 1.5;
+  CHECK(laws.law->stand_in() == "second");
+  laws.go(1);
+  CHECK(laws.law->stand_in() == "second");
+}
+
+TEST_CASE("best recent: the law whose predictions were better by a fifth takes over, not one a bit better") {
+  Two laws;
+  laws.first = 1.5, laws.second = 1.55;  // off by 0.5 and 0.55 N
+  laws.go(3);
+  CHECK(laws.law->stand_in() == "second");
+  laws.first = 1.1;
+  laws.go(3);
+  CHECK(laws.law->stand_in() == "first");
+  CHECK(laws.felt() == 1.1);
+  laws.second = 1.09;
+  laws.go(3);
+  CHECK(laws.law->stand_in() == "first");
+  laws.second = 1.01;
+  laws.go(3);
+  CHECK(laws.law->stand_in() == "second");
+}
+
+TEST_CASE(
+    "best recent: what a law gave when the tool was there counts, not what it gives when the sample comes") {
+  Two laws;
+  laws.first = 1, laws.second = 2;
+  laws.go(0.1);  // the first is right at the ticks that samples answer ...
+  laws.law->restart();
+  laws.go(0.05);
+  CHECK(laws.law->stand_in() == "second");  // forgotten
+  laws.go(0.1);
+  CHECK(laws.law->stand_in() == "first");
+}
+
+TEST_CASE(
+    "best recent: a law that only looks back gives nothing where the tool is free, and time there counts for "
+    "none") {
+  Two laws;
+  laws.first = 1, laws.second = 3;
+  laws.go(1);
+  REQUIRE(laws.law->stand_in() == "first");
+  laws.go(0.1, 0);
+  CHECK(laws.felt() == 0);
+  laws.go(5, 0);  // nobody pushes: nothing is learned
+  CHECK(laws.law->stand_in() == "first");
+  laws.go(0.1);
+  CHECK(laws.felt() == 1);
+}
