@@ -20,6 +20,8 @@ each, from the fixed seeds of scripts/trajectories; the mean speed is a study's 
   grasp     a grasped organ, 60 s: the paper's regime; its motion is known at the samples
             only, as in the paper, and its rate is 100/3 Hz
   liver     a liver that is palpated, 60 s
+  liver_tensor_mass, liver_reduced, liver_implicit   tissue that swings, on the mesh of
+            1999, palpated for 20 s
   pull_quasi_static, pull_tensor_mass   the paper's own experiment (paper_experiment.py)
 
 Writes into --out: summary.json and summary.csv (a row for each configuration and law),
@@ -43,7 +45,8 @@ from workers import Failed, Workers, run_program
 ROOT = Path(__file__).resolve().parents[2]
 BIN = ROOT / "build" / "release" / "bin"
 SCENES = ROOT / "configs" / "scenes"
-OWN_SCENES = ("block", "grasp", "liver")  # the others are variants of the block
+SWINGING = ("liver_tensor_mass", "liver_reduced", "liver_implicit")
+OWN_SCENES = ("block", "grasp", "liver", *SWINGING)  # the others are variants of the block
 MAKE_MOTIONS = ROOT / "scripts" / "trajectories" / "make_block_motions"
 
 MOTIONS = ("palpation", "slide", "stop_and_go", "curve", "mix")
@@ -113,6 +116,9 @@ def cells_of(quick, motions):
     for world, motion, rate in (("grasp", "manipulation", GRASP_RATE), ("liver", "palpation", RATE)):
         cells.append(Cell(world, motion, SPEED, ROOT / "configs" / "clients" / f"{world}.toml",
                           QUICK_SECONDS if quick else 60, tuple((rate, delay) for delay in delays), True))
+    for world in SWINGING:
+        cells.append(Cell(world, "palpation", SPEED, ROOT / "configs" / "clients" / "liver_paper.toml",
+                          QUICK_SECONDS if quick else 20, tuple((RATE, delay) for delay in delays), False))
     return cells
 
 
