@@ -13,7 +13,7 @@ namespace palpate::client {
 /// counts, as it does for the hand. Each law has the mean size of its errors, over about the last 32
 /// samples with contact; one that was better by a fifth takes over (follow the leader, with hysteresis), and
 /// `ForceEstimate` blends it in. Of equals, and before the first sample, the last one. A tick costs what all
-/// of them cost, and 30 ns.
+/// of them cost together.
 class BestRecent : public Extrapolator {
  public:
   struct Law {
