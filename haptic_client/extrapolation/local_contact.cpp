@@ -96,7 +96,7 @@ void LocalContact::restart() noexcept {
 
 Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
   if (known_ || following_) {
-    const Vec3 p_rest = at_rest(p, t) - given_way(felt_last_);
+    const Vec3 p_rest = at_rest(p, t) - moved_by_others(felt_last_);
     const auto local = contact_.go(*newest_.surface, p_rest);
     if (local) {
       remember(std::max(now_, t), p_rest, *local);
@@ -117,7 +117,7 @@ Vec3 LocalContact::at_rest(const Vec3& p, Time t) const noexcept {
 }
 
 /// How far the other tools give way to what this one pressed with, `felt` (N), at the last tick.
-Vec3 LocalContact::given_way(const Vec3& felt) const noexcept {
+Vec3 LocalContact::moved_by_others(const Vec3& felt) const noexcept {
   if (!newest_.others) return Vec3::Zero();
   const Vec3 way = newest_.others->compliance * (newest_.f - felt);
   return way * std::min(1.0, kTangentReach / way.norm());

@@ -42,7 +42,7 @@ class LocalContact : public Extrapolator {
   void remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept;
   std::optional<Vec3> remembered(Time t, const Vec3& p_rest) const noexcept;
   Vec3 at_rest(const Vec3& p, Time t) const noexcept;
-  Vec3 given_way(const Vec3& felt) const noexcept;
+  Vec3 moved_by_others(const Vec3& felt) const noexcept;
 
   /// F_loc as it was felt.
   struct Felt {

@@ -214,12 +214,12 @@ void Simulation::solve_contacts() {
 
 /// At `there`, with the places of the other tools held, not their loads: they give way, and the surface comes
 /// along. The tangent is symmetric, as on the wire.
-Linearised Simulation::against_others(std::size_t tool, const Vec3& p_W, const Vec3& there,
-                                      const ToolForce* felt) {
+Linearised Simulation::linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there,
+                                         const ToolForce* felt) {
   if (!coupled_) return linearise(tool, there, felt);
-  const Mat3 against = coupling_->against(tool);
-  Linearised l = linearise(tool, p_W + against * (there - p_W), felt);
-  const Mat3 k = l.tangent * against;
+  const Mat3& relative = coupling_->relative_motion(tool);
+  Linearised l = linearise(tool, p_W + relative * (there - p_W), felt);
+  const Mat3 k = l.tangent * relative;
   l.tangent = 0.5 * (k + k.transpose());
   return l;
 }
@@ -233,15 +233,15 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   if (wants.here || wants.ahead) {
     answer.surface_v_W =
         tools_[tool].surface_velocity(p_W, tissue_, tissue_.velocities, tissue_.loads_of(tool));
-    if (coupled_ && coupling_->presses(tool)) answer.others = coupling_->others(tool);
+    if (coupled_ && coupling_->moved_by_others(tool)) answer.others = coupling_->others(tool);
   }
-  if (wants.here) answer.here = against_others(tool, p_W, p_W, &answer);
+  if (wants.here) answer.here = linearise_coupled(tool, p_W, p_W, &answer);
   if (wants.ahead) {
     const Vec3 v_W = answer.others ? Vec3(answer.surface_v_W + answer.others->v_W) : answer.surface_v_W;
     const Vec3 motion = wants.ahead->seconds * (wants.ahead->v_W - v_W);  // on the organ as it stands
     Vec3 there = p_W + std::min(1.0, kFarthestAhead / motion.norm()) * motion;
     if (!there.allFinite()) there = p_W;
-    answer.ahead = {there, against_others(tool, p_W, there, nullptr)};
+    answer.ahead = {there, linearise_coupled(tool, p_W, there, nullptr)};
   }
   if (wants.surface_shift && !tools_[tool].holds())  // what is grasped is no matter of contact
     answer.surface_shift_W = surface_shift(tool, p_W);
@@ -381,8 +381,10 @@ std::vector<MemoryPart> Simulation::memory() const {
                                mesh_.stiffness.size() * sizeof(double)});
   parts.push_back(
       {"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
+  const std::size_t coupling_bytes = coupling_ ? coupling_->bytes() / tools_.size() : 0;  // of each
   for (std::size_t i = 0; i < tools_.size(); ++i)
-    parts.push_back({contact_part(i, tools_.size()), tools_[i].bytes() + tissue_.bytes_of(i)});
+    parts.push_back(
+        {contact_part(i, tools_.size()), tools_[i].bytes() + tissue_.bytes_of(i) + coupling_bytes});
   return parts;
 }
 

@@ -129,7 +129,7 @@ class Simulation {
   void solve_contacts();
   void restore_touching();
   void couple(std::span<const ToolInput> inputs);
-  Linearised against_others(std::size_t tool, const Vec3& p_W, const Vec3& there, const ToolForce* felt);
+  Linearised linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there, const ToolForce* felt);
   void add_wanted(std::size_t tool, const ToolInput& input);
   Vec3 surface_shift(std::size_t tool, const Vec3& p_W);
   bool ran_away() const noexcept;

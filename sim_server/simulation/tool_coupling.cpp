@@ -6,6 +6,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kLittle = 1e-3;  // N: what the tissue is asked about on top of its loads
+constexpr double kMostFeedback = 0.9;
 
 double weight_of(std::span<const NodalLoad> loads) noexcept {
   double sum = 0;
@@ -16,7 +17,7 @@ double weight_of(std::span<const NodalLoad> loads) noexcept {
 }  // namespace
 
 ToolCoupling::ToolCoupling(std::size_t tools, std::size_t vertices, std::size_t most_loads)
-    : surface_(vertices), moved_(vertices), others_(tools), against_(tools, Mat3::Identity()) {
+    : surface_(vertices), moved_(vertices), others_(tools), relative_(tools, Mat3::Identity()) {
   loads_.reserve(most_loads);
 }
 
@@ -25,7 +26,14 @@ void ToolCoupling::update(Tissue& tissue, std::span<const ToolContact> tools,
   find_compliance(tissue, tools);
   for (std::size_t i = 0; i < tools.size(); ++i) {
     others_[i] = others_of(i, tools, velocities);
-    against_[i] = (Mat3::Identity() - others_[i].compliance * tools[i].force().tangent).inverse();
+    const Mat3 feedback = others_[i].compliance * tools[i].force().tangent;
+    if (!(feedback.norm() <= kMostFeedback) || !others_[i].v_W.allFinite() ||
+        !others_[i].compliance.allFinite()) {
+      others_[i] = {};
+      relative_[i].setIdentity();
+      continue;
+    }
+    relative_[i] = (Mat3::Identity() - feedback).inverse();
   }
 }
 

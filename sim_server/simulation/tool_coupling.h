@@ -20,8 +20,8 @@ struct OtherTools {
 /// tools but i,
 ///   w_i = G_io r_o,   r_o = -K_o (v_o - G_oo r_o - G_oi r_i),
 /// so that w_i = u_i + M_i r_i. The tangent with the places of the others held, not their loads, is
-/// K_i (I - M_i K_i)^-1. Exact where each grasps one vertex of linear tissue. Only set-up allocates. One
-/// thread.
+/// K_i (I - M_i K_i)^-1. Exact where each grasps one vertex of linear tissue. Tools so close that this has no
+/// meaning (|M_i K_i| above 0.9) are told of no other. Only set-up allocates. One thread.
 class ToolCoupling {
  public:
   /// For so many tools, so many vertices of the surface, and loads of all tools at most.
@@ -31,14 +31,17 @@ class ToolCoupling {
   /// model for each tool that presses, and two.
   void update(Tissue& tissue, std::span<const ToolContact> tools, std::span<const Vec3> velocities);
 
-  /// Whether any other tool presses the tissue: else u_i and M_i are 0.
-  bool presses(std::size_t tool) const noexcept {
+  /// Whether others move the surface under the tool: else u_i and M_i are 0.
+  bool moved_by_others(std::size_t tool) const noexcept {
     return !others_[tool].compliance.isZero(0) || !others_[tool].v_W.isZero(0);
   }
   /// u_i and M_i.
   const OtherTools& others(std::size_t tool) const noexcept { return others_[tool]; }
-  /// (I - M_i K_i)^-1: of a small motion of tool i, what it goes against the surface under it.
-  const Mat3& against(std::size_t tool) const noexcept { return against_[tool]; }
+  /// (I - M_i K_i)^-1: how far tool i goes relative to the surface under it, for each m that it goes.
+  const Mat3& relative_motion(std::size_t tool) const noexcept { return relative_[tool]; }
+  std::size_t bytes() const {
+    return (surface_.capacity() + moved_.capacity()) * sizeof(Vec3) + loads_.capacity() * sizeof(NodalLoad);
+  }
 
  private:
   static constexpr int kMost = 3 * static_cast<int>(kMaxTools);
@@ -53,7 +56,7 @@ class ToolCoupling {
   std::vector<Vec3> surface_, moved_;  // vertices: where they are, m; how far one force carries them, m/N
   Matrix compliance_;                  // G (3n x 3n), zero on the diagonal
   std::vector<OtherTools> others_;
-  std::vector<Mat3> against_;
+  std::vector<Mat3> relative_;
 };
 
 }  // namespace palpate::sim

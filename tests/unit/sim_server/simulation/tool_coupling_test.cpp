@@ -1,6 +1,7 @@
 #include "sim_server/simulation/tool_coupling.h"
 
 #include "sim_server/simulation/simulation.h"
+#include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 #include "tests/support/soft_block.h"
 
@@ -85,4 +86,38 @@ TEST_CASE("one tool alone, and one beside a tool that is lifted, is told of no o
   const ToolAnswer beside = two.step(inputs, kDt)[0];
   CHECK_FALSE(beside.others);
   CHECK((beside.here->tangent - alone.here->tangent).norm() < 1e-9 * alone.here->tangent.norm());
+}
+
+TEST_CASE("tools that are told of each other: a step does not allocate") {
+  Held block(3);
+  const std::vector<Vec3> moved{{0, 0.004, 0.001}, {0.002, 0.003, 0}, {0, 0.002, -0.001}};
+  std::vector<ToolInput> inputs(3);
+  for (std::size_t i = 0; i < 3; ++i)
+    inputs[i] = {.pose = ToolPose(kPlaces[i] + moved[i]),
+                 .v_W = {0.01, 0, 0},
+                 .wants = {.tangent = true, .here = true}};
+  block.step(inputs, kDt);
+  const test::AllocationGuard guard;
+  const auto answers = block.step(inputs, kDt);
+  const std::size_t allocations = guard.count();
+  CHECK(answers[0].others);
+  CHECK(allocations == 0);
+}
+
+TEST_CASE("two tools that hold the same vertex: each tells finite tangents, and of no other") {
+  Scene scene = held_block(2, 0.001);
+  scene.tools[1].grasp_place = kPlaces[0];
+  Simulation block(scene, test::soft_block({0.08, 0.03, 0.04}, {16, 6, 8}));
+  std::vector<ToolInput> inputs(2);
+  for (std::size_t i = 0; i < 2; ++i)
+    inputs[i] = {.pose = ToolPose(kPlaces[0] + Vec3(0, 0.002, i == 0 ? 0 : 0.001)),
+                 .v_W = {0, 0.1, 0},
+                 .wants = {.tangent = true, .here = true}};
+  for (int step = 0; step < 5; ++step) {
+    for (const ToolAnswer& answer : block.step(inputs, kDt)) {
+      CHECK(answer.force.allFinite());
+      CHECK_FALSE(answer.others);
+      if (answer.here) CHECK(answer.here->tangent.allFinite());
+    }
+  }
 }
