@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
-#include "common/error.h"
 #include "common/program.h"
 #include "sim_server/commands/explain.h"
 #include "sim_server/commands/mesh_info.h"
@@ -62,6 +61,7 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
       ->required()
       ->allow_extra_args(false);
   command->add_option("--tool", options.tool, "Which tool's session the capture holds, from 1")
+      ->check(CLI::Range(1, 8))
       ->capture_default_str();
   command->add_option("--rate", options.rate_hz, "Steps a second, 1 to 20000 Hz; 2000 is the truth")
       ->required();
@@ -209,7 +209,6 @@ void check(const sim::RecordOptions& options) {
   require_within(options.delay_ms, 0, 10000, "--delay-ms", "ms");
   if (options.ticks_hz) require_within(*options.ticks_hz, 1, 20000, "--ticks", "Hz");
   if (options.seconds) require_within(*options.seconds, 1e-3, 1e5, "--seconds", "s");
-  if (options.tool < 1) fail("--tool counts from 1");
 }
 
 int run(int argc, char** argv) {

@@ -108,6 +108,11 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   progress(file.filename().string(), 1);
   if (e.samples < 2 || !(e.seconds > 0))
     fail("{}: has fewer than two force samples; nothing to evaluate", file.string());
+  if (e.plain.front().scored() == 0)
+    fail(
+        "{}: no two force samples are near enough in time to score what lies between; a smaller --keep, or a "
+        "faster capture",
+        file.string());
   return e;
 }
 

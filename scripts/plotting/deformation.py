@@ -11,15 +11,13 @@ python3-matplotlib.
 Exit status: 0 drawn, 2 the folder cannot be used.
 """
 
-import argparse
 import csv
 import json
 import math
 import re
 import sys
-from pathlib import Path
 
-from pictures import CannotSave, add_format, in_words, plain_numbers, prepare, quick_note, save
+from pictures import draw_folder, in_words, plain_numbers, save
 
 LEAST = 1e-3  # %: what is less is drawn there
 COLOURS = {"quasi_static": "tab:blue", "tensor_mass": "tab:orange", "implicit": "tab:green", "reduced": "tab:purple"}
@@ -226,33 +224,14 @@ def draw_cost(folder, note, extra):
     save(figure, folder / "cost.png", extra, 110)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("dir", type=Path, metavar="DIR")
-    add_format(parser)
-    arguments = parser.parse_args()
-    folder = arguments.dir
+def draw_study(folder, note, extra):
     folders = [f for f in (folder, *sorted(folder.glob("*/"))) if (f / "along.csv").exists()]
-    try:
-        prepare()
-        note = quick_note(folder)
-        for one in folders:
-            draw_scene(one, note, arguments.plot_format)
-        if (folder / "cost.json").exists():
-            draw_cost(folder, note, arguments.plot_format)
-    except CannotSave as problem:
-        print(f"deformation.py: {problem}", file=sys.stderr)
-        return 2
-    except ImportError:
-        print("deformation.py: matplotlib is missing: apt-get install python3-matplotlib", file=sys.stderr)
-        return 2
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        print(f"deformation.py: {folder}: {error}; sim_server study makes it", file=sys.stderr)
-        return 2
     if not folders:
-        print(f"deformation.py: {folder}: no summary.json with along.csv; sim_server study makes it", file=sys.stderr)
-        return 2
-    return 0
+        raise ValueError("no summary.json with along.csv")
+    for one in folders:
+        draw_scene(one, note, extra)
+    if (folder / "cost.json").exists():
+        draw_cost(folder, note, extra)
 
 
-sys.exit(main())
+sys.exit(draw_folder("deformation.py", "sim_server study", __doc__, draw_study))

@@ -1,7 +1,10 @@
 """What the pictures of Palpate share: colours, names in words, and how they are saved."""
 
+import argparse
 import json
 import os
+import sys
+from pathlib import Path
 
 FORMATS = ("png", "pdf", "svg")
 DPI = 100
@@ -75,6 +78,28 @@ def prepare(**more):
     pyplot.rcParams.update({"axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True,
                             "text.parse_math": False, "pdf.fonttype": 42, "svg.fonttype": "none", **more})
     return pyplot
+
+
+def draw_folder(script, made_by, doc, draw):
+    """The whole command line of a script that draws what a study left in a folder: `draw(folder, note, extra)`, with
+    what `quick_note` says and the other format. Returns the exit status, after one line where there is trouble."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("dir", type=Path, metavar="DIR")
+    add_format(parser)
+    arguments = parser.parse_args()
+    try:
+        prepare()
+        draw(arguments.dir, quick_note(arguments.dir), arguments.plot_format)
+    except CannotSave as problem:
+        print(f"{script}: {problem}", file=sys.stderr)
+        return 2
+    except ImportError:
+        print(f"{script}: matplotlib is missing: apt-get install python3-matplotlib", file=sys.stderr)
+        return 2
+    except (OSError, ValueError, LookupError, TypeError) as error:
+        print(f"{script}: {arguments.dir}: {error}; {made_by} makes it", file=sys.stderr)
+        return 2
+    return 0
 
 
 def save(figure, png, extra="png", dpi=DPI):

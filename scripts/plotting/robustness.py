@@ -8,13 +8,11 @@ percent of its size. Needs Debian's python3-matplotlib.
 Exit status: 0 drawn, 2 the folder cannot be used.
 """
 
-import argparse
 import json
 import sys
 import textwrap
-from pathlib import Path
 
-from pictures import CannotSave, add_format, in_words, prepare, quick_note, save
+from pictures import draw_folder, in_words, save
 
 COLOURS = {"stable": "#b8e0c2", "flagged": "#fbe3a1", "refused": "#c9d6ea", "not_applicable": "#f2f2f2",
            "wrong": "#e4604e", "exploded": "#9c2f6e"}
@@ -70,26 +68,8 @@ def draw(rows, file, note, extra):
     save(figure, file, extra, 110)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("dir", type=Path, metavar="DIR")
-    add_format(parser)
-    arguments = parser.parse_args()
-    folder = arguments.dir
-    try:
-        prepare()
-        draw(json.loads((folder / "summary.json").read_text(encoding="ascii")), folder / "robustness.png",
-             quick_note(folder), arguments.plot_format)
-    except CannotSave as problem:
-        print(f"robustness.py: {problem}", file=sys.stderr)
-        return 2
-    except ImportError:
-        print("robustness.py: matplotlib is missing: apt-get install python3-matplotlib", file=sys.stderr)
-        return 2
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        print(f"robustness.py: {folder}: {error}; scripts/study robustness makes it", file=sys.stderr)
-        return 2
-    return 0
+def draw_study(folder, note, extra):
+    draw(json.loads((folder / "summary.json").read_text(encoding="ascii")), folder / "robustness.png", note, extra)
 
 
-sys.exit(main())
+sys.exit(draw_folder("robustness.py", "scripts/study robustness", __doc__, draw_study))

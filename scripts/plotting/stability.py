@@ -9,13 +9,11 @@ compliance is a line in the map of the true one. Needs Debian's python3-matplotl
 Exit status: 0 drawn, 2 the folder cannot be used.
 """
 
-import argparse
 import json
 import math
 import sys
-from pathlib import Path
 
-from pictures import CannotSave, add_format, in_words, prepare, quick_note, save
+from pictures import draw_folder, in_words, save
 
 LOWEST = 0.003  # of the direct limit: the end of the colours
 
@@ -62,30 +60,10 @@ def draw(rows, world, file, note, extra):
     save(figure, file, extra, 110)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("dir", type=Path, metavar="DIR")
-    add_format(parser)
-    arguments = parser.parse_args()
-    folder = arguments.dir
-    try:
-        rows = [with_wrong_model(row) for row in json.loads((folder / "summary.json").read_text(encoding="ascii"))]
-        worlds = [world for (world,) in unique(rows, "world")]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        print(f"stability.py: {folder}: {error}; scripts/study stability makes it", file=sys.stderr)
-        return 2
-    try:
-        prepare(**{"axes.spines.top": True, "axes.spines.right": True})
-        for world in worlds:
-            draw([row for row in rows if row["world"] == world], world, folder / f"stability_{world}.png",
-                 quick_note(folder), arguments.plot_format)
-    except CannotSave as problem:
-        print(f"stability.py: {problem}", file=sys.stderr)
-        return 2
-    except ImportError:
-        print("stability.py: matplotlib is missing: apt-get install python3-matplotlib", file=sys.stderr)
-        return 2
-    return 0
+def draw_study(folder, note, extra):
+    rows = [with_wrong_model(row) for row in json.loads((folder / "summary.json").read_text(encoding="ascii"))]
+    for (world,) in unique(rows, "world"):
+        draw([row for row in rows if row["world"] == world], world, folder / f"stability_{world}.png", note, extra)
 
 
-sys.exit(main())
+sys.exit(draw_folder("stability.py", "scripts/study stability", __doc__, draw_study))
