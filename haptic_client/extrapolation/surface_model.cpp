@@ -57,7 +57,7 @@ void SurfaceModel::take_shape(const SurfacePage& page) noexcept {
   for (std::size_t i = 0; i < SurfacePages::kPerPage && first + i < size; ++i) {
     const float* const three = &page.values[3 * i];
     if (positions) {
-      rest_[first + i] = Vec3(three[0], three[1], three[2]);
+      rest_[first + i] = Eigen::Map<const Eigen::Vector3f>(three).cast<double>();
       continue;
     }
     for (int corner = 0; corner < 3; ++corner) {

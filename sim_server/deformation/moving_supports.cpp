@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/error.h"
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/scene/held_motion.h"
 
 namespace palpate::sim {

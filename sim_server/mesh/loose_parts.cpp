@@ -67,7 +67,7 @@ std::vector<Joint> joints_of(const TetMesh& mesh, const std::vector<int>& part) 
     for (const int v : mesh.tetrahedra[t]) uses.emplace_back(v, part[t]);
   }
   std::ranges::sort(uses);
-  uses.erase(std::ranges::unique(uses).begin(), uses.end());
+  uses.erase(std::unique(uses.begin(), uses.end()), uses.end());
   std::vector<Joint> joints;
   for (auto first = uses.begin(); first != uses.end();) {
     const auto last =
@@ -136,7 +136,7 @@ std::vector<LoosePart> loose_parts(const TetMesh& mesh, std::span<const int> hel
   }
   for (auto& own : vertices) {
     std::ranges::sort(own);
-    own.erase(std::ranges::unique(own).begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
   }
   std::vector<char> stands(mesh.vertices.size(), 0), is_held(vertices.size(), 0);
   for (const int v : held) stands[v] = 1;

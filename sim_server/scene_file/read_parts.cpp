@@ -14,6 +14,8 @@ struct Named {
   std::string_view name;
   Value value;
 };
+template <class Value>
+Named(const char*, Value) -> Named<Value>;
 constexpr std::array kLaws{
     Named{"linear", ElasticLaw::kLinear},
     Named{"corotational", ElasticLaw::kCorotational},

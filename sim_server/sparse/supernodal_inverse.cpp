@@ -130,7 +130,7 @@ void SupernodalFactor<Scalar>::inverse_block(std::span<const int> unknowns, Eige
       const InverseColumns columns(*this, plan, some.subspan(begin, end - begin));
       for (std::size_t j = begin; j < end; ++j) {
         for (const auto& row : wanted.subspan(from + j)) {
-          const Scalar value = columns.at(static_cast<int>(j - begin), row.place);
+          const auto value = static_cast<double>(columns.at(static_cast<int>(j - begin), row.place));
           block(row.number, some[j].number) = value;
           block(some[j].number, row.number) = value;
         }

@@ -33,7 +33,7 @@ sim::Scene scene_of(double young_modulus) {
   scene.source = "study";
   scene.material = sim::Material{.young_modulus = young_modulus, .poisson_ratio = 0.45};
   scene.deformation.model = "quasi_static";
-  scene.fixed.push_back({sim::Box{Vec3(-1, -1, -1), Vec3(1, -kHeight + 1e-6, 1)}, "", "study"});
+  scene.fixed.push_back({{sim::Box{Vec3(-1, -1, -1), Vec3(1, -kHeight + 1e-6, 1)}, "", "study"}});
   scene.tools[0].shape.radius = kRadius;
   scene.tools[0].reach =
       sim::Box{Vec3(-kFineLength, -1e-3, -kFineWidth), Vec3(kFineLength, 1e-3, kFineWidth)};

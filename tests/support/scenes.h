@@ -22,7 +22,7 @@ inline sim::Scene scene_of(const sim::Material& material, const sim::Box& fixed,
   scene.material = material;
   scene.deformation.model = "quasi_static";
   scene.deformation.of<sim::SpringSettings>().stiffness = Vec3(40, 50, 60);  // of no effect on other models
-  scene.fixed.push_back({fixed, "", "test"});
+  scene.fixed.push_back({{fixed, "", "test"}});
   scene.tools[0].shape.radius = tool_radius;
   return scene;
 }

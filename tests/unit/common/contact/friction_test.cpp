@@ -11,7 +11,7 @@ using namespace palpate;
 namespace {
 
 constexpr double kRadius = 0.005, kMu = 0.3;
-constexpr Tool kTool{kRadius, kMu};
+const Tool kTool{kRadius, kMu};
 
 /// One large triangle in the plane y = 0: corners of compliance `c` in all directions, uncoupled.
 ContactPatch single_triangle(double c, double tool_compliance) {

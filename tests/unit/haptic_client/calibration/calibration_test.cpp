@@ -72,7 +72,7 @@ TEST_CASE(
 TEST_CASE("calibration: no force before there is a position, none while one is lost or is not finite") {
   const DeviceReading good{.p_D = {0, 0, 0.1}};
   for (const DeviceReading& bad :
-       {DeviceReading{.p_D = good.p_D, .valid = false}, DeviceReading{.p_D = {0, NAN, 0}}}) {
+       {DeviceReading{.p_D = good.p_D, .valid = false}, DeviceReading{.p_D = {0, std::nan(""), 0}}}) {
     Calibration calibration({});
     DeviceReading reading = bad;
     const auto tick = [&](const DeviceReading& now) {

@@ -84,8 +84,8 @@ struct Oscillator {
 
   explicit Oscillator(std::string_view model) {
     for (const double side : {-1.0, 1.0}) {
-      scene.fixed.push_back({Box{Vec3(side - 0.995, -1, -1), Vec3(side + 0.995, 1, 1)}, "", "test"});
-      scene.fixed.push_back({Box{Vec3(-1, -1, side - 0.995), Vec3(1, 1, side + 0.995)}, "", "test"});
+      scene.fixed.push_back({{Box{Vec3(side - 0.995, -1, -1), Vec3(side + 0.995, 1, 1)}, "", "test"}});
+      scene.fixed.push_back({{Box{Vec3(-1, -1, side - 0.995), Vec3(1, 1, side + 0.995)}, "", "test"}});
     }
     while (mesh.vertices[vertex].norm() > 1e-9) ++vertex;
     const Solid solid(mesh, *scene.material);
@@ -217,7 +217,7 @@ TEST_CASE("moving supports: slow motion leads all models where statics stand, st
     const auto scene_with = [&](std::string_view model) {
       Scene scene = block_scene(model);
       scene.fixed[0].motions = {{Vec3(0.6, 0.8, 0), 0.003, 20, 0.5}};
-      if (!as_one) scene.fixed.push_back({Box{Vec3(0.0199, -0.015, -1), Vec3(1, 1, 1)}, "", "test"});
+      if (!as_one) scene.fixed.push_back({{Box{Vec3(0.0199, -0.015, -1), Vec3(1, 1, 1)}, "", "test"}});
       return scene;
     };
     const SupportMotion motion = scene_with("quasi_static").fixed[0].motions[0];
@@ -250,7 +250,7 @@ TEST_CASE("moving supports: a soft bar of any law and element is drawn out as st
     const TetMesh mesh = grid_block(lines(0, 0.04, 4), lines(0, 0.01, 1), lines(0, 0.01, 1));
     Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.3, .law = law, .element = element},
                            {Vec3(-1, -1, -1), Vec3(0, 1, 1)}, 0.005);
-    scene.fixed.push_back({Box{Vec3(0.04, -1, -1), Vec3(1, 1, 1)}, "", "test"});
+    scene.fixed.push_back({{Box{Vec3(0.04, -1, -1), Vec3(1, 1, 1)}, "", "test"}});
     scene.fixed[1].motions = {{Vec3(0.8, 0.6, 0), 0.015, 20}};
     scene.deformation.model = "implicit";
     const Bench bench(scene, mesh);
@@ -281,7 +281,7 @@ TEST_CASE("moving supports: what is held stands where displacement and motion ad
                          {Vec3(-1, -1, -1), Vec3(0.01, 1, 1)}, 0.005);
   scene.fixed[0].axes = 3;  // x and y
   scene.fixed[0].motions = {{Vec3(0.6, 0, 0.8), 0.002, 3, 0.2}};
-  scene.fixed.push_back({Box{Vec3(0.01, -1, -1), Vec3(1, 1, 1)}, "", "test"});
+  scene.fixed.push_back({{Box{Vec3(0.01, -1, -1), Vec3(1, 1, 1)}, "", "test"}});
   scene.fixed[1].motions = {{Vec3::UnitY(), 0.001, 2}, {Vec3::UnitZ(), 0.004, 5}};
   scene.loads.push_back({.kind = Load::Kind::kDisplacement,
                          .region = {Box{Vec3(0.02, -1, -1), Vec3(1, 1, 1)}, "", "test"},

@@ -68,7 +68,7 @@ TEST_CASE("moving supports: a bar pulled at one end stretches evenly, the other 
   TetMesh mesh = grid_block({0, 0.01, 0.025, 0.04}, {0, 0.01}, {0, 0.01, 0.02});
   Scene scene = test::scene_of({.young_modulus = 5e3, .poisson_ratio = 0, .element = element},
                                {Vec3(-1, -1, -1), Vec3(0, 1, 1)}, 0.005);
-  scene.fixed.push_back({Box{Vec3(0.04, -1, -1), Vec3(1, 1, 1)}, "", "test"});
+  scene.fixed.push_back({{Box{Vec3(0.04, -1, -1), Vec3(1, 1, 1)}, "", "test"}});
   scene.fixed[0].motions = {{Vec3::UnitX(), 0.001, 2.0, 0.3}};
   scene.fixed[1].motions = {{Vec3::UnitX(), 0.002, 3.0}, {Vec3::UnitX(), 0.0005, 0.7, 1.0}};
   Simulation bar(scene, mesh);
