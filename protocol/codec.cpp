@@ -13,6 +13,7 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
 constexpr std::array<std::uint8_t, 3> kReserved{};
 constexpr double kMaxMagnitude = 1e9;  // of any position, speed or force: beyond is a bug or an attack
+constexpr float kMaxAmplitude = 1e6F;  // of a mode, m sqrt(kg), and of its rate
 constexpr float kMaxPercent = 1e6F;    // of an error of a force
 constexpr std::int64_t kMaxLead = 10'000'000'000;  // ns
 
@@ -57,11 +58,16 @@ bool valid(const OtherTools& m) noexcept {
   return small(m.v_W) &&
          std::all_of(m.compliance.begin(), m.compliance.end(), [](double c) { return std::abs(c) <= 1e6; });
 }
+bool valid(const ModalState& m) noexcept {
+  const auto bounded = [](float x) { return std::abs(x) <= kMaxAmplitude; };
+  return m.count <= kMostSlowModes && std::all_of(m.q.begin(), m.q.end(), bounded) &&
+         std::all_of(m.v.begin(), m.v.end(), bounded);
+}
 bool valid(const ForceSample& m) noexcept {
   return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W) &&
          small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) && small(m.ahead_f_W) &&
          valid(m.ahead) && valid(m.surface) && valid(m.errors.mesh) && valid(m.errors.time_step) &&
-         valid(m.others);
+         valid(m.others) && valid(m.modes) && small(m.mean_f_W);
 }
 bool valid(const SurfacePage& m) noexcept {
   return m.tool < kMaxTools && m.page != ToolState::kNoPage &&

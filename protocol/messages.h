@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <variant>
 
+#include "common/damped_mode.h"
 #include "common/discretisation_error.h"
 #include "common/types.h"
 
@@ -135,11 +136,23 @@ struct OtherTools {
   }
 };
 
+/// Where the slow modes of a tissue that swings stand; how its surface moves in them: `SurfacePage`s.
+struct ModalState {
+  std::uint8_t count = 0;  ///< of modes, at most `kMostSlowModes`
+  /// Of the first `count`: amplitude, m sqrt(kg), and its rate, m sqrt(kg)/s.
+  std::array<float, kMostSlowModes> q = {}, v = {};
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.count);
+    for (std::size_t k = 0; k < m.count && k < m.q.size(); ++k) v(m.q[k]), v(m.v[k]);
+  }
+};
+
 struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
-  /// Bits of `flags`; the last five: which parts follow.
+  /// Bits of `flags`; the last seven: which parts follow.
   static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8, kHasSurface = 16,
-                                 kHasErrors = 32, kHasOthers = 64;
+                                 kHasErrors = 32, kHasOthers = 64, kHasModes = 128, kHasMean = 256;
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
   std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:
@@ -158,6 +171,8 @@ struct ForceSample {
   SurfaceState surface{};           ///< kHasSurface
   DiscretisationErrors errors{};    ///< kHasErrors
   OtherTools others{};              ///< kHasOthers
+  ModalState modes{};               ///< kHasModes, with kHasSurface: at `tool_t_ns`, under `f_W`
+  Vec3 mean_f_W = Vec3::Zero();     ///< kHasMean: the mean force over the step that ended there, N
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
@@ -170,6 +185,8 @@ struct ForceSample {
       v(m.errors.time_step.source), v(m.errors.time_step.percent);
     }
     if ((m.flags & kHasOthers) != 0) OtherTools::fields(m.others, v);
+    if ((m.flags & kHasModes) != 0) ModalState::fields(m.modes, v);
+    if ((m.flags & kHasMean) != 0) v(m.mean_f_W);
   }
 };
 

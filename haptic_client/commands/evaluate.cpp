@@ -55,7 +55,8 @@ Wants wants_of(const std::string& law) {
 double bytes_for(const Wants& wants, protocol::ForceSample sample) {
   if (!wants.here) sample.flags &= ~protocol::ForceSample::kHasHere;
   if (!wants.ahead) sample.flags &= ~protocol::ForceSample::kHasAhead;
-  if (!wants.surface) sample.flags &= ~protocol::ForceSample::kHasSurface;
+  if (!wants.surface)
+    sample.flags &= ~(protocol::ForceSample::kHasSurface | protocol::ForceSample::kHasModes);
   sample.flags &= ~protocol::ForceSample::kHasErrors;  // for reports, not for laws
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   return static_cast<double>(protocol::encode({}, sample, bytes));

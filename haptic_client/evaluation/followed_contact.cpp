@@ -24,7 +24,7 @@ void FollowedContact::take(const Sample& sample) noexcept {
   const Sample known = with_usable_parts(sample);
   surface_ = known.surface;
   motion_.update(known);
-  if (!surface_ || surface_->tool.friction > 0) {
+  if (!surface_ || surface_->tool.friction > 0 || surface_->modes.count > 0) {
     surface_.reset();
     contact_->lift();
   }

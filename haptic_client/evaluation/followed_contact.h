@@ -8,8 +8,9 @@
 namespace palpate::client {
 
 /// Goes with the tool and solves its contact with the model of the surface at every tick, ten times as near
-/// as `LocalContact` does, for `BetweenSamples`. Only without friction: with it, force depends on more of the
-/// path than what was seen. Haptic thread; only the constructor allocates, 15 MB. 5 to 120 us a tick.
+/// as `LocalContact` does, for `BetweenSamples`. Only without friction, and of tissue that does not swing:
+/// else force depends on more of the path than what was seen. Haptic thread; only the constructor allocates,
+/// 15 MB. 5 to 120 us a tick.
 class FollowedContact {
  public:
   explicit FollowedContact(double rate_hz);

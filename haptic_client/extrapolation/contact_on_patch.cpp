@@ -33,6 +33,7 @@ ContactOnPatch::ContactOnPatch(const Accuracy& accuracy)
   begin_.reserve(kMostNodes);
   loads_.reserve(kMostNodes);
   kept_loads_.reserve(kMostNodes);
+  shapes_.reserve(kMostNodes);
 }
 
 void ContactOnPatch::lift() noexcept {
@@ -41,7 +42,9 @@ void ContactOnPatch::lift() noexcept {
   loads_.clear();
 }
 
-std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) noexcept {
+std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p,
+                                       const ModalMemory* memory) noexcept {
+  memory_ = memory;
   const double longest = kStride * surface.tool.radius;
   if (version_ != surface.model->version() || (p - state_.place).norm() > kMostStrides * longest) lift();
   if (!surface.model->has_shape() || !p.allFinite()) {
@@ -64,10 +67,11 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p) no
   return {};
 }
 
-std::optional<Vec3> ContactOnPatch::probe(const Surface& surface, const Vec3& p) noexcept {
+std::optional<Vec3> ContactOnPatch::probe(const Surface& surface, const Vec3& p,
+                                          const ModalMemory* memory) noexcept {
   const State kept = state_;
   kept_loads_ = loads_;
-  const auto force = go(surface, p);
+  const auto force = go(surface, p, memory);
   loads_ = kept_loads_;
   state_ = kept;
   if (state_.placed && !take_patch(surface, state_.place)) lift();
@@ -97,6 +101,7 @@ bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
   state_.contacts = 0;
   if (patch_.triangles.empty()) return true;
   patch_.tool_compliance = surface.tool_compliance;
+  if (memory_ != nullptr) warp(*surface.model);
   begin_.clear();
   for (int i = 0; i < patch_.nodes(); ++i) begin_.push_back(patch_.free[i] + u_.segment<3>(3 * i));
   ContactSolver& solving = solver(surface);
@@ -139,6 +144,7 @@ void ContactOnPatch::learn_tangent(const Vec3& motion, const Vec3& force_before)
 /// What the patch nodes carry now, which is all that is needed to go on from here.
 void ContactOnPatch::note_loads(const ContactSolver& solved) noexcept {
   const auto forces = solved.node_forces();
+  ++solves_;
   loads_.clear();
   for (int i = 0; i < patch_.nodes(); ++i) {
     if (!forces.segment<3>(3 * i).isZero(0)) loads_.push_back({vertices_[i], forces.segment<3>(3 * i)});
@@ -164,7 +170,8 @@ bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept 
   version_ = surface.model->version();
   center_ = p;
   const Vec3 tip_went = note_ways(surface.model->rest().size());
-  if (!displace_near(surface, p) || !take_triangles(surface, p) || !take_compliance(*surface.model))
+  if (!displace_near(surface, p) || !take_triangles(surface, p) || !take_compliance(*surface.model) ||
+      !take_shapes(*surface.model))
     return false;
   for (int i = 0; i < patch_.nodes(); ++i) {
     u_.segment<3>(3 * i) = moved_[vertices_[i]];
@@ -253,6 +260,22 @@ bool ContactOnPatch::take_compliance(const SurfaceModel& model) noexcept {
     }
   }
   return true;
+}
+
+bool ContactOnPatch::take_shapes(const SurfaceModel& model) noexcept {
+  if (memory_ == nullptr) return true;
+  shapes_.resize(vertices_.size());
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    shapes_[i].fill(Vec3::Zero());
+    if (!model.add_shapes(vertices_[i], 1, shapes_[i])) return false;
+  }
+  return true;
+}
+
+/// Where the patch is free of the tool, by the slow modes of now.
+void ContactOnPatch::warp(const SurfaceModel& model) noexcept {
+  for (std::size_t i = 0; i < vertices_.size(); ++i)
+    patch_.free[i] = model.rest()[static_cast<std::size_t>(vertices_[i])] + memory_->warp(shapes_[i]);
 }
 
 /// The tool appears at `p`. If that is inside the surface it is taken to have come in through the nearest

@@ -3,7 +3,7 @@
 
 #include "common/contact/contact_solver.h"
 #include "haptic_client/extrapolation/extrapolator.h"
-#include "haptic_client/extrapolation/surface_model.h"
+#include "haptic_client/extrapolation/modal_memory.h"
 
 namespace palpate::client {
 
@@ -26,19 +26,27 @@ class ContactOnPatch {
   /// then it stands nowhere. In contact it solves anew where the tool has gone 3 % of how deep it presses, at
   /// most 1 % of its radius (`Accuracy`; with friction a quarter of that), and follows the tangent in
   /// between.
-  std::optional<Vec3> go(const Surface& surface, const Vec3& p) noexcept;
+  /// `memory`: of a tissue that swings, whose modes turn and bend the patch, too; the frame goes with where
+  /// that stands.
+  std::optional<Vec3> go(const Surface& surface, const Vec3& p, const ModalMemory* memory = nullptr) noexcept;
   /// The force at `p`; then it stands where it stood, on a patch around that.
-  std::optional<Vec3> probe(const Surface& surface, const Vec3& p) noexcept;
+  std::optional<Vec3> probe(const Surface& surface, const Vec3& p,
+                            const ModalMemory* memory = nullptr) noexcept;
   /// It stands nowhere.
   void lift() noexcept;
+  /// Its frame has been moved by `motion` (m): the same place is called another, so much farther.
+  void rename(const Vec3& motion) noexcept {
+    state_.place += motion;
+    center_ += motion;
+  }
+  /// What the surface carries there; and how often contact has been solved, by which that may have changed.
+  std::span<const SurfaceLoad> loads() const noexcept { return loads_; }
+  std::uint64_t solves() const noexcept { return solves_; }
   /// How the force changed with the place around the last one, N/m.
   const Mat3& tangent() const noexcept { return state_.tangent; }
 
  private:
-  struct Load {
-    int vertex;  // of the model
-    Vec3 force;  // N
-  };
+  using Load = SurfaceLoad;
   double near(const Surface& surface) const noexcept;
   ContactSolver::Effort effort(const Surface& surface) const noexcept;
   bool increment(const Surface& surface, const Vec3& p) noexcept;
@@ -46,6 +54,8 @@ class ContactOnPatch {
   bool displace_near(const Surface& surface, const Vec3& p) noexcept;
   bool take_triangles(const Surface& surface, const Vec3& p) noexcept;
   bool take_compliance(const SurfaceModel& model) noexcept;
+  bool take_shapes(const SurfaceModel& model) noexcept;
+  void warp(const SurfaceModel& model) noexcept;
   Vec3 note_ways(std::size_t vertices) noexcept;
   bool foresee(const Vec3& motion) noexcept;
   void learn_tangent(const Vec3& motion, const Vec3& force_before) noexcept;
@@ -60,10 +70,13 @@ class ContactOnPatch {
   Accuracy accuracy_;
   ContactSolver without_friction_, with_friction_;
   ContactPatch patch_;
-  std::vector<int> vertices_;        // of the model, of each patch node
-  std::vector<int> slot_of_vertex_;  // and back; -1: none
-  std::vector<Vec3> begin_;          // where the patch nodes were when the increment began, m
+  std::vector<int> vertices_;                // of the model, of each patch node
+  std::vector<int> slot_of_vertex_;          // and back; -1: none
+  std::vector<Vec3> begin_;                  // where the patch nodes were when the increment began, m
+  const ModalMemory* memory_ = nullptr;      // of this call
+  std::vector<ModalMemory::Shapes> shapes_;  // of the patch nodes
   std::vector<Load> loads_, kept_loads_;
+  std::uint64_t solves_ = 0;
   std::vector<Vec3> moved_;     // displacement of vertices, m; where near_ says so
   std::vector<Vec3> went_;      // of vertices in the last increment, m; 0 where not known
   std::vector<char> near_;      // whether a vertex is near enough to be looked at

@@ -1,11 +1,14 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
 
 #include "common/contact/tool.h"
+#include "common/damped_mode.h"
 #include "common/time.h"
 #include "common/types.h"
 
@@ -28,6 +31,11 @@ struct Surface {
   Vec3 shift = Vec3::Zero();            ///< from rest to where it is, free of the tool, m
   Tool tool;
   double tool_compliance = 0;  ///< m/N
+  /// Where the slow modes of a tissue that swings stand: the model is then that of all the rest of it.
+  struct Modes {
+    int count = 0;                               ///< 0: it does not swing, or nobody told
+    std::array<float, kMostSlowModes> q{}, v{};  ///< m sqrt(kg), m sqrt(kg)/s
+  } modes = {};
 };
 
 /// How the other tools on the organ move the surface near this one, to first order.
@@ -63,8 +71,14 @@ inline bool usable(const Linearised& l) noexcept {
 }
 inline bool usable(const Surface& s) noexcept {
   const Tool& tool = s.tool;
-  return (s.shift.array().abs() <= 1e9).all() && tool.is_sphere() && tool.radius > 0 && tool.radius <= 1 &&
-         tool.friction >= 0 && tool.friction <= 10 && s.tool_compliance >= 0 && s.tool_compliance <= 1e6;
+  const auto bounded = [](float x) { return std::abs(x) <= 1e6F; };
+  const auto& modes = s.modes;
+  const auto n = static_cast<std::size_t>(modes.count);
+  return modes.count >= 0 && n <= modes.q.size() &&
+         std::all_of(modes.q.begin(), modes.q.begin() + n, bounded) &&
+         std::all_of(modes.v.begin(), modes.v.begin() + n, bounded) && (s.shift.array().abs() <= 1e9).all() &&
+         tool.is_sphere() && tool.radius > 0 && tool.radius <= 1 && tool.friction >= 0 &&
+         tool.friction <= 10 && s.tool_compliance >= 0 && s.tool_compliance <= 1e6;
 }
 inline bool usable(const OtherTools& o) noexcept {
   return (o.v.array().abs() <= 1e9).all() && (o.compliance.array().abs() <= 1e6).all();

@@ -23,22 +23,24 @@ void LocalContact::update(const Sample& sample) noexcept {
   felt_last_ = newest_.f;
   motion_.update(newest_);
   known_ = following_ = false;
-  if (!newest_.surface) {
+  if (!newest_.surface || (swings() && !take_modes())) {
     felt_.forget();
+    memory_.restart();
     return;
   }
   const Vec3 p_rest = at_rest(sample.p, sample.t);
-  auto local = remembered(sample.t, p_rest);
+  auto local = remembered(sample.t, p_rest + swing_ - memory_.drift());
   if (!local && newest_.surface->tool.friction > 0) {  // nothing to compare yet
     following_ = true;
     return;
   }
-  if (!local) local = contact_.probe(*newest_.surface, p_rest);
+  if (!local) local = contact_.probe(*newest_.surface, p_rest, memory());
   known_ = local && believable(*local, sample.f);
   if (!known_) {
     felt_.forget();  // the path is lost, and with it what sticks: it is no measure of what would be from here
     return;
   }
+  if (swings()) return;  // what is off is the state of the modes, which has been set right
   compare(*local);
   const bool free = local->isZero(0) && sample.f.isZero(0);
   if (free && newest_.surface->tool.friction == 0) compare_ahead();
@@ -77,7 +79,7 @@ void LocalContact::compare(const Vec3& local) noexcept {
 /// The tool is free, but was expected to touch by now: the server has said what it would feel.
 void LocalContact::compare_ahead() noexcept {
   if (!newest_.ahead || !newest_.ahead->f.allFinite() || newest_.ahead->f.isZero(0)) return;
-  const auto local = contact_.probe(*newest_.surface, at_rest(newest_.ahead->p, newest_.t));
+  const auto local = contact_.probe(*newest_.surface, at_rest(newest_.ahead->p, newest_.t), memory());
   if (local && !local->isZero(0) && believable(*local, newest_.ahead->f))
     learn_factor(newest_.ahead->f, *local);
 }
@@ -89,31 +91,67 @@ void LocalContact::restart() noexcept {
   now_ = {};
   newest_ = {};
   motion_.restart();
+  memory_.restart();
+  swing_.setZero();
   known_ = following_ = false;
   kappa_ = 1;
   largest_ = 0;
 }
 
 Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
-  if (known_ || following_) {
-    const Vec3 p_rest = at_rest(p, t) - moved_by_others(felt_last_);
-    const auto local = contact_.go(*newest_.surface, p_rest);
-    if (local) {
-      remember(std::max(now_, t), p_rest, *local);
-      if (!known_) return without_.force(p, t);
-      felt_last_ = kappa_ * *local;
-      if (local_size_ > 0) felt_last_ += std::min(kMostCorrection, local->norm() / local_size_) * across_;
-      return felt_last_;
-    }
+  if (!known_ && !following_) return without_.force(p, t);
+  const auto local = follow(p, t);
+  if (!local) {
     known_ = following_ = false;  // until the next sample: no going back and forth
     felt_.forget();
+    memory_.restart();
+    return without_.force(p, t);
   }
-  return without_.force(p, t);
+  if (known_) {
+    felt_last_ = kappa_ * *local;
+    if (local_size_ > 0) felt_last_ += std::min(kMostCorrection, local->norm() / local_size_) * across_;
+  }
+  if (swings()) memory_.press(felt_last_);
+  return known_ ? felt_last_ : without_.force(p, t);
+}
+
+/// F_loc at the tick, remembered; nothing where it is not known.
+std::optional<Vec3> LocalContact::follow(const Vec3& p, Time t) noexcept {
+  const Time now = std::max(now_, t);
+  if (swings()) {
+    memory_.advance(now);
+    if (!memory_.known()) return {};
+    swing_ = memory_.displacement();
+  }
+  const Vec3 p_rest = at_rest(p, t) - moved_by_others(felt_last_);
+  const auto local = contact_.go(*newest_.surface, p_rest, memory());
+  if (!local || (swings() && !find_footing(p_rest))) return {};
+  remember(now, p_rest + swing_, *local);
+  return local;
+}
+
+/// Where the newest sample says that the slow modes stand.
+bool LocalContact::take_modes() noexcept {
+  const Surface& surface = *newest_.surface;
+  if (!memory_.stands() && !memory_.stand_near(*surface.model, newest_.p - surface.shift)) return false;
+  if (!memory_.take(surface, newest_.t, newest_.f)) return false;
+  swing_ = memory_.displacement();
+  return true;
+}
+
+/// Where the slow modes hold and bear the surface that is near now, for the ticks to come.
+bool LocalContact::find_footing(const Vec3& p_rest) noexcept {
+  const SurfaceModel& model = *newest_.surface->model;
+  if (!memory_.stand_near(model, p_rest)) return false;
+  contact_.rename(swing_ - memory_.displacement());  // 0 where it stands as before
+  if (bearing_ == contact_.solves()) return true;
+  bearing_ = contact_.solves();
+  return memory_.bear(model, contact_.loads());
 }
 
 /// Where `p` is when the organ is at rest.
 Vec3 LocalContact::at_rest(const Vec3& p, Time t) const noexcept {
-  return p - newest_.surface->shift - motion_.since_sample(t);
+  return p - newest_.surface->shift - motion_.since_sample(t) - swing_;
 }
 
 /// How far the other tools give way to what this one pressed with, `felt` (N), at the last tick.

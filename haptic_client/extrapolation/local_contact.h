@@ -1,5 +1,6 @@
 #pragma once
 #include "haptic_client/extrapolation/contact_on_patch.h"
+#include "haptic_client/extrapolation/modal_memory.h"
 #include "haptic_client/extrapolation/tick_memory.h"
 #include "haptic_client/extrapolation/two_tangents.h"
 
@@ -13,7 +14,9 @@ namespace palpate::client {
 /// with s_n how far the organ is from rest and s how far it has moved since (`OrganMotion`). So a tissue that
 /// is stiffer or softer than its model by a factor is met exactly, and what is missing fades with the
 /// contact; where a sample is free, kappa is that of the place ahead, if the tool touches there, else it
-/// stays as it was. Where the model is not known around the tool (yet), a sample brings none, or F_loc(P_n')
+/// stays as it was. Of a tissue that swings there is no such factor: its model is exact but for the inertia
+/// of what is quicker than its slow modes, and these are stepped here, and set right by each sample
+/// (`ModalMemory`). Where the model is not known around the tool (yet), a sample brings none, or F_loc(P_n')
 /// is not even half right: `TwoTangents`, from one sample to the next. With friction, where force depends on
 /// the path, F_loc(P_n') is the one that was felt at t_n: the contact here has followed the path tick by
 /// tick, so there is no state of the server's to take over, and nothing to replay; it is not felt before it
@@ -42,11 +45,16 @@ class LocalContact : public Extrapolator {
   void remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept;
   std::optional<Vec3> remembered(Time t, const Vec3& p_rest) const noexcept;
   Vec3 at_rest(const Vec3& p, Time t) const noexcept;
+  bool swings() const noexcept { return newest_.surface && newest_.surface->modes.count > 0; }
+  const ModalMemory* memory() const noexcept { return swings() ? &memory_ : nullptr; }
+  bool take_modes() noexcept;
+  bool find_footing(const Vec3& p_rest) noexcept;
+  std::optional<Vec3> follow(const Vec3& p, Time t) noexcept;
   Vec3 moved_by_others(const Vec3& felt) const noexcept;
 
   /// F_loc as it was felt.
   struct Felt {
-    Vec3 p_rest, force;  // m, N
+    Vec3 p_rest, force;  // m, where the slow modes stand at 0; N
     Mat3 tangent;        // N/m
   };
 
@@ -54,6 +62,9 @@ class LocalContact : public Extrapolator {
   ContactOnPatch contact_;
   Sample newest_;
   OrganMotion motion_;
+  ModalMemory memory_;
+  Vec3 swing_ = Vec3::Zero();       // how far the slow modes have moved the surface here, m
+  std::uint64_t bearing_ = 0;       // the contact solve that `memory_` stands on
   Time now_{};                      // of the tick: the force felt then is remembered
   double local_size_ = 0;           // |F_loc(P_n')|, N
   double kappa_ = 1, largest_ = 0;  // -, N: of all samples

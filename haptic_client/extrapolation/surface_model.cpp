@@ -21,15 +21,18 @@ SurfaceModel::SurfaceModel()
     : shape_known_(kLargest.first_tile()), tiles_(kRoom), asked_(kAsked), near_(kLargest.vertices) {
   rest_.reserve(kLargest.vertices);
   triangles_.reserve(kLargest.triangles);
+  spectrum_.reserve(kMostSlowModes);
 }
 
-void SurfaceModel::announce(const protocol::SurfaceState& state) noexcept {
+void SurfaceModel::announce(const protocol::SurfaceState& state, std::uint32_t modes) noexcept {
   if (state.version == version_) return;
   version_ = 0;
-  if (state.vertices == 0 || state.vertices > kLargest.vertices || state.triangles > kLargest.triangles)
+  if (state.vertices == 0 || state.vertices > kLargest.vertices || state.triangles > kLargest.triangles ||
+      modes > kMostSlowModes)
     return;
   version_ = state.version;
-  pages_ = {state.vertices, state.triangles};
+  pages_ = {state.vertices, state.triangles, modes};
+  spectrum_.clear();
   rest_.assign(state.vertices, Vec3::Zero());
   triangles_.assign(state.triangles, {});
   shape_missing_ = pages_.first_tile();
@@ -42,7 +45,9 @@ void SurfaceModel::announce(const protocol::SurfaceState& state) noexcept {
 
 void SurfaceModel::take(const SurfacePage& page) noexcept {
   if (version_ == 0 || page.version != version_ || page.page >= pages_.count()) return;
-  if (page.page >= pages_.first_tile()) {
+  if (pages_.modes > 0 && page.page == pages_.spectrum()) {
+    take_spectrum(page);
+  } else if (page.page >= pages_.first_tile()) {
     take_tile(page);
   } else if (shape_known_[page.page] == 0) {
     take_shape(page);
@@ -92,6 +97,32 @@ void SurfaceModel::take_tile(const SurfacePage& page) noexcept {
   next_slot_ = (next_slot_ + 1) % tiles_.size();
 }
 
+void SurfaceModel::take_spectrum(const SurfacePage& page) noexcept {
+  spectrum_.clear();
+  for (std::size_t k = 0; k < pages_.modes; ++k) {
+    const Mode mode{static_cast<double>(page.values[3 * k]), static_cast<double>(page.values[3 * k + 1])};
+    if (!(mode.frequency > 0 && mode.damping >= 0)) return spectrum_.clear();  // no such motion
+    spectrum_.push_back(mode);
+  }
+}
+
+bool SurfaceModel::add_shapes(int vertex, double weight, std::span<Vec3> shapes) const noexcept {
+  constexpr std::uint32_t kModes = SurfacePages::kModes;
+  const auto v = static_cast<std::uint32_t>(vertex), cluster = v / SurfacePages::kCluster;
+  for (std::uint32_t group = 0; group < pages_.groups(); ++group) {
+    const std::uint16_t slot = slots_.find(pages_.shapes(cluster, group));
+    if (slot == PageSlots::kNone) return false;
+    const float* const first =
+        &tiles_[slot].values[static_cast<std::size_t>(3 * (v % SurfacePages::kCluster) * kModes)];
+    const std::uint32_t count = std::min(kModes, pages_.modes - group * kModes);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const Eigen::Vector3f shape(first[k], first[kModes + k], first[2 * kModes + k]);
+      shapes[group * kModes + k] += weight * shape.cast<double>();
+    }
+  }
+  return true;
+}
+
 std::optional<Mat3> SurfaceModel::compliance(int i, int j) const noexcept {
   constexpr int kCluster = SurfacePages::kCluster;
   const auto a = static_cast<std::uint32_t>(i / kCluster), b = static_cast<std::uint32_t>(j / kCluster);
@@ -139,12 +170,14 @@ bool SurfaceModel::choose_missing(const Vec3& p, double reach, Time now,
   for (std::uint32_t page = 0; shape_missing_ > 0 && page < pages_.first_tile(); ++page) {
     if (shape_known_[page] == 0) wishes.add(page);
   }
-  if (shape_missing_ > 0) return wishes.any();
+  if (pages_.modes > 0 && spectrum_.empty()) wishes.add(pages_.spectrum());
+  if (wishes.missing) return wishes.any();
   if (complete_at_ && (*complete_at_ - p).norm() < kStillComplete) return false;
   near_.look(p);
   near_.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t page = pages_.tile(a, b);
-    if (slots_.find(page) == PageSlots::kNone) wishes.add(page);
+    pages_.for_clusters(a, b, [&](std::uint32_t page) {
+      if (slots_.find(page) == PageSlots::kNone) wishes.add(page);
+    });
     return !wishes.full();
   });
   if (!wishes.missing) complete_at_ = p;

@@ -10,19 +10,25 @@
 
 namespace palpate::client {
 
+/// A load on the surface.
+struct SurfaceLoad {
+  int vertex;  ///< of its model
+  Vec3 force;  ///< N
+};
+
 /// What is known here of the surface that the tool can touch: its shape at rest and how compliant it is, as
-/// it comes in pages from the server (protocol/surface_pages.h). Knows which pages it lacks, the nearest
-/// first; it keeps those near the tool, and forgets the oldest. Nothing but the constructor allocates, 11 MB
-/// whatever the size of the surface. Haptic thread.
+/// it comes in pages from the server (protocol/surface_pages.h); of a tissue that swings, also its slow
+/// modes. Knows which pages it lacks, the nearest first; it keeps those near the tool, and forgets the
+/// oldest. Nothing but the constructor allocates, 11 MB whatever the size of the surface. Haptic thread.
 class SurfaceModel {
  public:
   static constexpr std::size_t kMostVertices = protocol::kMostSurfaceVertices;  ///< of a model that it takes
-  static constexpr std::size_t kRoom = protocol::NearTiles::kKept;  ///< tiles of compliance, 900 bytes each
+  static constexpr std::size_t kRoom = protocol::NearTiles::kKept;  ///< tiles and shapes, 900 bytes each
 
   SurfaceModel();
 
   /// What the server has; another version forgets all. Call it with every sample that tells.
-  void announce(const protocol::SurfaceState& state) noexcept;
+  void announce(const protocol::SurfaceState& state, std::uint32_t modes = 0) noexcept;
   /// A page came; one of another version changes nothing.
   void take(const protocol::SurfacePage& page) noexcept;
 
@@ -40,6 +46,14 @@ class SurfaceModel {
   std::span<const std::array<int, 3>> triangles() const noexcept { return triangles_; }
   /// No edge of a triangle is longer, m.
   double longest_edge() const noexcept { return longest_edge_; }
+  /// The slow modes that the tissue swings in; empty: it does not, or they are not known yet.
+  struct Mode {
+    double frequency = 0, damping = 0;  ///< rad/s, 1/s
+  };
+  std::span<const Mode> spectrum() const noexcept { return spectrum_; }
+  /// Adds `weight` times how a vertex moves in each mode (1/sqrt(kg)) to `shapes`; false where that is not
+  /// known, then to some of them.
+  bool add_shapes(int vertex, double weight, std::span<Vec3> shapes) const noexcept;
   /// How vertex i moves per force on vertex j, m/N; nothing where that is not known.
   std::optional<Mat3> compliance(int i, int j) const noexcept;
 
@@ -54,6 +68,7 @@ class SurfaceModel {
   void take_shape(const protocol::SurfacePage& page) noexcept;
   void complete_shape() noexcept;
   void take_tile(const protocol::SurfacePage& page) noexcept;
+  void take_spectrum(const protocol::SurfacePage& page) noexcept;
   class Wishes;
 
   protocol::SurfacePages pages_;
@@ -61,6 +76,7 @@ class SurfaceModel {
   std::vector<Vec3> rest_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<char> shape_known_;  // by page
+  std::vector<Mode> spectrum_;
   double longest_edge_ = 0;
   PageSlots slots_{kRoom};  // of tiles
   std::vector<Tile> tiles_;

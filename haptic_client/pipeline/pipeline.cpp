@@ -39,11 +39,13 @@ Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
     sample.surface_v += s.others.v_W;
   }
   if ((s.flags & ForceSample::kHasSurface) != 0 && model != nullptr) {
-    model->announce(s.surface);
+    const bool swings = (s.flags & ForceSample::kHasModes) != 0;
+    model->announce(s.surface, swings ? s.modes.count : 0);
     sample.surface = Surface{model,
                              s.surface.shift_W,
                              {s.surface.tool_radius, s.surface.tool_friction},
                              s.surface.tool_compliance};
+    if (swings) sample.surface->modes = {s.modes.count, s.modes.q, s.modes.v};
   }
   return sample;
 }

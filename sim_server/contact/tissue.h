@@ -16,6 +16,7 @@ class Tissue {
   std::unique_ptr<DeformationModel> model;
   std::span<const Vec3> free;        ///< in this step, without any contact
   std::span<const Vec3> velocities;  ///< of that, m/s; empty: it rests
+  std::span<const Vec3> carried;     ///< as its supports alone have moved it; empty: they rest
   std::span<const Vec3> positions;   ///< now, under the loads of all tools
   std::vector<Vec3> before;          ///< at the end of the last step; empty where no tool has friction
 

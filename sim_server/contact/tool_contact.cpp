@@ -77,6 +77,7 @@ void ToolContact::solve_grasp(const ToolPose& pose, ToolTissue tissue) {
   const Grip::Pull pull = grip_->pull(pose.p_W, tissue);
   tissue.mark_solved();
   if (!pull.force.allFinite()) return reject(tissue);
+  now_.grasp_tangent = pull.tangent;
   now_.force = {.force = pull.force,
                 .tangent = pull.tangent,
                 .contacts = pull.vertices,
@@ -217,8 +218,14 @@ void ToolContact::remember_side(const ToolTissue& tissue) noexcept {
   }
 }
 
-void ToolContact::differentiate() noexcept {
-  if (!holds() && now_.force.contacts > 0) now_.force.tangent = solver_.tangent(patch_);
+void ToolContact::differentiate(ToolTissue tissue) noexcept {
+  if (now_.force.contacts == 0) return;
+  now_.force.tangent = holds() ? now_.grasp_tangent : solver_.tangent(patch_);
+  if (foreseen_ == 0) return;
+  // Tissue that gives way by so much more by then stands behind the contact like a spring in a row with it.
+  const Mat3 &k = now_.force.tangent, yields = tissue.model().later_compliance(tissue.loads(), foreseen_);
+  const Mat3 later = k * (Mat3::Identity() - yields * k).inverse();
+  if (later.allFinite()) now_.force.tangent = later;
 }
 
 bool ToolContact::exhausted() const {
@@ -240,7 +247,7 @@ void ToolContact::restore(ToolTissue tissue) {
 ToolForce ToolContact::probe(const Vec3& p_W, ToolTissue tissue) {
   keep(tissue.loads());
   move_to({p_W, now_.place.q_W}, tissue);
-  differentiate();
+  differentiate(tissue);
   const ToolForce there = now_.force;
   restore(tissue);
   return there;

@@ -81,7 +81,10 @@ class ToolContact {
   /// Away from the tissue, on which it has no load any more: no force.
   void lift() noexcept;
   /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.
-  void differentiate() noexcept;
+  void differentiate(ToolTissue tissue) noexcept;
+  /// From now on tangents are those of a tool that holds its new place for so long (s); 0: to the end of the
+  /// step.
+  void foresee(double seconds) noexcept { foreseen_ = seconds; }
   /// Says that `force` is not settled.
   void flag() noexcept { now_.force.flagged = true; }
 
@@ -123,6 +126,7 @@ class ToolContact {
   ContactFinder finder_;
   ContactSolver solver_;
   ContactPatch patch_;
+  double foreseen_ = 0;           // s
   double farthest_drag_;          // m, outside its free organ
   std::vector<int> filled_;       // surface vertices whose compliance the patch holds
   std::optional<Grip> grip_;      // for a tool that grasps
@@ -141,6 +145,7 @@ class ToolContact {
     // the tool be inside later, it is taken back to that side.
     int side = -1;
     ToolForce force;
+    Mat3 grasp_tangent = Mat3::Zero();  // N/m, to the end of the step
   };
   State now_, kept_;
   std::vector<NodalLoad> kept_loads_;

@@ -9,6 +9,8 @@
 
 namespace palpate::sim {
 
+struct SlowModes;
+
 /// A force on one vertex of the surface.
 struct NodalLoad {
   int vertex;  ///< surface vertex
@@ -16,12 +18,25 @@ struct NodalLoad {
   bool operator==(const NodalLoad&) const = default;
 };
 
+/// The share of each of these loads in their sum, along it: they add up to 1. Where there is none, 0.
+inline double share_of(const NodalLoad& load, const Vec3& sum) {
+  const double size = sum.squaredNorm();
+  return size > 0 ? load.force.dot(sum) / size : 0;
+}
+inline Vec3 sum_of(std::span<const NodalLoad> loads) {
+  Vec3 sum = Vec3::Zero();
+  for (const NodalLoad& load : loads) sum += load.force;
+  return sum;
+}
+
 /// A tissue free of contact; valid until it is asked again.
 struct FreeMotion {
   std::span<const Vec3> positions;        ///< (n)
   std::span<const Vec3> velocities = {};  ///< (n), m/s, of its supports' doing; empty: they rest
   /// (n) under the loads that are held; empty: `apply` will tell, or told it before
   std::span<const Vec3> loaded = {};
+  /// (n) as its supports alone have moved it; empty: they rest, or that is not known apart
+  std::span<const Vec3> carried = {};
 };
 
 /// Bytes that a part of the program holds, for reports.
@@ -39,6 +54,9 @@ struct MemoryPart {
 class DeformationModel {
  public:
   virtual ~DeformationModel() = default;
+
+  /// Into how many steps of equal length a step of the scene is cut, with contact solved at the end of each.
+  virtual int instants() const noexcept { return 1; }
 
   /// Where would you go freely in `dt` (s), without any contact?
   virtual FreeMotion free_motion(double dt) = 0;
@@ -68,6 +86,24 @@ class DeformationModel {
   /// Whether that is because some element stays turned inside out, which a law that softens in compression
   /// lets it do.
   virtual bool inside_out() const noexcept { return false; }
+
+  /// How much farther (m/N, symmetric) the surface that bears these loads, as one piece, gives way to a force
+  /// that is held for `seconds` than to one held to the end of the step, which is what `compliance` tells. 0
+  /// where that is all the same, or not known.
+  virtual Mat3 later_compliance([[maybe_unused]] std::span<const NodalLoad> loads,
+                                [[maybe_unused]] double seconds) const noexcept {
+    return Mat3::Zero();
+  }
+  /// The slow modes of a linear tissue that swings, for clients that step it between two samples; null: it
+  /// has none, or does not know them. They never change.
+  virtual const SlowModes* slow_modes() const noexcept { return nullptr; }
+  /// Amplitudes and rates (m sqrt(kg), m sqrt(kg)/s) of the told ones of these modes, as many each, at the
+  /// end of the last step, under the loads of `apply`.
+  virtual void modal_state([[maybe_unused]] Eigen::Ref<Eigen::VectorXd> q,
+                           [[maybe_unused]] Eigen::Ref<Eigen::VectorXd> v) noexcept {}
+  /// As `compliance`, of all but the told modes, at rest: what follows at once. Constant; any thread.
+  virtual void residual_compliance([[maybe_unused]] std::span<const int> vertices,
+                                   [[maybe_unused]] ContactPatch& patch) const noexcept {}
 
   /// What this model holds in memory.
   virtual std::vector<MemoryPart> memory() const = 0;

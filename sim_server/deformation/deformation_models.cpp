@@ -6,6 +6,7 @@
 
 #include "common/error.h"
 #include "common/text.h"
+#include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/implicit.h"
 #include "sim_server/deformation/quasi_static.h"
 #include "sim_server/deformation/reduced.h"
@@ -47,20 +48,20 @@ constexpr std::array kModels{
     row_of<QuasiStatic>({.name = "quasi_static",
                          .summary = "linear elastic equilibrium by pre-computed compliance",
                          .materials = Materials::kLinear}),
-    row_of<TensorMass, RayleighDamping>(
+    row_of<TensorMass, RayleighDamping, ContactInstants, ClientModes>(
         {.name = "tensor_mass",
          .summary = "linear elastic motion, explicit, by a tensor per vertex and edge",
          .materials = Materials::kPlain,
          .moves = true,
          .unneeded = {{"factor of the stiffness matrix", "explicit steps solve nothing"}}}),
-    row_of<Implicit, RayleighDamping, ImplicitSettings>(
+    row_of<Implicit, RayleighDamping, ImplicitSettings, ContactInstants>(
         {.name = "implicit",
          .summary = "motion of any law, element and load, by implicit steps",
          .materials = Materials::kAny,
          .moves = true,
          .flies = true}),
 #ifdef PALPATE_WITH_SPECTRA
-    row_of<Reduced, RayleighDamping, ReducedSettings>(
+    row_of<Reduced, RayleighDamping, ReducedSettings, ContactInstants>(
         {.name = "reduced",
          .summary = "linear elastic: the slowest modes swing, the rest follows at once",
          .materials = Materials::kLinear,

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "common/config.h"
+#include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/moving_supports.h"
 #include "sim_server/scene/loads.h"
@@ -48,6 +49,7 @@ class Implicit : public DeformationModel {
   /// Before anything is allocated.
   static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   /// Any `dt` > 0 is taken for one period.
+  int instants() const noexcept override { return instants_; }
   FreeMotion free_motion(double dt) override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const override;
   bool compliance_is_constant() const noexcept override { return false; }
@@ -80,6 +82,7 @@ class Implicit : public DeformationModel {
   /// Where some move. Only for how fast the surface goes by them (by a linearisation about rest), and when.
   std::optional<MovingSupports> supports_;
   double held_compliance_;  // m/N, of a fixed vertex under the tool itself
+  int instants_;            // within a step of the scene
   double period_, tolerance_;
   int max_newton_, iterations_ = 0;  // of Newton's method in this step
   int factors_ = 0;                  // of the columns

@@ -4,11 +4,12 @@
 #include <string_view>
 
 #include "common/config.h"
+#include "common/damped_mode.h"
+#include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/moving_supports.h"
-#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/deformation/slow_modes.h"
 #include "sim_server/deformation/surface_compliance.h"
-#include "sim_server/solvers/vibration_modes.h"
 
 namespace palpate::sim {
 
@@ -37,31 +38,32 @@ class Reduced : public DeformationModel {
   /// Before anything is allocated.
   static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   /// Any `dt` > 0 is taken for one period.
+  int instants() const noexcept override { return instants_; }
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   const ComplianceSource* compliance_source() const noexcept override { return &compliance_; }
   bool compliance_is_constant() const noexcept override { return true; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
+  const SlowModes* slow_modes() const noexcept override { return &*modes_; }
+  void modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept override;
+  void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::vector<MemoryPart> memory() const override;
 
  private:
-  /// How one mode goes over T: of q, q' and a held force per unit mass p at its beginning to those at its
-  /// end.
-  struct Step {
-    double q_of_q, q_of_v, v_of_q, v_of_v, q_of_p, v_of_p;
-  };
-  static Step step_of(double w, double damping, double period);
-
+  static int usual_instants(double period, double w);
   /// The surface as its supports move it.
   std::span<const Vec3> unloaded() const noexcept { return supports_ ? supports_->positions() : rest_; }
   void press(std::span<const NodalLoad> loads) noexcept;
 
-  double period_;  // s
+  int instants_ = 1;  // within a step of the scene
+  double period_;     // s, from one to the next
   std::vector<Vec3> rest_, free_, positions_;
   SurfaceCompliance compliance_;
   std::optional<MovingSupports> supports_;  // where some move
-  std::vector<Step> steps_;                 // (modes)
-  Eigen::MatrixXd shapes_;                  // (3 surface vertices x modes), 1/sqrt(kg)
+  std::vector<ModeStep> steps_;             // (modes)
+  std::optional<SlowModes> modes_;          // always there
+  Eigen::VectorXd beyond_residual_;         // (modes) m^2 kg/N: what of `compliance_` is theirs
   Eigen::VectorXd q_, v_, p_, q_free_;      // (modes) m sqrt(kg), m sqrt(kg)/s, N/sqrt(kg)
   Eigen::VectorXd moved_;                   // (3 surface vertices) m
   std::vector<NodalLoad> loads_;            // of the last `apply`

@@ -149,6 +149,16 @@ void SurfaceCompliance::fill(int node, ContactPatch& patch) const noexcept {
     patch.compliance.block<3, 3>(3 * i, 3 * node) = block(patch.vertices[i], patch.vertices[node]);
 }
 
+Mat3 SurfaceCompliance::of_loads(std::span<const NodalLoad> loads) const noexcept {
+  const Vec3 sum = sum_of(loads);
+  Mat3 yields = Mat3::Zero();
+  for (const NodalLoad& a : loads) {
+    for (const NodalLoad& b : loads)
+      yields += share_of(a, sum) * share_of(b, sum) * block(a.vertex, b.vertex);
+  }
+  return yields;
+}
+
 void SurfaceCompliance::move(std::span<const NodalLoad> loads, std::span<Vec3> positions) const noexcept {
   for (const NodalLoad& load : loads) {
     const int column = row_[load.vertex];

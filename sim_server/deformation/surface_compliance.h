@@ -54,6 +54,8 @@ class SurfaceCompliance : public ComplianceSource {
   void fill(std::span<const int> vertices, ContactPatch& patch) const noexcept;
   void begin(ContactPatch& patch) const noexcept override;
   void fill(int node, ContactPatch& patch) const noexcept override;
+  /// Of the surface that bears these loads, as one piece, m/N. O(loads^2).
+  Mat3 of_loads(std::span<const NodalLoad> loads) const noexcept;
   /// Moves `positions` (surface vertices, m) by what `loads` do. O(r x loads).
   void move(std::span<const NodalLoad> loads, std::span<Vec3> positions) const noexcept;
 

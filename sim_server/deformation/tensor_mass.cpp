@@ -24,6 +24,14 @@ ElasticTensors assemble(const ModelInputs& inputs) {
   return {inputs.mesh, *scene.material, inputs.fixed};
 }
 
+/// Of `steps` sub-steps in a period: at each one, or where these are too many at its end alone. A force that
+/// is held over a few of them leaves waves which the next one has to answer, so that contact chatters (seen
+/// at 3, 13 and 20 instants); a period of many lets them run off.
+int usual_instants(double steps) {
+  constexpr double kMost = 100;
+  return steps <= kMost ? static_cast<int>(steps) : 1;
+}
+
 const RayleighDamping& damping_of(const Scene& scene) {
   return scene.deformation.of<RayleighDamping>();
 }
@@ -36,7 +44,13 @@ TensorMass::TensorMass(const ModelInputs& inputs)
       motion_(tensors_, damping_of(inputs.scene)),
       begin_(motion_.state),
       force_(begin_.f) {
-  if (supports_move(inputs.scene)) supports_ = LinearStatics(inputs).supports(Following::kSwinging);
+  const auto* const told = inputs.scene.deformation.find<ClientModes>();
+  const bool tells = told != nullptr && told->modes > 0;
+  if (tells || supports_move(inputs.scene)) {
+    const LinearStatics statics(inputs);
+    supports_ = statics.supports(Following::kSwinging);
+    if (tells) told_.emplace(inputs, statics, tensors_.places(), tensors_.masses());
+  }
   for (const int vertex : inputs.surface.vertices) {
     rest_.push_back(inputs.mesh.vertices[vertex]);
     const int place = tensors_.places()[vertex];
@@ -51,7 +65,8 @@ TensorMass::TensorMass(const ModelInputs& inputs)
 }
 
 double TensorMass::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
-  return tensors_bytes(counts) + (supports_move(scene) ? body_bytes(counts, scene.material->element, 1) : 0);
+  const bool factors = supports_move(scene) || scene.deformation.find<ClientModes>() != nullptr;
+  return tensors_bytes(counts) + (factors ? body_bytes(counts, scene.material->element, 1) : 0);
 }
 
 void TensorMass::choose_sub_step(const ModelInputs& inputs) {
@@ -65,8 +80,9 @@ void TensorMass::choose_sub_step(const ModelInputs& inputs) {
         "`rayleigh_stiffness`",
         inputs.scene.source, inputs.scene.rate_hz, steps, longest, kMostSubSteps);
   }
-  sub_steps_ = static_cast<int>(steps);
-  sub_step_ = period / sub_steps_;
+  instants_ = instants_of(inputs.scene.deformation, usual_instants(steps));
+  sub_steps_ = static_cast<int>(std::ceil(period / instants_ / longest));
+  sub_step_ = period / instants_ / sub_steps_;
 }
 
 void TensorMass::precompute(const ModelInputs& inputs) {
@@ -98,7 +114,10 @@ FreeMotion TensorMass::free_motion(double dt) noexcept {
     update_free();
     press(loads_);
   }
-  return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>(), positions_};
+  return {.positions = free_,
+          .velocities = supports_ ? supports_->velocities() : std::span<const Vec3>(),
+          .loaded = positions_,
+          .carried = supports_ ? supports_->positions() : std::span<const Vec3>()};
 }
 
 /// One sub-step alone takes these forces for all of it, not their mean with those before: else forces that
@@ -161,6 +180,20 @@ std::span<const Vec3> TensorMass::apply(std::span<const NodalLoad> loads) noexce
   return positions_;
 }
 
+Mat3 TensorMass::later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
+  if (!told_) return Mat3::Zero();
+  return told_->compliance(loads, seconds) - compliance_.of_loads(loads);
+}
+
+void TensorMass::modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept {
+  told_->begin(begin_.u, begin_.v, begin_.f, 0.5 * sub_step_);
+  told_->advance(sub_steps_ * sub_step_, loads_, q, v);
+}
+
+void TensorMass::residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
+  told_->residual_compliance(vertices, patch);
+}
+
 std::vector<MemoryPart> TensorMass::memory() const {
   std::vector<MemoryPart> parts{
       {"tensors", tensors_.bytes(),
@@ -172,6 +205,7 @@ std::vector<MemoryPart> TensorMass::memory() const {
                         loads_.capacity() * sizeof(NodalLoad) + first_.size() * sizeof(int) +
                         compliance_.index_bytes()}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
+  if (told_) parts.push_back({"motion told to clients", told_->bytes(), told_->detail()});
   return parts;
 }
 

@@ -1,8 +1,9 @@
 #pragma once
+#include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/explicit_motion.h"
 #include "sim_server/deformation/moving_supports.h"
-#include "sim_server/deformation/surface_compliance.h"
+#include "sim_server/deformation/told_motion.h"
 
 namespace palpate::sim {
 
@@ -17,7 +18,7 @@ namespace palpate::sim {
 /// stage of RATTLE, Andersen 1983, J. Comput. Phys. 52:24). A period costs N sub-steps, twice that in
 /// contact. What the body does by itself and what it does by its supports add up, as it is linear: where
 /// supports move, the second comes from `support_responses`, with inertia and damping and exact in time, and
-/// costs no sub-step anything.
+/// costs no sub-step anything. Clients are told its slow modes (`ToldMotion`), for which set-up factors K.
 class TensorMass : public DeformationModel {
  public:
   /// Throws `Error` as `SurfaceCompliance`, or where the scene names no rate.
@@ -26,11 +27,16 @@ class TensorMass : public DeformationModel {
   static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   /// Any `dt` > 0 is taken for one period: callers step at the scene's rate, though their times may jitter
   /// about it. The loads of the last `apply` are those of the period that ends; the next runs free of any.
+  int instants() const noexcept override { return instants_; }
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   const ComplianceSource* compliance_source() const noexcept override { return &compliance_; }
   bool compliance_is_constant() const noexcept override { return true; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
+  const SlowModes* slow_modes() const noexcept override { return told_ ? &told_->modes() : nullptr; }
+  void modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept override;
+  void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::vector<MemoryPart> memory() const override;
 
   int sub_steps() const { return sub_steps_; }
@@ -47,13 +53,15 @@ class TensorMass : public DeformationModel {
 
   SurfaceCompliance compliance_;
   ElasticTensors tensors_;
-  int sub_steps_ = 1;
+  int instants_ = 1;                        // within a step of the scene
+  int sub_steps_ = 1;                       // from one to the next
   double sub_step_ = 0;                     // s
   ExplicitMotion motion_;                   // at the end of the period, free of loads
   ExplicitMotion::State begin_;             // at its beginning
   std::vector<double> force_;               // over it, N
   std::vector<NodalLoad> loads_;            // over it
   std::optional<MovingSupports> supports_;  // where some move
+  std::optional<ToldMotion> told_;          // to clients, unless the scene leaves it out
   std::vector<int> first_;                  // per surface vertex: its first number in `motion_`, or -1: fixed
   std::vector<Vec3> rest_, free_, positions_;  // m
 };

@@ -43,8 +43,18 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   if (outcome.answer) send(outcome.answer->first, outcome.answer->second, from);
   if (outcome.left != nullptr) tool_is_free(outcome.left->tool);
   if (outcome.tool_state == nullptr) return;
-  mailboxes_.tools[outcome.tool_state->tool].input.write({datagram.header.session, *outcome.tool_state});
+  pass_on(datagram.header.session, *outcome.tool_state);
   send_pages(*outcome.tool_state);
+}
+
+/// To the simulation, with the path that led there in this session.
+void NetLink::pass_on(std::uint64_t session, const protocol::ToolState& state) {
+  SessionInput& input = inputs_[state.tool];
+  if (input.session != session) input = {};
+  input.session = session;
+  input.state = state;
+  input.path.add(state);
+  mailboxes_.tools[state.tool].input.write(input);
 }
 
 /// The pages it asks for, if they are of the surface that we have; what is lost will be asked for again.

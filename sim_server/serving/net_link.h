@@ -33,6 +33,7 @@ class NetLink {
  private:
   void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
   void on_forces();
+  void pass_on(std::uint64_t session, const protocol::ToolState& state);
   void send_pages(const protocol::ToolState& state);
   void note_holders();
   void on_timer();
@@ -47,6 +48,7 @@ class NetLink {
   protocol::ServerSessions sessions_;
   std::vector<SurfacePager> pagers_;
   SimMailboxes& mailboxes_;
+  std::array<SessionInput, kMaxTools> inputs_;  // of each tool, the newest
   std::mt19937_64 random_;
   protocol::LinkStats stats_;
 };

@@ -20,19 +20,24 @@ protocol::Linearisation on_the_wire(const Linearised& l) noexcept {
           .gap = l.plane.gap};
 }
 
-/// Of what came over the wire; an orientation that is none is taken for no turn.
-ToolPose pose_of(const protocol::ToolState& state) noexcept {
-  const auto& [w, x, y, z] = state.q_W;
-  const Quat q(w, x, y, z);
-  const double size = q.norm();
-  return {state.p_W, size > 0.5 && size < 2 ? q.normalized() : Quat::Identity()};
+protocol::ModalState on_the_wire(const SlowModes::State& modes) noexcept {
+  protocol::ModalState told{.count = static_cast<std::uint8_t>(modes.q.size())};
+  for (Eigen::Index k = 0; k < modes.q.size(); ++k) {
+    told.q[static_cast<std::size_t>(k)] = static_cast<float>(modes.q[k]);
+    told.v[static_cast<std::size_t>(k)] = static_cast<float>(modes.v[k]);
+  }
+  return told;
 }
 
-/// How a tool went from one state to the next, by its velocities and its own clock.
-Bend bend_between(const protocol::ToolState& before, const protocol::ToolState& now) noexcept {
+ToolPath::Point point_of(const protocol::ToolState& state) noexcept {
+  return {state.t_ns, pose_of(state), state.v_W};
+}
+
+/// How a tool went from one point to the next, by its velocities and its own clock.
+Bend bend_between(const ToolPath::Point& before, const ToolPath::Point& now) noexcept {
   const double dt = 1e-9 * (static_cast<double>(now.t_ns) - static_cast<double>(before.t_ns));
   if (!(dt > 0 && dt < kLongestBend)) return {};
-  const Vec3 chord = now.p_W - before.p_W;
+  const Vec3 chord = now.pose.p_W - before.pose.p_W;
   return {dt * before.v_W - chord, dt * now.v_W - chord};
 }
 
@@ -42,6 +47,7 @@ ServedTools::ServedTools(Simulation& simulation, const ErrorOfForce* errors)
     : simulation_(simulation),
       errors_(errors),
       holders_(simulation.tools()),
+      paths_(simulation.tools(), std::vector<PathPoint>(static_cast<std::size_t>(simulation.instants() - 1))),
       inputs_(simulation.tools()),
       outcomes_(simulation.tools()) {
   for (std::size_t i = 0; i < simulation.tools(); ++i)
@@ -71,12 +77,12 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionI
 }
 
 /// What the simulation is told of a tool, and asked: an old state deserves no new answer.
-ToolInput ServedTools::input_of(std::size_t tool, const SessionInput& input) const noexcept {
+ToolInput ServedTools::input_of(std::size_t tool, const SessionInput& input) noexcept {
   const protocol::ToolState& state = input.state;
   const auto says = [&](std::uint16_t flag) { return (state.flags & flag) != 0; };
   const auto wants = [&](std::uint16_t flag) { return input.session != 0 && input.fresh && says(flag); };
-  ToolInput told{
-      .buttons = state.buttons, .v_W = state.v_W, .path = bend_between(holders_[tool].before, state)};
+  ToolInput told{.buttons = state.buttons, .v_W = state.v_W};
+  follow_path(tool, input, told);
   // The pose of a lost device is the last one known, or none: it touches nothing.
   if (input.session != 0 && !says(protocol::ToolState::kDeviceLost)) told.pose = pose_of(state);
   told.wants.here = wants(protocol::ToolState::kWantsHere);
@@ -85,6 +91,23 @@ ToolInput ServedTools::input_of(std::size_t tool, const SessionInput& input) con
     told.wants.ahead = ToolWants::Ahead{to_seconds(Time{state.lead_ns}), state.v_W};
   told.wants.surface_shift = wants(protocol::ToolState::kWantsSurface) && surfaces_[tool].version != 0;
   return told;
+}
+
+/// Where the tool was at the instants since the state that the step before answered.
+void ServedTools::follow_path(std::size_t tool, const SessionInput& input, ToolInput& told) noexcept {
+  std::vector<PathPoint>& points = paths_[tool];
+  ToolPath::Point from = point_of(holders_[tool].before);
+  const ToolPath::Point to = point_of(input.state);
+  const auto instants = static_cast<std::int64_t>(points.size()) + 1;
+  const std::int64_t begin = from.t_ns, took = to.t_ns - begin;
+  for (std::int64_t k = 1; k < instants; ++k) {
+    const auto now = took > 0 ? input.path.at(begin + took * k / instants) : std::nullopt;
+    if (!now) return;  // evenly and straight
+    points[static_cast<std::size_t>(k) - 1] = {now->pose, bend_between(from, *now)};
+    from = *now;
+  }
+  told.path = points;
+  told.bend = bend_between(from, to);
 }
 
 ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& state,
@@ -119,6 +142,14 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
   if (answer.surface_shift_W) {
     sample.surface = surfaces_[tool];
     sample.surface.shift_W = *answer.surface_shift_W;
+  }
+  if (answer.modes != nullptr && answer.surface_shift_W) {
+    sample.flags |= ForceSample::kHasModes;
+    sample.modes = on_the_wire(*answer.modes);
+  }
+  if (simulation_.instants() > 1 && answer.here) {
+    sample.flags |= ForceSample::kHasMean;
+    sample.mean_f_W = answer.mean_force;
   }
   if (errors_ != nullptr && (state.flags & protocol::ToolState::kWantsErrors) != 0) {
     sample.flags |= ForceSample::kHasErrors;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "protocol/messages.h"
+#include "sim_server/serving/tool_path.h"
 #include "sim_server/simulation/error_of_force.h"
 
 namespace palpate::sim {
@@ -13,6 +14,7 @@ struct SessionInput {
   protocol::ToolState state;
   /// It came since the last step; an old pose deserves no new answer, as the client must see its age.
   bool fresh = false;
+  ToolPath path{};  ///< that led there; of use where contact is solved several times a step
 };
 
 /// The simulation as clients meet it, each holding a tool in a session of its own: poses in, answers out. No
@@ -38,7 +40,8 @@ class ServedTools {
     std::uint64_t session = 0, samples = 0;
     protocol::ToolState before{};  // of the step before
   };
-  ToolInput input_of(std::size_t tool, const SessionInput& input) const noexcept;
+  ToolInput input_of(std::size_t tool, const SessionInput& input) noexcept;
+  void follow_path(std::size_t tool, const SessionInput& input, ToolInput& told) noexcept;
   protocol::ForceSample sample_of(std::size_t tool, const protocol::ToolState& state,
                                   const ToolAnswer& answer) noexcept;
 
@@ -46,6 +49,7 @@ class ServedTools {
   const ErrorOfForce* errors_;
   std::vector<protocol::SurfaceState> surfaces_;  // of each tool; version 0: none
   std::vector<Holder> holders_;
+  std::vector<std::vector<PathPoint>> paths_;  // within a step, of each tool
   std::vector<ToolInput> inputs_;
   std::vector<Outcome> outcomes_;
 };

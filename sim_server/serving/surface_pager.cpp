@@ -35,7 +35,7 @@ void cluster(std::span<int> vertices, const std::vector<Vec3>& rest) {
 }  // namespace
 
 SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
-    : simulation_(simulation), tool_(static_cast<std::uint8_t>(tool)) {
+    : simulation_(simulation), told_(simulation.told_modes()), tool_(static_cast<std::uint8_t>(tool)) {
   const auto touchable = simulation.touchable(tool);
   for (const Triangle& t : touchable) vertices_.insert(vertices_.end(), t.begin(), t.end());
   std::sort(vertices_.begin(), vertices_.end());
@@ -46,7 +46,7 @@ SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
   put_in_order();
   patch_.reserve(2 * kCluster, 0);
   patch_.free.resize(2 * kCluster);
-  simulation_.model().compliance(std::span(vertices_).first(1), patch_);
+  take_compliance(std::span(vertices_).first(1));
   state_ = {.vertices = static_cast<std::uint32_t>(vertices_.size()),
             .triangles = static_cast<std::uint32_t>(triangles_.size()),
             .tool_radius = simulation.tool(tool).shape().radius,
@@ -71,8 +71,13 @@ std::uint32_t SurfacePager::hash() noexcept {
   hash.add(&state_.tool_compliance, sizeof state_.tool_compliance);
   for (const int& vertex : vertices_) {
     hash.add(simulation_.rest()[vertex]);
-    simulation_.model().compliance({&vertex, 1}, patch_);
+    take_compliance({&vertex, 1});
     hash.add(Vec3(patch_.compliance.topLeftCorner<3, 1>()));
+  }
+  if (told_ != nullptr) {
+    const auto bytes = static_cast<std::size_t>(told_->told) * sizeof(double);
+    hash.add(told_->frequencies.data(), bytes);
+    hash.add(told_->damping.data(), bytes);
   }
   return static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32) | 1;
 }
@@ -84,11 +89,17 @@ std::vector<Vec3> SurfacePager::rest() const {
 }
 
 bool SurfacePager::page(std::uint32_t number, SurfacePage& out) noexcept {
-  const SurfacePages pages{state_.vertices, state_.triangles};
+  const SurfacePages pages = this->pages();
   if (state_.version == 0 || number >= pages.count()) return false;
   out = {.tool = tool_, .version = state_.version, .page = number};
   if (number >= pages.first_tile()) {
-    fill_tile(number, out);
+    if (number < pages.spectrum()) {
+      fill_tile(number, out);
+    } else if (number == pages.spectrum()) {
+      fill_spectrum(out);
+    } else {
+      fill_shapes(number, out);
+    }
     return true;
   }
   const bool positions = number < pages.first_triangle_page();
@@ -104,17 +115,44 @@ bool SurfacePager::page(std::uint32_t number, SurfacePage& out) noexcept {
   return true;
 }
 
+std::span<const int> SurfacePager::members(std::size_t cluster) const noexcept {
+  const std::size_t first = cluster * kCluster;
+  return std::span(vertices_).subspan(first, std::min<std::size_t>(kCluster, vertices_.size() - first));
+}
+
+/// Into `patch_`: that of the tissue, or of all but its slow modes.
+void SurfacePager::take_compliance(std::span<const int> vertices) noexcept {
+  if (told_ == nullptr) return simulation_.model().compliance(vertices, patch_);
+  patch_.tool_compliance = 0;
+  simulation_.model().residual_compliance(vertices, patch_);
+}
+
+void SurfacePager::fill_spectrum(SurfacePage& out) const noexcept {
+  for (Eigen::Index k = 0; k < told_->told; ++k) {
+    out.values[3 * static_cast<std::size_t>(k)] = static_cast<float>(told_->frequencies[k]);
+    out.values[3 * static_cast<std::size_t>(k) + 1] = static_cast<float>(told_->damping[k]);
+  }
+}
+
+void SurfacePager::fill_shapes(std::uint32_t number, SurfacePage& out) const noexcept {
+  const auto [cluster, group] = pages().cluster_and_group_of(number);
+  const auto rows = members(cluster);
+  const Eigen::Index first = group * SurfacePages::kModes,
+                     count = std::min<Eigen::Index>(SurfacePages::kModes, told_->told - first);
+  using Page = Eigen::Matrix<float, 3 * kCluster, SurfacePages::kModes, Eigen::RowMajor>;
+  Eigen::Map<Page> page(out.values.data());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    page.block(3 * static_cast<Eigen::Index>(i), 0, 3, count) =
+        told_->shapes.block(3 * rows[i], first, 3, count).cast<float>();
+}
+
 void SurfacePager::fill_tile(std::uint32_t number, SurfacePage& out) noexcept {
-  const auto [a, b] = SurfacePages{state_.vertices, state_.triangles}.clusters_of(number);
-  const auto members = [&](std::size_t cluster) {
-    const std::size_t first = cluster * kCluster;
-    return std::span(vertices_).subspan(first, std::min<std::size_t>(kCluster, vertices_.size() - first));
-  };
+  const auto [a, b] = pages().clusters_of(number);
   const auto rows = members(a), columns = members(b);
   std::array<int, 2 * kCluster> both{};
   std::copy(columns.begin(), columns.end(), std::copy(rows.begin(), rows.end(), both.begin()));
   const std::size_t count = rows.size() + (a == b ? 0 : columns.size());
-  simulation_.model().compliance(std::span(both).first(count), patch_);
+  take_compliance(std::span(both).first(count));
   const auto height = 3 * static_cast<Eigen::Index>(rows.size()),
              width = 3 * static_cast<Eigen::Index>(columns.size());
   using Tile = Eigen::Matrix<float, 3 * kCluster, 3 * kCluster, Eigen::RowMajor>;

@@ -16,6 +16,10 @@ class SurfacePager {
   /// the tool is no sphere.
   /// `shift_W` is not filled in.
   const protocol::SurfaceState& state() const { return state_; }
+  protocol::SurfacePages pages() const {
+    return {state_.vertices, state_.triangles,
+            told_ == nullptr ? 0 : static_cast<std::uint32_t>(told_->told)};
+  }
 
   /// Where its vertices are at rest, in their order, m. Allocates.
   std::vector<Vec3> rest() const;
@@ -27,8 +31,13 @@ class SurfacePager {
   void put_in_order();
   std::uint32_t hash() noexcept;
   void fill_tile(std::uint32_t number, protocol::SurfacePage& out) noexcept;
+  void fill_spectrum(protocol::SurfacePage& out) const noexcept;
+  void fill_shapes(std::uint32_t number, protocol::SurfacePage& out) const noexcept;
+  void take_compliance(std::span<const int> vertices) noexcept;
+  std::span<const int> members(std::size_t cluster) const noexcept;
 
   const Simulation& simulation_;
+  const SlowModes* told_;  // null: none are told
   std::uint8_t tool_;
   std::vector<int> vertices_;        // surface vertex of each vertex of the model
   std::vector<Triangle> triangles_;  // corners: vertices of the model

@@ -64,6 +64,7 @@ void VirtualSession::tick(std::uint64_t k) {
     state.pages_taken = pages_;
     state.lead_ns = (link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
   }
+  note_paths(state);
   step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
   // What arrives in this very tick (no delay) is named by its tool state, though it stands behind it.
   for (const OnTheWay& next : on_the_way_) {
@@ -83,8 +84,6 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
   // The organ stands as it does when the tool was read, so it moves from one answered tool state to the next.
   const double dt = to_seconds(Time{state.t_ns} - answered_);
   answered_ = Time{state.t_ns};
-  move_others(state);
-  inputs_[link_.tool] = {session_, state, true};
   const auto& outcome = served_.step(inputs_, dt)[link_.tool];
   stats_.in_contact += outcome.force.contacts > 0 ? 1 : 0;
   stats_.flagged += outcome.force.flagged ? 1 : 0;
@@ -93,15 +92,20 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
   on_the_way_.back().sample.tool = state.tool;
 }
 
-/// The other tools, to where they are at the time of this one's state.
-void VirtualSession::move_others(const ToolState& state) {
+/// Of all tools at the time of this one's state, with the paths that led there.
+void VirtualSession::note_paths(const ToolState& state) {
   const double t = to_seconds(Time{state.t_ns}), tick = 1 / link_.ticks_hz;
   for (std::size_t i = 0; i < motions_.size(); ++i) {
-    if (i == link_.tool) continue;
-    ToolState other{.tool = static_cast<std::uint8_t>(i), .tick = state.tick, .t_ns = state.t_ns};
-    other.p_W = motions_[i].at(t);
-    if (t >= tick) other.v_W = link_.ticks_hz * (other.p_W - motions_[i].at(t - tick));
-    inputs_[i] = {session_ + 1 + i, other, true};
+    ToolState newest = state;
+    if (i != link_.tool) {
+      newest = {.tool = static_cast<std::uint8_t>(i), .tick = state.tick, .t_ns = state.t_ns};
+      newest.p_W = motions_[i].at(t);
+      if (t >= tick) newest.v_W = link_.ticks_hz * (newest.p_W - motions_[i].at(t - tick));
+    }
+    inputs_[i].session = i == link_.tool ? session_ : session_ + 1 + i;
+    inputs_[i].state = newest;
+    inputs_[i].fresh = true;
+    inputs_[i].path.add(newest);
   }
 }
 
@@ -124,9 +128,10 @@ void VirtualSession::keep_session(Time t) {
 
 /// What the client lacks of it by now, around where the tool is, in the frame of the organ at rest.
 void VirtualSession::send_surface(const ForceSample& sample, Time t) {
-  const SurfacePages pages{pager_.state().vertices, pager_.state().triangles};
+  const SurfacePages pages = pager_.pages();
   if (pages_ == 0) {
     for (std::uint32_t page = 0; page < pages.first_tile(); ++page) send_page(page, t);
+    if (pages.modes > 0) send_page(pages.spectrum(), t);
     near_.take(pager_.rest());
     has_.assign(pages.count() - pages.first_tile(), 0);
   }
@@ -134,17 +139,22 @@ void VirtualSession::send_surface(const ForceSample& sample, Time t) {
   near_.look(newest_p_W_ - sample.surface.shift_W);
   if (near_.distance() > reach && sample.f_W.isZero(0)) return;
   near_.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t page = pages.tile(a, b), tile = page - pages.first_tile();
-    if (has_[tile] != 0) return true;
-    if (sent_.size() == NearTiles::kKept) {
-      has_[sent_.front()] = 0;
-      sent_.pop_front();
-    }
-    has_[tile] = 1;
-    sent_.push_back(tile);
-    send_page(page, t);
+    pages.for_clusters(a, b, [&](std::uint32_t page) { keep_page(page, pages.first_tile(), t); });
     return true;
   });
+}
+
+/// Sends a page that the client no longer has, which then forgets its oldest.
+void VirtualSession::keep_page(std::uint32_t page, std::uint32_t first_tile, Time t) {
+  const std::uint32_t tile = page - first_tile;
+  if (has_[tile] != 0) return;
+  if (sent_.size() == NearTiles::kKept) {
+    has_[sent_.front()] = 0;
+    sent_.pop_front();
+  }
+  has_[tile] = 1;
+  sent_.push_back(tile);
+  send_page(page, t);
 }
 
 void VirtualSession::send_page(std::uint32_t number, Time t) {

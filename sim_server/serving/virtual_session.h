@@ -55,9 +55,10 @@ class VirtualSession {
   };
   void keep_session(Time t);
   void send_surface(const protocol::ForceSample& sample, Time t);
+  void keep_page(std::uint32_t page, std::uint32_t first_tile, Time t);
   void send_page(std::uint32_t number, Time t);
   void step(const protocol::ToolState& state, double steps_due);
-  void move_others(const protocol::ToolState& state);
+  void note_paths(const protocol::ToolState& state);
   void deliver(Time t);
   protocol::Datagram travel(const protocol::Endpoint& from, const protocol::Endpoint& to,
                             const protocol::Header& header, const protocol::Message& message, Time t);
@@ -76,8 +77,8 @@ class VirtualSession {
   std::deque<OnTheWay> on_the_way_;
   SurfacePager pager_;
   protocol::NearTiles near_;
-  std::deque<std::uint32_t> sent_;  // tiles that the client still has, the oldest first
-  std::vector<char> has_;           // by tile: whether it is among them
+  std::deque<std::uint32_t> sent_;  // pages of tiles and shapes that the client still has, the oldest first
+  std::vector<char> has_;           // by page from the first tile on: whether it is among them
   std::uint64_t steps_ = 0, newest_ = 0, pages_ = 0;
   Time now_{}, answered_{};  // of the newest tool state, and of the newest that a step answered
   Vec3 newest_p_W_ = Vec3::Zero(), newest_v_W_ = Vec3::Zero();

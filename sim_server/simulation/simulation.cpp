@@ -87,6 +87,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   const bool stays = row.deforms() && !fixed.empty() && !supports_move(scene);
   if (stays) farthest_ = kRunAway * diagonal_of(rest_);
   tissue_.model = row.make({scene, mesh_, surface_, fixed, reachable, progress, free_memory(), cache});
+  instants_ = tissue_.model->instants();
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;
   tissue_.velocities = motion.velocities;
@@ -107,6 +108,9 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
     tissue_.before.assign(tissue_.positions.begin(), tissue_.positions.end());
   const auto all_loads = static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
   if (tools_.size() > 1) coupling_.emplace(tools_.size(), rest_.size(), all_loads);
+  if (const SlowModes* const told = told_modes()) modes_.q = modes_.v = Eigen::VectorXd::Zero(told->told);
+  came_from_.resize(tools_.size());
+  mean_.resize(tools_.size(), Vec3::Zero());
   velocities_.resize(tools_.size(), Vec3::Zero());
   inputs_.resize(tools_.size());
   surface_motion_.resize(tools_.size(), Vec3::Zero());
@@ -154,22 +158,11 @@ void Simulation::hold_answers(std::span<const ToolInput> inputs) noexcept {
 }
 
 void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
+  std::fill(mean_.begin(), mean_.end(), Vec3::Zero());
   for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].press(inputs[i].buttons);
-  move_organ(dt);
-  for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (!inputs[i].pose) lift_tool(i);
-    if (tools_.size() > 1) tools_[i].keep(tissue_.loads_of(i));
-  }
-  for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (!inputs[i].pose) continue;
-    tools_[i].advance_to(*inputs[i].pose, inputs[i].path, tissue_.met_by(i));
-  }
-  tools_settled_ = true;
-  solve_contacts();
-  if (!tools_settled_) restore_touching();
+  for (int instant = 1; instant <= instants_; ++instant) advance_to_instant(inputs, instant, dt / instants_);
+  for (std::size_t i = 0; i < tools_.size(); ++i) came_from_[i] = inputs[i].pose;
   lost_ = ran_away();
-  if (!tissue_.before.empty())
-    std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     const ToolForce before = answers_[i];
     answers_[i] = {};
@@ -178,11 +171,45 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
       fade(answers_[i]);
       continue;
     }
-    if (inputs[i].wants.tangent) tools_[i].differentiate();
+    if (instants_ > 1)
+      tools_[i].foresee(std::max(dt, inputs[i].wants.ahead ? inputs[i].wants.ahead->seconds : 0));
+    if (inputs[i].wants.tangent) tools_[i].differentiate(tissue_.met_by(i));
     static_cast<ToolForce&>(answers_[i]) = tools_[i].force();
+    answers_[i].mean_force = mean_[i];
   }
   couple(inputs);
   for (std::size_t i = 0; i < tools_.size(); ++i) add_wanted(i, inputs[i]);
+}
+
+/// Where a tool is at an instant of a step, from 1 to the last.
+PathPoint Simulation::at_instant(std::size_t tool, const ToolInput& input, int instant) const {
+  const bool told = input.path.size() + 1 == static_cast<std::size_t>(instants_);
+  if (instant == instants_) return {*input.pose, told ? input.bend : Bend{}};
+  if (told) return input.path[static_cast<std::size_t>(instant) - 1];
+  if (!came_from_[tool]) return {*input.pose};  // it appears there
+  const double share = static_cast<double>(instant) / instants_;
+  const ToolPose &from = *came_from_[tool], &to = *input.pose;
+  return {ToolPose((1 - share) * from.p_W + share * to.p_W, from.q_W.slerp(share, to.q_W))};
+}
+
+/// The tissue goes on by `dt` (s), then contact is solved with the tools where they are by then.
+void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int instant, double dt) {
+  move_organ(dt);
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (!inputs[i].pose) lift_tool(i);
+    if (tools_.size() > 1) tools_[i].keep(tissue_.loads_of(i));
+  }
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (!inputs[i].pose) continue;
+    const PathPoint point = at_instant(i, inputs[i], instant);
+    tools_[i].advance_to(point.pose, point.bend, tissue_.met_by(i));
+  }
+  tools_settled_ = true;
+  solve_contacts();
+  if (!tools_settled_) restore_touching();
+  if (!tissue_.before.empty())
+    std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
+  for (std::size_t i = 0; i < tools_.size(); ++i) mean_[i] += tools_[i].force().force / instants_;
 }
 
 /// How the tools move the surface under each other, if any of them is to be told.
@@ -192,7 +219,7 @@ void Simulation::couple(std::span<const ToolInput> inputs) {
              });
   if (!coupled_) return;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    tools_[i].differentiate();
+    tools_[i].differentiate(tissue_.met_by(i));
     velocities_[i] = inputs[i].pose ? inputs[i].v_W : Vec3::Zero();
   }
   coupling_->update(tissue_, tools_, velocities_);
@@ -236,15 +263,20 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
     if (coupled_ && coupling_->moved_by_others(tool)) answer.others = coupling_->others(tool);
   }
   if (wants.here) answer.here = linearise_coupled(tool, p_W, p_W, &answer);
-  if (wants.ahead) {
+  // Where contact is solved several times a step, the tool would be there within one of them: a jump that
+  // tissue with inertia answers otherwise than the motion that is expected. Then the tangent must do.
+  if (wants.ahead && instants_ == 1) {
     const Vec3 v_W = answer.others ? Vec3(answer.surface_v_W + answer.others->v_W) : answer.surface_v_W;
     const Vec3 motion = wants.ahead->seconds * (wants.ahead->v_W - v_W);  // on the organ as it stands
     Vec3 there = p_W + std::min(1.0, kFarthestAhead / motion.norm()) * motion;
     if (!there.allFinite()) there = p_W;
     answer.ahead = {there, linearise_coupled(tool, p_W, there, nullptr)};
   }
-  if (wants.surface_shift && !tools_[tool].holds())  // what is grasped is no matter of contact
-    answer.surface_shift_W = surface_shift(tool, p_W);
+  if (!wants.surface_shift || tools_[tool].holds()) return;  // what is grasped is no matter of contact
+  answer.surface_shift_W = surface_shift(tool, p_W);
+  if (told_modes() == nullptr) return;
+  tissue_.model->modal_state(modes_.q, modes_.v);
+  answer.modes = &modes_;
 }
 
 /// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.
@@ -282,6 +314,7 @@ void Simulation::move_organ(double dt) {
 void Simulation::set_free(const FreeMotion& motion) {
   tissue_.free = motion.positions;
   tissue_.velocities = motion.velocities;
+  tissue_.carried = motion.carried;
   if (!motion.loaded.empty()) tissue_.positions = motion.loaded;
 }
 
@@ -364,11 +397,13 @@ std::optional<double> Simulation::gap(std::size_t tool) const noexcept {
 Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) {
   const ToolTissue tissue = tissue_.met_by(tool);
   const int vertex = tools_[tool].nearest_vertex(p_W, tissue_);
-  return tissue.free()[vertex] - rest_[vertex];
+  if (told_modes() == nullptr) return tissue.free()[vertex] - rest_[vertex];
+  return tissue_.carried.empty() ? Vec3(Vec3::Zero()) : Vec3(tissue_.carried[vertex] - rest_[vertex]);
 }
 
 void Simulation::lift_tool(std::size_t tool) {
   answers_[tool] = {};
+  came_from_[tool].reset();
   if (!tissue_.loads_of(tool).empty()) tissue_.met_by(tool).release();
   tools_[tool].lift();
 }

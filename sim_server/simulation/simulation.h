@@ -4,6 +4,7 @@
 
 #include "sim_server/contact/tool_contact.h"
 #include "sim_server/deformation/model_inputs.h"
+#include "sim_server/deformation/slow_modes.h"
 #include "sim_server/mesh/tet_mesh.h"
 #include "sim_server/scene/scene.h"
 #include "sim_server/simulation/flagged_steps.h"
@@ -34,18 +35,29 @@ struct ToolWants {
   bool surface_shift = false;  ///< of a tool that does not grasp
 };
 
+/// Where a tool was at an instant within a step, and how it came from the one before.
+struct PathPoint {
+  ToolPose pose;
+  Bend bend = {};  ///< only friction asks for it
+};
+
 /// One tool in one step.
 struct ToolInput {
   std::optional<ToolPose> pose = {};  ///< where its tip is now; none: it is lifted
   std::uint16_t buttons = 0;          ///< of its device, pressed now: some tools grasp by them
   Vec3 v_W = Vec3::Zero();            ///< of its tip, m/s: how fast it pushes the organ under other tools
-  Bend path = {};                     ///< how it came from the pose before; only friction asks for it
+  Bend bend = {};  ///< how it came there from the last point of its path; only friction asks for it
+  /// Where it was at the instants within the step before `pose` (`Simulation::instants` - 1), evenly in time.
+  /// Of another length, as empty where there are some: it went straight and evenly from its pose of the step
+  /// before.
+  std::span<const PathPoint> path = {};
   ToolWants wants = {};
 };
 
 /// What a step says of one tool: the force on it, and what was asked beyond that, if its pose was known and
 /// the force is not flagged.
 struct ToolAnswer : ToolForce {
+  Vec3 mean_force = Vec3::Zero();  ///< N, over the step; equal to `force` where contact is solved once
   /// How fast the organ's surface moves by itself where the tool touches, or else nearest to it, m/s, world.
   /// Told with `here` and `ahead`; zero where all supports rest.
   Vec3 surface_v_W = Vec3::Zero();
@@ -58,8 +70,10 @@ struct ToolAnswer : ToolForce {
   };
   std::optional<Ahead> ahead = {};
   /// How far the surface nearest to the tool is from its place at rest, free of that tool but under all
-  /// others, m. O(vertices).
+  /// others, m; with `modes`, by its supports alone. O(vertices).
   std::optional<Vec3> surface_shift_W = {};
+  /// The tissue's told modes at the end of the step; null without `surface_shift_W`, or where there are none.
+  const SlowModes::State* modes = nullptr;
 };
 
 /// Steps that could not be finished because the model threw, by reason.
@@ -97,6 +111,16 @@ class Simulation {
   void lift_tool(std::size_t tool = 0);
 
   std::size_t tools() const { return tools_.size(); }
+  /// How often contact is solved within a step.
+  int instants() const { return instants_; }
+  /// The modes that clients step between samples; null: there are none to tell. Of a tissue with one tool:
+  /// what others do to it besides is told to first order only (`OtherTools`).
+  const SlowModes* told_modes() const {
+    return tools_.size() == 1 && tissue_.model->slow_modes() != nullptr &&
+                   tissue_.model->slow_modes()->told > 0
+               ? tissue_.model->slow_modes()
+               : nullptr;
+  }
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
   /// What a tool puts on the surface by now.
   std::span<const NodalLoad> loads(std::size_t tool) const noexcept { return tissue_.loads_of(tool); }
@@ -120,6 +144,8 @@ class Simulation {
 
  private:
   void advance(std::span<const ToolInput> inputs, double dt);
+  PathPoint at_instant(std::size_t tool, const ToolInput& input, int instant) const;
+  void advance_to_instant(std::span<const ToolInput> inputs, int instant, double dt);
   void count_flagged() noexcept;
   void hold_answers(std::span<const ToolInput> inputs) noexcept;
   void move_organ(double dt);
@@ -140,11 +166,15 @@ class Simulation {
   double farthest_ = 1e150;  // from there, m; so far: no bound but that of numbers
   Tissue tissue_;
   std::vector<ToolContact> tools_;
-  std::optional<ToolCoupling> coupling_;  // of several tools
-  std::vector<Vec3> velocities_;          // of the tools, m/s
-  std::vector<Vec3> surface_motion_;      // of the surface at each tool in this step, m
-  std::vector<ToolInput> inputs_;         // for the step of tool 0 alone
+  std::optional<ToolCoupling> coupling_;            // of several tools
+  int instants_ = 1;                                // within a step
+  std::vector<std::optional<ToolPose>> came_from_;  // poses of the step before
+  std::vector<Vec3> mean_;                          // of the forces at the instants, N
+  std::vector<Vec3> velocities_;                    // of the tools, m/s
+  std::vector<Vec3> surface_motion_;                // of the surface at each tool in this step, m
+  std::vector<ToolInput> inputs_;                   // for the step of tool 0 alone
   std::vector<ToolAnswer> answers_;
+  SlowModes::State modes_;  // of the told modes
   StepFailures failures_;
   FlaggedSteps flagged_;
   bool tools_settled_ = true, lost_ = false, coupled_ = false;  // in this step

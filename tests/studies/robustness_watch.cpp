@@ -20,6 +20,18 @@ using namespace palpate::sim;
 
 constexpr double kNothing = 1e-9;  // N, N m: less is no force, and no torque
 
+/// Where the tools were at the instants within the step that ends at `t`; empty where one was lifted.
+std::vector<std::vector<sim::PathPoint>> paths_to(const World& world, double t, double dt, int instants) {
+  std::vector<std::vector<sim::PathPoint>> paths(world.hands(t).size());
+  for (int k = 1; k < instants; ++k) {
+    const std::vector<ToolInput> there = world.hands(t - dt + k * dt / instants);
+    for (std::size_t tool = 0; tool < paths.size(); ++tool) {
+      if (there[tool].pose) paths[tool].push_back({*there[tool].pose});
+    }
+  }
+  return paths;
+}
+
 void see_step(const Simulation& simulation, std::span<const ToolInput> inputs,
               std::span<const ToolAnswer> answers, double t, Watched& watched) {
   Felt felt{t, {}, {}, {}, !simulation.model().balanced()};
@@ -89,7 +101,9 @@ Watched watch(const World& world, const Column& column) {
     const double dt = 1 / world.file.rate_hz;
     const int steps = static_cast<int>(std::lround(world.seconds / dt));
     for (int i = 1; i <= steps && watched.finite; ++i) {
-      const std::vector<ToolInput> inputs = world.hands(i * dt);
+      std::vector<ToolInput> inputs = world.hands(i * dt);
+      const auto paths = paths_to(world, i * dt, dt, simulation.instants());
+      for (std::size_t tool = 0; tool < inputs.size(); ++tool) inputs[tool].path = paths[tool];
       see_step(simulation, inputs, simulation.step(inputs, dt), i * dt, watched);
     }
     for (std::size_t v = 0; v < began.size(); ++v)

@@ -30,7 +30,8 @@ struct Listener {
   /// Gives the model to the law, each page as `change` leaves it; false leaves it out.
   template <class Change>
   void learn(Change change) {
-    model.announce(sim::SurfacePager(block.simulation, 0).state());
+    const sim::SurfacePager pager(block.simulation, 0);
+    model.announce(pager.state(), pager.pages().modes);
     for (protocol::SurfacePage page : all_pages(block.simulation)) {
       if (change(page)) model.take(page);
     }

@@ -71,6 +71,12 @@ std::vector<Message> one_of_each() {
   ForceSample among_others = force;
   among_others.flags = ForceSample::kHasOthers;
   among_others.others = {{0.5, 0, -1}, {-1, -2, -3, -4, -5, -6}};
+  ForceSample swinging = force;
+  swinging.flags = ForceSample::kHasModes | ForceSample::kHasMean;
+  swinging.modes.count = 2;
+  swinging.modes.q = {0.5F, -1};
+  swinging.modes.v = {2, 0};
+  swinging.mean_f_W = {0, 1.5, 0};
   SurfacePage page{.tool = 1, .version = 0xa1b2c3d4, .page = 0x0708};
   page.values.front() = 0.5F;
   page.values.back() = -2;
@@ -86,7 +92,8 @@ std::vector<Message> one_of_each() {
           on_surface,
           page,
           with_errors,
-          among_others};
+          among_others,
+          swinging};
 }
 
 }  // namespace
@@ -176,6 +183,12 @@ TEST_CASE("golden bytes: written down by hand from protocol/README.md") {
         "00000000000010c0"
         "00000000000014c0"
         "00000000000018c0");
+  CHECK(hex(encoded(kHeader, messages[13])).substr(2 * (28 + 105)) ==
+        "80010000"
+        "02"
+        "0000003f00000040"
+        "000080bf00000000"
+        "0000000000000000000000000000f83f0000000000000000");
   CHECK(hex(encoded(kHeader, messages[10])) == front("0a", "8d03") + "01" + "d4c3b2a1" + "08070000" +
                                                    "0000003f" + std::string(2 * 4 * 223, '0') + "000000c0");
   CHECK(hex(encoded(kHeader, messages[6])).substr(2 * (28 + 107)) ==
@@ -310,6 +323,24 @@ TEST_CASE("a surface without a tool that could touch it is refused, and one that
   CHECK(with_radius("000000000000f07f") == Verdict::kNotFinite);
   CHECK(with_radius("0000000000000000", true) == Verdict::kAccepted);
   CHECK(with_radius("000000000000e0bf", true) == Verdict::kValue);
+}
+
+TEST_CASE("more modes than there are, or wild ones, are refused") {
+  const auto verdict = [](std::uint8_t count, float q, float v) {
+    ForceSample sample = std::get<ForceSample>(one_of_each()[13]);
+    sample.modes.count = count;
+    sample.modes.q[0] = q;
+    sample.modes.v[0] = v;
+    Datagram datagram;
+    return decode(encoded(kHeader, sample), datagram);
+  };
+  CHECK(verdict(kMostSlowModes, 1e6F, -1e6F) == Verdict::kAccepted);
+  CHECK(verdict(0, 1e6F, 0) == Verdict::kAccepted);
+  CHECK(verdict(kMostSlowModes + 1, 0, 0) == Verdict::kValue);
+  CHECK(verdict(255, 0, 0) == Verdict::kValue);
+  CHECK(verdict(1, 2e6F, 0) == Verdict::kValue);
+  CHECK(verdict(1, 0, -2e6F) == Verdict::kValue);
+  CHECK(verdict(1, NAN, 0) == Verdict::kNotFinite);
 }
 
 TEST_CASE("a tag behind the payload, and fields a later version adds, do not disturb a reader") {

@@ -86,8 +86,8 @@ TEST_CASE("friction: the way between two places is bent as the velocities say, w
         anything{1e200 * Vec3::UnitY(), i % 2 == 0 ? Vec3(1e300, 1e300, 1e300) : Vec3(0, std::nan(""), 0)};
     const Vec3 line = straight.step(at(to), kDt).force;
     by_line = std::max(by_line, relative(line, expected));
-    by_cubic = std::max(by_cubic, relative(test::step(bent, at(to), {.path = path}, kDt).force, expected));
-    const ToolForce any = test::step(wild, at(to), {.path = anything}, kDt);
+    by_cubic = std::max(by_cubic, relative(test::step(bent, at(to), {.bend = path}, kDt).force, expected));
+    const ToolForce any = test::step(wild, at(to), {.bend = anything}, kDt);
     CHECK_FALSE(any.flagged);
     CHECK(relative(any.force, line) < 0.1);
   }

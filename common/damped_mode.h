@@ -1,0 +1,25 @@
+#pragma once
+
+namespace palpate {
+
+/// The slow modes of a tissue that a server tells and a client steps: so many at most, and none quicker than
+/// so (rad/s), as the client meets the contact force a tick late; 80 Hz, where its ticks come at 500 Hz.
+constexpr int kMostSlowModes = 75;
+constexpr double kQuickestSlowMode = 500;
+
+/// One mode of a damped linear motion, q'' + d q' + w^2 q = p, over a time under a force p that is held: of
+/// q, q' and p at its beginning to q and q' at its end. Exact, whatever the time and the damping.
+struct ModeStep {
+  double q_of_q = 1, q_of_v = 0, v_of_q = 0, v_of_v = 1, q_of_p = 0, v_of_p = 0;
+
+  /// `w`: angular frequency, rad/s > 0; `damping`: d, 1/s >= 0; `time`: s >= 0.
+  static ModeStep over(double time, double w, double damping) noexcept;
+
+  void advance(double& q, double& v, double p) const noexcept {
+    const double from = q;
+    q = q_of_q * from + q_of_v * v + q_of_p * p;
+    v = v_of_q * from + v_of_v * v + v_of_p * p;
+  }
+};
+
+}  // namespace palpate

@@ -1,0 +1,90 @@
+#pragma once
+#include <array>
+#include <span>
+
+#include "common/damped_mode.h"
+#include "haptic_client/extrapolation/extrapolator.h"
+#include "haptic_client/extrapolation/surface_model.h"
+#include "haptic_client/extrapolation/tick_memory.h"
+
+namespace palpate::client {
+
+/// What a tissue that swings remembers: its slow modes (protocol/surface_pages.h), stepped here between two
+/// samples under the force that the tool puts on it. Each sample tells where they stood at its time; what
+/// they are off by here, compared with what was so at that tick, goes on by itself from then to now, as the
+/// motion is linear. Haptic thread; only the constructor allocates, 1.2 MB. A tick takes
+/// 0.5 us of 40 modes, a sample 5 us.
+class ModalMemory {
+ public:
+  /// How a point of the surface moves in the modes, 1/sqrt(kg).
+  using Shapes = std::array<Vec3, kMostSlowModes>;
+
+  ModalMemory();
+
+  /// Where the modes stood at `t`, under the force `f` (N) on the tool. False where the surface is not known
+  /// well enough, or these are no amplitudes of any organ: then it knows nothing any more.
+  bool take(const Surface& surface, Time t, const Vec3& f) noexcept;
+  /// Forgets all.
+  void restart() noexcept;
+  bool known() const noexcept { return known_; }
+  bool stands() const noexcept { return standing_; }
+
+  /// Stands on the vertex nearest to `p_rest` (m, in the frame of the surface at rest). False where the model
+  /// does not know the shapes there.
+  bool stand_near(const SurfaceModel& model, const Vec3& p_rest) noexcept;
+  /// The force of the tool is borne by the surface as these loads are; none: where it stands.
+  bool bear(const SurfaceModel& model, std::span<const SurfaceLoad> loads) noexcept;
+
+  /// Goes on to the tick at `t`, under the force of the last.
+  void advance(Time t) noexcept;
+  /// The force on the tool at that tick, N; remembers the tick.
+  void press(const Vec3& f) noexcept;
+
+  /// How far the modes have moved the surface where it stands, m: at the tick of `advance`, or at the sample
+  /// of `take`, whichever came last.
+  Vec3 displacement() const noexcept { return at(present_); }
+  /// How much farther than foreseen the sample of `take` told it to be then, m; 0 where nothing was.
+  Vec3 drift() const noexcept { return drift_; }
+  /// And how much farther a vertex of these shapes, m.
+  Vec3 warp(const Shapes& shapes) const noexcept {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < count_; ++k) sum += present_[k] * (shapes[k] - foot_[k]);
+    return sum;
+  }
+
+ private:
+  using Numbers = std::array<double, kMostSlowModes>;
+  struct State {
+    Numbers q{}, v{};  // m sqrt(kg), m sqrt(kg)/s
+  };
+  bool take_spectrum(const Surface& surface) noexcept;
+  Vec3 at(const Numbers& q) const noexcept;
+  Numbers force_of(const Vec3& f) const noexcept;
+  State now(Time t) const noexcept;
+  void begin(Time t, const Vec3& f) noexcept;
+  State free_motion(State state, Time time) const noexcept;
+  void correct(const State& before, Time t) noexcept;
+
+  bool known_ = false, standing_ = false;
+  std::uint32_t version_ = 0, foot_version_ = 0;  // of the surface model that spectrum and foot are of
+  std::size_t count_ = 0;
+  Numbers w_{}, damping_{};                                                  // rad/s, 1/s
+  Numbers q_of_q_{}, q_of_v_{}, v_of_q_{}, v_of_v_{}, q_of_p_{}, v_of_p_{};  // over a short step
+  Shapes foot_{}, bearing_{};
+  Vec3 foot_at_ = Vec3::Zero();  // m, of `stand_near`
+  State state_, told_;           // at `time_`; of the newest sample
+  Numbers force_{};              // held from the last tick on, N/sqrt(kg)
+  /// A sample that told of the tick `of` came after the tick `made`, and said that the modes were so far off.
+  struct Correction {
+    Time of{}, made{};
+    State off;
+  };
+  std::array<Correction, 16> corrections_{};  // more samples are never on their way
+  std::size_t next_correction_ = 0;
+  Time time_{}, tick_{}, tick_before_{}, compared_{};
+  Numbers present_{};
+  Vec3 drift_ = Vec3::Zero();
+  TickMemory<State> past_;
+};
+
+}  // namespace palpate::client

@@ -1,0 +1,61 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/config.h"
+#include "common/contact/contact_solver.h"
+#include "sim_server/deformation/deformation_model.h"
+#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/solvers/vibration_modes.h"
+
+namespace palpate::sim {
+
+/// For models that could do without modes themselves.
+struct ClientModes {
+  int modes = 40;  ///< `client_modes`, that clients are told of, [0, kMostSlowModes]
+
+  static constexpr std::array<std::string_view, 1> kKeys{"client_modes"};
+  static ClientModes read(const Config& config);
+  std::string to_text() const;
+};
+
+/// The slowest modes of a linear tissue, as its surface moves in them:
+///   q_k'' + damping_k q_k' + w_k^2 q_k = shapes_k^T f.
+/// What a client needs to know of a tissue that swings, besides how compliant all the rest of it is: a
+/// compliance alone, however fresh, has no memory.
+struct SlowModes {
+  Eigen::VectorXd frequencies;  ///< (k) w, rad/s, ascending
+  Eigen::VectorXd damping;      ///< (k) 1/s
+  Eigen::MatrixXd shapes;       ///< (3 surface vertices x k), 1/sqrt(kg): of unit mass
+  /// The first so many are those that a client can follow (`kMostSlowModes`, `kQuickestSlowMode`).
+  Eigen::Index told = 0;
+
+  /// `modes`: over the unknowns; a surface vertex begins at `first` there, or -1: held.
+  SlowModes(const VibrationModes& modes, std::span<const int> first, const RayleighDamping& damping);
+
+  /// Where they stand: amplitudes, m sqrt(kg), and their rates, m sqrt(kg)/s.
+  struct State {
+    Eigen::VectorXd q, v;  // (k)
+  };
+
+  /// Subtracts sum_k yields_k shapes_k shapes_k^T at these surface vertices from the compliance of `patch`,
+  /// which is one in which mode k gives way by `yields` (m^2 kg/N). 9 k multiplications a pair of vertices;
+  /// no allocation.
+  void take_out(std::span<const int> vertices, const Eigen::VectorXd& yields,
+                ContactPatch& patch) const noexcept;
+  /// How far the told modes give way at rest, 1 / w^2, and the others not at all.
+  Eigen::VectorXd told_at_rest() const;
+  /// How much farther the first `end` modes give way to a force held for `seconds` than to one held for
+  /// `before` (s), of the surface that bears these loads as one piece, m/N.
+  Mat3 give_way(std::span<const NodalLoad> loads, double seconds, double before,
+                Eigen::Index end) const noexcept;
+
+  std::size_t bytes() const {
+    return static_cast<std::size_t>(shapes.size() + 2 * frequencies.size()) * sizeof(double);
+  }
+};
+
+}  // namespace palpate::sim

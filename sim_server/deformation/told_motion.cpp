@@ -1,0 +1,95 @@
+#include "sim_server/deformation/told_motion.h"
+
+#include <algorithm>
+#include <fmt/core.h>
+#include <numbers>
+
+#include "sim_server/deformation/linear_statics.h"
+
+namespace palpate::sim {
+namespace {
+
+VibrationModes modes_of(const ModelInputs& inputs, const LinearStatics& statics) {
+  inputs.progress(name_of(Stage::kModes), 0);
+  const DeformationSettings& settings = inputs.scene.deformation;
+  const int most = std::min(settings.of<ClientModes>().modes, statics.dofs.count - 1);
+  return vibration_modes(statics.factor(), statics.masses(), most, settings.where);
+}
+
+std::vector<int> surface_unknowns(const ModelInputs& inputs, const LinearStatics& statics) {
+  std::vector<int> first;
+  for (const int vertex : inputs.surface.vertices) first.push_back(statics.dofs.first[vertex]);
+  return first;
+}
+
+}  // namespace
+
+ToldMotion::ToldMotion(const ModelInputs& inputs, const LinearStatics& statics, std::span<const int> places,
+                       std::span<const double> masses)
+    : ToldMotion(inputs, statics, modes_of(inputs, statics), places, masses) {}
+
+ToldMotion::ToldMotion(const ModelInputs& inputs, const LinearStatics& statics, const VibrationModes& found,
+                       std::span<const int> places, std::span<const double> masses)
+    : modes_(found, surface_unknowns(inputs, statics), inputs.scene.deformation.of<RayleighDamping>()),
+      residual_(inputs),
+      shapes_(3 * static_cast<Eigen::Index>(masses.size()), modes_.told),
+      masses_(shapes_.rows()),
+      weighted_(shapes_.rows()) {
+  for (std::size_t node = 0; node < places.size(); ++node) {
+    if (places[node] < 0) continue;
+    const Eigen::Index row = 3 * places[node];
+    shapes_.middleRows<3>(row) = found.shapes.middleRows<3>(statics.dofs.first[node]).leftCols(modes_.told);
+    masses_.segment<3>(row).setConstant(masses[static_cast<std::size_t>(places[node])]);
+  }
+  q_ = v_ = force_ = Eigen::VectorXd::Zero(modes_.told);
+  steps_.resize(static_cast<std::size_t>(modes_.told));
+  statics.fill(residual_);
+  residual_.add(modes_.shapes, -modes_.told_at_rest());
+}
+
+void ToldMotion::begin(std::span<const double> u, std::span<const double> v, std::span<const double> f,
+                       double late) noexcept {
+  const auto mapped = [&](std::span<const double> all) {
+    return Eigen::Map<const Eigen::VectorXd>(all.data(), shapes_.rows());
+  };
+  weighted_ = masses_.cwiseProduct(mapped(u));
+  q_.noalias() = shapes_.transpose() * weighted_;
+  weighted_ = masses_.cwiseProduct(mapped(v));
+  v_.noalias() = shapes_.transpose() * weighted_;
+  force_.noalias() = shapes_.transpose() * mapped(f);
+  const auto w2 = modes_.frequencies.head(modes_.told).array().square();
+  const auto damping = modes_.damping.head(modes_.told).array();
+  v_.array() += late * (force_.array() - w2 * q_.array() - damping * v_.array());
+}
+
+void ToldMotion::advance(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
+                         Eigen::Ref<Eigen::VectorXd> v) noexcept {
+  force_.setZero();
+  for (const NodalLoad& load : loads)
+    force_.noalias() += modes_.shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex))
+                            .leftCols(modes_.told)
+                            .transpose() *
+                        load.force;
+  q = q_;
+  v = v_;
+  for (Eigen::Index k = 0; k < modes_.told; ++k) {
+    ModeStep& step = steps_[static_cast<std::size_t>(k)];
+    if (time != stepped_) step = ModeStep::over(time, modes_.frequencies[k], modes_.damping[k]);
+    step.advance(q[k], v[k], force_[k]);
+  }
+  stepped_ = time;
+}
+
+std::size_t ToldMotion::bytes() const {
+  return modes_.bytes() + residual_.bytes() + residual_.index_bytes() +
+         static_cast<std::size_t>(shapes_.size() + 2 * masses_.size() + 3 * q_.size()) * sizeof(double) +
+         steps_.size() * sizeof(ModeStep);
+}
+
+std::string ToldMotion::detail() const {
+  return fmt::format("{} modes up to {:.3g} Hz, and the compliance of the rest: {}", modes_.told,
+                     modes_.told > 0 ? modes_.frequencies[modes_.told - 1] / (2 * std::numbers::pi) : 0.0,
+                     residual_.detail());
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,41 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "protocol/messages.h"
+#include "sim_server/contact/tool_contact.h"
+
+namespace palpate::sim {
+
+/// The pose in a tool state; an orientation that is none is taken for no turn.
+ToolPose pose_of(const protocol::ToolState& state) noexcept;
+
+/// Where a tool was lately, from the tool states that its client sends each tick, by the client's clock. No
+/// allocation; copied whole between threads, 6 kB.
+class ToolPath {
+ public:
+  /// The newest state; one that is not later than those before changes nothing. States that follow each other
+  /// by less than `kApart` are thinned, so that the last 126 ms are known whatever the rate of the client.
+  void add(const protocol::ToolState& state) noexcept;
+
+  struct Point {
+    std::int64_t t_ns = 0;
+    ToolPose pose;
+    Vec3 v_W = Vec3::Zero();  // m/s
+  };
+  /// At a time from the oldest state that is known to the newest, straight between two of them; nothing at
+  /// other times.
+  std::optional<Point> at(std::int64_t t_ns) const noexcept;
+
+ private:
+  static constexpr std::size_t kPoints = 64;
+  static constexpr std::int64_t kApart = 2'000'000;  // ns
+
+  const Point& back(std::size_t i) const noexcept { return ring_[(written_ - 1 - i) % kPoints]; }
+
+  std::array<Point, kPoints> ring_;
+  std::size_t written_ = 0;
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,141 @@
+// The slow modes as a client steps them, on a surface of one triangle with modes made up by hand.
+#include "haptic_client/extrapolation/modal_memory.h"
+
+#include <cmath>
+
+#include "protocol/surface_pages.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::client;
+using namespace std::chrono_literals;
+using protocol::SurfacePage;
+using protocol::SurfacePages;
+
+namespace {
+
+constexpr double kW = 30, kDamping = 4, kShape = 2;  // rad/s, 1/s, 1/sqrt(kg): 0.25 kg
+
+/// A triangle that one mode moves along y as one piece.
+struct Triangle {
+  SurfaceModel model;
+  Triangle() {
+    const protocol::SurfaceState state{.version = 7, .vertices = 3, .triangles = 1, .tool_radius = 0.005};
+    model.announce(state, 1);
+    const SurfacePages pages{3, 1, 1};
+    SurfacePage places{.version = 7, .page = 0};
+    places.values = {0, 0, 0, 0.01f, 0, 0, 0, 0, 0.01f};
+    SurfacePage corners{.version = 7, .page = pages.first_triangle_page()};
+    corners.values = {0, 1, 2};
+    SurfacePage spectrum{.version = 7, .page = pages.spectrum()};
+    spectrum.values = {static_cast<float>(kW), static_cast<float>(kDamping)};
+    SurfacePage shapes{.version = 7, .page = pages.shapes(0, 0)};
+    for (std::size_t vertex = 0; vertex < 3; ++vertex)
+      shapes.values[(3 * vertex + 1) * SurfacePages::kModes] = static_cast<float>(kShape);
+    for (const SurfacePage& page : {places, corners, spectrum, shapes}) model.take(page);
+  }
+  Surface told(double q, double v) const {
+    Surface surface{.model = &model, .tool = {.radius = 0.005}};
+    surface.modes.count = 1;
+    surface.modes.q[0] = static_cast<float>(q);
+    surface.modes.v[0] = static_cast<float>(v);
+    return surface;
+  }
+};
+
+/// q and q' at time t (s), from q = 0.01 and q' = 0, free of any force: the closed form.
+std::pair<double, double> swung(double t) {
+  const double g = kDamping / 2, r = std::sqrt(kW * kW - g * g), e = 0.01 * std::exp(-g * t);
+  return {e * (std::cos(r * t) + g / r * std::sin(r * t)), -e * kW * kW / r * std::sin(r * t)};
+}
+
+}  // namespace
+
+TEST_CASE("modal memory: goes on as the closed form, whatever the ticks") {
+  const Triangle triangle;
+  for (const Time tick : {2000us, 1000us, 333us, 1777us}) {
+    CAPTURE(tick.count());
+    ModalMemory memory;
+    REQUIRE(memory.stand_near(triangle.model, Vec3(0.001, 0, 0.001)));
+    REQUIRE(memory.take(triangle.told(0.01, 0), 1s, Vec3::Zero()));
+    double worst = 0;
+    for (Time t = 1s + tick; t < 1200ms; t += tick) {
+      memory.advance(t);
+      memory.press(Vec3::Zero());
+      worst = std::max(worst, std::abs(memory.displacement()[1] - kShape * swung(to_seconds(t - 1s)).first));
+    }
+    CHECK(worst < 1e-5 * kShape * 0.01);
+  }
+}
+
+TEST_CASE("modal memory: a force on the tool pushes the surface the other way, at last by 1 / w^2") {
+  const Triangle triangle;
+  ModalMemory memory;
+  REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
+  REQUIRE(memory.take(triangle.told(0, 0), 0s, Vec3::Zero()));
+  const std::array loads{SurfaceLoad{0, Vec3(0, -1, 0)}, SurfaceLoad{1, Vec3(0, -1, 0)}};
+  REQUIRE(memory.bear(triangle.model, loads));
+  for (Time t = 2ms; t < 10s; t += 2ms) {
+    memory.advance(t);
+    memory.press(Vec3(0, 2, 0));  // N, on the tool
+  }
+  CHECK(memory.displacement()[1] == Approx(-2 * kShape * kShape / (kW * kW)).epsilon(1e-4));
+}
+
+TEST_CASE("modal memory: an error is set right by the first sample that tells of it, and counted once") {
+  const Triangle triangle;
+  for (const Time delay : {10ms, 36ms, 80ms, 110ms}) {
+    CAPTURE(delay.count());
+    ModalMemory memory;
+    REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
+    REQUIRE(memory.take(triangle.told(0.013, 0.1), 0s, Vec3::Zero()));  // wrong: it is at 0.01, at rest
+    Time sampled = 30ms;
+    double worst = 0;
+    for (Time t = 2ms; t < 1s; t += 2ms) {
+      if (t == sampled + delay) {
+        const auto [q, v] = swung(to_seconds(sampled));
+        REQUIRE(memory.take(triangle.told(q, v), sampled, Vec3::Zero()));
+        sampled += 30ms;
+      }
+      memory.advance(t);
+      memory.press(Vec3::Zero());
+      const double off = std::abs(memory.displacement()[1] - kShape * swung(to_seconds(t)).first);
+      if (t > 30ms + delay) worst = std::max(worst, off);
+    }
+    CHECK(worst < 1e-4 * kShape * 0.01);
+  }
+}
+
+TEST_CASE("modal memory: amplitudes of no organ, an unknown spectrum, or a long silence: it knows nothing") {
+  const Triangle triangle;
+  ModalMemory memory;
+  CHECK_FALSE(memory.take(triangle.told(0.01, 0), 0s, Vec3::Zero()));  // it stands nowhere
+  REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
+  CHECK_FALSE(memory.take(triangle.told(1000, 0), 0s, Vec3::Zero()));
+  CHECK_FALSE(memory.known());
+  REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
+  REQUIRE(memory.take(triangle.told(0.01, 0), 0s, Vec3::Zero()));
+  memory.advance(299ms);
+  CHECK(memory.known());
+  memory.advance(700ms);
+  CHECK_FALSE(memory.known());
+  const SurfaceModel nothing;
+  Surface unknown = triangle.told(0.01, 0);
+  unknown.model = &nothing;
+  REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
+  CHECK_FALSE(memory.take(unknown, 1s, Vec3::Zero()));
+}
+
+TEST_CASE("modal memory: neither ticks nor samples allocate") {
+  const Triangle triangle;
+  ModalMemory memory;
+  const test::AllocationGuard guard;
+  memory.stand_near(triangle.model, Vec3::Zero());
+  for (Time t = 2ms; t < 1s; t += 2ms) {
+    if (t.count() % 30'000'000 == 0) memory.take(triangle.told(0.01, 0), t - 20ms, Vec3::Zero());
+    memory.advance(t);
+    memory.press(Vec3(0, 1, 0));
+  }
+  CHECK(guard.count() == 0);
+}

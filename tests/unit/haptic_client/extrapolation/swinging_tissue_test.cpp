@@ -1,0 +1,113 @@
+// A tool on tissue that swings, felt between samples, against the same simulation with contact solved at
+// every tick: both programs without sockets.
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "sim_server/deformation/contact_instants.h"
+#include "sim_server/deformation/reduced.h"
+#include "sim_server/deformation/slow_modes.h"
+#include "tests/support/catch.h"
+#include "tests/support/listener.h"
+
+using namespace palpate;
+using namespace palpate::test;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// So soft that it swings at 3 to 20 Hz, with little damping.
+sim::Scene swinging(std::string_view model, double rate_hz) {
+  sim::Scene scene = block_scene();
+  scene.material->young_modulus = 4e3;
+  scene.material->density = 2000;
+  scene.rate_hz = rate_hz;
+  scene.deformation.model = model;
+  scene.deformation.of<sim::ReducedSettings>().modes = 24;
+  scene.deformation.of<sim::ClientModes>().modes = 60;
+  scene.deformation.of<sim::ContactInstants>();
+  return scene;
+}
+
+/// Presses of 2.5 Hz that leave the surface, on a slide.
+Vec3 presses(Time t) {
+  const double s = to_seconds(t - 1s);
+  return {0.004 * std::sin(3 * s), 0.0043 + 0.0025 * std::cos(2 * std::numbers::pi * 2.5 * s), 0.0005};
+}
+
+struct Served {
+  Errors of_law, of_constant;
+};
+Served serve(std::string_view model, Time delay) {
+  const double rate = 1 / to_seconds(ServedBlock::kPeriod);
+  Listener listener(swinging(model, rate), block_mesh());
+  listener.block.set_delay(delay);
+  listener.learn(kWholeModel);
+  sim::Simulation truth(swinging(model, 500), block_mesh());
+  truth.step(Vec3(presses(listener.t)), 0.002);
+  client::ForceEstimate constant{client::extrapolators().front().make()};
+  Served sums;
+  double peak = 0;
+  int ticks = 0;
+  listener.told = [&](protocol::ForceSample& sample) {
+    constant.take(client::sample_of(sample), listener.place, listener.t);
+  };
+  for (; listener.t < 4s; ++ticks) {
+    const Vec3 p = presses(listener.t + kTick);
+    const Vec3 right = truth.step(p, to_seconds(kTick)).force, given = listener.tick(p);
+    peak = std::max(peak, right.norm());
+    if (listener.newest.number < 3) continue;
+    const auto add = [&](Errors& errors, const Vec3& f) {
+      errors.mean += (f - right).norm();
+      errors.largest = std::max(errors.largest, (f - right).norm());
+    };
+    add(sums.of_law, given);
+    add(sums.of_constant, constant.force(p, listener.t));
+  }
+  for (Errors* const errors : {&sums.of_law, &sums.of_constant}) {
+    errors->mean /= ticks * peak;
+    errors->largest /= peak;
+  }
+  return sums;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "swinging tissue: with its slow modes stepped in the client it is felt as it swings, at any delay") {
+  for (const std::string_view model : {"reduced", "tensor_mass"}) {
+    for (const Time delay : {35ms, 80ms}) {
+      const Served errors = serve(model, delay);
+      CAPTURE(model, delay.count(), errors.of_law.mean, errors.of_law.largest, errors.of_constant.mean);
+      CHECK(errors.of_constant.mean > 0.1);
+      CHECK(errors.of_law.mean < 0.01);
+      CHECK(errors.of_law.largest < 0.15);
+    }
+  }
+}
+
+TEST_CASE("swinging tissue: amplitudes that no organ has are never felt") {
+  Listener listener(swinging("reduced", 33.3), block_mesh());
+  listener.learn(kWholeModel);
+  bool wild = false;
+  listener.told = [&](protocol::ForceSample& sample) {
+    if (wild) sample.modes.q.fill(1e5F);
+  };
+  double largest = 0, wildest = 0;
+  for (; listener.t < 4s;) {
+    wild = listener.t > 2s && listener.t < 3s;
+    const double newton = listener.tick(presses(listener.t + kTick)).norm();
+    (wild ? wildest : largest) = std::max(wild ? wildest : largest, newton);
+  }
+  CHECK(largest > 0.05);
+  CHECK(wildest < 2 * largest);
+}
+
+TEST_CASE("swinging tissue: after a silence of the server nothing of the old motion is left") {
+  Listener listener(swinging("reduced", 33.3), block_mesh());
+  listener.learn(kWholeModel);
+  double largest = 0;
+  for (; listener.t < 2s;) largest = std::max(largest, listener.tick(presses(listener.t + kTick)).norm());
+  for (int i = 0; i < 250; ++i) {  // 0.5 s without a sample, the tool held
+    listener.t += kTick;
+    CHECK(listener.law.force(listener.place, listener.t).norm() < 2 * largest);
+  }
+  for (; listener.t < 5s;) CHECK(listener.tick(presses(listener.t + kTick)).norm() < 2 * largest);
+}

@@ -1,0 +1,149 @@
+// What clients are told of a tissue that swings: its slow modes, where they stand, and the rest.
+#include "sim_server/deformation/slow_modes.h"
+
+#include <numeric>
+
+#include "sim_server/deformation/reduced.h"
+#include "sim_server/deformation/told_motion.h"
+#include "sim_server/serving/surface_pager.h"
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/catch.h"
+#include "tests/support/served_block.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+
+namespace {
+
+constexpr double kStep = 0.01;  // s
+
+/// Soft, so that its modes are slow.
+Scene soft_block(std::string_view model) {
+  Scene scene = block_scene();
+  scene.material->young_modulus = 2e3;
+  scene.material->density = 1000;
+  scene.rate_hz = 1 / kStep;
+  scene.deformation.model = model;
+  scene.deformation.of<ReducedSettings>().modes = 20;
+  scene.deformation.of<ClientModes>().modes = 20;
+  return scene;
+}
+
+constexpr std::array<int, 4> kSome{3, 17, 40, 60};  // surface vertices, on the top and the sides
+
+Eigen::MatrixXd of_patch(const auto& fill) {
+  ContactPatch patch;
+  patch.reserve(kSome.size(), 0);
+  patch.free.resize(kSome.size());
+  fill(patch);
+  return patch.compliance.topLeftCorner(3 * kSome.size(), 3 * kSome.size());
+}
+
+}  // namespace
+
+TEST_CASE("slow modes: with what they give way to at rest, the rest is the static compliance") {
+  const Simulation at_rest(soft_block("quasi_static"), block_mesh());
+  const Eigen::MatrixXd right =
+      of_patch([&](ContactPatch& patch) { at_rest.model().compliance(kSome, patch); });
+  for (const std::string_view model : {"tensor_mass", "reduced"}) {
+    CAPTURE(model);
+    const Simulation swings(soft_block(model), block_mesh());
+    const SlowModes* const modes = swings.told_modes();
+    REQUIRE(modes != nullptr);
+    REQUIRE(modes->told == 20);
+    Eigen::MatrixXd sum =
+        of_patch([&](ContactPatch& patch) { swings.model().residual_compliance(kSome, patch); });
+    CHECK((sum - right).norm() > 0.05 * right.norm());  // the modes matter
+    for (Eigen::Index k = 0; k < modes->told; ++k) {
+      Eigen::VectorXd shape(3 * kSome.size());
+      for (std::size_t i = 0; i < kSome.size(); ++i)
+        shape.segment<3>(3 * static_cast<Eigen::Index>(i)) = modes->shapes.col(k).segment<3>(3 * kSome[i]);
+      sum += shape * shape.transpose() / (modes->frequencies[k] * modes->frequencies[k]);
+    }
+    CHECK((sum - right).norm() < 1e-6 * right.norm());
+  }
+}
+
+TEST_CASE("slow modes: where they stand is where the surface has swung to, under a load and after it") {
+  for (const std::string_view model : {"tensor_mass", "reduced"}) {
+    CAPTURE(model);
+    Scene scene = soft_block(model);
+    scene.deformation.of<RayleighDamping>().stiffness = 3e-3;  // what is quick is soon gone
+    Simulation swings(scene, block_mesh());
+    const SlowModes& modes = *swings.told_modes();
+    std::vector<ToolInput> input(1);
+    const Vec3 pressed(0.001, 0.002, 0.0005);
+    double worst = 0, largest = 0;
+    for (int step = 0; step < 60; ++step) {
+      input[0] = {.wants = {.here = true, .surface_shift = true}};
+      input[0].pose = step < 20 ? Vec3(pressed + Vec3(0, std::max(0.0, 0.005 - 0.0005 * step), 0))
+                                : Vec3(0, 0.012, 0);
+      const ToolAnswer answer = swings.step(input, kStep).front();
+      CAPTURE(step, answer.flagged);
+      REQUIRE(answer.modes != nullptr);
+      CHECK(answer.surface_shift_W->isZero(0));  // its supports rest
+      if (step < 25) continue;
+      // Free of the tool for some steps: what is left is slow.
+      for (const int v : kSome) {
+        Vec3 told = Vec3::Zero();
+        for (Eigen::Index k = 0; k < modes.told; ++k)
+          told += answer.modes->q[k] * modes.shapes.col(k).segment<3>(3 * v);
+        const Vec3 moved =
+            swings.positions()[static_cast<std::size_t>(v)] - swings.rest()[static_cast<std::size_t>(v)];
+        worst = std::max(worst, (told - moved).norm());
+        largest = std::max(largest, moved.norm());
+      }
+    }
+    CAPTURE(worst, largest);
+    CHECK(largest > 1e-4);
+    CHECK(worst < 0.1 * largest);
+  }
+}
+
+TEST_CASE("slow modes: their pages are numbered behind the tiles, and hold shapes and spectrum") {
+  const Simulation swings(soft_block("reduced"), block_mesh());
+  const SlowModes& modes = *swings.told_modes();
+  SurfacePager pager(swings, 0);
+  const protocol::SurfacePages pages = pager.pages();
+  CHECK(pages.modes == 20);
+  CHECK(pages.groups() == 2);
+  protocol::SurfacePage page;
+  REQUIRE(pager.page(pages.spectrum(), page));
+  CHECK(page.values[3 * 7] == static_cast<float>(modes.frequencies[7]));
+  CHECK(page.values[3 * 7 + 1] == static_cast<float>(modes.damping[7]));
+  REQUIRE(pager.page(pages.shapes(pages.clusters() - 1, 1), page));
+  CHECK_FALSE(pager.page(pages.count(), page));
+  // The first vertex of the second cluster, in mode 16: by where that vertex is.
+  protocol::SurfacePage places;
+  REQUIRE(pager.page(0, places));
+  const Vec3 p(static_cast<double>(places.values[15]), static_cast<double>(places.values[16]),
+               static_cast<double>(places.values[17]));
+  std::size_t vertex = 0;
+  for (std::size_t v = 0; v < swings.rest().size(); ++v)
+    if ((swings.rest()[v] - p).norm() < (swings.rest()[vertex] - p).norm()) vertex = v;
+  REQUIRE(pager.page(pages.shapes(1, 1), page));
+  for (int axis = 0; axis < 3; ++axis)
+    CHECK(page.values[static_cast<std::size_t>(axis * 15 + 1)] ==
+          static_cast<float>(modes.shapes(3 * static_cast<Eigen::Index>(vertex) + axis, 16)));
+}
+
+TEST_CASE("slow modes: none are told where tissue rests, under several tools, or where the scene says 0") {
+  CHECK(Simulation(soft_block("quasi_static"), block_mesh()).told_modes() == nullptr);
+  CHECK(Simulation(soft_block("implicit"), block_mesh()).told_modes() == nullptr);
+  Scene none = soft_block("tensor_mass");
+  none.deformation.of<ClientModes>().modes = 0;
+  CHECK(Simulation(none, block_mesh()).told_modes() == nullptr);
+  Scene two = soft_block("reduced");
+  two.tools.push_back(two.tools.front());
+  CHECK(Simulation(two, block_mesh()).told_modes() == nullptr);
+}
+
+TEST_CASE(
+    "slow modes: of a stiff body all are too quick to be told, and its pages are those of its compliance") {
+  Scene stiff = soft_block("reduced");
+  stiff.material->young_modulus = 50e6;
+  const Simulation simulation(stiff, block_mesh());
+  CHECK(simulation.told_modes() == nullptr);
+  CHECK(SurfacePager(simulation, 0).pages().modes == 0);
+}
