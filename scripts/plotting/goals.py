@@ -51,6 +51,10 @@ WORLDS = ("block", "stiff", "friction", "moving", "grasp", "liver", "liver_tenso
           "liver_implicit")
 
 
+SWINGING = (("liver_tensor_mass", (1, 4, 10), (2, 6, 15)), ("liver_reduced", (1, 4, 10), (2, 6, 15)),
+            ("liver_implicit", (2, 6, 15), (4, 10, 25)))  # at 35 ms, at 80 ms
+
+
 def in_world(name):
     return {**BLOCK, "world": name}
 
@@ -83,6 +87,9 @@ EXTRAPOLATION = (
     Goal("moving, 35 ms", TWO, "mean %", in_world("moving"), MEAN, (1,)),
     *(Goal(f"{world}, {delay} ms", CHOOSES, "mean, of the best other law", {**in_world(world), "delay_ms": delay}, MEAN,
            (1.1,), of=OTHERS) for world in WORLDS for delay in (35, 80)),
+    *(Goal(f"{world}, presses, {delay} ms", CHOOSES, "mean / p99 / max %",
+           {**in_world(world), "motion": "presses", "speed_m_s": 0.025, "delay_ms": delay}, ERRORS, most)
+      for world, *goals in SWINGING for delay, most in zip((35, 80), goals)),
     *blended(SOLVES), *blended(TWO),
     Goal("closed path, 0.02 m/s, 35 ms", TWO, "energy created, %", LOOP, ENERGY, (1,)),
     Goal("closed path, 0.02 m/s, 35 ms", SOLVES, "energy created, %", LOOP, ENERGY, (0.1,)),

@@ -21,7 +21,8 @@ each, from the fixed seeds of scripts/trajectories; the mean speed is a study's 
             only, as in the paper, and its rate is 100/3 Hz
   liver     a liver that is palpated, 60 s
   liver_tensor_mass, liver_reduced, liver_implicit   tissue that swings, on the mesh of
-            1999, palpated for 20 s
+            1999, palpated for 20 s, and pressed 2 to 3 times a second on a slide, for 17
+            s (make_presses judge: of no use to choose any number of the program)
   pull_quasi_static, pull_tensor_mass   the paper's own experiment (paper_experiment.py)
 
 Writes into --out: summary.json and summary.csv (a row for each configuration and law),
@@ -48,12 +49,14 @@ SCENES = ROOT / "configs" / "scenes"
 SWINGING = ("liver_tensor_mass", "liver_reduced", "liver_implicit")
 OWN_SCENES = ("block", "grasp", "liver", *SWINGING)  # the others are variants of the block
 MAKE_MOTIONS = ROOT / "scripts" / "trajectories" / "make_block_motions"
+MAKE_PRESSES = ROOT / "scripts" / "trajectories" / "make_presses"
 
 MOTIONS = ("palpation", "slide", "stop_and_go", "curve", "mix")
 TRUTH_HZ = 2000
 SPEED, RATE = 0.017, 33.3  # of the paper's long run
 GRASP_RATE = 100 / 3       # the rows of grasp.csv
 SPEEDS = (0.01, 0.017, 0.05, 0.1)
+PRESS_SPEED, PRESS_SECONDS = 0.025, 17
 LOOP_SPEED, LOOP_SECONDS = 0.02, 10.2  # once around
 RATES = (80, 40, 33.3, 26.7, 20)
 DELAYS = (0, 35, 80)  # ms
@@ -95,7 +98,7 @@ class Cell(NamedTuple):
 
 
 def cells_of(quick, motions):
-    """`motions`: {speed: folder of CSV files}; and "moving", at SPEED."""
+    """`motions`: {speed: folder of CSV files}; "moving", at SPEED; and "presses", a CSV file."""
     delays = QUICK_DELAYS if quick else DELAYS
     cells = []
 
@@ -107,7 +110,7 @@ def cells_of(quick, motions):
         usual = world == "block" and speed == SPEED
         cells.append(Cell(world, motion, speed, file, seconds, captures, usual, usual))
 
-    for speed in (s for s in motions if s != "moving"):
+    for speed in (s for s in motions if s not in ("moving", "presses")):
         for motion in MOTIONS:
             add("block", motion, speed, motions[speed], RATES if speed == SPEED and not quick else (RATE,))
     for world in ("stiff", "friction", "moving"):
@@ -119,6 +122,8 @@ def cells_of(quick, motions):
     for world in SWINGING:
         cells.append(Cell(world, "palpation", SPEED, ROOT / "configs" / "clients" / "liver_paper.toml",
                           QUICK_SECONDS if quick else 20, tuple((RATE, delay) for delay in delays), False))
+        cells.append(Cell(world, "presses", PRESS_SPEED, motions["presses"], QUICK_SECONDS if quick else PRESS_SECONDS,
+                          tuple((RATE, delay) for delay in delays), False))
     return cells
 
 
@@ -212,6 +217,8 @@ def make_motions(folder, speeds):
     made["moving"].mkdir()
     run_program(sys.executable, MAKE_MOTIONS, "--speed", SPEED, "--follow", SCENES / "block_moving.toml", "--output",
                 made["moving"])
+    made["presses"] = folder / "presses.csv"
+    run_program(sys.executable, MAKE_PRESSES, "judge", "-o", made["presses"])
     return made
 
 
