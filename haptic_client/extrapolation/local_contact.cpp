@@ -7,6 +7,7 @@ namespace {
 constexpr double kMostCorrection = 3;
 // Of the largest force: below it, F_loc says little of how wrong the model is.
 constexpr double kDoubt = 0.02;
+constexpr double kFirm = 0.7;  // of the largest force: a touch that tells of the factor where tissue swings
 constexpr double kTangentReach = 1e-3;  // m: how far a tangent leads
 // How far the model may be off at the sample, of the larger force and at all, to be believed elsewhere.
 constexpr double kBelievable = 0.5, kAlways = 0.1;  // -, N
@@ -40,7 +41,10 @@ void LocalContact::update(const Sample& sample) noexcept {
     felt_.forget();  // the path is lost, and with it what sticks: it is no measure of what would be from here
     return;
   }
-  if (swings()) return;  // what is off is the state of the modes, which has been set right
+  if (swings()) {
+    compare_swinging(*local);
+    return;
+  }
   compare(*local);
   const bool free = local->isZero(0) && sample.f.isZero(0);
   if (free && newest_.surface->tool.friction == 0) compare_ahead();
@@ -66,6 +70,14 @@ void LocalContact::learn_factor(const Vec3& right, const Vec3& local) noexcept {
   const double doubt = kDoubt * largest_ * kDoubt * largest_;  // a light touch tells little of the factor
   const double factor = (right.dot(local) + doubt * kappa_) / (local.squaredNorm() + doubt);
   kappa_ = std::clamp(factor, 1 / kMostCorrection, kMostCorrection);
+}
+
+/// What is off at a light touch is inertia that the model does not have, and soon gone; under a firm one it
+/// is the law of the tissue.
+void LocalContact::compare_swinging(const Vec3& local) noexcept {
+  local_size_ = 0;
+  across_.setZero();
+  if (newest_.f.norm() > kFirm * largest_) learn_factor(newest_.f, local);
 }
 
 void LocalContact::compare(const Vec3& local) noexcept {

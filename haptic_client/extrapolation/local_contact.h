@@ -40,6 +40,7 @@ class LocalContact : public Extrapolator {
 
  private:
   void compare(const Vec3& local) noexcept;
+  void compare_swinging(const Vec3& local) noexcept;
   void learn_factor(const Vec3& right, const Vec3& local) noexcept;
   void compare_ahead() noexcept;
   void remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept;

@@ -100,7 +100,7 @@ class DeformationModel {
   /// Amplitudes and rates (m sqrt(kg), m sqrt(kg)/s) of the told ones of these modes, as many each, at the
   /// end of the last step, under the loads of `apply`.
   virtual void modal_state([[maybe_unused]] Eigen::Ref<Eigen::VectorXd> q,
-                           [[maybe_unused]] Eigen::Ref<Eigen::VectorXd> v) noexcept {}
+                           [[maybe_unused]] Eigen::Ref<Eigen::VectorXd> v) {}
   /// As `compliance`, of all but the told modes, at rest: what follows at once. Constant; any thread.
   virtual void residual_compliance([[maybe_unused]] std::span<const int> vertices,
                                    [[maybe_unused]] ContactPatch& patch) const noexcept {}

@@ -53,8 +53,9 @@ constexpr std::array kModels{
          .summary = "linear elastic motion, explicit, by a tensor per vertex and edge",
          .materials = Materials::kPlain,
          .moves = true,
-         .unneeded = {{"factor of the stiffness matrix", "explicit steps solve nothing"}}}),
-    row_of<Implicit, RayleighDamping, ImplicitSettings, ContactInstants>(
+         .unneeded = {{"factor of the stiffness matrix, kept",
+                       "explicit steps solve nothing; set-up lets its own go"}}}),
+    row_of<Implicit, RayleighDamping, ImplicitSettings, ContactInstants, ClientModes>(
         {.name = "implicit",
          .summary = "motion of any law, element and load, by implicit steps",
          .materials = Materials::kAny,

@@ -44,6 +44,29 @@ bool held_by_vertices(const Scene& scene) {
          std::ranges::none_of(scene.loads, displaces);
 }
 
+/// Whether clients are told slow modes about rest: of a body that only tools move, and that remembers
+/// nothing but where it is and how it moves.
+bool tells_modes(const ModelInputs& inputs) {
+  const auto* const told = inputs.scene.deformation.find<ClientModes>();
+  return told != nullptr && told->modes > 0 && inputs.scene.loads.empty() && held_by_vertices(inputs.scene) &&
+         !supports_move(inputs.scene) && inputs.scene.material->relaxations.empty();
+}
+
+/// Of each node: its place among the free ones, or -1.
+std::vector<int> places_of(const LinearStatics& statics) {
+  std::vector<int> places;
+  for (const int first : statics.dofs.first) places.push_back(first < 0 ? -1 : first / 3);
+  return places;
+}
+
+/// Of each of these places, kg.
+std::vector<double> masses_of_places(const LinearStatics& statics) {
+  const Eigen::VectorXd masses = statics.masses();
+  std::vector<double> of_places;
+  for (Eigen::Index i = 0; i < masses.size(); i += 3) of_places.push_back(masses[i]);
+  return of_places;
+}
+
 const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"implicit\" needs a [material] section", scene.source);
@@ -100,7 +123,9 @@ double Implicit::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
   const double bytes = body_bytes(counts, element, loaded ? 3 : 1);
   const bool background =
       scene.deformation.of<ImplicitSettings>().solver != DynamicsSettings::Solver::kDirect;
-  return bytes + (background ? matrix_bytes(counts, element) : 0);
+  const bool tells = scene.deformation.find<ClientModes>() != nullptr;  // it may
+  return bytes + (background ? matrix_bytes(counts, element) : 0) +
+         (tells ? body_bytes(counts, element, 1) : 0);
 }
 
 Implicit::Implicit(const ModelInputs& inputs)
@@ -128,6 +153,10 @@ Implicit::Implicit(const ModelInputs& inputs)
   }
   if (inputs.scene.deformation.of<ImplicitSettings>().solver != DynamicsSettings::Solver::kDirect)
     triangles_ = inputs.surface.triangles;
+  if (tells_modes(inputs)) {
+    const LinearStatics statics(inputs);
+    told_.emplace(inputs, statics, places_of(statics), masses_of_places(statics));
+  }
   free_ = positions_ = rest_;
   dynamics_.start_step(period_);
   dynamics_.iterate(external_forces());
@@ -329,6 +358,44 @@ std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) {
   return positions_;
 }
 
+Mat3 Implicit::later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
+  if (!told_) return Mat3::Zero();
+  const Vec3 sum = sum_of(loads);
+  Mat3 yields = told_->compliance(loads, seconds);
+  for (const NodalLoad& a : loads) {
+    for (const NodalLoad& b : loads) {
+      if (dof_[a.vertex] < 0 || dof_[b.vertex] < 0 || slot_[b.vertex] < 0) continue;
+      yields -=
+          share_of(a, sum) * share_of(b, sum) * columns_.block<3, 3>(dof_[a.vertex], 3 * slot_[b.vertex]);
+    }
+  }
+  return 0.5 * (yields + yields.transpose());
+}
+
+/// Of the step as it will end: where the last loads lead.
+void Implicit::modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) {
+  const FreeDofs& dofs = dynamics_.dofs();
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.count), speed = u, none = u;
+  add_response(loads_, 1, u);
+  add_response(linearised_loads_, -1, u);
+  for (std::size_t node = 0; node < dofs.first.size(); ++node) {
+    const int first = dofs.first[node];
+    if (first < 0) continue;
+    const Vec3 x = dynamics_.position()[node] + u.segment<3>(first);
+    u.segment<3>(first) = x - solid_.rest()[node];
+    speed.segment<3>(first) = dynamics_.velocity_at(node, x);
+  }
+  const auto numbers = [](const Eigen::VectorXd& all) {
+    return std::span(all.data(), static_cast<std::size_t>(all.size()));
+  };
+  told_->begin(numbers(u), numbers(speed), numbers(none), 0);
+  told_->advance(0, loads_, q, v);
+}
+
+void Implicit::residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
+  told_->residual_compliance(vertices, patch);
+}
+
 std::vector<MemoryPart> Implicit::memory() const {
   std::vector<MemoryPart> parts{
       {"elements", solid_.bytes() + dynamics_.scratch_bytes()},
@@ -337,6 +404,7 @@ std::vector<MemoryPart> Implicit::memory() const {
       {"positions", (rest_.size() + free_.size() + positions_.size() + external_.size()) * sizeof(Vec3) +
                         (node_.size() + dof_.size() + slot_.size()) * sizeof(int)}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
+  if (told_) parts.push_back({"motion told to clients", told_->bytes(), told_->detail()});
   return parts;
 }
 

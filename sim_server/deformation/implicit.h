@@ -7,6 +7,7 @@
 #include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/moving_supports.h"
+#include "sim_server/deformation/told_motion.h"
 #include "sim_server/scene/loads.h"
 #include "sim_server/solvers/dynamics.h"
 
@@ -53,6 +54,10 @@ class Implicit : public DeformationModel {
   FreeMotion free_motion(double dt) override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const override;
   bool compliance_is_constant() const noexcept override { return false; }
+  Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
+  const SlowModes* slow_modes() const noexcept override { return told_ ? &told_->modes() : nullptr; }
+  void modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) override;
+  void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) override;
   std::optional<FreeMotion> relinearise() override;
   /// Whether the last iteration found a relative residual of at most 1 %, and no element inverted for good
@@ -81,8 +86,9 @@ class Implicit : public DeformationModel {
   Dynamics dynamics_;
   /// Where some move. Only for how fast the surface goes by them (by a linearisation about rest), and when.
   std::optional<MovingSupports> supports_;
-  double held_compliance_;  // m/N, of a fixed vertex under the tool itself
-  int instants_;            // within a step of the scene
+  std::optional<ToldMotion> told_;  // to clients, about rest, where the scene has it
+  double held_compliance_;          // m/N, of a fixed vertex under the tool itself
+  int instants_;                    // within a step of the scene
   double period_, tolerance_;
   int max_newton_, iterations_ = 0;  // of Newton's method in this step
   int factors_ = 0;                  // of the columns

@@ -4,12 +4,18 @@
 #include <fmt/core.h>
 
 #include "common/damped_mode.h"
+#include "common/error.h"
 
 namespace palpate::sim {
 
 ClientModes ClientModes::read(const Config& config) {
   ClientModes read;
   read.modes = static_cast<int>(config.integer("client_modes", {0, kMostSlowModes, "modes"}, read.modes));
+#ifndef PALPATE_WITH_SPECTRA
+  if (read.modes > 0)
+    fail("{}: `client_modes` is not in this build; configure it with -DPALPATE_SPECTRA=ON",
+         config.where("client_modes"));
+#endif
   return read;
 }
 

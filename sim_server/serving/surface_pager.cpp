@@ -41,8 +41,8 @@ SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
   std::sort(vertices_.begin(), vertices_.end());
   vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
   if (!simulation.tool(tool).shape().is_sphere()) return;  // the only shape that clients know
-  if (!simulation.model().compliance_is_constant() || vertices_.size() > protocol::kMostSurfaceVertices)
-    return;
+  const bool constant = told_ != nullptr || simulation.model().compliance_is_constant();
+  if (!constant || vertices_.size() > protocol::kMostSurfaceVertices) return;
   put_in_order();
   patch_.reserve(2 * kCluster, 0);
   patch_.free.resize(2 * kCluster);

@@ -56,6 +56,8 @@ class Dynamics {
   std::span<Vec3> mutable_position() { return motion_.mutable_position(); }
   /// At the end of the last step (nodes, m/s).
   std::span<const Vec3> velocity() const { return motion_.time().velocity(); }
+  /// Of a node that ends the step in hand at `x` (m), m/s.
+  Vec3 velocity_at(std::size_t node, const Vec3& x) const { return motion_.time().velocity_at(node, x); }
   const FreeDofs& dofs() const { return motion_.dofs(); }
   /// The external forces change before the next `iterate`: that its residual is no smaller is not the fault
   /// of a stale factor.

@@ -21,10 +21,10 @@ namespace {
 const std::string kScenes = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/";
 
 /// A liver by some model, without anything that it does not need.
-std::string minimal(const std::string& model) {
+std::string minimal(const std::string& model, const std::string& more = "") {
   std::string text = "[mesh]\nfile = \"" + kScenes +
-                     "../meshes/liver_paper.msh\"\n[deformation]\nmodel = \"" + model +
-                     "\"\n[[tool]]\nradius = 0.005\n";
+                     "../meshes/liver_paper.msh\"\n[deformation]\nmodel = \"" + model + "\"\n" + more +
+                     "[[tool]]\nradius = 0.005\n";
   if (model != "rigid")
     text +=
         "[material]\nyoung_modulus = 1e4\npoisson_ratio = 0.4\n"
@@ -110,29 +110,34 @@ TEST_CASE("left out: a minimal scene has these parts in memory, and no other") {
     std::string model;
     Parts own;
     double most;  // bytes
+    std::string keys = {};
   };
+  const std::string kTold = "motion told to clients", kUntold = "client_modes = 0\n";
   // Of 1387 vertices (1329 free), 621 on the surface (566 free), 6254 tetrahedra, 7907 edges: the mesh takes
   // 0.15 MB, the contact of one tool without friction 1.43 MB, compliance 72 x 566^2 = 23.1 MB, tensors 72 a
   // vertex and edge, motion 216 a vertex, 40 modes 3 x 8 x 40 of the surface's. Tissue in implicit motion:
-  // some 400 a tetrahedron for elements, and its factor.
+  // some 400 a tetrahedron for elements, and its factor. What clients are told of a motion: compliance once
+  // more, 40 modes of all vertices.
   const std::vector<Row> rows{
       {"rigid", {"rest_positions"}, 1.7e6},
       {"quasi_static", {"positions", "compliance"}, 24.8e6},
-      {"tensor_mass", {"positions", "tensors", "motion", "compliance"}, 26e6},
-      {"implicit", {"positions", "elements", "motion", "compliance"}, 17e6},
+      {"tensor_mass", {"positions", "tensors", "motion", "compliance"}, 26e6, kUntold},
+      {"implicit", {"positions", "elements", "motion", "compliance"}, 17e6, kUntold},
 #ifdef PALPATE_WITH_SPECTRA
+      {"tensor_mass", {"positions", "tensors", "motion", "compliance", kTold}, 51e6},
+      {"implicit", {"positions", "elements", "motion", "compliance", kTold}, 42e6},
       {"reduced", {"positions", "compliance", "modes"}, 25.5e6},
 #endif
   };
   const TemporaryFolder folder;
-  for (const auto& [model, own, most] : rows) {
-    DYNAMIC_SECTION(model) {
+  for (const auto& [model, own, most, keys] : rows) {
+    DYNAMIC_SECTION(model << " " << keys) {
       Parts expected = own;
       expected.insert({"mesh", "surface", "contact"});
-      const Json explanation = explained(folder.write("scene.toml", minimal(model)).string());
+      const Json explanation = explained(folder.write("scene.toml", minimal(model, keys)).string());
       CHECK(parts_of(explanation) == expected);
       CHECK(explanation["bytes"].get<double>() < most);
-      const bool factors = model != "rigid" && model != "tensor_mass";
+      const bool factors = model != "rigid" && (model != "tensor_mass" || keys.empty());
       for (const char* part : {"stiffness matrix", "its factor"})
         CHECK(was_built(explanation, part) == factors);
     }

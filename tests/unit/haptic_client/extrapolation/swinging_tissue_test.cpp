@@ -2,10 +2,13 @@
 // every tick: both programs without sockets.
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "sim_server/deformation/contact_instants.h"
+#include "sim_server/deformation/implicit.h"
 #include "sim_server/deformation/reduced.h"
 #include "sim_server/deformation/slow_modes.h"
 #include "tests/support/catch.h"
 #include "tests/support/listener.h"
+
+#ifdef PALPATE_WITH_SPECTRA  // without it no modes are found
 
 using namespace palpate;
 using namespace palpate::test;
@@ -23,6 +26,8 @@ sim::Scene swinging(std::string_view model, double rate_hz) {
   scene.deformation.of<sim::ReducedSettings>().modes = 24;
   scene.deformation.of<sim::ClientModes>().modes = 60;
   scene.deformation.of<sim::ContactInstants>();
+  scene.deformation.of<sim::ImplicitSettings>().second_order = true;
+  if (model == "implicit") scene.material->law = sim::ElasticLaw::kCorotational;
   return scene;
 }
 
@@ -83,6 +88,13 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("swinging tissue: implicit tissue that bends is felt by the modes of its rest and a factor") {
+  const Served errors = serve("implicit", 35ms);
+  CAPTURE(errors.of_law.mean, errors.of_law.largest, errors.of_constant.mean);
+  CHECK(errors.of_constant.mean > 0.1);
+  CHECK(errors.of_law.mean < 0.04);
+}
+
 TEST_CASE("swinging tissue: amplitudes that no organ has are never felt") {
   Listener listener(swinging("reduced", 33.3), block_mesh());
   listener.learn(kWholeModel);
@@ -111,3 +123,5 @@ TEST_CASE("swinging tissue: after a silence of the server nothing of the old mot
   }
   for (; listener.t < 5s;) CHECK(listener.tick(presses(listener.t + kTick)).norm() < 2 * largest);
 }
+
+#endif

@@ -10,6 +10,8 @@
 #include "tests/support/catch.h"
 #include "tests/support/served_block.h"
 
+#ifdef PALPATE_WITH_SPECTRA  // without it no modes are found
+
 using namespace palpate;
 using namespace palpate::sim;
 using namespace palpate::test;
@@ -46,7 +48,7 @@ TEST_CASE("slow modes: with what they give way to at rest, the rest is the stati
   const Simulation at_rest(soft_block("quasi_static"), block_mesh());
   const Eigen::MatrixXd right =
       of_patch([&](ContactPatch& patch) { at_rest.model().compliance(kSome, patch); });
-  for (const std::string_view model : {"tensor_mass", "reduced"}) {
+  for (const std::string_view model : {"tensor_mass", "reduced", "implicit"}) {
     CAPTURE(model);
     const Simulation swings(soft_block(model), block_mesh());
     const SlowModes* const modes = swings.told_modes();
@@ -66,7 +68,7 @@ TEST_CASE("slow modes: with what they give way to at rest, the rest is the stati
 }
 
 TEST_CASE("slow modes: where they stand is where the surface has swung to, under a load and after it") {
-  for (const std::string_view model : {"tensor_mass", "reduced"}) {
+  for (const std::string_view model : {"tensor_mass", "reduced", "implicit"}) {
     CAPTURE(model);
     Scene scene = soft_block(model);
     scene.deformation.of<RayleighDamping>().stiffness = 3e-3;  // what is quick is soon gone
@@ -77,8 +79,8 @@ TEST_CASE("slow modes: where they stand is where the surface has swung to, under
     double worst = 0, largest = 0;
     for (int step = 0; step < 60; ++step) {
       input[0] = {.wants = {.here = true, .surface_shift = true}};
-      input[0].pose = step < 20 ? Vec3(pressed + Vec3(0, std::max(0.0, 0.005 - 0.0005 * step), 0))
-                                : Vec3(0, 0.012, 0);
+      input[0].pose =
+          step < 20 ? Vec3(pressed + Vec3(0, std::max(0.0, 0.005 - 0.0005 * step), 0)) : Vec3(0, 0.012, 0);
       const ToolAnswer answer = swings.step(input, kStep).front();
       CAPTURE(step, answer.flagged);
       REQUIRE(answer.modes != nullptr);
@@ -96,7 +98,7 @@ TEST_CASE("slow modes: where they stand is where the surface has swung to, under
       }
     }
     CAPTURE(worst, largest);
-    CHECK(largest > 2e-5);
+    CHECK(largest > 5e-6);
     CHECK(worst < 0.1 * largest);
   }
 }
@@ -128,9 +130,13 @@ TEST_CASE("slow modes: their pages are numbered behind the tiles, and hold shape
           static_cast<float>(modes.shapes(3 * static_cast<Eigen::Index>(vertex) + axis, 16)));
 }
 
-TEST_CASE("slow modes: none are told where tissue rests, under several tools, or where the scene says 0") {
+TEST_CASE(
+    "slow modes: none are told where tissue rests, under several tools, where tissue remembers more, or "
+    "where the scene says 0") {
   CHECK(Simulation(soft_block("quasi_static"), block_mesh()).told_modes() == nullptr);
-  CHECK(Simulation(soft_block("implicit"), block_mesh()).told_modes() == nullptr);
+  Scene relaxes = soft_block("implicit");
+  relaxes.material->relaxations = {{0.3, 0.02}};
+  CHECK(Simulation(relaxes, block_mesh()).told_modes() == nullptr);
   Scene none = soft_block("tensor_mass");
   none.deformation.of<ClientModes>().modes = 0;
   CHECK(Simulation(none, block_mesh()).told_modes() == nullptr);
@@ -147,3 +153,5 @@ TEST_CASE(
   CHECK(simulation.told_modes() == nullptr);
   CHECK(SurfacePager(simulation, 0).pages().modes == 0);
 }
+
+#endif
