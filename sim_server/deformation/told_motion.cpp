@@ -10,7 +10,7 @@
 namespace palpate::sim {
 namespace {
 
-VibrationModes modes_of(const ModelInputs& inputs, const LinearStatics& statics) {
+VibrationModes modes_of(const ModelInputs& inputs, [[maybe_unused]] const LinearStatics& statics) {
   inputs.progress(name_of(Stage::kModes), 0);
 #ifndef PALPATE_WITH_SPECTRA
   fail("{}: this build finds no modes; configure it with -DPALPATE_SPECTRA=ON, or tell clients none",
