@@ -2,6 +2,7 @@
 
 // BLAS and LAPACK, by their Fortran names.
 extern "C" {
+// NOLINTBEGIN(bugprone-macro-parentheses): a type is named
 #define PALPATE_BLAS(S, p)                                                                                 \
   void p##gemm_(const char*, const char*, const int*, const int*, const int*, const S*, const S*,          \
                 const int*, const S*, const int*, const S*, S*, const int*);                               \
@@ -14,6 +15,7 @@ extern "C" {
 PALPATE_BLAS(double, d)
 PALPATE_BLAS(float, s)
 #undef PALPATE_BLAS
+// NOLINTEND(bugprone-macro-parentheses)
 // Present in every OpenBLAS, absent from other BLAS libraries: hence weak.
 void openblas_set_num_threads(int threads) __attribute__((weak));
 }

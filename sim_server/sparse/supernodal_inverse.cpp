@@ -31,7 +31,7 @@ class InversePlan {
   /// An unknown: its place in the order of elimination, and its number among those wanted.
   struct Wanted {
     int place, number;
-    auto operator<=>(const Wanted&) const = default;
+    auto operator<=>(const Wanted&) const = default;  // NOLINT(modernize-use-nullptr): it is none
   };
   std::span<const Wanted> wanted() const { return wanted_; }
   int supernode(const Wanted& one) const { return node_[one.place]; }
