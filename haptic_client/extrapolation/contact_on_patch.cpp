@@ -71,7 +71,7 @@ std::optional<Vec3> ContactOnPatch::probe(const Surface& surface, const Vec3& p,
                                           const ModalMemory* memory) noexcept {
   const State kept = state_;
   kept_loads_ = loads_;
-  const auto force = go(surface, p, memory);
+  auto force = go(surface, p, memory);
   loads_ = kept_loads_;
   state_ = kept;
   if (state_.placed && !take_patch(surface, state_.place)) lift();

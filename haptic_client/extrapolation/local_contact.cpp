@@ -8,7 +8,8 @@ constexpr double kMostCorrection = 3;
 // Of the largest force: below it, F_loc says little of how wrong the model is.
 constexpr double kDoubt = 0.02;
 constexpr double kFirm = 0.7;  // of the largest force: a touch that tells of the factor where tissue swings
-constexpr double kTangentReach = 1e-3;  // m: how far a tangent leads
+constexpr double kShare = 0.25, kMostNews = 0.2;  // and how much of what it tells counts
+constexpr double kTangentReach = 1e-3;            // m: how far a tangent leads
 // How far the model may be off at the sample, of the larger force and at all, to be believed elsewhere.
 constexpr double kBelievable = 0.5, kAlways = 0.1;  // -, N
 
@@ -73,11 +74,14 @@ void LocalContact::learn_factor(const Vec3& right, const Vec3& local) noexcept {
 }
 
 /// What is off at a light touch is inertia that the model does not have, and soon gone; under a firm one it
-/// is the law of the tissue.
+/// is the law of the tissue. Which of both the first touches are is not known yet: little of each counts.
 void LocalContact::compare_swinging(const Vec3& local) noexcept {
   local_size_ = 0;
   across_.setZero();
-  if (newest_.f.norm() > kFirm * largest_) learn_factor(newest_.f, local);
+  if (newest_.f.norm() <= kFirm * largest_) return;
+  const double before = kappa_;
+  learn_factor(newest_.f, local);
+  kappa_ = before + kShare * std::clamp(kappa_ - before, -kMostNews, kMostNews);
 }
 
 void LocalContact::compare(const Vec3& local) noexcept {

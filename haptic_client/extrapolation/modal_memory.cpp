@@ -45,13 +45,18 @@ bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
     told_.q[k] = static_cast<double>(surface.modes.q[k]);
     told_.v[k] = static_cast<double>(surface.modes.v[k]);
   }
-  present_ = told_.q;
-  if (displacement().norm() > kFarthestSwing) {
+  if (at(told_.q).norm() > kFarthestSwing) {
     restart();
     return false;
   }
   drift_.setZero();
-  const State* const before = past_.at(t);
+  const State* before = past_.at(t);
+  State here;
+  if (known_ && t > tick_) {  // without delay, the sample of this very tick
+    advance(t);
+    before = &(here = now(t));
+  }
+  present_ = told_.q;
   if (known_ && before != nullptr) {
     correct(*before, t);
     compared_ = t;
@@ -158,7 +163,7 @@ void ModalMemory::advance(Time t) noexcept {
       v[k] = v_of_q_[k] * from + v_of_v_[k] * v[k] + v_of_p_[k] * force_[k];
     }
   }
-  tick_before_ = tick_;
+  if (t > tick_) tick_before_ = tick_;  // else once more at the same tick, after a sample came
   tick_ = t;
   present_ = now(t).q;
 }

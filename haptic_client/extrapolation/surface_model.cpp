@@ -11,6 +11,7 @@ using protocol::ToolState;
 namespace {
 
 constexpr SurfacePages kLargest{SurfaceModel::kMostVertices, 2 * SurfaceModel::kMostVertices};
+constexpr double kHardestDamping = 1e6;  // 1/s, of a slow mode
 constexpr double kStillComplete = 2e-3;  // m
 constexpr std::uint32_t kPatienceMs = 200;
 constexpr std::size_t kAsked = 4096;  // pages remembered; 200 are asked for in that time
@@ -101,7 +102,9 @@ void SurfaceModel::take_spectrum(const SurfacePage& page) noexcept {
   spectrum_.clear();
   for (std::size_t k = 0; k < pages_.modes; ++k) {
     const Mode mode{static_cast<double>(page.values[3 * k]), static_cast<double>(page.values[3 * k + 1])};
-    if (!(mode.frequency > 0 && mode.damping >= 0)) return spectrum_.clear();  // no such motion
+    // Else no such motion, or none that a client can follow.
+    const bool slow = mode.frequency > 0 && mode.frequency <= 1.001 * kQuickestSlowMode;
+    if (!slow || !(mode.damping >= 0 && mode.damping <= kHardestDamping)) return spectrum_.clear();
     spectrum_.push_back(mode);
   }
 }
