@@ -99,7 +99,9 @@ void ServedTools::follow_path(std::size_t tool, const SessionInput& input, ToolI
   ToolPath::Point from = point_of(holders_[tool].before);
   const ToolPath::Point to = point_of(input.state);
   const auto instants = static_cast<std::int64_t>(points.size()) + 1;
-  const std::int64_t begin = from.t_ns, took = to.t_ns - begin;
+  const double apart =
+      static_cast<double>(to.t_ns) - static_cast<double>(from.t_ns);  // ns; any, off the wire
+  const std::int64_t begin = from.t_ns, took = apart > 0 && apart < 1e9 ? to.t_ns - begin : 0;
   for (std::int64_t k = 1; k < instants; ++k) {
     const auto now = took > 0 ? input.path.at(begin + took * k / instants) : std::nullopt;
     if (!now) return;  // evenly and straight

@@ -3,6 +3,14 @@
 #include <algorithm>
 
 namespace palpate::sim {
+namespace {
+
+/// From an earlier to a later time, whatever they are: a client may send any.
+std::uint64_t ns_between(std::int64_t earlier, std::int64_t later) noexcept {
+  return static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
+}
+
+}  // namespace
 
 ToolPose pose_of(const protocol::ToolState& state) noexcept {
   const auto& [w, x, y, z] = state.q_W;
@@ -14,7 +22,7 @@ ToolPose pose_of(const protocol::ToolState& state) noexcept {
 void ToolPath::add(const protocol::ToolState& state) noexcept {
   if (written_ > 0 && state.t_ns <= back(0).t_ns) return;
   // The newest is always kept: it takes the place of one that stands too near to the one before.
-  if (written_ > 1 && back(0).t_ns - back(1).t_ns < kApart) --written_;
+  if (written_ > 1 && ns_between(back(1).t_ns, back(0).t_ns) < kApart) --written_;
   ring_[written_++ % kPoints] = {state.t_ns, pose_of(state), state.v_W};
 }
 
@@ -26,8 +34,8 @@ std::optional<ToolPath::Point> ToolPath::at(std::int64_t t_ns) const noexcept {
     if (before.t_ns > t_ns) continue;
     if (before.t_ns == t_ns) return before;
     const Point& after = back(i - 1);
-    const double share =
-        static_cast<double>(t_ns - before.t_ns) / static_cast<double>(after.t_ns - before.t_ns);
+    const double share = static_cast<double>(ns_between(before.t_ns, t_ns)) /
+                         static_cast<double>(ns_between(before.t_ns, after.t_ns));
     return Point{t_ns,
                  {before.pose.p_W + share * (after.pose.p_W - before.pose.p_W),
                   before.pose.q_W.slerp(share, after.pose.q_W)},

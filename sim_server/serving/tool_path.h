@@ -30,7 +30,7 @@ class ToolPath {
 
  private:
   static constexpr std::size_t kPoints = 64;
-  static constexpr std::int64_t kApart = 2'000'000;  // ns
+  static constexpr std::uint64_t kApart = 2'000'000;  // ns
 
   const Point& back(std::size_t i) const noexcept { return ring_[(written_ - 1 - i) % kPoints]; }
 

@@ -36,7 +36,8 @@ TEST_CASE("damped mode: critically damped, and overdamped, as in a textbook (Bat
   CHECK(over.q == Approx(a * std::exp(slow * kTime) + (kQ - a) * std::exp(quick * kTime)).epsilon(1e-9));
 }
 
-TEST_CASE("damped mode: two steps are one of twice the time, and in the end it rests where the force holds it") {
+TEST_CASE(
+    "damped mode: two steps are one of twice the time, and in the end it rests where the force holds it") {
   for (const double damping : {0.0, 3.0, 80.0, 1000.0}) {
     CAPTURE(damping);
     const State once = after(2 * kTime, 40, damping, kP),

@@ -1,6 +1,8 @@
 // Where a tool was lately.
 #include "sim_server/serving/tool_path.h"
 
+#include <limits>
+
 #include "tests/support/catch.h"
 
 using namespace palpate;
@@ -57,4 +59,16 @@ TEST_CASE("tool path: a pose that is not later changes nothing, nor does an orie
   CHECK(path.at(10 * kMs)->pose.p_W[0] == Approx(3e-4).epsilon(1e-12));
   late.q_W = {0, 0, 0, 0};
   CHECK(pose_of(late).q_W.coeffs() == Quat::Identity().coeffs());
+}
+
+TEST_CASE("tool path: clocks at the ends of what fits into 64 bits do no harm") {
+  ToolPath path;
+  constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min(),
+                         kLast = std::numeric_limits<std::int64_t>::max();
+  path.add(at(kFirst));
+  path.add(at(kLast));
+  path.add(at(kLast));
+  REQUIRE(path.at(0));
+  CHECK(path.at(0)->pose.p_W.allFinite());
+  CHECK(path.at(kLast)->t_ns == kLast);
 }
