@@ -6,6 +6,8 @@ namespace palpate {
 /// so (rad/s), as the client meets the contact force a tick late; 80 Hz, where its ticks come at 500 Hz.
 constexpr int kMostSlowModes = 75;
 constexpr double kQuickestSlowMode = 500;
+/// Nor any more strongly damped (1/s): it hardly moves within a tick.
+constexpr double kHardestSlowDamping = 1000;
 
 /// One mode of a damped linear motion, q'' + d q' + w^2 q = p, over a time under a force p that is held: of
 /// q, q' and p at its beginning to q and q' at its end. Exact, whatever the time and the damping.

@@ -37,6 +37,7 @@ ContactOnPatch::ContactOnPatch(const Accuracy& accuracy)
 }
 
 void ContactOnPatch::lift() noexcept {
+  ++solves_;
   state_ = {};
   motion_.setZero();
   loads_.clear();
@@ -44,9 +45,10 @@ void ContactOnPatch::lift() noexcept {
 
 std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p,
                                        const ModalMemory* memory) noexcept {
+  if ((memory != nullptr) != (memory_ != nullptr)) lift();  // its patch was taken for another frame
   memory_ = memory;
   const double longest = kStride * surface.tool.radius;
-  if (version_ != surface.model->version() || (p - state_.place).norm() > kMostStrides * longest) lift();
+  if (version_ != surface.model->generation() || (p - state_.place).norm() > kMostStrides * longest) lift();
   if (!surface.model->has_shape() || !p.allFinite()) {
     lift();
     return {};
@@ -166,8 +168,8 @@ Vec3 ContactOnPatch::note_ways(std::size_t vertices) noexcept {
 
 /// The patch around a tool at `p`, under the loads that are on the surface.
 bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept {
-  if (version_ != surface.model->version()) motion_.setZero();
-  version_ = surface.model->version();
+  if (version_ != surface.model->generation()) motion_.setZero();
+  version_ = surface.model->generation();
   center_ = p;
   const Vec3 tip_went = note_ways(surface.model->rest().size());
   if (!displace_near(surface, p) || !take_triangles(surface, p) || !take_compliance(*surface.model) ||

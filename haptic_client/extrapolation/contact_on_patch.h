@@ -83,7 +83,7 @@ class ContactOnPatch {
   Eigen::VectorXd u_;           // of the patch nodes, then of the tip
   Eigen::VectorXd u_before_;    // when the last increment began
   Vec3 motion_ = Vec3::Zero();  // the last increment; 0: not known
-  std::uint32_t version_ = 0;   // of the model that the patch is of
+  std::uint64_t version_ = 0;   // of the model that the patch is of
   Vec3 center_ = Vec3::Zero();  // of the patch
   struct State {
     bool placed = false;

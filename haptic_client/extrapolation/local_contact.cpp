@@ -13,6 +13,8 @@ constexpr double kTangentReach = 1e-3;            // m: how far a tangent leads
 // How far the model may be off at the sample, of the larger force and at all, to be believed elsewhere.
 constexpr double kBelievable = 0.5, kAlways = 0.1;  // -, N
 
+constexpr std::uint64_t kNoSolve = ~std::uint64_t{0};
+
 bool believable(const Vec3& local, const Vec3& right) noexcept {
   return (local - right).norm() <= kBelievable * std::max(local.norm(), right.norm()) + kAlways;
 }
@@ -25,6 +27,10 @@ void LocalContact::update(const Sample& sample) noexcept {
   felt_last_ = newest_.f;
   motion_.update(newest_);
   known_ = following_ = false;
+  if (!swings()) {
+    memory_.restart();
+    swing_.setZero();
+  }
   if (!newest_.surface || (swings() && !take_modes())) {
     felt_.forget();
     memory_.restart();
@@ -40,6 +46,7 @@ void LocalContact::update(const Sample& sample) noexcept {
   known_ = local && believable(*local, sample.f);
   if (!known_) {
     felt_.forget();  // the path is lost, and with it what sticks: it is no measure of what would be from here
+    memory_.restart();
     return;
   }
   if (swings()) {
@@ -152,6 +159,7 @@ bool LocalContact::take_modes() noexcept {
   if (!memory_.stands() && !memory_.stand_near(*surface.model, newest_.p - surface.shift)) return false;
   if (!memory_.take(surface, newest_.t, newest_.f)) return false;
   swing_ = memory_.displacement();
+  bearing_ = kNoSolve;  // it may have begun anew
   return true;
 }
 

@@ -21,8 +21,8 @@ void ModalMemory::restart() noexcept {
 bool ModalMemory::take_spectrum(const Surface& surface) noexcept {
   const auto spectrum = surface.model->spectrum();
   if (spectrum.size() != static_cast<std::size_t>(surface.modes.count)) return false;
-  if (version_ == surface.model->version()) return true;
-  version_ = surface.model->version();
+  if (version_ == surface.model->generation()) return true;
+  version_ = surface.model->generation();
   known_ = false;
   past_.forget();
   count_ = spectrum.size();
@@ -60,6 +60,7 @@ bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
   if (known_ && before != nullptr) {
     correct(*before, t);
     compared_ = t;
+    if (!(at(state_.q).norm() <= kFarthestSwing)) begin(t, f);
   } else if (!known_ || t - compared_ > kLongest) {
     begin(t, f);
   }  // else it stood nowhere yet at that time
@@ -123,7 +124,8 @@ bool ModalMemory::bear(const SurfaceModel& model, std::span<const SurfaceLoad> l
 }
 
 bool ModalMemory::stand_near(const SurfaceModel& model, const Vec3& p_rest) noexcept {
-  if (standing_ && foot_version_ == model.version() && (p_rest - foot_at_).norm() < kSamePlace) return true;
+  if (standing_ && foot_version_ == model.generation() && (p_rest - foot_at_).norm() < kSamePlace)
+    return true;
   if (!model.has_shape()) return standing_ = false;
   const auto rest = model.rest();
   int nearest = -1;
@@ -135,7 +137,7 @@ bool ModalMemory::stand_near(const SurfaceModel& model, const Vec3& p_rest) noex
     nearest = static_cast<int>(v);
   }
   foot_at_ = p_rest;
-  foot_version_ = model.version();
+  foot_version_ = model.generation();
   std::fill(foot_.begin(), foot_.end(), Vec3::Zero());
   return standing_ = nearest >= 0 && model.add_shapes(nearest, 1, foot_);
 }

@@ -66,7 +66,7 @@ class ModalMemory {
   void correct(const State& before, Time t) noexcept;
 
   bool known_ = false, standing_ = false;
-  std::uint32_t version_ = 0, foot_version_ = 0;  // of the surface model that spectrum and foot are of
+  std::uint64_t version_ = 0, foot_version_ = 0;  // of the surface model that spectrum and foot are of
   std::size_t count_ = 0;
   Numbers w_{}, damping_{};                                                  // rad/s, 1/s
   Numbers q_of_q_{}, q_of_v_{}, v_of_q_{}, v_of_v_{}, q_of_p_{}, v_of_p_{};  // over a short step

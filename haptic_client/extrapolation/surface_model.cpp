@@ -11,7 +11,6 @@ using protocol::ToolState;
 namespace {
 
 constexpr SurfacePages kLargest{SurfaceModel::kMostVertices, 2 * SurfaceModel::kMostVertices};
-constexpr double kHardestDamping = 1e6;  // 1/s, of a slow mode
 constexpr double kStillComplete = 2e-3;  // m
 constexpr std::uint32_t kPatienceMs = 200;
 constexpr std::size_t kAsked = 4096;  // pages remembered; 200 are asked for in that time
@@ -26,7 +25,8 @@ SurfaceModel::SurfaceModel()
 }
 
 void SurfaceModel::announce(const protocol::SurfaceState& state, std::uint32_t modes) noexcept {
-  if (state.version == version_) return;
+  if (state.version == version_ && (version_ == 0 || modes == pages_.modes)) return;
+  ++generation_;
   version_ = 0;
   if (state.vertices == 0 || state.vertices > kLargest.vertices || state.triangles > kLargest.triangles ||
       modes > kMostSlowModes)
@@ -104,7 +104,8 @@ void SurfaceModel::take_spectrum(const SurfacePage& page) noexcept {
     const Mode mode{static_cast<double>(page.values[3 * k]), static_cast<double>(page.values[3 * k + 1])};
     // Else no such motion, or none that a client can follow.
     const bool slow = mode.frequency > 0 && mode.frequency <= 1.001 * kQuickestSlowMode;
-    if (!slow || !(mode.damping >= 0 && mode.damping <= kHardestDamping)) return spectrum_.clear();
+    if (!slow || !(mode.damping >= 0 && mode.damping <= 1.001 * kHardestSlowDamping))
+      return spectrum_.clear();
     spectrum_.push_back(mode);
   }
 }

@@ -40,6 +40,8 @@ class SurfaceModel {
 
   /// Version 0: none is known.
   std::uint32_t version() const noexcept { return version_; }
+  /// Another number for each model that was announced, also if it is the same again.
+  std::uint64_t generation() const noexcept { return generation_; }
   /// Whether it knows the shape of the whole surface.
   bool has_shape() const noexcept { return version_ != 0 && shape_missing_ == 0; }
   std::span<const Vec3> rest() const noexcept { return rest_; }
@@ -73,6 +75,7 @@ class SurfaceModel {
 
   protocol::SurfacePages pages_;
   std::uint32_t version_ = 0, shape_missing_ = 0;
+  std::uint64_t generation_ = 0;
   std::vector<Vec3> rest_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<char> shape_known_;  // by page

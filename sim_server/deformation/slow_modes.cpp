@@ -28,7 +28,8 @@ SlowModes::SlowModes(const VibrationModes& modes, std::span<const int> first, co
       damping(rayleigh.mass + rayleigh.stiffness * frequencies.array().square()),
       shapes(Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(first.size()), frequencies.size())) {
   const Eigen::Index most = std::min<Eigen::Index>(kMostSlowModes, frequencies.size());
-  while (told < most && frequencies[told] <= kQuickestSlowMode) ++told;
+  while (told < most && frequencies[told] <= kQuickestSlowMode && damping[told] <= kHardestSlowDamping)
+    ++told;
   for (std::size_t v = 0; v < first.size(); ++v) {
     if (first[v] >= 0)
       shapes.middleRows<3>(3 * static_cast<Eigen::Index>(v)) = modes.shapes.middleRows<3>(first[v]);

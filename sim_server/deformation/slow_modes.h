@@ -35,7 +35,7 @@ struct SlowModes {
   Eigen::VectorXd frequencies;  ///< (k) w, rad/s, ascending
   Eigen::VectorXd damping;      ///< (k) 1/s
   Eigen::MatrixXd shapes;       ///< (3 surface vertices x k), 1/sqrt(kg): of unit mass
-  /// The first so many are those that a client can follow (`kMostSlowModes`, `kQuickestSlowMode`).
+  /// The first so many are those that a client can follow (`common/damped_mode.h`).
   Eigen::Index told = 0;
 
   /// `modes`: over the unknowns; a surface vertex begins at `first` there, or -1: held.

@@ -96,6 +96,7 @@ ToolInput ServedTools::input_of(std::size_t tool, const SessionInput& input) noe
 /// Where the tool was at the instants since the state that the step before answered.
 void ServedTools::follow_path(std::size_t tool, const SessionInput& input, ToolInput& told) noexcept {
   std::vector<PathPoint>& points = paths_[tool];
+  const bool was_lost = (holders_[tool].before.flags & protocol::ToolState::kDeviceLost) != 0;
   ToolPath::Point from = point_of(holders_[tool].before);
   const ToolPath::Point to = point_of(input.state);
   const auto instants = static_cast<std::int64_t>(points.size()) + 1;
@@ -104,7 +105,7 @@ void ServedTools::follow_path(std::size_t tool, const SessionInput& input, ToolI
   const std::int64_t begin = from.t_ns, took = apart > 0 && apart < 1e9 ? to.t_ns - begin : 0;
   for (std::int64_t k = 1; k < instants; ++k) {
     const auto now = took > 0 ? input.path.at(begin + took * k / instants) : std::nullopt;
-    if (!now) return;  // evenly and straight
+    if (!now || was_lost) return;  // evenly and straight, or it appears
     points[static_cast<std::size_t>(k) - 1] = {now->pose, bend_between(from, *now)};
     from = *now;
   }

@@ -112,6 +112,19 @@ TEST_CASE("swinging tissue: amplitudes that no organ has are never felt") {
   CHECK(wildest < 2 * largest);
 }
 
+TEST_CASE("swinging tissue: modes that come and go with each sample do no harm") {
+  Listener listener(swinging("reduced", 33.3), block_mesh());
+  listener.learn(kWholeModel);
+  int samples = 0;
+  listener.told = [&](protocol::ForceSample& sample) {
+    if (++samples > 30 && samples % 3 == 0) sample.flags &= ~protocol::ForceSample::kHasModes;
+  };
+  double largest = 0;
+  for (; listener.t < 4s;) largest = std::max(largest, listener.tick(presses(listener.t + kTick)).norm());
+  CHECK(largest > 0.05);
+  CHECK(largest < 2);
+}
+
 TEST_CASE("swinging tissue: after a silence of the server nothing of the old motion is left") {
   Listener listener(swinging("reduced", 33.3), block_mesh());
   listener.learn(kWholeModel);
