@@ -102,6 +102,7 @@ TEST_CASE(
   server->process.signal(SIGKILL);
   server->process.wait();
   REQUIRE(client.wait_for("force goes to zero", 2));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it is there before the server is back
   server = std::make_unique<Server>(std::vector<std::string>{}, address);
   REQUIRE(client.wait_for("is back: soft start", 5));
   CHECK(client.wait() == 0);
