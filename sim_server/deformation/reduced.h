@@ -25,8 +25,8 @@ struct ReducedSettings {
 /// statics (residual flexibility: MacNeal 1971, Comput. Struct. 1:581; Craig 1981, Structural Dynamics,
 /// chapter 18). So it rests where `quasi_static` does, whatever the number of modes; what is left out is the
 /// inertia of the quick ones. Each mode q'' + (alpha + beta w^2) q' + w^2 q = phi^T f is stepped exactly
-/// over T = 1 / rate_hz of the scene under loads that are held: no step is too long. Set-up finds the modes
-/// and
+/// over T, from one instant of contact to the next, under loads that are held: no step is too long. Set-up
+/// finds the modes and
 ///   W = J K^-1 J^T + sum_k J phi_k (r_k - 1 / w_k^2) (J phi_k)^T,
 /// r_k the displacement of mode k within T per force on it. A step takes a few columns of W and one pass over
 /// modes and surface vertices. What moving supports do is added to that, of all modes and exact in time

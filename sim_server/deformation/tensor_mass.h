@@ -9,10 +9,10 @@ namespace palpate::sim {
 
 /// Linear elastic tissue in motion: explicit dynamics with a tensor per vertex and per edge (Cotin,
 /// Delingette and Ayache 2000, Vis. Comput. 16:437), lumped masses and Rayleigh damping (`ExplicitMotion`).
-/// Its time goes in periods T = 1 / rate_hz of the scene, each of N sub-steps as long as the measured highest
-/// frequency allows. Loads are held over a period, so that one compliance serves the contact solver and the
-/// clients: R, the displacement at the end of a period per force held over it, the same at every step.
-/// Set-up finds it by running N sub-steps from rest under unit loads, eight at once
+/// Its time goes in periods T from one instant of contact to the next, each of N sub-steps as long as the
+/// measured highest frequency allows. Loads are held over a period, so that one compliance serves the contact
+/// solver and the clients: R, the displacement at the end of a period per force held over it, the same at
+/// every step. Set-up finds it by running N sub-steps from rest under unit loads, eight at once
 /// (`SurfaceCompliance`). Where a period is a few sub-steps, what a load stops at its end would swing back in
 /// the next: its velocity along the load becomes what it went by on average, if that is less (the velocity
 /// stage of RATTLE, Andersen 1983, J. Comput. Phys. 52:24). A period costs N sub-steps, twice that in
