@@ -126,26 +126,24 @@ void ContactSolver::linearise(ContactPatch& patch, const Vec3& p_W,
   assemble_delassus(patch);
 }
 
-/// W C W^T, and the compliance of the contacts themselves.
+/// W C W^T, and the compliance of the contacts themselves. Column by column: C of a contact's force on the
+/// surface (in `next_`), then what of it each contact sees.
 void ContactSolver::assemble_delassus(const ContactPatch& patch) noexcept {
   const int n = static_cast<int>(contacts_.size()), rows = rows_of_contact();
   delassus_.shape(rows * n, rows * n);
-  for (int column = 0; column < n; ++column) {
-    const Contact& b = contacts_[column];
+  const Eigen::Index size = 3 * patch.nodes();
+  auto moved = next_.head(size);
+  for (int column = 0; column < rows * n; ++column) {
+    const Contact& b = contacts_[column / rows];
+    const Vec3 db = direction(column / rows, column % rows), at_tip = patch.tool_compliance * b.at_tip(db);
+    moved.setZero();
+    for (int j = 0; j < b.size; ++j)
+      moved.noalias() += patch.compliance.block(0, 3 * b.node[j], size, 3) * (b.weight[j] * db);
     for (int row = 0; row <= column; ++row) {
-      const Contact& a = contacts_[row];
-      Mat3 moved = Mat3::Zero();  // of `a`'s share of the surface, per force on that of `b`
-      for (int j = 0; j < b.size; ++j) {
-        for (int i = 0; i < a.size; ++i)
-          moved += a.weight[i] * b.weight[j] * patch.compliance.block<3, 3>(3 * a.node[i], 3 * b.node[j]);
-      }
-      for (int s = 0; s < rows; ++s) {
-        for (int r = 0; r < rows; ++r) {
-          const Vec3 da = direction(row, r), db = direction(column, s);
-          const double value = da.dot(moved * db) + patch.tool_compliance * a.at_tip(da).dot(b.at_tip(db));
-          delassus_(rows * row + r, rows * column + s) = delassus_(rows * column + s, rows * row + r) = value;
-        }
-      }
+      const Contact& a = contacts_[row / rows];
+      Vec3 relative = a.at_tip(at_tip);
+      for (int i = 0; i < a.size; ++i) relative += a.weight[i] * moved.segment<3>(3 * a.node[i]);
+      delassus_(row, column) = delassus_(column, row) = direction(row / rows, row % rows).dot(relative);
     }
   }
   for (int row = 0; row < rows * n; ++row)

@@ -77,6 +77,12 @@ void run_session(VirtualSession& session, std::uint64_t ticks, protocol::Capture
   progress("recording", 1);
 }
 
+Json times_ms(const Histogram& ns) {
+  return {{"p50", 1e-6 * ns.quantile(0.5)},
+          {"p99", 1e-6 * ns.quantile(0.99)},
+          {"max", 1e-6 * static_cast<double>(ns.max())}};
+}
+
 Json make_report(const RecordOptions& options, const VirtualSession& session, double ticks_hz,
                  const protocol::CaptureWriter& capture, const Simulation& simulation, double virtual_s) {
   const VirtualSessionStats& stats = session.stats();
@@ -92,6 +98,7 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
           {"tool_states", stats.tool_states},
           {"force_samples", stats.force_samples},
           {"contact_steps", stats.in_contact},
+          {"contact_step_ms", times_ms(stats.contact_step_ns)},
           {"flagged", stats.flagged},
           {"flagged_by", simulation.flagged().to_json()},
           {"max_newton", stats.max_newton},
@@ -130,10 +137,12 @@ int record(const RecordOptions& options) {
   const VirtualSessionStats& stats = session.stats();
   fmt::print(
       "sim_server: {:.1f} s of virtual time in {:.2f} s; {} packets ({} tool states, {} force samples), {} "
-      "bytes; {} steps in contact, {} flagged{}, largest force {:.2f} N\n",
+      "bytes; {} steps in contact ({:.2f} ms median, {:.2f} ms p99 of processor time), {} flagged{}, largest "
+      "force {:.2f} N\n",
       virtual_s, took, capture.packets(), stats.tool_states, stats.force_samples, capture.bytes(),
-      stats.in_contact, stats.flagged, stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "",
-      stats.max_newton);
+      stats.in_contact, 1e-6 * stats.contact_step_ns.quantile(0.5),
+      1e-6 * stats.contact_step_ns.quantile(0.99), stats.flagged,
+      stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "", stats.max_newton);
   if (options.report)
     write_json(*options.report, make_report(options, session, ticks_hz, capture, simulation, virtual_s));
   return 0;

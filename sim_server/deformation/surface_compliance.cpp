@@ -52,6 +52,7 @@ SurfaceCompliance::SurfaceCompliance(const ModelInputs& inputs)
     row_[vertex] = static_cast<int>(3 * vertices_.size());
     vertices_.push_back(vertex);
   }
+  moved_.resize(static_cast<Eigen::Index>(3 * vertices_.size()));
   if (vertices_.empty()) {
     fail("{}: every vertex the tool can reach is fixed; make the [[fixed]] regions smaller",
          inputs.scene.source);
@@ -145,8 +146,20 @@ void SurfaceCompliance::begin(ContactPatch& patch) const noexcept {
 }
 
 void SurfaceCompliance::fill(int node, ContactPatch& patch) const noexcept {
-  for (int i = 0; i < patch.nodes(); ++i)
-    patch.compliance.block<3, 3>(3 * i, 3 * node) = block(patch.vertices[i], patch.vertices[node]);
+  const int vertex = patch.vertices[node], column = row_[vertex];
+  for (int axis = 0; axis < 3; ++axis) {
+    double* const to = patch.compliance.col(3 * node + axis).data();
+    const double* const from = column < 0 ? nullptr : compliance_.col(column + axis).data();
+    for (int i = 0; i < patch.nodes(); ++i) {
+      const int row = row_[patch.vertices[i]];
+      Eigen::Map<Vec3> moved(to + 3 * i);
+      if (from != nullptr && row >= 0) {
+        moved = Eigen::Map<const Vec3>(from + row);
+      } else {
+        moved = (patch.vertices[i] == vertex ? held_compliance_ : 0.0) * Vec3::Unit(axis);
+      }
+    }
+  }
 }
 
 Mat3 SurfaceCompliance::of_loads(std::span<const NodalLoad> loads) const noexcept {
@@ -159,20 +172,18 @@ Mat3 SurfaceCompliance::of_loads(std::span<const NodalLoad> loads) const noexcep
   return yields;
 }
 
-void SurfaceCompliance::move(std::span<const NodalLoad> loads, std::span<Vec3> positions) const noexcept {
+void SurfaceCompliance::move(std::span<const NodalLoad> loads, std::span<Vec3> positions) noexcept {
+  moved_.setZero();
   for (const NodalLoad& load : loads) {
     const int column = row_[load.vertex];
     if (column < 0) {
       positions[load.vertex] += held_compliance_ * load.force;
-      continue;
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      const double* moved = compliance_.col(column + axis).data();
-      for (std::size_t k = 0; k < vertices_.size(); ++k) {
-        positions[vertices_[k]] += load.force[axis] * Eigen::Map<const Vec3>(moved + 3 * k);
-      }
+    } else {
+      moved_.noalias() += compliance_.middleCols<3>(column) * load.force;
     }
   }
+  for (std::size_t k = 0; k < vertices_.size(); ++k)
+    positions[vertices_[k]] += moved_.segment<3>(3 * static_cast<Eigen::Index>(k));
 }
 
 }  // namespace palpate::sim

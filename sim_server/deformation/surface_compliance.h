@@ -57,7 +57,7 @@ class SurfaceCompliance : public ComplianceSource {
   /// Of the surface that bears these loads, as one piece, m/N. O(loads^2).
   Mat3 of_loads(std::span<const NodalLoad> loads) const noexcept;
   /// Moves `positions` (surface vertices, m) by what `loads` do. O(r x loads).
-  void move(std::span<const NodalLoad> loads, std::span<Vec3> positions) const noexcept;
+  void move(std::span<const NodalLoad> loads, std::span<Vec3> positions) noexcept;
 
   /// Of W, and of the numbers of its rows.
   std::size_t bytes() const { return static_cast<std::size_t>(compliance_.size()) * sizeof(double); }
@@ -75,6 +75,7 @@ class SurfaceCompliance : public ComplianceSource {
   std::optional<MappedMatrix> kept_;
   std::string note_;
   Eigen::Map<Eigen::MatrixXd> compliance_{nullptr, 0, 0};  // W
+  Eigen::VectorXd moved_;                                  // (3r) what the loads of a `move` do, m
   double held_compliance_;                                 // m/N, of a fixed vertex under the tool itself
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/clock.h"
 #include "common/error.h"
 #include "common/hash.h"
 
@@ -84,8 +85,12 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
   // The organ stands as it does when the tool was read, so it moves from one answered tool state to the next.
   const double dt = to_seconds(Time{state.t_ns} - answered_);
   answered_ = Time{state.t_ns};
+  const Time begin = thread_time();
   const auto& outcome = served_.step(inputs_, dt)[link_.tool];
-  stats_.in_contact += outcome.force.contacts > 0 ? 1 : 0;
+  if (outcome.force.contacts > 0) {
+    ++stats_.in_contact;
+    stats_.contact_step_ns.add((thread_time() - begin).count());
+  }
   stats_.flagged += outcome.force.flagged ? 1 : 0;
   stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
   on_the_way_.push_back({Time{state.t_ns} + link_.delay, *outcome.answer});

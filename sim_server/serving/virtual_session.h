@@ -1,6 +1,7 @@
 #pragma once
 #include <deque>
 
+#include "common/histogram.h"
 #include "common/trajectory.h"
 #include "protocol/capture.h"
 #include "protocol/near_tiles.h"
@@ -22,6 +23,7 @@ struct VirtualLink {
 struct VirtualSessionStats {
   std::uint64_t tool_states = 0, force_samples = 0, in_contact = 0, flagged = 0;
   double max_newton = 0;
+  Histogram contact_step_ns;  ///< processor time of the steps in contact, with all that the client asks for
 };
 
 /// A client and a server that talk without sockets and clock: the two ends of the session of one tool, which
