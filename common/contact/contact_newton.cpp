@@ -244,9 +244,11 @@ bool ContactSolver::differentiate_forces(
 }
 
 Mat3 ContactSolver::tangent(const ContactPatch& patch) noexcept {
+  has_load_change_ = false;
   if (considered_.empty()) return Mat3::Zero();
   const Mat3 k = tangent_of_considered(patch);
   if (!k.allFinite()) return Mat3::Zero();
+  has_load_change_ = friction_ == 0 && !k.isZero(0);
   return friction_ > 0 ? k : Mat3(0.5 * (k + k.transpose()));
 }
 
@@ -262,14 +264,14 @@ Mat3 ContactSolver::tangent_of_considered(const ContactPatch& patch) noexcept {
   force_change.noalias() = jacobian_ * moved;
   if (!differentiate_forces(force_change)) return Mat3::Zero();
   moved.noalias() += response_.leftCols(n) * force_change;
-  Mat3 k;
+  auto loads = load_change_.topRows(size);
+  loads.noalias() = curvature_ * moved;
   if (friction_ > 0) {
-    k.noalias() = spread_.bottomRows<3>() * force_change;
+    loads.noalias() += spread_ * force_change;
   } else {
-    k = jacobian_.rightCols<3>().transpose() * force_change;
+    loads.noalias() += jacobian_.transpose() * force_change;
   }
-  k.noalias() += curvature_.bottomRows<3>() * moved;
-  return k;
+  return loads.bottomRows<3>();
 }
 
 }  // namespace palpate

@@ -60,6 +60,7 @@ ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
   increment_.resize(unknowns);
   node_force_.resize(3 * max_nodes);
   moved_.resize(unknowns, 3);
+  load_change_.resize(unknowns, 3);
   rhs_.resize(rows, 3);
   contacts_.reserve(static_cast<std::size_t>(max_triangles));
   considered_.reserve(static_cast<std::size_t>(max_triangles));

@@ -107,6 +107,15 @@ class ContactSolver {
   /// it is not defined.
   Mat3 tangent(const ContactPatch& patch) noexcept;
 
+  /// How the forces on the patch nodes follow the tool, to first order (N/m): calls `visit` with a node and a
+  /// `Mat3` for each. Of the last `tangent`, before another `solve`; none with friction, or without a tangent.
+  template <class Visit>
+  void for_load_changes(const Visit& visit) const {
+    if (!has_load_change_) return;
+    for (std::size_t i = 0; i + 1 < nodes_.size(); ++i)
+      visit(nodes_[i], Mat3(load_change_.middleRows<3>(3 * static_cast<Eigen::Index>(i))));
+  }
+
   /// What its matrices hold, bytes.
   std::size_t bytes() const;
 
@@ -185,7 +194,8 @@ class ContactSolver {
   int unloaded_ = 0;     // of nodes_, the first ones
   BoundedMatrix curvature_, compliance_, bent_, toward_, system_, jacobian_;
   BoundedMatrix spread_;  // W^T, only with friction
-  Eigen::Matrix<double, Eigen::Dynamic, 3> moved_, rhs_;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> moved_, rhs_, load_change_;
+  bool has_load_change_ = false;
 };
 
 }  // namespace palpate

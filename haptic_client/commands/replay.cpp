@@ -67,9 +67,14 @@ std::uint64_t run_ticks(CapturedSession& session, std::optional<double> rate_hz,
   std::uint64_t ticks = 0;
   while (source.next(tick)) {
     const TickResult result = pipeline.feel(tick.state, tick.arrived ? &*tick.arrived : nullptr, tick.pages);
+    // What a tick is held against is known when the next samples have come.
+    const TickRecord* const leaving = observation.leaving();
+    if (trace != nullptr && leaving != nullptr) trace->add(*leaving);
     observation.tick(result, Time::zero(), 0);
-    if (trace != nullptr) trace->add({result, observation.scoring().forces()});
     if (++ticks % kLookAround == 0) progress("replaying", session.share());
+  }
+  if (trace != nullptr) {
+    for (const TickRecord& last : observation.record()) trace->add(last);
   }
   progress("replaying", 1);
   return ticks;
@@ -147,10 +152,11 @@ int replay(const ClientConfig& config, const ReplayOptions& options) {
 
   Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(),
                     config.workspace, config.device_limits(), config.passivity, config.blend);
-  Observation observation(config.scored_laws(), ticks_hz, config.score_where, 0, config.blend);
+  const std::size_t keep = options.out ? Scoring::longest_wait(ticks_hz) + 1 : 0;
+  Observation observation(config.scored_laws(), ticks_hz, config.score_where, keep, config.blend);
   CapturedSession session(options.capture, index);
   std::optional<TraceWriter> trace;
-  if (options.out) trace.emplace(*options.out, observation.scoring().names());
+  if (options.out) trace.emplace(*options.out, observation.scoring().names(), config.method);
   const std::uint64_t ticks = run_ticks(session, exact ? std::nullopt : std::optional(rate_hz), pipeline,
                                         observation, trace ? &*trace : nullptr);
   if (trace) trace->finish();

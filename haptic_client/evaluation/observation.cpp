@@ -36,7 +36,16 @@ void Observation::tick(const TickResult& result, Time took, std::uint64_t missed
     if (result.errors) told_errors_.add(*result.errors, result.sample.f.norm());
   }
   scoring_.tick(result.tool.p_W, t, result.used ? &result.sample : nullptr, cell.errors);
-  if (!ring_.empty()) ring_[recorded_++ % ring_.size()] = {result, scoring_.forces()};
+  if (ring_.empty()) return;
+  for (const Scoring::ScoredTick& scored : scoring_.newly_scored()) {
+    if (recorded_ - scored.number <= ring_.size())
+      ring_[scored.number % ring_.size()].reference = scored.reference;
+  }
+  ring_[recorded_++ % ring_.size()] = {result, scoring_.forces()};
+}
+
+const TickRecord* Observation::leaving() const noexcept {
+  return ring_.empty() || recorded_ < ring_.size() ? nullptr : &ring_[recorded_ % ring_.size()];
 }
 
 std::vector<TickRecord> Observation::record() const {

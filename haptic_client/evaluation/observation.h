@@ -11,7 +11,8 @@ namespace palpate::client {
 /// One tick as it was, with what the scored laws gave.
 struct TickRecord {
   TickResult result;
-  std::array<Vec3, kMaxLaws> laws;  ///< N, world
+  std::array<Vec3, kMaxLaws> laws;     ///< N, world
+  std::optional<Vec3> reference = {};  ///< what they were held against, N, world; known some samples later
 };
 
 /// One stretch of a session.
@@ -37,6 +38,8 @@ class Observation {
   const Scoring& scoring() const noexcept { return scoring_; }
   const SessionTimeline& timeline() const noexcept { return timeline_; }
   const ToldErrors& told_errors() const noexcept { return told_errors_; }
+  /// The tick that goes with the next one, as there is no room for more; null: there is.
+  const TickRecord* leaving() const noexcept;
   /// The kept ticks, oldest first.
   std::vector<TickRecord> record() const;
 

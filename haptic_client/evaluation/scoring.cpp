@@ -31,7 +31,13 @@ Scoring::Scoring(const std::vector<std::string>& laws, double rate_hz, const std
     paper_.emplace_back(rate_hz);
   }
   if (truth == nullptr && wants().surface) contact_ = std::make_unique<FollowedContact>(rate_hz);
-  if (!laws.empty()) pending_.resize(static_cast<std::size_t>(kLongestWait * rate_hz) + 1);
+  if (laws.empty()) return;
+  pending_.resize(longest_wait(rate_hz));
+  newly_scored_.reserve(pending_.size() + 1);
+}
+
+std::size_t Scoring::longest_wait(double rate_hz) {
+  return static_cast<std::size_t>(kLongestWait * rate_hz) + 1;
 }
 
 Wants Scoring::wants() const noexcept {
@@ -62,6 +68,7 @@ ReferenceKind Scoring::mostly_between() const noexcept {
 
 void Scoring::tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums) noexcept {
   if (laws_.empty()) return;
+  newly_scored_.clear();
   PathTick path{t, p_W};
   if (contact_) path.contact = contact_->go(p_W, t);
   if (ticked_) {
@@ -75,7 +82,7 @@ void Scoring::tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums
   ticked_ = laws_.front().newest().number > 0;
   ticks_ += ticked_ ? 1 : 0;
   for (std::size_t i = 0; ticked_ && i < laws_.size(); ++i) stand_ins_[i].add(laws_[i].stand_in());
-  newest_ = {path, Vec3::Zero(), force_, {}};
+  newest_ = {path, Vec3::Zero(), force_, {}, number_++};
   place_ = p_W;
 }
 
@@ -123,6 +130,7 @@ void Scoring::score_between(const Sample& before, const Sample& after, const Pat
 
 void Scoring::score(const Pending& tick, const Vec3& right, ErrorSums& sums) noexcept {
   const Reference reference(right);
+  newly_scored_.push_back({tick.number, right});
   ++scored_;
   ++sums.ticks;
   sums.reference_squared += reference.norm * reference.norm;

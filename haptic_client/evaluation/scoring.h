@@ -65,12 +65,23 @@ class Scoring {
   /// What the laws give at the newest tick, N, world.
   const std::array<Vec3, kMaxLaws>& forces() const noexcept { return force_; }
 
+  /// A tick, counted from 0, and the force that the laws were held against there, N, world.
+  struct ScoredTick {
+    std::uint64_t number = 0;
+    Vec3 reference;
+  };
+  /// What the last `tick` scored: of ticks before it.
+  std::span<const ScoredTick> newly_scored() const noexcept { return newly_scored_; }
+  /// After how many others a tick is scored at most, or never.
+  static std::size_t longest_wait(double rate_hz);
+
  private:
   struct Pending {
     PathTick path;
     Vec3 moved;  // until the next tick, m
     std::array<Vec3, kMaxLaws> force;
     std::optional<Vec3> right = {};  // by the truth, N
+    std::uint64_t number = 0;
   };
   void take(const Sample& sample, const PathTick& now, ErrorSums& sums) noexcept;
   void score_between(const Sample& before, const Sample& after, const PathTick& now,
@@ -95,7 +106,9 @@ class Scoring {
   const Truth* truth_;
   std::array<double, kMaxLaws> excess_{};  // J
   double exchanged_ = 0;                   // J
-  Pending newest_{};                       // not waiting yet: how far it moves is known at the next tick
+  std::vector<ScoredTick> newly_scored_;
+  std::uint64_t number_ = 0;  // of ticks so far
+  Pending newest_{};          // not waiting yet: how far it moves is known at the next tick
   Vec3 place_ = Vec3::Zero();
   bool ticked_ = false;
 };

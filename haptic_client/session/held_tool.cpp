@@ -191,7 +191,7 @@ Json HeldTool::report() const {
 
 void HeldTool::write_files() const {
   if (!files_.trace) return;
-  TraceWriter trace(*files_.trace, observation_.scoring().names());
+  TraceWriter trace(*files_.trace, observation_.scoring().names(), config_.method);
   for (const TickRecord& tick : observation_.record()) trace.add(tick);
   trace.finish();
 }

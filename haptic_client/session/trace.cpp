@@ -1,5 +1,6 @@
 #include "haptic_client/session/trace.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <iterator>
 
@@ -10,9 +11,16 @@ namespace {
 constexpr std::size_t kFlushAt = 1 << 16;  // bytes
 }
 
-TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws)
-    : name_(file), file_(file, Contents::kTable), out_(file_.path(), std::ios::binary), laws_(laws.size()) {
-  text_ = "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n,mesh_percent,motion_percent";
+TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws,
+                         const std::string& felt)
+    : name_(file),
+      file_(file, Contents::kTable),
+      out_(file_.path(), std::ios::binary),
+      laws_(laws.size()),
+      felt_(static_cast<std::size_t>(std::ranges::find(laws, felt) - laws.begin())) {
+  text_ =
+      "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n,mesh_percent,motion_percent,"
+      "reference_n,extrapolation_n";
   for (const std::string& law : laws) text_ += fmt::format(",{}_n", law);
   text_ += '\n';
 }
@@ -33,6 +41,7 @@ void TraceWriter::add(const TickRecord& tick) {
   const DiscretisationErrors errors = result.errors.value_or(DiscretisationErrors{});
   add_error(errors.mesh);
   add_error(errors.time_step);
+  add_extrapolation(tick);
   for (std::size_t i = 0; i < laws_; ++i) fmt::format_to(out, ",{}", tick.laws[i].norm());
   text_ += '\n';
   if (text_.size() >= kFlushAt) flush();
@@ -42,6 +51,15 @@ void TraceWriter::add(const TickRecord& tick) {
 void TraceWriter::add_error(const DiscretisationError& error) {
   text_ += ',';
   if (error.known()) fmt::format_to(std::back_inserter(text_), "{}", error.percent);
+}
+
+/// The force that was right, and how far the felt law was off; empty where nobody could know.
+void TraceWriter::add_extrapolation(const TickRecord& tick) {
+  const auto out = std::back_inserter(text_);
+  text_ += ',';
+  if (tick.reference) fmt::format_to(out, "{}", tick.reference->norm());
+  text_ += ',';
+  if (tick.reference && felt_ < laws_) fmt::format_to(out, "{}", (tick.laws[felt_] - *tick.reference).norm());
 }
 
 void TraceWriter::flush() {

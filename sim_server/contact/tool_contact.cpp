@@ -50,6 +50,8 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   filled_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   displacement_.resize(3 * (finder_.max_nodes() + 1));
+  predictor_.changes.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+  kept_predictor_.changes.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   kept_loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   if (!has_friction()) return;
   surface_was_.assign(rest.begin(), rest.end());
@@ -221,6 +223,12 @@ void ToolContact::remember_side(const ToolTissue& tissue) noexcept {
 void ToolContact::differentiate(ToolTissue tissue) noexcept {
   if (now_.force.contacts == 0) return;
   now_.force.tangent = holds() ? now_.grasp_tangent : solver_.tangent(patch_);
+  predictor_.changes.clear();
+  predictor_.from = now_.place.p_W;
+  solver_.for_load_changes([&](int node, const Mat3& change) {
+    if (!holds() && tissue.model().compliance_is_constant())
+      predictor_.changes.push_back({filled_[node], change});
+  });
   if (foreseen_ == 0) return;
   // Tissue that gives way by so much more by then stands behind the contact like a spring in a row with it.
   const Mat3 &k = now_.force.tangent, yields = tissue.model().later_compliance(tissue.loads(), foreseen_);
@@ -234,11 +242,13 @@ bool ToolContact::exhausted() const {
 
 void ToolContact::keep(std::span<const NodalLoad> loads) {
   kept_ = now_;
+  kept_predictor_ = predictor_;
   kept_loads_.assign(loads.begin(), loads.end());
 }
 
 void ToolContact::restore(ToolTissue tissue) {
   now_ = kept_;
+  predictor_ = kept_predictor_;
   tissue.set_loads(kept_loads_);
   tissue.press();
   tissue.mark_solved();
@@ -283,6 +293,7 @@ void ToolContact::lift() noexcept {
   now_.placed = false;
   now_.side = -1;
   now_.force = {};
+  predictor_.changes.clear();
   if (grip_) grip_->open();
 }
 
@@ -374,6 +385,7 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   auto u = displacement_.head(3 * (m + 1));
   for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = tissue.positions()[vertices[i]] - patch_.free[i];
   u.tail<3>() = now_.tip_offset;
+  predict(u);
   nodes_were_.clear();
   if (has_friction()) {
     for (const int vertex : vertices) nodes_were_.push_back(increment_from_[vertex]);
@@ -390,8 +402,25 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   return contact;
 }
 
+/// Adds to the displacement to look from what the way from where the tool was differentiated does, to first
+/// order.
+void ToolContact::predict(Eigen::Ref<Eigen::VectorXd> u) noexcept {
+  const Vec3 motion = now_.place.p_W - predictor_.from;
+  if (motion.isZero(0) || motion.norm() > kIncrement * tool_.radius) return predictor_.changes.clear();
+  const Eigen::Index size = 3 * patch_.nodes();
+  for (const Predictor::LoadChange& change : predictor_.changes) {
+    const auto at = std::ranges::find(filled_, change.vertex);
+    if (at == filled_.end()) continue;
+    const int node = static_cast<int>(at - filled_.begin());
+    patch_.require(node);
+    u.head(size).noalias() += patch_.compliance.block(0, 3 * node, size, 3) * (change.per_motion * motion);
+  }
+  predictor_.changes.clear();
+}
+
 void ToolContact::release(ToolTissue tissue) {
   now_.tip_offset.setZero();
+  predictor_.changes.clear();
   tissue.release();
 }
 

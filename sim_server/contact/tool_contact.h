@@ -57,6 +57,7 @@ class ToolContact {
   /// before.
   void carry(const Vec3& motion) noexcept {
     if (now_.placed) now_.place.p_W += motion;
+    predictor_.from += motion;
   }
   /// Of velocities of the surface vertices (m/s; none: it rests), that where the tool touches, with these
   /// loads (the mean by force), or else at the point nearest to `p_W`.
@@ -119,6 +120,7 @@ class ToolContact {
   Vec3 path_offset(double share, const Vec3& motion) const noexcept;
   void take_compliance(const DeformationModel& model);
   ContactForce solve_contact(ToolTissue tissue);
+  void predict(Eigen::Ref<Eigen::VectorXd> u) noexcept;
   void release(ToolTissue tissue);
   void set_force(const ContactForce& contact, int iterations, ToolTissue tissue);
 
@@ -149,6 +151,17 @@ class ToolContact {
   };
   State now_, kept_;
   std::vector<NodalLoad> kept_loads_;
+  /// Foretells the loads at the next place, to first order: how those at the place that was differentiated
+  /// last change with the tool's.
+  struct Predictor {
+    struct LoadChange {
+      int vertex;
+      Mat3 per_motion;  // N/m
+    };
+    std::vector<LoadChange> changes;  // none: nothing is foretold
+    Vec3 from = Vec3::Zero();         // m
+  };
+  Predictor predictor_, kept_predictor_;
 };
 
 }  // namespace palpate::sim

@@ -24,13 +24,26 @@ std::span<const T> values(const T* first, Eigen::Index count) {
   return {first, static_cast<std::size_t>(count)};
 }
 
-/// Of all that rows and columns of K^-1 follow from.
-Digest key_of(const SparseMatrix& k, std::span<const int> rows) {
-  Fingerprint fingerprint;
+void add(const SparseMatrix& k, Fingerprint& fingerprint) {
   fingerprint.add(values(k.outerIndexPtr(), k.outerSize() + 1));
   fingerprint.add(values(k.innerIndexPtr(), k.nonZeros()));
   fingerprint.add(values(k.valuePtr(), k.nonZeros()));
+}
+
+/// Of all that rows and columns of K^-1 follow from.
+Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows) {
+  Fingerprint fingerprint;
+  add(k, fingerprint);
   fingerprint.add(rows);
+  return fingerprint.digest();
+}
+
+/// Of all that modes of vibration follow from.
+Digest key_of_modes(const SparseMatrix& k, const Eigen::VectorXd& masses, int count) {
+  Fingerprint fingerprint;
+  add(k, fingerprint);
+  fingerprint.add(values(masses.data(), masses.size()));
+  fingerprint.add(std::span<const int>(&count, 1));
   return fingerprint.digest();
 }
 
@@ -62,6 +75,36 @@ std::optional<MovingSupports> LinearStatics::supports(Following following) const
   return MovingSupports(inputs_, responses);
 }
 
+VibrationModes LinearStatics::modes(int count, const std::string& where) const {
+#ifndef PALPATE_WITH_SPECTRA
+  fail(
+      "{}: this build finds none of the {} modes of vibration asked for; configure it with "
+      "-DPALPATE_SPECTRA=ON",
+      where, count);
+#else
+  const Eigen::VectorXd weights = masses();
+  const auto find = [&] {
+    const SparseCholesky& of_stiffness = factor();
+    inputs_.progress(name_of(Stage::kModes), 0);
+    return vibration_modes(of_stiffness, weights, count, where);
+  };
+  if (inputs_.cache == nullptr) return find();
+  const Digest key = key_of_modes(stiffness.lower(), weights, count);
+  if (const auto kept = inputs_.cache->find(key)) {
+    const auto matrix = kept->matrix();  // the frequencies above the shapes
+    if (matrix.rows() == dofs.count + 1 && matrix.cols() == count)
+      return {matrix.row(0).transpose(), matrix.bottomRows(dofs.count), note_of_saved(*kept)};
+  }
+  const Time begin = now();
+  VibrationModes found = find();
+  Eigen::MatrixXd matrix(dofs.count + 1, count);
+  matrix << found.frequencies.transpose(), found.shapes;
+  const std::string what = fmt::format("{} modes, {}", count, inputs_.scene.mesh_file.filename().string());
+  inputs_.cache->keep({.key = key, .seconds = to_seconds(now() - begin), .what = what}, matrix);
+  return found;
+#endif
+}
+
 void LinearStatics::fill(SurfaceCompliance& compliance) const {
   std::vector<int> rows;  // of K, for each of the compliance
   for (const int vertex : compliance.vertices()) {
@@ -69,7 +112,7 @@ void LinearStatics::fill(SurfaceCompliance& compliance) const {
     rows.insert(rows.end(), {first, first + 1, first + 2});
   }
   if (inputs_.cache == nullptr) return compute(compliance, rows);
-  const Digest key = key_of(stiffness.lower(), rows);
+  const Digest key = key_of_compliance(stiffness.lower(), rows);
   if (auto kept = inputs_.cache->find(key); kept && compliance.take(std::move(*kept))) return;
   const Time begin = now();
   compute(compliance, rows);

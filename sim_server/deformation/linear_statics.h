@@ -2,6 +2,7 @@
 #include "sim_server/deformation/moving_supports.h"
 #include "sim_server/deformation/surface_compliance.h"
 #include "sim_server/elasticity/solid.h"
+#include "sim_server/solvers/vibration_modes.h"
 #include "sim_server/sparse/sparse_cholesky.h"
 
 namespace palpate::sim {
@@ -24,6 +25,9 @@ struct LinearStatics {
   std::optional<MovingSupports> supports(Following following) const;
   /// Of each unknown, kg, lumped.
   Eigen::VectorXd masses() const { return masses_of(solid, dofs); }
+  /// The `count` lowest modes of vibration over `dofs`, or what the cache of the inputs has of them. Throws
+  /// `Error`, beginning with `where`, as `vibration_modes`, and where the build has no Spectra.
+  VibrationModes modes(int count, const std::string& where) const;
   /// Fills `compliance` with J K^-1 J^T, on all cores, or with what the cache of the inputs has of it.
   void fill(SurfaceCompliance& compliance) const;
 

@@ -24,7 +24,14 @@ class QuasiStatic : public DeformationModel {
   std::vector<MemoryPart> memory() const override;
 
  private:
-  std::vector<Vec3> rest_, positions_;
+  /// The last two answers: a tool that looks ahead goes back to where it was with the loads that it had there.
+  struct Answer {
+    std::vector<NodalLoad> loads;
+    std::vector<Vec3> positions;
+    bool stands = false;  // false: the supports have moved since
+  };
+  std::vector<Vec3> rest_;
+  Answer answer_, before_;
   SurfaceCompliance compliance_;
   std::optional<MovingSupports> supports_;  // where some move
 };

@@ -39,11 +39,10 @@ Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene))
   supports_ = statics.supports(Following::kSwinging);
   free_.assign(unloaded().begin(), unloaded().end());
   positions_ = free_;
-  inputs.progress(name_of(Stage::kModes), 0);
-  const VibrationModes found = vibration_modes(statics.factor(), statics.masses(),
-                                               settings.of<ReducedSettings>().modes, settings.where);
+  const VibrationModes found = statics.modes(settings.of<ReducedSettings>().modes, settings.where);
   std::vector<int> first;
   for (const int vertex : inputs.surface.vertices) first.push_back(statics.dofs.first[vertex]);
+  modes_note_ = found.note;
   modes_.emplace(found, first, settings.of<RayleighDamping>());
   const auto count = modes_->frequencies.size();
   instants_ = instants_of(settings, usual_instants(period_, modes_->frequencies[count - 1]));
@@ -123,7 +122,7 @@ std::vector<MemoryPart> Reduced::memory() const {
       {"modes",
        static_cast<std::size_t>(modes_->shapes.size() + 5 * q_.size()) * sizeof(double) +
            steps_.size() * sizeof(ModeStep),
-       fmt::format("{} of vibration", q_.size())},
+       fmt::format("{} of vibration{}{}", q_.size(), modes_note_.empty() ? "" : ", ", modes_note_)},
       {"positions", 3 * rest_.size() * sizeof(Vec3) + compliance_.index_bytes()}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
   return parts;

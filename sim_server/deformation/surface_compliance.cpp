@@ -88,7 +88,7 @@ bool SurfaceCompliance::take(MappedMatrix&& kept) {
   if (matrix.rows() != rows || matrix.cols() != rows) return false;
   new (&compliance_) Eigen::Map<Eigen::MatrixXd>(const_cast<double*>(matrix.data()), rows, rows);
   kept_ = std::move(kept);
-  note_ = fmt::format("from the set-up cache, which saved {:.1f} s", kept_->header().seconds);
+  note_ = note_of_saved(*kept_);
   return true;
 }
 

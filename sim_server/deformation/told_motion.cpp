@@ -4,22 +4,14 @@
 #include <fmt/core.h>
 #include <numbers>
 
-#include "common/error.h"
 #include "sim_server/deformation/linear_statics.h"
 
 namespace palpate::sim {
 namespace {
 
-VibrationModes modes_of(const ModelInputs& inputs, [[maybe_unused]] const LinearStatics& statics) {
-  inputs.progress(name_of(Stage::kModes), 0);
-#ifndef PALPATE_WITH_SPECTRA
-  fail("{}: this build finds no modes; configure it with -DPALPATE_SPECTRA=ON, or tell clients none",
-       inputs.scene.source);
-#else
+VibrationModes modes_of(const ModelInputs& inputs, const LinearStatics& statics) {
   const DeformationSettings& settings = inputs.scene.deformation;
-  const int most = std::min(settings.of<ClientModes>().modes, statics.dofs.count - 1);
-  return vibration_modes(statics.factor(), statics.masses(), most, settings.where);
-#endif
+  return statics.modes(std::min(settings.of<ClientModes>().modes, statics.dofs.count - 1), settings.where);
 }
 
 std::vector<int> surface_unknowns(const ModelInputs& inputs, const LinearStatics& statics) {

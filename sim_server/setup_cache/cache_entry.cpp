@@ -108,6 +108,10 @@ Eigen::Map<Eigen::MatrixXd> MappedMatrix::matrix() const {
           static_cast<Eigen::Index>(header_.cols)};
 }
 
+std::string note_of_saved(const MappedMatrix& kept) {
+  return fmt::format("from the set-up cache, which saved {:.1f} s", kept.header().seconds);
+}
+
 void write_entry(const std::filesystem::path& file, const EntryHeader& header,
                  const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
   if (matrix.outerStride() != matrix.rows()) fail("{}: the matrix is not in one piece", file.string());

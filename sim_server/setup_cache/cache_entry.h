@@ -33,6 +33,9 @@ class MappedMatrix {
   EntryHeader header_;
 };
 
+/// "from the set-up cache, which saved 3.2 s".
+std::string note_of_saved(const MappedMatrix& kept);
+
 /// Writes an entry under another name, syncs and renames it: whole or not at all. Throws `Error`.
 void write_entry(const std::filesystem::path& file, const EntryHeader& header,
                  const Eigen::Ref<const Eigen::MatrixXd>& matrix);

@@ -10,6 +10,7 @@ namespace palpate::sim {
 struct VibrationModes {
   Eigen::VectorXd frequencies;  ///< (k) angular, rad/s, ascending
   Eigen::MatrixXd shapes;       ///< (unknowns x k), 1/sqrt(kg): of unit mass, phi^T M phi = 1
+  std::string note = {};        ///< where they are from, if not computed now: "from the set-up cache, ..."
 };
 
 /// The `count` lowest modes of K phi = w^2 M phi, by the implicitly restarted Lanczos method (Spectra) on

@@ -1,6 +1,11 @@
 #ifdef PALPATE_WITH_CAPTURE
 // What a session is told about the whole error of its force, before and after a study of its scene: the real
 // programs, virtual time.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
 #include "tests/support/column.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
@@ -33,9 +38,33 @@ struct PressedColumn {
                "--out", capture, "--cache", cache},
               0);
     said = output_of("haptic_client",
-                     {"replay", capture, "--client", kClient, "--method", "two_tangents", "--report", report},
+                     {"replay", capture, "--client", kClient, "--method", "two_tangents", "--report", report,
+                      "--out", (folder.path() / "trace.csv").string()},
                      0);
     return read_json(report)["tools"][0]["felt"];
+  }
+  /// The mean error of the felt law by the rows of the trace where it or the force it is held against pushes,
+  /// % of the root mean square of that force in contact.
+  double error_in_trace() {
+    std::ifstream file(folder.path() / "trace.csv");
+    std::string line, cell;
+    std::getline(file, line);
+    std::vector<std::string> names;
+    for (std::istringstream row(line); std::getline(row, cell, ',');) names.push_back(cell);
+    const auto reference = std::ranges::find(names, "reference_n") - names.begin();
+    double error = 0, squared = 0, pushes = 0, touches = 0;
+    while (std::getline(file, line)) {
+      std::vector<std::string> cells;
+      for (std::istringstream row(line); std::getline(row, cell, ',');) cells.push_back(cell);
+      if (cells[static_cast<std::size_t>(reference)].empty()) continue;
+      const double force = std::stod(cells[static_cast<std::size_t>(reference)]);
+      const double off = std::stod(cells[static_cast<std::size_t>(reference) + 1]);
+      error += off;
+      squared += force * force;
+      pushes += force > 0 || off > 0 ? 1 : 0;
+      touches += force > 0 ? 1 : 0;
+    }
+    return 100 * error / pushes / std::sqrt(squared / touches);
   }
 };
 
@@ -48,6 +77,7 @@ TEST_CASE("whole error: estimated, then measured by a study, with the extrapolat
   CHECK(felt["mesh_percent"] == 189);
   CHECK(felt["motion_percent"] == 0);
   CHECK(felt["extrapolation_percent"].get<double>() > 0);
+  CHECK(felt["extrapolation_percent"].get<double>() == Approx(pressed.error_in_trace()));
   CHECK_THAT(felt["how"]["mesh"].get<std::string>(), Catch::StartsWith("estimated"));
   CHECK_THAT(felt["how"]["motion"].get<std::string>(), Catch::StartsWith("none"));
   CHECK_THAT(pressed.said, Catch::Contains("mesh              189   estimated"));

@@ -1,6 +1,7 @@
 #include "haptic_client/evaluation/scoring.h"
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "tests/support/allocation_guard.h"
@@ -56,6 +57,28 @@ TEST_CASE("latency counts: the law is judged with the samples it had") {
   const double late = (10 + 11 + 12 + 13 + 14 + 15 + 16) * 0.01, held = (7 + 8 + 9) * 0.01;
   CHECK(scoring.scored() == 500 - 7);
   CHECK(sums.error[0] == Approx(50 * held + 49 * late));
+}
+
+TEST_CASE("each tick is told once, by its number, what it was held against") {
+  Scoring scoring({"constant"}, 500, "test");
+  std::map<std::uint64_t, Vec3> told;
+  const int latency = 7;
+  ErrorSums sums;
+  for (int k = 0; k < 400; ++k) {
+    const int of = k - latency;
+    const double s = to_seconds(of * kTick);
+    const Sample sample{
+        static_cast<std::uint64_t>(of / kTicksPerSample + 1), of * kTick, {s, 0, 0}, {0, 1 + 5 * s, 0}};
+    scoring.tick({to_seconds(k * kTick), 0, 0}, k * kTick,
+                 of >= 0 && of % kTicksPerSample == 0 ? &sample : nullptr, sums);
+    for (const auto& [number, reference] : scoring.newly_scored())
+      CHECK(told.emplace(number, reference).second);
+  }
+  CHECK(told.size() == scoring.scored());
+  for (const auto& [number, reference] : told) {
+    CHECK(reference.y() == Approx(1 + 5 * to_seconds(static_cast<int>(number) * kTick)));
+    CHECK(number < 400 - latency);
+  }
 }
 
 TEST_CASE("on a closed path a force that comes late creates energy") {
