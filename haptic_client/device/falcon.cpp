@@ -79,7 +79,7 @@ Falcon::Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmwa
       p_D_(falcon::kCentre) {}
 
 Falcon::~Falcon() {
-  stop();
+  Falcon::stop();
   port_->close();
 }
 

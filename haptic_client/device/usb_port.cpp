@@ -164,7 +164,7 @@ UsbPort::UsbPort(UsbKind kind, std::string path) : usb_(new Libusb{.kind = kind,
 }
 
 UsbPort::~UsbPort() {
-  close();
+  UsbPort::close();
   libusb_exit(usb_->context);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fmt/core.h>
 #include <fstream>
 
@@ -97,9 +98,9 @@ class Runner {
  private:
   static void write_motion(const std::filesystem::path& file, const Trajectory& motion) {
     std::string text = "t_s,x_m,y_m,z_m\n";
-    for (int i = 0; i <= static_cast<int>(1e3 * motion.duration() + 0.5); ++i) {
-      const Vec3 p = motion.at(1e-3 * i);
-      text += fmt::format("{},{},{},{}\n", 1e-3 * i, p[0], p[1], p[2]);
+    for (long i = 0; i <= std::lround(1e3 * motion.duration()); ++i) {
+      const Vec3 p = motion.at(1e-3 * static_cast<double>(i));
+      text += fmt::format("{},{},{},{}\n", 1e-3 * static_cast<double>(i), p[0], p[1], p[2]);
     }
     write_csv(file, text);
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sim_server/mesh/bounding_box.h"
 
@@ -24,9 +23,7 @@ constexpr double kFarthestDrag = 3.0, kFarthestBend = 0.5;
 // Contact linearisations a step may use, on its path and to settle with other tools, before it answers from
 // where it got to.
 constexpr int kMaxIterations = 400, kMaxSettling = 400;
-constexpr double kFarthest = 1e3;   // m
-constexpr double kMaxPlaces = 64;   // on the axis of a tool that appears: whether they are inside
-constexpr double kNearPivot = 0.1;  // share of the shaft next to the pivot that hardly moves with the tip
+constexpr double kFarthest = 1e3;  // m
 
 /// How much of the tool's axis can be near the organ, m.
 double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
@@ -210,16 +207,6 @@ void ToolContact::set_force(const ContactForce& contact, int iterations, ToolTis
   if (!now_.force.flagged) remember_side(tissue);
 }
 
-void ToolContact::remember_side(const ToolTissue& tissue) noexcept {
-  now_.side = -1;
-  double most = 0;
-  for (const NodalLoad& load : tissue.loads()) {
-    if (load.force.squaredNorm() <= most) continue;
-    most = load.force.squaredNorm();
-    now_.side = load.vertex;
-  }
-}
-
 void ToolContact::differentiate(ToolTissue tissue) noexcept {
   if (now_.force.contacts == 0) return;
   now_.force.tangent = holds() ? now_.grasp_tangent : solver_.tangent(patch_);
@@ -295,58 +282,6 @@ void ToolContact::lift() noexcept {
   now_.force = {};
   predictor_.changes.clear();
   if (grip_) grip_->open();
-}
-
-/// Whether a tool in contact has left the free organ so far behind that it only drags the surface along with
-/// it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
-bool ToolContact::escaped(const ToolPose& pose, const ToolTissue& tissue) const noexcept {
-  if (now_.force.contacts == 0) return false;
-  const Vec3 &p = pose.p_W, far = far_end(tool_, pose);
-  const double distance = tool_.is_sphere() ? (finder_.nearest(tissue.free(), p) - p).norm()
-                                            : finder_.nearest(tissue.free(), p, far).distance;
-  return distance > farthest_drag_ && !finder_.inside(tissue.free(), p);
-}
-
-/// The tool appears at `pose`. If part of its axis is inside the organ, it is taken to have come in where it
-/// last touched the surface, or else through the surface nearest to the deepest place of the axis, as it is
-/// turned now, but for what is held.
-void ToolContact::place_outside(const ToolPose& pose, ToolTissue tissue) {
-  release(tissue);
-  now_.placed = true;
-  now_.place = pose;
-  const Vec3 axis = far_end(tool_, pose) - pose.p_W;
-  const double pieces = std::min(std::ceil(axis.norm() / tool_.radius), kMaxPlaces);
-  const bool touched = now_.side >= 0;
-  double chosen = touched ? std::numeric_limits<double>::max() : -1;  // m
-  for (double i = 0; i <= pieces; ++i) {
-    const double share = pieces > 0 ? i / pieces : 0;
-    const Vec3 x = pose.p_W + share * axis;
-    if ((tool_.trocar && 1 - share < kNearPivot) || !finder_.inside(tissue.positions(), x)) continue;
-    const Vec3 entry = touched ? tissue.positions()[now_.side] : finder_.entry(tissue.positions(), x);
-    const double distance = (entry - x).norm();
-    if (touched ? distance >= chosen : distance <= chosen) continue;
-    chosen = distance;
-    now_.place.p_W = place_at_entry(pose, x, share, entry);
-  }
-}
-
-/// Whether the tissue has closed over a tool that touched it, as after a change of shape beyond what its
-/// compliance foretold. Then the tool stands before the surface again, without a load, and has not arrived.
-bool ToolContact::recover_from_inside(ToolTissue tissue) {
-  const ToolPose there = now_.place;
-  if (!finder_.inside(tissue.positions(), there.p_W + now_.tip_offset)) return false;
-  place_outside(there, tissue);
-  return now_.place.p_W != there.p_W;
-}
-
-/// Where the tip was when the place `inside` on the axis, at that share of it, stood before `entry`.
-Vec3 ToolContact::place_at_entry(const ToolPose& pose, const Vec3& inside, double share,
-                                 const Vec3& entry) const noexcept {
-  const Vec3 outward = (entry - inside).normalized();
-  const Vec3 outside = entry + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
-  if (tool_.trocar && share > 0)
-    return tool_.trocar->pivot_W + (outside - tool_.trocar->pivot_W) / (1 - share);
-  return outside + (pose.p_W - inside);
 }
 
 void ToolContact::start_increment(bool first, const ToolTissue& tissue) {

@@ -124,6 +124,9 @@ class ToolContact {
   void release(ToolTissue tissue);
   void set_force(const ContactForce& contact, int iterations, ToolTissue tissue);
 
+  /// Share of the shaft next to the pivot that hardly moves with the tip.
+  static constexpr double kNearPivot = 0.1;
+
   Tool tool_;
   ContactFinder finder_;
   ContactSolver solver_;

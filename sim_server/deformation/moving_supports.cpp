@@ -22,7 +22,7 @@ constexpr double kWild = 1e4;      // of the static answer: farther swings nothi
 SparseMatrix whole_stiffness(const Solid& solid) {
   StiffnessMatrix stiffness = solid.stiffness_matrix(FreeDofs(solid.nodes(), {}));
   solid.add_stiffness(solid.rest(), stiffness);
-  return std::move(stiffness.lower());
+  return stiffness.lower();
 }
 
 /// -K_fd e over the unknowns, N/m.

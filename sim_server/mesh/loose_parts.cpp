@@ -56,7 +56,7 @@ LoosePart::Hold hold_of(const std::vector<Vec3>& places, bool& holds) {
 struct Joint {
   std::array<int, 2> parts;
   int vertex;
-  auto operator<=>(const Joint&) const = default;
+  auto operator<=>(const Joint&) const = default;  // NOLINT(modernize-use-nullptr): it is none
 };
 
 /// All of them, in order. Where many parts meet in a vertex, only those of neighbouring numbers.

@@ -1,0 +1,77 @@
+// Tools that are inside the tissue, or have left it behind: parts of ToolContact.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim_server/contact/tool_contact.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kMaxPlaces = 64;  // on the axis of a tool that appears: whether they are inside
+
+}  // namespace
+
+/// Whether a tool in contact has left the free organ so far behind that it only drags the surface along with
+/// it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
+bool ToolContact::escaped(const ToolPose& pose, const ToolTissue& tissue) const noexcept {
+  if (now_.force.contacts == 0) return false;
+  const Vec3 &p = pose.p_W, far = far_end(tool_, pose);
+  const double distance = tool_.is_sphere() ? (finder_.nearest(tissue.free(), p) - p).norm()
+                                            : finder_.nearest(tissue.free(), p, far).distance;
+  return distance > farthest_drag_ && !finder_.inside(tissue.free(), p);
+}
+
+/// The tool appears at `pose`. If part of its axis is inside the organ, it is taken to have come in where it
+/// last touched the surface, or else through the surface nearest to the deepest place of the axis, as it is
+/// turned now, but for what is held.
+void ToolContact::place_outside(const ToolPose& pose, ToolTissue tissue) {
+  release(tissue);
+  now_.placed = true;
+  now_.place = pose;
+  const Vec3 axis = far_end(tool_, pose) - pose.p_W;
+  const double pieces = std::min(std::ceil(axis.norm() / tool_.radius), kMaxPlaces);
+  const bool touched = now_.side >= 0;
+  double chosen = touched ? std::numeric_limits<double>::max() : -1;  // m
+  for (double i = 0; i <= pieces; ++i) {
+    const double share = pieces > 0 ? i / pieces : 0;
+    const Vec3 x = pose.p_W + share * axis;
+    if ((tool_.trocar && 1 - share < kNearPivot) || !finder_.inside(tissue.positions(), x)) continue;
+    const Vec3 entry = touched ? tissue.positions()[now_.side] : finder_.entry(tissue.positions(), x);
+    const double distance = (entry - x).norm();
+    if (touched ? distance >= chosen : distance <= chosen) continue;
+    chosen = distance;
+    now_.place.p_W = place_at_entry(pose, x, share, entry);
+  }
+}
+
+/// Whether the tissue has closed over a tool that touched it, as after a change of shape beyond what its
+/// compliance foretold. Then the tool stands before the surface again, without a load, and has not arrived.
+bool ToolContact::recover_from_inside(ToolTissue tissue) {
+  const ToolPose there = now_.place;
+  if (!finder_.inside(tissue.positions(), there.p_W + now_.tip_offset)) return false;
+  place_outside(there, tissue);
+  return now_.place.p_W != there.p_W;
+}
+
+/// Where the tip was when the place `inside` on the axis, at that share of it, stood before `entry`.
+Vec3 ToolContact::place_at_entry(const ToolPose& pose, const Vec3& inside, double share,
+                                 const Vec3& entry) const noexcept {
+  const Vec3 outward = (entry - inside).normalized();
+  const Vec3 outside = entry + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
+  if (tool_.trocar && share > 0)
+    return tool_.trocar->pivot_W + (outside - tool_.trocar->pivot_W) / (1 - share);
+  return outside + (pose.p_W - inside);
+}
+
+void ToolContact::remember_side(const ToolTissue& tissue) noexcept {
+  now_.side = -1;
+  double most = 0;
+  for (const NodalLoad& load : tissue.loads()) {
+    if (load.force.squaredNorm() <= most) continue;
+    most = load.force.squaredNorm();
+    now_.side = load.vertex;
+  }
+}
+
+}  // namespace palpate::sim

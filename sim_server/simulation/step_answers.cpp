@@ -1,0 +1,97 @@
+// What a step tells of a tool beyond its force, where somebody asks: parts of Simulation.
+#include <algorithm>
+
+#include "sim_server/simulation/simulation.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kNearby = 2;            // of the tool radius: how far off a surface is told
+constexpr double kTouch = 0.04;          // of the tool radius: how deep to ask how stiff it is
+constexpr double kFarthestAhead = 2e-3;  // m; without a bound, fast tools fare worse
+
+}  // namespace
+
+/// How the tools move the surface under each other, if any of them is to be told.
+void Simulation::couple(std::span<const ToolInput> inputs) {
+  coupled_ = coupling_ && std::ranges::any_of(inputs, [](const ToolInput& input) {
+               return input.pose && (input.wants.here || input.wants.ahead);
+             });
+  if (!coupled_) return;
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    tools_[i].differentiate(tissue_.met_by(i));
+    velocities_[i] = inputs[i].pose ? inputs[i].v_W : Vec3::Zero();
+  }
+  coupling_->update(tissue_, tools_, velocities_);
+}
+
+/// At `there`, with the places of the other tools held, not their loads: they give way, and the surface comes
+/// along. The tangent is symmetric, as on the wire.
+Linearised Simulation::linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there,
+                                         const ToolForce* felt) {
+  if (!coupled_) return linearise(tool, there, felt);
+  const Mat3& relative = coupling_->relative_motion(tool);
+  Linearised l = linearise(tool, p_W + relative * (there - p_W), felt);
+  const Mat3 k = l.tangent * relative;
+  l.tangent = 0.5 * (k + k.transpose());
+  return l;
+}
+
+/// What was asked of this tool beyond its force.
+void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
+  ToolAnswer& answer = answers_[tool];
+  if (!input.pose || answer.flagged) return;
+  const Vec3& p_W = input.pose->p_W;
+  const ToolWants& wants = input.wants;
+  if (wants.here || wants.ahead) {
+    answer.surface_v_W =
+        tools_[tool].surface_velocity(p_W, tissue_, tissue_.velocities, tissue_.loads_of(tool));
+    if (coupled_ && coupling_->moved_by_others(tool)) answer.others = coupling_->others(tool);
+  }
+  if (wants.here) answer.here = linearise_coupled(tool, p_W, p_W, &answer);
+  // Where contact is solved several times a step, the tool would be there within one of them: a jump that
+  // tissue with inertia answers otherwise than the motion that is expected. Then the tangent must do.
+  if (wants.ahead && instants_ == 1) {
+    const Vec3 v_W = answer.others ? Vec3(answer.surface_v_W + answer.others->v_W) : answer.surface_v_W;
+    const Vec3 motion = wants.ahead->seconds * (wants.ahead->v_W - v_W);  // on the organ as it stands
+    Vec3 there = p_W + std::min(1.0, kFarthestAhead / motion.norm()) * motion;
+    if (!there.allFinite()) there = p_W;
+    answer.ahead = {there, linearise_coupled(tool, p_W, there, nullptr)};
+  }
+  if (!wants.surface_shift || tools_[tool].holds()) return;  // what is grasped is no matter of contact
+  answer.surface_shift_W = surface_shift(tool, p_W);
+  if (told_modes() == nullptr) return;
+  tissue_.model->modal_state(modes_.q, modes_.v);
+  answer.modes = &modes_;
+}
+
+Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) {
+  ToolContact& contact = tools_[tool];
+  if (!contact.placed()) return {};
+  const ToolTissue tissue = tissue_.met_by(tool);
+  const ToolForce there = felt != nullptr ? *felt : contact.probe(p_W, tissue);
+  if (there.contacts > 0) {
+    const double size = there.force.norm();
+    return {there.force, there.tangent, {size > 0 ? Vec3(there.force / size) : Vec3(Vec3::Zero()), 0}};
+  }
+  Linearised linearised{.plane = contact.nearest(p_W, tissue_)};
+  if (linearised.plane.gap > kNearby * contact.radius()) return {};
+  // A little beyond the first touch, so that it is known how stiff the surface is.
+  const double beyond = linearised.plane.gap + kTouch * contact.radius();
+  linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue).tangent;
+  return linearised;
+}
+
+std::optional<double> Simulation::gap(std::size_t tool) const noexcept {
+  if (!tools_[tool].placed() || tools_[tool].touchable().empty()) return {};
+  return tools_[tool].nearest(tools_[tool].place(), tissue_).gap;
+}
+
+Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) {
+  const ToolTissue tissue = tissue_.met_by(tool);
+  const int vertex = tools_[tool].nearest_vertex(p_W, tissue_);
+  if (told_modes() == nullptr) return tissue.free()[vertex] - rest_[vertex];
+  return tissue_.carried.empty() ? Vec3(Vec3::Zero()) : Vec3(tissue_.carried[vertex] - rest_[vertex]);
+}
+
+}  // namespace palpate::sim
