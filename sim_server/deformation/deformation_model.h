@@ -58,6 +58,10 @@ class DeformationModel {
   /// Into how many steps of equal length a step of the scene is cut, with contact solved at the end of each.
   virtual int instants() const noexcept { return 1; }
 
+  /// Whether a force belongs to where it begins to lead the surface, not to the end of the step that it is
+  /// held for. Then contact is solved with the tool one such step ahead of the force that is felt.
+  virtual bool force_leads() const noexcept { return false; }
+
   /// Where would you go freely in `dt` (s), without any contact?
   virtual FreeMotion free_motion(double dt) = 0;
 

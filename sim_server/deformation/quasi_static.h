@@ -24,7 +24,8 @@ class QuasiStatic : public DeformationModel {
   std::vector<MemoryPart> memory() const override;
 
  private:
-  /// The last two answers: a tool that looks ahead goes back to where it was with the loads that it had there.
+  /// The last two answers: a tool that looks ahead goes back to where it was with the loads that it had
+  /// there.
   struct Answer {
     std::vector<NodalLoad> loads;
     std::vector<Vec3> positions;

@@ -27,7 +27,7 @@ double Reduced::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
 /// where that would be too many, one. In between contact chatters: what a held force leaves swinging, the
 /// next one has to answer.
 int Reduced::usual_instants(double period, double w) {
-  constexpr double kApart = 2.5e-3, kShort = 1, kMost = 100, kRounding = 1e-9;  // s; of 1 / w; both numbers
+  constexpr double kApart = 1.25e-3, kShort = 1, kMost = 100, kRounding = 1e-9;  // s; of 1 / w; both numbers
   const double wanted = std::ceil(period / std::min(kApart, kShort / w) - kRounding);
   return wanted <= kMost ? static_cast<int>(wanted) : 1;
 }

@@ -62,7 +62,7 @@ class Reduced : public DeformationModel {
   SurfaceCompliance compliance_;
   std::optional<MovingSupports> supports_;  // where some move
   std::vector<ModeStep> steps_;             // (modes)
-  std::optional<SlowModes> modes_;      // always there
+  std::optional<SlowModes> modes_;          // always there
   std::string modes_note_;
   Eigen::VectorXd beyond_residual_;     // (modes) m^2 kg/N: what of `compliance_` is theirs
   Eigen::VectorXd q_, v_, p_, q_free_;  // (modes) m sqrt(kg), m sqrt(kg)/s, N/sqrt(kg)

@@ -187,7 +187,7 @@ Mat3 TensorMass::later_compliance(std::span<const NodalLoad> loads, double secon
 
 void TensorMass::modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept {
   told_->begin(begin_.u, begin_.v, begin_.f, 0.5 * sub_step_);
-  told_->advance(sub_steps_ * sub_step_, loads_, q, v);
+  told_->advance(force_leads() ? 0 : sub_steps_ * sub_step_, loads_, q, v);  // as the force that is felt
 }
 
 void TensorMass::residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {

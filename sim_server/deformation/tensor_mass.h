@@ -28,6 +28,7 @@ class TensorMass : public DeformationModel {
   /// Any `dt` > 0 is taken for one period: callers step at the scene's rate, though their times may jitter
   /// about it. The loads of the last `apply` are those of the period that ends; the next runs free of any.
   int instants() const noexcept override { return instants_; }
+  bool force_leads() const noexcept override { return sub_steps_ == 1; }
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   const ComplianceSource* compliance_source() const noexcept override { return &compliance_; }

@@ -20,10 +20,11 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kNear = 2;          // of the tool radius: where the surface is looked at for motion
-constexpr double kStill = 1e-8;      // of the tool radius: a surface that moved less did not move
-constexpr double kUnsettled = 1e-3;  // of the tool radius: by how much others push the surface, as one turn
-constexpr double kRunAway = 3;       // of the organ's size: farther from rest no tissue goes
+constexpr double kNear = 2;           // of the tool radius: where the surface is looked at for motion
+constexpr double kLongestLead = 0.5;  // of the tool radius: how far ahead of itself a tool is believed to be
+constexpr double kStill = 1e-8;       // of the tool radius: a surface that moved less did not move
+constexpr double kUnsettled = 1e-3;   // of the tool radius: by how much others push the surface, as one turn
+constexpr double kRunAway = 3;        // of the organ's size: farther from rest no tissue goes
 constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
 
 /// The surface vertices that are these vertices of the mesh; both ascending.
@@ -179,6 +180,17 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
   for (std::size_t i = 0; i < tools_.size(); ++i) add_wanted(i, inputs[i]);
 }
 
+/// Where contact is solved at an instant of a step, `dt` (s) after the one before: where the tool is then,
+/// or, where the model's force leads, will be at the next.
+PathPoint Simulation::contact_point(std::size_t tool, const ToolInput& input, int instant, double dt) const {
+  if (!tissue_.model->force_leads()) return at_instant(tool, input, instant);
+  if (instant < instants_) return at_instant(tool, input, instant + 1);
+  PathPoint point = at_instant(tool, input, instant);
+  const Vec3 motion = dt * input.v_W;
+  if (motion.norm() <= kLongestLead * tools_[tool].radius()) point.pose.p_W += motion;
+  return point;
+}
+
 /// Where a tool is at an instant of a step, from 1 to the last.
 PathPoint Simulation::at_instant(std::size_t tool, const ToolInput& input, int instant) const {
   const bool told = input.path.size() + 1 == static_cast<std::size_t>(instants_);
@@ -199,7 +211,7 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
   }
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!inputs[i].pose) continue;
-    const PathPoint point = at_instant(i, inputs[i], instant);
+    const PathPoint point = contact_point(i, inputs[i], instant, dt);
     tools_[i].advance_to(point.pose, point.bend, tissue_.met_by(i));
   }
   tools_settled_ = true;

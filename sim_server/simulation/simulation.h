@@ -45,8 +45,8 @@ struct PathPoint {
 struct ToolInput {
   std::optional<ToolPose> pose = {};  ///< where its tip is now; none: it is lifted
   std::uint16_t buttons = 0;          ///< of its device, pressed now: some tools grasp by them
-  Vec3 v_W = Vec3::Zero();            ///< of its tip, m/s: how fast it pushes the organ under other tools
-  Bend bend = {};  ///< how it came there from the last point of its path; only friction asks for it
+  Vec3 v_W = Vec3::Zero();  ///< of its tip, m/s: how fast it goes on, and pushes the organ under others
+  Bend bend = {};           ///< how it came there from the last point of its path; only friction asks for it
   /// Where it was at the instants within the step before `pose` (`Simulation::instants` - 1), evenly in time.
   /// Of another length, as empty where there are some: it went straight and evenly from its pose of the step
   /// before.
@@ -145,6 +145,7 @@ class Simulation {
  private:
   void advance(std::span<const ToolInput> inputs, double dt);
   PathPoint at_instant(std::size_t tool, const ToolInput& input, int instant) const;
+  PathPoint contact_point(std::size_t tool, const ToolInput& input, int instant, double dt) const;
   void advance_to_instant(std::span<const ToolInput> inputs, int instant, double dt);
   void count_flagged() noexcept;
   void hold_answers(std::span<const ToolInput> inputs) noexcept;

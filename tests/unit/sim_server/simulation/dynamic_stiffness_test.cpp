@@ -1,0 +1,119 @@
+// A grasped vertex that is shaken, at 30 Hz, against its dynamic stiffness K - w^2 m + i w C.
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+#include "sim_server/deformation/contact_instants.h"
+#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/elasticity/solid.h"
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/solids.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kTau = 2 * std::numbers::pi, kAmplitude = 1e-4, kPeriod = 1.0 / 30;  // m, s
+
+/// A block of which one vertex is free, held by a tool that moves it along an eigenvector of what holds it.
+struct HeldVertex {
+  TetMesh mesh = grid_block({-0.01, 0, 0.01}, {-0.01, 0}, {-0.01, 0, 0.01});
+  Scene scene = scene_of({.young_modulus = 5e3, .poisson_ratio = 0.3, .density = 1000},
+                         {Vec3(-1, -1, -1), Vec3(1, -0.005, 1)}, 0.005);
+  double stiffness = 0, mass = 0, frequency = 0;  // N/m, kg, rad/s
+  Vec3 direction;
+
+  HeldVertex() {
+    for (const double side : {-1.0, 1.0}) {
+      scene.fixed.push_back({{Box{Vec3(side - 0.995, -1, -1), Vec3(side + 0.995, 1, 1)}, "", "test"}});
+      scene.fixed.push_back({{Box{Vec3(-1, -1, side - 0.995), Vec3(1, 1, side + 0.995)}, "", "test"}});
+    }
+    int vertex = 0;
+    while (mesh.vertices[vertex].norm() > 1e-9) ++vertex;
+    const Solid solid(mesh, *scene.material);
+    Mat3 k;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<Vec3> x = solid.rest(), f(x.size());
+      x[vertex] += Vec3::Unit(axis);
+      solid.forces(x, f);
+      k.col(axis) = f[vertex];
+    }
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(k);
+    direction = eigen.eigenvectors().col(0);
+    stiffness = eigen.eigenvalues()[0];
+    mass = solid.masses()[vertex];
+    frequency = std::sqrt(stiffness / mass);
+    scene.rate_hz = 1 / kPeriod;
+    scene.tools[0].grasp_place = Vec3::Zero();
+    scene.deformation.model = "tensor_mass";
+    scene.deformation.of<RayleighDamping>().mass = 0.2 * frequency;
+    scene.deformation.of<RayleighDamping>().stiffness = 0.3 / frequency;
+    scene.deformation.of<ContactInstants>().instants =
+        60;  // of one sub-step each, much shorter than 1 / frequency
+  }
+
+  Complex exact(double w) const {
+    return stiffness - w * w * mass + Complex(0, w) * (0.2 * frequency * mass + 0.3 / frequency * stiffness);
+  }
+
+  /// Force per displacement of the steady oscillation, by least squares over the last second of two.
+  Complex measured(double w) const {
+    Simulation simulation(scene, mesh);
+    const int instants = simulation.instants();
+    const auto place = [&](double t) { return Vec3(kAmplitude * std::sin(w * t) * direction); };
+    std::vector<ToolInput> input(1);
+    std::vector<PathPoint> path(static_cast<std::size_t>(instants - 1));
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    for (int step = 1; step <= 60; ++step) {
+      const double t = step * kPeriod;
+      for (int k = 1; k < instants; ++k)
+        path[static_cast<std::size_t>(k) - 1] = {place(t - kPeriod + k * kPeriod / instants)};
+      input[0].pose = place(t);
+      // By how much it goes on in the next instant. With its velocity at this one, half of the vertex's own
+      // inertia would be missing: that is what the force owes to the path bending.
+      input[0].v_W = (place(t + kPeriod / instants) - place(t)) * instants / kPeriod;
+      input[0].path = path;
+      const double force = -simulation.step(input, kPeriod).front().force.dot(direction);
+      if (step <= 30) continue;
+      const Eigen::Vector2d parts(std::sin(w * t), std::cos(w * t));
+      normal += parts * parts.transpose();
+      right += force * parts;
+    }
+    const Eigen::Vector2d fit = normal.inverse() * right / kAmplitude;
+    return {fit[0], fit[1]};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("dynamic stiffness: a grasped vertex answers in size and phase as its mass, damping and springs") {
+  const HeldVertex vertex;
+  for (const double hertz : {2.0, 20.0 / 3, 8.0, 13.0}) {
+    CAPTURE(hertz);
+    const Complex error = vertex.measured(kTau * hertz) / vertex.exact(kTau * hertz);
+    CHECK(std::abs(error) == Approx(1).margin(0.01));
+    CHECK(std::arg(error) * 360 / kTau == Approx(0).margin(0.3));
+  }
+}
+
+TEST_CASE("dynamic stiffness: a tool is not believed to be far ahead of itself, whatever its velocity") {
+  const HeldVertex vertex;
+  Simulation simulation(vertex.scene, vertex.mesh);
+  std::vector<ToolInput> input(1);
+  for (const double wild : {1e300, std::numeric_limits<double>::quiet_NaN(), 10.0}) {
+    input[0].pose = Vec3(Vec3::Zero());
+    input[0].v_W = Vec3(wild, 0, 0);
+    const ToolForce force = simulation.step(input, kPeriod).front();
+    CHECK_FALSE(force.flagged);
+    CHECK(force.force.norm() == Approx(0).margin(1e-12));
+  }
+}
