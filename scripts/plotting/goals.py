@@ -52,7 +52,8 @@ WORLDS = ("block", "stiff", "friction", "moving", "grasp", "liver", "liver_tenso
 
 
 SWINGING = (("liver_tensor_mass", (1, 4, 10), (2, 6, 15)), ("liver_reduced", (1, 4, 10), (2, 6, 15)),
-            ("liver_implicit", (2, 6, 15), (4, 10, 25)))  # at 35 ms, at 80 ms
+            ("liver_implicit", (2, 6, 15), (4, 10, 25)), ("implicit_linear", (1, 4, 10), (2, 6, 15)),
+            ("implicit_neo_hookean", (2, 6, 15), (4, 10, 25)), ("implicit_prony", (1, 4, 10), (2, 6, 15)))  # 35 ms, 80 ms
 
 
 def in_world(name):
@@ -90,6 +91,8 @@ EXTRAPOLATION = (
     *(Goal(f"{world}, presses, {delay} ms", CHOOSES, "mean / p99 / max %",
            {**in_world(world), "motion": "presses", "speed_m_s": 0.025, "delay_ms": delay}, ERRORS, most)
       for world, *goals in SWINGING for delay, most in zip((35, 80), goals)),
+    *(Goal(f"moving, {delay} ms", CHOOSES, "mean / p99 / max %", {**in_world("moving"), "delay_ms": delay}, ERRORS, most)
+      for delay, most in ((35, (0.1, 0.5, 2)), (80, (0.2, 1, 4)))),
     *blended(SOLVES), *blended(TWO),
     Goal("closed path, 0.02 m/s, 35 ms", TWO, "energy created, %", LOOP, ENERGY, (1,)),
     Goal("closed path, 0.02 m/s, 35 ms", SOLVES, "energy created, %", LOOP, ENERGY, (0.1,)),

@@ -23,6 +23,8 @@ each, from the fixed seeds of scripts/trajectories; the mean speed is a study's 
   liver_tensor_mass, liver_reduced, liver_implicit   tissue that swings, on the mesh of
             1999, palpated for 20 s, and pressed 2 to 3 times a second on a slide, for 17
             s (make_presses judge: of no use to choose any number of the program)
+  implicit_linear, implicit_neo_hookean, implicit_prony   liver_implicit with another law,
+            or half of a linear one relaxing in 0.2 s; pressed alone
   pull_quasi_static, pull_tensor_mass   the paper's own experiment (paper_experiment.py)
 
 Writes into --out: summary.json and summary.csv (a row for each configuration and law),
@@ -47,7 +49,13 @@ ROOT = Path(__file__).resolve().parents[2]
 BIN = ROOT / "build" / "release" / "bin"
 SCENES = ROOT / "configs" / "scenes"
 SWINGING = ("liver_tensor_mass", "liver_reduced", "liver_implicit")
-OWN_SCENES = ("block", "grasp", "liver", *SWINGING)  # the others are variants of the block
+OWN_SCENES = ("block", "grasp", "liver", *SWINGING)  # the others are variants of the block, or of liver_implicit
+LAW = 'law = "corotational"'
+VARIANTS = {  # of liver_implicit: what stands instead of its law
+    "implicit_linear": 'law = "linear"',
+    "implicit_neo_hookean": 'law = "neo_hookean"',
+    "implicit_prony": 'law = "linear"\nrelaxation = [{ share = 0.5, time = 0.2 }]',
+}
 MAKE_MOTIONS = ROOT / "scripts" / "trajectories" / "make_block_motions"
 MAKE_PRESSES = ROOT / "scripts" / "trajectories" / "make_presses"
 
@@ -92,9 +100,15 @@ class Cell(NamedTuple):
     line: bool         # whether also by the paper's protocol, against the line between samples
     wrong: bool = False  # whether also with a wrong compliance
 
-    @property
-    def scene(self):
-        return SCENES / f"{self.world if self.world in OWN_SCENES else 'block_' + self.world}.toml"
+    def scene(self, folder):
+        """Its file; one of VARIANTS is written into `folder`."""
+        if self.world not in VARIANTS:
+            return SCENES / f"{self.world if self.world in OWN_SCENES else 'block_' + self.world}.toml"
+        text = (SCENES / "liver_implicit.toml").read_text(encoding="utf-8")
+        assert text.count(LAW) == 1
+        file = folder / f"{self.world}.toml"
+        file.write_text(text.replace(LAW, VARIANTS[self.world]).replace('"../', f'"{SCENES.parent}/'), encoding="utf-8")
+        return file
 
 
 def cells_of(quick, motions):
@@ -122,6 +136,7 @@ def cells_of(quick, motions):
     for world in SWINGING:
         cells.append(Cell(world, "palpation", SPEED, ROOT / "configs" / "clients" / "liver_paper.toml",
                           QUICK_SECONDS if quick else 20, tuple((RATE, delay) for delay in delays), False))
+    for world in (*SWINGING, *(VARIANTS if not quick else ())):
         cells.append(Cell(world, "presses", PRESS_SPEED, motions["presses"], QUICK_SECONDS if quick else PRESS_SECONDS,
                           tuple((RATE, delay) for delay in delays), False))
     return cells
@@ -142,7 +157,7 @@ class Study:
         self.folder, self.workers = folder, workers
 
     def record(self, weight, cell, rate, out, *more):
-        self.workers.command(weight, BIN / "sim_server", "record", cell.scene, "--trajectory", cell.trajectory,
+        self.workers.command(weight, BIN / "sim_server", "record", cell.scene(self.folder), "--trajectory", cell.trajectory,
                              "--rate", rate, "--seconds", cell.seconds, "--out", out, *more)
 
     def evaluate(self, weight, cell, captures, folder, *more):
@@ -238,17 +253,20 @@ def write_summary(rows, out):
         writer.writerows(rows)
 
 
-def run(quick, out):
+def run(quick, out, worlds):
     with tempfile.TemporaryDirectory(dir=out, prefix="captures.") as name:
         folder = Path(name)
         motions = make_motions(folder, (SPEED,) if quick else (*SPEEDS, LOOP_SPEED))
-        cells = cells_of(quick, motions)
+        cells = [cell for cell in cells_of(quick, motions) if not worlds or cell.world in worlds]
+        if not cells:
+            raise Failed(f"--world {', '.join(worlds)}: no such world; they are "
+                         f"{', '.join(dict.fromkeys(cell.world for cell in cells_of(quick, motions)))}")
         drawn = Cell("block", FIGURES_MOTION, SPEED, motions[SPEED] / f"block_{FIGURES_MOTION}.csv", FIGURES_SECONDS,
                      FIGURES, False)
         workers = Workers("study", 0)
         study = Study(folder, workers)
-        paper, pulls = paper_experiment.runs_of(quick), paper_experiment.make_motions(folder, quick)
-        workers.total = (sum(map(weight_of, cells)) + weight_of(drawn)
+        paper, pulls = [] if worlds else paper_experiment.runs_of(quick), paper_experiment.make_motions(folder, quick)
+        workers.total = (sum(map(weight_of, cells)) + (0 if worlds else weight_of(drawn))
                          + sum(paper_experiment.weight_of(run, quick) for run in paper))
         # The longest first, so that no worker is left alone with one at the end.
         order = sorted(range(len(cells)), key=lambda i: -weight_of(cells[i]))
@@ -256,7 +274,8 @@ def run(quick, out):
         rows = [row for i in range(len(cells)) for row in rows_of[i]]
         for found in workers.run(lambda one: run_paper(study, one, pulls, quick), paper):
             rows += found
-        study.figures(drawn, list(dict.fromkeys(row["method"] for row in rows)), out)
+        if not worlds:
+            study.figures(drawn, list(dict.fromkeys(row["method"] for row in rows)), out)
         workers.finish()
     write_summary(rows, out)
 
@@ -265,11 +284,13 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="an existing folder")
+    parser.add_argument("--world", action="append", metavar="NAME",
+                        help="only the captures of this world, without pictures and the paper's table; repeatable")
     parser.add_argument("--quick", action="store_true",
                         help="one speed, one rate, two delays, 6 s: whether all of it runs")
     arguments = parser.parse_args()
     try:
-        run(arguments.quick, arguments.out)
+        run(arguments.quick, arguments.out, arguments.world or [])
     except (Failed, OSError) as problem:
         print(f"study: {problem}", file=sys.stderr)
         return 1

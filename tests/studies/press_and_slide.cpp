@@ -3,6 +3,9 @@
 #include <numbers>
 
 #include "haptic_client/evaluation/told_compliance.h"
+#include "sim_server/deformation/contact_instants.h"
+#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/random.h"
 
@@ -13,8 +16,10 @@ namespace {
 
 constexpr double kRadius = 0.006, kHalfLength = 0.030, kHeight = 0.024, kHalfWidth = 0.020;   // m
 constexpr double kFine = 0.002, kFineLength = 0.014, kFineWidth = 0.008, kFineDepth = 0.006;  // m, edges
-constexpr double kSoft = 50e3;                    // Pa, that of the first block built
-constexpr double kSlide = 0.006, kSlideHz = 0.4;  // m, Hz
+constexpr double kSoft = 50e3;                       // Pa, that of the first block built
+constexpr double kHeavy = 30 * 1060, kDamping = 10;  // kg/m3, 1/s: of tissue that swings
+constexpr double kServedHz = 30;                     // of tissue that swings
+constexpr double kSlide = 0.006, kSlideHz = 0.4;     // m, Hz
 constexpr double kFree = 0.5, kApproach = 0.5, kBegin = 1.2, kWatch = 2.0, kEnd = 5.0;  // s
 constexpr double kWindow = 0.1;              // s to either side: what moves slower than that is meant
 constexpr double kTimes = 3, kMore = 30e-6;  // of the direct motion; m
@@ -28,11 +33,17 @@ std::vector<double> depths() {
   return depths;
 }
 
-sim::Scene scene_of(double young_modulus) {
+sim::Scene scene_of(double young_modulus, bool swings, double rate_hz) {
   sim::Scene scene;
   scene.source = "study";
   scene.material = sim::Material{.young_modulus = young_modulus, .poisson_ratio = 0.45};
-  scene.deformation.model = "quasi_static";
+  scene.deformation.model = swings ? "reduced" : "quasi_static";
+  if (swings) {
+    scene.rate_hz = rate_hz;
+    scene.material->density = kHeavy;
+    scene.deformation.of<sim::ContactInstants>();  // as many as the model thinks good
+    scene.deformation.of<sim::RayleighDamping>() = {.mass = kDamping, .stiffness = 0};
+  }
   scene.fixed.push_back({{sim::Box{Vec3(-1, -1, -1), Vec3(1, -kHeight + 1e-6, 1)}, "", "study"}});
   scene.tools[0].shape.radius = kRadius;
   scene.tools[0].reach =
@@ -111,20 +122,33 @@ struct Hand {
 
 /// One stiffness: the block, and how deep 1.5 N presses into it.
 struct PressAndSlide::Block {
-  explicit Block(double stiffness, sim::Simulation& soft)
-      : depth(depth_of(soft, stiffness / kPress)),
-        simulation(scene_of(kSoft * kPress / soft.step(pressed(depth), 1e-3).force[1]), mesh()) {}
+  Block(double stiffness, sim::Simulation& soft, bool of_swinging_tissue)
+      : swings(of_swinging_tissue),
+        depth(depth_of(soft, stiffness / kPress)),
+        young_modulus(kSoft * kPress / soft.step(pressed(depth), 1e-3).force[1]) {}
+  /// At rest, without the tool. Tissue that swings is built anew: it remembers.
+  sim::Simulation& begin(double rate_hz) {
+    if (swings || !simulation) simulation.emplace(scene_of(young_modulus, swings, rate_hz), mesh());
+    simulation->lift_tool();
+    return *simulation;
+  }
   /// A server that begins afresh, and tells that `compliance`.
   test::Server server(double compliance) {
-    simulation.lift_tool();
-    auto tools = std::make_shared<sim::ServedTools>(simulation);
-    auto pager = std::make_shared<sim::SurfacePager>(simulation, 0);
-    const auto step = [tools](const protocol::ToolState& state) {
-      const std::vector<sim::SessionInput> inputs{{1, state, true}};
-      return tools->step(inputs, 0.03).front().answer;  // the tissue has no memory: any time step does
+    sim::Simulation& served = begin(kServedHz);
+    auto tools = std::make_shared<sim::ServedTools>(served);
+    auto path = std::make_shared<sim::ToolPath>();
+    auto pager = std::make_shared<sim::SurfacePager>(served, 0);
+    const auto step = [tools, path](const protocol::ToolState& state) {
+      path->add(state);
+      std::vector<sim::SessionInput> inputs{{1, state, true}};
+      inputs[0].path = *path;
+      return tools->step(inputs, 1 / kServedHz)
+          .front()
+          .answer;  // tissue at rest has no memory: any time step does
     };
-    const protocol::SurfacePages whole{pager->state().vertices, pager->state().triangles};
-    const auto pages = [pager, whole, compliance](const protocol::ToolState& state) {
+    const protocol::SurfacePages whole = pager->pages();
+    const auto pages = [pager, path, whole, compliance](const protocol::ToolState& state) {
+      path->add(state);
       std::vector<protocol::SurfacePage> found;
       if ((state.flags & protocol::ToolState::kAsksPages) == 0) return found;
       for (const std::uint32_t number : state.pages) {
@@ -136,41 +160,51 @@ struct PressAndSlide::Block {
     return {.step = step, .pages = pages};
   }
 
-  double depth;  // m
-  sim::Simulation simulation;
+  bool swings;
+  double depth, young_modulus;  // m, Pa
+  std::optional<sim::Simulation> simulation;
 };
+
+bool PressAndSlide::has(const std::string& world) {
+  return world != kSwings ||
+         std::ranges::any_of(sim::deformation_models(),
+                             [](const sim::DeformationModelRow& row) { return row.name == "reduced"; });
+}
 
 const std::vector<double>& PressAndSlide::stiffnesses() {
   static const std::vector<double> all{835, 1431, 2428, 3651, 6413};
   return all;
 }
 
-PressAndSlide::Block& PressAndSlide::block_of(double stiffness) {
-  if (blocks_.empty()) {
-    sim::Simulation soft(scene_of(kSoft), mesh());
-    for (const double each : stiffnesses()) blocks_[each] = std::make_shared<Block>(each, soft);
+PressAndSlide::Block& PressAndSlide::block_of(const Which& which) {
+  const auto& [world, stiffness] = which;
+  if (!blocks_.contains(which)) {
+    sim::Simulation soft(scene_of(kSoft, false, kServedHz), mesh());
+    for (const double each : stiffnesses())
+      blocks_[{world, each}] = std::make_shared<Block>(each, soft, world == kSwings);
   }
-  return *blocks_.at(stiffness);
+  return *blocks_.at(which);
 }
 
-double PressAndSlide::direct_motion(const Person& person, double stiffness) {
-  const auto [found, missing] = direct_.try_emplace({&person, stiffness}, 0.0);
+double PressAndSlide::direct_motion(const Person& person, const Which& which) {
+  const auto [found, missing] = direct_.try_emplace({&person, which}, 0.0);
   if (!missing) return found->second;
-  Block& block = block_of(stiffness);
+  Block& block = block_of(which);
   Hand hand(person, block.depth, 1);
-  block.simulation.lift_tool();
+  sim::Simulation& simulation = block.begin(kHapticHz);
   std::vector<Vec3> path;
   for (int tick = 0; tick < kEnd * kHapticHz; ++tick) {
     const Vec3 p = hand.encoder.read(from_seconds(1 + tick / kHapticHz)).p_D;
-    hand.encoder.write(clamped(block.simulation.step(p, 1e-3).force));
+    hand.encoder.write(clamped(simulation.step(p, 1e-3).force));
     path.push_back(hand.encoder.place());
   }
   return found->second = quick_motion(path);
 }
 
 Run PressAndSlide::run(const Cell& cell, double stiffness, int seed, bool compare) {
-  const double direct = direct_motion(*cell.person, stiffness);
-  Block& block = block_of(stiffness);
+  const Which which{cell.world, stiffness};
+  const double direct = direct_motion(*cell.person, which);
+  Block& block = block_of(which);
   Hand hand(*cell.person, block.depth, seed);
   client::Pipeline pipeline = pipeline_of(cell);
   test::ClosedLoop loop(hand.encoder, pipeline, block.server(cell.compliance), loop_of(cell.link, seed));
@@ -180,8 +214,8 @@ Run PressAndSlide::run(const Cell& cell, double stiffness, int seed, bool compar
     const Vec3 felt = loop.tick().f_D;
     path.push_back(hand.encoder.place());
     if (loop.seconds() > kSettled && thrown(path.back()[1], block.depth)) return {};
-    if (!compare || path.size() % kCompared != 0 || loop.seconds() < kWatch) continue;
-    const Vec3 right = block.simulation.linearise(0, path.back(), nullptr).force;
+    if (!compare || block.swings || path.size() % kCompared != 0 || loop.seconds() < kWatch) continue;
+    const Vec3 right = block.simulation->linearise(0, path.back(), nullptr).force;
     error2 += (felt - right).squaredNorm();
     force2 += right.squaredNorm();
   }

@@ -23,7 +23,8 @@ constexpr double kFree = 1.3, kApproach = 0.5, kWatch = 4.0, kEnd = 6.0;  // s
 constexpr double kSwing = 0.15e-3;                                        // m, beyond which, together with
 constexpr double kSpeed = 2e-3;  // m/s RMS, a loop counts as unstable
 constexpr double kSoftest = 20, kStiffest = 51200, kStep = 1.19, kPrecision = 1.05;  // N/m; ratios
-const std::string kSlides = "press_and_slide";  // a world; the others are walls
+const std::string kSlides = PressAndSlide::kRests,
+                  kSwings = PressAndSlide::kSwings;  // worlds; others are walls
 constexpr Link kUsual{30, 38};
 constexpr const char* kSolves = "local_contact";   // the law that is told a compliance,
 constexpr std::array<double, 2> kWrong{0.7, 1.3};  // also one so many times the true one
@@ -32,6 +33,10 @@ const std::vector<Person> kPersons{
     {"light", {.mass = 0.1, .device_damping = 1, .hand_stiffness = 200, .hand_damping = 5}},
     {"typical", {.mass = 0.3, .device_damping = 2, .hand_stiffness = 300, .hand_damping = 10}},
     {"heavy_loose", {.mass = 0.6, .device_damping = 1, .hand_stiffness = 100, .hand_damping = 5}}};
+
+bool is_slide(const std::string& world) {
+  return world == kSlides || world == kSwings;
+}
 
 test::Organ organ_of(const std::string& world, double stiffness) {
   return world == "linear" ? test::wall(stiffness) : test::hertz_wall(stiffness, kPress);
@@ -126,7 +131,7 @@ double threshold(const Cell& cell) {
 
 /// `slides`: of this thread.
 Json row_of(const Cell& cell, double direct, PressAndSlide& slides) {
-  const bool slide = cell.world == kSlides;
+  const bool slide = is_slide(cell.world);
   const double limit = slide ? slides.threshold(cell) : threshold(cell);
   double error = 0;
   for (int seed = 1; seed <= kSeeds && limit > 0; ++seed)
@@ -141,7 +146,7 @@ Json row_of(const Cell& cell, double direct, PressAndSlide& slides) {
           {"world", world},
           {"stable_to_n_m", limit},
           {"direct_limit_n_m", direct},
-          {"force_error_percent", 100 * error}};
+          {"force_error_percent", cell.world == kSwings ? Json(nullptr) : Json(100 * error)}};
 }
 
 std::vector<Cell> cells(bool quick) {
@@ -150,10 +155,12 @@ std::vector<Cell> cells(bool quick) {
   // The quick study has no time for all hands on elements.
   const auto slid = [quick](const Person& person) { return !quick || &person == &kPersons[1]; };
   std::vector<Cell> all;
-  for (const std::string& world : {std::string("linear"), std::string("hertz"), kSlides}) {
+  for (const std::string& world : {std::string("linear"), std::string("hertz"), kSlides, kSwings}) {
+    if (!PressAndSlide::has(world)) continue;
     for (const Person& person : kPersons) {
       for (const Link& link : links) {
-        if (world == kSlides && (link.rate_hz > 30 || !slid(person))) continue;  // no simulation is as fast
+        if (is_slide(world) && (link.rate_hz > 30 || !slid(person))) continue;  // no simulation is as fast
+        if (world == kSwings && link.rate_hz < 30) continue;                    // its steps have one length
         for (const ExtrapolatorRow& row : extrapolators()) {
           for (const bool passivity : {false, true})
             all.push_back({&person, std::string(row.name), world, passivity, link});
@@ -199,7 +206,7 @@ void study(bool quick, const std::filesystem::path& out) {
   }
   std::vector<double> limits(walls.size());
   for_all(walls.size(), "direct limits", [&](std::size_t k, PressAndSlide&) {
-    limits[k] = walls[k].world == kSlides ? PressAndSlide::stiffnesses().back() : threshold(walls[k]);
+    limits[k] = is_slide(walls[k].world) ? PressAndSlide::stiffnesses().back() : threshold(walls[k]);
   });
   const auto direct = [&](const Cell& cell) {
     const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Cell& w) {
