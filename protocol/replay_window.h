@@ -5,36 +5,93 @@
 
 namespace palpate::protocol {
 
+/// Tells a sender that has gone elsewhere with its numbers from a single number that is wild: of several in a
+/// row that are far off, each a little beyond the one before, the last begins anew (as RFC 3550, appendix
+/// A.1, does with two). One that is wild then silences nobody. Pure; a few instructions.
+class Stray {
+ public:
+  /// A number that is far off came. True: it is the fourth of a row.
+  bool is_new_beginning(std::uint64_t number) noexcept {
+    const bool goes_on = in_a_row_ > 0 && number > last_ && number - last_ <= kNear;
+    in_a_row_ = goes_on ? in_a_row_ + 1 : 1;
+    last_ = number;
+    if (in_a_row_ < kEnough) return false;
+    in_a_row_ = 0;
+    return true;
+  }
+  /// One came that is where it should be.
+  void end_row() noexcept { in_a_row_ = 0; }
+
+  static constexpr int kEnough = 4;
+  static constexpr std::uint64_t kNear = 64;
+
+ private:
+  std::uint64_t last_ = 0;
+  int in_a_row_ = 0;
+};
+
 /// Sequence numbers of one sender seen so far: the highest, and which of the 63 before it (the sliding window
 /// of RFC 4303, section 3.4.3). Pure; a few instructions.
 class ReplayWindow {
  public:
-  /// True if `sequence` (>= 1) was not seen before; counts it in `stats`. A duplicate, or a number more than
-  /// 64 behind, is refused. Sequence 0 is refused always.
+  /// True if `sequence` (>= 1) was not seen before; counts it in `stats`. A duplicate, a number more than 64
+  /// behind, or one more than `kFarthest` ahead, is refused, unless the sender goes on from there (`Stray`).
+  /// Sequence 0 is refused always.
   bool accept(std::uint64_t sequence, LinkStats& stats) noexcept {
-    if (sequence > highest_) {
-      const std::uint64_t ahead = sequence - highest_;
+    if (sequence == 0) return refuse(stats);
+    const std::uint64_t ahead = sequence > highest_ ? sequence - highest_ : 0;
+    if (ahead > kFarthest || (ahead == 0 && highest_ - sequence >= 64)) {
+      if (!stray_.is_new_beginning(sequence)) return refuse(stats);
+      highest_ = sequence;
+      seen_ = 1;
+      ++stats.received;
+      ++stats.began_anew;
+      return true;
+    }
+    if (ahead > 0) {
       seen_ = ahead >= 64 ? 0 : seen_ << ahead;
       seen_ |= 1;
       highest_ = sequence;
       stats.lost += ahead - 1;
-      ++stats.received;
-      return true;
+    } else {
+      const std::uint64_t behind = highest_ - sequence;
+      if ((seen_ >> behind & 1) != 0) return refuse(stats);
+      seen_ |= std::uint64_t{1} << behind;
+      if (stats.lost > 0) --stats.lost;  // it was counted as lost when a later one came
+      ++stats.reordered;
     }
-    const std::uint64_t behind = highest_ - sequence;
-    if (sequence == 0 || behind >= 64 || (seen_ >> behind & 1) != 0) {
-      ++stats.duplicated;
-      return false;
-    }
-    seen_ |= std::uint64_t{1} << behind;
-    --stats.lost;  // it was counted as lost when a later one came
+    stray_.end_row();
     ++stats.received;
-    ++stats.reordered;
+    return true;
+  }
+
+  static constexpr std::uint64_t kFarthest = 1 << 16;  ///< 16 s of the fastest client
+
+ private:
+  static bool refuse(LinkStats& stats) noexcept {
+    ++stats.duplicated;
+    return false;
+  }
+
+  std::uint64_t highest_ = 0, seen_ = 0;
+  Stray stray_;
+};
+
+/// Lets through values that are newer than all before, by their numbers.
+class NewestOnly {
+ public:
+  /// False of one that was overtaken, or whose number is wild (`Stray`).
+  bool accept(std::uint64_t number) noexcept {
+    const bool newer = number > newest_ && number - newest_ <= ReplayWindow::kFarthest;
+    if (!newer && !stray_.is_new_beginning(number)) return false;
+    if (newer) stray_.end_row();
+    newest_ = number;
     return true;
   }
 
  private:
-  std::uint64_t highest_ = 0, seen_ = 0;
+  std::uint64_t newest_ = 0;
+  Stray stray_;
 };
 
 }  // namespace palpate::protocol

@@ -5,21 +5,22 @@
 namespace palpate::protocol {
 
 std::optional<Hello> ClientSession::poll(Time now) noexcept {
-  const bool heard = welcomed() && last_heard_ && now - *last_heard_ < kSilence;
-  if (heard || (last_hello_ && now - *last_hello_ < kHelloPeriod)) return {};
+  if ((welcomed() && heard_lately(now)) || (last_hello_ && now - *last_hello_ < kHelloPeriod)) return {};
   last_hello_ = now;
   return Hello{.nonce = nonce_};
 }
 
 const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept {
   if (const auto* welcome = std::get_if<Welcome>(&datagram.message); welcome && welcome->nonce == nonce_) {
-    if (datagram.header.session == left_session_) return nullptr;  // late, from a server that is gone
+    // Late, from a server that is gone; unless this one has been silent since.
+    if (datagram.header.session == left_session_ && heard_lately(now)) return nullptr;
     last_heard_ = now;
     refused_.reset();
     if (datagram.header.session != session_) {  // a new server, or the first
       left_session_ = session_;
       session_ = datagram.header.session;
-      sent_ = newest_sample_ = 0;
+      sent_ = 0;
+      samples_ = {};
       window_ = {};
       welcome_ = *welcome;
     }
@@ -39,9 +40,7 @@ const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkSt
       sample && mine && sample->tool == welcome_.tool) {
     if (!window_.accept(datagram.header.sequence, stats)) return nullptr;
     last_heard_ = now;
-    if (sample->number <= newest_sample_) return nullptr;  // overtaken on the way: the newest value wins
-    newest_sample_ = sample->number;
-    return &datagram.message;
+    return samples_.accept(sample->number) ? &datagram.message : nullptr;  // the newest value wins
   }
   if (const auto* page = std::get_if<SurfacePage>(&datagram.message);
       page && mine && page->tool == welcome_.tool) {
@@ -73,13 +72,14 @@ ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Endpoint
   ++stats.received;
   auto member = std::find_if(members_.begin(), members_.end(),
                              [&](const Member& m) { return m.nonce == hello.nonce && m.endpoint == from; });
+  // Greetings alone keep no tool: only the first counts as heard.
   if (member == members_.end()) {
     const auto tool = free_tool();
     if (!tool) return {.answer = {{Header{}, Refuse{hello.nonce, RefuseReason::kNoFreeTool}}}};
-    member =
-        members_.insert(member, {.session = fresh_id, .nonce = hello.nonce, .endpoint = from, .tool = *tool});
+    member = members_.insert(
+        member,
+        {.session = fresh_id, .nonce = hello.nonce, .endpoint = from, .tool = *tool, .last_heard = now});
   }
-  member->last_heard = now;
   return {.answer = {{Header{member->session, ++member->sent},
                       Welcome{hello.nonce, member->tool, rate_hz_, radii_[member->tool]}}}};
 }
@@ -109,8 +109,7 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
   }
   if (!found->window.accept(datagram.header.sequence, stats)) return {};
   found->last_heard = now;
-  if (tool_state->tick <= found->newest_tick) return {};  // overtaken on the way: the newest value wins
-  found->newest_tick = tool_state->tick;
+  if (!found->ticks.accept(tool_state->tick)) return {};  // the newest value wins
   return {.tool_state = tool_state};
 }
 

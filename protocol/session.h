@@ -47,7 +47,10 @@ class ClientSession {
   static constexpr Time kSilence = kOutage;  ///< without a sample: ask again
 
  private:
-  std::uint64_t nonce_, session_ = 0, left_session_ = 0, sent_ = 0, newest_sample_ = 0;
+  bool heard_lately(Time now) const noexcept { return last_heard_ && now - *last_heard_ < kSilence; }
+
+  std::uint64_t nonce_, session_ = 0, left_session_ = 0, sent_ = 0;
+  NewestOnly samples_;
   Welcome welcome_;
   ReplayWindow window_;
   std::optional<RefuseReason> refused_;
@@ -59,11 +62,12 @@ class ClientSession {
 class ServerSessions {
  public:
   struct Member {
-    std::uint64_t session = 0, nonce = 0, sent = 0, newest_tick = 0;
+    std::uint64_t session = 0, nonce = 0, sent = 0;
     Endpoint endpoint{};
     std::uint8_t tool = 0;
-    Time last_heard{};
+    Time last_heard{};  ///< its last ToolState, or its first Hello
     ReplayWindow window{};
+    NewestOnly ticks{};
   };
   /// What came of a datagram: an answer to send back, or a tool state newer than all before.
   struct Outcome {

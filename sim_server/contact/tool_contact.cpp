@@ -47,6 +47,7 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   filled_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   displacement_.resize(3 * (finder_.max_nodes() + 1));
+  foretold_.resize(3 * finder_.max_nodes());
   predictor_.changes.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   kept_predictor_.changes.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   kept_loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
@@ -343,14 +344,18 @@ void ToolContact::predict(Eigen::Ref<Eigen::VectorXd> u) noexcept {
   const Vec3 motion = now_.place.p_W - predictor_.from;
   if (motion.isZero(0) || motion.norm() > kIncrement * tool_.radius) return predictor_.changes.clear();
   const Eigen::Index size = 3 * patch_.nodes();
+  auto moved = foretold_.head(size);
+  moved.setZero();
   for (const Predictor::LoadChange& change : predictor_.changes) {
     const auto at = std::ranges::find(filled_, change.vertex);
     if (at == filled_.end()) continue;
     const int node = static_cast<int>(at - filled_.begin());
     patch_.require(node);
-    u.head(size).noalias() += patch_.compliance.block(0, 3 * node, size, 3) * (change.per_motion * motion);
+    moved.noalias() += patch_.compliance.block(0, 3 * node, size, 3) * (change.per_motion * motion);
   }
   predictor_.changes.clear();
+  // A surface that would go farther than the tool is about to snap, and then nothing is foretold of where to.
+  if (moved.cwiseAbs().maxCoeff() <= motion.norm()) u.head(size) += moved;
 }
 
 void ToolContact::release(ToolTissue tissue) {

@@ -165,6 +165,7 @@ class ToolContact {
     Vec3 from = Vec3::Zero();         // m
   };
   Predictor predictor_, kept_predictor_;
+  Eigen::VectorXd foretold_;  // of the patch nodes
 };
 
 }  // namespace palpate::sim

@@ -21,6 +21,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kNear = 2;           // of the tool radius: where the surface is looked at for motion
+constexpr std::size_t kApart = 2;     // instants: how far apart those are that tell where a tool goes on to
 constexpr double kLongestLead = 0.5;  // of the tool radius: how far ahead of itself a tool is believed to be
 constexpr double kStill = 1e-8;       // of the tool radius: a surface that moved less did not move
 constexpr double kUnsettled = 1e-3;   // of the tool radius: by how much others push the surface, as one turn
@@ -109,6 +110,8 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   if (tools_.size() > 1) coupling_.emplace(tools_.size(), rest_.size(), all_loads);
   if (const SlowModes* const told = told_modes()) modes_.q = modes_.v = Eigen::VectorXd::Zero(told->told);
   came_from_.resize(tools_.size());
+  lately_.resize(tools_.size());
+  for (auto& were : lately_) were.reserve(2 * kApart + 1);
   mean_.resize(tools_.size(), Vec3::Zero());
   velocities_.resize(tools_.size(), Vec3::Zero());
   inputs_.resize(tools_.size());
@@ -180,15 +183,27 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
   for (std::size_t i = 0; i < tools_.size(); ++i) add_wanted(i, inputs[i]);
 }
 
-/// Where contact is solved at an instant of a step, `dt` (s) after the one before: where the tool is then,
-/// or, where the model's force leads, will be at the next.
-PathPoint Simulation::contact_point(std::size_t tool, const ToolInput& input, int instant, double dt) const {
+/// Where contact is solved at an instant of a step: where the tool is then, or, where the model's force
+/// leads, will be at the next; after the last, going on along the parabola through where it was lately.
+PathPoint Simulation::contact_point(std::size_t tool, const ToolInput& input, int instant) const {
   if (!tissue_.model->force_leads()) return at_instant(tool, input, instant);
   if (instant < instants_) return at_instant(tool, input, instant + 1);
   PathPoint point = at_instant(tool, input, instant);
-  const Vec3 motion = dt * input.v_W;
+  const std::vector<ToolPose>& were = lately_[tool];  // the newest first: this one
+  const std::size_t apart = std::min<std::size_t>(kApart, (were.size() - 1) / 2);
+  if (apart == 0) return point;
+  const Vec3 &now = were[0].p_W, &before = were[apart].p_W, &first = were[2 * apart].p_W;
+  const auto n = static_cast<double>(apart);
+  const Vec3 bend = (now - 2 * before + first) / (n * n), motion = (now - before) / n + (n + 1) / 2 * bend;
   if (motion.norm() <= kLongestLead * tools_[tool].radius()) point.pose.p_W += motion;
+  point.pose.q_W = (were[0].q_W * were[1].q_W.conjugate() * were[0].q_W).normalized();
   return point;
+}
+
+void Simulation::remember(std::size_t tool, const ToolPose& pose) {
+  std::vector<ToolPose>& were = lately_[tool];
+  if (were.size() > 2 * kApart) were.pop_back();
+  were.insert(were.begin(), pose);
 }
 
 /// Where a tool is at an instant of a step, from 1 to the last.
@@ -211,7 +226,8 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
   }
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!inputs[i].pose) continue;
-    const PathPoint point = contact_point(i, inputs[i], instant, dt);
+    if (tissue_.model->force_leads()) remember(i, at_instant(i, inputs[i], instant).pose);
+    const PathPoint point = contact_point(i, inputs[i], instant);
     tools_[i].advance_to(point.pose, point.bend, tissue_.met_by(i));
   }
   tools_settled_ = true;
@@ -332,6 +348,7 @@ void Simulation::restore_touching() {
 void Simulation::lift_tool(std::size_t tool) {
   answers_[tool] = {};
   came_from_[tool].reset();
+  lately_[tool].clear();
   if (!tissue_.loads_of(tool).empty()) tissue_.met_by(tool).release();
   tools_[tool].lift();
 }

@@ -45,8 +45,8 @@ struct PathPoint {
 struct ToolInput {
   std::optional<ToolPose> pose = {};  ///< where its tip is now; none: it is lifted
   std::uint16_t buttons = 0;          ///< of its device, pressed now: some tools grasp by them
-  Vec3 v_W = Vec3::Zero();  ///< of its tip, m/s: how fast it goes on, and pushes the organ under others
-  Bend bend = {};           ///< how it came there from the last point of its path; only friction asks for it
+  Vec3 v_W = Vec3::Zero();            ///< of its tip, m/s: how fast it pushes the organ under other tools
+  Bend bend = {};  ///< how it came there from the last point of its path; only friction asks for it
   /// Where it was at the instants within the step before `pose` (`Simulation::instants` - 1), evenly in time.
   /// Of another length, as empty where there are some: it went straight and evenly from its pose of the step
   /// before.
@@ -145,7 +145,8 @@ class Simulation {
  private:
   void advance(std::span<const ToolInput> inputs, double dt);
   PathPoint at_instant(std::size_t tool, const ToolInput& input, int instant) const;
-  PathPoint contact_point(std::size_t tool, const ToolInput& input, int instant, double dt) const;
+  PathPoint contact_point(std::size_t tool, const ToolInput& input, int instant) const;
+  void remember(std::size_t tool, const ToolPose& pose);
   void advance_to_instant(std::span<const ToolInput> inputs, int instant, double dt);
   void count_flagged() noexcept;
   void hold_answers(std::span<const ToolInput> inputs) noexcept;
@@ -170,6 +171,7 @@ class Simulation {
   std::optional<ToolCoupling> coupling_;            // of several tools
   int instants_ = 1;                                // within a step
   std::vector<std::optional<ToolPose>> came_from_;  // poses of the step before
+  std::vector<std::vector<ToolPose>> lately_;       // of each tool: at the last instants, the newest first
   std::vector<Vec3> mean_;                          // of the forces at the instants, N
   std::vector<Vec3> velocities_;                    // of the tools, m/s
   std::vector<Vec3> surface_motion_;                // of the surface at each tool in this step, m

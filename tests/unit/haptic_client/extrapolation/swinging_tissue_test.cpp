@@ -47,7 +47,6 @@ Served serve(std::string_view model, Time delay) {
   listener.learn(kWholeModel);
   sim::Simulation truth(swinging(model, 500), block_mesh());
   truth.step(Vec3(presses(listener.t)), 0.002);
-  std::vector<sim::ToolInput> true_tool(1);
   client::ForceEstimate constant{client::extrapolators().front().make()};
   Served sums;
   double peak = 0;
@@ -57,9 +56,7 @@ Served serve(std::string_view model, Time delay) {
   };
   for (; listener.t < 4s; ++ticks) {
     const Vec3 p = presses(listener.t + kTick);
-    true_tool[0].pose = p;
-    true_tool[0].v_W = (presses(listener.t + 2 * kTick) - p) / to_seconds(kTick);
-    const Vec3 right = truth.step(true_tool, to_seconds(kTick)).front().force, given = listener.tick(p);
+    const Vec3 right = truth.step(p, to_seconds(kTick)).force, given = listener.tick(p);
     peak = std::max(peak, right.norm());
     if (listener.newest.number < 3) continue;
     const auto add = [&](Errors& errors, const Vec3& f) {
