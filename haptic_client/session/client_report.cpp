@@ -338,7 +338,8 @@ Json loop_report(double rate_hz, const HapticLoopStats& stats) {
 
 Json link_report(const protocol::LinkStats& net) {
   return {{"sent", net.sent},           {"received", net.received},     {"lost", net.lost},
-          {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"rejected", net.rejected}};
+          {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"began_anew", net.began_anew},
+          {"rejected", net.rejected}};
 }
 
 void print_report(const Json& report) {

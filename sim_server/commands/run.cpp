@@ -119,8 +119,10 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   for (const auto& tool : link.tools) sessions += tool.so_far;
   report["sessions"] = sessions;
   const protocol::LinkStats& net = link.stats();
-  report["link"] = {{"sent", net.sent},           {"received", net.received},     {"lost", net.lost},
-                    {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"rejected", net.rejected}};
+  report["link"] = {
+      {"sent", net.sent},           {"received", net.received},     {"lost", net.lost},
+      {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"began_anew", net.began_anew},
+      {"rejected", net.rejected}};
   report["failed_steps"] = {{"out_of_memory", simulation.failures().out_of_memory},
                             {"other", simulation.failures().other}};
   report["state_hash"] = fmt::format("{:016x}", simulation.state_hash());

@@ -5,6 +5,8 @@
 namespace palpate::sim {
 namespace {
 
+constexpr std::uint64_t kLongAgo = 1'000'000'000;  // ns
+
 /// From an earlier to a later time, whatever they are: a client may send any.
 std::uint64_t ns_between(std::int64_t earlier, std::int64_t later) noexcept {
   return static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
@@ -20,7 +22,10 @@ ToolPose pose_of(const protocol::ToolState& state) noexcept {
 }
 
 void ToolPath::add(const protocol::ToolState& state) noexcept {
-  if (written_ > 0 && state.t_ns <= back(0).t_ns) return;
+  if (written_ > 0 && state.t_ns <= back(0).t_ns) {
+    if (ns_between(state.t_ns, back(0).t_ns) < kLongAgo) return;
+    written_ = 0;  // the clock of that one was wild
+  }
   // The newest is always kept: it takes the place of one that stands too near to the one before.
   if (written_ > 1 && ns_between(back(1).t_ns, back(0).t_ns) < kApart) --written_;
   ring_[written_++ % kPoints] = {state.t_ns, pose_of(state), state.v_W};

@@ -15,8 +15,9 @@ ToolPose pose_of(const protocol::ToolState& state) noexcept;
 /// allocation; copied whole between threads, 6 kB.
 class ToolPath {
  public:
-  /// The newest state; one that is not later than those before changes nothing. States that follow each other
-  /// by less than `kApart` are thinned, so that the last 126 ms are known whatever the rate of the client.
+  /// The newest state; one that is not later than those before changes nothing, but where it is earlier by
+  /// more than a second all begins anew. States that follow each other by less than `kApart` are thinned, so
+  /// that the last 126 ms are known whatever the rate of the client.
   void add(const protocol::ToolState& state) noexcept;
 
   struct Point {

@@ -72,3 +72,12 @@ TEST_CASE("tool path: clocks at the ends of what fits into 64 bits do no harm") 
   CHECK(path.at(0)->pose.p_W.allFinite());
   CHECK(path.at(kLast)->t_ns == kLast);
 }
+
+TEST_CASE("tool path: after one pose with a wild clock the next ones are known") {
+  ToolPath path;
+  path.add(at(10 * kMs));
+  path.add(at(std::int64_t{1} << 60));
+  for (int i = 2; i < 10; ++i) path.add(at(10 * i * kMs));
+  REQUIRE(path.at(85 * kMs));
+  CHECK(path.at(85 * kMs)->pose.p_W[0] == Approx(85 * 3e-5).epsilon(1e-9));
+}
