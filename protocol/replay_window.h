@@ -34,28 +34,30 @@ class Stray {
 /// of RFC 4303, section 3.4.3). Pure; a few instructions.
 class ReplayWindow {
  public:
-  /// True if `sequence` (>= 1) was not seen before; counts it in `stats`. A duplicate, a number more than 64
-  /// behind, or one more than `kFarthest` ahead, is refused, unless the sender goes on from there (`Stray`).
-  /// Sequence 0 is refused always.
+  /// `farthest`: how far ahead a number is taken at once. One that is wild within that keeps the sender out
+  /// until its own numbers get there: about a second of them.
+  explicit ReplayWindow(std::uint64_t farthest) : farthest_(farthest) {}
+
+  /// True if `sequence` (>= 1) was not seen before; counts it in `stats`. A duplicate, a number 64 or more
+  /// behind, or one farther ahead than `farthest`, is refused; the latter until the sender goes on from there
+  /// (`Stray`). Sequence 0 is refused always.
   bool accept(std::uint64_t sequence, LinkStats& stats) noexcept {
+    in_order_ = false;
     if (sequence == 0) return refuse(stats);
     const std::uint64_t ahead = sequence > highest_ ? sequence - highest_ : 0;
-    if (ahead > kFarthest || (ahead == 0 && highest_ - sequence >= 64)) {
-      if (!stray_.is_new_beginning(sequence)) return refuse(stats);
-      highest_ = sequence;
-      seen_ = 1;
-      ++stats.received;
-      ++stats.began_anew;
-      return true;
-    }
     if (ahead > 0) {
+      if (ahead > farthest_) {
+        if (!stray_.is_new_beginning(sequence)) return refuse(stats);
+        ++stats.began_anew;
+      }
       seen_ = ahead >= 64 ? 0 : seen_ << ahead;
       seen_ |= 1;
       highest_ = sequence;
       stats.lost += ahead - 1;
+      in_order_ = true;
     } else {
       const std::uint64_t behind = highest_ - sequence;
-      if ((seen_ >> behind & 1) != 0) return refuse(stats);
+      if (behind >= 64 || (seen_ >> behind & 1) != 0) return refuse(stats);
       seen_ |= std::uint64_t{1} << behind;
       if (stats.lost > 0) --stats.lost;  // it was counted as lost when a later one came
       ++stats.reordered;
@@ -64,8 +66,10 @@ class ReplayWindow {
     ++stats.received;
     return true;
   }
-
-  static constexpr std::uint64_t kFarthest = 1 << 16;  ///< 16 s of the fastest client
+  /// Whether the last one taken is the highest.
+  bool in_order() const noexcept { return in_order_; }
+  /// The sender has gone on so far unseen: the next number is `sequence`.
+  void begin_at(std::uint64_t sequence) noexcept { highest_ = sequence - 1; }
 
  private:
   static bool refuse(LinkStats& stats) noexcept {
@@ -73,16 +77,19 @@ class ReplayWindow {
     return false;
   }
 
-  std::uint64_t highest_ = 0, seen_ = 0;
+  std::uint64_t farthest_, highest_ = 0, seen_ = 0;
   Stray stray_;
+  bool in_order_ = false;
 };
 
 /// Lets through values that are newer than all before, by their numbers.
 class NewestOnly {
  public:
-  /// False of one that was overtaken, or whose number is wild (`Stray`).
-  bool accept(std::uint64_t number) noexcept {
-    const bool newer = number > newest_ && number - newest_ <= ReplayWindow::kFarthest;
+  /// `in_order`: it came in the highest datagram so far; else it was overtaken. False also of one whose
+  /// number is wild, until the sender goes on from there (`Stray`).
+  bool accept(std::uint64_t number, bool in_order) noexcept {
+    if (!in_order) return false;
+    const bool newer = newest_ == 0 || (number > newest_ && number - newest_ <= kFarthest);
     if (!newer && !stray_.is_new_beginning(number)) return false;
     if (newer) stray_.end_row();
     newest_ = number;
@@ -90,6 +97,8 @@ class NewestOnly {
   }
 
  private:
+  static constexpr std::uint64_t kFarthest = 1 << 16;
+
   std::uint64_t newest_ = 0;
   Stray stray_;
 };

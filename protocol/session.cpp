@@ -13,38 +13,37 @@ std::optional<Hello> ClientSession::poll(Time now) noexcept {
 const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept {
   if (const auto* welcome = std::get_if<Welcome>(&datagram.message); welcome && welcome->nonce == nonce_) {
     // Late, from a server that is gone; unless this one has been silent since.
-    if (datagram.header.session == left_session_ && heard_lately(now)) return nullptr;
+    if (datagram.header.session == left_.session && heard_lately(now)) return nullptr;
     last_heard_ = now;
     refused_.reset();
-    if (datagram.header.session != session_) {  // a new server, or the first
-      left_session_ = session_;
-      session_ = datagram.header.session;
-      sent_ = 0;
-      samples_ = {};
-      window_ = {};
+    if (datagram.header.session != current_.session) {  // a new server, the first, or the one before
+      std::swap(current_, left_);
+      if (current_.session != datagram.header.session) current_ = {.session = datagram.header.session};
       welcome_ = *welcome;
     }
-    window_.accept(datagram.header.sequence, stats);
+    current_.window.accept(datagram.header.sequence, stats);
     return nullptr;
   }
   if (const auto* refuse = std::get_if<Refuse>(&datagram.message)) {
     const bool to_hello = refuse->nonce == nonce_,
-               to_session = refuse->nonce == 0 && welcomed() && datagram.header.session == session_;
+               to_session = refuse->nonce == 0 && welcomed() && datagram.header.session == current_.session;
     if (to_hello) refused_ = refuse->reason;
     if (to_session) last_heard_.reset();  // forgotten there: ask at once
     if (!to_hello && !to_session) ++stats.rejected;
     return nullptr;
   }
-  const bool mine = welcomed() && datagram.header.session == session_;
+  const bool mine = welcomed() && datagram.header.session == current_.session;
   if (const auto* sample = std::get_if<ForceSample>(&datagram.message);
       sample && mine && sample->tool == welcome_.tool) {
-    if (!window_.accept(datagram.header.sequence, stats)) return nullptr;
+    if (!current_.window.accept(datagram.header.sequence, stats)) return nullptr;
     last_heard_ = now;
-    return samples_.accept(sample->number) ? &datagram.message : nullptr;  // the newest value wins
+    return current_.samples.accept(sample->number, current_.window.in_order())
+               ? &datagram.message
+               : nullptr;  // the newest value wins
   }
   if (const auto* page = std::get_if<SurfacePage>(&datagram.message);
       page && mine && page->tool == welcome_.tool) {
-    return window_.accept(datagram.header.sequence, stats) ? &datagram.message : nullptr;
+    return current_.window.accept(datagram.header.sequence, stats) ? &datagram.message : nullptr;
   }
   if (std::holds_alternative<Bye>(datagram.message) && mine) {
     last_heard_.reset();
@@ -109,7 +108,7 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
   }
   if (!found->window.accept(datagram.header.sequence, stats)) return {};
   found->last_heard = now;
-  if (!found->ticks.accept(tool_state->tick)) return {};  // the newest value wins
+  if (!found->ticks.accept(tool_state->tick, found->window.in_order())) return {};  // the newest value wins
   return {.tool_state = tool_state};
 }
 

@@ -36,23 +36,29 @@ class ClientSession {
   const Message* receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept;
 
   /// Header of the next datagram to send in this session.
-  Header next_header() noexcept { return {session_, ++sent_}; }
+  Header next_header() noexcept { return {current_.session, ++current_.sent}; }
 
-  bool welcomed() const noexcept { return session_ != 0; }
+  bool welcomed() const noexcept { return current_.session != 0; }
   const Welcome& welcome() const noexcept { return welcome_; }
   /// Why the server last said no, until it says yes.
   std::optional<RefuseReason> refused() const noexcept { return refused_; }
 
   static constexpr Time kHelloPeriod = std::chrono::milliseconds(250);
-  static constexpr Time kSilence = kOutage;  ///< without a sample: ask again
+  static constexpr Time kSilence = kOutage;             ///< without a sample: ask again
+  static constexpr std::uint64_t kFarthestSample = 24;  ///< datagrams ahead: 0.8 s at 30 steps a second
 
  private:
   bool heard_lately(Time now) const noexcept { return last_heard_ && now - *last_heard_ < kSilence; }
 
-  std::uint64_t nonce_, session_ = 0, left_session_ = 0, sent_ = 0;
-  NewestOnly samples_;
+  /// Numbers go on where they were should a session that was left come back.
+  struct Numbered {
+    std::uint64_t session = 0, sent = 0;
+    NewestOnly samples{};
+    ReplayWindow window{kFarthestSample};
+  };
+  Numbered current_, left_;
+  std::uint64_t nonce_;
   Welcome welcome_;
-  ReplayWindow window_;
   std::optional<RefuseReason> refused_;
   std::optional<Time> last_hello_, last_heard_;
 };
@@ -61,12 +67,13 @@ class ClientSession {
 /// address differ in their nonces.
 class ServerSessions {
  public:
+  static constexpr std::uint64_t kFarthestState = 100;  ///< datagrams ahead: 1 s of the slowest client
   struct Member {
     std::uint64_t session = 0, nonce = 0, sent = 0;
     Endpoint endpoint{};
     std::uint8_t tool = 0;
     Time last_heard{};  ///< its last ToolState, or its first Hello
-    ReplayWindow window{};
+    ReplayWindow window{kFarthestState};
     NewestOnly ticks{};
   };
   /// What came of a datagram: an answer to send back, or a tool state newer than all before.

@@ -25,6 +25,11 @@ bool ComplementaritySolver::solve_on_basis(const Eigen::Ref<const Eigen::MatrixX
     if (active_[static_cast<std::size_t>(i)]) basis_.push_back(i);
   }
   const auto n = static_cast<Eigen::Index>(basis_.size());
+  const auto size = static_cast<double>(n), all = static_cast<double>(gap.size());
+  if (work_ != nullptr && !work_->spend(size * size * size / 6 + all * all)) {
+    lambda.setZero();
+    return false;
+  }
   factor_.shape(n, n);
   auto rhs = slack_.head(n);
   for (Eigen::Index c = 0; c < n; ++c) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/contact/bounded_matrix.h"
+#include "common/contact/work_budget.h"
 
 namespace palpate {
 
@@ -19,6 +20,8 @@ class ComplementaritySolver {
  public:
   /// `capacity`: the largest problem `solve` will be given.
   explicit ComplementaritySolver(int capacity);
+  /// From now on its work is counted there, and it gives up where that is spent; must outlive it.
+  void count_work(WorkBudget& work) noexcept { work_ = &work; }
 
   /// Writes lambda (n), which holds a guess: the exchanges begin with those in contact that have a force in
   /// it, or where there is none with those whose gap is negative. The solution is the same. False when the
@@ -43,6 +46,7 @@ class ComplementaritySolver {
                       const Eigen::Ref<const Eigen::VectorXd>& gap,
                       Eigen::Ref<Eigen::VectorXd> lambda) noexcept;
 
+  WorkBudget* work_ = nullptr;
   BoundedMatrix factor_;
   Eigen::VectorXd slack_, feasible_;
   std::vector<char> active_;

@@ -74,6 +74,9 @@ void ContactSolver::spread_over(Eigen::Index first, bool forces,
 /// I - C S. With the compliance that the curvature adds over the loaded nodes alone: C~ = C + C S C~.
 bool ContactSolver::respond(const ContactPatch& patch,
                             const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept {
+  const auto unknowns = 3.0 * static_cast<double>(nodes_.size() - static_cast<std::size_t>(unloaded_)),
+             right = static_cast<double>(considered_.size()) * rows_of_contact() + 3;
+  if (!work_.spend(unknowns * unknowns * (unknowns / 3 + right + 30))) return false;
   assemble_system(patch);
   const int rows = rows_of_contact();
   const auto n = rows * static_cast<Eigen::Index>(considered_.size()), size = loads.rows();

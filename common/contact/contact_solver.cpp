@@ -155,6 +155,9 @@ ContactForce ContactSolver::solve(ContactPatch& patch, const Tool& tool, const T
                                   Eigen::Ref<Eigen::VectorXd> u, const IncrementStart& start,
                                   const Effort& effort) noexcept {
   start_increment(patch, tool, pose, start);
+  work_.allow(effort.work);
+  complementarity_.count_work(work_);
+  coulomb_.count_work(work_);
   contact_compliance_ = contact_compliance(patch, patch.nodes());
   friction_compliance_ = contact_compliance_ / 10;
   const int m = patch.nodes();
@@ -172,10 +175,16 @@ ContactForce ContactSolver::solve(ContactPatch& patch, const Tool& tool, const T
     const double margin = std::clamp(kMargin * change, kMinReach * tool.radius, kMaxReach * tool.radius);
     find_contacts_on_patch(deformed_, patch.triangles, tool, {pose.p_W + u.tail<3>(), pose.q_W}, margin,
                            contacts_);
+    const auto rows = static_cast<double>(contacts_.size()) * rows_of_contact();
+    if (!work_.spend(rows * (27.0 * m + 9 * rows))) {
+      contacts_.clear();
+      next = u;
+      break;
+    }
     linearise(patch, pose.p_W, u);
     solve_linearised(patch, next);
     change = (next - u).cwiseAbs().maxCoeff();
-    result.converged = change <= effort.tolerance * tool.radius;
+    result.converged = change <= effort.tolerance * tool.radius && !work_.is_spent();
     if (result.converged || result.iterations == effort.max_iterations) break;
     // Plain iteration, where Newton fails (ever longer, each time it does): shorter steps where it swings,
     // longer ones where it creeps (towards a snap-through, say), never so long that the surface could pass

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -86,6 +87,7 @@ class ContactSolver {
     int max_iterations = 200;
     double tolerance = 1e-11;  ///< of the tool radius: what still moves at the end
     double expected = 1;       ///< of the tool radius: how far things may have moved since `u` was right
+    double work = std::numeric_limits<double>::infinity();  ///< multiplications, before it gives up
   };
 
   /// Solves for a tool at `pose`. `u` (3 (m + 1): nodes, then tip; m) holds the displacement to look from and
@@ -96,6 +98,9 @@ class ContactSolver {
                      Eigen::Ref<Eigen::VectorXd> u, const IncrementStart& start = {},
                      const Effort& effort = kUsualEffort) noexcept;
   static const Effort kUsualEffort;
+
+  /// What the last solve took, multiplications, roughly.
+  double work() const noexcept { return work_.used(); }
 
   /// Nodal forces on the patch nodes (3m, N) of the last solve; the tissue feels minus what the tool feels.
   Eigen::Ref<const Eigen::VectorXd> node_forces() const { return node_force_.head(force_size_); }
@@ -108,7 +113,8 @@ class ContactSolver {
   Mat3 tangent(const ContactPatch& patch) noexcept;
 
   /// How the forces on the patch nodes follow the tool, to first order (N/m): calls `visit` with a node and a
-  /// `Mat3` for each. Of the last `tangent`, before another `solve`; none with friction, or without a tangent.
+  /// `Mat3` for each. Of the last `tangent`, before another `solve`; none with friction, or without a
+  /// tangent.
   template <class Visit>
   void for_load_changes(const Visit& visit) const {
     if (!has_load_change_) return;
@@ -164,6 +170,7 @@ class ContactSolver {
   bool differentiate_forces(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
   Mat3 tangent_of_considered(const ContactPatch& patch) noexcept;
 
+  WorkBudget work_;
   double contact_compliance_ = 0, friction_compliance_ = 0;  // m/N, of this patch
   int most_nodes_, most_contacts_;                           // of a Newton step and of the tangent
   // Rows are those of the contacts in turn: one each, along the normal; with friction two more, across it.

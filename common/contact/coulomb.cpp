@@ -41,8 +41,10 @@ bool CoulombSolver::solve(const Matrix& g_matrix, const Vector& g, double mu,
   if (z.isZero(0)) relax(g_matrix, g, mu, kSweeps, z);
   for (int round = 0, sweeps = kSweeps; round < kRounds; ++round, sweeps *= 2) {
     if (newton(g_matrix, g, mu, z)) return true;
+    if (!spend(static_cast<double>(sweeps) * static_cast<double>(z.size() * z.size()))) break;
     relax(g_matrix, g, mu, sweeps, z);
   }
+  if (work_ != nullptr && work_->is_spent()) return false;
   return newton(g_matrix, g, mu, z);
 }
 
@@ -159,6 +161,8 @@ bool CoulombSolver::newton(const Matrix& g_matrix, const Vector& g, double mu,
       return true;
     }
     classify(trial, slack, mu);
+    const double rows = 3.0 * static_cast<double>(closed_.size());
+    if (!spend(rows * rows * rows / 3 + static_cast<double>(n * n))) return false;
     assemble(g_matrix, mu);
     if (!solve_closed(g, direction)) return false;
     from = trial;

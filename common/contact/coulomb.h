@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "common/contact/bounded_matrix.h"
+#include "common/contact/work_budget.h"
 
 namespace palpate {
 
@@ -20,10 +21,12 @@ class CoulombSolver {
  public:
   /// `capacity`: the most contacts `solve` will be given.
   explicit CoulombSolver(int capacity);
+  /// From now on its work is counted there, and it gives up where that is spent; must outlive it.
+  void count_work(WorkBudget& work) noexcept { work_ = &work; }
 
   /// `z` (3n): where to start, overwritten by the solution, which obeys the conditions to 1e-12 of the
-  /// largest force. False where the bound on iterations was reached: z then lies in the friction cones, no
-  /// more.
+  /// largest force. False where the bound on iterations, or on work, was reached: z then lies in the friction
+  /// cones, no more.
   bool solve(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix, const Eigen::Ref<const Eigen::VectorXd>& g,
              double mu, Eigen::Ref<Eigen::VectorXd> z) noexcept;
 
@@ -56,6 +59,9 @@ class CoulombSolver {
   template <class Source, class Target>
   bool solve_closed(const Source& constant, Target&& z) noexcept;
 
+  bool spend(double multiplications) noexcept { return work_ == nullptr || work_->spend(multiplications); }
+
+  WorkBudget* work_ = nullptr;
   BoundedMatrix system_;
   Eigen::Matrix<double, Eigen::Dynamic, 3> rhs_;
   Eigen::VectorXd slack_, trial_, direction_, from_,

@@ -1,5 +1,6 @@
 #pragma once
 /// Which datagrams of a capture belong together.
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -18,13 +19,13 @@ constexpr bool sensible(Time t) {
 /// The datagrams of one direction of a session, by their sequence numbers.
 struct CapturedDirection {
   protocol::LinkStats stats{};
-  protocol::ReplayWindow window{};
-  std::uint64_t lowest = 0;  ///< number seen; 0: none
+  protocol::ReplayWindow window{std::numeric_limits<std::uint64_t>::max()};  // a capture may have gaps
+  std::uint64_t lowest = 0;                                                  ///< number seen; 0: none
 
   /// False for one that the capture holds already.
   bool accept(std::uint64_t sequence);
   /// Between those that were captured: what came before the capture began is not lost.
-  std::uint64_t lost() const { return lowest == 0 ? 0 : stats.lost - (lowest - 1); }
+  std::uint64_t lost() const { return stats.lost; }
 };
 
 /// One session of a run, as the capturing machine saw it.

@@ -15,6 +15,7 @@ constexpr int kMostNodes = 96, kMostTriangles = 160;
 constexpr double kMargin = 0.25, kStride = 0.12;
 constexpr double kMostStrides = 16, kMostEntering = 32;  // a tick
 constexpr double kLeastDepth = 1e-4;                     // of the tool radius
+constexpr int kMostNear = 2048;  // vertices: a compliance by which more come near the tool is none
 
 }  // namespace
 
@@ -53,6 +54,7 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p,
     lift();
     return {};
   }
+  work_left_ = kMostWork;
   const double most = state_.placed ? kMostStrides : kMostEntering;
   if (!state_.placed) enter(surface, p);
   if (const Vec3 motion = p - state_.place; state_.contacts > 0 && motion.norm() <= near(surface)) {
@@ -91,7 +93,8 @@ ContactSolver::Effort ContactOnPatch::effort(const Surface& surface) const noexc
   // Where the increment before foresees where the surface goes, one look at it is mostly enough.
   return {.max_iterations = 30,
           .tolerance = std::min(accuracy_.tolerance * depth, accuracy_.most_tolerance),
-          .expected = 1e-3};
+          .expected = 1e-3,
+          .work = work_left_};
 }
 
 bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
@@ -110,6 +113,8 @@ bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
   const bool foreseen = foresee(motion);
   const ContactForce contact =
       solving.solve(patch_, surface.tool, p, displacement(), {begin_, tip}, effort(surface));
+  work_left_ -= solving.work();
+  if (!contact.converged) return false;
   note_loads(solving);
   state_.force = contact.force;
   state_.contacts = contact.contacts;
@@ -119,8 +124,7 @@ bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
   } else if (state_.contacts > 0) {
     state_.tangent = solving.tangent(patch_);
   }
-  return contact.converged && state_.force.allFinite() && state_.tangent.allFinite() &&
-         displacement().allFinite();
+  return state_.force.allFinite() && state_.tangent.allFinite() && displacement().allFinite();
 }
 
 /// Moves the surface on as it went in the last increment, by as much of that as `motion` repeats; false where
@@ -190,7 +194,9 @@ bool ContactOnPatch::displace_near(const Surface& surface, const Vec3& p) noexce
   const SurfaceModel& model = *surface.model;
   const auto rest = model.rest();
   std::fill_n(near_.begin(), rest.size(), 0);
+  int count = 0;
   const auto displace = [&](int vertex) {
+    if (++count > kMostNear) return false;
     Vec3 u = Vec3::Zero();
     for (const Load& load : loads_) {
       const auto c = model.compliance(vertex, load.vertex);

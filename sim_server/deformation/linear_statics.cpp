@@ -38,6 +38,7 @@ Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows) {
   return fingerprint.digest();
 }
 
+#ifdef PALPATE_WITH_SPECTRA
 /// Of all that modes of vibration follow from.
 Digest key_of_modes(const SparseMatrix& k, const Eigen::VectorXd& masses, int count) {
   Fingerprint fingerprint;
@@ -46,6 +47,7 @@ Digest key_of_modes(const SparseMatrix& k, const Eigen::VectorXd& masses, int co
   fingerprint.add(std::span<const int>(&count, 1));
   return fingerprint.digest();
 }
+#endif
 
 }  // namespace
 

@@ -196,7 +196,10 @@ PathPoint Simulation::contact_point(std::size_t tool, const ToolInput& input, in
   const auto n = static_cast<double>(apart);
   const Vec3 bend = (now - 2 * before + first) / (n * n), motion = (now - before) / n + (n + 1) / 2 * bend;
   if (motion.norm() <= kLongestLead * tools_[tool].radius()) point.pose.p_W += motion;
-  point.pose.q_W = (were[0].q_W * were[1].q_W.conjugate() * were[0].q_W).normalized();
+  const double turn =
+      were[0].q_W.angularDistance(were[1].q_W) * std::max(tools_[tool].shape().length, tools_[tool].radius());
+  if (turn <= kLongestLead * tools_[tool].radius())
+    point.pose.q_W = (were[0].q_W * were[1].q_W.conjugate() * were[0].q_W).normalized();
   return point;
 }
 

@@ -85,7 +85,7 @@ void run_decode(benchmark::State& state) {
 void run_window(benchmark::State& state) {
   static constexpr std::array<std::uint64_t, 16> kOrder{1, 2,  3,  4,  5,  6,  8,  7,
                                                         9, 10, 11, 11, 13, 14, 15, 16};
-  ReplayWindow window;
+  ReplayWindow window(100);
   LinkStats stats;
   std::uint64_t i = 0;
   time_calls(state, 4096, [&] {

@@ -11,7 +11,7 @@
 #include "haptic_client/pipeline/pipeline.h"
 #include "protocol/codec.h"
 #include "protocol/link_simulator.h"
-#include "protocol/replay_window.h"
+#include "protocol/session.h"
 
 namespace palpate::test {
 
@@ -125,7 +125,7 @@ class ClosedLoop {
   Server server_;
   ClosedLoopSettings settings_;
   protocol::LinkSimulator link_, good_link_;
-  protocol::ReplayWindow window_;
+  protocol::ReplayWindow window_{protocol::ClientSession::kFarthestSample};
   protocol::LinkStats stats_;
   std::uint64_t ticks_ = 0, steps_ = 0, sent_ = 0;
   std::optional<protocol::ForceSample> arrived_;

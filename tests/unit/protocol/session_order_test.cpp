@@ -104,7 +104,7 @@ std::vector<Event> events() {
       {"an old sample once more", [](World& w) {
          if (w.old_sample) w.to_client(*w.old_sample);
        }}};
-  for (const std::uint64_t ahead : {std::uint64_t{500}, kWild, ~std::uint64_t{0} - 1000}) {
+  for (const std::uint64_t ahead : {std::uint64_t{20}, std::uint64_t{500}, kWild, ~std::uint64_t{0} - 1000}) {
     all.push_back({"a sample with a wild sequence", [ahead](World& w) {
                      w.to_client({{w.of_client(), w.sent() + ahead}, ForceSample{.number = w.sample + 1}});
                    }});

@@ -1,7 +1,10 @@
 // The contact that goes with the tool: where it gives no answer.
 #include "haptic_client/extrapolation/contact_on_patch.h"
 
+#include <cmath>
+
 #include "tests/support/catch.h"
+#include "tests/support/random.h"
 #include "tests/support/served_block.h"
 
 using namespace palpate;
@@ -76,4 +79,32 @@ TEST_CASE("contact on a patch: a tool tiny against its way returns without an an
     contact.go(surface, below(-0.001));
     CHECK_FALSE(contact.go(surface, below(0.004)));
   }
+}
+
+TEST_CASE(
+    "contact on a patch: whatever the pages say, friction 10 and a wild compliance too, a call ends in "
+    "time") {
+  const sim::Simulation block(test::block_scene(), test::block_mesh());
+  test::Random random(7);
+  SurfaceModel model;
+  model.announce(sim::SurfacePager(block, 0).state());
+  const std::uint32_t tiles = sim::SurfacePager(block, 0).pages().first_tile();
+  for (protocol::SurfacePage page : test::all_pages(block)) {
+    if (page.page >= tiles) {
+      for (float& value : page.values) value *= static_cast<float>(random.between(-3, 30));
+    }
+    model.take(page);
+  }
+  const Surface surface{.model = &model, .tool = {.radius = 0.005, .friction = 10}};
+  ContactOnPatch contact;
+  double most = 0;
+  int unanswered = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p(0.004 * std::sin(0.1 * i), 0.004 - 0.002 * std::sin(0.13 * i), 0.003 * std::cos(0.07 * i));
+    unanswered += contact.go(surface, p) ? 0 : 1;
+    most = std::max(most, contact.work());
+  }
+  CHECK(most <= ContactOnPatch::kMostWork);
+  CHECK(most > 0.2 * ContactOnPatch::kMostWork);  // else this says nothing
+  CHECK(unanswered > 0);
 }
