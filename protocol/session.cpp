@@ -71,14 +71,13 @@ ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Endpoint
   ++stats.received;
   auto member = std::find_if(members_.begin(), members_.end(),
                              [&](const Member& m) { return m.nonce == hello.nonce && m.endpoint == from; });
-  // Greetings alone keep no tool: only the first counts as heard.
   if (member == members_.end()) {
     const auto tool = free_tool();
     if (!tool) return {.answer = {{Header{}, Refuse{hello.nonce, RefuseReason::kNoFreeTool}}}};
-    member = members_.insert(
-        member,
-        {.session = fresh_id, .nonce = hello.nonce, .endpoint = from, .tool = *tool, .last_heard = now});
+    member =
+        members_.insert(member, {.session = fresh_id, .nonce = hello.nonce, .endpoint = from, .tool = *tool});
   }
+  member->last_heard = now;
   return {.answer = {{Header{member->session, ++member->sent},
                       Welcome{hello.nonce, member->tool, rate_hz_, radii_[member->tool]}}}};
 }

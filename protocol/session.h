@@ -72,7 +72,7 @@ class ServerSessions {
     std::uint64_t session = 0, nonce = 0, sent = 0;
     Endpoint endpoint{};
     std::uint8_t tool = 0;
-    Time last_heard{};  ///< its last ToolState, or its first Hello
+    Time last_heard{};
     ReplayWindow window{kFarthestState};
     NewestOnly ticks{};
   };

@@ -155,13 +155,3 @@ TEST_CASE(
     CHECK(order == "");
   }
 }
-
-TEST_CASE("session: greetings alone keep no tool") {
-  World world;
-  for (int i = 0; i < 10; ++i) {
-    world.server.receive({{}, Hello{.nonce = 7}}, {.port = 5}, world.now, 1000 + i, world.server_stats);
-    world.now += 500ms;
-    world.server.expire(world.now);
-    if (i % 2 == 1) CHECK(world.server.holder(0) == nullptr);
-  }
-}
