@@ -354,8 +354,8 @@ void ToolContact::predict(Eigen::Ref<Eigen::VectorXd> u) noexcept {
     moved.noalias() += patch_.compliance.block(0, 3 * node, size, 3) * (change.per_motion * motion);
   }
   predictor_.changes.clear();
-  // A surface that would go farther than the tool is about to snap, and then nothing is foretold of where to.
-  if (moved.cwiseAbs().maxCoeff() <= motion.norm()) u.head(size) += moved;
+  // A surface that would go much farther than the tool is about to snap, and nothing is foretold of where to.
+  if (moved.cwiseAbs().maxCoeff() <= 2 * motion.norm()) u.head(size) += moved;
 }
 
 void ToolContact::release(ToolTissue tissue) {
