@@ -20,10 +20,9 @@ std::uint64_t sum(const std::vector<CapturedLink>& links, Count count) {
 }  // namespace
 
 bool CapturedDirection::accept(std::uint64_t sequence) {
-  if (lowest == 0 && sequence > 0) window.begin_at(sequence);  // a capture may begin in mid-session
-  if (!window.accept(sequence, stats)) return false;
-  lowest = lowest == 0 ? sequence : std::min(lowest, sequence);
-  return true;
+  if (!begun && sequence > 0) window.begin_at(sequence);  // a capture may begin in mid-session
+  begun = begun || sequence > 0;
+  return window.accept(sequence, stats);
 }
 
 double CapturedRun::ticks_hz() const {

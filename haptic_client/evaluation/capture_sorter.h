@@ -20,7 +20,7 @@ constexpr bool sensible(Time t) {
 struct CapturedDirection {
   protocol::LinkStats stats{};
   protocol::ReplayWindow window{std::numeric_limits<std::uint64_t>::max()};  // a capture may have gaps
-  std::uint64_t lowest = 0;                                                  ///< number seen; 0: none
+  bool begun = false;
 
   /// False for one that the capture holds already.
   bool accept(std::uint64_t sequence);

@@ -20,7 +20,7 @@ class ContactOnPatch {
   };
   /// Multiplications that contact may take in one call: some 2 ms. Beyond, as where friction and a wild
   /// compliance leave no contact to be found, the call gives nothing, and so ends in time. One in a thousand
-  /// calls on a liver with friction takes more than a quarter of it.
+  /// calls on a block with friction takes more than a quarter of it.
   static constexpr double kMostWork = 4e6;
   explicit ContactOnPatch(const Accuracy& accuracy);
   ContactOnPatch() : ContactOnPatch(Accuracy{}) {}

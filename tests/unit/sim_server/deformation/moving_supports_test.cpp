@@ -16,6 +16,7 @@
 #include "sim_server/solvers/equilibrium.h"
 #include "tests/support/catch.h"
 #include "tests/support/dense_tissue.h"
+#include "tests/support/one_free_vertex.h"
 #include "tests/support/scenes.h"
 #include "tests/support/soft_block.h"
 #include "tests/support/solids.h"
@@ -72,33 +73,9 @@ struct Bench {
   const Vec3& at(std::size_t v) const { return mesh.vertices[surface.vertices[v]]; }
 };
 
-/// A block of which one vertex is free, in the middle of its top, shaken along an eigenvector of what holds
-/// that vertex: an oscillator of mass m and stiffness k on a base that moves.
-struct Oscillator {
-  TetMesh mesh = grid_block({-0.01, 0, 0.01}, {-0.01, 0}, {-0.01, 0, 0.01});
-  Scene scene = scene_of({.young_modulus = 5e3, .poisson_ratio = 0.3, .density = 1000},
-                         {Vec3(-1, -1, -1), Vec3(1, -0.005, 1)}, 0.005);
-  int vertex = 0;
-  double frequency = 0;  // rad/s
-  Vec3 direction;
-
+/// That vertex shaken along its softest direction, on a base that moves.
+struct Oscillator : OneFreeVertex {
   explicit Oscillator(std::string_view model) {
-    for (const double side : {-1.0, 1.0}) {
-      scene.fixed.push_back({{Box{Vec3(side - 0.995, -1, -1), Vec3(side + 0.995, 1, 1)}, "", "test"}});
-      scene.fixed.push_back({{Box{Vec3(-1, -1, side - 0.995), Vec3(1, 1, side + 0.995)}, "", "test"}});
-    }
-    while (mesh.vertices[vertex].norm() > 1e-9) ++vertex;
-    const Solid solid(mesh, *scene.material);
-    Mat3 k;
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<Vec3> x = solid.rest(), f(x.size());
-      x[vertex] += Vec3::Unit(axis);
-      solid.forces(x, f);
-      k.col(axis) = f[vertex];
-    }
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(k);
-    direction = eigen.eigenvectors().col(0);
-    frequency = std::sqrt(eigen.eigenvalues()[0] / solid.masses()[vertex]);
     scene.deformation.model = model;
     scene.deformation.of<RayleighDamping>().mass = 0.2 * frequency;
     scene.deformation.of<RayleighDamping>().stiffness = 0.3 / frequency;

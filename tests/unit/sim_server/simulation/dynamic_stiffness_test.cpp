@@ -1,16 +1,13 @@
 // A grasped vertex that is shaken, at 30 Hz, against its dynamic stiffness K - w^2 m + i w C.
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <complex>
 #include <numbers>
 
 #include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/rayleigh_damping.h"
-#include "sim_server/elasticity/solid.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
-#include "tests/support/scenes.h"
-#include "tests/support/solids.h"
+#include "tests/support/one_free_vertex.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -22,34 +19,9 @@ using Complex = std::complex<double>;
 
 constexpr double kTau = 2 * std::numbers::pi, kAmplitude = 1e-4, kPeriod = 1.0 / 30;  // m, s
 
-/// A block of which one vertex is free, held by a tool that moves it along an eigenvector of what holds it.
-struct HeldVertex {
-  TetMesh mesh = grid_block({-0.01, 0, 0.01}, {-0.01, 0}, {-0.01, 0, 0.01});
-  Scene scene = scene_of({.young_modulus = 5e3, .poisson_ratio = 0.3, .density = 1000},
-                         {Vec3(-1, -1, -1), Vec3(1, -0.005, 1)}, 0.005);
-  double stiffness = 0, mass = 0, frequency = 0;  // N/m, kg, rad/s
-  Vec3 direction;
-
+/// That vertex held by a tool that moves it along its softest direction.
+struct HeldVertex : OneFreeVertex {
   HeldVertex() {
-    for (const double side : {-1.0, 1.0}) {
-      scene.fixed.push_back({{Box{Vec3(side - 0.995, -1, -1), Vec3(side + 0.995, 1, 1)}, "", "test"}});
-      scene.fixed.push_back({{Box{Vec3(-1, -1, side - 0.995), Vec3(1, 1, side + 0.995)}, "", "test"}});
-    }
-    int vertex = 0;
-    while (mesh.vertices[vertex].norm() > 1e-9) ++vertex;
-    const Solid solid(mesh, *scene.material);
-    Mat3 k;
-    for (int axis = 0; axis < 3; ++axis) {
-      std::vector<Vec3> x = solid.rest(), f(x.size());
-      x[vertex] += Vec3::Unit(axis);
-      solid.forces(x, f);
-      k.col(axis) = f[vertex];
-    }
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(k);
-    direction = eigen.eigenvectors().col(0);
-    stiffness = eigen.eigenvalues()[0];
-    mass = solid.masses()[vertex];
-    frequency = std::sqrt(stiffness / mass);
     scene.rate_hz = 1 / kPeriod;
     scene.tools[0].grasp_place = Vec3::Zero();
     scene.deformation.model = "tensor_mass";
