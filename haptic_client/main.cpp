@@ -24,7 +24,8 @@ std::string list_of(const Table& table) {
 }
 
 struct Overrides {
-  std::string server, method, firmware;
+  std::string server, method, firmware, key;
+  bool insecure = false;
   std::vector<std::string> devices;
   std::optional<double> rate_hz;
 };
@@ -35,6 +36,8 @@ void apply(const Overrides& o, client::ClientConfig& config) {
     config.server = o.server;
     config.server_where = "--server";
   }
+  if (!o.key.empty()) config.key = o.key;
+  config.insecure = o.insecure;
   if (!o.firmware.empty()) config.device.falcon.firmware = o.firmware;
   if (!o.method.empty()) {
     find_row(client::extrapolators(), o.method, "method", "--method");
@@ -52,6 +55,8 @@ CLI::App* add_run(CLI::App& app, std::vector<std::string>& files, Overrides& ove
   command->add_option("CLIENT", files,
                       "Client file (TOML), one for each tool; without one, a hand that holds still");
   command->add_option("--server", overrides.server, "ADDR:PORT of sim_server (default 127.0.0.1:45130)");
+  command->add_option("--key", overrides.key, "File of the key that the server has; see `sim_server keygen`");
+  command->add_flag("--insecure", overrides.insecure, "Leave this machine without a key");
   command->add_option("--device", overrides.devices, "Device, see below; once for each tool")
       ->allow_extra_args(false);
   command->add_option("--falcon-firmware", overrides.firmware,

@@ -11,7 +11,7 @@ namespace palpate::protocol {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
-constexpr std::array<std::uint8_t, 3> kReserved{};
+constexpr std::array<std::uint8_t, 2> kReserved{};
 constexpr double kMaxMagnitude = 1e9;  // of any position, speed or force: beyond is a bug or an attack
 constexpr float kMaxAmplitude = 1e6F;  // of a mode, m sqrt(kg), and of its rate
 constexpr float kMaxPercent = 1e6F;    // of an error of a force
@@ -23,11 +23,14 @@ bool small(const Vec3& v) noexcept {
 bool valid(const Hello&) noexcept {
   return true;
 }
+bool valid(const Challenge&) noexcept {
+  return true;
+}
 bool valid(const Welcome& m) noexcept {
   return m.tool < kMaxTools && m.rate_hz >= 0 && m.rate_hz <= 1e6 && m.tool_radius > 0 && m.tool_radius <= 1;
 }
 bool valid(const Refuse& m) noexcept {
-  return m.reason == RefuseReason::kNoFreeTool || m.reason == RefuseReason::kUnknownSession;
+  return m.reason >= RefuseReason::kNoFreeTool && m.reason <= RefuseReason::kVersion;
 }
 bool valid(const Bye&) noexcept {
   return true;
@@ -92,6 +95,8 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
       // Unpadded, it could be answered with more bytes than it has: a lever for a stranger who forges
       // addresses.
       return payload.size() < kHelloPayload ? Verdict::kLength : read_as<Hello>(payload, out);
+    case MessageType::kChallenge:
+      return read_as<Challenge>(payload, out);
     case MessageType::kWelcome:
       return read_as<Welcome>(payload, out);
     case MessageType::kRefuse:
@@ -104,7 +109,6 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
       return read_as<ForceSample>(payload, out);
     case MessageType::kSurfacePage:
       return read_as<SurfacePage>(payload, out);
-    case MessageType::kChallenge:
     case MessageType::kTelemetry:
     case MessageType::kPointer:
       break;
@@ -129,22 +133,36 @@ std::size_t encode(const Header& header, const Message& message, std::span<std::
         }
         Writer front(out);
         front(kMagic), front(kProtocolVersion), front(M::kType), front(static_cast<std::uint16_t>(payload));
-        front(std::uint8_t{0}), front(kReserved), front(header.session), front(header.sequence);
+        front(std::uint8_t{0}), front(std::uint8_t{0}), front(kReserved), front(header.session),
+            front(header.sequence);
         return kHeaderBytes + payload;
       },
       message);
+}
+
+std::optional<OtherVersion> other_version(std::span<const std::byte> in) noexcept {
+  if (in.size() < kHeaderBytes) return {};
+  Reader reader(in);
+  std::array<std::uint8_t, 4> magic{};
+  OtherVersion other;
+  MessageType type{};
+  reader(magic), reader(other.version), reader(type);
+  if (magic != kMagic || other.version == kProtocolVersion) return {};
+  other.hello = type == MessageType::kHello && in.size() >= kHeaderBytes + kHelloPayload;
+  return other;
 }
 
 Verdict decode(std::span<const std::byte> in, Datagram& out) noexcept {
   if (in.size() < kHeaderBytes) return Verdict::kTooShort;
   Reader reader(in);
   std::array<std::uint8_t, 4> magic{};
-  std::array<std::uint8_t, 3> reserved{};
+  std::array<std::uint8_t, 2> reserved{};
   std::uint8_t version = 0, tag_bytes = 0;
   MessageType type{};
   std::uint16_t payload = 0;
   Header header;
-  reader(magic), reader(version), reader(type), reader(payload), reader(tag_bytes), reader(reserved);
+  reader(magic), reader(version), reader(type), reader(payload), reader(tag_bytes), reader(header.key),
+      reader(reserved);
   reader(header.session), reader(header.sequence);
   if (magic != kMagic) return Verdict::kNotOurs;
   if (version != kProtocolVersion) return Verdict::kVersion;
@@ -153,7 +171,7 @@ Verdict decode(std::span<const std::byte> in, Datagram& out) noexcept {
   Message message;
   const Verdict verdict = read_payload(type, in.subspan(kHeaderBytes, payload), message);
   if (verdict != Verdict::kAccepted) return verdict;
-  out = {header, message};
+  out = {header, message, in};
   return Verdict::kAccepted;
 }
 

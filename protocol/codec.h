@@ -1,12 +1,13 @@
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "protocol/messages.h"
 
 namespace palpate::protocol {
 
-constexpr std::uint8_t kProtocolVersion = 1;
+constexpr std::uint8_t kProtocolVersion = 2;
 constexpr std::size_t kHeaderBytes = 28;
 constexpr std::size_t kTagBytes = 16;       ///< room behind the payload for an authentication tag
 constexpr std::size_t kMaxDatagram = 1200;  ///< fits every path that carries IPv6
@@ -16,6 +17,7 @@ constexpr std::size_t kHelloPayload = 256;  ///< Hello is padded to this, more t
 struct Header {
   std::uint64_t session = 0;   ///< drawn by the server; 0 before there is one
   std::uint64_t sequence = 0;  ///< of this datagram from this sender in this session, from 1
+  std::uint8_t key = 0;        ///< read: the number of the key of its tag; written by `seal`
 };
 
 /// Why a datagram was refused. `kAccepted` means it was not.
@@ -28,17 +30,26 @@ enum class Verdict : std::uint8_t {
   kLength,     ///< lengths do not add up, or the payload is too short for its type
   kNotFinite,  ///< a NaN or an infinity
   kValue,      ///< a field outside its range
+  kTag,        ///< no tag of our key (from a session, not from `decode`)
 };
-constexpr std::size_t kVerdicts = 8;
+constexpr std::size_t kVerdicts = 9;
 
 struct Datagram {
   Header header;
   Message message;
+  std::span<const std::byte> bytes{};  ///< what it was read from; valid as long as those
 };
 
 /// Writes one datagram and returns its size, at most `kMaxDatagram`. `out` must hold that many bytes. No
 /// allocation.
 std::size_t encode(const Header& header, const Message& message, std::span<std::byte> out) noexcept;
+
+/// The version of a datagram of ours that is not of this one, and whether that is a Hello.
+struct OtherVersion {
+  std::uint8_t version = 0;
+  bool hello = false;
+};
+std::optional<OtherVersion> other_version(std::span<const std::byte> in) noexcept;
 
 /// Reads one datagram. `out` is written only when the verdict is `kAccepted`. Never reads beyond `in`, never
 /// allocates.

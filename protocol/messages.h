@@ -14,7 +14,7 @@ namespace palpate::protocol {
 /// Every message there is or is planned; the numbers never change.
 enum class MessageType : std::uint8_t {
   kHello = 1,         ///< client: let me in
-  kChallenge = 2,     ///< server: prove that you receive at your address (reserved)
+  kChallenge = 2,     ///< server: say this back, to show that you receive at your address
   kWelcome = 3,       ///< server: you are in
   kRefuse = 4,        ///< server: you are not, and why
   kBye = 5,           ///< either: I am leaving
@@ -28,37 +28,58 @@ enum class MessageType : std::uint8_t {
 enum class RefuseReason : std::uint8_t {
   kNoFreeTool = 1,      ///< every tool of the scene is in somebody's hand
   kUnknownSession = 2,  ///< the session is not (or no longer) known here: say Hello again
+  kVersion = 3,         ///< the server speaks only the version of this datagram
 };
+
+/// Drawn at random, once; on the wire 16 bytes.
+using Nonce = std::array<std::uint64_t, 2>;
+/// What a server says to an address, to hear it back from there; on the wire 16 bytes.
+using Cookie = std::array<std::uint64_t, 2>;
 
 struct Hello {
   static constexpr MessageType kType = MessageType::kHello;
-  std::uint64_t nonce = 0;  ///< drawn by the client once per run: tells its retries from a second client
-  std::array<std::uint64_t, 2> cookie = {};  ///< copy of the Challenge's; zero before one came
+  Nonce nonce = {};           ///< drawn by the client once per run: tells its retries from a second client
+  Cookie cookie = {};         ///< that of the newest Challenge; zero before one came
+  std::uint64_t attempt = 0;  ///< counts the Hellos of a run, so that no old answer passes for a new one
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.nonce), v(m.cookie);
+    v(m.nonce), v(m.cookie), v(m.attempt);
+  }
+};
+
+struct Challenge {
+  static constexpr MessageType kType = MessageType::kChallenge;
+  Nonce nonce = {};  ///< of the Hello this answers, as is:
+  std::uint64_t attempt = 0;
+  Cookie cookie = {};  ///< to be said in the next
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.nonce), v(m.attempt), v(m.cookie);
   }
 };
 
 struct Welcome {
   static constexpr MessageType kType = MessageType::kWelcome;
-  std::uint64_t nonce = 0;  ///< of the Hello this answers
-  std::uint8_t tool = 0;    ///< the tool of the scene this client holds
-  double rate_hz = 0;       ///< steps per second the server aims for; 0 = as fast as it can
-  double tool_radius = 0;   ///< m
+  Nonce nonce = {};  ///< of the Hello this answers, as is:
+  std::uint64_t attempt = 0;
+  Nonce server = {};       ///< drawn by the server for this session
+  std::uint8_t tool = 0;   ///< the tool of the scene this client holds
+  double rate_hz = 0;      ///< steps per second the server aims for; 0 = as fast as it can
+  double tool_radius = 0;  ///< m
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.nonce), v(m.tool), v(m.rate_hz), v(m.tool_radius);
+    v(m.nonce), v(m.attempt), v(m.server), v(m.tool), v(m.rate_hz), v(m.tool_radius);
   }
 };
 
 struct Refuse {
   static constexpr MessageType kType = MessageType::kRefuse;
-  std::uint64_t nonce = 0;  ///< of the Hello this answers; 0 when it answers something else
+  Nonce nonce = {};           ///< of the Hello this answers, as is:
+  std::uint64_t attempt = 0;  ///< (both 0 when it answers something else)
   RefuseReason reason = RefuseReason::kNoFreeTool;
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.nonce), v(m.reason);
+    v(m.nonce), v(m.attempt), v(m.reason);
   }
 };
 
@@ -205,6 +226,6 @@ struct SurfacePage {
   }
 };
 
-using Message = std::variant<Hello, Welcome, Refuse, Bye, ToolState, ForceSample, SurfacePage>;
+using Message = std::variant<Hello, Challenge, Welcome, Refuse, Bye, ToolState, ForceSample, SurfacePage>;
 
 }  // namespace palpate::protocol

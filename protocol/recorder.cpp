@@ -31,6 +31,15 @@ void Recorder::note(Time t, const Endpoint& from, const Endpoint& to,
   ring_.publish();
 }
 
+void Recorder::note_refused(Time t, const Endpoint& from, const Endpoint& to,
+                            std::span<const std::byte> bytes) noexcept {
+  if (refused_bucket_.take(t)) {
+    note(t, from, to, bytes);
+  } else {
+    ++refused_;
+  }
+}
+
 void Recorder::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     write_all();
@@ -63,7 +72,7 @@ void Recorder::name_it(const Packet& packet) noexcept {
 }
 
 Recorder::Stats Recorder::stats() const {
-  return {capture_.packets(), capture_.bytes(), noted_ - capture_.packets()};
+  return {capture_.packets(), capture_.bytes(), noted_ - capture_.packets(), refused_};
 }
 
 }  // namespace palpate::protocol

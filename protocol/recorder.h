@@ -6,6 +6,7 @@
 #include "common/report.h"
 #include "common/spsc_ring.h"
 #include "protocol/capture.h"
+#include "protocol/token_bucket.h"
 
 namespace palpate::protocol {
 
@@ -23,6 +24,10 @@ class Recorder {
   /// only; copies it, never waits. Bytes beyond the longest datagram of ours are not kept.
   void note(Time t, const Endpoint& from, const Endpoint& to, std::span<const std::byte> bytes) noexcept;
 
+  /// As above, one that was received and refused: a few a second are kept, so that nobody can fill the disk.
+  void note_refused(Time t, const Endpoint& from, const Endpoint& to,
+                    std::span<const std::byte> bytes) noexcept;
+
   /// Writes until asked to stop, then writes what is left. In a thread of its own.
   void run(const std::stop_token& stop) noexcept;
 
@@ -33,6 +38,7 @@ class Recorder {
     std::uint64_t packets = 0;  ///< in the file
     std::uint64_t bytes = 0;    ///< of the file
     std::uint64_t dropped = 0;  ///< noted, but not in the file
+    std::uint64_t refused = 0;  ///< of refused datagrams: not noted, as there were too many
   };
   /// What a recording takes while it runs.
   static constexpr std::size_t memory_bytes() { return kRoom * sizeof(Packet); }
@@ -58,7 +64,8 @@ class Recorder {
   CaptureWriter capture_;
   SpscRing<Packet> ring_;
   Time epoch_;  // monotonic 0, since 1970
-  std::uint64_t noted_ = 0;
+  std::uint64_t noted_ = 0, refused_ = 0;
+  TokenBucket refused_bucket_{20, 100};  // datagrams: 24 kB/s at most
 };
 
 }  // namespace palpate::protocol

@@ -4,48 +4,119 @@
 
 namespace palpate::protocol {
 
+namespace {
+
+std::size_t write_sealed(const Header& header, const Message& message, const Key& key,
+                         std::span<std::byte> out) noexcept {
+  return seal(out, encode(header, message, out), key);
+}
+
+/// Counts what has no tag of ours.
+bool reject(Verdict why, LinkStats& stats) noexcept {
+  ++stats.rejected;
+  ++stats.rejected_by[static_cast<std::size_t>(why)];
+  return false;
+}
+
+bool checked(const Datagram& datagram, const Key& key, LinkStats& stats) noexcept {
+  return authentic(datagram.bytes, key) || reject(Verdict::kTag, stats);
+}
+
+}  // namespace
+
+SessionKeys ClientSession::keys_for(const Nonce& server) const noexcept {
+  return {direction_key(shared_, Direction::kToClient, nonce_, server),
+          direction_key(shared_, Direction::kToServer, nonce_, server)};
+}
+
 std::optional<Hello> ClientSession::poll(Time now) noexcept {
-  if ((welcomed() && heard_lately(now)) || (last_hello_ && now - *last_hello_ < kHelloPeriod)) return {};
-  last_hello_ = now;
-  return Hello{.nonce = nonce_};
+  if (welcomed() && heard_lately(now)) return {};
+  if (!prompted_) {
+    if (last_hello_ && now - *last_hello_ < kHelloPeriod) return {};
+    last_hello_ = now;
+  }
+  prompted_ = false;
+  return Hello{nonce_, cookie_, ++attempts_};
+}
+
+std::size_t ClientSession::write(const Message& message, std::span<std::byte> out) noexcept {
+  if (std::holds_alternative<Hello>(message)) return write_sealed({}, message, hello_keys_.out, out);
+  return write_sealed(next_header(), message, current_.keys.out, out);
+}
+
+/// Whether it is the answer to one of the newest Hellos: an older one may be captured and sent again.
+bool ClientSession::answers_lately(const Nonce& nonce, std::uint64_t attempt) const noexcept {
+  return nonce == nonce_ && attempt <= attempts_ && attempt + kAnswered > attempts_;
+}
+
+/// Answered once for each Hello that was due, so that no two programs can keep each other busy.
+void ClientSession::challenged(const Challenge& challenge) noexcept {
+  cookie_ = challenge.cookie;
+  prompted_ = prompted_in_period_ != last_hello_;
+  prompted_in_period_ = last_hello_;
+}
+
+void ClientSession::welcomed_by(const Datagram& datagram, const Welcome& welcome, Time now,
+                                LinkStats& stats) noexcept {
+  // An older one, from a server that is gone; unless this one has been silent since.
+  const bool another = datagram.header.session != current_.session;
+  if (another && welcome.attempt <= welcomed_attempt_) return;
+  if (datagram.header.session == left_.session && heard_lately(now)) return;
+  welcomed_attempt_ = std::max(welcomed_attempt_, welcome.attempt);
+  last_heard_ = now;
+  refused_.reset();
+  if (another) {  // a new server, the first, or the one before
+    std::swap(current_, left_);
+    if (current_.session != datagram.header.session)
+      current_ = {.session = datagram.header.session, .keys = keys_for(welcome.server)};
+    welcome_ = welcome;
+  }
+  current_.window.accept(datagram.header.sequence, stats);
+}
+
+/// Without a key only: with one, a server that knows the session no more cannot say so, and silence does.
+void ClientSession::refused_by(const Datagram& datagram, const Refuse& refuse, LinkStats& stats) noexcept {
+  if (answers_lately(refuse.nonce, refuse.attempt)) {
+    if (checked(datagram, hello_keys_.in, stats)) refused_ = refuse.reason;
+  } else if (refuse.nonce == Nonce{} && !shared_ && welcomed() &&
+             datagram.header.session == current_.session) {
+    last_heard_.reset();  // forgotten there: ask at once
+  } else {
+    ++stats.rejected;
+  }
 }
 
 const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept {
-  if (const auto* welcome = std::get_if<Welcome>(&datagram.message); welcome && welcome->nonce == nonce_) {
-    // Late, from a server that is gone; unless this one has been silent since.
-    if (datagram.header.session == left_.session && heard_lately(now)) return nullptr;
-    last_heard_ = now;
-    refused_.reset();
-    if (datagram.header.session != current_.session) {  // a new server, the first, or the one before
-      std::swap(current_, left_);
-      if (current_.session != datagram.header.session) current_ = {.session = datagram.header.session};
-      welcome_ = *welcome;
-    }
-    current_.window.accept(datagram.header.sequence, stats);
+  if (const auto* challenge = std::get_if<Challenge>(&datagram.message);
+      challenge && answers_lately(challenge->nonce, challenge->attempt)) {
+    if (checked(datagram, hello_keys_.in, stats)) challenged(*challenge);
+    return nullptr;
+  }
+  if (const auto* welcome = std::get_if<Welcome>(&datagram.message);
+      welcome && answers_lately(welcome->nonce, welcome->attempt)) {
+    if (checked(datagram, hello_keys_.in, stats)) welcomed_by(datagram, *welcome, now, stats);
     return nullptr;
   }
   if (const auto* refuse = std::get_if<Refuse>(&datagram.message)) {
-    const bool to_hello = refuse->nonce == nonce_,
-               to_session = refuse->nonce == 0 && welcomed() && datagram.header.session == current_.session;
-    if (to_hello) refused_ = refuse->reason;
-    if (to_session) last_heard_.reset();  // forgotten there: ask at once
-    if (!to_hello && !to_session) ++stats.rejected;
+    refused_by(datagram, *refuse, stats);
     return nullptr;
   }
-  const bool mine = welcomed() && datagram.header.session == current_.session;
+  if (!welcomed() || datagram.header.session != current_.session) {
+    ++stats.rejected;
+    return nullptr;
+  }
+  if (!checked(datagram, current_.keys.in, stats)) return nullptr;
   if (const auto* sample = std::get_if<ForceSample>(&datagram.message);
-      sample && mine && sample->tool == welcome_.tool) {
+      sample && sample->tool == welcome_.tool) {
     if (!current_.window.accept(datagram.header.sequence, stats)) return nullptr;
     last_heard_ = now;
     return current_.samples.accept(sample->number, current_.window.in_order())
                ? &datagram.message
                : nullptr;  // the newest value wins
   }
-  if (const auto* page = std::get_if<SurfacePage>(&datagram.message);
-      page && mine && page->tool == welcome_.tool) {
+  if (const auto* page = std::get_if<SurfacePage>(&datagram.message); page && page->tool == welcome_.tool)
     return current_.window.accept(datagram.header.sequence, stats) ? &datagram.message : nullptr;
-  }
-  if (std::holds_alternative<Bye>(datagram.message) && mine) {
+  if (std::holds_alternative<Bye>(datagram.message)) {
     last_heard_.reset();
     return nullptr;
   }
@@ -66,47 +137,91 @@ std::optional<std::uint8_t> ServerSessions::free_tool() noexcept {
   return {};
 }
 
-ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Endpoint& from, Time now,
-                                              std::uint64_t fresh_id, LinkStats& stats) {
+/// The key by which a datagram says it is sealed; without keys the one that is none; null: we have no such.
+const Key* ServerSessions::key_of(const Datagram& datagram) const noexcept {
+  static constexpr Key kNone{};
+  if (keys_.empty()) return &kNone;
+  const auto found = std::find_if(keys_.begin(), keys_.end(),
+                                  [&](const Key& key) { return key.number == datagram.header.key; });
+  return found == keys_.end() ? nullptr : &*found;
+}
+
+ServerSessions::Outcome ServerSessions::greet(const Datagram& datagram, const Hello& hello,
+                                              const Endpoint& from, Time now, const Fresh& fresh,
+                                              LinkStats& stats) {
+  const Key* const shared = key_of(datagram);
+  if (shared == nullptr ||
+      !authentic(datagram.bytes, direction_key(*shared, Direction::kToServer, hello.nonce, {}))) {
+    reject(Verdict::kTag, stats);
+    return {};
+  }
   ++stats.received;
-  auto member = std::find_if(members_.begin(), members_.end(),
-                             [&](const Member& m) { return m.nonce == hello.nonce && m.endpoint == from; });
+  Outcome outcome = cookies_.valid(hello.cookie, hello.nonce, from, now)
+                        ? admit(hello, *shared, from, now, fresh)
+                        : Outcome{.answer = {{Header{}, Challenge{hello.nonce, hello.attempt,
+                                                                  cookies_.make(hello.nonce, from, now)}}}};
+  outcome.key = direction_key(*shared, Direction::kToClient, hello.nonce, {});
+  return outcome;
+}
+
+/// A known client hears its Welcome again, and is not kept by that: only tool states keep a tool.
+ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Key& shared, const Endpoint& from,
+                                              Time now, const Fresh& fresh) {
+  auto member = std::find_if(members_.begin(), members_.end(), [&](const Member& m) {
+    return m.nonce == hello.nonce && (m.endpoint == from || !keys_.empty());
+  });
   if (member == members_.end()) {
     const auto tool = free_tool();
-    if (!tool) return {.answer = {{Header{}, Refuse{hello.nonce, RefuseReason::kNoFreeTool}}}};
-    member =
-        members_.insert(member, {.session = fresh_id, .nonce = hello.nonce, .endpoint = from, .tool = *tool});
+    if (!tool) return {.answer = {{Header{}, Refuse{hello.nonce, hello.attempt, RefuseReason::kNoFreeTool}}}};
+    member = members_.insert(
+        member, {.session = fresh.session,
+                 .nonce = hello.nonce,
+                 .server_nonce = fresh.nonce,
+                 .tool = *tool,
+                 .last_heard = now,
+                 .keys = {direction_key(shared, Direction::kToServer, hello.nonce, fresh.nonce),
+                          direction_key(shared, Direction::kToClient, hello.nonce, fresh.nonce)}});
   }
-  member->last_heard = now;
+  member->endpoint = from;
   return {.answer = {{Header{member->session, ++member->sent},
-                      Welcome{hello.nonce, member->tool, rate_hz_, radii_[member->tool]}}}};
+                      Welcome{hello.nonce, hello.attempt, member->server_nonce, member->tool, rate_hz_,
+                              radii_[member->tool]}}}};
+}
+
+/// Without a key a client is told that its session is unknown here, with less than what it sent.
+ServerSessions::Outcome ServerSessions::unknown(const Datagram& datagram, LinkStats& stats) const {
+  ++stats.rejected;
+  if (!keys_.empty() || !std::holds_alternative<ToolState>(datagram.message)) return {};
+  return {.answer = {{Header{datagram.header.session, 1}, Refuse{{}, 0, RefuseReason::kUnknownSession}}}};
+}
+
+std::size_t ServerSessions::write(Member& member, const Message& message, std::span<std::byte> out) noexcept {
+  return write_sealed({member.session, ++member.sent}, message, member.keys.out, out);
 }
 
 ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const Endpoint& from, Time now,
-                                                std::uint64_t fresh_id, LinkStats& stats) {
+                                                const Fresh& fresh, LinkStats& stats) {
   if (const auto* hello = std::get_if<Hello>(&datagram.message))
-    return admit(*hello, from, now, fresh_id, stats);
+    return greet(datagram, *hello, from, now, fresh, stats);
   const auto found = std::find_if(members_.begin(), members_.end(), [&](const Member& m) {
-    return m.session == datagram.header.session && m.endpoint == from;
+    return m.session == datagram.header.session && (m.endpoint == from || !keys_.empty());
   });
-  const auto* tool_state = std::get_if<ToolState>(&datagram.message);
-  if (found == members_.end()) {
-    ++stats.rejected;
-    if (tool_state == nullptr) return {};
-    return {.answer = {{Header{datagram.header.session, 1}, Refuse{0, RefuseReason::kUnknownSession}}}};
-  }
+  if (found == members_.end()) return unknown(datagram, stats);
+  if (!checked(datagram, found->keys.in, stats)) return {};
   if (std::holds_alternative<Bye>(datagram.message)) {
     if (!found->window.accept(datagram.header.sequence, stats)) return {};
     left_ = *found;
     members_.erase(found);
     return {.left = &left_};
   }
+  const auto* tool_state = std::get_if<ToolState>(&datagram.message);
   if (tool_state == nullptr || tool_state->tool != found->tool) {
     ++stats.rejected;
     return {};
   }
   if (!found->window.accept(datagram.header.sequence, stats)) return {};
   found->last_heard = now;
+  if (found->window.in_order()) found->endpoint = from;  // another one only with a key
   if (!found->ticks.accept(tool_state->tick, found->window.in_order())) return {};  // the newest value wins
   return {.tool_state = tool_state};
 }

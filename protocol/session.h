@@ -1,42 +1,42 @@
 #pragma once
 /// Who talks to whom: the two ends of a session as pure state machines (protocol/STATES.md). Time is an
 /// argument.
-#include <array>
-#include <compare>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/ages.h"
-#include "protocol/codec.h"
+#include "protocol/auth.h"
 #include "protocol/replay_window.h"
 
 namespace palpate::protocol {
 
-/// An IP address and port, in network order of bytes.
-struct Endpoint {
-  std::array<std::uint8_t, 16> address{};  ///< IPv4 in the first four
-  std::uint16_t port = 0;
-  bool v6 = false;
-  auto operator<=>(const Endpoint&) const = default;
+/// The keys of both directions, as one end needs them; none: nothing is authenticated.
+struct SessionKeys {
+  Key in, out;
 };
 
 /// The client's end. Asks until welcomed; asks again, without giving up what it has, when the server falls
-/// silent.
+/// silent. With a key it obeys nothing without the tag of that key.
 class ClientSession {
  public:
-  /// `nonce`: drawn once per run of the program.
-  explicit ClientSession(std::uint64_t nonce) : nonce_(nonce) {}
+  /// `nonce`: drawn once per run of the program. `shared`: the key of both ends, or none.
+  explicit ClientSession(const Nonce& nonce, const Key& shared = {})
+      : nonce_(nonce), shared_(shared), hello_keys_(keys_for({})) {}
 
-  /// A Hello to send now, if one is due. Call often (every 50 ms will do).
+  /// A Hello to send now, if one is due. Call often (every 50 ms will do), and after each datagram that came.
   std::optional<Hello> poll(Time now) noexcept;
 
-  /// A decoded datagram came. Returns its message if that is a force sample of this session and the newest so
-  /// far, or a page of the surface for it; everything else is taken care of here. `stats` gets what was
-  /// received, lost, doubled or rejected.
+  /// A datagram that `decode` accepted came. Returns its message if that is a force sample of this session
+  /// and the newest so far, or a page of the surface for it; everything else is taken care of here. `stats`
+  /// gets what was received, lost, doubled or rejected.
   const Message* receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept;
 
   /// Header of the next datagram to send in this session.
   Header next_header() noexcept { return {current_.session, ++current_.sent}; }
+  /// Writes a message as the next datagram to send, with its header and tag; returns its size. `out` holds
+  /// `kMaxDatagram` bytes.
+  std::size_t write(const Message& message, std::span<std::byte> out) noexcept;
 
   bool welcomed() const noexcept { return current_.session != 0; }
   const Welcome& welcome() const noexcept { return welcome_; }
@@ -44,7 +44,8 @@ class ClientSession {
   std::optional<RefuseReason> refused() const noexcept { return refused_; }
 
   static constexpr Time kHelloPeriod = std::chrono::milliseconds(250);
-  static constexpr Time kSilence = kOutage;             ///< without a sample: ask again
+  static constexpr std::uint64_t kAnswered = 4;  ///< of the newest Hellos: an answer takes a second at most
+  static constexpr Time kSilence = kOutage;      ///< without a sample: ask again
   static constexpr std::uint64_t kFarthestSample = 24;  ///< datagrams ahead: 0.8 s at 30 steps a second
 
  private:
@@ -53,43 +54,73 @@ class ClientSession {
   /// Numbers go on where they were should a session that was left come back.
   struct Numbered {
     std::uint64_t session = 0, sent = 0;
+    SessionKeys keys{};
     NewestOnly samples{};
     ReplayWindow window{kFarthestSample};
   };
+  SessionKeys keys_for(const Nonce& server) const noexcept;
+  bool answers_lately(const Nonce& nonce, std::uint64_t attempt) const noexcept;
+  void challenged(const Challenge& challenge) noexcept;
+  void welcomed_by(const Datagram& datagram, const Welcome& welcome, Time now, LinkStats& stats) noexcept;
+  void refused_by(const Datagram& datagram, const Refuse& refuse, LinkStats& stats) noexcept;
+
   Numbered current_, left_;
-  std::uint64_t nonce_;
+  Nonce nonce_;
+  Cookie cookie_{};
+  std::uint64_t attempts_ = 0, welcomed_attempt_ = 0;  // Hellos said, and that which the session answers
+  Key shared_;
+  SessionKeys hello_keys_;
+  bool prompted_ = false;                   // a Challenge came that is to be answered at once
+  std::optional<Time> prompted_in_period_;  // `last_hello_` when one last was
   Welcome welcome_;
   std::optional<RefuseReason> refused_;
   std::optional<Time> last_hello_, last_heard_;
 };
 
 /// The server's end: who holds which tool. A client program holds one tool per session; sessions from one
-/// address differ in their nonces.
+/// address differ in their nonces. Nobody is remembered before he has said a cookie back, and nobody keeps a
+/// tool who sends no tool states. With keys nothing is obeyed without a tag, and a session goes on where its
+/// client's address changes.
 class ServerSessions {
  public:
   static constexpr std::uint64_t kFarthestState = 100;  ///< datagrams ahead: 1 s of the slowest client
   struct Member {
-    std::uint64_t session = 0, nonce = 0, sent = 0;
+    std::uint64_t session = 0, sent = 0;
+    Nonce nonce{}, server_nonce{};
     Endpoint endpoint{};
     std::uint8_t tool = 0;
-    Time last_heard{};
+    Time last_heard{};  ///< a tool state, or its beginning
+    SessionKeys keys{};
     ReplayWindow window{kFarthestState};
     NewestOnly ticks{};
   };
   /// What came of a datagram: an answer to send back, or a tool state newer than all before.
   struct Outcome {
     std::optional<std::pair<Header, Message>> answer{};
+    Key key{};  ///< of the answer
     const ToolState* tool_state = nullptr;
     const Member* left = nullptr;  ///< said Bye; valid until the next call
   };
 
-  /// `tool_radii`: of each tool of the scene, m.
-  ServerSessions(double rate_hz, std::vector<double> tool_radii)
-      : rate_hz_(rate_hz), radii_(std::move(tool_radii)) {}
+  /// Random numbers for a session, should one begin; `session` not 0.
+  struct Fresh {
+    std::uint64_t session = 0;
+    Nonce nonce{};
+  };
 
-  /// A decoded datagram came. `fresh_id`: a random number, used if this opens a session.
-  Outcome receive(const Datagram& datagram, const Endpoint& from, Time now, std::uint64_t fresh_id,
+  /// `tool_radii`: of each tool of the scene, m. `secret`: of the cookies, drawn once per run. `keys`: any of
+  /// which a client may have; none: all may speak.
+  ServerSessions(double rate_hz, std::vector<double> tool_radii, const Cookies::Secret& secret = {},
+                 std::vector<Key> keys = {})
+      : rate_hz_(rate_hz), radii_(std::move(tool_radii)), cookies_(secret), keys_(std::move(keys)) {}
+
+  /// A datagram that `decode` accepted came.
+  Outcome receive(const Datagram& datagram, const Endpoint& from, Time now, const Fresh& fresh,
                   LinkStats& stats);
+
+  /// Writes a message as the next datagram to a member, with its header and tag; returns its size. `out`
+  /// holds `kMaxDatagram` bytes.
+  static std::size_t write(Member& member, const Message& message, std::span<std::byte> out) noexcept;
 
   /// Drops and returns members not heard for `kTimeout`.
   std::vector<Member> expire(Time now);
@@ -101,11 +132,17 @@ class ServerSessions {
   static constexpr Time kTimeout = std::chrono::milliseconds(800);
 
  private:
-  Outcome admit(const Hello& hello, const Endpoint& from, Time now, std::uint64_t fresh_id, LinkStats& stats);
+  Outcome greet(const Datagram& datagram, const Hello& hello, const Endpoint& from, Time now,
+                const Fresh& fresh, LinkStats& stats);
+  Outcome admit(const Hello& hello, const Key& shared, const Endpoint& from, Time now, const Fresh& fresh);
+  Outcome unknown(const Datagram& datagram, LinkStats& stats) const;
+  const Key* key_of(const Datagram& datagram) const noexcept;
   std::optional<std::uint8_t> free_tool() noexcept;
 
   double rate_hz_;
   std::vector<double> radii_;
+  Cookies cookies_;
+  std::vector<Key> keys_;
   std::vector<Member> members_;
   Member left_;
 };

@@ -3,6 +3,7 @@
 
 #include "common/program.h"
 #include "sim_server/commands/explain.h"
+#include "sim_server/commands/keygen.h"
 #include "sim_server/commands/mesh_info.h"
 #include "sim_server/commands/record.h"
 #include "sim_server/commands/run.h"
@@ -40,13 +41,17 @@ CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
       ->add_option("--listen", options.listen,
                    "ADDR:PORT to listen on (UDP); 0.0.0.0:45130 for other machines")
       ->capture_default_str();
+  command->add_option("--key", options.key,
+                      "File of keys; clients need one of them, see `sim_server keygen`");
+  command->add_flag("--insecure", options.insecure, "Serve other machines without a key");
   command->add_option("--seconds", options.seconds, "Stop after so many seconds");
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
   command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
   add_cache_or_none(command, options.cache);
   command->footer(
       models() +
-      "Example: sim_server run configs/scenes/liver.toml --listen 0.0.0.0:45130 --report server.json");
+      "Examples: sim_server run configs/scenes/liver.toml --report server.json\n"
+      "          sim_server run configs/scenes/liver.toml --listen 0.0.0.0:45130 --key palpate.key");
   return command;
 }
 
@@ -175,6 +180,21 @@ CLI::App* add_mesh_info(CLI::App& app, std::string& file) {
   return info;
 }
 
+struct KeygenOptions {
+  std::string file;
+  bool add = false;
+};
+
+CLI::App* add_keygen(CLI::App& app, KeygenOptions& options) {
+  auto* command = app.add_subcommand("keygen", "Make a key, so that only who has it can push the motors");
+  command->add_option("FILE", options.file, "Key file to make, for both programs")->required();
+  command->add_flag("--add", options.add, "Put a new key behind those in FILE, to change keys");
+  command->footer(
+      "Without a key, both programs talk on this machine only.\n"
+      "Example: sim_server keygen palpate.key");
+  return command;
+}
+
 /// `cache list` and `cache clear`.
 std::pair<CLI::App*, CLI::App*> add_cache(CLI::App& app, sim::CacheOptions& options) {
   auto* cache = app.add_subcommand("cache", "What set-ups have computed, kept on disk");
@@ -228,9 +248,12 @@ int run(int argc, char** argv) {
   sim::CacheOptions cached;
   const auto* study = add_study(app, studying, cached);
   const auto* mesh_info = add_mesh_info(app, mesh_file);
+  KeygenOptions making;
+  const auto* keygen = add_keygen(app, making);
   const auto [list, clear] = add_cache(app, cached);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*mesh_info) return sim::print_mesh_info(mesh_file);
+  if (*keygen) return sim::make_key(making.file, making.add);
   if (*list) return sim::list_cache(cached);
   if (*clear) return sim::clear_cache(cached);
   if (*explain) {

@@ -95,6 +95,7 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   ClientConfig client;
   client.server = config.text("server", client.server);
   client.server_where = config.where("server");
+  if (config.has("key")) client.key = config.file("key");
   client.rate_hz = config.number("rate_hz", {kMinRate, kMaxRate, "Hz"}, client.rate_hz);
   client.method = config.text("method", client.method);
   client.method_where = config.where("method");

@@ -14,8 +14,10 @@ namespace palpate::client {
 /// What a client file asks for; every key has a default.
 struct ClientConfig {
   std::string server = "127.0.0.1:45130", server_where = "default";
-  double rate_hz = 500;                ///< haptic ticks per second, [100, 4000]
-  std::string method = "best_recent";  ///< a name of `extrapolators()`
+  std::optional<std::filesystem::path> key;  ///< file of the key that the server has, too
+  bool insecure = false;                     ///< leave this machine without one
+  double rate_hz = 500;                      ///< haptic ticks per second, [100, 4000]
+  std::string method = "best_recent";        ///< a name of `extrapolators()`
   std::string method_where = "default";
   /// Laws that run beside it and are scored, and the chosen one with them; absent: the paper's three and
   /// that; empty: none.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <unistd.h>
 
 #include "common/ages.h"
@@ -15,6 +14,7 @@
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/session/client_report.h"
 #include "haptic_client/session/trace.h"
+#include "protocol/key_file.h"
 
 namespace palpate::client {
 namespace {
@@ -23,11 +23,6 @@ constexpr int kPriority = 80;
 constexpr double kTraceSeconds = 60;
 constexpr Time kWelcomePatience = std::chrono::seconds(5);
 constexpr int kMostStandstills = 30;  // looks of 100 ms
-
-std::uint64_t random_number() {
-  std::random_device device;
-  return (std::uint64_t{device()} << 32 | device()) | 1;
-}
 
 /// Ticks a second: as asked for, or what the device serves if that is less.
 double rate_of(const ClientConfig& config) {
@@ -44,7 +39,13 @@ protocol::Endpoint server_of(const ClientConfig& config) {
   const protocol::Endpoint server = protocol::resolve(config.server, config.server_where);
   if (server.port == 0)
     fail("{}: \"{}\": a server has a port from 1 to 65535", config.server_where, config.server);
+  protocol::require_key(server, config.key.has_value(), config.insecure, config.server_where);
   return server;
+}
+
+/// The newest of its file.
+protocol::Key key_of(const ClientConfig& config) {
+  return config.key ? protocol::read_keys(*config.key).back() : protocol::Key{};
 }
 
 }  // namespace
@@ -64,7 +65,7 @@ HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::stri
       socket_(protocol::Endpoint{.v6 = server_.v6}),
       recorder_(files.record ? std::make_unique<protocol::Recorder>(*files.record) : nullptr),
       recording_(recorder_.get()),
-      link_(socket_, server_, mailboxes_, random_number(), recorder_.get()) {
+      link_(socket_, server_, mailboxes_, key_of(config), recorder_.get()) {
   pipeline_.ask_for(observation_.scoring().wants());
   pipeline_.ask_for({.errors = true});
 }
@@ -94,13 +95,21 @@ bool HeldTool::connect() {
           "them, or add a [[tool]] to its scene",
           name_, config_.server);
     }
+    if (const int version = link_.other_version; version != 0) {
+      fail_at_run_time(
+          "the server at {} speaks version {} of the protocol, this program version {}; install the same "
+          "release of both",
+          config_.server, version, protocol::kProtocolVersion);
+    }
     if (const int reason = link_.unsendable; reason != 0) {
       fail_at_run_time(
           "nothing can be sent to {}: {}; is the address right, and this machine in the same network?",
           config_.server, std::generic_category().message(reason));
     }
-    fail_at_run_time("no answer from a server at {} within 5 s; is `sim_server run` up, and UDP open there?",
-                     config_.server);
+    fail_at_run_time(
+        "no answer from a server at {} within 5 s; is `sim_server run` up, {}and UDP open there?",
+        config_.server,
+        config_.key ? "with the same key, " : "without a key (or give it here: --key FILE), ");
   }
   log::info("{}connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", name_, config_.server,
             config_.device.name, rate_of(config_), config_.method);

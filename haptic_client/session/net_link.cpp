@@ -6,14 +6,18 @@ namespace palpate::client {
 using protocol::Endpoint;
 using protocol::Verdict;
 
+namespace {
+constexpr int kPatientTimers = 6;  // 300 ms; the server gives a tool up after 800 without a state
+}
+
 NetLink::NetLink(protocol::UdpSocket& socket, const Endpoint& server, HapticMailboxes& mailboxes,
-                 std::uint64_t nonce, protocol::Recorder* recorder)
+                 const protocol::Key& key, protocol::Recorder* recorder)
     : socket_(socket),
       server_(server),
       own_(socket.local_towards(server)),
       recorder_(recorder),
       mailboxes_(mailboxes),
-      session_(nonce) {}
+      session_(protocol::random_value<protocol::Nonce>(), key) {}
 
 void NetLink::run() {
   on_timer();
@@ -22,42 +26,63 @@ void NetLink::run() {
                .on_doorbell = [this] { on_tool_states(); },
                .on_timer = [this] { on_timer(); }});
   on_tool_states();  // of the last ticks, whose bell nobody answered
-  if (session_.welcomed()) send(session_.next_header(), protocol::Bye{});
+  if (session_.welcomed()) send(protocol::Bye{});
 }
 
 void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from) {
   const Time t = now();
-  if (recorder_ != nullptr) recorder_->note(t, from, own_, bytes);
+  const std::uint64_t rejected = stats_.rejected;
   protocol::Datagram datagram;
+  const protocol::Message* message = nullptr;
   const Verdict verdict = from == server_ ? protocol::decode(bytes, datagram) : Verdict::kNotOurs;
-  if (verdict != Verdict::kAccepted) {
+  if (verdict == Verdict::kAccepted) {
+    message = session_.receive(datagram, t, stats_);
+  } else {
     ++stats_.rejected;
     ++stats_.rejected_by[static_cast<std::size_t>(verdict)];
-    return;
+    if (const auto other = protocol::other_version(bytes); other && verdict == Verdict::kVersion)
+      other_version = other->version;
   }
-  if (const protocol::Message* message = session_.receive(datagram, t, stats_)) {
+  if (recorder_ != nullptr) {
+    if (stats_.rejected == rejected) {
+      recorder_->note(t, from, own_, bytes);
+    } else {
+      recorder_->note_refused(t, from, own_, bytes);
+    }
+  }
+  if (message != nullptr) {
     if (const auto* sample = std::get_if<protocol::ForceSample>(message)) mailboxes_.force.write(*sample);
     if (const auto* page = std::get_if<protocol::SurfacePage>(message)) mailboxes_.pages.push(*page);
   }
   welcomed = session_.welcomed();
   refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
+  greet();
 }
 
 void NetLink::on_tool_states() {
-  for (protocol::ToolState state; mailboxes_.tool.pop(state);) {
+  for (protocol::ToolState state; mailboxes_.tool.pop(state); ticking_ = true) {
     if (!session_.welcomed()) continue;
     state.tool = session_.welcome().tool;
-    send(session_.next_header(), state);
+    send(state);
   }
 }
 
+/// A tool that waits long for others to be let in, before its first tick, is kept by states that say nothing
+/// of a place.
 void NetLink::on_timer() {
-  if (const auto hello = session_.poll(now())) send({}, *hello);
+  greet();
+  if (!session_.welcomed() || ticking_ || ++idle_timers_ < kPatientTimers) return;
+  send(protocol::ToolState{
+      .tool = session_.welcome().tool, .tick = 1, .flags = protocol::ToolState::kDeviceLost});
 }
 
-void NetLink::send(const protocol::Header& header, const protocol::Message& message) {
+void NetLink::greet() {
+  if (const auto hello = session_.poll(now())) send(*hello);
+}
+
+void NetLink::send(const protocol::Message& message) {
   std::array<std::byte, protocol::kMaxDatagram> bytes;
-  const std::size_t size = protocol::encode(header, message, bytes);
+  const std::size_t size = session_.write(message, bytes);
   if (recorder_ != nullptr) recorder_->note(now(), own_, server_, {bytes.data(), size});
   if (const std::error_code failed = socket_.send({bytes.data(), size}, server_)) {
     unsendable = failed.value();

@@ -10,9 +10,9 @@ namespace palpate::client {
 /// The network thread of the client: tool states out, force samples in, the session kept alive.
 class NetLink {
  public:
-  /// `nonce`: a random number, drawn once per run. `recorder`: gets every datagram; may be null.
+  /// `key`: that of the server, or none. `recorder`: gets every datagram; may be null.
   NetLink(protocol::UdpSocket& socket, const protocol::Endpoint& server, HapticMailboxes& mailboxes,
-          std::uint64_t nonce, protocol::Recorder* recorder);
+          const protocol::Key& key, protocol::Recorder* recorder);
 
   /// Serves until `stop`, then says Bye.
   void run();
@@ -25,6 +25,8 @@ class NetLink {
   /// For a watching thread: whether a server ever let us in, and why the last one did not (0: no answer).
   std::atomic<bool> welcomed{false};
   std::atomic<int> refused{0};
+  /// The version of the protocol that the server speaks, if that is not ours.
+  std::atomic<int> other_version{0};
   /// `errno` of the newest datagram, if the system would not send it: there is no way to the server.
   std::atomic<int> unsendable{0};
 
@@ -32,13 +34,16 @@ class NetLink {
   void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
   void on_tool_states();
   void on_timer();
-  void send(const protocol::Header& header, const protocol::Message& message);
+  void greet();
+  void send(const protocol::Message& message);
 
   protocol::UdpSocket& socket_;
   protocol::Endpoint server_, own_;
   protocol::Recorder* recorder_;
   HapticMailboxes& mailboxes_;
   protocol::ClientSession session_;
+  bool ticking_ = false;  // tool states have come from the haptic loop
+  int idle_timers_ = 0;   // looks at the session before that
   protocol::LinkStats stats_;
 };
 

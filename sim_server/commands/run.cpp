@@ -1,7 +1,6 @@
 #include "sim_server/commands/run.h"
 
 #include <nlohmann/json.hpp>
-#include <random>
 #include <thread>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 #include "common/realtime.h"
 #include "common/report.h"
 #include "common/text.h"
+#include "protocol/key_file.h"
 #include "protocol/recording_report.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
@@ -232,9 +232,11 @@ void warn_if_coarse(const ErrorOfForce& errors, const Simulation& simulation, co
   }
 }
 
-std::uint64_t random_seed() {
-  std::random_device device;
-  return std::uint64_t{device()} << 32 | device();
+/// A socket that other machines may reach is for those with a key.
+protocol::UdpSocket open_socket(const ServerOptions& options) {
+  const protocol::Endpoint endpoint = protocol::resolve(options.listen, "--listen");
+  protocol::require_key(endpoint, options.key.has_value(), options.insecure, "--listen");
+  return protocol::UdpSocket(endpoint);
 }
 
 }  // namespace
@@ -246,7 +248,8 @@ int run_server(const ServerOptions& options) {
                     {"--report", options.report},
                     {"--record", options.record}});
   if (options.report) check_writable(*options.report, Contents::kReport);
-  protocol::UdpSocket socket(protocol::resolve(options.listen, "--listen"));
+  const auto keys = options.key ? protocol::read_keys(*options.key) : std::vector<protocol::Key>{};
+  protocol::UdpSocket socket = open_socket(options);
   const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;
   const Time begin = now();
   SetupTimes progress{ProgressLine()};
@@ -265,7 +268,9 @@ int run_server(const ServerOptions& options) {
   }
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools, errors);
-  NetLink link(socket, {scene.rate_hz, radii}, std::move(pagers), mailboxes, random_seed(), recorder.get());
+  protocol::ServerSessions sessions(scene.rate_hz, radii, protocol::random_value<protocol::Cookies::Secret>(),
+                                    keys);
+  NetLink link(socket, std::move(sessions), std::move(pagers), mailboxes, recorder.get());
   const Time start = now();
   {
     std::jthread recording;

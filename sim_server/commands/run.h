@@ -11,6 +11,8 @@ namespace palpate::sim {
 struct ServerOptions {
   std::filesystem::path scene;
   std::string listen = "127.0.0.1:45130";
+  std::optional<std::filesystem::path> key;     ///< file of the keys of which clients must have one
+  bool insecure = false;                        ///< serve other machines without
   std::optional<double> seconds;                ///< stop after so long; absent: at Ctrl-C
   std::optional<std::filesystem::path> report;  ///< JSON written at the end
   std::optional<std::filesystem::path> record;  ///< capture of every datagram

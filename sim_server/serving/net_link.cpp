@@ -1,5 +1,7 @@
 #include "sim_server/serving/net_link.h"
 
+#include <algorithm>
+
 #include "common/clock.h"
 
 namespace palpate::sim {
@@ -7,44 +9,73 @@ using protocol::Datagram;
 using protocol::Endpoint;
 using protocol::Verdict;
 
+namespace {
+
+/// A client of ours asks for one page a millisecond; a megabyte a second carries two.
+constexpr double kPagesPerSecond = 2000, kPagesAtOnce = 32;
+
+/// What a session would begin with.
+protocol::ServerSessions::Fresh fresh_for(const Datagram& datagram) {
+  if (!std::holds_alternative<protocol::Hello>(datagram.message)) return {};
+  return {protocol::random_value<std::uint64_t>() | 1, protocol::random_value<protocol::Nonce>()};
+}
+
+}  // namespace
+
 NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions,
-                 std::vector<SurfacePager> pagers, SimMailboxes& mailboxes, std::uint64_t seed,
-                 protocol::Recorder* recorder)
+                 std::vector<SurfacePager> pagers, SimMailboxes& mailboxes, protocol::Recorder* recorder)
     : socket_(socket),
       recorder_(recorder),
       sessions_(std::move(sessions)),
       pagers_(std::move(pagers)),
       mailboxes_(mailboxes),
-      random_(seed) {}
+      page_buckets_(pagers_.size(), {kPagesPerSecond, kPagesAtOnce}) {}
 
 void NetLink::run() {
   socket_.run(mailboxes_.bell, std::chrono::milliseconds(50),
               {.on_datagram = [this](auto bytes, const Endpoint& from) { on_datagram(bytes, from); },
                .on_doorbell = [this] { on_forces(); },
                .on_timer = [this] { on_timer(); }});
-  for (auto member : sessions_.members())
-    send({member.session, ++member.sent}, protocol::Bye{}, member.endpoint);
+  for (auto member : sessions_.members()) send(member, protocol::Bye{});
 }
 
 void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from) {
   const Time t = now();
-  if (recorder_ != nullptr) recorder_->note(t, from, own_towards(from), bytes);
+  const std::uint64_t rejected = stats_.rejected;
+  // Before any answer to it, as a reader of the capture expects.
+  const auto record = [&](bool ours) {
+    if (recorder_ == nullptr) return;
+    if (ours) {
+      recorder_->note(t, from, own_towards(from), bytes);
+    } else {
+      recorder_->note_refused(t, from, own_towards(from), bytes);
+    }
+  };
   Datagram datagram;
   if (const Verdict verdict = protocol::decode(bytes, datagram); verdict != Verdict::kAccepted) {
-    ++stats_.rejected;
-    ++stats_.rejected_by[static_cast<std::size_t>(verdict)];
-    return;
+    record(false);
+    return refuse(verdict, bytes, from);
   }
   const std::size_t before = sessions_.members().size();
-  const auto outcome = sessions_.receive(datagram, from, t, random_() | 1, stats_);
+  const auto outcome = sessions_.receive(datagram, from, t, fresh_for(datagram), stats_);
+  record(stats_.rejected == rejected);
   // A new member stands at the end.
   if (sessions_.members().size() > before) ++tools[sessions_.members().back().tool].so_far;
   note_holders();
-  if (outcome.answer) send(outcome.answer->first, outcome.answer->second, from);
+  answer(outcome, from);
   if (outcome.left != nullptr) tool_is_free(outcome.left->tool);
   if (outcome.tool_state == nullptr) return;
   pass_on(datagram.header.session, *outcome.tool_state);
-  send_pages(*outcome.tool_state);
+  send_pages(*outcome.tool_state, t);
+}
+
+/// Who says Hello in another version is told which one is spoken here.
+void NetLink::refuse(Verdict verdict, std::span<const std::byte> bytes, const Endpoint& to) {
+  ++stats_.rejected;
+  ++stats_.rejected_by[static_cast<std::size_t>(verdict)];
+  const auto other = protocol::other_version(bytes);
+  if (other && other->hello)
+    answer({.answer = {{{}, protocol::Refuse{{}, 0, protocol::RefuseReason::kVersion}}}}, to);
 }
 
 /// To the simulation, with the path that led there in this session.
@@ -58,15 +89,17 @@ void NetLink::pass_on(std::uint64_t session, const protocol::ToolState& state) {
   mailboxes_.tools[state.tool].input.write(input);
 }
 
-/// The pages it asks for, if they are of the surface that we have; what is lost will be asked for again.
-void NetLink::send_pages(const protocol::ToolState& state) {
+/// The pages it asks for, each once, if they are of the surface that we have; what is lost, or too much at
+/// once, will be asked for again.
+void NetLink::send_pages(const protocol::ToolState& state, Time t) {
   SurfacePager& pager = pagers_[state.tool];
   if ((state.flags & protocol::ToolState::kAsksPages) == 0 || state.surface_version != pager.state().version)
     return;
   auto* const member = sessions_.holder(state.tool);
   protocol::SurfacePage page;
-  for (const std::uint32_t number : state.pages) {
-    if (pager.page(number, page)) send({member->session, ++member->sent}, page, member->endpoint);
+  for (auto number = state.pages.begin(); number != state.pages.end(); ++number) {
+    if (std::find(state.pages.begin(), number, *number) != number) continue;
+    if (pager.page(*number, page) && page_buckets_[state.tool].take(t)) send(*member, page);
   }
 }
 
@@ -76,7 +109,7 @@ void NetLink::on_forces() {
     if (!mailboxes.force.read(output)) continue;
     auto* member = sessions_.holder(output.sample.tool);
     if (member == nullptr || member->session != output.session) continue;
-    send({member->session, ++member->sent}, output.sample, member->endpoint);
+    send(*member, output.sample);
   }
 }
 
@@ -104,11 +137,21 @@ const Endpoint& NetLink::own_towards(const Endpoint& peer) {
   return own_;
 }
 
-void NetLink::send(const protocol::Header& header, const protocol::Message& message, const Endpoint& to) {
+void NetLink::send(protocol::ServerSessions::Member& member, const protocol::Message& message) {
   std::array<std::byte, protocol::kMaxDatagram> bytes;
-  const std::size_t size = protocol::encode(header, message, bytes);
-  if (recorder_ != nullptr) recorder_->note(now(), own_towards(to), to, {bytes.data(), size});
-  if (!socket_.send({bytes.data(), size}, to)) ++stats_.sent;
+  send({bytes.data(), protocol::ServerSessions::write(member, message, bytes)}, member.endpoint);
+}
+
+void NetLink::answer(const protocol::ServerSessions::Outcome& outcome, const Endpoint& to) {
+  if (!outcome.answer) return;
+  std::array<std::byte, protocol::kMaxDatagram> bytes;
+  const std::size_t size = protocol::encode(outcome.answer->first, outcome.answer->second, bytes);
+  send({bytes.data(), protocol::seal(bytes, size, outcome.key)}, to);
+}
+
+void NetLink::send(std::span<const std::byte> bytes, const Endpoint& to) {
+  if (recorder_ != nullptr) recorder_->note(now(), own_towards(to), to, bytes);
+  if (!socket_.send(bytes, to)) ++stats_.sent;
 }
 
 }  // namespace palpate::sim

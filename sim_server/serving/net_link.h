@@ -1,6 +1,5 @@
 #pragma once
 #include <atomic>
-#include <random>
 
 #include "protocol/recorder.h"
 #include "protocol/udp_socket.h"
@@ -12,9 +11,9 @@ namespace palpate::sim {
 /// The network thread of the server: datagrams in, sessions kept, forces out.
 class NetLink {
  public:
-  /// `pagers`: of each tool. `seed` draws the session numbers. `recorder`: gets every datagram; may be null.
+  /// `pagers`: of each tool. `recorder`: gets every datagram; may be null.
   NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, std::vector<SurfacePager> pagers,
-          SimMailboxes& mailboxes, std::uint64_t seed, protocol::Recorder* recorder);
+          SimMailboxes& mailboxes, protocol::Recorder* recorder);
 
   /// Serves until `stop`, then says Bye to every member.
   void run();
@@ -32,13 +31,16 @@ class NetLink {
 
  private:
   void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
+  void refuse(protocol::Verdict verdict, std::span<const std::byte> bytes, const protocol::Endpoint& to);
   void on_forces();
   void pass_on(std::uint64_t session, const protocol::ToolState& state);
-  void send_pages(const protocol::ToolState& state);
+  void send_pages(const protocol::ToolState& state, Time t);
   void note_holders();
   void on_timer();
   void tool_is_free(std::uint8_t tool);
-  void send(const protocol::Header& header, const protocol::Message& message, const protocol::Endpoint& to);
+  void send(protocol::ServerSessions::Member& member, const protocol::Message& message);
+  void answer(const protocol::ServerSessions::Outcome& outcome, const protocol::Endpoint& to);
+  void send(std::span<const std::byte> bytes, const protocol::Endpoint& to);
 
   const protocol::Endpoint& own_towards(const protocol::Endpoint& peer);
 
@@ -48,8 +50,8 @@ class NetLink {
   protocol::ServerSessions sessions_;
   std::vector<SurfacePager> pagers_;
   SimMailboxes& mailboxes_;
-  std::array<SessionInput, kMaxTools> inputs_;  // of each tool, the newest
-  std::mt19937_64 random_;
+  std::array<SessionInput, kMaxTools> inputs_;       // of each tool, the newest
+  std::vector<protocol::TokenBucket> page_buckets_;  // of each tool
   protocol::LinkStats stats_;
 };
 

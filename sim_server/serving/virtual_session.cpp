@@ -128,7 +128,7 @@ void VirtualSession::deliver(Time t) {
 }
 
 void VirtualSession::keep_session(Time t) {
-  if (const auto hello = client_.poll(t)) to_server({}, *hello, t);
+  while (const auto hello = client_.poll(t)) to_server({}, *hello, t);
 }
 
 /// What the client lacks of it by now, around where the tool is, in the frame of the organ at rest.
@@ -188,7 +188,7 @@ Datagram VirtualSession::travel(const Endpoint& from, const Endpoint& to, const 
 
 void VirtualSession::to_server(const Header& header, const Message& message, Time t) {
   const auto outcome =
-      server_.receive(travel(kClient, kServer, header, message, t), kClient, t, session_, server_stats_);
+      server_.receive(travel(kClient, kServer, header, message, t), kClient, t, {session_}, server_stats_);
   if (outcome.answer) to_client(outcome.answer->first, outcome.answer->second, t);
 }
 

@@ -74,7 +74,7 @@ class VirtualSession {
   protocol::CaptureWriter& capture_;
   protocol::ServerSessions server_;
   std::uint64_t session_;
-  protocol::ClientSession client_{1};
+  protocol::ClientSession client_{protocol::Nonce{1}};
   protocol::LinkStats server_stats_, client_stats_;
   std::deque<OnTheWay> on_the_way_;
   SurfacePager pager_;

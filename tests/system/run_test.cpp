@@ -186,7 +186,8 @@ TEST_CASE("no server: exit 1 after 5 s with what to look at, port in use: exit 1
   CHECK(output_of("haptic_client", client_arguments("127.0.0.1:9", {}), 1)
             .find("no answer from a server at 127.0.0.1:9") != std::string::npos);
   // The limited broadcast: the system refuses to send there.
-  const std::string nowhere = output_of("haptic_client", client_arguments("255.255.255.255:9", {}), 1);
+  const std::string nowhere =
+      output_of("haptic_client", client_arguments("255.255.255.255:9", {"--insecure"}), 1);
   CHECK_THAT(nowhere, Catch::Contains("nothing can be sent to 255.255.255.255:9: "));
   Server server;
   CHECK(output_of("sim_server", {"run", kScene, "--listen", server.address}, 1).find("is in use") !=

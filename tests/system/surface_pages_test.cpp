@@ -37,7 +37,7 @@ struct Asker {
   }
   void tick() {
     const palpate::Time now = palpate::now();
-    if (const auto hello = session.poll(now)) send({}, *hello);
+    if (const auto hello = session.poll(now)) send(*hello);
     if (!session.welcomed()) return;
     ToolState state{.tick = ++ticks, .t_ns = now.count(), .p_W = {-0.02, 0.1, 0}};
     state.flags = ToolState::kWantsSurface;
@@ -47,17 +47,17 @@ struct Asker {
       state.surface_version = wrong ? version ^ 2 : version;
       for (std::uint32_t i = 0; i < 8; ++i) state.pages[i] = (wrong ? 8 : 0) + i;
     }
-    send(session.next_header(), state);
+    send(state);
     if (came.size() >= 8 || ticks > 2000) socket.stop();
   }
-  void send(const Header& header, const Message& message) {
+  void send(const Message& message) {
     std::array<std::byte, kMaxDatagram> bytes;
-    socket.send({bytes.data(), encode(header, message, bytes)}, server);
+    socket.send({bytes.data(), session.write(message, bytes)}, server);
   }
 
   UdpSocket socket{resolve("127.0.0.1:0", "test")};
   Endpoint server;
-  ClientSession session{77};
+  ClientSession session{Nonce{77}};
   LinkStats stats;
   std::uint64_t ticks = 0, asked = 0;
   std::uint32_t version = 0;

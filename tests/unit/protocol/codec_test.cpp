@@ -80,9 +80,9 @@ std::vector<Message> one_of_each() {
   SurfacePage page{.tool = 1, .version = 0xa1b2c3d4, .page = 0x0708};
   page.values.front() = 0.5F;
   page.values.back() = -2;
-  return {Hello{.nonce = 42},
-          Welcome{42, 1, 30, 0.005},
-          Refuse{42, RefuseReason::kNoFreeTool},
+  return {Hello{.nonce = {42}, .attempt = 5},
+          Welcome{{42}, 5, {43, 44}, 1, 30, 0.005},
+          Refuse{{42}, 5, RefuseReason::kNoFreeTool},
           Bye{},
           tool,
           force,
@@ -93,29 +93,38 @@ std::vector<Message> one_of_each() {
           page,
           with_errors,
           among_others,
-          swinging};
+          swinging,
+          Challenge{{42}, 5, {45, 46}}};
 }
 
 }  // namespace
 
 TEST_CASE("golden bytes: written down by hand from protocol/README.md") {
   const auto front = [](const char* type, const char* payload) {
-    return std::string("504c5054") + "01" + type + payload +
+    return std::string("504c5054") + "02" + type + payload +
            "00"
            "000000"
            "8877665544332211"
            "0700000000000000";
   };
   const auto messages = one_of_each();
-  CHECK(hex(encoded(kHeader, messages[0])) ==
-        front("01", "0001") + "2a00000000000000" + std::string(2 * 248, '0'));
-  CHECK(hex(encoded(kHeader, messages[1])) == front("03", "1900") +
-                                                  "2a00000000000000"
+  CHECK(hex(encoded(kHeader, messages[0])) == front("01", "0001") + "2a00000000000000" +
+                                                  std::string(2 * 24, '0') + "0500000000000000" +
+                                                  std::string(2 * 216, '0'));
+  CHECK(hex(encoded(kHeader, messages[14])) == front("02", "2800") +
+                                                   "2a000000000000000000000000000000"
+                                                   "0500000000000000"
+                                                   "2d000000000000002e00000000000000");
+  CHECK(hex(encoded(kHeader, messages[1])) == front("03", "3900") +
+                                                  "2a000000000000000000000000000000"
+                                                  "0500000000000000"
+                                                  "2b000000000000002c00000000000000"
                                                   "01"
                                                   "0000000000003e40"
                                                   "7b14ae47e17a743f");
-  CHECK(hex(encoded(kHeader, messages[2])) == front("04", "0900") +
-                                                  "2a00000000000000"
+  CHECK(hex(encoded(kHeader, messages[2])) == front("04", "1900") +
+                                                  "2a000000000000000000000000000000"
+                                                  "0500000000000000"
                                                   "01");
   CHECK(hex(encoded(kHeader, messages[3])) == front("05", "0000"));
   CHECK(hex(encoded(kHeader, messages[4])) == front("06", "6d00") +
@@ -283,7 +292,7 @@ TEST_CASE("each reason of refusal") {
   };
   const Bytes force = encoded(kHeader, one_of_each()[5]);
   CHECK(verdict_of(force, [](Bytes& b) { b[0] = std::byte{'Q'}; }) == Verdict::kNotOurs);
-  CHECK(verdict_of(force, [](Bytes& b) { b[4] = std::byte{2}; }) == Verdict::kVersion);
+  CHECK(verdict_of(force, [](Bytes& b) { b[4] = std::byte{1}; }) == Verdict::kVersion);
   CHECK(verdict_of(force, [](Bytes& b) { b[5] = std::byte{99}; }) == Verdict::kType);
   CHECK(verdict_of(force, [](Bytes& b) { b[5] = static_cast<std::byte>(MessageType::kTelemetry); }) ==
         Verdict::kType);
@@ -356,9 +365,9 @@ TEST_CASE("a tag behind the payload, and fields a later version adds, do not dis
 }
 
 TEST_CASE("a Hello without its padding is refused: it could be answered with more bytes than it has") {
-  Bytes bytes = encoded({}, Hello{.nonce = 1});
-  bytes.resize(kHeaderBytes + 24);
-  bytes[6] = std::byte{24};
+  Bytes bytes = encoded({}, Hello{.nonce = {1}});
+  bytes.resize(kHeaderBytes + 40);
+  bytes[6] = std::byte{40};
   bytes[7] = std::byte{0};
   Datagram datagram;
   CHECK(decode(bytes, datagram) == Verdict::kLength);
@@ -366,7 +375,8 @@ TEST_CASE("a Hello without its padding is refused: it could be answered with mor
 
 TEST_CASE("no reply is larger than the Hello that asked for it") {
   const std::size_t hello = encoded({}, Hello{}).size();
-  for (const std::size_t reply : {1u, 2u, 3u}) CHECK(encoded(kHeader, one_of_each()[reply]).size() < hello);
+  for (const std::size_t reply : {1u, 2u, 3u, 14u})
+    CHECK(encoded(kHeader, one_of_each()[reply]).size() < hello);
 }
 
 TEST_CASE("random bytes never crash the decoder") {

@@ -17,11 +17,11 @@ const Endpoint kClient{.port = 1000};
 
 /// Both ends and what happens between them, in virtual time, a tick of the client every 10 ms.
 struct World {
-  ClientSession client{42};
+  ClientSession client{Nonce{42}};
   ServerSessions server{30, {0.005}};
   LinkStats client_stats, server_stats;
   Time now = 10s;
-  std::uint64_t tick = 0, sample = 0, fresh = 100;
+  std::uint64_t tick = 0, sample = 0, fresh = 100, attempts = 0;
   int states_passed = 0, samples_passed = 0;  // since `count`
   std::optional<Datagram> first_welcome, old_state, old_sample;
 
@@ -30,7 +30,7 @@ struct World {
     samples_passed += message != nullptr && std::holds_alternative<ForceSample>(*message) ? 1 : 0;
   }
   void to_server(const Datagram& datagram, bool answers_arrive = true) {
-    const auto outcome = server.receive(datagram, kClient, now, ++fresh, server_stats);
+    const auto outcome = server.receive(datagram, kClient, now, {++fresh}, server_stats);
     states_passed += outcome.tool_state != nullptr ? 1 : 0;
     if (!outcome.answer || !answers_arrive) return;
     const Datagram answer{outcome.answer->first, outcome.answer->second};
@@ -41,7 +41,10 @@ struct World {
   void pass(Time span, bool up = true, bool down = true) {
     for (Time end = now + span; now < end; now += kTick) {
       ++tick;
-      if (const auto hello = client.poll(now); hello && up) to_server({{}, *hello}, down);
+      while (const auto hello = client.poll(now)) {
+        attempts = hello->attempt;
+        if (up) to_server({{}, *hello}, down);
+      }
       if (client.welcomed()) {
         const Datagram state{client.next_header(), ToolState{.tick = tick}};
         if (!old_state) old_state = state;
@@ -79,7 +82,7 @@ std::vector<Event> events() {
        }},
       {"the client is told that its session is unknown",
        [](World& w) {
-         w.to_client({{w.of_client(), 1}, Refuse{0, RefuseReason::kUnknownSession}});
+         w.to_client({{w.of_client(), 1}, Refuse{{}, 0, RefuseReason::kUnknownSession}});
        }},
       {"a Bye to the client",
        [](World& w) {
@@ -95,7 +98,7 @@ std::vector<Event> events() {
        }},
       {"a Welcome of nobody",
        [](World& w) {
-         w.to_client({{9, 1}, Welcome{42, 0, 30, 0.005}});
+         w.to_client({{9, 1}, Welcome{{42}, w.attempts, {}, 0, 30, 0.005}});
        }},
       {"an old tool state once more",
        [](World& w) {

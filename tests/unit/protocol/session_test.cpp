@@ -10,23 +10,42 @@ namespace {
 
 const Endpoint kClient{.port = 1000}, kOther{.port = 2000};
 
+/// All Hellos that are due, and what answers them. Returns the last answer, if there was a Hello.
+std::optional<Message> greet(ServerSessions& server, ClientSession& client, const Endpoint& from, Time now,
+                             std::uint64_t fresh_id, LinkStats& server_stats, LinkStats& client_stats) {
+  std::optional<Message> last;
+  while (const auto hello = client.poll(now)) {
+    const auto outcome = server.receive({{}, *hello}, from, now, {fresh_id}, server_stats);
+    REQUIRE(outcome.answer);
+    client.receive({outcome.answer->first, outcome.answer->second}, now, client_stats);
+    last = outcome.answer->second;
+  }
+  return last;
+}
+
+/// Says Hello with the cookie that a server gives to `from`, and returns its answer.
+ServerSessions::Outcome greet_as(std::uint64_t nonce, ServerSessions& server, const Endpoint& from, Time now,
+                                 std::uint64_t fresh_id, LinkStats& stats) {
+  Hello hello{.nonce = {nonce}};
+  const auto first = server.receive({{}, hello}, from, now, {fresh_id}, stats);
+  REQUIRE(first.answer);
+  hello.cookie = std::get<Challenge>(first.answer->second).cookie;
+  return server.receive({{}, hello}, from, now, {fresh_id}, stats);
+}
+
 /// Both ends joined by hand, in virtual time.
 struct Pair {
-  ClientSession client{42};
+  ClientSession client{Nonce{42}};
   ServerSessions server{30, {0.005}};
   LinkStats client_stats, server_stats;
   Time now = 10s;
 
-  /// One Hello there and the answer back.
+  /// A Hello there and the answer back, where a cookie is wanted once more.
   void shake_hands(std::uint64_t fresh_id = 77) {
-    const auto hello = client.poll(now);
-    REQUIRE(hello);
-    const auto outcome = server.receive({{}, *hello}, kClient, now, fresh_id, server_stats);
-    REQUIRE(outcome.answer);
-    client.receive({outcome.answer->first, outcome.answer->second}, now, client_stats);
+    REQUIRE(greet(server, client, kClient, now, fresh_id, server_stats, client_stats));
   }
   ServerSessions::Outcome send_tool(std::uint64_t tick) {
-    return server.receive(Datagram{client.next_header(), ToolState{.tick = tick}}, kClient, now, 0,
+    return server.receive(Datagram{client.next_header(), ToolState{.tick = tick}}, kClient, now, {},
                           server_stats);
   }
   const Message* send_force(std::uint64_t number, Datagram& datagram) {
@@ -45,8 +64,8 @@ TEST_CASE("Hello, Welcome, tool states and forces") {
   CHECK(pair.client.welcomed());
   CHECK(pair.client.welcome().tool_radius == 0.005);
   const Datagram tool{pair.client.next_header(), ToolState{.tick = 1}};
-  CHECK(pair.server.receive(tool, kClient, pair.now, 0, pair.server_stats).tool_state != nullptr);
-  CHECK(pair.server.receive(tool, kClient, pair.now, 0, pair.server_stats).tool_state ==
+  CHECK(pair.server.receive(tool, kClient, pair.now, {}, pair.server_stats).tool_state != nullptr);
+  CHECK(pair.server.receive(tool, kClient, pair.now, {}, pair.server_stats).tool_state ==
         nullptr);  // a duplicate
   Datagram datagram;
   CHECK(pair.send_force(1, datagram) != nullptr);
@@ -68,8 +87,11 @@ TEST_CASE("the client asks every 250 ms until welcomed, and again after 300 ms o
 
 TEST_CASE("a lost Welcome: the same client asking again gets the same session") {
   Pair pair;
-  const auto hello = pair.client.poll(pair.now);
-  pair.server.receive({{}, *hello}, kClient, pair.now, 77, pair.server_stats);  // the answer is lost
+  const auto challenge =
+      pair.server.receive({{}, *pair.client.poll(pair.now)}, kClient, pair.now, {77}, pair.server_stats);
+  pair.client.receive({challenge.answer->first, challenge.answer->second}, pair.now, pair.client_stats);
+  pair.server.receive({{}, *pair.client.poll(pair.now)}, kClient, pair.now, {77},
+                      pair.server_stats);  // the answer is lost
   pair.now += 250ms;
   pair.shake_hands(78);
   CHECK(pair.server.members().size() == 1);
@@ -79,9 +101,7 @@ TEST_CASE("a lost Welcome: the same client asking again gets the same session") 
 TEST_CASE("a second client is refused with the reason, and let in when the first is gone for 800 ms") {
   Pair pair;
   pair.shake_hands();
-  const auto ask = [&] {
-    return pair.server.receive({{}, Hello{.nonce = 9}}, kOther, pair.now, 99, pair.server_stats).answer;
-  };
+  const auto ask = [&] { return greet_as(9, pair.server, kOther, pair.now, 99, pair.server_stats).answer; };
   auto answer = ask();
   REQUIRE(answer);
   CHECK(std::get<Refuse>(answer->second).reason == RefuseReason::kNoFreeTool);
@@ -126,12 +146,12 @@ TEST_CASE("Bye frees the tool at once, strangers' datagrams are counted, not obe
   Pair pair;
   pair.shake_hands();
   const Header theirs{77, 1};
-  CHECK(pair.server.receive({theirs, Bye{}}, kOther, pair.now, 0, pair.server_stats).left == nullptr);
-  CHECK(pair.server.receive({{123, 1}, ToolState{.tick = 1}}, kClient, pair.now, 0, pair.server_stats)
+  CHECK(pair.server.receive({theirs, Bye{}}, kOther, pair.now, {}, pair.server_stats).left == nullptr);
+  CHECK(pair.server.receive({{123, 1}, ToolState{.tick = 1}}, kClient, pair.now, {}, pair.server_stats)
             .tool_state == nullptr);
   CHECK(pair.server_stats.rejected == 2);
   const auto outcome =
-      pair.server.receive({pair.client.next_header(), Bye{}}, kClient, pair.now, 0, pair.server_stats);
+      pair.server.receive({pair.client.next_header(), Bye{}}, kClient, pair.now, {}, pair.server_stats);
   CHECK(outcome.left != nullptr);
   CHECK(pair.server.members().empty());
   CHECK(pair.client.receive({{5, 1}, ForceSample{.number = 1}}, pair.now, pair.client_stats) == nullptr);
@@ -140,25 +160,23 @@ TEST_CASE("Bye frees the tool at once, strangers' datagrams are counted, not obe
 
 TEST_CASE("a late Welcome of a session that was left does not bring it back") {
   Pair pair;
-  const auto hello = pair.client.poll(pair.now);
-  const auto first = pair.server.receive({{}, *hello}, kClient, pair.now, 77, pair.server_stats);
-  pair.client.receive({first.answer->first, first.answer->second}, pair.now, pair.client_stats);
+  pair.shake_hands(77);
+  const Header header{77, pair.server.holder(0)->sent};
+  const Welcome welcome = pair.client.welcome();
   pair.server = ServerSessions(30, {0.005});  // restarted
   pair.now += 400ms;
   pair.shake_hands(88);
-  pair.client.receive({first.answer->first, first.answer->second}, pair.now, pair.client_stats);
+  pair.client.receive({header, welcome}, pair.now, pair.client_stats);
   CHECK(pair.send_tool(1).tool_state != nullptr);
 }
 
 TEST_CASE("two sessions from one address hold a tool each, with its radius, apart from each other") {
   ServerSessions server(30, {0.005, 0.003});
-  ClientSession left(1), right(2);
+  ClientSession left(Nonce{1}), right(Nonce{2});
   LinkStats of_left, of_right, stats;
   Time now = 10s;
   const auto join = [&](ClientSession& client, LinkStats& of_client, std::uint64_t id) {
-    const auto outcome = server.receive({{}, *client.poll(now)}, kClient, now, id, stats);
-    REQUIRE(outcome.answer);
-    client.receive({outcome.answer->first, outcome.answer->second}, now, of_client);
+    REQUIRE(greet(server, client, kClient, now, id, stats, of_client));
   };
   join(left, of_left, 77);
   join(right, of_right, 88);
@@ -168,7 +186,7 @@ TEST_CASE("two sessions from one address hold a tool each, with its radius, apar
   CHECK(right.welcome().tool == 1);
   CHECK(right.welcome().tool_radius == 0.003);
   // A third device there is refused; asking again with a known nonce is not.
-  const auto third = server.receive({{}, Hello{.nonce = 3}}, kClient, now, 99, stats);
+  const auto third = greet_as(3, server, kClient, now, 99, stats);
   CHECK(std::get<Refuse>(third.answer->second).reason == RefuseReason::kNoFreeTool);
   now += 400ms;
   join(right, of_right, 111);
@@ -177,25 +195,25 @@ TEST_CASE("two sessions from one address hold a tool each, with its radius, apar
   // Sequences and ticks are each session's own, and nobody speaks for the other's tool.
   for (ClientSession* client : {&left, &right}) {
     const ToolState state{.tool = client->welcome().tool, .tick = 1};
-    CHECK(server.receive({client->next_header(), state}, kClient, now, 0, stats).tool_state != nullptr);
+    CHECK(server.receive({client->next_header(), state}, kClient, now, {}, stats).tool_state != nullptr);
   }
-  CHECK(server.receive({left.next_header(), ToolState{.tool = 1, .tick = 2}}, kClient, now, 0, stats)
+  CHECK(server.receive({left.next_header(), ToolState{.tool = 1, .tick = 2}}, kClient, now, {}, stats)
             .tool_state == nullptr);
   CHECK(stats.rejected == 1);
 
   // One leaves: the other stays, and the free tool goes to who asks next.
-  const auto outcome = server.receive({left.next_header(), Bye{}}, kClient, now, 0, stats);
+  const auto outcome = server.receive({left.next_header(), Bye{}}, kClient, now, {}, stats);
   REQUIRE(outcome.left != nullptr);
   CHECK(outcome.left->tool == 0);
   CHECK(server.holder(1)->session == 88);
-  CHECK(server.receive({right.next_header(), ToolState{.tool = 1, .tick = 2}}, kClient, now, 0, stats)
+  CHECK(server.receive({right.next_header(), ToolState{.tool = 1, .tick = 2}}, kClient, now, {}, stats)
             .tool_state != nullptr);
-  const auto next = server.receive({{}, Hello{.nonce = 3}}, kClient, now, 99, stats);
+  const auto next = greet_as(3, server, kClient, now, 99, stats);
   CHECK(std::get<Welcome>(next.answer->second).tool == 0);
 
   // One falls silent: only that one is given up.
   now += 799ms;
-  server.receive({right.next_header(), ToolState{.tool = 1, .tick = 3}}, kClient, now, 0, stats);
+  server.receive({right.next_header(), ToolState{.tool = 1, .tick = 3}}, kClient, now, {}, stats);
   now += 1ms;
   const auto gone = server.expire(now);
   REQUIRE(gone.size() == 1);

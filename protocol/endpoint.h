@@ -1,0 +1,16 @@
+#pragma once
+#include <array>
+#include <compare>
+#include <cstdint>
+
+namespace palpate::protocol {
+
+/// An IP address and port, in network order of bytes.
+struct Endpoint {
+  std::array<std::uint8_t, 16> address{};  ///< IPv4 in the first four
+  std::uint16_t port = 0;
+  bool v6 = false;
+  auto operator<=>(const Endpoint&) const = default;
+};
+
+}  // namespace palpate::protocol

@@ -1,0 +1,23 @@
+#include "sim_server/commands/keygen.h"
+
+#include <fmt/core.h>
+
+#include "protocol/key_file.h"
+
+namespace palpate::sim {
+
+int make_key(const std::filesystem::path& file, bool add) {
+  const protocol::Key key = protocol::add_new_key(file, add);
+  fmt::print(
+      "key {} is in {} (mode 0600). Copy the file to the other machine by a safe way (scp -p), and give "
+      "both\n"
+      "programs --key {}. {}\n",
+      key.number, file.string(), file.string(),
+      add ? "Servers that have the file take all of its keys, clients use the newest; start both again, "
+            "then\n"
+            "delete the lines of old keys."
+          : "`sim_server keygen --add` changes it later.");
+  return 0;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,254 @@
+// Sessions with a key, as bytes over a network that anybody can write to.
+#include <functional>
+#include <vector>
+
+#include "protocol/session.h"
+#include "tests/support/catch.h"
+#include "tests/support/random.h"
+
+using namespace palpate;
+using namespace palpate::protocol;
+using namespace std::chrono_literals;
+
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+const Endpoint kClient{.address = {10, 0, 0, 1}, .port = 1000},
+    kStranger{.address = {10, 0, 0, 9}, .port = 9};
+const Key kKey{.number = 1, .bytes = {1, 2, 3}}, kNewer{.number = 2, .bytes = {4, 5, 6}},
+    kWrong{.number = 1, .bytes = {1, 2, 4}};
+
+/// Both ends, and all that passed between them.
+struct Network {
+  explicit Network(const Key& of_client = kKey, std::vector<Key> of_server = {kKey, kNewer})
+      : client(Nonce{42}, of_client), server(30, {0.005}, {7}, std::move(of_server)) {}
+
+  Bytes from_client(const Message& message) {
+    Bytes bytes(kMaxDatagram);
+    bytes.resize(client.write(message, bytes));
+    up.push_back(bytes);
+    return bytes;
+  }
+  Bytes from_server(const Message& message) {
+    Bytes bytes(kMaxDatagram);
+    bytes.resize(ServerSessions::write(*server.holder(0), message, bytes));
+    down.push_back(bytes);
+    return bytes;
+  }
+  /// Whether it reaches the simulation. What answers it goes to the client, if it asked.
+  bool to_server(const Bytes& bytes, const Endpoint& from = kClient) {
+    Datagram datagram;
+    if (decode(bytes, datagram) != Verdict::kAccepted) return false;
+    const auto outcome = server.receive(datagram, from, now, {++fresh, {fresh, 1}}, server_stats);
+    answered = outcome.answer.has_value();
+    if (outcome.answer) {
+      Bytes answer(kMaxDatagram);
+      answer.resize(seal(answer, encode(outcome.answer->first, outcome.answer->second, answer), outcome.key));
+      if (from == kClient) {
+        down.push_back(answer);
+        to_client(answer);
+      }
+    }
+    return outcome.tool_state != nullptr;
+  }
+  /// Whether it reaches the haptic loop.
+  bool to_client(const Bytes& bytes) {
+    Datagram datagram;
+    if (decode(bytes, datagram) != Verdict::kAccepted) return false;
+    return client.receive(datagram, now, client_stats) != nullptr;
+  }
+  bool shake_hands() {
+    while (const auto hello = client.poll(now)) to_server(from_client(*hello));
+    return client.welcomed();
+  }
+  Bytes state() { return from_client(ToolState{.tick = ++tick}); }
+  Bytes sample() { return from_server(ForceSample{.number = ++number, .f_W = {0, 1, 0}}); }
+
+  ClientSession client;
+  ServerSessions server;
+  LinkStats client_stats, server_stats;
+  Time now = 100s;
+  std::uint64_t fresh = 0, tick = 0, number = 0;
+  bool answered = false;
+  std::vector<Bytes> up, down;
+};
+
+}  // namespace
+
+TEST_CASE("with a key: Hello, Challenge, Hello, Welcome, and values both ways") {
+  Network n;
+  REQUIRE(n.shake_hands());
+  CHECK(n.up.size() == 2);
+  CHECK(n.to_server(n.state()));
+  CHECK(n.to_client(n.sample()));
+  CHECK(n.server_stats.rejected == 0);
+  CHECK(n.client_stats.rejected == 0);
+}
+
+TEST_CASE(
+    "a client with the newest or an older key of the server is let in, one with another or none is not") {
+  CHECK(Network(kNewer).shake_hands());
+  CHECK(Network(kKey).shake_hands());
+  for (const Key& key : {kWrong, Key{.number = 9, .bytes = kKey.bytes}, Key{}}) {
+    Network n(key);
+    CHECK_FALSE(n.shake_hands());
+    CHECK_FALSE(n.answered);  // and hears nothing
+    CHECK(n.server_stats.rejected_by[static_cast<std::size_t>(Verdict::kTag)] == 1);
+  }
+}
+
+TEST_CASE("a client with a key obeys no server without") {
+  Network n(kKey, {});
+  CHECK_FALSE(n.shake_hands());
+  CHECK(n.client_stats.rejected > 0);
+}
+
+TEST_CASE("what was captured is worth nothing: replayed, in another session, or in the other direction") {
+  Network old;
+  REQUIRE(old.shake_hands());
+  for (int i = 0; i < 3; ++i) {
+    REQUIRE(old.to_server(old.state()));
+    REQUIRE(old.to_client(old.sample()));
+  }
+  Network n;
+  n.client = ClientSession(Nonce{43}, kKey);
+  n.fresh = 100;
+  REQUIRE(n.shake_hands());
+  const auto try_all = [&](const std::vector<Bytes>& datagrams) {
+    for (const Bytes& bytes : datagrams) {
+      CHECK_FALSE(n.to_client(bytes));
+      for (const Endpoint& from : {kClient, kStranger}) CHECK_FALSE(n.to_server(bytes, from));
+    }
+  };
+  try_all(old.up);
+  try_all(old.down);
+  REQUIRE(n.to_server(n.state()));
+  REQUIRE(n.to_client(n.sample()));
+  try_all(n.up);
+  try_all(n.down);
+  CHECK(n.server.holder(0)->endpoint == kClient);
+  CHECK(n.to_server(n.state()));
+  CHECK(n.to_client(n.sample()));
+}
+
+TEST_CASE("the same session number does not help: the keys are drawn from both nonces") {
+  Network old, n;
+  REQUIRE(old.shake_hands());
+  const Bytes state = old.state();
+  n.server = ServerSessions(30, {0.005}, {7}, {kKey});
+  n.client = ClientSession(Nonce{43}, kKey);
+  REQUIRE(n.shake_hands());
+  REQUIRE(n.server.holder(0)->session == old.server.holder(0)->session);
+  CHECK_FALSE(n.to_server(state));
+  CHECK(n.server_stats.rejected_by[static_cast<std::size_t>(Verdict::kTag)] == 1);
+}
+
+TEST_CASE("no mutated datagram gets through, and what it says of numbers changes nothing") {
+  Network n;
+  REQUIRE(n.shake_hands());
+  test::Random random(3);
+  for (int i = 0; i < 20000; ++i) {
+    for (Bytes bytes : {n.state(), n.sample()}) {
+      bytes[random.bits() % bytes.size()] ^= std::byte{1} << (random.bits() % 8);
+      REQUIRE_FALSE(n.to_server(bytes));
+      REQUIRE_FALSE(n.to_client(bytes));
+    }
+    // All of these are lost, so every tenth goes through.
+    if (i % 10 != 0) continue;
+    REQUIRE(n.to_server(n.state()));
+    REQUIRE(n.to_client(n.sample()));
+  }
+}
+
+TEST_CASE("with a key a session goes on from another address at once, and without one it does not") {
+  const Endpoint elsewhere{.address = {10, 0, 0, 1}, .port = 1001};
+  Network n;
+  REQUIRE(n.shake_hands());
+  REQUIRE(n.to_server(n.state()));
+  const Bytes late = n.state();
+  CHECK(n.to_server(n.state(), elsewhere));
+  CHECK(n.server.holder(0)->endpoint == elsewhere);
+  CHECK_FALSE(n.to_server(late, kClient));  // overtaken: the answer goes where the newest came from
+  CHECK(n.server.holder(0)->endpoint == elsewhere);
+  Network open(Key{}, {});
+  REQUIRE(open.shake_hands());
+  CHECK_FALSE(open.to_server(open.state(), elsewhere));
+  CHECK(open.server.holder(0)->endpoint == kClient);
+}
+
+TEST_CASE(
+    "a Hello from a forged address holds no tool, however often it is said, nor does one without states") {
+  for (const bool keyed : {false, true}) {
+    Network n(keyed ? kKey : Key{}, keyed ? std::vector{kKey} : std::vector<Key>{});
+    const Bytes hello = n.from_client(*n.client.poll(n.now));
+    for (int i = 0; i < 10; ++i) CHECK_FALSE(n.to_server(hello, kStranger));
+    CHECK(n.server.members().empty());
+    n.now += 250ms;
+    REQUIRE(n.shake_hands());
+    const Bytes with_cookie = n.up.back();
+    for (int i = 0; i < 7; ++i) {
+      n.now += 100ms;
+      n.to_server(with_cookie);
+      CHECK(n.server.expire(n.now).empty());
+    }
+    n.now += 100ms;
+    CHECK(n.server.expire(n.now).size() == 1);
+    n.to_server(with_cookie, kStranger);  // the cookie is of another address
+    CHECK(n.server.members().empty());
+    n.now += 20s;
+    n.to_server(with_cookie);  // and of another time
+    CHECK(n.server.members().empty());
+  }
+}
+
+TEST_CASE("a server that was started again says nothing to a client with a key, and silence brings it back") {
+  Network n;
+  REQUIRE(n.shake_hands());
+  REQUIRE(n.to_client(n.sample()));
+  n.server = ServerSessions(30, {0.005}, {8}, {kKey});
+  n.to_server(n.state());
+  CHECK_FALSE(n.answered);
+  n.now += 300ms;
+  REQUIRE(n.shake_hands());
+  n.number = 0;
+  CHECK(n.to_server(n.state()));
+  CHECK(n.to_client(n.sample()));
+}
+
+TEST_CASE("two ends do not keep each other busy with Challenges: one Hello more in each 250 ms") {
+  Network n;
+  int hellos = 0;
+  for (Time end = n.now + 1s; n.now < end; n.now += 1ms) {
+    while (const auto hello = n.client.poll(n.now)) {
+      ++hellos;
+      const Challenge challenge{Nonce{42}, hello->attempt, Cookie{1}};
+      Bytes bytes(kMaxDatagram);
+      const Key key = direction_key(kKey, Direction::kToClient, Nonce{42}, {});
+      bytes.resize(seal(bytes, encode({}, challenge, bytes), key));
+      n.to_client(bytes);
+    }
+  }
+  CHECK(hellos == 8);
+}
+
+TEST_CASE(
+    "old Welcomes and samples of the same run, captured and sent again, do not bring back their session") {
+  Network n;
+  for (std::uint8_t server = 1; server <= 4; ++server) {  // each knows nothing of those before
+    CAPTURE(server);
+    n.server = ServerSessions(30, {0.005}, {server}, {kKey});
+    n.number = 0;
+    n.now += 1s;
+    REQUIRE(n.shake_hands());
+    REQUIRE(n.to_client(n.sample()));
+    const std::vector<Bytes> captured = n.down;
+    for (const Bytes& bytes : captured) CHECK_FALSE(n.to_client(bytes));
+    n.now += 400ms;  // silent: it says Hello again
+    const auto hello = n.client.poll(n.now);
+    REQUIRE(hello);
+    for (const Bytes& bytes : captured) CHECK_FALSE(n.to_client(bytes));
+    CHECK(n.to_server(n.state()));
+    CHECK(n.to_client(n.sample()));
+  }
+}
