@@ -50,7 +50,8 @@ bool ClientSession::answers_lately(const Nonce& nonce, std::uint64_t attempt) co
 }
 
 /// Answered once for each Hello that was due, so that no two programs can keep each other busy.
-void ClientSession::challenged(const Challenge& challenge) noexcept {
+void ClientSession::challenged(const Challenge& challenge, LinkStats& stats) noexcept {
+  ++stats.received;
   cookie_ = challenge.cookie;
   prompted_ = prompted_in_period_ != last_hello_;
   prompted_in_period_ = last_hello_;
@@ -89,7 +90,7 @@ void ClientSession::refused_by(const Datagram& datagram, const Refuse& refuse, L
 const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept {
   if (const auto* challenge = std::get_if<Challenge>(&datagram.message);
       challenge && answers_lately(challenge->nonce, challenge->attempt)) {
-    if (checked(datagram, hello_keys_.in, stats)) challenged(*challenge);
+    if (checked(datagram, hello_keys_.in, stats)) challenged(*challenge, stats);
     return nullptr;
   }
   if (const auto* welcome = std::get_if<Welcome>(&datagram.message);

@@ -60,7 +60,7 @@ class ClientSession {
   };
   SessionKeys keys_for(const Nonce& server) const noexcept;
   bool answers_lately(const Nonce& nonce, std::uint64_t attempt) const noexcept;
-  void challenged(const Challenge& challenge) noexcept;
+  void challenged(const Challenge& challenge, LinkStats& stats) noexcept;
   void welcomed_by(const Datagram& datagram, const Welcome& welcome, Time now, LinkStats& stats) noexcept;
   void refused_by(const Datagram& datagram, const Refuse& refuse, LinkStats& stats) noexcept;
 
