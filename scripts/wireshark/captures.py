@@ -4,7 +4,7 @@ import collections
 import hashlib
 import struct
 
-HEADER = "<4sBBHB3sQQ"  # magic, version, type, payload, tag, reserved (version 2: the first is the key), session, sequence
+HEADER = "<4sBBHB3sQQ"  # magic, version, type, payload, tag, reserved (the first is the key), session, sequence
 HELLO, CHALLENGE, WELCOME, REFUSE, BYE, TOOL_STATE, FORCE_SAMPLE, SURFACE_PAGE = 1, 2, 3, 4, 5, 6, 7, 10
 TOOL_STATE_FORMAT = "<BQQq3d3d4dHH"  # tool, tick, newest sample, t, p, v, q, buttons, flags
 FORCE_SAMPLE_FORMAT = "<BQQq3d3d3dqI"  # tool, number, tool tick, tool t, p, f, torque, step, flags
@@ -21,7 +21,7 @@ def header(version, kind, payload, tag, key, session, sequence):
 
 
 def direction_key(shared, from_client, client_nonce, server_nonce):
-    """The key of one direction of a session of version 2."""
+    """The key of one direction of a session."""
     label = b"client to server" if from_client else b"server to client"
     text = label.ljust(24, b"\0") + bytes([2]) + client_nonce + server_nonce
     return hashlib.blake2b(text, digest_size=32, key=shared).digest()

@@ -1,4 +1,4 @@
--- Wireshark and tshark show Palpate's datagrams with this: every field of protocol/README.md, versions 1 and 2, what its
+-- Wireshark and tshark show Palpate's datagrams with this: every field of protocol/README.md, version 2, what its
 -- receiver would refuse, what was seen before, how old a force is, and whether a tag is good. How to install and use it:
 -- README.md beside this file. Lua 5.2 or later; needs blake2b.lua beside it.
 --
@@ -17,6 +17,8 @@ local HELLO_PAYLOAD = 256                    -- bytes that a Hello is padded to
 local STALE = 300                            -- ms of age at which a client begins to fade a force
 local HELLO, CHALLENGE, WELCOME, REFUSE, BYE, TOOL_STATE, FORCE_SAMPLE, TELEMETRY, POINTER, SURFACE_PAGE =
   1, 2, 3, 4, 5, 6, 7, 8, 9, 10
+
+local VERSION = 2
 
 local TYPE_NAMES = {
   [HELLO] = "Hello", [CHALLENGE] = "Challenge", [WELCOME] = "Welcome", [REFUSE] = "Refuse", [BYE] = "Bye",
@@ -67,6 +69,7 @@ field("uint64", "session", "Session", base.HEX)
 field("uint64", "sequence", "Sequence")
 -- Hello, Challenge, Welcome, Refuse.
 field("bytes", "nonce", "Nonce")
+field("uint64", "attempt", "Attempt (Hellos of this run)")
 field("bytes", "cookie", "Cookie")
 field("bytes", "server_nonce", "Server nonce")
 field("bytes", "padding", "Padding")
@@ -312,30 +315,35 @@ end
 
 local read_message = {}  -- by type: reads the fields of a payload in their order
 
-local function nonce_bytes(version) return version == 1 and 8 or 16 end
-
-read_message[HELLO] = function(r, version)
-  r:raw("nonce", nonce_bytes(version))
+read_message[HELLO] = function(r)
+  r:raw("nonce", 16)
   r:raw("cookie", 16)
-  r:raw("padding", HELLO_PAYLOAD - nonce_bytes(version) - 16)
+  r:u64("attempt")
+  r:raw("padding", HELLO_PAYLOAD - 40)
+end
+
+-- Which Hello an answer is of.
+local function read_hello_name(r)
+  r:raw("nonce", 16)
+  r:u64("attempt")
 end
 
 read_message[CHALLENGE] = function(r)
-  r:raw("nonce", 16)
+  read_hello_name(r)
   r:raw("cookie", 16)
 end
 
-read_message[WELCOME] = function(r, version)
-  r:raw("nonce", nonce_bytes(version))
-  if version > 1 then r:raw("server_nonce", 16) end
+read_message[WELCOME] = function(r)
+  read_hello_name(r)
+  r:raw("server_nonce", 16)
   r:u8("tool", TOOLS)
   r:f64("rate", within(0, 1e6))
   r:f64("tool_radius", above_0_up_to(1))
 end
 
-read_message[REFUSE] = function(r, version)
-  r:raw("nonce", nonce_bytes(version))
-  r:u8("reason", version == 1 and within(1, 2) or one_of(REASONS))
+read_message[REFUSE] = function(r)
+  read_hello_name(r)
+  r:u8("reason", one_of(REASONS))
 end
 
 read_message[BYE] = function() end
@@ -469,9 +477,9 @@ end
 
 -- The key of one direction of one session. Kept, as every datagram of the session needs it.
 local direction_keys = {}
-local function direction_key(shared, from, version, client_nonce, server_nonce)
+local function direction_key(shared, from, client_nonce, server_nonce)
   local label = from == "client" and "client to server" or "server to client"
-  local text = label .. ("\0"):rep(24 - #label) .. string.char(version) .. client_nonce .. server_nonce
+  local text = label .. ("\0"):rep(24 - #label) .. string.char(VERSION) .. client_nonce .. server_nonce
   local known = direction_keys[shared .. text] or blake2b(text, 32, shared)
   direction_keys[shared .. text] = known
   return known
@@ -482,7 +490,6 @@ local BEFORE_SESSION = {[HELLO] = true, [CHALLENGE] = true, [WELCOME] = true, [R
 
 -- The verdict on a tag, in words. `all` is the datagram without its tag; `session` is what is known of it, or nil.
 local function judge_tag(d, all, tag, session)
-  if d.version == 1 then return "not checked (version 1 has no keys)" end
   if key_file_fault then return ("cannot be checked (%s)"):format(key_file_fault) end
   if not next(keys) then return "not checked (no key file is named)" end
   if not keys[d.key] then return ("cannot be checked (key %d is not in the key file)"):format(d.key) end
@@ -493,7 +500,7 @@ local function judge_tag(d, all, tag, session)
     end
     client_nonce, server_nonce = session.client_nonce, session.server_nonce
   end
-  local key = direction_key(keys[d.key], d.from, d.version, client_nonce, server_nonce)
+  local key = direction_key(keys[d.key], d.from, client_nonce, server_nonce)
   return blake2b(all, TAG, key) == tag and "good" or "bad"
 end
 
@@ -627,7 +634,7 @@ local function examine(d, all, tag)
       say("bad_tag", "the tag is not that of these bytes under the session's key")
       return result
     end
-  elseif d.version > 1 and next(keys) then
+  elseif next(keys) then
     say("no_tag", "no tag, though the key file holds a key")
     local session = sessions[d.session]
     if session and session.is_proven then return result end
@@ -712,21 +719,20 @@ local function judge_header(d, items, whole, fault)
   elseif whole > LONGEST then
     fault(items.payload_length, "bad_length", ("%d bytes; %d are allowed"):format(whole, LONGEST))
   end
-  if not read_message[d.type] or (d.type == CHALLENGE and d.version == 1) then
+  if not read_message[d.type] then
     fault(items.type, "bad_type", ("type %d is reserved or unknown"):format(d.type))
   end
 end
 
--- The fields of a header behind its magic; version 2 has a key in the place of a reserved byte.
+-- The fields of a header behind its magic.
 local function read_header_fields(d, tvb, add)
-  local first_reserved = d.version == 1 and 9 or 10
   local items = {type = add("type", 5, 1), payload_length = add("payload_length", 6, 2), tag_length = add("tag_length", 8, 1)}
-  if d.version > 1 then add("key", 9, 1) end
-  items.reserved = add("reserved", first_reserved, 12 - first_reserved)
+  add("key", 9, 1)
+  items.reserved = add("reserved", 10, 2)
   add("session", 12, 8)
   add("sequence", 20, 8)
-  d.payload, d.tag, d.key = tvb(6, 2):le_uint(), tvb(8, 1):uint(), d.version == 1 and 0 or tvb(9, 1):uint()
-  d.reserved = tvb:raw(first_reserved, 12 - first_reserved)
+  d.payload, d.tag, d.key = tvb(6, 2):le_uint(), tvb(8, 1):uint(), tvb(9, 1):uint()
+  d.reserved = tvb:raw(10, 2)
   d.session, d.sequence = tostring(tvb(12, 8):le_uint64()), tvb(20, 8):le_uint64():tonumber()
   d.from = sender_of(d)
   return items
@@ -756,7 +762,7 @@ local function read_header(tvb, pinfo, tree)
   end
   local version = add("version", 4, 1)
   d.version, d.type = tvb(4, 1):uint(), tvb(5, 1):uint()
-  if d.version ~= 1 and d.version ~= 2 then
+  if d.version ~= VERSION then
     fault(version, "bad_version", ("version %d is unknown"):format(d.version))
     return d
   end
@@ -769,7 +775,7 @@ local function read_payload(d, tvb, tree)
   local size = math.min(d.payload, tvb:len() - HEADER)
   local branch = tree:add(tvb:range(HEADER, size), TYPE_NAMES[d.type])
   local r = new_reader(size > 0 and tvb:range(HEADER, size) or nil, branch)
-  read_message[d.type](r, d.version)
+  read_message[d.type](r)
   if r.short then
     r:fault(branch, d.cut and "cut" or "bad_length", d.cut and "cut short by the capture"
       or ("a payload of %d bytes is too short for this type"):format(d.payload))
