@@ -5,6 +5,7 @@
 #include "common/program.h"
 #include "common/text.h"
 #include "haptic_client/commands/calibrate.h"
+#include "haptic_client/commands/commtest.h"
 #include "haptic_client/commands/devices.h"
 #include "haptic_client/commands/evaluate.h"
 #include "haptic_client/commands/replay.h"
@@ -114,6 +115,29 @@ CLI::App* add_calibrate(CLI::App& app, std::string& device, std::string& file, O
   return command;
 }
 
+CLI::App* add_commtest(CLI::App& app, std::string& server, std::string& device, std::string& file,
+                       Overrides& overrides, client::CommtestOptions& options) {
+  auto* command = app.add_subcommand(
+      "commtest", "Is the link to a server good enough? Or, with --usb, the loop of a device");
+  command->add_option("ADDR:PORT", server, "Of sim_server (default: that of the client file)");
+  command->add_option("--usb", device, "Test this device instead, with zero force: falcon, or falcon:PORT");
+  command->add_option("--client", file, "Client file: its motion, rate and law (default: all defaults)");
+  command->add_option("--method", overrides.method, "Extrapolation law that the verdict is of");
+  command->add_option("--key", overrides.key, "File of the key that the server has");
+  command->add_flag("--insecure", overrides.insecure, "Leave this machine without a key");
+  command->add_option("--seconds", options.seconds, "How long")->capture_default_str();
+  command->add_option("--wait", options.wait, "For the server to answer, s")->capture_default_str();
+  command->add_option("--json", options.json, "Write the same to this JSON file");
+  command->footer(
+      "A session as `run` would have it, by a simulated hand that holds a tool meanwhile, and round trips "
+      "beside it.\n"
+      "The verdict is that of the stability study: PASS, WARN, or FAIL (exit code 1).\n"
+      "Examples: haptic_client commtest 192.168.1.20:45130 --client configs/clients/liver.toml --key "
+      "palpate.key\n"
+      "          haptic_client commtest --usb falcon");
+  return command;
+}
+
 client::ClientConfig read_config(const std::string& file, const Overrides& overrides) {
   client::ClientConfig config = file.empty() ? client::ClientConfig{} : client::read_client_config(file);
   apply(overrides, config);
@@ -180,6 +204,9 @@ int run(int argc, char** argv) {
   add_run(app, files, overrides, running);
   const auto* replay = add_replay(app, file, overrides, replaying);
   const auto* calibrate = add_calibrate(app, device, file, overrides, mass);
+  std::string tested_server, tested_device;
+  client::CommtestOptions testing;
+  const auto* commtest = add_commtest(app, tested_server, tested_device, file, overrides, testing);
   const auto* list =
       app.add_subcommand("devices", "List the devices that are plugged in, and whether they can be used")
           ->footer("Example: haptic_client devices");
@@ -195,6 +222,16 @@ int run(int argc, char** argv) {
     client::ClientConfig config = read_config(file, overrides);
     client::choose_device(config.device, device, "DEVICE");
     return client::calibrate(config, mass);
+  }
+  if (*commtest) {
+    require_within(testing.seconds, 1, 86400, "--seconds", "s");
+    require_within(testing.wait, 0.1, 3600, "--wait", "s");
+    if (!tested_server.empty()) overrides.server = tested_server;
+    client::ClientConfig config = read_config(file, overrides);
+    if (!tested_server.empty()) config.server_where = "ADDR:PORT";
+    if (tested_device.empty()) return client::test_link(config, testing);
+    client::choose_device(config.device, tested_device, "--usb");
+    return client::test_device(config, testing);
   }
   if (*replay) {
     if (replaying.rate_hz) require_within(*replaying.rate_hz, 1, 20000, "--rate", "Hz");

@@ -140,6 +140,13 @@ std::size_t encode(const Header& header, const Message& message, std::span<std::
       message);
 }
 
+const char* name_of(Verdict verdict) noexcept {
+  static constexpr std::array<const char*, kVerdicts> kNames{
+      "accepted",   "too_short", "not_ours", "version", "type", "length",
+      "not_finite", "value",     "tag",      "session", "tool", "direction"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
 std::optional<OtherVersion> other_version(std::span<const std::byte> in) noexcept {
   if (in.size() < kHeaderBytes) return {};
   Reader reader(in);

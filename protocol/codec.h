@@ -30,9 +30,16 @@ enum class Verdict : std::uint8_t {
   kLength,     ///< lengths do not add up, or the payload is too short for its type
   kNotFinite,  ///< a NaN or an infinity
   kValue,      ///< a field outside its range
-  kTag,        ///< no tag of our key (from a session, not from `decode`)
+  // Those below are a session's, not `decode`'s:
+  kTag,        ///< no tag of our key
+  kSession,    ///< of no session known here, or from another address than the session's
+  kTool,       ///< of another tool than the session's
+  kDirection,  ///< a message that only the other end sends
 };
-constexpr std::size_t kVerdicts = 9;
+constexpr std::size_t kVerdicts = 12;
+
+/// "tag" of kTag, and so on: a key for reports.
+const char* name_of(Verdict verdict) noexcept;
 
 struct Datagram {
   Header header;

@@ -47,7 +47,10 @@ class ReplayWindow {
     const std::uint64_t ahead = sequence > highest_ ? sequence - highest_ : 0;
     if (ahead > 0) {
       if (ahead > farthest_) {
-        if (!stray_.is_new_beginning(sequence)) return refuse(stats);
+        if (!stray_.is_new_beginning(sequence)) {
+          ++stats.wild;
+          return false;
+        }
         ++stats.began_anew;
       }
       seen_ = ahead >= 64 ? 0 : seen_ << ahead;
@@ -86,12 +89,23 @@ class ReplayWindow {
 class NewestOnly {
  public:
   /// `in_order`: it came in the highest datagram so far; else it was overtaken. False also of one whose
-  /// number is wild, until the sender goes on from there (`Stray`).
-  bool accept(std::uint64_t number, bool in_order) noexcept {
-    if (!in_order) return false;
+  /// number is wild, until the sender goes on from there (`Stray`). Counts in `stats` what was dropped, and
+  /// the values between this and the one before, which are lost or will be overtaken.
+  bool accept(std::uint64_t number, bool in_order, LinkStats& stats) noexcept {
+    if (!in_order) {
+      ++stats.overtaken;
+      if (stats.values_lost > 0) --stats.values_lost;  // counted as lost when the newer one came
+      return false;
+    }
     const bool newer = newest_ == 0 || (number > newest_ && number - newest_ <= kFarthest);
-    if (!newer && !stray_.is_new_beginning(number)) return false;
-    if (newer) stray_.end_row();
+    if (!newer && !stray_.is_new_beginning(number)) {
+      ++stats.wild;
+      return false;
+    }
+    if (newer) {
+      stray_.end_row();
+      if (newest_ > 0) stats.values_lost += number - newest_ - 1;
+    }
     newest_ = number;
     return true;
   }

@@ -11,15 +11,10 @@ std::size_t write_sealed(const Header& header, const Message& message, const Key
   return seal(out, encode(header, message, out), key);
 }
 
-/// Counts what has no tag of ours.
-bool reject(Verdict why, LinkStats& stats) noexcept {
-  ++stats.rejected;
-  ++stats.rejected_by[static_cast<std::size_t>(why)];
-  return false;
-}
-
 bool checked(const Datagram& datagram, const Key& key, LinkStats& stats) noexcept {
-  return authentic(datagram.bytes, key) || reject(Verdict::kTag, stats);
+  if (authentic(datagram.bytes, key)) return true;
+  stats.reject(Verdict::kTag);
+  return false;
 }
 
 }  // namespace
@@ -83,7 +78,7 @@ void ClientSession::refused_by(const Datagram& datagram, const Refuse& refuse, L
              datagram.header.session == current_.session) {
     last_heard_.reset();  // forgotten there: ask at once
   } else {
-    ++stats.rejected;
+    stats.reject(Verdict::kSession);
   }
 }
 
@@ -103,7 +98,7 @@ const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkSt
     return nullptr;
   }
   if (!welcomed() || datagram.header.session != current_.session) {
-    ++stats.rejected;
+    stats.reject(Verdict::kSession);
     return nullptr;
   }
   if (!checked(datagram, current_.keys.in, stats)) return nullptr;
@@ -111,7 +106,7 @@ const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkSt
       sample && sample->tool == welcome_.tool) {
     if (!current_.window.accept(datagram.header.sequence, stats)) return nullptr;
     last_heard_ = now;
-    return current_.samples.accept(sample->number, current_.window.in_order())
+    return current_.samples.accept(sample->number, current_.window.in_order(), stats)
                ? &datagram.message
                : nullptr;  // the newest value wins
   }
@@ -121,7 +116,9 @@ const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkSt
     last_heard_.reset();
     return nullptr;
   }
-  ++stats.rejected;
+  const bool of_server = std::holds_alternative<ForceSample>(datagram.message) ||
+                         std::holds_alternative<SurfacePage>(datagram.message);
+  stats.reject(of_server ? Verdict::kTool : Verdict::kDirection);
   return nullptr;
 }
 
@@ -153,7 +150,7 @@ ServerSessions::Outcome ServerSessions::greet(const Datagram& datagram, const He
   const Key* const shared = key_of(datagram);
   if (shared == nullptr ||
       !authentic(datagram.bytes, direction_key(*shared, Direction::kToServer, hello.nonce, {}))) {
-    reject(Verdict::kTag, stats);
+    stats.reject(Verdict::kTag);
     return {};
   }
   ++stats.received;
@@ -191,7 +188,7 @@ ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Key& sha
 
 /// Without a key a client is told that its session is unknown here, with less than what it sent.
 ServerSessions::Outcome ServerSessions::unknown(const Datagram& datagram, LinkStats& stats) const {
-  ++stats.rejected;
+  stats.reject(Verdict::kSession);
   if (!keys_.empty() || !std::holds_alternative<ToolState>(datagram.message)) return {};
   return {.answer = {{Header{datagram.header.session, 1}, Refuse{{}, 0, RefuseReason::kUnknownSession}}}};
 }
@@ -217,13 +214,14 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
   }
   const auto* tool_state = std::get_if<ToolState>(&datagram.message);
   if (tool_state == nullptr || tool_state->tool != found->tool) {
-    ++stats.rejected;
+    stats.reject(tool_state == nullptr ? Verdict::kDirection : Verdict::kTool);
     return {};
   }
   if (!found->window.accept(datagram.header.sequence, stats)) return {};
   found->last_heard = now;
   if (found->window.in_order()) found->endpoint = from;  // another one only with a key
-  if (!found->ticks.accept(tool_state->tick, found->window.in_order())) return {};  // the newest value wins
+  if (!found->ticks.accept(tool_state->tick, found->window.in_order(), stats))
+    return {};  // the newest value wins
   return {.tool_state = tool_state};
 }
 

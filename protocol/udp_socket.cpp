@@ -63,7 +63,10 @@ std::string to_string(const Endpoint& endpoint) {
 }
 
 struct UdpSocket::Asio {
-  asio::io_context context;
+  explicit Asio(std::shared_ptr<asio::io_context> loop) : shared(std::move(loop)) {}
+
+  std::shared_ptr<asio::io_context> shared;  // by sockets that one thread serves
+  asio::io_context& context = *shared;
   udp::socket socket{context};
   asio::steady_timer timer{context};
   asio::posix::stream_descriptor bell{context};
@@ -71,6 +74,7 @@ struct UdpSocket::Asio {
   Doorbell* doorbell = nullptr;
   Time period{};
   const Handlers* handlers = nullptr;
+  Handlers own_handlers;  // of a socket that another one's loop serves
 
   void receive() {
     socket.async_wait(udp::socket::wait_read, [this](std::error_code failed) {
@@ -104,7 +108,21 @@ struct UdpSocket::Asio {
   }
 };
 
-UdpSocket::UdpSocket(const Endpoint& local) : asio_(std::make_unique<Asio>()) {
+UdpSocket::UdpSocket(const Endpoint& local)
+    : asio_(std::make_unique<Asio>(std::make_shared<asio::io_context>())) {
+  bind(local);
+}
+
+UdpSocket::UdpSocket(const Endpoint& local, UdpSocket& other,
+                     std::function<void(std::span<const std::byte>, const Endpoint&)> on_datagram)
+    : asio_(std::make_unique<Asio>(other.asio_->shared)) {
+  bind(local);
+  asio_->own_handlers.on_datagram = std::move(on_datagram);
+  asio_->handlers = &asio_->own_handlers;
+  asio_->receive();
+}
+
+void UdpSocket::bind(const Endpoint& local) {
   const udp::endpoint address = to_asio(local);
   std::error_code failed;
   asio_->socket.open(address.protocol(), failed);

@@ -32,6 +32,10 @@ class UdpSocket {
   /// Binds to `local` (port 0: any). Throws `Error` (run time) naming the address when it is taken or not
   /// ours.
   explicit UdpSocket(const Endpoint& local);
+  /// The same, served by the loop of `other`, which outlives this: `on_datagram` is called in the thread that
+  /// runs that one. Before `other` runs, or in its thread.
+  UdpSocket(const Endpoint& local, UdpSocket& other,
+            std::function<void(std::span<const std::byte>, const Endpoint&)> on_datagram);
   ~UdpSocket();
 
   /// The address it is bound to, with the port the system chose.
@@ -51,6 +55,8 @@ class UdpSocket {
   std::error_code send(std::span<const std::byte> datagram, const Endpoint& to) noexcept;
 
  private:
+  void bind(const Endpoint& local);
+
   struct Asio;
   std::unique_ptr<Asio> asio_;
 };

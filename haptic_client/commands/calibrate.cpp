@@ -17,6 +17,7 @@
 #include "common/text.h"
 #include "haptic_client/calibration/calibration.h"
 #include "haptic_client/session/guardian.h"
+#include "haptic_client/session/haptic_loop.h"
 
 namespace palpate::client {
 namespace {
@@ -24,7 +25,6 @@ namespace {
 using Stage = CalibrationStage;
 using Trouble = CalibrationTrouble;
 
-constexpr int kPriority = 80;
 constexpr double kLeastMass = 0.05, kMostMass = 0.5;  // kg
 constexpr double kLowestTorqueConstant = 2300;        // DAC units per N m, that is plausible
 constexpr double kMostTilt = 10;                      // degrees
@@ -185,7 +185,7 @@ int calibrate(ClientConfig config, double mass) {
       run_loop(stop, *device, calibration, row.limits(config.device).min_period, progress,
                guardian.heartbeat());
     });
-    if (const auto refused = make_realtime(loop.native_handle(), "palpate-haptic", kPriority);
+    if (const auto refused = make_realtime(loop.native_handle(), "palpate-haptic", kHapticPriority);
         !refused.empty())
       log::warning("{}", refused);
     if (const auto refused = lock_memory(); !refused.empty()) log::warning("{}", refused);

@@ -112,6 +112,8 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
                      workspace_.motion_to_device(estimate_.newest().surface_v), dt);
   result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
   if (result.tool.newest_sample > 0) {
+    if (stats_.told == 0) stats_.first_told = now;
+    if (!estimate_.stepped_down() && stats_.first_itself == Time{}) stats_.first_itself = now;
     ++stats_.told;
     stats_.stepped_down += estimate_.stepped_down() ? 1 : 0;
     stats_.stand_ins.add(estimate_.stand_in());

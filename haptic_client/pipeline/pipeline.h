@@ -36,6 +36,7 @@ struct PipelineStats {
   std::uint64_t told = 0;          ///< ticks since the first sample
   std::uint64_t stepped_down = 0;  ///< ticks in which a simpler law stood in for the chosen one
   StandIns stand_ins;              ///< which law did
+  Time first_told{}, first_itself{};  ///< of the first tick of `told`, and of the first without a stand-in
   std::uint64_t pages = 0;         ///< of the surface, taken
   std::uint64_t lost = 0;          ///< ticks in which the device gave nothing usable
   std::uint64_t clutched = 0;      ///< ticks

@@ -8,6 +8,7 @@
 #include "haptic_client/evaluation/law_cost.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/session/whole_error.h"
+#include "protocol/link_report.h"
 
 namespace palpate::client {
 namespace {
@@ -265,9 +266,12 @@ void print_link(const Json& link) {
   fmt::print("  link   ");
   const char* separator = " ";
   for (const auto& [name, count] : link.items()) {
+    if (!count.is_number_integer() || name.starts_with("bytes")) continue;  // the counters
     fmt::print("{}{} {}", separator, count.get<long>(), name);
     separator = ", ";
   }
+  for (const auto& [reason, count] : link["rejected_by"].items())
+    fmt::print(", {} by {}", count.get<long>(), reason);
   fmt::print("\n");
 }
 
@@ -336,10 +340,15 @@ Json loop_report(double rate_hz, const HapticLoopStats& stats) {
           {"tick_us", quantiles(stats.tick_ns, 1e3)}};
 }
 
-Json link_report(const protocol::LinkStats& net) {
-  return {{"sent", net.sent},           {"received", net.received},     {"lost", net.lost},
-          {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"began_anew", net.began_anew},
-          {"rejected", net.rejected}};
+Json link_report(const NetLink& link) {
+  const LinkFigures& figures = link.figures();
+  Json report = protocol::link_report(link.stats());
+  report["age_ms"] = quantiles(figures.age_ns, 1e6);
+  report["bytes_up"] = figures.bytes_up;
+  report["bytes_down"] = figures.bytes_down;
+  report["bytes_down_first_second"] = figures.early_bytes_down;
+  report["stiffest_n_m"] = figures.stiffest;
+  return report;
 }
 
 void print_report(const Json& report) {

@@ -3,7 +3,7 @@
 #include "haptic_client/evaluation/observation.h"
 #include "haptic_client/session/client_config.h"
 #include "haptic_client/session/haptic_loop.h"
-#include "protocol/link_stats.h"
+#include "haptic_client/session/net_link.h"
 
 namespace palpate::client {
 
@@ -17,7 +17,8 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
 /// What only a live loop has.
 Json loop_report(double rate_hz, const HapticLoopStats& stats);
 
-Json link_report(const protocol::LinkStats& stats);
+/// Counters of the link, what it carried, and how old its samples were when they came.
+Json link_report(const NetLink& link);
 
 /// A whole report for people, on stdout; parts that are absent are left out.
 void print_report(const Json& report);

@@ -20,6 +20,8 @@ struct HapticMailboxes {
   Doorbell bell;
 };
 
+constexpr int kHapticPriority = 80;  ///< of the haptic thread (SCHED_FIFO), where the system grants it
+
 /// What the loop measured; read it when the loop has ended.
 struct HapticLoopStats {
   std::uint64_t ticks = 0, missed = 0;

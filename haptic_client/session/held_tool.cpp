@@ -19,9 +19,7 @@
 namespace palpate::client {
 namespace {
 
-constexpr int kPriority = 80;
 constexpr double kTraceSeconds = 60;
-constexpr Time kWelcomePatience = std::chrono::seconds(5);
 constexpr int kMostStandstills = 30;  // looks of 100 ms
 
 /// Ticks a second: as asked for, or what the device serves if that is less.
@@ -74,7 +72,7 @@ HeldTool::~HeldTool() {
   stop();
 }
 
-bool HeldTool::connect() {
+bool HeldTool::connect(Time patience) {
   if (recorder_) {
     recording_thread_ = std::jthread([this](const std::stop_token& stop) {
       name_thread("palpate-record");
@@ -87,7 +85,7 @@ bool HeldTool::connect() {
   });
   for (const Time start = now(); !link_.welcomed;) {
     if (wait_for_interrupt(std::chrono::milliseconds(20))) return false;
-    if (now() - start < kWelcomePatience) continue;
+    if (now() - start < patience) continue;
     if (link_.refused == static_cast<int>(protocol::RefuseReason::kNoFreeTool)) {
       fail_at_run_time(
           "{}the server at {} has no free tool: other clients or devices hold all of its [[tool]]s; end one "
@@ -107,8 +105,8 @@ bool HeldTool::connect() {
           config_.server, std::generic_category().message(reason));
     }
     fail_at_run_time(
-        "no answer from a server at {} within 5 s; is `sim_server run` up, {}and UDP open there?",
-        config_.server,
+        "no answer from a server at {} within {:g} s; is `sim_server run` up, {}and UDP open there?",
+        config_.server, to_seconds(patience),
         config_.key ? "with the same key, " : "without a key (or give it here: --key FILE), ");
   }
   log::info("{}connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", name_, config_.server,
@@ -119,7 +117,7 @@ bool HeldTool::connect() {
 void HeldTool::start(std::atomic<std::uint64_t>* heartbeat) {
   loop_.heartbeat = heartbeat;
   haptic_thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
-  if (const auto refused = make_realtime(haptic_thread_.native_handle(), "palpate-haptic", kPriority);
+  if (const auto refused = make_realtime(haptic_thread_.native_handle(), "palpate-haptic", kHapticPriority);
       !refused.empty())
     log::warning("{}{}", name_, refused);
 }
@@ -192,7 +190,11 @@ std::string HeldTool::progress() const {
 Json HeldTool::report() const {
   Json tool = tool_report(config_, pipeline_, observation_);
   tool["loop"] = loop_report(rate_of(config_), loop_.stats());
-  tool["link"] = link_report(link_.stats());
+  tool["link"] = link_report(link_);
+  tool["link"]["rate_hz"] = link_.session().welcome().rate_hz;
+  const PipelineStats& stats = pipeline_.stats();
+  tool["link"]["first_itself_s"] =
+      stats.first_itself > Time{} ? Json(to_seconds(stats.first_itself - stats.first_told)) : Json(nullptr);
   tool["safety"]["cut_by_motors"] = device_->cut_by_motors();
   if (recorder_) tool["recording"] = protocol::recording_report(*recorder_);
   return tool;

@@ -28,8 +28,10 @@ class HeldTool {
   /// Writes zero force, says Bye to the server, ends its threads.
   ~HeldTool();
 
-  /// Asks the server for a tool. Throws when there is none within five seconds; false on Ctrl-C.
-  bool connect();
+  /// Asks the server for a tool. Throws when there is none within `patience`; false on Ctrl-C.
+  bool connect(Time patience = std::chrono::seconds(5));
+  /// Our own address on the way to the server.
+  protocol::Endpoint local() const { return socket_.local_towards(server_); }
   /// The haptic loop runs from here on, and beats for the guardian (null: there is none).
   void start(std::atomic<std::uint64_t>* heartbeat);
   /// The haptic loop ends; zero force has left.

@@ -38,8 +38,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   if (verdict == Verdict::kAccepted) {
     message = session_.receive(datagram, t, stats_);
   } else {
-    ++stats_.rejected;
-    ++stats_.rejected_by[static_cast<std::size_t>(verdict)];
+    stats_.reject(verdict);
     if (const auto other = protocol::other_version(bytes); other && verdict == Verdict::kVersion)
       other_version = other->version;
   }
@@ -50,13 +49,22 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
       recorder_->note_refused(t, from, own_, bytes);
     }
   }
-  if (message != nullptr) {
-    if (const auto* sample = std::get_if<protocol::ForceSample>(message)) mailboxes_.force.write(*sample);
-    if (const auto* page = std::get_if<protocol::SurfacePage>(message)) mailboxes_.pages.push(*page);
-  }
+  figures_.received(bytes.size(), t);
+  if (message != nullptr) pass_on(*message, t);
   welcomed = session_.welcomed();
   refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
   greet();
+}
+
+void NetLink::pass_on(const protocol::Message& message, Time t) {
+  if (const auto* sample = std::get_if<protocol::ForceSample>(&message)) {
+    mailboxes_.force.write(*sample);
+    figures_.sample(*sample, t);
+  }
+  if (const auto* page = std::get_if<protocol::SurfacePage>(&message)) {
+    mailboxes_.pages.push(*page);
+    figures_.page(t);
+  }
 }
 
 void NetLink::on_tool_states() {
@@ -88,6 +96,7 @@ void NetLink::send(const protocol::Message& message) {
     unsendable = failed.value();
   } else {
     ++stats_.sent;
+    figures_.sent(size);
     unsendable = 0;
   }
 }

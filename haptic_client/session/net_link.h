@@ -2,6 +2,7 @@
 #include <atomic>
 
 #include "haptic_client/session/haptic_loop.h"
+#include "haptic_client/session/link_figures.h"
 #include "protocol/recorder.h"
 #include "protocol/udp_socket.h"
 
@@ -20,6 +21,7 @@ class NetLink {
 
   /// Read when `run` has returned.
   const protocol::LinkStats& stats() const { return stats_; }
+  const LinkFigures& figures() const { return figures_; }
   const protocol::ClientSession& session() const { return session_; }
 
   /// For a watching thread: whether a server ever let us in, and why the last one did not (0: no answer).
@@ -34,6 +36,7 @@ class NetLink {
   void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
   void on_tool_states();
   void on_timer();
+  void pass_on(const protocol::Message& message, Time t);
   void greet();
   void send(const protocol::Message& message);
 
@@ -45,6 +48,7 @@ class NetLink {
   bool ticking_ = false;  // tool states have come from the haptic loop
   int idle_timers_ = 0;   // looks at the session before that
   protocol::LinkStats stats_;
+  LinkFigures figures_;
 };
 
 }  // namespace palpate::client

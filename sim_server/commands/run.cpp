@@ -13,6 +13,7 @@
 #include "common/report.h"
 #include "common/text.h"
 #include "protocol/key_file.h"
+#include "protocol/link_report.h"
 #include "protocol/recording_report.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
@@ -118,11 +119,7 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   int sessions = 0;
   for (const auto& tool : link.tools) sessions += tool.so_far;
   report["sessions"] = sessions;
-  const protocol::LinkStats& net = link.stats();
-  report["link"] = {
-      {"sent", net.sent},           {"received", net.received},     {"lost", net.lost},
-      {"reordered", net.reordered}, {"duplicated", net.duplicated}, {"began_anew", net.began_anew},
-      {"rejected", net.rejected}};
+  report["link"] = protocol::link_report(link.stats());
   report["failed_steps"] = {{"out_of_memory", simulation.failures().out_of_memory},
                             {"other", simulation.failures().other}};
   report["state_hash"] = fmt::format("{:016x}", simulation.state_hash());

@@ -71,8 +71,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
 
 /// Who says Hello in another version is told which one is spoken here.
 void NetLink::refuse(Verdict verdict, std::span<const std::byte> bytes, const Endpoint& to) {
-  ++stats_.rejected;
-  ++stats_.rejected_by[static_cast<std::size_t>(verdict)];
+  stats_.reject(verdict);
   const auto other = protocol::other_version(bytes);
   if (other && other->hello)
     answer({.answer = {{{}, protocol::Refuse{{}, 0, protocol::RefuseReason::kVersion}}}}, to);

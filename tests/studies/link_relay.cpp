@@ -1,11 +1,14 @@
-// A bad network between two programs of ours, in real time: clients talk to this one, it talks to the server, and what it
-// does to the datagrams between is drawn from a seed (protocol/link_simulator.h). Behind scripts/two_machines.
+// A bad network between two programs of ours, in real time: clients talk to this one, it talks to the server,
+// and what it does to the datagrams between is drawn from a seed (protocol/link_simulator.h). Behind
+// scripts/two_machines.
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
-#include <optional>
+#include <map>
+#include <memory>
 #include <thread>
 
 #include "common/clock.h"
+#include "common/error.h"
 #include "common/interrupt.h"
 #include "common/program.h"
 #include "protocol/link_simulator.h"
@@ -35,56 +38,76 @@ struct Options {
   }
 };
 
-/// One client at a time, the newest one: each direction is a link of its own.
+/// What lies between one client and the server: a socket that stands for it there, and a link each way.
+struct Path {
+  Path(const Options& o, std::uint64_t seed) : up(o.conditions(), seed), down(o.conditions(), seed + 1) {}
+  std::unique_ptr<UdpSocket> at_server;
+  LinkSimulator up, down;
+};
+
+/// Each client, by its address, has a path of its own.
 class Relay {
  public:
   explicit Relay(const Options& options)
-      : socket_(resolve(options.listen, "--listen")),
-        server_(resolve(options.server, "--server")),
-        up_(options.conditions(), options.seed),
-        down_(options.conditions(), options.seed + 1) {}
+      : options_(options),
+        socket_(resolve(options.listen, "--listen")),
+        server_(resolve(options.server, "--server")) {}
 
   void run() {
     Doorbell bell;
     socket_.run(bell, kPeriod,
-                {.on_datagram = [this](auto bytes, const Endpoint& from) { take(bytes, from); },
+                {.on_datagram = [this](auto bytes, const Endpoint& from) { from_client(bytes, from); },
                  .on_doorbell = [] {},
                  .on_timer = [this] { pass(); }});
   }
   void stop() { socket_.stop(); }
-  void print(const char* direction, const LinkCounts& c) const {
-    fmt::print(
-        "link_relay: {} {} sent, {} delivered, {} lost, {} lost in bursts, {} dropped by the queue, {} doubled, "
-        "{} reordered\n",
-        direction, c.sent, c.delivered, c.lost, c.lost_in_bursts, c.dropped_by_queue, c.duplicated, c.reordered);
-  }
   void print() const {
-    print("to the server:", up_.counts());
-    print("to the client:", down_.counts());
+    for (const auto& [client, path] : paths_) {
+      print(fmt::format("{} to the server:", to_string(client)), path->up.counts());
+      print(fmt::format("{} from the server:", to_string(client)), path->down.counts());
+    }
   }
 
  private:
   static constexpr Time kPeriod = std::chrono::microseconds(200);
+  static constexpr std::size_t kMostClients = 64;
 
-  void take(std::span<const std::byte> bytes, const Endpoint& from) {
-    if (from == server_) {
-      down_.send(bytes, now());
-    } else {
-      client_ = from;
-      up_.send(bytes, now());
-    }
+  static void print(const std::string& direction, const LinkCounts& c) {
+    fmt::print(
+        "link_relay: {} {} sent, {} delivered, {} lost, {} lost in bursts, {} dropped by the queue, {} "
+        "doubled, {} reordered\n",
+        direction, c.sent, c.delivered, c.lost, c.lost_in_bursts, c.dropped_by_queue, c.duplicated,
+        c.reordered);
+  }
+  void from_client(std::span<const std::byte> bytes, const Endpoint& from) {
+    std::unique_ptr<Path>& path = paths_[from];
+    if (!path) path = open_path(from);
+    path->up.send(bytes, now());
     pass();
   }
+  std::unique_ptr<Path> open_path(const Endpoint& client) {
+    if (paths_.size() > kMostClients) fail_at_run_time("more than {} clients", kMostClients);
+    auto path = std::make_unique<Path>(options_, options_.seed + 2 * paths_.size());
+    path->at_server = std::make_unique<UdpSocket>(Endpoint{.v6 = client.v6}, socket_,
+                                                  [this, p = path.get()](auto bytes, const Endpoint& from) {
+                                                    if (from == server_) p->down.send(bytes, now());
+                                                    pass();
+                                                  });
+    return path;
+  }
+  /// All that has arrived.
   void pass() {
-    while (const auto bytes = up_.receive(now())) socket_.send(*bytes, server_);
-    if (!client_) return;
-    while (const auto bytes = down_.receive(now())) socket_.send(*bytes, *client_);
+    for (const auto& [client, path] : paths_) {
+      if (!path) continue;
+      while (const auto bytes = path->up.receive(now())) path->at_server->send(*bytes, server_);
+      while (const auto bytes = path->down.receive(now())) socket_.send(*bytes, client);
+    }
   }
 
+  Options options_;
   UdpSocket socket_;
   Endpoint server_;
-  std::optional<Endpoint> client_;
-  LinkSimulator up_, down_;
+  std::map<Endpoint, std::unique_ptr<Path>> paths_;
 };
 
 int run(int argc, char** argv) {
@@ -97,21 +120,27 @@ int run(int argc, char** argv) {
   app.add_option("--delay", o.delay_ms, "One way, ms")->check(ms)->capture_default_str();
   app.add_option("--jitter", o.jitter_ms, "More, even from 0 to this, ms")->check(ms)->capture_default_str();
   app.add_option("--loss", o.loss, "Lost, each on its own, %")->check(percent)->capture_default_str();
-  app.add_option("--burst", o.burst, "With which a burst of losses begins, %")->check(percent)->capture_default_str();
+  app.add_option("--burst", o.burst, "With which a burst of losses begins, %")
+      ->check(percent)
+      ->capture_default_str();
   app.add_option("--burst-length", o.burst_length, "Of a burst on average, datagrams")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_option("--duplicates", o.duplicates, "Arrive twice, %")->check(percent)->capture_default_str();
   app.add_option("--reordered", o.reordered, "Held back, %")->check(percent)->capture_default_str();
   app.add_option("--reorder-delay", o.reorder_ms, "By so much, ms")->check(ms)->capture_default_str();
-  app.add_option("--mbit", o.mbit, "Rate of the line, Mbit/s; 0: any")->check(CLI::Range(0, 100000))->capture_default_str();
-  app.footer("Example: link_relay --listen 127.0.0.3:45130 --server 127.0.0.2:45130 --delay 20 --jitter 5 --loss 2");
+  app.add_option("--mbit", o.mbit, "Rate of the line, Mbit/s; 0: any")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  app.footer(
+      "Example: link_relay --listen 127.0.0.3:45130 --server 127.0.0.2:45130 --delay 20 --jitter 5 --loss 2");
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   Relay relay(o);
   std::jthread net([&] { relay.run(); });
   fmt::print("link_relay: from {} to {}\n", o.listen, o.server);
   std::fflush(stdout);
-  while (!wait_for_interrupt(std::chrono::milliseconds(200))) {}
+  while (!wait_for_interrupt(std::chrono::milliseconds(200))) {
+  }
   relay.stop();
   net.join();
   relay.print();

@@ -178,6 +178,20 @@ std::vector<Cell> cells(bool quick) {
   return all;
 }
 
+/// What `haptic_client commtest` judges a link by: every law on walls, by delay.
+std::vector<Cell> cells_by_delay() {
+  std::vector<Cell> all;
+  for (const char* world : {"linear", "hertz"}) {
+    for (const Person& person : kPersons) {
+      for (const double delay_ms : {0.0, 15.0, 38.0, 60.0, 83.0, 120.0, 200.0}) {
+        for (const ExtrapolatorRow& row : extrapolators())
+          all.push_back({&person, std::string(row.name), world, true, {30, delay_ms}});
+      }
+    }
+  }
+  return all;
+}
+
 /// Does `work(k, slides)` for each k below `count` on all cores.
 template <class Work>
 void for_all(std::size_t count, const char* what, Work work) {
@@ -194,9 +208,8 @@ void for_all(std::size_t count, const char* what, Work work) {
   }
 }
 
-void study(bool quick, const std::filesystem::path& out) {
+void study(const std::vector<Cell>& all, const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
-  const std::vector<Cell> all = cells(quick);
   std::vector<Cell> walls;  // one for each operator and world
   for (const Cell& cell : all) {
     const bool known = std::any_of(walls.begin(), walls.end(), [&](const Cell& wall) {
@@ -232,13 +245,14 @@ Pipeline palpate::studies::pipeline_of(const Cell& cell) {
 
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  const bool quick = !arguments.empty() && arguments.front() == "--quick";
-  if (arguments.size() != (quick ? 2u : 1u) || arguments.back().front() == '-') {
-    fmt::print(stderr, "usage: stability_study [--quick] DIR\n");
+  const std::string which = arguments.size() == 2 ? arguments.front() : "";
+  const bool known = which.empty() || which == "--quick" || which == "--by-delay";
+  if (arguments.empty() || arguments.size() > 2 || !known || arguments.back().front() == '-') {
+    fmt::print(stderr, "usage: stability_study [--quick|--by-delay] DIR\n");
     return 2;
   }
   try {
-    study(quick, arguments.back());
+    study(which == "--by-delay" ? cells_by_delay() : cells(which == "--quick"), arguments.back());
   } catch (const Error& e) {
     fmt::print(stderr, "stability_study: {}\n", e.what());
     return e.exit_code();

@@ -62,12 +62,14 @@ TEST_CASE("whatever a link does to their order, values that pass the window and 
     LinkStats stats;
     std::uint64_t last = 0, passed = 0;
     for (const auto& [t, number] : arrivals) {
-      if (!window.accept(number, stats) || !newest.accept(number, window.in_order())) continue;
+      if (!window.accept(number, stats) || !newest.accept(number, window.in_order(), stats)) continue;
       CHECK(number > last);
       last = number;
       ++passed;
     }
     CHECK(passed > 400);
+    CHECK(passed + stats.overtaken + stats.duplicated + stats.wild == 20000);
+    CHECK(stats.values_lost <= stats.lost);
     if (jitter < 64) CHECK(stats.duplicated == 0);  // later than that is too late to tell
   }
 }

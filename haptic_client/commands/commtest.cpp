@@ -1,0 +1,181 @@
+#include "haptic_client/commands/commtest.h"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/clock.h"
+#include "common/error.h"
+#include "common/interrupt.h"
+#include "common/realtime.h"
+#include "haptic_client/commands/commtest_verdict.h"
+#include "haptic_client/commands/link_causes.h"
+#include "haptic_client/session/held_tool.h"
+#include "haptic_client/session/link_probe.h"
+#include "protocol/key_file.h"
+
+namespace palpate::client {
+namespace {
+
+void rest(double seconds) {
+  for (const Time end = now() + from_seconds(seconds); now() < end;) {
+    if (wait_for_interrupt(std::chrono::milliseconds(100))) return;
+  }
+}
+
+std::string quantiles_text(const Json& q, const char* unit) {
+  return fmt::format("{:.3g} {} (p50), {:.3g} (p99), {:.3g} (p99.9), {:.3g} (max)", q["p50"].get<double>(),
+                     unit, q["p99"].get<double>(), q["p999"].get<double>(), q["max"].get<double>());
+}
+
+Json probe_report(const LinkProbe::Figures& f) {
+  return {{"ms", quantiles(f.round_trip_ns, 1e6)},
+          {"jitter_ms", 1e-6 * f.jitter_ns},
+          {"sent", f.sent},
+          {"lost", f.lost},
+          {"reordered", f.reordered}};
+}
+
+double percent(double part, double whole) {
+  return whole > 0 ? 100 * part / whole : 0;
+}
+
+TestedLink tested_link(const ClientConfig& config, const Json& tool) {
+  const Json& link = tool["link"];
+  const double came = tool["force"]["samples"].get<double>(), lost = link["values_lost"].get<double>();
+  return {.law = config.method,
+          .age_p99_ms = link["age_ms"]["p99"].get<double>(),
+          .stiffest_n_m = link["stiffest_n_m"].get<double>(),
+          .samples_hz = tool["motion"]["sample_rate_hz"].get<double>(),
+          .rate_hz = tool["link"]["rate_hz"].get<double>(),
+          .loss_percent = percent(lost, lost + came),
+          .connected = came > 0};
+}
+
+void print_round_trip(const Json& trip) {
+  fmt::print("  round trip  {}; jitter {:.3g} ms; {} of {} lost ({:.2f} %), {} reordered\n",
+             quantiles_text(trip["ms"], "ms"), trip["jitter_ms"].get<double>(), trip["lost"].get<long>(),
+             trip["sent"].get<long>(), percent(trip["lost"].get<double>(), trip["sent"].get<double>()),
+             trip["reordered"].get<long>());
+}
+
+void print_session(const Json& tool, double seconds) {
+  const Json &link = tool["link"], &force = tool["force"];
+  fmt::print("  samples     {:.1f} a second; {} lost, {} reordered, {} doubled\n",
+             tool["motion"]["sample_rate_hz"].get<double>(), link["values_lost"].get<long>(),
+             link["reordered"].get<long>(), link["duplicated"].get<long>());
+  fmt::print(
+      "  age         {} when a sample came, since its tool was read: way there, wait, step, way back\n",
+      quantiles_text(link["age_ms"], "ms"));
+  fmt::print("  bytes       {:.1f} kB/s up, {:.1f} kB/s down, {:.1f} kB in the first second\n",
+             1e-3 * link["bytes_up"].get<double>() / seconds,
+             1e-3 * link["bytes_down"].get<double>() / seconds,
+             1e-3 * link["bytes_down_first_second"].get<double>());
+  const Json& itself = link["first_itself_s"];
+  fmt::print("  law         \"{}\"{}; {} pages of the surface came\n", tool["method"].get<std::string>(),
+             itself.is_null() ? std::string(" never had what it needs")
+                              : fmt::format(" at work {:.2f} s after the first sample", itself.get<double>()),
+             force["surface_pages"].get<long>());
+}
+
+void print_verdict(const Json& verdict) {
+  fmt::print("  {}        {}\n", verdict["grade"].get<std::string>(),
+             verdict["reasons"].empty() ? "" : verdict["reasons"][0].get<std::string>());
+  for (std::size_t i = 1; i < verdict["reasons"].size(); ++i)
+    fmt::print("              {}\n", verdict["reasons"][i].get<std::string>());
+  for (const Json& cause : verdict["what_to_look_at"])
+    fmt::print("  look at     {}\n", cause.get<std::string>());
+  std::fflush(stdout);
+}
+
+/// A hand that is none, where the client file has a motion for it.
+ClientConfig with_simulated_hand(ClientConfig config) {
+  config.device.name = "simulated";
+  config.device.port.clear();
+  config.score = std::vector<std::string>{};
+  return config;
+}
+
+protocol::Key key_of_test(const ClientConfig& config) {
+  return config.key ? protocol::read_keys(*config.key).back() : protocol::Key{};
+}
+
+}  // namespace
+
+int test_link(const ClientConfig& asked, const CommtestOptions& options) {
+  const ClientConfig config = with_simulated_hand(asked);
+  if (options.json) check_writable(*options.json, Contents::kReport);
+  HeldTool tool(config, {}, "", options.seconds);
+  const protocol::Endpoint server = protocol::resolve(config.server, config.server_where);
+  LinkProbe probe(server, key_of_test(config));
+  if (!tool.connect(from_seconds(options.wait))) return 0;
+  fmt::print("testing the link for {:g} s, with a simulated hand, which holds a tool meanwhile\n",
+             options.seconds);
+  std::fflush(stdout);
+  probe.start();
+  tool.start(nullptr);
+  rest(options.seconds);
+  tool.stop();
+  probe.stop();
+  const Json of_tool = tool.report();
+  const Verdict verdict = judge(tested_link(config, of_tool));
+  const Json report = {{"server", config.server},
+                       {"seconds", options.seconds},
+                       {"round_trip", probe_report(probe.figures())},
+                       {"tool", of_tool},
+                       {"verdict",
+                        {{"grade", name_of(verdict.grade)},
+                         {"reasons", verdict.reasons},
+                         {"what_to_look_at", link_causes(tool.local())}}}};
+  fmt::print("haptic_client: link to {}\n", config.server);
+  print_round_trip(report["round_trip"]);
+  print_session(of_tool, options.seconds);
+  print_verdict(report["verdict"]);
+  if (options.json) write_json(*options.json, report);
+  return verdict.grade == Grade::kFail ? 1 : 0;
+}
+
+int test_device(const ClientConfig& config, const CommtestOptions& options) {
+  if (options.json) check_writable(*options.json, Contents::kReport);
+  const DeviceRow& row = row_of(config.device);
+  const double rate_hz = std::min(config.rate_hz, 1 / to_seconds(row.limits(config.device).min_period));
+  const Time period = from_seconds(1 / rate_hz);
+  const auto device = row.make(config.device);
+  fmt::print("testing {} at {:g} Hz for {:g} s, with zero force\n", config.device.name, rate_hz,
+             options.seconds);
+  std::fflush(stdout);
+  make_realtime(pthread_self(), "palpate-test", kHapticPriority);
+  Histogram took_ns, between_ns;
+  std::uint64_t ticks = 0, usable = 0, late = 0;
+  Time before{};
+  for (Time due = now(), end = due + from_seconds(options.seconds); due < end; ++ticks) {
+    sleep_until(due);
+    const Time begin = now();
+    usable += device->read(begin).valid ? 1 : 0;
+    device->write(Vec3::Zero());
+    took_ns.add((now() - begin).count());
+    if (ticks > 0) between_ns.add((begin - before).count());
+    before = begin;
+    for (due += period; due < now(); due += period) ++late;
+    if (ticks % 64 == 0 && wait_for_interrupt(Time{})) break;
+  }
+  device->stop();
+  const Json report = {{"device", config.device.name},
+                       {"rate_hz", rate_hz},
+                       {"ticks", ticks},
+                       {"missed", late},
+                       {"usable", usable},
+                       {"exchange_us", quantiles(took_ns, 1e3)},
+                       {"period_us", quantiles(between_ns, 1e3)},
+                       {"what_to_look_at", machine_causes()}};
+  fmt::print("  exchange    {}: one reading and one force\n", quantiles_text(report["exchange_us"], "us"));
+  fmt::print("  period      {}; {} of {} deadlines missed\n", quantiles_text(report["period_us"], "us"), late,
+             ticks + late);
+  fmt::print("  readings    {} of {} usable{}{}\n", usable, ticks,
+             usable < ticks ? "; the device says: " : "", usable < ticks ? device->status() : "");
+  for (const Json& cause : report["what_to_look_at"])
+    fmt::print("  look at     {}\n", cause.get<std::string>());
+  if (options.json) write_json(*options.json, report);
+  return usable > 0 ? 0 : 1;
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,102 @@
+#include "haptic_client/commands/commtest_verdict.h"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+#include "common/ages.h"
+#include "common/time.h"
+
+namespace palpate::client {
+namespace {
+
+constexpr std::array kAges{0.0, 15.0, 38.0, 60.0, 83.0, 120.0, 200.0};  // ms
+struct Row {
+  std::string_view law;
+  std::array<double, kAges.size()> stable_to;  // N/m
+};
+// build/release/bin/stability_study --by-delay DIR
+constexpr std::array<Row, 11> kRows{{
+    {"constant", {271, 154, 95, 80, 77, 67, 56}},
+    {"linear_time", {309, 141, 84, 61, 43, 28, 0}},
+    {"linear_position", {323, 135, 135, 91, 84, 59, 41}},
+    {"linear_position_signed", {1245, 1046, 738, 352, 879, 806, 499}},
+    {"learned_stiffness", {4208, 3693, 2390, 1923, 2009, 2098, 2098}},
+    {"tangent", {13615, 9614, 13615, 8814, 7735, 9205, 7735}},
+    {"two_tangents", {14220, 2497, 13615, 10488, 7735, 9205, 8438}},
+    {"local_contact", {14220, 2497, 13615, 10488, 7735, 9205, 8438}},
+    {"best_recent", {14220, 2497, 13615, 10488, 7735, 9205, 8438}},
+    {"kalman", {271, 129, 80, 59, 47, 29, 0}},
+    {"interpolate_with_delay", {77, 80, 84, 80, 77, 67, 56}},
+}};
+constexpr double kDirect = 14220;  // N/m: what the true force at 500 Hz keeps stable, and no law exceeds
+
+void worsen(Verdict& verdict, Grade grade, std::string reason) {
+  verdict.grade = std::max(verdict.grade, grade);
+  verdict.reasons.push_back(std::move(reason));
+}
+
+void judge_stiffness(const TestedLink& link, Verdict& verdict) {
+  const auto limit = stable_to(link.law, link.age_p99_ms);
+  if (!limit) {
+    worsen(verdict, Grade::kWarn,
+           fmt::format("of \"{}\" with samples {:.0f} ms old the stability study knows nothing", link.law,
+                       link.age_p99_ms));
+    return;
+  }
+  const std::string law = fmt::format("with samples {:.1f} ms old (p99) \"{}\" is stable up to {:.0f} N/m",
+                                      link.age_p99_ms, link.law, *limit);
+  if (link.stiffest_n_m == 0) {
+    worsen(verdict, Grade::kWarn, law + "; nothing was touched, so how stiff the scene is is not known");
+  } else {
+    const double share = link.stiffest_n_m / *limit;
+    worsen(verdict,
+           share > 1     ? Grade::kFail
+           : share > 0.5 ? Grade::kWarn
+                         : Grade::kPass,
+           fmt::format("{}; the scene has {:.0f} N/m, {:.2g} of that", law, link.stiffest_n_m, share));
+  }
+}
+
+}  // namespace
+
+std::optional<double> stable_to(std::string_view law, double age_ms) {
+  const auto row = std::find_if(kRows.begin(), kRows.end(), [&](const Row& r) { return r.law == law; });
+  if (row == kRows.end() || age_ms > kAges.back()) return {};
+  double least = kDirect;
+  for (std::size_t i = 0; i < kAges.size(); ++i) {
+    // The two ages around it, and none further away: not every law gets worse with each of them.
+    const bool below = i + 1 == kAges.size() || kAges[i + 1] > age_ms,
+               above = i == 0 || kAges[i - 1] < age_ms;
+    if (below && above) least = std::min(least, row->stable_to[i]);
+  }
+  return least;
+}
+
+Verdict judge(const TestedLink& link) {
+  Verdict verdict;
+  if (!link.connected) return {Grade::kFail, {"no session"}};
+  judge_stiffness(link, verdict);
+  const double fades_ms = 1e3 * to_seconds(kOutage);
+  if (link.age_p99_ms > fades_ms) {
+    worsen(verdict, Grade::kFail,
+           fmt::format("samples are older than the {:.0f} ms at which the force fades", fades_ms));
+  }
+  if (link.loss_percent > 5) {
+    worsen(verdict, Grade::kWarn,
+           fmt::format("{:.1f} % of the samples were lost (the laws bridge one, not many in a row)",
+                       link.loss_percent));
+  }
+  if (link.rate_hz > 0 && link.samples_hz < 0.9 * link.rate_hz) {
+    worsen(verdict, Grade::kWarn,
+           fmt::format("{:.1f} samples a second came, where the server aims for {:g}", link.samples_hz,
+                       link.rate_hz));
+  }
+  return verdict;
+}
+
+const char* name_of(Grade grade) {
+  return grade == Grade::kPass ? "PASS" : grade == Grade::kWarn ? "WARN" : "FAIL";
+}
+
+}  // namespace palpate::client

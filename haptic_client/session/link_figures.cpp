@@ -1,0 +1,31 @@
+#include "haptic_client/session/link_figures.h"
+
+#include <algorithm>
+
+namespace palpate::client {
+using protocol::ForceSample;
+
+void LinkFigures::received(std::size_t bytes, Time now) noexcept {
+  if (bytes_down == 0) began = now;
+  bytes_down += bytes;
+  if (now - began < std::chrono::seconds(1)) early_bytes_down += bytes;
+}
+
+void LinkFigures::sample(const ForceSample& sample, Time now) noexcept {
+  ++samples;
+  const std::int64_t age = now.count() - sample.tool_t_ns;
+  if (age >= 0) age_ns.add(age);
+  if ((sample.flags & ForceSample::kHasHere) == 0 || (sample.flags & ForceSample::kInContact) == 0) return;
+  const auto& k = sample.here.tangent;
+  const Vec3& n = sample.here.normal_W;
+  const Vec3 kn{k[0] * n[0] + k[1] * n[1] + k[2] * n[2], k[1] * n[0] + k[3] * n[1] + k[4] * n[2],
+                k[2] * n[0] + k[4] * n[1] + k[5] * n[2]};
+  stiffest = std::max(stiffest, -n.dot(kn));
+}
+
+void LinkFigures::page(Time now) noexcept {
+  ++pages;
+  newest_page = now;
+}
+
+}  // namespace palpate::client

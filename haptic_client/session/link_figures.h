@@ -1,0 +1,23 @@
+#pragma once
+#include "common/histogram.h"
+#include "common/time.h"
+#include "protocol/messages.h"
+
+namespace palpate::client {
+
+/// What a session needs of its link, and gets. Written by the network thread; read when that has ended.
+struct LinkFigures {
+  Histogram age_ns;  ///< of each sample when it arrived: since its tool position was read
+  std::uint64_t samples = 0, pages = 0;
+  std::uint64_t bytes_up = 0, bytes_down = 0;  ///< of UDP's payload
+  std::uint64_t early_bytes_down = 0;          ///< of these, in the first second after the first
+  Time began{}, newest_page{};                 ///< when the first datagram, and the newest page, came
+  double stiffest = 0;  ///< N/m: of all samples in contact, how much force a metre into the surface makes
+
+  void sent(std::size_t bytes) noexcept { bytes_up += bytes; }
+  void received(std::size_t bytes, Time now) noexcept;
+  void sample(const protocol::ForceSample& sample, Time now) noexcept;
+  void page(Time now) noexcept;
+};
+
+}  // namespace palpate::client

@@ -1,0 +1,173 @@
+// Both real programs with keys, and what strangers can do to them.
+#include <csignal>
+#include <functional>
+#include <sys/stat.h>
+#include <thread>
+
+#include "common/clock.h"
+#include "protocol/key_file.h"
+#include "protocol/session.h"
+#include "protocol/udp_socket.h"
+#include "tests/support/programs.h"
+#include "tests/support/random.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate::test;
+using namespace palpate::protocol;
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+namespace {
+
+struct KeyBench {
+  TemporaryFolder folder;
+  std::string key = (folder.path() / "palpate.key").string(),
+              report = (folder.path() / "report.json").string();
+
+  KeyBench() { output_of("sim_server", {"keygen", key}, 0); }
+  std::vector<std::string> with_key(std::vector<std::string> more = {}) const {
+    more.insert(more.end(), {"--key", key});
+    return more;
+  }
+};
+
+/// Sends what `make` gives, `per_ms` datagrams each millisecond, from a socket of its own.
+class Flood {
+ public:
+  using Make = std::function<std::size_t(std::uint64_t k, std::span<std::byte> out)>;
+  Flood(const std::string& address, int per_ms, Make make)
+      : server_(resolve(address, "test")),
+        per_ms_(per_ms),
+        make_(std::move(make)),
+        thread_([this] { run(); }) {}
+  ~Flood() { stop(); }
+  std::uint64_t stop() {
+    if (thread_.joinable()) {
+      socket_.stop();
+      thread_.join();
+    }
+    return sent_;
+  }
+
+ private:
+  void run() {
+    palpate::Doorbell bell;
+    socket_.run(
+        bell, 1ms,
+        {.on_datagram = [](auto, const Endpoint&) {}, .on_doorbell = [] {}, .on_timer = [this] { burst(); }});
+  }
+  void burst() {
+    std::array<std::byte, kMaxDatagram> bytes;
+    for (int i = 0; i < per_ms_; ++i) socket_.send({bytes.data(), make_(sent_++, bytes)}, server_);
+  }
+
+  UdpSocket socket_{resolve("127.0.0.1:0", "test")};
+  Endpoint server_;
+  int per_ms_;
+  Make make_;
+  std::uint64_t sent_ = 0;
+  std::thread thread_;
+};
+
+std::size_t garbage(std::uint64_t k, std::span<std::byte> out) {
+  Random random(k);
+  const std::size_t size = random.bits() % out.size();
+  for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<std::byte>(random.bits());
+  return size;
+}
+
+/// A Hello without a key, each of another client.
+std::size_t greeting(std::uint64_t k, std::span<std::byte> out) {
+  return encode({}, Hello{.nonce = {k, k}, .attempt = 1}, out);
+}
+
+/// A valid tool state of a session that is not.
+std::size_t state(std::uint64_t k, std::span<std::byte> out) {
+  return encode({k | 1, k + 1}, ToolState{.tick = k + 1}, out);
+}
+
+}  // namespace
+
+TEST_CASE("keys: with the same key a session is as ever, and every datagram of the capture has a tag of it") {
+  const KeyBench bench;
+  const std::string capture = (bench.folder.path() / "F.pcap").string();
+  Server server(bench.with_key());
+  output_of("haptic_client",
+            client_arguments(server.address, bench.with_key({"--seconds", "1", "--report", bench.report,
+                                                             "--record", capture})),
+            0);
+  const Json tool = read_json(bench.report)["tools"][0];
+  CHECK(tool["force"]["samples"].get<int>() > 15);
+  CHECK(tool["link"]["rejected"] == 0);
+  // And what was captured replays as ever: payloads are readable.
+  CHECK_THAT(output_of("haptic_client", {"replay", capture, "--client", kClient}, 0),
+             Catch::Contains("felt"));
+}
+
+TEST_CASE("keys: another key, none, or one where the server has none: exit 1, and what to look at") {
+  const KeyBench bench, other;
+  Server keyed(bench.with_key());
+  for (const auto& more : {std::vector<std::string>{"--key", other.key}, std::vector<std::string>{}})
+    CHECK_THAT(output_of("haptic_client", client_arguments(keyed.address, more), 1), Catch::Contains("key"));
+  Server open;
+  CHECK_THAT(output_of("haptic_client", client_arguments(open.address, bench.with_key()), 1),
+             Catch::Contains("with the same key"));
+}
+
+TEST_CASE("keys: neither program leaves this machine without one, exit 2") {
+  CHECK_THAT(output_of("sim_server", {"run", kScene, "--listen", "0.0.0.0:0"}, 2),
+             Catch::Contains("keygen") && Catch::Contains("--insecure"));
+  CHECK_THAT(output_of("haptic_client", client_arguments("10.255.255.1:45130", {}), 2),
+             Catch::Contains("keygen") && Catch::Contains("--insecure"));
+  const KeyBench bench;
+  ::chmod(bench.key.c_str(), 0644);
+  CHECK_THAT(output_of("sim_server", {"run", kScene, "--key", bench.key}, 2), Catch::Contains("chmod 600"));
+  CHECK_THAT(output_of("sim_server", {"keygen", bench.key}, 2), Catch::Contains("is there already"));
+}
+
+TEST_CASE(
+    "keys: an established session keeps its rate under floods, and a client that joins under one gets in") {
+  const KeyBench bench;
+  for (const bool keyed : {false, true}) {
+    const auto more = [&](std::vector<std::string> all) { return keyed ? bench.with_key(all) : all; };
+    for (const Flood::Make& make : {Flood::Make(garbage), Flood::Make(greeting), Flood::Make(state)}) {
+      Server server(more({"--report", bench.report}));
+      Flood flood(server.address, 20, make);  // 20 000 a second
+      const std::string report = (bench.folder.path() / "client.json").string();
+      output_of("haptic_client",
+                client_arguments(server.address, more({"--seconds", "2", "--report", report})), 0);
+      const std::uint64_t sent = flood.stop();
+      CAPTURE(keyed, sent);
+      CHECK(sent > 2000);
+      const Json tool = read_json(report)["tools"][0];
+      CHECK(tool["motion"]["sample_rate_hz"].get<double>() > 0.9 * 30);
+      server.process.signal(SIGINT);
+      CHECK(server.process.wait() == 0);
+      const Json link = read_json(bench.report)["link"];
+      // Without a key Hellos of strangers are answered, and never kept.
+      if (keyed) CHECK(link["rejected"].get<std::uint64_t>() > 0);
+      CHECK(read_json(bench.report)["sessions"] == 1);
+    }
+  }
+}
+
+TEST_CASE("commtest: a good link on loopback passes, nobody there is exit 1, wrong use is exit 2") {
+  const TemporaryFolder folder;
+  const std::string json = (folder.path() / "link.json").string();
+  Server server;
+  const std::string said = output_of("haptic_client",
+                                     {"commtest", server.address, "--client", kClient, "--method",
+                                      "two_tangents", "--seconds", "2", "--json", json},
+                                     0, 30);
+  CHECK_THAT(said, Catch::Contains("round trip") && Catch::Contains("is stable up to"));
+  const Json report = read_json(json);
+  CHECK(report["verdict"]["grade"] != "FAIL");
+  CHECK(report["round_trip"]["sent"].get<int>() > 200);
+  CHECK(report["round_trip"]["lost"].get<int>() < 5);
+  CHECK(report["round_trip"]["ms"]["p50"].get<double>() < 5);
+  CHECK(report["tool"]["link"]["stiffest_n_m"].get<double>() > 1);
+  CHECK_THAT(output_of("haptic_client", {"commtest", "127.0.0.1:9", "--wait", "1"}, 1),
+             Catch::Contains("within 1 s"));
+  output_of("haptic_client", {"commtest", "127.0.0.1:9", "--seconds", "0"}, 2);
+  output_of("haptic_client", {"commtest", "127.0.0.1:9", "--usb", "nothing"}, 2);
+}

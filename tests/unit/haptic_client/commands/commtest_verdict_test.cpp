@@ -1,0 +1,74 @@
+#include "haptic_client/commands/commtest_verdict.h"
+
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "tests/support/catch.h"
+
+using namespace palpate::client;
+
+namespace {
+
+/// Of a link with which nothing is wrong.
+TestedLink good() {
+  return {.law = "two_tangents",
+          .age_p99_ms = 20,
+          .stiffest_n_m = 50,
+          .samples_hz = 30,
+          .rate_hz = 30,
+          .connected = true};
+}
+
+Grade grade_of(const TestedLink& link) {
+  return judge(link).grade;
+}
+
+}  // namespace
+
+TEST_CASE("commtest: every law has a row, and only a law that exists") {
+  for (const ExtrapolatorRow& row : extrapolators()) {
+    CAPTURE(row.name);
+    CHECK(stable_to(row.name, 10));
+  }
+  CHECK_FALSE(stable_to("no such law", 10));
+}
+
+// As printed by `stability_study --by-delay`: constant 154 N/m at 15 ms, 95 at 38.
+TEST_CASE("commtest: between two ages of the study the smaller stiffness counts, beyond the last none") {
+  CHECK(stable_to("constant", 0) == 271);
+  CHECK(stable_to("constant", 15) == 154);
+  CHECK(stable_to("constant", 16) == 95);
+  CHECK(stable_to("constant", 38) == 95);
+  CHECK(stable_to("constant", 200) == 56);
+  CHECK_FALSE(stable_to("constant", 200.1));
+  // Two tangents are worse at 15 ms than at 38: the worse of both neighbours.
+  CHECK(stable_to("two_tangents", 20) == 2497);
+  CHECK(stable_to("two_tangents", 5) == 2497);
+}
+
+TEST_CASE("commtest: a good link passes, and each fault has its grade and its reason") {
+  CHECK(grade_of(good()) == Grade::kPass);
+  TestedLink link = good();
+  link.stiffest_n_m = 2000;
+  CHECK(grade_of(link) == Grade::kWarn);
+  link.stiffest_n_m = 3000;
+  CHECK(grade_of(link) == Grade::kFail);
+  CHECK_THAT(judge(link).reasons[0], Catch::Contains("stable up to 2497 N/m") && Catch::Contains("3000"));
+  link = good();
+  link.stiffest_n_m = 0;
+  CHECK(grade_of(link) == Grade::kWarn);
+  link = good();
+  link.age_p99_ms = 250;
+  CHECK(grade_of(link) == Grade::kWarn);
+  link.age_p99_ms = 301;
+  CHECK(grade_of(link) == Grade::kFail);
+  link = good();
+  link.loss_percent = 5.1;
+  CHECK(grade_of(link) == Grade::kWarn);
+  link = good();
+  link.samples_hz = 26;
+  CHECK(grade_of(link) == Grade::kWarn);
+  link.rate_hz = 0;  // as fast as it can
+  CHECK(grade_of(link) == Grade::kPass);
+  link = good();
+  link.connected = false;
+  CHECK(grade_of(link) == Grade::kFail);
+}
