@@ -78,9 +78,11 @@ CLI::App* add_run(CLI::App& app, std::vector<std::string>& files, Overrides& ove
   return command;
 }
 
-CLI::App* add_replay(CLI::App& app, std::string& file, Overrides& overrides, client::ReplayOptions& options) {
-  auto* command =
-      app.add_subcommand("replay", "Run a captured session again, offline: the same forces, bit by bit");
+CLI::App* add_replay(CLI::App& app, std::string& file, Overrides& overrides, client::ReplayOptions& options,
+                     bool& live) {
+  auto* command = app.add_subcommand("replay",
+                                     "Run a captured session again: offline, the same forces bit by bit; or "
+                                     "--live, its tool against a server");
   command
       ->add_option("CAPTURE", options.capture, "pcap or pcapng: of --record, sim_server record, tcpdump ...")
       ->required();
@@ -93,8 +95,16 @@ CLI::App* add_replay(CLI::App& app, std::string& file, Overrides& overrides, cli
   command->add_option("--out", options.out, "CSV to write, a row a tick");
   command->add_option("--session", options.session, "Which session, where the capture has several");
   command->add_option("--report", options.report, "Write figures to this JSON file");
-  command->footer("Methods:\n" + list_of(client::extrapolators()) +
-                  "Example: haptic_client replay liver.pcap --method constant --out forces.csv");
+  auto* to_server = command->add_flag(
+      "--live", live, "Play the captured tool to a live server, in real time; nothing is moved");
+  command->add_option("--to", overrides.server, "ADDR:PORT of that server (default 127.0.0.1:45130)")
+      ->needs(to_server);
+  command->add_option("--key", overrides.key, "File of the key that the server has")->needs(to_server);
+  command->add_flag("--insecure", overrides.insecure, "Leave this machine without a key")->needs(to_server);
+  command->footer(
+      "Methods:\n" + list_of(client::extrapolators()) +
+      "Examples: haptic_client replay --live liver.pcap --to 192.168.1.20:45130 --key palpate.key\n"
+      "          haptic_client replay liver.pcap --method constant --out forces.csv");
   return command;
 }
 
@@ -202,7 +212,8 @@ int run(int argc, char** argv) {
   std::string device;
   double mass = 0;
   add_run(app, files, overrides, running);
-  const auto* replay = add_replay(app, file, overrides, replaying);
+  bool live = false;
+  const auto* replay = add_replay(app, file, overrides, replaying, live);
   const auto* calibrate = add_calibrate(app, device, file, overrides, mass);
   std::string tested_server, tested_device;
   client::CommtestOptions testing;
@@ -235,7 +246,8 @@ int run(int argc, char** argv) {
   }
   if (*replay) {
     if (replaying.rate_hz) require_within(*replaying.rate_hz, 1, 20000, "--rate", "Hz");
-    return client::replay(read_config(file, overrides), replaying);
+    if (live && replaying.rate_hz) fail("--rate: a live replay has the capture's own rate");
+    return (live ? client::replay_live : client::replay)(read_config(file, overrides), replaying);
   }
   if (running.seconds) require_at_least(*running.seconds, 1e-3, "--seconds", "s");
   return client::run_client(read_configs(files, overrides), running);

@@ -6,6 +6,7 @@
 #include "sim_server/commands/keygen.h"
 #include "sim_server/commands/mesh_info.h"
 #include "sim_server/commands/record.h"
+#include "sim_server/commands/replay.h"
 #include "sim_server/commands/run.h"
 #include "sim_server/commands/solve.h"
 #include "sim_server/commands/study.h"
@@ -34,16 +35,20 @@ void add_cache_or_none(CLI::App* command, sim::CacheOptions& options) {
   command->add_flag("--no-cache", options.none, "Compute everything anew, and keep nothing");
 }
 
-CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
-  auto* command = app.add_subcommand("run", "Serve a scene until Ctrl-C");
-  command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
+void add_listen_options(CLI::App* command, sim::ListenOptions& options) {
   command
-      ->add_option("--listen", options.listen,
+      ->add_option("--listen", options.address,
                    "ADDR:PORT to listen on (UDP); 0.0.0.0:45130 for other machines")
       ->capture_default_str();
   command->add_option("--key", options.key,
                       "File of keys; clients need one of them, see `sim_server keygen`");
   command->add_flag("--insecure", options.insecure, "Serve other machines without a key");
+}
+
+CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
+  auto* command = app.add_subcommand("run", "Serve a scene until Ctrl-C");
+  command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
+  add_listen_options(command, options.listen);
   command->add_option("--seconds", options.seconds, "Stop after so many seconds");
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
   command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
@@ -180,6 +185,21 @@ CLI::App* add_mesh_info(CLI::App& app, std::string& file) {
   return info;
 }
 
+CLI::App* add_replay(CLI::App& app, sim::ReplayOptions& options) {
+  auto* command =
+      app.add_subcommand("replay", "Play the forces of a capture to a live client and its device");
+  command->add_option("--serve", options.capture, "pcap or pcapng with a session of Palpate")->required();
+  add_listen_options(command, options.listen);
+  command->add_option("--seconds", options.seconds,
+                      "Stop after so many seconds (default: when all was played)");
+  command->footer(
+      "The forces come in their own time, wherever the tool is now; they carry no tangents. The client's "
+      "limits\n"
+      "hold as ever, and its passivity takes energy out that a force without a wall may bring in.\n"
+      "Example: sim_server replay --serve F.pcap");
+  return command;
+}
+
 struct KeygenOptions {
   std::string file;
   bool add = false;
@@ -248,11 +268,17 @@ int run(int argc, char** argv) {
   sim::CacheOptions cached;
   const auto* study = add_study(app, studying, cached);
   const auto* mesh_info = add_mesh_info(app, mesh_file);
+  sim::ReplayOptions replaying;
+  const auto* replay = add_replay(app, replaying);
   KeygenOptions making;
   const auto* keygen = add_keygen(app, making);
   const auto [list, clear] = add_cache(app, cached);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*mesh_info) return sim::print_mesh_info(mesh_file);
+  if (*replay) {
+    if (replaying.seconds) require_at_least(*replaying.seconds, 1e-3, "--seconds", "s");
+    return sim::serve_replay(replaying);
+  }
   if (*keygen) return sim::make_key(making.file, making.add);
   if (*list) return sim::list_cache(cached);
   if (*clear) return sim::clear_cache(cached);

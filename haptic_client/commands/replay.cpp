@@ -26,8 +26,9 @@ std::string describe(const CapturedRun& run, std::size_t index) {
                      protocol::to_string(run.client), run.ticks, run.first_tick, run.ticks_hz(), run.samples);
 }
 
-/// The session asked for, or the longest; says which when there are several.
-std::size_t choose(const CaptureSurvey& found, const ReplayOptions& options) {
+}  // namespace
+
+std::size_t choose_session(const CaptureSurvey& found, const ReplayOptions& options) {
   const auto count = static_cast<int>(found.runs.size());
   const auto longest = std::max_element(found.runs.begin(), found.runs.end(),
                                         [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
@@ -45,6 +46,13 @@ std::size_t choose(const CaptureSurvey& found, const ReplayOptions& options) {
     fail("--session: number {} in {} has no tool states", chosen + 1, options.capture.string());
   return chosen;
 }
+
+double nominal_rate(double captured_hz, double asked_hz) {
+  const bool near = std::abs(captured_hz - asked_hz) <= kSameRate * asked_hz;
+  return std::clamp(near ? asked_hz : captured_hz, 1.0, kFastest);
+}
+
+namespace {
 
 /// The captured ticks as they are, or at the rate asked for.
 class TickSource {
@@ -128,13 +136,6 @@ void say_how_exact(const Json& capture, const CapturedRun& run, const std::strin
   }
 }
 
-/// The rate that the client was asked for, if the capture (which may have missed ticks) is near it; in any
-/// case one that a loop can have.
-double nominal_rate(double captured_hz, double asked_hz) {
-  const bool near = std::abs(captured_hz - asked_hz) <= kSameRate * asked_hz;
-  return std::clamp(near ? asked_hz : captured_hz, 1.0, kFastest);
-}
-
 }  // namespace
 
 int replay(const ClientConfig& config, const ReplayOptions& options) {
@@ -144,7 +145,7 @@ int replay(const ClientConfig& config, const ReplayOptions& options) {
   ProgressLine progress;
   const CaptureSurvey found =
       survey(options.capture, [&](double share) { progress("reading the capture", share); });
-  const std::size_t index = choose(found, options);
+  const std::size_t index = choose_session(found, options);
   const CapturedRun& run = found.runs[index];
   const double captured_hz = run.ticks_hz(), rate_hz = options.rate_hz.value_or(captured_hz);
   const bool exact = captured_hz == 0 || std::abs(rate_hz - captured_hz) <= kSameRate * captured_hz;

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "haptic_client/evaluation/captured_session.h"
 #include "haptic_client/session/client_config.h"
 
 namespace palpate::client {
@@ -15,6 +16,19 @@ struct ReplayOptions {
   std::optional<std::filesystem::path> out;     ///< CSV, a row a tick
   std::optional<std::filesystem::path> report;  ///< JSON
 };
+
+/// Plays the tool of a captured session to the live server of `config`, in real time, through pipeline and
+/// link as `run` does; the force is computed, written to `out` and the report, and moves nothing. Throws
+/// `Error`. Returns the exit code.
+int replay_live(const ClientConfig& config, const ReplayOptions& options);
+
+/// Which session of a capture is meant, as an index: the one asked for, or the longest; says which when there
+/// are several. Throws `Error`.
+std::size_t choose_session(const CaptureSurvey& found, const ReplayOptions& options);
+
+/// The rate that the client was asked for, if that of the capture (which may have missed ticks) is near it;
+/// in any case one that a loop can have. Hz.
+double nominal_rate(double captured_hz, double asked_hz);
 
 /// Runs the ticks of a captured session through law, watchdog and limiter again, offline: the same forces,
 /// bit by bit, whenever it is done. Throws `Error`. Returns the exit code.

@@ -30,21 +30,21 @@ struct TickResult {
 
 /// Sums over a session, for the report.
 struct PipelineStats {
-  Histogram age_ns;                ///< of the newest sample, each tick that has one
-  std::uint64_t samples = 0;       ///< used
-  std::uint64_t overtaken = 0;     ///< dropped: not newer than what was there
-  std::uint64_t told = 0;          ///< ticks since the first sample
-  std::uint64_t stepped_down = 0;  ///< ticks in which a simpler law stood in for the chosen one
-  StandIns stand_ins;              ///< which law did
+  Histogram age_ns;                   ///< of the newest sample, each tick that has one
+  std::uint64_t samples = 0;          ///< used
+  std::uint64_t overtaken = 0;        ///< dropped: not newer than what was there
+  std::uint64_t told = 0;             ///< ticks since the first sample
+  std::uint64_t stepped_down = 0;     ///< ticks in which a simpler law stood in for the chosen one
+  StandIns stand_ins;                 ///< which law did
   Time first_told{}, first_itself{};  ///< of the first tick of `told`, and of the first without a stand-in
-  std::uint64_t pages = 0;         ///< of the surface, taken
-  std::uint64_t lost = 0;          ///< ticks in which the device gave nothing usable
-  std::uint64_t clutched = 0;      ///< ticks
-  double max_newton = 0;           ///< largest force written
-  double path_m = 0, path_s = 0;   ///< of the tool, world
-  double max_speed = 0;            ///< m/s, of the filtered velocity
-  double sample_path_m = 0;        ///< sum of |P_n - P_(n-1)|
-  double sample_path_s = 0;        ///< and of t_n - t_(n-1)
+  std::uint64_t pages = 0;            ///< of the surface, taken
+  std::uint64_t lost = 0;             ///< ticks in which the device gave nothing usable
+  std::uint64_t clutched = 0;         ///< ticks
+  double max_newton = 0;              ///< largest force written
+  double path_m = 0, path_s = 0;      ///< of the tool, world
+  double max_speed = 0;               ///< m/s, of the filtered velocity
+  double sample_path_m = 0;           ///< sum of |P_n - P_(n-1)|
+  double sample_path_s = 0;           ///< and of t_n - t_(n-1)
   std::uint64_t sample_pairs = 0;
 };
 

@@ -49,11 +49,11 @@ protocol::Key key_of(const ClientConfig& config) {
 }  // namespace
 
 HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::string name,
-                   std::optional<double> seconds)
+                   std::optional<double> seconds, std::unique_ptr<Device> device)
     : config_(config),
       files_(files),
       name_(std::move(name)),
-      device_(row_of(config.device).make(config.device)),
+      device_(device ? std::move(device) : row_of(config.device).make(config.device)),
       pipeline_(find_row(extrapolators(), config.method, "method", config.method_where).make(),
                 config.workspace, config.device_limits(), config.passivity, config.blend),
       observation_(config.scored_laws(), rate_of(config), config.score_where,

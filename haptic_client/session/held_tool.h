@@ -22,9 +22,10 @@ struct ToolFiles {
 class HeldTool {
  public:
   /// Opens nothing yet but the socket. `name` begins what is said about it; empty where there is only one.
-  /// `seconds`: how long it will run, if that is known. Throws `Error`.
+  /// `seconds`: how long it will run, if that is known. `device`: in the place of the configured one; null:
+  /// that. Throws `Error`.
   HeldTool(const ClientConfig& config, const ToolFiles& files, std::string name,
-           std::optional<double> seconds);
+           std::optional<double> seconds, std::unique_ptr<Device> device = nullptr);
   /// Writes zero force, says Bye to the server, ends its threads.
   ~HeldTool();
 

@@ -12,7 +12,6 @@
 #include "common/realtime.h"
 #include "common/report.h"
 #include "common/text.h"
-#include "protocol/key_file.h"
 #include "protocol/link_report.h"
 #include "protocol/recording_report.h"
 #include "sim_server/deformation/deformation_models.h"
@@ -229,13 +228,6 @@ void warn_if_coarse(const ErrorOfForce& errors, const Simulation& simulation, co
   }
 }
 
-/// A socket that other machines may reach is for those with a key.
-protocol::UdpSocket open_socket(const ServerOptions& options) {
-  const protocol::Endpoint endpoint = protocol::resolve(options.listen, "--listen");
-  protocol::require_key(endpoint, options.key.has_value(), options.insecure, "--listen");
-  return protocol::UdpSocket(endpoint);
-}
-
 }  // namespace
 
 int run_server(const ServerOptions& options) {
@@ -245,8 +237,10 @@ int run_server(const ServerOptions& options) {
                     {"--report", options.report},
                     {"--record", options.record}});
   if (options.report) check_writable(*options.report, Contents::kReport);
-  const auto keys = options.key ? protocol::read_keys(*options.key) : std::vector<protocol::Key>{};
-  protocol::UdpSocket socket = open_socket(options);
+  std::vector<double> radii;
+  for (const ToolSettings& tool : scene.tools) radii.push_back(tool.shape.radius);
+  protocol::ServerSessions sessions = sessions_for(options.listen, scene.rate_hz, radii);
+  protocol::UdpSocket socket = open_socket(options.listen);
   const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;
   const Time begin = now();
   SetupTimes progress{ProgressLine()};
@@ -257,16 +251,10 @@ int run_server(const ServerOptions& options) {
   ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
   warn_if_coarse(errors, simulation, scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);
-  std::vector<double> radii;
   std::vector<SurfacePager> pagers;
-  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
-    radii.push_back(scene.tools[i].shape.radius);
-    pagers.emplace_back(simulation, i);
-  }
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) pagers.emplace_back(simulation, i);
   SimMailboxes mailboxes;
   SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools, errors);
-  protocol::ServerSessions sessions(scene.rate_hz, radii, protocol::random_value<protocol::Cookies::Secret>(),
-                                    keys);
   NetLink link(socket, std::move(sessions), std::move(pagers), mailboxes, recorder.get());
   const Time start = now();
   {

@@ -4,15 +4,14 @@
 #include <string>
 
 #include "sim_server/commands/cache.h"
+#include "sim_server/commands/listening.h"
 
 namespace palpate::sim {
 
 /// What `sim_server run` was asked for.
 struct ServerOptions {
   std::filesystem::path scene;
-  std::string listen = "127.0.0.1:45130";
-  std::optional<std::filesystem::path> key;     ///< file of the keys of which clients must have one
-  bool insecure = false;                        ///< serve other machines without
+  ListenOptions listen;
   std::optional<double> seconds;                ///< stop after so long; absent: at Ctrl-C
   std::optional<std::filesystem::path> report;  ///< JSON written at the end
   std::optional<std::filesystem::path> record;  ///< capture of every datagram

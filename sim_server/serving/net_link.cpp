@@ -91,6 +91,7 @@ void NetLink::pass_on(std::uint64_t session, const protocol::ToolState& state) {
 /// The pages it asks for, each once, if they are of the surface that we have; what is lost, or too much at
 /// once, will be asked for again.
 void NetLink::send_pages(const protocol::ToolState& state, Time t) {
+  if (pagers_.empty()) return;
   SurfacePager& pager = pagers_[state.tool];
   if ((state.flags & protocol::ToolState::kAsksPages) == 0 || state.surface_version != pager.state().version)
     return;

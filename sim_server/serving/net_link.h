@@ -11,7 +11,7 @@ namespace palpate::sim {
 /// The network thread of the server: datagrams in, sessions kept, forces out.
 class NetLink {
  public:
-  /// `pagers`: of each tool. `recorder`: gets every datagram; may be null.
+  /// `pagers`: of each tool, or none. `recorder`: gets every datagram; may be null.
   NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, std::vector<SurfacePager> pagers,
           SimMailboxes& mailboxes, protocol::Recorder* recorder);
 

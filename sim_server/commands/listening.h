@@ -1,0 +1,26 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/session.h"
+#include "protocol/udp_socket.h"
+
+namespace palpate::sim {
+
+/// Where a server listens, and to whom.
+struct ListenOptions {
+  std::string address = "127.0.0.1:45130";
+  std::optional<std::filesystem::path> key;  ///< file of the keys of which clients must have one
+  bool insecure = false;                     ///< serve other machines without
+};
+
+/// A socket there. Throws `Error` where it cannot be had, or other machines could reach it without a key.
+protocol::UdpSocket open_socket(const ListenOptions& options);
+
+/// Sessions with the keys asked for, and cookies of this run. Throws `Error` for a key file that is wrong.
+protocol::ServerSessions sessions_for(const ListenOptions& options, double rate_hz,
+                                      std::vector<double> tool_radii);
+
+}  // namespace palpate::sim

@@ -1,0 +1,68 @@
+#include "sim_server/serving/captured_forces.h"
+
+#include <algorithm>
+#include <map>
+
+#include "common/error.h"
+#include "common/log.h"
+#include "protocol/capture.h"
+#include "protocol/codec.h"
+
+namespace palpate::sim {
+using namespace protocol;
+
+namespace {
+
+constexpr std::size_t kMostSessions = 1000;
+
+struct Session {
+  std::map<std::uint64_t, ForceSample> samples;  // by number; what the capture holds twice counts once
+  double tool_radius = 0;
+};
+
+/// Without what is not in order of time: it would be played late.
+CapturedForces in_order(const Session& session) {
+  CapturedForces forces;
+  if (session.tool_radius > 0) forces.tool_radius = session.tool_radius;
+  for (const auto& [number, sample] : session.samples) {
+    if (forces.samples.empty() || sample.tool_t_ns > forces.samples.back().tool_t_ns)
+      forces.samples.push_back(sample);
+  }
+  return forces;
+}
+
+}  // namespace
+
+double CapturedForces::seconds() const {
+  if (samples.empty()) return 0;
+  return 1e-9 * static_cast<double>(samples.back().tool_t_ns - samples.front().tool_t_ns);
+}
+
+double CapturedForces::rate_hz() const {
+  return samples.size() < 2 ? 0 : static_cast<double>(samples.size() - 1) / seconds();
+}
+
+CapturedForces read_captured_forces(const std::filesystem::path& capture) {
+  CaptureReader reader(capture);
+  std::map<std::uint64_t, Session> sessions;
+  CapturedDatagram captured;
+  Datagram datagram;
+  while (reader.next(captured)) {
+    if (decode(captured.bytes, datagram) != Verdict::kAccepted) continue;
+    if (sessions.size() >= kMostSessions && !sessions.contains(datagram.header.session)) continue;
+    if (const auto* sample = std::get_if<ForceSample>(&datagram.message))
+      sessions[datagram.header.session].samples.emplace(sample->number, *sample);
+    if (const auto* welcome = std::get_if<Welcome>(&datagram.message))
+      sessions[datagram.header.session].tool_radius = welcome->tool_radius;
+  }
+  if (const std::string trouble = reader.trouble(); !trouble.empty())
+    log::warning("{}: {}", capture.string(), trouble);
+  const auto longest = std::max_element(sessions.begin(), sessions.end(), [](const auto& a, const auto& b) {
+    return a.second.samples.size() < b.second.samples.size();
+  });
+  if (longest == sessions.end() || longest->second.samples.size() < 2)
+    fail("{}: holds no force samples of Palpate, so there is nothing to play", capture.string());
+  return in_order(longest->second);
+}
+
+}  // namespace palpate::sim
