@@ -2,6 +2,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/relaxation.h"
 #include "common/types.h"
 
 namespace palpate::sim {
@@ -16,12 +17,6 @@ enum class ElementKind { kLinear, kNodalPressure, kQuadratic };
 struct Fibres {
   Vec3 direction;  ///< unit, mesh frame at rest
   double modulus;  ///< Young's modulus along them, beyond that of the rest, Pa, (0, 1e12]
-};
-
-/// A share of all stress that fades when the strain is held: one term of a Prony series.
-struct Relaxation {
-  double share;  ///< of the stress at once, (0, 1); all shares together below 1
-  double time;   ///< to 1/e, s, [1e-4, 1e6]
 };
 
 /// Tissue. Liver, the values of configs/scenes/liver.toml: see there for their sources.

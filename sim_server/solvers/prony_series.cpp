@@ -1,19 +1,8 @@
 #include "sim_server/solvers/prony_series.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace palpate::sim {
-namespace {
-
-double fade_of(const Relaxation& term, double h) {
-  return std::exp(-h / term.time);
-}
-double gamma_of(const Relaxation& term, double h) {
-  return -std::expm1(-h / term.time) * term.time / h;
-}
-
-}  // namespace
 
 PronySeries::PronySeries(std::span<const Relaxation> terms, std::size_t points)
     : terms_(terms.begin(), terms.end()) {
@@ -28,7 +17,8 @@ void PronySeries::begin(double h) {
   scale_ = 1;
   std::fill(memory_.begin(), memory_.end(), Mat3::Zero());
   for (std::size_t k = 0; k < terms_.size(); ++k) {
-    const double share = terms_[k].share, fade = fade_of(terms_[k], h), gamma = gamma_of(terms_[k], h);
+    const double share = terms_[k].share;
+    const auto [fade, gamma] = RelaxationStep::over(h, terms_[k].time);
     scale_ += share * (gamma - 1);
     for (std::size_t p = 0; p < memory_.size(); ++p)
       memory_[p] += fade * stress_[k * memory_.size() + p] - share * gamma * elastic_[p];
@@ -40,8 +30,8 @@ void PronySeries::end(std::span<const Mat3> elastic) {
     if (!elastic[p].allFinite()) continue;
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       Mat3& stress = stress_[k * elastic_.size() + p];
-      stress = fade_of(terms_[k], h_) * stress +
-               terms_[k].share * gamma_of(terms_[k], h_) * (elastic[p] - elastic_[p]);
+      const auto [fade, gamma] = RelaxationStep::over(h_, terms_[k].time);
+      stress = fade * stress + terms_[k].share * gamma * (elastic[p] - elastic_[p]);
     }
     elastic_[p] = elastic[p];
   }
