@@ -12,9 +12,10 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
 constexpr std::array<std::uint8_t, 2> kReserved{};
-constexpr double kMaxMagnitude = 1e9;  // of any position, speed or force: beyond is a bug or an attack
-constexpr float kMaxAmplitude = 1e6F;  // of a mode, m sqrt(kg), and of its rate
-constexpr float kMaxPercent = 1e6F;    // of an error of a force
+constexpr double kMaxMagnitude = 1e9;   // of any position, speed or force: beyond is a bug or an attack
+constexpr float kMaxAmplitude = 1e6F;   // of a mode, m sqrt(kg), and of its rate
+constexpr float kMaxRelaxation = 1e6F;  // s
+constexpr float kMaxPercent = 1e6F;     // of an error of a force
 constexpr std::int64_t kMaxLead = 10'000'000'000;  // ns
 
 bool small(const Vec3& v) noexcept {
@@ -70,7 +71,7 @@ bool valid(const ForceSample& m) noexcept {
   return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W) &&
          small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) && small(m.ahead_f_W) &&
          valid(m.ahead) && valid(m.surface) && valid(m.errors.mesh) && valid(m.errors.time_step) &&
-         valid(m.others) && valid(m.modes) && small(m.mean_f_W);
+         valid(m.others) && valid(m.modes) && small(m.mean_f_W) && valid(m.relaxed);
 }
 bool valid(const SurfacePage& m) noexcept {
   return m.tool < kMaxTools && m.page != ToolState::kNoPage &&
@@ -117,6 +118,23 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
 }
 
 }  // namespace
+
+bool valid(const RelaxedState& m) noexcept {
+  const auto bounded = [](float x) { return std::abs(x) <= kMaxAmplitude; };
+  if (m.terms > kMostRelaxations || m.count * m.terms > RelaxedState::kMostAmplitudes ||
+      m.first + m.count > kMostSlowModes || m.vertices * m.terms > RelaxedState::kMostForces ||
+      m.vertices > RelaxedState::kMostForces)
+    return false;
+  float shares = 0;
+  for (std::size_t j = 0; j < m.terms; ++j) {
+    shares += m.share[j];
+    if (!(m.share[j] >= 0 && m.time[j] > 0 && m.time[j] <= kMaxRelaxation)) return false;
+  }
+  return shares < 1 && std::all_of(m.z.begin(), m.z.end(), bounded) &&
+         std::all_of(m.vertex.begin(), m.vertex.end(), [&](const RelaxedState::Vertex& v) {
+           return std::all_of(v.psi.begin(), v.psi.end(), bounded);
+         });
+}
 
 std::size_t encode(const Header& header, const Message& message, std::span<std::byte> out) noexcept {
   assert(out.size() >= kMaxDatagram);

@@ -47,6 +47,9 @@ struct Datagram {
   std::span<const std::byte> bytes{};  ///< what it was read from; valid as long as those
 };
 
+/// Whether it is within the bounds of the protocol; one without terms is none.
+bool valid(const RelaxedState& m) noexcept;
+
 /// Writes one datagram and returns its size, at most `kMaxDatagram`. `out` must hold that many bytes. No
 /// allocation.
 std::size_t encode(const Header& header, const Message& message, std::span<std::byte> out) noexcept;

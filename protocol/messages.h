@@ -1,12 +1,14 @@
 #pragma once
 /// What travels. Byte layout and meaning: protocol/README.md. Each message lists its fields once, in wire
 /// order; writer and reader both walk that list.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <variant>
 
 #include "common/damped_mode.h"
 #include "common/discretisation_error.h"
+#include "common/relaxation.h"
 #include "common/types.h"
 
 namespace palpate::protocol {
@@ -169,11 +171,45 @@ struct ModalState {
   }
 };
 
+/// What a tissue that swings and relaxes remembers besides its `ModalState`: a part of it with each sample,
+/// the next part with the next, as all of it would not go into a datagram.
+struct RelaxedState {
+  static constexpr std::size_t kMostAmplitudes = 75, kMostForces = 16;  ///< in one sample
+  /// The Prony series, at most `kMostRelaxations` terms: share of the stress at once, and time, s.
+  std::uint8_t terms = 0;
+  std::array<float, kMostRelaxations> share = {}, time = {};
+  /// Of `count` modes from `first` on: what follows q late in each term, m sqrt(kg); terms of a mode in a
+  /// row.
+  std::uint8_t first = 0, count = 0;
+  std::array<float, kMostAmplitudes> z = {};
+  /// Of vertices of the surface: what their force is remembered as in each term, N.
+  struct Vertex {
+    std::uint16_t number = 0;
+    std::array<float, 3 * kMostRelaxations> psi = {};
+  };
+  std::uint8_t vertices = 0;
+  std::array<Vertex, kMostForces> vertex = {};
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.terms);
+    const auto terms = std::min<std::size_t>(m.terms, kMostRelaxations);
+    for (std::size_t j = 0; j < terms; ++j) v(m.share[j]), v(m.time[j]);
+    v(m.first), v(m.count);
+    for (std::size_t i = 0; i < m.count * terms && i < m.z.size(); ++i) v(m.z[i]);
+    v(m.vertices);
+    for (std::size_t i = 0; i < m.vertices && (i + 1) * terms <= kMostForces && i < m.vertex.size(); ++i) {
+      v(m.vertex[i].number);
+      for (std::size_t k = 0; k < 3 * terms; ++k) v(m.vertex[i].psi[k]);
+    }
+  }
+};
+
 struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
-  /// Bits of `flags`; the last seven: which parts follow.
+  /// Bits of `flags`; the last eight: which parts follow.
   static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8, kHasSurface = 16,
-                                 kHasErrors = 32, kHasOthers = 64, kHasModes = 128, kHasMean = 256;
+                                 kHasErrors = 32, kHasOthers = 64, kHasModes = 128, kHasMean = 256,
+                                 kHasRelaxed = 512;
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
   std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:
@@ -194,6 +230,7 @@ struct ForceSample {
   OtherTools others{};              ///< kHasOthers
   ModalState modes{};               ///< kHasModes, with kHasSurface: at `tool_t_ns`, under `f_W`
   Vec3 mean_f_W = Vec3::Zero();     ///< kHasMean: the mean force over the step that ended there, N
+  RelaxedState relaxed{};           ///< kHasRelaxed, with kHasModes
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
@@ -208,6 +245,7 @@ struct ForceSample {
     if ((m.flags & kHasOthers) != 0) OtherTools::fields(m.others, v);
     if ((m.flags & kHasModes) != 0) ModalState::fields(m.modes, v);
     if ((m.flags & kHasMean) != 0) v(m.mean_f_W);
+    if ((m.flags & kHasRelaxed) != 0) RelaxedState::fields(m.relaxed, v);
   }
 };
 

@@ -77,6 +77,13 @@ std::vector<Message> one_of_each() {
   swinging.modes.q = {0.5F, -1};
   swinging.modes.v = {2, 0};
   swinging.mean_f_W = {0, 1.5, 0};
+  ForceSample relaxing = swinging;
+  relaxing.flags = ForceSample::kHasModes | ForceSample::kHasRelaxed;
+  relaxing.relaxed = {.terms = 2, .first = 1, .count = 1, .vertices = 1};
+  relaxing.relaxed.share = {0.5F, 0.25F};
+  relaxing.relaxed.time = {0.125F, 2};
+  relaxing.relaxed.z = {-1, 3};
+  relaxing.relaxed.vertex[0] = {0x0102, {1, 2, 3, 0.5F, 0, -0.5F}};
   SurfacePage page{.tool = 1, .version = 0xa1b2c3d4, .page = 0x0708};
   page.values.front() = 0.5F;
   page.values.back() = -2;
@@ -94,7 +101,8 @@ std::vector<Message> one_of_each() {
           with_errors,
           among_others,
           swinging,
-          Challenge{{42}, 5, {45, 46}}};
+          Challenge{{42}, 5, {45, 46}},
+          relaxing};
 }
 
 }  // namespace
@@ -198,6 +206,18 @@ TEST_CASE("golden bytes: written down by hand from protocol/README.md") {
         "0000003f00000040"
         "000080bf00000000"
         "0000000000000000000000000000f83f0000000000000000");
+  CHECK(hex(encoded(kHeader, messages[15])).substr(2 * (28 + 105)) ==
+        "80020000"
+        "020000003f00000040000080bf00000000"
+        "02"  // terms: share and time of each
+        "0000003f0000003e"
+        "0000803e00000040"
+        "0101"  // first mode, count: both terms of it
+        "000080bf00004040"
+        "01"  // vertices: number, both terms
+        "0201"
+        "0000803f0000004000004040"
+        "0000003f00000000000000bf");
   CHECK(hex(encoded(kHeader, messages[10])) == front("0a", "8d03") + "01" + "d4c3b2a1" + "08070000" +
                                                    "0000003f" + std::string(2 * 4 * 223, '0') + "000000c0");
   CHECK(hex(encoded(kHeader, messages[6])).substr(2 * (28 + 107)) ==
@@ -350,6 +370,29 @@ TEST_CASE("more modes than there are, or wild ones, are refused") {
   CHECK(verdict(1, 2e6F, 0) == Verdict::kValue);
   CHECK(verdict(1, 0, -2e6F) == Verdict::kValue);
   CHECK(verdict(1, NAN, 0) == Verdict::kNotFinite);
+}
+
+TEST_CASE("a series that no tissue has, or more of what relaxes than a sample tells, is refused") {
+  const auto verdict = [](auto change) {
+    ForceSample sample = std::get<ForceSample>(one_of_each()[15]);
+    change(sample.relaxed);
+    Datagram datagram;
+    return decode(encoded(kHeader, sample), datagram);
+  };
+  CHECK(verdict([](RelaxedState&) {}) == Verdict::kAccepted);
+  CHECK(verdict([](RelaxedState& r) { r.share[0] = 0.8F; }) == Verdict::kValue);  // 1.05 together
+  CHECK(verdict([](RelaxedState& r) { r.share[0] = -0.1F; }) == Verdict::kValue);
+  CHECK(verdict([](RelaxedState& r) { r.time[1] = 0; }) == Verdict::kValue);
+  CHECK(verdict([](RelaxedState& r) { r.time[1] = 2e6F; }) == Verdict::kValue);
+  CHECK(verdict([](RelaxedState& r) { r.time[1] = NAN; }) == Verdict::kNotFinite);
+  CHECK(verdict([](RelaxedState& r) { r.z[1] = 2e6F; }) == Verdict::kValue);
+  CHECK(verdict([](RelaxedState& r) { r.vertex[0].psi[5] = -2e6F; }) == Verdict::kValue);
+  CHECK(verdict([](RelaxedState& r) { r.terms = 5; }) == Verdict::kValue);
+  CHECK(verdict([](RelaxedState& r) { r.first = 75; }) == Verdict::kValue);  // and one mode from there
+  CHECK(verdict([](RelaxedState& r) { r.count = 38; }) == Verdict::kValue);  // 76 amplitudes
+  CHECK(verdict([](RelaxedState& r) { r.vertices = 8; }) == Verdict::kAccepted);
+  CHECK(verdict([](RelaxedState& r) { r.vertices = 9; }) == Verdict::kValue);  // 18 forces
+  CHECK(verdict([](RelaxedState& r) { r = {.terms = 0, .vertices = 255}; }) == Verdict::kValue);
 }
 
 TEST_CASE("a tag behind the payload, and fields a later version adds, do not disturb a reader") {
