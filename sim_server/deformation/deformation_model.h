@@ -105,6 +105,8 @@ class DeformationModel {
   /// end of the last step, under the loads of `apply`.
   virtual void modal_state([[maybe_unused]] Eigen::Ref<Eigen::VectorXd> q,
                            [[maybe_unused]] Eigen::Ref<Eigen::VectorXd> v) {}
+  /// Of a tissue that relaxes, what it remembers besides by then (`SlowModes::State`).
+  virtual void relaxed_state([[maybe_unused]] Eigen::MatrixXd& z, [[maybe_unused]] std::vector<Vec3>& psi) {}
   /// As `compliance`, of all but the told modes, at rest: what follows at once. Constant; any thread.
   virtual void residual_compliance([[maybe_unused]] std::span<const int> vertices,
                                    [[maybe_unused]] ContactPatch& patch) const noexcept {}

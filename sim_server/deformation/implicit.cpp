@@ -19,16 +19,6 @@ constexpr int kMoreIterations = 2;  // times `max_newton`, where the residual do
 constexpr double kAtRest = 1e-6;    // relative residual of the predictor of a body that rests
 constexpr double kMostColumnBytes = 1e9;  // of columns, when a step begins
 
-struct NamedSolver {
-  std::string_view name;
-  DynamicsSettings::Solver value;
-};
-constexpr std::array kSolvers{
-    NamedSolver{"direct", DynamicsSettings::Solver::kDirect},
-    NamedSolver{"pcg", DynamicsSettings::Solver::kConjugateGradients},
-    NamedSolver{"quasi_newton", DynamicsSettings::Solver::kQuasiNewton},
-};
-
 /// A body that nothing holds flies.
 DynamicsSettings settings_of(const ModelInputs& inputs) {
   DynamicsSettings settings = dynamics_settings(inputs.scene.deformation);
@@ -44,12 +34,11 @@ bool held_by_vertices(const Scene& scene) {
          std::ranges::none_of(scene.loads, displaces);
 }
 
-/// Whether clients are told slow modes about rest: of a body that only tools move, and that remembers
-/// nothing but where it is and how it moves.
+/// Whether clients are told slow modes about rest: of a body that only tools move.
 bool tells_modes(const ModelInputs& inputs) {
   const auto* const told = inputs.scene.deformation.find<ClientModes>();
   return told != nullptr && told->modes > 0 && inputs.scene.loads.empty() && held_by_vertices(inputs.scene) &&
-         !supports_move(inputs.scene) && inputs.scene.material->relaxations.empty();
+         !supports_move(inputs.scene) && inputs.scene.material->relaxations.size() <= kMostRelaxations;
 }
 
 /// Of each node: its place among the free ones, or -1.
@@ -67,6 +56,10 @@ std::vector<double> masses_of_places(const LinearStatics& statics) {
   return of_places;
 }
 
+std::span<const double> numbers(const Eigen::VectorXd& all) {
+  return {all.data(), static_cast<std::size_t>(all.size())};
+}
+
 const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"implicit\" needs a [material] section", scene.source);
@@ -77,44 +70,6 @@ const Material& material_of(const ModelInputs& inputs) {
 }
 
 }  // namespace
-
-ImplicitSettings ImplicitSettings::read(const Config& config) {
-  ImplicitSettings settings;
-  const std::string integrator = config.text("integrator", "backward_euler");
-  settings.second_order = integrator == "bdf2";
-  if (!settings.second_order && integrator != "backward_euler")
-    fail("{}: unknown integrator \"{}\"; known: backward_euler, bdf2", config.where("integrator"),
-         integrator);
-  settings.solver =
-      find_row(kSolvers, config.text("solver", "direct"), "solver", config.where("solver")).value;
-  settings.refresh_steps =
-      static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
-  if (settings.solver == DynamicsSettings::Solver::kDirect && config.says("refresh_steps"))
-    fail("{}: solver \"direct\" factors where it has to; refresh_steps is for pcg and quasi_newton",
-         config.where("refresh_steps"));
-  settings.max_newton =
-      static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
-  settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);
-  return settings;
-}
-
-std::string ImplicitSettings::to_text() const {
-  std::string text;
-  if (second_order) text += "integrator = \"bdf2\"\n";
-  if (solver != DynamicsSettings::Solver::kDirect) {
-    const auto row =
-        std::ranges::find_if(kSolvers, [this](const NamedSolver& s) { return s.value == solver; });
-    text += fmt::format("solver = \"{}\"\nrefresh_steps = {}\n", row->name, refresh_steps);
-  }
-  return text + fmt::format("tolerance = {:g}\nmax_newton = {}\n", tolerance, max_newton);
-}
-
-DynamicsSettings dynamics_settings(const DeformationSettings& settings) {
-  const auto& damping = settings.of<RayleighDamping>();
-  const auto& steps = settings.of<ImplicitSettings>();
-  return {damping.mass, damping.stiffness,   steps.second_order,
-          steps.solver, steps.refresh_steps, steps.tolerance};
-}
 
 double Implicit::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
   const ElementKind element = scene.material->element;
@@ -156,6 +111,7 @@ Implicit::Implicit(const ModelInputs& inputs)
   if (tells_modes(inputs)) {
     const LinearStatics statics(inputs);
     told_.emplace(inputs, statics, places_of(statics), masses_of_places(statics));
+    if (!told_->modes().relaxations.empty()) relaxation_.emplace(told_->modes());
   }
   free_ = positions_ = rest_;
   dynamics_.start_step(period_);
@@ -187,6 +143,7 @@ FreeMotion Implicit::free_motion(double dt) {
     if (in_step_) {
       apply_new_loads();
       dynamics_.finish_step();
+      if (relaxation_) relaxation_->advance(period_, told_->amplitudes(numbers(displacement())), loads_);
     }
     in_step_ = true;
     relinearised_ = false;
@@ -372,24 +329,37 @@ Mat3 Implicit::later_compliance(std::span<const NodalLoad> loads, double seconds
   return 0.5 * (yields + yields.transpose());
 }
 
-/// Of the step as it will end: where the last loads lead.
+/// From rest, by unknowns, m: of the step as it will end, where the last loads lead.
+Eigen::VectorXd Implicit::displacement() const {
+  const FreeDofs& dofs = dynamics_.dofs();
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.count);
+  if (loads_ != linearised_loads_) {
+    add_response(loads_, 1, u);
+    add_response(linearised_loads_, -1, u);
+  }
+  for (std::size_t node = 0; node < dofs.first.size(); ++node) {
+    if (dofs.first[node] >= 0)
+      u.segment<3>(dofs.first[node]) += dynamics_.position()[node] - solid_.rest()[node];
+  }
+  return u;
+}
+
+/// Of the step as it will end.
 void Implicit::modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) {
   const FreeDofs& dofs = dynamics_.dofs();
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.count), speed = u, none = u;
-  add_response(loads_, 1, u);
-  add_response(linearised_loads_, -1, u);
+  const Eigen::VectorXd u = displacement(), none = Eigen::VectorXd::Zero(dofs.count);
+  Eigen::VectorXd speed = none;
   for (std::size_t node = 0; node < dofs.first.size(); ++node) {
     const int first = dofs.first[node];
-    if (first < 0) continue;
-    const Vec3 x = dynamics_.position()[node] + u.segment<3>(first);
-    u.segment<3>(first) = x - solid_.rest()[node];
-    speed.segment<3>(first) = dynamics_.velocity_at(node, x);
+    if (first >= 0)
+      speed.segment<3>(first) = dynamics_.velocity_at(node, solid_.rest()[node] + u.segment<3>(first));
   }
-  const auto numbers = [](const Eigen::VectorXd& all) {
-    return std::span(all.data(), static_cast<std::size_t>(all.size()));
-  };
   told_->begin(numbers(u), numbers(speed), numbers(none), 0);
   told_->advance(0, loads_, q, v);
+}
+
+void Implicit::relaxed_state(Eigen::MatrixXd& z, std::vector<Vec3>& psi) {
+  if (relaxation_) relaxation_->foresee(period_, told_->amplitudes(numbers(displacement())), loads_, z, psi);
 }
 
 void Implicit::residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
@@ -404,7 +374,9 @@ std::vector<MemoryPart> Implicit::memory() const {
       {"positions", (rest_.size() + free_.size() + positions_.size() + external_.size()) * sizeof(Vec3) +
                         (node_.size() + dof_.size() + slot_.size()) * sizeof(int)}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
-  if (told_) parts.push_back({"motion told to clients", told_->bytes(), told_->detail()});
+  if (told_)
+    parts.push_back({"motion told to clients", told_->bytes() + (relaxation_ ? relaxation_->bytes() : 0),
+                     told_->detail()});
   return parts;
 }
 

@@ -8,6 +8,7 @@
 #include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/moving_supports.h"
 #include "sim_server/deformation/told_motion.h"
+#include "sim_server/deformation/told_relaxation.h"
 #include "sim_server/scene/loads.h"
 #include "sim_server/solvers/dynamics.h"
 
@@ -57,6 +58,7 @@ class Implicit : public DeformationModel {
   Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
   const SlowModes* slow_modes() const noexcept override { return told_ ? &told_->modes() : nullptr; }
   void modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) override;
+  void relaxed_state(Eigen::MatrixXd& z, std::vector<Vec3>& psi) override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) override;
   std::optional<FreeMotion> relinearise() override;
@@ -70,6 +72,7 @@ class Implicit : public DeformationModel {
   void begin(const ModelInputs& inputs);
   void apply_new_loads();
   FreeMotion motion() const;
+  Eigen::VectorXd displacement() const;
   void update_surface();
   void request_columns();
   void replace_columns();
@@ -86,9 +89,10 @@ class Implicit : public DeformationModel {
   Dynamics dynamics_;
   /// Where some move. Only for how fast the surface goes by them (by a linearisation about rest), and when.
   std::optional<MovingSupports> supports_;
-  std::optional<ToldMotion> told_;  // to clients, about rest, where the scene has it
-  double held_compliance_;          // m/N, of a fixed vertex under the tool itself
-  int instants_;                    // within a step of the scene
+  std::optional<ToldMotion> told_;            // to clients, about rest, where the scene has it
+  std::optional<ToldRelaxation> relaxation_;  // of a tissue that relaxes
+  double held_compliance_;                    // m/N, of a fixed vertex under the tool itself
+  int instants_;                              // within a step of the scene
   double period_, tolerance_;
   int max_newton_, iterations_ = 0;  // of Newton's method in this step
   int factors_ = 0;                  // of the columns

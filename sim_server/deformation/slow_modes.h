@@ -4,9 +4,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/config.h"
 #include "common/contact/contact_solver.h"
+#include "common/relaxation.h"
 #include "sim_server/deformation/deformation_model.h"
 #include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/solvers/vibration_modes.h"
@@ -30,20 +32,26 @@ struct ClientModes {
 /// The slowest modes of a linear tissue, as its surface moves in them:
 ///   q_k'' + damping_k q_k' + w_k^2 q_k = shapes_k^T f.
 /// What a client needs to know of a tissue that swings, besides how compliant all the rest of it is: a
-/// compliance alone, however fresh, has no memory.
+/// compliance alone, however fresh, has no memory. Of a tissue that relaxes, by the same series everywhere,
+/// what stands there is how stiff it is at once, and
+///   q_k'' + damping_k q_k' + w_k^2 (q_k - sum_j share_j z_kj) = shapes_k^T f,   z_kj' = (q_k - z_kj) /
+///   time_j.
 struct SlowModes {
   Eigen::VectorXd frequencies;  ///< (k) w, rad/s, ascending
   Eigen::VectorXd damping;      ///< (k) 1/s
   Eigen::MatrixXd shapes;       ///< (3 surface vertices x k), 1/sqrt(kg): of unit mass
   /// The first so many are those that a client can follow (`common/damped_mode.h`).
   Eigen::Index told = 0;
+  std::vector<Relaxation> relaxations{};  ///< at most `kMostRelaxations`
 
   /// `modes`: over the unknowns; a surface vertex begins at `first` there, or -1: held.
   SlowModes(const VibrationModes& modes, std::span<const int> first, const RayleighDamping& damping);
 
   /// Where they stand: amplitudes, m sqrt(kg), and their rates, m sqrt(kg)/s.
   struct State {
-    Eigen::VectorXd q, v;  // (k)
+    Eigen::VectorXd q, v;     ///< (k)
+    Eigen::MatrixXd z{};      ///< (k x terms), m sqrt(kg)
+    std::vector<Vec3> psi{};  ///< (surface vertices x terms), N: what all the rest has not forgotten
   };
 
   /// Subtracts sum_k yields_k shapes_k shapes_k^T at these surface vertices from the compliance of `patch`,

@@ -41,6 +41,7 @@ ToldMotion::ToldMotion(const ModelInputs& inputs, const LinearStatics& statics, 
   }
   q_ = v_ = force_ = Eigen::VectorXd::Zero(modes_.told);
   steps_.resize(static_cast<std::size_t>(modes_.told));
+  modes_.relaxations = inputs.scene.material->relaxations;
   statics.fill(residual_);
   residual_.add(modes_.shapes, -modes_.told_at_rest());
 }
@@ -50,14 +51,19 @@ void ToldMotion::begin(std::span<const double> u, std::span<const double> v, std
   const auto mapped = [&](std::span<const double> all) {
     return Eigen::Map<const Eigen::VectorXd>(all.data(), shapes_.rows());
   };
-  weighted_ = masses_.cwiseProduct(mapped(u));
-  q_.noalias() = shapes_.transpose() * weighted_;
+  amplitudes(u);
   weighted_ = masses_.cwiseProduct(mapped(v));
   v_.noalias() = shapes_.transpose() * weighted_;
   force_.noalias() = shapes_.transpose() * mapped(f);
   const auto w2 = modes_.frequencies.head(modes_.told).array().square();
   const auto damping = modes_.damping.head(modes_.told).array();
   v_.array() += late * (force_.array() - w2 * q_.array() - damping * v_.array());
+}
+
+const Eigen::VectorXd& ToldMotion::amplitudes(std::span<const double> u) noexcept {
+  weighted_ = masses_.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(u.data(), shapes_.rows()));
+  q_.noalias() = shapes_.transpose() * weighted_;
+  return q_;
 }
 
 void ToldMotion::advance(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
@@ -85,9 +91,9 @@ std::size_t ToldMotion::bytes() const {
 }
 
 std::string ToldMotion::detail() const {
-  return fmt::format("{} modes up to {:.3g} Hz, and the compliance of the rest: {}", modes_.told,
+  return fmt::format("{} modes up to {:.3g} Hz, {}and the compliance of the rest: {}", modes_.told,
                      modes_.told > 0 ? modes_.frequencies[modes_.told - 1] / (2 * std::numbers::pi) : 0.0,
-                     residual_.detail());
+                     modes_.relaxations.empty() ? "" : "what has relaxed, ", residual_.detail());
 }
 
 }  // namespace palpate::sim

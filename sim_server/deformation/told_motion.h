@@ -26,6 +26,8 @@ class ToldMotion {
   /// and forces f (N) held until then. O(unknowns x modes).
   void begin(std::span<const double> u, std::span<const double> v, std::span<const double> f,
              double late) noexcept;
+  /// Amplitudes of the told modes alone, of displacements u (m).
+  const Eigen::VectorXd& amplitudes(std::span<const double> u) noexcept;
   /// From there by `time` (s) under loads that are held, to amplitudes and rates.
   void advance(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
                Eigen::Ref<Eigen::VectorXd> v) noexcept;

@@ -50,8 +50,12 @@ ServedTools::ServedTools(Simulation& simulation, const ErrorOfForce* errors)
       paths_(simulation.tools(), std::vector<PathPoint>(static_cast<std::size_t>(simulation.instants() - 1))),
       inputs_(simulation.tools()),
       outcomes_(simulation.tools()) {
-  for (std::size_t i = 0; i < simulation.tools(); ++i)
-    surfaces_.push_back(SurfacePager(simulation, i).state());
+  for (std::size_t i = 0; i < simulation.tools(); ++i) {
+    const SurfacePager pager(simulation, i);
+    surfaces_.push_back(pager.state());
+    if (simulation.told_modes() != nullptr && !simulation.told_modes()->relaxations.empty())
+      relaxation_.emplace(*simulation.told_modes(), pager.vertices());
+  }
 }
 
 std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionInput> inputs,
@@ -158,6 +162,7 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
     sample.flags |= ForceSample::kHasErrors;
     sample.errors = errors_->of_step(tool, simulation_.loads(tool));
   }
+  if (relaxation_ && (sample.flags & ForceSample::kHasModes) != 0) relaxation_->tell(*answer.modes, sample);
   return sample;
 }
 

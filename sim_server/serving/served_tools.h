@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "protocol/messages.h"
+#include "sim_server/serving/relaxation_teller.h"
 #include "sim_server/serving/tool_path.h"
 #include "sim_server/simulation/error_of_force.h"
 
@@ -48,6 +49,7 @@ class ServedTools {
   Simulation& simulation_;
   const ErrorOfForce* errors_;
   std::vector<protocol::SurfaceState> surfaces_;  // of each tool; version 0: none
+  std::optional<RelaxationTeller> relaxation_;    // where modes are told, of one tool, that relax
   std::vector<Holder> holders_;
   std::vector<std::vector<PathPoint>> paths_;  // within a step, of each tool
   std::vector<ToolInput> inputs_;

@@ -78,6 +78,7 @@ std::uint32_t SurfacePager::hash() noexcept {
     const auto bytes = static_cast<std::size_t>(told_->told) * sizeof(double);
     hash.add(told_->frequencies.data(), bytes);
     hash.add(told_->damping.data(), bytes);
+    for (const Relaxation& term : told_->relaxations) hash.add(&term, sizeof term);
   }
   return static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32) | 1;
 }

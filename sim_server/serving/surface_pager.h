@@ -21,6 +21,8 @@ class SurfacePager {
             told_ == nullptr ? 0 : static_cast<std::uint32_t>(told_->told)};
   }
 
+  /// Which vertex of the surface each vertex of the model is.
+  std::span<const int> vertices() const { return vertices_; }
   /// Where its vertices are at rest, in their order, m. Allocates.
   std::vector<Vec3> rest() const;
 

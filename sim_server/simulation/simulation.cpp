@@ -108,7 +108,11 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
     tissue_.before.assign(tissue_.positions.begin(), tissue_.positions.end());
   const auto all_loads = static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
   if (tools_.size() > 1) coupling_.emplace(tools_.size(), rest_.size(), all_loads);
-  if (const SlowModes* const told = told_modes()) modes_.q = modes_.v = Eigen::VectorXd::Zero(told->told);
+  if (const SlowModes* const told = told_modes()) {
+    modes_.q = modes_.v = Eigen::VectorXd::Zero(told->told);
+    modes_.z.setZero(told->told, static_cast<Eigen::Index>(told->relaxations.size()));
+    modes_.psi.assign(rest_.size() * told->relaxations.size(), Vec3::Zero());
+  }
   came_from_.resize(tools_.size());
   lately_.resize(tools_.size());
   for (auto& were : lately_) were.reserve(2 * kApart + 1);

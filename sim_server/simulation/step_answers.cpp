@@ -62,6 +62,7 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   answer.surface_shift_W = surface_shift(tool, p_W);
   if (told_modes() == nullptr) return;
   tissue_.model->modal_state(modes_.q, modes_.v);
+  if (!modes_.psi.empty()) tissue_.model->relaxed_state(modes_.z, modes_.psi);
   answer.modes = &modes_;
 }
 

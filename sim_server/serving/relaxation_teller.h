@@ -1,0 +1,31 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "protocol/messages.h"
+#include "sim_server/deformation/slow_modes.h"
+
+namespace palpate::sim {
+
+/// Tells a client what a tissue that relaxes remembers (`protocol::RelaxedState`), in as many parts as it
+/// takes, one with each sample: the modes in turn, and in turn the vertices whose force is not forgotten. One
+/// thread; only the constructor allocates.
+class RelaxationTeller {
+ public:
+  /// `vertices`: of the surface, of each vertex of the model that clients have (`SurfacePager::vertices`).
+  RelaxationTeller(const SlowModes& modes, std::span<const int> vertices);
+
+  /// Appends the next part to a sample that has all others, as long as a datagram has room for it.
+  void tell(const SlowModes::State& state, protocol::ForceSample& sample) noexcept;
+
+ private:
+  void tell_modes(const SlowModes::State& state, std::size_t room, protocol::RelaxedState& told) noexcept;
+  void tell_vertices(const SlowModes::State& state, std::size_t room, protocol::RelaxedState& told) noexcept;
+
+  const SlowModes& modes_;
+  std::size_t terms_;
+  std::vector<int> vertices_;
+  std::size_t next_mode_ = 0, next_vertex_ = 0;
+};
+
+}  // namespace palpate::sim
