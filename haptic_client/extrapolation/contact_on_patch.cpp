@@ -15,6 +15,7 @@ constexpr int kMostNodes = 96, kMostTriangles = 160;
 constexpr double kMargin = 0.25, kStride = 0.12;
 constexpr double kMostStrides = 16, kMostEntering = 32;  // a tick
 constexpr double kLeastDepth = 1e-4;                     // of the tool radius
+constexpr int kFarCreepAge = 16;                         // increments
 constexpr int kMostNear = 2048;  // vertices: a compliance by which more come near the tool is none
 
 }  // namespace
@@ -25,6 +26,7 @@ ContactOnPatch::ContactOnPatch(const Accuracy& accuracy)
       with_friction_(kMostNodes, kMostTriangles, true),
       slot_of_vertex_(SurfaceModel::kMostVertices, -1),
       moved_(SurfaceModel::kMostVertices),
+      crept_(SurfaceModel::kMostVertices, Vec3::Zero()),
       went_(SurfaceModel::kMostVertices, Vec3::Zero()),
       near_(SurfaceModel::kMostVertices),
       u_(3 * (kMostNodes + 1)),
@@ -35,6 +37,7 @@ ContactOnPatch::ContactOnPatch(const Accuracy& accuracy)
   loads_.reserve(kMostNodes);
   kept_loads_.reserve(kMostNodes);
   shapes_.reserve(kMostNodes);
+  far_creep_.reserve(kMostNodes);
 }
 
 void ContactOnPatch::lift() noexcept {
@@ -179,6 +182,7 @@ bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept 
   if (!displace_near(surface, p) || !take_triangles(surface, p) || !take_compliance(*surface.model) ||
       !take_shapes(*surface.model))
     return false;
+  find_far_creep(*surface.model);
   for (int i = 0; i < patch_.nodes(); ++i) {
     u_.segment<3>(3 * i) = moved_[vertices_[i]];
     u_before_.segment<3>(3 * i) = moved_[vertices_[i]] - went_[vertices_[i]];
@@ -204,13 +208,15 @@ bool ContactOnPatch::displace_near(const Surface& surface, const Vec3& p) noexce
       u += *c * load.force;
     }
     moved_[vertex] = u;
+    crept_[vertex] =
+        memory_ != nullptr ? Vec3(memory_->creep(model, vertex) - memory_->crept()) : Vec3(Vec3::Zero());
     near_[vertex] = 1;
     return true;
   };
-  double largest = 0;
+  double largest = memory_ != nullptr ? memory_->crept().norm() : 0;
   for (const Load& load : loads_) {
     if (!displace(load.vertex)) return false;
-    largest = std::max(largest, moved_[load.vertex].norm());
+    largest = std::max(largest, (moved_[load.vertex] + crept_[load.vertex]).norm());
   }
   const double reach = (1 + 2 * kMargin) * surface.tool.radius + largest;
   const double surely = reach + model.longest_edge();
@@ -232,13 +238,14 @@ bool ContactOnPatch::take_triangles(const Surface& surface, const Vec3& p) noexc
   const auto rest = surface.model->rest();
   const double reach = (1 + kMargin) * surface.tool.radius;
   const Vec3 tip = p + state_.tip_offset;
+  const auto stands = [&](int vertex) -> Vec3 { return rest[vertex] + moved_[vertex] + crept_[vertex]; };
   for (const int vertex : vertices_) slot_of_vertex_[vertex] = -1;
   vertices_.clear();
   patch_.triangles.clear();
   patch_.free.clear();
   for (const auto& t : surface.model->triangles()) {
     if (near_[t[0]] == 0 || near_[t[1]] == 0 || near_[t[2]] == 0) continue;
-    const Vec3 a = rest[t[0]] + moved_[t[0]], b = rest[t[1]] + moved_[t[1]], c = rest[t[2]] + moved_[t[2]];
+    const Vec3 a = stands(t[0]), b = stands(t[1]), c = stands(t[2]);
     const auto w = closest_point(tip, a, b, c).weight;
     if ((w[0] * a + w[1] * b + w[2] * c - tip).squaredNorm() > reach * reach) continue;
     if (patch_.triangles.size() == kMostTriangles || vertices_.size() + 3 > kMostNodes) return false;
@@ -280,10 +287,34 @@ bool ContactOnPatch::take_shapes(const SurfaceModel& model) noexcept {
   return true;
 }
 
-/// Where the patch is free of the tool, by the slow modes of now.
+/// Where the patch is free of the tool, by the slow modes of now and by what has crept.
 void ContactOnPatch::warp(const SurfaceModel& model) noexcept {
-  for (std::size_t i = 0; i < vertices_.size(); ++i)
-    patch_.free[i] = model.rest()[static_cast<std::size_t>(vertices_[i])] + memory_->warp(shapes_[i]);
+  if (!memory_->creeping().empty() && ++far_creep_age_ > kFarCreepAge) find_far_creep(model);
+  for (int i = 0; i < patch_.nodes(); ++i)
+    patch_.free[i] = model.rest()[vertices_[i]] + memory_->warp(shapes_[i]) + creep_of(i) - memory_->crept();
+}
+
+/// How far a patch node has crept, m.
+Vec3 ContactOnPatch::creep_of(int node) const noexcept {
+  Vec3 sum = far_creep_[node];
+  for (const Load& load : memory_->creeping()) {
+    const int slot = slot_of_vertex_[load.vertex];
+    if (slot >= 0) sum += patch_.compliance.block<3, 3>(3 * node, 3 * slot) * load.force;
+  }
+  return sum;
+}
+
+/// Loads beyond the patch only fade: what they do need not be found at each increment.
+void ContactOnPatch::find_far_creep(const SurfaceModel& model) noexcept {
+  far_creep_age_ = 0;
+  far_creep_.assign(vertices_.size(), Vec3::Zero());
+  if (memory_ == nullptr) return;
+  for (const Load& load : memory_->creeping()) {
+    if (slot_of_vertex_[load.vertex] >= 0) continue;
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      if (const auto c = model.compliance(vertices_[i], load.vertex)) far_creep_[i] += *c * load.force;
+    }
+  }
 }
 
 /// The tool appears at `p`. If that is inside the surface it is taken to have come in through the nearest

@@ -62,6 +62,8 @@ class ContactOnPatch {
   bool take_compliance(const SurfaceModel& model) noexcept;
   bool take_shapes(const SurfaceModel& model) noexcept;
   void warp(const SurfaceModel& model) noexcept;
+  void find_far_creep(const SurfaceModel& model) noexcept;
+  Vec3 creep_of(int node) const noexcept;
   Vec3 note_ways(std::size_t vertices) noexcept;
   bool foresee(const Vec3& motion) noexcept;
   void learn_tangent(const Vec3& motion, const Vec3& force_before) noexcept;
@@ -81,10 +83,13 @@ class ContactOnPatch {
   std::vector<Vec3> begin_;                  // where the patch nodes were when the increment began, m
   const ModalMemory* memory_ = nullptr;      // of this call
   std::vector<ModalMemory::Shapes> shapes_;  // of the patch nodes
+  std::vector<Vec3> far_creep_;  // of the patch nodes, m: by loads beyond the patch that are not forgotten
+  int far_creep_age_ = 0;        // in increments
   std::vector<Load> loads_, kept_loads_;
   std::uint64_t solves_ = 0;
   double work_left_ = 0;        // of this call
   std::vector<Vec3> moved_;     // displacement of vertices, m; where near_ says so
+  std::vector<Vec3> crept_;     // besides, relative to where `memory_` stands, m; likewise
   std::vector<Vec3> went_;      // of vertices in the last increment, m; 0 where not known
   std::vector<char> near_;      // whether a vertex is near enough to be looked at
   Eigen::VectorXd u_;           // of the patch nodes, then of the tip

@@ -134,7 +134,7 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
     felt_last_ = kappa_ * *local;
     if (local_size_ > 0) felt_last_ += std::min(kMostCorrection, local->norm() / local_size_) * across_;
   }
-  if (swings()) memory_.press(felt_last_);
+  if (swings()) memory_.press(felt_last_, contact_.loads());
   return known_ ? felt_last_ : without_.force(p, t);
 }
 

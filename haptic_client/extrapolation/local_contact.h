@@ -15,15 +15,16 @@ namespace palpate::client {
 /// is stiffer or softer than its model by a factor is met exactly, and what is missing fades with the
 /// contact; where a sample is free, kappa is that of the place ahead, if the tool touches there, else it
 /// stays as it was. Of a tissue that swings the slow modes are stepped here, and set right by each sample
-/// (`ModalMemory`); there kappa is learned where the tool presses firmly alone, and r is 0: what a light
-/// touch lacks is the inertia of all that is quicker, and soon gone. Where the model is not known around the
-/// tool (yet), a sample brings none, or F_loc(P_n') is not even half right: `TwoTangents`, from one sample to
-/// the next. With friction, where force depends on the path, F_loc(P_n') is the one that was felt at t_n: the
-/// contact here has followed the path tick by tick, so there is no state of the server's to take over, and
-/// nothing to replay; it is not felt before it was compared. Contact solved at the haptic rate on a
-/// compliance from the simulation: Peterlik et al. (2011); the rest is of our own. About 50 ns a tick, and
-/// where the tool has gone on (see `ContactOnPatch`) a contact solve of 10 us, one in ten above 50 us; with
-/// friction 30 us, one in ten above 130 us. A sample: 1 us, of a free tool expected to touch 140 us.
+/// (`ModalMemory`), with what of them and of all the rest has relaxed; there kappa is learned where the tool
+/// presses firmly alone, and r is 0: what a light touch lacks is the inertia of all that is quicker, and soon
+/// gone. Where the model is not known around the tool (yet), a sample brings none, or F_loc(P_n') is not even
+/// half right: `TwoTangents`, from one sample to the next. With friction, where force depends on the path,
+/// F_loc(P_n') is the one that was felt at t_n: the contact here has followed the path tick by tick, so there
+/// is no state of the server's to take over, and nothing to replay; it is not felt before it was compared.
+/// Contact solved at the haptic rate on a compliance from the simulation: Peterlik et al. (2011); the rest is
+/// of our own. About 50 ns a tick, and where the tool has gone on (see `ContactOnPatch`) a contact solve of
+/// 10 us, one in ten above 50 us; with friction 30 us, one in ten above 130 us. A sample: 1 us, of a free
+/// tool expected to touch 140 us.
 class LocalContact : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override;

@@ -25,14 +25,12 @@ bool ModalMemory::take_spectrum(const Surface& surface) noexcept {
   version_ = surface.model->generation();
   known_ = false;
   past_.forget();
-  count_ = spectrum.size();
-  for (std::size_t k = 0; k < count_; ++k) {
-    w_[k] = spectrum[k].frequency;
-    damping_[k] = spectrum[k].damping;
-    const ModeStep step = ModeStep::over(to_seconds(kStep), w_[k], damping_[k]);
-    q_of_q_[k] = step.q_of_q, q_of_v_[k] = step.q_of_v, q_of_p_[k] = step.q_of_p;
-    v_of_q_[k] = step.v_of_q, v_of_v_[k] = step.v_of_v, v_of_p_[k] = step.v_of_p;
+  system_.count = spectrum.size();
+  for (std::size_t k = 0; k < system_.count; ++k) {
+    system_.w[k] = spectrum[k].frequency;
+    system_.damping[k] = spectrum[k].damping;
   }
+  short_step_.prepare(to_seconds(kStep), system_);
   return true;
 }
 
@@ -41,17 +39,15 @@ bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
     restart();
     return false;
   }
-  for (std::size_t k = 0; k < count_; ++k) {
-    told_.q[k] = static_cast<double>(surface.modes.q[k]);
-    told_.v[k] = static_cast<double>(surface.modes.v[k]);
-  }
-  if (at(told_.q).norm() > kFarthestSwing) {
+  model_ = surface.model;
+  take_series(surface.relaxed);
+  if (!take_told(surface)) {
     restart();
     return false;
   }
   drift_.setZero();
-  const State* before = past_.at(t);
-  State here;
+  const ModalState* before = past_.at(t);
+  ModalState here;
   if (known_ && t > tick_) {  // without delay, the sample of this very tick
     advance(t);
     before = &(here = now(t));
@@ -64,7 +60,51 @@ bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
   } else if (!known_ || t - compared_ > kLongest) {
     begin(t, f);
   }  // else it stood nowhere yet at that time
-  return known_ = true;
+  known_ = true;
+  if (system_.terms > 0) {
+    loads_.take(*model_, surface.relaxed, t);
+    creep_at_foot();
+  }
+  return known_;
+}
+
+/// Whether these are amplitudes of an organ.
+bool ModalMemory::take_told(const Surface& surface) noexcept {
+  const protocol::RelaxedState& relaxed = surface.relaxed;
+  first_told_ = std::min<std::size_t>(relaxed.first, system_.count);
+  end_told_ = std::min<std::size_t>(relaxed.first + relaxed.count, system_.count);
+  for (std::size_t k = 0; k < system_.count; ++k) {
+    told_.q[k] = static_cast<double>(surface.modes.q[k]);
+    told_.v[k] = static_cast<double>(surface.modes.v[k]);
+  }
+  bool slight = at(told_.q).norm() <= kFarthestSwing;
+  for (std::size_t j = 0; j < system_.terms; ++j) {
+    told_.z[j] = told_.q;  // the best guess of those that another sample tells of
+    for (std::size_t k = first_told_; k < end_told_; ++k)
+      told_.z[j][k] = static_cast<double>(relaxed.z[(k - first_told_) * system_.terms + j]);
+    slight = slight && at(told_.z[j]).norm() <= kFarthestSwing;
+  }
+  return slight;
+}
+
+/// The series that it relaxes by; with another, what was known of the old one is gone.
+void ModalMemory::take_series(const protocol::RelaxedState& told) noexcept {
+  std::array<Relaxation, kMostRelaxations> series{};
+  for (std::size_t j = 0; j < told.terms; ++j)
+    series[j] = {static_cast<double>(told.share[j]), static_cast<double>(told.time[j])};
+  if (told.terms == system_.terms && series == system_.series) return;
+  known_ = false;
+  system_.terms = told.terms;
+  system_.series = series;
+  short_step_.prepare(to_seconds(kStep), system_);
+  loads_.begin(time_, system_.relaxations());
+  crept_.setZero();
+}
+
+void ModalMemory::creep_at_foot() noexcept {
+  crept_ = system_.terms > 0 && standing_ && model_ != nullptr ? loads_.creep(*model_, foot_vertex_)
+                                                               : Vec3(Vec3::Zero());
+  if (!(crept_.norm() <= kFarthestSwing)) restart();
 }
 
 void ModalMemory::begin(Time t, const Vec3& f) noexcept {
@@ -74,39 +114,40 @@ void ModalMemory::begin(Time t, const Vec3& f) noexcept {
   force_ = force_of(f);
   corrections_ = {};
   past_.forget();
+  if (system_.terms == 0) return;
+  loads_.begin(t, system_.relaxations());
+  const SurfaceLoad load{foot_vertex_, -f};
+  loads_.press(*model_, {&load, 1}, 1);
+  crept_.setZero();
 }
 
 /// What the modes were off by at the tick of the sample goes on by itself, without any force. What was known
 /// of that by now, from samples that came since that tick, is not counted twice.
-void ModalMemory::correct(const State& before, Time t) noexcept {
+void ModalMemory::correct(const ModalState& before, Time t) noexcept {
   drift_ = at(told_.q) - at(before.q);
   Correction& correction = corrections_[next_correction_++ % corrections_.size()];
-  State off;
-  for (std::size_t k = 0; k < count_; ++k) {
-    off.q[k] = told_.q[k] - before.q[k];
-    off.v[k] = told_.v[k] - before.v[k];
-  }
+  ModalState off;
+  // Calls `work` with each number of the first state that the sample tells of, and its like in the second.
+  const auto for_told = [&](ModalState& a, const ModalState& b, const auto& work) {
+    for (std::size_t k = 0; k < system_.count; ++k) work(a.q[k], b.q[k]), work(a.v[k], b.v[k]);
+    for (std::size_t j = 0; j < system_.terms; ++j) {
+      for (std::size_t k = first_told_; k < end_told_; ++k) work(a.z[j][k], b.z[j][k]);
+    }
+  };
+  const auto subtract = [](double& a, double b) { a -= b; };
+  for_told(off, told_, [](double& a, double b) { a = b; });
+  for_told(off, before, subtract);
   for (const Correction& known : corrections_) {
     if (known.made <= t || &known == &correction) continue;
-    const State gone_on = free_motion(known.off, t - known.of);
-    for (std::size_t k = 0; k < count_; ++k) {
-      off.q[k] -= gone_on.q[k];
-      off.v[k] -= gone_on.v[k];
-    }
+    for_told(off, free_motion(known.off, to_seconds(t - known.of), system_), subtract);
   }
   correction = {t, tick_, off};
-  const State now = free_motion(off, time_ - t);
-  for (std::size_t k = 0; k < count_; ++k) {
+  const ModalState now = free_motion(off, to_seconds(time_ - t), system_);
+  for (std::size_t k = 0; k < system_.count; ++k) {
     state_.q[k] += now.q[k];
     state_.v[k] += now.v[k];
+    for (std::size_t j = 0; j < system_.terms; ++j) state_.z[j][k] += now.z[j][k];
   }
-}
-
-ModalMemory::State ModalMemory::free_motion(State state, Time time) const noexcept {
-  const double seconds = to_seconds(time);
-  for (std::size_t k = 0; k < count_; ++k)
-    ModeStep::over(seconds, w_[k], damping_[k]).advance(state.q[k], state.v[k], 0);
-  return state;
 }
 
 bool ModalMemory::bear(const SurfaceModel& model, std::span<const SurfaceLoad> loads) noexcept {
@@ -117,7 +158,7 @@ bool ModalMemory::bear(const SurfaceModel& model, std::span<const SurfaceLoad> l
     bearing_ = foot_;
     return standing_;
   }
-  std::fill_n(bearing_.begin(), count_, Vec3::Zero());
+  std::fill_n(bearing_.begin(), system_.count, Vec3::Zero());
   return std::all_of(loads.begin(), loads.end(), [&](const SurfaceLoad& load) {
     return model.add_shapes(load.vertex, load.force.dot(sum) / size, bearing_);
   });
@@ -138,32 +179,33 @@ bool ModalMemory::stand_near(const SurfaceModel& model, const Vec3& p_rest) noex
   }
   foot_at_ = p_rest;
   foot_version_ = model.generation();
+  foot_vertex_ = nearest;
   std::fill(foot_.begin(), foot_.end(), Vec3::Zero());
-  return standing_ = nearest >= 0 && model.add_shapes(nearest, 1, foot_);
+  standing_ = nearest >= 0 && model.add_shapes(nearest, 1, foot_);
+  creep_at_foot();
+  return standing_;
 }
 
-Vec3 ModalMemory::at(const Numbers& q) const noexcept {
+Vec3 ModalMemory::at(const ModalNumbers& q) const noexcept {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < count_; ++k) sum += q[k] * foot_[k];
+  for (std::size_t k = 0; k < system_.count; ++k) sum += q[k] * foot_[k];
   return sum;
 }
 
 /// Of a force on the tool; the tissue feels the opposite.
-ModalMemory::Numbers ModalMemory::force_of(const Vec3& f) const noexcept {
-  Numbers force{};
-  for (std::size_t k = 0; k < count_; ++k) force[k] = -f.dot(bearing_[k]);
+ModalNumbers ModalMemory::force_of(const Vec3& f) const noexcept {
+  ModalNumbers force{};
+  for (std::size_t k = 0; k < system_.count; ++k) force[k] = -f.dot(bearing_[k]);
   return force;
 }
 
 void ModalMemory::advance(Time t) noexcept {
   if (t - time_ > kLongest) return restart();
-  auto& [q, v] = state_;
-  for (; time_ + kStep <= t; time_ += kStep) {
-    for (std::size_t k = 0; k < count_; ++k) {
-      const double from = q[k];
-      q[k] = q_of_q_[k] * from + q_of_v_[k] * v[k] + q_of_p_[k] * force_[k];
-      v[k] = v_of_q_[k] * from + v_of_v_[k] * v[k] + v_of_p_[k] * force_[k];
-    }
+  for (; time_ + kStep <= t; time_ += kStep) short_step_.advance(state_, force_);
+  if (system_.terms > 0) {
+    loads_.advance(t);
+    creep_at_foot();
+    if (!known_) return;
   }
   if (t > tick_) tick_before_ = tick_;  // else once more at the same tick, after a sample came
   tick_ = t;
@@ -171,24 +213,36 @@ void ModalMemory::advance(Time t) noexcept {
 }
 
 /// At a time up to a step after `time_`.
-ModalMemory::State ModalMemory::now(Time t) const noexcept {
+ModalState ModalMemory::now(Time t) const noexcept {
   const double rest = to_seconds(t - time_);
-  State at = state_;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const double a = force_[k] - w_[k] * w_[k] * at.q[k] - damping_[k] * at.v[k];
+  ModalState at = state_;
+  for (std::size_t k = 0; k < system_.count; ++k) {
+    double q = at.q[k];
+    for (std::size_t j = 0; j < system_.terms; ++j) q -= system_.series[j].share * at.z[j][k];
+    const double a = force_[k] - system_.w[k] * system_.w[k] * q - system_.damping[k] * at.v[k];
     at.q[k] += rest * (at.v[k] + 0.5 * rest * a);
     at.v[k] += rest * a;
+  }
+  for (std::size_t j = 0; j < system_.terms; ++j) {
+    const RelaxationStep step = RelaxationStep::over(rest, system_.series[j].time);
+    for (std::size_t k = 0; k < system_.count; ++k)
+      at.z[j][k] = step.followed(at.z[j][k], state_.q[k], at.q[k]);
   }
   return at;
 }
 
-void ModalMemory::press(const Vec3& f) noexcept {
+void ModalMemory::press(const Vec3& f, std::span<const SurfaceLoad> loads) noexcept {
   // From the last tick to this one the force went from the last to this, not all at once: the mean counts.
-  const Numbers force = force_of(f);
+  const ModalNumbers force = force_of(f);
   const double half = 0.5 * to_seconds(tick_ - tick_before_);
-  for (std::size_t k = 0; k < count_; ++k) state_.v[k] += half * (force[k] - force_[k]);
-  if (State* const tick = past_.add(tick_)) *tick = now(tick_);
+  for (std::size_t k = 0; k < system_.count; ++k) state_.v[k] += half * (force[k] - force_[k]);
+  if (ModalState* const tick = past_.add(tick_)) *tick = now(tick_);
   force_ = force;
+  if (system_.terms == 0 || model_ == nullptr) return;
+  Vec3 sum = Vec3::Zero();
+  for (const SurfaceLoad& load : loads) sum += load.force;
+  const double size = sum.squaredNorm();
+  loads_.press(*model_, loads, size > 0 ? std::max(0.0, -f.dot(sum) / size) : 0);
 }
 
 }  // namespace palpate::client

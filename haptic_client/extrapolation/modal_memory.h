@@ -4,6 +4,8 @@
 
 #include "common/damped_mode.h"
 #include "haptic_client/extrapolation/extrapolator.h"
+#include "haptic_client/extrapolation/modal_steps.h"
+#include "haptic_client/extrapolation/relaxing_loads.h"
 #include "haptic_client/extrapolation/surface_model.h"
 #include "haptic_client/extrapolation/tick_memory.h"
 
@@ -12,7 +14,9 @@ namespace palpate::client {
 /// What a tissue that swings remembers: its slow modes (protocol/surface_pages.h), stepped here between two
 /// samples under the force that the tool puts on it. Each sample tells where they stood at its time; what
 /// they are off by here, compared with what was so at that tick, goes on by itself from then to now, as the
-/// motion is linear. Haptic thread; only the constructor allocates, 1.3 MB. A tick takes about 0.5 us of 40
+/// motion is linear. Of a tissue that relaxes, what its modes and all the rest of it remember is stepped, too
+/// (`RelaxingLoads`), and what a sample tells of the past is taken on to now likewise. Haptic
+/// thread; only the constructor allocates, 5.2 MB. A tick takes about 0.5 us of 40
 /// modes, a sample 5 us and as much again for each other one that is on its way.
 class ModalMemory {
  public:
@@ -37,54 +41,61 @@ class ModalMemory {
 
   /// Goes on to the tick at `t`, under the force of the last.
   void advance(Time t) noexcept;
-  /// The force on the tool at that tick, N; remembers the tick.
-  void press(const Vec3& f) noexcept;
+  /// The force on the tool at that tick, N, and the loads that it is about; remembers the tick.
+  void press(const Vec3& f, std::span<const SurfaceLoad> loads = {}) noexcept;
 
-  /// How far the modes have moved the surface where it stands, m: at the tick of `advance`, or at the sample
-  /// of `take`, whichever came last.
-  Vec3 displacement() const noexcept { return at(present_); }
+  /// How far the modes, and what has crept, have moved the surface where it stands, m: at the tick of
+  /// `advance`, or at the sample of `take`, whichever came last.
+  Vec3 displacement() const noexcept { return at(present_) + crept_; }
+  /// How far of that has crept, and the loads that would hold all of it there, N, on the compliance.
+  const Vec3& crept() const noexcept { return crept_; }
+  std::span<const SurfaceLoad> creeping() const noexcept { return loads_.creeping(); }
+  /// How far a vertex has crept, m.
+  Vec3 creep(const SurfaceModel& model, int vertex) const noexcept { return loads_.creep(model, vertex); }
   /// How much farther than foreseen the sample of `take` told it to be then, m; 0 where nothing was.
   Vec3 drift() const noexcept { return drift_; }
   /// And how much farther a vertex of these shapes, m.
   Vec3 warp(const Shapes& shapes) const noexcept {
     Vec3 sum = Vec3::Zero();
-    for (std::size_t k = 0; k < count_; ++k) sum += present_[k] * (shapes[k] - foot_[k]);
+    for (std::size_t k = 0; k < system_.count; ++k) sum += present_[k] * (shapes[k] - foot_[k]);
     return sum;
   }
 
  private:
-  using Numbers = std::array<double, kMostSlowModes>;
-  struct State {
-    Numbers q{}, v{};  // m sqrt(kg), m sqrt(kg)/s
-  };
   bool take_spectrum(const Surface& surface) noexcept;
-  Vec3 at(const Numbers& q) const noexcept;
-  Numbers force_of(const Vec3& f) const noexcept;
-  State now(Time t) const noexcept;
+  void take_series(const protocol::RelaxedState& told) noexcept;
+  bool take_told(const Surface& surface) noexcept;
+  Vec3 at(const ModalNumbers& q) const noexcept;
+  ModalNumbers force_of(const Vec3& f) const noexcept;
+  ModalState now(Time t) const noexcept;
   void begin(Time t, const Vec3& f) noexcept;
-  State free_motion(State state, Time time) const noexcept;
-  void correct(const State& before, Time t) noexcept;
+  void correct(const ModalState& before, Time t) noexcept;
+  void creep_at_foot() noexcept;
 
   bool known_ = false, standing_ = false;
   std::uint64_t version_ = 0, foot_version_ = 0;  // of the surface model that spectrum and foot are of
-  std::size_t count_ = 0;
-  Numbers w_{}, damping_{};                                                  // rad/s, 1/s
-  Numbers q_of_q_{}, q_of_v_{}, v_of_q_{}, v_of_v_{}, q_of_p_{}, v_of_p_{};  // over a short step
+  ModalSystem system_;
+  ModalSteps short_step_;
+  std::size_t first_told_ = 0, end_told_ = 0;  // of the modes whose z the newest sample tells of
+  RelaxingLoads loads_;
+  const SurfaceModel* model_ = nullptr;  // of the newest sample
+  int foot_vertex_ = 0;
+  Vec3 crept_ = Vec3::Zero();  // where it stands, m
   Shapes foot_{}, bearing_{};
   Vec3 foot_at_ = Vec3::Zero();  // m, of `stand_near`
-  State state_, told_;           // at `time_`; of the newest sample
-  Numbers force_{};              // held from the last tick on, N/sqrt(kg)
+  ModalState state_, told_;      // at `time_`; of the newest sample
+  ModalNumbers force_{};         // held from the last tick on, N/sqrt(kg)
   /// A sample that told of the tick `of` came after the tick `made`, and said that the modes were so far off.
   struct Correction {
     Time of{}, made{};
-    State off;
+    ModalState off;
   };
   std::array<Correction, 32> corrections_{};  // more samples are never on their way
   std::size_t next_correction_ = 0;
   Time time_{}, tick_{}, tick_before_{}, compared_{};
-  Numbers present_{};
+  ModalNumbers present_{};
   Vec3 drift_ = Vec3::Zero();
-  TickMemory<State> past_;
+  TickMemory<ModalState> past_;
 };
 
 }  // namespace palpate::client

@@ -28,6 +28,16 @@ class TickMemory {
     }
     return nullptr;
   }
+  /// Calls `work(t, entry)` with each tick later than `t`, in the order of time.
+  template <class Work>
+  void for_each_since(Time t, const Work& work) const {
+    std::size_t back = 0;
+    while (back < std::min(written_, kTicks) && ring_[(written_ - back - 1) % kTicks].t > t) ++back;
+    for (; back > 0; --back) {
+      const Row& row = ring_[(written_ - back) % kTicks];
+      work(row.t, row.entry);
+    }
+  }
   void forget() noexcept { written_ = 0; }
 
  private:

@@ -1,6 +1,7 @@
 // The slow modes as a client steps them, on a surface of one triangle with modes made up by hand.
 #include "haptic_client/extrapolation/modal_memory.h"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "protocol/surface_pages.h"
@@ -15,6 +16,7 @@ using protocol::SurfacePages;
 
 namespace {
 
+constexpr double kShare = 0.5, kTime = 0.125;        // of a term, s
 constexpr double kW = 30, kDamping = 4, kShape = 2;  // rad/s, 1/s, 1/sqrt(kg): 0.25 kg
 
 /// A triangle that one mode moves along y as one piece.
@@ -35,6 +37,15 @@ struct Triangle {
       shapes.values[(3 * vertex + 1) * SurfacePages::kModes] = static_cast<float>(kShape);
     for (const SurfacePage& page : {places, corners, spectrum, shapes}) model.take(page);
   }
+  /// Of a tissue that relaxes by one term.
+  Surface told(double q, double v, double z) const {
+    Surface surface = told(q, v);
+    surface.relaxed = {.terms = 1, .count = 1};
+    surface.relaxed.share[0] = static_cast<float>(kShare);
+    surface.relaxed.time[0] = static_cast<float>(kTime);
+    surface.relaxed.z[0] = static_cast<float>(z);
+    return surface;
+  }
   Surface told(double q, double v) const {
     Surface surface{.model = &model, .tool = {.radius = 0.005}};
     surface.modes.count = 1;
@@ -50,7 +61,70 @@ std::pair<double, double> swung(double t) {
   return {e * (std::cos(r * t) + g / r * std::sin(r * t)), -e * kW * kW / r * std::sin(r * t)};
 }
 
+/// q, q' and z at time t (s) from a state, under a force p that is held: x' = A (x - rest), by eigenvectors.
+Eigen::Vector3d relaxed(double t, const Eigen::Vector3d& from, double p) {
+  Eigen::Matrix3d a;
+  a << 0, 1, 0, -kW * kW, -kDamping, kW * kW * kShare, 1 / kTime, 0, -1 / kTime;
+  const double q = p / (kW * kW * (1 - kShare));
+  const Eigen::Vector3d rest(q, 0, q);
+  const Eigen::EigenSolver<Eigen::Matrix3d> eigen(a);
+  const Eigen::Vector3cd start = eigen.eigenvectors().inverse() * (from - rest),
+                         grown = (eigen.eigenvalues() * t).array().exp() * start.array();
+  return rest + (eigen.eigenvectors() * grown).real();
+}
+
 }  // namespace
+
+TEST_CASE("modal memory: a mode of a tissue that relaxes is a standard linear solid with a mass") {
+  const Triangle triangle;
+  for (const Time tick : {2000us, 333us, 1777us}) {
+    CAPTURE(tick.count());
+    ModalMemory memory;
+    REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
+    REQUIRE(memory.take(triangle.told(0, 0, 0), 1s, Vec3::Zero()));
+    const Vec3 f(0, 3, 0);  // N, on the tool
+    const double p = -3 * kShape;
+    memory.advance(1s + 1us);
+    memory.press(f);  // from now on
+    double worst = 0;
+    for (Time t = 1s + tick; t < 2s; t += tick) {
+      memory.advance(t);
+      memory.press(f);
+      const double right = kShape * relaxed(to_seconds(t - 1s), Eigen::Vector3d::Zero(), p)[0];
+      worst = std::max(worst, std::abs(memory.displacement()[1] - right));
+    }
+    const double at_once = kShape * std::abs(p) / (kW * kW);
+    CHECK(worst < 2e-3 * at_once);
+    CHECK(std::abs(memory.displacement()[1]) > 1.7 * at_once);  // it has relaxed by then
+  }
+}
+
+TEST_CASE("modal memory: what followed a mode late is set right by the first sample that tells of it") {
+  const Triangle triangle;
+  const Eigen::Vector3d from(0.01, 0, 0.004);
+  for (const Time delay : {0ms, 36ms, 80ms}) {
+    CAPTURE(delay.count());
+    ModalMemory memory;
+    REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
+    REQUIRE(memory.take(triangle.told(0.01, 0, -0.01), 0s, Vec3::Zero()));  // wrong: z is 0.004
+    Time sampled = 30ms;
+    double before = 0, worst = 0;
+    for (Time t = 2ms; t < 1s; t += 2ms) {
+      if (t == sampled + delay) {
+        const Eigen::Vector3d then = relaxed(to_seconds(sampled), from, 0);
+        REQUIRE(memory.take(triangle.told(then[0], then[1], then[2]), sampled, Vec3::Zero()));
+        sampled += 30ms;
+      }
+      memory.advance(t);
+      memory.press(Vec3::Zero());
+      const double off = std::abs(memory.displacement()[1] - kShape * relaxed(to_seconds(t), from, 0)[0]);
+      (t < 30ms + delay ? before : worst) = std::max(t < 30ms + delay ? before : worst, off);
+    }
+    CAPTURE(before);
+    CHECK(before > 0.1 * kShape * 0.01);
+    CHECK(worst < 2e-3 * kShape * 0.01);
+  }
+}
 
 TEST_CASE("modal memory: goes on as the closed form, whatever the ticks") {
   const Triangle triangle;

@@ -16,8 +16,10 @@ using namespace std::chrono_literals;
 
 namespace {
 
+constexpr std::array kRelaxing{Relaxation{0.4, 0.15}, Relaxation{0.2, 1.2}};
+
 /// So soft that it swings at 3 to 20 Hz, with little damping.
-sim::Scene swinging(std::string_view model, double rate_hz) {
+sim::Scene swinging(std::string_view model, double rate_hz, std::span<const Relaxation> relaxations = {}) {
   sim::Scene scene = block_scene();
   scene.material->young_modulus = 4e3;
   scene.material->density = 2000;
@@ -27,7 +29,8 @@ sim::Scene swinging(std::string_view model, double rate_hz) {
   scene.deformation.of<sim::ClientModes>().modes = 60;
   scene.deformation.of<sim::ContactInstants>();
   scene.deformation.of<sim::ImplicitSettings>().second_order = true;
-  if (model == "implicit") scene.material->law = sim::ElasticLaw::kCorotational;
+  scene.material->relaxations.assign(relaxations.begin(), relaxations.end());
+  if (model == "implicit" && relaxations.empty()) scene.material->law = sim::ElasticLaw::kCorotational;
   return scene;
 }
 
@@ -40,12 +43,12 @@ Vec3 presses(Time t) {
 struct Served {
   Errors of_law, of_constant;
 };
-Served serve(std::string_view model, Time delay) {
+Served serve(std::string_view model, Time delay, std::span<const Relaxation> relaxations = {}) {
   const double rate = 1 / to_seconds(ServedBlock::kPeriod);
-  Listener listener(swinging(model, rate), block_mesh());
+  Listener listener(swinging(model, rate, relaxations), block_mesh());
   listener.block.set_delay(delay);
   listener.learn(kWholeModel);
-  sim::Simulation truth(swinging(model, 500), block_mesh());
+  sim::Simulation truth(swinging(model, 500, relaxations), block_mesh());
   truth.step(Vec3(presses(listener.t)), 0.002);
   client::ForceEstimate constant{client::extrapolators().front().make()};
   Served sums;
@@ -93,6 +96,57 @@ TEST_CASE("swinging tissue: implicit tissue that bends is felt by the modes of i
   CAPTURE(errors.of_law.mean, errors.of_law.largest, errors.of_constant.mean);
   CHECK(errors.of_constant.mean > 0.1);
   CHECK(errors.of_law.mean < 0.04);
+}
+
+TEST_CASE("swinging tissue: what has relaxed is felt, by one term or two, at any delay") {
+  for (const std::size_t terms : {1, 2}) {
+    for (const Time delay : {35ms, 80ms}) {
+      const Served errors = serve("implicit", delay, std::span(kRelaxing).first(terms));
+      CAPTURE(terms, delay.count(), errors.of_law.mean, errors.of_law.largest, errors.of_constant.mean);
+      CHECK(errors.of_constant.mean > 0.1);
+      CHECK(errors.of_law.mean < 0.01);
+      CHECK(errors.of_law.largest < 0.15);
+    }
+  }
+}
+
+TEST_CASE("swinging tissue: who joins when the tissue has long relaxed under the tool feels that at once") {
+  sim::Scene scene = swinging("implicit", 33.3, kRelaxing);
+  Listener there(scene, block_mesh()), joins(scene, block_mesh());
+  for (Listener* const listener : {&there, &joins}) listener->learn(kWholeModel);
+  bool hears = false;
+  const Vec3 pressed(0.001, 0.0025, 0.0005);
+  joins.told = [&](protocol::ForceSample& sample) {
+    if (!hears) sample.flags &= ~(protocol::ForceSample::kHasModes | protocol::ForceSample::kHasRelaxed);
+  };
+  for (; there.t < 4s;) {
+    hears = there.t > 3s;
+    const double late = to_seconds(there.t - 3s);
+    there.tick(pressed), joins.tick(pressed);
+    if (late < 0.15) continue;  // some samples until all of it has been told
+    CAPTURE(late);
+    CHECK((there.law.force(pressed, there.t) - joins.law.force(pressed, there.t)).norm() <
+          0.03 * there.newest.f_W.norm());
+  }
+}
+
+TEST_CASE("swinging tissue: a memory that no organ has is never felt") {
+  Listener listener(swinging("implicit", 33.3, kRelaxing), block_mesh());
+  listener.learn(kWholeModel);
+  int samples = 0;
+  listener.told = [&](protocol::ForceSample& sample) {
+    if (++samples < 30 || samples > 60) return;
+    sample.relaxed.z.fill(samples % 2 == 0 ? 1e5F : -3);
+    for (auto& vertex : sample.relaxed.vertex) vertex.psi.fill(samples % 3 == 0 ? 1e6F : 20);
+  };
+  double largest = 0, wildest = 0;
+  for (; listener.t < 4s;) {
+    const bool wild = samples >= 30 && samples < 75;
+    const double newton = listener.tick(presses(listener.t + kTick)).norm();
+    (wild ? wildest : largest) = std::max(wild ? wildest : largest, newton);
+  }
+  CHECK(largest > 0.05);
+  CHECK(wildest < 3 * largest);
 }
 
 TEST_CASE("swinging tissue: amplitudes that no organ has are never felt") {

@@ -1,0 +1,70 @@
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "common/relaxation.h"
+#include "haptic_client/extrapolation/surface_model.h"
+#include "haptic_client/extrapolation/tick_memory.h"
+#include "protocol/messages.h"
+
+namespace palpate::client {
+
+/// What the compliance of a tissue that relaxes remembers of the forces that were on its surface
+/// (`SeriesStep::creep`): of each vertex that was pressed lately, stepped here under the loads of the contact
+/// here, and set right by each sample that tells of the vertex: what it was then goes on to now under the
+/// loads that were felt since. Of those that were pressed least the last are forgotten when there are too
+/// many. Haptic thread; only the constructor allocates, 0.8 MB.
+class RelaxingLoads {
+ public:
+  static constexpr std::size_t kMost = 32;  ///< vertices
+  using Terms = std::array<Relaxation, kMostRelaxations>;
+
+  RelaxingLoads();
+
+  /// Nothing is remembered at `t`, of a tissue with this series; none: it does not relax.
+  void begin(Time t, std::span<const Relaxation> series) noexcept;
+  /// Goes on to `t` under the loads of the last `press`.
+  void advance(Time t) noexcept;
+  /// The surface bears these loads from the time of `advance` on, times `share`.
+  void press(const SurfaceModel& model, std::span<const SurfaceLoad> loads, double share) noexcept;
+  /// What the server says of some vertices at `t`.
+  void take(const SurfaceModel& model, const protocol::RelaxedState& told, Time t) noexcept;
+
+  /// The loads that would hold the surface where it has crept to, N.
+  std::span<const SurfaceLoad> creeping() const noexcept { return creeping_; }
+  /// How far that is at a vertex, m; what the model does not know counts as nothing.
+  Vec3 creep(const SurfaceModel& model, int vertex) const noexcept;
+
+ private:
+  using Forces = std::array<Vec3, kMostRelaxations>;
+  struct Vertex {
+    int number = 0;
+    bool held = false;  // by the wall, which does not creep
+    Vec3 load = Vec3::Zero();
+    Forces psi{};
+  };
+  /// The loads at a tick, as many as are remembered of one.
+  struct Loads {
+    std::size_t count = 0;
+    std::array<int, kMost> vertex;
+    std::array<Eigen::Vector3f, kMost> force;
+    Vec3 on(int number) const noexcept;
+  };
+  Vertex* find(int number) noexcept;
+  Vertex* find_or_add(const SurfaceModel& model, int number) noexcept;
+  void replay(std::span<Vertex* const> vertices, Time t) noexcept;
+  void note_creeping() noexcept;
+  SeriesStep over(Time time) const noexcept {
+    return SeriesStep::over(to_seconds(time), std::span(series_).first(terms_));
+  }
+
+  Terms series_{};
+  std::size_t terms_ = 0;
+  Time time_{}, noted_{};
+  std::vector<Vertex> vertices_;       // at most `kMost`
+  std::vector<SurfaceLoad> creeping_;  // of these
+  TickMemory<Loads> past_;
+};
+
+}  // namespace palpate::client
