@@ -1,11 +1,8 @@
 #include "sim_server/deformation/implicit.h"
 
 #include <algorithm>
-#include <array>
-#include <fmt/core.h>
 
 #include "common/error.h"
-#include "common/text.h"
 #include "sim_server/deformation/linear_statics.h"
 #include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/scene/held_motion.h"
@@ -34,11 +31,13 @@ bool held_by_vertices(const Scene& scene) {
          std::ranges::none_of(scene.loads, displaces);
 }
 
-/// Whether clients are told slow modes about rest: of a body that only tools move.
+/// Whether clients are told slow modes about rest: of a body that only tools move, or besides supports of
+/// which it is known how it follows them.
 bool tells_modes(const ModelInputs& inputs) {
   const auto* const told = inputs.scene.deformation.find<ClientModes>();
   return told != nullptr && told->modes > 0 && inputs.scene.loads.empty() && held_by_vertices(inputs.scene) &&
-         !supports_move(inputs.scene) && inputs.scene.material->relaxations.size() <= kMostRelaxations;
+         inputs.scene.material->relaxations.size() <= kMostRelaxations &&
+         (!supports_move(inputs.scene) || inputs.scene.material->is_linear());
 }
 
 /// Of each node: its place among the free ones, or -1.
@@ -127,6 +126,7 @@ void Implicit::begin(const ModelInputs& inputs) {
   const auto responses =
       support_responses(inputs, solid_, dynamics_.dofs(), flexibility, Following::kSwinging);
   if (!responses.empty()) supports_.emplace(inputs, responses);
+  if (tells_modes(inputs)) responses_ = responses;
   if (inputs.scene.flies() || (inputs.scene.loads.empty() && !supports_)) return;
   inputs.progress(name_of(Stage::kLoadedShape), 0);
   const StaticLoad load{
@@ -143,7 +143,8 @@ FreeMotion Implicit::free_motion(double dt) {
     if (in_step_) {
       apply_new_loads();
       dynamics_.finish_step();
-      if (relaxation_) relaxation_->advance(period_, told_->amplitudes(numbers(displacement())), loads_);
+      if (relaxation_)
+        relaxation_->advance(period_, told_->amplitudes(numbers(displacement(solid_.rest()))), loads_);
     }
     in_step_ = true;
     relinearised_ = false;
@@ -164,7 +165,11 @@ FreeMotion Implicit::free_motion(double dt) {
 }
 
 FreeMotion Implicit::motion() const {
-  return {free_, supports_ ? supports_->velocities() : std::span<const Vec3>(), positions_};
+  if (!supports_) return {.positions = free_, .loaded = positions_};
+  return {.positions = free_,
+          .velocities = supports_->velocities(),
+          .loaded = positions_,
+          .carried = told_ ? supports_->positions() : std::span<const Vec3>()};
 }
 
 /// Moves all of the body by what the linearisation foretells of the loads that are new to it.
@@ -329,8 +334,16 @@ Mat3 Implicit::later_compliance(std::span<const NodalLoad> loads, double seconds
   return 0.5 * (yields + yields.transpose());
 }
 
-/// From rest, by unknowns, m: of the step as it will end, where the last loads lead.
-Eigen::VectorXd Implicit::displacement() const {
+/// Where supports alone have led the body (nodes, m), and how fast it goes by them (m/s).
+Implicit::Carried Implicit::carried() const {
+  Carried carried{solid_.rest(), std::vector<Vec3>(solid_.rest().size(), Vec3::Zero())};
+  for (const SupportResponse& response : responses_)
+    response.add(supports_->time(), carried.positions, carried.velocities);
+  return carried;
+}
+
+/// From there, by unknowns, m: of the step as it will end, where the last loads lead.
+Eigen::VectorXd Implicit::displacement(std::span<const Vec3> from) const {
   const FreeDofs& dofs = dynamics_.dofs();
   Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.count);
   if (loads_ != linearised_loads_) {
@@ -338,8 +351,7 @@ Eigen::VectorXd Implicit::displacement() const {
     add_response(linearised_loads_, -1, u);
   }
   for (std::size_t node = 0; node < dofs.first.size(); ++node) {
-    if (dofs.first[node] >= 0)
-      u.segment<3>(dofs.first[node]) += dynamics_.position()[node] - solid_.rest()[node];
+    if (dofs.first[node] >= 0) u.segment<3>(dofs.first[node]) += dynamics_.position()[node] - from[node];
   }
   return u;
 }
@@ -347,19 +359,21 @@ Eigen::VectorXd Implicit::displacement() const {
 /// Of the step as it will end.
 void Implicit::modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) {
   const FreeDofs& dofs = dynamics_.dofs();
-  const Eigen::VectorXd u = displacement(), none = Eigen::VectorXd::Zero(dofs.count);
+  const auto [from, along] = carried();
+  const Eigen::VectorXd u = displacement(from), none = Eigen::VectorXd::Zero(dofs.count);
   Eigen::VectorXd speed = none;
   for (std::size_t node = 0; node < dofs.first.size(); ++node) {
     const int first = dofs.first[node];
     if (first >= 0)
-      speed.segment<3>(first) = dynamics_.velocity_at(node, solid_.rest()[node] + u.segment<3>(first));
+      speed.segment<3>(first) = dynamics_.velocity_at(node, from[node] + u.segment<3>(first)) - along[node];
   }
   told_->begin(numbers(u), numbers(speed), numbers(none), 0);
   told_->advance(0, loads_, q, v);
 }
 
 void Implicit::relaxed_state(Eigen::MatrixXd& z, std::vector<Vec3>& psi) {
-  if (relaxation_) relaxation_->foresee(period_, told_->amplitudes(numbers(displacement())), loads_, z, psi);
+  if (relaxation_)
+    relaxation_->foresee(period_, told_->amplitudes(numbers(displacement(solid_.rest()))), loads_, z, psi);
 }
 
 void Implicit::residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {

@@ -72,7 +72,11 @@ class Implicit : public DeformationModel {
   void begin(const ModelInputs& inputs);
   void apply_new_loads();
   FreeMotion motion() const;
-  Eigen::VectorXd displacement() const;
+  struct Carried {
+    std::vector<Vec3> positions, velocities;
+  };
+  Carried carried() const;
+  Eigen::VectorXd displacement(std::span<const Vec3> from) const;
   void update_surface();
   void request_columns();
   void replace_columns();
@@ -89,6 +93,7 @@ class Implicit : public DeformationModel {
   Dynamics dynamics_;
   /// Where some move. Only for how fast the surface goes by them (by a linearisation about rest), and when.
   std::optional<MovingSupports> supports_;
+  std::vector<SupportResponse> responses_;    // of all nodes to them, where clients are told the rest
   std::optional<ToldMotion> told_;            // to clients, about rest, where the scene has it
   std::optional<ToldRelaxation> relaxation_;  // of a tissue that relaxes
   double held_compliance_;                    // m/N, of a fixed vertex under the tool itself

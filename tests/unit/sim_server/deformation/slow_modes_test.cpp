@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "sim_server/deformation/implicit.h"
 #include "sim_server/deformation/reduced.h"
 #include "sim_server/deformation/told_motion.h"
 #include "sim_server/serving/surface_pager.h"
@@ -161,6 +162,35 @@ TEST_CASE(
     }
     CHECK(off < 0.03 * force);
   }
+}
+
+TEST_CASE("slow modes: on supports that move they stand where the tool has moved the surface beyond these") {
+  Scene resting = soft_block("implicit"), moving = resting;
+  for (Scene* const scene : {&resting, &moving})
+    scene->deformation.of<ImplicitSettings>().second_order = true;
+  moving.fixed[0].motions = {{.direction = Vec3(0.6, 0.8, 0), .amplitude = 0.003, .period = 0.8}};
+  Simulation still(resting, block_mesh()), moves(moving, block_mesh());
+  REQUIRE(moves.told_modes() != nullptr);
+  std::vector<ToolInput> input(1);
+  const auto step = [&](Simulation& simulation, const Vec3& p) -> ToolAnswer {
+    input[0] = {.pose = p, .wants = {.here = true, .surface_shift = true}};
+    return simulation.step(input, kStep).front();
+  };
+  double worst = 0, largest = 0;
+  Vec3 shift = Vec3::Zero();
+  for (int i = 1; i <= 150; ++i) {
+    const Vec3 p(0.001, 0.003 + 0.001 * std::cos(0.1 * i), 0.0005);
+    const ToolAnswer a = step(still, p);
+    const SlowModes::State right = *a.modes;
+    const ToolAnswer b = step(moves, p + shift);  // the tool goes along, a step late
+    shift = *b.surface_shift_W + kStep * b.surface_v_W;
+    REQUIRE(b.modes != nullptr);
+    if (i < 30) continue;
+    largest = std::max(largest, right.q.norm());
+    worst = std::max(worst, (b.modes->q - right.q).norm());
+  }
+  CAPTURE(worst, largest);
+  CHECK(worst < 0.05 * largest);
 }
 
 TEST_CASE("slow modes: their pages are numbered behind the tiles, and hold shapes and spectrum") {
