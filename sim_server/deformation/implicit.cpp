@@ -55,10 +55,6 @@ std::vector<double> masses_of_places(const LinearStatics& statics) {
   return of_places;
 }
 
-std::span<const double> numbers(const Eigen::VectorXd& all) {
-  return {all.data(), static_cast<std::size_t>(all.size())};
-}
-
 const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"implicit\" needs a [material] section", scene.source);
@@ -143,8 +139,7 @@ FreeMotion Implicit::free_motion(double dt) {
     if (in_step_) {
       apply_new_loads();
       dynamics_.finish_step();
-      if (relaxation_)
-        relaxation_->advance(period_, told_->amplitudes(numbers(displacement(solid_.rest()))), loads_);
+      if (relaxation_) remember();
     }
     in_step_ = true;
     relinearised_ = false;
@@ -320,66 +315,6 @@ std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) {
   return positions_;
 }
 
-Mat3 Implicit::later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
-  if (!told_) return Mat3::Zero();
-  const Vec3 sum = sum_of(loads);
-  Mat3 yields = told_->compliance(loads, seconds);
-  for (const NodalLoad& a : loads) {
-    for (const NodalLoad& b : loads) {
-      if (dof_[a.vertex] < 0 || dof_[b.vertex] < 0 || slot_[b.vertex] < 0) continue;
-      yields -=
-          share_of(a, sum) * share_of(b, sum) * columns_.block<3, 3>(dof_[a.vertex], 3 * slot_[b.vertex]);
-    }
-  }
-  return 0.5 * (yields + yields.transpose());
-}
-
-/// Where supports alone have led the body (nodes, m), and how fast it goes by them (m/s).
-Implicit::Carried Implicit::carried() const {
-  Carried carried{solid_.rest(), std::vector<Vec3>(solid_.rest().size(), Vec3::Zero())};
-  for (const SupportResponse& response : responses_)
-    response.add(supports_->time(), carried.positions, carried.velocities);
-  return carried;
-}
-
-/// From there, by unknowns, m: of the step as it will end, where the last loads lead.
-Eigen::VectorXd Implicit::displacement(std::span<const Vec3> from) const {
-  const FreeDofs& dofs = dynamics_.dofs();
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.count);
-  if (loads_ != linearised_loads_) {
-    add_response(loads_, 1, u);
-    add_response(linearised_loads_, -1, u);
-  }
-  for (std::size_t node = 0; node < dofs.first.size(); ++node) {
-    if (dofs.first[node] >= 0) u.segment<3>(dofs.first[node]) += dynamics_.position()[node] - from[node];
-  }
-  return u;
-}
-
-/// Of the step as it will end.
-void Implicit::modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) {
-  const FreeDofs& dofs = dynamics_.dofs();
-  const auto [from, along] = carried();
-  const Eigen::VectorXd u = displacement(from), none = Eigen::VectorXd::Zero(dofs.count);
-  Eigen::VectorXd speed = none;
-  for (std::size_t node = 0; node < dofs.first.size(); ++node) {
-    const int first = dofs.first[node];
-    if (first >= 0)
-      speed.segment<3>(first) = dynamics_.velocity_at(node, from[node] + u.segment<3>(first)) - along[node];
-  }
-  told_->begin(numbers(u), numbers(speed), numbers(none), 0);
-  told_->advance(0, loads_, q, v);
-}
-
-void Implicit::relaxed_state(Eigen::MatrixXd& z, std::vector<Vec3>& psi) {
-  if (relaxation_)
-    relaxation_->foresee(period_, told_->amplitudes(numbers(displacement(solid_.rest()))), loads_, z, psi);
-}
-
-void Implicit::residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
-  told_->residual_compliance(vertices, patch);
-}
-
 std::vector<MemoryPart> Implicit::memory() const {
   std::vector<MemoryPart> parts{
       {"elements", solid_.bytes() + dynamics_.scratch_bytes()},
@@ -387,7 +322,10 @@ std::vector<MemoryPart> Implicit::memory() const {
       {"compliance", static_cast<std::size_t>(columns_.size()) * sizeof(double)},
       {"positions", (rest_.size() + free_.size() + positions_.size() + external_.size()) * sizeof(Vec3) +
                         (node_.size() + dof_.size() + slot_.size()) * sizeof(int)}};
-  if (supports_) parts.push_back({"moving supports", supports_->bytes()});
+  if (supports_)
+    parts.push_back({"moving supports", supports_->bytes() + 2 * responses_.size() *
+                                                                 static_cast<std::size_t>(solid_.nodes()) *
+                                                                 sizeof(Vec3)});
   if (told_)
     parts.push_back({"motion told to clients", told_->bytes() + (relaxation_ ? relaxation_->bytes() : 0),
                      told_->detail()});

@@ -76,6 +76,7 @@ class Implicit : public DeformationModel {
     std::vector<Vec3> positions, velocities;
   };
   Carried carried() const;
+  void remember();
   Eigen::VectorXd displacement(std::span<const Vec3> from) const;
   void update_surface();
   void request_columns();

@@ -213,5 +213,13 @@ TEST_CASE("modal memory: neither ticks nor samples allocate") {
     memory.advance(t);
     memory.press(Vec3(0, 1, 0));
   }
+  const std::array loads{SurfaceLoad{1, Vec3(0, -1, 0)}};
+  for (Time t = 1s; t < 2s; t += 2ms) {  // and where it relaxes
+    memory.stand_near(triangle.model, Vec3::Zero());
+    if (t.count() % 30'000'000 == 0) memory.take(triangle.told(0.01, 0, 0.001), t - 20ms, Vec3::Zero());
+    memory.advance(t);
+    memory.press(Vec3(0, 1, 0), loads);
+  }
+  CHECK(memory.known());
   CHECK(guard.count() == 0);
 }
