@@ -71,6 +71,10 @@ CLI::App* add_run(CLI::App& app, std::vector<std::string>& files, Overrides& ove
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
   command->add_option("--trace", options.trace, "Write the last minute, a row a tick, to this CSV file");
   command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
+  command
+      ->add_option("--record-mb", options.record_mb,
+                   "Go on in a new file at this size (F-2.pcap, ...); ten are kept")
+      ->check(CLI::Range(0.01, 1e6));
   command->footer(
       "Methods:\n" + list_of(client::extrapolators()) + "Devices:\n" + list_of(client::devices()) +
       "Examples: haptic_client run configs/clients/liver.toml --method constant --report report.json\n"

@@ -153,11 +153,30 @@ constexpr const char* kMixed =
     "only "
     "in snap length, `editcap -F pcap IN OUT` helps, else capture one interface at a time";
 
+/// libpcap would only call it no capture. A pipe is not looked at: what is read from it is gone.
+void refuse_compressed(std::FILE* stream, const std::filesystem::path& path) {
+  struct Packer {
+    std::array<unsigned char, 2> begins;
+    const char* unpack;
+  };
+  static constexpr std::array<Packer, 3> kPackers{
+      {{{0x1f, 0x8b}, "gunzip -k"}, {{0x28, 0xb5}, "unzstd"}, {{0xfd, '7'}, "unxz -k"}}};
+  if (!std::filesystem::is_regular_file(path)) return;
+  std::array<unsigned char, 2> first{};
+  const std::size_t read = std::fread(first.data(), 1, first.size(), stream);
+  std::rewind(stream);
+  for (const Packer& packer : kPackers) {
+    if (read == first.size() && first == packer.begins)
+      fail("{}: is compressed; `{} {}` unpacks it", path.string(), packer.unpack, path.string());
+  }
+}
+
 }  // namespace
 
 CaptureReader::CaptureReader(const std::filesystem::path& path) : file_(std::make_unique<File>()) {
   check_file(path);
   Owned<std::FILE> stream = opened(path, "rbe", "check its permissions");
+  refuse_compressed(stream.get(), path);
   std::array<char, PCAP_ERRBUF_SIZE> said{};
   file_->pcap.reset(
       pcap_fopen_offline_with_tstamp_precision(stream.get(), PCAP_TSTAMP_PRECISION_NANO, said.data()));

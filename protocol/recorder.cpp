@@ -1,6 +1,7 @@
 #include "protocol/recorder.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "common/clock.h"
 #include "common/error.h"
@@ -10,12 +11,32 @@ namespace {
 constexpr Time kWritePeriod = std::chrono::milliseconds(20);
 }  // namespace
 
-Recorder::Recorder(const std::filesystem::path& file)
+Recorder::Recorder(const std::filesystem::path& file, std::optional<std::uint64_t> most_bytes)
     : path_(file),
-      file_(file, Contents::kCapture),
-      capture_(file_.path()),
+      most_bytes_(most_bytes),
+      part_(std::in_place, file),
       ring_(kRoom),
       epoch_(monotonic_epoch()) {}
+
+/// F.pcap, F-2.pcap, F-3.pcap ...
+std::filesystem::path Recorder::path_of(std::uint64_t number) const {
+  if (number == 1) return path_;
+  std::filesystem::path next = path_;
+  return next.replace_filename(
+      fmt::format("{}-{}{}", path_.stem().string(), number, path_.extension().string()));
+}
+
+void Recorder::begin_next() noexcept {
+  ended_ = written();
+  part_.reset();
+  try {
+    part_.emplace(path_of(ended_.files + 1));
+    std::error_code gone;
+    if (ended_.files >= kKeptFiles) std::filesystem::remove(path_of(ended_.files + 1 - kKeptFiles), gone);
+  } catch (const std::exception&) {
+    failed.store(true, std::memory_order_relaxed);
+  }
+}
 
 void Recorder::note(Time t, const Endpoint& from, const Endpoint& to,
                     std::span<const std::byte> bytes) noexcept {
@@ -50,12 +71,15 @@ void Recorder::run(const std::stop_token& stop) noexcept {
 
 void Recorder::write_all() noexcept {
   while (const Packet* const packet = ring_.front()) {
-    capture_.write(epoch_ + packet->t, packet->from, packet->to, {packet->bytes.data(), packet->kept},
-                   packet->length);
-    if (!named_) name_it(*packet);
+    if (part_) {
+      part_->capture.write(epoch_ + packet->t, packet->from, packet->to, {packet->bytes.data(), packet->kept},
+                           packet->length);
+      if (!part_->named) name_it(*packet);
+      if (most_bytes_ && part_->named && part_->capture.bytes() >= *most_bytes_) begin_next();
+    }
     ring_.release();
   }
-  if (!capture_.flush()) failed.store(true, std::memory_order_relaxed);
+  if (!part_ || !part_->capture.flush()) failed.store(true, std::memory_order_relaxed);
 }
 
 void Recorder::name_it(const Packet& packet) noexcept {
@@ -63,16 +87,29 @@ void Recorder::name_it(const Packet& packet) noexcept {
   if (decode({packet.bytes.data(), packet.kept}, datagram) != Verdict::kAccepted ||
       datagram.header.session == 0)
     return;
-  named_ = true;
+  part_->named = true;
   try {
-    file_.commit();
+    part_->file.commit();
   } catch (const Error&) {
     failed.store(true, std::memory_order_relaxed);
   }
 }
 
+Recorder::Stats Recorder::written() const {
+  Stats all = ended_;
+  if (part_) {
+    ++all.files;
+    all.packets += part_->capture.packets();
+    all.bytes += part_->capture.bytes();
+  }
+  return all;
+}
+
 Recorder::Stats Recorder::stats() const {
-  return {capture_.packets(), capture_.bytes(), noted_ - capture_.packets(), refused_};
+  Stats all = written();
+  all.dropped = noted_ - all.packets;
+  all.refused = refused_;
+  return all;
 }
 
 }  // namespace palpate::protocol

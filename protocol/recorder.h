@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <stop_token>
 
 #include "common/report.h"
@@ -10,6 +11,11 @@
 
 namespace palpate::protocol {
 
+/// 1e6 bytes a megabyte.
+inline std::optional<std::uint64_t> bytes_of_mb(std::optional<double> mb) {
+  return mb ? std::optional(static_cast<std::uint64_t>(1e6 * *mb)) : std::nullopt;
+}
+
 /// Writes the datagrams of a running program to a capture, without holding up whoever sends and receives
 /// them: the network thread notes them in a ring, a thread of its own writes them to disk. A disk that is
 /// full or too slow stops or thins the recording, never the session.
@@ -18,7 +24,9 @@ class Recorder {
   /// Makes the capture, beside `file`; it takes its name, and the place of a file that was there, with the
   /// first datagram of a session, so that a run that nobody answers destroys nothing. Throws `Error`. Takes
   /// 10 MB: room for four seconds at 2000 datagrams a second.
-  explicit Recorder(const std::filesystem::path& file);
+  /// `most_bytes`: at this size a new file begins, F-2.pcap after F.pcap and so on, and of all these the ten
+  /// newest are kept; absent: one file of any size.
+  explicit Recorder(const std::filesystem::path& file, std::optional<std::uint64_t> most_bytes = {});
 
   /// Notes one datagram that was sent or received at `t` (monotonic clock of this machine). Network thread
   /// only; copies it, never waits. Bytes beyond the longest datagram of ours are not kept.
@@ -35,8 +43,9 @@ class Recorder {
   std::atomic<bool> failed{false};
 
   struct Stats {
-    std::uint64_t packets = 0;  ///< in the file
-    std::uint64_t bytes = 0;    ///< of the file
+    std::uint64_t files = 1;    ///< that were begun
+    std::uint64_t packets = 0;  ///< in them
+    std::uint64_t bytes = 0;    ///< of them
     std::uint64_t dropped = 0;  ///< noted, but not in the file
     std::uint64_t refused = 0;  ///< of refused datagrams: not noted, as there were too many
   };
@@ -46,6 +55,7 @@ class Recorder {
   /// When `run` has returned.
   Stats stats() const;
   const std::filesystem::path& file() const { return path_; }
+  static constexpr std::uint64_t kKeptFiles = 10;
 
  private:
   struct Packet {
@@ -58,10 +68,21 @@ class Recorder {
   void write_all() noexcept;
   void name_it(const Packet& packet) noexcept;
 
+  /// One file of the recording.
+  struct Part {
+    explicit Part(const std::filesystem::path& path) : file(path, Contents::kCapture), capture(file.path()) {}
+    WholeFile file;
+    CaptureWriter capture;
+    bool named = false;
+  };
+  std::filesystem::path path_of(std::uint64_t number) const;
+  void begin_next() noexcept;
+  Stats written() const;
+
   std::filesystem::path path_;
-  WholeFile file_;
-  bool named_ = false;
-  CaptureWriter capture_;
+  std::optional<std::uint64_t> most_bytes_;
+  std::optional<Part> part_;  // none after one could not be begun
+  Stats ended_{.files = 0};   // of the parts before
   SpscRing<Packet> ring_;
   Time epoch_;  // monotonic 0, since 1970
   std::uint64_t noted_ = 0, refused_ = 0;

@@ -8,10 +8,9 @@ namespace palpate::protocol {
 
 Json recording_report(const Recorder& recorder) {
   const Recorder::Stats stats = recorder.stats();
-  return {{"file", recorder.file().string()},
-          {"packets", stats.packets},
-          {"bytes", stats.bytes},
-          {"dropped", stats.dropped},
+  return {{"file", recorder.file().string()}, {"files", stats.files},
+          {"packets", stats.packets},         {"bytes", stats.bytes},
+          {"dropped", stats.dropped},         {"refused", stats.refused},
           {"failed", recorder.failed.load()}};
 }
 

@@ -52,6 +52,10 @@ CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
   command->add_option("--seconds", options.seconds, "Stop after so many seconds");
   command->add_option("--report", options.report, "Write figures of the run to this JSON file");
   command->add_option("--record", options.record, "Write every datagram to this capture (pcap)");
+  command
+      ->add_option("--record-mb", options.record_mb,
+                   "Go on in a new file at this size (F-2.pcap, ...); ten are kept")
+      ->check(CLI::Range(0.01, 1e6));
   add_cache_or_none(command, options.cache);
   command->footer(
       models() +

@@ -52,7 +52,7 @@ Vec3 Calibration::tick(const DeviceReading& reading) noexcept {
   if (stage_ == Stage::kEnd) return limiter_.drop();
   if (!holds_) find(reading.p_D);
   const double fade = stage_ == Stage::kLetDown ? std::max(1 - in_stage_ / kLetDown, 0.0) : 1;
-  const Vec3 push_D = limiter_.clamp(holder_.push(reading.p_D, goal(), dt));
+  const Vec3 push_D = limiter_.clamp(holder_.push(reading.p_D, goal(), dt), dt);
   const Vec3 f_D = limiter_.push(fade * push_D + holder_.damping(), dt);
   newton_ = f_D.norm();
   if (limiter_.fault() != Fault::kNone) {

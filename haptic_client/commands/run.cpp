@@ -118,8 +118,8 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   std::vector<NamedFile> written{{"--report", options.report}};
   std::vector<ToolFiles> files;
   for (std::size_t i = 1; i <= configs.size(); ++i) {
-    files.push_back(
-        {numbered(options.trace, i, configs.size()), numbered(options.record, i, configs.size())});
+    files.push_back({numbered(options.trace, i, configs.size()), numbered(options.record, i, configs.size()),
+                     options.record_mb});
     written.insert(written.end(), {{"--trace", files.back().trace}, {"--record", files.back().record}});
   }
   require_distinct(written);

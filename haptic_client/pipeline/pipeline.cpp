@@ -142,7 +142,7 @@ Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept 
              clutched = (tool.flags & ToolState::kClutched) != 0, off = lost || clutched;
   stats_.lost += lost ? 1 : 0;
   stats_.clutched += clutched ? 1 : 0;
-  const Vec3 law_D = workspace_.to_device(f_W), felt_D = limiter_.clamp(law_D);
+  const Vec3 law_D = workspace_.to_device(f_W), felt_D = limiter_.clamp(law_D, dt);
   const Passivity::Ruling passive = passivity_.rule(dt);
   const Watchdog::Ruling watchdog = rule_by_age(tool, dt);
   if (off) watchdog_.restart();  // so that it comes back softly

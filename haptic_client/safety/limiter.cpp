@@ -8,9 +8,14 @@ namespace palpate::client {
 namespace {
 constexpr double kStormWindow = 1;   // s
 constexpr double kStormShare = 0.5;  // of the window
+constexpr double kWild = 100;        // of the largest force
+constexpr double kWildTime = 0.5;    // s
 }  // namespace
 
-Vec3 Limiter::clamp(const Vec3& f_D) noexcept {
+Vec3 Limiter::clamp(const Vec3& f_D, double dt) noexcept {
+  const bool wild = f_D.stableNorm() > kWild * settings_.max_force;
+  wild_time_ = wild ? wild_time_ + std::clamp(dt, 0.0, kLongestTick) : 0;
+  if (wild_time_ > kWildTime) latch(Fault::kWild);
   const Vec3 f = within(1, f_D);
   counts_.clamped += f != f_D ? 1 : 0;
   return f;
@@ -47,7 +52,8 @@ void Limiter::latch(Fault fault) noexcept {
   push_.setZero();
   if (fault_ != Fault::kNone) return;
   fault_ = fault;
-  ++(fault == Fault::kStorm ? counts_.storms : counts_.not_finite);
+  ++(fault == Fault::kStorm ? counts_.storms : fault == Fault::kWild ? counts_.wild : counts_.not_finite);
+  wild_time_ = 0;
 }
 
 }  // namespace palpate::client

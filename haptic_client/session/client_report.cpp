@@ -252,10 +252,11 @@ void print_tool(const Json& tool) {
   fmt::print(
       "  safety  ticks: {:.0f} clamped, {:.0f} slewed, {:.0f} damped, {:.0f} softened, {:.0f} without "
       "device, {:.0f} "
-      "clutched; times: {:.0f} faded, {:.0f} not finite, {:.0f} storms\n",
+      "clutched; times: {:.0f} faded, {:.0f} not finite, {:.0f} storms, {:.0f} wild\n",
       number(safety, "clamped"), number(safety, "slewed"), number(safety, "damped"),
       number(safety, "softened"), number(safety, "lost"), number(safety, "clutched"),
-      number(safety, "ramped"), number(safety, "not_finite"), number(safety, "storms"));
+      number(safety, "ramped"), number(safety, "not_finite"), number(safety, "storms"),
+      number(safety, "wild"));
   if (safety.value("cut_by_motors", 0) > 0) {
     fmt::print("          {:.0f} ticks: the motors of the device could not give the whole force\n",
                number(safety, "cut_by_motors"));
@@ -283,6 +284,8 @@ const char* name_of(Fault fault) {
       return "none";
     case Fault::kNotFinite:
       return "a force was not finite";
+    case Fault::kWild:
+      return "for half a second a force was asked for that no tissue makes, over 100 times the limit";
     case Fault::kStorm:
       return "the force oscillated against the slew limit";
   }
@@ -324,7 +327,8 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
             {"lost", stats.lost},
             {"clutched", stats.clutched},
             {"not_finite", limiter.not_finite},
-            {"storms", limiter.storms}}},
+            {"storms", limiter.storms},
+            {"wild", limiter.wild}}},
           {"scored_ticks", observation.scoring().scored()},
           {"reference", reference_report(observation.scoring())},
           {"methods", methods_report(observation.scoring())},

@@ -14,6 +14,7 @@ namespace palpate::client {
 struct ToolFiles {
   std::optional<std::filesystem::path> trace;   ///< CSV of the last minute, a row a tick
   std::optional<std::filesystem::path> record;  ///< capture of every datagram
+  std::optional<double> record_mb = {};         ///< size at which it goes on in a new file
 };
 
 /// A device with the tool it holds: the loop, the link to the server and everything between, each with a

@@ -105,6 +105,7 @@ flags("answer", "Flags", 32, {
   {"in_contact", "In contact"}, {"flagged", "Flagged: no settled answer"}, {"here", "\"here\" follows"},
   {"ahead", "\"ahead\" follows"}, {"surface", "\"surface\" follows"}, {"errors", "\"errors\" follows"},
   {"others", "\"others\" follows"}, {"modes", "\"modes\" follows"}, {"mean", "\"mean\" follows"},
+  {"relaxed", "\"relaxed\" follows"},
 })
 group("here.surface_v", "Surface velocity", "m/s", XYZ)
 group("ahead.p", "Place ahead", "m", XYZ)
@@ -130,6 +131,15 @@ group("others.compliance", "Compliance of the other tools", "m/N", SYMMETRIC)
 field("uint8", "modes.count", "Modes")
 field("float", "modes.q", "Amplitude q (m sqrt(kg))")
 field("float", "modes.v", "Rate q' (m sqrt(kg)/s)")
+field("uint8", "relaxed.terms", "Terms of the Prony series")
+field("float", "relaxed.share", "Share g of the stress at once")
+field("float", "relaxed.time", "Relaxation time tau (s)")
+field("uint8", "relaxed.first", "First mode told of")
+field("uint8", "relaxed.count", "Modes told of")
+field("float", "relaxed.z", "Late amplitude z (m sqrt(kg))")
+field("uint8", "relaxed.vertices", "Vertices told of")
+field("uint16", "relaxed.vertex", "Vertex")
+field("float", "relaxed.psi", "Remembered force psi (N; x, y, z of each term)")
 group("mean", "Mean force over the step", "N", XYZ)
 -- SurfacePage.
 field("uint32", "page.version", "Version of the surface model")
@@ -393,6 +403,21 @@ local function read_modes(r)
   end
 end
 
+local function read_relaxed(r)
+  local amplitude = within(-1e6, 1e6)
+  local terms = math.min(r:u8("relaxed.terms", within(0, 4)), 4)
+  for _ = 1, terms do
+    r:f32("relaxed.share", within(0, 1))
+    r:f32("relaxed.time", within(0, 1e6))
+  end
+  r:u8("relaxed.first", within(0, 75))
+  for _ = 1, math.min(r:u8("relaxed.count", within(0, 75)) * terms, 75) do r:f32("relaxed.z", amplitude) end
+  for _ = 1, math.min(r:u8("relaxed.vertices", within(0, 16)), 16) do
+    r:u16("relaxed.vertex")
+    for _ = 1, 3 * terms do r:f32("relaxed.psi", amplitude) end
+  end
+end
+
 -- The parts of a ForceSample, in their order on the wire.
 local PARTS = {
   {"here", function(r)
@@ -417,6 +442,7 @@ local PARTS = {
   end},
   {"modes", read_modes},
   {"mean", function(r) r:group("mean", HUGE) end},
+  {"relaxed", read_relaxed},
 }
 
 read_message[FORCE_SAMPLE] = function(r)

@@ -241,7 +241,9 @@ int run_server(const ServerOptions& options) {
   for (const ToolSettings& tool : scene.tools) radii.push_back(tool.shape.radius);
   protocol::ServerSessions sessions = sessions_for(options.listen, scene.rate_hz, radii);
   protocol::UdpSocket socket = open_socket(options.listen);
-  const auto recorder = options.record ? std::make_unique<protocol::Recorder>(*options.record) : nullptr;
+  const auto recorder = options.record ? std::make_unique<protocol::Recorder>(
+                                             *options.record, protocol::bytes_of_mb(options.record_mb))
+                                       : nullptr;
   const Time begin = now();
   SetupTimes progress{ProgressLine()};
   const auto cache = open_cache(options.cache);

@@ -15,6 +15,7 @@ struct ServerOptions {
   std::optional<double> seconds;                ///< stop after so long; absent: at Ctrl-C
   std::optional<std::filesystem::path> report;  ///< JSON written at the end
   std::optional<std::filesystem::path> record;  ///< capture of every datagram
+  std::optional<double> record_mb;              ///< size at which it goes on in a new file
   CacheOptions cache;
 };
 

@@ -17,6 +17,7 @@ void ForcePlayer::look() noexcept {
   mailboxes_.tools[0].input.read(input_);
   if (input_.session != session_) {
     session_ = input_.session;
+    if (session_ == 0) return;  // the client is gone
     next_ = 0;
     begin_ = now();
     played = 0;

@@ -90,7 +90,10 @@ TEST_CASE("without a key nothing is added, and everything passes") {
 
 TEST_CASE("the longest sample and a page have room for a tag, and a sealed one decodes to the same") {
   ForceSample longest;
-  longest.flags = 0x1fc;
+  longest.flags = 0x3fc;
+  longest.relaxed.terms = 1;
+  longest.relaxed.share[0] = 0.5F;
+  longest.relaxed.time[0] = 1;
   longest.number = 1;
   longest.surface.tool_radius = 0.005;
   longest.modes.count = kMostSlowModes;

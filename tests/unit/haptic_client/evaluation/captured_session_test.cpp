@@ -247,13 +247,13 @@ TEST_CASE("a capture with nothing of ours, or of another version, is an error th
   CHECK_THROWS_WITH(survey(file, kQuiet),
                     Catch::Contains("holds no tool states") && Catch::Contains("2 packets, 1 of them ours"));
   const auto other = folder.path() / "b.pcap";
-  CaptureOf version2(other);
+  CaptureOf version3(other);
   std::vector<std::byte> bytes(protocol::kMaxDatagram);
   bytes.resize(protocol::encode({7, 1}, state_at(1, 0), bytes));
-  bytes[4] = std::byte{2};
-  version2.raw(bytes);
-  version2.close();
-  CHECK_THROWS_WITH(survey(other, kQuiet), Catch::Contains("version 2, this program knows version 1"));
+  bytes[4] = std::byte{3};
+  version3.raw(bytes);
+  version3.close();
+  CHECK_THROWS_WITH(survey(other, kQuiet), Catch::Contains("version 3, this program knows version 2"));
 }
 
 TEST_CASE("a capture of one tick and one sample has one tick with that sample") {

@@ -14,7 +14,7 @@ const Vec3 kNone = Vec3::Zero();
 
 /// A tick of the limiter.
 Vec3 limit(Limiter& limiter, const Vec3& f_D, double dt = kDt) {
-  return limiter.push(limiter.clamp(f_D), dt);
+  return limiter.push(limiter.clamp(f_D, dt), dt);
 }
 }  // namespace
 
@@ -115,6 +115,23 @@ TEST_CASE("a storm of slew cuts latches, a long steady clamp does not") {
   }
   CHECK(pressed.fault() == Fault::kNone);
   CHECK(shaken.fault() == Fault::kStorm);
+}
+
+TEST_CASE("half a second of a force that no tissue makes latches, a shorter one or a stiff wall does not") {
+  const double dt = 0.002;
+  for (const double size : {799.0, 801.0, 1e9}) {
+    Limiter limiter({.max_force = 8, .max_slew = 2000});
+    for (int tick = 0; tick < 249; ++tick) limiter.push(limiter.clamp({0, size, 0}, dt), dt);
+    CHECK(limiter.fault() == Fault::kNone);
+    limiter.push(limiter.clamp({0, 1, 0}, dt), dt);  // once less: it counts from the start
+    for (int tick = 0; tick < 252; ++tick) limiter.push(limiter.clamp({0, size, 0}, dt), dt);
+    CHECK((limiter.fault() == Fault::kWild) == (size > 800));
+    CHECK(limiter.counts().wild == (size > 800 ? 1 : 0));
+    if (size < 800) continue;
+    CHECK(limiter.push({0, 1, 0}, dt).isZero(0));
+    limiter.rearm();
+    CHECK_FALSE(limiter.push({0, 1, 0}, dt).isZero(0));
+  }
 }
 
 TEST_CASE("the ladder: 300 ms, 400 ms, and back over a second") {

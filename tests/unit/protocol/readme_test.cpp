@@ -1,0 +1,64 @@
+// What protocol/README.md says of sizes is what the code writes.
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "protocol/codec.h"
+#include "tests/support/catch.h"
+
+using namespace palpate::protocol;
+
+namespace {
+
+/// The cells "payload" and "datagram" of the table of messages, by the name of the message.
+std::map<std::string, std::pair<std::string, std::string>> sizes_told() {
+  std::ifstream file(PALPATE_SOURCE_DIR "/protocol/README.md");
+  std::map<std::string, std::pair<std::string, std::string>> told;
+  std::string line;
+  while (std::getline(file, line) && line.find("## Messages") == std::string::npos) {
+  }
+  while (std::getline(file, line) && line.find("Numbers never change") == std::string::npos) {
+    std::istringstream cells(line);
+    std::vector<std::string> row;
+    for (std::string cell; std::getline(cells, cell, '|');) row.push_back(cell);
+    const auto bare = [](const std::string& s) {
+      const std::size_t a = s.find_first_not_of(' '), b = s.find_last_not_of(' ');
+      return a == std::string::npos ? std::string() : s.substr(a, b - a + 1);
+    };
+    if (row.size() >= 6) told[bare(row[2])] = {bare(row[4]), bare(row[5])};
+  }
+  return told;
+}
+
+std::size_t size_of(const Message& message) {
+  std::array<std::byte, kMaxDatagram> bytes;
+  return encode({1, 1}, message, bytes);
+}
+
+std::string range(std::size_t least, std::size_t most) {
+  return least == most ? std::to_string(least) : std::to_string(least) + " to " + std::to_string(most);
+}
+
+}  // namespace
+
+TEST_CASE("the sizes in protocol/README.md are those of the code") {
+  const auto told = sizes_told();
+  ToolState all;
+  all.flags =
+      ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface | ToolState::kAsksPages;
+  const std::map<std::string, std::pair<std::size_t, std::size_t>> sizes{
+      {"Challenge", {size_of(Challenge{}), size_of(Challenge{})}},
+      {"Welcome", {size_of(Welcome{}), size_of(Welcome{})}},
+      {"Refuse", {size_of(Refuse{}), size_of(Refuse{})}},
+      {"Bye", {size_of(Bye{}), size_of(Bye{})}},
+      {"ToolState", {size_of(ToolState{}), size_of(all)}},
+      {"ForceSample", {size_of(ForceSample{}), kMaxDatagram - kTagBytes}},  // the server fills it up to there
+      {"SurfacePage", {size_of(SurfacePage{}), size_of(SurfacePage{})}}};
+  for (const auto& [name, size] : sizes) {
+    CAPTURE(name);
+    REQUIRE(told.contains(name));
+    CHECK(told.at(name).first == range(size.first - kHeaderBytes, size.second - kHeaderBytes));
+    CHECK(told.at(name).second == range(size.first, size.second));
+  }
+  CHECK(told.at("Hello").second == std::to_string(size_of(Hello{})));
+}
