@@ -16,6 +16,7 @@ namespace palpate::bench {
 /// Each adds the rows of its file.
 void add_law_rows();
 void add_protocol_rows();
+void add_latency_rows();
 void add_capture_rows();
 void add_finder_rows();
 void add_server_rows();

@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   try {
     add_law_rows();
     add_protocol_rows();
+    add_latency_rows();
     add_capture_rows();
     add_finder_rows();
     add_server_rows();
