@@ -12,7 +12,10 @@ namespace {
 
 constexpr SurfacePages kLargest{SurfaceModel::kMostVertices, 2 * SurfaceModel::kMostVertices};
 constexpr double kStillComplete = 2e-3;  // m
-constexpr std::uint32_t kPatienceMs = 200;
+/// The clock of asking: it may run over, differences are right.
+std::uint32_t to_ms(Time t) {
+  return static_cast<std::uint32_t>(t.count() / 1'000'000);
+}
 constexpr std::size_t kAsked = 4096;  // pages remembered; 200 are asked for in that time
 
 }  // namespace
@@ -144,8 +147,8 @@ std::optional<Mat3> SurfaceModel::compliance(int i, int j) const noexcept {
 /// Collects pages to ask for.
 class SurfaceModel::Wishes {
  public:
-  Wishes(std::span<std::uint32_t> pages, std::vector<Asked>& asked, Time now)
-      : pages_(pages), asked_(asked), now_ms_(static_cast<std::uint32_t>(now.count() / 1'000'000) + 1) {
+  Wishes(std::span<std::uint32_t> pages, std::vector<Asked>& asked, Time now, Time patience)
+      : pages_(pages), asked_(asked), now_ms_(to_ms(now) + 1), patience_ms_(to_ms(patience)) {
     std::fill(pages.begin(), pages.end(), ToolState::kNoPage);
   }
   bool full() const { return count_ == pages_.size(); }
@@ -154,22 +157,30 @@ class SurfaceModel::Wishes {
   void add(std::uint32_t page) {
     missing = true;
     Asked& asked = asked_[page % kAsked];
-    if (full() || (asked.page == page && now_ms_ - asked.ms < kPatienceMs)) return;
+    if (full() || (asked.page == page && now_ms_ - asked.ms < patience_ms_)) return;
+    again += asked.page == page && asked.ms != 0 ? 1 : 0;
     asked = {page, now_ms_};
     pages_[count_++] = page;
   }
-  bool missing = false;  ///< something is, asked for or not
+  bool missing = false;     ///< something is, asked for or not
+  std::uint64_t again = 0;  ///< of those chosen, asked for before
 
  private:
   std::span<std::uint32_t> pages_;
   std::vector<Asked>& asked_;
-  std::uint32_t now_ms_;
+  std::uint32_t now_ms_, patience_ms_;
   std::size_t count_ = 0;
 };
 
-bool SurfaceModel::choose_missing(const Vec3& p, double reach, Time now,
-                                  std::span<std::uint32_t> pages) noexcept {
-  Wishes wishes(pages, asked_, now);
+bool SurfaceModel::choose_missing(const Vec3& p, double reach, Time now, std::span<std::uint32_t> pages,
+                                  Time patience) noexcept {
+  Wishes wishes(pages, asked_, now, patience);
+  const bool any = choose(p, reach, wishes);
+  asked_again_ += wishes.again;
+  return any;
+}
+
+bool SurfaceModel::choose(const Vec3& p, double reach, Wishes& wishes) noexcept {
   if (version_ == 0 || !p.allFinite()) return false;
   for (std::uint32_t page = 0; shape_missing_ > 0 && page < pages_.first_tile(); ++page) {
     if (shape_known_[page] == 0) wishes.add(page);
@@ -186,6 +197,12 @@ bool SurfaceModel::choose_missing(const Vec3& p, double reach, Time now,
   });
   if (!wishes.missing) complete_at_ = p;
   return wishes.any();
+}
+
+std::optional<Time> SurfaceModel::waited_for(std::uint32_t page, Time now) const noexcept {
+  const Asked& asked = asked_[page % kAsked];
+  if (asked.page != page || asked.ms == 0) return {};
+  return std::chrono::milliseconds(to_ms(now) + 1 - asked.ms);
 }
 
 }  // namespace palpate::client

@@ -34,9 +34,15 @@ class SurfaceModel {
 
   /// Writes into `pages` what to ask for at time `now`, for a tool at `p` (m, at rest): the shape, then the
   /// compliance between all that lies within `reach` (m) of it, then farther around. What was asked for in
-  /// the last 200 ms is not asked for again. Entries without a wish are `ToolState::kNoPage`; false when all
-  /// are. About 15 us where the tool has come to something new, else nothing.
-  bool choose_missing(const Vec3& p, double reach, Time now, std::span<std::uint32_t> pages) noexcept;
+  /// the last `patience` is not asked for again. Entries without a wish are `ToolState::kNoPage`; false when
+  /// all are. About 15 us where the tool has come to something new, else nothing.
+  bool choose_missing(const Vec3& p, double reach, Time now, std::span<std::uint32_t> pages,
+                      Time patience = std::chrono::milliseconds(200)) noexcept;
+  /// For how long at `now` a page has been asked for, to a millisecond; nothing where it was not, or that is
+  /// forgotten.
+  std::optional<Time> waited_for(std::uint32_t page, Time now) const noexcept;
+  /// How many pages were asked for once more, as they had not come.
+  std::uint64_t asked_again() const noexcept { return asked_again_; }
 
   /// Version 0: none is known.
   std::uint32_t version() const noexcept { return version_; }
@@ -72,6 +78,7 @@ class SurfaceModel {
   void take_tile(const protocol::SurfacePage& page) noexcept;
   void take_spectrum(const protocol::SurfacePage& page) noexcept;
   class Wishes;
+  bool choose(const Vec3& p, double reach, Wishes& wishes) noexcept;
 
   protocol::SurfacePages pages_;
   std::uint32_t version_ = 0, shape_missing_ = 0;
@@ -85,6 +92,7 @@ class SurfaceModel {
   std::vector<Tile> tiles_;
   std::size_t next_slot_ = 0;
   std::vector<Asked> asked_;  // by page, several of which share a place: the last one that was asked for
+  std::uint64_t asked_again_ = 0;
   protocol::NearTiles near_;
   std::optional<Vec3> complete_at_;  // a place for which nothing was missing
 };

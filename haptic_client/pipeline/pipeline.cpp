@@ -97,7 +97,11 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
   follow_path(tool, dt);
   TickResult result{.tool = tool};
   if (model_) {
-    for (const protocol::SurfacePage& page : pages) model_->take(page);
+    for (const protocol::SurfacePage& page : pages) {
+      const auto waited = model_->waited_for(page.page, now);
+      if (waited && page.version == model_->version()) pace_.came(*waited);
+      model_->take(page);
+    }
   }
   stats_.pages += pages.size();
   if (arrived != nullptr && take(*arrived, tool.p_W, now)) {
@@ -131,7 +135,14 @@ void Pipeline::ask_for_pages(ToolState& tool, Time now) noexcept {
   asked_ = now;
   const Vec3 p_rest = tool.p_W - surface->shift;
   const double reach = protocol::NearTiles::reach(surface->tool.radius, tool.v_W.norm());
-  if (!model_->choose_missing(p_rest, reach, now, tool.pages)) return;
+  const std::span<std::uint32_t> room(tool.pages);
+  std::fill(room.begin(), room.end(), ToolState::kNoPage);
+  const auto chosen = room.first(std::min(pace_.allowed(now), room.size()));
+  const std::uint64_t again = model_->asked_again();
+  if (chosen.empty() || !model_->choose_missing(p_rest, reach, now, chosen, pace_.patience())) return;
+  pace_.lost(model_->asked_again() - again);
+  pace_.asked(static_cast<std::size_t>(std::count_if(
+      chosen.begin(), chosen.end(), [](std::uint32_t page) { return page != ToolState::kNoPage; })));
   tool.flags |= ToolState::kAsksPages;
   tool.surface_version = model_->version();
 }

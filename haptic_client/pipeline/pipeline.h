@@ -6,6 +6,7 @@
 #include "haptic_client/device/device.h"
 #include "haptic_client/extrapolation/force_estimate.h"
 #include "haptic_client/extrapolation/surface_model.h"
+#include "haptic_client/pipeline/page_pace.h"
 #include "haptic_client/safety/felt_share.h"
 #include "haptic_client/safety/limiter.h"
 #include "haptic_client/safety/passivity.h"
@@ -104,8 +105,9 @@ class Pipeline {
   ForceEstimate estimate_;
   Wants wants_;
   std::unique_ptr<SurfaceModel> model_;  // null: no law wants it
-  Time asked_{};                         // for pages
-  Time lead_{};                          // from reading the device to the middle of the use of its force
+  PagePace pace_;
+  Time asked_{};  // for pages
+  Time lead_{};   // from reading the device to the middle of the use of its force
   Workspace workspace_;
   Passivity passivity_;
   Watchdog watchdog_;

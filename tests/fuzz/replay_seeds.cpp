@@ -1,4 +1,5 @@
-// Runs a fuzz target, built by any compiler, on the files of a folder: what once was found, or stands for a kind of input.
+// Runs a fuzz target, built by any compiler, on the files of a folder: what once was found, or stands for a
+// kind of input.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>

@@ -1,17 +1,18 @@
-// Any order of datagrams, time and sealed ones at both ends of a session: nothing breaks, and with a key only what the other
-// end sealed reaches the simulation or the haptic loop.
+// Any order of datagrams, time and sealed ones at both ends of a session: nothing breaks, and with a key only
+// what the other end sealed reaches the simulation or the haptic loop.
+#include "protocol/session.h"
+
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
-
-#include "protocol/session.h"
 
 using namespace palpate;
 using namespace palpate::protocol;
 
 namespace {
 
-const Endpoint kClient{.address = {10, 0, 0, 1}, .port = 1000}, kStranger{.address = {10, 0, 0, 9}, .port = 9};
+const Endpoint kClient{.address = {10, 0, 0, 1}, .port = 1000},
+    kStranger{.address = {10, 0, 0, 9}, .port = 9};
 const Key kKey{.number = 1, .bytes = {1, 2, 3}};
 
 struct Pair {
@@ -30,7 +31,8 @@ struct Pair {
     if (!outcome.answer || from != kClient) return;
     std::vector<std::byte> answer(kMaxDatagram);
     answer.resize(seal(answer, encode(outcome.answer->first, outcome.answer->second, answer), outcome.key));
-    if (answer.size() > bytes.size() && std::get_if<Welcome>(&outcome.answer->second) == nullptr) std::abort();
+    if (answer.size() > bytes.size() && std::get_if<Welcome>(&outcome.answer->second) == nullptr)
+      std::abort();
     to_client(answer, true);
   }
   void to_client(std::span<const std::byte> bytes, bool ours) {
@@ -45,18 +47,26 @@ struct Pair {
   }
   void step(std::uint8_t what, std::span<const std::byte> bytes) {
     switch (what % 8) {
-      case 0: return to_server(bytes, kClient, false);
-      case 1: return to_server(bytes, kStranger, false);
-      case 2: return to_client(bytes, false);
+      case 0:
+        return to_server(bytes, kClient, false);
+      case 1:
+        return to_server(bytes, kStranger, false);
+      case 2:
+        return to_client(bytes, false);
       case 3:
         while (const auto hello = client.poll(now)) say(*hello);
         return;
       case 4:
         if (client.welcomed()) say(ToolState{.tick = ++tick});
         return;
-      case 5: return force();
-      case 6: now += std::chrono::milliseconds(50); return;
-      default: server.expire(now); return;
+      case 5:
+        return force();
+      case 6:
+        now += std::chrono::milliseconds(50);
+        return;
+      default:
+        server.expire(now);
+        return;
     }
   }
   void force() {
@@ -77,15 +87,16 @@ struct Pair {
 
 }  // namespace
 
-/// The first byte says whether there is a key; then steps, each a byte that says what, one of how many bytes follow (times
-/// five), and these.
+/// The first byte says whether there is a key; then steps, each a byte that says what, one of how many bytes
+/// follow (times five), and these.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   Pair pair((data[0] & 1) != 0);
   std::span rest = std::as_bytes(std::span(data, size)).subspan(1);
   while (rest.size() >= 2) {
     const auto what = std::to_integer<std::uint8_t>(rest[0]);
-    const std::size_t length = std::min<std::size_t>(5 * std::to_integer<std::size_t>(rest[1]), rest.size() - 2);
+    const std::size_t length =
+        std::min<std::size_t>(5 * std::to_integer<std::size_t>(rest[1]), rest.size() - 2);
     pair.step(what, rest.subspan(2, length));
     rest = rest.subspan(2 + length);
   }

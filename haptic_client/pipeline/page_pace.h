@@ -1,0 +1,40 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "common/time.h"
+
+namespace palpate::client {
+
+/// How many pages of the surface to ask for, so that they do not fill the queue of a slow link, in which
+/// samples would wait behind them: the rate grows while pages come as quickly as the quickest, and is halved
+/// when they wait longer or get lost (additive queueing delay as the signal: LEDBAT, RFC 6817; the rule is
+/// multiplicative both ways). Pure; haptic thread.
+class PagePace {
+ public:
+  static constexpr double kSlowest = 20, kFastest = 1000;  ///< pages a second
+
+  /// How many may be asked for now.
+  std::size_t allowed(Time now) noexcept;
+  void asked(std::size_t pages) noexcept { tokens_ -= static_cast<double>(pages); }
+  /// A page came `took` after it was asked for.
+  void came(Time took) noexcept;
+  /// So many pages are asked for once more.
+  void lost(std::uint64_t pages) noexcept { lost_ += pages; }
+
+  /// After how long a page that did not come is lost: 200 ms, or more where the way is longer.
+  Time patience() const noexcept;
+  double rate() const noexcept { return rate_; }
+
+ private:
+  void adapt() noexcept;
+
+  double rate_ = 250, tokens_ = 8;
+  std::uint64_t came_ = 0, lost_ = 0;  // in this period
+  std::optional<Time> quickest_;       // of all pages
+  Time slowest_{};                     // in this period
+  Time last_{}, period_{};
+};
+
+}  // namespace palpate::client

@@ -1,0 +1,83 @@
+#include "haptic_client/pipeline/page_pace.h"
+
+#include <deque>
+
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::client;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A line of `bytes_per_s` with a queue of `queue` (s), behind a delay; pages of 937 bytes on it, asked for
+/// each 8 ms.
+struct Line {
+  double bytes_per_s;
+  Time delay, queue = 200ms;
+  PagePace pace{};
+  std::deque<std::pair<Time, Time>> on_the_way{};  // asked, arrives
+  Time now = 1000s, free = 0s;
+  std::uint64_t came = 0, dropped = 0;
+  Time longest_wait{};
+
+  void run(Time span) {
+    for (const Time end = now + span; now < end; now += 8ms) {
+      while (!on_the_way.empty() && on_the_way.front().second <= now) {
+        pace.came(now - on_the_way.front().first);
+        on_the_way.pop_front();
+        ++came;
+      }
+      const std::size_t pages = pace.allowed(now);
+      pace.asked(pages);
+      for (std::size_t i = 0; i < pages; ++i) send();
+    }
+  }
+  void send() {
+    free = std::max(free, now);
+    longest_wait = std::max(longest_wait, free - now);
+    if (free - now > queue) {
+      ++dropped;
+      pace.lost(1);
+      return;
+    }
+    free += from_seconds(937 / bytes_per_s);
+    on_the_way.emplace_back(now, free + delay);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("pages: on a quick link their rate grows to the fastest within a second, whatever its delay") {
+  for (const Time delay : {Time{1ms}, Time{80ms}, Time{400ms}}) {
+    Line line{.bytes_per_s = 1e8, .delay = delay};
+    line.run(1s + delay);
+    CHECK(line.pace.rate() == PagePace::kFastest);
+    CHECK(line.dropped == 0);
+  }
+}
+
+TEST_CASE(
+    "pages: on a link of 1 Mbit/s they take most of it, lose nothing, and hold samples up by less than 100 "
+    "ms") {
+  Line line{.bytes_per_s = 125e3, .delay = 5ms};
+  line.run(2s);
+  line.longest_wait = {};
+  line.came = line.dropped = 0;
+  line.run(20s);
+  CHECK(line.dropped == 0);
+  CHECK(line.longest_wait < 100ms);
+  CHECK(static_cast<double>(line.came) > 0.5 * 20 * 125e3 / 937);
+}
+
+TEST_CASE("pages: the patience is three times what the quickest took, 200 ms at least and 2 s at most") {
+  PagePace pace{};
+  CHECK(pace.patience() == 200ms);
+  pace.came(100ms);
+  CHECK(pace.patience() == 300ms);
+  pace.came(50ms);
+  CHECK(pace.patience() == 200ms);
+  PagePace slow;
+  slow.came(900ms);
+  CHECK(slow.patience() == 2s);
+}
