@@ -1,27 +1,42 @@
 #include "common/log.h"
 
+#include <memory>
+#include <spdlog/logger.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 #include <string>
 
 namespace palpate::log {
+namespace {
+
+std::shared_ptr<spdlog::logger> named(std::string_view program) {
+  auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+  auto logger = std::make_shared<spdlog::logger>(std::string(program), std::move(sink));
+  logger->set_pattern("%n: %^%v%$");
+  return logger;
+}
+
+/// Not spdlog's default one: in somebody else's program that is theirs.
+std::shared_ptr<spdlog::logger>& logger() {
+  static std::shared_ptr<spdlog::logger> ours = named("palpate");
+  return ours;
+}
+
+}  // namespace
 
 void start(std::string_view program) {
-  auto logger = spdlog::stderr_color_mt(std::string(program));
-  logger->set_pattern("%n: %^%v%$");
-  spdlog::set_default_logger(std::move(logger));
+  logger() = named(program);
 }
 
 void write_info(std::string_view line) {
-  spdlog::info("{}", line);
+  logger()->info("{}", line);
 }
 
 void write_warning(std::string_view line) {
-  spdlog::warn("warning: {}", line);
+  logger()->warn("warning: {}", line);
 }
 
 void write_error(std::string_view line) {
-  spdlog::error("error: {}", line);
+  logger()->error("error: {}", line);
 }
 
 }  // namespace palpate::log
