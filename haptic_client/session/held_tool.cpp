@@ -14,7 +14,6 @@
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/session/client_report.h"
 #include "haptic_client/session/trace.h"
-#include "protocol/key_file.h"
 
 namespace palpate::client {
 namespace {
@@ -31,19 +30,6 @@ std::size_t kept_ticks(const ClientConfig& config, const ToolFiles& files, std::
   if (!files.trace) return 0;
   return static_cast<std::size_t>(std::min(seconds.value_or(kTraceSeconds) + 1, kTraceSeconds) *
                                   rate_of(config));
-}
-
-protocol::Endpoint server_of(const ClientConfig& config) {
-  const protocol::Endpoint server = protocol::resolve(config.server, config.server_where);
-  if (server.port == 0)
-    fail("{}: \"{}\": a server has a port from 1 to 65535", config.server_where, config.server);
-  protocol::require_key(server, config.key.has_value(), config.insecure, config.server_where);
-  return server;
-}
-
-/// The newest of its file.
-protocol::Key key_of(const ClientConfig& config) {
-  return config.key ? protocol::read_keys(*config.key).back() : protocol::Key{};
 }
 
 }  // namespace
@@ -88,28 +74,7 @@ bool HeldTool::connect(Time patience) {
   for (const Time start = now(); !link_.welcomed;) {
     if (wait_for_interrupt(std::chrono::milliseconds(20))) return false;
     if (now() - start < patience) continue;
-    if (link_.refused == static_cast<int>(protocol::RefuseReason::kNoFreeTool)) {
-      fail_at_run_time(
-          "{}the server at {} has no free tool: other clients or devices hold all of its [[tool]]s; end one "
-          "of "
-          "them, or add a [[tool]] to its scene",
-          name_, config_.server);
-    }
-    if (const int version = link_.other_version; version != 0) {
-      fail_at_run_time(
-          "the server at {} speaks version {} of the protocol, this program version {}; install the same "
-          "release of both",
-          config_.server, version, protocol::kProtocolVersion);
-    }
-    if (const int reason = link_.unsendable; reason != 0) {
-      fail_at_run_time(
-          "nothing can be sent to {}: {}; is the address right, and this machine in the same network?",
-          config_.server, std::generic_category().message(reason));
-    }
-    fail_at_run_time(
-        "no answer from a server at {} within {:g} s; is `sim_server run` up, {}and UDP open there?",
-        config_.server, to_seconds(patience),
-        config_.key ? "with the same key, " : "without a key (or give it here: --key FILE), ");
+    fail_unanswered(link_, config_, name_, patience);
   }
   log::info("{}connected to {}; {} at {:g} Hz with \"{}\"; Ctrl-C ends it", name_, config_.server,
             config_.device.name, rate_of(config_), config_.method);

@@ -5,7 +5,7 @@
 
 #include "common/report.h"
 #include "haptic_client/session/client_config.h"
-#include "haptic_client/session/net_link.h"
+#include "haptic_client/session/server_access.h"
 #include "protocol/recording_report.h"
 
 namespace palpate::client {
@@ -31,7 +31,7 @@ class HeldTool {
   ~HeldTool();
 
   /// Asks the server for a tool. Throws when there is none within `patience`; false on Ctrl-C.
-  bool connect(Time patience = std::chrono::seconds(5));
+  bool connect(Time patience = kWelcomePatience);
   /// Our own address on the way to the server.
   protocol::Endpoint local() const { return socket_.local_towards(server_); }
   /// The haptic loop runs from here on, and beats for the guardian (null: there is none).

@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+
+#include "haptic_client/session/client_config.h"
+#include "haptic_client/session/net_link.h"
+
+namespace palpate::client {
+
+/// How long a server usually has for its first Welcome.
+constexpr Time kWelcomePatience = std::chrono::seconds(5);
+
+/// The server that is asked for; one on another machine only with a key, or where somebody insists. Throws
+/// `Error`.
+protocol::Endpoint server_of(const ClientConfig& config);
+
+/// The newest key of the file that is named; none without one. Throws `Error`.
+protocol::Key key_of(const ClientConfig& config);
+
+/// Throws why no server gave a tool within `waited`; `name` begins the sentence about the tool.
+[[noreturn]] void fail_unanswered(const NetLink& link, const ClientConfig& config, const std::string& name,
+                                  Time waited);
+
+}  // namespace palpate::client
