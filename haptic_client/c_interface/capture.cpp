@@ -1,0 +1,97 @@
+#include "protocol/capture.h"
+
+#include "protocol/c_interface/border.h"
+#include "protocol/c_interface/c_messages.h"
+#include "protocol/codec.h"
+
+using namespace palpate;
+
+/// A capture with what was learnt of it so far.
+struct palpate_capture {
+  explicit palpate_capture(const char* name) : file(name), reader(name) {}
+
+  std::string file;
+  protocol::CaptureReader reader;
+  protocol::Endpoint server;  ///< of the newest message that shows who that is
+  bool knows_server = false, told_trouble = false;
+
+  std::uint32_t direction(const protocol::CapturedDatagram& packet, const protocol::Message& message);
+};
+
+/// By the message where it goes one way only; a Bye by the server that was seen before it.
+std::uint32_t palpate_capture::direction(const protocol::CapturedDatagram& packet,
+                                         const protocol::Message& message) {
+  if (std::holds_alternative<protocol::Bye>(message)) {
+    if (!knows_server || (packet.to != server && packet.from != server)) return PALPATE_UNKNOWN;
+    return packet.to == server ? PALPATE_TO_SERVER : PALPATE_TO_CLIENT;
+  }
+  const bool to_server = std::holds_alternative<protocol::Hello>(message) ||
+                         std::holds_alternative<protocol::ToolState>(message);
+  server = to_server ? packet.to : packet.from;
+  knows_server = true;
+  return to_server ? PALPATE_TO_SERVER : PALPATE_TO_CLIENT;
+}
+
+namespace {
+
+/// Behind the last datagram; the first time, why it is the last, if that is a fault of the file.
+void end(palpate_capture& capture, palpate_datagram& told) {
+  told.type = PALPATE_END;
+  if (const std::string trouble = capture.reader.trouble(); !trouble.empty() && !capture.told_trouble) {
+    capture.told_trouble = true;
+    fail_at_run_time("{}: {}", capture.file, trouble);
+  }
+}
+
+void next(palpate_capture& capture, palpate_datagram& told, palpate_tool_state* tool,
+          palpate_force_sample* sample) {
+  const std::uint32_t size = told.struct_size;
+  told = {};
+  told.struct_size = size;
+  protocol::CapturedDatagram packet;
+  if (!capture.reader.next(packet)) return end(capture, told);
+  told.bytes = static_cast<std::uint32_t>(packet.length);
+  told.time_ns = packet.t.count();
+  protocol::Datagram datagram;
+  if (protocol::decode(packet.bytes, datagram) != protocol::Verdict::kAccepted) {
+    told.type = PALPATE_NOT_OURS;
+    return;
+  }
+  told.type =
+      std::visit([](const auto& m) { return static_cast<std::uint32_t>(std::decay_t<decltype(m)>::kType); },
+                 datagram.message);
+  told.direction = capture.direction(packet, datagram.message);
+  told.session = datagram.header.session;
+  told.sequence = datagram.header.sequence;
+  if (const auto* state = std::get_if<protocol::ToolState>(&datagram.message);
+      state != nullptr && tool != nullptr)
+    c_interface::write_tool_state(*state, *tool);
+  if (const auto* force = std::get_if<protocol::ForceSample>(&datagram.message);
+      force != nullptr && sample != nullptr)
+    c_interface::write_force_sample(*force, *sample);
+}
+
+}  // namespace
+
+int palpate_capture_open(const char* file, palpate_capture** capture, char* error, std::size_t error_size) {
+  if (capture != nullptr) *capture = nullptr;
+  return c_interface::guarded(error, error_size, [&] {
+    if (file == nullptr || capture == nullptr) fail("palpate_capture_open: file or capture is NULL");
+    *capture = new palpate_capture(file);
+  });
+}
+
+int palpate_capture_next(palpate_capture* capture, palpate_datagram* datagram, palpate_tool_state* tool,
+                         palpate_force_sample* sample, char* error, std::size_t error_size) {
+  return c_interface::guarded(error, error_size, [&] {
+    c_interface::require_handle(capture, "capture");
+    c_interface::require_whole(datagram, "datagram");
+    if (tool != nullptr) c_interface::require_whole(tool, "tool");
+    if (sample != nullptr) c_interface::require_whole(sample, "sample");
+    next(*capture, *datagram, tool, sample);
+  });
+}
+
+void palpate_capture_close(palpate_capture* capture) {
+  delete capture;
+}

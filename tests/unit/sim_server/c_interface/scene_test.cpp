@@ -1,0 +1,119 @@
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "protocol/c_interface/palpate.h"
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate::test;
+
+namespace {
+
+struct Closer {
+  void operator()(palpate_scene* scene) const { palpate_scene_close(scene); }
+};
+using Scene = std::unique_ptr<palpate_scene, Closer>;
+
+Scene open_scene(const std::string& file) {
+  palpate_scene* scene = nullptr;
+  char error[512];
+  const int code = palpate_scene_open(file.c_str(), &scene, error, sizeof error);
+  INFO(error);
+  REQUIRE(code == PALPATE_OK);
+  return Scene(scene);
+}
+
+const std::string kConfigs = std::string(PALPATE_SOURCE_DIR) + "/configs/";
+
+template <class Struct = palpate_tool_state>
+Struct at(double x, double y, double z) {
+  Struct tool{};
+  tool.struct_size = sizeof tool;
+  tool.position[0] = x, tool.position[1] = y, tool.position[2] = z;
+  return tool;
+}
+
+/// One step of the block with its tool there.
+palpate_force_sample step(const Scene& scene, palpate_tool_state tool, std::uint32_t flags) {
+  tool.flags = flags;
+  palpate_force_sample sample{};
+  sample.struct_size = sizeof sample;
+  REQUIRE(palpate_scene_step(scene.get(), &tool, 1, 0.03, &sample, nullptr, 0) == PALPATE_OK);
+  return sample;
+}
+
+/// As a later release might have them: with more behind what is known today.
+struct LaterToolState : palpate_tool_state {
+  double more[5] = {1e300, 1e300, 1e300, 1e300, 1e300};
+};
+struct LaterForceSample : palpate_force_sample {
+  double more[3] = {7, 7, 7};
+};
+
+}  // namespace
+
+TEST_CASE("c_interface: the tangent of a block is the difference of its forces") {
+  const Scene scene = open_scene(kConfigs + "scenes/block.toml");
+  constexpr double kDeep = 0.004, kApart = 1e-6;  // m: 2 mm deep
+  const auto low = step(scene, at(0, kDeep - kApart / 2, 0), 0);
+  const auto high = step(scene, at(0, kDeep + kApart / 2, 0), 0);
+  const auto here = step(scene, at(0, kDeep, 0), PALPATE_WANTS_TANGENT);
+  CHECK((here.flags & PALPATE_IN_CONTACT) != 0);
+  REQUIRE((here.flags & PALPATE_HAS_TANGENT) != 0);
+  CHECK((low.flags & PALPATE_HAS_TANGENT) == 0);
+  CHECK(here.force[1] > 0.3);
+  CHECK(here.normal[1] > 0.9);
+  CHECK(here.gap == 0);
+  for (int i = 0; i < 3; ++i)
+    CHECK(here.tangent[3 * i + 1] == Approx((high.force[i] - low.force[i]) / kApart).margin(2));
+  CHECK(here.tangent[4] < -100);
+  CHECK(here.time_ns == 90'000'000);
+  CHECK(here.number == 3);
+}
+
+TEST_CASE(
+    "c_interface: a tool that is lost, or away, feels nothing, and what it does not know is not asked") {
+  const Scene scene = open_scene(kConfigs + "scenes/block.toml");
+  CHECK(step(scene, at(0, 0.003, 0), 0).force[1] > 0.5);
+  const auto lost = step(scene, at(0, 0.003, 0), PALPATE_LOST);
+  CHECK(lost.force[1] == 0);
+  CHECK(step(scene, at(NAN, 2e9, 0), PALPATE_LOST).force[1] == 0);
+  const auto away = step(scene, at(0, 0.008, 0), PALPATE_WANTS_TANGENT);
+  CHECK(away.force[1] == 0);
+  CHECK((away.flags & PALPATE_IN_CONTACT) == 0);
+  CHECK(away.gap == Approx(0.002).margin(1e-6));
+}
+
+TEST_CASE("c_interface: arrays of longer structs are walked by their own size, and what is behind stays") {
+  const TemporaryFolder folder;
+  const auto file = folder.write("two.toml", fmt::format(R"(
+[mesh]
+file = "{}meshes/block.msh"
+[deformation]
+model = "rigid"
+stiffness = 500
+[[tool]]
+radius = 0.006
+[[tool]]
+radius = 0.006
+)",
+                                                         kConfigs));
+  const Scene scene = open_scene(file.string());
+  REQUIRE(palpate_scene_tools(scene.get()) == 2);
+  const std::array<LaterToolState, 2> tools{at<LaterToolState>(-0.01, 0.005, 0),
+                                            at<LaterToolState>(0.01, 0.004, 0)};
+  std::array<LaterForceSample, 2> samples;
+  for (auto& sample : samples) sample.struct_size = sizeof sample;
+  REQUIRE(palpate_scene_step(scene.get(), tools.data(), 2, 0.03, samples.data(), nullptr, 0) == PALPATE_OK);
+  CHECK(samples[0].force[1] == Approx(0.5));  // 500 N/m, 1 mm deep
+  CHECK(samples[1].force[1] == Approx(1.0));
+  CHECK(samples[1].tool == 1);
+  for (const auto& sample : samples) {
+    CHECK(sample.struct_size == sizeof sample);
+    for (const double x : sample.more) CHECK(x == 7);
+  }
+}
