@@ -171,3 +171,93 @@ TEST_CASE("commtest: a good link on loopback passes, nobody there is exit 1, wro
   output_of("haptic_client", {"commtest", "127.0.0.1:9", "--seconds", "0"}, 2);
   output_of("haptic_client", {"commtest", "127.0.0.1:9", "--usb", "nothing"}, 2);
 }
+
+TEST_CASE(
+    "another version: the server answers its Hello, and no more than that, with the version spoken here") {
+  Server server;
+  UdpSocket socket(resolve("127.0.0.1:0", "test"));
+  const Endpoint to = resolve(server.address, "test");
+  palpate::Doorbell bell;
+  std::vector<Datagram> answers;
+  int looks = 0;
+  const auto send = [&](const Message& message) {
+    std::array<std::byte, kMaxDatagram> bytes;
+    const std::size_t size = encode({}, message, bytes);
+    bytes[4] = std::byte{kProtocolVersion + 1};
+    socket.send({bytes.data(), size}, to);
+  };
+  send(Hello{.nonce = {9}, .attempt = 1});
+  send(ToolState{.tick = 1});
+  socket.run(bell, 100ms,
+             {.on_datagram =
+                  [&](auto bytes, const Endpoint&) {
+                    Datagram datagram;
+                    CHECK(bytes.size() < kHeaderBytes + kHelloPayload);
+                    REQUIRE(decode(bytes, datagram) == Verdict::kAccepted);
+                    answers.push_back(datagram);
+                  },
+              .on_doorbell = [] {},
+              .on_timer =
+                  [&] {
+                    if (++looks == 5) socket.stop();
+                  }});
+  REQUIRE(answers.size() == 1);
+  CHECK(std::get<Refuse>(answers[0].message).reason == RefuseReason::kVersion);
+}
+
+TEST_CASE("pages: what one ask names several times is sent once, and asks without end get a budget of them") {
+  Server server;
+  UdpSocket socket(resolve("127.0.0.1:0", "test"));
+  const Endpoint to = resolve(server.address, "test");
+  ClientSession session(Nonce{5});
+  LinkStats stats;
+  palpate::Doorbell bell;
+  std::uint32_t version = 0;
+  std::uint64_t tick = 0, pages = 0;
+  int phase = 0, asks = 0;
+  std::vector<std::uint64_t> came{0, 0};
+  const auto send = [&](const Message& message) {
+    std::array<std::byte, kMaxDatagram> bytes;
+    socket.send({bytes.data(), session.write(message, bytes)}, to);
+  };
+  const auto ask = [&](auto page_of) {
+    ToolState state{.tick = ++tick, .t_ns = palpate::now().count(), .p_W = {0, 0.2, 0}};
+    state.flags = ToolState::kWantsSurface | (version != 0 ? ToolState::kAsksPages : 0);
+    state.surface_version = version;
+    for (std::uint32_t i = 0; i < 8; ++i) state.pages[i] = page_of(i);
+    send(state);
+  };
+  socket.run(bell, 10ms,
+             {.on_datagram =
+                  [&](auto bytes, const Endpoint&) {
+                    Datagram datagram;
+                    REQUIRE(decode(bytes, datagram) == Verdict::kAccepted);
+                    const Message* const message = session.receive(datagram, palpate::now(), stats);
+                    while (const auto hello = session.poll(palpate::now())) send(*hello);
+                    if (message == nullptr) return;
+                    if (const auto* sample = std::get_if<ForceSample>(message))
+                      version = sample->surface.version;
+                    pages += std::holds_alternative<SurfacePage>(*message) ? 1 : 0;
+                  },
+              .on_doorbell = [] {},
+              .on_timer =
+                  [&] {
+                    while (const auto hello = session.poll(palpate::now())) send(*hello);
+                    if (!session.welcomed()) return;
+                    if (version == 0) return ask([](std::uint32_t) { return ToolState::kNoPage; });
+                    if (phase == 0 && ++asks <= 10) return ask([](std::uint32_t) { return 3u; });
+                    if (phase == 0 && asks == 20) {
+                      came[0] = pages;
+                      pages = 0;
+                      phase = 1;
+                      for (int i = 0; i < 500; ++i) ask([](std::uint32_t page) { return page; });
+                    }
+                    if (phase == 1 && ++asks == 60) {
+                      came[1] = pages;
+                      socket.stop();
+                    }
+                  }});
+  CHECK(came[0] == 10);
+  CHECK(came[1] >= 32);
+  CHECK(came[1] < 500);  // of 4000, in some tens of milliseconds
+}
