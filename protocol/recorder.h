@@ -32,7 +32,8 @@ class Recorder {
   /// only; copies it, never waits. Bytes beyond the longest datagram of ours are not kept.
   void note(Time t, const Endpoint& from, const Endpoint& to, std::span<const std::byte> bytes) noexcept;
 
-  /// As above, one that was received and refused: a few a second are kept, so that nobody can fill the disk.
+  /// As above, one that belongs to no session (refused, doubled, a stranger's Hello or its answer): a few a
+  /// second are kept, so that nobody can fill the disk.
   void note_refused(Time t, const Endpoint& from, const Endpoint& to,
                     std::span<const std::byte> bytes) noexcept;
 
@@ -47,7 +48,7 @@ class Recorder {
     std::uint64_t packets = 0;  ///< in them
     std::uint64_t bytes = 0;    ///< of them
     std::uint64_t dropped = 0;  ///< noted, but not in the file
-    std::uint64_t refused = 0;  ///< of refused datagrams: not noted, as there were too many
+    std::uint64_t refused = 0;  ///< of `note_refused`: not noted, as there were too many
   };
   /// What a recording takes while it runs.
   static constexpr std::size_t memory_bytes() { return kRoom * sizeof(Packet); }

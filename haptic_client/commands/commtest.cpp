@@ -11,15 +11,18 @@
 #include "haptic_client/commands/link_causes.h"
 #include "haptic_client/session/held_tool.h"
 #include "haptic_client/session/link_probe.h"
-#include "protocol/key_file.h"
+#include "haptic_client/session/server_access.h"
 
 namespace palpate::client {
 namespace {
 
-void rest(double seconds) {
-  for (const Time end = now() + from_seconds(seconds); now() < end;) {
-    if (wait_for_interrupt(std::chrono::milliseconds(100))) return;
+/// Until that, or Ctrl-C; returns how long it was, s.
+double rest(double seconds) {
+  const Time begin = now();
+  while (to_seconds(now() - begin) < seconds) {
+    if (wait_for_interrupt(std::chrono::milliseconds(100))) break;
   }
+  return to_seconds(now() - begin);
 }
 
 std::string quantiles_text(const Json& q, const char* unit) {
@@ -39,10 +42,11 @@ double percent(double part, double whole) {
   return whole > 0 ? 100 * part / whole : 0;
 }
 
-TestedLink tested_link(const ClientConfig& config, const Json& tool) {
+/// The law is the one that was at work, which need not be the one asked for.
+TestedLink tested_link(const Json& tool) {
   const Json& link = tool["link"];
   const double came = tool["force"]["samples"].get<double>(), lost = link["values_lost"].get<double>();
-  return {.law = config.method,
+  return {.law = tool["felt"]["law"].get<std::string>(),
           .age_p99_ms = link["age_ms"]["p99"].get<double>(),
           .stiffest_n_m = link["stiffest_n_m"].get<double>(),
           .samples_hz = tool["motion"]["sample_rate_hz"].get<double>(),
@@ -77,13 +81,16 @@ void print_session(const Json& tool, double seconds) {
              force["surface_pages"].get<long>());
 }
 
+void print_causes(const Json& causes) {
+  for (const Json& cause : causes) fmt::print("  look at     {}\n", cause.get<std::string>());
+}
+
 void print_verdict(const Json& verdict) {
   fmt::print("  {}        {}\n", verdict["grade"].get<std::string>(),
              verdict["reasons"].empty() ? "" : verdict["reasons"][0].get<std::string>());
   for (std::size_t i = 1; i < verdict["reasons"].size(); ++i)
     fmt::print("              {}\n", verdict["reasons"][i].get<std::string>());
-  for (const Json& cause : verdict["what_to_look_at"])
-    fmt::print("  look at     {}\n", cause.get<std::string>());
+  if (verdict["grade"] != name_of(Grade::kPass)) print_causes(verdict["what_to_look_at"]);
   std::fflush(stdout);
 }
 
@@ -95,31 +102,26 @@ ClientConfig with_simulated_hand(ClientConfig config) {
   return config;
 }
 
-protocol::Key key_of_test(const ClientConfig& config) {
-  return config.key ? protocol::read_keys(*config.key).back() : protocol::Key{};
-}
-
 }  // namespace
 
 int test_link(const ClientConfig& asked, const CommtestOptions& options) {
   const ClientConfig config = with_simulated_hand(asked);
   if (options.json) check_writable(*options.json, Contents::kReport);
   HeldTool tool(config, {}, "", options.seconds);
-  const protocol::Endpoint server = protocol::resolve(config.server, config.server_where);
-  LinkProbe probe(server, key_of_test(config));
+  LinkProbe probe(server_of(config), key_of(config));
   if (!tool.connect(from_seconds(options.wait))) return 0;
   fmt::print("testing the link for {:g} s, with a simulated hand, which holds a tool meanwhile\n",
              options.seconds);
   std::fflush(stdout);
   probe.start();
   tool.start(nullptr);
-  rest(options.seconds);
+  const double seconds = rest(options.seconds);
   tool.stop();
   probe.stop();
   const Json of_tool = tool.report();
-  const Verdict verdict = judge(tested_link(config, of_tool));
+  const Verdict verdict = judge(tested_link(of_tool));
   const Json report = {{"server", config.server},
-                       {"seconds", options.seconds},
+                       {"seconds", seconds},
                        {"round_trip", probe_report(probe.figures())},
                        {"tool", of_tool},
                        {"verdict",
@@ -128,7 +130,7 @@ int test_link(const ClientConfig& asked, const CommtestOptions& options) {
                          {"what_to_look_at", link_causes(tool.local())}}}};
   fmt::print("haptic_client: link to {}\n", config.server);
   print_round_trip(report["round_trip"]);
-  print_session(of_tool, options.seconds);
+  print_session(of_tool, seconds);
   print_verdict(report["verdict"]);
   if (options.json) write_json(*options.json, report);
   return verdict.grade == Grade::kFail ? 1 : 0;
@@ -172,8 +174,7 @@ int test_device(const ClientConfig& config, const CommtestOptions& options) {
              ticks + late);
   fmt::print("  readings    {} of {} usable{}{}\n", usable, ticks,
              usable < ticks ? "; the device says: " : "", usable < ticks ? device->status() : "");
-  for (const Json& cause : report["what_to_look_at"])
-    fmt::print("  look at     {}\n", cause.get<std::string>());
+  print_causes(report["what_to_look_at"]);
   if (options.json) write_json(*options.json, report);
   return usable > 0 ? 0 : 1;
 }

@@ -44,8 +44,9 @@ void judge_stiffness(const TestedLink& link, Verdict& verdict) {
                        link.age_p99_ms));
     return;
   }
-  const std::string law = fmt::format("with samples {:.1f} ms old (p99) \"{}\" is stable up to {:.0f} N/m",
-                                      link.age_p99_ms, link.law, *limit);
+  const std::string law =
+      fmt::format("with samples {:.1f} ms old (p99) \"{}\" is stable up to {:.0f} N/m on the study's walls",
+                  link.age_p99_ms, link.law, *limit);
   if (link.stiffest_n_m == 0) {
     worsen(verdict, Grade::kWarn, law + "; nothing was touched, so how stiff the scene is is not known");
   } else {

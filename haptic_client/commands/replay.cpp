@@ -26,9 +26,8 @@ std::string describe(const CapturedRun& run, std::size_t index) {
                      protocol::to_string(run.client), run.ticks, run.first_tick, run.ticks_hz(), run.samples);
 }
 
-}  // namespace
-
-std::size_t choose_session(const CaptureSurvey& found, const ReplayOptions& options) {
+/// The session asked for, or the longest; says which when there are several.
+std::size_t index_of(const CaptureSurvey& found, const ReplayOptions& options) {
   const auto count = static_cast<int>(found.runs.size());
   const auto longest = std::max_element(found.runs.begin(), found.runs.end(),
                                         [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
@@ -45,6 +44,20 @@ std::size_t choose_session(const CaptureSurvey& found, const ReplayOptions& opti
   if (found.runs[chosen].ticks == 0)
     fail("--session: number {} in {} has no tool states", chosen + 1, options.capture.string());
   return chosen;
+}
+
+}  // namespace
+
+ChosenSession choose_session(const ReplayOptions& options) {
+  require_distinct({{"CAPTURE", options.capture}, {"--out", options.out}, {"--report", options.report}});
+  if (options.report) check_writable(*options.report, Contents::kReport);
+  if (options.out) check_writable(*options.out, Contents::kTable);
+  ProgressLine progress;
+  CaptureSurvey found =
+      survey(options.capture, [&](double share) { progress("reading the capture", share); });
+  const std::size_t index = index_of(found, options);
+  if (!found.trouble.empty()) log::warning("{}: {}", options.capture.string(), found.trouble);
+  return {std::move(found), index};
 }
 
 double nominal_rate(double captured_hz, double asked_hz) {
@@ -113,9 +126,7 @@ Json describe_capture(const CaptureSurvey& found, const CapturedRun& run, const 
 }
 
 /// Whether these are the forces the client wrote, or what keeps them from being.
-void say_how_exact(const Json& capture, const CapturedRun& run, const std::string& trouble,
-                   const std::string& file) {
-  if (!trouble.empty()) log::warning("{}: {}", file, trouble);
+void say_how_exact(const Json& capture, const CapturedRun& run, const std::string& file) {
   fmt::print("haptic_client: {} ticks at {:.6g} Hz, {} samples of client {}\n",
              capture["ticks"].get<std::uint64_t>(), capture["rate_hz"].get<double>(), run.samples,
              protocol::to_string(run.client));
@@ -139,14 +150,8 @@ void say_how_exact(const Json& capture, const CapturedRun& run, const std::strin
 }  // namespace
 
 int replay(const ClientConfig& config, const ReplayOptions& options) {
-  require_distinct({{"CAPTURE", options.capture}, {"--out", options.out}, {"--report", options.report}});
-  if (options.report) check_writable(*options.report, Contents::kReport);
-  if (options.out) check_writable(*options.out, Contents::kTable);
-  ProgressLine progress;
-  const CaptureSurvey found =
-      survey(options.capture, [&](double share) { progress("reading the capture", share); });
-  const std::size_t index = choose_session(found, options);
-  const CapturedRun& run = found.runs[index];
+  const ChosenSession chosen = choose_session(options);
+  const CapturedRun& run = chosen.run();
   const double captured_hz = run.ticks_hz(), rate_hz = options.rate_hz.value_or(captured_hz);
   const bool exact = captured_hz == 0 || std::abs(rate_hz - captured_hz) <= kSameRate * captured_hz;
   const double ticks_hz = exact ? nominal_rate(captured_hz, config.rate_hz) : rate_hz;
@@ -155,16 +160,16 @@ int replay(const ClientConfig& config, const ReplayOptions& options) {
                     config.workspace, config.device_limits(), config.passivity, config.blend);
   const std::size_t keep = options.out ? Scoring::longest_wait(ticks_hz) + 1 : 0;
   Observation observation(config.scored_laws(), ticks_hz, config.score_where, keep, config.blend);
-  CapturedSession session(options.capture, index);
+  CapturedSession session(options.capture, chosen.index);
   std::optional<TraceWriter> trace;
   if (options.out) trace.emplace(*options.out, observation.scoring().names(), config.method);
   const std::uint64_t ticks = run_ticks(session, exact ? std::nullopt : std::optional(rate_hz), pipeline,
                                         observation, trace ? &*trace : nullptr);
   if (trace) trace->finish();
 
-  const Json report = {{"capture", describe_capture(found, run, session, ticks, ticks_hz, exact)},
+  const Json report = {{"capture", describe_capture(chosen.found, run, session, ticks, ticks_hz, exact)},
                        {"tools", Json::array({tool_report(config, pipeline, observation)})}};
-  say_how_exact(report["capture"], run, found.trouble, options.capture.string());
+  say_how_exact(report["capture"], run, options.capture.string());
   print_report(report);
   if (options.report) write_json(*options.report, report);
   return 0;

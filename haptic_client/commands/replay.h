@@ -22,9 +22,15 @@ struct ReplayOptions {
 /// `Error`. Returns the exit code.
 int replay_live(const ClientConfig& config, const ReplayOptions& options);
 
-/// Which session of a capture is meant, as an index: the one asked for, or the longest; says which when there
-/// are several. Throws `Error`.
-std::size_t choose_session(const CaptureSurvey& found, const ReplayOptions& options);
+/// What a capture holds, and which of its sessions is meant.
+struct ChosenSession {
+  CaptureSurvey found;
+  std::size_t index = 0;
+  const CapturedRun& run() const { return found.runs[index]; }
+};
+/// Reads the capture through: the session asked for, or the longest; says which when there are several, and
+/// what is wrong with the file. Throws `Error`, also where what is to be written cannot be.
+ChosenSession choose_session(const ReplayOptions& options);
 
 /// The rate that the client was asked for, if that of the capture (which may have missed ticks) is near it;
 /// in any case one that a loop can have. Hz.

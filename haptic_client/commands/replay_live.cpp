@@ -4,7 +4,6 @@
 
 #include "common/clock.h"
 #include "common/interrupt.h"
-#include "common/log.h"
 #include "common/progress.h"
 #include "haptic_client/commands/replay.h"
 #include "haptic_client/evaluation/captured_hand.h"
@@ -39,18 +38,11 @@ void play(HeldTool& tool, double seconds) {
 }  // namespace
 
 int replay_live(const ClientConfig& asked, const ReplayOptions& options) {
-  require_distinct({{"CAPTURE", options.capture}, {"--out", options.out}, {"--report", options.report}});
-  if (options.report) check_writable(*options.report, Contents::kReport);
-  if (options.out) check_writable(*options.out, Contents::kTable);
-  ProgressLine progress;
-  const CaptureSurvey found =
-      survey(options.capture, [&](double share) { progress("reading the capture", share); });
-  const std::size_t index = choose_session(found, options);
-  if (!found.trouble.empty()) log::warning("{}: {}", options.capture.string(), found.trouble);
-  CapturedSession session(options.capture, index);
+  const ChosenSession chosen = choose_session(options);
+  CapturedSession session(options.capture, chosen.index);
   auto hand = std::make_unique<CapturedHand>(session);
   const double seconds = hand->seconds();
-  const ClientConfig config = with_captured_hand(asked, found.runs[index].ticks_hz());
+  const ClientConfig config = with_captured_hand(asked, chosen.run().ticks_hz());
   HeldTool tool(config, {.trace = options.out, .record = {}}, "", seconds, std::move(hand));
   if (!tool.connect()) return 0;
   fmt::print("haptic_client: playing {:.1f} s of {} at {:g} Hz; nothing is moved\n", seconds,

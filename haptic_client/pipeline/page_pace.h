@@ -8,9 +8,9 @@
 namespace palpate::client {
 
 /// How many pages of the surface to ask for, so that they do not fill the queue of a slow link, in which
-/// samples would wait behind them: the rate grows while pages come as quickly as the quickest, and is halved
-/// when they wait longer or get lost (additive queueing delay as the signal: LEDBAT, RFC 6817; the rule is
-/// multiplicative both ways). Pure; haptic thread.
+/// samples would wait behind them: each 100 ms the rate grows by half while pages come almost as quickly as
+/// the quickest, and is halved where one waited 30 ms longer or was lost (as LEDBAT, RFC 6817, takes queueing
+/// delay for the signal of congestion). Pure; haptic thread.
 class PagePace {
  public:
   static constexpr double kSlowest = 20, kFastest = 1000;  ///< pages a second

@@ -31,7 +31,7 @@ void NetLink::run() {
 
 void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from) {
   const Time t = now();
-  const std::uint64_t rejected = stats_.rejected;
+  const std::uint64_t received = stats_.received;
   protocol::Datagram datagram;
   const protocol::Message* message = nullptr;
   const Verdict verdict = from == server_ ? protocol::decode(bytes, datagram) : Verdict::kNotOurs;
@@ -43,7 +43,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
       other_version = other->version;
   }
   if (recorder_ != nullptr) {
-    if (stats_.rejected == rejected) {
+    if (stats_.received > received) {
       recorder_->note(t, from, own_, bytes);
     } else {
       recorder_->note_refused(t, from, own_, bytes);

@@ -20,6 +20,11 @@ protocol::ServerSessions::Fresh fresh_for(const Datagram& datagram) {
   return {protocol::random_value<std::uint64_t>() | 1, protocol::random_value<protocol::Nonce>()};
 }
 
+/// Anything but a Welcome answers somebody who has no session, or not yet.
+bool is_to_a_stranger(const protocol::ServerSessions::Outcome& outcome) {
+  return outcome.answer && !std::holds_alternative<protocol::Welcome>(outcome.answer->second);
+}
+
 }  // namespace
 
 NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions,
@@ -41,24 +46,16 @@ void NetLink::run() {
 
 void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from) {
   const Time t = now();
-  const std::uint64_t rejected = stats_.rejected;
-  // Before any answer to it, as a reader of the capture expects.
-  const auto record = [&](bool ours) {
-    if (recorder_ == nullptr) return;
-    if (ours) {
-      recorder_->note(t, from, own_towards(from), bytes);
-    } else {
-      recorder_->note_refused(t, from, own_towards(from), bytes);
-    }
-  };
   Datagram datagram;
   if (const Verdict verdict = protocol::decode(bytes, datagram); verdict != Verdict::kAccepted) {
-    record(false);
+    record(t, from, own_towards(from), bytes, false);
     return refuse(verdict, bytes, from);
   }
   const std::size_t before = sessions_.members().size();
+  const std::uint64_t received = stats_.received;
   const auto outcome = sessions_.receive(datagram, from, t, fresh_for(datagram), stats_);
-  record(stats_.rejected == rejected);
+  // Before any answer to it, as a reader of the capture expects.
+  record(t, from, own_towards(from), bytes, stats_.received > received && !is_to_a_stranger(outcome));
   // A new member stands at the end.
   if (sessions_.members().size() > before) ++tools[sessions_.members().back().tool].so_far;
   note_holders();
@@ -67,6 +64,17 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   if (outcome.tool_state == nullptr) return;
   pass_on(datagram.header.session, *outcome.tool_state);
   send_pages(*outcome.tool_state, t);
+}
+
+/// Into the recording, if there is one. `ours`: of a session; of all else there may be any number.
+void NetLink::record(Time t, const Endpoint& from, const Endpoint& to, std::span<const std::byte> bytes,
+                     bool ours) {
+  if (recorder_ == nullptr) return;
+  if (ours) {
+    recorder_->note(t, from, to, bytes);
+  } else {
+    recorder_->note_refused(t, from, to, bytes);
+  }
 }
 
 /// Who says Hello in another version is told which one is spoken here.
@@ -139,18 +147,18 @@ const Endpoint& NetLink::own_towards(const Endpoint& peer) {
 
 void NetLink::send(protocol::ServerSessions::Member& member, const protocol::Message& message) {
   std::array<std::byte, protocol::kMaxDatagram> bytes;
-  send({bytes.data(), protocol::ServerSessions::write(member, message, bytes)}, member.endpoint);
+  send({bytes.data(), protocol::ServerSessions::write(member, message, bytes)}, member.endpoint, true);
 }
 
 void NetLink::answer(const protocol::ServerSessions::Outcome& outcome, const Endpoint& to) {
   if (!outcome.answer) return;
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   const std::size_t size = protocol::encode(outcome.answer->first, outcome.answer->second, bytes);
-  send({bytes.data(), protocol::seal(bytes, size, outcome.key)}, to);
+  send({bytes.data(), protocol::seal(bytes, size, outcome.key)}, to, !is_to_a_stranger(outcome));
 }
 
-void NetLink::send(std::span<const std::byte> bytes, const Endpoint& to) {
-  if (recorder_ != nullptr) recorder_->note(now(), own_towards(to), to, bytes);
+void NetLink::send(std::span<const std::byte> bytes, const Endpoint& to, bool ours) {
+  record(now(), own_towards(to), to, bytes, ours);
   if (!socket_.send(bytes, to)) ++stats_.sent;
 }
 

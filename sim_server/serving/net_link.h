@@ -40,7 +40,9 @@ class NetLink {
   void tool_is_free(std::uint8_t tool);
   void send(protocol::ServerSessions::Member& member, const protocol::Message& message);
   void answer(const protocol::ServerSessions::Outcome& outcome, const protocol::Endpoint& to);
-  void send(std::span<const std::byte> bytes, const protocol::Endpoint& to);
+  void send(std::span<const std::byte> bytes, const protocol::Endpoint& to, bool ours);
+  void record(Time t, const protocol::Endpoint& from, const protocol::Endpoint& to,
+              std::span<const std::byte> bytes, bool ours);
 
   const protocol::Endpoint& own_towards(const protocol::Endpoint& peer);
 
