@@ -1,0 +1,95 @@
+#pragma once
+/// Messages of every kind, with numbers that have short bytes, and how they look on the wire.
+#include <vector>
+
+#include "protocol/codec.h"
+#include "tests/support/hex.h"
+
+namespace palpate::test {
+using namespace protocol;
+
+inline Bytes encoded(const Header& header, const Message& message) {
+  Bytes bytes(kMaxDatagram);
+  bytes.resize(encode(header, message, bytes));
+  return bytes;
+}
+
+inline const Header kHeader{0x1122334455667788, 7};
+
+inline std::vector<Message> one_of_each() {
+  ToolState tool{
+      .tool = 1, .tick = 9, .newest_sample = 8, .t_ns = 123456789, .p_W = {0.5, -1, 2}, .v_W = {0, 0.25, 0}};
+  tool.buttons = 5;
+  ForceSample force{.tool = 1,
+                    .number = 3,
+                    .tool_tick = 9,
+                    .tool_t_ns = 123456789,
+                    .p_W = {0.5, -1, 2},
+                    .f_W = {0, 1.5, 0}};
+  force.step_ns = 70000;
+  force.flags = ForceSample::kInContact;
+  ToolState asking = tool;
+  asking.flags = ToolState::kWantsHere | ToolState::kWantsAhead;
+  asking.lead_ns = 0x0102030;
+  ForceSample whole = force;
+  whole.flags = ForceSample::kHasHere | ForceSample::kHasAhead;
+  whole.surface_v_W = {0.25, 0, -0.5};
+  whole.here = {{-1, -2, -3, -4, -5, -6}, {0, 1, 0}, 0.5};
+  whole.ahead_p_W = {0.5, -1, 2};
+  whole.ahead_f_W = {0, 1.5, 0};
+  whole.ahead = {{-8, 0, 0, -16, 0, -32}, {0, 0, 0}, 0};
+  ToolState fetching = tool;
+  fetching.flags = ToolState::kWantsSurface | ToolState::kAsksPages;
+  fetching.pages_taken = 0x0203;
+  fetching.surface_version = 0xa1b2c3d4;
+  fetching.pages = {7, 8, 9, 10, 11, 12, 13, ToolState::kNoPage};
+  ForceSample on_surface = force;
+  on_surface.flags = ForceSample::kHasSurface;
+  on_surface.surface = {.version = 0xa1b2c3d4,
+                        .vertices = 0x162,
+                        .triangles = 0x2c0,
+                        .tool_radius = 0.5,
+                        .tool_friction = 0.25,
+                        .tool_compliance = 2,
+                        .shift_W = {0, -0.5, 0}};
+  ForceSample with_errors = force;
+  with_errors.flags = ForceSample::kHasErrors;
+  with_errors.errors = {{ErrorSource::kEstimated, 3.5F}, {ErrorSource::kNone, 0}};
+  ForceSample among_others = force;
+  among_others.flags = ForceSample::kHasOthers;
+  among_others.others = {{0.5, 0, -1}, {-1, -2, -3, -4, -5, -6}};
+  ForceSample swinging = force;
+  swinging.flags = ForceSample::kHasModes | ForceSample::kHasMean;
+  swinging.modes.count = 2;
+  swinging.modes.q = {0.5F, -1};
+  swinging.modes.v = {2, 0};
+  swinging.mean_f_W = {0, 1.5, 0};
+  ForceSample relaxing = swinging;
+  relaxing.flags = ForceSample::kHasModes | ForceSample::kHasRelaxed;
+  relaxing.relaxed = {.terms = 2, .first = 1, .count = 1, .vertices = 1};
+  relaxing.relaxed.share = {0.5F, 0.25F};
+  relaxing.relaxed.time = {0.125F, 2};
+  relaxing.relaxed.z = {-1, 3};
+  relaxing.relaxed.vertex[0] = {0x0102, {1, 2, 3, 0.5F, 0, -0.5F}};
+  SurfacePage page{.tool = 1, .version = 0xa1b2c3d4, .page = 0x0708};
+  page.values.front() = 0.5F;
+  page.values.back() = -2;
+  return {Hello{.nonce = {42}, .attempt = 5},
+          Welcome{{42}, 5, {43, 44}, 1, 30, 0.005},
+          Refuse{{42}, 5, RefuseReason::kNoFreeTool},
+          Bye{},
+          tool,
+          force,
+          asking,
+          whole,
+          fetching,
+          on_surface,
+          page,
+          with_errors,
+          among_others,
+          swinging,
+          Challenge{{42}, 5, {45, 46}},
+          relaxing};
+}
+
+}  // namespace palpate::test
