@@ -246,6 +246,7 @@ int run(int argc, char** argv) {
     if (!tested_server.empty()) config.server_where = "ADDR:PORT";
     if (tested_device.empty()) return client::test_link(config, testing);
     client::choose_device(config.device, tested_device, "--usb");
+    if (file.empty()) config.rate_hz = client::row_of(config.device).limits(config.device).usual_rate_hz;
     return client::test_device(config, testing);
   }
   if (*replay) {

@@ -26,7 +26,7 @@ double rest(double seconds) {
 }
 
 std::string quantiles_text(const Json& q, const char* unit) {
-  return fmt::format("{:.3g} {} (p50), {:.3g} (p99), {:.3g} (p99.9), {:.3g} (max)", q["p50"].get<double>(),
+  return fmt::format("{:.4g} {} (p50), {:.4g} (p99), {:.4g} (p99.9), {:.4g} (max)", q["p50"].get<double>(),
                      unit, q["p99"].get<double>(), q["p999"].get<double>(), q["max"].get<double>());
 }
 
@@ -138,6 +138,7 @@ int test_link(const ClientConfig& asked, const CommtestOptions& options) {
 
 int test_device(const ClientConfig& config, const CommtestOptions& options) {
   if (options.json) check_writable(*options.json, Contents::kReport);
+  if (!is_plugged_in(config.device)) fail_at_run_time("{}", no_device_text(config.device));
   const DeviceRow& row = row_of(config.device);
   const double rate_hz = std::min(config.rate_hz, 1 / to_seconds(row.limits(config.device).min_period));
   const Time period = from_seconds(1 / rate_hz);

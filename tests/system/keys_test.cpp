@@ -172,7 +172,9 @@ TEST_CASE("commtest: a good link on loopback passes, nobody there is exit 1, wro
   CHECK_THAT(output_of("haptic_client", {"commtest", "127.0.0.1:9", "--wait", "1"}, 1),
              Catch::Contains("within 1 s"));
   output_of("haptic_client", {"commtest", "127.0.0.1:9", "--seconds", "0"}, 2);
-  output_of("haptic_client", {"commtest", "127.0.0.1:9", "--usb", "nothing"}, 2);
+  output_of("haptic_client", {"commtest", "--usb", "nothing"}, 2);
+  CHECK_THAT(output_of("haptic_client", {"commtest", "--usb", "simulated", "--seconds", "1"}, 0),
+             Catch::Contains("500 of 500 usable"));
 }
 
 TEST_CASE(
