@@ -24,7 +24,7 @@ int in_child(Body body) {
 }  // namespace
 
 TEST_CASE(
-    "Ctrl-C that lands on a thread older than main, while nobody waits, is not lost and does not kill") {
+    "Ctrl-C that lands on a thread older than main, while nobody waits, is not lost and does not kill", "[threads]") {
   const int code = in_child([] {
     // Like the threads a BLAS starts while it is loaded: it blocks no signals.
     std::thread older([] { std::this_thread::sleep_for(10s); });
@@ -37,7 +37,7 @@ TEST_CASE(
   CHECK(code == 0);
 }
 
-TEST_CASE("without a signal, waiting ends at the timeout") {
+TEST_CASE("without a signal, waiting ends at the timeout", "[threads]") {
   const int code = in_child([] {
     palpate::block_interrupts();
     return palpate::wait_for_interrupt(10ms) || palpate::take_rearm_request() ? 1 : 0;

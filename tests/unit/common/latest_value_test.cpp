@@ -18,7 +18,7 @@ TEST_CASE("a mailbox gives the newest value once") {
   CHECK(value == 2);
 }
 
-TEST_CASE("between two threads no value is torn, none comes twice, and the last one arrives") {
+TEST_CASE("between two threads no value is torn, none comes twice, and the last one arrives", "[threads]") {
   struct Pair {
     long a = 0, b = 0;
   };

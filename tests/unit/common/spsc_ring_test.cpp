@@ -23,7 +23,7 @@ TEST_CASE("a ring gives every value once, in order, and refuses when it is full"
   }
 }
 
-TEST_CASE("between two threads nothing in a ring is torn, lost or overtaken") {
+TEST_CASE("between two threads nothing in a ring is torn, lost or overtaken", "[threads]") {
   struct Pair {
     long a = 0, b = 0;
   };

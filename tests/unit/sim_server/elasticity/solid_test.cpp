@@ -197,7 +197,7 @@ TEST_CASE("a tetrahedron pushed through itself is inverted, a sliver that turns 
   }
 }
 
-TEST_CASE("solid: threads that ask at once, each with its own scratch, get what one gets") {
+TEST_CASE("solid: threads that ask at once, each with its own scratch, get what one gets", "[threads]") {
   const Solid solid(shaken_block(), tissue(ElasticLaw::kNeoHookean, ElementKind::kNodalPressure));
   const std::vector<Vec3> near = deformed(solid, 0.01), far = deformed(solid, 0.05);
   const auto many = [&](const std::vector<Vec3>& x) {
