@@ -23,8 +23,8 @@ int in_child(Body body) {
 
 }  // namespace
 
-TEST_CASE(
-    "Ctrl-C that lands on a thread older than main, while nobody waits, is not lost and does not kill", "[threads]") {
+TEST_CASE("Ctrl-C that lands on a thread older than main, while nobody waits, is not lost and does not kill",
+          "[threads]") {
   const int code = in_child([] {
     // Like the threads a BLAS starts while it is loaded: it blocks no signals.
     std::thread older([] { std::this_thread::sleep_for(10s); });

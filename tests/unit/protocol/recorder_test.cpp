@@ -41,7 +41,8 @@ std::vector<std::uint64_t> ticks_in(const std::filesystem::path& file) {
 
 }  // namespace
 
-TEST_CASE("a recording goes on in new files at its size, nothing is lost between, and ten are kept", "[threads]") {
+TEST_CASE("a recording goes on in new files at its size, nothing is lost between, and ten are kept",
+          "[threads]") {
   const test::TemporaryFolder folder;
   const auto path = [&](const std::string& name) { return folder.path() / name; };
   Recorder recorder(path("F.pcap"), 2000);

@@ -99,7 +99,8 @@ TEST_CASE("implicit: the force does not depend on how old the factor is") {
   CHECK((a.force - b.force).norm() < 1e-4 * a.force.norm());
 }
 
-TEST_CASE("implicit: with a factor of the background the force is that of a factor made when it is needed", "[threads]") {
+TEST_CASE("implicit: with a factor of the background the force is that of a factor made when it is needed",
+          "[threads]") {
   using Solver = DynamicsSettings::Solver;
   // Pressed and drawn along, then let go; the largest difference of forces, and the largest force, N.
   const auto drawn = [](Scene scene, std::vector<Vec3>& forces) {

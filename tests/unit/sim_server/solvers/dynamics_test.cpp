@@ -182,7 +182,8 @@ TEST_CASE("dynamics: a quasi-Newton step answers what it learned last, and on a 
   CHECK((method.direction(matrix, load) - matrix.solve(load)).norm() == 0);
 }
 
-TEST_CASE("dynamics: solved with a factor of the background, a step ends where a direct one does", "[threads]") {
+TEST_CASE("dynamics: solved with a factor of the background, a step ends where a direct one does",
+          "[threads]") {
   const Solid solid(small_block(), soft(ElasticLaw::kCorotational));
   using Solver = DynamicsSettings::Solver;
   std::vector<std::vector<Vec3>> ends;
