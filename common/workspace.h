@@ -17,6 +17,10 @@ struct Workspace {
   Vec3 to_world(const Vec3& p_D) const noexcept { return offset_W + scale * axes * p_D; }
   /// Of a force.
   Vec3 to_device(const Vec3& f_W) const noexcept { return scale * axes.transpose() * f_W; }
+  /// Of a force that the device gives.
+  Vec3 force_to_world(const Vec3& f_D) const noexcept { return axes * f_D / scale; }
+  /// Where the device must be for the tool to be at `p_W`.
+  Vec3 place_to_device(const Vec3& p_W) const noexcept { return axes.transpose() * (p_W - offset_W) / scale; }
   /// Of a displacement or a velocity.
   Vec3 motion_to_device(const Vec3& d_W) const noexcept { return axes.transpose() * d_W / scale; }
 };

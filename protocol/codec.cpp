@@ -78,6 +78,22 @@ bool valid(const SurfacePage& m) noexcept {
          std::all_of(m.values.begin(), m.values.end(), [](float x) { return std::abs(x) <= 1e9f; });
 }
 
+bool valid(const Telemetry& m) noexcept {
+  const auto ascii = [](const Telemetry::Name& name) {
+    return std::all_of(name.begin(), name.end(),
+                       [](std::uint8_t c) { return c == 0 || (c >= 32 && c < 127); });
+  };
+  const auto force = [](float f) { return std::abs(f) <= 1e9F; };
+  return m.tool < kMaxTools && small(m.p_W) && small(m.f_W) && m.passivity_gain >= 0 &&
+         m.passivity_gain <= 1 && ascii(m.device) && ascii(m.felt_law) && ascii(m.name) &&
+         m.named < Telemetry::kMostLaws && m.error_percent <= kMaxPercent && m.laws <= Telemetry::kMostLaws &&
+         m.count <= Telemetry::kMostTicks && std::all_of(m.felt.begin(), m.felt.end(), force) &&
+         std::all_of(m.by_law.begin(), m.by_law.end(), force);
+}
+bool valid(const Pointer& m) noexcept {
+  return m.tool < kMaxTools && m.number > 0 && small(m.p_W);
+}
+
 template <class M>
 Verdict read_as(std::span<const std::byte> payload, Message& out) noexcept {
   M message;
@@ -111,8 +127,9 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
     case MessageType::kSurfacePage:
       return read_as<SurfacePage>(payload, out);
     case MessageType::kTelemetry:
+      return read_as<Telemetry>(payload, out);
     case MessageType::kPointer:
-      break;
+      return read_as<Pointer>(payload, out);
   }
   return Verdict::kType;
 }

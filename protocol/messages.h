@@ -22,8 +22,8 @@ enum class MessageType : std::uint8_t {
   kBye = 5,           ///< either: I am leaving
   kToolState = 6,     ///< client: where the tool is
   kForceSample = 7,   ///< server: the force computed for a tool state
-  kTelemetry = 8,     ///< client: loop, laws, safety, while a page is open (reserved)
-  kPointer = 9,       ///< server: the mouse of a page as a device (reserved)
+  kTelemetry = 8,     ///< client: loop, laws, safety, while a page is open
+  kPointer = 9,       ///< server: the mouse of a page as a device
   kSurfacePage = 10,  ///< server: a page of the surface model
 };
 
@@ -206,10 +206,13 @@ struct RelaxedState {
 
 struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
-  /// Bits of `flags`; the last eight: which parts follow.
+  /// Bits of `flags`; from kHasHere on: which parts follow.
   static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8, kHasSurface = 16,
                                  kHasErrors = 32, kHasOthers = 64, kHasModes = 128, kHasMean = 256,
                                  kHasRelaxed = 512;
+  /// And two that ask: for `Telemetry`; and that the client let go of the force, as the simulation is paused
+  /// and this sample is the last one again.
+  static constexpr std::uint32_t kWantsTelemetry = 1024, kPaused = 2048;
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
   std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:
@@ -264,6 +267,64 @@ struct SurfacePage {
   }
 };
 
-using Message = std::variant<Hello, Challenge, Welcome, Refuse, Bye, ToolState, ForceSample, SurfacePage>;
+/// What only the client knows, for a page that shows it: the newest ticks, and how it fares. Sent about 30
+/// times a second while the newest sample says `kWantsTelemetry`. It changes nothing.
+struct Telemetry {
+  static constexpr MessageType kType = MessageType::kTelemetry;
+  static constexpr std::size_t kMostTicks = 24, kMostLaws = 8, kNameBytes = 32;
+  /// Bits of `flags`.
+  static constexpr std::uint16_t kHasMotors = 1, kFault = 2, kClutched = 4, kDeviceLost = 8, kFading = 16;
+  using Name = std::array<std::uint8_t, kNameBytes>;  ///< ASCII, then zeros
+  std::uint8_t tool = 0;
+  std::uint16_t flags = 0;
+  std::int64_t t_ns = 0;                ///< of the newest tick, on the client's own clock
+  std::uint32_t dt_ns = 0;              ///< between two of the ticks told
+  Vec3 p_W = Vec3::Zero();              ///< where the tool is by now, m
+  Vec3 f_W = Vec3::Zero();              ///< force that is felt there, N
+  std::int64_t age_ns = 0;              ///< of the newest sample
+  std::uint32_t period_ns = 0;          ///< of the loop since the message before, mean
+  std::uint32_t longest_period_ns = 0;  ///< and longest
+  std::uint64_t ticks = 0, missed = 0;  ///< of the session
+  float passivity_gain = 1;             ///< [0, 1]
+  /// Of the session: how often the force was faded; ticks in which the limiter cut it (force, slew), or
+  /// passivity damped it.
+  std::uint32_t faded = 0, clamped = 0, slewed = 0, damped = 0;
+  Name device = {};
+  Name felt_law = {};  ///< the law that is felt; behind a colon, which one stands in
+  /// The law of column `named`, and its mean error so far, %, below 0: not known. Another one in each
+  /// message.
+  std::uint8_t named = 0;
+  Name name = {};
+  float error_percent = -1;
+  /// The ticks, the oldest first: the force felt, and by each law that runs beside, N. Sizes, not vectors.
+  std::uint8_t laws = 0, count = 0;
+  std::array<float, kMostTicks> felt = {};
+  std::array<float, kMostTicks* kMostLaws> by_law = {};  ///< `laws` of a tick in a row
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.tool), v(m.flags), v(m.t_ns), v(m.dt_ns), v(m.p_W), v(m.f_W), v(m.age_ns), v(m.period_ns),
+        v(m.longest_period_ns), v(m.ticks), v(m.missed), v(m.passivity_gain), v(m.faded), v(m.clamped),
+        v(m.slewed), v(m.damped), v(m.device), v(m.felt_law), v(m.named), v(m.name), v(m.error_percent),
+        v(m.laws), v(m.count);
+    for (std::size_t i = 0; i < m.count && i < kMostTicks; ++i) v(m.felt[i]);
+    for (std::size_t i = 0; i < m.count * m.laws && i < m.by_law.size(); ++i) v(m.by_law[i]);
+  }
+};
+
+/// Where the mouse of a page wants a tool to be, for a client whose device is that mouse; others ignore it.
+struct Pointer {
+  static constexpr MessageType kType = MessageType::kPointer;
+  std::uint8_t tool = 0;
+  std::uint64_t number = 0;   ///< from 1, higher in each
+  Vec3 p_W = Vec3::Zero();    ///< m
+  std::uint16_t buttons = 0;  ///< one bit each
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.tool), v(m.number), v(m.p_W), v(m.buttons);
+  }
+};
+
+using Message = std::variant<Hello, Challenge, Welcome, Refuse, Bye, ToolState, ForceSample, SurfacePage,
+                             Telemetry, Pointer>;
 
 }  // namespace palpate::protocol

@@ -110,14 +110,17 @@ const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkSt
                ? &datagram.message
                : nullptr;  // the newest value wins
   }
-  if (const auto* page = std::get_if<SurfacePage>(&datagram.message); page && page->tool == welcome_.tool)
-    return current_.window.accept(datagram.header.sequence, stats) ? &datagram.message : nullptr;
+  const auto* page = std::get_if<SurfacePage>(&datagram.message);
+  const auto* pointer = std::get_if<Pointer>(&datagram.message);
+  if ((page && page->tool == welcome_.tool) || (pointer && pointer->tool == welcome_.tool)) {
+    if (!current_.window.accept(datagram.header.sequence, stats)) return nullptr;
+    return page || current_.window.in_order() ? &datagram.message : nullptr;  // an older place is of no use
+  }
   if (std::holds_alternative<Bye>(datagram.message)) {
     last_heard_.reset();
     return nullptr;
   }
-  const bool of_server = std::holds_alternative<ForceSample>(datagram.message) ||
-                         std::holds_alternative<SurfacePage>(datagram.message);
+  const bool of_server = std::holds_alternative<ForceSample>(datagram.message) || page || pointer;
   stats.reject(of_server ? Verdict::kTool : Verdict::kDirection);
   return nullptr;
 }
@@ -172,7 +175,7 @@ ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Key& sha
     const auto tool = free_tool();
     if (!tool) return {.answer = {{Header{}, Refuse{hello.nonce, hello.attempt, RefuseReason::kNoFreeTool}}}};
     member = members_.insert(
-        member, {.session = fresh.session,
+        member, {.session = number_like(fresh.session),
                  .nonce = hello.nonce,
                  .server_nonce = fresh.nonce,
                  .tool = *tool,
@@ -191,6 +194,13 @@ ServerSessions::Outcome ServerSessions::unknown(const Datagram& datagram, LinkSt
   stats.reject(Verdict::kSession);
   if (!keys_.empty() || !std::holds_alternative<ToolState>(datagram.message)) return {};
   return {.answer = {{Header{datagram.header.session, 1}, Refuse{{}, 0, RefuseReason::kUnknownSession}}}};
+}
+
+/// That number, or the next odd one that no member has: it alone tells members with a key apart.
+std::uint64_t ServerSessions::number_like(std::uint64_t session) const noexcept {
+  const auto taken = [&](const Member& m) { return m.session == session; };
+  while (std::any_of(members_.begin(), members_.end(), taken)) session += 2;
+  return session;
 }
 
 std::size_t ServerSessions::write(Member& member, const Message& message, std::span<std::byte> out) noexcept {
@@ -213,16 +223,22 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
     return {.left = &left_};
   }
   const auto* tool_state = std::get_if<ToolState>(&datagram.message);
-  if (tool_state == nullptr || tool_state->tool != found->tool) {
-    stats.reject(tool_state == nullptr ? Verdict::kDirection : Verdict::kTool);
+  const auto* telemetry = std::get_if<Telemetry>(&datagram.message);
+  if (tool_state == nullptr && telemetry == nullptr) {
+    stats.reject(Verdict::kDirection);
+    return {};
+  }
+  if ((tool_state != nullptr ? tool_state->tool : telemetry->tool) != found->tool) {
+    stats.reject(Verdict::kTool);
     return {};
   }
   if (!found->window.accept(datagram.header.sequence, stats)) return {};
+  if (telemetry != nullptr) return {.telemetry = telemetry};
   found->last_heard = now;
   if (found->window.in_order()) found->endpoint = from;  // another one only with a key
   if (!found->ticks.accept(tool_state->tick, found->window.in_order(), stats))
-    return {};  // the newest value wins
-  return {.tool_state = tool_state};
+    return {.asking = tool_state};  // the newest value wins
+  return {.tool_state = tool_state, .asking = tool_state};
 }
 
 std::vector<ServerSessions::Member> ServerSessions::expire(Time now) {

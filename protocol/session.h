@@ -28,8 +28,8 @@ class ClientSession {
   std::optional<Hello> poll(Time now) noexcept;
 
   /// A datagram that `decode` accepted came. Returns its message if that is a force sample of this session
-  /// and the newest so far, or a page of the surface for it; everything else is taken care of here. `stats`
-  /// gets what was received, lost, doubled or rejected.
+  /// and the newest so far, a page of the surface, or a pointer for it; everything else is taken care of
+  /// here. `stats` gets what was received, lost, doubled or rejected.
   const Message* receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept;
 
   /// Header of the next datagram to send in this session.
@@ -94,11 +94,14 @@ class ServerSessions {
     ReplayWindow window{kFarthestState};
     NewestOnly ticks{};
   };
-  /// What came of a datagram: an answer to send back, or a tool state newer than all before.
+  /// What came of a datagram: an answer to send back, a tool state newer than all before, or telemetry.
   struct Outcome {
     std::optional<std::pair<Header, Message>> answer{};
     Key key{};  ///< of the answer
     const ToolState* tool_state = nullptr;
+    const ToolState* asking =
+        nullptr;  ///< the same, or one that others overtook: the pages it asks for are wanted still
+    const Telemetry* telemetry = nullptr;
     const Member* left = nullptr;  ///< said Bye; valid until the next call
   };
 
@@ -137,6 +140,7 @@ class ServerSessions {
   Outcome admit(const Hello& hello, const Key& shared, const Endpoint& from, Time now, const Fresh& fresh);
   Outcome unknown(const Datagram& datagram, LinkStats& stats) const;
   const Key* key_of(const Datagram& datagram) const noexcept;
+  std::uint64_t number_like(std::uint64_t session) const noexcept;
   std::optional<std::uint8_t> free_tool() noexcept;
 
   double rate_hz_;

@@ -27,6 +27,12 @@ class Device {
   virtual DeviceReading read(Time now) noexcept = 0;
   /// Sets the force on the hand (N, device frame) until the next call.
   virtual void write(const Vec3& f_D) noexcept = 0;
+  /// Where the mouse of a page wants the handle to be (m, device frame), and its buttons; only a device that
+  /// is that mouse cares.
+  virtual void aim(const Vec3& p_D, std::uint16_t buttons) noexcept {
+    (void)p_D;
+    (void)buttons;
+  }
   /// The last call: zero force, and it has left when this returns (half a second at most).
   virtual void stop() noexcept { write(Vec3::Zero()); }
   /// Writes so far whose force its motors could not give whole. The haptic thread, or once it has ended.

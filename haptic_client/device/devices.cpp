@@ -17,6 +17,11 @@ std::unique_ptr<Device> make_simulated(const DeviceSettings& settings) {
   return std::make_unique<SimulatedOperator>(settings.hand, std::move(path));
 }
 
+std::unique_ptr<Device> make_browser(const DeviceSettings& settings) {
+  const Vec3 start = settings.trajectory ? Trajectory(*settings.trajectory).at(0) : kRest;
+  return std::make_unique<Browser>(settings.hand, start);
+}
+
 DeviceLimits limits_of_simulated(const DeviceSettings& settings) {
   return {.max_force = settings.hand.max_force};
 }
@@ -88,6 +93,8 @@ std::vector<std::string> ports_of(const UsbKind& kind) {
 constexpr std::array kDevices{
     DeviceRow{"simulated", "a hand (mass, spring, damper) that follows a recorded motion",
               &limits_of_simulated, &make_simulated, nullptr},
+    DeviceRow{"browser", "the mouse in the page that `sim_server run SCENE --viewer 8080` serves",
+              &limits_of_simulated, &make_browser, nullptr},
     DeviceRow{"falcon", "Novint Falcon over libusb; falcon:2-1 is the one at bus 2, port 1",
               &limits_of_falcon, &make_falcon, &make_falcon_safe, [] { return ports_of({kFalconIds}); }},
     DeviceRow{"spacemouse",

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "haptic_client/device/browser.h"
 #include "haptic_client/device/device.h"
 #include "haptic_client/device/falcon.h"
 #include "haptic_client/device/simulated_operator.h"

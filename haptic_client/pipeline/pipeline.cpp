@@ -69,7 +69,8 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   if (wants_.surface) sensed_.flags |= ToolState::kWantsSurface;
   if (wants_.errors) sensed_.flags |= ToolState::kWantsErrors;
   sensed_.lead_ns = wants_.ahead ? lead_.count() : 0;
-  if ((reading.buttons & workspace_.clutch) != 0) sensed_.flags |= ToolState::kClutched;
+  const bool let_go = paused_ && watchdog_.gain() == 0;
+  if (let_go || (reading.buttons & workspace_.clutch) != 0) sensed_.flags |= ToolState::kClutched;
   if (!reading.valid || !reading.p_D.allFinite()) {
     sensed_.flags |= ToolState::kDeviceLost;
     return sensed_;
@@ -104,7 +105,8 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
     }
   }
   stats_.pages += pages.size();
-  if (arrived != nullptr && take(*arrived, tool.p_W, now)) {
+  if (arrived != nullptr) paused_ = (arrived->flags & ForceSample::kPaused) != 0;
+  if (arrived != nullptr && !paused_ && take(*arrived, tool.p_W, now)) {
     result.used = true;
     result.sample = estimate_.newest();
     result.step = Time{arrived->step_ns};
@@ -177,7 +179,7 @@ Watchdog::Ruling Pipeline::rule_by_age(const ToolState& tool, double dt) noexcep
   if (estimate_.newest().number == 0) return watchdog_.rule({}, dt);
   const Time age = Time{tool.t_ns} - estimate_.newest().t;
   stats_.age_ns.add(age.count());
-  return watchdog_.rule(age, dt);
+  return watchdog_.rule(paused_ ? std::max(age, kOutage + Time{1}) : age, dt);
 }
 
 std::int64_t Pipeline::age_ns() const noexcept {

@@ -82,6 +82,10 @@ class Pipeline {
   TickResult feel(const protocol::ToolState& tool, const protocol::ForceSample* arrived,
                   std::span<const protocol::SurfacePage> pages = {}) noexcept;
 
+  /// The simulation is paused: the force fades as that of an old sample does, and then the clutch is held.
+  bool paused() const noexcept { return paused_; }
+  const Workspace& workspace() const noexcept { return workspace_; }
+
   /// Asks the next tick to clear a latched fault; the force then rises again over a soft start.
   void rearm() noexcept { rearm_asked_ = true; }
 
@@ -90,6 +94,8 @@ class Pipeline {
   const Limiter& limiter() const noexcept { return limiter_; }
   const Watchdog& watchdog() const noexcept { return watchdog_; }
   const Passivity& passivity() const noexcept { return passivity_; }
+  /// The simpler law that stands in for the chosen one; empty: none does.
+  std::string_view stand_in() const noexcept { return estimate_.stand_in(); }
   const FeltShare& felt_share() const noexcept { return felt_share_; }
   /// The law's force of the last tick before the safety chain, N, device frame.
   double law_newton() const noexcept { return law_newton_; }
@@ -116,7 +122,7 @@ class Pipeline {
   double law_newton_ = 0;
   protocol::ToolState sensed_;  // tick 0: none yet
   protocol::ToolState felt_;    // tick 0: none yet
-  bool rearm_asked_ = false;
+  bool rearm_asked_ = false, paused_ = false;
   PipelineStats stats_;
 };
 

@@ -26,6 +26,9 @@ class Watchdog {
   /// `age`: of the newest sample, none if there is none yet. `dt` (s): since the last tick.
   Ruling rule(std::optional<Time> age, double dt) noexcept;
 
+  /// Of the last ruling.
+  double gain() const noexcept { return gain_; }
+
   /// Force from none again, over a soft start.
   void restart() noexcept { gain_ = 0; }
 

@@ -7,11 +7,12 @@
 namespace palpate::client {
 
 HapticLoop::HapticLoop(Device& device, Pipeline& pipeline, HapticMailboxes& mailboxes,
-                       Observation& observation, Time period)
+                       Observation& observation, TelemetryMaker& telemetry, Time period)
     : device_(device),
       pipeline_(pipeline),
       mailboxes_(mailboxes),
       observation_(observation),
+      telemetry_(telemetry),
       period_(period) {}
 
 void HapticLoop::run(const std::stop_token& stop) noexcept {
@@ -30,6 +31,7 @@ void HapticLoop::run(const std::stop_token& stop) noexcept {
     stats_.tick_ns.add(took.count());
     observation_.tick(result, took, late);
     tell(result);
+    tell_page(result);
     deadline += period_;
   }
   device_.stop();
@@ -37,9 +39,12 @@ void HapticLoop::run(const std::stop_token& stop) noexcept {
 
 TickResult HapticLoop::tick() noexcept {
   if (rearm.exchange(false, std::memory_order_relaxed)) pipeline_.rearm();
+  if (protocol::Pointer pointer; mailboxes_.pointer.read(pointer))
+    device_.aim(pipeline_.workspace().place_to_device(pointer.p_W), pointer.buttons);
   const DeviceReading reading = device_.read(now());
   protocol::ForceSample sample;
   const bool fresh = mailboxes_.force.read(sample);
+  if (fresh) telemetry_.want((sample.flags & protocol::ForceSample::kWantsTelemetry) != 0);
   std::size_t pages = 0;
   while (pages < pages_.size() && mailboxes_.pages.pop(pages_[pages])) ++pages;
   const TickResult result =
@@ -50,6 +55,12 @@ TickResult HapticLoop::tick() noexcept {
   return result;
 }
 
+/// What a page is told is old by then if the network thread has no room for it.
+void HapticLoop::tell_page(const TickResult& result) noexcept {
+  const protocol::Telemetry* told = telemetry_.tick(result, pipeline_, observation_.scoring(), stats_.missed);
+  if (told != nullptr && mailboxes_.telemetry.push(*told)) mailboxes_.bell.ring();
+}
+
 void HapticLoop::tell(const TickResult& result) noexcept {
   ticks.store(stats_.ticks, std::memory_order_relaxed);
   missed.store(stats_.missed, std::memory_order_relaxed);
@@ -58,6 +69,7 @@ void HapticLoop::tell(const TickResult& result) noexcept {
   if (heartbeat != nullptr) heartbeat->fetch_add(1, std::memory_order_relaxed);
   law_newton.store(pipeline_.law_newton(), std::memory_order_relaxed);
   gain.store(pipeline_.passivity().gain(), std::memory_order_relaxed);
+  paused.store(pipeline_.paused(), std::memory_order_relaxed);
   weak.store(pipeline_.felt_share().weak(), std::memory_order_relaxed);
   fault.store(pipeline_.limiter().fault(), std::memory_order_relaxed);
 }

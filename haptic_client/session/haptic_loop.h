@@ -7,6 +7,7 @@
 #include "common/latest_value.h"
 #include "common/spsc_ring.h"
 #include "haptic_client/evaluation/observation.h"
+#include "haptic_client/session/telemetry_maker.h"
 
 namespace palpate::client {
 
@@ -17,6 +18,8 @@ struct HapticMailboxes {
   SpscRing<protocol::ToolState> tool{512};     // haptic -> network
   LatestValue<protocol::ForceSample> force;    // network -> haptic
   SpscRing<protocol::SurfacePage> pages{128};  // network -> haptic
+  LatestValue<protocol::Pointer> pointer;      // network -> haptic
+  SpscRing<protocol::Telemetry> telemetry{4};  // haptic -> network
   Doorbell bell;
 };
 
@@ -35,7 +38,7 @@ class HapticLoop {
  public:
   /// `period`: between two ticks, 0.25 to 10 ms.
   HapticLoop(Device& device, Pipeline& pipeline, HapticMailboxes& mailboxes, Observation& observation,
-             Time period);
+             TelemetryMaker& telemetry, Time period);
 
   /// Runs until asked to stop; writes zero force last. Haptic thread: allocates, locks, logs and throws
   /// nothing.
@@ -50,7 +53,7 @@ class HapticLoop {
   std::atomic<Fault> fault{Fault::kNone};
   /// Whether less than half of the law's force has been felt for half a second; of that tick, the law's force
   /// (N) and the gain of passivity.
-  std::atomic<bool> weak{false};
+  std::atomic<bool> weak{false}, paused{false};
   std::atomic<double> law_newton{0}, gain{1};
   std::atomic<bool> rearm{false};                   ///< set it to clear a latched fault
   std::atomic<std::uint64_t>* heartbeat = nullptr;  ///< gets one more at every tick; set it before `run`
@@ -58,11 +61,13 @@ class HapticLoop {
  private:
   TickResult tick() noexcept;
   void tell(const TickResult& result) noexcept;
+  void tell_page(const TickResult& result) noexcept;
 
   Device& device_;
   Pipeline& pipeline_;
   HapticMailboxes& mailboxes_;
   Observation& observation_;
+  TelemetryMaker& telemetry_;
   Time period_;
   std::array<protocol::SurfacePage, 32> pages_;  // of one tick
   HapticLoopStats stats_;

@@ -44,7 +44,9 @@ HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::stri
                 config.workspace, config.device_limits(), config.passivity, config.blend),
       observation_(config.scored_laws(), rate_of(config), config.score_where,
                    kept_ticks(config, files, seconds), config.blend),
-      loop_(*device_, pipeline_, mailboxes_, observation_, from_seconds(1 / rate_of(config))),
+      telemetry_(config.device.name, row_of(config.device).make_safe != nullptr, config.method,
+                 rate_of(config)),
+      loop_(*device_, pipeline_, mailboxes_, observation_, telemetry_, from_seconds(1 / rate_of(config))),
       server_(server_of(config)),
       socket_(protocol::Endpoint{.v6 = server_.v6}),
       recorder_(files.record ? std::make_unique<protocol::Recorder>(*files.record,
@@ -129,11 +131,17 @@ void HeldTool::tell_weakness() {
 void HeldTool::look() {
   end_if_stuck();
   const std::int64_t age = loop_.newest_age_ns;
-  if (age > kOutage.count() && !silent_)
+  if (loop_.paused != paused_) {
+    paused_ = loop_.paused;
+    log::info("{}{}", name_,
+              paused_ ? "paused at the server: force goes to zero, and the tool stays where it is"
+                      : "the server goes on: soft start");
+  }
+  if (age > kOutage.count() && !silent_ && !paused_)
     log::warning("{}no samples from {}: force goes to zero; asking again", name_, config_.server);
-  if (age >= 0 && age < kOutage.count() && silent_)
+  if (age >= 0 && age < kOutage.count() && silent_ && !paused_)
     log::info("{}{} is back: soft start", name_, config_.server);
-  silent_ = age > kOutage.count();
+  silent_ = age > kOutage.count() && !paused_;
   const Fault fault = loop_.fault;
   if (fault != Fault::kNone && fault_ == Fault::kNone) {
     log::warning("{}force latched off ({}); when it is safe, re-arm with `kill -USR1 {}`", name_,

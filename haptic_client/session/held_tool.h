@@ -63,6 +63,7 @@ class HeldTool {
   std::unique_ptr<Device> device_;
   Pipeline pipeline_;
   Observation observation_;
+  TelemetryMaker telemetry_;
   HapticMailboxes mailboxes_;
   HapticLoop loop_;
   protocol::Endpoint server_;
@@ -73,7 +74,7 @@ class HeldTool {
   const char* device_status_ = "";
   std::uint64_t ticks_ = 0;  // when looked at last
   int standstills_ = 0;      // looks since then
-  bool silent_ = false, weak_ = false;
+  bool silent_ = false, weak_ = false, paused_ = false;
   Fault fault_ = Fault::kNone;
   std::jthread recording_thread_, net_thread_, haptic_thread_;
 };

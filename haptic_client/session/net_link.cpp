@@ -65,6 +65,7 @@ void NetLink::pass_on(const protocol::Message& message, Time t) {
     mailboxes_.pages.push(*page);
     figures_.page(t);
   }
+  if (const auto* pointer = std::get_if<protocol::Pointer>(&message)) mailboxes_.pointer.write(*pointer);
 }
 
 void NetLink::on_tool_states() {
@@ -72,6 +73,11 @@ void NetLink::on_tool_states() {
     if (!session_.welcomed()) continue;
     state.tool = session_.welcome().tool;
     send(state);
+  }
+  for (protocol::Telemetry telemetry; mailboxes_.telemetry.pop(telemetry);) {
+    if (!session_.welcomed()) continue;
+    telemetry.tool = session_.welcome().tool;
+    send(telemetry);
   }
 }
 

@@ -5,7 +5,8 @@ import hashlib
 import struct
 
 HEADER = "<4sBBHB3sQQ"  # magic, version, type, payload, tag, reserved (the first is the key), session, sequence
-HELLO, CHALLENGE, WELCOME, REFUSE, BYE, TOOL_STATE, FORCE_SAMPLE, SURFACE_PAGE = 1, 2, 3, 4, 5, 6, 7, 10
+HELLO, CHALLENGE, WELCOME, REFUSE, BYE, TOOL_STATE, FORCE_SAMPLE = 1, 2, 3, 4, 5, 6, 7
+TELEMETRY, POINTER, SURFACE_PAGE = 8, 9, 10
 TOOL_STATE_FORMAT = "<BQQq3d3d4dHH"  # tool, tick, newest sample, t, p, v, q, buttons, flags
 FORCE_SAMPLE_FORMAT = "<BQQq3d3d3dqI"  # tool, number, tool tick, tool t, p, f, torque, step, flags
 CLIENT, SERVER = ("192.0.2.1", 45131), ("192.0.2.2", 45130)

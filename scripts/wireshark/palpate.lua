@@ -62,6 +62,12 @@ info_of[FORCE_SAMPLE] = function(v, result)
     result.round_trip and (" after %.1f ms"):format(result.round_trip) or "", size_of(v.f),
     v.answer == 0 and "" or ", " .. names_of("answer", v.answer_set))
 end
+info_of[TELEMETRY] = function(v)
+  return (" tool %d, feels %.3f N by %s on %s, %d ticks told"):format(v.tool, size_of(v.f), v.felt_law, v.device, v.count)
+end
+info_of[POINTER] = function(v)
+  return (" tool %d, number %s, p %s"):format(v.tool, tostring(v.pointer), in_mm(v.p))
+end
 info_of[SURFACE_PAGE] = function(v, result)
   return (" tool %d, page %d of model %d%s"):format(
     v.tool, v.page, v["page.version"], result.page_kind and ": " .. result.page_kind or "")
@@ -164,7 +170,7 @@ local function show(result, d, tree)
     if value ~= nil then tree:add(F[name], value):set_generated() end
   end
   add("tag_verdict", result.tag_verdict)
-  if d.is_whole and d.values.f then add("force", size_of(d.values.f)) end
+  if d.is_whole and d.type == FORCE_SAMPLE and d.values.f then add("force", size_of(d.values.f)) end
   add("age", result.age)
   add("round_trip", result.round_trip)
   add("answers", result.answers)

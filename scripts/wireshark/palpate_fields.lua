@@ -97,7 +97,7 @@ return function()
     {"in_contact", "In contact"}, {"flagged", "Flagged: no settled answer"}, {"here", "\"here\" follows"},
     {"ahead", "\"ahead\" follows"}, {"surface", "\"surface\" follows"}, {"errors", "\"errors\" follows"},
     {"others", "\"others\" follows"}, {"modes", "\"modes\" follows"}, {"mean", "\"mean\" follows"},
-    {"relaxed", "\"relaxed\" follows"},
+    {"relaxed", "\"relaxed\" follows"}, {"wants_telemetry", "Asks for Telemetry"}, {"paused", "Paused"},
   })
   group("here.surface_v", "Surface velocity", "m/s", XYZ)
   group("ahead.p", "Place ahead", "m", XYZ)
@@ -133,6 +133,32 @@ return function()
   field("uint16", "relaxed.vertex", "Vertex")
   field("float", "relaxed.psi", "Remembered force psi (N; x, y, z of each term)")
   group("mean", "Mean force over the step", "N", XYZ)
+  -- Telemetry, and Pointer.
+  flags("telemetry", "Flags", 16, {
+    {"has_motors", "The device has motors"}, {"fault", "Force latched off"}, {"clutched", "Clutched"},
+    {"device_lost", "Device gives nothing usable"}, {"fading", "Newest sample too old"},
+  })
+  field("uint32", "dt", "Between two ticks told (ns)")
+  field("int64", "sample_age", "Age of the newest sample (ns)")
+  field("uint32", "period", "Period of the loop, mean (ns)")
+  field("uint32", "longest_period", "Period of the loop, longest (ns)")
+  field("uint64", "ticks", "Ticks")
+  field("uint64", "missed", "Ticks missed")
+  field("float", "passivity_gain", "Gain of passivity")
+  field("uint32", "faded", "Times that the force was faded")
+  field("uint32", "clamped", "Ticks clamped")
+  field("uint32", "slewed", "Ticks slewed")
+  field("uint32", "damped", "Ticks damped")
+  field("stringz", "device", "Device")
+  field("stringz", "felt_law", "Law that is felt")
+  field("uint8", "named", "Column of the law named")
+  field("stringz", "law", "Its name")
+  field("float", "law_error", "Its mean error (%; below 0: not known)")
+  field("uint8", "laws", "Laws beside it")
+  field("uint8", "count", "Ticks told")
+  field("float", "felt", "Force felt (N)")
+  field("float", "by_law", "Force by a law (N)")
+  field("uint64", "pointer", "Number of the pointer")
   -- SurfacePage.
   field("uint32", "page.version", "Version of the surface model")
   field("uint32", "page", "Page")

@@ -86,6 +86,17 @@ return function(P)
     self.values[name] = bytes:raw()
   end
 
+  -- ASCII, then zeros.
+  function Reader:text(name, size)
+    local bytes = self:take(size)
+    if not bytes then return end
+    local item = self.tree:add(F[name], bytes)
+    self.values[name] = bytes:stringz()
+    if bytes:raw():match("^[ -~]*%z*$") == nil then
+      self:fault(item, "out_of_range", name .. " is not ASCII, then zeros")
+    end
+  end
+
   -- Several f64 below one line of the tree; gives them as a list, with that line.
   function Reader:group(name, limit)
     local of, size = groups[name], 8 * #groups[name].parts
@@ -278,6 +289,43 @@ return function(P)
     for _, part in ipairs(PARTS) do
       if has[part[1]] then r:part("Part \"" .. part[1] .. "\"", function() part[2](r) end) end
     end
+  end
+
+  read_message[TELEMETRY] = function(r)
+    r:u8("tool", TOOLS)
+    r:flags("telemetry", 2)
+    r:i64("t")
+    r:u32("dt")
+    r:group("p", HUGE)
+    r:group("f", HUGE)
+    r:i64("sample_age")
+    r:u32("period")
+    r:u32("longest_period")
+    r:u64("ticks")
+    r:u64("missed")
+    r:f32("passivity_gain", within(0, 1))
+    for _, name in ipairs({"faded", "clamped", "slewed", "damped"}) do r:u32(name) end
+    r:text("device", 32)
+    r:text("felt_law", 32)
+    r:u8("named", within(0, 7))
+    r:text("law", 32)
+    r:f32("law_error", within(-1e38, 1e6))
+    local laws, count = r:u8("laws", within(0, 8)), r:u8("count", within(0, 24))
+    if count == 0 then return end
+    r:part("Force felt", function()
+      for _ = 1, count do r:f32("felt", HUGE) end
+    end)
+    if laws == 0 then return end
+    r:part("Forces by the laws", function()
+      for _ = 1, count * laws do r:f32("by_law", HUGE) end
+    end)
+  end
+
+  read_message[POINTER] = function(r)
+    r:u8("tool", TOOLS)
+    r:u64("pointer", at_least_1)
+    r:group("p", HUGE)
+    r:u16("buttons")
   end
 
   read_message[SURFACE_PAGE] = function(r)

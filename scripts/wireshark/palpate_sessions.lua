@@ -182,7 +182,8 @@ return function(P, blake2b)
     if surface then result.page_kind = kind_of_page(d.values.page, surface) end
   end
 
-  local COUNTED = {[WELCOME] = true, [BYE] = true, [TOOL_STATE] = true, [FORCE_SAMPLE] = true, [SURFACE_PAGE] = true}
+  local COUNTED = {[WELCOME] = true, [BYE] = true, [TOOL_STATE] = true, [FORCE_SAMPLE] = true, [TELEMETRY] = true,
+                   [POINTER] = true, [SURFACE_PAGE] = true}
 
   -- The first pass over a datagram that its receiver would read: the verdict on its tag, on its sequence number, and what
   -- follows from those before it.

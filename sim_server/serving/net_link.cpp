@@ -28,12 +28,14 @@ bool is_to_a_stranger(const protocol::ServerSessions::Outcome& outcome) {
 }  // namespace
 
 NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions,
-                 std::vector<SurfacePager> pagers, SimMailboxes& mailboxes, protocol::Recorder* recorder)
+                 std::vector<SurfacePager> pagers, SimMailboxes& mailboxes, protocol::Recorder* recorder,
+                 PageMailboxes* page)
     : socket_(socket),
       recorder_(recorder),
       sessions_(std::move(sessions)),
       pagers_(std::move(pagers)),
       mailboxes_(mailboxes),
+      page_(page),
       page_buckets_(pagers_.size(), {kPagesPerSecond, kPagesAtOnce}) {}
 
 void NetLink::run() {
@@ -61,9 +63,10 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   note_holders();
   answer(outcome, from);
   if (outcome.left != nullptr) tool_is_free(outcome.left->tool);
-  if (outcome.tool_state == nullptr) return;
-  pass_on(datagram.header.session, *outcome.tool_state);
-  send_pages(*outcome.tool_state, t);
+  if (outcome.telemetry != nullptr && page_ != nullptr)
+    page_->tools[outcome.telemetry->tool].telemetry.push(*outcome.telemetry);
+  if (outcome.tool_state != nullptr) pass_on(datagram.header.session, *outcome.tool_state);
+  if (outcome.asking != nullptr) send_pages(*outcome.asking, t);
 }
 
 /// Into the recording, if there is one. `ours`: of a session; of all else there may be any number.
@@ -117,7 +120,19 @@ void NetLink::on_forces() {
     if (!mailboxes.force.read(output)) continue;
     auto* member = sessions_.holder(output.sample.tool);
     if (member == nullptr || member->session != output.session) continue;
+    if (page_ != nullptr && page_->wants_telemetry)
+      output.sample.flags |= protocol::ForceSample::kWantsTelemetry;
     send(*member, output.sample);
+  }
+  if (page_ != nullptr) send_pointers();
+}
+
+void NetLink::send_pointers() {
+  for (std::size_t i = 0; i < pagers_.size(); ++i) {
+    protocol::Pointer pointer;
+    if (!page_->tools[i].pointer.read(pointer)) continue;
+    pointer.tool = static_cast<std::uint8_t>(i);
+    if (auto* member = sessions_.holder(pointer.tool)) send(*member, pointer);
   }
 }
 

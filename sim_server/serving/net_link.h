@@ -3,6 +3,7 @@
 
 #include "protocol/recorder.h"
 #include "protocol/udp_socket.h"
+#include "sim_server/serving/page_mailboxes.h"
 #include "sim_server/serving/sim_loop.h"
 #include "sim_server/serving/surface_pager.h"
 
@@ -11,9 +12,10 @@ namespace palpate::sim {
 /// The network thread of the server: datagrams in, sessions kept, forces out.
 class NetLink {
  public:
-  /// `pagers`: of each tool, or none. `recorder`: gets every datagram; may be null.
+  /// `pagers`: of each tool, or none. `recorder`: gets every datagram; may be null. `page`: of those that
+  /// watch; null: nobody can.
   NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, std::vector<SurfacePager> pagers,
-          SimMailboxes& mailboxes, protocol::Recorder* recorder);
+          SimMailboxes& mailboxes, protocol::Recorder* recorder, PageMailboxes* page = nullptr);
 
   /// Serves until `stop`, then says Bye to every member.
   void run();
@@ -33,6 +35,7 @@ class NetLink {
   void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
   void refuse(protocol::Verdict verdict, std::span<const std::byte> bytes, const protocol::Endpoint& to);
   void on_forces();
+  void send_pointers();
   void pass_on(std::uint64_t session, const protocol::ToolState& state);
   void send_pages(const protocol::ToolState& state, Time t);
   void note_holders();
@@ -52,6 +55,7 @@ class NetLink {
   protocol::ServerSessions sessions_;
   std::vector<SurfacePager> pagers_;
   SimMailboxes& mailboxes_;
+  PageMailboxes* page_;
   std::array<SessionInput, kMaxTools> inputs_;       // of each tool, the newest
   std::vector<protocol::TokenBucket> page_buckets_;  // of each tool
   protocol::LinkStats stats_;

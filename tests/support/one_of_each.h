@@ -74,6 +74,26 @@ inline std::vector<Message> one_of_each() {
   SurfacePage page{.tool = 1, .version = 0xa1b2c3d4, .page = 0x0708};
   page.values.front() = 0.5F;
   page.values.back() = -2;
+  Telemetry telemetry{.tool = 1, .flags = Telemetry::kHasMotors | Telemetry::kClutched, .t_ns = 123456789};
+  telemetry.dt_ns = 2000000;
+  telemetry.p_W = {0.5, -1, 2};
+  telemetry.f_W = {0, 1.5, 0};
+  telemetry.age_ns = 0x01020304;
+  telemetry.period_ns = 2000000;
+  telemetry.longest_period_ns = 0x0506;
+  telemetry.ticks = 9;
+  telemetry.missed = 2;
+  telemetry.passivity_gain = 0.5F;
+  telemetry.faded = 1, telemetry.clamped = 2, telemetry.slewed = 3, telemetry.damped = 4;
+  telemetry.device = {'m', 'e'};
+  telemetry.felt_law = {'a', ':', ' ', 'b'};
+  telemetry.named = 1;
+  telemetry.name = {'c'};
+  telemetry.error_percent = -1;
+  telemetry.laws = 2, telemetry.count = 2;
+  telemetry.felt = {0.5F, 2};
+  telemetry.by_law = {1, -2, 3, 0.5F};
+  const Pointer pointer{.tool = 1, .number = 0x0102, .p_W = {0.5, -1, 2}, .buttons = 5};
   return {Hello{.nonce = {42}, .attempt = 5},
           Welcome{{42}, 5, {43, 44}, 1, 30, 0.005},
           Refuse{{42}, 5, RefuseReason::kNoFreeTool},
@@ -89,7 +109,9 @@ inline std::vector<Message> one_of_each() {
           among_others,
           swinging,
           Challenge{{42}, 5, {45, 46}},
-          relaxing};
+          relaxing,
+          telemetry,
+          pointer};
 }
 
 }  // namespace palpate::test

@@ -77,7 +77,7 @@ TEST_CASE("a session of the C interface: soft start, the wall's force, none wher
   CHECK(c.tick(kDeep, PALPATE_LOST) == 0);
   CHECK(c.tick(kDeep) < 0.1);
   CHECK(c.hold(kDeep, 700) == Approx(1).epsilon(0.01));
-  CHECK(c.tick(NAN) == 0);
+  CHECK(c.tick(std::nan("")) == 0);
   CHECK(c.felt.fault == PALPATE_NO_FAULT);
   CHECK(palpate_session_rearm(c.session) == PALPATE_OK);
 }

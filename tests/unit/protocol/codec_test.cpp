@@ -67,8 +67,7 @@ TEST_CASE("each reason of refusal") {
   CHECK(verdict_of(force, [](Bytes& b) { b[0] = std::byte{'Q'}; }) == Verdict::kNotOurs);
   CHECK(verdict_of(force, [](Bytes& b) { b[4] = std::byte{1}; }) == Verdict::kVersion);
   CHECK(verdict_of(force, [](Bytes& b) { b[5] = std::byte{99}; }) == Verdict::kType);
-  CHECK(verdict_of(force, [](Bytes& b) { b[5] = static_cast<std::byte>(MessageType::kTelemetry); }) ==
-        Verdict::kType);
+  CHECK(verdict_of(force, [](Bytes& b) { b[5] = std::byte{11}; }) == Verdict::kType);
   CHECK(verdict_of(force, [](Bytes& b) { b.push_back(std::byte{0}); }) == Verdict::kLength);
   CHECK(verdict_of(force, [](Bytes& b) { b[8] = std::byte{16}; }) ==
         Verdict::kLength);  // announces a tag that is not there

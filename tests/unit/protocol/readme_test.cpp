@@ -53,6 +53,8 @@ TEST_CASE("the sizes in protocol/README.md are those of the code") {
       {"Bye", {size_of(Bye{}), size_of(Bye{})}},
       {"ToolState", {size_of(ToolState{}), size_of(all)}},
       {"ForceSample", {size_of(ForceSample{}), kMaxDatagram - kTagBytes}},  // the server fills it up to there
+      {"Telemetry", {size_of(Telemetry{}), size_of(Telemetry{.laws = 8, .count = 24})}},
+      {"Pointer", {size_of(Pointer{}), size_of(Pointer{})}},
       {"SurfacePage", {size_of(SurfacePage{}), size_of(SurfacePage{})}}};
   for (const auto& [name, size] : sizes) {
     CAPTURE(name);

@@ -142,6 +142,18 @@ TEST_CASE("overtaken values are dropped: the newest wins") {
   CHECK(pair.client_stats.reordered == 1);
 }
 
+TEST_CASE("pages are wanted still when a newer state overtook the one that asks for them, but once") {
+  Pair pair;
+  pair.shake_hands();
+  const Datagram asks{pair.client.next_header(), ToolState{.tick = 1, .flags = ToolState::kAsksPages}};
+  pair.send_tool(2);
+  const auto late = pair.server.receive(asks, kClient, pair.now, {}, pair.server_stats);
+  CHECK(late.tool_state == nullptr);
+  REQUIRE(late.asking != nullptr);
+  CHECK(late.asking->flags == ToolState::kAsksPages);
+  CHECK(pair.server.receive(asks, kClient, pair.now, {}, pair.server_stats).asking == nullptr);
+}
+
 TEST_CASE("Bye frees the tool at once, strangers' datagrams are counted, not obeyed") {
   Pair pair;
   pair.shake_hands();
@@ -168,6 +180,36 @@ TEST_CASE("a late Welcome of a session that was left does not bring it back") {
   pair.shake_hands(88);
   pair.client.receive({header, welcome}, pair.now, pair.client_stats);
   CHECK(pair.send_tool(1).tool_state != nullptr);
+}
+
+TEST_CASE("two clients whose sessions draw one number are two, from one address and with one key, too") {
+  const Key key = GENERATE(Key{}, Key{.number = 1, .bytes = {3}});
+  ServerSessions server(30, {0.005, 0.004}, {}, key ? std::vector<Key>{key} : std::vector<Key>{});
+  ClientSession first(Nonce{1}, key), second(Nonce{2}, key);
+  LinkStats stats;
+  const auto decoded = [](std::span<const std::byte> bytes) {
+    Datagram datagram;
+    REQUIRE(decode(bytes, datagram) == Verdict::kAccepted);
+    return datagram;
+  };
+  std::array<std::byte, kMaxDatagram> bytes, answer;
+  for (ClientSession* client : {&first, &second}) {
+    while (const auto hello = client->poll(10s)) {
+      const Datagram said = decoded({bytes.data(), client->write(*hello, bytes)});
+      const auto outcome = server.receive(said, kClient, 10s, {77, {5}}, stats);
+      REQUIRE(outcome.answer);
+      const std::size_t size = encode(outcome.answer->first, outcome.answer->second, answer);
+      client->receive(decoded({answer.data(), seal(answer, size, outcome.key)}), 10s, stats);
+    }
+    REQUIRE(client->welcomed());
+  }
+  std::uint8_t tool = 0;
+  for (ClientSession* client : {&first, &second}) {
+    const Datagram said = decoded({bytes.data(), client->write(ToolState{.tool = tool, .tick = 1}, bytes)});
+    const auto outcome = server.receive(said, kClient, 10s, {}, stats);
+    REQUIRE(outcome.tool_state != nullptr);
+    CHECK(outcome.tool_state->tool == tool++);
+  }
 }
 
 TEST_CASE("two sessions from one address hold a tool each, with its radius, apart from each other") {

@@ -81,7 +81,7 @@ TEST_CASE(
   CHECK(step(scene, at(0, 0.003, 0), 0).force[1] > 0.5);
   const auto lost = step(scene, at(0, 0.003, 0), PALPATE_LOST);
   CHECK(lost.force[1] == 0);
-  CHECK(step(scene, at(NAN, 2e9, 0), PALPATE_LOST).force[1] == 0);
+  CHECK(step(scene, at(std::nan(""), 2e9, 0), PALPATE_LOST).force[1] == 0);
   const auto away = step(scene, at(0, 0.008, 0), PALPATE_WANTS_TANGENT);
   CHECK(away.force[1] == 0);
   CHECK((away.flags & PALPATE_IN_CONTACT) == 0);

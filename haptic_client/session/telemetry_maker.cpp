@@ -1,0 +1,119 @@
+#include "haptic_client/session/telemetry_maker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/ages.h"
+
+namespace palpate::client {
+using protocol::Telemetry;
+
+namespace {
+
+/// Appends to a name, as much as there is room for.
+void append(Telemetry::Name& name, std::string_view text) noexcept {
+  auto at = std::find(name.begin(), name.end(), std::uint8_t{0});
+  for (const char c : text) {
+    if (at == name.end()) return;
+    *at++ = static_cast<std::uint8_t>(c);
+  }
+}
+
+template <class T>
+std::uint32_t in_32_bits(T value) noexcept {
+  return static_cast<std::uint32_t>(std::clamp<T>(value, 0, std::numeric_limits<std::uint32_t>::max()));
+}
+
+/// What the page is told is for the eye: a wild force that the limiter held back must still travel.
+float newton(const Vec3& f) noexcept {
+  return static_cast<float>(std::min(f.stableNorm(), 1e6));
+}
+
+}  // namespace
+
+TelemetryMaker::TelemetryMaker(const std::string& device, bool motors, const std::string& law, double rate_hz)
+    : law_(law),
+      every_(static_cast<std::uint64_t>(std::ceil(rate_hz / kMessagesHz / Telemetry::kMostTicks))),
+      ticks_(std::clamp<std::size_t>(
+          static_cast<std::size_t>(rate_hz / kMessagesHz / static_cast<double>(every_)), 1,
+          Telemetry::kMostTicks)) {
+  append(next_.device, device);
+  next_.flags = motors ? Telemetry::kHasMotors : 0;
+}
+
+const Telemetry* TelemetryMaker::tick(const TickResult& result, const Pipeline& pipeline,
+                                      const Scoring& scoring, std::uint64_t missed) noexcept {
+  const std::int64_t t = result.tool.t_ns;
+  if (!wanted_ || !began_) {
+    began_ = wanted_;
+    begin_at(t);
+    return nullptr;
+  }
+  longest_ns_ = std::max(longest_ns_, t - last_ns_);
+  last_ns_ = t;
+  const Vec3 felt_W = pipeline.workspace().force_to_world(result.f_D);
+  if (seen_++ % every_ == every_ - 1) add(felt_W, scoring);
+  if (next_.count < ticks_) return nullptr;
+  next_.f_W = felt_W.allFinite() ? felt_W : Vec3::Zero();
+  complete(result, pipeline, scoring, missed);
+  begin_at(t);
+  return &told_;
+}
+
+void TelemetryMaker::begin_at(std::int64_t t_ns) noexcept {
+  begin_ns_ = last_ns_ = t_ns;
+  longest_ns_ = 0;
+  seen_ = 0;
+  next_.count = 0;
+}
+
+void TelemetryMaker::add(const Vec3& felt_W, const Scoring& scoring) noexcept {
+  const std::size_t laws = scoring.names().size();
+  next_.felt[next_.count] = newton(felt_W);
+  for (std::size_t i = 0; i < laws; ++i) next_.by_law[next_.count * laws + i] = newton(scoring.forces()[i]);
+  ++next_.count;
+}
+
+void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline, const Scoring& scoring,
+                              std::uint64_t missed) noexcept {
+  const std::uint16_t motors = next_.flags & Telemetry::kHasMotors;
+  const std::int64_t age = std::max<std::int64_t>(pipeline.age_ns(), 0);
+  next_.flags = motors;
+  if (pipeline.limiter().fault() != Fault::kNone) next_.flags |= Telemetry::kFault;
+  if ((result.tool.flags & protocol::ToolState::kClutched) != 0) next_.flags |= Telemetry::kClutched;
+  if ((result.tool.flags & protocol::ToolState::kDeviceLost) != 0) next_.flags |= Telemetry::kDeviceLost;
+  if (age > kOutage.count()) next_.flags |= Telemetry::kFading;
+  next_.tool = result.tool.tool;
+  next_.t_ns = result.tool.t_ns;
+  next_.p_W = result.tool.p_W;
+  next_.age_ns = age;
+  const std::int64_t spent = last_ns_ - begin_ns_;
+  const auto periods = static_cast<std::int64_t>(seen_);
+  next_.period_ns = in_32_bits(spent / periods);
+  next_.dt_ns = in_32_bits(spent / periods * static_cast<std::int64_t>(every_));
+  next_.longest_period_ns = in_32_bits(longest_ns_);
+  next_.ticks = result.tool.tick;
+  next_.missed = missed;
+  next_.passivity_gain = static_cast<float>(std::clamp(pipeline.passivity().gain(), 0.0, 1.0));
+  next_.faded = in_32_bits(pipeline.watchdog().ramped());
+  next_.clamped = in_32_bits(pipeline.limiter().counts().clamped);
+  next_.slewed = in_32_bits(pipeline.limiter().counts().slewed);
+  next_.damped = in_32_bits(pipeline.passivity().counts().damped);
+  next_.felt_law = {};
+  append(next_.felt_law, law_);
+  if (const std::string_view other = pipeline.stand_in(); !other.empty())
+    append(next_.felt_law, ": "), append(next_.felt_law, other);
+  next_.laws = static_cast<std::uint8_t>(scoring.names().size());
+  next_.name = {};
+  next_.error_percent = -1;
+  if (next_.laws > 0) {
+    named_ = static_cast<std::uint8_t>((named_ + 1) % next_.laws);
+    next_.named = named_;
+    append(next_.name, scoring.names()[named_]);
+    const double error = scoring.metrics(named_).mean_percent;
+    if (scoring.scored() > 0 && error >= 0) next_.error_percent = static_cast<float>(std::min(error, 1e6));
+  }
+  told_ = next_;
+}
+
+}  // namespace palpate::client

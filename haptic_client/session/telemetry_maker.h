@@ -1,0 +1,40 @@
+#pragma once
+#include <string>
+
+#include "haptic_client/evaluation/scoring.h"
+#include "haptic_client/pipeline/pipeline.h"
+
+namespace palpate::client {
+
+/// Makes `protocol::Telemetry` of what passes, some 30 times a second while the server wants it, for the page
+/// that shows it; nothing else depends on it. Haptic thread, after the force was written; no allocation.
+class TelemetryMaker {
+ public:
+  /// `device`, `law`: names. `motors`: whether the device has any. `rate_hz`: ticks a second.
+  TelemetryMaker(const std::string& device, bool motors, const std::string& law, double rate_hz);
+
+  void want(bool wanted) noexcept { wanted_ = wanted; }
+
+  /// A tick gave `result`. `missed`: deadlines given up so far. Returns a message when one is complete, valid
+  /// until the next call; else null. About 50 ns, while nobody wants it 1 ns.
+  const protocol::Telemetry* tick(const TickResult& result, const Pipeline& pipeline, const Scoring& scoring,
+                                  std::uint64_t missed) noexcept;
+
+ private:
+  static constexpr double kMessagesHz = 30;
+  void begin_at(std::int64_t t_ns) noexcept;
+  void add(const Vec3& felt_W, const Scoring& scoring) noexcept;
+  void complete(const TickResult& result, const Pipeline& pipeline, const Scoring& scoring,
+                std::uint64_t missed) noexcept;
+
+  std::string law_;
+  std::uint64_t every_;  // ticks between two that are told
+  std::size_t ticks_;    // told in a message
+  bool wanted_ = false, began_ = false;
+  std::int64_t last_ns_ = 0, begin_ns_ = 0, longest_ns_ = 0;
+  std::uint64_t seen_ = 0;  // ticks since the message before
+  std::uint8_t named_ = 0;
+  protocol::Telemetry next_, told_;
+};
+
+}  // namespace palpate::client

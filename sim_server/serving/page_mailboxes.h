@@ -1,0 +1,24 @@
+#pragma once
+#include <array>
+#include <atomic>
+
+#include "common/doorbell.h"
+#include "common/latest_value.h"
+#include "common/spsc_ring.h"
+#include "protocol/messages.h"
+
+namespace palpate::sim {
+
+/// Between the network thread and the thread that serves pages, of one tool.
+struct ToolPageMailboxes {
+  SpscRing<protocol::Telemetry> telemetry{32};  // network -> page
+  LatestValue<protocol::Pointer> pointer;       // page -> network
+};
+
+/// Where pages are served. The bell of `SimMailboxes` is to be rung when a pointer waits.
+struct PageMailboxes {
+  std::array<ToolPageMailboxes, kMaxTools> tools;
+  std::atomic<bool> wants_telemetry{false};  // while a page is open
+};
+
+}  // namespace palpate::sim

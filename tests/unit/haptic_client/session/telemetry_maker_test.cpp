@@ -1,0 +1,98 @@
+#include "haptic_client/session/telemetry_maker.h"
+
+#include <string_view>
+
+#include "common/text.h"
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::client;
+using Catch::Matchers::WithinRel;
+using protocol::Telemetry;
+
+namespace {
+
+std::string text(const Telemetry::Name& name) {
+  return {name.begin(), std::find(name.begin(), name.end(), std::uint8_t{0})};
+}
+
+/// A client that feels a constant force, tick by tick, with two laws beside.
+struct Client {
+  explicit Client(double ticks_hz)
+      : rate_hz(ticks_hz),
+        pipeline(find_row(extrapolators(), "constant", "law", "test").make(), {}, {}),
+        scoring({"constant", "linear_time"}, ticks_hz, "test"),
+        maker("falcon", true, "constant", ticks_hz) {}
+
+  /// One tick; samples of (0, `newton`, 0) come at 30 Hz.
+  const Telemetry* tick(double newton) {
+    const Time t = from_seconds(1 + static_cast<double>(++ticks) / rate_hz);
+    std::optional<protocol::ForceSample> sample;
+    if (ticks % static_cast<std::uint64_t>(rate_hz / 30) == 0) {
+      sample = protocol::ForceSample{.number = ++samples, .tool_t_ns = t.count()};
+      sample->f_W = {0, newton, 0};
+    }
+    const TickResult result = pipeline.tick({.t = t}, sample ? &*sample : nullptr);
+    ErrorSums sums;
+    scoring.tick(result.tool.p_W, t, result.used ? &result.sample : nullptr, sums);
+    return maker.tick(result, pipeline, scoring, 7);
+  }
+
+  double rate_hz;
+  Pipeline pipeline;
+  Scoring scoring;
+  TelemetryMaker maker;
+  std::uint64_t ticks = 0, samples = 0;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "telemetry: nothing while nobody wants it, 30 messages a second while somebody does, no tick missing") {
+  for (const double rate_hz : {100.0, 500.0, 1000.0, 4000.0}) {
+    CAPTURE(rate_hz);
+    Client client(rate_hz);
+    for (int i = 0; i < 2 * rate_hz; ++i) CHECK(client.tick(1) == nullptr);
+    client.maker.want(true);
+    std::vector<Telemetry> told;
+    for (int i = 0; i < 2 * rate_hz; ++i)
+      if (const Telemetry* message = client.tick(1)) told.push_back(*message);
+    CHECK(told.size() >= 2 * 30 - 1);
+    CHECK(told.size() <= 2 * 34);
+    double covered = 0;
+    for (const Telemetry& message : told) covered += 1e-9 * message.dt_ns * message.count;
+    CHECK_THAT(covered, WithinRel(2.0, 0.04));
+    for (std::size_t i = 1; i < told.size(); ++i) {
+      const double apart = 1e-9 * static_cast<double>(told[i].t_ns - told[i - 1].t_ns);
+      CHECK_THAT(apart, WithinRel(1e-9 * told[i].dt_ns * told[i].count, 1e-6));
+    }
+    CHECK_THAT(1e9 / told.back().period_ns, WithinRel(rate_hz, 1e-3));
+  }
+}
+
+TEST_CASE("telemetry: what is felt, by which law, on which device, and the laws beside it by name in turn") {
+  Client client(500);
+  client.maker.want(true);
+  const Telemetry* newest = nullptr;
+  std::array<std::string, 2> names;
+  for (int i = 0; i < 2000; ++i) {
+    const Telemetry* message = client.tick(1.5);
+    if (message == nullptr) continue;
+    names[message->named] = text(message->name);
+    newest = message;
+  }
+  REQUIRE(newest != nullptr);
+  CHECK(names == std::array<std::string, 2>{"constant", "linear_time"});
+  CHECK(text(newest->device) == "falcon");
+  CHECK(text(newest->felt_law) == "constant");
+  CHECK(newest->flags == Telemetry::kHasMotors);
+  CHECK(newest->missed == 7);
+  REQUIRE(newest->laws == 2);
+  REQUIRE(newest->count == 16);
+  for (std::size_t i = 0; i < newest->count; ++i) {
+    CHECK_THAT(newest->felt[i], WithinRel(1.5F, 1e-4F));
+    CHECK_THAT(newest->by_law[2 * i], WithinRel(1.5F, 1e-6F));
+  }
+  CHECK_THAT(newest->f_W[1], WithinRel(1.5, 1e-4));
+}
