@@ -21,7 +21,7 @@ Vec3 read_for(Browser& browser, double seconds, double& t) {
 }  // namespace
 
 TEST_CASE(
-    "browser: without a mouse the hand stays where it began; with one it goes there, at 0.25 m/s at most") {
+    "browser: without a mouse the hand stays where it began, with one it goes there, at 0.25 m/s at most") {
   Browser browser({.hand_stiffness = kArm}, {0, 0.1, 0});
   double t = 0;
   CHECK(read_for(browser, 0.5, t) == Vec3(0, 0.1, 0));
