@@ -13,7 +13,7 @@ constexpr std::size_t kTagLengthAt = 8, kKeyNumberAt = 9;  // in the header
 constexpr std::int64_t kCookiePeriod = 10'000'000'000;     // ns
 
 using Label = std::array<char, 24>;
-constexpr Label kToServerLabel{"client to server"}, kToClientLabel{"server to client"};
+constexpr Label kToServerLabel{"client to server"}, kToClientLabel{"server to client"}, kPageLabel{"page"};
 
 /// Chooses the fastest code for this machine. Without libsodium's random numbers there is nothing to trust.
 void begin() noexcept {
@@ -62,6 +62,14 @@ bool authentic(std::span<const std::byte> datagram, const Key& key) noexcept {
     return false;
   const auto tag = hashed<kTagBytes>(datagram.first(datagram.size() - kTagBytes), key.bytes);
   return sodium_memcmp(tag.data(), datagram.last(kTagBytes).data(), kTagBytes) == 0;
+}
+
+std::array<std::uint8_t, 16> page_token(const Key& key) noexcept {
+  return hashed<16>(std::as_bytes(std::span(kPageLabel)), key.bytes);
+}
+
+bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept {
+  return a.size() == b.size() && sodium_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
 Cookie Cookies::in_period(std::int64_t period, const Nonce& client, const Endpoint& from) const noexcept {

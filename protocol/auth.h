@@ -2,6 +2,7 @@
 /// Who may speak: keys, the tags of datagrams, cookies; all by libsodium (keyed BLAKE2b). The bytes:
 /// protocol/README.md, "Keys".
 #include <span>
+#include <string_view>
 
 #include "common/time.h"
 #include "protocol/codec.h"
@@ -29,6 +30,13 @@ std::size_t seal(std::span<std::byte> out, std::size_t size, const Key& key) noe
 /// Whether the tag of a datagram that `decode` accepted is that of `key`, compared in constant time; without
 /// a key: yes.
 bool authentic(std::span<const std::byte> datagram, const Key& key) noexcept;
+
+/// What the address of a live page ends in, so that only who has it may do more than look: derived from the
+/// key, and the same for each server that has that.
+std::array<std::uint8_t, 16> page_token(const Key& key) noexcept;
+
+/// Whether two texts are the same, in a time that does not tell where they differ.
+bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept;
 
 /// Cookies that a server hands out, so that only who receives at an address can say Hello from it, and the
 /// server need not remember whom it gave one (as DTLS does: RFC 6347, section 4.2.1). A cookie of one key of

@@ -3,6 +3,7 @@
 
 #include "common/program.h"
 #include "sim_server/commands/explain.h"
+#include "sim_server/commands/gallery.h"
 #include "sim_server/commands/keygen.h"
 #include "sim_server/commands/mesh_info.h"
 #include "sim_server/commands/record.h"
@@ -45,6 +46,13 @@ void add_listen_options(CLI::App* command, sim::ListenOptions& options) {
   command->add_flag("--insecure", options.insecure, "Serve other machines without a key");
 }
 
+void add_viewer_option(CLI::App* command, std::string& address) {
+  command
+      ->add_option("--viewer", address,
+                   "[ADDR:]PORT to serve the live page on (HTTP), or off; without ADDR on this machine alone")
+      ->capture_default_str();
+}
+
 CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
   auto* command = app.add_subcommand("run", "Serve a scene until Ctrl-C");
   command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
@@ -56,10 +64,12 @@ CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
       ->add_option("--record-mb", options.record_mb,
                    "Go on in a new file at this size (F-2.pcap, ...); ten are kept")
       ->check(CLI::Range(0.01, 1e6));
+  add_viewer_option(command, options.viewer);
   add_cache_or_none(command, options.cache);
   command->footer(
       models() +
       "Examples: sim_server run configs/scenes/liver.toml --report server.json\n"
+      "          sim_server run configs/scenes/liver.toml --viewer 8080\n"
       "          sim_server run configs/scenes/liver.toml --listen 0.0.0.0:45130 --key palpate.key");
   return command;
 }
@@ -176,6 +186,12 @@ CLI::App* add_study(CLI::App& app, sim::StudyOptions& options, sim::CacheOptions
   return command;
 }
 
+CLI::App* add_scenes(CLI::App& app) {
+  auto* command = app.add_subcommand("scenes", "The scenes that come with Palpate, and what each shows");
+  command->footer("Example: sim_server scenes");
+  return command;
+}
+
 CLI::App* add_mesh_info(CLI::App& app, std::string& file) {
   auto* mesh = app.add_subcommand("mesh", "Look at meshes");
   mesh->require_subcommand(1);
@@ -271,6 +287,7 @@ int run(int argc, char** argv) {
   sim::StudyOptions studying;
   sim::CacheOptions cached;
   const auto* study = add_study(app, studying, cached);
+  const auto* scenes = add_scenes(app);
   const auto* mesh_info = add_mesh_info(app, mesh_file);
   sim::ReplayOptions replaying;
   const auto* replay = add_replay(app, replaying);
@@ -279,6 +296,7 @@ int run(int argc, char** argv) {
   const auto [list, clear] = add_cache(app, cached);
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*mesh_info) return sim::print_mesh_info(mesh_file);
+  if (*scenes) return sim::list_scenes();
   if (*replay) {
     if (replaying.seconds) require_at_least(*replaying.seconds, 1e-3, "--seconds", "s");
     return sim::serve_replay(replaying);

@@ -12,8 +12,11 @@
 #include "common/realtime.h"
 #include "common/report.h"
 #include "common/text.h"
+#include "protocol/key_file.h"
 #include "protocol/link_report.h"
 #include "protocol/recording_report.h"
+#include "sim_server/commands/gallery.h"
+#include "sim_server/commands/live_view.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/net_link.h"
@@ -193,14 +196,15 @@ void tell_beyond(const SimLoop& loop, const Scene& scene, std::vector<bool>& tol
   }
 }
 
-/// Waits for Ctrl-C or the end of `seconds`, telling who comes and goes.
+/// Waits for Ctrl-C, the end of `seconds` or another scene that a page chose, telling who comes and goes.
 void watch(const NetLink& link, const SimLoop& loop, const Scene& scene, const protocol::Recorder* recorder,
-           std::optional<double> seconds) {
+           const LiveView* view, std::optional<double> seconds) {
   protocol::RecordingWatcher recording(recorder);
   const Time start = now();
   std::vector<bool> told(scene.tools.size(), false), told_beyond = told;
   while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
     if (seconds && to_seconds(now() - start) >= *seconds) return;
+    if (view != nullptr && view->feed().chosen >= 0) return;
     recording.look();
     tell_holders(link, told);
     tell_beyond(loop, scene, told_beyond);
@@ -228,9 +232,40 @@ void warn_if_coarse(const ErrorOfForce& errors, const Simulation& simulation, co
   }
 }
 
-}  // namespace
+/// Where the page is, and what its address ends in for who may do more than look.
+struct ViewRequest {
+  ViewerAddress address;
+  std::string token;
+};
 
-int run_server(const ServerOptions& options) {
+std::optional<ViewRequest> view_request(const ServerOptions& options) {
+  const auto address = read_viewer_address(options.viewer);
+  if (!address) return {};
+  require_free(*address);
+  if (!protocol::is_loopback(address->endpoint))
+    log::warning(
+        "--viewer: whoever reaches {} can look on; what only the token allows stays with who has that",
+        protocol::to_string(address->endpoint));
+  const auto bytes = options.listen.key
+                         ? protocol::page_token(protocol::read_keys(*options.listen.key).back())
+                         : protocol::random_value<std::array<std::uint8_t, 16>>();
+  return ViewRequest{*address, hex_token(bytes)};
+}
+
+/// The page, with what it may choose: nothing while a capture is written, which holds one session.
+std::unique_ptr<LiveView> open_view(const ViewRequest& request, const Scene& scene,
+                                    const Simulation& simulation, const std::vector<GalleryScene>& gallery,
+                                    Time start) {
+  SceneFacts facts = facts_of(scene, simulation);
+  facts.pausable = true;
+  for (const GalleryScene& other : gallery) facts.gallery.push_back(other.name);
+  return std::make_unique<LiveView>(request.address, request.token, std::move(facts), simulation, start);
+}
+
+/// One scene, from its file to its report. What it listens on is put into `options` and `request`, so that
+/// the next scene is found there. Returns what a page chose, of `gallery`.
+std::optional<std::size_t> serve_scene(ServerOptions& options, std::optional<ViewRequest>& request,
+                                       const std::vector<GalleryScene>& gallery) {
   const Scene scene = read_scene(options.scene);
   require_distinct({{"SCENE", options.scene},
                     {scene.mesh_where, scene.mesh_file},
@@ -241,6 +276,7 @@ int run_server(const ServerOptions& options) {
   for (const ToolSettings& tool : scene.tools) radii.push_back(tool.shape.radius);
   protocol::ServerSessions sessions = sessions_for(options.listen, scene.rate_hz, radii);
   protocol::UdpSocket socket = open_socket(options.listen);
+  options.listen.address = protocol::to_string(socket.local());
   const auto recorder = options.record ? std::make_unique<protocol::Recorder>(
                                              *options.record, protocol::bytes_of_mb(options.record_mb))
                                        : nullptr;
@@ -256,9 +292,11 @@ int run_server(const ServerOptions& options) {
   std::vector<SurfacePager> pagers;
   for (std::size_t i = 0; i < scene.tools.size(); ++i) pagers.emplace_back(simulation, i);
   SimMailboxes mailboxes;
-  SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools, errors);
-  NetLink link(socket, std::move(sessions), std::move(pagers), mailboxes, recorder.get());
   const Time start = now();
+  const auto view = request ? open_view(*request, scene, simulation, gallery, start) : nullptr;
+  if (view) request->address.endpoint = view->viewer().endpoint();
+  SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools, errors, view.get());
+  NetLink link(socket, std::move(sessions), std::move(pagers), mailboxes, recorder.get());
   {
     std::jthread recording;
     if (recorder) {
@@ -271,14 +309,23 @@ int run_server(const ServerOptions& options) {
       name_thread("palpate-net");
       link.run();
     });
+    std::jthread viewing;
+    if (view) {
+      viewing = std::jthread([&] {
+        name_thread("palpate-view");
+        view->viewer().run();
+      });
+    }
     std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
     warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kPriority));
     warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
+    if (view) log::info("the live page: {}", view->link());
     log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
-              report["setup_ms"].get<double>() / 1e3, protocol::to_string(socket.local()));
-    watch(link, loop, scene, recorder.get(), options.seconds);
+              report["setup_ms"].get<double>() / 1e3, options.listen.address);
+    watch(link, loop, scene, recorder.get(), view.get(), options.seconds);
     sim.request_stop();
     sim.join();
+    if (view) view->viewer().stop();
     link.stop();
     net.join();
   }
@@ -286,6 +333,23 @@ int run_server(const ServerOptions& options) {
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
   print_summary(report, simulation.flagged());
   if (options.report) write_json(*options.report, report);
+  const int chosen = view ? view->feed().chosen.load() : -1;
+  return chosen >= 0 ? std::optional(static_cast<std::size_t>(chosen)) : std::nullopt;
+}
+
+}  // namespace
+
+int run_server(const ServerOptions& options) {
+  ServerOptions now_served = options;
+  std::optional<ViewRequest> request = view_request(options);
+  const std::vector<GalleryScene> gallery =
+      request && !options.record ? find_gallery() : std::vector<GalleryScene>{};
+  const Time start = now();
+  while (const auto chosen = serve_scene(now_served, request, gallery)) {
+    now_served.scene = gallery[*chosen].file;
+    if (options.seconds) now_served.seconds = std::max(0.001, *options.seconds - to_seconds(now() - start));
+    log::info("a page chose {}", now_served.scene.string());
+  }
   return 0;
 }
 

@@ -17,6 +17,7 @@ struct ServerOptions {
   std::optional<std::filesystem::path> record;  ///< capture of every datagram
   std::optional<double> record_mb;              ///< size at which it goes on in a new file
   CacheOptions cache;
+  std::string viewer = "off";  ///< where the live page is served
 };
 
 /// Builds the scene, serves it until Ctrl-C, writes the report. Throws `Error`. Returns the exit code.

@@ -20,14 +20,15 @@ StepCell& StepCell::operator+=(const StepCell& other) noexcept {
 }
 
 SimLoop::SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes,
-                 std::span<const ToolSettings> tools, ErrorOfForce& errors)
+                 std::span<const ToolSettings> tools, ErrorOfForce& errors, LoopObserver* observer)
     : simulation_(simulation),
       served_(simulation, &errors),
       mailboxes_(mailboxes),
       tools_(tools),
       period_(rate_hz > 0 ? from_seconds(1 / rate_hz) : Time::zero()),
       inputs_(simulation.tools()),
-      errors_(errors) {
+      errors_(errors),
+      observer_(observer) {
   stats_.tools.resize(simulation.tools());
 }
 
@@ -42,10 +43,15 @@ void SimLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     const bool fresh = read_inputs();
     const Time start = now();
+    LoopTurn turn;
     if (period_ > Time::zero() || fresh) {
-      step(to_seconds(period_ > Time::zero() ? period_ : start - last));
+      if (observer_ == nullptr || observer_->may_step())
+        turn = step(to_seconds(period_ > Time::zero() ? period_ : start - last));
       last = start;
     }
+    turn.inputs = inputs_;
+    turn.late = stats_.late;
+    if (observer_ != nullptr) observer_->turned(turn);
     deadline += period_ > Time::zero() ? period_ : kPollPeriod;
     if (const Time behind = now() - deadline; behind > Time::zero()) {
       if (period_ > Time::zero()) {
@@ -69,10 +75,10 @@ bool SimLoop::read_inputs() noexcept {
   return any;
 }
 
-void SimLoop::step(double dt) noexcept {
+LoopTurn SimLoop::step(double dt) noexcept {
   const Time start = now();
   const auto outcomes = served_.step(inputs_, dt);
-  if (outcomes.empty()) return;
+  if (outcomes.empty()) return {};
   const Time took = now() - start;
   count(outcomes, start, took);
   bool answered = false;
@@ -84,6 +90,7 @@ void SimLoop::step(double dt) noexcept {
     answered = true;
   }
   if (answered) mailboxes_.bell.ring();
+  return {.inputs = inputs_, .outcomes = outcomes, .start = start, .took = took, .dt = dt};
 }
 
 void SimLoop::count_beyond(std::size_t tool) noexcept {

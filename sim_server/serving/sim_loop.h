@@ -58,14 +58,36 @@ struct SimLoopStats {
   double max_newton() const noexcept;
 };
 
+/// One turn of the loop, as somebody who looks on sees it.
+struct LoopTurn {
+  std::span<const SessionInput> inputs;            ///< of each tool
+  std::span<const ServedTools::Outcome> outcomes;  ///< of each tool; empty: no step was made
+  Time start{}, took{};                            ///< of the step
+  double dt = 0;                                   ///< s, by which it advanced the tissue
+  std::uint64_t late = 0;                          ///< deadlines passed over so far
+};
+
+/// Somebody who looks on and may hold the steps. Called by the simulation thread: waits for nothing,
+/// allocates nothing, throws nothing.
+class LoopObserver {
+ public:
+  virtual ~LoopObserver() = default;
+  /// Asked before each step that is due. While it says no, no tool gets an answer: clients let go by the age
+  /// of their forces.
+  virtual bool may_step() noexcept = 0;
+  /// At the end of each turn, when the forces are out.
+  virtual void turned(const LoopTurn& turn) noexcept = 0;
+};
+
 /// Steps the simulation on absolute deadlines: newest tool poses in, newest forces out. The only thread that
 /// touches the simulation while it runs.
 class SimLoop {
  public:
   /// `rate_hz` 0: steps as soon as a new pose of any tool is there.
   /// `tools`: of the scene, which outlives this. `errors`: gets each step, and is told to clients.
+  /// `observer`: may be null; outlives this.
   SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes,
-          std::span<const ToolSettings> tools, ErrorOfForce& errors);
+          std::span<const ToolSettings> tools, ErrorOfForce& errors, LoopObserver* observer = nullptr);
 
   /// Runs until asked to stop.
   void run(const std::stop_token& stop) noexcept;
@@ -79,7 +101,7 @@ class SimLoop {
 
  private:
   bool read_inputs() noexcept;
-  void step(double dt) noexcept;
+  LoopTurn step(double dt) noexcept;
   void count_beyond(std::size_t tool) noexcept;
   void look_how_near(Time now) noexcept;
   void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
@@ -91,6 +113,7 @@ class SimLoop {
   Time period_, next_look_{};
   std::vector<SessionInput> inputs_;
   ErrorOfForce& errors_;
+  LoopObserver* observer_;
   SimLoopStats stats_;
 };
 

@@ -1,0 +1,23 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate::sim {
+
+/// A scene that comes with Palpate.
+struct GalleryScene {
+  std::string name;  ///< of its file, without ".toml"
+  std::string title;
+  std::string about;  ///< the comment at the head of the file, in lines
+  std::filesystem::path file;
+};
+
+/// By name. They stand in share/palpate/scenes beside the folder of this program, where it is installed, else
+/// in configs/scenes above it; none where neither is there.
+std::vector<GalleryScene> find_gallery();
+
+/// `sim_server scenes`: prints them. Throws `Error` where there are none. Returns the exit code.
+int list_scenes();
+
+}  // namespace palpate::sim

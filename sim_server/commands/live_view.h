@@ -1,0 +1,46 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "sim_server/serving/sim_loop.h"
+#include "sim_server/viewer/viewer.h"
+
+namespace palpate::sim {
+
+/// What the page is told of a scene that is served.
+SceneFacts facts_of(const Scene& scene, const Simulation& simulation);
+
+/// The live page of a session: copies what a page is shown out of the simulation's thread, while a page is
+/// open, and lets who has the token pause it.
+class LiveView final : public LoopObserver {
+ public:
+  /// `began`: time 0 of what is shown. Both references outlive this. Throws `Error` as `Viewer`.
+  LiveView(const ViewerAddress& address, std::string token, SceneFacts facts, const Simulation& simulation,
+           Time began);
+
+  bool may_step() noexcept override;
+  void turned(const LoopTurn& turn) noexcept override;
+
+  Viewer& viewer() { return viewer_; }
+  ViewerFeed& feed() { return feed_; }
+  const ViewerFeed& feed() const { return feed_; }
+  const SceneFacts& facts() const { return facts_; }
+  /// "http://127.0.0.1:8080/#token=...".
+  std::string link() const;
+
+ private:
+  void note(const LoopTurn& turn) noexcept;
+  void fill(Picture& picture) noexcept;
+
+  const Simulation& simulation_;
+  SceneFacts facts_;
+  std::string token_;
+  ViewerFeed feed_;
+  Viewer viewer_;
+  Time began_, shown_{};
+  int pages_ = 0;      // when it last looked
+  bool owed_ = false;  // a picture of what was stepped
+  Picture newest_;     // without positions
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,33 @@
+#pragma once
+/// Who may look on, and who may do more. No socket.
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "protocol/endpoint.h"
+
+namespace palpate::sim {
+
+/// Where the page is served.
+struct ViewerAddress {
+  protocol::Endpoint endpoint;
+  std::string typed{};  ///< the host, as somebody typed it
+};
+
+/// "8080" (on this machine alone), "ADDR:8080" or "[::1]:8080"; nothing of "off". Port 0: any. Throws `Error`
+/// that begins with "--viewer".
+std::optional<ViewerAddress> read_viewer_address(const std::string& text);
+
+/// Whether a page asked for the server by a name that is its own: an IP address, "localhost", this machine's
+/// name, or the one that was typed. Somebody else's name that leads here (DNS rebinding) is none. `host`: the
+/// header Host, with or without a port.
+bool host_is_ours(std::string_view host, std::string_view typed);
+
+/// Whether the page that opens a WebSocket came from the same place as this: `origin` is http(s)://`host`.
+bool same_origin(std::string_view origin, std::string_view host);
+
+/// 32 hexadecimal digits.
+std::string hex_token(const std::array<std::uint8_t, 16>& bytes);
+
+}  // namespace palpate::sim

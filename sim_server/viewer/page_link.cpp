@@ -1,0 +1,106 @@
+#include "sim_server/viewer/page_link.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate::sim {
+namespace {
+
+PageLink::Kind put_text(const std::string& text, Bytes& out) {
+  const auto bytes = std::as_bytes(std::span(text));
+  out.assign(bytes.begin(), bytes.end());
+  return PageLink::Kind::kText;
+}
+
+}  // namespace
+
+std::optional<PageLink::Kind> PageLink::next(const Showing& showing, Time now, Bytes& out) {
+  if (!greeted_) return {};
+  if (!refused_.empty()) {
+    const std::string why = std::exchange(refused_, {});
+    return put_text(refused_text(why), out);
+  }
+  if (const auto kind = begin(showing, out)) return kind;
+  if (showing.scene->recorded) return {};
+  if (now - state_at_ >= kStateEach || (state_ != showing.pictures && surface_due(showing, now))) {
+    state_ = showing.pictures;
+    state_at_ = now;
+    return put_text(state_text(*showing.picture, showing.peers, showing.rates, showing.paused), out);
+  }
+  if (next_surface(showing, now, out) || next_sample(showing, out)) return Kind::kBinary;
+  Kind kind = Kind::kBinary;
+  if (next_of_client(showing, out, kind)) return kind;
+  if (wants_field_ && field_ != showing.fields && !showing.field.empty()) {
+    field_ = showing.fields;
+    write_field(showing.version, showing.field, out);
+    return Kind::kBinary;
+  }
+  return {};
+}
+
+/// What comes before anything else.
+std::optional<PageLink::Kind> PageLink::begin(const Showing& showing, Bytes& out) {
+  if (!knows_scene_) {
+    knows_scene_ = true;
+    return put_text(scene_text(*showing.scene, may_control_), out);
+  }
+  if (showing.scene->recorded || version_ == showing.version) return {};
+  version_ = showing.version;
+  surface_ = state_ = 0;
+  has_.clear();
+  write_topology(showing.scene->organ, showing.box, showing.version, out);
+  return Kind::kBinary;
+}
+
+bool PageLink::next_surface(const Showing& showing, Time now, Bytes& out) {
+  if (!surface_due(showing, now)) return false;
+  const bool whole = has_.empty();
+  if (whole) has_.resize(showing.positions.size());
+  const Picture& picture = *showing.picture;
+  write_surface({showing.version, static_cast<std::uint32_t>(picture.step), picture.t}, showing.positions,
+                has_, whole, out);
+  surface_ = showing.pictures;
+  surface_at_ = now;
+  if (tells_) on_the_way_.push_back(static_cast<std::uint32_t>(picture.step));
+  return true;
+}
+
+bool PageLink::surface_due(const Showing& showing, Time now) const noexcept {
+  return surface_ != showing.pictures && now - surface_at_ >= kSurfaceEach &&
+         on_the_way_.size() < kMostOnTheWay;
+}
+
+void PageLink::shown(std::uint32_t step) noexcept {
+  tells_ = true;
+  const auto found = std::find(on_the_way_.rbegin(), on_the_way_.rend(), step);
+  on_the_way_.erase(on_the_way_.begin(), found.base());
+}
+
+bool PageLink::next_sample(const Showing& showing, Bytes& out) {
+  for (std::size_t i = 0; i < showing.scene->tools.size(); ++i) {
+    const SeenTool::Sample& sample = showing.picture->tools[i].sample;
+    if (sample.number == 0 || sample.number == samples_[i]) continue;
+    samples_[i] = sample.number;
+    write_sample(static_cast<std::uint8_t>(i), sample, out);
+    return true;
+  }
+  return false;
+}
+
+bool PageLink::next_of_client(const Showing& showing, Bytes& out, Kind& kind) {
+  for (std::size_t i = 0; i < showing.clients.size(); ++i) {
+    if (showing.client_news[i] == clients_[i]) continue;
+    clients_[i] = showing.client_news[i];
+    kind = put_text(client_text(showing.clients[i]), out);
+    return true;
+  }
+  if (ticks_ == showing.ticks_so_far) return false;
+  ticks_ = std::max(
+      ticks_, showing.ticks_so_far - std::min<std::uint64_t>(showing.ticks_so_far, Showing::kTicksKept));
+  write_ticks(showing.ticks[ticks_ % Showing::kTicksKept], out);
+  ++ticks_;
+  kind = Kind::kBinary;
+  return true;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,83 @@
+#pragma once
+/// What one page has got, and what it is due. No clock, no socket: time is an argument.
+#include <optional>
+
+#include "common/time.h"
+#include "protocol/token_bucket.h"
+#include "sim_server/viewer/encoding.h"
+#include "sim_server/viewer/page_message.h"
+#include "sim_server/viewer/texts.h"
+
+namespace palpate::sim {
+
+/// What there is to show: the newest of everything, the same for all pages. Filled by the page's thread.
+struct Showing {
+  const SceneFacts* scene = nullptr;
+  ViewBox box;
+  std::uint32_t version = 1;  ///< of the topology
+  const Picture* picture = nullptr;
+  std::uint64_t pictures = 0;            ///< so far: another number is another picture
+  std::vector<std::uint16_t> positions;  ///< (3 n) of `picture`
+  std::vector<SeenPeer> peers;           ///< of each tool
+  MeasuredRates rates;
+  bool paused = false;
+  std::vector<SeenClient> clients;         ///< of each tool; `laws` 0: none
+  std::vector<std::uint64_t> client_news;  ///< of each tool: how many came so far
+  std::vector<ClientTicks> ticks;          ///< the newest, in a ring of
+  static constexpr std::size_t kTicksKept = 16;
+  std::uint64_t ticks_so_far = 0;
+  std::vector<float> field;  ///< (n), J/m3; empty: not known
+  std::uint64_t fields = 0;  ///< so far
+};
+
+/// Decides what a page gets next, each time that its connection takes more: the newest, against what it has;
+/// nothing waits in line. Holds 6 bytes a vertex and no more.
+class PageLink {
+ public:
+  explicit PageLink(Time opened) : opened_(opened), messages_(kMessagesPerSecond, kMessagesPerSecond) {}
+
+  /// Whether one more message from the page may come.
+  bool may_say(Time now) noexcept { return messages_.take(now); }
+  /// Whether it should have said hello by now.
+  bool too_quiet(Time now) const noexcept { return !greeted_ && now - opened_ > kHelloWithin; }
+
+  void greet(bool may_control) noexcept { greeted_ = true, may_control_ = may_control; }
+  bool greeted() const noexcept { return greeted_; }
+  bool may_control() const noexcept { return may_control_; }
+  void want_field(bool wants) noexcept { wants_field_ = wants; }
+  bool wants_field() const noexcept { return wants_field_; }
+  /// It drew the surface of this step, so those before are no longer on their way.
+  void shown(std::uint32_t step) noexcept;
+  /// The newest reason is told.
+  void refuse(std::string why) { refused_ = std::move(why); }
+
+  enum class Kind { kText, kBinary };
+  /// The next message into `out`, and what it is; nothing where it has all there is.
+  std::optional<Kind> next(const Showing& showing, Time now, Bytes& out);
+
+  static constexpr double kMessagesPerSecond = 200;
+  static constexpr Time kHelloWithin = std::chrono::seconds(5);
+  static constexpr Time kStateEach = std::chrono::milliseconds(150);  ///< at least
+  static constexpr std::size_t kMostOnTheWay = 4;  ///< surfaces, of a page that tells what it drew
+  static constexpr Time kSurfaceEach = std::chrono::milliseconds(15);  ///< at most
+
+ private:
+  std::optional<Kind> begin(const Showing& showing, Bytes& out);
+  bool surface_due(const Showing& showing, Time now) const noexcept;
+  bool next_surface(const Showing& showing, Time now, Bytes& out);
+  bool next_sample(const Showing& showing, Bytes& out);
+  bool next_of_client(const Showing& showing, Bytes& out, Kind& kind);
+
+  Time opened_, state_at_{}, surface_at_{};
+  protocol::TokenBucket messages_;
+  bool greeted_ = false, may_control_ = false, wants_field_ = false, knows_scene_ = false;
+  std::uint32_t version_ = 0;                                      // of the topology that it has; 0: none
+  std::uint64_t surface_ = 0, state_ = 0, field_ = 0, ticks_ = 0;  // the newest that it has got
+  std::vector<std::uint16_t> has_;                                 // (3 n)
+  std::array<std::uint64_t, kMaxTools> samples_{}, clients_{};
+  std::string refused_;
+  bool tells_ = false;                     // what it drew
+  std::vector<std::uint32_t> on_the_way_;  // steps of surfaces, the oldest first
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,111 @@
+#pragma once
+/// What a page is shown, as small structs: nothing here knows how a session is served.
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/contact/tool.h"
+#include "sim_server/mesh/tet_mesh.h"
+
+namespace palpate::sim {
+
+/// The surface of the organ at rest: n vertices, m triangles.
+struct OrganShape {
+  std::vector<Vec3> rest;           ///< (n), m, world
+  std::vector<Triangle> triangles;  ///< (m), outward
+  std::vector<std::uint8_t> flags;  ///< (n), bits of these
+  static constexpr std::uint8_t kFixed = 1, kInReach = 2;
+};
+
+/// What a page is told of the scene before anything moves.
+struct SceneFacts {
+  std::string title, file, model;
+  double rate_hz = 0;
+  std::vector<Tool> tools;  ///< 1 to `kMaxTools`
+  OrganShape organ;
+  std::vector<std::string> gallery{};  ///< other scenes that may be chosen; empty: none
+  bool pausable = false;               ///< whether who has the token may pause it
+  bool recorded = false;
+  std::vector<std::string> fields{};  ///< what the organ can be coloured by here
+};
+
+/// A force on a vertex of the surface, N.
+struct SeenLoad {
+  std::uint32_t vertex = 0;
+  std::array<float, 3> force{};
+};
+
+/// One tool after a step. World frame, m, N.
+struct SeenTool {
+  static constexpr std::size_t kMostLoads = 64;
+  bool held = false, contact = false, flagged = false;
+  ToolPose pose;
+  Vec3 f_W = Vec3::Zero();
+  std::size_t load_count = 0;  ///< of `loads`, at most `kMostLoads`: the rest is not shown
+  std::array<SeenLoad, kMostLoads> loads{};
+  /// Of its newest force sample; number 0: none yet.
+  struct Sample {
+    std::uint64_t number = 0;
+    double t = 0;  ///< s, as `Picture::t`
+    float force = 0;
+    std::uint32_t flags = 0;
+  } sample;
+};
+
+/// The organ and its tools after a step: what the simulation thread hands over.
+struct Picture {
+  double t = 0;                  ///< s since the server began
+  std::uint64_t step = 0;        ///< steps so far
+  double simulated = 0;          ///< s that they advanced the tissue by, in all
+  double step_ms = 0;            ///< how long the newest took
+  std::uint64_t late = 0;        ///< deadlines passed over
+  std::vector<float> positions;  ///< (3 n), m, world
+  std::array<SeenTool, kMaxTools> tools{};
+};
+
+/// Who holds a tool, as the network thread sees him.
+struct SeenPeer {
+  bool held = false;
+  std::array<char, 56> address{};  ///< "1.2.3.4:567", ended by 0
+  double loss_percent = 0, rate_hz = 0;
+};
+
+/// Where the mouse of a page wants a tool. `number` grows with each.
+struct PagePointer {
+  std::uint8_t tool = 0;
+  Vec3 p_W = Vec3::Zero();  ///< m
+  std::uint16_t buttons = 0;
+  std::uint64_t number = 0;
+};
+
+/// What only the client of a tool knows, about ten times a second while a page is open.
+struct SeenClient {
+  static constexpr std::size_t kMostLaws = 16, kMostInterventions = 16;
+  using Name = std::array<char, 32>;  ///< ended by 0
+  std::uint8_t tool = 0, laws = 0, interventions = 0;
+  std::uint8_t law = 0;  ///< the one felt, of `law_names`
+  std::array<Name, kMostLaws> law_names{};
+  std::array<float, kMostLaws> errors_percent{};  ///< NaN: not scored
+  std::array<Name, kMostInterventions> intervention_names{};
+  std::array<std::uint64_t, kMostInterventions> intervention_counts{};
+  double age_ms = 0, period_ms = 0, passivity_gain = 0;
+  std::uint64_t missed = 0;
+  Vec3 felt_W = Vec3::Zero();  ///< N
+  Vec3 p_W = Vec3::Zero();     ///< m
+  Name device{};
+  bool has_motors = false;
+};
+
+/// A stretch of a client's ticks: forces along the newest sample's, N, or NaN.
+struct ClientTicks {
+  static constexpr std::size_t kMost = 128;
+  std::uint8_t tool = 0, laws = 0;
+  std::uint32_t count = 0;
+  double t = 0;  ///< s, of the first, as `Picture::t`
+  float dt = 0;  ///< s
+  std::array<float, kMost> felt{};
+  std::array<std::array<float, SeenClient::kMostLaws>, kMost> by_law{};
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,53 @@
+#include "sim_server/viewer/showing_maker.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr Time kMeasuredOver = std::chrono::seconds(1), kMarkEach = std::chrono::milliseconds(40);
+
+}  // namespace
+
+ShowingMaker::ShowingMaker(const SceneFacts& scene, ViewerFeed& feed) : feed_(feed) {
+  const std::size_t tools = scene.tools.size();
+  showing_.scene = &scene;
+  showing_.box = view_box(scene.organ.rest);
+  showing_.picture = &feed.pictures.front();
+  showing_.pictures = 1;
+  showing_.positions.resize(3 * scene.organ.rest.size());
+  quantise(showing_.box, showing_.picture->positions, showing_.positions);
+  showing_.peers.resize(tools);
+  showing_.clients.resize(tools);
+  showing_.client_news.resize(tools);
+  showing_.ticks.resize(Showing::kTicksKept);
+}
+
+void ShowingMaker::look(Time now) {
+  if (feed_.pictures.take()) {
+    showing_.picture = &feed_.pictures.front();
+    ++showing_.pictures;
+    quantise(showing_.box, showing_.picture->positions, showing_.positions);
+  }
+  for (std::size_t i = 0; i < showing_.peers.size(); ++i) {
+    feed_.peers[i].read(showing_.peers[i]);
+    if (feed_.clients[i].read(showing_.clients[i])) ++showing_.client_news[i];
+  }
+  while (const ClientTicks* const ticks = feed_.ticks.front()) {
+    showing_.ticks[showing_.ticks_so_far++ % Showing::kTicksKept] = *ticks;
+    feed_.ticks.release();
+  }
+  showing_.paused = feed_.paused;
+  measure(now);
+}
+
+void ShowingMaker::measure(Time now) {
+  const Picture& picture = *showing_.picture;
+  if (marks_.empty() || now - marks_.back().t >= kMarkEach)
+    marks_.push_back({now, picture.step, picture.simulated});
+  while (marks_.size() > 2 && now - marks_.front().t > kMeasuredOver) marks_.pop_front();
+  const double seconds = to_seconds(marks_.back().t - marks_.front().t);
+  if (seconds <= 0) return;
+  showing_.rates = {static_cast<double>(marks_.back().step - marks_.front().step) / seconds,
+                    (marks_.back().simulated - marks_.front().simulated) / seconds};
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,408 @@
+#include "sim_server/viewer/viewer.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <libwebsockets.h>
+#include <list>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include "common/clock.h"
+#include "common/error.h"
+#include "protocol/auth.h"
+#include "protocol/udp_socket.h"
+#include "sim_server/viewer/page_files.h"
+#include "sim_server/viewer/showing_maker.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr const char* kLive = "palpate-view-1";
+constexpr lws_usec_t kLookEach = 50'000;   // us: for who is quiet, for states while nothing steps
+constexpr std::size_t kChunk = 16384;      // of a file
+constexpr int kUnsent = 32768;             // bytes waiting in the system, above which a page gets nothing new
+constexpr unsigned kMostConnections = 48;  // pages, and browsers that fetch files
+constexpr int kPatience = 10;              // s, with who fetches a file, or says nothing
+
+std::string header_of(lws* wsi, lws_token_indexes which) {
+  std::array<char, 512> text{};
+  const int size = lws_hdr_copy(wsi, text.data(), static_cast<int>(text.size()), which);
+  return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
+}
+
+/// Nothing from other hosts. Of the WebSocket: "self" means it only in newer browsers.
+std::string security_policy(const std::string& host) {
+  return "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; media-src "
+         "blob:; "
+         "connect-src 'self' ws://" +
+         host + "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+}
+
+/// What is left to be sent of a file.
+struct Fetch {
+  const char* next;
+  std::size_t left;
+};
+
+/// Why this address cannot be listened on, in words; empty: it can.
+std::string why_not(const protocol::Endpoint& endpoint) {
+  const int fd = socket(endpoint.v6 ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in6 v6{};
+  sockaddr_in v4{};
+  v6.sin6_family = AF_INET6, v6.sin6_port = htons(endpoint.port);
+  v4.sin_family = AF_INET, v4.sin_port = htons(endpoint.port);
+  std::memcpy(&v6.sin6_addr, endpoint.address.data(), sizeof v6.sin6_addr);
+  std::memcpy(&v4.sin_addr, endpoint.address.data(), sizeof v4.sin_addr);
+  const int on = 1;
+  setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  const bool bound = endpoint.v6 ? bind(fd, reinterpret_cast<const sockaddr*>(&v6), sizeof v6) == 0
+                                 : bind(fd, reinterpret_cast<const sockaddr*>(&v4), sizeof v4) == 0;
+  const int why = !bound || listen(fd, 1) != 0 ? errno : 0;
+  ::close(fd);
+  if (why == EADDRINUSE) return "another program listens there; choose another port";
+  if (why == EACCES) return "ports below 1024 need root; choose another port";
+  if (why == EADDRNOTAVAIL) return "this machine has no such address";
+  return why == 0 ? "" : std::strerror(why);
+}
+
+}  // namespace
+
+void require_free(const ViewerAddress& address) {
+  const std::string why = why_not(address.endpoint);
+  if (!why.empty())
+    fail("--viewer: cannot listen on {} (TCP): {}", protocol::to_string(address.endpoint), why);
+}
+
+struct Viewer::Server {
+  struct Page {
+    lws* wsi;
+    PageLink link;
+    std::string coming;  // of a message that comes in parts
+    bool ends = false;
+  };
+  struct Timer {
+    lws_sorted_usec_list_t entry{};
+    Server* server = nullptr;
+  };
+
+  Server(const ViewerAddress& where, std::string token_, const SceneFacts& scene_, ViewerFeed& feed_,
+         const Bytes* session_);
+  ~Server() {
+    if (context != nullptr) lws_context_destroy(context);
+  }
+  static int on_event(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) noexcept;
+  static void on_timer(lws_sorted_usec_list_t* entry) noexcept;
+  void look();
+  int on_request(lws* wsi, Fetch& fetch);
+  int send_head(lws* wsi, unsigned status, const PageFile& file, const std::string& host, bool head_only,
+                Fetch& fetch);
+  int send_chunk(lws* wsi, Fetch& fetch);
+  bool may_connect(lws* wsi) const;
+  void open(lws* wsi, Page*& page);
+  int on_message(Page& page, std::string_view part);
+  int close(Page& page, lws_close_status why, std::string text);
+  bool obey(Page& page, const PageMessage& message);
+  void control(Page& page, const PageMessage& message);
+  int send_next(Page& page);
+
+  ViewerAddress address;
+  std::string token;
+  const SceneFacts& scene;
+  ViewerFeed& feed;
+  const Bytes* session;
+  ShowingMaker maker;
+  std::array<lws_protocols, 3> protocols{};
+  lws_retry_bo_t idle{};
+  lws_context* context = nullptr;
+  std::atomic<bool> stops{false};
+  std::list<Page> pages;
+  Bytes sent, buffer;  // the newest message, and with room for its frame
+  Timer timer;
+};
+
+Viewer::Server::Server(const ViewerAddress& where, std::string token_, const SceneFacts& scene_,
+                       ViewerFeed& feed_, const Bytes* session_)
+    : address(where),
+      token(std::move(token_)),
+      scene(scene_),
+      feed(feed_),
+      session(session_),
+      maker(scene_, feed_) {
+  require_free(address);
+  lws_set_log_level(0, nullptr);
+  protocols[0].name = "http";
+  protocols[0].callback = &on_event;
+  protocols[0].per_session_data_size = sizeof(Fetch);
+  protocols[1].name = kLive;
+  protocols[1].callback = &on_event;
+  protocols[1].per_session_data_size = sizeof(Page*);
+  protocols[1].rx_buffer_size = kLongestPageMessage;
+  idle.secs_since_valid_ping = 10;
+  idle.secs_since_valid_hangup = 40;
+  std::string host = protocol::to_string(address.endpoint);
+  host.resize(host.rfind(':'));
+  if (address.endpoint.v6) host = host.substr(1, host.size() - 2);
+  lws_context_creation_info info{};
+  info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND |
+                 LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS;
+  if (!address.endpoint.v6) info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
+  info.iface = host.c_str();
+  info.port = address.endpoint.port;
+  info.protocols = protocols.data();
+  info.user = this;
+  info.fd_limit_per_thread = kMostConnections;
+  info.max_http_header_pool = 16;
+  info.timeout_secs = kPatience;
+  info.keepalive_timeout = kPatience;
+  info.retry_and_idle_policy = &idle;
+  info.server_string = "palpate";
+  context = lws_create_context(&info);
+  if (context == nullptr) fail_at_run_time("--viewer: no memory or descriptor left for the live page");
+  lws_vhost* const vhost = lws_create_vhost(context, &info);
+  if (vhost == nullptr) {
+    lws_context_destroy(context);
+    fail("--viewer: cannot listen on {} (TCP)", protocol::to_string(address.endpoint));
+  }
+  address.endpoint.port = static_cast<std::uint16_t>(lws_get_vhost_listen_port(vhost));
+  timer.server = this;
+  lws_sul_schedule(context, 0, &timer.entry, &on_timer, kLookEach);
+}
+
+int Viewer::Server::on_event(lws* wsi, lws_callback_reasons reason, void* user, void* in,
+                             std::size_t size) noexcept try {
+  auto* const server = static_cast<Server*>(lws_context_user(lws_get_context(wsi)));
+  const lws_protocols* const protocol = lws_get_protocol(wsi);
+  const bool live = protocol != nullptr && protocol == lws_vhost_name_to_protocol(lws_get_vhost(wsi), kLive);
+  Page** const page = static_cast<Page**>(user);
+  switch (reason) {
+    case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
+      if (live) server->look();
+      return 0;
+    case LWS_CALLBACK_HTTP:
+      return server->on_request(wsi, *static_cast<Fetch*>(user));
+    case LWS_CALLBACK_HTTP_WRITEABLE:
+      return server->send_chunk(wsi, *static_cast<Fetch*>(user));
+    case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
+      return live && server->may_connect(wsi) ? 0 : -1;
+    case LWS_CALLBACK_ESTABLISHED:
+      if (live) server->open(wsi, *page);
+      return live ? 0 : -1;
+    case LWS_CALLBACK_RECEIVE:
+      if (!live || *page == nullptr) return -1;
+      return server->on_message(**page, {static_cast<const char*>(in), size});
+    case LWS_CALLBACK_SERVER_WRITEABLE:
+      return live && *page != nullptr ? server->send_next(**page) : -1;
+    case LWS_CALLBACK_CLOSED:
+      if (live && *page != nullptr) {
+        server->pages.remove_if([&](const Page& other) { return &other == *page; });
+        server->feed.pages = static_cast<int>(server->pages.size());
+        *page = nullptr;
+      }
+      return 0;
+    case LWS_CALLBACK_CLIENT_FILTER_PRE_ESTABLISH:
+    case LWS_CALLBACK_HTTP_BODY:
+    case LWS_CALLBACK_HTTP_BODY_COMPLETION:
+    case LWS_CALLBACK_HTTP_FILE_COMPLETION:
+      return -1;
+    default:
+      return 0;
+  }
+} catch (...) {
+  return -1;  // no memory for this page: it goes
+}
+
+void Viewer::Server::on_timer(lws_sorted_usec_list_t* entry) noexcept {
+  Server* const server = reinterpret_cast<Timer*>(entry)->server;
+  try {
+    server->look();
+  } catch (...) {  // no memory; perhaps next time
+  }
+  lws_sul_schedule(server->context, 0, entry, &on_timer, kLookEach);
+}
+
+void Viewer::Server::look() {
+  const Time time = now();
+  maker.look(time);
+  for (Page& page : pages) {
+    page.ends = page.ends || page.link.too_quiet(time);
+    if (page.link.greeted() || page.ends) lws_callback_on_writable(page.wsi);
+  }
+}
+
+// HTTP
+
+int Viewer::Server::on_request(lws* wsi, Fetch& fetch) {
+  fetch = {};
+  char* path = nullptr;
+  int length = 0;
+  const int method = lws_http_get_uri_and_method(wsi, &path, &length);
+  const std::string host = header_of(wsi, WSI_TOKEN_HOST);
+  const PageFile none{"", "text/plain; charset=utf-8", {}};
+  if (method != LWSHUMETH_GET && method != LWSHUMETH_HEAD)
+    return send_head(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, none, "", true, fetch), -1;
+  if (!host_is_ours(host, address.typed)) return send_head(wsi, HTTP_STATUS_FORBIDDEN, none, "", true, fetch);
+  const std::string_view asked(path, static_cast<std::size_t>(std::max(length, 0)));
+  const bool head_only = method == LWSHUMETH_HEAD;
+  if (asked == "/session" && session != nullptr) {
+    const PageFile file{
+        asked, "application/octet-stream", {reinterpret_cast<const char*>(session->data()), session->size()}};
+    return send_head(wsi, HTTP_STATUS_OK, file, host, head_only, fetch);
+  }
+  const PageFile* const file = page_file(asked);
+  if (file == nullptr) return send_head(wsi, HTTP_STATUS_NOT_FOUND, none, "", head_only, fetch);
+  return send_head(wsi, HTTP_STATUS_OK, *file, host, head_only, fetch);
+}
+
+int Viewer::Server::send_head(lws* wsi, unsigned status, const PageFile& file, const std::string& host,
+                              bool head_only, Fetch& fetch) {
+  std::array<unsigned char, LWS_PRE + 2048> bytes;
+  unsigned char *const begin = bytes.data() + LWS_PRE, *at = begin, *const end = bytes.data() + bytes.size();
+  bool fits = lws_add_http_common_headers(wsi, status, std::string(file.type).c_str(), file.bytes.size(), &at,
+                                          end) == 0;
+  const auto add = [&](const char* name, const std::string& value) {
+    fits = fits && lws_add_http_header_by_name(wsi, reinterpret_cast<const unsigned char*>(name),
+                                               reinterpret_cast<const unsigned char*>(value.data()),
+                                               static_cast<int>(value.size()), &at, end) == 0;
+  };
+  add("cache-control:", "no-store");
+  add("x-content-type-options:", "nosniff");
+  add("referrer-policy:", "no-referrer");
+  add("cross-origin-resource-policy:", "same-origin");
+  if (!host.empty()) add("content-security-policy:", security_policy(host));
+  if (!fits || lws_finalize_write_http_header(wsi, begin, &at, end) != 0) return -1;
+  if (head_only || file.bytes.empty()) return lws_http_transaction_completed(wsi) != 0 ? -1 : 0;
+  fetch = {file.bytes.data(), file.bytes.size()};
+  lws_callback_on_writable(wsi);
+  return 0;
+}
+
+int Viewer::Server::send_chunk(lws* wsi, Fetch& fetch) {
+  if (fetch.left == 0) return -1;
+  const std::size_t size = std::min(kChunk, fetch.left);
+  buffer.resize(LWS_PRE + size);
+  std::memcpy(buffer.data() + LWS_PRE, fetch.next, size);
+  fetch = {fetch.next + size, fetch.left - size};
+  const auto kind = fetch.left == 0 ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP;
+  if (lws_write(wsi, reinterpret_cast<unsigned char*>(buffer.data()) + LWS_PRE, size, kind) < 0) return -1;
+  if (fetch.left == 0) return lws_http_transaction_completed(wsi) != 0 ? -1 : 0;
+  lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, kPatience);
+  lws_callback_on_writable(wsi);
+  return 0;
+}
+
+// WebSocket
+
+bool Viewer::Server::may_connect(lws* wsi) const {
+  const std::string host = header_of(wsi, WSI_TOKEN_HOST);
+  return pages.size() < kMostPages && header_of(wsi, WSI_TOKEN_GET_URI) == "/live" &&
+         host_is_ours(host, address.typed) && same_origin(header_of(wsi, WSI_TOKEN_ORIGIN), host);
+}
+
+void Viewer::Server::open(lws* wsi, Page*& page) {
+  // What waits in the system is old when it comes.
+  const int fd = lws_get_socket_fd(wsi);
+  setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsent, sizeof kUnsent);
+  page = &pages.emplace_back(Page{wsi, PageLink(now()), {}});
+  feed.pages = static_cast<int>(pages.size());
+}
+
+int Viewer::Server::close(Page& page, lws_close_status why, std::string text) {
+  lws_close_reason(page.wsi, why, reinterpret_cast<unsigned char*>(text.data()), text.size());
+  return -1;
+}
+
+int Viewer::Server::on_message(Page& page, std::string_view part) {
+  if (lws_frame_is_binary(page.wsi) != 0)
+    return close(page, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "text, please");
+  if (page.coming.size() + part.size() > kLongestPageMessage)
+    return close(page, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "too long");
+  page.coming += part;
+  if (lws_remaining_packet_payload(page.wsi) > 0 || lws_is_final_fragment(page.wsi) == 0) return 0;
+  if (!page.link.may_say(now())) return close(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "too many messages");
+  const auto message = read_page_message(std::exchange(page.coming, {}));
+  if (!message || !obey(page, *message))
+    return close(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "no message that is known here");
+  lws_callback_on_writable(page.wsi);
+  return 0;
+}
+
+/// Whether it may be said now; hello comes first, and once.
+bool Viewer::Server::obey(Page& page, const PageMessage& message) {
+  if (const auto* hello = std::get_if<PageHello>(&message)) {
+    if (page.link.greeted()) return false;
+    page.link.greet(!token.empty() && protocol::equal_in_constant_time(hello->token, token));
+    return true;
+  }
+  if (!page.link.greeted()) return false;
+  if (const auto* want = std::get_if<PageWant>(&message)) {
+    const bool known = std::ranges::find(scene.fields, want->field) != scene.fields.end();
+    if (!want->field.empty() && !known) page.link.refuse("this scene cannot be coloured by " + want->field);
+    page.link.want_field(known);
+  } else if (const auto* shown = std::get_if<PageShown>(&message)) {
+    page.link.shown(shown->step);
+  } else if (page.link.may_control()) {
+    control(page, message);
+  } else {
+    page.link.refuse("this page may only look on; who has the address with the token may do more");
+  }
+  return true;
+}
+
+void Viewer::Server::control(Page& page, const PageMessage& message) {
+  if (const auto* pause = std::get_if<PagePause>(&message)) {
+    if (!scene.pausable) return page.link.refuse("this session cannot be paused");
+    feed.steps = 0;
+    feed.paused = pause->paused;
+    look();
+  } else if (std::holds_alternative<PageStep>(message)) {
+    if (!feed.paused) return page.link.refuse("single steps are made while paused");
+    ++feed.steps;
+  } else if (const auto* pointer = std::get_if<PagePointer>(&message)) {
+    if (pointer->tool >= scene.tools.size()) return page.link.refuse("the scene has no such tool");
+    feed.pointers[pointer->tool].write(*pointer);
+  } else if (const auto* choose = std::get_if<PageChoose>(&message)) {
+    const auto found = std::ranges::find(scene.gallery, choose->scene);
+    if (found == scene.gallery.end()) return page.link.refuse("no scene of that name can be chosen here");
+    feed.chosen = static_cast<int>(found - scene.gallery.begin());
+  }
+}
+
+int Viewer::Server::send_next(Page& page) {
+  if (page.ends) return close(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "no hello");
+  const auto kind = page.link.next(maker.showing(), now(), sent);
+  if (!kind) return 0;
+  buffer.resize(LWS_PRE + sent.size());
+  std::memcpy(buffer.data() + LWS_PRE, sent.data(), sent.size());
+  const auto how = *kind == PageLink::Kind::kText ? LWS_WRITE_TEXT : LWS_WRITE_BINARY;
+  if (lws_write(page.wsi, reinterpret_cast<unsigned char*>(buffer.data()) + LWS_PRE, sent.size(), how) < 0)
+    return -1;
+  lws_callback_on_writable(page.wsi);  // there may be more
+  return 0;
+}
+
+Viewer::Viewer(const ViewerAddress& address, std::string token, const SceneFacts& scene, ViewerFeed& feed,
+               const Bytes* session)
+    : server_(std::make_unique<Server>(address, std::move(token), scene, feed, session)) {}
+
+Viewer::~Viewer() = default;
+
+const protocol::Endpoint& Viewer::endpoint() const {
+  return server_->address.endpoint;
+}
+
+void Viewer::run() noexcept {
+  while (!server_->stops && lws_service(server_->context, 0) >= 0) {
+  }
+}
+
+void Viewer::stop() noexcept {
+  server_->stops = true;
+  ring();
+}
+
+void Viewer::ring() noexcept {
+  lws_cancel_service(server_->context);
+}
+
+}  // namespace palpate::sim
