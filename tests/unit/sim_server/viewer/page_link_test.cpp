@@ -1,0 +1,226 @@
+#include "sim_server/viewer/page_link.h"
+
+#include <nlohmann/json.hpp>
+
+#include "sim_server/viewer/showing_maker.h"
+#include "tests/support/catch.h"
+#include "tests/support/page_decoder.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A tetrahedron with one tool, and a page that looks at it.
+struct Session {
+  SceneFacts scene;
+  std::unique_ptr<ViewerFeed> feed;
+  std::unique_ptr<ShowingMaker> maker;
+  PageLink link{1s};
+  Time time = 1s;
+  test::PageDecoder page;
+  std::vector<std::string> texts;
+
+  Session() {
+    scene.title = "A tetrahedron";
+    scene.tools.resize(1);
+    scene.gallery = {"a", "b"};
+    scene.pausable = true;
+    scene.organ.rest = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    scene.organ.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    scene.organ.flags = {1, 0, 0, 2};
+    feed = std::make_unique<ViewerFeed>(scene.organ.rest);
+    maker = std::make_unique<ShowingMaker>(scene, *feed);
+  }
+  void step(std::uint64_t number, float x = 0) {
+    time += 20ms;
+    Picture& picture = feed->pictures.back();
+    picture.step = number;
+    picture.simulated = 0.02 * static_cast<double>(number);
+    picture.positions = {x, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    picture.tools[0].sample = {number, 0.02 * static_cast<double>(number), 2.5F, 0};
+    feed->pictures.publish();
+    maker->look(time);
+  }
+  /// All that the page gets now; how many messages.
+  int take_all() {
+    Bytes message;
+    int count = 0;
+    while (const auto kind = link.next(maker->showing(), time, message)) {
+      ++count;
+      REQUIRE(count < 50);
+      if (*kind == PageLink::Kind::kBinary) {
+        page.take(message);
+      } else {
+        texts.emplace_back(reinterpret_cast<const char*>(message.data()), message.size());
+      }
+    }
+    return count;
+  }
+  nlohmann::json last_text() const { return nlohmann::json::parse(texts.back()); }
+};
+
+}  // namespace
+
+TEST_CASE("viewer: a page gets nothing before it says hello, which it must within 5 s") {
+  Session session;
+  session.step(1);
+  CHECK(session.take_all() == 0);
+  CHECK_FALSE(session.link.too_quiet(6s));
+  CHECK(session.link.too_quiet(6001ms));
+  session.link.greet(false);
+  CHECK_FALSE(session.link.too_quiet(100s));
+}
+
+TEST_CASE("viewer: a page gets the scene, the topology, the state and the whole surface, then what is new") {
+  Session session;
+  session.link.greet(false);
+  session.step(1, 0.25F);
+  CHECK(session.take_all() == 5);  // and the sample
+  REQUIRE(session.texts.size() == 2);
+  const auto scene = nlohmann::json::parse(session.texts[0])["scene"];
+  CHECK(scene["title"] == "A tetrahedron");
+  CHECK(scene["control"] == false);
+  CHECK(scene["pausable"] == false);
+  CHECK_FALSE(scene.contains("scenes"));
+  CHECK(session.last_text()["state"]["step"] == 1);
+  CHECK(session.page.whole_ones == 1);
+  CHECK(session.page.positions[0] == Approx(0.25).margin(1e-4));
+  CHECK(session.page.sample_forces == std::vector<double>{2.5});
+  CHECK(session.take_all() == 0);
+  session.step(2, 0.5F);
+  CHECK(session.take_all() == 3);
+  CHECK(session.page.named == 5);
+  CHECK(session.page.positions[0] == Approx(0.5).margin(1e-4));
+}
+
+TEST_CASE("viewer: a page that takes nothing for a while gets the newest, not what it missed") {
+  Session session;
+  session.link.greet(false);
+  session.step(1);
+  session.take_all();
+  for (std::uint64_t step = 2; step <= 100; ++step) session.step(step, 0.001F * static_cast<float>(step));
+  CHECK(session.take_all() == 3);
+  CHECK(session.page.surfaces == 2);
+  CHECK(session.page.step == 100);
+  CHECK(session.page.positions[0] == Approx(0.1).margin(1e-4));
+}
+
+TEST_CASE("viewer: while nothing steps a page gets states, and no surfaces") {
+  Session session;
+  session.link.greet(false);
+  session.step(1);
+  session.take_all();
+  const std::size_t before = session.texts.size();
+  for (int look = 0; look < 100; ++look) {
+    session.time += 10ms;
+    session.maker->look(session.time);
+    session.take_all();
+  }
+  CHECK(session.texts.size() - before >= 5);
+  CHECK(session.texts.size() - before <= 7);
+  CHECK(session.page.surfaces == 1);
+  CHECK(session.last_text()["state"]["rate_hz"] == 0);
+}
+
+TEST_CASE("viewer: a page that tells what it drew has at most four surfaces on their way") {
+  Session session;
+  session.link.greet(false);
+  session.step(1);
+  session.take_all();
+  session.link.shown(1);
+  const auto run = [&](std::uint64_t from) {
+    for (std::uint64_t step = from; step < from + 20; ++step) {
+      session.step(step, 0.001F * static_cast<float>(step));
+      session.take_all();
+    }
+  };
+  run(2);
+  CHECK(session.page.surfaces == 1 + 4);
+  CHECK(session.page.step == 5);
+  session.link.shown(4);  // one is still on its way
+  run(22);
+  CHECK(session.page.surfaces == 1 + 4 + 3);
+  session.link.shown(24);
+  session.step(50);
+  session.take_all();
+  CHECK(session.page.step == 50);
+}
+
+TEST_CASE("viewer: another topology begins with its whole surface") {
+  Session session;
+  session.link.greet(false);
+  session.step(1);
+  session.take_all();
+  Showing other = session.maker->showing();
+  other.version = 2;
+  Bytes message;
+  std::vector<std::uint8_t> kinds;
+  while (session.link.next(other, session.time + 100ms, message)) {
+    kinds.push_back(std::to_integer<std::uint8_t>(message[0]));
+    if (message[0] != std::byte{'{'}) session.page.take(message);
+  }
+  CHECK(kinds == std::vector<std::uint8_t>{1, '{', 2});
+  CHECK(session.page.version == 2);
+  CHECK(session.page.whole_ones == 2);
+}
+
+TEST_CASE("viewer: who has the token is told what it may do, and of what was not obeyed") {
+  Session session;
+  session.link.greet(true);
+  session.link.refuse("first");
+  session.link.refuse("second");
+  session.step(1);
+  session.take_all();
+  CHECK(session.texts[0] == R"({"refused":"second"})");
+  const auto scene = nlohmann::json::parse(session.texts[1])["scene"];
+  CHECK(scene["control"] == true);
+  CHECK(scene["pausable"] == true);
+  CHECK(scene["scenes"] == std::vector<std::string>{"a", "b"});
+}
+
+TEST_CASE("viewer: more than 200 messages a second are too many") {
+  Session session;
+  int taken = 0;
+  for (int k = 0; k < 1000; ++k) taken += session.link.may_say(10s) ? 1 : 0;
+  CHECK(taken == 200);
+  CHECK_FALSE(session.link.may_say(10s + 4ms));
+  CHECK(session.link.may_say(10s + 6ms));
+}
+
+TEST_CASE("viewer: rates are measured over the last second") {
+  Session session;
+  session.link.greet(false);
+  for (std::uint64_t step = 1; step <= 200; ++step) session.step(step);
+  CHECK(session.maker->showing().rates.steps_hz == Approx(50).epsilon(0.1));
+  CHECK(session.maker->showing().rates.real_time_factor == Approx(1).epsilon(0.1));
+}
+
+TEST_CASE("viewer: what a client tells reaches a page once") {
+  Session session;
+  session.link.greet(false);
+  session.step(1);
+  session.take_all();
+  SeenClient client{.tool = 0, .laws = 2, .law = 1};
+  client.law_names = {SeenClient::Name{"constant"}, SeenClient::Name{"linear_position"}};
+  client.errors_percent = {12.5F, std::nanf("")};
+  client.interventions = 1;
+  client.intervention_names = {SeenClient::Name{"clamped"}};
+  client.intervention_counts = {3};
+  session.feed->clients[0].write(client);
+  ClientTicks ticks{.tool = 0, .laws = 2, .count = 1};
+  for (int k = 0; k < 20; ++k) {
+    session.feed->ticks.push(ticks);
+  }
+  session.maker->look(session.time);
+  // Of the ticks the newest sixteen.
+  CHECK(session.take_all() == 1 + 16);
+  const auto told = session.last_text()["client"];
+  CHECK(told["law"] == "linear_position");
+  CHECK(told["errors_percent"][0] == 12.5);
+  CHECK(told["errors_percent"][1].is_null());
+  CHECK(told["interventions"]["clamped"] == 3);
+  session.maker->look(session.time);
+  CHECK(session.take_all() == 0);
+}
