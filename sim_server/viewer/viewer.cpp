@@ -79,7 +79,11 @@ struct Viewer::Server {
     lws* wsi;
     PageLink link;
     std::string coming;  // of a message that comes in parts
-    bool ends = false;
+    struct End {
+      lws_close_status why;
+      std::string text;
+    };
+    std::optional<End> end{};  // it is told so, and closed, when its connection takes that
   };
   struct Timer {
     lws_sorted_usec_list_t entry{};
@@ -100,8 +104,8 @@ struct Viewer::Server {
   int send_chunk(lws* wsi, Fetch& fetch);
   bool may_connect(lws* wsi) const;
   void open(lws* wsi, Page*& page);
-  int on_message(Page& page, std::string_view part);
-  int close(Page& page, lws_close_status why, std::string text);
+  void on_message(Page& page, std::string_view part);
+  void end(Page& page, lws_close_status why, std::string text);
   bool obey(Page& page, const PageMessage& message);
   void control(Page& page, const PageMessage& message);
   int send_next(Page& page);
@@ -190,7 +194,8 @@ int Viewer::Server::on_event(lws* wsi, lws_callback_reasons reason, void* user, 
       return live ? 0 : -1;
     case LWS_CALLBACK_RECEIVE:
       if (!live || *page == nullptr) return -1;
-      return server->on_message(**page, {static_cast<const char*>(in), size});
+      server->on_message(**page, {static_cast<const char*>(in), size});
+      return 0;
     case LWS_CALLBACK_SERVER_WRITEABLE:
       return live && *page != nullptr ? server->send_next(**page) : -1;
     case LWS_CALLBACK_CLOSED:
@@ -225,8 +230,8 @@ void Viewer::Server::look() {
   const Time time = now();
   maker.look(time);
   for (Page& page : pages) {
-    page.ends = page.ends || page.link.too_quiet(time);
-    if (page.link.greeted() || page.ends) lws_callback_on_writable(page.wsi);
+    if (page.link.too_quiet(time)) end(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "no hello");
+    if (page.link.greeted()) lws_callback_on_writable(page.wsi);
   }
 }
 
@@ -303,28 +308,31 @@ void Viewer::Server::open(lws* wsi, Page*& page) {
   // What waits in the system is old when it comes.
   const int fd = lws_get_socket_fd(wsi);
   setsockopt(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsent, sizeof kUnsent);
-  page = &pages.emplace_back(Page{wsi, PageLink(now()), {}});
+  page = &pages.emplace_back(Page{wsi, PageLink(now()), {}, {}});
   feed.pages = static_cast<int>(pages.size());
 }
 
-int Viewer::Server::close(Page& page, lws_close_status why, std::string text) {
-  lws_close_reason(page.wsi, why, reinterpret_cast<unsigned char*>(text.data()), text.size());
-  return -1;
+/// When the connection takes that, or after a while without.
+void Viewer::Server::end(Page& page, lws_close_status why, std::string text) {
+  if (page.end) return;
+  page.end = {why, std::move(text)};
+  lws_set_timeout(page.wsi, PENDING_TIMEOUT_USER_REASON_BASE, kPatience);
+  lws_callback_on_writable(page.wsi);
 }
 
-int Viewer::Server::on_message(Page& page, std::string_view part) {
+void Viewer::Server::on_message(Page& page, std::string_view part) {
+  if (page.end) return;
   if (lws_frame_is_binary(page.wsi) != 0)
-    return close(page, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "text, please");
+    return end(page, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "text, please");
   if (page.coming.size() + part.size() > kLongestPageMessage)
-    return close(page, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "too long");
+    return end(page, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "too long");
   page.coming += part;
-  if (lws_remaining_packet_payload(page.wsi) > 0 || lws_is_final_fragment(page.wsi) == 0) return 0;
-  if (!page.link.may_say(now())) return close(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "too many messages");
+  if (lws_remaining_packet_payload(page.wsi) > 0 || lws_is_final_fragment(page.wsi) == 0) return;
+  if (!page.link.may_say(now())) return end(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "too many messages");
   const auto message = read_page_message(std::exchange(page.coming, {}));
   if (!message || !obey(page, *message))
-    return close(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "no message that is known here");
+    return end(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "no message that is known here");
   lws_callback_on_writable(page.wsi);
-  return 0;
 }
 
 /// Whether it may be said now; hello comes first, and once.
@@ -369,7 +377,11 @@ void Viewer::Server::control(Page& page, const PageMessage& message) {
 }
 
 int Viewer::Server::send_next(Page& page) {
-  if (page.ends) return close(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "no hello");
+  if (page.end) {
+    std::string& text = page.end->text;
+    lws_close_reason(page.wsi, page.end->why, reinterpret_cast<unsigned char*>(text.data()), text.size());
+    return -1;
+  }
   const auto kind = page.link.next(maker.showing(), now(), sent);
   if (!kind) return 0;
   buffer.resize(LWS_PRE + sent.size());
