@@ -11,6 +11,7 @@
 #include "sim_server/commands/run.h"
 #include "sim_server/commands/solve.h"
 #include "sim_server/commands/study.h"
+#include "sim_server/commands/view.h"
 #include "sim_server/deformation/deformation_models.h"
 
 namespace {
@@ -220,6 +221,18 @@ CLI::App* add_replay(CLI::App& app, sim::ReplayOptions& options) {
   return command;
 }
 
+CLI::App* add_view(CLI::App& app, sim::ViewOptions& options) {
+  auto* command = app.add_subcommand("view", "Open a capture in the live page, to play and search it");
+  command->add_option("F.pcap", options.capture, "pcap or pcapng with a session of Palpate")->required();
+  command->add_option("--scene", options.scene,
+                      "Scene file of that session: steps it again, so that the organ moves, too");
+  add_viewer_option(command, options.viewer);
+  command->add_option("--seconds", options.seconds, "Stop after so many seconds (default: at Ctrl-C)");
+  add_cache_or_none(command, options.cache);
+  command->footer("Example: sim_server view F.pcap --scene configs/scenes/liver.toml");
+  return command;
+}
+
 struct KeygenOptions {
   std::string file;
   bool add = false;
@@ -291,6 +304,8 @@ int run(int argc, char** argv) {
   const auto* mesh_info = add_mesh_info(app, mesh_file);
   sim::ReplayOptions replaying;
   const auto* replay = add_replay(app, replaying);
+  sim::ViewOptions viewing;
+  const auto* view = add_view(app, viewing);
   KeygenOptions making;
   const auto* keygen = add_keygen(app, making);
   const auto [list, clear] = add_cache(app, cached);
@@ -300,6 +315,10 @@ int run(int argc, char** argv) {
   if (*replay) {
     if (replaying.seconds) require_at_least(*replaying.seconds, 1e-3, "--seconds", "s");
     return sim::serve_replay(replaying);
+  }
+  if (*view) {
+    if (viewing.seconds) require_at_least(*viewing.seconds, 1e-3, "--seconds", "s");
+    return sim::view_capture(viewing);
   }
   if (*keygen) return sim::make_key(making.file, making.add);
   if (*list) return sim::list_cache(cached);

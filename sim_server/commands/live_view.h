@@ -7,9 +7,6 @@
 
 namespace palpate::sim {
 
-/// What the page is told of a scene that is served.
-SceneFacts facts_of(const Scene& scene, const Simulation& simulation);
-
 /// The live page of a session: copies what a page is shown out of the simulation's thread, while a page is
 /// open, and lets who has the token pause it.
 class LiveView final : public LoopObserver {
@@ -30,7 +27,6 @@ class LiveView final : public LoopObserver {
 
  private:
   void note(const LoopTurn& turn) noexcept;
-  void fill(Picture& picture) noexcept;
 
   const Simulation& simulation_;
   SceneFacts facts_;

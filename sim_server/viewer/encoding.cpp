@@ -37,6 +37,7 @@ bool same(std::span<const std::uint16_t> a, std::span<const std::uint16_t> b, st
 }  // namespace
 
 ViewBox view_box(std::span<const Vec3> rest) {
+  if (rest.empty()) return {{-1, -1, -1}, {2, 2, 2}};
   Vec3 least = Vec3::Constant(std::numeric_limits<double>::infinity()), most = -least;
   for (const Vec3& p : rest) {
     least = least.cwiseMin(p);

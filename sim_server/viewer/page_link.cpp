@@ -21,8 +21,8 @@ std::optional<PageLink::Kind> PageLink::next(const Showing& showing, Time now, B
     return put_text(refused_text(why), out);
   }
   if (const auto kind = begin(showing, out)) return kind;
-  if (showing.scene->recorded) return {};
-  if (now - state_at_ >= kStateEach || (state_ != showing.pictures && surface_due(showing, now))) {
+  if (!showing.live) return {};
+  if (now - state_at_ >= kStateEach || (state_ != showing.pictures && may_follow(now - state_at_))) {
     state_ = showing.pictures;
     state_at_ = now;
     return put_text(state_text(*showing.picture, showing.peers, showing.rates, showing.paused), out);
@@ -44,7 +44,7 @@ std::optional<PageLink::Kind> PageLink::begin(const Showing& showing, Bytes& out
     knows_scene_ = true;
     return put_text(scene_text(*showing.scene, may_control_), out);
   }
-  if (showing.scene->recorded || version_ == showing.version) return {};
+  if (!showing.live || version_ == showing.version || showing.positions.empty()) return {};
   version_ = showing.version;
   surface_ = state_ = 0;
   has_.clear();
@@ -53,7 +53,8 @@ std::optional<PageLink::Kind> PageLink::begin(const Showing& showing, Bytes& out
 }
 
 bool PageLink::next_surface(const Showing& showing, Time now, Bytes& out) {
-  if (!surface_due(showing, now)) return false;
+  if (surface_ == showing.pictures || !may_follow(now - surface_at_) || showing.positions.empty())
+    return false;
   const bool whole = has_.empty();
   if (whole) has_.resize(showing.positions.size());
   const Picture& picture = *showing.picture;
@@ -65,9 +66,9 @@ bool PageLink::next_surface(const Showing& showing, Time now, Bytes& out) {
   return true;
 }
 
-bool PageLink::surface_due(const Showing& showing, Time now) const noexcept {
-  return surface_ != showing.pictures && now - surface_at_ >= kSurfaceEach &&
-         on_the_way_.size() < kMostOnTheWay;
+/// Whether the next picture may be shown, so long after the last.
+bool PageLink::may_follow(Time after) const noexcept {
+  return after >= kSurfaceEach && on_the_way_.size() < kMostOnTheWay;
 }
 
 void PageLink::shown(std::uint32_t step) noexcept {

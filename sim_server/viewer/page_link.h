@@ -13,6 +13,7 @@ namespace palpate::sim {
 /// What there is to show: the newest of everything, the same for all pages. Filled by the page's thread.
 struct Showing {
   const SceneFacts* scene = nullptr;
+  bool live = true;  ///< false: nothing but the scene is sent, the rest stands in `/session`
   ViewBox box;
   std::uint32_t version = 1;  ///< of the topology
   const Picture* picture = nullptr;
@@ -48,6 +49,8 @@ class PageLink {
   bool wants_field() const noexcept { return wants_field_; }
   /// It drew the surface of this step, so those before are no longer on their way.
   void shown(std::uint32_t step) noexcept;
+  /// The next surface is a whole one.
+  void forget_surface() noexcept { has_.clear(); }
   /// The newest reason is told.
   void refuse(std::string why) { refused_ = std::move(why); }
 
@@ -63,7 +66,7 @@ class PageLink {
 
  private:
   std::optional<Kind> begin(const Showing& showing, Bytes& out);
-  bool surface_due(const Showing& showing, Time now) const noexcept;
+  bool may_follow(Time after) const noexcept;
   bool next_surface(const Showing& showing, Time now, Bytes& out);
   bool next_sample(const Showing& showing, Bytes& out);
   bool next_of_client(const Showing& showing, Bytes& out, Kind& kind);

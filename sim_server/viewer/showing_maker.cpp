@@ -7,9 +7,10 @@ constexpr Time kMeasuredOver = std::chrono::seconds(1), kMarkEach = std::chrono:
 
 }  // namespace
 
-ShowingMaker::ShowingMaker(const SceneFacts& scene, ViewerFeed& feed) : feed_(feed) {
+ShowingMaker::ShowingMaker(const SceneFacts& scene, ViewerFeed& feed, bool live) : feed_(feed) {
   const std::size_t tools = scene.tools.size();
   showing_.scene = &scene;
+  showing_.live = live;
   showing_.box = view_box(scene.organ.rest);
   showing_.picture = &feed.pictures.front();
   showing_.pictures = 1;

@@ -9,8 +9,8 @@ namespace palpate::sim {
 /// Takes what is new out of the feed and makes of it what pages are shown. Page's thread; no clock.
 class ShowingMaker {
  public:
-  /// Both outlive this.
-  ShowingMaker(const SceneFacts& scene, ViewerFeed& feed);
+  /// `live`: as in `Showing`. Both outlive this.
+  ShowingMaker(const SceneFacts& scene, ViewerFeed& feed, bool live);
 
   /// Looks for news; `now` is for the rates.
   void look(Time now);

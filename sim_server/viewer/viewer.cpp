@@ -132,7 +132,7 @@ Viewer::Server::Server(const ViewerAddress& where, std::string token_, const Sce
       scene(scene_),
       feed(feed_),
       session(session_),
-      maker(scene_, feed_) {
+      maker(scene_, feed_, !scene_.recorded) {
   require_free(address);
   lws_set_log_level(0, nullptr);
   protocols[0].name = "http";

@@ -31,7 +31,7 @@ struct Session {
     scene.organ.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     scene.organ.flags = {1, 0, 0, 2};
     feed = std::make_unique<ViewerFeed>(scene.organ.rest);
-    maker = std::make_unique<ShowingMaker>(scene, *feed);
+    maker = std::make_unique<ShowingMaker>(scene, *feed, true);
   }
   void step(std::uint64_t number, float x = 0) {
     time += 20ms;

@@ -1,0 +1,73 @@
+#include "sim_server/serving/captured_steps.h"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/contact/tool.h"
+#include "common/log.h"
+#include "protocol/capture.h"
+#include "protocol/codec.h"
+
+namespace palpate::sim {
+using namespace protocol;
+
+namespace {
+
+constexpr std::size_t kMostHeld = 100;     // sessions
+constexpr std::size_t kStatesKept = 4096;  // of each, the newest: an answer is to one of them
+
+struct HeldSession {
+  std::vector<ToolState> states = std::vector<ToolState>(kStatesKept);  // by tick
+  std::uint64_t newest_tick = 0, newest_sample = 0;
+};
+
+ToolState state_of(const HeldSession& session, const ForceSample& sample) {
+  const ToolState& state = session.states[sample.tool_tick % kStatesKept];
+  if (state.tick == sample.tool_tick) return state;
+  ToolState made{.tool = sample.tool, .tick = sample.tool_tick, .t_ns = sample.tool_t_ns};
+  made.p_W = sample.p_W;
+  return made;
+}
+
+}  // namespace
+
+std::size_t read_captured_steps(const std::filesystem::path& capture,
+                                const std::function<void(const ToolState&)>& on_state,
+                                const std::function<void(const CapturedAnswer&)>& on_answer) {
+  CaptureReader reader(capture);
+  std::map<std::uint64_t, HeldSession> sessions;
+  std::array<bool, kMaxTools> answered{};  // in this step
+  CapturedDatagram captured;
+  Datagram datagram;
+  std::optional<Time> first;
+  std::size_t answers = 0;
+  while (reader.next(captured)) {
+    if (decode(captured.bytes, datagram) != Verdict::kAccepted) continue;
+    const std::uint64_t number = datagram.header.session;
+    if (sessions.size() >= kMostHeld && !sessions.contains(number)) continue;
+    if (const auto* state = std::get_if<ToolState>(&datagram.message)) {
+      HeldSession& session = sessions[number];
+      if (state->tick <= session.newest_tick) continue;
+      session.newest_tick = state->tick;
+      session.states[state->tick % kStatesKept] = *state;
+      on_state(*state);
+    } else if (const auto* sample = std::get_if<ForceSample>(&datagram.message)) {
+      HeldSession& session = sessions[number];
+      if (sample->number <= session.newest_sample) continue;
+      session.newest_sample = sample->number;
+      if (!first) first = captured.t;
+      const bool begins = answers == 0 || answered[sample->tool];
+      if (begins) answered = {};
+      answered[sample->tool] = true;
+      on_answer({captured.t - *first, state_of(session, *sample), *sample, begins});
+      ++answers;
+    }
+  }
+  if (const std::string trouble = reader.trouble(); !trouble.empty())
+    log::warning("{}: {}", capture.string(), trouble);
+  return answers;
+}
+
+}  // namespace palpate::sim

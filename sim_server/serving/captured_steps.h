@@ -1,0 +1,25 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+
+#include "common/time.h"
+#include "protocol/messages.h"
+
+namespace palpate::sim {
+
+/// What a server answered in a captured session, and to which tool state.
+struct CapturedAnswer {
+  Time t{};                   ///< when it was captured, from the first of them
+  protocol::ToolState state;  ///< as captured; where the capture lacks it, the place of the answer alone
+  protocol::ForceSample sample;
+  bool begins_step = false;  ///< those that follow, of other tools, were computed in the same step
+};
+
+/// Reads a capture from its beginning: each tool state that came, in order, and each answer, once; what both
+/// ends or two interfaces captured counts once. Returns how many answers there were. Throws `Error` where the
+/// file cannot be read; warns where it ends amid a datagram.
+std::size_t read_captured_steps(const std::filesystem::path& capture,
+                                const std::function<void(const protocol::ToolState&)>& on_state,
+                                const std::function<void(const CapturedAnswer&)>& on_answer);
+
+}  // namespace palpate::sim
