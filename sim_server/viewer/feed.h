@@ -1,6 +1,6 @@
 #pragma once
 #include <atomic>
-#include <functional>
+#include <span>
 
 #include "common/latest_value.h"
 #include "common/spsc_ring.h"

@@ -1,8 +1,9 @@
 #include "sim_server/viewer/texts.h"
 
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "common/report.h"
 

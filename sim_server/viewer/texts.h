@@ -1,5 +1,6 @@
 #pragma once
 /// The text messages to a page: MESSAGES.md. No clock, no socket.
+#include <span>
 #include <string>
 
 #include "sim_server/viewer/picture.h"

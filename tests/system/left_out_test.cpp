@@ -144,7 +144,7 @@ TEST_CASE("left out: a minimal scene has these parts in memory, and no other") {
   }
 }
 
-TEST_CASE("left out: a server starts two threads, one more to record, and asks a quiet scene for no other") {
+TEST_CASE("left out: a server starts two threads, one more to record or for the page, and asks a quiet scene for no other") {
   const TemporaryFolder folder;
   const std::multiset<std::string> two{"palpate-net", "palpate-sim"};
   const unsigned cores = std::thread::hardware_concurrency();
@@ -157,6 +157,14 @@ TEST_CASE("left out: a server starts two threads, one more to record, and asks a
       CHECK(others <= 1 + 2 * (cores - 1));
     }
   }
+#ifdef PALPATE_WITH_VIEWER
+  SECTION("with the live page") {
+    const Waiting server(folder.write("scene.toml", minimal("rigid")).string(), {"--viewer", "0"});
+    auto three = two;
+    three.insert("palpate-view");
+    CHECK(server.threads(three).first == three);
+  }
+#endif
 #ifdef PALPATE_WITH_CAPTURE
   SECTION("recording") {
     const Waiting server(folder.write("scene.toml", minimal("rigid")).string(),
