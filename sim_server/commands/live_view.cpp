@@ -25,10 +25,10 @@ std::string LiveView::link() const {
          (token_.empty() ? "" : "#token=" + token_);
 }
 
-bool LiveView::may_step() noexcept {
-  if (!feed_.paused.load(std::memory_order_relaxed)) return true;
+LoopObserver::Leave LiveView::may_step() noexcept {
+  if (!feed_.paused.load(std::memory_order_relaxed)) return {};
   int left = feed_.steps.load(std::memory_order_relaxed);
-  return left > 0 && feed_.steps.compare_exchange_strong(left, left - 1, std::memory_order_relaxed);
+  return {left > 0 && feed_.steps.compare_exchange_strong(left, left - 1, std::memory_order_relaxed), true};
 }
 
 void LiveView::turned(const LoopTurn& turn) noexcept {

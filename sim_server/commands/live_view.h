@@ -15,7 +15,7 @@ class LiveView final : public LoopObserver {
   LiveView(const ViewerAddress& address, std::string token, SceneFacts facts, const Simulation& simulation,
            Time began);
 
-  bool may_step() noexcept override;
+  Leave may_step() noexcept override;
   void turned(const LoopTurn& turn) noexcept override;
 
   Viewer& viewer() { return viewer_; }

@@ -17,6 +17,7 @@
 #include "protocol/recording_report.h"
 #include "sim_server/commands/gallery.h"
 #include "sim_server/commands/live_view.h"
+#include "sim_server/commands/page_news.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/net_link.h"
@@ -296,7 +297,9 @@ std::optional<std::size_t> serve_scene(ServerOptions& options, std::optional<Vie
   const auto view = request ? open_view(*request, scene, simulation, gallery, start) : nullptr;
   if (view) request->address.endpoint = view->viewer().endpoint();
   SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools, errors, view.get());
-  NetLink link(socket, std::move(sessions), std::move(pagers), mailboxes, recorder.get());
+  const auto page = view ? std::make_unique<PageMailboxes>() : nullptr;
+  NetLink link(socket, std::move(sessions), std::move(pagers), mailboxes, recorder.get(), page.get());
+  if (view) view->feed().hooks = page_hooks(view->feed(), scene.tools.size(), *page, mailboxes.bell, start);
   {
     std::jthread recording;
     if (recorder) {

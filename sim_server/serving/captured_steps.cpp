@@ -20,7 +20,7 @@ constexpr std::size_t kStatesKept = 4096;  // of each, the newest: an answer is 
 
 struct HeldSession {
   std::vector<ToolState> states = std::vector<ToolState>(kStatesKept);  // by tick
-  std::uint64_t newest_tick = 0, newest_sample = 0;
+  std::uint64_t newest_tick = 0, newest_sample = 0, newest_answered = 0;
 };
 
 ToolState state_of(const HeldSession& session, const ForceSample& sample) {
@@ -57,6 +57,11 @@ std::size_t read_captured_steps(const std::filesystem::path& capture,
       HeldSession& session = sessions[number];
       if (sample->number <= session.newest_sample) continue;
       session.newest_sample = sample->number;
+      // While it was paused, the same was told again.
+      const bool again =
+          (sample->flags & ForceSample::kPaused) != 0 && sample->tool_tick == session.newest_answered;
+      session.newest_answered = sample->tool_tick;
+      if (again) continue;
       if (!first) first = captured.t;
       const bool begins = answers == 0 || answered[sample->tool];
       if (begins) answered = {};

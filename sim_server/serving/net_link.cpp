@@ -54,7 +54,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
     return refuse(verdict, bytes, from);
   }
   const std::size_t before = sessions_.members().size();
-  const std::uint64_t received = stats_.received;
+  const std::uint64_t received = stats_.received, lost = stats_.lost;
   const auto outcome = sessions_.receive(datagram, from, t, fresh_for(datagram), stats_);
   // Before any answer to it, as a reader of the capture expects.
   record(t, from, own_towards(from), bytes, stats_.received > received && !is_to_a_stranger(outcome));
@@ -65,7 +65,10 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   if (outcome.left != nullptr) tool_is_free(outcome.left->tool);
   if (outcome.telemetry != nullptr && page_ != nullptr)
     page_->tools[outcome.telemetry->tool].telemetry.push(*outcome.telemetry);
-  if (outcome.tool_state != nullptr) pass_on(datagram.header.session, *outcome.tool_state);
+  if (outcome.tool_state != nullptr) {
+    count_for_page(outcome.tool_state->tool, stats_.received - received, stats_.lost - lost);
+    pass_on(datagram.header.session, *outcome.tool_state);
+  }
   if (outcome.asking != nullptr) send_pages(*outcome.asking, t);
 }
 
@@ -139,6 +142,21 @@ void NetLink::send_pointers() {
 void NetLink::on_timer() {
   for (const auto& gone : sessions_.expire(now())) tool_is_free(gone.tool);
   note_holders();
+  if (page_ != nullptr) tell_peers();
+}
+
+void NetLink::count_for_page(std::uint8_t tool, std::uint64_t received, std::uint64_t lost) noexcept {
+  peers_[tool].received += received;
+  peers_[tool].lost += lost;
+}
+
+void NetLink::tell_peers() {
+  for (std::size_t i = 0; i < pagers_.size(); ++i) {
+    const auto* const member = sessions_.holder(static_cast<std::uint8_t>(i));
+    peers_[i] = member == nullptr ? PeerCounts{}
+                                  : PeerCounts{true, member->endpoint, peers_[i].received, peers_[i].lost};
+    page_->tools[i].peer.write(peers_[i]);
+  }
 }
 
 void NetLink::note_holders() {

@@ -39,6 +39,8 @@ class NetLink {
   void pass_on(std::uint64_t session, const protocol::ToolState& state);
   void send_pages(const protocol::ToolState& state, Time t);
   void note_holders();
+  void count_for_page(std::uint8_t tool, std::uint64_t received, std::uint64_t lost) noexcept;
+  void tell_peers();
   void on_timer();
   void tool_is_free(std::uint8_t tool);
   void send(protocol::ServerSessions::Member& member, const protocol::Message& message);
@@ -59,6 +61,7 @@ class NetLink {
   std::array<SessionInput, kMaxTools> inputs_;       // of each tool, the newest
   std::vector<protocol::TokenBucket> page_buckets_;  // of each tool
   protocol::LinkStats stats_;
+  std::array<PeerCounts, kMaxTools> peers_{};  // for pages
 };
 
 }  // namespace palpate::sim

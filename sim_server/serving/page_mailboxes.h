@@ -5,14 +5,23 @@
 #include "common/doorbell.h"
 #include "common/latest_value.h"
 #include "common/spsc_ring.h"
+#include "protocol/endpoint.h"
 #include "protocol/messages.h"
 
 namespace palpate::sim {
+
+/// Who holds a tool, and the datagrams of his session so far.
+struct PeerCounts {
+  bool held = false;
+  protocol::Endpoint endpoint{};
+  std::uint64_t received = 0, lost = 0;
+};
 
 /// Between the network thread and the thread that serves pages, of one tool.
 struct ToolPageMailboxes {
   SpscRing<protocol::Telemetry> telemetry{32};  // network -> page
   LatestValue<protocol::Pointer> pointer;       // page -> network
+  LatestValue<PeerCounts> peer;                 // network -> page, twenty times a second
 };
 
 /// Where pages are served. The bell of `SimMailboxes` is to be rung when a pointer waits.

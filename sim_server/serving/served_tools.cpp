@@ -62,10 +62,7 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionI
                                                         double dt) noexcept {
   assert(inputs.size() == holders_.size());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (inputs[i].session != holders_[i].session) {
-      simulation_.lift_tool(i);  // in another hand, or nobody's: it does not travel from one to the other
-      holders_[i] = {.session = inputs[i].session};
-    }
+    hand_over(i, inputs[i].session);
     inputs_[i] = input_of(i, inputs[i]);
     holders_[i].before = inputs[i].state;
   }
@@ -75,9 +72,32 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionI
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     outcomes_[i] = {answers[i], {}};
     if (inputs[i].session != 0 && inputs[i].fresh)
-      outcomes_[i].answer = sample_of(i, inputs[i].state, answers[i]);
+      outcomes_[i].answer = holders_[i].last = sample_of(i, inputs[i].state, answers[i]);
   }
   return outcomes_;
+}
+
+/// In another hand, or nobody's, it does not travel from one to the other.
+void ServedTools::hand_over(std::size_t tool, std::uint64_t session) noexcept {
+  if (session == holders_[tool].session) return;
+  simulation_.lift_tool(tool);
+  holders_[tool] = {};
+  holders_[tool].session = session;
+}
+
+std::optional<ForceSample> ServedTools::paused(std::size_t tool, const SessionInput& input) noexcept {
+  hand_over(tool, input.session);
+  if (input.session == 0) return {};
+  ForceSample& last = holders_[tool].last;
+  if (last.number == 0) {
+    last.tool = static_cast<std::uint8_t>(tool);
+    last.tool_tick = input.state.tick;
+    last.tool_t_ns = input.state.t_ns;
+    last.p_W = input.state.p_W;
+  }
+  last.number = ++holders_[tool].samples;
+  last.flags |= ForceSample::kPaused;
+  return last;
 }
 
 /// What the simulation is told of a tool, and asked: an old state deserves no new answer.

@@ -36,11 +36,18 @@ class ServedTools {
   /// until the next step; there are none, and nothing happens, while nobody holds any tool.
   std::span<const Outcome> step(std::span<const SessionInput> inputs, double dt) noexcept;
 
+  /// While the simulation is paused: the last sample of this tool once more, with the next number, so that
+  /// its client keeps the session and lets go of the force; nothing where nobody holds it. Without a step of
+  /// this session yet: no force where the tool is.
+  std::optional<protocol::ForceSample> paused(std::size_t tool, const SessionInput& input) noexcept;
+
  private:
   struct Holder {
     std::uint64_t session = 0, samples = 0;
     protocol::ToolState before{};  // of the step before
+    protocol::ForceSample last{};
   };
+  void hand_over(std::size_t tool, std::uint64_t session) noexcept;
   ToolInput input_of(std::size_t tool, const SessionInput& input) noexcept;
   void follow_path(std::size_t tool, const SessionInput& input, ToolInput& told) noexcept;
   protocol::ForceSample sample_of(std::size_t tool, const protocol::ToolState& state,

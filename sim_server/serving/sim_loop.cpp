@@ -8,6 +8,7 @@
 namespace palpate::sim {
 namespace {
 constexpr Time kPollPeriod = std::chrono::microseconds(200);  // rate 0: how often to look for a new pose
+constexpr Time kTellPeriod = std::chrono::milliseconds(100);  // of a pause
 constexpr Time kLookPeriod = std::chrono::milliseconds(100);  // how near a tool is that has not touched yet
 }  // namespace
 
@@ -43,15 +44,14 @@ void SimLoop::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     const bool fresh = read_inputs();
     const Time start = now();
-    LoopTurn turn;
+    LoopTurn done;
     if (period_ > Time::zero() || fresh) {
-      if (observer_ == nullptr || observer_->may_step())
-        turn = step(to_seconds(period_ > Time::zero() ? period_ : start - last));
+      done = turn(to_seconds(period_ > Time::zero() ? period_ : start - last));
       last = start;
     }
-    turn.inputs = inputs_;
-    turn.late = stats_.late;
-    if (observer_ != nullptr) observer_->turned(turn);
+    done.inputs = inputs_;
+    done.late = stats_.late;
+    if (observer_ != nullptr) observer_->turned(done);
     deadline += period_ > Time::zero() ? period_ : kPollPeriod;
     if (const Time behind = now() - deadline; behind > Time::zero()) {
       if (period_ > Time::zero()) {
@@ -75,7 +75,27 @@ bool SimLoop::read_inputs() noexcept {
   return any;
 }
 
-LoopTurn SimLoop::step(double dt) noexcept {
+LoopTurn SimLoop::turn(double dt) noexcept {
+  const LoopObserver::Leave leave = observer_ != nullptr ? observer_->may_step() : LoopObserver::Leave{};
+  if (leave.step) return step(dt, leave.paused);
+  tell_paused();
+  return {};
+}
+
+void SimLoop::tell_paused() noexcept {
+  if (now() < next_told_) return;
+  next_told_ = now() + kTellPeriod;
+  bool told = false;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    if (const auto sample = served_.paused(i, inputs_[i])) {
+      mailboxes_.tools[i].force.write({inputs_[i].session, *sample});
+      told = true;
+    }
+  }
+  if (told) mailboxes_.bell.ring();
+}
+
+LoopTurn SimLoop::step(double dt, bool paused) noexcept {
   const Time start = now();
   const auto outcomes = served_.step(inputs_, dt);
   if (outcomes.empty()) return {};
@@ -86,6 +106,7 @@ LoopTurn SimLoop::step(double dt) noexcept {
     if (!outcomes[i].answer) continue;
     ForceOutput output{inputs_[i].session, *outcomes[i].answer};
     output.sample.step_ns = took.count();
+    if (paused) output.sample.flags |= protocol::ForceSample::kPaused;
     mailboxes_.tools[i].force.write(output);
     answered = true;
   }

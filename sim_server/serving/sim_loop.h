@@ -72,9 +72,12 @@ struct LoopTurn {
 class LoopObserver {
  public:
   virtual ~LoopObserver() = default;
-  /// Asked before each step that is due. While it says no, no tool gets an answer: clients let go by the age
-  /// of their forces.
-  virtual bool may_step() noexcept = 0;
+  /// Asked before each step that is due. While it is paused, clients are told so ten times a second, and by
+  /// the answers to single steps: they let go of their forces.
+  struct Leave {
+    bool step = true, paused = false;
+  };
+  virtual Leave may_step() noexcept = 0;
   /// At the end of each turn, when the forces are out.
   virtual void turned(const LoopTurn& turn) noexcept = 0;
 };
@@ -101,7 +104,9 @@ class SimLoop {
 
  private:
   bool read_inputs() noexcept;
-  LoopTurn step(double dt) noexcept;
+  LoopTurn turn(double dt) noexcept;
+  LoopTurn step(double dt, bool paused) noexcept;
+  void tell_paused() noexcept;
   void count_beyond(std::size_t tool) noexcept;
   void look_how_near(Time now) noexcept;
   void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
@@ -110,7 +115,7 @@ class SimLoop {
   ServedTools served_;
   SimMailboxes& mailboxes_;
   std::span<const ToolSettings> tools_;
-  Time period_, next_look_{};
+  Time period_, next_look_{}, next_told_{};
   std::vector<SessionInput> inputs_;
   ErrorOfForce& errors_;
   LoopObserver* observer_;

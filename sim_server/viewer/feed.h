@@ -1,15 +1,17 @@
 #pragma once
 #include <atomic>
+#include <deque>
+#include <functional>
 #include <span>
 
-#include "common/latest_value.h"
-#include "common/spsc_ring.h"
+#include "common/time.h"
+#include "common/triple_buffer.h"
 #include "sim_server/viewer/picture.h"
 
 namespace palpate::sim {
 
-/// Between the threads of a session and the page's thread: newest values, and what pages ask for. Nobody
-/// waits for anybody. All memory is taken when it is made.
+/// Between the threads of a session and the page's thread: the newest picture, and what pages ask for. Nobody
+/// waits for anybody.
 class ViewerFeed {
  public:
   /// `rest`: (n) of the surface, m, which is shown until the first picture comes.
@@ -17,17 +19,22 @@ class ViewerFeed {
 
   /// Simulation thread to page's thread; `back` holds an old picture, to be overwritten whole.
   TripleBuffer<Picture> pictures;
-  /// Network thread to page's thread, of each tool.
-  std::array<LatestValue<SeenPeer>, kMaxTools> peers;
-  std::array<LatestValue<SeenClient>, kMaxTools> clients;
-  SpscRing<ClientTicks> ticks{64};
+  /// What the page's thread fills in itself, of each tool, in `hooks.news`.
+  std::array<SeenPeer, kMaxTools> peers{};
+  std::array<SeenClient, kMaxTools> clients{};
+  std::array<std::uint64_t, kMaxTools> client_news{};  ///< how many came so far
+  std::deque<ClientTicks> ticks;                       ///< taken out when they are shown
+  /// Set before anything runs, called by the page's thread; empty: there is nobody to ask or to tell.
+  struct Hooks {
+    std::function<void(Time now)> news;
+    std::function<void(const PagePointer&)> point;
+  } hooks;
 
   /// What pages want; written by the page's thread. Any thread may read.
   std::atomic<int> pages{0};        ///< how many are open: with none, nobody needs to fill anything in
   std::atomic<bool> paused{false};  ///< no steps but those of `steps`
   std::atomic<int> steps{0};        ///< to be made while paused; who makes one takes it off
   std::atomic<int> chosen{-1};      ///< of `SceneFacts::gallery`
-  std::array<LatestValue<PagePointer>, kMaxTools> pointers;  ///< for one reader
 
  private:
   static Picture shown_first(std::span<const Vec3> rest) {

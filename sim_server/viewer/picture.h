@@ -84,7 +84,7 @@ struct SeenClient {
   static constexpr std::size_t kMostLaws = 16, kMostInterventions = 16;
   using Name = std::array<char, 32>;  ///< ended by 0
   std::uint8_t tool = 0, laws = 0, interventions = 0;
-  std::uint8_t law = 0;  ///< the one felt, of `law_names`
+  Name law{};  ///< the one felt; behind a colon, which one stands in
   std::array<Name, kMostLaws> law_names{};
   std::array<float, kMostLaws> errors_percent{};  ///< NaN: not scored
   std::array<Name, kMostInterventions> intervention_names{};

@@ -28,14 +28,14 @@ void ShowingMaker::look(Time now) {
     ++showing_.pictures;
     quantise(showing_.box, showing_.picture->positions, showing_.positions);
   }
+  if (feed_.hooks.news) feed_.hooks.news(now);
   for (std::size_t i = 0; i < showing_.peers.size(); ++i) {
-    feed_.peers[i].read(showing_.peers[i]);
-    if (feed_.clients[i].read(showing_.clients[i])) ++showing_.client_news[i];
+    showing_.peers[i] = feed_.peers[i];
+    showing_.clients[i] = feed_.clients[i];
+    showing_.client_news[i] = feed_.client_news[i];
   }
-  while (const ClientTicks* const ticks = feed_.ticks.front()) {
-    showing_.ticks[showing_.ticks_so_far++ % Showing::kTicksKept] = *ticks;
-    feed_.ticks.release();
-  }
+  for (; !feed_.ticks.empty(); feed_.ticks.pop_front())
+    showing_.ticks[showing_.ticks_so_far++ % Showing::kTicksKept] = feed_.ticks.front();
   showing_.paused = feed_.paused;
   measure(now);
 }

@@ -115,7 +115,7 @@ std::string client_text(const SeenClient& client) {
     interventions[text_of(client.intervention_names[i])] = client.intervention_counts[i];
   return dumped({{"client",
                   {{"tool", client.tool},
-                   {"law", client.law < client.laws ? laws[client.law] : Json("")},
+                   {"law", text_of(client.law)},
                    {"laws", laws},
                    {"errors_percent", errors},
                    {"age_ms", brief(client.age_ms)},

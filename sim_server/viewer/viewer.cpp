@@ -368,7 +368,8 @@ void Viewer::Server::control(Page& page, const PageMessage& message) {
     ++feed.steps;
   } else if (const auto* pointer = std::get_if<PagePointer>(&message)) {
     if (pointer->tool >= scene.tools.size()) return page.link.refuse("the scene has no such tool");
-    feed.pointers[pointer->tool].write(*pointer);
+    if (!feed.hooks.point) return page.link.refuse("no mouse moves a tool here");
+    feed.hooks.point(*pointer);
   } else if (const auto* choose = std::get_if<PageChoose>(&message)) {
     const auto found = std::ranges::find(scene.gallery, choose->scene);
     if (found == scene.gallery.end()) return page.link.refuse("no scene of that name can be chosen here");

@@ -18,6 +18,7 @@ struct PageDecoder {
   std::vector<double> positions;  // (3 n), m
   std::size_t surfaces = 0, whole_ones = 0, named = 0;
   std::vector<double> sample_forces;
+  std::vector<double> tick_times, tick_forces;  // of all ticks so far; the force felt
 
   void take(std::span<const std::byte> message) {
     at_ = 0;
@@ -27,6 +28,8 @@ struct PageDecoder {
         return topology();
       case 2:
         return surface();
+      case 3:
+        return ticks();
       case 4:
         return sample();
       default:
@@ -84,6 +87,20 @@ struct PageDecoder {
     ++surfaces;
     whole_ones += whole;
     named += k;
+  }
+  void ticks() {
+    get<std::uint8_t>();
+    const auto laws = get<std::uint8_t>();
+    get<std::uint8_t>();
+    const auto count = get<std::uint32_t>();
+    const auto first = get<double>();
+    const auto dt = static_cast<double>(get<float>());
+    for (std::uint32_t k = 0; k < count; ++k) {
+      tick_times.push_back(first + dt * k);
+      tick_forces.push_back(static_cast<double>(get<float>()));
+    }
+    all<float>(count * laws);
+    end();
   }
   void sample() {
     all<std::uint8_t>(3);

@@ -174,13 +174,75 @@ TEST_CASE("viewer: who has the token pauses, steps once, and goes on") {
   REQUIRE(state_where([](const auto& s) { return s["paused"] == true; }).is_object());
   for (int k = 0; k < 5; ++k) owner.next_text("state");  // what was under way
   const auto held = owner.next_text("state")["step"].get<int>();
-  for (int k = 0; k < 5; ++k) CHECK(owner.next_text("state")["step"] == held);
+  for (int k = 0; k < 12; ++k) {
+    const auto state = owner.next_text("state");
+    CHECK(state["step"] == held);
+    CHECK(state["tools"][0]["held"] == true);  // its client is told, and stays
+  }
   owner.say(R"({"step": 1})");
   owner.say(R"({"step": 1})");
   REQUIRE(state_where([&](const auto& s) { return s["step"] == held + 2; }).is_object());
   for (int k = 0; k < 5; ++k) CHECK(owner.next_text("state")["step"] == held + 2);
   owner.say(R"({"pause": false})");
   CHECK(state_where([&](const auto& s) { return s["step"] > held + 10; })["paused"] == false);
+}
+
+TEST_CASE("viewer: a page is told what only the client knows, and by whom a tool is held") {
+  Watched server;
+  Process client("haptic_client", client_arguments(server.address, {"--seconds", "5"}));
+  WebPage page(server.page);
+  page.hello();
+  nlohmann::json told;
+  for (int k = 0; k < 200 && (told.is_null() || told["felt"][1] == 0); ++k) told = page.next_text("client");
+  REQUIRE(told.is_object());
+  CHECK(told["tool"] == 0);
+  CHECK(told["law"].get<std::string>().size() > 3);
+  CHECK(told["laws"].size() >= 3);
+  CHECK(told["errors_percent"].size() == told["laws"].size());
+  CHECK(told["interventions"].contains("clamped"));
+  CHECK(told["has_motors"] == false);
+  CHECK(told["p"].size() == 3);
+  const auto& ticks = page.decoder;
+  while (ticks.tick_times.size() < 500) REQUIRE(page.next());
+  CHECK(*std::ranges::max_element(ticks.tick_forces) > 0.05);
+  // They follow each other by the period of the loop, but where messages meet, as the clocks are not one.
+  double apart = 0;
+  for (std::size_t k = 1; k < ticks.tick_times.size(); ++k) {
+    const double dt = ticks.tick_times[k] - ticks.tick_times[k - 1];
+    CHECK(dt > -0.1);
+    apart += dt;
+  }
+  CHECK(apart / static_cast<double>(ticks.tick_times.size() - 1) == Approx(0.002).epsilon(0.3));
+  const auto state = page.next_text("state");
+  REQUIRE(state["peers"].size() == 1);
+  CHECK(state["peers"][0]["address"].get<std::string>().starts_with("127.0.0.1:"));
+  CHECK(state["peers"][0]["rate_hz"].get<double>() > 100);
+  CHECK(state["peers"][0]["loss_percent"].get<double>() < 20);
+}
+
+TEST_CASE("viewer: a drag in the page moves the tool of a client whose device is that mouse") {
+  Watched server;
+  Process client("haptic_client",
+                 client_arguments(server.address, {"--seconds", "20", "--device", "browser"}));
+  WebPage owner(server.page);
+  owner.hello(server.page.token);
+  const auto tool_at = [&] {
+    const auto state = owner.next_text("state");
+    return state["tools"][0]["held"] == true ? state["tools"][0]["p"][1].get<double>() : std::nan("");
+  };
+  double y = tool_at();
+  for (int k = 0; k < 300 && !std::isfinite(y); ++k) y = tool_at();
+  REQUIRE(std::isfinite(y));
+  int number = 0;
+  double moved = y;
+  for (int k = 0; k < 300 && std::abs(moved - (y + 0.01)) > 1e-3; ++k) {
+    owner.say(fmt::format(R"({{"pointer": {{"tool": 0, "p": [0, {}, 0], "buttons": 1, "number": {}}}}})",
+                          y + 0.01, ++number));
+    moved = tool_at();
+  }
+  CHECK(moved == Approx(y + 0.01).margin(1e-3));
+  owner.say(R"({"pointer": {"tool": 3, "p": [0, 0, 0], "buttons": 0, "number": 1}})");
+  CHECK(owner.next_text("refused").is_string());
 }
 
 TEST_CASE("viewer: a page that breaks the rules is closed, and no other") {

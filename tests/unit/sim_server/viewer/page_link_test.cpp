@@ -202,16 +202,18 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   session.link.greet(false);
   session.step(1);
   session.take_all();
-  SeenClient client{.tool = 0, .laws = 2, .law = 1};
+  SeenClient client{.tool = 0, .laws = 2};
+  client.law = SeenClient::Name{"linear_position"};
   client.law_names = {SeenClient::Name{"constant"}, SeenClient::Name{"linear_position"}};
   client.errors_percent = {12.5F, std::nanf("")};
   client.interventions = 1;
   client.intervention_names = {SeenClient::Name{"clamped"}};
   client.intervention_counts = {3};
-  session.feed->clients[0].write(client);
+  session.feed->clients[0] = client;
+  ++session.feed->client_news[0];
   ClientTicks ticks{.tool = 0, .laws = 2, .count = 1};
   for (int k = 0; k < 20; ++k) {
-    session.feed->ticks.push(ticks);
+    session.feed->ticks.push_back(ticks);
   }
   session.maker->look(session.time);
   // Of the ticks the newest sixteen.
