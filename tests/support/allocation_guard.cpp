@@ -18,7 +18,7 @@ void count_one() {
 }
 }  // namespace
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(PALPATE_SANITIZED)
 // The sanitizers own the allocator; they call this for every allocation.
 extern "C" void __sanitizer_malloc_hook(const volatile void*, std::size_t) {
   count_one();

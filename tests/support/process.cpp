@@ -13,7 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(PALPATE_SANITIZED)
 constexpr double kSlower = 6;  // programs are, under a sanitizer
 #else
 constexpr double kSlower = 1;
