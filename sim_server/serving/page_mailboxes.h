@@ -2,7 +2,7 @@
 #include <array>
 #include <atomic>
 
-#include "common/doorbell.h"
+#include "common/contact/tool.h"
 #include "common/latest_value.h"
 #include "common/spsc_ring.h"
 #include "protocol/endpoint.h"
