@@ -1,0 +1,169 @@
+// The organ's surface: at rest, now, and what can be measured on it. Plain arrays; nothing of the screen.
+import type { Surface, Topology } from "./messages";
+import type { ToolNow } from "./text_messages";
+
+export class Shape {
+  readonly n: number;
+  readonly m: number;
+  readonly q: Uint16Array; // 3n, as sent
+  readonly p: Float32Array; // 3n, m
+  readonly normals: Float32Array; // 3n, unit, outward
+  known = false; // whether a surface message has come since the topology
+  step = 0;
+  t = 0;
+  private readonly metric_: Float32Array; // 4m: of each triangle at rest, the inverse metric (3) and the area, m2
+
+  constructor(readonly topology: Topology) {
+    this.n = topology.rest.length / 3;
+    this.m = topology.corners.length / 3;
+    this.q = new Uint16Array(3 * this.n);
+    this.p = topology.rest.slice();
+    this.normals = new Float32Array(3 * this.n);
+    this.metric_ = rest_metric(topology);
+    this.update_normals();
+  }
+
+  /** Takes a surface message, or says no: of another topology, of vertices that are not here, or the first not whole. */
+  move(surface: Surface): boolean {
+    const k = surface.q.length / 3;
+    if (surface.version !== this.topology.version) return false;
+    if (surface.vertices ? !this.known || surface.vertices.some((v) => v >= this.n) : k !== this.n) return false;
+    if (surface.vertices) {
+      for (let i = 0; i < k; i++) this.q.set(surface.q.subarray(3 * i, 3 * i + 3), 3 * surface.vertices[i]);
+    } else {
+      this.q.set(surface.q);
+    }
+    const { box_min, box_size } = this.topology;
+    for (let i = 0; i < this.q.length; i++) this.p[i] = box_min[i % 3] + (box_size[i % 3] * this.q[i]) / 65535;
+    this.known = true;
+    this.step = surface.step;
+    this.t = surface.t;
+    return true;
+  }
+
+  update_normals(): void {
+    const { p, normals } = this;
+    const corners = this.topology.corners;
+    normals.fill(0);
+    for (let i = 0; i < corners.length; i += 3) {
+      const a = 3 * corners[i], b = 3 * corners[i + 1], c = 3 * corners[i + 2];
+      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+      for (const at of [a, b, c]) {
+        normals[at] += x;
+        normals[at + 1] += y;
+        normals[at + 2] += z;
+      }
+    }
+    for (let i = 0; i < normals.length; i += 3) {
+      const length = Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1;
+      normals[i] /= length;
+      normals[i + 1] /= length;
+      normals[i + 2] /= length;
+    }
+  }
+
+  /** How far each vertex is from where it rests, m. */
+  displacement(out: Float32Array): void {
+    const { p } = this;
+    const { rest } = this.topology;
+    for (let i = 0; i < this.n; i++) {
+      const j = 3 * i;
+      out[i] = Math.hypot(p[j] - rest[j], p[j + 1] - rest[j + 1], p[j + 2] - rest[j + 2]);
+    }
+  }
+
+  /** The larger principal stretch of the surface against rest, less 1; at a vertex the mean of its triangles by area. */
+  stretch(out: Float32Array): void {
+    const { p, metric_ } = this;
+    const corners = this.topology.corners;
+    const area = new Float32Array(this.n);
+    out.fill(0);
+    for (let i = 0; i < this.m; i++) {
+      const a = corners[3 * i], b = corners[3 * i + 1], c = corners[3 * i + 2];
+      const [g11, g12, g22] = metric(p, a, b, c);
+      const h11 = metric_[4 * i], h12 = metric_[4 * i + 1], h22 = metric_[4 * i + 2], w = metric_[4 * i + 3];
+      const half_trace = (h11 * g11 + 2 * h12 * g12 + h22 * g22) / 2;
+      const det = (g11 * g22 - g12 * g12) * (h11 * h22 - h12 * h12);
+      const largest = Math.sqrt(half_trace + Math.sqrt(Math.max(0, half_trace * half_trace - det)));
+      for (const v of [a, b, c]) {
+        out[v] += w * (largest - 1);
+        area[v] += w;
+      }
+    }
+    for (let i = 0; i < this.n; i++) out[i] = area[i] > 0 ? Math.max(0, out[i] / area[i]) : 0;
+  }
+
+  /** The tools' loads against the surface by a vertex's share of area, Pa: a third of each triangle around it. */
+  pressure(out: Float32Array, tools: ToolNow[]): void {
+    out.fill(0);
+    const area = new Map<number, number>();
+    for (const tool of tools) for (const [v] of tool.loads) if (v < this.n) area.set(v, 0);
+    if (area.size === 0) return;
+    const corners = this.topology.corners;
+    for (let i = 0; i < corners.length; i += 3) {
+      const a = corners[i], b = corners[i + 1], c = corners[i + 2];
+      if (!area.has(a) && !area.has(b) && !area.has(c)) continue;
+      const [g11, g12, g22] = metric(this.p, a, b, c);
+      const third = Math.sqrt(Math.max(0, g11 * g22 - g12 * g12)) / 6;
+      for (const v of [a, b, c]) if (area.has(v)) area.set(v, area.get(v)! + third);
+    }
+    for (const tool of tools) {
+      for (const [v, x, y, z] of tool.loads) {
+        const share = area.get(v);
+        if (!share) continue;
+        const inward = -(x * this.normals[3 * v] + y * this.normals[3 * v + 1] + z * this.normals[3 * v + 2]);
+        out[v] += Math.max(0, inward) / share;
+      }
+    }
+  }
+
+  /** Each edge of the surface once, as pairs of vertices. */
+  edges(): Uint32Array {
+    const seen = new Set<number>();
+    const { corners } = this.topology;
+    for (let i = 0; i < corners.length; i++) {
+      const a = corners[i], b = corners[i % 3 === 2 ? i - 2 : i + 1];
+      seen.add(a < b ? a * this.n + b : b * this.n + a);
+    }
+    const out = new Uint32Array(2 * seen.size);
+    let at = 0;
+    for (const edge of seen) {
+      out[at++] = Math.floor(edge / this.n);
+      out[at++] = edge % this.n;
+    }
+    return out;
+  }
+
+  /** The vertex nearest to a place, and how far it is, m. */
+  nearest(place: ArrayLike<number>): { vertex: number; distance: number } {
+    let vertex = -1;
+    let least = Infinity;
+    for (let i = 0; i < this.n; i++) {
+      const x = this.p[3 * i] - place[0], y = this.p[3 * i + 1] - place[1], z = this.p[3 * i + 2] - place[2];
+      const squared = x * x + y * y + z * z;
+      if (squared < least) {
+        least = squared;
+        vertex = i;
+      }
+    }
+    return { vertex, distance: Math.sqrt(least) };
+  }
+}
+
+function metric(p: Float32Array, a: number, b: number, c: number): [number, number, number] {
+  const ux = p[3 * b] - p[3 * a], uy = p[3 * b + 1] - p[3 * a + 1], uz = p[3 * b + 2] - p[3 * a + 2];
+  const vx = p[3 * c] - p[3 * a], vy = p[3 * c + 1] - p[3 * a + 1], vz = p[3 * c + 2] - p[3 * a + 2];
+  return [ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz, vx * vx + vy * vy + vz * vz];
+}
+
+function rest_metric({ rest, corners }: Topology): Float32Array {
+  const out = new Float32Array((4 * corners.length) / 3);
+  for (let i = 0; i < corners.length / 3; i++) {
+    const [g11, g12, g22] = metric(rest, corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]);
+    const det = g11 * g22 - g12 * g12;
+    if (det > 0) out.set([g22 / det, -g12 / det, g11 / det, Math.sqrt(det) / 2], 4 * i);
+  }
+  return out;
+}

@@ -1,0 +1,180 @@
+// The text messages of ../MESSAGES.md. What a message lacks, or gives in another type, becomes null, 0, false or empty:
+// the page then shows a dash, and goes on.
+import type { Message } from "./messages";
+
+export type Vec3 = [number, number, number];
+
+export interface ToolShape {
+  shape: "sphere" | "capsule";
+  radius: number; // m
+  length: number; // m, of a capsule; 0: none
+  trocar: Vec3 | null; // m: the place in the body wall about which it turns
+  axis: Vec3 | null; // of the shaft, in the tool's frame
+}
+
+export interface Scene {
+  title: string;
+  file: string;
+  model: string;
+  rate_hz: number; // 0: as fast as the model allows
+  scenes: string[];
+  tools: ToolShape[];
+  control: boolean;
+  pausable: boolean;
+  recorded: boolean;
+  fields: string[];
+}
+
+export interface ToolNow {
+  held: boolean;
+  p: Vec3; // m
+  q: [number, number, number, number]; // w, x, y, z
+  f: Vec3; // N, on the tool
+  contact: boolean;
+  flagged: boolean;
+  loads: [number, number, number, number][]; // vertex; N, on the organ
+}
+
+export interface State {
+  t: number; // s
+  step: number;
+  paused: boolean;
+  step_ms: number | null;
+  late: number | null;
+  rate_hz: number | null;
+  real_time_factor: number | null;
+  tools: ToolNow[];
+  peers: { tool: number; address: string; loss_percent: number | null; rate_hz: number | null }[];
+}
+
+export interface Client {
+  tool: number;
+  law: string;
+  laws: string[];
+  errors_percent: (number | null)[];
+  age_ms: number | null;
+  period_ms: number | null;
+  missed: number | null;
+  passivity_gain: number | null;
+  interventions: [string, number][];
+  felt: Vec3 | null; // N
+  p: Vec3 | null; // m
+  device: string;
+  has_motors: boolean;
+}
+
+type Json = Record<string, unknown>;
+
+export function decode_text(text: string): Message | null {
+  let json: unknown;
+  try {
+    json = JSON.parse(text);
+  } catch {
+    return null;
+  }
+  if (!is_object(json)) return null;
+  if (is_object(json.scene)) return { kind: "scene", scene: scene(json.scene) };
+  if (is_object(json.state)) return { kind: "state", state: state(json.state) };
+  if (Array.isArray(json.client)) return { kind: "client", clients: json.client.filter(is_object).map(client) };
+  if (is_object(json.client)) return { kind: "client", clients: [client(json.client)] };
+  if (typeof json.refused === "string") return { kind: "refused", why: json.refused };
+  return null;
+}
+
+function is_object(x: unknown): x is Json {
+  return typeof x === "object" && x !== null && !Array.isArray(x);
+}
+
+function number(x: unknown): number | null {
+  return typeof x === "number" && Number.isFinite(x) ? x : null;
+}
+
+function text(x: unknown): string {
+  return typeof x === "string" ? x : "";
+}
+
+function list(x: unknown): unknown[] {
+  return Array.isArray(x) ? x : [];
+}
+
+function vec3(x: unknown): Vec3 | null {
+  return Array.isArray(x) && x.length === 3 && x.every((v) => number(v) !== null) ? (x as Vec3) : null;
+}
+
+function scene(x: Json): Scene {
+  return {
+    title: text(x.title),
+    file: text(x.file),
+    model: text(x.model),
+    rate_hz: number(x.rate_hz) ?? 0,
+    scenes: list(x.scenes).map(text).filter(Boolean),
+    tools: list(x.tools).filter(is_object).map(tool_shape),
+    control: x.control === true,
+    pausable: x.pausable === true,
+    recorded: x.recorded === true,
+    fields: list(x.fields).map(text),
+  };
+}
+
+function tool_shape(x: Json): ToolShape {
+  return {
+    shape: x.shape === "capsule" ? "capsule" : "sphere",
+    radius: number(x.radius) ?? 0.005,
+    length: number(x.length) ?? 0,
+    trocar: vec3(x.trocar),
+    axis: vec3(x.axis),
+  };
+}
+
+function state(x: Json): State {
+  return {
+    t: number(x.t) ?? 0,
+    step: number(x.step) ?? 0,
+    paused: x.paused === true,
+    step_ms: number(x.step_ms),
+    late: number(x.late),
+    rate_hz: number(x.rate_hz),
+    real_time_factor: number(x.real_time_factor),
+    tools: list(x.tools).filter(is_object).map(tool_now),
+    peers: list(x.peers).filter(is_object).map((peer) => ({
+      tool: number(peer.tool) ?? 0,
+      address: text(peer.address),
+      loss_percent: number(peer.loss_percent),
+      rate_hz: number(peer.rate_hz),
+    })),
+  };
+}
+
+function tool_now(x: Json): ToolNow {
+  const q = list(x.q);
+  const turned = q.length === 4 && q.every((v) => number(v) !== null);
+  const loads = list(x.loads).filter((l) => Array.isArray(l) && l.length === 4 && l.every((v) => number(v) !== null));
+  return {
+    held: x.held === true,
+    p: vec3(x.p) ?? [0, 0, 0],
+    q: turned ? (q as ToolNow["q"]) : [1, 0, 0, 0],
+    f: vec3(x.f) ?? [0, 0, 0],
+    contact: x.contact === true,
+    flagged: x.flagged === true,
+    loads: loads as ToolNow["loads"],
+  };
+}
+
+function client(x: Json): Client {
+  const counts = is_object(x.interventions) ? Object.entries(x.interventions) : [];
+  return {
+    tool: number(x.tool) ?? 0,
+    law: text(x.law),
+    laws: list(x.laws).map(text),
+    errors_percent: list(x.errors_percent).map(number),
+    age_ms: number(x.age_ms),
+    period_ms: number(x.period_ms),
+    missed: number(x.missed),
+    passivity_gain: number(x.passivity_gain),
+    interventions: counts.map(([name, count]) => [name, number(count) ?? 0]),
+    felt: vec3(x.felt),
+    p: vec3(x.p),
+    device: text(x.device),
+    has_motors: x.has_motors === true,
+  };
+}

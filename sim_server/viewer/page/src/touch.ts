@@ -1,0 +1,93 @@
+// A tool moved from the page: where the mouse wants it, in a plane that faces the camera. No events and no drawing here.
+import { Vector3 } from "three";
+import type { View } from "./view";
+
+export type Send = (tool: number, p: [number, number, number], buttons: number) => void;
+
+const kGrab = 26; // pixels: this near to a tip, a press takes the tool where it is
+const kLinger = 900; // ms that the plane stays after a key
+
+export class Touch {
+  tool = 0;
+  active = false;
+  buttons = 0;
+  readonly wanted = new Vector3();
+  private readonly offset_ = new Vector3(); // of the wanted place from where the ray meets the plane
+  private shown_until_ = 0;
+  private unsent_ = false;
+
+  constructor(private readonly view_: View, private readonly radius_of_: (tool: number) => number, private readonly send_: Send) {}
+
+  /** A press: takes a tool whose tip is near the pixel, or else touches the organ there. False: neither is there. */
+  begin(x: number, y: number, touchable: number[]): boolean {
+    const near = touchable
+      .filter((i) => this.view_.tools[i])
+      .map((tool) => ({ tool, at: this.view_.project(this.view_.tools[tool].tip) }))
+      .map(({ tool, at }) => ({ tool, away: Math.hypot(at.x - x, at.y - y) }))
+      .sort((a, b) => a.away - b.away)[0];
+    if (!near) return false;
+    const hit = this.view_.pick(x, y);
+    if (near.away > kGrab && !hit) return false;
+    this.tool = near.tool;
+    this.wanted.copy(this.view_.tools[near.tool].tip);
+    if (near.away > kGrab) this.wanted.copy(hit!.place).addScaledVector(hit!.normal, this.radius_of_(near.tool));
+    this.offset_.copy(this.wanted).sub(this.on_plane(x, y));
+    this.active = this.unsent_ = true;
+    return true;
+  }
+
+  drag(x: number, y: number): void {
+    this.wanted.copy(this.on_plane(x, y)).add(this.offset_);
+    this.unsent_ = true;
+  }
+
+  /** Away from the camera, m. */
+  push(metres: number): void {
+    this.wanted.addScaledVector(this.view_.orbit.axes().back, -metres);
+    this.unsent_ = true;
+  }
+
+  end(): void {
+    this.active = false;
+    this.unsent_ = true;
+  }
+
+  /** By keys: right, up and away from the camera, m. */
+  nudge(right: number, up: number, away: number, now: number): void {
+    if (!this.view_.tools[this.tool]) return;
+    if (!this.active && now > this.shown_until_) this.wanted.copy(this.view_.tools[this.tool].tip);
+    const axes = this.view_.orbit.axes();
+    this.wanted.addScaledVector(axes.right, right).addScaledVector(axes.up, up).addScaledVector(axes.back, -away);
+    this.shown_until_ = now + kLinger;
+    this.unsent_ = true;
+  }
+
+  set_buttons(buttons: number): void {
+    if (buttons === this.buttons) return;
+    this.buttons = buttons;
+    if (!this.active && this.view_.tools[this.tool]) this.wanted.copy(this.view_.tools[this.tool].tip);
+    this.unsent_ = true;
+  }
+
+  /** Once a frame: sends what is new, and while the button is down always; draws the plane. */
+  frame(now: number, half: number): void {
+    const { touch_plane, orbit, tools } = this.view_;
+    if (this.active || this.unsent_) this.send_(this.tool, [this.wanted.x, this.wanted.y, this.wanted.z], this.buttons);
+    this.unsent_ = false;
+    const shown = this.active || now < this.shown_until_;
+    if (shown !== touch_plane.group.visible || shown) this.view_.invalidate();
+    if (shown && tools[this.tool]) {
+      touch_plane.show(this.wanted, tools[this.tool].tip, orbit.camera.quaternion, half, this.radius_of_(this.tool));
+    } else {
+      touch_plane.hide();
+    }
+  }
+
+  /** Where a pixel's ray meets the plane through the wanted place that faces the camera. */
+  private on_plane(x: number, y: number): Vector3 {
+    const { from, along } = this.view_.ray(x, y);
+    const { back } = this.view_.orbit.axes();
+    const distance = this.wanted.clone().sub(from).dot(back) / along.dot(back);
+    return from.addScaledVector(along, distance);
+  }
+}

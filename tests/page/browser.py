@@ -1,0 +1,231 @@
+"""A headless browser under a test: Chromium by its DevTools protocol, Firefox by WebDriver BiDi. Standard library only."""
+import base64
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import time
+import urllib.request
+
+import websocket
+
+CHROMIUM = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu",
+            "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+            "--disable-sync", "--hide-scrollbars", "--remote-debugging-port=0"]
+FIREFOX = {"webgl.force-enabled": True, "datareporting.policy.dataSubmissionEnabled": False, "app.update.enabled": False,
+           "toolkit.telemetry.enabled": False, "browser.shell.checkDefaultBrowser": False,
+           "browser.startup.homepage_override.mstone": "ignore", "network.captive-portal-service.enabled": False,
+           "network.connectivity-service.enabled": False, "security.fileuri.strict_origin_policy": True}
+
+
+class BrowserError(Exception):
+    pass
+
+
+def find(kind):
+    """The program, or None."""
+    names = {"chromium": ["chromium", "chromium-browser", "google-chrome"], "firefox": ["firefox-esr", "firefox"]}[kind]
+    return next((path for path in map(shutil.which, names) if path), None)
+
+
+class Browser:
+    """What both can do. Places are CSS pixels of the page."""
+
+    def __init__(self, program, arguments, extra_environment=None):
+        self.folder = tempfile.mkdtemp(prefix="palpate_browser_")
+        self.log = open(os.path.join(self.folder, "log"), "w+b")
+        self.process = subprocess.Popen([program, *arguments(self.folder)], stdout=self.log, stderr=self.log,
+                                        env={**os.environ, "HOME": self.folder, **(extra_environment or {})})
+        self.errors = []  # console errors and uncaught exceptions
+        self.number = 0
+        self.socket = None
+
+    def close(self):
+        if self.socket:
+            self.socket.close()
+        self.process.terminate()
+        try:
+            self.process.wait(10)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self.log.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def wait(self, script, seconds=15):
+        """Until the script's value is true; the value."""
+        end = time.monotonic() + seconds
+        while True:
+            value = self.evaluate(script)
+            if value:
+                return value
+            if time.monotonic() > end:
+                raise BrowserError(f"still not true after {seconds} s: {script}")
+            time.sleep(0.05)
+
+    def wait_for_file(self, pattern, seconds=30):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            for file in pathlib.Path(self.folder).glob(pattern):
+                if not list(file.parent.glob("*.crdownload")) + list(file.parent.glob("*.part")):
+                    return file
+            time.sleep(0.1)
+        raise BrowserError(f"no file {pattern} after {seconds} s")
+
+    def found_in_log(self, pattern, seconds=30):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            text = pathlib.Path(self.folder, "log").read_text(errors="replace")
+            match = re.search(pattern, text)
+            if match:
+                return match.group(1)
+            if self.process.poll() is not None:
+                break
+            time.sleep(0.05)
+        raise BrowserError("the browser did not start: " + pathlib.Path(self.folder, "log").read_text(errors="replace")[-2000:])
+
+    def call(self, method, **parameters):
+        self.number += 1
+        self.socket.send(json.dumps({"id": self.number, "method": method, "params": parameters}))
+        while True:
+            answer = json.loads(self.socket.receive())
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    raise BrowserError(f"{method}: {answer['error']} {answer.get('message', '')}")
+                return answer["result"]
+            self.event(answer)
+
+    def event(self, message):
+        raise NotImplementedError
+
+
+class Chromium(Browser):
+    def __init__(self, program, flags=()):
+        super().__init__(program, lambda folder: [*CHROMIUM, *flags, f"--user-data-dir={folder}/profile", "about:blank"])
+        port = self.found_in_log(r"DevTools listening on ws://127\.0\.0\.1:(\d+)/")
+        for _ in range(100):
+            with urllib.request.urlopen(f"http://127.0.0.1:{port}/json/list", timeout=10) as answer:
+                pages = [page for page in json.load(answer) if page["type"] == "page"]
+            if pages:
+                break
+            time.sleep(0.1)
+        self.socket = websocket.connect(pages[0]["webSocketDebuggerUrl"], timeout=60)
+        for domain in ["Page", "Runtime", "Log"]:
+            self.call(f"{domain}.enable")
+        self.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=self.folder)
+
+    def event(self, message):
+        kind, parameters = message.get("method"), message.get("params", {})
+        if kind == "Runtime.exceptionThrown":
+            self.errors.append(str(parameters["exceptionDetails"].get("exception", {}).get("description")))
+        if kind == "Runtime.consoleAPICalled" and parameters["type"] in ("error", "assert"):
+            self.errors.append(str([a.get("value", a.get("description")) for a in parameters["args"]]))
+        if kind == "Log.entryAdded" and parameters["entry"]["level"] == "error":
+            self.errors.append(parameters["entry"]["text"])
+
+    def open(self, address):
+        self.call("Page.navigate", url="about:blank")
+        self.call("Page.navigate", url=address)
+        self.wait("document.readyState === 'complete' && location.href !== 'about:blank'")
+
+    def evaluate(self, script):
+        answer = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in answer:
+            raise BrowserError(str(answer["exceptionDetails"]))
+        return answer["result"].get("value")
+
+    def size(self, width, height, scale=1):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=scale, mobile=width < 500)
+
+    def prefer(self, **features):
+        """Media features, such as prefers_color_scheme="light"."""
+        pairs = [{"name": name.replace("_", "-"), "value": value} for name, value in features.items()]
+        self.call("Emulation.setEmulatedMedia", features=pairs)
+
+    def screenshot(self, path):
+        picture = self.call("Page.captureScreenshot", format="png")["data"]
+        pathlib.Path(path).write_bytes(base64.b64decode(picture))
+
+    def drag(self, places, wheel=0):
+        """Presses at the first place, moves through the others, turns the wheel by so many pixels, lets go."""
+        x, y = places[0]
+        self.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        for x, y in places[1:]:
+            self.mouse("mouseMoved", x, y, button="left", buttons=1)
+            time.sleep(0.02)
+        if wheel:
+            self.mouse("mouseWheel", x, y, deltaX=0, deltaY=wheel)
+            time.sleep(0.1)
+        self.mouse("mouseReleased", x, y, button="left", buttons=0, clickCount=1)
+
+    def mouse(self, kind, x, y, **more):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def key(self, key):
+        text = {"text": key} if len(key) == 1 else {}
+        codes = {"Tab": 9, "ArrowRight": 39, "ArrowLeft": 37, "Escape": 27, " ": 32}
+        more = {"windowsVirtualKeyCode": codes[key]} if key in codes else {}
+        self.call("Input.dispatchKeyEvent", type="keyDown", key=key, **text, **more)
+        self.call("Input.dispatchKeyEvent", type="keyUp", key=key, **more)
+
+
+class Firefox(Browser):
+    def __init__(self, program, preferences=None):
+        def arguments(folder):
+            profile = pathlib.Path(folder, "profile")
+            profile.mkdir()
+            all_of_them = {**FIREFOX, "browser.download.folderList": 2, "browser.download.dir": folder,
+                           "browser.helperApps.neverAsk.saveToDisk": "text/html,image/png", **(preferences or {})}
+            lines = [f"user_pref({json.dumps(name)}, {json.dumps(value)});" for name, value in all_of_them.items()]
+            (profile / "user.js").write_text("\n".join(lines))
+            return ["--headless", "--no-remote", "--remote-debugging-port", "0", "--profile", str(profile)]
+
+        super().__init__(program, arguments, {"MOZ_DISABLE_CONTENT_SANDBOX": "1"})
+        address = self.found_in_log(r"WebDriver BiDi listening on (ws://\S+)", 60)
+        self.socket = websocket.connect(address + "/session", timeout=60)
+        self.call("session.new", capabilities={})
+        self.page = self.call("browsingContext.getTree")["contexts"][0]["context"]
+        self.call("session.subscribe", events=["log.entryAdded"])
+
+    def event(self, message):
+        if message.get("method") == "log.entryAdded" and message["params"]["level"] == "error":
+            self.errors.append(str(message["params"].get("text")))
+
+    def open(self, address):
+        self.call("browsingContext.navigate", context=self.page, url=address, wait="complete")
+
+    def evaluate(self, script):
+        answer = self.call("script.evaluate", expression=f"(async () => JSON.stringify((await ({script})) ?? null))()",
+                           target={"context": self.page}, awaitPromise=True)
+        if answer["type"] == "exception":
+            raise BrowserError(answer["exceptionDetails"]["text"])
+        return json.loads(answer["result"]["value"])
+
+    def size(self, width, height, scale=1):
+        self.call("browsingContext.setViewport", context=self.page, viewport={"width": width, "height": height},
+                  devicePixelRatio=scale)
+
+    def screenshot(self, path):
+        picture = self.call("browsingContext.captureScreenshot", context=self.page)["data"]
+        pathlib.Path(path).write_bytes(base64.b64decode(picture))
+
+    def drag(self, places, wheel=0):
+        moves = [{"type": "pointerMove", "x": round(x), "y": round(y), "duration": 20} for x, y in places]
+        pressed = [moves[0], {"type": "pointerDown", "button": 0}, *moves[1:]]
+        self.act("mouse", "pointer", pressed)
+        if wheel:
+            x, y = map(round, places[-1])
+            self.act("wheel", "wheel", [{"type": "scroll", "x": x, "y": y, "deltaX": 0, "deltaY": round(wheel)}])
+            time.sleep(0.1)
+        self.act("mouse", "pointer", [{"type": "pointerUp", "button": 0}])
+
+    def key(self, key):
+        value = {"Tab": "\ue004", "ArrowRight": "\ue014", "ArrowLeft": "\ue012", "Escape": "\ue00c"}.get(key, key)
+        self.act("keys", "key", [{"type": "keyDown", "value": value}, {"type": "keyUp", "value": value}])
+
+    def act(self, name, kind, actions):
+        source = {"type": kind, "id": name, "actions": actions}
+        self.call("input.performActions", context=self.page, actions=[source])
