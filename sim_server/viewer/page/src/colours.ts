@@ -51,16 +51,16 @@ export class Scale {
   top = 0; // in the unit
   private quiet_since_ = 0;
 
-  follow(largest: number, measured: Measure, now: number): number {
+  follow(largest: number, measured: Measure, now_ms: number): number {
     const wanted = Math.max(measured.least, nice_above(Math.max(largest * measured.scale, 1e-12)));
     if (wanted >= this.top || this.top === 0) {
       this.top = wanted;
-      this.quiet_since_ = now;
+      this.quiet_since_ = now_ms;
     } else if (largest * measured.scale > this.top * 0.45) {
-      this.quiet_since_ = now;
-    } else if (now - this.quiet_since_ > 6) {
+      this.quiet_since_ = now_ms;
+    } else if (now_ms - this.quiet_since_ > 6000) {
       this.top = wanted;
-      this.quiet_since_ = now;
+      this.quiet_since_ = now_ms;
     }
     return this.top;
   }

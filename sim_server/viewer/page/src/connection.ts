@@ -38,6 +38,11 @@ export class Connection {
     this.send({ step: 1 });
   }
 
+  /** Tells the server which surface was drawn, so that it never sends more than the page can draw. */
+  shown(step: number): void {
+    this.send({ shown: step });
+  }
+
   choose(scene: string): void {
     this.send({ choose: scene });
   }

@@ -6,7 +6,7 @@ import type { Session } from "./session";
 
 export interface Does {
   pause(): void;
-  step(): void;
+  step(by: 1 | -1): void;
   home(): void;
   picture(): void;
   video(): void;
@@ -28,7 +28,7 @@ export class Controls {
 
   constructor(private readonly session_: Session, private readonly does_: Does) {
     this.pause_.onclick = () => does_.pause();
-    this.step_.onclick = () => does_.step();
+    this.step_.onclick = () => does_.step(1);
     for (const name of ["home", "picture", "video", "share"] as const) by_id(name).onclick = () => does_[name]();
     const keys = by_id<HTMLDialogElement>("keys");
     by_id("help").onclick = () => keys.showModal();
@@ -55,7 +55,9 @@ export class Controls {
   recorded(playback: Playback): void {
     this.playback_ = playback;
     by_id("playback").hidden = false;
-    by_id("share").hidden = true;
+    this.pause_.hidden = this.step_.hidden = by_id("share").hidden = true;
+    by_id("back").onclick = () => this.does_.step(-1);
+    by_id("forth").onclick = () => this.does_.step(1);
     this.scrubber_.max = String(Math.round(1000 * (playback.end - playback.start)));
     this.scrubber_.oninput = () => playback.seek(playback.start + Number(this.scrubber_.value) / 1000);
     by_id("play").onclick = () => this.does_.pause();

@@ -56,12 +56,11 @@ export class Legend {
     set_text(by_id("scale-middle"), plain_number(top / 2));
     set_text(by_id("scale-top"), `${plain_number(top)} ${measure.unit}`);
     const metres = orbit.metres_per_pixel(height);
-    let length = nice_above(50 * metres);
-    if (length / metres > 110) length /= 2;
+    const length = nice_above(50 * metres);
     this.bar("length", length / metres, `${plain_number(1e3 * length)} mm`);
-    const pixels = arrow_metres / metres;
-    const share = pixels > 110 ? 0.1 ** Math.ceil(Math.log10(pixels / 110)) : 1;
-    this.bar("force", pixels * share, `${plain_number(newtons * share)} N`);
+    const pixels_per_newton = arrow_metres / metres / newtons;
+    const shown = nice_above(50 / pixels_per_newton);
+    this.bar("force", shown * pixels_per_newton, `${plain_number(shown)} N`);
   }
 
   private bar(name: string, pixels: number, text: string): void {

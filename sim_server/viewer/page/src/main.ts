@@ -34,7 +34,7 @@ class Page {
   private playback_: Playback | null = null;
   private controls_ = new Controls(this.session_, {
     pause: () => this.pause(),
-    step: () => this.step(1),
+    step: (by) => this.step(by),
     home: () => this.home(),
     picture: () => this.picture(),
     video: () => this.film(),
@@ -47,6 +47,7 @@ class Page {
     },
   });
   private last_frame_ = 0;
+  private shown_ = -1; // the step of the surface that was drawn last
 
   start(): void {
     this.canvas_.hidden = by_id("legend").hidden = this.view_ === null;
@@ -115,10 +116,19 @@ class Page {
     this.last_frame_ = now;
     this.touch_?.frame(now, 0.3 * (this.view_?.orbit.distance ?? 1) * 0.6);
     if (this.view_?.draw(now)) this.legend_?.draw();
+    this.tell_shown();
     this.plots_.draw(now);
     this.panel_.draw(now);
     this.controls_.draw();
     this.status_.draw(now);
+  }
+
+  /** A page that draws nothing, for want of WebGL, has seen all it ever will as well. */
+  private tell_shown(): void {
+    const step = this.session_.shape?.known ? this.session_.shape.step : this.shown_;
+    if (step === this.shown_) return;
+    this.shown_ = step;
+    this.connection_?.shown(step);
   }
 
   private keys(): void {

@@ -69,7 +69,7 @@ export class Plot {
     const options: uPlot.Options = {
       width: Math.max(80, this.host_.clientWidth),
       height: Math.max(60, this.host_.clientHeight),
-      padding: [6, 6, 0, 0],
+      padding: [6, 12, 0, 0],
       legend: { show: false },
       cursor: {
         y: false,

@@ -9,6 +9,7 @@ export interface ToolShape {
   radius: number; // m
   length: number; // m, of a capsule; 0: none
   trocar: Vec3 | null; // m: the place in the body wall about which it turns
+  shaft_radius: number | null; // m, of an instrument with a trocar
   axis: Vec3 | null; // of the shaft, in the tool's frame
 }
 
@@ -122,6 +123,7 @@ function tool_shape(x: Json): ToolShape {
     radius: number(x.radius) ?? 0.005,
     length: number(x.length) ?? 0,
     trocar: vec3(x.trocar),
+    shaft_radius: number(x.shaft_radius),
     axis: vec3(x.axis),
   };
 }

@@ -24,9 +24,11 @@ export class ToolDrawing {
   private readonly ring_: Mesh | null;
   private readonly arrow_ = new Arrow();
   private end_ = new Vector3();
+  private readonly shaft_radius_: number;
 
   constructor(private readonly shape_: ToolShape) {
     const { radius, length, trocar } = shape_;
+    this.shaft_radius_ = shape_.shaft_radius ?? kShaft * radius;
     const ball = shape_.shape === "sphere" || length <= 0;
     this.tip_ = new Mesh(ball ? new SphereGeometry(radius, 32, 20) : new CapsuleGeometry(radius, length, 12, 28), this.steel_);
     this.shaft_ = new Mesh(new CylinderGeometry(1, 1, 1, 20), this.shaft_steel_);
@@ -57,7 +59,7 @@ export class ToolDrawing {
       this.end_.addScaledVector(axis, kStem);
     }
     this.shaft_.visible = this.end_.distanceTo(this.tip) > radius && (trocar !== null || length <= 0);
-    between(this.shaft_, this.tip, this.end_, kShaft * radius);
+    between(this.shaft_, this.tip, this.end_, this.shaft_radius_);
     for (const material of [this.steel_, this.shaft_steel_]) {
       material.transparent = !now.held;
       material.opacity = now.held ? 1 : 0.35;
@@ -73,7 +75,7 @@ export class ToolDrawing {
   /** What throws the shadow. */
   caster(): Caster {
     const { radius, length } = this.shape_;
-    const thick = length > 0 && !this.shape_.trocar ? radius : kShaft * radius;
+    const thick = length > 0 && !this.shape_.trocar ? radius : this.shaft_radius_;
     return { tip: this.tip, radius, end: this.end_, shaft: this.end_.equals(this.tip) ? 0 : thick };
   }
 

@@ -1,0 +1,163 @@
+// What is kept of a session, within its bounds, and how it plays again.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { decode } from "../src/messages";
+import { Playback } from "../src/playback";
+import { Recording, save_records } from "../src/recording";
+import { Series } from "../src/series";
+import { Session } from "../src/session";
+import { Bytes, kAtRest, tetrahedron, tetrahedron_at } from "./bytes";
+
+const kScene = '{"scene":{"title":"one","control":true,"pausable":true,"scenes":["a"],"tools":[],"fields":["strain_energy"]}}';
+const kRate = 10;
+
+/** The height of the last vertex at a step, m. */
+function height(step: number): number {
+  return 1 - step / 1000;
+}
+
+/** Steps of a session of which only the last vertex moves; after the first surface none is whole. */
+function* steps(count: number): Generator<[number, string | ArrayBuffer]> {
+  yield [0, kScene];
+  yield [0, tetrahedron(1)];
+  yield [0, tetrahedron_at(1, 0, 0, kAtRest)];
+  for (let step = 1; step < count; step++) {
+    const t = step / kRate;
+    const q = Math.round(((height(step) + 1) / 2) * 65535);
+    yield [t, new Bytes().u8(2, 0, 0, 0).u32(1, step).f64(t).u32(1, 0).u32(3).u16(32768, 32768, q).done()];
+    yield [t, JSON.stringify({ state: { t, step, step_ms: step } })];
+    yield [t, new Bytes().u8(4, 0, 0, 0).f64(t).f32(step).u32(0).done()];
+  }
+}
+
+function record(count: number, seconds: number, bytes: number): Recording {
+  const session = new Session();
+  const recording = new Recording({ seconds, bytes });
+  for (const [, data] of steps(count)) {
+    const message = decode(data)!;
+    session.apply(message);
+    recording.add(data, message, session);
+  }
+  return recording;
+}
+
+function play(recording: Recording): { playback: Playback; session: Session } {
+  const session = new Session();
+  return { playback: new Playback(recording.save().buffer as ArrayBuffer, session), session };
+}
+
+test("a recording is bounded in time and in bytes, and its oldest piece begins with the whole surface", () => {
+  const long = record(1000, 20, 1e9);
+  assert.ok(long.seconds <= 20 && long.seconds > 18, `${long.seconds} s`);
+  const small = record(1000, 1e9, 20_000);
+  assert.ok(small.bytes <= 20_000 && small.bytes > 15_000, `${small.bytes} bytes`);
+  assert.ok(Math.abs(small.save().length - small.bytes) < 1000);
+  const { playback, session } = play(long);
+  assert.ok(playback.start >= 79 && Math.abs(playback.end - 99.9) < 1e-9);
+  playback.seek(playback.start);
+  assert.ok(session.shape?.known);
+});
+
+test("a seek shows what was there, whether it goes on, back, or a little", () => {
+  const { playback, session } = play(record(600, 1e9, 1e9));
+  for (const step of [300, 301, 40, 599, 1, 450]) {
+    playback.seek(step / kRate);
+    assert.equal(session.shape?.step, step);
+    assert.equal(session.state?.step, step);
+    assert.ok(Math.abs(session.shape!.p[11] - height(step)) < 5e-5);
+    assert.ok(session.series(0).samples.length >= Math.min(step, 290));
+    assert.equal(session.series(0).samples.value(session.series(0).samples.length - 1, 0), step);
+  }
+});
+
+test("played in small pieces, it is what it was in one", () => {
+  const { playback, session } = play(record(100, 1e9, 1e9));
+  playback.seek(playback.start);
+  playback.play();
+  for (let i = 0; i < 50; i++) playback.advance(0.0903);
+  assert.equal(session.state?.step, Math.floor(playback.now * kRate + 1e-6));
+  playback.speed = 2;
+  for (let i = 0; i < 60; i++) playback.advance(0.05);
+  assert.equal(session.shape?.step, 99);
+  assert.equal(playback.playing, false);
+  playback.step(-1);
+  assert.equal(session.state?.step, 98);
+  playback.play();
+  playback.advance(10);
+  playback.play(); // from the start again
+  assert.equal(playback.now, playback.start);
+});
+
+test("who opens it can control nothing", () => {
+  const { playback, session } = play(record(20, 1e9, 1e9));
+  playback.seek(1);
+  assert.deepEqual(
+    [session.scene?.recorded, session.scene?.control, session.scene?.pausable, session.scene?.scenes],
+    [true, false, false, []],
+  );
+});
+
+test("another scene starts the recording again", () => {
+  const session = new Session();
+  const recording = new Recording();
+  for (const [, data] of [...steps(50), ...steps(20)]) {
+    const message = decode(data)!;
+    session.apply(message);
+    recording.add(data, message, session);
+  }
+  assert.ok(Math.abs(recording.seconds - 1.9) < 0.11, `${recording.seconds}`);
+});
+
+test("a topology that changes in between is there again after a seek before and after it", () => {
+  const session = new Session();
+  const recording = new Recording({ seconds: 1e9, bytes: 1e9 });
+  const other = [...steps(20)].map(([, data]) => data);
+  for (let step = 20; step < 40; step++) {
+    if (step === 20) other.push(tetrahedron(2));
+    other.push(tetrahedron_at(2, step, step / kRate, kAtRest));
+  }
+  for (const data of other) {
+    const message = decode(data)!;
+    session.apply(message);
+    recording.add(data, message, session);
+  }
+  const played = play(recording);
+  for (const step of [30, 10, 35]) {
+    played.playback.seek(step / kRate);
+    assert.equal(played.session.shape?.topology.version, step < 20 ? 1 : 2);
+    assert.equal(played.session.shape?.step, step);
+  }
+});
+
+test("a file that is cut short plays as far as it goes; one that is none is empty", () => {
+  const whole = record(50, 1e9, 1e9).save();
+  const session = new Session();
+  const cut = new Playback(whole.slice(0, whole.length - 5).buffer, session);
+  assert.ok(cut.damaged);
+  cut.seek(1e9);
+  assert.equal(session.state?.step, 49);
+  assert.ok(new Playback(new ArrayBuffer(3), session).empty);
+  assert.ok(new Playback(Uint8Array.from({ length: 40 }, () => 255).buffer, session).empty);
+});
+
+test("records are written as the contract has them", () => {
+  const expected = new Bytes().u32(2).u8(0, 0, 0, 0).f64(1.5).u8(123, 125).u32(1).u8(1, 0, 0, 0).f64(2).u8(9).done();
+  const made = save_records([
+    { text: true, t: 1.5, bytes: new TextEncoder().encode("{}") },
+    { text: false, t: 2, bytes: Uint8Array.of(9) },
+  ]);
+  assert.deepEqual(made.buffer, expected);
+});
+
+test("a series keeps its newest rows, finds a time, and thins out without losing the ends of the window", () => {
+  const series = new Series(1, 100);
+  for (let i = 0; i < 250; i++) series.push(i, [2 * i]);
+  assert.equal(series.length, 100);
+  assert.deepEqual([series.time(0), series.value(99, 0)], [150, 498]);
+  assert.equal(series.row_at(200.5), 51);
+  const [times, values] = series.since(200, 10);
+  assert.ok(times.length <= 10 && times.length >= 5);
+  times.forEach((t, i) => assert.equal(values[i], 2 * t!));
+  series.push(3, [1]); // time went back: another session
+  assert.equal(series.length, 1);
+});
