@@ -5,10 +5,12 @@ import os
 import pathlib
 import re
 import shutil
+import struct
 import subprocess
 import tempfile
 import time
 import urllib.request
+import zlib
 
 import websocket
 
@@ -25,10 +27,63 @@ class BrowserError(Exception):
     pass
 
 
+def pixels(png):
+    """Rows of (r, g, b) of a PNG as browsers write them: 8 bits, not interlaced."""
+    at, data = 8, b""
+    while at < len(png):
+        (length,), kind = struct.unpack(">I", png[at:at + 4]), png[at + 4:at + 8]
+        if kind == b"IHDR":
+            width, height, depth, colour = struct.unpack(">IIBB", png[at + 8:at + 18])
+            assert depth == 8 and colour in (2, 6), "not a picture that this reads"
+        if kind == b"IDAT":
+            data += png[at + 8:at + 8 + length]
+        at += 12 + length
+    data, size = zlib.decompress(data), 3 if colour == 2 else 4
+    rows, above = [], bytes(width * size)
+    for y in range(height):
+        start = y * (width * size + 1)
+        above = unfiltered(data[start], bytearray(data[start + 1:start + 1 + width * size]), above, size)
+        rows.append([tuple(above[x:x + 3]) for x in range(0, width * size, size)])
+    return rows
+
+
+def unfiltered(kind, row, above, size):
+    for i in range(len(row)):
+        a, b = (row[i - size] if i >= size else 0), above[i]
+        c = above[i - size] if i >= size else 0
+        if kind == 1:
+            row[i] = (row[i] + a) & 255
+        elif kind == 2:
+            row[i] = (row[i] + b) & 255
+        elif kind == 3:
+            row[i] = (row[i] + (a + b) // 2) & 255
+        elif kind == 4:
+            p = a + b - c
+            nearest = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+            row[i] = (row[i] + nearest) & 255
+    return row
+
+
 def find(kind):
     """The program, or None."""
     names = {"chromium": ["chromium", "chromium-browser", "google-chrome"], "firefox": ["firefox-esr", "firefox"]}[kind]
     return next((path for path in map(shutil.which, names) if path), None)
+
+
+class Screen:
+    """A display that nobody sees."""
+
+    def __init__(self):
+        reader, writer = os.pipe()
+        self.process = subprocess.Popen(["Xvfb", "-displayfd", str(writer), "-screen", "0", "1700x1200x24", "-nolisten", "tcp"],
+                                        pass_fds=[writer], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(writer)
+        with os.fdopen(reader) as numbers:
+            self.name = ":" + numbers.readline().strip()
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait()
 
 
 class Browser:
@@ -103,7 +158,8 @@ class Browser:
 
 
 class Chromium(Browser):
-    def __init__(self, program, flags=()):
+    def __init__(self, program, webgl=True):
+        flags = [] if webgl else ["--disable-3d-apis"]
         super().__init__(program, lambda folder: [*CHROMIUM, *flags, f"--user-data-dir={folder}/profile", "about:blank"])
         port = self.found_in_log(r"DevTools listening on ws://127\.0\.0\.1:(\d+)/")
         for _ in range(100):
@@ -129,7 +185,8 @@ class Chromium(Browser):
     def open(self, address):
         self.call("Page.navigate", url="about:blank")
         self.call("Page.navigate", url=address)
-        self.wait("document.readyState === 'complete' && location.href !== 'about:blank'")
+        if address != "about:blank":
+            self.wait("document.readyState === 'complete' && location.href !== 'about:blank'")
 
     def evaluate(self, script):
         answer = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
@@ -145,17 +202,19 @@ class Chromium(Browser):
         pairs = [{"name": name.replace("_", "-"), "value": value} for name, value in features.items()]
         self.call("Emulation.setEmulatedMedia", features=pairs)
 
-    def screenshot(self, path):
-        picture = self.call("Page.captureScreenshot", format="png")["data"]
-        pathlib.Path(path).write_bytes(base64.b64decode(picture))
+    def screenshot(self, box=None):
+        """PNG; of a box (x, y, width, height), or of all that one sees."""
+        clip = {"clip": {**dict(zip(["x", "y", "width", "height"], box)), "scale": 1}} if box else {}
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png", **clip)["data"])
 
     def drag(self, places, wheel=0):
         """Presses at the first place, moves through the others, turns the wheel by so many pixels, lets go."""
         x, y = places[0]
         self.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        time.sleep(0.15)
         for x, y in places[1:]:
             self.mouse("mouseMoved", x, y, button="left", buttons=1)
-            time.sleep(0.02)
+            time.sleep(0.15)
         if wheel:
             self.mouse("mouseWheel", x, y, deltaX=0, deltaY=wheel)
             time.sleep(0.1)
@@ -173,17 +232,22 @@ class Chromium(Browser):
 
 
 class Firefox(Browser):
-    def __init__(self, program, preferences=None):
+    """Headless it has no WebGL on a machine without a graphics card; on the screen of Xvfb it has."""
+
+    def __init__(self, program, webgl=True):
+        self.screen = Screen() if webgl and shutil.which("Xvfb") else None
+
         def arguments(folder):
             profile = pathlib.Path(folder, "profile")
             profile.mkdir()
             all_of_them = {**FIREFOX, "browser.download.folderList": 2, "browser.download.dir": folder,
-                           "browser.helperApps.neverAsk.saveToDisk": "text/html,image/png", **(preferences or {})}
+                           "browser.helperApps.neverAsk.saveToDisk": "text/html,image/png"}
             lines = [f"user_pref({json.dumps(name)}, {json.dumps(value)});" for name, value in all_of_them.items()]
             (profile / "user.js").write_text("\n".join(lines))
-            return ["--headless", "--no-remote", "--remote-debugging-port", "0", "--profile", str(profile)]
+            headless = [] if self.screen else ["--headless"]
+            return [*headless, "--no-remote", "--remote-debugging-port", "0", "--profile", str(profile)]
 
-        super().__init__(program, arguments, {"MOZ_DISABLE_CONTENT_SANDBOX": "1"})
+        super().__init__(program, arguments, {"DISPLAY": self.screen.name} if self.screen else {})
         address = self.found_in_log(r"WebDriver BiDi listening on (ws://\S+)", 60)
         self.socket = websocket.connect(address + "/session", timeout=60)
         self.call("session.new", capabilities={})
@@ -208,12 +272,17 @@ class Firefox(Browser):
         self.call("browsingContext.setViewport", context=self.page, viewport={"width": width, "height": height},
                   devicePixelRatio=scale)
 
-    def screenshot(self, path):
-        picture = self.call("browsingContext.captureScreenshot", context=self.page)["data"]
-        pathlib.Path(path).write_bytes(base64.b64decode(picture))
+    def screenshot(self, box=None):
+        clip = {"clip": {"type": "box", **dict(zip(["x", "y", "width", "height"], box))}} if box else {}
+        return base64.b64decode(self.call("browsingContext.captureScreenshot", context=self.page, **clip)["data"])
+
+    def close(self):
+        super().close()
+        if self.screen:
+            self.screen.close()
 
     def drag(self, places, wheel=0):
-        moves = [{"type": "pointerMove", "x": round(x), "y": round(y), "duration": 20} for x, y in places]
+        moves = [{"type": "pointerMove", "x": round(x), "y": round(y), "duration": 150} for x, y in places]
         pressed = [moves[0], {"type": "pointerDown", "button": 0}, *moves[1:]]
         self.act("mouse", "pointer", pressed)
         if wheel:

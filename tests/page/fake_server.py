@@ -7,6 +7,7 @@ usage: fake_server.py [PORT [recorded]]      (by hand: open the address that it 
 import http.server
 import json
 import pathlib
+import socket
 import socketserver
 import sys
 import threading
@@ -129,7 +130,10 @@ class FakeServer(socketserver.ThreadingMixIn, http.server.HTTPServer):
     def drop_pages(self):
         """As if the network went."""
         for page in self.pages:
-            page.close()
+            try:
+                page.connection.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass
         self.pages.clear()
 
     def stop(self):

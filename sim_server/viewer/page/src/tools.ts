@@ -96,11 +96,12 @@ function between(rod: Mesh, a: Vector3, b: Vector3, radius: number): void {
 
 class Arrow {
   readonly group = new Group();
-  readonly material = new MeshBasicMaterial({ color: 0x57b8ff });
+  readonly material = new MeshBasicMaterial({ depthTest: false, transparent: true }); // over the shaft
   private readonly rod_ = new Mesh(new CylinderGeometry(1, 1, 1, 16), this.material);
   private readonly head_ = new Mesh(new ConeGeometry(1, 1, 24), this.material);
 
   constructor() {
+    this.rod_.renderOrder = this.head_.renderOrder = 2;
     this.group.add(this.rod_, this.head_);
   }
 

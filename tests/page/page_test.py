@@ -1,0 +1,394 @@
+#!/usr/bin/env python3
+"""The live page in real browsers, against a server without a simulation (fake_server.py).
+
+usage: page_test.py [--browser chromium|firefox] [--pictures FOLDER] [NAME...]     (no browser here: says so, and passes)
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+import sys
+import time
+import unittest
+
+import browser
+import fake_server
+import made_session
+
+PICTURES = None
+BACK = (math.cos(0.95) * math.cos(0.5), -math.sin(0.95) * math.cos(0.5), math.sin(0.5))  # where the first view looks from
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def minus(a, b):
+    return [x - y for x, y in zip(a, b)]
+
+
+class PageTest:
+    """Each test has a page of its own; the browser is started once."""
+
+    webgl = True
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = cls.start()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+
+    def setUp(self):
+        self.server = None
+        self.browser.errors.clear()
+        self.browser.size(1600, 1000)
+
+    def tearDown(self):
+        self.browser.open("about:blank")
+        if self.server:
+            self.server.stop()
+
+    def open(self, **options):
+        self.server = fake_server.FakeServer(**options)
+        self.browser.open(self.server.address)
+        self.browser.wait("document.getElementById('title').textContent !== ''")
+
+    def no_errors(self):
+        self.browser.evaluate("1")  # so that what was said before it has arrived
+        self.assertEqual(self.browser.errors, [])
+
+    def text(self, name):
+        return self.browser.evaluate(f"document.getElementById({json.dumps(name)}).textContent")
+
+    def number(self, name):
+        """What the list of numbers says."""
+        return self.browser.evaluate(
+            "[...document.querySelectorAll('#numbers dt')].filter(d => d.textContent === " + json.dumps(name) +
+            ").map(d => d.nextSibling.firstChild.textContent)[0] ?? ''")
+
+    def wait_number(self, name, good, seconds=10):
+        end = time.monotonic() + seconds
+        while not good(self.number(name)):
+            self.assertLess(time.monotonic(), end, f"{name}: {self.number(name)}")
+            time.sleep(0.05)
+
+    def stage(self):
+        return self.browser.evaluate("(({x, y, width, height}) => [x, y, width, height])"
+                                     "(document.getElementById('stage').getBoundingClientRect())")
+
+    def middle(self, share=0.4):
+        """Of the picture, so far from its top: the organ is there; at 0.24 it is touched."""
+        x, y, width, height = self.stage()
+        return x + width / 2, y + height * share
+
+    def organ(self, share=0.4):
+        """The pixels there."""
+        x, y = self.middle(share)
+        return [p for row in browser.pixels(self.browser.screenshot((round(x) - 90, round(y) - 90, 180, 180))) for p in row]
+
+    def picture(self, name):
+        if PICTURES:
+            pathlib.Path(PICTURES, f"{type(self).__name__}_{name}.png").write_bytes(self.browser.screenshot())
+
+    # What it shows
+
+    def test_the_organ_is_there_and_moves(self):
+        self.open()
+        self.browser.wait("document.getElementById('status').textContent === 'Live'")
+        tissue = self.organ()
+        red = sum(r > 1.3 * g for r, g, b in tissue) / len(tissue)
+        self.assertGreater(red, 0.8, "the middle of the picture is tissue")
+        first, moved = self.organ(0.24), 0
+        end = time.monotonic() + 8
+        while moved < 3000 and time.monotonic() < end:
+            moved = sum(abs(a - b) > 12 for p, q in zip(first, self.organ(0.24)) for a, b in zip(p, q))
+        self.assertGreater(moved, 3000)
+        self.no_errors()
+
+    def test_numbers_and_plots_are_those_that_were_sent(self):
+        self.open()
+        self.wait_number("Rate", lambda text: text == "30.0")
+        self.assertEqual(self.number("Model"), "made up")
+        self.assertEqual(self.number("Law felt"), "two tangents")
+        self.assertEqual(self.number("Peer"), "127.0.0.1:40112")
+        self.assertEqual(self.number("Slew limited"), "2")
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.plot canvas').length"), 5)
+        names = self.browser.evaluate("[...document.querySelectorAll('.chip .name')].map(e => e.textContent)")
+        self.assertEqual(names, ["constant", "linear time", "two tangents", "felt", "samples"])
+        self.browser.wait("Number(document.getElementById('big-force').textContent) > 1")
+        self.no_errors()
+
+    def test_each_measure_has_a_legend_and_strain_energy_is_asked_for(self):
+        self.open()
+        for name, unit in [("stretch", "%"), ("pressure", "kPa"), ("strain_energy", "J/m"), ("displacement", "mm")]:
+            self.choose("measures", name)
+            self.browser.wait(f"document.getElementById('scale-top').textContent.includes({json.dumps(unit)})")
+        self.browser.wait("true")
+        self.assertEqual(self.server.said("want")[-2:], [{"field": "strain_energy"}, {"field": None}])
+        self.choose("measures", "plain")
+        self.browser.wait("document.getElementById('scale').hidden")
+        self.no_errors()
+
+    def choose(self, name, value):
+        self.browser.evaluate(f"(e => {{ e.value = {json.dumps(value)}; e.dispatchEvent(new Event('change')); }})"
+                              f"(document.getElementById({json.dumps(name)}))")
+
+    # Touch
+
+    def test_a_drag_on_the_organ_moves_the_tool_in_the_plane_of_the_camera(self):
+        self.open()
+        self.wait_number("Held", lambda text: text == "yes")
+        before = self.number("Place x, y, z").split()[:2]
+        x, y = self.middle()
+        y += 60
+        self.browser.drag([(x, y), (x + 40, y), (x + 80, y + 20)])
+        self.browser.wait("true")
+        time.sleep(0.2)
+        said = self.server.said("pointer")
+        self.assertGreater(len(said), 2)
+        numbers = [message["number"] for message in said]
+        self.assertEqual(numbers, sorted(set(numbers)))
+        self.assertEqual({message["tool"] for message in said}, {0})
+        way = minus(said[-1]["p"], said[0]["p"])
+        self.assertGreater(math.sqrt(dot(way, way)), 0.01)
+        self.assertAlmostEqual(dot(way, BACK), 0, delta=1e-4)
+        first = said[0]["p"]
+        out = math.sqrt(dot(first, first))
+        self.assertAlmostEqual(out, made_session.RADIUS + made_session.TOOL_RADIUS, delta=0.002)  # it begins touching
+        self.wait_number("Place x, y, z", lambda text: text.split()[:2] != before)
+        self.no_errors()
+
+    def test_the_wheel_is_depth_while_touching(self):
+        self.open()
+        self.wait_number("Held", lambda text: text == "yes")
+        x, y = self.middle()
+        self.browser.drag([(x, y + 60), (x, y + 60)], wheel=-300)
+        time.sleep(0.2)
+        said = self.server.said("pointer")
+        way = minus(said[-1]["p"], said[0]["p"])
+        deep = -dot(way, BACK)
+        self.assertGreater(deep, 0.002)
+        self.assertAlmostEqual(math.sqrt(dot(way, way)), deep, delta=1e-5)
+        self.no_errors()
+
+    def test_a_page_without_control_turns_and_never_touches(self):
+        self.open(control=False)
+        self.wait_number("Held", lambda text: text == "yes")
+        before = self.organ()
+        x, y = self.middle()
+        self.browser.drag([(x, y), (x + 90, y + 90)])
+        time.sleep(0.3)
+        self.assertEqual(self.server.said("pointer"), [])
+        self.assertNotEqual(before, self.organ())
+        self.assertTrue(self.browser.evaluate("document.getElementById('pause').disabled"))
+        self.assertTrue(self.browser.evaluate("document.getElementById('scenes-label').hidden"))
+        self.no_errors()
+
+    # Keys
+
+    def test_space_pauses_and_an_arrow_steps(self):
+        self.open()
+        self.wait_number("Held", lambda text: text == "yes")
+        self.browser.key(" ")
+        self.browser.wait("document.getElementById('status').textContent === 'Paused'")
+        self.wait_number("Force computed", lambda text: text == "0.00")
+        step = int(self.number("Step"))
+        self.browser.key("ArrowRight")
+        self.wait_number("Step", lambda text: int(text) == step + 1)
+        self.browser.key(" ")
+        self.browser.wait("document.getElementById('status').textContent === 'Live'")
+        self.assertEqual(self.server.said("pause"), [True, False])
+        self.assertEqual(self.server.said("step"), [1])
+        self.no_errors()
+
+    def test_tab_goes_through_the_drawings_and_escape_lets_go(self):
+        self.open()
+        self.browser.evaluate("document.getElementById('picture-canvas').focus()")
+        seen = []
+        for _ in range(4):
+            seen.append(self.browser.evaluate("document.getElementById('looks').value"))
+            self.browser.key("Tab")
+        self.assertEqual(seen, ["surface", "edges", "regions", "glass"])
+        self.assertEqual(self.browser.evaluate("document.activeElement.id"), "picture-canvas")
+        self.browser.key("Escape")
+        self.browser.key("Tab")
+        self.assertNotEqual(self.browser.evaluate("document.activeElement.id"), "picture-canvas")
+        self.no_errors()
+
+    def test_h_shows_the_keys(self):
+        self.open()
+        self.browser.key("h")
+        self.browser.wait("document.getElementById('keys').open")
+        self.picture("keys")
+        self.browser.key("Escape")
+        self.browser.wait("!document.getElementById('keys').open")
+        self.no_errors()
+
+    # Another scene, another connection
+
+    def test_a_scene_is_chosen(self):
+        self.open()
+        self.browser.wait("!document.getElementById('scenes-label').hidden")
+        self.choose("scenes", "liver_breathing")
+        self.browser.wait("true")
+        time.sleep(0.2)
+        self.assertEqual(self.server.said("choose"), ["liver_breathing"])
+        self.assertEqual(self.server.said("hello")[0], {"token": "abc"})
+        self.assertGreater(len(self.server.said("shown")), 0)
+        self.no_errors()
+
+    def test_it_connects_again_by_itself(self):
+        self.open()
+        self.browser.wait("document.getElementById('status').textContent === 'Live'")
+        self.server.drop_pages()
+        self.browser.wait("document.getElementById('status').textContent.startsWith('No server')")
+        self.browser.wait("document.getElementById('status').textContent === 'Live'")
+        self.assertEqual(len(self.server.said("hello")), 2)
+
+    # Recordings
+
+    def test_a_recorded_session_scrubs(self):
+        self.open(recorded=made_session.recorded(4))
+        self.browser.wait("document.getElementById('status').textContent === 'Recorded'")
+        self.browser.wait("!document.getElementById('playback').hidden")
+        self.browser.key(" ")
+        for milliseconds in [3000, 500, 1700]:
+            self.browser.evaluate(f"(e => {{ e.value = {milliseconds}; e.dispatchEvent(new Event('input')); }})"
+                                  "(document.getElementById('scrubber'))")
+            step = milliseconds * made_session.RATE // 1000
+            self.wait_number("Step", lambda text: int(text) == step)
+            force = made_session.MadeSession(0).force(step / made_session.RATE) * math.sqrt(1.01)
+            self.wait_number("Force computed", lambda text: abs(float(text) - force) < 0.006)
+        self.browser.key("ArrowRight")
+        self.wait_number("Step", lambda text: int(text) == 52)
+        self.browser.key("ArrowLeft")
+        self.wait_number("Step", lambda text: int(text) == 51)
+        self.assertEqual(self.browser.evaluate("document.getElementById('place').textContent"), "0:01.7 of 0:04.0")
+        self.picture("recorded")
+        self.no_errors()
+
+    def test_a_shared_file_opens_from_the_disk_without_a_server(self):
+        self.open()
+        self.wait_number("Step", lambda text: text.isdigit() and int(text) > 60)
+        self.browser.evaluate("document.getElementById('share').click()")
+        file = self.browser.wait_for_file("a_ball*.html")
+        self.assertLess(file.stat().st_size, 4e6)
+        self.server.stop()
+        self.server = None
+        self.browser.errors.clear()
+        self.browser.open(file.as_uri())
+        self.browser.wait("document.getElementById('status').textContent === 'Recorded'")
+        self.browser.wait("Number(document.getElementById('scrubber').max) > 1000")
+        self.wait_number("Model", lambda text: text == "made up")
+        time.sleep(0.3)
+        if self.webgl:
+            pixels = self.organ()
+            self.assertGreater(sum(r > 1.3 * g for r, g, b in pixels) / len(pixels), 0.8)
+        self.assertEqual(self.browser.evaluate("performance.getEntriesByType('resource').length"), 0)
+        self.no_errors()
+
+    # How it looks
+
+    def test_it_fits_small_and_large_screens(self):
+        self.open()
+        for width, height in [(390, 844), (768, 1024), (1600, 1000), (2560, 1440)]:
+            self.browser.size(width, height)
+            self.browser.wait(f"innerWidth === {width}")
+            time.sleep(1.2)
+            self.picture(f"{width}")
+            wide = self.browser.evaluate("document.documentElement.scrollWidth")
+            self.assertLessEqual(wide, width)
+            _, _, stage_width, stage_height = self.stage()
+            self.assertGreater(stage_width, 0.6 * width if width > 820 else 0.95 * width)
+            self.assertGreater(stage_height, 300)
+        self.no_errors()
+
+    def test_words_stand_out_from_what_is_behind_them(self):
+        """WCAG AA: 4.5 to 1 for text, 3 to 1 for lines."""
+        self.open()
+        themes = ["dark", "light"] if hasattr(self.browser, "prefer") else [None]
+        for theme in themes:
+            if theme:
+                self.browser.prefer(prefers_color_scheme=theme)
+            names = ["--bg", "--raised", "--scene", "--ink", "--muted", "--accent", "--good", "--warn", "--bad", "--sample",
+                     "--force", *(f"--law-{i}" for i in range(1, 9))]
+            colours = self.browser.evaluate(f"(s => {json.dumps(names)}.map(n => s.getPropertyValue(n).trim()))"
+                                            "(getComputedStyle(document.documentElement))")
+            colour = dict(zip(names, colours))
+            for behind in ["--bg", "--raised", "--scene"]:
+                for name in ["--ink", "--muted", "--good", "--warn", "--bad", "--accent"]:
+                    self.assertGreaterEqual(contrast(colour[name], colour[behind]), 4.5, f"{theme}: {name} on {behind}")
+            for name in names[9:]:
+                self.assertGreaterEqual(contrast(colour[name], colour["--bg"]), 3, f"{theme}: {name}")
+        self.no_errors()
+
+
+def contrast(a, b):
+    def light(colour):
+        parts = [int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]
+        r, g, b = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b
+
+    high, low = sorted([light(a), light(b)], reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+class NoWebGlTest:
+    def test_without_webgl_it_says_so_and_plots_all_the_same(self):
+        one = self.start()
+        server = fake_server.FakeServer()
+        try:
+            one.open(server.address)
+            one.wait("document.getElementById('no-picture').offsetHeight > 0")
+            one.wait("Number(document.getElementById('big-force').textContent) > 1")
+            self.assertIn("WebGL", one.evaluate("document.getElementById('no-picture').textContent"))
+            self.assertEqual(one.evaluate("document.querySelectorAll('.plot canvas').length"), 5)
+            self.assertEqual(one.errors, [])
+        finally:
+            one.close()
+            server.stop()
+
+
+def cases(kinds):
+    classes = {"chromium": browser.Chromium, "firefox": browser.Firefox}
+    for kind in kinds:
+        program = browser.find(kind)
+        if not program:
+            print(f"page: no {kind} here")
+            continue
+        start = classes[kind]
+        made = {"start": classmethod(lambda cls, start=start, program=program: start(program))}
+        if kind == "chromium" or browser.shutil.which("Xvfb"):
+            yield type(kind.capitalize(), (PageTest, unittest.TestCase), made)
+        else:
+            print("page: firefox draws nothing without Xvfb; only the page without WebGL is tested")
+        bare = {"start": classmethod(lambda cls, start=start, program=program: start(program, webgl=False))}
+        yield type(f"{kind.capitalize()}WithoutWebGl", (NoWebGlTest, unittest.TestCase), bare)
+
+
+def main():
+    global PICTURES
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--browser", choices=["chromium", "firefox"])
+    parser.add_argument("--pictures", metavar="FOLDER")
+    parser.add_argument("names", nargs="*", help="parts of the names of tests")
+    options = parser.parse_args()
+    PICTURES = options.pictures
+    if PICTURES:
+        os.makedirs(PICTURES, exist_ok=True)
+    suite = unittest.TestSuite()
+    for case in cases([options.browser] if options.browser else ["chromium", "firefox"]):
+        for test in unittest.defaultTestLoader.loadTestsFromTestCase(case):
+            if not options.names or any(name in test.id() for name in options.names):
+                suite.addTest(test)
+    if suite.countTestCases() == 0:
+        print("page: skipped, no browser here (scripts/setup --browsers)")
+        return 0
+    return 0 if unittest.TextTestRunner(verbosity=2).run(suite).wasSuccessful() else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
