@@ -3,6 +3,7 @@
 import { PerspectiveCamera, Vector3 } from "three";
 
 const kHome = { yaw: -0.95, pitch: 0.5 };
+const kBeside = 0.6; // rad: from beside the tool, so that its shaft hides nothing
 
 export class Orbit {
   readonly camera = new PerspectiveCamera(36, 1, 0.002, 20);
@@ -10,18 +11,40 @@ export class Orbit {
   yaw = kHome.yaw; // rad, about z
   pitch = kHome.pitch; // rad, above the horizon
   distance = 0.5; // m
-  private home_ = { target: new Vector3(), radius: 0.1 };
+  private home_ = { target: new Vector3(), radius: 0.1, ...kHome };
 
-  /** What the home view shows: a box in the world, m. */
-  frame(min: ArrayLike<number>, max: ArrayLike<number>): void {
-    this.home_.target.set((min[0] + max[0]) / 2, (min[1] + max[1]) / 2, (min[2] + max[2]) / 2);
-    this.home_.radius = Math.max(1e-3, Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]) / 2);
+  /** Half the diagonal of what the home view shows, m. */
+  get radius(): number {
+    return this.home_.radius;
+  }
+
+  /** What the home view shows: all these places (3n, m), from the side that `facing`, if any, points to. */
+  frame(places: Float32Array, facing: Vector3 | null): void {
+    const [x, y, z] = [0, 1, 2].map((i) => extent(places, (p, at) => p[at + i]));
+    this.home_.target.set(x.middle, y.middle, z.middle);
+    this.home_.radius = Math.max(1e-3, Math.hypot(x.size, y.size, z.size) / 2);
+    Object.assign(this.home_, kHome);
+    if (facing) this.face(facing, places);
     this.home();
+  }
+
+  private face({ x, y, z }: Vector3, places: Float32Array): void {
+    const flat = Math.hypot(x, y);
+    if (flat < 0.5 * Math.abs(z)) {
+      this.home_.pitch = z > 0 ? kHome.pitch : -kHome.pitch; // from above or below: from any side
+      return;
+    }
+    // Of the two views from beside the tool, the one that shows more of the organ.
+    const yaws = [-kBeside, kBeside].map((beside) => Math.atan2(y, x) + beside);
+    const widths = yaws.map((a) => extent(places, (p, at) => p[at + 1] * Math.cos(a) - p[at] * Math.sin(a)).size);
+    this.home_.yaw = widths[1] > widths[0] ? yaws[1] : yaws[0];
+    this.home_.pitch = Math.atan2(z, flat) / 2 + 0.35;
   }
 
   home(): void {
     this.target.copy(this.home_.target);
-    Object.assign(this, kHome);
+    this.yaw = this.home_.yaw;
+    this.pitch = this.home_.pitch;
     this.fit();
     this.place();
   }
@@ -86,4 +109,16 @@ export class Orbit {
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
   }
+}
+
+/** From the smallest to the largest of a number at places (3n). */
+function extent(places: Float32Array, number: (p: Float32Array, at: number) => number): { size: number; middle: number } {
+  let least = Infinity;
+  let most = -Infinity;
+  for (let at = 0; at < places.length; at += 3) {
+    const value = number(places, at);
+    if (value < least) least = value;
+    if (value > most) most = value;
+  }
+  return { size: most - least, middle: (most + least) / 2 };
 }

@@ -12,6 +12,7 @@ const kZ = new Vector3(0, 0, 1);
 const kY = new Vector3(0, 1, 0);
 const kShaft = 0.45; // of the tip's radius
 const kOutside = 0.06; // m of an instrument beyond its trocar
+const kFollows = 0.04; // of the way, each step
 const kStem = 0.09; // m of the stem that holds a ball: it touches nothing
 
 export class ToolDrawing {
@@ -25,6 +26,7 @@ export class ToolDrawing {
   private readonly arrow_ = new Arrow();
   private end_ = new Vector3();
   private readonly shaft_radius_: number;
+  private readonly stem_ = new Vector3();
 
   constructor(private readonly shape_: ToolShape) {
     const { radius, length, trocar } = shape_;
@@ -37,8 +39,8 @@ export class ToolDrawing {
     if (this.ring_) this.group.add(this.ring_);
   }
 
-  /** Where it is, and the force on it, drawn as so many metres a newton. */
-  update(now: ToolNow, metres_per_newton: number): void {
+  /** Where it is, and the force on it, drawn as so many metres a newton. `outward`: from the organ, where it is near. */
+  update(now: ToolNow, metres_per_newton: number, outward: Vector3): void {
     const { radius, length, trocar } = this.shape_;
     const turn = new Quaternion(now.q[1], now.q[2], now.q[3], now.q[0]).normalize();
     this.tip.set(...now.p);
@@ -56,6 +58,9 @@ export class ToolDrawing {
       this.tip_.position.addScaledVector(axis, length / 2);
       this.end_.addScaledVector(axis, length);
     } else if (this.shape_.axis) {
+      // A ball that nobody turned has no direction: its stem comes from outside, and follows as a hand would.
+      this.stem_.lerp(outward, this.stem_.lengthSq() > 0 ? kFollows : 1).normalize();
+      if (Math.abs(now.q[0]) > 1 - 1e-9) axis.copy(this.stem_);
       this.end_.addScaledVector(axis, kStem);
     }
     this.shaft_.visible = this.end_.distanceTo(this.tip) > radius && (trocar !== null || length <= 0);
@@ -141,7 +146,7 @@ export class Loads {
 
   colour(colour: string, pixel_ratio: number): void {
     this.dots_.color.set(colour);
-    this.dots_.size = 4 * pixel_ratio;
+    this.dots_.size = 2.5 * pixel_ratio;
     this.strokes_.color.set(colour);
   }
 

@@ -3,6 +3,7 @@ import { Color, DirectionalLight, HemisphereLight, Raycaster, Scene, Vector2, Ve
 import { Orbit } from "./camera";
 import { kMeasures, type Measure, measure, nice_above, Scale } from "./colours";
 import { type Look, Organ } from "./organ";
+import type { Shape } from "./shape";
 import type { Session } from "./session";
 import { colour_of } from "./theme";
 import { Loads, ToolDrawing } from "./tools";
@@ -53,6 +54,7 @@ export class View {
         this.make_tools();
       }
       if (change === "scene" || change === "topology") this.show_shape();
+      if (change === "state" && !this.framed_ && session_.shape) this.frame(session_.shape);
       if (change === "surface" || change === "field" || change === "state") this.moved_ = true;
       if (change === "reset") this.largest_force_ = 0;
       this.stale_ = true;
@@ -153,7 +155,7 @@ export class View {
     this.tools_.forEach((tool, i) => {
       const at = state.tools[i];
       tool.group.visible = at !== undefined;
-      if (at) tool.update(at, metres_per_newton);
+      if (at) tool.update(at, metres_per_newton, this.outward(at.p));
     });
     if (shape) this.loads_.update(shape, state.tools, metres_per_newton);
   }
@@ -176,16 +178,21 @@ export class View {
     this.organ_.show(shape);
     this.scale_.restart();
     this.moved_ = true;
-    if (!shape || this.framed_) return;
-    this.framed_ = true;
-    const min = [Infinity, Infinity, Infinity];
-    const max = [-Infinity, -Infinity, -Infinity];
-    shape.topology.rest.forEach((x, i) => {
-      min[i % 3] = Math.min(min[i % 3], x);
-      max[i % 3] = Math.max(max[i % 3], x);
-    });
-    this.orbit.frame(min, max);
-    this.arrow_metres = 0.16 * Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]);
+    if (shape && !this.framed_) this.frame(shape);
+  }
+
+  /** The surface's normal where it is nearest to a place. */
+  private outward(place: ArrayLike<number>): Vector3 {
+    const { shape } = this.session_;
+    return shape ? new Vector3().fromArray(shape.normals, 3 * shape.nearest(place).vertex) : new Vector3(0, 0, 1);
+  }
+
+  /** The first view of a scene; again when the first state says where the tool is. */
+  private frame(shape: Shape): void {
+    const tool = this.session_.state?.tools.find((t) => t.held) ?? null;
+    this.framed_ = this.session_.state !== null;
+    this.orbit.frame(shape.topology.rest, tool && this.outward(tool.p));
+    this.arrow_metres = 0.24 * this.orbit.radius;
   }
 
   private resize(): void {
