@@ -3,7 +3,7 @@
 import { PerspectiveCamera, Vector3 } from "three";
 
 const kHome = { yaw: -0.95, pitch: 0.5 };
-const kBeside = 0.6; // rad: from beside the tool, so that its shaft hides nothing
+const kBeside = 0.35; // rad: from beside the tool, so that its shaft hides nothing
 
 export class Orbit {
   readonly camera = new PerspectiveCamera(36, 1, 0.002, 20);

@@ -85,7 +85,7 @@ void main() {
   vec3 halfway = normalize(light + view);
   float gloss = pow(max(0.0, dot(n, halfway)), 42.0) * 0.2 * shade;
   float rim = pow(1.0 - max(0.0, dot(n, view)), 3.0);
-  vec3 out_colour = colour * (0.3 + 0.74 * lit * mix(0.22, 1.0, shade) + 0.2 * side * mix(0.6, 1.0, shade));
+  vec3 out_colour = colour * (0.24 + 0.82 * lit * mix(0.12, 1.0, shade) + 0.22 * side * mix(0.4, 1.0, shade));
   out_colour += gloss + rim * 0.1;
   gl_FragColor = vec4(out_colour, mix(alpha, min(1.0, alpha + 0.5 * rim), step(alpha, 0.99)));
 }`;

@@ -102,7 +102,7 @@ export class View {
     if (this.moved_) this.update(now);
     this.moved_ = false;
     const { right, up, back } = this.orbit.axes();
-    const light = right.clone().multiplyScalar(0.5).addScaledVector(up, 0.8).addScaledVector(back, 0.62).normalize();
+    const light = right.clone().multiplyScalar(0.4).addScaledVector(up, 0.66).addScaledVector(back, 0.68).normalize();
     const fill = right.multiplyScalar(-0.8).addScaledVector(back, 0.6).normalize();
     const state = this.session_.state;
     const drawn = this.tools_.filter((_, i) => state?.tools[i]?.held);
