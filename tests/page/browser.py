@@ -241,7 +241,7 @@ class Firefox(Browser):
             profile = pathlib.Path(folder, "profile")
             profile.mkdir()
             all_of_them = {**FIREFOX, "browser.download.folderList": 2, "browser.download.dir": folder,
-                           "browser.helperApps.neverAsk.saveToDisk": "text/html,image/png"}
+                           "browser.helperApps.neverAsk.saveToDisk": "text/html,image/png,video/webm"}
             lines = [f"user_pref({json.dumps(name)}, {json.dumps(value)});" for name, value in all_of_them.items()]
             (profile / "user.js").write_text("\n".join(lines))
             headless = [] if self.screen else ["--headless"]

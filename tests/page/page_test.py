@@ -8,6 +8,7 @@ import json
 import math
 import os
 import pathlib
+import struct
 import sys
 import time
 import unittest
@@ -288,6 +289,22 @@ class PageTest:
             pixels = self.organ()
             self.assertGreater(sum(r > 1.3 * g for r, g, b in pixels) / len(pixels), 0.8)
         self.assertEqual(self.browser.evaluate("performance.getEntriesByType('resource').length"), 0)
+        self.no_errors()
+
+    def test_a_picture_and_a_video_are_saved(self):
+        self.open()
+        self.wait_number("Held", lambda text: text == "yes")
+        self.browser.evaluate("document.getElementById('picture').click()")
+        picture = self.browser.wait_for_file("a_ball*.png")
+        stage = [round(x * self.browser.evaluate("Math.min(2, devicePixelRatio)")) for x in self.stage()[2:]]
+        self.assertEqual(list(struct.unpack(">II", picture.read_bytes()[16:24])), stage)
+        self.browser.evaluate("document.getElementById('video').click()")
+        self.browser.wait("document.getElementById('video').getAttribute('aria-pressed') === 'true'")
+        time.sleep(1.5)
+        self.browser.evaluate("document.getElementById('video').click()")
+        video = self.browser.wait_for_file("a_ball*.webm")
+        self.assertEqual(video.read_bytes()[:4], b"\x1a\x45\xdf\xa3")  # EBML, which WebM is
+        self.assertGreater(video.stat().st_size, 2000)
         self.no_errors()
 
     # How it looks

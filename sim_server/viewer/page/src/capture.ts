@@ -8,8 +8,39 @@ export function file_name(title: string, end: string): string {
   return `${words}_${moment}.${end}`;
 }
 
-export function take_picture(canvas: HTMLCanvasElement, name: string): void {
-  canvas.toBlob((blob) => (blob ? save_file(name, blob) : note("The browser gave no picture.")), "image/png");
+/** What a picture says of itself. */
+export interface Caption {
+  title: string; // what, and when
+  measure: string; // with its unit; empty: no ramp
+  top: string; // what the end of the ramp stands for
+  colour: string; // of the words
+}
+
+/** Saves what the canvas shows now, with its legend. */
+export function take_picture(canvas: HTMLCanvasElement, name: string, caption: Caption): void {
+  const copy = document.createElement("canvas");
+  copy.width = canvas.width;
+  copy.height = canvas.height;
+  const context = copy.getContext("2d")!;
+  context.drawImage(canvas, 0, 0);
+  const scale = canvas.width / canvas.clientWidth;
+  context.scale(scale, scale);
+  write_caption(context, caption, 16, canvas.clientHeight - 16);
+  copy.toBlob((blob) => (blob ? save_file(name, blob) : note("The browser gave no picture.")), "image/png");
+}
+
+function write_caption(context: CanvasRenderingContext2D, caption: Caption, left: number, bottom: number): void {
+  const width = 220;
+  context.font = "13px system-ui, sans-serif";
+  context.fillStyle = caption.colour;
+  context.fillText(caption.title, left, caption.measure ? bottom - 56 : bottom);
+  if (!caption.measure) return;
+  context.font = "12px system-ui, sans-serif";
+  context.fillText(caption.measure, left, bottom - 34);
+  context.fillText("0", left, bottom);
+  context.textAlign = "right";
+  context.fillText(caption.top, left + width, bottom);
+  context.drawImage(document.getElementById("ramp") as HTMLCanvasElement, left, bottom - 24, width, 8);
 }
 
 /** Films the canvas until told to stop. */

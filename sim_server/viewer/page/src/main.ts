@@ -3,7 +3,7 @@
 import { shared_page, file_name, take_picture, unpack, Video } from "./capture";
 import { Connection, token_of } from "./connection";
 import { Controls } from "./controls";
-import { by_id, note, save_file } from "./dom";
+import { by_id, note, plain_number, save_file } from "./dom";
 import { listen_to_keys } from "./keys";
 import { Legend } from "./legend";
 import { decode } from "./messages";
@@ -14,7 +14,7 @@ import { Pointer } from "./pointer";
 import { Recording } from "./recording";
 import { Session } from "./session";
 import { Status } from "./status";
-import { on_theme_change } from "./theme";
+import { colour_of, on_theme_change } from "./theme";
 import { Touch } from "./touch";
 import { View } from "./view";
 
@@ -25,7 +25,7 @@ class Page {
   private readonly video_ = new Video();
   private readonly view_ = View.open(this.canvas_, this.session_);
   private readonly plots_ = new Plots(this.session_, (t) => this.playback_?.seek(t));
-  private readonly panel_ = new Panel(this.session_);
+  private readonly panel_ = new Panel(this.session_, () => this.view_?.frame_rate(performance.now()) ?? null);
   private readonly status_ = new Status(this.session_);
   private readonly legend_ = this.view_ && new Legend(this.view_, this.session_, (field) => this.connection_?.want(field));
   private readonly touch_ =
@@ -195,7 +195,14 @@ class Page {
   private picture(): void {
     if (!this.view_) return note("There is no picture to save.");
     this.view_.draw(performance.now(), true); // the browser keeps what is drawn only until this task ends
-    take_picture(this.canvas_, this.name("png"));
+    const { measure, top, measured } = this.view_;
+    const shown = measure.name !== "plain" && measured;
+    take_picture(this.canvas_, this.name("png"), {
+      title: `${this.session_.scene?.title ?? "Palpate"}, ${this.session_.t.toFixed(2)} s`,
+      measure: shown ? measure.label : "",
+      top: `${plain_number(top)} ${measure.unit}`,
+      colour: colour_of("--ink"),
+    });
   }
 
   private film(): void {

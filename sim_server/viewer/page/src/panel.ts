@@ -14,7 +14,8 @@ export class Panel {
   private stale_ = true;
   private drawn_ = 0;
 
-  constructor(private readonly session_: Session) {
+  /** `frame_rate`: pictures drawn, Hz. */
+  constructor(private readonly session_: Session, private readonly frame_rate_: () => number | null) {
     session_.listen(() => (this.stale_ = true));
   }
 
@@ -55,6 +56,7 @@ export class Panel {
       ["Rate asked for", scene.rate_hz > 0 ? plain(scene.rate_hz) : "as fast as it can", scene.rate_hz > 0 ? "Hz" : ""],
       ["Rate", figures(state?.rate_hz), "Hz"],
       ["Step", state ? String(state.step) : kNone, ""],
+      ["Pictures drawn", fixed(this.frame_rate_(), 0), "Hz"],
       ["Late steps", state?.late != null ? String(state.late) : kNone, ""],
     ];
   }

@@ -26,6 +26,7 @@ export class View {
   private tools_: ToolDrawing[] = [];
   private readonly scale_ = new Scale();
   private largest_force_ = 0;
+  private readonly drawn_: number[] = []; // ms, of the pictures of the last second
   private stale_ = true;
   private moved_ = true;
   private framed_ = false; // whether the camera has found this scene's organ
@@ -110,7 +111,14 @@ export class View {
     this.lamp_.position.copy(this.orbit.target).add(light);
     this.lamp_.target.position.copy(this.orbit.target);
     this.renderer_.render(this.scene_, this.orbit.camera);
+    this.drawn_.push(now);
     return true;
+  }
+
+  /** Pictures in the last second. */
+  frame_rate(now: number): number {
+    while (this.drawn_.length && this.drawn_[0] < now - 1000) this.drawn_.shift();
+    return this.drawn_.length;
   }
 
   /** Where a pixel's ray meets the organ, and the surface's normal there. */
