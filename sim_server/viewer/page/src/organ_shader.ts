@@ -83,9 +83,9 @@ void main() {
   shade = mix(1.0, shade, smoothstep(-0.05, 0.25, facing));
   float side = max(0.0, 0.6 * dot(n, fill) + 0.4);
   vec3 halfway = normalize(light + view);
-  float gloss = pow(max(0.0, dot(n, halfway)), 42.0) * 0.2 * shade;
+  float gloss = pow(max(0.0, dot(n, halfway)), 42.0) * 0.14 * shade;
   float rim = pow(1.0 - max(0.0, dot(n, view)), 3.0);
-  vec3 out_colour = colour * (0.24 + 0.82 * lit * mix(0.12, 1.0, shade) + 0.22 * side * mix(0.4, 1.0, shade));
+  vec3 out_colour = colour * (0.25 + 0.68 * lit * mix(0.12, 1.0, shade) + 0.18 * side * mix(0.4, 1.0, shade));
   out_colour += gloss + rim * 0.1;
   gl_FragColor = vec4(out_colour, mix(alpha, min(1.0, alpha + 0.5 * rim), step(alpha, 0.99)));
 }`;

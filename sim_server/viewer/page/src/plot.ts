@@ -39,6 +39,7 @@ export class Plot {
   /** New numbers: times, then a column for each line; from and to in s. */
   set(lines: Line[], data: Columns, from: number, to: number): void {
     this.data_ = data;
+    this.host_.classList.toggle("empty", data[0].length === 0 && !this.impulses?.times.length);
     this.from_ = from;
     this.to_ = to;
     const key = JSON.stringify(lines);
