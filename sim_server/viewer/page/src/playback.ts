@@ -75,7 +75,7 @@ export class Playback {
     const from = this.first_after(this.now - kPlotSeconds);
     for (let i = Math.max(0, Math.min(from, whole < 0 ? stop : whole)); i < stop; i++) {
       const { kind } = this.entries_[i];
-      const shown = kind === "whole" || kind === "surface" || kind === "field" ? i >= whole && i > topology : i >= from;
+      const shown = kind === "whole" || kind === "surface" || kind === "field" ? i >= whole : i >= from;
       if (shown && kind !== "scene" && kind !== "topology" && i > scene) this.apply(i);
     }
     this.next_ = stop;

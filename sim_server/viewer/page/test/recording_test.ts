@@ -129,6 +129,33 @@ test("a topology that changes in between is there again after a seek before and 
   }
 });
 
+test("when the piece with a topology goes, the topology stays", () => {
+  const session = new Session();
+  const recording = new Recording({ seconds: 3, bytes: 1e9 });
+  const messages = [...steps(20)].map(([, data]) => data);
+  messages.push(tetrahedron(2));
+  for (let step = 20; step < 200; step++) messages.push(tetrahedron_at(2, step, step / kRate, kAtRest));
+  for (const data of messages) {
+    const message = decode(data)!;
+    session.apply(message);
+    recording.add(data, message, session);
+  }
+  const played = play(recording);
+  played.playback.seek(18);
+  assert.equal(played.session.shape?.topology.version, 2);
+  assert.equal(played.session.shape?.step, 180);
+});
+
+test("each tick has a time of its own, and laws that change their number start a new series", () => {
+  const session = new Session();
+  session.apply(decode(new Bytes().u8(3, 0, 1, 0).u32(3).f64(2).f32(0.25).f32(1, 2, 3).f32(7, 8, 9).done()));
+  const { ticks } = session.series(0);
+  assert.deepEqual([0, 1, 2].map((i) => [ticks.time(i), ticks.value(i, 0), ticks.value(i, 1)]), [[2, 1, 7], [2.25, 2, 8], [2.5, 3, 9]]);
+  assert.equal(session.t, 2.5);
+  session.apply(decode(new Bytes().u8(3, 0, 0, 0).u32(1).f64(3).f32(0.25).f32(4).done()));
+  assert.equal(session.series(0).ticks.length, 1);
+});
+
 test("a file that is cut short plays as far as it goes; one that is none is empty", () => {
   const whole = record(50, 1e9, 1e9).save();
   const session = new Session();
