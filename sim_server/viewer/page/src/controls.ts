@@ -85,6 +85,7 @@ export class Controls {
     by_id("hint").hidden = !hint;
     if (hint) set_text(by_id("hint"), "Drag on the organ to touch it; the wheel is depth.");
     if (!playback) return;
+    by_id("no-organ").hidden = this.session_.shape !== null || state === null;
     set_text(by_id("play"), paused ? "Play" : "Pause");
     const place = playback.now - playback.start;
     if (document.activeElement !== this.scrubber_ || playback.playing) this.scrubber_.value = String(Math.round(1000 * place));

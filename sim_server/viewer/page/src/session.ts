@@ -79,7 +79,7 @@ export class Session {
         this.shape = null;
         return "scene";
       case "topology":
-        this.shape = new Shape(message);
+        this.shape = message.rest.length > 0 ? new Shape(message) : null;
         this.field = null;
         return "topology";
       case "surface":

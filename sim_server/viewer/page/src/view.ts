@@ -29,7 +29,7 @@ export class View {
   private readonly drawn_: number[] = []; // ms, of the pictures of the last second
   private stale_ = true;
   private moved_ = true;
-  private framed_ = false; // whether the camera has found this scene's organ
+  private framed_: "nothing" | "tool" | "organ" = "nothing"; // what of this scene the camera has found
 
   /** Throws nothing, but gives null where the browser has no WebGL. */
   static open(canvas: HTMLCanvasElement, session: Session): View | null {
@@ -51,11 +51,11 @@ export class View {
     this.resize();
     session_.listen((change) => {
       if (change === "scene") {
-        this.framed_ = false;
+        this.framed_ = "nothing";
         this.make_tools();
       }
       if (change === "scene" || change === "topology") this.show_shape();
-      if (change === "state" && !this.framed_ && session_.shape) this.frame(session_.shape);
+      if (change === "state" && this.framed_ === "nothing") this.frame(session_.shape);
       if (change === "surface" || change === "field" || change === "state") this.moved_ = true;
       if (change === "reset") this.largest_force_ = 0;
       this.stale_ = true;
@@ -186,7 +186,7 @@ export class View {
     this.organ_.show(shape);
     this.scale_.restart();
     this.moved_ = true;
-    if (shape && !this.framed_) this.frame(shape);
+    if (shape && this.framed_ !== "organ") this.frame(shape);
   }
 
   /** The surface's normal where it is nearest to a place. */
@@ -196,10 +196,11 @@ export class View {
   }
 
   /** The first view of a scene; again when the first state says where the tool is. */
-  private frame(shape: Shape): void {
+  private frame(shape: Shape | null): void {
     const tool = this.session_.state?.tools.find((t) => t.held) ?? null;
-    this.framed_ = this.session_.state !== null;
-    this.orbit.frame(shape.topology.rest, tool && this.outward(tool.p));
+    if (this.session_.state) this.framed_ = shape ? "organ" : tool ? "tool" : "nothing";
+    const around = shape ? shape.topology.rest : room_around(tool?.p ?? [0, 0, 0]);
+    this.orbit.frame(around, tool && this.outward(tool.p));
     this.arrow_metres = 0.24 * this.orbit.radius;
   }
 
@@ -210,4 +211,10 @@ export class View {
     this.orbit.resize(host.clientWidth, host.clientHeight);
     this.draw(performance.now(), true); // at once: an emptied canvas would flicker
   }
+}
+
+/** The corners of 10 cm about a place. */
+function room_around(place: ArrayLike<number>): Float32Array {
+  const half = 0.05;
+  return Float32Array.from([-half, half].flatMap((by) => [0, 1, 2].map((i) => place[i] + by)));
 }
