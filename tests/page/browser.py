@@ -121,6 +121,14 @@ class Browser:
                 raise BrowserError(f"still not true after {seconds} s: {script}")
             time.sleep(0.05)
 
+    def drag(self, places):
+        """Presses at the first place, moves through the others, lets go."""
+        self.press(*places[0])
+        for place in places[1:]:
+            self.move(*place)
+            time.sleep(0.15)
+        self.release(*places[-1])
+
     def wait_for_file(self, pattern, seconds=30):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
@@ -207,17 +215,16 @@ class Chromium(Browser):
         clip = {"clip": {**dict(zip(["x", "y", "width", "height"], box)), "scale": 1}} if box else {}
         return base64.b64decode(self.call("Page.captureScreenshot", format="png", **clip)["data"])
 
-    def drag(self, places, wheel=0):
-        """Presses at the first place, moves through the others, turns the wheel by so many pixels, lets go."""
-        x, y = places[0]
+    def press(self, x, y):
         self.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
-        time.sleep(0.15)
-        for x, y in places[1:]:
-            self.mouse("mouseMoved", x, y, button="left", buttons=1)
-            time.sleep(0.15)
-        if wheel:
-            self.mouse("mouseWheel", x, y, deltaX=0, deltaY=wheel)
-            time.sleep(0.1)
+
+    def move(self, x, y):
+        self.mouse("mouseMoved", x, y, button="left", buttons=1)
+
+    def wheel(self, x, y, pixels):
+        self.mouse("mouseWheel", x, y, deltaX=0, deltaY=pixels)
+
+    def release(self, x, y):
         self.mouse("mouseReleased", x, y, button="left", buttons=0, clickCount=1)
 
     def mouse(self, kind, x, y, **more):
@@ -281,14 +288,16 @@ class Firefox(Browser):
         if self.screen:
             self.screen.close()
 
-    def drag(self, places, wheel=0):
-        moves = [{"type": "pointerMove", "x": round(x), "y": round(y), "duration": 150} for x, y in places]
-        pressed = [moves[0], {"type": "pointerDown", "button": 0}, *moves[1:]]
-        self.act("mouse", "pointer", pressed)
-        if wheel:
-            x, y = map(round, places[-1])
-            self.act("wheel", "wheel", [{"type": "scroll", "x": x, "y": y, "deltaX": 0, "deltaY": round(wheel)}])
-            time.sleep(0.1)
+    def press(self, x, y):
+        self.act("mouse", "pointer", [{"type": "pointerMove", "x": round(x), "y": round(y)}, {"type": "pointerDown", "button": 0}])
+
+    def move(self, x, y):
+        self.act("mouse", "pointer", [{"type": "pointerMove", "x": round(x), "y": round(y)}])
+
+    def wheel(self, x, y, pixels):
+        self.act("wheel", "wheel", [{"type": "scroll", "x": round(x), "y": round(y), "deltaX": 0, "deltaY": round(pixels)}])
+
+    def release(self, x, y):
         self.act("mouse", "pointer", [{"type": "pointerUp", "button": 0}])
 
     def key(self, key):

@@ -20,6 +20,9 @@ import made_session
 PICTURES = None
 BACK = (math.cos(0.95) * math.cos(0.5), -math.sin(0.95) * math.cos(0.5), math.sin(0.5))  # where the first view looks from
 
+RIGHT = (math.sin(0.95), math.cos(0.95), 0.0)
+UP = (-math.cos(0.95) * math.sin(0.5), math.sin(0.95) * math.sin(0.5), math.cos(0.5))
+
 
 def dot(a, b):
     return sum(x * y for x, y in zip(a, b))
@@ -139,37 +142,62 @@ class PageTest:
 
     # Touch
 
+    def press_on_the_organ(self):
+        """Where the tool is not, and waits until it has come there: pixels, and where it then is wanted."""
+        self.wait_number("Held", lambda text: text == "yes")
+        x, y = self.middle(0.5)
+        self.browser.press(x, y)
+        self.wait_still()
+        return x, y, self.server.said("pointer")[-1]["p"]
+
+    def wait_still(self):
+        """Until the page wants the tool at one place for a while."""
+        end = time.monotonic() + 15
+        while time.monotonic() < end:
+            time.sleep(0.3)
+            last = [message["p"] for message in self.server.said("pointer")[-5:]]
+            if len(last) == 5 and all(p == last[0] for p in last):
+                return
+        self.fail("the page never rests")
+
     def test_a_drag_on_the_organ_moves_the_tool_in_the_plane_of_the_camera(self):
         self.open()
-        self.wait_number("Held", lambda text: text == "yes")
         before = self.number("Place x, y, z").split()[:2]
-        x, y = self.middle()
-        y += 60
-        self.browser.drag([(x, y), (x + 40, y), (x + 80, y + 20)])
-        self.browser.wait("true")
-        time.sleep(0.2)
+        x, y, first = self.press_on_the_organ()
+        self.assertAlmostEqual(math.sqrt(dot(first, first)), made_session.RADIUS + made_session.TOOL_RADIUS, delta=0.002)
+        self.browser.move(x + 40, y)
+        self.browser.move(x + 80, y + 20)
+        self.wait_still()
         said = self.server.said("pointer")
-        self.assertGreater(len(said), 2)
+        self.browser.release(x + 80, y + 20)
         numbers = [message["number"] for message in said]
         self.assertEqual(numbers, sorted(set(numbers)))
         self.assertEqual({message["tool"] for message in said}, {0})
-        way = minus(said[-1]["p"], said[0]["p"])
-        self.assertGreater(math.sqrt(dot(way, way)), 0.01)
+        way = minus(said[-1]["p"], first)
         self.assertAlmostEqual(dot(way, BACK), 0, delta=1e-4)
-        first = said[0]["p"]
-        out = math.sqrt(dot(first, first))
-        self.assertAlmostEqual(out, made_session.RADIUS + made_session.TOOL_RADIUS, delta=0.002)  # it begins touching
+        self.assertAlmostEqual(dot(way, RIGHT) / dot(way, UP), 80 / -20, delta=0.1)
+        self.assertGreater(dot(way, RIGHT), 0.008)
         self.wait_number("Place x, y, z", lambda text: text.split()[:2] != before)
+        self.no_errors()
+
+    def test_a_tool_goes_over_the_organ_and_not_through_it(self):
+        self.open()
+        self.wait_number("Held", lambda text: text == "yes")
+        x, y, last = self.press_on_the_organ()
+        self.browser.release(x, y)
+        nearest = min(math.sqrt(dot(message["p"], message["p"])) for message in self.server.said("pointer")[1:])
+        self.assertGreater(nearest, made_session.RADIUS - made_session.DEPTH)
+        highest = max(dot(message["p"], BACK) for message in self.server.said("pointer"))
+        self.assertGreater(highest, dot(last, BACK) + 0.005)
         self.no_errors()
 
     def test_the_wheel_is_depth_while_touching(self):
         self.open()
-        self.wait_number("Held", lambda text: text == "yes")
-        x, y = self.middle()
-        self.browser.drag([(x, y + 60), (x, y + 60)], wheel=-300)
-        time.sleep(0.2)
-        said = self.server.said("pointer")
-        way = minus(said[-1]["p"], said[0]["p"])
+        x, y, first = self.press_on_the_organ()
+        self.browser.wheel(x, y, -300)
+        self.wait_still()
+        way = minus(self.server.said("pointer")[-1]["p"], first)
+        self.browser.release(x, y)
         deep = -dot(way, BACK)
         self.assertGreater(deep, 0.002)
         self.assertAlmostEqual(math.sqrt(dot(way, way)), deep, delta=1e-5)

@@ -163,11 +163,17 @@ class BrowserAsDeviceTest(SessionTest):
         x, y, width, height = self.browser.evaluate("(({x, y, width, height}) => [x, y, width, height])"
                                                     "(document.getElementById('stage').getBoundingClientRect())")
         middle = (x + width / 2, y + height / 2)
-        for wheel in [0, -400, -400]:
-            self.browser.drag([middle, (middle[0] + 6, middle[1]), middle], wheel=wheel)
+        self.browser.press(*middle)
+        time.sleep(2)  # the tool comes
+        for _ in range(4):
+            self.browser.move(middle[0] + 6, middle[1])
+            self.browser.wheel(*middle, -200)
+            self.browser.move(*middle)
+            time.sleep(0.3)
         self.wait_number("Force computed", lambda text: float(text) > 0.02)
         self.browser.wait("Number(document.getElementById('big-force').textContent) > 0.02")
         self.picture("touched")
+        self.browser.release(*middle)
         self.assertGreater(max(abs(a - b) for a, b in zip(before, self.place())), 5)  # mm
         self.browser.key(" ")
         self.browser.wait("document.getElementById('status').textContent === 'Paused'")

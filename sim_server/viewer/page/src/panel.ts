@@ -138,7 +138,8 @@ function client_rows(client: Client): Row[] {
 
 function safety_rows(client: Client): Row[] {
   const counts: Row[] = client.interventions.map(([name, count]) => [sentence(name), String(count), ""]);
-  return [["Passivity gain", fixed(client.passivity_gain, 2), ""], ...counts];
+  const now = client.states.map((state) => state.replaceAll("_", " ")).join(", ");
+  return [["Now", now || "as usual", ""], ["Passivity gain", fixed(client.passivity_gain, 2), ""], ...counts];
 }
 
 function sentence(name: string): string {

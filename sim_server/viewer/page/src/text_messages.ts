@@ -62,6 +62,7 @@ export interface Client {
   p: Vec3 | null; // m
   device: string;
   has_motors: boolean;
+  states: string[]; // such as "clutched", "fading", "fault", "device lost"
 }
 
 type Json = Record<string, unknown>;
@@ -178,5 +179,6 @@ function client(x: Json): Client {
     p: vec3(x.p),
     device: text(x.device),
     has_motors: x.has_motors === true,
+    states: list(x.states).map(text).filter(Boolean),
   };
 }

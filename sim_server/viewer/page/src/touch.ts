@@ -5,6 +5,9 @@ import type { View } from "./view";
 export type Send = (tool: number, p: [number, number, number], buttons: number) => void;
 
 const kGrab = 26; // pixels: this near to a tip, a press takes the tool where it is
+const kFar = 0.025; // m: beyond, a tool does not plough through the organ to get there, but is lifted over it
+const kLift = 0.35; // of the way
+const kQuickest = 0.3; // m/s, while it goes there
 const kLinger = 900; // ms that the plane stays after a key
 
 export class Touch {
@@ -13,6 +16,9 @@ export class Touch {
   buttons = 0;
   readonly wanted = new Vector3();
   private readonly offset_ = new Vector3(); // of the wanted place from where the ray meets the plane
+  private route_: Vector3[] = []; // on the way to the wanted place
+  private readonly sent_ = new Vector3();
+  private framed_ = 0; // ms
   private shown_until_ = 0;
   private unsent_ = false;
 
@@ -30,7 +36,12 @@ export class Touch {
     if (near.away > kGrab && !hit) return false;
     this.tool = near.tool;
     this.wanted.copy(this.view_.tools[near.tool].tip);
-    if (near.away > kGrab) this.wanted.copy(hit!.place).addScaledVector(hit!.normal, this.radius_of_(near.tool));
+    this.sent_.copy(this.wanted);
+    this.route_ = [];
+    if (near.away > kGrab) {
+      this.wanted.copy(hit!.place).addScaledVector(hit!.normal, this.radius_of_(near.tool));
+      this.find_route();
+    }
     this.offset_.copy(this.wanted).sub(this.on_plane(x, y));
     this.active = this.unsent_ = true;
     return true;
@@ -55,25 +66,34 @@ export class Touch {
   /** By keys: right, up and away from the camera, m. */
   nudge(right: number, up: number, away: number, now: number): void {
     if (!this.view_.tools[this.tool]) return;
-    if (!this.active && now > this.shown_until_) this.wanted.copy(this.view_.tools[this.tool].tip);
+    if (!this.active && now > this.shown_until_) this.take_up();
     const axes = this.view_.orbit.axes();
     this.wanted.addScaledVector(axes.right, right).addScaledVector(axes.up, up).addScaledVector(axes.back, -away);
     this.shown_until_ = now + kLinger;
     this.unsent_ = true;
   }
 
+  private take_up(): void {
+    this.wanted.copy(this.view_.tools[this.tool].tip);
+    this.route_ = [];
+  }
+
   set_buttons(buttons: number): void {
     if (buttons === this.buttons) return;
     this.buttons = buttons;
-    if (!this.active && this.view_.tools[this.tool]) this.wanted.copy(this.view_.tools[this.tool].tip);
+    if (!this.active && this.view_.tools[this.tool] && !this.unsent_) this.take_up();
     this.unsent_ = true;
   }
 
   /** Once a frame: sends what is new, and while the button is down always; draws the plane. */
   frame(now: number, half: number): void {
     const { touch_plane, orbit, tools } = this.view_;
-    if (this.active || this.unsent_) this.send_(this.tool, [this.wanted.x, this.wanted.y, this.wanted.z], this.buttons);
-    this.unsent_ = false;
+    if (this.active || this.unsent_) {
+      this.follow_route((now - this.framed_) / 1000);
+      this.send_(this.tool, [this.sent_.x, this.sent_.y, this.sent_.z], this.buttons);
+    }
+    this.framed_ = now;
+    this.unsent_ = this.route_.length > 0; // it also gets there if the button is up by then
     const shown = this.active || now < this.shown_until_;
     if (shown !== touch_plane.group.visible || shown) this.view_.invalidate();
     if (shown && tools[this.tool]) {
@@ -81,6 +101,32 @@ export class Touch {
     } else {
       touch_plane.hide();
     }
+  }
+
+  /** To a place far away: towards the camera, across, and down. */
+  private find_route(): void {
+    const { back } = this.view_.orbit.axes();
+    const way = this.wanted.distanceTo(this.sent_);
+    if (way < kFar) return;
+    const height = Math.max(this.sent_.dot(back), this.wanted.dot(back)) + kLift * way;
+    const lifted = (place: Vector3) => place.clone().addScaledVector(back, height - place.dot(back));
+    this.route_ = [lifted(this.sent_), lifted(this.wanted), this.wanted];
+  }
+
+  private follow_route(seconds: number): void {
+    let left = kQuickest * Math.min(0.1, seconds);
+    while (this.route_.length > 0) {
+      const next = this.route_[0];
+      const way = this.sent_.distanceTo(next);
+      if (way > left) {
+        this.sent_.lerp(next, left / way);
+        return;
+      }
+      left -= way;
+      this.sent_.copy(next);
+      this.route_.shift();
+    }
+    this.sent_.copy(this.wanted);
   }
 
   /** Where a pixel's ray meets the plane through the wanted place that faces the camera. */
