@@ -114,7 +114,7 @@ class Page {
     requestAnimationFrame((next) => this.frame(next));
     this.playback_?.advance(Math.min(0.25, (now - this.last_frame_) / 1000));
     this.last_frame_ = now;
-    this.touch_?.frame(now, 0.3 * (this.view_?.orbit.distance ?? 1) * 0.6);
+    this.touch_?.frame(now, 0.11 * (this.view_?.orbit.distance ?? 1));
     if (this.view_?.draw(now)) this.legend_?.draw();
     this.tell_shown();
     this.plots_.draw(now);

@@ -34,7 +34,7 @@ export class Pointer {
   }
 
   private press(event: PointerEvent): void {
-    this.canvas_.focus({ preventScroll: true });
+    this.canvas_.focus({ preventScroll: true, focusVisible: false } as FocusOptions); // a frame is for the keyboard
     this.canvas_.setPointerCapture(event.pointerId);
     const { offsetX: x, offsetY: y } = event;
     this.down_.set(event.pointerId, { x, y });

@@ -9,10 +9,10 @@ export class TouchPlane {
   readonly group = new Group();
   private readonly plane_ = new Group();
   private readonly lines_ = new LineBasicMaterial({ transparent: true, opacity: 0.35, depthWrite: false });
-  private readonly sheet_ = new MeshBasicMaterial({ transparent: true, opacity: 0.07, depthWrite: false, side: DoubleSide });
+  private readonly sheet_ = new MeshBasicMaterial({ transparent: true, opacity: 0.05, depthWrite: false, side: DoubleSide });
   private readonly mark_ = new MeshBasicMaterial({ depthTest: false, transparent: true, side: DoubleSide });
   private readonly band_ = new LineBasicMaterial({ depthTest: false, transparent: true, opacity: 0.9 });
-  private readonly ring_ = new Mesh(new RingGeometry(0.8, 1, 48), this.mark_);
+  private readonly ring_ = new Mesh(new RingGeometry(0.91, 1, 64), this.mark_);
   private readonly ends_ = new BufferAttribute(new Float32Array(6), 3);
 
   constructor() {
