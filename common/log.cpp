@@ -27,6 +27,18 @@ void start(std::string_view program) {
   logger() = named(program);
 }
 
+void tell_more() {
+  logger()->set_level(spdlog::level::debug);
+}
+
+bool tells_more() {
+  return logger()->should_log(spdlog::level::debug);
+}
+
+void write_debug(std::string_view line) {
+  logger()->debug("debug: {}", line);
+}
+
 void write_info(std::string_view line) {
   logger()->info("{}", line);
 }

@@ -9,10 +9,20 @@ namespace palpate::log {
 /// Names the program in front of every line ("sim_server: ..."). Call once in `main`.
 void start(std::string_view program);
 
+/// From here on debug lines are written, too.
+void tell_more();
+/// Whether they are.
+bool tells_more();
+
+void write_debug(std::string_view line);
 void write_info(std::string_view line);
 void write_warning(std::string_view line);
 void write_error(std::string_view line);
 
+template <class... Args>
+void debug(fmt::format_string<Args...> format, Args&&... args) {
+  if (tells_more()) write_debug(fmt::format(format, std::forward<Args>(args)...));
+}
 template <class... Args>
 void info(fmt::format_string<Args...> format, Args&&... args) {
   write_info(fmt::format(format, std::forward<Args>(args)...));

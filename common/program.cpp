@@ -41,6 +41,8 @@ int run_program(const char* name, int argc, char** argv, int (*body)(int argc, c
 
 std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+  app.add_flag_callback("--debug", log::tell_more,
+                        "Before the subcommand: tell more, as what the link did in each second");
   try {
     app.parse(argc, argv);
     return {};

@@ -5,6 +5,8 @@
 #include <charconv>
 
 #include "common/error.h"
+#include "protocol/asked_addresses.h"
+#include "protocol/udp_ancillary.h"
 
 namespace palpate::protocol {
 namespace {
@@ -12,7 +14,7 @@ namespace {
 using asio::ip::udp;
 
 udp::endpoint to_asio(const Endpoint& endpoint) {
-  if (endpoint.v6) return {asio::ip::address_v6(endpoint.address), endpoint.port};
+  if (endpoint.v6) return {asio::ip::address_v6(endpoint.address, endpoint.scope), endpoint.port};
   asio::ip::address_v4::bytes_type bytes{};
   std::copy_n(endpoint.address.begin(), bytes.size(), bytes.begin());
   return {asio::ip::address_v4(bytes), endpoint.port};
@@ -22,6 +24,7 @@ Endpoint from_asio(const udp::endpoint& endpoint) {
   Endpoint result{.port = endpoint.port(), .v6 = endpoint.address().is_v6()};
   if (result.v6) {
     result.address = endpoint.address().to_v6().to_bytes();
+    result.scope = static_cast<std::uint32_t>(endpoint.address().to_v6().scope_id());
   } else {
     const auto bytes = endpoint.address().to_v4().to_bytes();
     std::copy(bytes.begin(), bytes.end(), result.address.begin());
@@ -86,18 +89,23 @@ struct UdpSocket::Asio {
   Doorbell* doorbell = nullptr;
   Time period{};
   const Handlers* handlers = nullptr;
-  Handlers own_handlers;  // of a socket that another one's loop serves
+  Handlers own_handlers;    // of a socket that another one's loop serves
+  bool everywhere = false;  // bound to all addresses
+  AskedAddresses asked;
+  Time arrived{};
 
   void receive() {
     socket.async_wait(udp::socket::wait_read, [this](std::error_code failed) {
       if (failed == asio::error::operation_aborted) return;
       // Take all that waits, so that the newest is what the mailboxes hold when this returns.
       for (int i = 0; i < 256; ++i) {
-        udp::endpoint from;
         std::error_code error;
-        const std::size_t size = socket.receive_from(asio::buffer(buffer), from, 0, error);
-        if (error == asio::error::would_block) break;
-        if (!error) handlers->on_datagram({buffer.data(), size}, from_asio(from));
+        const auto datagram = protocol::receive(socket.native_handle(), buffer, error);
+        if (error == std::errc::operation_would_block) break;
+        if (!datagram) continue;  // an earlier one could not be delivered
+        if (everywhere) asked.note(datagram->from, datagram->to);
+        arrived = datagram->at;
+        handlers->on_datagram({buffer.data(), datagram->size}, datagram->from);
       }
       receive();
     });
@@ -147,6 +155,8 @@ void UdpSocket::bind(const Endpoint& local) {
   if (failed) fail_at_run_time("cannot use UDP address {} ({})", to_string(local), failed.message());
   asio_->socket.non_blocking(true);
   expedite(asio_->socket, local.v6);
+  ask_for_ancillary(asio_->socket.native_handle(), local.v6);
+  asio_->everywhere = local.address == Endpoint{}.address;
 }
 
 UdpSocket::~UdpSocket() = default;
@@ -158,6 +168,10 @@ Endpoint UdpSocket::local() const {
 Endpoint UdpSocket::local_towards(const Endpoint& peer) const {
   Endpoint own = local();
   if (own.address != Endpoint{}.address) return own;
+  if (const Endpoint asked = asio_->asked.of(peer); asked.port != 0) {
+    own.address = asked.address;
+    return own;
+  }
   udp::socket probe(asio_->context);
   std::error_code failed;
   probe.connect(to_asio(peer), failed);
@@ -183,9 +197,11 @@ void UdpSocket::stop() {
 }
 
 std::error_code UdpSocket::send(std::span<const std::byte> datagram, const Endpoint& to) noexcept {
-  std::error_code failed;
-  asio_->socket.send_to(asio::buffer(datagram.data(), datagram.size()), to_asio(to), 0, failed);
-  return failed;
+  return protocol::send(asio_->socket.native_handle(), datagram, to, asio_->asked.of(to));
+}
+
+Time UdpSocket::arrived() const noexcept {
+  return asio_->arrived;
 }
 
 }  // namespace palpate::protocol

@@ -16,7 +16,7 @@ namespace palpate::protocol {
 /// `text`.
 Endpoint resolve(const std::string& text, const std::string& where);
 
-/// "1.2.3.4:567" or "[::1]:567".
+/// "1.2.3.4:567", "[::1]:567" or "[fe80::1%eth0]:567".
 std::string to_string(const Endpoint& endpoint);
 
 /// A UDP socket with the event loop of the one thread that serves it (the only file that knows Asio).
@@ -41,9 +41,13 @@ class UdpSocket {
   /// The address it is bound to, with the port the system chose.
   Endpoint local() const;
 
-  /// The address of this machine that `peer` sees: `local`, with the interface the system would send from
-  /// where it is bound to all of them. Asks the routing table; sends nothing.
+  /// The address of this machine that `peer` sees: `local`, and where it is bound to all of them the one that
+  /// he last sent to, or else that of the interface the system would send from. Asks the routing table; sends
+  /// nothing.
   Endpoint local_towards(const Endpoint& peer) const;
+
+  /// When the kernel had the datagram that `on_datagram` is being called with. Thread of `run`.
+  Time arrived() const noexcept;
 
   /// Serves until `stop`. One thread.
   void run(Doorbell& doorbell, Time timer_period, const Handlers& handlers);
@@ -51,7 +55,8 @@ class UdpSocket {
   /// Ends `run`; any thread.
   void stop();
 
-  /// Sends without waiting; says why where the system would not take it. Thread of `run`, or when none runs.
+  /// Sends without waiting, from the address that `to` last sent to, if he did; says why where the system
+  /// would not take it. Thread of `run`, or when none runs.
   std::error_code send(std::span<const std::byte> datagram, const Endpoint& to) noexcept;
 
  private:

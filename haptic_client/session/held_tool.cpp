@@ -150,6 +150,7 @@ void HeldTool::look() {
   fault_ = fault;
   tell_weakness();
   recording_.look();
+  link_.watcher.look(name_);
   if (const char* status = device_->status(); status != device_status_) {
     if (status[0] != 0) log::info("{}{}", name_, status);
     device_status_ = status;

@@ -56,7 +56,7 @@ void LinkProbe::say_hello() {
 }
 
 void LinkProbe::take(std::span<const std::byte> bytes, const protocol::Endpoint& from) {
-  const Time t = now();
+  const Time t = socket_.arrived();
   protocol::Datagram datagram;
   if (from != server_ || protocol::decode(bytes, datagram) != protocol::Verdict::kAccepted) return;
   const auto* challenge = std::get_if<protocol::Challenge>(&datagram.message);

@@ -49,8 +49,8 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
       recorder_->note_refused(t, from, own_, bytes);
     }
   }
-  figures_.received(bytes.size(), t);
-  if (message != nullptr) pass_on(*message, t);
+  figures_.received(bytes.size(), socket_.arrived());
+  if (message != nullptr) pass_on(*message, socket_.arrived());
   welcomed = session_.welcomed();
   refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
   greet();
@@ -84,6 +84,7 @@ void NetLink::on_tool_states() {
 /// A tool that waits long for others to be let in, before its first tick, is kept by states that say nothing
 /// of a place.
 void NetLink::on_timer() {
+  watcher.note(stats_);
   greet();
   if (!session_.welcomed() || ticking_ || ++idle_timers_ < kPatientTimers) return;
   send(protocol::ToolState{

@@ -3,6 +3,7 @@
 
 #include "haptic_client/session/haptic_loop.h"
 #include "haptic_client/session/link_figures.h"
+#include "protocol/link_watcher.h"
 #include "protocol/recorder.h"
 #include "protocol/udp_socket.h"
 
@@ -22,6 +23,8 @@ class NetLink {
   /// Read when `run` has returned.
   const protocol::LinkStats& stats() const { return stats_; }
   const LinkFigures& figures() const { return figures_; }
+  /// For a watching thread.
+  protocol::LinkWatcher watcher;
   const protocol::ClientSession& session() const { return session_; }
 
   /// For a watching thread: whether a server ever let us in, and why the last one did not (0: no answer).

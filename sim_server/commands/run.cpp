@@ -198,7 +198,7 @@ void tell_beyond(const SimLoop& loop, const Scene& scene, std::vector<bool>& tol
 }
 
 /// Waits for Ctrl-C, the end of `seconds` or another scene that a page chose, telling who comes and goes.
-void watch(const NetLink& link, const SimLoop& loop, const Scene& scene, const protocol::Recorder* recorder,
+void watch(NetLink& link, const SimLoop& loop, const Scene& scene, const protocol::Recorder* recorder,
            const LiveView* view, std::optional<double> seconds) {
   protocol::RecordingWatcher recording(recorder);
   const Time start = now();
@@ -207,6 +207,7 @@ void watch(const NetLink& link, const SimLoop& loop, const Scene& scene, const p
     if (seconds && to_seconds(now() - start) >= *seconds) return;
     if (view != nullptr && view->feed().chosen >= 0) return;
     recording.look();
+    link.watcher.look("");
     tell_holders(link, told);
     tell_beyond(loop, scene, told_beyond);
   }

@@ -3,13 +3,16 @@
 #include "common/log.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/mesh_faults.h"
+#include "sim_server/mesh/refinement.h"
 
 namespace palpate::sim {
 
 TetMesh read_mesh_of(const Scene& scene) {
   TetMesh mesh = read_mesh(scene.mesh_file);
   for (Vec3& x : mesh.vertices) x *= scene.mesh_scale;
-  if (const std::string odd = odd_size(mesh); !odd.empty()) log::warning("{}: {}", scene.mesh_where, odd);
+  if (const std::string odd = odd_size(mesh); !odd.empty())     log::warning("{}: {}", scene.mesh_where, odd);
+  for (int i = 0; i < scene.mesh_refinements; ++i) mesh = refined(mesh);
+
   return mesh;
 }
 

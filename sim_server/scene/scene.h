@@ -76,6 +76,7 @@ struct Scene {
   std::filesystem::path mesh_file;
   std::string mesh_where;  ///< "FILE:LINE" of `[mesh] file`
   double mesh_scale = 1;   ///< metres per unit of the mesh file, [1e-6, 1e3]
+  int mesh_refinements = 0;  ///< how often each tetrahedron of the file is cut into eight, [0, 2]
   std::vector<FixedRegion> fixed;
   std::vector<Load> loads{};
   std::optional<Material> material;
@@ -95,7 +96,7 @@ struct Scene {
 };
 
 /// The mesh file that the scene names, in metres, with a warning where it is of no size that an organ has.
-/// Throws `Error` as `read_mesh`.
+/// Scaled and refined. Throws `Error` as `read_mesh`.
 TetMesh read_mesh_of(const Scene& scene);
 
 /// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an

@@ -140,6 +140,7 @@ void NetLink::send_pointers() {
 }
 
 void NetLink::on_timer() {
+  watcher.note(stats_);
   for (const auto& gone : sessions_.expire(now())) tool_is_free(gone.tool);
   note_holders();
   if (page_ != nullptr) tell_peers();

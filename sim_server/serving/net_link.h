@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 
+#include "protocol/link_watcher.h"
 #include "protocol/recorder.h"
 #include "protocol/udp_socket.h"
 #include "sim_server/serving/page_mailboxes.h"
@@ -23,6 +24,9 @@ class NetLink {
 
   /// Read when `run` has returned.
   const protocol::LinkStats& stats() const { return stats_; }
+
+  /// For a watching thread.
+  protocol::LinkWatcher watcher;
 
   /// For a watching thread: whether somebody holds each tool, and how many sessions held it so far.
   struct ToolSessions {

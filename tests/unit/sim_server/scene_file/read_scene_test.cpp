@@ -131,4 +131,6 @@ TEST_CASE("scale of a mesh: one in millimetres is used in metres, one of no orga
   CHECK(odd_size(read_mesh_of(scene_of_scale(""))).find("scale = 0.001") != std::string::npos);
   CHECK(odd_size(read_mesh_of(scene_of_scale("scale = 1e-5\n"))).find("0.001 m long") != std::string::npos);
   CHECK_THROWS_AS(scene_of_scale("scale = 0\n"), Error);
+  CHECK(read_mesh_of(scene_of_scale("refine = 2\n")).tetrahedra.size() == 64);
+  CHECK_THROWS_AS(scene_of_scale("refine = 3\n"), Error);
 }
