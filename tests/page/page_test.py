@@ -422,7 +422,7 @@ def main():
     parser.add_argument("--browser", choices=["chromium", "firefox"])
     parser.add_argument("--pictures", metavar="FOLDER")
     parser.add_argument("names", nargs="*", help="parts of the names of tests")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     PICTURES = options.pictures
     if PICTURES:
         os.makedirs(PICTURES, exist_ok=True)

@@ -195,7 +195,7 @@ def main():
     parser.add_argument("--browser", choices=["chromium", "firefox"], default="chromium")
     parser.add_argument("--pictures", metavar="FOLDER")
     parser.add_argument("names", nargs="*", help="parts of the names of tests")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     PROGRAMS, PICTURES, KIND = options.programs.resolve(), options.pictures, options.browser
     if PICTURES:
         os.makedirs(PICTURES, exist_ok=True)

@@ -12,7 +12,7 @@ export interface Rules {
 type Mode = "none" | "turn" | "shift" | "touch";
 
 const kTurn = 0.008; // rad a pixel
-const kWheelDepth = 0.00012; // of the organ's size, for each pixel that the wheel would scroll
+const kWheelDepth = 0.00005; // of the organ's size, for each pixel that the wheel would scroll
 
 export class Pointer {
   private mode_: Mode = "none";

@@ -65,6 +65,9 @@ export interface Client {
   states: string[]; // such as "clutched", "fading", "fault", "device lost"
 }
 
+// Of `interventions`, what is not a count but holds now (1) or not (0).
+const kStates = ["fault", "clutched", "device_lost", "fading"];
+
 type Json = Record<string, unknown>;
 
 export function decode_text(text: string): Message | null {
@@ -165,6 +168,7 @@ function tool_now(x: Json): ToolNow {
 
 function client(x: Json): Client {
   const counts = is_object(x.interventions) ? Object.entries(x.interventions) : [];
+  const is_state = ([name]: [string, unknown]) => kStates.includes(name);
   return {
     tool: number(x.tool) ?? 0,
     law: text(x.law),
@@ -174,11 +178,11 @@ function client(x: Json): Client {
     period_ms: number(x.period_ms),
     missed: number(x.missed),
     passivity_gain: number(x.passivity_gain),
-    interventions: counts.map(([name, count]) => [name, number(count) ?? 0]),
+    interventions: counts.filter((count) => !is_state(count)).map(([name, count]) => [name, number(count) ?? 0]),
     felt: vec3(x.felt),
     p: vec3(x.p),
     device: text(x.device),
     has_motors: x.has_motors === true,
-    states: list(x.states).map(text).filter(Boolean),
+    states: counts.filter((count) => is_state(count) && count[1] === 1).map(([name]) => name),
   };
 }
