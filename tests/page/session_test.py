@@ -154,6 +154,35 @@ class SimulatedHandTest(SessionTest):
         self.no_errors()
 
 
+class CaptureTest(SessionTest):
+    device = ["--seconds", 6, "--record"]
+
+    def start_client(self):
+        self.capture = pathlib.Path(self.folder, "session.pcap")
+        return self.start("haptic_client", "run", f"configs/clients/{self.client}.toml", "--server", f"127.0.0.1:{self.udp}",
+                          *self.device, self.capture)
+
+    def test_a_capture_scrubs(self):
+        self.assertEqual(self.hand.process.wait(60), 0)
+        viewer = self.start("sim_server", "view", self.capture, "--scene", f"configs/scenes/{self.scene}.toml", "--viewer",
+                            free_port(socket.SOCK_STREAM))
+        self.browser.open(viewer.says(r"page: (http://\S+?);").group(1))
+        self.browser.wait("document.getElementById('status').textContent === 'Recorded'")
+        self.browser.wait("Number(document.getElementById('scrubber').max) > 4000")
+        self.browser.key(" ")
+        seen = {}
+        for milliseconds in [1600, 4200, 300, 1600]:
+            self.browser.evaluate(f"(e => {{ e.value = {milliseconds}; e.dispatchEvent(new Event('input')); }})"
+                                  "(document.getElementById('scrubber'))")
+            self.browser.wait(f"document.getElementById('place').textContent.startsWith('0:0{milliseconds / 1000:.1f}')")
+            time.sleep(0.4)
+            now = (self.number("Step"), self.number("Force computed"), self.number("Place x, y, z"))
+            self.assertEqual(seen.setdefault(milliseconds, now), now)  # the same place shows the same
+        self.assertEqual(len(set(seen.values())), 3)
+        self.assertGreater(max(float(force) for _, force, _ in seen.values()), 0.05)
+        self.no_errors()
+
+
 class BrowserAsDeviceTest(SessionTest):
     device = ["--device", "browser"]
 
@@ -203,7 +232,7 @@ def main():
     if not page or not browser.find(KIND):
         print("page: skipped, no browser here (scripts/setup --browsers), or the programs have no page")
         return 0
-    cases = [SimulatedHandTest] + [BrowserAsDeviceTest] * device
+    cases = [SimulatedHandTest, CaptureTest] + [BrowserAsDeviceTest] * device
     suite = unittest.TestSuite()
     for case in cases:
         for test in unittest.defaultTestLoader.loadTestsFromTestCase(case):
