@@ -1,5 +1,5 @@
-/// How a session fares on bad networks, in virtual time: the liver of 1999 palpated by the hand of its client
-/// file, over links that lose, delay, scatter and reorder datagrams; and the same for a night.
+/// How a session fares on bad networks, in virtual time: an organ palpated by the hand of its client file,
+/// over links that lose, delay, scatter and reorder datagrams; and the same for a night.
 #include <atomic>
 #include <cmath>
 #include <fmt/format.h>
@@ -21,7 +21,9 @@ namespace palpate::studies {
 namespace {
 
 constexpr double kBegin = 3, kFaultsEnd = 9, kHealed = 11, kEnd = 15;  // s
-constexpr int kCompared = 5;                    // ticks between two looks at the right force
+constexpr double kGone = 5;                                            // s
+const std::filesystem::path kScene = PALPATE_SOURCE_DIR "/configs/scenes/liver_paper.toml",
+                            kClient = PALPATE_SOURCE_DIR "/configs/clients/liver_paper.toml";
 constexpr double kHaptic = 1000, kServed = 30;  // Hz
 
 /// One link, the same each way. Shares; s, of the round trip.
@@ -29,6 +31,7 @@ struct Conditions {
   double loss = 0, delay = 0, jitter = 0;
   bool bursts = false;  ///< the losses come in bursts of 8 on the mean
   double reordered = 0;
+  double gone = 0;  ///< no network at all for so long, from `kGone` on
 };
 
 protocol::LinkConditions one_way(const Conditions& c) {
@@ -43,14 +46,12 @@ protocol::LinkConditions one_way(const Conditions& c) {
   return link;
 }
 
-/// The scene with its hand; one thread.
+/// An organ with the hand that palpates it, and what the organ answers; one thread.
 class Bench {
  public:
-  Bench()
-      : scene_(sim::read_scene(std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_paper.toml")),
-        config_(client::read_client_config(std::string(PALPATE_SOURCE_DIR) +
-                                           "/configs/clients/liver_paper.toml")),
-        simulation_(scene_),
+  Bench(const std::filesystem::path& scene, const std::filesystem::path& client)
+      : config_(client::read_client_config(client)),
+        simulation_(sim::read_scene(scene)),
         tools_(simulation_),
         pager_(simulation_, 0) {}
 
@@ -59,28 +60,34 @@ class Bench {
     return {find_row(client::extrapolators(), config_.method, "method", config_.method_where).make(),
             config_.workspace, config_.device_limits(), config_.passivity, config_.blend};
   }
-  /// Steps for whoever comes; his sessions are new ones even where their numbers are not.
   test::Served served() {
-    simulation_.lift_tool(0);
-    const auto step = [this](std::uint64_t session, const protocol::ToolState& state) {
-      std::vector<sim::SessionInput> inputs{{session, state, true}};
-      return tools_.step(inputs, 1 / kServed).front().answer;
+    const auto heard = [this](std::uint64_t session, const protocol::ToolState& state) {
+      if (std::exchange(input_.session, session) != session) input_.path = {};
+      input_.path.add(state);
+    };
+    const auto step = [this](std::uint64_t, const protocol::ToolState& state) {
+      input_.state = state;
+      input_.fresh = true;
+      auto answer = tools_.step(std::vector<sim::SessionInput>{input_}, 1 / kServed).front().answer;
+      if (answer) answered_.emplace_back(state.tick, answer->f_W);
+      return answer;
     };
     return {
         .step = step,
+        .heard = heard,
         .page = [this](std::uint32_t number, protocol::SurfacePage& out) { return pager_.page(number, out); },
         .surface_version = pager_.state().version};
   }
-  /// What a tool there feels.
-  Vec3 right_force(const Vec3& p_W) { return simulation_.linearise(0, p_W, nullptr).force; }
-  const client::ClientConfig& config() const { return config_; }
+  /// The ticks that the organ answered since the last call, and the force there, N: what should be felt.
+  std::vector<std::pair<std::uint64_t, Vec3>> take_answered() { return std::exchange(answered_, {}); }
 
  private:
-  sim::Scene scene_;
   client::ClientConfig config_;
   sim::Simulation simulation_;
   sim::ServedTools tools_;
   sim::SurfacePager pager_;
+  sim::SessionInput input_;
+  std::vector<std::pair<std::uint64_t, Vec3>> answered_;
 };
 
 /// Of the felt force against the right one where the hand is, relative to the RMS of the right one.
@@ -114,7 +121,8 @@ Json milliseconds(Time t) {
 Json run(Bench& bench, const Conditions& c, int seed) {
   const auto hand = bench.hand();
   client::Pipeline pipeline = bench.pipeline();
-  const protocol::LinkConditions link = one_way(c);
+  protocol::LinkConditions link = one_way(c);
+  if (c.gone > 0) link.partitions = {{from_seconds(1 + kGone), from_seconds(1 + kGone + c.gone)}};
   test::LinkedPair pair(*hand, pipeline, bench.served(),
                         {.haptic_hz = kHaptic,
                          .sim_hz = kServed,
@@ -122,18 +130,18 @@ Json run(Bench& bench, const Conditions& c, int seed) {
                          .down = link,
                          .seed = static_cast<std::uint64_t>(seed),
                          .faults_end = kFaultsEnd});
-  Errors bad, healed;
+  std::vector<Vec3> felt{Vec3::Zero()};  // by tick
   double most = 0, steepest = 0;
-  Vec3 before = Vec3::Zero();
-  for (int tick = 0; pair.seconds() < kEnd; ++tick) {
-    const client::TickResult felt = pair.tick();
-    most = std::max(most, felt.f_D.norm());
-    steepest = std::max(steepest, kHaptic * (felt.f_D - before).norm());
-    before = felt.f_D;
-    if (tick % kCompared != 0) continue;
-    if (pair.seconds() > kBegin && pair.seconds() <= kFaultsEnd)
-      bad.add(felt.f_D, bench.right_force(felt.tool.p_W));
-    if (pair.seconds() > kHealed) healed.add(felt.f_D, bench.right_force(felt.tool.p_W));
+  while (pair.seconds() < kEnd) {
+    felt.push_back(pair.tick().f_D);
+    most = std::max(most, felt.back().norm());
+    steepest = std::max(steepest, kHaptic * (felt.back() - *(felt.end() - 2)).norm());
+  }
+  Errors bad, healed;
+  for (const auto& [tick, right] : bench.take_answered()) {
+    const double t = static_cast<double>(tick) / kHaptic;
+    if (t > kBegin && t <= kFaultsEnd) bad.add(felt[tick], right);
+    if (t > kHealed) healed.add(felt[tick], right);
   }
   const client::PipelineStats& stats = pipeline.stats();
   const bool itself = stats.told > stats.stepped_down;
@@ -142,6 +150,7 @@ Json run(Bench& bench, const Conditions& c, int seed) {
           {"delay_ms", 1e3 * c.delay},
           {"jitter_ms", 1e3 * c.jitter},
           {"reordered_percent", 100 * c.reordered},
+          {"gone_ms", 1e3 * c.gone},
           {"welcomed_ms", pair.first_welcome() ? Json(1e3 * *pair.first_welcome()) : Json(nullptr)},
           {"law_itself_ms", itself ? milliseconds(stats.first_itself - stats.first_told) : Json(nullptr)},
           {"samples", stats.samples},
@@ -165,16 +174,26 @@ std::vector<Conditions> all_conditions(bool quick) {
   return all;
 }
 
-Json study(bool quick) {
-  const std::vector<Conditions> all = all_conditions(quick);
+/// A few links for an organ that remembers: what was lost must not be made up, and the force must come back.
+std::vector<Conditions> conditions_of_scene() {
+  return {{.delay = 0.035},
+          {.loss = 0.1, .delay = 0.035, .reordered = 0.1},
+          {.loss = 0.1, .delay = 0.035, .jitter = 0.03, .reordered = 0.1},
+          {.loss = 0.3, .delay = 0.035},
+          {.delay = 0.035, .gone = 0.5},
+          {.loss = 0.1, .delay = 0.08, .reordered = 0.1}};
+}
+
+Json study(const std::vector<Conditions>& all, const std::filesystem::path& scene,
+           const std::filesystem::path& client) {
   std::vector<Json> rows(all.size());
   std::atomic<std::size_t> next{0}, done{0};
   {
     std::vector<std::jthread> workers;
     for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
       workers.emplace_back([&] {
-        Bench bench;
         for (std::size_t k; (k = next++) < all.size();) {
+          Bench bench(scene, client);  // anew: tissue may remember
           rows[k] = run(bench, all[k], 1);
           fmt::print(stderr, "links: {} of {}\n", ++done, all.size());
         }
@@ -194,7 +213,7 @@ long resident_kb() {
 /// Hours of a session, on a link that loses, scatters and reorders; each hour the network is gone for 2 s,
 /// the server begins anew, and the client's machine sleeps for 20 s.
 Json night(int hours) {
-  Bench bench;
+  Bench bench(kScene, kClient);
   const auto hand = bench.hand();
   client::Pipeline pipeline = bench.pipeline();
   protocol::LinkConditions link = one_way({.loss = 0.01, .delay = 0.02, .jitter = 0.004, .reordered = 0.01});
@@ -203,22 +222,26 @@ Json night(int hours) {
   test::LinkedPair pair(*hand, pipeline, bench.served(),
                         {.haptic_hz = kHaptic, .sim_hz = kServed, .up = link, .down = link});
   Json rows = Json::array();
+  std::uint64_t ticks = 0;
   for (int hour = 0; hour < hours; ++hour) {
-    Errors errors;
+    std::vector<Vec3> felt;  // of this hour, by tick
+    const std::uint64_t first = ticks;
     double most = 0, steepest = 0;
-    Vec3 before = Vec3::Zero();
     const std::uint64_t samples = pipeline.stats().samples;
     for (int second = 0; second < 3600; ++second) {
       if (second == 1800) pair.restart_server();
       if (second == 2700) pair.suspend(20, false);
       for (int tick = 0; tick < static_cast<int>(kHaptic); ++tick) {
-        const client::TickResult felt = pair.tick();
-        most = std::max(most, felt.f_D.norm());
-        if (tick + second > 0) steepest = std::max(steepest, kHaptic * (felt.f_D - before).norm());
-        before = felt.f_D;
-        if (tick == 0 && second % 10 == 9) errors.add(felt.f_D, bench.right_force(felt.tool.p_W));
+        const Vec3 f_D = pair.tick().f_D;
+        most = std::max(most, f_D.norm());
+        if (!felt.empty()) steepest = std::max(steepest, kHaptic * (f_D - felt.back()).norm());
+        felt.push_back(f_D);
       }
     }
+    Errors errors;
+    for (const auto& [tick, right] : bench.take_answered())
+      if (tick > first && tick - first <= felt.size()) errors.add(felt[tick - first - 1], right);
+    ticks += felt.size();
     rows.push_back({{"hour", hour + 1},
                     {"samples_a_second", static_cast<double>(pipeline.stats().samples - samples) / 3620},
                     {"error_percent", errors.percent()},
@@ -237,19 +260,25 @@ Json night(int hours) {
 int main(int argc, char** argv) {
   using namespace palpate;
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  const bool quick = arguments.size() == 2 && arguments[0] == "--quick";
-  const bool night =
-      arguments.size() == 3 && arguments[0] == "--night" && std::atoi(arguments[1].c_str()) > 0;
-  if (!quick && !night && (arguments.size() != 1 || arguments[0].starts_with("-"))) {
+  const auto first_is = [&](const char* option, std::size_t count) {
+    return arguments.size() == count && arguments[0] == option;
+  };
+  const bool quick = first_is("--quick", 2), scene = first_is("--scene", 4);
+  const bool night = first_is("--night", 3) && std::atoi(arguments[1].c_str()) > 0;
+  if (!quick && !night && !scene && (arguments.size() != 1 || arguments[0].starts_with("-"))) {
     fmt::print(
         stderr,
-        "usage: link_study [--quick | --night HOURS] DIR     example: link_study --night 8 out/night\n");
+        "usage: link_study [--quick | --night HOURS | --scene SCENE CLIENT] DIR     example: link_study "
+        "--night 8 out/night\n");
     return 2;
   }
   try {
     const std::filesystem::path out = arguments.back();
     std::filesystem::create_directories(out);
-    const Json rows = night ? studies::night(std::atoi(arguments[1].c_str())) : studies::study(quick);
+    using namespace studies;
+    const Json rows = night   ? studies::night(std::atoi(arguments[1].c_str()))
+                      : scene ? study(conditions_of_scene(), arguments[1], arguments[2])
+                              : study(all_conditions(quick), kScene, kClient);
     write_json(out / "summary.json", rows);
   } catch (const Error& e) {
     fmt::print(stderr, "link_study: {}\n", e.what());

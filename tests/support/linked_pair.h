@@ -18,6 +18,8 @@ namespace palpate::test {
 /// What the server's end asks of whatever computes forces. `session` tells one client from the next.
 struct Served {
   std::function<std::optional<protocol::ForceSample>(std::uint64_t session, const protocol::ToolState&)> step;
+  /// Each tool state that is newer than those before, as it comes.
+  std::function<void(std::uint64_t session, const protocol::ToolState&)> heard = {};
   /// One page of the surface; false: there is none of that number.
   std::function<bool(std::uint32_t number, protocol::SurfacePage&)> page = {};
   std::uint32_t surface_version = 0;  ///< of the pages
@@ -158,6 +160,7 @@ class LinkedPair {
     if (outcome.asking != nullptr) send_pages(*outcome.asking);
     if (outcome.tool_state == nullptr) return;
     newest_ = {datagram.header.session, *outcome.tool_state};
+    if (served_.heard) served_.heard(newest_->first, newest_->second);
     fresh_ = true;
   }
   void send_pages(const protocol::ToolState& state) {
