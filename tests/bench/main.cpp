@@ -21,6 +21,9 @@ int main(int argc, char** argv) {
 #ifdef PALPATE_WITH_CHOLMOD
     add_cholesky_rows();
 #endif
+#ifdef PALPATE_WITH_VIEWER
+    add_viewer_rows();
+#endif
 #ifdef PALPATE_WITH_USB
     add_falcon_rows();
 #endif
