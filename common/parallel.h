@@ -5,6 +5,7 @@
 #ifdef PALPATE_WITH_TBB
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 #endif
 
 namespace palpate {
@@ -22,6 +23,17 @@ void parallel_blocks(std::size_t n, std::size_t block, const Work& work) {
   });
 #else
   for (std::size_t begin = 0; begin < n; begin += block) work(begin, std::min(n, begin + block));
+#endif
+}
+
+/// Calls `work` so that what it asks of `parallel_blocks` is done in this thread alone: for work that must
+/// take no core from who is in a hurry.
+template <class Work>
+void in_one_thread(const Work& work) {
+#ifdef PALPATE_WITH_TBB
+  oneapi::tbb::task_arena(1).execute(work);
+#else
+  work();
 #endif
 }
 

@@ -1,5 +1,7 @@
 #include "sim_server/commands/live_view.h"
 
+#include <algorithm>
+
 #include "common/clock.h"
 #include "protocol/udp_socket.h"
 #include "sim_server/commands/pictures.h"
@@ -7,6 +9,7 @@
 namespace palpate::sim {
 namespace {
 
+constexpr Time kFieldEach = std::chrono::milliseconds(100);
 constexpr Time kPictureEach = std::chrono::milliseconds(15);  // at most
 
 }  // namespace
@@ -16,7 +19,7 @@ LiveView::LiveView(const ViewerAddress& address, std::string token, SceneFacts f
     : simulation_(simulation),
       facts_(std::move(facts)),
       token_(std::move(token)),
-      feed_(facts_.organ.rest),
+      feed_(facts_.organ.rest, facts_.fields.empty() ? std::span<const Vec3>() : simulation.model().nodes()),
       viewer_(address, token_, facts_, feed_),
       began_(began) {}
 
@@ -57,6 +60,11 @@ void LiveView::turned(const LoopTurn& turn) noexcept {
   picture.tools = newest_.tools;
   show_organ(simulation_, picture);
   feed_.pictures.publish();
+  if (feed_.wants_field.load(std::memory_order_relaxed) && time - field_shown_ >= kFieldEach) {
+    field_shown_ = time;
+    std::ranges::copy(simulation_.model().nodes(), feed_.nodes.back().begin());
+    feed_.nodes.publish();
+  }
   viewer_.ring();
 }
 

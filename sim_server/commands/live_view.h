@@ -33,7 +33,7 @@ class LiveView final : public LoopObserver {
   std::string token_;
   ViewerFeed feed_;
   Viewer viewer_;
-  Time began_, shown_{};
+  Time began_, shown_{}, field_shown_{};
   int pages_ = 0;      // when it last looked
   bool owed_ = false;  // a picture of what was stepped
   Picture newest_;     // without positions

@@ -128,26 +128,27 @@ ViewerFeed::Hooks page_hooks(ViewerFeed& feed, std::size_t tools, PageMailboxes&
                              Time began) {
   auto news = std::make_shared<std::vector<ToolNews>>(tools);
   auto pointers = std::make_shared<std::array<std::uint64_t, kMaxTools>>();
-  return {.news =
-              [&feed, &mailboxes, news, began](Time now) {
-                mailboxes.wants_telemetry = feed.pages > 0;
-                for (std::size_t i = 0; i < news->size(); ++i) {
-                  ToolPageMailboxes& tool = mailboxes.tools[i];
-                  protocol::Telemetry told;
-                  while (tool.telemetry.pop(told)) (*news)[i].take(told, now, began, feed);
-                  PeerCounts counts;
-                  if (tool.peer.read(counts)) (*news)[i].count(counts, now, feed.peers[i]);
-                }
-              },
-          // Pages count each for itself; a client wants numbers that rise.
-          .point =
-              [&mailboxes, &bell, pointers](const PagePointer& said) {
-                mailboxes.tools[said.tool].pointer.write({.tool = said.tool,
-                                                          .number = ++(*pointers)[said.tool],
-                                                          .p_W = said.p_W,
-                                                          .buttons = said.buttons});
-                bell.ring();
-              }};
+  ViewerFeed::Hooks hooks;
+  hooks.news = [&feed, &mailboxes, news, began](Time now) {
+    mailboxes.wants_telemetry = feed.pages > 0;
+    for (std::size_t i = 0; i < news->size(); ++i) {
+      ToolPageMailboxes& tool = mailboxes.tools[i];
+      protocol::Telemetry told;
+      while (tool.telemetry.pop(told)) (*news)[i].take(told, now, began, feed);
+      PeerCounts counts;
+      if (tool.peer.read(counts)) (*news)[i].count(counts, now, feed.peers[i]);
+    }
+  };
+  // Pages count each for itself; a client wants numbers that rise.
+  hooks.point = [&mailboxes, &bell, pointers](const PagePointer& said) {
+    protocol::Pointer pointer{.tool = said.tool};
+    pointer.number = ++(*pointers)[said.tool];
+    pointer.p_W = said.p_W;
+    pointer.buttons = said.buttons;
+    mailboxes.tools[said.tool].pointer.write(pointer);
+    bell.ring();
+  };
+  return hooks;
 }
 
 }  // namespace palpate::sim

@@ -1,6 +1,10 @@
 #include "sim_server/commands/pictures.h"
 
 #include <algorithm>
+#include <memory>
+
+#include "common/parallel.h"
+#include "sim_server/elasticity/solid.h"
 
 namespace palpate::sim {
 namespace {
@@ -29,7 +33,55 @@ void show_loads(std::span<const NodalLoad> loads, SeenTool& seen) noexcept {
   }
 }
 
+/// A body of its own beside the one that is stepped, which another thread uses.
+class StrainEnergy {
+ public:
+  StrainEnergy(const TetMesh& mesh, const Material& material, std::vector<int> surface)
+      : solid_(mesh, material), scratch_(solid_), states_(solid_.points()), surface_(std::move(surface)) {}
+
+  void of(std::span<const Vec3> nodes, std::vector<float>& values) {
+    in_one_thread([&] { solid_.evaluate(nodes, states_, {}, scratch_); });
+    energy_.assign(nodes.size(), 0);
+    volume_.assign(nodes.size(), 0);
+    const auto points = static_cast<std::size_t>(solid_.points_per_element());
+    for (std::size_t e = 0; e < solid_.elements(); ++e) {
+      double energy = 0, volume = 0;
+      for (std::size_t p = e * points; p < (e + 1) * points; ++p) {
+        volume += solid_.volume_of(p);
+        energy += solid_.volume_of(p) * solid_.stiffness_of(p) * states_[p].energy;
+      }
+      for (const int node : solid_.element(e)) {
+        energy_[static_cast<std::size_t>(node)] += energy;
+        volume_[static_cast<std::size_t>(node)] += volume;
+      }
+    }
+    values.resize(surface_.size());
+    for (std::size_t v = 0; v < surface_.size(); ++v) {
+      const auto node = static_cast<std::size_t>(surface_[v]);
+      values[v] = static_cast<float>(std::max(0.0, energy_[node] / volume_[node]));
+    }
+  }
+
+ private:
+  Solid solid_;
+  Solid::Scratch scratch_;
+  std::vector<Solid::State> states_;
+  std::vector<int> surface_;
+  std::vector<double> energy_, volume_;  // of each node: J and m^3 of the tetrahedra around it
+};
+
 }  // namespace
+
+std::function<void(std::span<const Vec3>, std::vector<float>&)> strain_energy_of(
+    const Scene& scene, const Simulation& simulation) {
+  auto made = std::make_shared<std::unique_ptr<StrainEnergy>>();
+  return [&scene, &simulation, made](std::span<const Vec3> nodes, std::vector<float>& values) {
+    if (!*made)
+      *made =
+          std::make_unique<StrainEnergy>(simulation.mesh(), *scene.material, simulation.surface().vertices);
+    (*made)->of(nodes, values);
+  };
+}
 
 SceneFacts facts_of(const Scene& scene, const Simulation& simulation) {
   SceneFacts facts{.title = scene.title,
@@ -38,6 +90,7 @@ SceneFacts facts_of(const Scene& scene, const Simulation& simulation) {
                    .rate_hz = scene.rate_hz,
                    .tools = {},
                    .organ = shape_of(scene, simulation)};
+  if (!simulation.model().nodes().empty() && scene.material) facts.fields = {"strain_energy"};
   for (const ToolSettings& tool : scene.tools) facts.tools.push_back(tool.shape);
   return facts;
 }

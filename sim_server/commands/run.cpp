@@ -18,6 +18,7 @@
 #include "sim_server/commands/gallery.h"
 #include "sim_server/commands/live_view.h"
 #include "sim_server/commands/page_news.h"
+#include "sim_server/commands/pictures.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/net_link.h"
@@ -300,7 +301,10 @@ std::optional<std::size_t> serve_scene(ServerOptions& options, std::optional<Vie
   SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools, errors, view.get());
   const auto page = view ? std::make_unique<PageMailboxes>() : nullptr;
   NetLink link(socket, std::move(sessions), std::move(pagers), mailboxes, recorder.get(), page.get());
-  if (view) view->feed().hooks = page_hooks(view->feed(), scene.tools.size(), *page, mailboxes.bell, start);
+  if (view) {
+    view->feed().hooks = page_hooks(view->feed(), scene.tools.size(), *page, mailboxes.bell, start);
+    if (!view->facts().fields.empty()) view->feed().hooks.field = strain_energy_of(scene, simulation);
+  }
   {
     std::jthread recording;
     if (recorder) {

@@ -66,6 +66,7 @@ class Implicit : public DeformationModel {
   /// (`Dynamics::inside_out`).
   bool balanced() const noexcept override;
   bool inside_out() const noexcept override { return !law_is_linear() && dynamics_.inside_out(); }
+  std::span<const Vec3> nodes() const noexcept override { return dynamics_.position(); }
   std::vector<MemoryPart> memory() const override;
 
  private:

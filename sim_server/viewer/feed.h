@@ -15,10 +15,14 @@ namespace palpate::sim {
 class ViewerFeed {
  public:
   /// `rest`: (n) of the surface, m, which is shown until the first picture comes.
-  explicit ViewerFeed(std::span<const Vec3> rest) : pictures(shown_first(rest)) {}
+  /// `nodes`: (k) of the mesh, where what is inside can be shown, else none.
+  explicit ViewerFeed(std::span<const Vec3> rest, std::span<const Vec3> nodes_at_rest = {})
+      : pictures(shown_first(rest)), nodes(std::vector<Vec3>(nodes_at_rest.begin(), nodes_at_rest.end())) {}
 
   /// Simulation thread to page's thread; `back` holds an old picture, to be overwritten whole.
   TripleBuffer<Picture> pictures;
+  /// (k) of the mesh, m: the same way, while `wants_field`.
+  TripleBuffer<std::vector<Vec3>> nodes;
   /// What the page's thread fills in itself, of each tool, in `hooks.news`.
   std::array<SeenPeer, kMaxTools> peers{};
   std::array<SeenClient, kMaxTools> clients{};
@@ -28,13 +32,16 @@ class ViewerFeed {
   struct Hooks {
     std::function<void(Time now)> news;
     std::function<void(const PagePointer&)> point;
+    /// What the surface is coloured by, J/m3 of each of its vertices, where the nodes are so.
+    std::function<void(std::span<const Vec3> nodes, std::vector<float>& values)> field;
   } hooks;
 
   /// What pages want; written by the page's thread. Any thread may read.
-  std::atomic<int> pages{0};        ///< how many are open: with none, nobody needs to fill anything in
-  std::atomic<bool> paused{false};  ///< no steps but those of `steps`
-  std::atomic<int> steps{0};        ///< to be made while paused; who makes one takes it off
-  std::atomic<int> chosen{-1};      ///< of `SceneFacts::gallery`
+  std::atomic<int> pages{0};             ///< how many are open: with none, nobody needs to fill anything in
+  std::atomic<bool> wants_field{false};  ///< one of them colours the organ by what is inside
+  std::atomic<bool> paused{false};       ///< no steps but those of `steps`
+  std::atomic<int> steps{0};             ///< to be made while paused; who makes one takes it off
+  std::atomic<int> chosen{-1};           ///< of `SceneFacts::gallery`
 
  private:
   static Picture shown_first(std::span<const Vec3> rest) {

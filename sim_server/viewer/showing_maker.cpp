@@ -36,6 +36,10 @@ void ShowingMaker::look(Time now) {
   }
   for (; !feed_.ticks.empty(); feed_.ticks.pop_front())
     showing_.ticks[showing_.ticks_so_far++ % Showing::kTicksKept] = feed_.ticks.front();
+  if (feed_.nodes.take() && feed_.hooks.field) {
+    feed_.hooks.field(feed_.nodes.front(), showing_.field);
+    ++showing_.fields;
+  }
   showing_.paused = feed_.paused;
   measure(now);
 }

@@ -229,10 +229,13 @@ void Viewer::Server::on_timer(lws_sorted_usec_list_t* entry) noexcept {
 void Viewer::Server::look() {
   const Time time = now();
   maker.look(time);
+  bool wants_field = false;
   for (Page& page : pages) {
+    wants_field = wants_field || page.link.wants_field();
     if (page.link.too_quiet(time)) end(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "no hello");
     if (page.link.greeted()) lws_callback_on_writable(page.wsi);
   }
+  feed.wants_field = wants_field;
 }
 
 // HTTP

@@ -104,6 +104,39 @@ TEST_CASE("served tools: no tangent is made that nobody asked for, and the force
   CHECK(with.force == without.force);
 }
 
+TEST_CASE("served tools: while it is paused a session hears its last sample again, with numbers that rise") {
+  Served served;
+  const protocol::ForceSample last = *served.step()[0].answer;
+  for (std::uint64_t number = 2; number < 5; ++number) {
+    const auto again = served.tools.paused(0, served.inputs[0]);
+    REQUIRE(again);
+    CHECK(again->number == number);
+    CHECK(again->flags == (last.flags | protocol::ForceSample::kPaused));
+    CHECK(again->f_W == last.f_W);
+    CHECK(again->tool_tick == last.tool_tick);
+  }
+  const protocol::ForceSample after = *served.step()[0].answer;
+  CHECK(after.number == 5);
+  CHECK((after.flags & protocol::ForceSample::kPaused) == 0);
+  CHECK(served.inputs[1].session == 8);
+}
+
+TEST_CASE("served tools: who comes while it is paused is told so, and goes on from these numbers") {
+  Served served;
+  served.step();
+  served.hold(0, 9, 0.004);
+  const auto first = served.tools.paused(0, served.inputs[0]);
+  REQUIRE(first);
+  CHECK(first->number == 1);
+  CHECK(first->f_W == Vec3::Zero());
+  CHECK(first->p_W == served.inputs[0].state.p_W);
+  CHECK((first->flags & protocol::ForceSample::kPaused) != 0);
+  CHECK(served.tools.paused(0, served.inputs[0])->number == 2);
+  CHECK(served.step()[0].answer->number == 3);
+  served.inputs[0] = {};
+  CHECK_FALSE(served.tools.paused(0, served.inputs[0]));
+}
+
 TEST_CASE("served tools: nothing happens while nobody holds any, and a step does not allocate") {
   Served served;
   served.step();

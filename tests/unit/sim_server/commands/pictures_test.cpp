@@ -1,0 +1,77 @@
+#include "sim_server/commands/pictures.h"
+
+#include "sim_server/mesh/shapes.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+/// A block of 60 x 40 x 60 mm, held at the bottom, y = 0.
+Scene block_scene(const std::string& model, ElementKind element) {
+  Material material{.young_modulus = 2e3, .poisson_ratio = 0.3};
+  material.element = element;
+  Scene scene = test::scene_of(material, Box{{-1, -1, -1}, {1, 1e-6, 1}}, 0.005);
+  scene.deformation.model = model;
+  scene.rate_hz = 30;
+  return scene;
+}
+TetMesh block() {
+  const std::vector<double> x{0, 0.02, 0.04, 0.06}, y{0, 0.02, 0.04};
+  return grid_block(x, y, x);
+}
+
+}  // namespace
+
+TEST_CASE("pictures: stretched evenly, all of a body has the energy density of that strain") {
+  for (const ElementKind element : {ElementKind::kLinear, ElementKind::kQuadratic}) {
+    const Scene scene = block_scene("implicit", element);
+    const Simulation simulation(scene, block());
+    REQUIRE(facts_of(scene, simulation).fields == std::vector<std::string>{"strain_energy"});
+    std::vector<Vec3> nodes = simulation.mesh().vertices;
+    constexpr double kStrain = 0.01;
+    for (Vec3& x : nodes) x[1] *= 1 + kStrain;
+    std::vector<float> values;
+    strain_energy_of(scene, simulation)(nodes, values);
+    REQUIRE(values.size() == simulation.surface().vertices.size());
+    const double density =
+        0.5 * (scene.material->lame_lambda() + 2 * scene.material->lame_mu()) * kStrain * kStrain;
+    for (const float value : values) CHECK(static_cast<double>(value) == Approx(density).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("pictures: a model that knows its surface alone offers no field") {
+  const Scene scene = block_scene("quasi_static", ElementKind::kLinear);
+  const Simulation simulation(scene, block());
+  CHECK(facts_of(scene, simulation).fields.empty());
+}
+
+TEST_CASE("pictures: what is held and what a tool reaches is told, and the loads are the tool's force") {
+  Scene scene = block_scene("quasi_static", ElementKind::kLinear);
+  scene.tools[0].reach = Box{{0, 0.03, 0}, {0.025, 0.05, 0.025}};
+  Simulation simulation(scene, block());
+  const SceneFacts facts = facts_of(scene, simulation);
+  for (std::size_t v = 0; v < facts.organ.rest.size(); ++v) {
+    CHECK(((facts.organ.flags[v] & OrganShape::kFixed) != 0) == (facts.organ.rest[v][1] < 1e-6));
+    // Reach takes whole triangles: nothing of the far end.
+    if (facts.organ.rest[v][0] > 0.05) CHECK((facts.organ.flags[v] & OrganShape::kInReach) == 0);
+  }
+  CHECK(std::ranges::any_of(facts.organ.flags, [](auto f) { return (f & OrganShape::kInReach) != 0; }));
+
+  Picture picture;
+  picture.positions.resize(3 * facts.organ.rest.size());
+  const ToolForce force = simulation.step(Vec3(0.01, 0.0405, 0.01), 0.03);
+  REQUIRE(force.contacts > 0);
+  show_organ(simulation, picture);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < picture.tools[0].load_count; ++k) {
+    const auto& f = picture.tools[0].loads[k].force;
+    sum += Vec3(static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2]));
+  }
+  CHECK((sum + force.force).norm() < 1e-5 * force.force.norm());
+  for (std::size_t v = 0; v < facts.organ.rest.size(); ++v)
+    CHECK(static_cast<double>(picture.positions[3 * v + 1]) ==
+          Approx(simulation.positions()[v][1]).margin(1e-7));
+}
