@@ -29,6 +29,7 @@ class ToolNews {
 
  private:
   void note_interventions(const protocol::Telemetry& told);
+  void note_states(std::uint16_t flags);
   void note_ticks(const protocol::Telemetry& told, double t, ViewerFeed& feed) const;
 
   struct Mark {
@@ -62,6 +63,7 @@ void ToolNews::take(const protocol::Telemetry& told, Time now, Time began, Viewe
   client_.device = name_of(told.device);
   client_.has_motors = (told.flags & protocol::Telemetry::kHasMotors) != 0;
   note_interventions(told);
+  note_states(told.flags);
   if (now - shown_ < kClientEach) return;
   shown_ = now;
   feed.clients[told.tool] = client_;
@@ -70,18 +72,25 @@ void ToolNews::take(const protocol::Telemetry& told, Time now, Time began, Viewe
 
 void ToolNews::note_interventions(const protocol::Telemetry& told) {
   using Name = SeenClient::Name;
-  const auto is = [&](std::uint16_t flag) { return std::uint64_t{(told.flags & flag) != 0 ? 1U : 0U}; };
   client_.interventions = 0;
   for (const auto& [name, count] : {std::pair{Name{"faded"}, std::uint64_t{told.faded}},
                                     {Name{"clamped"}, std::uint64_t{told.clamped}},
                                     {Name{"slewed"}, std::uint64_t{told.slewed}},
-                                    {Name{"damped"}, std::uint64_t{told.damped}},
-                                    {Name{"fault"}, is(protocol::Telemetry::kFault)},
-                                    {Name{"clutched"}, is(protocol::Telemetry::kClutched)},
-                                    {Name{"device_lost"}, is(protocol::Telemetry::kDeviceLost)},
-                                    {Name{"fading"}, is(protocol::Telemetry::kFading)}}) {
+                                    {Name{"damped"}, std::uint64_t{told.damped}}}) {
     client_.intervention_names[client_.interventions] = name;
     client_.intervention_counts[client_.interventions++] = count;
+  }
+}
+
+void ToolNews::note_states(std::uint16_t flags) {
+  using Name = SeenClient::Name;
+  using protocol::Telemetry;
+  client_.states = 0;
+  for (const auto& [flag, name] : {std::pair{Telemetry::kFault, Name{"fault"}},
+                                   {Telemetry::kClutched, Name{"clutched"}},
+                                   {Telemetry::kDeviceLost, Name{"device_lost"}},
+                                   {Telemetry::kFading, Name{"fading"}}}) {
+    if ((flags & flag) != 0) client_.state_names[client_.states++] = name;
   }
 }
 

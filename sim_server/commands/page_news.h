@@ -1,4 +1,5 @@
 #pragma once
+#include "common/doorbell.h"
 #include "sim_server/serving/page_mailboxes.h"
 #include "sim_server/viewer/feed.h"
 

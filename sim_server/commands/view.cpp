@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <fmt/core.h>
+#include <limits>
 #include <thread>
 
 #include "common/clock.h"
 #include "common/error.h"
 #include "common/interrupt.h"
 #include "common/log.h"
+#include "common/progress.h"
 #include "common/realtime.h"
 #include "protocol/udp_socket.h"
 #include "sim_server/commands/pictures.h"
@@ -100,6 +102,8 @@ class Rerun {
 /// All of the capture into `session`; `rerun` may be null.
 void make_session(const std::filesystem::path& capture, Rerun* rerun, RecordedSession& session) {
   Time t{}, newest{};
+  // Nothing is known of how far each step goes.
+  if (rerun == nullptr) session.picture().simulated = std::numeric_limits<double>::quiet_NaN();
   bool pending = false, all = true;
   const auto finish = [&] {
     if (!pending) return;

@@ -81,14 +81,15 @@ struct PagePointer {
 
 /// What only the client of a tool knows, about ten times a second while a page is open.
 struct SeenClient {
-  static constexpr std::size_t kMostLaws = 16, kMostInterventions = 16;
+  static constexpr std::size_t kMostLaws = 16, kMostInterventions = 16, kMostStates = 8;
   using Name = std::array<char, 32>;  ///< ended by 0
-  std::uint8_t tool = 0, laws = 0, interventions = 0;
+  std::uint8_t tool = 0, laws = 0, interventions = 0, states = 0;
   Name law{};  ///< the one felt; behind a colon, which one stands in
   std::array<Name, kMostLaws> law_names{};
   std::array<float, kMostLaws> errors_percent{};  ///< NaN: not scored
   std::array<Name, kMostInterventions> intervention_names{};
   std::array<std::uint64_t, kMostInterventions> intervention_counts{};
+  std::array<Name, kMostStates> state_names{};  ///< what holds now: "fault", "clutched", ...
   double age_ms = 0, period_ms = 0, passivity_gain = 0;
   std::uint64_t missed = 0;
   Vec3 felt_W = Vec3::Zero();  ///< N

@@ -6,6 +6,7 @@ namespace palpate::sim {
 
 RecordedSession::RecordedSession(const SceneFacts& scene)
     : feed_(scene.organ.rest), maker_(scene, feed_, true), link_(Time{}), picture_(feed_.pictures.front()) {
+  feed_.pages = 1;
   link_.greet(false);
 }
 

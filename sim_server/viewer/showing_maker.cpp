@@ -4,6 +4,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr Time kMeasuredOver = std::chrono::seconds(1), kMarkEach = std::chrono::milliseconds(40);
+constexpr double kMeasuredAtLeast = 0.4;  // s
 
 }  // namespace
 
@@ -27,6 +28,7 @@ void ShowingMaker::look(Time now) {
     showing_.picture = &feed_.pictures.front();
     ++showing_.pictures;
     quantise(showing_.box, showing_.picture->positions, showing_.positions);
+    fresh_ = true;
   }
   if (feed_.hooks.news) feed_.hooks.news(now);
   for (std::size_t i = 0; i < showing_.peers.size(); ++i) {
@@ -46,11 +48,15 @@ void ShowingMaker::look(Time now) {
 
 void ShowingMaker::measure(Time now) {
   const Picture& picture = *showing_.picture;
+  if (feed_.pages == 0) fresh_ = false;
+  if (!fresh_) marks_.clear();
+  showing_.rates = {};
+  if (!fresh_) return;
   if (marks_.empty() || now - marks_.back().t >= kMarkEach)
     marks_.push_back({now, picture.step, picture.simulated});
   while (marks_.size() > 2 && now - marks_.front().t > kMeasuredOver) marks_.pop_front();
   const double seconds = to_seconds(marks_.back().t - marks_.front().t);
-  if (seconds <= 0) return;
+  if (seconds < kMeasuredAtLeast) return;
   showing_.rates = {static_cast<double>(marks_.back().step - marks_.front().step) / seconds,
                     (marks_.back().simulated - marks_.front().simulated) / seconds};
 }

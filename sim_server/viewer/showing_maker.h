@@ -27,6 +27,7 @@ class ShowingMaker {
     double simulated;
   };
   std::deque<Mark> marks_;  // of the last second
+  bool fresh_ = false;      // a picture came since the first page did: before, they are of long ago
 };
 
 }  // namespace palpate::sim

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "common/report.h"
@@ -99,8 +100,8 @@ std::string state_text(const Picture& picture, std::span<const SeenPeer> peers, 
                    {"paused", paused},
                    {"step_ms", brief(picture.step_ms)},
                    {"late", picture.late},
-                   {"rate_hz", brief(rates.steps_hz)},
-                   {"real_time_factor", brief(rates.real_time_factor)},
+                   {"rate_hz", number_or_null(rates.steps_hz)},
+                   {"real_time_factor", number_or_null(rates.real_time_factor)},
                    {"tools", tools},
                    {"peers", peers_json(peers)}}}});
 }
@@ -111,6 +112,8 @@ std::string client_text(const SeenClient& client) {
     laws.push_back(text_of(client.law_names[i]));
     errors.push_back(number_or_null(static_cast<double>(client.errors_percent[i])));
   }
+  Json states = Json::array();
+  for (std::size_t i = 0; i < client.states; ++i) states.push_back(text_of(client.state_names[i]));
   for (std::size_t i = 0; i < client.interventions; ++i)
     interventions[text_of(client.intervention_names[i])] = client.intervention_counts[i];
   return dumped({{"client",
@@ -123,6 +126,7 @@ std::string client_text(const SeenClient& client) {
                    {"missed", client.missed},
                    {"passivity_gain", brief(client.passivity_gain)},
                    {"interventions", interventions},
+                   {"states", states},
                    {"felt", brief(client.felt_W)},
                    {"p", brief(client.p_W)},
                    {"device", text_of(client.device)},

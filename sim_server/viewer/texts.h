@@ -1,5 +1,6 @@
 #pragma once
 /// The text messages to a page: MESSAGES.md. No clock, no socket.
+#include <limits>
 #include <span>
 #include <string>
 
@@ -10,10 +11,10 @@ namespace palpate::sim {
 /// `may_control`: this page has the token.
 std::string scene_text(const SceneFacts& scene, bool may_control);
 
-/// How fast a session goes, as measured over the last second.
+/// How fast a session goes, as measured over the last second; no number: not known yet.
 struct MeasuredRates {
-  double steps_hz = 0;
-  double real_time_factor = 0;  ///< s of tissue a second; 0 while nothing steps
+  double steps_hz = std::numeric_limits<double>::quiet_NaN();
+  double real_time_factor = std::numeric_limits<double>::quiet_NaN();  ///< s of tissue a second
 };
 /// `peers`: of each tool of the scene. Loads as they stand in the picture.
 std::string state_text(const Picture& picture, std::span<const SeenPeer> peers, const MeasuredRates& rates,

@@ -31,6 +31,7 @@ struct Session {
     scene.organ.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     scene.organ.flags = {1, 0, 0, 2};
     feed = std::make_unique<ViewerFeed>(scene.organ.rest);
+    feed->pages = 1;
     maker = std::make_unique<ShowingMaker>(scene, *feed, true);
   }
   void step(std::uint64_t number, float x = 0) {
@@ -195,6 +196,17 @@ TEST_CASE("viewer: rates are measured over the last second") {
   for (std::uint64_t step = 1; step <= 200; ++step) session.step(step);
   CHECK(session.maker->showing().rates.steps_hz == Approx(50).epsilon(0.1));
   CHECK(session.maker->showing().rates.real_time_factor == Approx(1).epsilon(0.1));
+
+  // While nobody looked, steps went on: they are not of the second in which a page comes back.
+  session.feed->pages = 0;
+  session.maker->look(session.time);
+  session.feed->pages = 1;
+  session.time += 10s;
+  session.maker->look(session.time);
+  session.take_all();
+  CHECK(session.last_text()["state"]["rate_hz"].is_null());
+  for (std::uint64_t step = 701; step <= 760; ++step) session.step(step);
+  CHECK(session.maker->showing().rates.steps_hz == Approx(50).epsilon(0.1));
 }
 
 TEST_CASE("viewer: what a client tells reaches a page once") {
@@ -206,6 +218,8 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   client.law = SeenClient::Name{"linear_position"};
   client.law_names = {SeenClient::Name{"constant"}, SeenClient::Name{"linear_position"}};
   client.errors_percent = {12.5F, std::nanf("")};
+  client.states = 1;
+  client.state_names[0] = SeenClient::Name{"clutched"};
   client.interventions = 1;
   client.intervention_names = {SeenClient::Name{"clamped"}};
   client.intervention_counts = {3};
@@ -223,6 +237,7 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   CHECK(told["errors_percent"][0] == 12.5);
   CHECK(told["errors_percent"][1].is_null());
   CHECK(told["interventions"]["clamped"] == 3);
+  CHECK(told["states"] == std::vector<std::string>{"clutched"});
   session.maker->look(session.time);
   CHECK(session.take_all() == 0);
 }
