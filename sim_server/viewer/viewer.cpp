@@ -1,7 +1,6 @@
 #include "sim_server/viewer/viewer.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <libwebsockets.h>
 #include <list>
@@ -13,6 +12,7 @@
 #include "protocol/auth.h"
 #include "protocol/udp_socket.h"
 #include "sim_server/viewer/page_files.h"
+#include "sim_server/viewer/port_probe.h"
 #include "sim_server/viewer/showing_maker.h"
 
 namespace palpate::sim {
@@ -44,27 +44,6 @@ struct Fetch {
   const char* next;
   std::size_t left;
 };
-
-/// Why this address cannot be listened on, in words; empty: it can.
-std::string why_not(const protocol::Endpoint& endpoint) {
-  const int fd = socket(endpoint.v6 ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in6 v6{};
-  sockaddr_in v4{};
-  v6.sin6_family = AF_INET6, v6.sin6_port = htons(endpoint.port);
-  v4.sin_family = AF_INET, v4.sin_port = htons(endpoint.port);
-  std::memcpy(&v6.sin6_addr, endpoint.address.data(), sizeof v6.sin6_addr);
-  std::memcpy(&v4.sin_addr, endpoint.address.data(), sizeof v4.sin_addr);
-  const int on = 1;
-  setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  const bool bound = endpoint.v6 ? bind(fd, reinterpret_cast<const sockaddr*>(&v6), sizeof v6) == 0
-                                 : bind(fd, reinterpret_cast<const sockaddr*>(&v4), sizeof v4) == 0;
-  const int why = !bound || listen(fd, 1) != 0 ? errno : 0;
-  ::close(fd);
-  if (why == EADDRINUSE) return "another program listens there; choose another port";
-  if (why == EACCES) return "ports below 1024 need root; choose another port";
-  if (why == EADDRNOTAVAIL) return "this machine has no such address";
-  return why == 0 ? "" : std::strerror(why);
-}
 
 }  // namespace
 
@@ -205,7 +184,6 @@ int Viewer::Server::on_event(lws* wsi, lws_callback_reasons reason, void* user, 
         *page = nullptr;
       }
       return 0;
-    case LWS_CALLBACK_CLIENT_FILTER_PRE_ESTABLISH:
     case LWS_CALLBACK_HTTP_BODY:
     case LWS_CALLBACK_HTTP_BODY_COMPLETION:
     case LWS_CALLBACK_HTTP_FILE_COMPLETION:
@@ -237,8 +215,6 @@ void Viewer::Server::look() {
   }
   feed.wants_field = wants_field;
 }
-
-// HTTP
 
 int Viewer::Server::on_request(lws* wsi, Fetch& fetch) {
   fetch = {};
@@ -298,8 +274,6 @@ int Viewer::Server::send_chunk(lws* wsi, Fetch& fetch) {
   lws_callback_on_writable(wsi);
   return 0;
 }
-
-// WebSocket
 
 bool Viewer::Server::may_connect(lws* wsi) const {
   const std::string host = header_of(wsi, WSI_TOKEN_HOST);
