@@ -10,9 +10,8 @@ namespace palpate::sim {
 TetMesh read_mesh_of(const Scene& scene) {
   TetMesh mesh = read_mesh(scene.mesh_file);
   for (Vec3& x : mesh.vertices) x *= scene.mesh_scale;
-  if (const std::string odd = odd_size(mesh); !odd.empty())     log::warning("{}: {}", scene.mesh_where, odd);
-  for (int i = 0; i < scene.mesh_refinements; ++i) mesh = refined(mesh);
-
+  if (const std::string odd = odd_size(mesh); !odd.empty()) log::warning("{}: {}", scene.mesh_where, odd);
+  for (double left = scene.mesh_refinements; left > 0; --left) mesh = left < 1 ? halved(mesh) : refined(mesh);
   return mesh;
 }
 

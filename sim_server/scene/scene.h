@@ -76,7 +76,8 @@ struct Scene {
   std::filesystem::path mesh_file;
   std::string mesh_where;  ///< "FILE:LINE" of `[mesh] file`
   double mesh_scale = 1;   ///< metres per unit of the mesh file, [1e-6, 1e3]
-  int mesh_refinements = 0;  ///< how often each tetrahedron of the file is cut into eight, [0, 2]
+  /// How often each tetrahedron of the file is `refined`, into eight; and `halved` for a half. 0, 0.5, ... 2.
+  double mesh_refinements = 0;
   std::vector<FixedRegion> fixed;
   std::vector<Load> loads{};
   std::optional<Material> material;

@@ -205,7 +205,9 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   scene.mesh_file = mesh->file("file");
   scene.mesh_where = mesh->where("file");
   scene.mesh_scale = mesh->number("scale", {1e-6, 1e3, "m per unit of the file"}, scene.mesh_scale);
-  scene.mesh_refinements = static_cast<int>(mesh->integer("refine", {0, 2, "times"}, 0));
+  scene.mesh_refinements = mesh->number("refine", {0, 2, "times"}, 0);
+  if (2 * scene.mesh_refinements != std::floor(2 * scene.mesh_refinements))
+    fail("{}: `[mesh] refine` must be 0, 0.5, 1, 1.5 or 2 times", mesh->where("refine"));
   mesh->reject_unknown();
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(scene.mesh_file, ignored)) {

@@ -132,5 +132,10 @@ TEST_CASE("scale of a mesh: one in millimetres is used in metres, one of no orga
   CHECK(odd_size(read_mesh_of(scene_of_scale("scale = 1e-5\n"))).find("0.001 m long") != std::string::npos);
   CHECK_THROWS_AS(scene_of_scale("scale = 0\n"), Error);
   CHECK(read_mesh_of(scene_of_scale("refine = 2\n")).tetrahedra.size() == 64);
-  CHECK_THROWS_AS(scene_of_scale("refine = 3\n"), Error);
+  // Half of it cuts the longest edge, here between the second and the third corner.
+  const TetMesh halves = read_mesh_of(scene_of_scale("refine = 0.5\n"));
+  CHECK(halves.tetrahedra.size() == 2);
+  CHECK((halves.vertices.at(4) - Vec3(50, 40, 0)).norm() < 1e-12);
+  for (const char* wrong : {"refine = 3\n", "refine = 0.7\n", "refine = -1\n"})
+    CHECK_THROWS_AS(scene_of_scale(wrong), Error);
 }
