@@ -111,3 +111,27 @@ TEST_CASE(
     CHECK((drawn.find("--quick") != std::string::npos) == quick);
   }
 }
+
+TEST_CASE("laws_animation.py: a small GIF of two laws, in as many pictures as four times the time has") {
+  const TemporaryFolder folder;
+  const std::string csv = folder.write("trace.csv", trace()).string(),
+                    gif = (folder.path() / "laws.gif").string();
+  const auto [code, said] =
+      plotted("laws_animation.py " + csv + " " + gif + " --laws late near --seconds 0.2 0.45");
+  CAPTURE(said);
+  REQUIRE(code == 0);
+  const std::string drawn = text_of(gif);
+  CHECK(drawn.starts_with("GIF89a"));
+  CHECK(drawn.size() < 700000);
+  // 12 a second, and then one that stays: each has a graphic control extension of 4 bytes.
+  std::size_t pictures = 0;
+  for (std::size_t at = drawn.find("\x21\xf9\x04"); at != std::string::npos;
+       at = drawn.find("\x21\xf9\x04", at + 1))
+    ++pictures;
+  CHECK(pictures >= 12);
+
+  const auto [wrong, told] = plotted("laws_animation.py " + csv + " " + gif + " --laws late absent");
+  CHECK(wrong == 2);
+  CHECK_THAT(told, Catch::Contains("--laws absent") && Catch::Contains("late, near, nearer"));
+  CHECK(std::count(told.begin(), told.end(), '\n') == 1);
+}
