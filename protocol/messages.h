@@ -281,7 +281,7 @@ struct Telemetry {
   std::uint32_t dt_ns = 0;              ///< between two of the ticks told
   Vec3 p_W = Vec3::Zero();              ///< where the tool is by now, m
   Vec3 f_W = Vec3::Zero();              ///< force that is felt there, N
-  std::int64_t age_ns = 0;              ///< of the newest sample
+  std::int64_t age_ns = 0;              ///< of the newest sample: the largest since the message before
   std::uint32_t period_ns = 0;          ///< of the loop since the message before, mean
   std::uint32_t longest_period_ns = 0;  ///< and longest
   std::uint64_t ticks = 0, missed = 0;  ///< of the session

@@ -50,6 +50,7 @@ const Telemetry* TelemetryMaker::tick(const TickResult& result, const Pipeline& 
     return nullptr;
   }
   longest_ns_ = std::max(longest_ns_, t - last_ns_);
+  oldest_ns_ = std::max(oldest_ns_, pipeline.age_ns());
   last_ns_ = t;
   const Vec3 felt_W = pipeline.workspace().force_to_world(result.f_D);
   if (seen_++ % every_ == every_ - 1) add(felt_W, scoring);
@@ -62,7 +63,7 @@ const Telemetry* TelemetryMaker::tick(const TickResult& result, const Pipeline& 
 
 void TelemetryMaker::begin_at(std::int64_t t_ns) noexcept {
   begin_ns_ = last_ns_ = t_ns;
-  longest_ns_ = 0;
+  longest_ns_ = oldest_ns_ = 0;
   seen_ = 0;
   next_.count = 0;
 }
@@ -77,16 +78,15 @@ void TelemetryMaker::add(const Vec3& felt_W, const Scoring& scoring) noexcept {
 void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline, const Scoring& scoring,
                               std::uint64_t missed) noexcept {
   const std::uint16_t motors = next_.flags & Telemetry::kHasMotors;
-  const std::int64_t age = std::max<std::int64_t>(pipeline.age_ns(), 0);
   next_.flags = motors;
   if (pipeline.limiter().fault() != Fault::kNone) next_.flags |= Telemetry::kFault;
   if ((result.tool.flags & protocol::ToolState::kClutched) != 0) next_.flags |= Telemetry::kClutched;
   if ((result.tool.flags & protocol::ToolState::kDeviceLost) != 0) next_.flags |= Telemetry::kDeviceLost;
-  if (age > kOutage.count()) next_.flags |= Telemetry::kFading;
+  if (pipeline.age_ns() > kOutage.count()) next_.flags |= Telemetry::kFading;
   next_.tool = result.tool.tool;
   next_.t_ns = result.tool.t_ns;
   next_.p_W = result.tool.p_W;
-  next_.age_ns = age;
+  next_.age_ns = oldest_ns_;
   const std::int64_t spent = last_ns_ - begin_ns_;
   const auto periods = static_cast<std::int64_t>(seen_);
   next_.period_ns = in_32_bits(spent / periods);

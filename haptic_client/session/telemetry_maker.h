@@ -31,7 +31,7 @@ class TelemetryMaker {
   std::uint64_t every_;  // ticks between two that are told
   std::size_t ticks_;    // told in a message
   bool wanted_ = false, began_ = false;
-  std::int64_t last_ns_ = 0, begin_ns_ = 0, longest_ns_ = 0;
+  std::int64_t last_ns_ = 0, begin_ns_ = 0, longest_ns_ = 0, oldest_ns_ = 0;
   std::uint64_t seen_ = 0;  // ticks since the message before
   std::uint8_t named_ = 0;
   protocol::Telemetry next_, told_;
