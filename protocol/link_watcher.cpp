@@ -30,6 +30,7 @@ void LinkWatcher::look(const std::string& name) {
   if (++looks_ < kLooks) return;
   looks_ = 0;
   newest_.read(now_);
+  if (!log::tells_more()) return;
   log::debug("{}link, in the last second: {}", name, told_since(before_, now_));
   before_ = now_;
 }

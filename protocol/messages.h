@@ -273,7 +273,8 @@ struct Telemetry {
   static constexpr MessageType kType = MessageType::kTelemetry;
   static constexpr std::size_t kMostTicks = 24, kMostLaws = 8, kNameBytes = 32;
   /// Bits of `flags`.
-  static constexpr std::uint16_t kHasMotors = 1, kFault = 2, kClutched = 4, kDeviceLost = 8, kFading = 16;
+  static constexpr std::uint16_t kHasMotors = 1, kFault = 2, kClutched = 4, kDeviceLost = 8, kFading = 16,
+                                 kPaused = 32;
   using Name = std::array<std::uint8_t, kNameBytes>;  ///< ASCII, then zeros
   std::uint8_t tool = 0;
   std::uint16_t flags = 0;

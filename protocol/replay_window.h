@@ -88,11 +88,12 @@ class ReplayWindow {
 /// Lets through values that are newer than all before, by their numbers.
 class NewestOnly {
  public:
-  /// `in_order`: it came in the highest datagram so far; else it was overtaken. False also of one whose
-  /// number is wild, until the sender goes on from there (`Stray`). Counts in `stats` what was dropped, and
-  /// the values between this and the one before, which are lost or will be overtaken.
-  bool accept(std::uint64_t number, bool in_order, LinkStats& stats) noexcept {
-    if (!in_order) {
+  /// `sequence`: of its datagram; `in_order`: that is the highest so far. One that only datagrams of other
+  /// kinds overtook is the newest still. False also of one whose number is wild, until the sender goes on
+  /// from there (`Stray`). Counts in `stats` what was dropped, and the values between this and the one
+  /// before, which are lost or will be overtaken.
+  bool accept(std::uint64_t number, std::uint64_t sequence, bool in_order, LinkStats& stats) noexcept {
+    if (!in_order && sequence <= sequence_) {
       ++stats.overtaken;
       if (stats.values_lost > 0) --stats.values_lost;  // counted as lost when the newer one came
       return false;
@@ -107,13 +108,14 @@ class NewestOnly {
       if (newest_ > 0) stats.values_lost += number - newest_ - 1;
     }
     newest_ = number;
+    sequence_ = sequence;
     return true;
   }
 
  private:
   static constexpr std::uint64_t kFarthest = 1 << 16;
 
-  std::uint64_t newest_ = 0;
+  std::uint64_t newest_ = 0, sequence_ = 0;
   Stray stray_;
 };
 

@@ -106,7 +106,8 @@ const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkSt
       sample && sample->tool == welcome_.tool) {
     if (!current_.window.accept(datagram.header.sequence, stats)) return nullptr;
     last_heard_ = now;
-    return current_.samples.accept(sample->number, current_.window.in_order(), stats)
+    return current_.samples.accept(sample->number, datagram.header.sequence, current_.window.in_order(),
+                                   stats)
                ? &datagram.message
                : nullptr;  // the newest value wins
   }
@@ -236,7 +237,7 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
   if (telemetry != nullptr) return {.telemetry = telemetry};
   found->last_heard = now;
   if (found->window.in_order()) found->endpoint = from;  // another one only with a key
-  if (!found->ticks.accept(tool_state->tick, found->window.in_order(), stats))
+  if (!found->ticks.accept(tool_state->tick, datagram.header.sequence, found->window.in_order(), stats))
     return {.asking = tool_state};  // the newest value wins
   return {.tool_state = tool_state, .asking = tool_state};
 }

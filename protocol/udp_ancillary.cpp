@@ -68,12 +68,13 @@ void note(const cmsghdr& header, ReceivedDatagram& out) noexcept {
     out.at = monotonic(read<timespec>(header));
   } else if (header.cmsg_level == IPPROTO_IP && header.cmsg_type == IP_PKTINFO) {
     const auto info = read<in_pktinfo>(header);
-    std::memcpy(out.to.address.data(), &info.ipi_addr, 4);
+    std::memcpy(out.to.address.data(), &info.ipi_spec_dst, 4);  // of a broadcast, the interface's own
     out.to.port = 1;
   } else if (header.cmsg_level == IPPROTO_IPV6 && header.cmsg_type == IPV6_PKTINFO) {
     const auto info = read<in6_pktinfo>(header);
+    if (IN6_IS_ADDR_MULTICAST(&info.ipi6_addr)) return;
     std::memcpy(out.to.address.data(), &info.ipi6_addr, 16);
-    out.to.scope = info.ipi6_ifindex;
+    if (IN6_IS_ADDR_LINKLOCAL(&info.ipi6_addr)) out.to.scope = info.ipi6_ifindex;
     out.to.v6 = true;
     out.to.port = 1;
   }

@@ -5,7 +5,6 @@
 #include <charconv>
 
 #include "common/error.h"
-#include "protocol/asked_addresses.h"
 #include "protocol/udp_ancillary.h"
 
 namespace palpate::protocol {
@@ -91,7 +90,7 @@ struct UdpSocket::Asio {
   const Handlers* handlers = nullptr;
   Handlers own_handlers;    // of a socket that another one's loop serves
   bool everywhere = false;  // bound to all addresses
-  AskedAddresses asked;
+  Endpoint asked;
   Time arrived{};
 
   void receive() {
@@ -103,8 +102,8 @@ struct UdpSocket::Asio {
         const auto datagram = protocol::receive(socket.native_handle(), buffer, error);
         if (error == std::errc::operation_would_block) break;
         if (!datagram) continue;  // an earlier one could not be delivered
-        if (everywhere) asked.note(datagram->from, datagram->to);
         arrived = datagram->at;
+        asked = everywhere ? datagram->to : Endpoint{};
         handlers->on_datagram({buffer.data(), datagram->size}, datagram->from);
       }
       receive();
@@ -168,10 +167,6 @@ Endpoint UdpSocket::local() const {
 Endpoint UdpSocket::local_towards(const Endpoint& peer) const {
   Endpoint own = local();
   if (own.address != Endpoint{}.address) return own;
-  if (const Endpoint asked = asio_->asked.of(peer); asked.port != 0) {
-    own.address = asked.address;
-    return own;
-  }
   udp::socket probe(asio_->context);
   std::error_code failed;
   probe.connect(to_asio(peer), failed);
@@ -196,8 +191,15 @@ void UdpSocket::stop() {
   asio_->context.stop();
 }
 
-std::error_code UdpSocket::send(std::span<const std::byte> datagram, const Endpoint& to) noexcept {
-  return protocol::send(asio_->socket.native_handle(), datagram, to, asio_->asked.of(to));
+std::error_code UdpSocket::send(std::span<const std::byte> datagram, const Endpoint& to,
+                                const Endpoint& from) noexcept {
+  const int socket = asio_->socket.native_handle();
+  const std::error_code failed = protocol::send(socket, datagram, to, from);
+  return failed && from.port != 0 ? protocol::send(socket, datagram, to, {}) : failed;
+}
+
+const Endpoint& UdpSocket::asked() const noexcept {
+  return asio_->asked;
 }
 
 Time UdpSocket::arrived() const noexcept {

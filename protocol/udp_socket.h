@@ -41,13 +41,14 @@ class UdpSocket {
   /// The address it is bound to, with the port the system chose.
   Endpoint local() const;
 
-  /// The address of this machine that `peer` sees: `local`, and where it is bound to all of them the one that
-  /// he last sent to, or else that of the interface the system would send from. Asks the routing table; sends
-  /// nothing.
+  /// The address of this machine that `peer` sees: `local`, with the interface the system would send from
+  /// where it is bound to all of them. Asks the routing table; sends nothing.
   Endpoint local_towards(const Endpoint& peer) const;
 
-  /// When the kernel had the datagram that `on_datagram` is being called with. Thread of `run`.
+  /// Of the datagram that `on_datagram` is being called with: when the kernel had it. Thread of `run`.
   Time arrived() const noexcept;
+  /// And to which of our addresses it was sent, where the socket is bound to all of them; else port 0.
+  const Endpoint& asked() const noexcept;
 
   /// Serves until `stop`. One thread.
   void run(Doorbell& doorbell, Time timer_period, const Handlers& handlers);
@@ -55,9 +56,11 @@ class UdpSocket {
   /// Ends `run`; any thread.
   void stop();
 
-  /// Sends without waiting, from the address that `to` last sent to, if he did; says why where the system
-  /// would not take it. Thread of `run`, or when none runs.
-  std::error_code send(std::span<const std::byte> datagram, const Endpoint& to) noexcept;
+  /// Sends without waiting; says why where the system would not take it. `from`: which of our addresses, as
+  /// `asked` told; port 0, or an address that is ours no more: as the routes go. Thread of `run`, or when
+  /// none runs.
+  std::error_code send(std::span<const std::byte> datagram, const Endpoint& to,
+                       const Endpoint& from = {}) noexcept;
 
  private:
   void bind(const Endpoint& local);

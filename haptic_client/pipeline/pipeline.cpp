@@ -105,7 +105,10 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
     }
   }
   stats_.pages += pages.size();
-  if (arrived != nullptr) paused_ = (arrived->flags & ForceSample::kPaused) != 0;
+  if (arrived != nullptr) {
+    paused_ = (arrived->flags & ForceSample::kPaused) != 0;
+    heard_ns_ = tool.t_ns;
+  }
   if (arrived != nullptr && !paused_ && take(*arrived, tool.p_W, now)) {
     result.used = true;
     result.sample = estimate_.newest();
@@ -178,11 +181,12 @@ Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept 
 Watchdog::Ruling Pipeline::rule_by_age(const ToolState& tool, double dt) noexcept {
   if (estimate_.newest().number == 0) return watchdog_.rule({}, dt);
   const Time age = Time{tool.t_ns} - estimate_.newest().t;
-  stats_.age_ns.add(age.count());
+  if (!paused_) stats_.age_ns.add(age.count());
   return watchdog_.rule(paused_ ? std::max(age, kOutage + Time{1}) : age, dt);
 }
 
 std::int64_t Pipeline::age_ns() const noexcept {
+  if (paused_) return felt_.t_ns - heard_ns_;
   return estimate_.newest().number == 0 ? -1 : felt_.t_ns - estimate_.newest().t.count();
 }
 

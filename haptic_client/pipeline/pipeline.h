@@ -89,7 +89,8 @@ class Pipeline {
   /// Asks the next tick to clear a latched fault; the force then rises again over a soft start.
   void rearm() noexcept { rearm_asked_ = true; }
 
-  /// Age of the newest sample at the last tick, ns; -1 before there is one.
+  /// Age of the newest sample at the last tick, ns; -1 before there is one. In a pause, of the newest that
+  /// said so.
   std::int64_t age_ns() const noexcept;
   const Limiter& limiter() const noexcept { return limiter_; }
   const Watchdog& watchdog() const noexcept { return watchdog_; }
@@ -123,6 +124,7 @@ class Pipeline {
   protocol::ToolState sensed_;  // tick 0: none yet
   protocol::ToolState felt_;    // tick 0: none yet
   bool rearm_asked_ = false, paused_ = false;
+  std::int64_t heard_ns_ = 0;  // when a sample last came, of a pause, too
   PipelineStats stats_;
 };
 

@@ -53,8 +53,9 @@ class HapticLoop {
   std::atomic<Fault> fault{Fault::kNone};
   /// Whether less than half of the law's force has been felt for half a second; of that tick, the law's force
   /// (N) and the gain of passivity.
-  std::atomic<bool> weak{false}, paused{false};
+  std::atomic<bool> weak{false};
   std::atomic<double> law_newton{0}, gain{1};
+  std::atomic<bool> paused{false};                  ///< the simulation is
   std::atomic<bool> rearm{false};                   ///< set it to clear a latched fault
   std::atomic<std::uint64_t>* heartbeat = nullptr;  ///< gets one more at every tick; set it before `run`
 

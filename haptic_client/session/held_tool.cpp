@@ -137,11 +137,11 @@ void HeldTool::look() {
               paused_ ? "paused at the server: force goes to zero, and the tool stays where it is"
                       : "the server goes on: soft start");
   }
-  if (age > kOutage.count() && !silent_ && !paused_)
+  if (age > kOutage.count() && !silent_)
     log::warning("{}no samples from {}: force goes to zero; asking again", name_, config_.server);
-  if (age >= 0 && age < kOutage.count() && silent_ && !paused_)
+  if (age >= 0 && age < kOutage.count() && silent_)
     log::info("{}{} is back: soft start", name_, config_.server);
-  silent_ = age > kOutage.count() && !paused_;
+  silent_ = age > kOutage.count();
   const Fault fault = loop_.fault;
   if (fault != Fault::kNone && fault_ == Fault::kNone) {
     log::warning("{}force latched off ({}); when it is safe, re-arm with `kill -USR1 {}`", name_,

@@ -82,6 +82,7 @@ void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline
   if (pipeline.limiter().fault() != Fault::kNone) next_.flags |= Telemetry::kFault;
   if ((result.tool.flags & protocol::ToolState::kClutched) != 0) next_.flags |= Telemetry::kClutched;
   if ((result.tool.flags & protocol::ToolState::kDeviceLost) != 0) next_.flags |= Telemetry::kDeviceLost;
+  if (pipeline.paused()) next_.flags |= Telemetry::kPaused;
   if (pipeline.age_ns() > kOutage.count()) next_.flags |= Telemetry::kFading;
   next_.tool = result.tool.tool;
   next_.t_ns = result.tool.t_ns;

@@ -136,7 +136,7 @@ return function()
   -- Telemetry, and Pointer.
   flags("telemetry", "Flags", 16, {
     {"has_motors", "The device has motors"}, {"fault", "Force latched off"}, {"clutched", "Clutched"},
-    {"device_lost", "Device gives nothing usable"}, {"fading", "Newest sample too old"},
+    {"device_lost", "Device gives nothing usable"}, {"fading", "Newest sample too old"}, {"paused", "Paused"},
   })
   field("uint32", "dt", "Between two ticks told (ns)")
   field("int64", "sample_age", "Age of the newest sample (ns)")

@@ -59,17 +59,27 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   // Before any answer to it, as a reader of the capture expects.
   record(t, from, own_towards(from), bytes, stats_.received > received && !is_to_a_stranger(outcome));
   // A new member stands at the end.
-  if (sessions_.members().size() > before) ++tools[sessions_.members().back().tool].so_far;
+  if (sessions_.members().size() > before) {
+    const std::uint8_t tool = sessions_.members().back().tool;
+    ++tools[tool].so_far;
+    asked_[tool] = socket_.asked();
+    peers_[tool] = {};
+  }
   note_holders();
   answer(outcome, from);
   if (outcome.left != nullptr) tool_is_free(outcome.left->tool);
   if (outcome.telemetry != nullptr && page_ != nullptr)
     page_->tools[outcome.telemetry->tool].telemetry.push(*outcome.telemetry);
   if (outcome.tool_state != nullptr) {
-    count_for_page(outcome.tool_state->tool, stats_.received - received, stats_.lost - lost);
+    asked_[outcome.tool_state->tool] = socket_.asked();
     pass_on(datagram.header.session, *outcome.tool_state);
   }
   if (outcome.asking != nullptr) send_pages(*outcome.asking, t);
+  if (outcome.asking != nullptr || outcome.telemetry != nullptr) {
+    PeerCounts& peer = peers_[outcome.asking != nullptr ? outcome.asking->tool : outcome.telemetry->tool];
+    peer.received += stats_.received - received;
+    peer.lost += stats_.lost - lost;  // less, where a late one takes a loss back
+  }
 }
 
 /// Into the recording, if there is one. `ours`: of a session; of all else there may be any number.
@@ -146,11 +156,6 @@ void NetLink::on_timer() {
   if (page_ != nullptr) tell_peers();
 }
 
-void NetLink::count_for_page(std::uint8_t tool, std::uint64_t received, std::uint64_t lost) noexcept {
-  peers_[tool].received += received;
-  peers_[tool].lost += lost;
-}
-
 void NetLink::tell_peers() {
   for (std::size_t i = 0; i < pagers_.size(); ++i) {
     const auto* const member = sessions_.holder(static_cast<std::uint8_t>(i));
@@ -181,19 +186,21 @@ const Endpoint& NetLink::own_towards(const Endpoint& peer) {
 
 void NetLink::send(protocol::ServerSessions::Member& member, const protocol::Message& message) {
   std::array<std::byte, protocol::kMaxDatagram> bytes;
-  send({bytes.data(), protocol::ServerSessions::write(member, message, bytes)}, member.endpoint, true);
+  send({bytes.data(), protocol::ServerSessions::write(member, message, bytes)}, member.endpoint,
+       asked_[member.tool], true);
 }
 
 void NetLink::answer(const protocol::ServerSessions::Outcome& outcome, const Endpoint& to) {
   if (!outcome.answer) return;
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   const std::size_t size = protocol::encode(outcome.answer->first, outcome.answer->second, bytes);
-  send({bytes.data(), protocol::seal(bytes, size, outcome.key)}, to, !is_to_a_stranger(outcome));
+  send({bytes.data(), protocol::seal(bytes, size, outcome.key)}, to, socket_.asked(),
+       !is_to_a_stranger(outcome));
 }
 
-void NetLink::send(std::span<const std::byte> bytes, const Endpoint& to, bool ours) {
+void NetLink::send(std::span<const std::byte> bytes, const Endpoint& to, const Endpoint& from, bool ours) {
   record(now(), own_towards(to), to, bytes, ours);
-  if (!socket_.send(bytes, to)) ++stats_.sent;
+  if (!socket_.send(bytes, to, from)) ++stats_.sent;
 }
 
 }  // namespace palpate::sim

@@ -43,13 +43,13 @@ class NetLink {
   void pass_on(std::uint64_t session, const protocol::ToolState& state);
   void send_pages(const protocol::ToolState& state, Time t);
   void note_holders();
-  void count_for_page(std::uint8_t tool, std::uint64_t received, std::uint64_t lost) noexcept;
   void tell_peers();
   void on_timer();
   void tool_is_free(std::uint8_t tool);
   void send(protocol::ServerSessions::Member& member, const protocol::Message& message);
   void answer(const protocol::ServerSessions::Outcome& outcome, const protocol::Endpoint& to);
-  void send(std::span<const std::byte> bytes, const protocol::Endpoint& to, bool ours);
+  void send(std::span<const std::byte> bytes, const protocol::Endpoint& to, const protocol::Endpoint& from,
+            bool ours);
   void record(Time t, const protocol::Endpoint& from, const protocol::Endpoint& to,
               std::span<const std::byte> bytes, bool ours);
 
@@ -65,7 +65,8 @@ class NetLink {
   std::array<SessionInput, kMaxTools> inputs_;       // of each tool, the newest
   std::vector<protocol::TokenBucket> page_buckets_;  // of each tool
   protocol::LinkStats stats_;
-  std::array<PeerCounts, kMaxTools> peers_{};  // for pages
+  std::array<protocol::Endpoint, kMaxTools> asked_;  // which of our addresses the client of each tool asks
+  std::array<PeerCounts, kMaxTools> peers_{};        // for pages
 };
 
 }  // namespace palpate::sim

@@ -154,6 +154,55 @@ TEST_CASE("pages are wanted still when a newer state overtook the one that asks 
   CHECK(pair.server.receive(asks, kClient, pair.now, {}, pair.server_stats).asking == nullptr);
 }
 
+TEST_CASE("a value that only other kinds of datagrams overtook is the newest still") {
+  Pair pair;
+  pair.shake_hands();
+  auto* member = pair.server.holder(0);
+  const Datagram sample{{member->session, ++member->sent}, ForceSample{.number = 5}};
+  const Datagram pointer{{member->session, ++member->sent}, Pointer{.number = 1}};
+  CHECK(pair.client.receive(pointer, pair.now, pair.client_stats) != nullptr);
+  CHECK(pair.client.receive(sample, pair.now, pair.client_stats) != nullptr);
+  CHECK(pair.client_stats.overtaken == 0);
+  const Datagram state{pair.client.next_header(), ToolState{.tick = 1}};
+  const Datagram telemetry{pair.client.next_header(), Telemetry{}};
+  CHECK(pair.server.receive(telemetry, kClient, pair.now, {}, pair.server_stats).telemetry != nullptr);
+  CHECK(pair.server.receive(state, kClient, pair.now, {}, pair.server_stats).tool_state != nullptr);
+  CHECK(pair.server_stats.overtaken == 0);
+  CHECK(pair.server_stats.lost == 0);
+}
+
+TEST_CASE("a pointer that another one overtook, or of another tool, moves nothing") {
+  Pair pair;
+  pair.shake_hands();
+  auto* member = pair.server.holder(0);
+  const Datagram older{{member->session, ++member->sent}, Pointer{.number = 1}};
+  const Datagram newer{{member->session, ++member->sent}, Pointer{.number = 2}};
+  CHECK(pair.client.receive(newer, pair.now, pair.client_stats) != nullptr);
+  CHECK(pair.client.receive(older, pair.now, pair.client_stats) == nullptr);
+  CHECK(pair.client.receive(newer, pair.now, pair.client_stats) == nullptr);
+  const Datagram others{{member->session, ++member->sent}, Pointer{.tool = 1, .number = 3}};
+  CHECK(pair.client.receive(others, pair.now, pair.client_stats) == nullptr);
+  CHECK(pair.client_stats.rejected_by[static_cast<std::size_t>(Verdict::kTool)] == 1);
+}
+
+TEST_CASE("telemetry keeps no tool, and counts once") {
+  Pair pair;
+  pair.shake_hands();
+  for (int i = 0; i < 10; ++i) {
+    pair.now += 100ms;
+    const Datagram telemetry{pair.client.next_header(), Telemetry{}};
+    const auto outcome = pair.server.receive(telemetry, kClient, pair.now, {}, pair.server_stats);
+    CHECK((outcome.telemetry != nullptr) == (i < 8));
+    CHECK(pair.server.receive(telemetry, kClient, pair.now, {}, pair.server_stats).telemetry == nullptr);
+    CHECK(pair.server.expire(pair.now).size() == (i == 7 ? 1U : 0U));
+  }
+  Pair other;
+  other.shake_hands();
+  const Datagram of_another{other.client.next_header(), Telemetry{.tool = 1}};
+  CHECK(other.server.receive(of_another, kClient, other.now, {}, other.server_stats).telemetry == nullptr);
+  CHECK(other.server_stats.rejected_by[static_cast<std::size_t>(Verdict::kTool)] == 1);
+}
+
 TEST_CASE("Bye frees the tool at once, strangers' datagrams are counted, not obeyed") {
   Pair pair;
   pair.shake_hands();

@@ -17,12 +17,13 @@ struct Session {
   Pipeline pipeline{find_row(extrapolators(), "constant", "law", "test").make(), {}, {}, {.enabled = false}};
   std::uint64_t ticks = 0, samples = 0;
   TickResult result;
+  bool silent = false;  // nothing comes
 
   void run(double seconds, bool paused) {
     for (const auto end = ticks + static_cast<std::uint64_t>(1000 * seconds); ticks < end;) {
       const double t = 1e-3 * static_cast<double>(++ticks);
       std::optional<ForceSample> sample;
-      if (ticks % (paused ? 100 : 33) == 0) {
+      if (!silent && ticks % (paused ? 100 : 33) == 0) {
         sample = ForceSample{.number = ++samples, .tool_t_ns = from_seconds(1 + t).count()};
         sample->f_W = {0, 2, 0};
         sample->flags = paused ? ForceSample::kPaused : 0;
@@ -69,4 +70,17 @@ TEST_CASE("pause: when it ends the tool goes on from where it was held, and the 
   CHECK(session.result.f_D[1] < 1.5);
   session.run(0.6, false);
   CHECK_THAT(session.result.f_D[1], WithinRel(2.0, 1e-3));
+}
+
+TEST_CASE("pause: it is no age of a force, and a server that is gone meanwhile is missed") {
+  Session session;
+  session.run(3, false);
+  session.run(20, true);
+  CHECK(session.pipeline.stats().age_ns.quantile(1) < 50e6);
+  CHECK(session.pipeline.age_ns() < 101'000'000);
+  session.silent = true;
+  session.run(1, true);
+  CHECK(session.pipeline.age_ns() > 900'000'000);
+  CHECK(session.result.f_D.norm() == 0);
+  CHECK(session.clutched());
 }
