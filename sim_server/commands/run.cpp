@@ -198,20 +198,38 @@ void tell_beyond(const SimLoop& loop, const Scene& scene, std::vector<bool>& tol
   }
 }
 
-/// Waits for Ctrl-C, the end of `seconds` or another scene that a page chose, telling who comes and goes.
-void watch(NetLink& link, const SimLoop& loop, const Scene& scene, const protocol::Recorder* recorder,
-           const LiveView* view, std::optional<double> seconds) {
+/// The scene that a page chose, if one did; the choice is taken back where its file is wrong.
+std::optional<Scene> chosen_scene(ViewerFeed& feed, const std::vector<GalleryScene>& gallery) {
+  const int chosen = feed.chosen;
+  if (chosen < 0) return {};
+  try {
+    return read_scene(gallery[static_cast<std::size_t>(chosen)].file);
+  } catch (const Error& error) {
+    log::error("{} (a page chose it; this scene goes on)", error.what());
+    feed.chosen = -1;
+    return {};
+  }
+}
+
+/// Waits for Ctrl-C, the end of `seconds` or another scene that a page chose, which is returned, telling who
+/// comes and goes.
+std::optional<Scene> watch(NetLink& link, const SimLoop& loop, const Scene& scene,
+                           const protocol::Recorder* recorder, LiveView* view,
+                           const std::vector<GalleryScene>& gallery, std::optional<double> seconds) {
   protocol::RecordingWatcher recording(recorder);
   const Time start = now();
   std::vector<bool> told(scene.tools.size(), false), told_beyond = told;
   while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
-    if (seconds && to_seconds(now() - start) >= *seconds) return;
-    if (view != nullptr && view->feed().chosen >= 0) return;
+    if (seconds && to_seconds(now() - start) >= *seconds) return {};
+    if (view != nullptr) {
+      if (auto chosen = chosen_scene(view->feed(), gallery)) return chosen;
+    }
     recording.look();
     link.watcher.look("");
     tell_holders(link, told);
     tell_beyond(loop, scene, told_beyond);
   }
+  return {};
 }
 
 void warn_if_out_of_reach(const Simulation& simulation, const Scene& scene) {
@@ -265,12 +283,13 @@ std::unique_ptr<LiveView> open_view(const ViewRequest& request, const Scene& sce
   return std::make_unique<LiveView>(request.address, request.token, std::move(facts), simulation, start);
 }
 
-/// One scene, from its file to its report. What it listens on is put into `options` and `request`, so that
-/// the next scene is found there. Returns what a page chose, of `gallery`.
-std::optional<std::size_t> serve_scene(ServerOptions& options, std::optional<ViewRequest>& request,
-                                       const std::vector<GalleryScene>& gallery) {
-  const Scene scene = read_scene(options.scene);
-  require_distinct({{"SCENE", options.scene},
+/// One scene, from its set-up to its report. What it listens on is put into `options` and `request`, so that
+/// the next scene is found there; `before`, which stands in for it where its set-up fails, is let go when it
+/// is ready. Returns what a page chose, of `gallery`.
+std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewRequest>& request,
+                                 const std::vector<GalleryScene>& gallery, const Scene& scene,
+                                 std::optional<Scene>& before) {
+  require_distinct({{"SCENE", scene.source},
                     {scene.mesh_where, scene.mesh_file},
                     {"--report", options.report},
                     {"--record", options.record}});
@@ -295,6 +314,7 @@ std::optional<std::size_t> serve_scene(ServerOptions& options, std::optional<Vie
   std::vector<SurfacePager> pagers;
   for (std::size_t i = 0; i < scene.tools.size(); ++i) pagers.emplace_back(simulation, i);
   SimMailboxes mailboxes;
+  std::optional<Scene> chosen;
   const Time start = now();
   const auto view = request ? open_view(*request, scene, simulation, gallery, start) : nullptr;
   if (view) request->address.endpoint = view->viewer().endpoint();
@@ -330,7 +350,8 @@ std::optional<std::size_t> serve_scene(ServerOptions& options, std::optional<Vie
     if (view) log::info("the live page: {}", view->link());
     log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
               report["setup_ms"].get<double>() / 1e3, options.listen.address);
-    watch(link, loop, scene, recorder.get(), view.get(), options.seconds);
+    before.reset();
+    chosen = watch(link, loop, scene, recorder.get(), view.get(), gallery, options.seconds);
     sim.request_stop();
     sim.join();
     if (view) view->viewer().stop();
@@ -341,8 +362,7 @@ std::optional<std::size_t> serve_scene(ServerOptions& options, std::optional<Vie
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
   print_summary(report, simulation.flagged());
   if (options.report) write_json(*options.report, report);
-  const int chosen = view ? view->feed().chosen.load() : -1;
-  return chosen >= 0 ? std::optional(static_cast<std::size_t>(chosen)) : std::nullopt;
+  return chosen;
 }
 
 }  // namespace
@@ -352,13 +372,21 @@ int run_server(const ServerOptions& options) {
   std::optional<ViewRequest> request = view_request(options);
   const std::vector<GalleryScene> gallery =
       request && !options.record ? find_gallery() : std::vector<GalleryScene>{};
+  Scene scene = read_scene(options.scene);
   const Time start = now();
-  while (const auto chosen = serve_scene(now_served, request, gallery)) {
-    now_served.scene = gallery[*chosen].file;
+  for (std::optional<Scene> before;;) {
     if (options.seconds) now_served.seconds = std::max(0.001, *options.seconds - to_seconds(now() - start));
-    log::info("a page chose {}", now_served.scene.string());
+    try {
+      auto chosen = serve_scene(now_served, request, gallery, scene, before);
+      if (!chosen) return 0;
+      before = std::exchange(scene, std::move(*chosen));
+      log::info("a page chose {}", scene.source);
+    } catch (const Error& error) {
+      if (!before) throw;
+      log::error("{} (a page chose it; {} comes back)", error.what(), before->source);
+      scene = *std::exchange(before, std::nullopt);
+    }
   }
-  return 0;
 }
 
 }  // namespace palpate::sim
