@@ -11,8 +11,8 @@ namespace {
 
 constexpr Time kCountedOver = std::chrono::seconds(2);
 constexpr Time kClientEach = std::chrono::milliseconds(90);  // texts of a client; its ticks go all
-constexpr std::int64_t kForgets = 20'000;                    // ns a message: the two clocks drift apart
-constexpr std::int64_t kOtherClock = 1'000'000'000;          // ns: farther off it was set anew
+constexpr double kForgets = 2e4;                             // ns a message: the two clocks drift apart
+constexpr double kOtherClock = 1e9;                          // ns: farther off it was set anew
 
 SeenClient::Name name_of(const protocol::Telemetry::Name& told) {
   static_assert(std::tuple_size_v<SeenClient::Name> == protocol::Telemetry::kNameBytes);
@@ -38,15 +38,16 @@ class ToolNews {
   };
   std::deque<Mark> marks_;
   SeenClient client_;
-  std::optional<std::int64_t> clock_;  // ns from the client's clock to ours: the least that was seen lately
+  std::optional<double> clock_;  // ns from the client's clock to ours: the least that was seen lately
   Time shown_{};
 };
 
 void ToolNews::take(const protocol::Telemetry& told, Time now, Time began, ViewerFeed& feed) {
-  const std::int64_t apart = now.count() - told.t_ns;
+  const auto told_at = static_cast<double>(told.t_ns);  // any, off the wire
+  const double apart = static_cast<double>(now.count()) - told_at;
   if (!clock_ || std::abs(apart - *clock_) > kOtherClock) clock_ = apart;
   clock_ = std::min(*clock_ + kForgets, apart);
-  note_ticks(told, to_seconds(Time{told.t_ns + *clock_} - began), feed);
+  note_ticks(told, 1e-9 * (told_at + *clock_ - static_cast<double>(began.count())), feed);
   client_.tool = told.tool;
   client_.law = name_of(told.felt_law);
   client_.laws = std::min<std::uint8_t>(told.laws, protocol::Telemetry::kMostLaws);

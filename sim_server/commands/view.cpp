@@ -40,6 +40,12 @@ void show_captured(const CapturedAnswer& answer, Picture& picture) {
   picture.step_ms = 1e-6 * static_cast<double>(sample.step_ns);
 }
 
+/// Exact where they are near; any two, as they come off the wire.
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
+  const double about = 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
+  return std::abs(about) < 2 * kLongestStep ? 1e-9 * static_cast<double>(to_ns - from_ns) : about;
+}
+
 std::size_t tools_in(const std::filesystem::path& capture) {
   std::size_t tools = 1;
   read_captured_steps(
@@ -65,7 +71,7 @@ class Rerun {
     if (answer.sample.tool >= inputs_.size())
       fail("the capture has tool {}, and the scene only {}", answer.sample.tool + 1, inputs_.size());
     SessionInput& input = inputs_[answer.sample.tool];
-    const double dt = 1e-9 * static_cast<double>(answer.state.t_ns - input.state.t_ns);
+    const double dt = seconds_between(input.state.t_ns, answer.state.t_ns);
     if (answer.begins_step) dt_ = input.session != 0 && dt > 0 && dt < kLongestStep ? dt : 0;
     input.session = 1U + answer.sample.tool;
     input.state = answer.state;

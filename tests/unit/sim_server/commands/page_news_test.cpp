@@ -1,0 +1,35 @@
+#include "sim_server/commands/page_news.h"
+
+#include <limits>
+
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+TEST_CASE("page news: ticks have a time of ours, whatever the client's clock says") {
+  const std::vector<Vec3> rest(3, Vec3::Zero());
+  ViewerFeed feed(rest);
+  PageMailboxes mailboxes;
+  Doorbell bell;
+  const Time began = std::chrono::seconds(1000);
+  const auto hooks = page_hooks(feed, 1, mailboxes, bell, began);
+  // Each is far from the one before, so it counts as a clock set anew: its newest tick is of now.
+  Time now = began + std::chrono::seconds(5);
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  for (const std::int64_t t_ns : {kLeast, kMost, std::int64_t{0}, kMost, kLeast, std::int64_t{7}, kLeast}) {
+    CAPTURE(t_ns);
+    protocol::Telemetry told;
+    told.t_ns = t_ns;
+    told.dt_ns = 2'000'000;
+    told.count = 3;
+    mailboxes.tools[0].telemetry.push(told);
+    feed.ticks.clear();
+    hooks.news(now);
+    REQUIRE(feed.ticks.size() == 1);
+    const ClientTicks& ticks = feed.ticks.front();
+    CHECK(ticks.t + 2 * 0.002 == Approx(to_seconds(now - began)).margin(1e-5));
+    now += std::chrono::milliseconds(30);
+  }
+}
