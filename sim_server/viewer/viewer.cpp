@@ -97,6 +97,7 @@ struct Viewer::Server {
   ShowingMaker maker;
   std::array<lws_protocols, 3> protocols{};
   lws_retry_bo_t idle{};
+  std::string listens_on;  // as libwebsockets wants it, which keeps a pointer to it
   lws_context* context = nullptr;
   std::atomic<bool> stops{false};
   std::list<Page> pages;
@@ -123,14 +124,14 @@ Viewer::Server::Server(const ViewerAddress& where, std::string token_, const Sce
   protocols[1].rx_buffer_size = kLongestPageMessage;
   idle.secs_since_valid_ping = 10;
   idle.secs_since_valid_hangup = 40;
-  std::string host = protocol::to_string(address.endpoint);
-  host.resize(host.rfind(':'));
-  if (address.endpoint.v6) host = host.substr(1, host.size() - 2);
+  listens_on = protocol::to_string(address.endpoint);
+  listens_on.resize(listens_on.rfind(':'));
+  if (address.endpoint.v6) listens_on = listens_on.substr(1, listens_on.size() - 2);
   lws_context_creation_info info{};
   info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND |
                  LWS_SERVER_OPTION_DISABLE_OS_CA_CERTS;
   if (!address.endpoint.v6) info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
-  info.iface = host.c_str();
+  info.iface = listens_on.c_str();
   info.port = address.endpoint.port;
   info.protocols = protocols.data();
   info.user = this;
