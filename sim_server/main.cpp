@@ -66,6 +66,7 @@ CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
                    "Go on in a new file at this size (F-2.pcap, ...); ten are kept")
       ->check(CLI::Range(0.01, 1e6));
   add_viewer_option(command, options.viewer);
+  command->get_option("--insecure")->description("Serve other machines without a key, or the page in clear");
   add_cache_or_none(command, options.cache);
   command->footer(
       models() +

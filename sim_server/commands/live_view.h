@@ -2,10 +2,21 @@
 #include <optional>
 #include <string>
 
+#include "sim_server/commands/listening.h"
 #include "sim_server/serving/sim_loop.h"
 #include "sim_server/viewer/viewer.h"
 
 namespace palpate::sim {
+
+/// Where the page is, and what its address ends in for who may do more than look.
+struct ViewRequest {
+  ViewerAddress address;
+  std::string token;
+};
+
+/// What `--viewer` asks for; nothing of "off". Throws `Error` where that address cannot be had, or where it
+/// is not this machine's own and `--insecure` was not said: the token would be sent in clear.
+std::optional<ViewRequest> view_request(const std::string& viewer, const ListenOptions& listen);
 
 /// The live page of a session: copies what a page is shown out of the simulation's thread, while a page is
 /// open, and lets who has the token pause it.

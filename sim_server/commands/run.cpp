@@ -253,26 +253,6 @@ void warn_if_coarse(const ErrorOfForce& errors, const Simulation& simulation, co
   }
 }
 
-/// Where the page is, and what its address ends in for who may do more than look.
-struct ViewRequest {
-  ViewerAddress address;
-  std::string token;
-};
-
-std::optional<ViewRequest> view_request(const ServerOptions& options) {
-  const auto address = read_viewer_address(options.viewer);
-  if (!address) return {};
-  require_free(*address);
-  if (!protocol::is_loopback(address->endpoint))
-    log::warning(
-        "--viewer: whoever reaches {} can look on; what only the token allows stays with who has that",
-        protocol::to_string(address->endpoint));
-  const auto bytes = options.listen.key
-                         ? protocol::page_token(protocol::read_keys(*options.listen.key).back())
-                         : protocol::random_value<std::array<std::uint8_t, 16>>();
-  return ViewRequest{*address, hex_token(bytes)};
-}
-
 /// The page, with what it may choose: nothing while a capture is written, which holds one session.
 std::unique_ptr<LiveView> open_view(const ViewRequest& request, const Scene& scene,
                                     const Simulation& simulation, const std::vector<GalleryScene>& gallery,
@@ -369,7 +349,7 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
 
 int run_server(const ServerOptions& options) {
   ServerOptions now_served = options;
-  std::optional<ViewRequest> request = view_request(options);
+  std::optional<ViewRequest> request = view_request(options.viewer, options.listen);
   const std::vector<GalleryScene> gallery =
       request && !options.record ? find_gallery() : std::vector<GalleryScene>{};
   Scene scene = read_scene(options.scene);

@@ -79,10 +79,14 @@ bool same_origin(std::string_view origin, std::string_view host) {
   return false;
 }
 
-std::string hex_token(const std::array<std::uint8_t, 16>& bytes) {
+std::string hex_token(const PageToken& bytes) {
   std::string text;
   for (const std::uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
   return text;
+}
+
+std::string token_of(const protocol::Key& key, const protocol::Nonce& run) {
+  return hex_token(protocol::page_token(direction_key(key, protocol::Direction::kToClient, run, {})));
 }
 
 }  // namespace palpate::sim

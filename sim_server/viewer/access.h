@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "protocol/auth.h"
 #include "protocol/endpoint.h"
 
 namespace palpate::sim {
@@ -27,7 +28,13 @@ bool host_is_ours(std::string_view host, std::string_view typed);
 /// Whether the page that opens a WebSocket came from the same place as this: `origin` is http(s)://`host`.
 bool same_origin(std::string_view origin, std::string_view host);
 
+using PageToken = std::array<std::uint8_t, 16>;
+
 /// 32 hexadecimal digits.
-std::string hex_token(const std::array<std::uint8_t, 16>& bytes);
+std::string hex_token(const PageToken& bytes);
+
+/// The token of one run of a server that has this key: good as long as that runs, so that one that was read
+/// on its way is worth nothing later. `run`: random.
+std::string token_of(const protocol::Key& key, const protocol::Nonce& run);
 
 }  // namespace palpate::sim

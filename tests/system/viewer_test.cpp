@@ -423,14 +423,32 @@ TEST_CASE("viewer: another scene of the gallery is served on the same ports, wit
   CHECK(server.process.wait() == 0);
 }
 
-TEST_CASE("viewer: with a key the token is the key's, and without another each time") {
+TEST_CASE("viewer: each run has a token of its own, with a key and without") {
   const TemporaryFolder folder;
   const std::string key = (folder.path() / "palpate.key").string();
   output_of("sim_server", {"keygen", key}, 0);
   const std::string first = Watched({"--key", key}).page.token, second = Watched({"--key", key}).page.token;
   CHECK(first.size() == 32);
-  CHECK(first == second);
+  CHECK(second.size() == 32);
+  CHECK(first != second);
   CHECK(Watched().page.token != Watched().page.token);
+}
+
+TEST_CASE("viewer: beyond this machine the page is served to who says that it is insecure") {
+  const TemporaryFolder folder;
+  const std::string key = (folder.path() / "palpate.key").string();
+  output_of("sim_server", {"keygen", key}, 0);
+  const std::vector<std::string> asked{"run",   kScene, "--listen", "127.0.0.1:0",
+                                       "--key", key,    "--viewer", "0.0.0.0:0"};
+  const auto said = output_of("sim_server", asked, 2);
+  CHECK(std::ranges::count(said, '\n') == 1);
+  for (const char* part : {"--viewer: 0.0.0.0:0 is not this machine", "ssh -L", "--insecure"})
+    CHECK(said.find(part) != std::string::npos);
+  auto insecure = asked;
+  insecure.insert(insecure.end(), {"--insecure", "--seconds", "0.1"});
+  const auto warned = output_of("sim_server", insecure, 0);
+  CHECK(warned.find("--viewer: 0.0.0.0:0 is not this machine") != std::string::npos);
+  CHECK(warned.find("the live page: http://0.0.0.0:") != std::string::npos);
 }
 
 TEST_CASE("viewer: a port that is taken, or an address that is none, is told in one line") {

@@ -63,6 +63,16 @@ TEST_CASE("viewer: the token of a key is always the same, and of another key ano
   CHECK(hex_token(page_token(key)) == "f0c94717f812d7de86bad5331b31e540");
 }
 
+TEST_CASE("viewer: the token of a run needs its key and its random number") {
+  const protocol::Key key{.number = 1, .bytes = {1, 2, 3}}, other{.number = 1, .bytes = {1, 2, 4}};
+  const std::string token = token_of(key, {5, 6});
+  CHECK(token.size() == 32);
+  CHECK(token != token_of(key, {5, 7}));
+  CHECK(token != token_of(key, {4, 6}));
+  CHECK(token != token_of(other, {5, 6}));
+  CHECK(token != hex_token(protocol::page_token(key)));
+}
+
 TEST_CASE("viewer: a token is equal to itself alone") {
   using protocol::equal_in_constant_time;
   CHECK(equal_in_constant_time("0123", "0123"));
