@@ -176,13 +176,19 @@ void print_summary(const Json& report, const FlaggedSteps& flagged) {
   std::fflush(stdout);
 }
 
+/// Says that a page has paused, or let go on.
+void tell_paused(bool paused, bool& told) {
+  if (paused != told) log::info("{}", paused ? "paused by a page" : "goes on");
+  told = paused;
+}
+
 /// Says which tools were taken and left since the last look.
-void tell_holders(const NetLink& link, std::vector<bool>& told) {
+void tell_holders(const NetLink& link, bool paused, std::vector<bool>& told) {
   for (std::size_t i = 0; i < told.size(); ++i) {
     const bool held = link.tools[i].held;
     if (held == told[i]) continue;
     const std::string tool = told.size() == 1 ? "the tool" : fmt::format("tool {} of {}", i + 1, told.size());
-    log::info("{}", held ? fmt::format("a client took {}", tool)
+    log::info("{}", held ? fmt::format("a client took {}{}", tool, paused ? "; a page has paused" : "")
                          : fmt::format("the client is gone; {} is free", tool));
     told[i] = held;
   }
@@ -219,6 +225,7 @@ std::optional<Scene> watch(NetLink& link, const SimLoop& loop, const Scene& scen
   protocol::RecordingWatcher recording(recorder);
   const Time start = now();
   std::vector<bool> told(scene.tools.size(), false), told_beyond = told;
+  bool told_paused = false;
   while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
     if (seconds && to_seconds(now() - start) >= *seconds) return {};
     if (view != nullptr) {
@@ -226,7 +233,9 @@ std::optional<Scene> watch(NetLink& link, const SimLoop& loop, const Scene& scen
     }
     recording.look();
     link.watcher.look("");
-    tell_holders(link, told);
+    const bool paused = view != nullptr && view->feed().paused;
+    tell_paused(paused, told_paused);
+    tell_holders(link, paused, told);
     tell_beyond(loop, scene, told_beyond);
   }
   return {};

@@ -183,8 +183,17 @@ TEST_CASE("viewer: who has the token pauses, steps once, and goes on") {
   owner.say(R"({"step": 1})");
   REQUIRE(state_where([&](const auto& s) { return s["step"] == held + 2; }).is_object());
   for (int k = 0; k < 5; ++k) CHECK(owner.next_text("state")["step"] == held + 2);
+  CHECK(server.process.output().find("paused by a page") != std::string::npos);
   owner.say(R"({"pause": false})");
   CHECK(state_where([&](const auto& s) { return s["step"] > held + 10; })["paused"] == false);
+  CHECK(server.process.wait_for("goes on"));
+  client.signal(SIGINT);
+  CHECK(client.wait() == 0);
+  REQUIRE(server.process.wait_for("the client is gone"));
+  owner.say(R"({"pause": true})");
+  REQUIRE(state_where([](const auto& s) { return s["paused"] == true; }).is_object());
+  const Process late("haptic_client", client_arguments(server.address, {"--seconds", "30"}));
+  CHECK(server.process.wait_for("a client took the tool; a page has paused"));
 }
 
 TEST_CASE("viewer: a page is told what only the client knows, and by whom a tool is held") {
