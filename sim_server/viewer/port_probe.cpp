@@ -10,9 +10,10 @@ namespace palpate::sim {
 
 std::string why_not(const protocol::Endpoint& endpoint) {
   const int fd = socket(endpoint.v6 ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (fd < 0) return endpoint.v6 && errno == EAFNOSUPPORT ? "this machine has no IPv6" : std::strerror(errno);
   sockaddr_in6 v6{};
   sockaddr_in v4{};
-  v6.sin6_family = AF_INET6, v6.sin6_port = htons(endpoint.port);
+  v6.sin6_family = AF_INET6, v6.sin6_port = htons(endpoint.port), v6.sin6_scope_id = endpoint.scope;
   v4.sin_family = AF_INET, v4.sin_port = htons(endpoint.port);
   std::memcpy(&v6.sin6_addr, endpoint.address.data(), sizeof v6.sin6_addr);
   std::memcpy(&v4.sin_addr, endpoint.address.data(), sizeof v4.sin_addr);
