@@ -12,7 +12,7 @@ class RecordedSession {
 
   /// To be filled, whole but for its positions where the organ did not move, before `add`.
   Picture& picture() noexcept { return picture_; }
-  /// Adds what a page gets of it at `t` >= those before; at most `PageLink::kSurfaceEach` apart it gets all.
+  /// Adds what a page gets of it at `t` >= those before; at least `PageLink::kSurfaceEach` apart it gets all.
   /// False where the session would be longer than `kLongest`, and nothing is added.
   bool add(Time t);
 
