@@ -120,7 +120,7 @@ class PageTest:
         self.open()
         self.wait_number("Rate", lambda text: text == "30.0")
         self.assertEqual(self.number("Model"), "made up")
-        self.assertEqual(self.number("Law felt"), "two tangents")
+        self.wait_number("Law felt", lambda text: text == "two tangents")  # of another message than the rate
         self.assertEqual(self.number("Peer"), "127.0.0.1:40112")
         self.assertEqual(self.number("Slew limited"), "2")
         self.assertEqual(self.browser.evaluate("document.querySelectorAll('.plot canvas').length"), 5)
