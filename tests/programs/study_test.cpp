@@ -46,7 +46,7 @@ TEST_CASE("study: rows are the same again from nothing, and at once from what wa
   const auto whole = nlohmann::json::parse(summary);
   for (const auto& row : whole["rows"]) {
     CHECK(row["peak_bytes"].get<double>() > 1e6);
-#if !defined(PALPATE_SANITIZED)  // they keep more
+#if !defined(PALPATE_SANITIZED)                     // they keep more
     CHECK(row["peak_bytes"].get<double>() < 60e6);  // a column of some hundred vertices, and the program
 #endif
   }

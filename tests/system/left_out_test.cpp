@@ -144,7 +144,9 @@ TEST_CASE("left out: a minimal scene has these parts in memory, and no other") {
   }
 }
 
-TEST_CASE("left out: a server starts two threads, one more to record or for the page, and asks a quiet scene for no other") {
+TEST_CASE(
+    "left out: a server starts two threads, one more to record or for the page, and asks a quiet scene for "
+    "no other") {
   const TemporaryFolder folder;
   const std::multiset<std::string> two{"palpate-net", "palpate-sim"};
   const unsigned cores = std::thread::hardware_concurrency();
