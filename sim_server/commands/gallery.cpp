@@ -12,6 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::string kNeeds = "Needs: ";  // begins the line of the head that makes a scene one of the gallery
+
 /// Above where this program lies: build/release/bin of the source, or bin of what is installed.
 fs::path gallery_folder() {
   std::error_code none;
@@ -48,7 +50,10 @@ std::vector<GalleryScene> find_gallery() {
   std::vector<GalleryScene> scenes;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(gallery_folder(), none)) {
-    if (entry.path().extension() == ".toml") scenes.push_back(read_head(entry.path()));
+    if (entry.path().extension() != ".toml") continue;
+    GalleryScene scene = read_head(entry.path());
+    if (scene.about.starts_with(kNeeds) || scene.about.find("\n" + kNeeds) != std::string::npos)
+      scenes.push_back(std::move(scene));
   }
   std::ranges::sort(scenes, {}, &GalleryScene::name);
   return scenes;

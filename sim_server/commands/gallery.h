@@ -5,7 +5,7 @@
 
 namespace palpate::sim {
 
-/// A scene that comes with Palpate.
+/// A scene that comes with Palpate, and says in its head what it needs ("# Needs: ...").
 struct GalleryScene {
   std::string name;  ///< of its file, without ".toml"
   std::string title;

@@ -129,10 +129,12 @@ TEST_CASE("view: what is no capture of a session is told in one line") {
 TEST_CASE("scenes: the gallery is found beside an installed program as in the source") {
   const auto said = output_of("sim_server", {"scenes"}, 0);
   namespace fs = std::filesystem;
-  for (const auto& entry : fs::directory_iterator(fs::path(PALPATE_SOURCE_DIR) / "configs" / "scenes"))
-    CHECK(said.find(fmt::format("\n{}: ", entry.path().stem().string())) != std::string::npos);
-  CHECK(said.find("block: A sphere on a soft block\n  A sphere on a soft block: the world") !=
-        std::string::npos);
+  for (const auto& entry : fs::directory_iterator(fs::path(PALPATE_SOURCE_DIR) / "configs" / "scenes")) {
+    const bool told = said.find(fmt::format("\n{}: ", entry.path().stem().string())) != std::string::npos;
+    CAPTURE(entry.path());
+    CHECK(told == (bytes_of(entry.path()).find("\n# Needs: ") != std::string::npos));
+  }
+  CHECK(said.find("wall: A stiff wall\n  A stiff wall: nothing deforms") != std::string::npos);
 
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "bin");
@@ -142,8 +144,12 @@ TEST_CASE("scenes: the gallery is found beside an installed program as in the so
   fs::copy_file(fs::path(PALPATE_BIN_DIR) / "sim_server", program);
   const auto installed = output_of(called, {"scenes"}, 2);
   CHECK(std::ranges::count(installed, '\n') == 1);
-  std::ofstream(folder.path() / "share/palpate/scenes/mine.toml") << "# Of mine.\ntitle = \"Mine\"\n";
-  CHECK(output_of(called, {"scenes"}, 0).find("mine: Mine\n  Of mine.\n") != std::string::npos);
+  std::ofstream(folder.path() / "share/palpate/scenes/mine.toml")
+      << "# Of mine.\n# Needs: it.\ntitle = \"Mine\"\n";
+  std::ofstream(folder.path() / "share/palpate/scenes/test.toml") << "# Of a test.\ntitle = \"Test\"\n";
+  const auto told = output_of(called, {"scenes"}, 0);
+  CHECK(told.find("mine: Mine\n  Of mine.\n  Needs: it.\n") != std::string::npos);
+  CHECK(told.find("test") == std::string::npos);
 }
 
 #endif
