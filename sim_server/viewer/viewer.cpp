@@ -136,7 +136,7 @@ Viewer::Server::Server(const ViewerAddress& where, std::string token_, const Sce
   info.protocols = protocols.data();
   info.user = this;
   info.fd_limit_per_thread = kMostConnections;
-  info.max_http_header_pool = 16;
+  info.max_http_header_pool = kMostConnections;  // with fewer, silent connections keep others waiting
   info.timeout_secs = kPatience;
   info.keepalive_timeout = kPatience;
   info.retry_and_idle_policy = &idle;
