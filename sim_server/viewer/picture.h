@@ -98,7 +98,7 @@ struct SeenClient {
   bool has_motors = false;
 };
 
-/// A stretch of a client's ticks: sizes of forces, N.
+/// A stretch of a client's ticks: magnitudes of forces, N.
 struct ClientTicks {
   static constexpr std::size_t kMost = 128;
   std::uint8_t tool = 0, laws = 0;
