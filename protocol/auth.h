@@ -31,8 +31,8 @@ std::size_t seal(std::span<std::byte> out, std::size_t size, const Key& key) noe
 /// a key: yes.
 bool authentic(std::span<const std::byte> datagram, const Key& key) noexcept;
 
-/// What the address of a live page ends in, so that only who has it may do more than look: derived from the
-/// key, and the same for each server that has that.
+/// What the address of a live page ends in, so that only who has it may do more than look, derived from a
+/// key; the server gives the key of one run (`direction_key` with a random nonce).
 std::array<std::uint8_t, 16> page_token(const Key& key) noexcept;
 
 /// Whether two texts are the same, in a time that does not tell where they differ.

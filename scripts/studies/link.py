@@ -17,28 +17,8 @@ Writes summary.json into --out. The same bytes each time.
 Exit status: 0 done, 1 the program failed, 2 wrong use.
 """
 
-import argparse
-import subprocess
 import sys
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-PROGRAM = ROOT / "build" / "release" / "bin" / "link_study"
+from one_program import main
 
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, required=True, help="folder; made if it is not there")
-    parser.add_argument("--quick", action="store_true", help="two delays, two losses")
-    options = parser.parse_args()
-    command = [PROGRAM, *(["--quick"] if options.quick else []), options.out]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as program:
-        for line in program.stderr:
-            if sys.stderr.isatty():
-                print(f"\r\033[K{line.strip()}", end="", file=sys.stderr, flush=True)
-    if sys.stderr.isatty():
-        print(file=sys.stderr)
-    return 1 if program.returncode else 0
-
-
-sys.exit(main())
+sys.exit(main("link_study", __doc__, "two delays, two losses"))

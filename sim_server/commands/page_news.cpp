@@ -90,7 +90,8 @@ void ToolNews::note_states(std::uint16_t flags) {
   for (const auto& [flag, name] : {std::pair{Telemetry::kFault, Name{"fault"}},
                                    {Telemetry::kClutched, Name{"clutched"}},
                                    {Telemetry::kDeviceLost, Name{"device_lost"}},
-                                   {Telemetry::kFading, Name{"fading"}}}) {
+                                   {Telemetry::kFading, Name{"fading"}},
+                                   {Telemetry::kPaused, Name{"paused"}}}) {
     if ((flags & flag) != 0) client_.state_names[client_.states++] = name;
   }
 }

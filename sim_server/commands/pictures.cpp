@@ -108,6 +108,8 @@ void show_tool(const SessionInput& input, const ServedTools::Outcome* outcome, d
   if (outcome->answer)
     seen.sample = {outcome->answer->number, t, static_cast<float>(force.force.norm()),
                    outcome->answer->flags};
+  if (outcome->answer && (outcome->answer->flags & protocol::ForceSample::kHasErrors) != 0)
+    seen.errors = outcome->answer->errors;
 }
 
 void show_organ(const Simulation& simulation, Picture& picture) noexcept {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/contact/tool.h"
+#include "common/discretisation_error.h"
 #include "sim_server/mesh/tet_mesh.h"
 
 namespace palpate::sim {
@@ -51,6 +52,7 @@ struct SeenTool {
     float force = 0;
     std::uint32_t flags = 0;
   } sample;
+  DiscretisationErrors errors{};  ///< of that force, where its client asks for them
 };
 
 /// The organ and its tools after a step: what the simulation thread hands over.

@@ -49,15 +49,22 @@ Json loads_json(const SeenTool& tool) {
   return loads;
 }
 
+Json error_json(const DiscretisationError& error) {
+  return {{"percent", error.known() ? Json(brief(static_cast<double>(error.percent))) : Json(nullptr)},
+          {"source", name_of(error.source)}};
+}
+
 Json seen_json(const SeenTool& tool) {
   const Quat& q = tool.pose.q_W;
-  return {{"held", tool.held},
-          {"p", brief(tool.pose.p_W)},
-          {"q", {brief(q.w()), brief(q.x()), brief(q.y()), brief(q.z())}},
-          {"f", brief(tool.f_W)},
-          {"contact", tool.contact},
-          {"flagged", tool.flagged},
-          {"loads", loads_json(tool)}};
+  return {
+      {"held", tool.held},
+      {"p", brief(tool.pose.p_W)},
+      {"q", {brief(q.w()), brief(q.x()), brief(q.y()), brief(q.z())}},
+      {"f", brief(tool.f_W)},
+      {"contact", tool.contact},
+      {"flagged", tool.flagged},
+      {"errors", {{"mesh", error_json(tool.errors.mesh)}, {"time_step", error_json(tool.errors.time_step)}}},
+      {"loads", loads_json(tool)}};
 }
 
 Json peers_json(std::span<const SeenPeer> peers) {

@@ -27,6 +27,7 @@ void add_kernel_rows();
 void add_cholesky_rows();
 void add_falcon_rows();
 void add_viewer_rows();
+void add_telemetry_rows();
 
 /// Adds a row called `name`. `run` takes the state; an `Error` of it skips the row and says why.
 template <class Run>

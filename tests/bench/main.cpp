@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
     add_tensor_rows();
     add_implicit_rows();
     add_kernel_rows();
+    add_telemetry_rows();
 #ifdef PALPATE_WITH_CHOLMOD
     add_cholesky_rows();
 #endif

@@ -105,14 +105,15 @@ class MadeSession:
             "t": t, "step": int(round(t * RATE)), "paused": paused, "step_ms": 8 + 2 * math.sin(3 * t), "late": int(t) // 7,
             "rate_hz": 30.0, "real_time_factor": 1.0,
             "tools": [{"held": True, "p": self.tip(t), "q": [1, 0, 0, 0], "f": [0.1 * f, 0, f], "contact": f > 0,
+                       "errors": {"mesh": {"percent": 41, "source": "estimated"}, "time_step": {"percent": 0, "source": "none by construction"}},
                        "flagged": False, "loads": [[i, 0, 0, -f / len(near)] for i in near]}],
             "peers": [{"tool": 0, "address": "127.0.0.1:40112", "loss_percent": 0.4, "rate_hz": 500.0}]}})
 
     def client(self, t, device="browser"):
         return json.dumps({"client": {
-            "tool": 0, "law": "two_tangents", "laws": LAWS, "errors_percent": [11 + math.sin(t), 6, 3.2 + 0.5 * math.cos(t)],
+            "tool": 0, "law": "best_recent: two_tangents", "laws": LAWS, "errors_percent": [11 + math.sin(t), 6, 3.2 + 0.5 * math.cos(t)],
             "age_ms": 38 + 9 * math.sin(5 * t), "period_ms": 2.0 + 0.05 * math.sin(40 * t), "missed": 3, "passivity_gain": 1.0,
-            "interventions": {"clamped": 0, "slew_limited": 2, "faded": 1}, "felt": [0, 0, self.force(t)],
+            "interventions": {"clamped": 0, "slew_limited": 2, "faded": 1}, "states": ["device_lost"], "felt": [0, 0, self.force(t)],
             "p": self.tip(t), "device": device, "has_motors": False}})
 
     def ticks(self, t, count):

@@ -7,7 +7,6 @@ import argparse
 import json
 import math
 import os
-import pathlib
 import struct
 import sys
 import time
@@ -16,8 +15,8 @@ import unittest
 import browser
 import fake_server
 import made_session
+from page_case import PageCase
 
-PICTURES = None
 BACK = (math.cos(0.95) * math.cos(0.5), -math.sin(0.95) * math.cos(0.5), math.sin(0.5))  # where the first view looks from
 
 RIGHT = (math.sin(0.95), math.cos(0.95), 0.0)
@@ -32,77 +31,7 @@ def minus(a, b):
     return [x - y for x, y in zip(a, b)]
 
 
-class PageTest:
-    """Each test has a page of its own; the browser is started once."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.browser = cls.start()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-
-    def setUp(self):
-        self.server = None
-        self.browser.errors.clear()
-        self.browser.size(1600, 1000)
-
-    def tearDown(self):
-        self.browser.open("about:blank")
-        if self.server:
-            self.server.stop()
-
-    def open(self, **options):
-        self.server = fake_server.FakeServer(**options)
-        self.browser.open(self.server.address)
-        self.browser.wait("document.getElementById('title').textContent !== ''")
-
-    def no_errors(self):
-        self.browser.evaluate("1")  # so that what was said before it has arrived
-        self.assertEqual(self.browser.errors, [])
-
-    def text(self, name):
-        return self.browser.evaluate(f"document.getElementById({json.dumps(name)}).textContent")
-
-    def number(self, name):
-        """What the list of numbers says."""
-        return self.browser.evaluate(
-            "[...document.querySelectorAll('#numbers dt')].filter(d => d.textContent === " + json.dumps(name) +
-            ").map(d => d.nextSibling.firstChild.textContent)[0] ?? ''")
-
-    def wait_number(self, name, good, seconds=10):
-        end = time.monotonic() + seconds
-        while not good(self.number(name)):
-            self.assertLess(time.monotonic(), end, f"{name}: {self.number(name)}")
-            time.sleep(0.05)
-
-    def stage(self):
-        return self.browser.evaluate("(({x, y, width, height}) => [x, y, width, height])"
-                                     "(document.getElementById('stage').getBoundingClientRect())")
-
-    def middle(self, share=0.4):
-        """Of the picture, so far from its top: the organ is there; at 0.24 it is touched."""
-        x, y, width, height = self.stage()
-        return x + width / 2, y + height * share
-
-    def organ(self, share=0.4):
-        """The pixels there."""
-        x, y = self.middle(share)
-        return [p for row in browser.pixels(self.browser.screenshot((round(x) - 90, round(y) - 90, 180, 180))) for p in row]
-
-    def wait_tissue(self):
-        """Until most of the picture's middle has the colour of an organ."""
-        end, red = time.monotonic() + 10, 0
-        while red < 0.8:
-            self.assertLess(time.monotonic(), end, f"{100 * red:.0f} % of the pixels are tissue")
-            pixels = self.organ()
-            red = sum(r > 1.3 * g for r, g, b in pixels) / len(pixels)
-
-    def picture(self, name):
-        if PICTURES:
-            pathlib.Path(PICTURES, f"{type(self).__name__}_{name}.png").write_bytes(self.browser.screenshot())
-
+class PageTest(PageCase):
     # What it shows
 
     def test_the_organ_is_there_and_moves(self):
@@ -120,7 +49,11 @@ class PageTest:
         self.open()
         self.wait_number("Rate", lambda text: text == "30.0")
         self.assertEqual(self.number("Model"), "made up")
-        self.wait_number("Law felt", lambda text: text == "two tangents")  # of another message than the rate
+        self.wait_number("Law felt", lambda text: text == "best recent: two tangents")  # of another message than the rate
+        self.assertEqual(self.number("Mesh"), "41.0")  # beside the small error of the extrapolation
+        self.assertEqual(self.text("error-beside"), "mesh 41.0 % estimated")
+        self.assertEqual(self.number("Extrapolation"), "\u2013")  # of "best_recent", which runs not beside itself here
+        self.assertEqual(self.number("Now"), "device lost")
         self.assertEqual(self.number("Peer"), "127.0.0.1:40112")
         self.assertEqual(self.number("Slew limited"), "2")
         self.assertEqual(self.browser.evaluate("document.querySelectorAll('.plot canvas').length"), 5)
@@ -417,15 +350,14 @@ def cases(kinds):
 
 
 def main():
-    global PICTURES
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--browser", choices=["chromium", "firefox"])
     parser.add_argument("--pictures", metavar="FOLDER")
     parser.add_argument("names", nargs="*", help="parts of the names of tests")
     options = parser.parse_intermixed_args()
-    PICTURES = options.pictures
-    if PICTURES:
-        os.makedirs(PICTURES, exist_ok=True)
+    PageCase.pictures = options.pictures
+    if options.pictures:
+        os.makedirs(options.pictures, exist_ok=True)
     suite = unittest.TestSuite()
     for case in cases([options.browser] if options.browser else ["chromium", "firefox"]):
         for test in unittest.defaultTestLoader.loadTestsFromTestCase(case):

@@ -23,7 +23,7 @@ export interface Surface {
   q: Uint16Array; // 3k
 }
 
-/** Consecutive ticks of a client: the force felt, and that of each law (N). NaN: none. */
+/** Consecutive ticks of a client: the force felt, and that of each law (N). */
 export interface Ticks {
   kind: "ticks";
   tool: number;

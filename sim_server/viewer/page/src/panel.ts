@@ -30,6 +30,7 @@ export class Panel {
     this.large();
     const groups: [string, Row[]][] = [["Simulation", this.simulation()], [`Tool ${this.tool + 1}`, this.tool_rows()]];
     const client = this.session_.clients.get(this.tool);
+    groups.push(["Error of the force", this.error_rows(client)]);
     if (client) groups.push(["Client", client_rows(client)], ["Safety", safety_rows(client)]);
     this.list(groups);
   }
@@ -83,6 +84,21 @@ export class Panel {
     return rows;
   }
 
+  /** All that is known of it: no small error stands without the large one beside it. */
+  private error_rows(client: Client | undefined): Row[] {
+    const now = this.session_.state?.tools[this.tool];
+    if (!now?.held) return [];
+    const felt = client ? client.errors_percent[client.laws.indexOf(client.law.split(":")[0]!)] : null;
+    const { mesh, time_step } = now;
+    set_text(by_id("error-beside"), mesh.percent === null ? "mesh not known" : `mesh ${figures(mesh.percent)} % ${mesh.source}`);
+    return [
+      ["Mesh", figures(mesh.percent), `% ${mesh.source}`],
+      ["Time step", figures(time_step.percent), `% ${time_step.source}`],
+      ["Extrapolation", figures(felt), "% measured here"],
+      ["Law of the tissue", "not known", ""],
+    ];
+  }
+
   private list(groups: [string, Row[]][]): void {
     const keys = groups.map(([group, rows]) => group + rows.map((row) => row[0]).join()).join();
     if (keys !== this.keys_) {
@@ -125,11 +141,9 @@ function held(state: State | null, tool: number): string {
 }
 
 function client_rows(client: Client): Row[] {
-  const felt = client.laws.indexOf(client.law);
   return [
     ["Device", client.device.replaceAll("_", " ") || kNone, client.has_motors ? "with motors" : ""],
     ["Law felt", client.law.replaceAll("_", " ") || kNone, ""],
-    ["Error of that law", figures(client.errors_percent[felt]), "%"],
     ["Age of force", fixed(client.age_ms, 1), "ms"],
     ["Loop period", figures(client.period_ms), "ms"],
     ["Missed ticks", client.missed === null ? kNone : String(client.missed), ""],

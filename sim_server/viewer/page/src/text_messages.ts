@@ -26,6 +26,12 @@ export interface Scene {
   fields: string[];
 }
 
+/** Of the force, % of its root mean square. */
+export interface Discretisation {
+  percent: number | null;
+  source: string; // such as "estimated"
+}
+
 export interface ToolNow {
   held: boolean;
   p: Vec3; // m
@@ -33,6 +39,8 @@ export interface ToolNow {
   f: Vec3; // N, on the tool
   contact: boolean;
   flagged: boolean;
+  mesh: Discretisation;
+  time_step: Discretisation;
   loads: [number, number, number, number][]; // vertex; N, on the organ
 }
 
@@ -64,9 +72,6 @@ export interface Client {
   has_motors: boolean;
   states: string[]; // such as "clutched", "fading", "fault", "device lost"
 }
-
-// Of `interventions`, what is not a count but holds now (1) or not (0).
-const kStates = ["fault", "clutched", "device_lost", "fading"];
 
 type Json = Record<string, unknown>;
 
@@ -151,7 +156,12 @@ function state(x: Json): State {
   };
 }
 
+function discretisation(x: unknown): Discretisation {
+  return is_object(x) ? { percent: number(x.percent), source: text(x.source) } : { percent: null, source: "" };
+}
+
 function tool_now(x: Json): ToolNow {
+  const errors = is_object(x.errors) ? x.errors : {};
   const q = list(x.q);
   const turned = q.length === 4 && q.every((v) => number(v) !== null);
   const loads = list(x.loads).filter((l) => Array.isArray(l) && l.length === 4 && l.every((v) => number(v) !== null));
@@ -162,13 +172,14 @@ function tool_now(x: Json): ToolNow {
     f: vec3(x.f) ?? [0, 0, 0],
     contact: x.contact === true,
     flagged: x.flagged === true,
+    mesh: discretisation(errors.mesh),
+    time_step: discretisation(errors.time_step),
     loads: loads as ToolNow["loads"],
   };
 }
 
 function client(x: Json): Client {
   const counts = is_object(x.interventions) ? Object.entries(x.interventions) : [];
-  const is_state = ([name]: [string, unknown]) => kStates.includes(name);
   return {
     tool: number(x.tool) ?? 0,
     law: text(x.law),
@@ -178,11 +189,11 @@ function client(x: Json): Client {
     period_ms: number(x.period_ms),
     missed: number(x.missed),
     passivity_gain: number(x.passivity_gain),
-    interventions: counts.filter((count) => !is_state(count)).map(([name, count]) => [name, number(count) ?? 0]),
+    interventions: counts.map(([name, count]) => [name, number(count) ?? 0]),
     felt: vec3(x.felt),
     p: vec3(x.p),
     device: text(x.device),
     has_motors: x.has_motors === true,
-    states: counts.filter((count) => is_state(count) && count[1] === 1).map(([name]) => name),
+    states: list(x.states).map(text).filter(Boolean),
   };
 }

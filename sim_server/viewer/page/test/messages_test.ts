@@ -67,7 +67,7 @@ test("a text that lacks things, or has them of another type, becomes dashes and 
   assert.deepEqual(state.state.tools[0].q, [1, 0, 0, 0]);
   assert.deepEqual(state.state.tools[1].loads, [[4, 0, 0, 1]]);
   assert.deepEqual(state.state.peers, []);
-  const client = decode('{"client":{"tool":1,"errors_percent":[1,null],"interventions":{"clamped":2,"fading":1,"fault":0}}}');
+  const client = decode('{"client":{"tool":1,"errors_percent":[1,null],"interventions":{"clamped":2},"states":["fading"]}}');
   assert.ok(client?.kind === "client");
   assert.deepEqual(client.clients[0].errors_percent, [1, null]);
   assert.deepEqual(client.clients[0].interventions, [["clamped", 2]]);

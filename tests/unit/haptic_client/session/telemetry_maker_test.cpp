@@ -4,6 +4,7 @@
 
 #include "common/text.h"
 #include "haptic_client/extrapolation/extrapolators.h"
+#include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 
 using namespace palpate;
@@ -99,4 +100,18 @@ TEST_CASE("telemetry: what is felt, by which law, on which device, and the laws 
     CHECK_THAT(newest->by_law[2 * i], WithinRel(1.5F, 1e-6F));
   }
   CHECK_THAT(newest->f_W[1], WithinRel(1.5, 1e-4));
+}
+
+TEST_CASE("telemetry: the haptic thread allocates nothing for it") {
+  Client client(500);
+  client.maker.want(true);
+  for (int i = 0; i < 100; ++i) client.tick(1);
+  std::size_t allocated = 0, messages = 0;
+  for (int i = 0; i < 100; ++i) {
+    const test::AllocationGuard guard;
+    messages += client.tick(1) != nullptr ? 1 : 0;
+    allocated += guard.count();
+  }
+  CHECK(messages >= 5);
+  CHECK(allocated == 0);
 }

@@ -1,0 +1,46 @@
+#pragma once
+/// A server with its live page, for tests that look at it.
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/programs.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/web_page.h"
+
+namespace palpate::test {
+
+/// A server of the paper's liver with its page.
+struct Watched : Server {
+  PageAddress page;
+  explicit Watched(std::vector<std::string> more = {})
+      : Server([&] {
+          more.insert(more.end(), {"--viewer", "0"});
+          return more;
+        }()),
+        page(PageAddress::of(process)) {}
+  std::string get(const std::string& path, const std::string& host = {},
+                  const std::string& method = "GET") const {
+    return answer_to(page.port, method + " " + path + " HTTP/1.1\r\nHost: " +
+                                    (host.empty() ? page.host() : host) + "\r\nConnection: close\r\n\r\n");
+  }
+  long resident_kb() const {
+    std::ifstream file("/proc/" + std::to_string(process.id()) + "/statm");
+    long all = 0, resident = 0;
+    file >> all >> resident;
+    return resident * 4;
+  }
+};
+
+inline int status_of(const std::string& answer) {
+  return answer.starts_with("HTTP/1.1 ") ? std::stoi(answer.substr(9, 3)) : 0;
+}
+inline std::string body_of(const std::string& answer) {
+  const std::size_t end = answer.find("\r\n\r\n");
+  return end == std::string::npos ? "" : answer.substr(end + 4);
+}
+inline std::string dist(const std::string& file) {
+  return bytes_of(std::filesystem::path(PALPATE_SOURCE_DIR) / "sim_server/viewer/page/dist" / file);
+}
+
+}  // namespace palpate::test
