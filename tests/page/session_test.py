@@ -132,11 +132,14 @@ class SimulatedHandTest(SessionTest):
 
     def test_another_scene_is_chosen(self):
         self.wait_number("Held", lambda text: text == "yes")
-        self.browser.evaluate("(e => { e.value = 'block'; e.dispatchEvent(new Event('change')); })"
+        self.browser.wait("document.querySelector('#scenes option[value=block_fibres]') !== null")
+        self.browser.evaluate("(e => { e.value = 'block_fibres'; e.dispatchEvent(new Event('change')); })"
                               "(document.getElementById('scenes'))")
-        self.wait_number("File", lambda text: text.endswith("block.toml"), 60)
+        self.wait_number("File", lambda text: text.endswith("block_fibres.toml"), 60)
         self.browser.wait("document.getElementById('status').textContent === 'Live'")
         self.wait_number("Step", lambda text: int(text) > 10)
+        # While the other scene is set up nobody listens: what a browser writes of a connection refused is no error of ours.
+        self.browser.errors = [line for line in self.browser.errors if "/live' failed" not in line]
         self.no_errors()
 
     def test_a_shared_file_has_the_session_in_it(self):
