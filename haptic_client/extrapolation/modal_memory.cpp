@@ -46,7 +46,7 @@ bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
     return false;
   }
   drift_.setZero();
-  const ModalState* before = past_.at(t);
+  ModalState* before = past_.at(t);
   ModalState here;
   if (known_ && t > tick_) {  // without delay, the sample of this very tick
     advance(t);
@@ -112,7 +112,6 @@ void ModalMemory::begin(Time t, const Vec3& f) noexcept {
   time_ = tick_ = tick_before_ = compared_ = t;
   bearing_ = foot_;
   force_ = force_of(f);
-  corrections_ = {};
   past_.forget();
   if (system_.terms == 0) return;
   loads_.begin(t, system_.relaxations());
@@ -121,32 +120,34 @@ void ModalMemory::begin(Time t, const Vec3& f) noexcept {
   crept_.setZero();
 }
 
-/// What the modes were off by at the tick of the sample goes on by itself, without any force. What was known
-/// of that by now, from samples that came since that tick, is not counted twice.
-void ModalMemory::correct(const ModalState& before, Time t) noexcept {
+/// What the modes were off by at the tick of the sample goes on by itself, without any force. All ticks since
+/// are set right with it, so that a sample which tells of one of them does not count it again.
+void ModalMemory::correct(ModalState& before, Time t) noexcept {
   drift_ = at(told_.q) - at(before.q);
-  Correction& correction = corrections_[next_correction_++ % corrections_.size()];
   ModalState off;
-  // Calls `work` with each number of the first state that the sample tells of, and its like in the second.
-  const auto for_told = [&](ModalState& a, const ModalState& b, const auto& work) {
-    for (std::size_t k = 0; k < system_.count; ++k) work(a.q[k], b.q[k]), work(a.v[k], b.v[k]);
-    for (std::size_t j = 0; j < system_.terms; ++j) {
-      for (std::size_t k = first_told_; k < end_told_; ++k) work(a.z[j][k], b.z[j][k]);
-    }
-  };
-  const auto subtract = [](double& a, double b) { a -= b; };
-  for_told(off, told_, [](double& a, double b) { a = b; });
-  for_told(off, before, subtract);
-  for (const Correction& known : corrections_) {
-    if (known.made <= t || &known == &correction) continue;
-    for_told(off, free_motion(known.off, to_seconds(t - known.of), system_), subtract);
-  }
-  correction = {t, tick_, off};
-  const ModalState now = free_motion(off, to_seconds(time_ - t), system_);
   for (std::size_t k = 0; k < system_.count; ++k) {
-    state_.q[k] += now.q[k];
-    state_.v[k] += now.v[k];
-    for (std::size_t j = 0; j < system_.terms; ++j) state_.z[j][k] += now.z[j][k];
+    off.q[k] = told_.q[k] - before.q[k];
+    off.v[k] = told_.v[k] - before.v[k];
+  }
+  for (std::size_t j = 0; j < system_.terms; ++j) {
+    for (std::size_t k = first_told_; k < end_told_; ++k) off.z[j][k] = told_.z[j][k] - before.z[j][k];
+  }
+  add(off, before);
+  add(free_motion(off, to_seconds(time_ - t), system_), state_);
+  Time reached = t;
+  past_.for_each_since(t, [&](Time tick, ModalState& then) {
+    for (; reached + kStep <= tick; reached += kStep) short_step_.advance(off, {});
+    add(soon(off, {}, tick - reached), then);
+  });
+}
+
+void ModalMemory::add(const ModalState& more, ModalState& state) const noexcept {
+  for (std::size_t k = 0; k < system_.count; ++k) {
+    state.q[k] += more.q[k];
+    state.v[k] += more.v[k];
+  }
+  for (std::size_t j = 0; j < system_.terms; ++j) {
+    for (std::size_t k = 0; k < system_.count; ++k) state.z[j][k] += more.z[j][k];
   }
 }
 
@@ -214,21 +215,26 @@ void ModalMemory::advance(Time t) noexcept {
 
 /// At a time up to a step after `time_`.
 ModalState ModalMemory::now(Time t) const noexcept {
-  const double rest = to_seconds(t - time_);
-  ModalState at = state_;
+  return soon(state_, force_, t - time_);
+}
+
+/// After a `rest` of a step, under a force that is held.
+ModalState ModalMemory::soon(ModalState state, const ModalNumbers& force, Time rest) const noexcept {
+  const double h = to_seconds(rest);
+  const ModalNumbers from = state.q;
   for (std::size_t k = 0; k < system_.count; ++k) {
-    double q = at.q[k];
-    for (std::size_t j = 0; j < system_.terms; ++j) q -= system_.series[j].share * at.z[j][k];
-    const double a = force_[k] - system_.w[k] * system_.w[k] * q - system_.damping[k] * at.v[k];
-    at.q[k] += rest * (at.v[k] + 0.5 * rest * a);
-    at.v[k] += rest * a;
+    double q = from[k];
+    for (std::size_t j = 0; j < system_.terms; ++j) q -= system_.series[j].share * state.z[j][k];
+    const double a = force[k] - system_.w[k] * system_.w[k] * q - system_.damping[k] * state.v[k];
+    state.q[k] += h * (state.v[k] + 0.5 * h * a);
+    state.v[k] += h * a;
   }
   for (std::size_t j = 0; j < system_.terms; ++j) {
-    const RelaxationStep step = RelaxationStep::over(rest, system_.series[j].time);
+    const RelaxationStep step = RelaxationStep::over(h, system_.series[j].time);
     for (std::size_t k = 0; k < system_.count; ++k)
-      at.z[j][k] = step.followed(at.z[j][k], state_.q[k], at.q[k]);
+      state.z[j][k] = step.followed(state.z[j][k], from[k], state.q[k]);
   }
-  return at;
+  return state;
 }
 
 void ModalMemory::press(const Vec3& f, std::span<const SurfaceLoad> loads) noexcept {

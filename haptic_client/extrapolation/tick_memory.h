@@ -21,20 +21,21 @@ class TickMemory {
     return &row.entry;
   }
   /// The tick at `t`, or the one before; null where that is longer ago than any tick takes.
-  const Entry* at(Time t) const noexcept {
+  const Entry* at(Time t) const noexcept { return const_cast<TickMemory*>(this)->at(t); }
+  Entry* at(Time t) noexcept {
     for (std::size_t back = 1; back <= std::min(written_, kTicks); ++back) {
-      const Row& row = ring_[(written_ - back) % kTicks];
+      Row& row = ring_[(written_ - back) % kTicks];
       if (row.t <= t) return t - row.t <= kLongestTick ? &row.entry : nullptr;
     }
     return nullptr;
   }
   /// Calls `work(t, entry)` with each tick later than `t`, in the order of time.
   template <class Work>
-  void for_each_since(Time t, const Work& work) const {
+  void for_each_since(Time t, const Work& work) {
     std::size_t back = 0;
     while (back < std::min(written_, kTicks) && ring_[(written_ - back - 1) % kTicks].t > t) ++back;
     for (; back > 0; --back) {
-      const Row& row = ring_[(written_ - back) % kTicks];
+      Row& row = ring_[(written_ - back) % kTicks];
       work(row.t, row.entry);
     }
   }
