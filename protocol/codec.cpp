@@ -71,7 +71,7 @@ bool valid(const ForceSample& m) noexcept {
   return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W) &&
          small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) && small(m.ahead_f_W) &&
          valid(m.ahead) && valid(m.surface) && valid(m.errors.mesh) && valid(m.errors.time_step) &&
-         valid(m.others) && valid(m.modes) && small(m.mean_f_W) && valid(m.relaxed);
+         valid(m.others) && valid(m.modes) && small(m.mean_f_W) && valid(m.relaxed) && valid(m.modal_loads);
 }
 bool valid(const SurfacePage& m) noexcept {
   return m.tool < kMaxTools && m.page != ToolState::kNoPage &&
@@ -135,6 +135,11 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
 }
 
 }  // namespace
+
+bool valid(const ModalLoads& m) noexcept {
+  return m.count <= kMostSlowModes &&
+         std::all_of(m.load.begin(), m.load.end(), [](float x) { return std::abs(x) <= kMaxAmplitude; });
+}
 
 bool valid(const RelaxedState& m) noexcept {
   const auto bounded = [](float x) { return std::abs(x) <= kMaxAmplitude; };

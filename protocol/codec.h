@@ -49,6 +49,8 @@ struct Datagram {
 
 /// Whether it is within the bounds of the protocol; one without terms is none.
 bool valid(const RelaxedState& m) noexcept;
+/// Whether these are loads on modes of any organ.
+bool valid(const ModalLoads& m) noexcept;
 
 /// Writes one datagram and returns its size, at most `kMaxDatagram`. `out` must hold that many bytes. No
 /// allocation.

@@ -57,7 +57,7 @@ double bytes_for(const Wants& wants, protocol::ForceSample sample) {
   if (!wants.ahead) sample.flags &= ~protocol::ForceSample::kHasAhead;
   if (!wants.surface)
     sample.flags &= ~(protocol::ForceSample::kHasSurface | protocol::ForceSample::kHasModes |
-                      protocol::ForceSample::kHasRelaxed);
+                      protocol::ForceSample::kHasRelaxed | protocol::ForceSample::kHasModalLoads);
   sample.flags &= ~protocol::ForceSample::kHasErrors;  // for reports, not for laws
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   return static_cast<double>(protocol::encode({}, sample, bytes));

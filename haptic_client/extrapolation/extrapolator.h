@@ -37,7 +37,8 @@ struct Surface {
     int count = 0;                               ///< 0: it does not swing, or nobody told
     std::array<float, kMostSlowModes> q{}, v{};  ///< m sqrt(kg), m sqrt(kg)/s
   } modes = {};
-  protocol::RelaxedState relaxed = {};  ///< some of what it remembers besides; without terms: nothing
+  protocol::RelaxedState relaxed = {};    ///< some of what it remembers besides; without terms: nothing
+  protocol::ModalLoads modal_loads = {};  ///< how hard other tools drive the modes, N/sqrt(kg)
 };
 
 /// How the other tools on the organ move the surface near this one, to first order.
@@ -81,7 +82,7 @@ inline bool usable(const Surface& s) noexcept {
          std::all_of(modes.v.begin(), modes.v.begin() + n, bounded) && (s.shift.array().abs() <= 1e9).all() &&
          tool.is_sphere() && tool.radius > 0 && tool.radius <= 1 && tool.friction >= 0 &&
          tool.friction <= 10 && s.tool_compliance >= 0 && s.tool_compliance <= 1e6 &&
-         protocol::valid(s.relaxed);
+         protocol::valid(s.relaxed) && protocol::valid(s.modal_loads);
 }
 inline bool usable(const OtherTools& o) noexcept {
   return (o.v.array().abs() <= 1e9).all() && (o.compliance.array().abs() <= 1e6).all();

@@ -24,6 +24,10 @@ void LocalContact::update(const Sample& sample) noexcept {
   without_.update(sample);
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = with_usable_parts(sample);
+  if (swings() && newest_.others) {  // the modes know better what they do
+    newest_.surface_v -= newest_.others->v;
+    newest_.others.reset();
+  }
   felt_last_ = newest_.f;
   motion_.update(newest_);
   known_ = following_ = false;

@@ -7,8 +7,9 @@ namespace palpate::client {
 namespace {
 constexpr Time kStep = std::chrono::microseconds(500);  // what remains to a tick is by Taylor's series
 constexpr Time kLongest = std::chrono::milliseconds(300);
-constexpr double kFarthestSwing = 0.2;  // m: no organ swings so far
-constexpr double kSamePlace = 1e-3;     // m
+constexpr double kFarthestSwing = 0.2;                   // m: no organ swings so far
+constexpr double kSamePlace = 1e-3;                      // m
+constexpr Time kTrend = std::chrono::milliseconds(100);  // so long a trend is believed
 }  // namespace
 
 ModalMemory::ModalMemory() = default;
@@ -54,10 +55,12 @@ bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
   }
   present_ = told_.q;
   if (known_ && before != nullptr) {
+    take_loads(surface.modal_loads, t);
     correct(*before, t);
     compared_ = t;
     if (!(at(state_.q).norm() <= kFarthestSwing)) begin(t, f);
   } else if (!known_ || t - compared_ > kLongest) {
+    take_loads(surface.modal_loads, t);
     begin(t, f);
   }  // else it stood nowhere yet at that time
   known_ = true;
@@ -101,6 +104,23 @@ void ModalMemory::take_series(const protocol::RelaxedState& told) noexcept {
   crept_.setZero();
 }
 
+double ModalMemory::Trend::at(std::size_t mode, Time now) const noexcept {
+  return load[mode] + to_seconds(std::clamp(now - t, Time::zero(), kTrend)) * rate[mode];
+}
+
+void ModalMemory::take_loads(const protocol::ModalLoads& told, Time t) noexcept {
+  driven_ = told.count > 0 || driven_;
+  if (!driven_) return;
+  others_before_ = others_;
+  const double apart = to_seconds(t - others_before_.t);
+  const bool goes_on = known_ && apart > 0 && apart < to_seconds(kTrend);
+  others_.t = t;
+  for (std::size_t k = 0; k < system_.count; ++k) {
+    others_.load[k] = k < told.count ? static_cast<double>(told.load[k]) : 0;
+    others_.rate[k] = goes_on ? (others_.load[k] - others_before_.load[k]) / apart : 0;
+  }
+}
+
 void ModalMemory::creep_at_foot() noexcept {
   crept_ = system_.terms > 0 && standing_ && model_ != nullptr ? loads_.creep(*model_, foot_vertex_)
                                                                : Vec3(Vec3::Zero());
@@ -120,8 +140,9 @@ void ModalMemory::begin(Time t, const Vec3& f) noexcept {
   crept_.setZero();
 }
 
-/// What the modes were off by at the tick of the sample goes on by itself, without any force. All ticks since
-/// are set right with it, so that a sample which tells of one of them does not count it again.
+/// What the modes were off by at the tick of the sample goes on by itself, driven by no more than what other
+/// tools are now thought to do otherwise than before. All ticks since are set right with it, so that a sample
+/// which tells of one of them does not count it again.
 void ModalMemory::correct(ModalState& before, Time t) noexcept {
   drift_ = at(told_.q) - at(before.q);
   ModalState off;
@@ -133,12 +154,26 @@ void ModalMemory::correct(ModalState& before, Time t) noexcept {
     for (std::size_t k = first_told_; k < end_told_; ++k) off.z[j][k] = told_.z[j][k] - before.z[j][k];
   }
   add(off, before);
-  add(free_motion(off, to_seconds(time_ - t), system_), state_);
+  if (!driven_) add(free_motion(off, to_seconds(time_ - t), system_), state_);
   Time reached = t;
+  const auto news = [&] {
+    ModalNumbers force{};
+    for (std::size_t k = 0; driven_ && k < system_.count; ++k)
+      force[k] = others_.at(k, reached + kStep / 2) - others_before_.at(k, reached + kStep / 2);
+    return force;
+  };
+  bool added = !driven_;
   past_.for_each_since(t, [&](Time tick, ModalState& then) {
-    for (; reached + kStep <= tick; reached += kStep) short_step_.advance(off, {});
-    add(soon(off, {}, tick - reached), then);
+    for (; reached + kStep <= tick; reached += kStep) {
+      if (!added && reached + kStep > time_) {
+        add(soon(off, news(), time_ - reached), state_);
+        added = true;
+      }
+      short_step_.advance(off, news());
+    }
+    add(soon(off, news(), tick - reached), then);
   });
+  if (!added) add(soon(off, news(), time_ - reached), state_);
 }
 
 void ModalMemory::add(const ModalState& more, ModalState& state) const noexcept {
@@ -202,7 +237,8 @@ ModalNumbers ModalMemory::force_of(const Vec3& f) const noexcept {
 
 void ModalMemory::advance(Time t) noexcept {
   if (t - time_ > kLongest) return restart();
-  for (; time_ + kStep <= t; time_ += kStep) short_step_.advance(state_, force_);
+  for (; time_ + kStep <= t; time_ += kStep)
+    short_step_.advance(state_, driven_ ? all_forces(time_ + kStep / 2) : force_);
   if (system_.terms > 0) {
     loads_.advance(t);
     creep_at_foot();
@@ -215,7 +251,14 @@ void ModalMemory::advance(Time t) noexcept {
 
 /// At a time up to a step after `time_`.
 ModalState ModalMemory::now(Time t) const noexcept {
-  return soon(state_, force_, t - time_);
+  return soon(state_, driven_ ? all_forces(t) : force_, t - time_);
+}
+
+/// Of the tool, and of others.
+ModalNumbers ModalMemory::all_forces(Time t) const noexcept {
+  ModalNumbers force = force_;
+  for (std::size_t k = 0; k < system_.count; ++k) force[k] += others_.at(k, t);
+  return force;
 }
 
 /// After a `rest` of a step, under a force that is held.

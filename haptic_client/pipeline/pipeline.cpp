@@ -47,6 +47,7 @@ Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
                              s.surface.tool_compliance};
     if (swings) sample.surface->modes = {s.modes.count, s.modes.q, s.modes.v};
     if (swings && (s.flags & ForceSample::kHasRelaxed) != 0) sample.surface->relaxed = s.relaxed;
+    if (swings && (s.flags & ForceSample::kHasModalLoads) != 0) sample.surface->modal_loads = s.modal_loads;
   }
   return sample;
 }

@@ -249,6 +249,10 @@ return function(P)
     end
   end
 
+  local function read_loads(r)
+    for _ = 1, math.min(r:u8("loads.count", within(0, 75)), 75) do r:f32("loads.load", within(-1e6, 1e6)) end
+  end
+
   -- The parts of a ForceSample, in their order on the wire.
   local PARTS = {
     {"here", function(r)
@@ -274,6 +278,7 @@ return function(P)
     {"modes", read_modes},
     {"mean", function(r) r:group("mean", HUGE) end},
     {"relaxed", read_relaxed},
+    {"loads", read_loads},
   }
 
   read_message[FORCE_SAMPLE] = function(r)

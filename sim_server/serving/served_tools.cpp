@@ -29,6 +29,14 @@ protocol::ModalState on_the_wire(const SlowModes::State& modes) noexcept {
   return told;
 }
 
+protocol::ModalLoads on_the_wire(const Eigen::VectorXd& loads) noexcept {
+  const auto modes = static_cast<std::size_t>(loads.size());
+  protocol::ModalLoads told{.count = static_cast<std::uint8_t>(protocol::ModalLoads::room(modes))};
+  for (std::size_t k = 0; k < told.count; ++k)
+    told.load[k] = static_cast<float>(loads[static_cast<Eigen::Index>(k)]);
+  return told;
+}
+
 ToolPath::Point point_of(const protocol::ToolState& state) noexcept {
   return {state.t_ns, pose_of(state), state.v_W};
 }
@@ -173,6 +181,10 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
   if (answer.modes != nullptr && answer.surface_shift_W) {
     sample.flags |= ForceSample::kHasModes;
     sample.modes = on_the_wire(*answer.modes);
+    if (answer.modal_loads != nullptr) {
+      sample.flags |= ForceSample::kHasModalLoads;
+      sample.modal_loads = on_the_wire(*answer.modal_loads);
+    }
   }
   if (simulation_.instants() > 1 && answer.here) {
     sample.flags |= ForceSample::kHasMean;

@@ -112,6 +112,9 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
     modes_.q = modes_.v = Eigen::VectorXd::Zero(told->told);
     modes_.z.setZero(told->told, static_cast<Eigen::Index>(told->relaxations.size()));
     modes_.psi.assign(rest_.size() * told->relaxations.size(), Vec3::Zero());
+    if (tools_.size() > 1) modal_loads_.assign(tools_.size(), modes_.q);
+    pair_.reserve(2, 0);
+    pair_.free.resize(2);
   }
   came_from_.resize(tools_.size());
   lately_.resize(tools_.size());

@@ -70,10 +70,13 @@ struct ToolAnswer : ToolForce {
   };
   std::optional<Ahead> ahead = {};
   /// How far the surface nearest to the tool is from its place at rest, free of that tool but under all
-  /// others, m; with `modes`, by its supports alone. O(vertices).
+  /// others, m; with `modes`, by its supports, and what of the others' pushing no told mode tells.
+  /// O(vertices).
   std::optional<Vec3> surface_shift_W = {};
   /// The tissue's told modes at the end of the step; null without `surface_shift_W`, or where there are none.
   const SlowModes::State* modes = nullptr;
+  /// With them: how hard the other tools drive each, N/sqrt(kg); null: there are none.
+  const Eigen::VectorXd* modal_loads = nullptr;
 };
 
 /// Steps that could not be finished because the model threw, by reason.
@@ -113,13 +116,13 @@ class Simulation {
   std::size_t tools() const { return tools_.size(); }
   /// How often contact is solved within a step.
   int instants() const { return instants_; }
-  /// The modes that clients step between samples; null: there are none to tell. Of a tissue with one tool:
-  /// what others do to it besides is told to first order only (`OtherTools`).
+  /// The modes that clients step between samples; null: there are none to tell. Of a tissue that relaxes with
+  /// one tool: what it remembers of the loads of others, no sample tells.
   const SlowModes* told_modes() const {
-    return tools_.size() == 1 && tissue_.model->slow_modes() != nullptr &&
-                   tissue_.model->slow_modes()->told > 0
-               ? tissue_.model->slow_modes()
-               : nullptr;
+    const SlowModes* const modes = tissue_.model->slow_modes();
+    const bool told =
+        modes != nullptr && modes->told > 0 && (tools_.size() == 1 || modes->relaxations.empty());
+    return told ? modes : nullptr;
   }
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
   /// What a tool puts on the surface by now.
@@ -160,6 +163,8 @@ class Simulation {
   Linearised linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there, const ToolForce* felt);
   void add_wanted(std::size_t tool, const ToolInput& input);
   Vec3 surface_shift(std::size_t tool, const Vec3& p_W);
+  Vec3 residual_shift(std::size_t tool, int vertex);
+  void tell_modes(std::size_t tool);
   bool ran_away() const noexcept;
 
   TetMesh mesh_;
@@ -178,6 +183,9 @@ class Simulation {
   std::vector<ToolInput> inputs_;                   // for the step of tool 0 alone
   std::vector<ToolAnswer> answers_;
   SlowModes::State modes_;  // of the told modes
+  std::vector<Eigen::VectorXd>
+      modal_loads_;    // of the told modes, by the other tools of each, where there are some
+  ContactPatch pair_;  // of two vertices, to ask how one moves the other
   StepFailures failures_;
   FlaggedSteps flagged_;
   bool tools_settled_ = true, lost_ = false, coupled_ = false;  // in this step

@@ -1,5 +1,6 @@
 // What a step tells of a tool beyond its force, where somebody asks: parts of Simulation.
 #include <algorithm>
+#include <array>
 
 #include "sim_server/simulation/simulation.h"
 
@@ -60,10 +61,26 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   }
   if (!wants.surface_shift || tools_[tool].holds()) return;  // what is grasped is no matter of contact
   answer.surface_shift_W = surface_shift(tool, p_W);
-  if (told_modes() == nullptr) return;
+  if (told_modes() != nullptr) tell_modes(tool);
+}
+
+void Simulation::tell_modes(std::size_t tool) {
   tissue_.model->modal_state(modes_.q, modes_.v);
   if (!modes_.psi.empty()) tissue_.model->relaxed_state(modes_.z, modes_.psi);
-  answer.modes = &modes_;
+  answers_[tool].modes = &modes_;
+  if (modal_loads_.empty()) return;
+  const SlowModes& told = *told_modes();
+  Eigen::VectorXd& driven = modal_loads_[tool];
+  driven.setZero();
+  for (std::size_t other = 0; other < tools_.size(); ++other) {
+    if (other == tool) continue;
+    for (const NodalLoad& load : tissue_.loads_of(other))
+      driven.noalias() += told.shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex))
+                              .leftCols(told.told)
+                              .transpose() *
+                          load.force;
+  }
+  answers_[tool].modal_loads = &driven;
 }
 
 Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) {
@@ -92,7 +109,22 @@ Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) {
   const ToolTissue tissue = tissue_.met_by(tool);
   const int vertex = tools_[tool].nearest_vertex(p_W, tissue_);
   if (told_modes() == nullptr) return tissue.free()[vertex] - rest_[vertex];
-  return tissue_.carried.empty() ? Vec3(Vec3::Zero()) : Vec3(tissue_.carried[vertex] - rest_[vertex]);
+  const Vec3 carried =
+      tissue_.carried.empty() ? Vec3(Vec3::Zero()) : Vec3(tissue_.carried[vertex] - rest_[vertex]);
+  return carried + residual_shift(tool, vertex);
+}
+
+/// How far the other tools push a vertex, but for what they do by the told modes, m.
+Vec3 Simulation::residual_shift(std::size_t tool, int vertex) {
+  Vec3 shift = Vec3::Zero();
+  for (std::size_t other = 0; other < tools_.size(); ++other) {
+    if (other == tool) continue;
+    for (const NodalLoad& load : tissue_.loads_of(other)) {
+      tissue_.model->residual_compliance(std::array{vertex, load.vertex}, pair_);
+      shift += pair_.compliance.block<3, 3>(0, 3) * load.force;
+    }
+  }
+  return shift;
 }
 
 }  // namespace palpate::sim

@@ -71,6 +71,10 @@ inline std::vector<Message> one_of_each() {
   relaxing.relaxed.time = {0.125F, 2};
   relaxing.relaxed.z = {-1, 3};
   relaxing.relaxed.vertex[0] = {0x0102, {1, 2, 3, 0.5F, 0, -0.5F}};
+  ForceSample driven = swinging;
+  driven.flags = ForceSample::kHasModes | ForceSample::kHasModalLoads;
+  driven.modal_loads.count = 2;
+  driven.modal_loads.load = {-0.5F, 3};
   SurfacePage page{.tool = 1, .version = 0xa1b2c3d4, .page = 0x0708};
   page.values.front() = 0.5F;
   page.values.back() = -2;
@@ -111,7 +115,8 @@ inline std::vector<Message> one_of_each() {
           Challenge{{42}, 5, {45, 46}},
           relaxing,
           telemetry,
-          pointer};
+          pointer,
+          driven};
 }
 
 }  // namespace palpate::test

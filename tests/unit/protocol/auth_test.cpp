@@ -97,7 +97,14 @@ TEST_CASE("the longest sample and a page have room for a tag, and a sealed one d
   longest.number = 1;
   longest.surface.tool_radius = 0.005;
   longest.modes.count = kMostSlowModes;
-  for (const Message& message : {Message{longest}, Message{SurfacePage{}}, Message{Hello{}}}) {
+  ForceSample driven = longest;
+  driven.flags = (longest.flags & ~ForceSample::kHasRelaxed) | ForceSample::kHasModalLoads;
+  driven.modal_loads.count = ModalLoads::room(kMostSlowModes);
+  ForceSample all_driven = driven;
+  all_driven.modes.count = all_driven.modal_loads.count = 53;
+  CHECK(ModalLoads::room(53) == 53);
+  for (const Message& message :
+       {Message{longest}, Message{driven}, Message{all_driven}, Message{SurfacePage{}}, Message{Hello{}}}) {
     Sealed bytes = sealed(message, counted_key());
     CHECK(bytes.size <= kMaxDatagram);
     Datagram datagram;

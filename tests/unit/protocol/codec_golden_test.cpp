@@ -116,6 +116,11 @@ TEST_CASE("golden bytes: written down by hand from protocol/README.md") {
         "0201"
         "0000803f0000004000004040"
         "0000003f00000000000000bf");
+  CHECK(hex(encoded(kHeader, messages[18])).substr(2 * (28 + 105)) ==
+        "80100000"
+        "020000003f00000040000080bf00000000"
+        "02"  // modes that are driven, and how hard
+        "000000bf00004040");
   CHECK(hex(encoded(kHeader, messages[10])) == front("0a", "8d03") + "01" + "d4c3b2a1" + "08070000" +
                                                    "0000003f" + std::string(2 * 4 * 223, '0') + "000000c0");
   CHECK(hex(encoded(kHeader, messages[6])).substr(2 * (28 + 107)) ==

@@ -124,6 +124,21 @@ TEST_CASE("more modes than there are, or wild ones, are refused") {
   CHECK(verdict(1, NAN, 0) == Verdict::kNotFinite);
 }
 
+TEST_CASE("loads on more modes than there are, or wild ones, are refused") {
+  const auto verdict = [](std::uint8_t count, float load) {
+    ForceSample sample = std::get<ForceSample>(one_of_each()[18]);
+    sample.modal_loads.count = count;
+    sample.modal_loads.load[1] = load;
+    Datagram datagram;
+    return decode(encoded(kHeader, sample), datagram);
+  };
+  CHECK(verdict(kMostSlowModes, -1e6F) == Verdict::kAccepted);
+  CHECK(verdict(0, 0) == Verdict::kAccepted);
+  CHECK(verdict(kMostSlowModes + 1, 0) == Verdict::kValue);
+  CHECK(verdict(2, 2e6F) == Verdict::kValue);
+  CHECK(verdict(2, NAN) == Verdict::kNotFinite);
+}
+
 TEST_CASE("a series that no tissue has, or more of what relaxes than a sample tells, is refused") {
   const auto verdict = [](auto change) {
     ForceSample sample = std::get<ForceSample>(one_of_each()[15]);

@@ -199,6 +199,53 @@ TEST_CASE("modal memory: an error is set right by the first sample that tells of
   }
 }
 
+namespace {
+
+/// q and q' at time t (s), from rest, under a load of `rate` t: the closed form (particular solution and free
+/// motion).
+std::pair<double, double> ramped(double t, double rate) {
+  const double w2 = kW * kW, g = kDamping / 2, r = std::sqrt(w2 - g * g), e = std::exp(-g * t);
+  const double q0 = kDamping / (w2 * w2), v0 = -1 / w2;  // of the free motion, for a rate of 1
+  const double c = std::cos(r * t), s = std::sin(r * t), b = (v0 + g * q0) / r;
+  const double q = t / w2 - kDamping / (w2 * w2) + e * (q0 * c + b * s);
+  const double v = 1 / w2 + e * ((b * r - g * q0) * c - (q0 * r + g * b) * s);
+  return {rate * q, rate * v};
+}
+
+}  // namespace
+
+TEST_CASE("modal memory: loads of other tools that grow evenly drive it as the closed form") {
+  const Triangle triangle;
+  constexpr double kRate = 40;  // N/sqrt(kg)/s
+  for (const Time delay : {0ms, 36ms, 80ms}) {
+    CAPTURE(delay.count());
+    ModalMemory memory;
+    REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
+    Time sampled = 0ms;
+    double before = 0, worst = 0;
+    for (Time t = 0ms; t < 600ms; t += 2ms) {
+      if (t == sampled + delay) {
+        const auto [q, v] = ramped(to_seconds(sampled), kRate);
+        Surface surface = triangle.told(q, v);
+        surface.modal_loads.count = 1;
+        surface.modal_loads.load[0] = static_cast<float>(kRate * to_seconds(sampled));
+        REQUIRE(memory.take(surface, sampled, Vec3::Zero()));
+        sampled += 30ms;
+      }
+      if (!memory.known()) continue;
+      memory.advance(t);
+      memory.press(Vec3::Zero());
+      const double off = std::abs(memory.displacement()[1] - kShape * ramped(to_seconds(t), kRate).first);
+      // The first sample knows no trend, and by the next ones it has no tick of their time to compare.
+      (t < 90ms + delay ? before : worst) = std::max(t < 90ms + delay ? before : worst, off);
+    }
+    const double moved = kShape * ramped(0.6, kRate).first;
+    CAPTURE(before, worst, moved);
+    CHECK(before > 5e-3 * moved);
+    CHECK(worst < 1e-3 * moved);
+  }
+}
+
 TEST_CASE("modal memory: amplitudes of no organ, an unknown spectrum, or a long silence: it knows nothing") {
   const Triangle triangle;
   ModalMemory memory;

@@ -60,7 +60,8 @@ TEST_CASE("viewer: 16 bits place a vertex to within half of a step, and outside 
     const double back = static_cast<double>(box.min[k % 3]) + size * q[k] / 65535;
     REQUIRE(std::abs(back - static_cast<double>(places[k])) <= size / 65535 / 2 * (1 + 1e-6));
   }
-  constexpr float kInfinite = std::numeric_limits<float>::infinity(), kNone = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinite = std::numeric_limits<float>::infinity(),
+                  kNone = std::numeric_limits<float>::quiet_NaN();
   const std::vector<float> outside{-2, 1, kInfinite, 3.5F, -kInfinite, kNone};
   q.resize(6);
   quantise(box, outside, q);
