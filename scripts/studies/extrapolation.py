@@ -25,6 +25,7 @@ each, from the fixed seeds of scripts/trajectories; the mean speed is a study's 
             s (make_presses judge: of no use to choose any number of the program)
   implicit_linear, implicit_neo_hookean, implicit_prony   liver_implicit with another law,
             or half of a linear one relaxing in 0.2 s; pressed alone
+  two_tools   liver_reduced pressed so, while another tool palpates it 5 to 6 cm aside
   pull_quasi_static, pull_tensor_mass   the paper's own experiment (paper_experiment.py)
 
 Writes into --out: summary.json and summary.csv (a row for each configuration and law),
@@ -56,6 +57,14 @@ VARIANTS = {  # of liver_implicit: what stands instead of its law
     "implicit_neo_hookean": 'law = "neo_hookean"',
     "implicit_prony": 'law = "linear"\nrelaxation = [{ share = 0.5, time = 0.2 }]',
 }
+TWO_TOOLS = "two_tools"
+SECOND_TOOL = '\n[[tool]]\nshape = "sphere"\nradius = 0.005\n'
+SECOND_MOTION = f'''[trajectory]
+file = "{ROOT}/configs/trajectories/liver_paper.csv"
+columns = ["t_s", "x_m", "y_m", "z_m"]
+repeat = true
+offset = [0.045, 0.0, 0.0]
+'''
 MAKE_MOTIONS = ROOT / "scripts" / "trajectories" / "make_block_motions"
 MAKE_PRESSES = ROOT / "scripts" / "trajectories" / "make_presses"
 
@@ -101,14 +110,27 @@ class Cell(NamedTuple):
     wrong: bool = False  # whether also with a wrong compliance
 
     def scene(self, folder):
-        """Its file; one of VARIANTS is written into `folder`."""
-        if self.world not in VARIANTS:
+        """Its file; one of VARIANTS, or with two tools, is written into `folder`."""
+        if self.world in VARIANTS:
+            text = (SCENES / "liver_implicit.toml").read_text(encoding="utf-8")
+            assert text.count(LAW) == 1
+            text = text.replace(LAW, VARIANTS[self.world])
+        elif self.world == TWO_TOOLS:
+            text = (SCENES / "liver_reduced.toml").read_text(encoding="utf-8") + SECOND_TOOL
+        else:
             return SCENES / f"{self.world if self.world in OWN_SCENES else 'block_' + self.world}.toml"
-        text = (SCENES / "liver_implicit.toml").read_text(encoding="utf-8")
-        assert text.count(LAW) == 1
         file = folder / f"{self.world}.toml"
-        file.write_text(text.replace(LAW, VARIANTS[self.world]).replace('"../', f'"{SCENES.parent}/'), encoding="utf-8")
+        file.write_text(text.replace('"../', f'"{SCENES.parent}/'), encoding="utf-8")
         return file
+
+    def motions(self, folder):
+        """Arguments of `record`: of its tool, and of the other one, if there is one."""
+        arguments = ["--trajectory", self.trajectory]
+        if self.world == TWO_TOOLS:
+            other = folder / "second_tool.toml"
+            other.write_text(SECOND_MOTION, encoding="utf-8")
+            arguments += ["--trajectory", other]
+        return arguments
 
 
 def cells_of(quick, motions):
@@ -136,7 +158,7 @@ def cells_of(quick, motions):
     for world in SWINGING:
         cells.append(Cell(world, "palpation", SPEED, ROOT / "configs" / "clients" / "liver_paper.toml",
                           QUICK_SECONDS if quick else 20, tuple((RATE, delay) for delay in delays), False))
-    for world in (*SWINGING, *(VARIANTS if not quick else ())):
+    for world in (*SWINGING, *((*VARIANTS, TWO_TOOLS) if not quick else ())):
         cells.append(Cell(world, "presses", PRESS_SPEED, motions["presses"], QUICK_SECONDS if quick else PRESS_SECONDS,
                           tuple((RATE, delay) for delay in delays), False))
     return cells
@@ -157,7 +179,7 @@ class Study:
         self.folder, self.workers = folder, workers
 
     def record(self, weight, cell, rate, out, *more):
-        self.workers.command(weight, BIN / "sim_server", "record", cell.scene(self.folder), "--trajectory", cell.trajectory,
+        self.workers.command(weight, BIN / "sim_server", "record", cell.scene(self.folder), *cell.motions(self.folder),
                              "--rate", rate, "--seconds", cell.seconds, "--out", out, *more)
 
     def evaluate(self, weight, cell, captures, folder, *more):
