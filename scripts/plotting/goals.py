@@ -53,7 +53,8 @@ WORLDS = ("block", "stiff", "friction", "moving", "grasp", "liver", "liver_tenso
 
 SWINGING = (("liver_tensor_mass", (1, 4, 10), (2, 6, 15)), ("liver_reduced", (1, 4, 10), (2, 6, 15)),
             ("liver_implicit", (2, 6, 15), (4, 10, 25)), ("implicit_linear", (1, 4, 10), (2, 6, 15)),
-            ("implicit_neo_hookean", (2, 6, 15), (4, 10, 25)), ("implicit_prony", (1, 4, 10), (2, 6, 15)))  # 35 ms, 80 ms
+            ("implicit_neo_hookean", (2, 6, 15), (4, 10, 25)), ("implicit_prony", (1, 4, 10), (2, 6, 15)),
+            ("two_tools", (1, 4, 10), (2, 6, 15)))  # 35 ms, 80 ms
 
 
 def in_world(name):
