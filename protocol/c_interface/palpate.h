@@ -130,7 +130,9 @@ typedef struct palpate_session_options {
 enum {
   PALPATE_WAITING = 0,  ///< no sample yet
   PALPATE_LIVE = 1,     ///< the newest sample is not older than 300 ms
-  PALPATE_SILENT = 2    ///< it is; the force fades to none, and comes back by itself over 1 s
+  /// It is, as while a page pauses the simulation; the force fades to none, and comes back by itself over 1
+  /// s.
+  PALPATE_SILENT = 2
 };
 
 /// What `fault` says: why the force is latched off, until palpate_session_rearm.

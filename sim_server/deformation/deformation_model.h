@@ -111,8 +111,8 @@ class DeformationModel {
   virtual void residual_compliance([[maybe_unused]] std::span<const int> vertices,
                                    [[maybe_unused]] ContactPatch& patch) const noexcept {}
 
-  /// Where all vertices of the mesh are by now (m), as after the last `apply`; empty: it only knows those of
-  /// the surface.
+  /// Where all vertices of the mesh are by now (m), as after the last `apply` or, where that costs more than
+  /// to look, a contact instant before; valid until the next call. Empty: it only knows those of the surface.
   virtual std::span<const Vec3> nodes() const noexcept { return {}; }
 
   /// What this model holds in memory.

@@ -43,7 +43,9 @@ TensorMass::TensorMass(const ModelInputs& inputs)
       tensors_(assemble(inputs)),
       motion_(tensors_, damping_of(inputs.scene)),
       begin_(motion_.state),
-      force_(begin_.f) {
+      force_(begin_.f),
+      mesh_rest_(inputs.mesh.vertices),
+      nodes_(mesh_rest_) {
   const auto* const told = inputs.scene.deformation.find<ClientModes>();
   const bool tells = told != nullptr && told->modes > 0;
   if (tells || supports_move(inputs.scene)) {
@@ -194,6 +196,15 @@ void TensorMass::residual_compliance(std::span<const int> vertices, ContactPatch
   told_->residual_compliance(vertices, patch);
 }
 
+std::span<const Vec3> TensorMass::nodes() const noexcept {
+  if (supports_) return {};  // what these do inside is not kept
+  for (std::size_t node = 0; node < nodes_.size(); ++node) {
+    const int place = tensors_.places()[node];
+    if (place >= 0) nodes_[node] = mesh_rest_[node] + Eigen::Map<const Vec3>(begin_.u.data() + 3 * place);
+  }
+  return nodes_;
+}
+
 std::vector<MemoryPart> TensorMass::memory() const {
   std::vector<MemoryPart> parts{
       {"tensors", tensors_.bytes(),
@@ -201,7 +212,7 @@ std::vector<MemoryPart> TensorMass::memory() const {
                    sub_steps_, 1e3 * sub_step_)},
       {"compliance", compliance_.bytes()},
       {"motion", motion_.bytes() + 4 * force_.size() * sizeof(double)},
-      {"positions", (rest_.size() + free_.size() + positions_.size()) * sizeof(Vec3) +
+      {"positions", (rest_.size() + free_.size() + positions_.size() + 2 * nodes_.size()) * sizeof(Vec3) +
                         loads_.capacity() * sizeof(NodalLoad) + first_.size() * sizeof(int) +
                         compliance_.index_bytes()}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});

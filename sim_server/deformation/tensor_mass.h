@@ -38,6 +38,8 @@ class TensorMass : public DeformationModel {
   const SlowModes* slow_modes() const noexcept override { return told_ ? &told_->modes() : nullptr; }
   void modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  /// At the beginning of the period; empty where supports move.
+  std::span<const Vec3> nodes() const noexcept override;
   std::vector<MemoryPart> memory() const override;
 
   int sub_steps() const { return sub_steps_; }
@@ -65,6 +67,8 @@ class TensorMass : public DeformationModel {
   std::optional<ToldMotion> told_;          // to clients, unless the scene leaves it out
   std::vector<int> first_;                  // per surface vertex: its first number in `motion_`, or -1: fixed
   std::vector<Vec3> rest_, free_, positions_;  // m
+  std::vector<Vec3> mesh_rest_;                // of all vertices, m
+  mutable std::vector<Vec3> nodes_;            // of `nodes`
 };
 
 }  // namespace palpate::sim

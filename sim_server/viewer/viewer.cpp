@@ -120,7 +120,7 @@ Viewer::Server::Server(const ViewerAddress& where, std::string token_, const Sce
   protocols[0].per_session_data_size = sizeof(Fetch);
   protocols[1].name = kLive;
   protocols[1].callback = &on_event;
-  protocols[1].per_session_data_size = sizeof(Page*);
+  protocols[1].per_session_data_size = sizeof(Page*);  // NOLINT(bugprone-sizeof-expression): a pointer it is
   protocols[1].rx_buffer_size = kLongestPageMessage;
   idle.secs_since_valid_ping = 10;
   idle.secs_since_valid_hangup = 40;

@@ -14,6 +14,7 @@ void require_free(const ViewerAddress&) {
 struct Viewer::Server {
   protocol::Endpoint endpoint;
 };
+// NOLINTNEXTLINE(performance-unnecessary-value-param): of the signature of the other one
 Viewer::Viewer(const ViewerAddress& address, std::string, const SceneFacts&, ViewerFeed&, const Bytes*) {
   require_free(address);
 }

@@ -208,8 +208,10 @@ TEST_CASE("viewer: strain energy is sent to who wants it, where the model knows 
   none.say(R"({"want": {"field": "strain_energy"}})");
   CHECK(none.next_text("refused").is_string());
 
+  const std::string scene = GENERATE("liver_implicit", "liver_tensor_mass");
+  CAPTURE(scene);
   Server server({"--viewer", "0"}, "127.0.0.1:0",
-                std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_implicit.toml");
+                std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/" + scene + ".toml");
   const PageAddress address = PageAddress::of(server.process);
   Process client("haptic_client", client_arguments(server.address, {"--seconds", "6"}));
   WebPage looks(address), wants(address);

@@ -1,6 +1,8 @@
 // The tensor-mass model, alone and in a whole simulation.
 #include "sim_server/deformation/tensor_mass.h"
 
+#include <algorithm>
+
 #include "common/error.h"
 #include "sim_server/deformation/quasi_static.h"
 #include "sim_server/deformation/rayleigh_damping.h"
@@ -143,6 +145,34 @@ TEST_CASE("tensor_mass: under a constant load it comes to rest where quasi_stati
   double most = 0;
   for (const int v : bench.reachable) most = std::max(most, (moved[v] - expected[v]).norm());
   CHECK(most < 1e-6 * largest(expected, rest));
+}
+
+TEST_CASE("tensor_mass: its nodes inside are those of a body at equilibrium, once it has come to rest") {
+  const Bench bench;
+  TensorMass model(bench.inputs());
+  CHECK(std::ranges::equal(model.nodes(), bench.mesh.vertices));
+  const std::vector<NodalLoad> loads{{bench.top(0, 0), Vec3(0.05, -0.2, 0)}};
+  std::span<const Vec3> surface;
+  for (int i = 0; i < 100; ++i) {
+    model.free_motion(kPeriod);
+    surface = model.apply(loads);
+  }
+  const std::vector<Vec3> nodes(model.nodes().begin(), model.nodes().end());
+  REQUIRE(nodes.size() == bench.mesh.vertices.size());
+  double off = 0;
+  for (const int v : bench.reachable)
+    off = std::max(off, (nodes[bench.surface.vertices[v]] - surface[v]).norm());
+  CHECK(off < 1e-6 * largest(nodes, bench.mesh.vertices));
+  // The body pulls at its loaded node alone, and at its supports.
+  const Solid solid(bench.mesh, *bench.scene.material);
+  std::vector<Vec3> forces(nodes.size());
+  solid.forces(nodes, forces);
+  const int loaded = bench.surface.vertices[loads.front().vertex];
+  CHECK((forces[loaded] - loads.front().force).norm() < 1e-4 * loads.front().force.norm());
+  for (int node = 0; node < solid.nodes(); ++node) {
+    if (node == loaded || std::ranges::binary_search(bench.fixed, node)) continue;
+    CHECK(forces[node].norm() < 1e-4 * loads.front().force.norm());
+  }
 }
 
 TEST_CASE("tensor_mass: without damping its compliance is positive all the same") {
