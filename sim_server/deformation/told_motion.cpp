@@ -36,7 +36,8 @@ ToldMotion::ToldMotion(const ModelInputs& inputs, const LinearStatics& statics, 
   for (std::size_t node = 0; node < places.size(); ++node) {
     if (places[node] < 0) continue;
     const Eigen::Index row = 3 * places[node];
-    shapes_.middleRows<3>(row) = found.shapes.middleRows<3>(statics.dofs.first[node]).leftCols(modes_.told);
+    if (modes_.told > 0)
+      shapes_.middleRows<3>(row) = found.shapes.middleRows<3>(statics.dofs.first[node]).leftCols(modes_.told);
     masses_.segment<3>(row).setConstant(masses[static_cast<std::size_t>(places[node])]);
   }
   q_ = v_ = force_ = Eigen::VectorXd::Zero(modes_.told);

@@ -114,6 +114,7 @@ bool SupernodalFactor<Scalar>::eliminate(int s, bool large, std::vector<int>& lo
 
 template <class Scalar>
 auto SupernodalFactor<Scalar>::solve(const Matrix& b) const -> Matrix {
+  if (b.size() == 0) return b;  // nothing to be moved about in
   Matrix x(b.rows(), b.cols());
   for (Eigen::Index j = 0; j < b.cols(); ++j) {
     for (Eigen::Index k = 0; k < b.rows(); ++k) x(k, j) = b(pattern_->order[k], j);

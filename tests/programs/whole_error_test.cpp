@@ -88,7 +88,8 @@ TEST_CASE("whole error: estimated, then measured by a study, with the extrapolat
   felt = pressed.felt();
   CHECK_THAT(felt["how"]["mesh"].get<std::string>(), Catch::StartsWith("measured by a study"));
   // At rest no step is too long, so that all that the study finds of the scene as it is comes from its mesh.
-  for (const Json& row : read_json(out + "/summary.json")["rows"]) {
+  const Json summary = read_json(out + "/summary.json");
+  for (const Json& row : summary["rows"]) {
     if (row["axis"] == "scene")
       CHECK(felt["mesh_percent"] == Approx(row["force_error_percent"].get<double>()));
   }

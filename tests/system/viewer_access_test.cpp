@@ -142,7 +142,11 @@ TEST_CASE("viewer: a page that never reads costs no memory, and others see all")
   const long before = server.resident_kb();
   const std::size_t surfaces = page.decoder.surfaces;
   look_for(4);
+#if !defined(PALPATE_SANITIZED)  // they keep what was freed
   CHECK(server.resident_kb() - before < 1000);
+#else
+  static_cast<void>(before);
+#endif
   CHECK(page.decoder.surfaces - surfaces > 60);
   // Each holds the beginning, and what the system keeps for it: no more than that.
   for (WebPage& slow : stalled) {
