@@ -7,9 +7,10 @@ namespace palpate::client {
 namespace {
 constexpr Time kStep = std::chrono::microseconds(500);  // what remains to a tick is by Taylor's series
 constexpr Time kLongest = std::chrono::milliseconds(300);
-constexpr double kFarthestSwing = 0.2;                   // m: no organ swings so far
-constexpr double kSamePlace = 1e-3;                      // m
-constexpr Time kTrend = std::chrono::milliseconds(100);  // so long a trend is believed
+constexpr double kFarthestSwing = 0.2;                      // m: no organ swings so far
+constexpr double kSamePlace = 1e-3;                         // m
+constexpr Time kTrend = std::chrono::milliseconds(100);     // so long a trend is believed
+constexpr Time kTrendBase = std::chrono::milliseconds(20);  // and from samples so far apart, wholly
 }  // namespace
 
 ModalMemory::ModalMemory() = default;
@@ -108,16 +109,26 @@ double ModalMemory::Trend::at(std::size_t mode, Time now) const noexcept {
   return load[mode] + to_seconds(std::clamp(now - t, Time::zero(), kTrend)) * rate[mode];
 }
 
+/// Loads that would lead the surface farther than any organ goes count as none. What two samples differ by
+/// tells of the trend the less, the nearer they are.
 void ModalMemory::take_loads(const protocol::ModalLoads& told, Time t) noexcept {
   driven_ = told.count > 0 || driven_;
   if (!driven_) return;
   others_before_ = others_;
+  others_ = {.t = t};
+  ModalNumbers led{};
+  const std::size_t count = std::min<std::size_t>(told.count, system_.count);
+  for (std::size_t k = 0; k < count; ++k) {
+    others_.load[k] = static_cast<double>(told.load[k]);
+    led[k] = others_.load[k] / (system_.w[k] * system_.w[k]);
+  }
+  if (!(at(led).norm() <= kFarthestSwing)) others_.load = {};
   const double apart = to_seconds(t - others_before_.t);
-  const bool goes_on = known_ && apart > 0 && apart < to_seconds(kTrend);
-  others_.t = t;
+  if (!known_ || !(apart > 0 && apart < to_seconds(kTrend))) return;
+  const double share = std::min(1.0, apart / to_seconds(kTrendBase));
   for (std::size_t k = 0; k < system_.count; ++k) {
-    others_.load[k] = k < told.count ? static_cast<double>(told.load[k]) : 0;
-    others_.rate[k] = goes_on ? (others_.load[k] - others_before_.load[k]) / apart : 0;
+    const double rate = (others_.load[k] - others_before_.load[k]) / apart;
+    others_.rate[k] = others_before_.rate[k] + share * (rate - others_before_.rate[k]);
   }
 }
 

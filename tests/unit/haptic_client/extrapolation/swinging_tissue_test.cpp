@@ -180,12 +180,17 @@ TEST_CASE("swinging tissue: a memory that no organ has is never felt") {
   CHECK(wildest < 3 * largest);
 }
 
-TEST_CASE("swinging tissue: amplitudes that no organ has are never felt") {
+TEST_CASE("swinging tissue: amplitudes, and loads of other tools, that no organ has are never felt") {
+  const bool of_others = GENERATE(false, true);
   Listener listener(swinging("reduced", 33.3), block_mesh());
   listener.learn(kWholeModel);
   bool wild = false;
   listener.told = [&](protocol::ForceSample& sample) {
-    if (wild) sample.modes.q.fill(1e5F);
+    if (wild && !of_others) sample.modes.q.fill(1e5F);
+    if (!wild || !of_others) return;
+    sample.flags |= protocol::ForceSample::kHasModalLoads;
+    sample.modal_loads.count = sample.modes.count;
+    sample.modal_loads.load.fill(1e6F);
   };
   double largest = 0, wildest = 0;
   for (; listener.t < 4s;) {
