@@ -7,9 +7,10 @@ namespace palpate::client {
 namespace {
 constexpr Time kStep = std::chrono::microseconds(500);  // what remains to a tick is by Taylor's series
 constexpr Time kLongest = std::chrono::milliseconds(300);
-constexpr double kFarthestSwing = 0.2;                      // m: no organ swings so far
-constexpr double kSamePlace = 1e-3;                         // m
-constexpr Time kTrend = std::chrono::milliseconds(100);     // so long a trend is believed
+constexpr double kFarthestSwing = 0.2;                   // m: no organ swings so far
+constexpr double kSamePlace = 1e-3;                      // m
+constexpr Time kTrend = std::chrono::milliseconds(100);  // so long a trend is believed
+constexpr double kOther = 0.8;                           // of the larger load: a change by more is no trend
 constexpr Time kTrendBase = std::chrono::milliseconds(20);  // and from samples so far apart, wholly
 }  // namespace
 
@@ -125,6 +126,13 @@ void ModalMemory::take_loads(const protocol::ModalLoads& told, Time t) noexcept 
   if (!(at(led).norm() <= kFarthestSwing)) others_.load = {};
   const double apart = to_seconds(t - others_before_.t);
   if (!known_ || !(apart > 0 && apart < to_seconds(kTrend))) return;
+  double change = 0, size = 0;  // squared
+  for (std::size_t k = 0; k < system_.count; ++k) {
+    const double now = others_.load[k], was = others_before_.load[k];
+    change += (now - was) * (now - was);
+    size += std::max(now * now, was * was);
+  }
+  if (change > kOther * kOther * size) return;  // one of them has come, or gone
   const double share = std::min(1.0, apart / to_seconds(kTrendBase));
   for (std::size_t k = 0; k < system_.count; ++k) {
     const double rate = (others_.load[k] - others_before_.load[k]) / apart;

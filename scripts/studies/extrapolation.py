@@ -25,7 +25,7 @@ each, from the fixed seeds of scripts/trajectories; the mean speed is a study's 
             s (make_presses judge: of no use to choose any number of the program)
   implicit_linear, implicit_neo_hookean, implicit_prony   liver_implicit with another law,
             or half of a linear one relaxing in 0.2 s; pressed alone
-  two_tools   liver_reduced pressed so, while another tool palpates it 5 to 6 cm aside
+  two_tools   liver_reduced pressed so, while another tool palpates it 15 to 87 mm aside
   pull_quasi_static, pull_tensor_mass   the paper's own experiment (paper_experiment.py)
 
 Writes into --out: summary.json and summary.csv (a row for each configuration and law),

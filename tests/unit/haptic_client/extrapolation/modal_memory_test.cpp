@@ -236,8 +236,8 @@ TEST_CASE("modal memory: loads of other tools that grow evenly drive it as the c
       memory.advance(t);
       memory.press(Vec3::Zero());
       const double off = std::abs(memory.displacement()[1] - kShape * ramped(to_seconds(t), kRate).first);
-      // The first sample knows no trend, and by the next ones it has no tick of their time to compare.
-      (t < 90ms + delay ? before : worst) = std::max(t < 90ms + delay ? before : worst, off);
+      // The next samples have no tick of their time to compare; and from no load to one is no trend yet.
+      (t < 120ms + delay ? before : worst) = std::max(t < 120ms + delay ? before : worst, off);
     }
     const double moved = kShape * ramped(0.6, kRate).first;
     CAPTURE(before, worst, moved);
