@@ -2,6 +2,7 @@
 // What a session is told about the whole error of its force, before and after a study of its scene: the real
 // programs, virtual time.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -87,16 +88,20 @@ TEST_CASE("whole error: estimated, then measured by a study, with the extrapolat
             120);
   felt = pressed.felt();
   CHECK_THAT(felt["how"]["mesh"].get<std::string>(), Catch::StartsWith("measured by a study"));
-  // At rest no step is too long, so that all that the study finds of the scene as it is comes from its mesh.
-  // Its row looks at the scene's own steps, the report at the shortest of the study: at the same motion.
+  // At rest no step is too long, so that all that the study finds of the scene comes from its mesh; told is
+  // what the shortest steps found, which look at the motion most often.
   const Json summary = read_json(out + "/summary.json");
-  int found = 0;
+  const Json *own = nullptr, *shortest = nullptr;
+  const auto alike = [](const Json& a, const Json& b) {
+    return std::ranges::all_of(std::array{"model", "law", "element", "mesh", "refinements"},
+                               [&](const char* key) { return a[key] == b[key]; });
+  };
+  for (const Json& row : summary["rows"]) own = row["axis"] == "scene" ? &row : own;
+  REQUIRE(own != nullptr);
   for (const Json& row : summary["rows"]) {
-    if (row["axis"] != "scene") continue;
-    ++found;
-    CHECK(felt["mesh_percent"] == Approx(row["force_error_percent"].get<double>()).epsilon(0.01));
+    if (alike(row, *own) && (shortest == nullptr || row["dt_ms"] < (*shortest)["dt_ms"])) shortest = &row;
   }
-  CHECK(found == 1);
+  CHECK(felt["mesh_percent"] == Approx((*shortest)["force_error_percent"].get<double>()));
   CHECK_THAT(output_of("sim_server", {"cache", "list", "--cache", pressed.cache}, 0),
              Catch::Contains("study of scene.toml"));
 }
