@@ -17,7 +17,8 @@ constexpr Time kTrendBase = std::chrono::milliseconds(20);  // and from samples 
 ModalMemory::ModalMemory() = default;
 
 void ModalMemory::restart() noexcept {
-  known_ = standing_ = false;
+  known_ = standing_ = driven_ = false;
+  others_ = others_before_ = {};
   past_.forget();
 }
 
@@ -304,7 +305,9 @@ void ModalMemory::press(const Vec3& f, std::span<const SurfaceLoad> loads) noexc
   const ModalNumbers force = force_of(f);
   const double half = 0.5 * to_seconds(tick_ - tick_before_);
   for (std::size_t k = 0; k < system_.count; ++k) state_.v[k] += half * (force[k] - force_[k]);
-  if (ModalState* const tick = past_.add(tick_)) *tick = now(tick_);
+  ModalState* tick = past_.add(tick_);
+  if (tick == nullptr) tick = past_.at(tick_);  // once more at the same tick: as it is now
+  if (tick != nullptr) *tick = now(tick_);
   force_ = force;
   if (system_.terms == 0 || model_ == nullptr) return;
   Vec3 sum = Vec3::Zero();
