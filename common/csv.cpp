@@ -48,20 +48,41 @@ std::vector<std::size_t> find_columns(const std::vector<std::string>& header,
   return indices;
 }
 
-}  // namespace
-
-std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& file,
-                                                  std::span<const std::string> columns) {
+std::ifstream open_csv(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) fail("{}: no such file", file.string());
   std::ifstream in(file);
   if (!in) fail("{}: cannot be read; check its permissions", file.string());
+  return in;
+}
+
+/// A line to be read; without the byte order mark of the first.
+bool next_line(std::ifstream& in, int& number, std::string& line) {
+  while (std::getline(in, line)) {
+    if (++number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+    if (!trimmed(line).empty() && line.front() != '#') return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool has_csv_column(const std::filesystem::path& file, const std::string& column) {
+  std::ifstream in = open_csv(file);
+  std::string line;
+  int number = 0;
+  if (!next_line(in, number, line)) return false;
+  const std::vector<std::string> header = split(line);
+  return std::find(header.begin(), header.end(), column) != header.end();
+}
+
+std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& file,
+                                                  std::span<const std::string> columns) {
+  std::ifstream in = open_csv(file);
   std::vector<std::vector<double>> values(columns.size());
   std::vector<std::size_t> indices;
   std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a byte order mark
-    if (trimmed(line).empty() || line.front() == '#') continue;
+  for (int number = 0; next_line(in, number, line);) {
     const std::string where = fmt::format("{}:{}", file.string(), number);
     const std::vector<std::string> cells = split(line);
     if (indices.empty()) {

@@ -36,6 +36,16 @@ Trajectory::Trajectory(const TrajectorySettings& settings) : repeats_(settings.r
     p_.push_back(settings.offset +
                  settings.scale * settings.axes * Vec3(columns[1][i], columns[2][i], columns[3][i]));
   }
+  if (has_csv_column(settings.file, TrajectorySettings::kButtons)) {
+    const std::vector<std::string> column{TrajectorySettings::kButtons};
+    const auto values = read_csv_columns(settings.file, column);
+    for (const double bits : values.front()) {
+      if (!(bits >= 0 && bits <= 65535 && bits == std::floor(bits)))
+        fail("{}: column {} holds {:g}; expected the bits of buttons, a whole number from 0 to 65535",
+             settings.file.string(), TrajectorySettings::kButtons, bits);
+      buttons_.push_back(static_cast<std::uint16_t>(bits));
+    }
+  }
   const double open = (p_.back() - p_.front()).norm();
   if (repeats_ && open > kClosed)
     fail(
@@ -47,14 +57,23 @@ Trajectory::Trajectory(const TrajectorySettings& settings) : repeats_(settings.r
 Trajectory::Trajectory(std::vector<double> t_s, std::vector<Vec3> p, bool repeats)
     : t_(std::move(t_s)), p_(std::move(p)), repeats_(repeats) {}
 
+/// `t` after the start, on the clock of the rows, between the first and the last.
+double Trajectory::time_in_rows(double t) const noexcept {
+  if (!(t > 0)) return t_.front();
+  if (t >= duration()) t = repeats_ && duration() > 0 ? std::fmod(t, duration()) : duration();
+  return t_.front() + t;
+}
+
+std::uint16_t Trajectory::buttons_at(double t) const noexcept {
+  if (buttons_.empty()) return 0;
+  const auto after = std::upper_bound(t_.begin(), t_.end(), time_in_rows(t));
+  return buttons_[static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - t_.begin(), 1) - 1)];
+}
+
 Vec3 Trajectory::at(double t) const noexcept {
-  if (t <= 0 || t_.size() == 1) return p_.front();
-  if (t >= duration()) {
-    if (!repeats_) return p_.back();
-    t = std::fmod(t, duration());
-  }
-  const double time = t_.front() + t;
+  const double time = time_in_rows(t);
   const auto after = std::upper_bound(t_.begin(), t_.end(), time);
+  if (after == t_.begin()) return p_.front();
   if (after == t_.end()) return p_.back();
   const auto i = static_cast<std::size_t>(after - t_.begin());
   const double share = (time - t_[i - 1]) / (t_[i] - t_[i - 1]);

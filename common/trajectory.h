@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ namespace palpate {
 struct TrajectorySettings {
   std::filesystem::path file;
   std::array<std::string, 4> columns{"t_s", "x_m", "y_m", "z_m"};  ///< time (s) and position
+  /// Of the device's buttons that are pressed from each row on, [0, 65535]; a file without it presses none.
+  static constexpr const char* kButtons = "buttons";
   double scale = 1;              ///< metres per unit of the position columns
   Vec3 offset = Vec3::Zero();    ///< added after scaling, m
   bool repeat = false;           ///< after its end from the start again; it must end within 1 mm of that
@@ -37,6 +40,8 @@ class Trajectory {
 
   /// Position at `t` seconds after the start. O(log rows), no allocation.
   Vec3 at(double t) const noexcept;
+  /// Buttons pressed then; 0: none.
+  std::uint16_t buttons_at(double t) const noexcept;
   /// Rows a second, on average; 0 with one row.
   double rate_hz() const noexcept {
     return duration() > 0 ? static_cast<double>(t_.size() - 1) / duration() : 0;
@@ -44,8 +49,11 @@ class Trajectory {
   double duration() const noexcept { return t_.back() - t_.front(); }
 
  private:
+  double time_in_rows(double t) const noexcept;
+
   std::vector<double> t_;
   std::vector<Vec3> p_;
+  std::vector<std::uint16_t> buttons_;  // of each row, or none at all
   bool repeats_;
 };
 

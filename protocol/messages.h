@@ -174,8 +174,8 @@ struct ModalState {
 /// How hard the other tools on the organ drive the slow modes of a tissue that swings.
 struct ModalLoads {
   /// Of so many modes, on so many of the slowest there is room for loads, beside all other parts but
-  /// "relaxed" (75: 11; up to 53: on all).
-  static constexpr std::size_t room(std::size_t modes) { return std::min(modes, 161 - 2 * modes); }
+  /// "relaxed" (75: 10; up to 53: on all).
+  static constexpr std::size_t room(std::size_t modes) { return std::min(modes, 160 - 2 * modes); }
   std::uint8_t count = 0;  ///< of modes, the slowest first; on the others, nothing is told
   std::array<float, kMostSlowModes> load = {};  ///< of the first `count`, N/sqrt(kg)
   template <class Self, class Visitor>
@@ -227,8 +227,8 @@ struct ForceSample {
   /// And two that ask: for `Telemetry`; and that the client let go of the force, as the simulation is paused
   /// and this sample is the last one again.
   static constexpr std::uint32_t kWantsTelemetry = 1024, kPaused = 2048;
-  /// And one more part.
-  static constexpr std::uint32_t kHasModalLoads = 4096;
+  /// And more parts.
+  static constexpr std::uint32_t kHasModalLoads = 4096, kHasCuts = 8192;
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
   std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:
@@ -251,6 +251,9 @@ struct ForceSample {
   Vec3 mean_f_W = Vec3::Zero();     ///< kHasMean: the mean force over the step that ended there, N
   RelaxedState relaxed{};           ///< kHasRelaxed, with kHasModes
   ModalLoads modal_loads{};         ///< kHasModalLoads, with kHasModes: by the other tools, at `tool_t_ns`
+  /// kHasCuts: in how many steps so far tissue has been removed. Where it differs from that of another
+  /// sample, the two are of other surfaces.
+  std::uint32_t cuts = 0;
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
@@ -267,6 +270,7 @@ struct ForceSample {
     if ((m.flags & kHasMean) != 0) v(m.mean_f_W);
     if ((m.flags & kHasRelaxed) != 0) RelaxedState::fields(m.relaxed, v);
     if ((m.flags & kHasModalLoads) != 0) ModalLoads::fields(m.modal_loads, v);
+    if ((m.flags & kHasCuts) != 0) v(m.cuts);
   }
 };
 

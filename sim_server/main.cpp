@@ -54,6 +54,11 @@ void add_viewer_option(CLI::App* command, std::string& address) {
       ->capture_default_str();
 }
 
+void add_resection_option(CLI::App* command, std::optional<std::filesystem::path>& file) {
+  command->add_option("--resection", file,
+                      "Of a scene with [cutting]: write what was removed, step by step, to this CSV");
+}
+
 CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
   auto* command = app.add_subcommand("run", "Serve a scene until Ctrl-C");
   command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
@@ -65,6 +70,7 @@ CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
       ->add_option("--record-mb", options.record_mb,
                    "Go on in a new file at this size (F-2.pcap, ...); ten are kept")
       ->check(CLI::Range(0.01, 1e6));
+  add_resection_option(command, options.resection);
   add_viewer_option(command, options.viewer);
   command->get_option("--insecure")->description("Serve other machines without a key, or the page in clear");
   add_cache_or_none(command, options.cache);
@@ -102,6 +108,12 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
   command->add_flag("!--plain", options.parts,
                     "Forces only: no tangents and surfaces, which some laws use (smaller)");
   command->add_option("--report", options.report, "Write figures of the recording to this JSON file");
+  add_resection_option(command, options.resection);
+  command->add_option("--removals", options.removals,
+                      "Of a scene with [cutting]: write when each tetrahedron went to this CSV");
+  command->add_option("--remove", options.remove,
+                      "Remove what this CSV lists (t_s, tetrahedron), as --removals writes it, instead of by "
+                      "heat: the same cut at another --rate");
   add_cache_or_none(command, options.cache);
   command->footer(
       models() +

@@ -7,8 +7,8 @@
 
 namespace palpate::client {
 
-/// A device made of a person: a hand whose arm follows a trajectory. Deterministic: its state depends only on
-/// the times of `read` and the forces of `write`.
+/// A device made of a person: a hand whose arm follows a trajectory, and presses the buttons that it names.
+/// Deterministic: its state depends only on the times of `read` and the forces of `write`.
 class SimulatedOperator : public Device {
  public:
   SimulatedOperator(const OperatorSettings& settings, Trajectory trajectory);

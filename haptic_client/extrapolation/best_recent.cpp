@@ -46,6 +46,12 @@ void BestRecent::restart() noexcept {
   ticks_.forget();
 }
 
+/// Which law is best stays; what they gave for the surface of before says nothing of that.
+void BestRecent::surface_cut() noexcept {
+  for (Law& law : laws_) law.law->surface_cut();
+  ticks_.forget();
+}
+
 void BestRecent::begin_tick(Time now) noexcept {
   now_ = now;
   for (Law& law : laws_) law.law->begin_tick(now);

@@ -27,6 +27,7 @@ class BestRecent : public Extrapolator {
 
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
+  void surface_cut() noexcept override;
   void begin_tick(Time now) noexcept override;
   Vec3 force(const Vec3& p, Time t) noexcept override;
   Wants wants() const noexcept override;

@@ -59,6 +59,7 @@ struct Sample {
   std::optional<Linearised> ahead = {};  ///< where the tool was expected by now
   std::optional<Surface> surface = {};
   std::optional<OtherTools> others = {};  ///< what `surface_v` has of them, and more
+  std::uint32_t cuts = 0;                 ///< in how many steps so far tissue has been removed
 };
 
 /// Whether a law may look at the sample at all: its vectors are finite.
@@ -118,6 +119,9 @@ class Extrapolator {
   virtual void update(const Sample& sample) noexcept = 0;
   /// Forgets all samples: what came before is too long ago to look back at.
   virtual void restart() noexcept = 0;
+  /// Forgets all samples, as tissue has been removed since: no line leads from them to the next. What was
+  /// learned of other things than the surface may stay.
+  virtual void surface_cut() noexcept { restart(); }
   /// Force (N, world) with the tool at `p` at time `t` >= that of the newest sample. Zero before the first
   /// sample. |p| and |f| up to 1e30 give a finite answer; times are from 0 to 2^62 ns.
   /// Called in the order of time: a law may go along with the tool.

@@ -14,6 +14,8 @@ bool ForceEstimate::take(const Sample& sample, const Vec3& p, Time now) noexcept
   if (period_ > kOutage) {
     law_->restart();  // no line leads from before it to here
     period_ = Time::zero();
+  } else if (!first && sample.cuts != newest_.cuts) {
+    law_->surface_cut();
   }
   const Time age = std::min(now - sample.t, kOutage);
   usual_age_ = period_ > Time::zero() ? usual_age_ + (age - usual_age_) / kAgeFilter : age;

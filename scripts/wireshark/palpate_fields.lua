@@ -98,7 +98,7 @@ return function()
     {"ahead", "\"ahead\" follows"}, {"surface", "\"surface\" follows"}, {"errors", "\"errors\" follows"},
     {"others", "\"others\" follows"}, {"modes", "\"modes\" follows"}, {"mean", "\"mean\" follows"},
     {"relaxed", "\"relaxed\" follows"}, {"wants_telemetry", "Asks for Telemetry"}, {"paused", "Paused"},
-    {"loads", "\"loads\" follows"},
+    {"loads", "\"loads\" follows"}, {"cuts", "\"cuts\" follows"},
   })
   group("here.surface_v", "Surface velocity", "m/s", XYZ)
   group("ahead.p", "Place ahead", "m", XYZ)
@@ -126,6 +126,7 @@ return function()
   field("float", "modes.v", "Rate q' (m sqrt(kg)/s)")
   field("uint8", "loads.count", "Modes that other tools drive")
   field("float", "loads.load", "Load of other tools on a mode (N/sqrt(kg))")
+  field("uint32", "cuts", "Steps in which tissue has been removed")
   field("uint8", "relaxed.terms", "Terms of the Prony series")
   field("float", "relaxed.share", "Share g of the stress at once")
   field("float", "relaxed.time", "Relaxation time tau (s)")

@@ -279,6 +279,7 @@ return function(P)
     {"mean", function(r) r:group("mean", HUGE) end},
     {"relaxed", read_relaxed},
     {"loads", read_loads},
+    {"cuts", function(r) r:u32("cuts") end},
   }
 
   read_message[FORCE_SAMPLE] = function(r)

@@ -67,6 +67,7 @@ std::string where_of(const Scene& scene, const std::string& part) {
   if (const ToolSettings* tool = tool_of(scene, part)) return tool->where;
   if (part == "mesh") return scene.mesh_where;
   if (part == "surface") return "always";
+  if (part == "resection") return scene.cutting->where;
   return scene.deformation.where;
 }
 
@@ -82,6 +83,14 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
     return fmt::format("{} vertices, {} tetrahedra", mesh.corners(), mesh.tetrahedra.size());
   if (part == "surface")
     return fmt::format("{} vertices, {} triangles", surface.vertices.size(), surface.triangles.size());
+  if (part == "resection") {
+    const CutMesh& left = simulation.resection()->left();
+    std::size_t removable = 0;
+    for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t)
+      removable += left.is_removable(t) ? 1 : 0;
+    return fmt::format("{} of {} tetrahedra can be removed; their vertices count to the surface", removable,
+                       mesh.tetrahedra.size());
+  }
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
   if (part == "stiffness matrix" || part == "its factor")
     return model_of(scene.deformation).keeps_compliance() ? "freed after set-up" : "kept: part of motion";
@@ -245,18 +254,16 @@ LeftOut motion(const Own& own) {
           .note = fmt::format("computed: {:g} n; the model is at rest", kBytesOfMotion)};
 }
 
-/// Nothing is cut, so that nobody asks which tetrahedra share a face or an edge.
-LeftOut neighbour_tables(const Own& own) {
+/// What is not cut keeps nothing of which tetrahedra meet, nor of the heat in them.
+LeftOut cutting(const Own& own) {
   const auto vertices = static_cast<double>(own.simulation.mesh().corners()),
              tetrahedra = static_cast<double>(own.simulation.mesh().tetrahedra.size()),
              faces = static_cast<double>(own.simulation.surface().triangles.size()) /
                      own.simulation.surface().per_face;
-  const bool has_edges = !own.simulation.mesh().mid_edges.empty();  // p2: the ends of each are there
-  const double edges = has_edges ? 0 : vertices + tetrahedra + faces / 2 - 1;  // Euler's, of a ball
-  return {.what = "edge and neighbour tables",
-          .why = own.scene.mesh_where,
-          .bytes = 4 * sizeof(int) * tetrahedra + 2 * sizeof(int) * edges,
-          .note = "computed: 4 neighbours a tetrahedron, 2 ends an edge; nothing is cut"};
+  return {.what = "cutting",
+          .why = "no [cutting]",
+          .bytes = Resection::estimated_bytes(vertices, tetrahedra, faces),
+          .note = "computed: neighbours, faces and heat of each tetrahedron; a step looks at none of it"};
 }
 
 /// What a step saves as long as no client's law asks for dF/dp.
@@ -293,7 +300,7 @@ std::vector<LeftOut> left_out(Own& own) {
     rows.push_back({.what = std::string(model.unneeded->what),
                     .why = own.scene.deformation.where,
                     .note = std::string(model.unneeded->note)});
-  rows.push_back(neighbour_tables(own));
+  if (!own.scene.cutting) rows.push_back(cutting(own));
   add_unreached_tools(own, rows);
   rows.push_back(tangents(own));
   rows.push_back({.what = "recording",

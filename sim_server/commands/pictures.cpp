@@ -90,7 +90,9 @@ SceneFacts facts_of(const Scene& scene, const Simulation& simulation) {
                    .rate_hz = scene.rate_hz,
                    .tools = {},
                    .organ = shape_of(scene, simulation)};
-  if (!simulation.model().nodes().empty() && scene.material) facts.fields = {"strain_energy"};
+  // Of an organ that is cut, the body that is coloured would have to be cut, too.
+  if (!simulation.model().nodes().empty() && scene.material && !scene.cutting)
+    facts.fields = {"strain_energy"};
   for (const ToolSettings& tool : scene.tools) facts.tools.push_back(tool.shape);
   return facts;
 }
@@ -116,6 +118,16 @@ void show_organ(const Simulation& simulation, Picture& picture) noexcept {
   std::size_t k = 0;
   for (const Vec3& p : simulation.positions()) {
     for (int i = 0; i < 3; ++i) picture.positions[k++] = static_cast<float>(p[i]);
+  }
+  const Resection* const resection = simulation.resection();
+  if (resection != nullptr && resection->version() != picture.cuts) {
+    picture.cuts = resection->version();
+    picture.triangles = simulation.surface().triangles;
+  }
+  if (resection != nullptr) {
+    const ResectionTotals& all = resection->totals();
+    picture.resection = {all.tetrahedra,      all.volume,   all.cut_area,
+                         all.mean_distance(), all.farthest, all.loose_pieces};
   }
   for (std::size_t i = 0; i < simulation.tools(); ++i) show_loads(simulation.loads(i), picture.tools[i]);
 }

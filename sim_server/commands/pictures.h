@@ -15,7 +15,7 @@ SceneFacts facts_of(const Scene& scene, const Simulation& simulation);
 std::function<void(std::span<const Vec3>, std::vector<float>&)> strain_energy_of(
     const Scene& scene, const Simulation& simulation);
 
-/// Each fills in what a page is shown; no allocation.
+/// Each fills in what a page is shown; no allocation, but for the triangles of an organ that is cut.
 /// `outcome`: of the newest step; null: there was none, and what was felt before stays. `t`: s.
 void show_tool(const SessionInput& input, const ServedTools::Outcome* outcome, double t,
                SeenTool& seen) noexcept;

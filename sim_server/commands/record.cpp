@@ -9,6 +9,7 @@
 #include "common/log.h"
 #include "common/progress.h"
 #include "common/report.h"
+#include "sim_server/commands/resection_log.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/virtual_session.h"
 #include "sim_server/study/studied_errors.h"
@@ -48,7 +49,10 @@ void require_files_apart(const RecordOptions& options, const Scene& scene) {
                       {scene.mesh_where, scene.mesh_file},
                       {"--trajectory", trajectory},
                       {"--out", options.out},
-                      {"--report", options.report}});
+                      {"--report", options.report},
+                      {"--resection", options.resection},
+                      {"--removals", options.removals},
+                      {"--remove", options.remove}});
 }
 
 void say_what_is_lost(const Trajectory& motion, const RecordOptions& options, double ticks_hz) {
@@ -102,6 +106,7 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
           {"flagged", stats.flagged},
           {"flagged_by", simulation.flagged().to_json()},
           {"max_newton", stats.max_newton},
+          {"resection", resection_report(simulation)},
           {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
 }
 
@@ -119,12 +124,16 @@ int record(const RecordOptions& options) {
   const std::uint64_t ticks = ticks_of(motion, options, ticks_hz);
   require_files_apart(options, scene);
   if (options.report) check_writable(*options.report, Contents::kReport);
+  require_resection("--resection", options.resection, scene);
+  require_resection("--removals", options.removals, scene);
+  if (!scene.cutting) require_resection("--remove", options.remove, scene);
   WholeFile out(options.out, Contents::kCapture);
   protocol::CaptureWriter capture(out.path());
   say_what_is_lost(motion, options, ticks_hz);
   ProgressLine progress;
   const auto cache = open_cache(options.cache);
   Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr);
+  if (options.remove) simulation.remove_at(read_removals(*options.remove, simulation));
   const ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
   VirtualSession session(
       simulation, motions, scene.tools[options.tool - 1].shape.radius,
@@ -143,6 +152,9 @@ int record(const RecordOptions& options) {
       stats.in_contact, 1e-6 * stats.contact_step_ns.quantile(0.5),
       1e-6 * stats.contact_step_ns.quantile(0.99), stats.flagged,
       stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "", stats.max_newton);
+  if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);
+  if (options.resection) write_resection(*options.resection, simulation);
+  if (options.removals) write_removals(*options.removals, simulation);
   if (options.report)
     write_json(*options.report, make_report(options, session, ticks_hz, capture, simulation, virtual_s));
   return 0;

@@ -18,6 +18,9 @@ struct RecordOptions {
   std::optional<double> seconds;   ///< absent: the motion of that tool once
   bool parts = true;  ///< whether the samples carry all they can: tangents, surface, a second place
   std::optional<std::filesystem::path> report;
+  std::optional<std::filesystem::path> resection;  ///< CSV of what was removed
+  /// CSV (t_s, tetrahedron) of the tetrahedra that went; and one of those that are to go, instead of by heat.
+  std::optional<std::filesystem::path> removals, remove;
   CacheOptions cache;
 };
 

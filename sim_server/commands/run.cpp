@@ -19,6 +19,7 @@
 #include "sim_server/commands/live_view.h"
 #include "sim_server/commands/page_news.h"
 #include "sim_server/commands/pictures.h"
+#include "sim_server/commands/resection_log.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/net_link.h"
@@ -126,6 +127,7 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["link"] = protocol::link_report(link.stats());
   report["failed_steps"] = {{"out_of_memory", simulation.failures().out_of_memory},
                             {"other", simulation.failures().other}};
+  report["resection"] = resection_report(simulation);
   report["state_hash"] = fmt::format("{:016x}", simulation.state_hash());
 }
 
@@ -281,8 +283,10 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   require_distinct({{"SCENE", scene.source},
                     {scene.mesh_where, scene.mesh_file},
                     {"--report", options.report},
+                    {"--resection", options.resection},
                     {"--record", options.record}});
   if (options.report) check_writable(*options.report, Contents::kReport);
+  require_resection("--resection", options.resection, scene);
   std::vector<double> radii;
   for (const ToolSettings& tool : scene.tools) radii.push_back(tool.shape.radius);
   protocol::ServerSessions sessions = sessions_for(options.listen, scene.rate_hz, radii);
@@ -350,6 +354,8 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   add_run(report, loop, link, simulation, scene, errors, now() - start);
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
   print_summary(report, simulation.flagged());
+  if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);
+  if (options.resection) write_resection(*options.resection, simulation);
   if (options.report) write_json(*options.report, report);
   return chosen;
 }

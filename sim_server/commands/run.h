@@ -12,10 +12,11 @@ namespace palpate::sim {
 struct ServerOptions {
   std::filesystem::path scene;
   ListenOptions listen;
-  std::optional<double> seconds;                ///< stop after so long; absent: at Ctrl-C
-  std::optional<std::filesystem::path> report;  ///< JSON written at the end
-  std::optional<std::filesystem::path> record;  ///< capture of every datagram
-  std::optional<double> record_mb;              ///< size at which it goes on in a new file
+  std::optional<double> seconds;                   ///< stop after so long; absent: at Ctrl-C
+  std::optional<std::filesystem::path> report;     ///< JSON written at the end
+  std::optional<std::filesystem::path> resection;  ///< CSV of what was removed, written at the end
+  std::optional<std::filesystem::path> record;     ///< capture of every datagram
+  std::optional<double> record_mb;                 ///< size at which it goes on in a new file
   CacheOptions cache;
   std::string viewer = "off";  ///< where the live page is served
 };

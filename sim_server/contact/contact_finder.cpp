@@ -9,7 +9,6 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kMostBalls = 3;
-constexpr double kRoomFactor = 1.5;  // deformed surfaces crowd: room beyond the densest ball at rest
 
 /// Whether the triangle's bounding box comes within `reach` of that of p and q: cheap, never wrong on the
 /// safe side.
@@ -36,9 +35,10 @@ bool reaches(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const V
 
 ContactFinder::ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed,
                              std::vector<Triangle> touchable, double reach, double length,
-                             std::span<const int> held)
+                             std::span<const int> held, double room)
     : closed_(std::move(closed)),
       triangles_(std::move(touchable)),
+      held_(held.begin(), held.end()),
       bvh_(rest, triangles_),
       slot_of_vertex_(rest.size(), -1) {
   for (const Vec3& p : rest) {
@@ -49,15 +49,28 @@ ContactFinder::ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> c
     }
     max_triangles_ = std::max(max_triangles_, near);
   }
-  const auto is_held = [&](int vertex) { return std::ranges::binary_search(held, vertex); };
-  for (const Triangle& t : triangles_) opens_.push_back(std::ranges::all_of(t, is_held) ? 0 : 1);
-  if (std::ranges::count(opens_, 1) == 0) opens_.assign(triangles_.size(), 1);
-  const int all = static_cast<int>(triangles_.size());
+  note_openings();
+  const int all = room > kUsualRoom ? std::numeric_limits<int>::max() : static_cast<int>(triangles_.size());
   // An axis may lie along a part as dense as that, but hardly all of it.
   const double balls = std::min(kMostBalls, 1 + length / (2 * reach));
-  max_triangles_ = std::min(all, 8 + static_cast<int>(kRoomFactor * balls * max_triangles_));
+  max_triangles_ = std::min(all, 8 + static_cast<int>(room * balls * max_triangles_));
   max_nodes_ = std::min(static_cast<int>(rest.size()), max_triangles_ + 2);
   vertices_.reserve(static_cast<std::size_t>(max_nodes_));
+}
+
+void ContactFinder::note_openings() {
+  const auto is_held = [&](int vertex) { return std::ranges::binary_search(held_, vertex); };
+  opens_.clear();
+  for (const Triangle& t : triangles_) opens_.push_back(std::ranges::all_of(t, is_held) ? 0 : 1);
+  if (std::ranges::count(opens_, 1) == 0) opens_.assign(triangles_.size(), 1);
+}
+
+void ContactFinder::change_surface(std::span<const Vec3> rest, std::vector<Triangle> closed,
+                                   std::vector<Triangle> touchable) {
+  closed_ = std::move(closed);
+  triangles_ = std::move(touchable);
+  bvh_ = Bvh(rest, triangles_);
+  note_openings();
 }
 
 int ContactFinder::slot_of(int vertex) noexcept {
@@ -159,8 +172,9 @@ int ContactFinder::nearest_vertex(std::span<const Vec3> positions, const Vec3& p
     return *std::min_element(triangles_[i].begin(), triangles_[i].end(), closer);
   };
   bvh_.refit(positions);
-  return corner(
-      bvh_.nearest(box_around(p, p, 0), [&](int i) { return (positions[corner(i)] - p).squaredNorm(); }));
+  const int i =
+      bvh_.nearest(box_around(p, p, 0), [&](int k) { return (positions[corner(k)] - p).squaredNorm(); });
+  return i < 0 ? -1 : corner(i);
 }
 
 }  // namespace palpate::sim

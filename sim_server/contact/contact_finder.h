@@ -9,15 +9,20 @@
 namespace palpate::sim {
 
 /// Finds the piece of the organ's surface near a tool. Positions are those of the surface vertices, m, world.
-/// Nothing but the constructor allocates. One thread.
+/// Nothing but the constructor and `change_surface` allocates. One thread.
 class ContactFinder {
  public:
   /// `rest`: surface vertices at rest. `closed`: all triangles of the surface, `touchable`: those the tool
   /// may touch. `reach`, `length`: the largest distance and axis that `gather` will be asked for, m; the room
   /// it needs is sized by the densest such ball at rest, for an axis by as many of them as it is long, with
-  /// some to spare. `held`: surface vertices that are held to something, ascending.
+  /// some to spare: `room` times it. `held`: surface vertices that are held to something, ascending.
   ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed, std::vector<Triangle> touchable,
-                double reach, double length = 0, std::span<const int> held = {});
+                double reach, double length = 0, std::span<const int> held = {}, double room = kUsualRoom);
+  static constexpr double kUsualRoom = 1.5, kRoomOfCuts = 3;
+
+  /// From now on these are the triangles, of the same vertices. O(n log n) of the touchable ones.
+  void change_surface(std::span<const Vec3> rest, std::vector<Triangle> closed,
+                      std::vector<Triangle> touchable);
 
   std::span<const Triangle> touchable() const { return triangles_; }
   int max_nodes() const { return max_nodes_; }
@@ -53,7 +58,7 @@ class ContactFinder {
   Vec3 entry(std::span<const Vec3> positions, const Vec3& p) const noexcept;
   /// Where the axis from `p` to `q` and what is touchable come nearest to each other. O(vertices).
   NearestOnSegment nearest(std::span<const Vec3> positions, const Vec3& p, const Vec3& q) const noexcept;
-  /// The corner of touchable triangles nearest to `p`. There must be one. O(vertices).
+  /// The corner of touchable triangles nearest to `p`; -1: there is none. O(vertices).
   int nearest_vertex(std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
  private:
@@ -64,7 +69,10 @@ class ContactFinder {
 
   Foot closest_on(int triangle, std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
+  void note_openings();
+
   std::vector<Triangle> closed_, triangles_;
+  std::vector<int> held_;
   std::vector<char> opens_;  // of triangles_: whether a tool can come in there
   mutable Bvh bvh_;  // of triangles_; fitted anew for each question, as the surface is another each time
   std::vector<int> vertices_, slot_of_vertex_;

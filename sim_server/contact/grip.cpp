@@ -42,6 +42,18 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
   }
 }
 
+void Grip::change_surface(std::span<const Triangle> touchable, const std::function<bool(int)>& on_surface) {
+  touchable_ = corners_of(touchable);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    if (!on_surface(vertices_[i])) continue;
+    vertices_[kept] = vertices_[i];
+    offsets_[kept++] = offsets_[i];
+  }
+  vertices_.resize(kept);
+  offsets_.resize(kept);
+}
+
 void Grip::close(const Vec3& p_W, std::span<const Vec3> positions) noexcept {
   closed_ = true;
   for (const int vertex : touchable_) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "sim_server/contact/tissue.h"
@@ -20,6 +21,10 @@ class Grip {
   /// nothing at `grasp_place`.
   Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const std::array<int, 3>> touchable,
        int max_nodes);
+
+  /// Tissue has been removed: it lets go of vertices that are not `on_surface` any more. Allocates.
+  void change_surface(std::span<const std::array<int, 3>> touchable,
+                      const std::function<bool(int)>& on_surface);
 
   /// What of the device's buttons is pressed.
   void press(std::uint16_t buttons) noexcept { pressed_ = (buttons & buttons_) != 0; }

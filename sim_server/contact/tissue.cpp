@@ -29,6 +29,15 @@ void Tissue::reserve(std::span<const int> most_loads, std::span<const double> st
   }
 }
 
+void Tissue::drop_loads(const std::function<bool(int)>& on_surface) {
+  const auto gone = [&](const NodalLoad& load) { return !on_surface(load.vertex); };
+  for (ToolLoads& tool : tools_) {
+    tool.others -=
+        static_cast<std::size_t>(std::ranges::count_if(std::span(tool.loads).first(tool.others), gone));
+    std::erase_if(tool.loads, gone);
+  }
+}
+
 ToolTissue Tissue::met_by(std::size_t tool) {
   return {*this, tool, meet(tool)};
 }

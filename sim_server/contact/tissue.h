@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -32,6 +33,8 @@ class Tissue {
   std::size_t bytes_of(std::size_t tool) const { return tools_[tool].pushed.size() * sizeof(Vec3); }
   /// The tool went along with the organ by `motion` (m): so did what it last met.
   void carry(std::size_t tool, const Vec3& motion) noexcept { tools_[tool].carried += motion; }
+  /// Tissue has been removed: the loads on vertices that are not `on_surface` any more go with it.
+  void drop_loads(const std::function<bool(int)>& on_surface);
   /// `positions`, under the loads of now.
   void press(std::size_t tool) { positions = model->apply(tools_[tool].loads); }
 

@@ -36,11 +36,12 @@ double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
 }  // namespace
 
 ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
-                         std::vector<Triangle> touchable, std::span<const int> held)
+                         std::vector<Triangle> touchable, std::span<const int> held, bool cut)
     : tool_(tool.shape),
       finder_(rest, touchable.empty() ? touchable : surface.triangles, touchable,
               (tool.shape.is_sphere() ? kGather : kRoomOfAxis) * tool.shape.radius,
-              longest_axis(tool.shape, rest), held),
+              longest_axis(tool.shape, rest), held,
+              cut ? ContactFinder::kRoomOfCuts : ContactFinder::kUsualRoom),
       solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0),
       farthest_drag_(std::max(kFarthestDrag * tool.shape.radius, kFarthestBend * diagonal_of(rest))) {
   if (tool.grasps()) grip_.emplace(tool, rest, touchable, finder_.max_nodes());
@@ -54,6 +55,20 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
   if (!has_friction()) return;
   surface_was_.assign(rest.begin(), rest.end());
   nodes_were_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+}
+
+void ToolContact::change_surface(std::span<const Vec3> rest, const Surface& surface,
+                                 std::vector<Triangle> touchable,
+                                 const std::function<bool(int)>& on_surface) {
+  if (grip_) grip_->change_surface(touchable, on_surface);
+  finder_.change_surface(rest, touchable.empty() ? touchable : surface.triangles, touchable);
+  filled_.clear();
+  predictor_.changes.clear();
+  kept_predictor_.changes.clear();
+  std::erase_if(kept_loads_, [&](const NodalLoad& load) { return !on_surface(load.vertex); });
+  for (State* const state : {&now_, &kept_}) {
+    if (state->side >= 0 && !on_surface(state->side)) state->side = -1;
+  }
 }
 
 void ToolContact::advance_to(const ToolPose& pose, const Bend& path, ToolTissue tissue) {

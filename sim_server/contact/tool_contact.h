@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+
 #include "sim_server/contact/contact_finder.h"
 #include "sim_server/contact/grip.h"
 #include "sim_server/contact/tissue.h"
@@ -40,8 +42,14 @@ struct Bend {
 class ToolContact {
  public:
   /// `rest`: surface vertices at rest; `held`: those of them that are held to something, ascending.
+  /// `cut`: that surface may change.
   ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
-              std::vector<Triangle> touchable, std::span<const int> held);
+              std::vector<Triangle> touchable, std::span<const int> held, bool cut = false);
+
+  /// Tissue has been removed: these are the triangles now, of the same vertices, of which those that are not
+  /// `on_surface` hang on nothing. Allocates.
+  void change_surface(std::span<const Vec3> rest, const Surface& surface, std::vector<Triangle> touchable,
+                      const std::function<bool(int)>& on_surface);
 
   /// What of the device's buttons is pressed, also while the tool is lifted: the next `advance_to` grasps, or
   /// lets go.

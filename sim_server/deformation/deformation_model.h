@@ -9,6 +9,7 @@
 
 namespace palpate::sim {
 
+class CutMesh;
 struct SlowModes;
 
 /// A force on one vertex of the surface.
@@ -114,6 +115,19 @@ class DeformationModel {
   /// Where all vertices of the mesh are by now (m), as after the last `apply` or, where that costs more than
   /// to look, a contact instant before; valid until the next call. Empty: it only knows those of the surface.
   virtual std::span<const Vec3> nodes() const noexcept { return {}; }
+
+  /// What went with tissue that was removed.
+  struct Removed {
+    double elastic = 0, kinetic = 0;  ///< J
+    Vec3 momentum = Vec3::Zero();     ///< N s
+  };
+  /// Between two steps: these tetrahedra are no more, `left` are. What is left goes on from where it is, as
+  /// fast as before. Loads on vertices that no tetrahedron is left at are dropped. Of models whose row says
+  /// `cuts`. O(removed), whatever the size of the mesh. Allocates.
+  virtual Removed remove([[maybe_unused]] std::span<const int> tetrahedra,
+                         [[maybe_unused]] const CutMesh& left) {
+    return {};
+  }
 
   /// What this model holds in memory.
   virtual std::vector<MemoryPart> memory() const = 0;

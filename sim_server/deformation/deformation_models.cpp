@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/core.h>
+#include <iterator>
 
 #include "common/error.h"
 #include "common/text.h"
@@ -27,7 +28,7 @@ constexpr DeformationModelRow row_of(DeformationModelRow row) {
   row.estimated_bytes = &Model::estimated_bytes;
   row.keys = [] {
     std::vector<std::string_view> keys;
-    (keys.insert(keys.end(), Settings::kKeys.begin(), Settings::kKeys.end()), ...);
+    (std::ranges::copy(Settings::kKeys, std::back_inserter(keys)), ...);
     return keys;
   };
   row.read = [](const Config& config, DeformationSettings& settings) {
@@ -53,6 +54,7 @@ constexpr std::array kModels{
          .summary = "linear elastic motion, explicit, by a tensor per vertex and edge",
          .materials = Materials::kPlain,
          .moves = true,
+         .cuts = true,
          .unneeded = {{"factor of the stiffness matrix, kept",
                        "explicit steps solve nothing; set-up lets its own go"}}}),
     row_of<Implicit, RayleighDamping, ImplicitSettings, ContactInstants, ClientModes>(
@@ -60,7 +62,8 @@ constexpr std::array kModels{
          .summary = "motion of any law, element and load, by implicit steps",
          .materials = Materials::kAny,
          .moves = true,
-         .flies = true}),
+         .flies = true,
+         .cuts = true}),
 #ifdef PALPATE_WITH_SPECTRA
     row_of<Reduced, RayleighDamping, ReducedSettings, ContactInstants>(
         {.name = "reduced",

@@ -31,6 +31,7 @@ struct DeformationModelRow {
   Materials materials = Materials::kNone;
   bool moves = false;  ///< the organ has inertia, or goes as one piece; false: at rest at every instant
   bool flies = false;  ///< nothing need hold the body: it has mass
+  bool cuts = false;   ///< tissue can be removed while it is felt (`remove`)
   /// What other models build and this one need not, for `explain`.
   struct Unneeded {
     std::string_view what, note;

@@ -20,6 +20,7 @@ constexpr double kMostColumnBytes = 1e9;  // of columns, when a step begins
 DynamicsSettings settings_of(const ModelInputs& inputs) {
   DynamicsSettings settings = dynamics_settings(inputs.scene.deformation);
   settings.flies = inputs.scene.flies();
+  settings.cut = inputs.scene.cutting.has_value();
   return settings;
 }
 
@@ -35,8 +36,8 @@ bool held_by_vertices(const Scene& scene) {
 /// which it is known how it follows them.
 bool tells_modes(const ModelInputs& inputs) {
   const auto* const told = inputs.scene.deformation.find<ClientModes>();
-  return told != nullptr && told->modes > 0 && inputs.scene.loads.empty() && held_by_vertices(inputs.scene) &&
-         inputs.scene.material->relaxations.size() <= kMostRelaxations &&
+  return told != nullptr && told->modes > 0 && !inputs.scene.cutting && inputs.scene.loads.empty() &&
+         held_by_vertices(inputs.scene) && inputs.scene.material->relaxations.size() <= kMostRelaxations &&
          (!supports_move(inputs.scene) || inputs.scene.material->is_linear());
 }
 
@@ -79,7 +80,8 @@ double Implicit::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
 }
 
 Implicit::Implicit(const ModelInputs& inputs)
-    : solid_(inputs.mesh, material_of(inputs)),
+    : may_be_cut_(inputs.scene.cutting.has_value()),
+      solid_(inputs.mesh, material_of(inputs)),
       scene_loads_(inputs.scene, inputs.mesh, inputs.surface, solid_),
       dynamics_(solid_, scene_loads_.held(), settings_of(inputs), inputs.scene.source),
       held_compliance_(1 / held_stiffness(inputs.scene)),
@@ -152,7 +154,7 @@ FreeMotion Implicit::free_motion(double dt) {
     }
     linearised_loads_ = loads_;
     iterations_ = dynamics_.solve(external_forces(), 1, tolerance_);
-    if (dynamics_.relative_residual() <= std::max(tolerance_, kAtRest) && !law_is_linear())
+    if (dynamics_.relative_residual() <= std::max(tolerance_, kAtRest) && !is_linear())
       dynamics_.refactor_if_moved();
     update_surface();
   }
@@ -189,7 +191,7 @@ void Implicit::add_response(std::span<const NodalLoad> loads, double sign, Eigen
 
 std::optional<FreeMotion> Implicit::relinearise() {
   const int most = dynamics_.relative_residual() > kBalanced ? kMoreIterations * max_newton_ : max_newton_;
-  if (law_is_linear() || ++iterations_ > most) return {};
+  if (is_linear() || ++iterations_ > most) return {};
   apply_new_loads();
   if (!relinearised_) dynamics_.loads_changed();
   relinearised_ = true;
@@ -199,7 +201,7 @@ std::optional<FreeMotion> Implicit::relinearise() {
 }
 
 bool Implicit::balanced() const noexcept {
-  return law_is_linear() || (dynamics_.relative_residual() <= kBalanced && !dynamics_.inside_out());
+  return is_linear() || (dynamics_.relative_residual() <= kBalanced && !dynamics_.inside_out());
 }
 
 /// After each iteration: the surface at the trial point, and without the loads that the linearisation was

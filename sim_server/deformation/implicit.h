@@ -65,8 +65,9 @@ class Implicit : public DeformationModel {
   /// Whether the last iteration found a relative residual of at most 1 %, and no element inverted for good
   /// (`Dynamics::inside_out`).
   bool balanced() const noexcept override;
-  bool inside_out() const noexcept override { return !law_is_linear() && dynamics_.inside_out(); }
+  bool inside_out() const noexcept override { return !is_linear() && dynamics_.inside_out(); }
   std::span<const Vec3> nodes() const noexcept override { return dynamics_.position(); }
+  Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
   std::vector<MemoryPart> memory() const override;
 
  private:
@@ -88,8 +89,10 @@ class Implicit : public DeformationModel {
   void add_response(std::span<const NodalLoad> loads, double sign, Eigen::VectorXd& moved) const;
   void press(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const;
   std::span<const Vec3> external_forces();
-  bool law_is_linear() const { return solid_.material().law == ElasticLaw::kLinear; }
+  /// Whether one iteration solves each step, with the columns of one factor for ever.
+  bool is_linear() const { return solid_.material().law == ElasticLaw::kLinear && !may_be_cut_; }
 
+  bool may_be_cut_;
   Solid solid_;
   Loads scene_loads_;
   Dynamics dynamics_;

@@ -12,18 +12,6 @@ constexpr double kMostComplianceBytes = 4e9;  // of compliance, however many are
 constexpr std::size_t kMostCalls = 16;        // between two reports of progress: enough to keep cores busy
 constexpr std::size_t kTile = 64;             // rows and columns that stay in the cache
 
-void require_held_tissue(const ModelInputs& inputs) {
-  const Scene& scene = inputs.scene;
-  if (!scene.material)
-    fail("{}: model \"{}\" needs a [material] section", scene.source, scene.deformation.model);
-  if (inputs.fixed.empty()) {
-    fail(
-        "{}: no fixed nodes, so nothing holds the body; add [[fixed]] with a box or a surface tag that "
-        "contains some",
-        scene.source);
-  }
-}
-
 /// Equal by theory to its transpose; makes it so to the last bit, for contact and for Cholesky.
 void symmetrise(Eigen::Ref<Eigen::MatrixXd> m) {
   const auto n = static_cast<std::size_t>(m.rows());
@@ -40,6 +28,18 @@ void symmetrise(Eigen::Ref<Eigen::MatrixXd> m) {
 }
 
 }  // namespace
+
+void require_held_tissue(const ModelInputs& inputs) {
+  const Scene& scene = inputs.scene;
+  if (!scene.material)
+    fail("{}: model \"{}\" needs a [material] section", scene.source, scene.deformation.model);
+  if (inputs.fixed.empty()) {
+    fail(
+        "{}: no fixed nodes, so nothing holds the body; add [[fixed]] with a box or a surface tag that "
+        "contains some",
+        scene.source);
+  }
+}
 
 SurfaceCompliance::SurfaceCompliance(const ModelInputs& inputs)
     : source_(inputs.scene.source),

@@ -22,6 +22,7 @@ double longest_edge(const Solid& solid, std::span<const int> t) {
 
 bool any_inverted(const Solid& solid, std::span<const Vec3> x) {
   for (std::size_t e = 0; e < solid.elements(); ++e) {
+    if (solid.is_removed(e)) continue;
     const std::span<const int> t = solid.element(e);
     const auto edge = [&](std::span<const Vec3> at, std::size_t k) -> Vec3 { return at[t[k]] - at[t[0]]; };
     const auto spanned = [&](std::span<const Vec3> at) {

@@ -90,6 +90,10 @@ void Solid::gather_patches() {
   }
 }
 
+void Solid::remove(std::size_t e) {
+  for (int q = 0; q < points_; ++q) weight_[Element(*this, e).point(q)] = 0;
+}
+
 std::vector<double> Solid::masses() const {
   std::vector<double> masses(rest_.size(), 0);
   for (std::size_t e = 0; e < elements(); ++e) {

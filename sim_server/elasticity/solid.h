@@ -31,8 +31,9 @@ struct Viscosity {
 /// (Zienkiewicz
 ///   and Taylor 2000, volume 1, tables 8.5 and 9.3).
 /// Sums run over tetrahedra in their order, whatever the number of threads: the same bytes. A body does not
-/// change after its construction; what a call writes to is the caller's `Scratch`, so that several threads
-/// may ask at once, each with its own. Calls without one make their own, which suits set-up and tests.
+/// change after its construction but by `remove`; what a call writes to is the caller's `Scratch`, so that
+/// several threads may ask at once, each with its own. Calls without one make their own, which suits set-up
+/// and tests.
 class Solid {
  public:
   class Scratch;
@@ -62,6 +63,12 @@ class Solid {
   /// Lumped mass of each node, kg: a quarter of a tetrahedron for each vertex; of ten nodes 1/36 for a corner
   /// and 4/27 for the middle of an edge (Hinton, Rock and Zienkiewicz 1976).
   std::vector<double> masses() const;
+
+  /// Tetrahedron e is no more: from now on it has no volume, and resists nothing. Not of averaged dilation.
+  void remove(std::size_t e);
+  bool is_removed(std::size_t e) const { return weight_[e * static_cast<std::size_t>(points_)] == 0; }
+  /// Elastic energy of one tetrahedron, J.
+  double energy_of(std::size_t e, std::span<const Vec3> x) const;
 
   /// Nodes of tetrahedron e, 4 or 10: corners, then the middles of its edges in the order of `kEdges`.
   std::span<const int> element(std::size_t e) const {

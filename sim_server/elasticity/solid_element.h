@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <type_traits>
 
 #include "sim_server/elasticity/solid.h"
@@ -52,6 +53,8 @@ struct Solid::Element {
     for (int i = 0; i < corners; ++i) at.col(i) = x[nodes[i]];
     for (int q = 0; q < solid_.points_; ++q)
       F[q].noalias() = at.lazyProduct(Eigen::Map<const Nodes>(gradients(q)[0].data()).transpose());
+    if (weight(0) == 0)
+      std::fill_n(F, solid_.points_, Mat3(Mat3::Identity()));  // removed: wherever its nodes are
   }
 };
 

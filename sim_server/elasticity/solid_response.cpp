@@ -99,6 +99,22 @@ FibreLaw Solid::fibre_law(const Mat3& F) const {
   return {material_.fibres->modulus, material_.fibres->direction, F, material_.law == ElasticLaw::kLinear};
 }
 
+double Solid::energy_of(std::size_t e, std::span<const Vec3> x) const {
+  double energy = 0;
+  with_law(material_.law, [&]<class Law>() {
+    const Moduli moduli = Law::moduli(material_);
+    each_element<Law>(x, e, e + 1, [&](const Element& element, const Mat3* F, const Mat3* R) {
+      for (int q = 0; q < points_; ++q) {
+        const Law law = law_at<Law>(moduli, F[q], R[q]);
+        double density = law.shape_energy() + 0.5 * moduli.lambda * law.dilation() * law.dilation();
+        if (material_.fibres) density += fibre_law(F[q]).energy();
+        energy += element.weight(q) * density;
+      }
+    });
+  });
+  return energy;
+}
+
 double Solid::energy(std::span<const Vec3> x, Scratch& scratch) const {
   std::vector<State> states(points());
   evaluate(x, states, {}, scratch);

@@ -75,13 +75,54 @@ template <int kColumns>
 
 }  // namespace
 
-ElasticTensors::ElasticTensors(const TetMesh& mesh, const Material& material, const std::vector<int>& fixed) {
+ElasticTensors::ElasticTensors(const TetMesh& mesh, const Material& material, const std::vector<int>& fixed,
+                               std::vector<double> mass_factors)
+    : mass_factors_(std::move(mass_factors)) {
   number(mesh, fixed);
   find_edges(mesh);
   vertex_tensors_.assign(6 * mass_.size(), 0);
   edge_tensors_.assign(9 * neighbour_.size(), 0);
-  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
-    add(mesh, mesh.tetrahedra[e], material, mesh.stiffness.empty() ? 1 : mesh.stiffness[e]);
+  const auto all = [](int, int) { return true; };
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) add(mesh, e, material, all);
+}
+
+void ElasticTensors::remove(std::span<const int> removed, const CutMesh& left, const Material& material) {
+  std::vector<std::pair<int, int>> touched;  // places, the later first; of a vertex twice the same
+  std::vector<int> around;
+  for (const int t : removed) {
+    const Tetrahedron& corners = left.mesh().tetrahedra[static_cast<std::size_t>(t)];
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b <= a; ++b) {
+        const auto [before, after] = std::minmax(place_[corners[a]], place_[corners[b]]);
+        if (before >= 0) touched.emplace_back(after, before);
+      }
+      for (const int other : left.around(corners[a])) {
+        if (left.is_left(other)) around.push_back(other);
+      }
+    }
+  }
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  std::vector<double> mass_before;
+  for (const auto& [i, j] : touched) {
+    if (i != j) {
+      std::fill_n(edge_tensor(i, j), 9, 0.0);
+      continue;
+    }
+    std::fill_n(vertex_tensors_.begin() + 6 * std::ptrdiff_t{i}, 6, 0.0);
+    mass_before.push_back(mass_[i]);
+    mass_[i] = 0;
+  }
+  const auto is_touched = [&](int i, int j) { return std::ranges::binary_search(touched, std::pair(i, j)); };
+  for (const int t : around) add(left.mesh(), static_cast<std::size_t>(t), material, is_touched);
+  std::size_t k = 0;
+  for (const auto& [i, j] : touched) {
+    if (i != j) continue;
+    if (mass_[i] == 0) mass_[i] = mass_before[k];
+    ++k;
+  }
 }
 
 void ElasticTensors::number(const TetMesh& mesh, const std::vector<int>& fixed) {
@@ -128,21 +169,27 @@ double* ElasticTensors::edge_tensor(int i, int j) {
   return edge_tensors_.data() + 9 * (std::lower_bound(from, to, j) - neighbour_.begin());
 }
 
-/// One that is `stiffness` times as stiff as the material.
-void ElasticTensors::add(const TetMesh& mesh, const Tetrahedron& t, const Material& material,
-                         double stiffness) {
+/// Adds what a tetrahedron gives to the tensors of the places that are `wanted`: (i, i) of a vertex, with its
+/// mass, and (i, j), j < i, of an edge.
+template <class Wanted>
+void ElasticTensors::add(const TetMesh& mesh, std::size_t tetrahedron, const Material& material,
+                         const Wanted& wanted) {
+  const Tetrahedron& t = mesh.tetrahedra[tetrahedron];
+  const double stiffness = mesh.stiffness.empty() ? 1 : mesh.stiffness[tetrahedron];
   const auto& x = mesh.vertices;
   const LinearTetrahedron element({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
   const Moduli moduli = LinearLaw::moduli(material);
   const LinearLaw law(moduli, Mat3::Identity());
+  const double mass =
+      material.density * element.volume * (mass_factors_.empty() ? 1 : mass_factors_[tetrahedron]);
   using Tensor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   for (int a = 0; a < 4; ++a) {
     const int i = place_[t[a]];
     if (i < 0) continue;
-    mass_[i] += material.density * element.volume / 4;
+    if (wanted(i, i)) mass_[i] += mass / 4;
     for (int b = 0; b < 4; ++b) {
       const int j = place_[t[b]];
-      if (j < 0 || j > i) continue;
+      if (j < 0 || j > i || !wanted(i, j)) continue;
       const Vec3 &gi = element.gradient[a], &gj = element.gradient[b];
       const Mat3 block =
           stiffness * element.volume * (law.block(0, gi, gj) + moduli.lambda * gi * gj.transpose());

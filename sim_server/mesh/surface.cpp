@@ -13,13 +13,10 @@
 namespace palpate::sim {
 namespace {
 
-// The faces of a positively oriented tetrahedron, each seen counter-clockwise from outside.
-constexpr std::array<Triangle, 4> kFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-
 struct Face {
-  Triangle sorted;   // the vertices, ascending: equal for the two sides of one face
-  Triangle outward;  // the same vertices, outward from `tetrahedron`
-  int tetrahedron;
+  Triangle sorted;          // the vertices, ascending: equal for the two sides of one face
+  Triangle outward;         // the same vertices, outward from `tetrahedron`
+  int tetrahedron, number;  // of its tetrahedron
 };
 
 std::vector<Face> sorted_faces(const TetMesh& mesh) {
@@ -27,11 +24,12 @@ std::vector<Face> sorted_faces(const TetMesh& mesh) {
   faces.reserve(4 * mesh.tetrahedra.size());
   for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) {
     const Tetrahedron& t = mesh.tetrahedra[i];
-    for (const Triangle& corner : kFaces) {
+    for (int k = 0; k < 4; ++k) {
+      const Triangle& corner = kOutwardFaces[static_cast<std::size_t>(k)];
       const Triangle outward{t[corner[0]], t[corner[1]], t[corner[2]]};
       Triangle sorted = outward;
       std::sort(sorted.begin(), sorted.end());
-      faces.push_back({sorted, outward, static_cast<int>(i)});
+      faces.push_back({sorted, outward, static_cast<int>(i), k});
     }
   }
   std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
@@ -73,6 +71,18 @@ std::vector<Triangle> in_four(const std::vector<Triangle>& faces, const TetMesh&
 }
 
 }  // namespace
+
+std::vector<std::array<int, 4>> face_neighbours(const TetMesh& mesh) {
+  std::vector<std::array<int, 4>> across(mesh.tetrahedra.size(), {-1, -1, -1, -1});
+  const std::vector<Face> faces = sorted_faces(mesh);
+  for (std::size_t i = 1; i < faces.size(); ++i) {
+    const Face &a = faces[i - 1], &b = faces[i];
+    if (a.sorted != b.sorted) continue;
+    across[static_cast<std::size_t>(a.tetrahedron)][static_cast<std::size_t>(a.number)] = b.tetrahedron;
+    across[static_cast<std::size_t>(b.tetrahedron)][static_cast<std::size_t>(b.number)] = a.tetrahedron;
+  }
+  return across;
+}
 
 OuterFaces outer_faces(const TetMesh& mesh) {
   const std::vector<Face> faces = sorted_faces(mesh);

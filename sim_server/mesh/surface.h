@@ -1,5 +1,6 @@
 #pragma once
 /// The skin of the solid: the triangles a tool can touch.
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,13 @@ struct Surface {
   /// the corners, each of which comes first, then between the middles.
   int per_face = 1;
 };
+
+/// The faces of a positively oriented tetrahedron by its corners, each counter-clockwise as seen from
+/// outside; face k lies opposite to corner k.
+constexpr std::array<Triangle, 4> kOutwardFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+/// (m) Across each face of each tetrahedron of a solid: the other one, or -1. O(m log m).
+std::vector<std::array<int, 4>> face_neighbours(const TetMesh& mesh);
 
 /// A face with tetrahedra in one another's place: more than two on it, or two on the same side.
 struct OverlappingFace {

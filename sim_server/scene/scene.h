@@ -9,6 +9,7 @@
 
 #include "common/contact/tool.h"
 #include "sim_server/elasticity/material.h"
+#include "sim_server/scene/cutting.h"
 #include "sim_server/scene/deformation_settings.h"
 #include "sim_server/scene/regions.h"
 #include "sim_server/scene/tool_reach.h"
@@ -66,6 +67,8 @@ struct ToolSettings {
   std::uint16_t grasp_buttons = 0;
   std::optional<Vec3> grasp_place{};  ///< tool centre, m, from where it holds the resting surface always
   std::string grasp_where{};          ///< "FILE:LINE" of either; empty where both are absent
+  std::uint16_t cut_buttons = 0;      ///< of which any, while pressed, makes it cut; 0: none does, [0, 65535]
+  std::string cut_where{};            ///< "FILE:LINE" of that; empty where it is absent
   bool grasps() const { return grasp_buttons != 0 || grasp_place.has_value(); }
 };
 
@@ -82,7 +85,8 @@ struct Scene {
   std::vector<Load> loads{};
   std::optional<Material> material;
   std::vector<Inclusion> inclusions{};
-  std::string material_where;  ///< "FILE:LINE" of `[material]`; empty where it is absent
+  std::optional<Cutting> cutting{};  ///< absent: nothing is cut
+  std::string material_where;        ///< "FILE:LINE" of `[material]`; empty where it is absent
   DeformationSettings deformation;
   std::vector<ToolSettings> tools = std::vector<ToolSettings>(1);  ///< 1 to `kMaxTools`
   /// Client files made for this scene, one per tool; the server itself does not read them.

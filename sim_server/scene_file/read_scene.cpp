@@ -7,6 +7,7 @@
 #include "common/error.h"
 #include "common/log.h"
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/scene_file/read_cutting.h"
 #include "sim_server/scene_file/read_inclusions.h"
 #include "sim_server/scene_file/read_parts.h"
 #include "sim_server/scene_file/read_reach.h"
@@ -88,6 +89,29 @@ void require_what_the_model_can(const Scene& scene) {
   }
 }
 
+/// That what is to be cut has a tool that cuts, a model that can bear it, and the other way round.
+void require_cutting(const Scene& scene) {
+  const auto cuts = [](const ToolSettings& tool) { return tool.cut_buttons != 0; };
+  const auto cutter = std::ranges::find_if(scene.tools, cuts);
+  if (cutter != scene.tools.end() && !scene.cutting)
+    fail("{}: `cut_buttons`: the scene has no [cutting] that says how; add one, or remove this",
+         cutter->cut_where);
+  if (!scene.cutting) return;
+  if (cutter == scene.tools.end())
+    fail("{}: no [[tool]] cuts; give one `cut_buttons`, such as 1", scene.cutting->where);
+  const DeformationModelRow& row = model_of(scene.deformation);
+  if (!row.cuts)
+    fail("{}: tissue of model \"{}\" cannot be cut; {} can", scene.cutting->where, row.name,
+         models_that([](const DeformationModelRow& m) { return m.cuts; }));
+  if (scene.material && scene.material->element != ElementKind::kLinear)
+    fail("{}: tissue of element \"{}\" cannot be cut; take \"p1\"", scene.material_where,
+         name_of(scene.material->element));
+  const auto moves = std::ranges::find_if(scene.fixed, &FixedRegion::moves);
+  if (moves != scene.fixed.end())
+    fail("{}: [[fixed.motion]]: what is cut cannot move with its supports yet; remove it, or [cutting]",
+         moves->where);
+}
+
 void warn_of_locking(const Scene& scene) {
   if (!scene.material || !scene.material->locks()) return;
   log::warning(
@@ -149,6 +173,10 @@ ToolSettings read_tool(const Config& config) {
   read_shape(config, tool.shape);
   read_reach(config, tool);
   read_grasp(config, tool);
+  if (config.has("cut_buttons")) {
+    tool.cut_buttons = static_cast<std::uint16_t>(config.integer("cut_buttons", {1, 65535, "button bits"}));
+    tool.cut_where = config.where("cut_buttons");
+  }
   config.reject_unknown();
   return tool;
 }
@@ -233,6 +261,8 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   if (deformation) scene.deformation = read_deformation(*deformation);
   if (purpose == Purpose::kServe) require_what_the_model_can(scene);
   if (purpose == Purpose::kServe || !config.tables("tool").empty()) scene.tools = read_tools(config);
+  if (const auto cutting = config.table("cutting")) scene.cutting = read_cutting(*cutting);
+  if (purpose == Purpose::kServe) require_cutting(scene);
   if (purpose == Purpose::kServe && scene.flies() && model_of(scene.deformation).flies) require_flight(scene);
   if (const auto session = config.table("session")) scene.clients = read_clients(*session);
   config.reject_unknown();

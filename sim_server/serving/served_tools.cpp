@@ -190,6 +190,10 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
     sample.flags |= ForceSample::kHasMean;
     sample.mean_f_W = answer.mean_force;
   }
+  if (const Resection* const resection = simulation_.resection()) {
+    sample.flags |= ForceSample::kHasCuts;
+    sample.cuts = resection->version();
+  }
   if (errors_ != nullptr && (state.flags & protocol::ToolState::kWantsErrors) != 0) {
     sample.flags |= ForceSample::kHasErrors;
     sample.errors = errors_->of_step(tool, simulation_.loads(tool));

@@ -59,6 +59,7 @@ void VirtualSession::tick(std::uint64_t k) {
   state.p_W = newest_p_W_ = motions_[link_.tool].at(to_seconds(t));
   if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motions_[link_.tool].at(to_seconds(time_of(k - 1))));
   newest_v_W_ = state.v_W;
+  state.buttons = motions_[link_.tool].buttons_at(to_seconds(t));
   if (link_.parts) {
     state.flags |=
         ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface | ToolState::kWantsErrors;
@@ -105,6 +106,7 @@ void VirtualSession::note_paths(const ToolState& state) {
     if (i != link_.tool) {
       newest = {.tool = static_cast<std::uint8_t>(i), .tick = state.tick, .t_ns = state.t_ns};
       newest.p_W = motions_[i].at(t);
+      newest.buttons = motions_[i].buttons_at(t);
       if (t >= tick) newest.v_W = link_.ticks_hz * (newest.p_W - motions_[i].at(t - tick));
     }
     inputs_[i].session = i == link_.tool ? session_ : session_ + 1 + i;

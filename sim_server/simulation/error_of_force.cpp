@@ -21,7 +21,11 @@ ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
     if (!steps_matter(scene, tool)) errors.time_step = {.source = ErrorSource::kNone};
     std::optional<ElementKind> element;
     if (deforms && !tool.grasps()) element = scene.material->element;  // the estimate is of tips that press
-    tools_.push_back({errors, element, {simulation.surface(), simulation.rest(), tool.shape.radius}});
+    const double radius = tool.shape.radius;
+    tools_.push_back({errors, element,
+                      scene.cutting
+                          ? MeshResolution(simulation.surface(), simulation.rest(), radius, simulation.mesh())
+                          : MeshResolution(simulation.surface(), simulation.rest(), radius)});
   }
 }
 

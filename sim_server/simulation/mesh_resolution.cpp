@@ -48,6 +48,30 @@ MeshResolution::MeshResolution(const Surface& surface, std::span<const Vec3> res
   }
 }
 
+MeshResolution::MeshResolution(const Surface& surface, std::span<const Vec3> rest, double radius,
+                               const TetMesh& mesh)
+    : MeshResolution(surface, rest, radius) {
+  set_inside(surface, mesh, radius);
+}
+
+void MeshResolution::set_inside(const Surface& surface, const TetMesh& mesh, double radius) {
+  std::vector<double> lengths(mesh.vertices.size(), 0);
+  std::vector<int> edges(mesh.vertices.size(), 0);
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    for (const auto& [a, b] : kEdges) {
+      const double length = (mesh.vertices[t[a]] - mesh.vertices[t[b]]).norm();
+      for (const int vertex : {t[a], t[b]}) {
+        lengths[vertex] += length;
+        ++edges[vertex];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < fineness_.size(); ++k) {
+    const int node = surface.vertices[k];
+    if (fineness_[k] == 0 && lengths[node] > 0) fineness_[k] = radius * edges[node] / lengths[node];
+  }
+}
+
 MeshResolution::Sums MeshResolution::sums_of(std::span<const NodalLoad> loads) const noexcept {
   Sums sums;
   for (const NodalLoad& load : loads) {

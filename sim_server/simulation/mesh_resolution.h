@@ -15,6 +15,9 @@ class MeshResolution {
  public:
   /// `rest`: vertices of the surface, m; `radius` of the tool, m. O(vertices).
   MeshResolution(const Surface& surface, std::span<const Vec3> rest, double radius);
+  /// Of an organ that is cut, `surface` also has vertices that are inside of `mesh` at first: there, by all
+  /// edges of the tetrahedra around.
+  MeshResolution(const Surface& surface, std::span<const Vec3> rest, double radius, const TetMesh& mesh);
 
   /// Mean over what the tool loads in one step; nothing where it loads nothing. O(loads); does not allocate.
   std::optional<double> of(std::span<const NodalLoad> loads) const noexcept;
@@ -26,6 +29,8 @@ class MeshResolution {
   std::optional<double> elements_per_radius() const noexcept;
 
  private:
+  void set_inside(const Surface& surface, const TetMesh& mesh, double radius);
+
   std::vector<double> fineness_;  // of each vertex: radius / mean edge
   struct Sums {
     double elements = 0, weight = 0;

@@ -77,6 +77,8 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   progress(name_of(Stage::kSurface), 0);
   if (scene.material) mesh_ = with_nodes(std::move(mesh_), scene.material->element);
   surface_ = boundary_surface(mesh_);
+  if (scene.cutting)
+    cut_.emplace(Cut{Resection(*scene.cutting, mesh_, fixed_vertices(scene, mesh_), surface_), scene.tools});
   for (const int vertex : surface_.vertices) rest_.push_back(mesh_.vertices[vertex]);
   auto touchable = touchable_by(scene.tools, surface_, mesh_);
   if (std::all_of(touchable.begin(), touchable.end(), [](const auto& list) { return list.empty(); }))
@@ -98,7 +100,8 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
     const std::string stage = contact_stage(i, scene.tools.size());
     progress(stage, 0);
-    tools_.emplace_back(scene.tools[i], tissue_.free, surface_, std::move(touchable[i]), held);
+    tools_.emplace_back(scene.tools[i], tissue_.free, surface_, std::move(touchable[i]), held,
+                        cut_.has_value());
     most_loads.push_back(tools_.back().max_nodes());
     still.push_back(kStill * tools_.back().radius());
     progress(stage, 1);
@@ -168,6 +171,7 @@ void Simulation::hold_answers(std::span<const ToolInput> inputs) noexcept {
 
 void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
   std::fill(mean_.begin(), mean_.end(), Vec3::Zero());
+  if (cut_) cut(inputs, dt);
   for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].press(inputs[i].buttons);
   for (int instant = 1; instant <= instants_; ++instant) advance_to_instant(inputs, instant, dt / instants_);
   for (std::size_t i = 0; i < tools_.size(); ++i) came_from_[i] = inputs[i].pose;
@@ -186,6 +190,8 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
     static_cast<ToolForce&>(answers_[i]) = tools_[i].force();
     answers_[i].mean_force = mean_[i];
   }
+  if (cut_) note_cut(inputs, dt);
+  time_ += dt;
   couple(inputs);
   for (std::size_t i = 0; i < tools_.size(); ++i) add_wanted(i, inputs[i]);
 }
@@ -371,6 +377,8 @@ std::vector<MemoryPart> Simulation::memory() const {
                                mesh_.stiffness.size() * sizeof(double)});
   parts.push_back(
       {"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
+  if (cut_)
+    parts.push_back({"resection", cut_->resection.bytes() + cut_->log.capacity() * sizeof(ResectionRow)});
   const std::size_t coupling_bytes = coupling_ ? coupling_->bytes() / tools_.size() : 0;  // of each
   for (std::size_t i = 0; i < tools_.size(); ++i)
     parts.push_back(

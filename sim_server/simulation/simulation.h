@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "sim_server/contact/tool_contact.h"
+#include "sim_server/cutting/resection.h"
 #include "sim_server/deformation/model_inputs.h"
 #include "sim_server/deformation/slow_modes.h"
 #include "sim_server/mesh/tet_mesh.h"
@@ -79,6 +80,22 @@ struct ToolAnswer : ToolForce {
   const Eigen::VectorXd* modal_loads = nullptr;
 };
 
+/// A tetrahedron that is gone.
+struct Removal {
+  double t = 0;  ///< s of all steps before the one that it went in
+  int tetrahedron = 0;
+};
+
+/// One step of a resection, for those who judge it.
+struct ResectionRow {
+  double t = 0;  ///< s of all steps before it
+  std::size_t tool = 0;
+  Vec3 p_W = Vec3::Zero();  ///< of its tip, m
+  Vec3 f_W = Vec3::Zero();  ///< on it at the end of the step, N
+  bool contact = false;     ///< at the end of the step
+  ResectionTotals totals;   ///< at the end of the step
+};
+
 /// Steps that could not be finished because the model threw, by reason.
 struct StepFailures {
   std::uint64_t out_of_memory = 0;
@@ -89,7 +106,7 @@ struct StepFailures {
 /// by one thread. A step depends on nothing but its arguments and the state, and does not throw: where the
 /// model does, its answers are those of the step before, flagged (half of their forces each further time in
 /// a row), and the failure is counted. A step does not allocate, lock or log, but for a model that says that
-/// it does (`DeformationModel`).
+/// it does (`DeformationModel`), and while tissue is cut.
 class Simulation {
  public:
   /// With the mesh file that the scene names.
@@ -142,11 +159,29 @@ class Simulation {
 
   /// FNV-1a hash of the surface positions and the last forces, bit by bit: equal runs have equal hashes.
   std::uint64_t state_hash() const noexcept;
+  /// What is left of an organ that is cut, and what has been removed; null: nothing can be.
+  const Resection* resection() const { return cut_ ? &cut_->resection : nullptr; }
+  /// A row for each step with a tip that was hot.
+  std::span<const ResectionRow> resection_log() const {
+    return cut_ ? std::span<const ResectionRow>(cut_->log) : std::span<const ResectionRow>();
+  }
+  /// All that has been removed, in order.
+  std::span<const Removal> removals() const {
+    return cut_ ? std::span<const Removal>(cut_->removed) : std::span<const Removal>();
+  }
+  /// From now on this is removed, each in the first step that begins at its time or later (s, ascending), and
+  /// nothing by heat: so another rate can be held against the one at which they went. Of an organ that can be
+  /// cut.
+  void remove_at(std::vector<Removal> removals);
   const StepFailures& failures() const { return failures_; }
   const FlaggedSteps& flagged() const { return flagged_; }
 
  private:
   void advance(std::span<const ToolInput> inputs, double dt);
+  void cut(std::span<const ToolInput> inputs, double dt);
+  std::span<const int> remove_tissue(std::span<const ToolInput> inputs, double dt);
+  void note_cut(std::span<const ToolInput> inputs, double dt);
+  void change_surface();
   PathPoint at_instant(std::size_t tool, const ToolInput& input, int instant) const;
   PathPoint contact_point(std::size_t tool, const ToolInput& input, int instant) const;
   void remember(std::size_t tool, const ToolPose& pose);
@@ -167,8 +202,21 @@ class Simulation {
   void tell_modes(std::size_t tool);
   bool ran_away() const noexcept;
 
+  /// Of an organ that may be cut.
+  struct Cut {
+    Resection resection;
+    std::vector<ToolSettings> tools;
+    std::vector<HotTip> tips = {};
+    std::vector<ResectionRow> log = {};
+    std::vector<Removal> removed = {};
+    std::optional<std::vector<Removal>> planned = {};  // to be removed, instead of by heat
+    std::size_t done = 0;                              // of these
+  };
+
   TetMesh mesh_;
   Surface surface_;
+  std::optional<Cut> cut_;
+  double time_ = 0;  // s, of all steps
   std::vector<Vec3> rest_;
   double farthest_ = 1e150;  // from there, m; so far: no bound but that of numbers
   Tissue tissue_;

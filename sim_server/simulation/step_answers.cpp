@@ -108,6 +108,7 @@ std::optional<double> Simulation::gap(std::size_t tool) const noexcept {
 Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) {
   const ToolTissue tissue = tissue_.met_by(tool);
   const int vertex = tools_[tool].nearest_vertex(p_W, tissue_);
+  if (vertex < 0) return Vec3::Zero();  // all that it could touch has been cut away
   if (told_modes() == nullptr) return tissue.free()[vertex] - rest_[vertex];
   const Vec3 carried =
       tissue_.carried.empty() ? Vec3(Vec3::Zero()) : Vec3(tissue_.carried[vertex] - rest_[vertex]);

@@ -24,9 +24,13 @@ double largest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
   return std::sqrt(squared);
 }
 
-/// Of a linear law one factor serves for ever.
+/// Of a linear law one factor serves for ever, unless the body is cut.
+bool one_factor_serves(const Solid& solid, const DynamicsSettings& settings) {
+  return solid.material().law == ElasticLaw::kLinear && !settings.cut;
+}
+
 bool factors_in_background(const Solid& solid, const DynamicsSettings& settings) {
-  return settings.solver != DynamicsSettings::Solver::kDirect && solid.material().law != ElasticLaw::kLinear;
+  return settings.solver != DynamicsSettings::Solver::kDirect && !one_factor_serves(solid, settings);
 }
 
 bool learns(const Solid& solid, const DynamicsSettings& settings) {
@@ -38,6 +42,7 @@ bool learns(const Solid& solid, const DynamicsSettings& settings) {
 Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,
                    const std::string& where)
     : solid_(solid),
+      linear_(one_factor_serves(solid, settings)),
       learns_(learns(solid, settings)),
       motion_(solid, std::move(held), settings),
       matrix_(solid, motion_.dofs(), settings, where),
@@ -63,7 +68,8 @@ void Dynamics::start_step(double h) {
 }
 
 void Dynamics::factor() {
-  matrix_.build(solid_, motion_.position(), motion_.viscosity(), motion_.time().c(), motion_.scratch());
+  matrix_.build(solid_, motion_.position(), motion_.masses(), motion_.viscosity(), motion_.time().c(),
+                motion_.scratch());
   factored_at_.assign(motion_.position().begin(), motion_.position().end());
   from_background_ = false;
   count_new_factor();
@@ -88,7 +94,15 @@ void Dynamics::exchange_factors() {
     count_new_factor();
     policy_.replaced();
   }
-  background_->begin(motion_.time().position(), motion_.viscosity(), motion_.time().c(), requested_columns_);
+  background_->begin(motion_.time().position(), motion_.masses(), motion_.viscosity(), motion_.time().c(),
+                     requested_columns_);
+}
+
+void Dynamics::remove(std::span<const int> tetrahedra, std::span<const NodeMass> masses) {
+  for (const auto& [node, mass] : masses) motion_.set_mass(node, mass);
+  if (background_) background_->remove(tetrahedra);
+  quasi_newton_.clear();
+  policy_.replaced();
 }
 
 const Columns& Dynamics::background_columns() const {
@@ -164,7 +178,7 @@ Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<
 /// By `d` (m) from the trial point with this residual, as far as the line search lets it.
 void Dynamics::search_along(const Eigen::VectorXd& d, const Residual& residual,
                             std::span<const Vec3> external) {
-  if (law_is_linear()) return motion_.move_by(d);
+  if (is_linear()) return motion_.move_by(d);
   const std::vector<Vec3> here(motion_.position().begin(), motion_.position().end());
   const TrialStep trial = line_search(d, residual.force, [&](double s) {
     motion_.move_to(here, s * d);
@@ -178,13 +192,13 @@ void Dynamics::search_along(const Eigen::VectorXd& d, const Residual& residual,
 /// would not turn the body back before it ends.
 void Dynamics::limit_predictor(std::span<const Vec3> external) {
   at_predictor_ = false;
-  if (law_is_linear() || !cautious_) return;
+  if (is_linear() || !cautious_) return;
   const Eigen::VectorXd d = motion_.move_to_start();
   search_along(d, motion_.residual(external), external);
 }
 
 void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> external) {
-  if (law_is_linear()) return motion_.move_by(d);
+  if (is_linear()) return motion_.move_by(d);
   double squared = 0;
   for (std::size_t i = 0; i < motion_.last_external().size(); ++i)
     squared += (external[i] - motion_.last_external()[i]).squaredNorm();

@@ -50,6 +50,16 @@ class Dynamics {
   /// The trial point is the end of the step.
   void finish_step();
 
+  /// A node and its mass (kg) from now on.
+  struct NodeMass {
+    int node;
+    double mass;
+  };
+  /// Between two steps: these tetrahedra have been removed from the body (`Solid::remove`), and with them
+  /// these nodes' masses have changed. The factor is stale from now on. Of a body with
+  /// `DynamicsSettings::cut`.
+  void remove(std::span<const int> tetrahedra, std::span<const NodeMass> masses);
+
   /// The trial point (nodes, m).
   std::span<const Vec3> position() const { return motion_.position(); }
   /// To place nodes of the trial point.
@@ -89,7 +99,8 @@ class Dynamics {
   std::size_t scratch_bytes() const { return motion_.scratch_bytes(); }
 
  private:
-  bool law_is_linear() const { return solid_.material().law == ElasticLaw::kLinear; }
+  /// Whether one iteration with one factor solves a step, and all later ones.
+  bool is_linear() const { return linear_; }
   Residual evaluate(std::span<const Vec3> external);
   void factor();
   void count_new_factor();
@@ -100,6 +111,7 @@ class Dynamics {
   void limit_predictor(std::span<const Vec3> external);
 
   const Solid& solid_;
+  bool linear_;
   bool learns_;  // by the quasi-Newton method
   EquationsOfMotion motion_;
   NewtonMatrix matrix_;

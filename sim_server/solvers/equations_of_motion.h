@@ -59,6 +59,14 @@ class EquationsOfMotion {
   /// At the end of the last step, J.
   double kinetic_energy() const;
 
+  /// Lumped, kg.
+  std::span<const double> masses() const { return mass_; }
+  /// The body has lost some of its elements: what resisted before is not of it any more.
+  void set_mass(int node, double mass) {
+    mass_[static_cast<std::size_t>(node)] = mass;
+    internal_is_current_ = start_is_current_ = false;
+  }
+
   const TimeStepping& time() const { return time_; }
   Viscosity viscosity() const { return prony_.viscosity(); }
   const FreeDofs& dofs() const { return dofs_; }

@@ -13,10 +13,11 @@ StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
   return matrix;
 }
 
-/// What the factor answers is corrected by later iterations, but of the linear law, which makes none.
-SparseCholesky::Precision precision_for(const Material& material) {
+/// What the factor answers is corrected by later iterations, but of the linear law, which makes none unless
+/// the body may be cut.
+SparseCholesky::Precision precision_for(const Material& material, bool cut) {
   using Precision = SparseCholesky::Precision;
-  return material.law == ElasticLaw::kLinear ? Precision::kDouble : Precision::kSingle;
+  return material.law == ElasticLaw::kLinear && !cut ? Precision::kDouble : Precision::kSingle;
 }
 
 }  // namespace
@@ -25,22 +26,21 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
                            const std::string& where)
     : alpha_(settings.rayleigh_mass),
       beta_(settings.rayleigh_stiffness),
-      mass_(solid.masses()),
       matrix_(at_rest(solid, dofs, settings.flies)),
       mean_diagonal_(matrix_.lower().diagonal().mean()),
-      factor_(matrix_.lower(), where, precision_for(solid.material())) {}
+      factor_(matrix_.lower(), where, precision_for(solid.material(), settings.cut)) {}
 
-void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c,
-                         Solid::Scratch& scratch) {
+void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
+                         const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
   c_ = c;
   matrix_.set_zero();
   solid.add_stiffness(x, matrix_, viscosity, scratch);
   matrix_.lower() *= 1 + beta_ * c;
-  matrix_.add_to_diagonal(mass_, c * c + alpha_ * c);
+  matrix_.add_to_diagonal(masses, c * c + alpha_ * c);
   matrix_.close_held(mean_diagonal_);
   bool definite = factor_.refactor(matrix_.lower());
   for (double more = c * c; !definite && more < 1e6 * c * c; more *= 4) {
-    matrix_.add_to_diagonal(mass_, more);
+    matrix_.add_to_diagonal(masses, more);
     definite = factor_.refactor(matrix_.lower());
   }
 }
@@ -63,18 +63,22 @@ Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first, double enough)
 BackgroundMatrix::BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                                    const std::string& where)
     : solid_(solid),
+      own_(settings.cut ? std::make_optional(solid) : std::nullopt),
       scratch_(solid),
       matrix_(solid, dofs, settings, where),
       tolerance_(settings.tolerance),
-      bytes_(scratch_.bytes() + matrix_.bytes()) {}
+      bytes_(scratch_.bytes() + matrix_.bytes() + (own_ ? own_->bytes() : 0)) {}
 
-void BackgroundMatrix::begin(std::span<const Vec3> x, const Viscosity& viscosity, double c,
-                             std::vector<int> first) {
+void BackgroundMatrix::begin(std::span<const Vec3> x, std::span<const double> masses,
+                             const Viscosity& viscosity, double c, std::vector<int> first) {
   x_.assign(x.begin(), x.end());
+  masses_.assign(masses.begin(), masses.end());
+  for (const int t : removed_) own_->remove(static_cast<std::size_t>(t));
+  removed_.clear();
   memory_.assign(viscosity.memory.begin(), viscosity.memory.end());
   made_.first = std::move(first);
   work_ = std::async(std::launch::async, [this, scale = viscosity.scale, c] {
-    matrix_.build(solid_, x_, {scale, memory_}, c, scratch_);
+    matrix_.build(body(), x_, masses_, {scale, memory_}, c, scratch_);
     made_.values = matrix_.columns(made_.first, tolerance_);
   });
 }

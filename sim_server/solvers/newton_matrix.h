@@ -1,5 +1,6 @@
 #pragma once
 #include <future>
+#include <optional>
 
 #include "sim_server/elasticity/solid.h"
 #include "sim_server/solvers/dynamics_settings.h"
@@ -16,10 +17,10 @@ class NewtonMatrix {
   NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                const std::string& where);
 
-  /// A of the solid at `x` (nodes, m), factored. Where A is not positive definite, as of a body about to
-  /// buckle, with more inertia.
-  void build(const Solid& solid, std::span<const Vec3> x, const Viscosity& viscosity, double c,
-             Solid::Scratch& scratch);
+  /// A of the solid at `x` (nodes, m) with these masses (nodes, kg), factored. Where A is not positive
+  /// definite, as of a body about to buckle, with more inertia.
+  void build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
+             const Viscosity& viscosity, double c, Solid::Scratch& scratch);
   /// To be called where iterations with the factor of the last `build` converge slowly: should that be for
   /// want of digits, the next is made in double precision. Costs a solve.
   void check_precision();
@@ -36,11 +37,10 @@ class NewtonMatrix {
   double mean_diagonal() const { return mean_diagonal_; }
   /// Of the A or K that is factored, N/m.
   double largest_diagonal() const { return matrix_.lower().diagonal().maxCoeff(); }
-  std::size_t bytes() const { return matrix_.bytes() + factor_.bytes() + mass_.size() * sizeof(double); }
+  std::size_t bytes() const { return matrix_.bytes() + factor_.bytes(); }
 
  private:
   double alpha_, beta_;
-  std::vector<double> mass_;  // of each node, kg
   StiffnessMatrix matrix_;
   double mean_diagonal_;  // N/m
   SparseCholesky factor_;
@@ -55,14 +55,19 @@ struct Columns {
 
 /// A second `NewtonMatrix` that a thread of its own makes ready while steps go on with the first
 /// (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159). The thread reads the body, which must
-/// outlive this, and its own copy of all that changes.
+/// outlive this, and its own copy of all that changes: where tetrahedra may be removed, also of the body.
 class BackgroundMatrix {
  public:
   BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                    const std::string& where);
   /// Starts with A of the solid at `x`, and its columns from these unknowns on. The one begun before must
   /// have been exchanged.
-  void begin(std::span<const Vec3> x, const Viscosity& viscosity, double c, std::vector<int> first);
+  void begin(std::span<const Vec3> x, std::span<const double> masses, const Viscosity& viscosity, double c,
+             std::vector<int> first);
+  /// From the next `begin` on the body is without these tetrahedra.
+  void remove(std::span<const int> tetrahedra) {
+    removed_.insert(removed_.end(), tetrahedra.begin(), tetrahedra.end());
+  }
   bool begun() const { return work_.valid(); }
   /// Waits for it, and exchanges it for `matrix`.
   void exchange(NewtonMatrix& matrix);
@@ -72,7 +77,12 @@ class BackgroundMatrix {
   std::size_t bytes() const { return bytes_; }
 
  private:
+  const Solid& body() const { return own_ ? *own_ : solid_; }
+
   const Solid& solid_;
+  std::optional<Solid> own_;  // of a body that may be cut
+  std::vector<int> removed_;  // since that was brought up to date
+  std::vector<double> masses_;
   Solid::Scratch scratch_;
   NewtonMatrix matrix_;
   double tolerance_;

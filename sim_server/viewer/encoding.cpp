@@ -9,7 +9,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr std::byte kTopology{1}, kSurface{2}, kTicks{3}, kSample{4}, kField{5};
+constexpr std::byte kTopology{1}, kSurface{2}, kTicks{3}, kSample{4}, kField{5}, kTriangles{6};
 constexpr double kMost = 65535;
 
 static_assert(std::endian::native == std::endian::little, "the messages are little-endian");
@@ -99,6 +99,26 @@ void write_surface(const SurfaceStamp& stamp, std::span<const std::uint16_t> now
     }
   }
   std::copy(now.begin(), now.end(), had.begin());
+}
+
+void write_triangles(std::uint32_t version, std::span<const Triangle> now, std::vector<Triangle>& had,
+                     bool whole, Bytes& out) {
+  std::vector<std::uint32_t> places;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (i >= had.size() || now[i] != had[i]) places.push_back(static_cast<std::uint32_t>(i));
+  }
+  whole = whole || 4 * places.size() >= 3 * now.size();
+  begin(out, kTriangles);
+  append(out, version), append(out, static_cast<std::uint32_t>(now.size()));
+  append(out, static_cast<std::uint32_t>(whole ? now.size() : places.size()));
+  append(out, static_cast<std::uint32_t>(whole ? 1 : 0));
+  if (whole) {
+    append_all(out, now);
+  } else {
+    append_all<std::uint32_t>(out, places);
+    for (const std::uint32_t i : places) append(out, now[i]);
+  }
+  had.assign(now.begin(), now.end());
 }
 
 void write_sample(std::uint8_t tool, const SeenTool::Sample& sample, Bytes& out) {

@@ -33,6 +33,11 @@ struct SurfaceStamp {
 void write_surface(const SurfaceStamp& stamp, std::span<const std::uint16_t> now,
                    std::span<std::uint16_t> had, bool whole, Bytes& out);
 
+/// The triangles of another version of the topology: those of `now` that `had`, which follows, has not got in
+/// the same place; `whole`: all of them, also where that is shorter.
+void write_triangles(std::uint32_t version, std::span<const Triangle> now, std::vector<Triangle>& had,
+                     bool whole, Bytes& out);
+
 void write_sample(std::uint8_t tool, const SeenTool::Sample& sample, Bytes& out);
 void write_ticks(const ClientTicks& ticks, Bytes& out);
 

@@ -44,11 +44,18 @@ std::optional<PageLink::Kind> PageLink::begin(const Showing& showing, Bytes& out
     knows_scene_ = true;
     return put_text(scene_text(*showing.scene, may_control_), out);
   }
-  if (!showing.live || version_ == showing.version || showing.positions.empty()) return {};
+  if (!showing.live || showing.positions.empty()) return {};
+  if (version_ == 0) {
+    version_ = Showing::kWhole;
+    surface_ = state_ = 0;
+    has_.clear();
+    write_topology(showing.scene->organ, showing.box, version_, out);
+    return Kind::kBinary;
+  }
+  if (version_ == showing.version && !whole_triangles_) return {};
+  if (version_ == Showing::kWhole) has_triangles_ = showing.scene->organ.triangles;
   version_ = showing.version;
-  surface_ = state_ = 0;
-  has_.clear();
-  write_topology(showing.scene->organ, showing.box, showing.version, out);
+  write_triangles(version_, showing.triangles, has_triangles_, std::exchange(whole_triangles_, false), out);
   return Kind::kBinary;
 }
 

@@ -15,7 +15,9 @@ struct Showing {
   const SceneFacts* scene = nullptr;
   bool live = true;  ///< false: nothing but the scene is sent, the rest stands in `/session`
   ViewBox box;
-  std::uint32_t version = 1;  ///< of the topology
+  std::uint32_t version = kWhole;             ///< of the topology: which triangles it has
+  static constexpr std::uint32_t kWhole = 1;  ///< those of the scene, before anything was removed
+  std::span<const Triangle> triangles{};      ///< of any later one
   const Picture* picture = nullptr;
   std::uint64_t pictures = 0;            ///< so far: another number is another picture
   std::vector<std::uint16_t> positions;  ///< (3 n) of `picture`
@@ -32,7 +34,7 @@ struct Showing {
 };
 
 /// Decides what a page gets next, each time that its connection takes more: the newest, against what it has;
-/// nothing waits in line. Holds 6 bytes a vertex and no more.
+/// nothing waits in line. Holds 6 bytes a vertex, and of an organ that is cut 12 a triangle.
 class PageLink {
  public:
   explicit PageLink(Time opened) : opened_(opened), messages_(kMessagesPerSecond, kMessagesPerSecond) {}
@@ -49,8 +51,11 @@ class PageLink {
   bool wants_field() const noexcept { return wants_field_; }
   /// It drew the surface of this step, so those before are no longer on their way.
   void shown(std::uint32_t step) noexcept;
-  /// The next surface is a whole one.
-  void forget_surface() noexcept { has_.clear(); }
+  /// The next surface is a whole one, and so are the triangles before it, where some have been removed.
+  void forget_surface() noexcept {
+    has_.clear();
+    whole_triangles_ = version_ > Showing::kWhole;
+  }
   /// The newest reason is told.
   void refuse(std::string why) { refused_ = std::move(why); }
 
@@ -77,6 +82,8 @@ class PageLink {
   std::uint32_t version_ = 0;                                      // of the topology that it has; 0: none
   std::uint64_t surface_ = 0, state_ = 0, field_ = 0, ticks_ = 0;  // the newest that it has got
   std::vector<std::uint16_t> has_;                                 // (3 n)
+  std::vector<Triangle> has_triangles_;                            // where the organ is cut
+  bool whole_triangles_ = false;                                   // to be sent again
   std::array<std::uint64_t, kMaxTools> samples_{}, clients_{};
   std::string refused_;
   bool tells_ = false;                     // what it drew

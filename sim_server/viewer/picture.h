@@ -2,6 +2,7 @@
 /// What a page is shown, as small structs: nothing here knows how a session is served.
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,13 @@ struct SeenTool {
   DiscretisationErrors errors{};  ///< of that force, where its client asks for them
 };
 
+/// What a resection has come to. m^3, m^2, m.
+struct SeenResection {
+  std::uint64_t tetrahedra = 0;  ///< gone
+  double volume = 0, cut_area = 0, mean_distance = 0, farthest = 0;
+  int loose_pieces = 0;
+};
+
 /// The organ and its tools after a step: what the simulation thread hands over.
 struct Picture {
   double t = 0;                  ///< s since the server began
@@ -63,6 +71,10 @@ struct Picture {
   double step_ms = 0;            ///< how long the newest took
   std::uint64_t late = 0;        ///< deadlines passed over
   std::vector<float> positions;  ///< (3 n), m, world
+  /// In how many steps so far tissue has been removed; and the triangles since, where it is more than 0.
+  std::uint32_t cuts = 0;
+  std::vector<Triangle> triangles{};
+  std::optional<SeenResection> resection{};  ///< of an organ that can be cut
   std::array<SeenTool, kMaxTools> tools{};
 };
 

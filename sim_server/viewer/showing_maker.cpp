@@ -28,6 +28,8 @@ void ShowingMaker::look(Time now) {
     showing_.picture = &feed_.pictures.front();
     ++showing_.pictures;
     quantise(showing_.box, showing_.picture->positions, showing_.positions);
+    showing_.version = Showing::kWhole + showing_.picture->cuts;
+    showing_.triangles = showing_.picture->triangles;
     fresh_ = true;
   }
   if (feed_.hooks.news) feed_.hooks.news(now);

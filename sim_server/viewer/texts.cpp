@@ -97,6 +97,17 @@ std::string scene_text(const SceneFacts& scene, bool may_control) {
   return dumped({{"scene", json}});
 }
 
+namespace {
+
+Json resection_json(const std::optional<SeenResection>& resection) {
+  if (!resection) return nullptr;
+  return {{"tetrahedra", resection->tetrahedra},    {"volume", brief(resection->volume)},
+          {"cut_area", brief(resection->cut_area)}, {"mean_distance", brief(resection->mean_distance)},
+          {"farthest", brief(resection->farthest)}, {"loose_pieces", resection->loose_pieces}};
+}
+
+}  // namespace
+
 std::string state_text(const Picture& picture, std::span<const SeenPeer> peers, const MeasuredRates& rates,
                        bool paused) {
   Json tools = Json::array();
@@ -110,6 +121,7 @@ std::string state_text(const Picture& picture, std::span<const SeenPeer> peers, 
                    {"rate_hz", number_or_null(rates.steps_hz)},
                    {"real_time_factor", number_or_null(rates.real_time_factor)},
                    {"tools", tools},
+                   {"resection", resection_json(picture.resection)},
                    {"peers", peers_json(peers)}}}});
 }
 

@@ -22,6 +22,7 @@ void add_finder_rows();
 void add_server_rows();
 void add_setup_rows();
 void add_tensor_rows();
+void add_removal_rows();
 void add_implicit_rows();
 void add_kernel_rows();
 void add_cholesky_rows();

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
     add_server_rows();
     add_setup_rows();
     add_tensor_rows();
+    add_removal_rows();
     add_implicit_rows();
     add_kernel_rows();
     add_telemetry_rows();

@@ -75,6 +75,9 @@ inline std::vector<Message> one_of_each() {
   driven.flags = ForceSample::kHasModes | ForceSample::kHasModalLoads;
   driven.modal_loads.count = 2;
   driven.modal_loads.load = {-0.5F, 3};
+  ForceSample of_cut = force;
+  of_cut.flags = ForceSample::kHasCuts;
+  of_cut.cuts = 0x01020304;
   SurfacePage page{.tool = 1, .version = 0xa1b2c3d4, .page = 0x0708};
   page.values.front() = 0.5F;
   page.values.back() = -2;
@@ -116,7 +119,8 @@ inline std::vector<Message> one_of_each() {
           relaxing,
           telemetry,
           pointer,
-          driven};
+          driven,
+          of_cut};
 }
 
 }  // namespace palpate::test

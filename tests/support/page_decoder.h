@@ -16,7 +16,7 @@ struct PageDecoder {
   std::vector<std::uint32_t> corners;
   std::vector<std::uint8_t> flags;
   std::vector<double> positions;  // (3 n), m
-  std::size_t surfaces = 0, whole_ones = 0, named = 0;
+  std::size_t surfaces = 0, whole_ones = 0, named = 0, cuts = 0, whole_cuts = 0;
   std::vector<double> sample_forces;
   std::vector<double> tick_times, tick_forces;  // of all ticks so far; the force felt
 
@@ -32,6 +32,8 @@ struct PageDecoder {
         return ticks();
       case 4:
         return sample();
+      case 6:
+        return cut();
       default:
         return;
     }
@@ -67,6 +69,23 @@ struct PageDecoder {
     flags = all<std::uint8_t>(n);
     end();
     positions.assign(3 * n, 0);
+  }
+  void cut() {
+    all<std::uint8_t>(3);
+    version = get<std::uint32_t>();
+    triangles = get<std::uint32_t>();
+    const auto k = get<std::uint32_t>(), whole = get<std::uint32_t>();
+    if (whole == 1 && k != triangles) throw std::runtime_error("whole, but not all");
+    std::vector<std::uint32_t> places;
+    if (whole == 0) places = all<std::uint32_t>(k);
+    corners.resize(3 * triangles);
+    for (std::uint32_t i = 0; i < k; ++i) {
+      for (std::size_t c = 0; c < 3; ++c)
+        corners.at(3 * (whole == 1 ? i : places[i]) + c) = get<std::uint32_t>();
+    }
+    end();
+    ++cuts;
+    whole_cuts += whole;
   }
   void surface() {
     all<std::uint8_t>(3);

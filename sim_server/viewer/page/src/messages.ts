@@ -52,8 +52,18 @@ export interface Field {
   share: Uint8Array; // n
 }
 
+/** Other triangles of the same vertices: tissue has been removed. */
+export interface Triangles {
+  kind: "triangles";
+  version: number;
+  m: number;
+  places: Uint32Array | null; // k, below m; null: all of them
+  corners: Uint32Array; // 3k
+}
+
 export type Message =
   | Topology
+  | Triangles
   | Surface
   | Ticks
   | Sample
@@ -82,6 +92,8 @@ export function decode(data: string | ArrayBuffer): Message | null {
       return sample(view);
     case 5:
       return field(view);
+    case 6:
+      return triangles(view);
     default:
       return null;
   }
@@ -177,6 +189,31 @@ function field(view: DataView): Field | null {
     largest,
     share: new Uint8Array(view.buffer.slice(16)),
   };
+}
+
+function triangles(view: DataView): Triangles | null {
+  if (view.byteLength < 20) return null;
+  const m = view.getUint32(8, kLittle);
+  const k = view.getUint32(12, kLittle);
+  const whole = view.getUint32(16, kLittle) === 1;
+  const numbers = whole ? 0 : 4 * k;
+  if (view.byteLength !== 20 + numbers + 12 * k || (whole && k !== m)) return null;
+  const places = whole ? null : u32(view, 20, k);
+  if (places?.some((place) => place >= m)) return null;
+  return { kind: "triangles", version: view.getUint32(4, kLittle), m, places, corners: u32(view, 20 + numbers, 3 * k) };
+}
+
+/** A triangles message that names all of them. */
+export function encode_triangles(version: number, corners: Uint32Array): ArrayBuffer {
+  const bytes = new ArrayBuffer(20 + 4 * corners.length);
+  const view = new DataView(bytes);
+  view.setUint8(0, 6);
+  view.setUint32(4, version, kLittle);
+  view.setUint32(8, corners.length / 3, kLittle);
+  view.setUint32(12, corners.length / 3, kLittle);
+  view.setUint32(16, 1, kLittle);
+  new Uint32Array(bytes, 20).set(corners);
+  return bytes;
 }
 
 /** A surface message that names every vertex: what a recording begins its second with. */

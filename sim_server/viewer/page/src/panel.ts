@@ -1,7 +1,7 @@
 // The numbers: the few that matter most in large type, and the whole list beneath the plots.
 import { by_id, figures, fixed, kNone, make, set_text } from "./dom";
 import type { Session } from "./session";
-import type { Client, State } from "./text_messages";
+import type { Client, Resected, State } from "./text_messages";
 
 type Row = [name: string, value: string, unit: string];
 
@@ -29,6 +29,8 @@ export class Panel {
     this.drawn_ = now;
     this.large();
     const groups: [string, Row[]][] = [["Simulation", this.simulation()], [`Tool ${this.tool + 1}`, this.tool_rows()]];
+    const cut = this.session_.state?.resection;
+    if (cut) groups.push(["Resection", resection_rows(cut)]);
     const client = this.session_.clients.get(this.tool);
     groups.push(["Error of the force", this.error_rows(client)]);
     if (client) groups.push(["Client", client_rows(client)], ["Safety", safety_rows(client)]);
@@ -138,6 +140,17 @@ function plain(value: number): string {
 function held(state: State | null, tool: number): string {
   const now = state?.tools[tool];
   return now ? (now.held ? "yes" : "by nobody") : kNone;
+}
+
+function resection_rows(cut: Resected): Row[] {
+  return [
+    ["Removed", fixed(1e6 * cut.volume, 2), "ml"],
+    ["Tetrahedra gone", String(cut.tetrahedra), ""],
+    ["Cut, both sides", fixed(1e4 * cut.cut_area, 1), "cm\u00b2"],
+    ["From the plan, mean", fixed(1e3 * cut.mean_distance, 1), "mm"],
+    ["From the plan, farthest", fixed(1e3 * cut.farthest, 1), "mm"],
+    ["Pieces cut loose", String(cut.loose_pieces), ""],
+  ];
 }
 
 function client_rows(client: Client): Row[] {

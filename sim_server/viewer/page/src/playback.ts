@@ -5,14 +5,14 @@ import type { Session } from "./session";
 
 interface Entry {
   t: number; // s, never less than the one before
-  kind: string; // the first key of a text; topology, whole, surface, ticks, sample, field
+  kind: string; // the first key of a text; topology, all_triangles, triangles, whole, surface, ticks, sample, field
   text: boolean;
   at: number;
   length: number;
 }
 
 const kHeader = 16;
-const kBinaryKinds = ["", "topology", "surface", "ticks", "sample", "field"];
+const kBinaryKinds = ["", "topology", "surface", "ticks", "sample", "field", "triangles"];
 const kPlotSeconds = 30; // what a seek fills the plots with
 
 export class Playback {
@@ -69,13 +69,17 @@ export class Playback {
     const scene = this.last_before(stop, (e) => e.kind === "scene");
     const topology = this.last_before(stop, (e) => e.kind === "topology");
     const whole = this.last_before(stop, (e) => e.kind === "whole");
+    const triangles = this.last_before(whole < 0 ? stop : whole, (e) => e.kind === "all_triangles");
+    const cut_from = triangles > topology ? triangles : topology;
     this.session_.reset();
     if (scene >= 0 && scene !== this.scene_) this.apply(scene);
     if (topology >= 0 && topology !== this.topology_) this.apply(topology);
     const from = this.first_after(this.now - kPlotSeconds);
-    for (let i = Math.max(0, Math.min(from, whole < 0 ? stop : whole)); i < stop; i++) {
+    for (let i = Math.max(0, Math.min(from, cut_from < 0 ? stop : cut_from, whole < 0 ? stop : whole)); i < stop; i++) {
       const { kind } = this.entries_[i];
-      const shown = kind === "whole" || kind === "surface" || kind === "field" ? i >= whole : i >= from;
+      const moves = kind === "whole" || kind === "surface" || kind === "field";
+      const cuts = kind === "triangles" || kind === "all_triangles";
+      const shown = moves ? i >= whole : cuts ? i >= cut_from : i >= from;
       if (shown && kind !== "scene" && kind !== "topology" && i > scene) this.apply(i);
     }
     this.next_ = stop;
@@ -92,6 +96,7 @@ export class Playback {
       this.topology_ = -1;
     }
     if (kind === "topology") this.topology_ = i;
+    if (kind === "triangles" || kind === "all_triangles") this.topology_ = -1; // that one stands no more
     const bytes = this.bytes_.slice(at, at + length);
     this.session_.apply(decode(text ? new TextDecoder().decode(bytes) : bytes));
   }
@@ -138,5 +143,6 @@ function kind_of(view: DataView, at: number, length: number, text: boolean): str
     return /^\s*\{\s*"(\w+)"/.exec(start)?.[1] ?? "";
   }
   const kind = length > 0 ? (kBinaryKinds[view.getUint8(at)] ?? "") : "";
+  if (kind === "triangles" && length >= 20 && view.getUint32(at + 16, true) === 1) return "all_triangles";
   return kind === "surface" && length >= 28 && view.getUint32(at + 24, true) === 1 ? "whole" : kind;
 }

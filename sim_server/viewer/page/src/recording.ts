@@ -1,6 +1,6 @@
 // The last minutes of a live session, bounded in time and in bytes, as records of ../MESSAGES.md. It is kept in pieces of
 // about a second; each begins with the whole surface, so that the oldest piece can go and the rest still plays.
-import { encode_whole, type Message } from "./messages";
+import { encode_triangles, encode_whole, type Message } from "./messages";
 import type { Session } from "./session";
 
 export interface Limits {
@@ -81,6 +81,8 @@ export class Recording {
     if (this.pieces_.length && t < this.last().t) this.pieces_ = [];
     if (this.pieces_.length === 0) this.bytes_ = 0;
     this.pieces_.push({ t, bytes: 0, records: [] });
+    const { version, corners } = shape.topology;
+    if (version > 1) this.push({ text: false, t, bytes: new Uint8Array(encode_triangles(version, corners)), topology: false });
     const whole = encode_whole(shape.topology.version, shape.step, shape.t, shape.q);
     this.push({ text: false, t, bytes: new Uint8Array(whole), topology: false });
   }

@@ -16,7 +16,7 @@ export interface ToolSeries {
   loop: Series; // age of the force, loop period, ms
 }
 
-export type Change = "scene" | "topology" | "surface" | "state" | "client" | "ticks" | "field" | "refused" | "reset";
+export type Change = "scene" | "topology" | "cut" | "surface" | "state" | "client" | "ticks" | "field" | "refused" | "reset";
 type Listener = (change: Change, message?: Message) => void;
 
 export class Session {
@@ -82,6 +82,10 @@ export class Session {
         this.shape = message.rest.length > 0 ? new Shape(message) : null;
         this.field = null;
         return "topology";
+      case "triangles":
+        if (!this.shape?.cut(message)) return null;
+        this.field = null;
+        return "cut";
       case "surface":
         if (!this.shape?.move(message)) return null;
         this.t = Math.max(this.t, message.t);

@@ -1,19 +1,19 @@
 // The organ's surface: at rest, now, and what can be measured on it. Plain arrays; nothing of the screen.
-import type { Surface, Topology } from "./messages";
+import type { Surface, Topology, Triangles } from "./messages";
 import type { ToolNow } from "./text_messages";
 
 export class Shape {
   readonly n: number;
-  readonly m: number;
+  m: number;
   readonly q: Uint16Array; // 3n, as sent
   readonly p: Float32Array; // 3n, m
   readonly normals: Float32Array; // 3n, unit, outward
   known = false; // whether a surface message has come since the topology
   step = 0;
   t = 0;
-  private readonly metric_: Float32Array; // 4m: of each triangle at rest, the inverse metric (3) and the area, m2
+  private metric_: Float32Array; // 4m: of each triangle at rest, the inverse metric (3) and the area, m2
 
-  constructor(readonly topology: Topology) {
+  constructor(public topology: Topology) {
     this.n = topology.rest.length / 3;
     this.m = topology.corners.length / 3;
     this.q = new Uint16Array(3 * this.n);
@@ -38,6 +38,24 @@ export class Shape {
     this.known = true;
     this.step = surface.step;
     this.t = surface.t;
+    return true;
+  }
+
+  /** Takes other triangles of the same vertices, or says no: of vertices, or in places, that are not here. */
+  cut(triangles: Triangles): boolean {
+    const had = this.topology.corners;
+    const corners = new Uint32Array(3 * triangles.m);
+    if (triangles.corners.some((v) => v >= this.n)) return false;
+    if (triangles.places) {
+      corners.set(had.subarray(0, Math.min(had.length, corners.length)));
+      triangles.places.forEach((place, i) => corners.set(triangles.corners.subarray(3 * i, 3 * i + 3), 3 * place));
+    } else {
+      corners.set(triangles.corners);
+    }
+    this.topology = { ...this.topology, version: triangles.version, corners };
+    this.m = triangles.m;
+    this.metric_ = rest_metric(this.topology);
+    this.update_normals();
     return true;
   }
 

@@ -44,6 +44,16 @@ export interface ToolNow {
   loads: [number, number, number, number][]; // vertex; N, on the organ
 }
 
+/** What has been cut away: m3, m2 of both sides, m from the plan. */
+export interface Resected {
+  tetrahedra: number;
+  volume: number;
+  cut_area: number;
+  mean_distance: number;
+  farthest: number;
+  loose_pieces: number;
+}
+
 export interface State {
   t: number; // s
   step: number;
@@ -53,6 +63,7 @@ export interface State {
   rate_hz: number | null;
   real_time_factor: number | null;
   tools: ToolNow[];
+  resection: Resected | null;
   peers: { tool: number; address: string; loss_percent: number | null; rate_hz: number | null }[];
 }
 
@@ -147,12 +158,24 @@ function state(x: Json): State {
     rate_hz: number(x.rate_hz),
     real_time_factor: number(x.real_time_factor),
     tools: list(x.tools).filter(is_object).map(tool_now),
+    resection: is_object(x.resection) ? resected(x.resection) : null,
     peers: list(x.peers).filter(is_object).map((peer) => ({
       tool: number(peer.tool) ?? 0,
       address: text(peer.address),
       loss_percent: number(peer.loss_percent),
       rate_hz: number(peer.rate_hz),
     })),
+  };
+}
+
+function resected(x: Json): Resected {
+  return {
+    tetrahedra: number(x.tetrahedra) ?? 0,
+    volume: number(x.volume) ?? 0,
+    cut_area: number(x.cut_area) ?? 0,
+    mean_distance: number(x.mean_distance) ?? 0,
+    farthest: number(x.farthest) ?? 0,
+    loose_pieces: number(x.loose_pieces) ?? 0,
   };
 }
 

@@ -55,8 +55,9 @@ export class View {
         this.make_tools();
       }
       if (change === "scene" || change === "topology") this.show_shape();
+      if (change === "cut") this.organ_.show(session_.shape);
       if (change === "state" && this.framed_ === "nothing") this.frame(session_.shape);
-      if (change === "surface" || change === "field" || change === "state") this.moved_ = true;
+      if (change === "cut" || change === "surface" || change === "field" || change === "state") this.moved_ = true;
       if (change === "reset") this.largest_force_ = 0;
       this.stale_ = true;
     });

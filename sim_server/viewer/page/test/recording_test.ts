@@ -188,3 +188,53 @@ test("a series keeps its newest rows, finds a time, and thins out without losing
   series.push(3, [1]); // time went back: another session
   assert.equal(series.length, 1);
 });
+
+test("a cut travels, is recorded, and a seek comes to the triangles of that time", () => {
+  const triangles = (version: number, m: number, places: number[] | null, corners: number[]): ArrayBuffer => {
+    const bytes = new Bytes().u8(6, 0, 0, 0).u32(version, m, corners.length / 3, places ? 0 : 1);
+    return (places ? bytes.u32(...places) : bytes).u32(...corners).done();
+  };
+  const session = new Session();
+  const recording = new Recording({ seconds: 1e9, bytes: 1e9 });
+  const records: { text: boolean; t: number; bytes: Uint8Array }[] = [];
+  const take = (t: number, data: string | ArrayBuffer): void => {
+    const message = decode(data)!;
+    assert.ok(session.apply(message) !== null);
+    recording.add(data, message, session);
+    const text = typeof data === "string";
+    records.push({ text, t, bytes: text ? new TextEncoder().encode(data) : new Uint8Array(data) });
+  };
+  let version = 1;
+  for (const [t, data] of steps(60)) {
+    if (typeof data === "string" || new Uint8Array(data)[0] !== 2) {
+      take(t, data);
+      continue;
+    }
+    if (t === 1.5) take(t, triangles(++version, 3, [1], [0, 3, 2]));
+    if (t === 3.5) take(t, triangles(++version, 2, null, [0, 1, 2, 0, 2, 1]));
+    const bytes = data.slice(0);
+    new DataView(bytes).setUint32(4, version, true);
+    take(t, bytes);
+  }
+  for (const bytes of [recording.save(), save_records(records)]) {
+    const played = new Session();
+    const playback = new Playback(bytes.buffer as ArrayBuffer, played);
+    const counts: number[] = [];
+    for (const t of [5, 1, 2, 4, 1.5, 3.3, 3.5, 0.2]) {
+      playback.seek(t);
+      counts.push(played.shape!.m);
+      assert.ok(Math.abs(played.shape!.t - t) < 0.11, `${played.shape!.t} at ${t}`);
+    }
+    assert.deepEqual(counts, [2, 4, 3, 2, 3, 3, 2, 4]);
+  }
+});
+
+test("triangles that name vertices or places that are not there are refused", () => {
+  const session = new Session();
+  for (const [, data] of [...steps(2)].slice(0, 3)) session.apply(decode(data));
+  assert.equal(decode(new Bytes().u8(6, 0, 0, 0).u32(2, 1, 1, 0).u32(1).u32(0, 1, 2).done()), null);
+  const stranger = decode(new Bytes().u8(6, 0, 0, 0).u32(2, 1, 1, 1).u32(0, 1, 9).done())!;
+  const m = session.shape!.m;
+  session.apply(stranger);
+  assert.equal(session.shape!.m, m);
+});

@@ -100,6 +100,15 @@ TEST_CASE("after an outage a law starts afresh") {
   CHECK(estimate.force({0, 0, 0}, 741ms)[1] == Approx(1));
 }
 
+TEST_CASE("no line leads over a cut: a law starts afresh with the sample that tells of one") {
+  ForceEstimate estimate = rising();
+  CHECK(estimate.force({0, 0, 0}, 80ms).y() == Approx(3));
+  REQUIRE(estimate.take({.number = 3, .t = 80ms, .f = {0, 0.5, 0}, .cuts = 1}, Vec3::Zero(), 81ms));
+  CHECK(estimate.force({0, 0, 0}, 120ms).y() == Approx(0.5));
+  REQUIRE(estimate.take({.number = 4, .t = 120ms, .f = {0, 1, 0}, .cuts = 1}, Vec3::Zero(), 121ms));
+  CHECK(estimate.force({0, 0, 0}, 160ms).y() == Approx(1.5));
+}
+
 TEST_CASE("a tool that the newest sample saw free feels nothing") {
   ForceEstimate estimate = rising();
   REQUIRE(estimate.take({3, 80ms, {0, 0, 0}, {0, 0, 0}}, Vec3::Zero(), 80ms));

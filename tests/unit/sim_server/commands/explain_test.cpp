@@ -177,7 +177,7 @@ TEST_CASE("explain: what a scene in motion builds: tensors with its sub-steps, a
   CHECK(bench.explanation.steps.contacts == 200);
 }
 
-TEST_CASE("explain: motion at rest, tables of neighbours, tangents and a tool's tree are left out, by line") {
+TEST_CASE("explain: motion at rest, tangents and a tool's tree are left out, by line") {
   const std::string away = "[[tool]]\nradius = 0.005\nreach = [[5, 5, 5], [6, 6, 6]]\n";
   const Bench rests(kMesh + kFixed + kMaterial + model("quasi_static") + kTool + away);
   const LeftOut* motion = rests.left_out("motion");
@@ -185,15 +185,6 @@ TEST_CASE("explain: motion at rest, tables of neighbours, tangents and a tool's 
   CHECK(motion->why == rests.line("model = "));
   const TetMesh mesh = block();
   CHECK(motion->bytes.value() == 224.0 * static_cast<double>(mesh.vertices.size()));
-  std::set<std::pair<int, int>> edges;
-  for (const Tetrahedron& t : mesh.tetrahedra) {
-    for (const int a : t) {
-      for (const int b : t) edges.emplace(std::min(a, b), std::max(a, b));
-    }
-  }
-  const std::size_t pairs = edges.size() - mesh.vertices.size();  // without those of a vertex with itself
-  CHECK(rests.left_out("neighbour")->bytes.value() ==
-        static_cast<double>(16 * mesh.tetrahedra.size() + 8 * pairs));
   CHECK(rests.left_out("collision tree of tool 2")->why == rests.line("reach = "));
   CHECK(rests.left_out("collision tree of tool 1") == nullptr);
   CHECK(rests.left_out("tangents")->step_ms.has_value());
@@ -201,6 +192,15 @@ TEST_CASE("explain: motion at rest, tables of neighbours, tangents and a tool's 
   const Bench moves(kMesh + kFixed + kMaterial + model("tensor_mass") + kTool);
   CHECK(moves.left_out("motion") == nullptr);
   CHECK(moves.left_out("factor of the stiffness matrix")->why == moves.line("model = "));
+}
+
+TEST_CASE("explain: what cutting keeps is there where something is cut, and left out elsewhere") {
+  const std::string scene = kMesh + kFixed + kMaterial + model("tensor_mass") + kTool;
+  const Bench without(scene), with(scene + "cut_buttons = 1\n[cutting]\n");
+  CHECK(with.left_out("cutting") == nullptr);
+  CHECK(with.built("resection").where == with.line("[cutting]"));
+  REQUIRE(without.left_out("cutting") != nullptr);
+  CHECK(without.left_out("cutting")->bytes.value() == static_cast<double>(with.built("resection").bytes));
 }
 
 TEST_CASE("explain: friction is left out, and what it would cost is measured, unless a tool has some") {

@@ -117,6 +117,37 @@ TEST_CASE("[deformation]: values out of range, and names that are none") {
     check_refused(wrong);
 }
 
+TEST_CASE("[cutting]: values out of range, and a scene in which nothing could be cut") {
+  const std::string cuts = "cut_buttons = 1\n[cutting]\n",
+                    plan = cuts + "[cutting.plan]\npoint = [0, 0, 0]\n";
+  const std::string power = cuts + "power = 0", energy = cuts + "energy = 1", spot = cuts + "spot = 0",
+                    piece = cuts + "smallest_piece = -1", wrong_key = cuts + "watts = 5",
+                    normal = plan + "normal = [0, 0, 0]", within = plan + "normal = [1, 0, 0]\nwithin = 0",
+                    alone = cuts.substr(0, cuts.size() - 1);
+  for (const Wrong& wrong : {
+           Wrong{"[[tool]]", "cut_buttons = 0", "cut_buttons", "between 1 and 65535"},
+           Wrong{"[[tool]]", "cut_buttons = 1", "cut_buttons", "no [cutting] that says how"},
+           Wrong{"[[tool]]", "[cutting]", "no [[tool]] cuts", "give one `cut_buttons`"},
+           Wrong{"[[tool]]", alone.c_str(), "\"quasi_static\" cannot be cut", "tensor_mass, implicit",
+                 "quasi_static"},
+           Wrong{"[[tool]]", power.c_str(), "power", "(W)"},
+           Wrong{"[[tool]]", energy.c_str(), "energy", "(J/m^3)"},
+           Wrong{"[[tool]]", spot.c_str(), "spot", "(m)"},
+           Wrong{"[[tool]]", piece.c_str(), "smallest_piece", "between 0 and 1 (m^3)"},
+           Wrong{"[[tool]]", wrong_key.c_str(), "watts", "power"},
+           Wrong{"[[tool]]", normal.c_str(), "normal", "a length above 0"},
+           Wrong{"[[tool]]", within.c_str(), "within", "(m)"},
+       })
+    check_refused(wrong);
+}
+
+TEST_CASE("[cutting]: a region without any tetrahedron, elements and supports that cannot be cut") {
+  const SceneWith nothing("[[tool]]", "cut_buttons = 1\n[cutting]\ncenter = [9, 9, 9]\nradius = 0.1");
+  CHECK(nothing.error(true).find("no tetrahedron of the mesh lies in what can be cut") != std::string::npos);
+  const SceneWith quadratic("[material]", "element = \"p2\"\n[cutting]");
+  CHECK(quadratic.error().find("cut") != std::string::npos);
+}
+
 TEST_CASE("[material]: values out of range, and names that are none") {
   constexpr const char* kShare = "[[material.relaxation]]\ntime = 1\nshare = ";
   const std::string none = std::string(kShare) + "0", all = std::string(kShare) + "1",

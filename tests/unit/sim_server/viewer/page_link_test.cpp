@@ -149,22 +149,54 @@ TEST_CASE("viewer: a page that tells what it drew has at most four surfaces on t
   CHECK(session.page.step == 50);
 }
 
-TEST_CASE("viewer: another topology begins with its whole surface") {
+TEST_CASE("viewer: what is cut away is told place by place, and wholly to a page that comes late") {
   Session session;
   session.link.greet(false);
   session.step(1);
   session.take_all();
-  Showing other = session.maker->showing();
-  other.version = 2;
-  Bytes message;
-  std::vector<std::uint8_t> kinds;
-  while (session.link.next(other, session.time + 100ms, message)) {
-    kinds.push_back(std::to_integer<std::uint8_t>(message[0]));
-    if (message[0] != std::byte{'{'}) session.page.take(message);
-  }
-  CHECK(kinds == std::vector<std::uint8_t>{1, '{', 2});
+  std::vector<Triangle> now = session.scene.organ.triangles;
+  const auto cut = [&](std::uint64_t step, std::uint32_t cuts) {
+    for (int i = 0; i < 3; ++i) {  // each of the three pictures is filled in anew
+      Picture& picture = session.feed->pictures.back();
+      picture.cuts = cuts;
+      picture.triangles = now;
+      session.step(step);
+    }
+    session.take_all();
+  };
+  const auto shown = [](const test::PageDecoder& page) {
+    std::vector<Triangle> triangles;
+    for (std::size_t i = 0; i < page.corners.size(); i += 3)
+      triangles.push_back({static_cast<int>(page.corners[i]), static_cast<int>(page.corners[i + 1]),
+                           static_cast<int>(page.corners[i + 2])});
+    return triangles;
+  };
+  now = {{0, 2, 1}, {3, 1, 0}, {0, 3, 2}};
+  cut(2, 1);
   CHECK(session.page.version == 2);
-  CHECK(session.page.whole_ones == 2);
+  CHECK(session.page.cuts == 1);
+  CHECK(session.page.whole_cuts == 0);
+  CHECK(shown(session.page) == now);
+  now = {{1, 2, 3}};
+  cut(3, 5);  // pictures between were not shown
+  CHECK(shown(session.page) == now);
+  CHECK(session.page.step == 3);
+  CHECK(session.page.whole_ones == 1);
+  now.clear();
+  cut(4, 6);
+  CHECK(shown(session.page).empty());
+  now = {{0, 1, 2}, {0, 2, 1}};
+  cut(5, 7);
+  PageLink late(session.time);
+  late.greet(false);
+  test::PageDecoder page;
+  Bytes message;
+  while (late.next(session.maker->showing(), session.time + 100ms, message)) {
+    if (message[0] != std::byte{'{'}) page.take(message);
+  }
+  CHECK(shown(page) == now);
+  CHECK(page.step == 5);
+  CHECK(page.version == 8);
 }
 
 TEST_CASE("viewer: who has the token is told what it may do, and of what was not obeyed") {

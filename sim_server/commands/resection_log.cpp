@@ -1,0 +1,115 @@
+#include "sim_server/commands/resection_log.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "common/csv.h"
+#include "common/error.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr const char* kColumns =
+    "t_s,tool,x_m,y_m,z_m,force_N,contact,tetrahedra,removed_ml,dropped_ml,pieces_dropped,pieces_loose,"
+    "cut_area_cm2,mean_distance_mm,farthest_mm,heat_J,elastic_J,kinetic_J,hot_s,contact_s\n";
+
+std::string row_text(const ResectionRow& row) {
+  const ResectionTotals& all = row.totals;
+  return fmt::format(
+      "{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:."
+      "6g},"
+      "{:.6g},{:.6g}\n",
+      row.t, row.tool + 1, row.p_W.x(), row.p_W.y(), row.p_W.z(), row.f_W.norm(), row.contact ? 1 : 0,
+      all.tetrahedra, 1e6 * all.volume, 1e6 * all.dropped_volume, all.dropped_pieces, all.loose_pieces,
+      1e4 * all.cut_area, 1e3 * all.mean_distance(), 1e3 * all.farthest, all.heat, all.elastic, all.kinetic,
+      all.hot_time, all.contact_time);
+}
+
+}  // namespace
+
+void require_resection(const char* option, const std::optional<std::filesystem::path>& file,
+                       const Scene& scene) {
+  if (!file) return;
+  if (!scene.cutting)
+    fail("{}: {} has no [cutting], so that nothing is removed; leave it out, or add one", option,
+         scene.source);
+  check_writable(*file, Contents::kTable);
+}
+
+void write_resection(const std::filesystem::path& file, const Simulation& simulation) {
+  WholeFile whole(file, Contents::kTable);
+  std::ofstream out(whole.path());
+  out << kColumns;
+  for (const ResectionRow& row : simulation.resection_log()) out << row_text(row);
+  out.close();
+  if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
+  whole.commit();
+}
+
+void write_removals(const std::filesystem::path& file, const Simulation& simulation) {
+  WholeFile whole(file, Contents::kTable);
+  std::ofstream out(whole.path());
+  out << "t_s,tetrahedron\n";
+  for (const Removal& removal : simulation.removals())
+    out << fmt::format("{:.9f},{}\n", removal.t, removal.tetrahedron);
+  out.close();
+  if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
+  whole.commit();
+}
+
+std::vector<Removal> read_removals(const std::filesystem::path& file, const Simulation& simulation) {
+  const std::vector<std::string> columns{"t_s", "tetrahedron"};
+  const auto values = read_csv_columns(file, columns);
+  std::vector<Removal> removals;
+  const auto tetrahedra = static_cast<double>(simulation.mesh().tetrahedra.size());
+  for (std::size_t row = 0; row < values[0].size(); ++row) {
+    const double t = values[0][row], number = values[1][row];
+    if (row > 0 && t < removals.back().t)
+      fail("{}: column t_s must not decrease, but data row {} has {:g} after {:g}", file.string(), row + 1, t,
+           removals.back().t);
+    if (!(number >= 0 && number < tetrahedra && number == std::floor(number)))
+      fail("{}: data row {} names tetrahedron {:g}, and the mesh has 0 to {:g}; is it of another mesh?",
+           file.string(), row + 1, number, tetrahedra - 1);
+    removals.push_back({t, static_cast<int>(number)});
+  }
+  return removals;
+}
+
+Json resection_report(const Simulation& simulation) {
+  const Resection* const resection = simulation.resection();
+  if (resection == nullptr) return nullptr;
+  const ResectionTotals& all = resection->totals();
+  return {{"tetrahedra", all.tetrahedra},
+          {"tetrahedra_left", resection->left().count()},
+          {"removed_m3", all.volume},
+          {"dropped_m3", all.dropped_volume},
+          {"pieces_dropped", all.dropped_pieces},
+          {"pieces_loose", all.loose_pieces},
+          {"loose_m3", all.loose_volume},
+          {"cut_area_m2", all.cut_area},
+          {"mean_distance_m", all.mean_distance()},
+          {"farthest_m", all.farthest},
+          {"heat_J", all.heat},
+          {"elastic_J", all.elastic},
+          {"kinetic_J", all.kinetic},
+          {"momentum_Ns", {all.momentum.x(), all.momentum.y(), all.momentum.z()}},
+          {"hot_s", all.hot_time},
+          {"contact_s", all.contact_time}};
+}
+
+std::string resection_text(const Simulation& simulation) {
+  const Resection* const resection = simulation.resection();
+  if (resection == nullptr) return {};
+  const ResectionTotals& all = resection->totals();
+  return fmt::format(
+      "removed {} of {} tetrahedra, {:.2f} ml, {:.2f} ml of them {} loose pieces; cut {:.1f} cm2, {:.1f} mm "
+      "from "
+      "the plan on average and {:.1f} mm at most; {} pieces lie loose; {:.0f} J of heat in {:.1f} s",
+      all.tetrahedra, all.tetrahedra + resection->left().count(), 1e6 * all.volume, 1e6 * all.dropped_volume,
+      all.dropped_pieces, 1e4 * all.cut_area, 1e3 * all.mean_distance(), 1e3 * all.farthest, all.loose_pieces,
+      all.heat, all.hot_time);
+}
+
+}  // namespace palpate::sim

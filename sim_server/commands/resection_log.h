@@ -1,0 +1,28 @@
+#pragma once
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+#include "common/report.h"
+#include "sim_server/simulation/simulation.h"
+
+namespace palpate::sim {
+
+/// Throws `Error` where `option` names a FILE, but the scene cuts nothing, or FILE cannot be written.
+void require_resection(const char* option, const std::optional<std::filesystem::path>& file,
+                       const Scene& scene);
+
+/// Writes a CSV with a row for each step with a hot tip: time, tool, place, force, and what the resection has
+/// come to by then (configs/README.md). Throws `Error` (run time).
+void write_resection(const std::filesystem::path& file, const Simulation& simulation);
+
+/// The tetrahedra that went, as `--removals` writes and `--remove` reads them. Throws `Error`, of a file that
+/// names another mesh's (file and row).
+void write_removals(const std::filesystem::path& file, const Simulation& simulation);
+std::vector<Removal> read_removals(const std::filesystem::path& file, const Simulation& simulation);
+
+/// Where it ended, for a report; null: nothing can be cut.
+Json resection_report(const Simulation& simulation);
+/// The same in one line; empty.
+std::string resection_text(const Simulation& simulation);
+
+}  // namespace palpate::sim

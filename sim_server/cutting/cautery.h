@@ -1,0 +1,38 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "sim_server/mesh/cut_mesh.h"
+#include "sim_server/scene/cutting.h"
+
+namespace palpate::sim {
+
+/// A tip that is hot now.
+struct HotTip {
+  Vec3 p_W;       ///< centre, m, world
+  double radius;  ///< m
+};
+
+/// Heat in tissue, and which of it that makes vanish. A tip gives its power to the tetrahedra whose outer
+/// faces lie within `spot` of it, more to those that are nearer and show it more: by face area times 1 - gap
+/// / spot, both in the deformed body. Heat stays where it went. A tetrahedron is gone when it has taken
+/// `energy` for its volume at rest. One thread; allocates.
+class Cautery {
+ public:
+  Cautery(const Cutting& cutting, const TetMesh& mesh);
+
+  /// `dt` (s) of these tips on the surface at `positions` (its vertices, m). The tetrahedra that are gone by
+  /// that, ascending. O(triangles) where there is a tip.
+  std::vector<int> heat(std::span<const HotTip> tips, const CutMesh& mesh, const Surface& surface,
+                        std::span<const Vec3> positions, double dt);
+  /// So far, J: into tissue, whether that is gone or still there.
+  double spent() const { return spent_; }
+  std::size_t bytes() const { return 2 * taken_.size() * sizeof(double); }
+
+ private:
+  double power_, spot_;                 // W, m
+  std::vector<double> taken_, needed_;  // of each tetrahedron, J
+  double spent_ = 0;
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,81 @@
+#include "sim_server/cutting/resection.h"
+
+#include <algorithm>
+
+namespace palpate::sim {
+namespace {
+
+Vec3 centre_of(const TetMesh& mesh, const Tetrahedron& t) {
+  Vec3 centre = Vec3::Zero();
+  for (const int v : t) centre += mesh.vertices[static_cast<std::size_t>(v)] / 4;
+  return centre;
+}
+
+}  // namespace
+
+Resection::Resection(const Cutting& cutting, const TetMesh& mesh, std::span<const int> held, Surface& surface)
+    : plan_(cutting.plan),
+      smallest_piece_(cutting.smallest_piece),
+      left_(mesh, removable_tetrahedra(cutting, mesh), surface),
+      pieces_(mesh, held),
+      cautery_(cutting, mesh) {}
+
+std::span<const int> Resection::advance(std::span<const HotTip> tips, std::span<const Vec3> positions,
+                                        double dt, Surface& surface) {
+  removed_.clear();
+  if (tips.empty()) return removed_;
+  const std::vector<int> gone = cautery_.heat(tips, left_, surface, positions, dt);
+  totals_.heat = cautery_.spent();
+  totals_.hot_time += dt;
+  return remove(gone, surface);
+}
+
+std::span<const int> Resection::remove(std::span<const int> tetrahedra, Surface& surface) {
+  removed_.clear();
+  if (tetrahedra.empty()) return removed_;
+  ++version_;
+  take_out(tetrahedra, surface);
+  if (plan_) {
+    for (const int t : tetrahedra) {
+      const Tetrahedron& corners = left_.mesh().tetrahedra[static_cast<std::size_t>(t)];
+      const double away = std::abs(plan_->distance(centre_of(left_.mesh(), corners)));
+      totals_.distance_sum += away * six_volumes(left_.mesh(), corners) / 6;
+      totals_.farthest = std::max(totals_.farthest, away);
+    }
+  }
+  for (const Piece& piece : pieces_.cut_off(left_, tetrahedra)) {
+    if (piece.held) continue;
+    if (piece.volume >= smallest_piece_) {
+      ++totals_.loose_pieces;
+      totals_.loose_volume += piece.volume;
+      continue;
+    }
+    ++totals_.dropped_pieces;
+    totals_.dropped_volume += piece.volume;
+    take_out(piece.tetrahedra, surface);
+  }
+  return removed_;
+}
+
+void Resection::take_out(std::span<const int> tetrahedra, Surface& surface) {
+  const TetMesh& mesh = left_.mesh();
+  left_.remove(tetrahedra, surface);
+  totals_.cut_area = left_.cut_area();
+  totals_.tetrahedra += tetrahedra.size();
+  for (const int t : tetrahedra)
+    totals_.volume += six_volumes(mesh, mesh.tetrahedra[static_cast<std::size_t>(t)]) / 6;
+  removed_.insert(removed_.end(), tetrahedra.begin(), tetrahedra.end());
+}
+
+double Resection::estimated_bytes(double vertices, double tetrahedra, double faces) {
+  constexpr double kNumbers = 4 + 4 + 4 + 1;  // neighbours, around, places of faces, fronts
+  return tetrahedra * (kNumbers * sizeof(int) + 6 + 2 * sizeof(double)) + vertices * (3 * sizeof(int) + 1) +
+         sizeof(int) + faces * sizeof(int);
+}
+
+std::size_t Resection::bytes() const {
+  const std::size_t tetrahedra = left_.mesh().tetrahedra.size();
+  return left_.bytes() + cautery_.bytes() + tetrahedra * sizeof(int) + left_.mesh().vertices.size();
+}
+
+}  // namespace palpate::sim

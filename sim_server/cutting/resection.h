@@ -1,0 +1,64 @@
+#pragma once
+#include "sim_server/cutting/cautery.h"
+#include "sim_server/mesh/pieces.h"
+
+namespace palpate::sim {
+
+/// What a resection has done so far. Volumes and areas are those at rest.
+struct ResectionTotals {
+  std::uint64_t tetrahedra = 0;               ///< gone, with those of pieces
+  double volume = 0;                          ///< of these, m^3
+  double dropped_volume = 0;                  ///< of loose pieces that went, within `volume`, m^3
+  int dropped_pieces = 0, loose_pieces = 0;   ///< that went; that stay, held by nothing
+  double loose_volume = 0;                    ///< of those that stay, when they came loose, m^3
+  double cut_area = 0;                        ///< surface that was inside at first, m^2: both sides
+  double distance_sum = 0, farthest = 0;      ///< from the plan: m x m^3 of what is gone; m
+  double heat = 0, elastic = 0, kinetic = 0;  ///< J: put in by tips; that went with the tissue
+  Vec3 momentum = Vec3::Zero();               ///< N s, the same
+  double hot_time = 0, contact_time = 0;      ///< s with a tip hot; and that touched
+
+  /// Of what heat removed, from the plan, m; 0 where nothing is gone.
+  double mean_distance() const {
+    const double cut = volume - dropped_volume;
+    return cut > 0 ? distance_sum / cut : 0;
+  }
+};
+
+/// What of an organ is left while it is cut. One thread; allocates.
+class Resection {
+ public:
+  /// Gives `surface` the vertices of all that can be cut (`CutMesh`). `held`: mesh vertices that are fixed,
+  /// ascending. The mesh outlives this. Throws `Error` as `removable_tetrahedra`.
+  Resection(const Cutting& cutting, const TetMesh& mesh, std::span<const int> held, Surface& surface);
+
+  /// `dt` (s) of these hot tips, on the surface at `positions`. What is gone then, in the order in which it
+  /// went: what heat removed, then pieces that it cut off. Changes `surface`.
+  std::span<const int> advance(std::span<const HotTip> tips, std::span<const Vec3> positions, double dt,
+                               Surface& surface);
+  /// Removes these that are left, and what they cut off, as if by heat.
+  std::span<const int> remove(std::span<const int> tetrahedra, Surface& surface);
+
+  const CutMesh& left() const { return left_; }
+  /// Grows with each `advance` that removed something: of which surface the triangles are.
+  std::uint32_t version() const { return version_; }
+  const ResectionTotals& totals() const { return totals_; }
+  /// For what only the owner knows.
+  ResectionTotals& totals() { return totals_; }
+  std::size_t bytes() const;
+  /// The same beforehand, of a mesh with so many vertices, tetrahedra and outer faces of which all can go.
+  static double estimated_bytes(double vertices, double tetrahedra, double faces);
+
+ private:
+  void take_out(std::span<const int> tetrahedra, Surface& surface);
+
+  std::optional<CutPlan> plan_;
+  double smallest_piece_;  // m^3
+  CutMesh left_;
+  PieceFinder pieces_;
+  Cautery cautery_;
+  std::vector<int> removed_;
+  std::uint32_t version_ = 0;
+  ResectionTotals totals_;
+};
+
+}  // namespace palpate::sim

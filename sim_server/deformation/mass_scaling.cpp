@@ -1,0 +1,65 @@
+#include "sim_server/deformation/mass_scaling.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim_server/elasticity/element.h"
+#include "sim_server/elasticity/laws.h"
+
+namespace palpate::sim {
+namespace {
+
+/// The square of the highest angular frequency of a tetrahedron alone, (rad/s)^2.
+double squared_frequency(const LinearTetrahedron& element, const Material& material) {
+  using Matrix12 = Eigen::Matrix<double, 12, 12>;
+  const Moduli moduli = LinearLaw::moduli(material);
+  const LinearLaw law(moduli, Mat3::Identity());
+  Matrix12 k;  // per volume
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < 4; ++b) {
+      const Vec3 &ga = element.gradient[a], &gb = element.gradient[b];
+      k.block<3, 3>(3 * static_cast<Eigen::Index>(a), 3 * static_cast<Eigen::Index>(b)) =
+          law.block(0, ga, gb) + moduli.lambda * ga * gb.transpose();
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix12> solver(k, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[11] / (material.density / 4);
+}
+
+}  // namespace
+
+MassScaling scale_masses(const TetMesh& mesh, const Material& material, double share) {
+  const auto& x = mesh.vertices;
+  std::vector<double> squares, masses;  // of each element: (rad/s)^2, kg
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    const Tetrahedron& t = mesh.tetrahedra[e];
+    const LinearTetrahedron element({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
+    const double stiffness = mesh.stiffness.empty() ? 1 : mesh.stiffness[e];
+    squares.push_back(stiffness * squared_frequency(element, material));
+    masses.push_back(material.density * element.volume);
+  }
+  std::vector<std::size_t> order(squares.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return squares[a] > squares[b]; });
+  const double most = share * std::accumulate(masses.begin(), masses.end(), 0.0);
+  MassScaling scaling{.factors = std::vector<double>(squares.size(), 1)};
+  // With all above the square w of some element lowered to it, sum m_e (w_e / w - 1) is added.
+  double weighted = 0, mass = 0, bound = squares[order.front()];
+  for (const std::size_t e : order) {
+    if (weighted / squares[e] - mass > most) break;
+    bound = squares[e];
+    weighted += masses[e] * squares[e];
+    mass += masses[e];
+  }
+  for (std::size_t e = 0; e < squares.size(); ++e) {
+    if (squares[e] <= bound) continue;
+    scaling.factors[e] = squares[e] / bound;
+    scaling.added += (scaling.factors[e] - 1) * masses[e];
+  }
+  scaling.frequency = std::sqrt(bound);
+  return scaling;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,223 @@
+#include "sim_server/mesh/cut_mesh.h"
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include "sim_server/mesh/pieces.h"
+#include "sim_server/mesh/shapes.h"
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+/// What is left, as a mesh of its own with the same vertices.
+TetMesh rest_of(const TetMesh& mesh, const CutMesh& cut) {
+  TetMesh rest{.vertices = mesh.vertices, .tetrahedra = {}, .surface_tags = {}};
+  for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) {
+    if (cut.is_left(t)) rest.tetrahedra.push_back(mesh.tetrahedra[t]);
+  }
+  return rest;
+}
+
+/// Triangles by mesh vertices, each with its smallest corner first, in order.
+std::vector<Triangle> in_order(std::vector<Triangle> triangles) {
+  for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+std::vector<Triangle> by_mesh_vertices(const Surface& surface) {
+  std::vector<Triangle> triangles = surface.triangles;
+  for (Triangle& t : triangles) {
+    for (int& v : t) v = surface.vertices[v];
+  }
+  return triangles;
+}
+
+/// How many more triangles go along an edge one way than the other, for those edges where any do.
+int open_edges(const std::vector<Triangle>& triangles) {
+  std::map<std::pair<int, int>, int> along;
+  for (const Triangle& t : triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const int a = t[i], b = t[(i + 1) % 3];
+      along[std::minmax(a, b)] += a < b ? 1 : -1;
+    }
+  }
+  return static_cast<int>(std::ranges::count_if(along, [](const auto& edge) { return edge.second != 0; }));
+}
+
+/// From 0 to n, in steps of `size` / n.
+std::vector<double> lines(int n, double size) {
+  std::vector<double> at;
+  for (int i = 0; i <= n; ++i) at.push_back(size / n * i);
+  return at;
+}
+TetMesh block(const Vec3& size, const std::array<int, 3>& cells) {
+  return grid_block(lines(cells[0], size.x()), lines(cells[1], size.y()), lines(cells[2], size.z()));
+}
+
+struct Cutting {
+  explicit Cutting(TetMesh made) : mesh(std::move(made)) {}
+  TetMesh mesh;
+  Surface surface = boundary_surface(mesh);
+  CutMesh cut{mesh, std::vector<char>(mesh.tetrahedra.size(), 1), surface};
+};
+
+/// Pieces of what is left that hang together by faces, by a flood from each tetrahedron: the tetrahedra.
+std::vector<std::vector<int>> flooded_pieces(const TetMesh& mesh, const CutMesh& cut) {
+  std::vector<std::vector<int>> pieces;
+  std::vector<char> seen(mesh.tetrahedra.size());
+  for (int from = 0; from < static_cast<int>(seen.size()); ++from) {
+    if (!cut.is_left(from) || seen[from] != 0) continue;
+    std::vector<int> piece{from};
+    seen[from] = 1;
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      for (const int other : cut.neighbours(piece[i])) {
+        if (other < 0 || seen[other] != 0) continue;
+        seen[other] = 1;
+        piece.push_back(other);
+      }
+    }
+    std::sort(piece.begin(), piece.end());
+    pieces.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
+}  // namespace
+
+TEST_CASE("the surface of what is left is that of a mesh of what is left, after each removal") {
+  Cutting body(block(Vec3(3, 2, 2), {3, 2, 2}));
+  std::vector<int> order(body.mesh.tetrahedra.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  std::shuffle(order.begin(), order.end(), std::minstd_rand(7));
+  for (const int t : order) {
+    body.cut.remove({&t, 1}, body.surface);
+    const auto triangles = by_mesh_vertices(body.surface);
+    CHECK(in_order(triangles) == in_order(outer_faces(rest_of(body.mesh, body.cut)).triangles));
+    CHECK(open_edges(triangles) == 0);
+    for (std::size_t slot = 0; slot < triangles.size(); ++slot)
+      CHECK(body.cut.is_left(body.cut.tetrahedron_of(slot)));
+    for (int v = 0; v < static_cast<int>(body.surface.vertices.size()); ++v) {
+      const bool used = std::ranges::any_of(body.surface.triangles, [v](const Triangle& triangle) {
+        return std::ranges::count(triangle, v) > 0;
+      });
+      CHECK(body.cut.on_surface(v) == used);
+    }
+  }
+  CHECK(body.cut.count() == 0);
+  CHECK(body.surface.triangles.empty());
+}
+
+TEST_CASE("only what may be removed gives the surface its vertices") {
+  TetMesh mesh = block(Vec3(4, 4, 4), {4, 4, 4});
+  Surface surface = boundary_surface(mesh);
+  const std::size_t outside = surface.vertices.size();
+  std::vector<char> removable(mesh.tetrahedra.size());
+  const CutMesh nothing(mesh, removable, surface);
+  CHECK(surface.vertices.size() == outside);
+  removable.assign(removable.size(), 1);
+  const CutMesh all(mesh, removable, surface);
+  CHECK(surface.vertices.size() == mesh.vertices.size());
+  CHECK(open_edges(by_mesh_vertices(surface)) == 0);
+}
+
+TEST_CASE("the area of a cut is that of the walls of a slit, and none once all is gone") {
+  Cutting body(block(Vec3(4, 1, 1), {4, 2, 2}));
+  const auto remove = [&](double from, double to) {
+    std::vector<int> gone;
+    for (int t = 0; t < static_cast<int>(body.mesh.tetrahedra.size()); ++t) {
+      double x = 0;
+      for (const int v : body.mesh.tetrahedra[t]) x += body.mesh.vertices[v].x() / 4;
+      if (body.cut.is_left(t) && x >= from && x <= to) gone.push_back(t);
+    }
+    body.cut.remove(gone, body.surface);
+    return body.cut.cut_area();
+  };
+  CHECK(remove(1, 2) == Approx(2));
+  CHECK(remove(2, 3) == Approx(2));
+  CHECK(std::abs(remove(0, 4)) < 1e-12);
+}
+
+TEST_CASE("what removals cut off is what a flood of the whole mesh finds") {
+  std::minstd_rand random(11);
+  for (int round = 0; round < 20; ++round) {
+    Cutting body(block(Vec3(4, 2, 2), {4, 2, 2}));
+    std::vector<int> held;
+    for (int v = 0; v < static_cast<int>(body.mesh.vertices.size()); ++v) {
+      if (body.mesh.vertices[v].x() == 0) held.push_back(v);
+    }
+    PieceFinder finder(body.mesh, held);
+    while (body.cut.count() > 0) {
+      std::vector<int> left;
+      for (int t = 0; t < static_cast<int>(body.mesh.tetrahedra.size()); ++t) {
+        if (body.cut.is_left(t)) left.push_back(t);
+      }
+      std::shuffle(left.begin(), left.end(), random);
+      left.resize(std::min<std::size_t>(left.size(), 1 + random() % 5));
+      const std::size_t before = flooded_pieces(body.mesh, body.cut).size();
+      body.cut.remove(left, body.surface);
+      const auto pieces = flooded_pieces(body.mesh, body.cut);
+      const std::vector<Piece> found = finder.cut_off(body.cut, left);
+      // Nothing but whole pieces, each once, and none is found where none came apart.
+      for (const Piece& piece : found) {
+        CHECK(std::ranges::count(pieces, piece.tetrahedra) == 1);
+        CHECK(std::ranges::count(found, piece.tetrahedra, &Piece::tetrahedra) == 1);
+        const bool is_held = std::ranges::any_of(piece.tetrahedra, [&](int t) {
+          return std::ranges::any_of(body.mesh.tetrahedra[t],
+                                     [&](int v) { return std::ranges::binary_search(held, v); });
+        });
+        CHECK(piece.held == is_held);
+      }
+      if (before == 1) CHECK(found.size() + 1 == std::max<std::size_t>(pieces.size(), 1));
+      // What is loose goes, as a resection has it.
+      for (const Piece& piece : found) {
+        if (!piece.held) body.cut.remove(piece.tetrahedra, body.surface);
+      }
+    }
+  }
+}
+
+TEST_CASE("a held piece stays, however small it is beside a loose one") {
+  Cutting body(block(Vec3(6, 1, 1), {6, 1, 1}));
+  std::vector<int> held;
+  for (int v = 0; v < static_cast<int>(body.mesh.vertices.size()); ++v) {
+    if (body.mesh.vertices[v].x() == 0) held.push_back(v);
+  }
+  PieceFinder finder(body.mesh, held);
+  std::vector<int> removed;
+  for (int t = 0; t < static_cast<int>(body.mesh.tetrahedra.size()); ++t) {
+    double x = 0;
+    for (const int v : body.mesh.tetrahedra[t]) x += body.mesh.vertices[v].x() / 4;
+    if (x < 1 || x > 2) continue;
+    removed.push_back(t);
+  }
+  body.cut.remove(removed, body.surface);
+  const std::vector<Piece> found = finder.cut_off(body.cut, removed);
+  REQUIRE(found.size() == 1);
+  CHECK_FALSE(found[0].held);
+  CHECK(found[0].volume == Approx(4));
+}
+
+TEST_CASE("a piece goes whole with tissue that could not be cut, and leaves no surface behind") {
+  const TetMesh mesh = block(Vec3(8, 3, 3), {8, 3, 3});
+  Surface surface = boundary_surface(mesh);
+  std::vector<char> removable;
+  std::vector<int> slit;
+  for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) {
+    double x = 0;
+    for (const int v : mesh.tetrahedra[t]) x += mesh.vertices[v].x() / 4;
+    removable.push_back(x > 1 && x < 2 ? 1 : 0);
+    if (removable.back() != 0) slit.push_back(t);
+  }
+  CutMesh cut(mesh, removable, surface);
+  PieceFinder finder(mesh, std::vector<int>{0});
+  cut.remove(slit, surface);
+  const std::vector<Piece> pieces = finder.cut_off(cut, slit);
+  REQUIRE(pieces.size() == 1);
+  cut.remove(pieces[0].tetrahedra, surface);
+  CHECK(in_order(by_mesh_vertices(surface)) == in_order(outer_faces(rest_of(mesh, cut)).triangles));
+  CHECK(cut.cut_area() == Approx(9));
+}

@@ -1,0 +1,132 @@
+#ifdef PALPATE_WITH_CAPTURE
+// A resection in a session: what of it travels, and what a capture of it is good for.
+#include <algorithm>
+
+#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/serving/captured_steps.h"
+#include "sim_server/serving/virtual_session.h"
+#include "tests/support/catch.h"
+#include "tests/support/soft_block.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+using protocol::ForceSample;
+using protocol::ToolState;
+
+namespace {
+
+constexpr double kRate = 50, kTicks = 500;  // Hz
+
+Scene cut_scene(const char* model) {
+  Scene scene = soft_block_scene(0.02, model, ElasticLaw::kLinear, 0.003);
+  scene.rate_hz = kRate;
+  scene.tools[0].cut_buttons = 2;
+  scene.cutting = Cutting{.power = 20, .energy = 1e7, .where = "test"};
+  return scene;
+}
+TetMesh block() {
+  return soft_block(Vec3(0.04, 0.02, 0.04), {8, 4, 8});
+}
+
+/// Down into the block, to and fro there, with a button that bounces at 1 kHz on its way down, then is held.
+Trajectory motion(const TemporaryFolder& folder) {
+  std::string rows = "t_s,x_m,y_m,z_m,buttons\n";
+  for (int k = 0; k <= 1000; ++k) {
+    const double t = 1e-3 * k;
+    rows += fmt::format("{},{},{},{},{}\n", t, 0.008 * std::sin(6 * t), 0.003 - 0.006 * t, 0.0005,
+                        k < 300 ? 2 * (k % 2) : 2);
+  }
+  return Trajectory({.file = folder.write("motion.csv", rows)});
+}
+
+std::uint64_t record(Simulation& simulation, const Trajectory& motion, const std::filesystem::path& file) {
+  protocol::CaptureWriter capture(file);
+  VirtualSession session(simulation, {&motion, 1}, 0.003, {kRate, kTicks}, capture);
+  for (int k = 0; k <= static_cast<int>(motion.duration() * kTicks); ++k)
+    session.tick(static_cast<std::uint64_t>(k));
+  session.leave();
+  return simulation.state_hash();
+}
+
+std::vector<ForceSample> samples_in(const std::filesystem::path& file) {
+  std::vector<ForceSample> samples;
+  read_captured_steps(
+      file, [](const ToolState&) {}, [&](const CapturedAnswer& answer) { samples.push_back(answer.sample); });
+  return samples;
+}
+
+}  // namespace
+
+TEST_CASE("a recorded resection, stepped again from its capture alone, gives the same bits") {
+  for (const char* const model : {"tensor_mass", "implicit"}) {
+    CAPTURE(model);
+    const TemporaryFolder folder;
+    Simulation first(cut_scene(model), block()), second(cut_scene(model), block());
+    const std::uint64_t hash = record(first, motion(folder), folder.path() / "a.pcap");
+    REQUIRE(first.resection()->totals().tetrahedra > 20);
+    ServedTools served(second);
+    std::vector<SessionInput> inputs(1);
+    std::size_t answers = 0;
+    read_captured_steps(
+        folder.path() / "a.pcap", [&](const ToolState& state) { inputs[0].path.add(state); },
+        [&](const CapturedAnswer& answer) {
+          const double dt = 1e-9 * static_cast<double>(answer.state.t_ns - inputs[0].state.t_ns);
+          inputs[0].session = 1;
+          inputs[0].state = answer.state;
+          inputs[0].fresh = true;
+          const auto& outcome = served.step(inputs, dt).front();
+          CHECK(outcome.force.force == answer.sample.f_W);
+          CHECK(outcome.answer->cuts == answer.sample.cuts);
+          ++answers;
+        });
+    CHECK(answers > 40);
+    CHECK(second.state_hash() == hash);
+    CHECK(second.resection()->totals().tetrahedra == first.resection()->totals().tetrahedra);
+  }
+}
+
+TEST_CASE("samples of tissue that can be cut say in how many steps it was, and of no surface or modes") {
+  const TemporaryFolder folder;
+  Simulation simulation(cut_scene("tensor_mass"), block());
+  record(simulation, motion(folder), folder.path() / "a.pcap");
+  std::uint32_t before = 0;
+  for (const ForceSample& sample : samples_in(folder.path() / "a.pcap")) {
+    CHECK((sample.flags & ForceSample::kHasCuts) != 0);
+    CHECK((sample.flags & (ForceSample::kHasSurface | ForceSample::kHasModes)) == 0);
+    CHECK(sample.cuts >= before);
+    CHECK(sample.cuts <= before + 1);
+    before = sample.cuts;
+  }
+  CHECK(before == simulation.resection()->version());
+  CHECK(before > 5);
+}
+
+TEST_CASE(
+    "what a resection removed, removed again by list, gives the same forces; at another rate as much goes") {
+  const TemporaryFolder folder;
+  const Trajectory path = motion(folder);
+  Simulation heated(cut_scene("tensor_mass"), block()), listed(cut_scene("tensor_mass"), block());
+  const std::uint64_t hash = record(heated, path, folder.path() / "a.pcap");
+  const std::vector<Removal> removals(heated.removals().begin(), heated.removals().end());
+  REQUIRE(removals.size() > 20);
+  listed.remove_at(removals);
+  CHECK(record(listed, path, folder.path() / "b.pcap") == hash);
+  Scene quick = cut_scene("tensor_mass");
+  quick.rate_hz = 500;
+  Simulation often(quick, block());
+  often.remove_at(removals);
+  {
+    protocol::CaptureWriter capture(folder.path() / "c.pcap");
+    VirtualSession session(often, {&path, 1}, 0.003, {500, kTicks}, capture);
+    for (std::uint64_t k = 0; k <= 500; ++k) session.tick(k);
+  }
+  CHECK(often.resection()->left().count() == heated.resection()->left().count());
+  for (std::size_t i = 0; i < removals.size(); ++i) {
+    CHECK(often.removals()[i].tetrahedron == removals[i].tetrahedron);
+    CHECK(std::abs(often.removals()[i].t - removals[i].t) < 1 / 500.0 + 1e-9);
+  }
+}
+
+#endif
