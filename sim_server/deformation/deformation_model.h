@@ -99,6 +99,10 @@ class DeformationModel {
                                 [[maybe_unused]] double seconds) const noexcept {
     return Mat3::Zero();
   }
+  /// Whether the compliance told, with that, is what a tool feels until the next sample; false: it is that of
+  /// a much shorter time, so that a tangent made of it would be far too steep to be told, and the force at
+  /// one instant chatters: the mean over the last quarter of a step is felt.
+  virtual bool knows_later_compliance() const noexcept { return true; }
   /// The slow modes of a linear tissue that swings, for clients that step it between two samples; null: it
   /// has none, or does not know them. They never change.
   virtual const SlowModes* slow_modes() const noexcept { return nullptr; }

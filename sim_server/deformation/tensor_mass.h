@@ -24,7 +24,8 @@ namespace palpate::sim {
 /// Tissue that can be cut has a contact instant in each sub-step, over which each vertex gives way alone
 /// (`LumpedCompliance`): nothing that was computed beforehand is of tissue that is no more. Its sub-steps are
 /// as short as its stiffest elements ask for, so that they stay stable whatever is removed; the very stiffest
-/// get a little more mass instead (`MassScaling`). Its clients are told no modes. At such short instants
+/// get a little more mass instead (`MassScaling`). Its clients are told no
+/// modes, and no tangents: those of so short a time are far too steep. At such short instants
 /// contact in a pit of a coarse mesh chatters by some percent; more `instants` end that.
 class TensorMass : public DeformationModel {
  public:
@@ -42,6 +43,7 @@ class TensorMass : public DeformationModel {
   bool compliance_is_constant() const noexcept override { return !lumped_; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
+  bool knows_later_compliance() const noexcept override { return !lumped_; }
   const SlowModes* slow_modes() const noexcept override { return told_ ? &told_->modes() : nullptr; }
   void modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;

@@ -25,7 +25,9 @@ constexpr std::size_t kApart = 2;     // instants: how far apart those are that 
 constexpr double kLongestLead = 0.5;  // of the tool radius: how far ahead of itself a tool is believed to be
 constexpr double kStill = 1e-8;       // of the tool radius: a surface that moved less did not move
 constexpr double kUnsettled = 1e-3;   // of the tool radius: by how much others push the surface, as one turn
-constexpr double kRunAway = 3;        // of the organ's size: farther from rest no tissue goes
+constexpr int kFeltParts =
+    4;  // of the instants of a step, the last of so many parts: what is felt of chatter
+constexpr double kRunAway = 3;           // of the organ's size: farther from rest no tissue goes
 constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
 
 /// The surface vertices that are these vertices of the mesh; both ascending.
@@ -123,6 +125,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   lately_.resize(tools_.size());
   for (auto& were : lately_) were.reserve(2 * kApart + 1);
   mean_.resize(tools_.size(), Vec3::Zero());
+  late_mean_.resize(tools_.size(), Vec3::Zero());
   velocities_.resize(tools_.size(), Vec3::Zero());
   inputs_.resize(tools_.size());
   surface_motion_.resize(tools_.size(), Vec3::Zero());
@@ -171,6 +174,7 @@ void Simulation::hold_answers(std::span<const ToolInput> inputs) noexcept {
 
 void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
   std::fill(mean_.begin(), mean_.end(), Vec3::Zero());
+  std::fill(late_mean_.begin(), late_mean_.end(), Vec3::Zero());
   if (cut_) cut(inputs, dt);
   for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].press(inputs[i].buttons);
   for (int instant = 1; instant <= instants_; ++instant) advance_to_instant(inputs, instant, dt / instants_);
@@ -188,6 +192,7 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
       tools_[i].foresee(std::max(dt, inputs[i].wants.ahead ? inputs[i].wants.ahead->seconds : 0));
     if (inputs[i].wants.tangent) tools_[i].differentiate(tissue_.met_by(i));
     static_cast<ToolForce&>(answers_[i]) = tools_[i].force();
+    if (!tissue_.model->knows_later_compliance()) answers_[i].force = late_mean_[i];
     answers_[i].mean_force = mean_[i];
   }
   if (cut_) note_cut(inputs, dt);
@@ -251,7 +256,11 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
   if (!tools_settled_) restore_touching();
   if (!tissue_.before.empty())
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
-  for (std::size_t i = 0; i < tools_.size(); ++i) mean_[i] += tools_[i].force().force / instants_;
+  const int felt = (instants_ + kFeltParts - 1) / kFeltParts;
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    mean_[i] += tools_[i].force().force / instants_;
+    if (instant > instants_ - felt) late_mean_[i] += tools_[i].force().force / felt;
+  }
 }
 
 /// Contact of all tools, and again where a linearisation about where it led says something else.

@@ -225,10 +225,10 @@ class Simulation {
   int instants_ = 1;                                // within a step
   std::vector<std::optional<ToolPose>> came_from_;  // poses of the step before
   std::vector<std::vector<ToolPose>> lately_;       // of each tool: at the last instants, the newest first
-  std::vector<Vec3> mean_;                          // of the forces at the instants, N
-  std::vector<Vec3> velocities_;                    // of the tools, m/s
-  std::vector<Vec3> surface_motion_;                // of the surface at each tool in this step, m
-  std::vector<ToolInput> inputs_;                   // for the step of tool 0 alone
+  std::vector<Vec3> mean_, late_mean_;  // of the forces at the instants, and at the last of them, N
+  std::vector<Vec3> velocities_;        // of the tools, m/s
+  std::vector<Vec3> surface_motion_;    // of the surface at each tool in this step, m
+  std::vector<ToolInput> inputs_;       // for the step of tool 0 alone
   std::vector<ToolAnswer> answers_;
   SlowModes::State modes_;  // of the told modes
   std::vector<Eigen::VectorXd>

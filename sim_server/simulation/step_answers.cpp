@@ -15,7 +15,8 @@ constexpr double kFarthestAhead = 2e-3;  // m; without a bound, fast tools fare 
 
 /// How the tools move the surface under each other, if any of them is to be told.
 void Simulation::couple(std::span<const ToolInput> inputs) {
-  coupled_ = coupling_ && std::ranges::any_of(inputs, [](const ToolInput& input) {
+  coupled_ = coupling_ && tissue_.model->knows_later_compliance() &&
+             std::ranges::any_of(inputs, [](const ToolInput& input) {
                return input.pose && (input.wants.here || input.wants.ahead);
              });
   if (!coupled_) return;
@@ -43,7 +44,11 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   ToolAnswer& answer = answers_[tool];
   if (!input.pose || answer.flagged) return;
   const Vec3& p_W = input.pose->p_W;
-  const ToolWants& wants = input.wants;
+  ToolWants wants = input.wants;
+  if (!tissue_.model->knows_later_compliance()) {
+    wants.here = false;
+    wants.ahead.reset();
+  }
   if (wants.here || wants.ahead) {
     answer.surface_v_W =
         tools_[tool].surface_velocity(p_W, tissue_, tissue_.velocities, tissue_.loads_of(tool));

@@ -104,7 +104,8 @@ TEST_CASE("samples of tissue that can be cut say in how many steps it was, and o
 }
 
 TEST_CASE(
-    "what a resection removed, removed again by list, gives the same forces; at another rate as much goes") {
+    "what a resection removed, removed again by list, gives the same forces, and at another rate as much "
+    "goes") {
   const TemporaryFolder folder;
   const Trajectory path = motion(folder);
   Simulation heated(cut_scene("tensor_mass"), block()), listed(cut_scene("tensor_mass"), block());
