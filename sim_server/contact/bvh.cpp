@@ -6,7 +6,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr int kGroup = 16;  // triangles
+constexpr int kGroup = 16;               // triangles
+constexpr std::size_t kMostLoose = 256;  // triangles in no group
 // A point of a triangle, as computed, may lie outside its box by rounding; m, up to places 1 km away.
 constexpr double kRounding = 1e-9;
 
@@ -56,6 +57,54 @@ void Bvh::build(std::span<const Vec3> centres, std::span<const Triangle> triangl
   nodes_[node].end = static_cast<int>(nodes_.size());
 }
 
+void Bvh::find_groups(std::size_t triangles) {
+  group_of_.assign(triangles, -1);
+  place_of_.assign(triangles, -1);
+  for (std::size_t node = 0; node < nodes_.size(); ++node) {
+    if (!is_group(nodes_[node])) continue;
+    for (int k = nodes_[node].triangle; k < nodes_[node].triangle_end; ++k) {
+      group_of_[static_cast<std::size_t>(triangles_[k])] = static_cast<int>(node);
+      place_of_[static_cast<std::size_t>(triangles_[k])] = k;
+    }
+  }
+}
+
+/// Of its group, whose last triangle fills the gap, or of the loose ones.
+void Bvh::take_out(int triangle) {
+  int& group = group_of_[static_cast<std::size_t>(triangle)];
+  if (group < 0) {
+    std::erase(loose_, triangle);
+    return;
+  }
+  const int place = place_of_[static_cast<std::size_t>(triangle)],
+            last = triangles_[--nodes_[static_cast<std::size_t>(group)].triangle_end];
+  triangles_[static_cast<std::size_t>(place)] = last;
+  place_of_[static_cast<std::size_t>(last)] = place;
+  group = -1;
+}
+
+void Bvh::change(std::span<const Vec3> rest, std::span<const Triangle> before,
+                 std::span<const Triangle> now) {
+  std::vector<int> changed;
+  for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
+    if (i >= before.size() || i >= now.size() || before[i] != now[i]) changed.push_back(static_cast<int>(i));
+  }
+  if (nodes_.empty() || now.empty() || loose_.size() + changed.size() > kMostLoose) {
+    *this = Bvh(rest, now);
+    return;
+  }
+  if (group_of_.empty()) find_groups(before.size());
+  for (const int i : changed) {
+    if (static_cast<std::size_t>(i) < before.size()) take_out(i);
+  }
+  group_of_.resize(now.size(), -1);
+  place_of_.resize(now.size(), -1);
+  near_.resize(now.size());
+  for (const int i : changed) {
+    if (static_cast<std::size_t>(i) < now.size()) loose_.push_back(i);
+  }
+}
+
 void Bvh::refit(std::span<const Vec3> positions) noexcept {
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     Node& node = nodes_[i];
@@ -84,6 +133,7 @@ std::span<const int> Bvh::near(const Eigen::AlignedBox3d& box) noexcept {
     last = std::copy(triangles_.begin() + node.triangle, triangles_.begin() + node.triangle_end, last);
     ++i;
   }
+  last = std::copy(loose_.begin(), loose_.end(), last);
   std::sort(near_.begin(), last);
   return {near_.begin(), last};
 }

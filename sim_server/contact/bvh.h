@@ -11,11 +11,16 @@ namespace palpate::sim {
 /// Boxes around groups of triangles that lie near each other, boxes around pairs of these, and so on up to
 /// one: what is far is passed over in few questions. The tree is that of the surface it was built on; `refit`
 /// fits the boxes to that surface deformed. Triangles are known by their index in the list it was built on.
-/// Nothing but the constructor allocates. One thread.
+/// Nothing but the constructor and `change` allocates. One thread.
 class Bvh {
  public:
   /// `rest`: surface vertices, m. O(n log^2 n).
   Bvh(std::span<const Vec3> rest, std::span<const Triangle> triangles);
+
+  /// Of the list `before`, from now on `now`, of the same vertices. Triangles that are not in their place any
+  /// more leave their boxes, and those that are new there are looked at one by one, until there are some
+  /// hundred: then the tree is built anew. O(n) comparisons.
+  void change(std::span<const Vec3> rest, std::span<const Triangle> before, std::span<const Triangle> now);
 
   /// To the vertices where they are now. Reads each about once: O(n), but a fraction of a pass over the
   /// triangles.
@@ -34,29 +39,33 @@ class Bvh {
   struct Node {
     Eigen::AlignedBox3d box;
     int end;                         // of all below it
-    int triangle, triangle_end;      // in triangles_; a group has some, the others none
+    int triangle, triangle_end;      // in triangles_; of a group those that have not left it
     int vertex = 0, vertex_end = 0;  // in vertices_, of a group
   };
-  bool is_group(const Node& node) const { return node.triangle < node.triangle_end; }
+  bool is_group(const Node& node) const { return node.vertex < node.vertex_end; }
+  void find_groups(std::size_t triangles);
+  void take_out(int triangle);
   void build(std::span<const Vec3> centres, std::span<const Triangle> triangles, int begin, int end);
 
   std::vector<Node> nodes_;
   std::vector<int> triangles_, vertices_;  // of the groups, one after the other
   std::vector<int> near_;
+  // Since a change: triangles in no group; of each its group, or -1, and its place in triangles_.
+  std::vector<int> loose_, group_of_, place_of_;
 };
 
 template <class SquaredDistance>
 int Bvh::nearest(const Eigen::AlignedBox3d& to, SquaredDistance squared_distance) const noexcept {
   double best = std::numeric_limits<double>::max();
   int nearest = -1;
+  const auto look_at = [&](int triangle) {
+    const double distance = squared_distance(triangle);
+    if (distance > best || (distance == best && triangle >= nearest)) return;
+    best = distance;
+    nearest = triangle;
+  };
   const auto look = [&](const Node& group) {
-    for (int k = group.triangle; k < group.triangle_end; ++k) {
-      const int triangle = triangles_[k];
-      const double distance = squared_distance(triangle);
-      if (distance > best || (distance == best && triangle >= nearest)) continue;
-      best = distance;
-      nearest = triangle;
-    }
+    for (int k = group.triangle; k < group.triangle_end; ++k) look_at(triangles_[k]);
   };
   const auto away = [&](int node) { return nodes_[node].box.squaredExteriorDistance(to); };
   const int end = static_cast<int>(nodes_.size());
@@ -67,6 +76,7 @@ int Bvh::nearest(const Eigen::AlignedBox3d& to, SquaredDistance squared_distance
     likely = away(first) <= away(second) ? first : second;
   }
   look(nodes_[likely]);
+  for (const int triangle : loose_) look_at(triangle);
   for (int i = 0; i < end;) {
     if (away(i) > best) {
       i = nodes_[i].end;

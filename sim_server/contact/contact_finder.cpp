@@ -67,9 +67,9 @@ void ContactFinder::note_openings() {
 
 void ContactFinder::change_surface(std::span<const Vec3> rest, std::vector<Triangle> closed,
                                    std::vector<Triangle> touchable) {
+  bvh_.change(rest, triangles_, touchable);
   closed_ = std::move(closed);
   triangles_ = std::move(touchable);
-  bvh_ = Bvh(rest, triangles_);
   note_openings();
 }
 

@@ -20,7 +20,8 @@ class ContactFinder {
                 double reach, double length = 0, std::span<const int> held = {}, double room = kUsualRoom);
   static constexpr double kUsualRoom = 1.5, kRoomOfCuts = 3;
 
-  /// From now on these are the triangles, of the same vertices. O(n log n) of the touchable ones.
+  /// From now on these are the triangles, of the same vertices. O(n), once in some hundred triangles that are
+  /// new O(n log^2 n).
   void change_surface(std::span<const Vec3> rest, std::vector<Triangle> closed,
                       std::vector<Triangle> touchable);
 

@@ -7,16 +7,17 @@
 
 namespace palpate::sim {
 
-/// A tip that is hot now.
+/// A tip that is hot: its centre went straight and evenly from one place to another (m, world).
 struct HotTip {
-  Vec3 p_W;       ///< centre, m, world
+  Vec3 from_W, p_W;
   double radius;  ///< m
 };
 
 /// Heat in tissue, and which of it that makes vanish. A tip gives its power to the tetrahedra whose outer
 /// faces lie within `spot` of it, more to those that are nearer and show it more: by face area times 1 - gap
-/// / spot, both in the deformed body. Heat stays where it went. A tetrahedron is gone when it has taken
-/// `energy` for its volume at rest. One thread; allocates.
+/// / spot, both in the deformed body; one that went far does so along its way, in parts no longer than half
+/// its radius. Heat stays where it went. A tetrahedron is gone when it has taken `energy` for its volume at
+/// rest. One thread; allocates.
 class Cautery {
  public:
   Cautery(const Cutting& cutting, const TetMesh& mesh);
@@ -30,6 +31,14 @@ class Cautery {
   std::size_t bytes() const { return 2 * taken_.size() * sizeof(double); }
 
  private:
+  struct Exposed {
+    int tetrahedron;
+    double weight;  // m^2
+  };
+  std::vector<Exposed> exposed_to(const Vec3& p, double radius, const CutMesh& mesh, const Surface& surface,
+                                  std::span<const Vec3> positions) const;
+  void give(double joule, std::span<const Exposed> exposed, std::vector<int>& gone);
+
   double power_, spot_;                 // W, m
   std::vector<double> taken_, needed_;  // of each tetrahedron, J
   double spent_ = 0;

@@ -74,23 +74,23 @@ Simulation::Simulation(const Scene& scene, const Progress& progress, const Setup
     : Simulation(scene, read_mesh_told(scene, progress), progress, cache) {}
 
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress, const SetupCache* cache)
-    : mesh_(std::move(mesh)) {
-  put_inclusions(scene, mesh_);
+    : mesh_(std::make_unique<TetMesh>(std::move(mesh))) {
+  put_inclusions(scene, *mesh_);
   progress(name_of(Stage::kSurface), 0);
-  if (scene.material) mesh_ = with_nodes(std::move(mesh_), scene.material->element);
-  surface_ = boundary_surface(mesh_);
+  if (scene.material) *mesh_ = with_nodes(std::move(*mesh_), scene.material->element);
+  surface_ = boundary_surface(*mesh_);
   if (scene.cutting)
-    cut_.emplace(Cut{Resection(*scene.cutting, mesh_, fixed_vertices(scene, mesh_), surface_), scene.tools});
-  for (const int vertex : surface_.vertices) rest_.push_back(mesh_.vertices[vertex]);
-  auto touchable = touchable_by(scene.tools, surface_, mesh_);
+    cut_.emplace(Cut{Resection(*scene.cutting, *mesh_, fixed_vertices(scene, *mesh_), surface_), scene.tools});
+  for (const int vertex : surface_.vertices) rest_.push_back(mesh_->vertices[vertex]);
+  auto touchable = touchable_by(scene.tools, surface_, *mesh_);
   if (std::all_of(touchable.begin(), touchable.end(), [](const auto& list) { return list.empty(); }))
     fail("{}: no triangle of the surface lies within the tool's reach", scene.tools.front().reach_where);
-  const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, mesh_);
-  require_memory_for(scene, Purpose::kServe, count_parts(mesh_, surface_));
+  const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, *mesh_);
+  require_memory_for(scene, Purpose::kServe, count_parts(*mesh_, surface_));
   const DeformationModelRow& row = model_of(scene.deformation);
   const bool stays = row.deforms() && !fixed.empty() && !supports_move(scene);
   if (stays) farthest_ = kRunAway * diagonal_of(rest_);
-  tissue_.model = row.make({scene, mesh_, surface_, fixed, reachable, progress, free_memory(), cache});
+  tissue_.model = row.make({scene, *mesh_, surface_, fixed, reachable, progress, free_memory(), cache});
   instants_ = tissue_.model->instants();
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;
@@ -380,10 +380,10 @@ void Simulation::lift_tool(std::size_t tool) {
 
 std::vector<MemoryPart> Simulation::memory() const {
   std::vector<MemoryPart> parts = tissue_.model->memory();
-  parts.push_back({"mesh", mesh_.vertices.size() * sizeof(Vec3) +
-                               mesh_.tetrahedra.size() * sizeof(Tetrahedron) +
-                               mesh_.mid_edges.size() * sizeof(mesh_.mid_edges[0]) +
-                               mesh_.stiffness.size() * sizeof(double)});
+  parts.push_back({"mesh", mesh_->vertices.size() * sizeof(Vec3) +
+                               mesh_->tetrahedra.size() * sizeof(Tetrahedron) +
+                               mesh_->mid_edges.size() * sizeof(mesh_->mid_edges[0]) +
+                               mesh_->stiffness.size() * sizeof(double)});
   parts.push_back(
       {"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
   if (cut_)

@@ -152,7 +152,7 @@ class Simulation {
   const DeformationModel& model() const { return *tissue_.model; }
   /// Surface vertices at rest, m, world.
   const std::vector<Vec3>& rest() const { return rest_; }
-  const TetMesh& mesh() const { return mesh_; }
+  const TetMesh& mesh() const { return *mesh_; }
   const Surface& surface() const { return surface_; }
   std::span<const Vec3> positions() const { return tissue_.positions; }
   std::vector<MemoryPart> memory() const;
@@ -207,13 +207,14 @@ class Simulation {
     Resection resection;
     std::vector<ToolSettings> tools;
     std::vector<HotTip> tips = {};
+    std::vector<std::optional<Vec3>> hot_at = {};  // of each tool, where it was hot in the step before
     std::vector<ResectionRow> log = {};
     std::vector<Removal> removed = {};
     std::optional<std::vector<Removal>> planned = {};  // to be removed, instead of by heat
     std::size_t done = 0;                              // of these
   };
 
-  TetMesh mesh_;
+  std::unique_ptr<TetMesh> mesh_;  // what can be cut knows it by its place
   Surface surface_;
   std::optional<Cut> cut_;
   double time_ = 0;  // s, of all steps

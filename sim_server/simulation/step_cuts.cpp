@@ -1,5 +1,6 @@
 // How a step removes tissue: parts of Simulation.
 #include <algorithm>
+#include <utility>
 
 #include "sim_server/simulation/simulation.h"
 #include "sim_server/simulation/touchable.h"
@@ -20,14 +21,18 @@ void Simulation::remove_at(std::vector<Removal> removals) {
   cut_->done = 0;
 }
 
-/// `dt` of heat where the tips stood at the end of the step before; or what was planned for now.
+/// `dt` of heat along the way of the tips in the step before; or what was planned for now.
 std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs, double dt) {
   Cut& cut = *cut_;
   if (!cut.planned) {
     cut.tips.clear();
+    cut.hot_at.resize(tools_.size());
     for (std::size_t i = 0; i < tools_.size(); ++i) {
-      if (is_hot(cut.tools[i], tools_[i], inputs[i]))
-        cut.tips.push_back({tools_[i].place(), tools_[i].radius()});
+      std::optional<Vec3> from = std::exchange(cut.hot_at[i], std::nullopt);
+      if (!is_hot(cut.tools[i], tools_[i], inputs[i])) continue;
+      const Vec3& p = tools_[i].place();
+      cut.tips.push_back({from.value_or(p), p, tools_[i].radius()});
+      cut.hot_at[i] = p;
     }
     return cut.resection.advance(cut.tips, tissue_.positions, dt, surface_);
   }
@@ -56,7 +61,7 @@ void Simulation::change_surface() {
   const CutMesh& left = cut_->resection.left();
   const auto on_surface = [&left](int vertex) { return left.on_surface(vertex); };
   tissue_.drop_loads(on_surface);
-  auto touchable = touchable_by(cut_->tools, surface_, mesh_);
+  auto touchable = touchable_by(cut_->tools, surface_, *mesh_);
   for (std::size_t i = 0; i < tools_.size(); ++i)
     tools_[i].change_surface(rest_, surface_, std::move(touchable[i]), on_surface);
 }

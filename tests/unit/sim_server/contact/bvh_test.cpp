@@ -224,3 +224,47 @@ TEST_CASE("finding the near and the nearest does not allocate") {
   }
   CHECK(allocations == 0);
 }
+
+TEST_CASE("after changes the hierarchy finds what one that is built anew finds") {
+  test::Random random(17);
+  Skin skin(liver());
+  std::vector<Triangle> now = skin.surface.triangles;
+  Bvh changed(skin.rest, now);
+  for (int round = 0; round < 120; ++round) {
+    const std::vector<Triangle> before = now;
+    for (int k = 0; k < 7; ++k) {  // some go as the last takes their place, some are new, some are others
+      const std::size_t at = random.bits() % now.size();
+      if (k % 2 == 0 && now.size() > 20) {
+        now[at] = now.back();
+        now.pop_back();
+      }
+      const auto any = [&] { return static_cast<int>(random.bits() % skin.rest.size()); };
+      if (k % 3 != 0) now.push_back({any(), any(), any()});
+    }
+    if (round == 60) now.resize(3);
+    changed.change(skin.rest, before, now);
+    Bvh anew(skin.rest, now);
+    skin.deform(random);
+    changed.refit(skin.now);
+    anew.refit(skin.now);
+    const Vec3 p = skin.place(random);
+    const auto squared = [&](int i) {
+      const double d = distance_of(skin, p, p, now[static_cast<std::size_t>(i)]);
+      return d * d;
+    };
+    const Eigen::AlignedBox3d at(p, p), around(p.array() - 0.02, p.array() + 0.02);
+    CHECK(changed.nearest(at, squared) == anew.nearest(at, squared));
+    // Both give all that meets the box, and some neighbours.
+    for (Bvh* const bvh : {&changed, &anew}) {
+      const auto near = bvh->near(around);
+      CHECK(std::ranges::is_sorted(near));
+      CHECK(std::ranges::adjacent_find(near) == near.end());
+      for (int i = 0; i < static_cast<int>(now.size()); ++i) {
+        Eigen::AlignedBox3d box;
+        for (const int v : now[static_cast<std::size_t>(i)])
+          box.extend(skin.now[static_cast<std::size_t>(v)]);
+        if (box.intersects(around)) CHECK(std::ranges::binary_search(near, i));
+      }
+    }
+  }
+}

@@ -190,6 +190,45 @@ TEST_CASE("a body can be cut until nothing but what holds it is left, or nothing
   CHECK(simulation.resection()->totals().volume == Approx(0.04 * 0.04 * kDepth));
 }
 
+TEST_CASE("a tip that goes far in a step heats along its way, and by no more than its power") {
+  const TetMesh mesh = block();
+  Surface surface = boundary_surface(mesh);
+  std::vector<Vec3> positions;
+  const Cutting cutting{.power = 1000, .energy = 1e6, .spot = 1e-3, .where = "test"};
+  Resection resection(cutting, mesh, {}, surface);
+  for (const int v : surface.vertices) positions.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+  const HotTip tip{Vec3(-0.02, 0.002, 0.001), Vec3(0.02, 0.002, 0.001), 0.002};
+  double least = 1, most = -1;
+  for (const int t : resection.advance({&tip, 1}, positions, kStep, surface)) {
+    for (const int v : mesh.tetrahedra[static_cast<std::size_t>(t)]) {
+      least = std::min(least, mesh.vertices[static_cast<std::size_t>(v)].x());
+      most = std::max(most, mesh.vertices[static_cast<std::size_t>(v)].x());
+    }
+  }
+  CHECK(least == Approx(-0.02));
+  CHECK(most == Approx(0.02));
+  CHECK(resection.totals().heat == Approx(1000 * kStep));
+}
+
+TEST_CASE("stiff and nearly incompressible tissue is cut, too") {
+  for (const char* const model : {"tensor_mass", "implicit"}) {
+    CAPTURE(model);
+    Scene scene = cut_scene(model, 20);
+    scene.material->young_modulus = 1e6;
+    scene.material->poisson_ratio = 0.48;
+    if (scene.deformation.model == "tensor_mass") scene.rate_hz = 300;
+    Simulation simulation(scene, soft_block(Vec3(0.04, kDepth, 0.04), {6, 3, 6}));
+    const double dt = 1 / scene.rate_hz;
+    for (int i = 0; i < 60; ++i) {
+      const ToolAnswer answer = step(simulation, Vec3(0.001, 0.003 - 2e-5 * i, 0.0005), {.buttons = 1}, dt);
+      CHECK(answer.force.allFinite());
+    }
+    for (const Vec3& x : simulation.positions()) CHECK(x.norm() < 0.1);
+    CHECK(simulation.resection()->totals().tetrahedra > 3);
+    CHECK(simulation.failures().other == 0);
+  }
+}
+
 TEST_CASE("a resection gives the same bytes each time") {
   std::uint64_t hashes[2];
   for (std::uint64_t& hash : hashes) {
