@@ -267,6 +267,7 @@ ToolForce ToolContact::probe(const Vec3& p_W, ToolTissue tissue) {
 }
 
 SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const noexcept {
+  if (touchable().empty()) return {};
   const Vec3 offset = p_W - finder_.nearest(tissue.positions, p_W);
   const double distance = offset.norm();
   if (!(distance > 0)) return {};

@@ -15,7 +15,7 @@ constexpr double kMaxPlaces = 64;  // on the axis of a tool that appears: whethe
 /// Whether a tool in contact has left the free organ so far behind that it only drags the surface along with
 /// it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
 bool ToolContact::escaped(const ToolPose& pose, const ToolTissue& tissue) const noexcept {
-  if (now_.force.contacts == 0) return false;
+  if (now_.force.contacts == 0 || touchable().empty()) return false;
   const Vec3 &p = pose.p_W, far = far_end(tool_, pose);
   const double distance = tool_.is_sphere() ? (finder_.nearest(tissue.free(), p) - p).norm()
                                             : finder_.nearest(tissue.free(), p, far).distance;

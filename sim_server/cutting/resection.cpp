@@ -17,12 +17,13 @@ Resection::Resection(const Cutting& cutting, const TetMesh& mesh, std::span<cons
     : plan_(cutting.plan),
       smallest_piece_(cutting.smallest_piece),
       left_(mesh, removable_tetrahedra(cutting, mesh), surface),
-      pieces_(mesh, held),
+      pieces_(left_, held),
       cautery_(cutting, mesh) {}
 
 std::span<const int> Resection::advance(std::span<const HotTip> tips, std::span<const Vec3> positions,
                                         double dt, Surface& surface) {
   removed_.clear();
+  asked_for_ = 0;
   if (tips.empty()) return removed_;
   const std::vector<int> gone = cautery_.heat(tips, left_, surface, positions, dt);
   totals_.heat = cautery_.spent();
@@ -32,6 +33,7 @@ std::span<const int> Resection::advance(std::span<const HotTip> tips, std::span<
 
 std::span<const int> Resection::remove(std::span<const int> tetrahedra, Surface& surface) {
   removed_.clear();
+  asked_for_ = tetrahedra.size();
   if (tetrahedra.empty()) return removed_;
   ++version_;
   take_out(tetrahedra, surface);
@@ -68,14 +70,14 @@ void Resection::take_out(std::span<const int> tetrahedra, Surface& surface) {
 }
 
 double Resection::estimated_bytes(double vertices, double tetrahedra, double faces) {
-  constexpr double kNumbers = 4 + 4 + 4 + 1;  // neighbours, around, places of faces, fronts
+  constexpr double kNumbers = 4 + 4 + 4 + 2;  // neighbours, around, places of faces, bodies, fronts
   return tetrahedra * (kNumbers * sizeof(int) + 6 + 2 * sizeof(double)) + vertices * (3 * sizeof(int) + 1) +
          sizeof(int) + faces * sizeof(int);
 }
 
 std::size_t Resection::bytes() const {
   const std::size_t tetrahedra = left_.mesh().tetrahedra.size();
-  return left_.bytes() + cautery_.bytes() + tetrahedra * sizeof(int) + left_.mesh().vertices.size();
+  return left_.bytes() + cautery_.bytes() + 2 * tetrahedra * sizeof(int) + left_.mesh().vertices.size();
 }
 
 }  // namespace palpate::sim

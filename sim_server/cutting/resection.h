@@ -38,6 +38,9 @@ class Resection {
   /// Removes these that are left, and what they cut off, as if by heat.
   std::span<const int> remove(std::span<const int> tetrahedra, Surface& surface);
 
+  /// Of what the last of these removed, what was asked for: without the pieces that it cut off.
+  std::span<const int> asked_for() const { return std::span(removed_).first(asked_for_); }
+
   const CutMesh& left() const { return left_; }
   /// Grows with each `advance` that removed something: of which surface the triangles are.
   std::uint32_t version() const { return version_; }
@@ -57,6 +60,7 @@ class Resection {
   PieceFinder pieces_;
   Cautery cautery_;
   std::vector<int> removed_;
+  std::size_t asked_for_ = 0;
   std::uint32_t version_ = 0;
   ResectionTotals totals_;
 };

@@ -19,8 +19,7 @@ double mass_at(int node, const CutMesh& left, double density) {
 
 }  // namespace
 
-/// What the contact of the last step did is done first, by the tissue that bore it. A node at which nothing
-/// is left keeps its mass, and drifts.
+/// What the contact of the last step did is done first, by the tissue that bore it.
 DeformationModel::Removed Implicit::remove(std::span<const int> tetrahedra, const CutMesh& left) {
   if (in_step_) {
     apply_new_loads();
@@ -46,8 +45,7 @@ DeformationModel::Removed Implicit::remove(std::span<const int> tetrahedra, cons
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   std::vector<Dynamics::NodeMass> masses;
   for (const int node : touched) {
-    const double mass = mass_at(node, left, solid_.material().density);
-    if (mass > 0) masses.push_back({node, mass});
+    masses.push_back({node, mass_at(node, left, solid_.material().density)});
   }
   dynamics_.remove(tetrahedra, masses);
   const auto hangs_on_nothing = [&](const NodalLoad& load) { return !left.on_surface(load.vertex); };

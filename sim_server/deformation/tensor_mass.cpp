@@ -103,7 +103,7 @@ void TensorMass::choose_sub_step(const ModelInputs& inputs) {
   }
   instants_ = instants_of(inputs.scene.deformation, usual_instants(steps));
   if (cuts) instants_ = std::max(instants_of(inputs.scene.deformation, 1), static_cast<int>(steps));
-  sub_steps_ = static_cast<int>(std::ceil(period / instants_ / longest));
+  sub_steps_ = cuts ? 1 : static_cast<int>(std::ceil(period / instants_ / longest));
   sub_step_ = period / instants_ / sub_steps_;
 }
 

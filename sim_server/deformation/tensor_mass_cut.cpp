@@ -46,6 +46,14 @@ DeformationModel::Removed TensorMass::remove(std::span<const int> tetrahedra, co
     gone.elastic += stiffness * linear_energy(LinearTetrahedron(x), u, *cut_material_);
   }
   tensors_.remove(tetrahedra, left, *cut_material_);
+  for (const int t : tetrahedra) {
+    for (const int v : left.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
+      const int place = tensors_.places()[static_cast<std::size_t>(v)];
+      const auto is_left = [&](int other) { return left.is_left(other); };
+      if (place >= 0 && std::ranges::none_of(left.around(v), is_left))  // else it would drift for ever
+        Eigen::Map<Vec3>(motion_.state.v.data() + 3 * place).setZero();
+    }
+  }
   std::erase_if(loads_, [&](const NodalLoad& load) { return !left.on_surface(load.vertex); });
   return gone;
 }

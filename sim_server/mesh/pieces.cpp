@@ -1,6 +1,7 @@
 #include "sim_server/mesh/pieces.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -16,9 +17,20 @@ auto piece_that_stays(std::vector<Piece>& pieces) {
 
 }  // namespace
 
-PieceFinder::PieceFinder(const TetMesh& mesh, std::span<const int> held)
-    : held_(mesh.vertices.size()), front_of_(mesh.tetrahedra.size(), -1) {
+PieceFinder::PieceFinder(const CutMesh& mesh, std::span<const int> held)
+    : held_(mesh.mesh().vertices.size()),
+      body_of_(mesh.mesh().tetrahedra.size(), -1),
+      front_of_(mesh.mesh().tetrahedra.size(), -1) {
   for (const int v : held) held_[static_cast<std::size_t>(v)] = 1;
+  for (int t = 0; t < static_cast<int>(body_of_.size()); ++t) {
+    if (body_of_[static_cast<std::size_t>(t)] >= 0 || !mesh.is_left(t)) continue;
+    Front all{.reached = {t}};
+    const int number = front_of_[static_cast<std::size_t>(t)] = static_cast<int>(body_held_.size());
+    while (all.next < all.reached.size()) grow(mesh, all, number);
+    for (const int reached : all.reached) body_of_[static_cast<std::size_t>(reached)] = number;
+    body_held_.push_back(piece_of(mesh, std::move(all.reached)).held ? 1 : 0);
+  }
+  front_of_.assign(front_of_.size(), -1);
 }
 
 std::vector<PieceFinder::Front> PieceFinder::fronts_around(const CutMesh& mesh,
@@ -80,6 +92,27 @@ int PieceFinder::grow_until_apart(const CutMesh& mesh, std::vector<Front>& front
 }
 
 std::vector<Piece> PieceFinder::cut_off(const CutMesh& mesh, std::span<const int> removed) {
+  std::map<int, std::vector<int>> of_bodies;
+  for (const int t : removed) of_bodies[body_of_[static_cast<std::size_t>(t)]].push_back(t);
+  std::vector<Piece> all;
+  for (const auto& [body, of_body] : of_bodies) {
+    std::vector<Piece> pieces = cut_off_body(mesh, of_body, body);
+    name_bodies(pieces);
+    std::ranges::move(pieces, std::back_inserter(all));
+  }
+  return all;
+}
+
+/// What is cut off is a body of its own from now on.
+void PieceFinder::name_bodies(std::vector<Piece>& pieces) {
+  for (const Piece& piece : pieces) {
+    for (const int t : piece.tetrahedra)
+      body_of_[static_cast<std::size_t>(t)] = static_cast<int>(body_held_.size());
+    body_held_.push_back(piece.held ? 1 : 0);
+  }
+}
+
+std::vector<Piece> PieceFinder::cut_off_body(const CutMesh& mesh, std::span<const int> removed, int body) {
   std::vector<Front> fronts = fronts_around(mesh, removed);
   DisjointSets sets(fronts.size());
   const int rest = grow_until_apart(mesh, fronts, sets);
@@ -93,14 +126,19 @@ std::vector<Piece> PieceFinder::cut_off(const CutMesh& mesh, std::span<const int
   for (const auto& [set, front] : whole) {
     if (set != rest) pieces.push_back(piece_of(mesh, front.reached));
   }
-  // What was not followed is large; it stays unless something else is held, and it is not.
-  const bool all_known = rest < 0 || std::ranges::any_of(pieces, &Piece::held);
+  // What was not followed is what holds the body, unless something else is held, or nothing is.
+  char& body_held = body_held_[static_cast<std::size_t>(body)];
+  const bool all_known = rest < 0 || body_held == 0 || std::ranges::any_of(pieces, &Piece::held);
   if (rest >= 0 && all_known) {
     Front& front = whole[rest];
     while (front.next < front.reached.size()) grow(mesh, front, rest);
     pieces.push_back(piece_of(mesh, front.reached));
   }
-  if (all_known && !pieces.empty()) pieces.erase(piece_that_stays(pieces));
+  if (all_known && !pieces.empty()) {
+    const auto stays = piece_that_stays(pieces);
+    body_held = stays->held ? 1 : 0;
+    pieces.erase(stays);
+  }
   for (const auto& [set, front] : whole) {
     for (const int t : front.reached) front_of_[static_cast<std::size_t>(t)] = -1;
   }

@@ -18,13 +18,13 @@ struct Piece {
 /// Finds what removals cut off. One thread.
 class PieceFinder {
  public:
-  /// `held`: vertices that are fixed, ascending.
-  PieceFinder(const TetMesh& mesh, std::span<const int> held);
+  /// `held`: vertices that are fixed, ascending. O(m).
+  PieceFinder(const CutMesh& mesh, std::span<const int> held);
 
-  /// What the removal of these tetrahedra, just now, has cut off: of what hung together before, all pieces
-  /// but one. That one is held, where any is, and else the largest. Searches from the neighbours of what was
-  /// removed, in turns, until all of them have met but those of pieces that are at an end: O(what is cut off)
-  /// and a search of some tetrahedra around where nothing is.
+  /// What the removal of these tetrahedra, just now, has cut off: of each body that hung together before, all
+  /// pieces but one. That one is held, where any is, and else the largest. Searches from the neighbours of
+  /// what was removed, in turns, until all of them have met but those of pieces that are at an end: O(what is
+  /// cut off) and a search of some tetrahedra around where nothing is; of a body that nothing holds O(that).
   std::vector<Piece> cut_off(const CutMesh& mesh, std::span<const int> removed);
 
  private:
@@ -33,12 +33,16 @@ class PieceFinder {
     std::vector<int> reached;
     std::size_t next = 0;
   };
+  std::vector<Piece> cut_off_body(const CutMesh& mesh, std::span<const int> removed, int body);
+  void name_bodies(std::vector<Piece>& pieces);
   std::vector<Front> fronts_around(const CutMesh& mesh, std::span<const int> removed);
   void grow(const CutMesh& mesh, Front& front, int number);
   int grow_until_apart(const CutMesh& mesh, std::vector<Front>& fronts, DisjointSets& sets);
   Piece piece_of(const CutMesh& mesh, std::vector<int> tetrahedra) const;
 
-  std::vector<char> held_;     // of vertices
+  std::vector<char> held_;    // of vertices
+  std::vector<int> body_of_;  // of tetrahedra: which hang together
+  std::vector<char> body_held_;
   std::vector<int> front_of_;  // of tetrahedra, during a search; -1: not reached
 };
 

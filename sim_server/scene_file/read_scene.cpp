@@ -106,6 +106,9 @@ void require_cutting(const Scene& scene) {
   if (scene.material && scene.material->element != ElementKind::kLinear)
     fail("{}: tissue of element \"{}\" cannot be cut; take \"p1\"", scene.material_where,
          name_of(scene.material->element));
+  if (!scene.loads.empty())
+    fail("{}: [[load]]: tissue that is cut cannot bear loads besides tools yet; remove it, or [cutting]",
+         scene.loads.front().region.where);
   const auto moves = std::ranges::find_if(scene.fixed, &FixedRegion::moves);
   if (moves != scene.fixed.end())
     fail("{}: [[fixed.motion]]: what is cut cannot move with its supports yet; remove it, or [cutting]",

@@ -20,15 +20,13 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kNear = 2;           // of the tool radius: where the surface is looked at for motion
 constexpr std::size_t kApart = 2;     // instants: how far apart those are that tell where a tool goes on to
 constexpr double kLongestLead = 0.5;  // of the tool radius: how far ahead of itself a tool is believed to be
 constexpr double kStill = 1e-8;       // of the tool radius: a surface that moved less did not move
-constexpr double kUnsettled = 1e-3;   // of the tool radius: by how much others push the surface, as one turn
 constexpr int kFeltParts =
     4;  // of the instants of a step, the last of so many parts: what is felt of chatter
-constexpr double kRunAway = 3;           // of the organ's size: farther from rest no tissue goes
-constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
+constexpr double kAnywhere = 1e150;  // m
+constexpr double kRunAway = 3;       // of the organ's size: farther from rest no tissue goes
 
 /// The surface vertices that are these vertices of the mesh; both ascending.
 std::vector<int> on_surface(std::span<const int> vertices, const Surface& surface) {
@@ -80,7 +78,8 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   if (scene.material) *mesh_ = with_nodes(std::move(*mesh_), scene.material->element);
   surface_ = boundary_surface(*mesh_);
   if (scene.cutting)
-    cut_.emplace(Cut{Resection(*scene.cutting, *mesh_, fixed_vertices(scene, *mesh_), surface_), scene.tools});
+    cut_.emplace(
+        Cut{Resection(*scene.cutting, *mesh_, fixed_vertices(scene, *mesh_), surface_), scene.tools});
   for (const int vertex : surface_.vertices) rest_.push_back(mesh_->vertices[vertex]);
   auto touchable = touchable_by(scene.tools, surface_, *mesh_);
   if (std::all_of(touchable.begin(), touchable.end(), [](const auto& list) { return list.empty(); }))
@@ -279,10 +278,14 @@ void Simulation::solve_contacts() {
 
 /// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.
 bool Simulation::ran_away() const noexcept {
-  const double most = farthest_ * farthest_;
+  const CutMesh* const left = cut_ ? &cut_->resection.left() : nullptr;
+  const bool loose = cut_ && cut_->resection.totals().loose_pieces > 0;  // these may go anywhere
+  const double most = loose ? kAnywhere * kAnywhere : farthest_ * farthest_;
   bool near = true;
-  for (std::size_t v = 0; v < rest_.size(); ++v)
+  for (std::size_t v = 0; v < rest_.size(); ++v) {
+    if (left != nullptr && !left->on_surface(static_cast<int>(v))) continue;
     near &= (tissue_.positions[v] - rest_[v]).squaredNorm() <= most;  // false of what is not a number, too
+  }
   return !near;
 }
 
@@ -319,55 +322,6 @@ void Simulation::set_free(const FreeMotion& motion) {
 ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
   inputs_.front().pose = pose;
   return step(inputs_, dt).front();
-}
-
-/// Block Gauss-Seidel over the tools (for a linear tissue: on the complementarity problem of all contacts
-/// together, which is convex): each in turn solves its own contact on the surface that the others have
-/// pushed, until it stands still for all of them.
-void Simulation::settle() {
-  std::size_t still = 1;  // tools in a row that need nothing; the last one has just been solved
-  for (std::size_t turn = 0; still < tools_.size(); ++turn) {
-    const std::size_t i = turn % tools_.size();
-    ToolContact& tool = tools_[i];
-    ++still;
-    if (!tool.placed()) continue;
-    const ToolTissue tissue = tissue_.met_by(i);
-    if (!tissue.moved()) continue;
-    if (tool.exhausted() || turn >= kMaxSweeps * tools_.size()) {
-      tools_settled_ = false;
-      flag_contacts();
-      return;
-    }
-    tool.settle(tissue);
-    still = 1;
-  }
-}
-
-void Simulation::flag_contacts() noexcept {
-  for (ToolContact& tool : tools_) {
-    if (tool.force().contacts > 0) tool.flag();
-  }
-}
-
-/// Several tools that found no equilibrium, and still push the surface from under each other: what they press
-/// with by now may be anything, and the next step would begin with that. They stay where they were, with what
-/// they felt there.
-void Simulation::restore_touching() {
-  const auto touches = [](const ToolContact& tool) { return tool.force().contacts > 0; };
-  const auto still_pushed = [&](std::size_t i) {
-    const Vec3& p = tools_[i].place();
-    return tissue_.met_by(i).surface_motion(p, p, kNear * tools_[i].radius()) >
-           kUnsettled * tools_[i].radius();
-  };
-  bool pushed = false;
-  for (std::size_t i = 0; i < tools_.size(); ++i) pushed = (touches(tools_[i]) && still_pushed(i)) || pushed;
-  if (!pushed || std::ranges::count_if(tools_, touches) < 2) return;
-  for (std::size_t i = 0; i < tools_.size(); ++i) {
-    const bool touched = touches(tools_[i]);
-    tools_[i].restore(tissue_.met_by(i));
-    if (touched || touches(tools_[i])) tools_[i].flag();
-  }
-  for (std::size_t i = 0; i < tools_.size(); ++i) tissue_.met_by(i).mark_solved();  // with all loads back
 }
 
 void Simulation::lift_tool(std::size_t tool) {

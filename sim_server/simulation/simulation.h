@@ -165,7 +165,7 @@ class Simulation {
   std::span<const ResectionRow> resection_log() const {
     return cut_ ? std::span<const ResectionRow>(cut_->log) : std::span<const ResectionRow>();
   }
-  /// All that has been removed, in order.
+  /// All that heat has removed, in order; not the pieces that this cut off.
   std::span<const Removal> removals() const {
     return cut_ ? std::span<const Removal>(cut_->removed) : std::span<const Removal>();
   }

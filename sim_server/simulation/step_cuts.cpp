@@ -39,8 +39,11 @@ std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs
   std::vector<int> due;
   for (; cut.done < cut.planned->size() && (*cut.planned)[cut.done].t <= time_ + kRounding; ++cut.done) {
     const int tetrahedron = (*cut.planned)[cut.done].tetrahedron;
-    if (cut.resection.left().is_left(tetrahedron)) due.push_back(tetrahedron);
+    const CutMesh& left = cut.resection.left();
+    if (left.is_left(tetrahedron) && left.is_removable(tetrahedron)) due.push_back(tetrahedron);
   }
+  std::ranges::sort(due);
+  due.erase(std::unique(due.begin(), due.end()), due.end());
   return cut.resection.remove(due, surface_);
 }
 
@@ -48,7 +51,7 @@ std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs
 void Simulation::cut(std::span<const ToolInput> inputs, double dt) {
   const std::span<const int> removed = remove_tissue(inputs, dt);
   if (removed.empty()) return;
-  for (const int tetrahedron : removed) cut_->removed.push_back({time_, tetrahedron});
+  for (const int tetrahedron : cut_->resection.asked_for()) cut_->removed.push_back({time_, tetrahedron});
   const DeformationModel::Removed gone = tissue_.model->remove(removed, cut_->resection.left());
   ResectionTotals& totals = cut_->resection.totals();
   totals.elastic += gone.elastic;

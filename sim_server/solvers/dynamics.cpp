@@ -71,7 +71,7 @@ void Dynamics::factor() {
   matrix_.build(solid_, motion_.position(), motion_.masses(), motion_.viscosity(), motion_.time().c(),
                 motion_.scratch());
   factored_at_.assign(motion_.position().begin(), motion_.position().end());
-  from_background_ = false;
+  from_background_ = cut_since_factored_ = false;
   count_new_factor();
 }
 
@@ -81,7 +81,9 @@ void Dynamics::count_new_factor() {
 }
 
 void Dynamics::refactor_if_moved() {
-  if (background_ || largest_distance(motion_.position(), factored_at_) <= kElsewhere * size_) return;
+  if (background_) return;
+  if (!cut_since_factored_ && largest_distance(motion_.position(), factored_at_) <= kElsewhere * size_)
+    return;
   factor();
   policy_.replaced();
 }
@@ -99,7 +101,9 @@ void Dynamics::exchange_factors() {
 }
 
 void Dynamics::remove(std::span<const int> tetrahedra, std::span<const NodeMass> masses) {
-  for (const auto& [node, mass] : masses) motion_.set_mass(node, mass);
+  for (const auto& [node, mass] : masses) mass > 0 ? motion_.set_mass(node, mass) : motion_.stop(node);
+  motion_.forget_forces();
+  cut_since_factored_ = true;
   if (background_) background_->remove(tetrahedra);
   quasi_newton_.clear();
   policy_.replaced();

@@ -56,8 +56,9 @@ class Dynamics {
     double mass;
   };
   /// Between two steps: these tetrahedra have been removed from the body (`Solid::remove`), and with them
-  /// these nodes' masses have changed. The factor is stale from now on. Of a body with
-  /// `DynamicsSettings::cut`.
+  /// these nodes' masses have changed; 0: nothing is left there, and the node stops where it is, with the
+  /// mass that it had. The factor is stale from now on. Of a body with `DynamicsSettings::cut`. An
+  /// evaluation.
   void remove(std::span<const int> tetrahedra, std::span<const NodeMass> masses);
 
   /// The trial point (nodes, m).
@@ -120,6 +121,7 @@ class Dynamics {
   std::optional<BackgroundMatrix> background_;
   QuasiNewton quasi_newton_;
   bool from_background_ = false;  // the factor in use
+  bool cut_since_factored_ = false;
   int factors_ = 0;
   std::vector<Vec3> factored_at_;  // m, where A was factored last, but in the background
   std::vector<int> requested_columns_;

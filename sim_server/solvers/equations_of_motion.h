@@ -61,10 +61,15 @@ class EquationsOfMotion {
 
   /// Lumped, kg.
   std::span<const double> masses() const { return mass_; }
-  /// The body has lost some of its elements: what resisted before is not of it any more.
-  void set_mass(int node, double mass) {
-    mass_[static_cast<std::size_t>(node)] = mass;
+  /// Between two steps of a body that has lost elements: a node's mass, kg; a node at which nothing is left
+  /// stops where it is; and the forces before are those of what is left, so that what went is no change of
+  /// force, which damping would answer.
+  void set_mass(int node, double mass) { mass_[static_cast<std::size_t>(node)] = mass; }
+  void stop(int node) { time_.stop(static_cast<std::size_t>(node)); }
+  void forget_forces() {
     internal_is_current_ = start_is_current_ = false;
+    update_internal();
+    time_.forget_forces(internal_);
   }
 
   const TimeStepping& time() const { return time_; }

@@ -20,7 +20,6 @@ class TimeStepping {
  public:
   /// At rest at `x` (nodes, m), where no internal forces act.
   TimeStepping(std::span<const Vec3> x, bool second_order);
-
   /// At `x` (nodes, m) with these internal forces (nodes, N), as if it had always been there; at the
   /// velocities `v` (nodes, m/s), or where that is empty at those of before.
   void restart(std::span<const Vec3> x, std::span<const Vec3> v, std::span<const Vec3> internal);
@@ -30,6 +29,17 @@ class TimeStepping {
   /// is of the same size, its values of no meaning. `stop`: the body comes to rest there, and has been there
   /// in the step before.
   void end(std::span<const Vec3> x, std::vector<Vec3>& internal, bool stop);
+
+  /// Between two steps: a node rests where it is, and always did.
+  void stop(std::size_t i) {
+    v_[i] = earlier_v_[i] = Vec3::Zero();
+    earlier_x_[i] = x_[i];
+  }
+  /// The internal forces (nodes, N) always were these.
+  void forget_forces(std::span<const Vec3> internal) {
+    f_.assign(internal.begin(), internal.end());
+    earlier_f_ = f_;
+  }
 
   /// Of the step in hand, 1/s; 0 before the first.
   double c() const { return c_; }

@@ -240,10 +240,14 @@ TEST_CASE("a resection gives the same bytes each time") {
   CHECK(hashes[0] == hashes[1]);
 }
 
-TEST_CASE("ten thousand removals leave a closed surface, and what a removal takes does not grow") {
+TEST_CASE("ten thousand removals leave a closed surface") {
   const TetMesh mesh = soft_block(Vec3(0.1, 0.05, 0.1), {16, 8, 16});
   Surface surface = boundary_surface(mesh);
-  Resection resection(Cutting{.smallest_piece = 0, .where = "test"}, mesh, {}, surface);
+  std::vector<int> held;
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+    if (mesh.vertices[static_cast<std::size_t>(v)].y() < -0.049) held.push_back(v);
+  }
+  Resection resection(Cutting{.smallest_piece = 0, .where = "test"}, mesh, held, surface);
   std::vector<int> order(mesh.tetrahedra.size());
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::minstd_rand(5));

@@ -1,0 +1,64 @@
+// How several tools come to rest on one tissue: parts of Simulation.
+#include <algorithm>
+
+#include "sim_server/simulation/simulation.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kNear = 2;          // of the tool radius: where the surface is looked at for motion
+constexpr double kUnsettled = 1e-3;  // of the tool radius: by how much others push the surface, as one turn
+constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
+
+}  // namespace
+
+/// Block Gauss-Seidel over the tools (for a linear tissue: on the complementarity problem of all contacts
+/// together, which is convex): each in turn solves its own contact on the surface that the others have
+/// pushed, until it stands still for all of them.
+void Simulation::settle() {
+  std::size_t still = 1;  // tools in a row that need nothing; the last one has just been solved
+  for (std::size_t turn = 0; still < tools_.size(); ++turn) {
+    const std::size_t i = turn % tools_.size();
+    ToolContact& tool = tools_[i];
+    ++still;
+    if (!tool.placed()) continue;
+    const ToolTissue tissue = tissue_.met_by(i);
+    if (!tissue.moved()) continue;
+    if (tool.exhausted() || turn >= kMaxSweeps * tools_.size()) {
+      tools_settled_ = false;
+      flag_contacts();
+      return;
+    }
+    tool.settle(tissue);
+    still = 1;
+  }
+}
+
+void Simulation::flag_contacts() noexcept {
+  for (ToolContact& tool : tools_) {
+    if (tool.force().contacts > 0) tool.flag();
+  }
+}
+
+/// Several tools that found no equilibrium, and still push the surface from under each other: what they press
+/// with by now may be anything, and the next step would begin with that. They stay where they were, with what
+/// they felt there.
+void Simulation::restore_touching() {
+  const auto touches = [](const ToolContact& tool) { return tool.force().contacts > 0; };
+  const auto still_pushed = [&](std::size_t i) {
+    const Vec3& p = tools_[i].place();
+    return tissue_.met_by(i).surface_motion(p, p, kNear * tools_[i].radius()) >
+           kUnsettled * tools_[i].radius();
+  };
+  bool pushed = false;
+  for (std::size_t i = 0; i < tools_.size(); ++i) pushed = (touches(tools_[i]) && still_pushed(i)) || pushed;
+  if (!pushed || std::ranges::count_if(tools_, touches) < 2) return;
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    const bool touched = touches(tools_[i]);
+    tools_[i].restore(tissue_.met_by(i));
+    if (touched || touches(tools_[i])) tools_[i].flag();
+  }
+  for (std::size_t i = 0; i < tools_.size(); ++i) tissue_.met_by(i).mark_solved();  // with all loads back
+}
+
+}  // namespace palpate::sim
