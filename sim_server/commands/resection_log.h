@@ -12,7 +12,7 @@ void require_resection(const char* option, const std::optional<std::filesystem::
                        const Scene& scene);
 
 /// Writes a CSV with a row for each step with a hot tip: time, tool, place, force, and what the resection has
-/// come to by then (configs/README.md). Throws `Error` (run time).
+/// come to by then; units stand in the names of the columns. Throws `Error` (run time).
 void write_resection(const std::filesystem::path& file, const Simulation& simulation);
 
 /// The tetrahedra that went, as `--removals` writes and `--remove` reads them. Throws `Error`, of a file that

@@ -248,11 +248,12 @@ std::vector<MemoryPart> TensorMass::memory() const {
        fmt::format("{} vertices, {} edges; {} sub-steps of {:.3g} ms{}", tensors_.vertices(),
                    tensors_.edges(), instants_ * sub_steps_, 1e3 * sub_step_,
                    scaling_ ? fmt::format("; {:.2g} g more for stiff elements", 1e3 * scaling_->added) : "")},
-      {"compliance", compliance_->bytes()},
       {"motion", motion_.bytes() + 4 * force_.size() * sizeof(double)},
       {"positions", (rest_.size() + free_.size() + positions_.size() + 2 * nodes_.size()) * sizeof(Vec3) +
                         loads_.capacity() * sizeof(NodalLoad) + first_.size() * sizeof(int) +
                         compliance_->index_bytes()}};
+  if (dense_)
+    parts.insert(parts.begin() + 1, {"compliance", dense_->bytes()});  // else each vertex for itself
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
   if (told_) parts.push_back({"motion told to clients", told_->bytes(), told_->detail()});
   return parts;

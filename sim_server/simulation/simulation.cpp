@@ -189,9 +189,10 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
     }
     if (instants_ > 1)
       tools_[i].foresee(std::max(dt, inputs[i].wants.ahead ? inputs[i].wants.ahead->seconds : 0));
-    if (inputs[i].wants.tangent) tools_[i].differentiate(tissue_.met_by(i));
+    const bool tells_tangents = tissue_.model->knows_later_compliance();
+    if (inputs[i].wants.tangent && tells_tangents) tools_[i].differentiate(tissue_.met_by(i));
     static_cast<ToolForce&>(answers_[i]) = tools_[i].force();
-    if (!tissue_.model->knows_later_compliance()) answers_[i].force = late_mean_[i];
+    if (!tells_tangents) answers_[i].force = late_mean_[i];
     answers_[i].mean_force = mean_[i];
   }
   if (cut_) note_cut(inputs, dt);
@@ -278,14 +279,18 @@ void Simulation::solve_contacts() {
 
 /// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.
 bool Simulation::ran_away() const noexcept {
-  const CutMesh* const left = cut_ ? &cut_->resection.left() : nullptr;
   const bool loose = cut_ && cut_->resection.totals().loose_pieces > 0;  // these may go anywhere
   const double most = loose ? kAnywhere * kAnywhere : farthest_ * farthest_;
+  const auto is_near = [&](std::size_t v) {  // false of what is not a number, too
+    return (tissue_.positions[v] - rest_[v]).squaredNorm() <= most;
+  };
   bool near = true;
-  for (std::size_t v = 0; v < rest_.size(); ++v) {
-    if (left != nullptr && !left->on_surface(static_cast<int>(v))) continue;
-    near &= (tissue_.positions[v] - rest_[v]).squaredNorm() <= most;  // false of what is not a number, too
+  if (!cut_) {
+    for (std::size_t v = 0; v < rest_.size(); ++v) near &= is_near(v);
+    return !near;
   }
+  const CutMesh& left = cut_->resection.left();
+  for (std::size_t v = 0; v < rest_.size(); ++v) near &= !left.on_surface(static_cast<int>(v)) || is_near(v);
   return !near;
 }
 
