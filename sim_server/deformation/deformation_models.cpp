@@ -8,6 +8,7 @@
 #include "common/error.h"
 #include "common/text.h"
 #include "sim_server/deformation/contact_instants.h"
+#include "sim_server/deformation/hybrid.h"
 #include "sim_server/deformation/implicit.h"
 #include "sim_server/deformation/quasi_static.h"
 #include "sim_server/deformation/reduced.h"
@@ -23,7 +24,10 @@ namespace {
 template <class Model, class... Settings>
 constexpr DeformationModelRow row_of(DeformationModelRow row) {
   row.make = [](const ModelInputs& inputs) -> std::unique_ptr<DeformationModel> {
-    return std::make_unique<Model>(inputs);
+    if constexpr (requires { Model::make(inputs); })
+      return Model::make(inputs);
+    else
+      return std::make_unique<Model>(inputs);
   };
   row.estimated_bytes = &Model::estimated_bytes;
   row.keys = [] {
@@ -57,6 +61,12 @@ constexpr std::array kModels{
          .cuts = true,
          .unneeded = {{"factor of the stiffness matrix, kept",
                        "explicit steps solve nothing; set-up lets its own go"}}}),
+    row_of<Hybrid, RayleighDamping, ContactInstants, HybridSettings>(
+        {.name = "hybrid",
+         .summary = "linear elastic: what can be cut in motion as tensor_mass, the rest condensed, at rest",
+         .materials = Materials::kPlain,
+         .moves = true,
+         .cuts = true}),
     row_of<Implicit, RayleighDamping, ImplicitSettings, ContactInstants, ClientModes>(
         {.name = "implicit",
          .summary = "motion of any law, element and load, by implicit steps",

@@ -3,10 +3,14 @@
 #include <cmath>
 #include <random>
 
+#include "common/error.h"
+#include "sim_server/deformation/model_inputs.h"
+
 namespace palpate::sim {
 namespace {
 constexpr int kMostProducts = 1000;
-constexpr double kSettled = 1e-6;  // growth of the Rayleigh quotient
+constexpr double kSettled = 1e-6;      // growth of the Rayleigh quotient
+constexpr double kMostSubSteps = 2e4;  // no step of so many is in time
 }  // namespace
 
 double highest_frequency(const ElasticTensors& tensors) {
@@ -35,6 +39,17 @@ double highest_frequency(const ElasticTensors& tensors) {
 double longest_sub_step(double w, const RayleighDamping& damping) {
   const double d = damping.mass + damping.stiffness * w * w;
   return 4 / (d + std::sqrt(d * d + 4 * w * w));
+}
+
+double count_sub_steps(const Scene& scene, double longest) {
+  const double steps = std::ceil(step_period(scene) / longest);
+  if (steps > kMostSubSteps) {
+    fail(
+        "{}: a step at {:g} Hz would take {:g} sub-steps of {:.2g} s, and {:g} are the most; model \"{}\" is "
+        "for soft tissue: take \"implicit\", a larger `rate_hz` or a smaller `rayleigh_stiffness`",
+        scene.source, scene.rate_hz, steps, longest, kMostSubSteps, scene.deformation.model);
+  }
+  return steps;
 }
 
 ExplicitMotion::ExplicitMotion(const ElasticTensors& tensors, const RayleighDamping& damping, int columns)
@@ -67,6 +82,11 @@ void ExplicitMotion::advance(double h, const double* __restrict force) noexcept 
       bent[k] = u[k] + stiffness * v[k];
     }
   }
+}
+
+void ExplicitMotion::run(double h) noexcept {
+  for (std::size_t k = 0; k < bent_.size(); ++k) bent_[k] = state.u[k] + damping_.stiffness * state.v[k];
+  sub_step(h, state.f);
 }
 
 void ExplicitMotion::run(int steps, double h, const std::vector<double>& force) noexcept {

@@ -3,6 +3,7 @@
 
 #include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/elasticity/tensors.h"
+#include "sim_server/scene/scene.h"
 
 namespace palpate::sim {
 
@@ -13,6 +14,10 @@ double highest_frequency(const ElasticTensors& tensors);
 /// The longest sub-step (s) that is stable where no frequency is above `w` (rad/s). From the roots of one
 /// mode's step, h^2 w^2 + 2 h d <= 4 with d = mass + stiffness w^2; without damping that is h <= 2 / w.
 double longest_sub_step(double w, const RayleighDamping& damping);
+
+/// How many sub-steps of at most `longest` (s) make a step of the scene. Throws `Error` where it names no
+/// rate, or where no step of so many could be in time.
+double count_sub_steps(const Scene& scene, double longest);
 
 /// The free vertices of a linear tissue in motion, by the semi-implicit (symplectic) Euler method with
 /// lumped masses M:
@@ -34,6 +39,8 @@ class ExplicitMotion {
   /// those before and these, so that they change half-way between two velocities. The displacement is then of
   /// second order in h, of each mode never against its force, and forces that stay give no jolt.
   void run(int steps, double h, const std::vector<double>& force) noexcept;
+  /// The same by one sub-step under the forces of `state`, as if they had always been there.
+  void run(double h) noexcept;
 
   std::size_t bytes() const { return 5 * state.u.size() * sizeof(double); }
 

@@ -2,49 +2,56 @@
 
 namespace palpate::sim {
 
-LumpedCompliance::LumpedCompliance(const ElasticTensors& tensors, std::span<const int> first, double h,
-                                   double held_stiffness)
-    : tensors_(tensors), first_(first), h_(h), held_compliance_(1 / held_stiffness) {}
+LumpedCompliance::LumpedCompliance(const ElasticTensors& tensors, std::span<const int> first,
+                                   CondensedRest* rest, double h, double held_stiffness)
+    : tensors_(tensors), first_(first), rest_(rest), h_(h), held_compliance_(1 / held_stiffness) {}
 
-/// m/N.
-double LumpedCompliance::of(int vertex) const noexcept {
+/// How a vertex moves per force on it, m/N.
+Mat3 LumpedCompliance::own(int vertex) const noexcept {
   const int first = first_[static_cast<std::size_t>(vertex)];
-  return first < 0 ? held_compliance_ : h_ * h_ / tensors_.masses()[static_cast<std::size_t>(first / 3)];
+  if (first >= 0) return h_ * h_ / tensors_.masses()[static_cast<std::size_t>(first / 3)] * Mat3::Identity();
+  if (rest_ != nullptr && rest_->has(vertex)) return rest_->compliance(vertex, vertex);
+  return held_compliance_ * Mat3::Identity();
+}
+
+/// How one vertex moves per force on another, m/N.
+Mat3 LumpedCompliance::block(int vertex, int other) const noexcept {
+  if (vertex == other) return own(vertex);
+  if (rest_ != nullptr && rest_->has(vertex) && rest_->has(other)) return rest_->compliance(vertex, other);
+  return Mat3::Zero();
 }
 
 void LumpedCompliance::begin(ContactPatch& patch) const noexcept {
+  if (rest_ != nullptr) rest_->watch(patch.vertices);
   patch.tool_compliance = 0;
   for (int i = 0; i < patch.nodes(); ++i)
-    patch.compliance.block<3, 3>(3 * i, 3 * i) =
-        of(patch.vertices[static_cast<std::size_t>(i)]) * Mat3::Identity();
+    patch.compliance.block<3, 3>(3 * i, 3 * i) = own(patch.vertices[static_cast<std::size_t>(i)]);
 }
 
 void LumpedCompliance::fill(int node, ContactPatch& patch) const noexcept {
-  const double own = of(patch.vertices[static_cast<std::size_t>(node)]);
-  patch.compliance.block(0, 3 * node, 3 * patch.nodes(), 3).setZero();
-  patch.compliance.block<3, 3>(3 * node, 3 * node) = own * Mat3::Identity();
+  const int vertex = patch.vertices[static_cast<std::size_t>(node)];
+  for (int i = 0; i < patch.nodes(); ++i)
+    patch.compliance.block<3, 3>(3 * i, 3 * node) =
+        block(patch.vertices[static_cast<std::size_t>(i)], vertex);
 }
 
 void LumpedCompliance::fill(std::span<const int> vertices, ContactPatch& patch) const noexcept {
+  if (rest_ != nullptr) rest_->watch(vertices);
   patch.tool_compliance = 0;
-  const auto size = 3 * static_cast<Eigen::Index>(vertices.size());
-  patch.compliance.topLeftCorner(size, size).setZero();
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const auto row = 3 * static_cast<Eigen::Index>(i);
-    patch.compliance.block<3, 3>(row, row) = of(vertices[i]) * Mat3::Identity();
+  for (std::size_t j = 0; j < vertices.size(); ++j) {
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      patch.compliance.block<3, 3>(3 * static_cast<Eigen::Index>(i), 3 * static_cast<Eigen::Index>(j)) =
+          block(vertices[i], vertices[j]);
   }
 }
 
-Mat3 LumpedCompliance::of_loads(std::span<const NodalLoad> loads) const noexcept {
-  const Vec3 sum = sum_of(loads);
-  double yields = 0;
-  for (const NodalLoad& load : loads) yields += share_of(load, sum) * share_of(load, sum) * of(load.vertex);
-  return yields * Mat3::Identity();
-}
-
-void LumpedCompliance::move(std::span<const NodalLoad> loads, std::span<Vec3> positions) noexcept {
-  for (const NodalLoad& load : loads)
-    positions[static_cast<std::size_t>(load.vertex)] += of(load.vertex) * load.force;
+void LumpedCompliance::move(std::span<const NodalLoad> loads, bool all,
+                            std::span<Vec3> positions) const noexcept {
+  for (const NodalLoad& load : loads) {
+    if (rest_ == nullptr || !rest_->has(load.vertex))
+      positions[static_cast<std::size_t>(load.vertex)] += own(load.vertex) * load.force;
+  }
+  if (rest_ != nullptr) rest_->move(loads, all ? rest_->vertices() : rest_->watched(), positions);
 }
 
 }  // namespace palpate::sim

@@ -1,35 +1,38 @@
 #pragma once
 #include <vector>
 
-#include "sim_server/deformation/vertex_compliance.h"
+#include "sim_server/deformation/condensed_rest.h"
 #include "sim_server/elasticity/tensors.h"
 
 namespace palpate::sim {
 
-/// How a tissue gives way over one explicit sub-step of h (s): each vertex for itself, by h^2 / m of its
-/// lumped mass m, whatever it hangs on. So it stands when tissue is removed, and takes no memory. A fixed
-/// vertex gives way as `held_stiffness` says.
-class LumpedCompliance final : public VertexCompliance {
+/// How a tissue gives way over one explicit sub-step of h (s): each vertex in motion for itself, by h^2 / m
+/// of its lumped mass m, whatever it hangs on, so that it stands when tissue is removed and takes no memory;
+/// the vertices of a condensed rest by what that says. A fixed vertex gives way as `held_stiffness` says. One
+/// thread; neither allocates nor throws.
+class LumpedCompliance final : public ComplianceSource {
  public:
-  /// `first`: per surface vertex three times its place among those of `tensors`, or -1: fixed. Both outlive
-  /// this.
-  LumpedCompliance(const ElasticTensors& tensors, std::span<const int> first, double h,
+  using ComplianceSource::fill;
+  /// `first`: per surface vertex three times its place among those of `tensors`, or -1: not in motion.
+  /// `rest`: null where all of the body is in motion. All of them outlive this.
+  LumpedCompliance(const ElasticTensors& tensors, std::span<const int> first, CondensedRest* rest, double h,
                    double held_stiffness);
 
   void begin(ContactPatch& patch) const noexcept override;
   void fill(int node, ContactPatch& patch) const noexcept override;
-  void fill(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
-  bool gives_way(int vertex) const noexcept override { return first_[static_cast<std::size_t>(vertex)] >= 0; }
-  Mat3 of_loads(std::span<const NodalLoad> loads) const noexcept override;
-  void move(std::span<const NodalLoad> loads, std::span<Vec3> positions) noexcept override;
-  std::size_t bytes() const override { return 0; }
-  std::size_t index_bytes() const override { return 0; }
+  /// As `DeformationModel::compliance`.
+  void fill(std::span<const int> vertices, ContactPatch& patch) const noexcept;
+  /// Moves `positions` (surface vertices, m) by what `loads` do: of what is condensed only what contact looks
+  /// at, or `all`.
+  void move(std::span<const NodalLoad> loads, bool all, std::span<Vec3> positions) const noexcept;
 
  private:
-  double of(int vertex) const noexcept;
+  Mat3 block(int vertex, int other) const noexcept;
+  Mat3 own(int vertex) const noexcept;
 
   const ElasticTensors& tensors_;
   std::span<const int> first_;
+  CondensedRest* rest_;
   double h_, held_compliance_;
 };
 

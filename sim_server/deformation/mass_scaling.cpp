@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "sim_server/elasticity/element.h"
-#include "sim_server/elasticity/laws.h"
+#include "sim_server/elasticity/tensors.h"
 
 namespace palpate::sim {
 namespace {
@@ -15,13 +15,11 @@ namespace {
 double squared_frequency(const LinearTetrahedron& element, const Material& material) {
   using Matrix12 = Eigen::Matrix<double, 12, 12>;
   const Moduli moduli = LinearLaw::moduli(material);
-  const LinearLaw law(moduli, Mat3::Identity());
   Matrix12 k;  // per volume
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t b = 0; b < 4; ++b) {
-      const Vec3 &ga = element.gradient[a], &gb = element.gradient[b];
       k.block<3, 3>(3 * static_cast<Eigen::Index>(a), 3 * static_cast<Eigen::Index>(b)) =
-          law.block(0, ga, gb) + moduli.lambda * ga * gb.transpose();
+          stiffness_per_volume(moduli, element.gradient[a], element.gradient[b]);
     }
   }
   const Eigen::SelfAdjointEigenSolver<Matrix12> solver(k, Eigen::EigenvaluesOnly);
@@ -30,11 +28,18 @@ double squared_frequency(const LinearTetrahedron& element, const Material& mater
 
 }  // namespace
 
-MassScaling scale_masses(const TetMesh& mesh, const Material& material, double share) {
+MassScaling scale_masses(const TetMesh& mesh, const Material& material, double share,
+                         std::span<const char> moves) {
+  const auto is_in_motion = [&](int v) { return moves.empty() || moves[static_cast<std::size_t>(v)] != 0; };
   const auto& x = mesh.vertices;
   std::vector<double> squares, masses;  // of each element: (rad/s)^2, kg
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
     const Tetrahedron& t = mesh.tetrahedra[e];
+    if (std::ranges::none_of(t, is_in_motion)) {
+      squares.push_back(0);
+      masses.push_back(0);
+      continue;
+    }
     const LinearTetrahedron element({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
     const double stiffness = mesh.stiffness.empty() ? 1 : mesh.stiffness[e];
     squares.push_back(stiffness * squared_frequency(element, material));

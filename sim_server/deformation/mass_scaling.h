@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "sim_server/elasticity/material.h"
@@ -18,7 +19,10 @@ struct MassScaling {
   double added = 0;             ///< kg
 };
 
-/// As low a frequency as `share` of the body's mass more, at most, allows. O(m log m), some 10 us an element.
-MassScaling scale_masses(const TetMesh& mesh, const Material& material, double share);
+/// As low a frequency as `share` of the body's mass more, at most, allows. `moves`: of each vertex, not 0
+/// where it is in motion; elements without any such do not count. Empty: all are. O(m log m), some 10 us an
+/// element.
+MassScaling scale_masses(const TetMesh& mesh, const Material& material, double share,
+                         std::span<const char> moves = {});
 
 }  // namespace palpate::sim

@@ -23,6 +23,7 @@ enum class Stage {
   kTensors,
   kFrequency,
   kCompliance,
+  kCondensed,
 };
 
 /// What goes on in a stage, and the part of the program that it makes.
@@ -41,6 +42,7 @@ inline constexpr std::array kStages{
     StageRow{Stage::kTensors, "assembling the tensors", "tensors"},
     StageRow{Stage::kFrequency, "finding the highest frequency", "tensors"},
     StageRow{Stage::kCompliance, "computing compliance", "compliance"},
+    StageRow{Stage::kCondensed, "condensing what is not in motion", "condensed rest"},
 };
 
 constexpr const StageRow& row_of(Stage stage) {

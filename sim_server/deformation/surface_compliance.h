@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "sim_server/deformation/deformation_model.h"
 #include "sim_server/deformation/model_inputs.h"
-#include "sim_server/deformation/vertex_compliance.h"
 
 namespace palpate::sim {
 
@@ -17,7 +17,7 @@ void require_held_tissue(const ModelInputs& inputs);
 /// of each of the r free reachable surface vertices per force on each. 27 MB for 614 of them. A surface
 /// vertex out of reach does not give way; it is not computed. A fixed one does not move with the tissue, but
 /// where the tool presses on it, it gives way as `held_stiffness` says.
-class SurfaceCompliance final : public VertexCompliance {
+class SurfaceCompliance final : public ComplianceSource {
  public:
   /// Numbers the rows; W is not there yet. Throws `Error` without material or fixed nodes, where all
   /// reachable vertices are fixed, or where W would take more than 4 GB, or than there are free.
@@ -53,17 +53,20 @@ class SurfaceCompliance final : public VertexCompliance {
   /// First row of a surface vertex, or -1: fixed or out of reach.
   int row(int vertex) const { return row_[vertex]; }
 
-  void fill(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  /// As `DeformationModel::compliance`.
+  void fill(std::span<const int> vertices, ContactPatch& patch) const noexcept;
   void begin(ContactPatch& patch) const noexcept override;
   void fill(int node, ContactPatch& patch) const noexcept override;
-  bool gives_way(int vertex) const noexcept override { return row_[vertex] >= 0; }
-  Mat3 of_loads(std::span<const NodalLoad> loads) const noexcept override;
-  /// O(r x loads).
-  void move(std::span<const NodalLoad> loads, std::span<Vec3> positions) noexcept override;
+  /// Whether the tissue gives way at a surface vertex: it is free, and a tool can reach it.
+  bool gives_way(int vertex) const noexcept { return row_[vertex] >= 0; }
+  /// Of the surface that bears these loads, as one piece, m/N. O(loads^2).
+  Mat3 of_loads(std::span<const NodalLoad> loads) const noexcept;
+  /// Moves `positions` (surface vertices, m) by what `loads` do. O(r x loads).
+  void move(std::span<const NodalLoad> loads, std::span<Vec3> positions) noexcept;
 
   /// Of W, and of the numbers of its rows.
-  std::size_t bytes() const override { return static_cast<std::size_t>(compliance_.size()) * sizeof(double); }
-  std::size_t index_bytes() const override { return (row_.size() + vertices_.size()) * sizeof(int); }
+  std::size_t bytes() const { return static_cast<std::size_t>(compliance_.size()) * sizeof(double); }
+  std::size_t index_bytes() const { return (row_.size() + vertices_.size()) * sizeof(int); }
 
  private:
   void allocate();

@@ -4,32 +4,24 @@
 #include <cmath>
 #include <fmt/core.h>
 
-#include "common/error.h"
+#include "sim_server/deformation/cuttable_motion.h"
 #include "sim_server/deformation/linear_statics.h"
 #include "sim_server/scene/held_motion.h"
 
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostSubSteps = 2e4;   // no step of so many is in time
 constexpr int kFew = 8;                 // sub-steps: longer periods let waves carry off what is left
 constexpr double kWorkPerReport = 1e8;  // edges x sub-steps between two reports: some seconds
 constexpr double kSafety = 0.95;        // of the longest stable sub-step; the frequency is known from below
 
-constexpr double kMostAddedMass = 1e-3;  // of the body's, for its stiffest elements where it may be cut
-
-std::optional<MassScaling> scaling_for(const ModelInputs& inputs) {
-  if (!inputs.scene.cutting || !inputs.scene.material) return {};
-  return scale_masses(inputs.mesh, *inputs.scene.material, kMostAddedMass);
-}
-
-ElasticTensors assemble(const ModelInputs& inputs, const std::optional<MassScaling>& scaling) {
+ElasticTensors assemble(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   step_period(scene);  // before any work
   require_held_tissue(inputs);
   require_no_loose_part(inputs);
   inputs.progress(name_of(Stage::kTensors), 0);
-  return {inputs.mesh, *scene.material, inputs.fixed, scaling ? scaling->factors : std::vector<double>()};
+  return {inputs.mesh, *scene.material, inputs.fixed};
 }
 
 /// Of `steps` sub-steps in a period: at each one, or where these are too many at its end alone. A force that
@@ -47,23 +39,20 @@ const RayleighDamping& damping_of(const Scene& scene) {
 }  // namespace
 
 TensorMass::TensorMass(const ModelInputs& inputs)
-    : scaling_(scaling_for(inputs)),
-      dense_(inputs.scene.cutting ? std::nullopt : std::make_optional<SurfaceCompliance>(inputs)),
-      tensors_(assemble(inputs, scaling_)),
+    : compliance_(inputs),
+      tensors_(assemble(inputs)),
       motion_(tensors_, damping_of(inputs.scene)),
       begin_(motion_.state),
       force_(begin_.f),
       mesh_rest_(inputs.mesh.vertices),
       nodes_(mesh_rest_) {
   const auto* const told = inputs.scene.deformation.find<ClientModes>();
-  const bool cuts = inputs.scene.cutting.has_value();
-  const bool tells = told != nullptr && told->modes > 0 && !cuts;
+  const bool tells = told != nullptr && told->modes > 0;
   if (tells || supports_move(inputs.scene)) {
     const LinearStatics statics(inputs);
     supports_ = statics.supports(Following::kSwinging);
     if (tells) told_.emplace(inputs, statics, tensors_.places(), tensors_.masses());
   }
-  if (cuts) node_ = inputs.surface.vertices;
   for (const int vertex : inputs.surface.vertices) {
     rest_.push_back(inputs.mesh.vertices[vertex]);
     const int place = tensors_.places()[vertex];
@@ -74,13 +63,12 @@ TensorMass::TensorMass(const ModelInputs& inputs)
   positions_ = free_;
   loads_.reserve(kMaxTools * inputs.reachable.size());
   choose_sub_step(inputs);
-  if (cuts) {
-    cut_material_ = *inputs.scene.material;
-    compliance_ = &lumped_.emplace(tensors_, first_, sub_step_, held_stiffness(inputs.scene));
-  } else {
-    precompute(inputs);
-    compliance_ = &*dense_;
-  }
+  precompute(inputs);
+}
+
+std::unique_ptr<DeformationModel> TensorMass::make(const ModelInputs& inputs) {
+  if (inputs.scene.cutting) return std::make_unique<CuttableMotion>(inputs);
+  return std::make_unique<TensorMass>(inputs);
 }
 
 double TensorMass::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
@@ -90,27 +78,17 @@ double TensorMass::estimated_bytes(const Scene& scene, const MeshCounts& counts)
 
 void TensorMass::choose_sub_step(const ModelInputs& inputs) {
   inputs.progress(name_of(Stage::kFrequency), 0);
-  const bool cuts = scaling_.has_value();
-  const double highest = scaling_ ? scaling_->frequency : highest_frequency(tensors_);
-  const double longest = (cuts ? 1 : kSafety) * longest_sub_step(highest, damping_of(inputs.scene));
-  const double period = step_period(inputs.scene), steps = std::ceil(period / longest);
-  if (steps > kMostSubSteps) {
-    fail(
-        "{}: a step at {:g} Hz would take {:g} sub-steps of {:.2g} s, and {:g} are the most; model "
-        "\"tensor_mass\" is for soft tissue: take \"implicit\", a larger `rate_hz` or a smaller "
-        "`rayleigh_stiffness`",
-        inputs.scene.source, inputs.scene.rate_hz, steps, longest, kMostSubSteps);
-  }
-  instants_ = instants_of(inputs.scene.deformation, usual_instants(steps));
-  if (cuts) instants_ = std::max(instants_of(inputs.scene.deformation, 1), static_cast<int>(steps));
-  sub_steps_ = cuts ? 1 : static_cast<int>(std::ceil(period / instants_ / longest));
+  const double longest = kSafety * longest_sub_step(highest_frequency(tensors_), damping_of(inputs.scene));
+  const double period = step_period(inputs.scene);
+  instants_ = instants_of(inputs.scene.deformation, usual_instants(count_sub_steps(inputs.scene, longest)));
+  sub_steps_ = static_cast<int>(std::ceil(period / instants_ / longest));
   sub_step_ = period / instants_ / sub_steps_;
 }
 
 void TensorMass::precompute(const ModelInputs& inputs) {
   constexpr Eigen::Index kWide = ElasticTensors::kWide;
   const auto number = [&](Eigen::Index row, Eigen::Index column) {
-    return (first_[dense_->vertices()[row / 3]] + row % 3) * kWide + column;
+    return (first_[compliance_.vertices()[row / 3]] + row % 3) * kWide + column;
   };
   const auto respond = [&](Eigen::Index from, Eigen::Ref<Eigen::MatrixXd> columns) {
     ExplicitMotion motion(tensors_, damping_of(inputs.scene), kWide);
@@ -124,14 +102,13 @@ void TensorMass::precompute(const ModelInputs& inputs) {
   // A call of a second on one core where edges are many and sub-steps short; then each two are told.
   const double work = static_cast<double>(sub_steps_) * static_cast<double>(tensors_.edges());
   const auto calls = static_cast<std::size_t>(std::clamp(kWorkPerReport / work, 2.0, 16.0));
-  dense_->compute(kWide, respond, inputs.progress, calls);
+  compliance_.compute(kWide, respond, inputs.progress, calls);
   inputs.progress(name_of(Stage::kCompliance), 1);
 }
 
 FreeMotion TensorMass::free_motion(double dt) noexcept {
   if (dt > 0) {
-    if (!ended_) end_period();
-    ended_ = false;
+    end_period();
     run_period(motion_, force_);
     if (supports_) supports_->advance(sub_steps_ * sub_step_);
     update_free();
@@ -161,11 +138,10 @@ void TensorMass::update_free() noexcept {
 
 /// From the state at the end of the period without loads to that with them, where the next one begins.
 void TensorMass::end_period() noexcept {
-  if (lumped_) return end_sub_step();
   if (!loads_.empty()) {
     motion_.state = begin_;
     for (const NodalLoad& load : loads_) {
-      if (compliance_->gives_way(load.vertex))
+      if (compliance_.gives_way(load.vertex))
         Eigen::Map<Vec3>(force_.data() + first_[load.vertex]) += load.force;
     }
     run_period(motion_, force_);
@@ -175,21 +151,10 @@ void TensorMass::end_period() noexcept {
   begin_ = motion_.state;
 }
 
-/// The same of a period of one sub-step: what a load does to its vertex over it adds to what all else did.
-void TensorMass::end_sub_step() noexcept {
-  for (const NodalLoad& load : loads_) {
-    const int first = first_[static_cast<std::size_t>(load.vertex)];
-    if (first < 0) continue;
-    const Vec3 kick = sub_step_ / tensors_.masses()[static_cast<std::size_t>(first / 3)] * load.force;
-    Eigen::Map<Vec3>(motion_.state.v.data() + first) += kick;
-    Eigen::Map<Vec3>(motion_.state.u.data() + first) += sub_step_ * kick;
-  }
-}
-
 void TensorMass::calm_loaded() noexcept {
   for (const NodalLoad& load : loads_) {
     const double newton = load.force.norm();
-    if (!compliance_->gives_way(load.vertex) || !(newton > 0)) continue;
+    if (!compliance_.gives_way(load.vertex) || !(newton > 0)) continue;
     const auto at = [first = first_[load.vertex]](std::vector<double>& numbers) {
       return Eigen::Map<Vec3>(numbers.data() + first);
     };
@@ -202,11 +167,11 @@ void TensorMass::calm_loaded() noexcept {
 
 void TensorMass::press(std::span<const NodalLoad> loads) noexcept {
   std::copy(free_.begin(), free_.end(), positions_.begin());
-  compliance_->move(loads, positions_);
+  compliance_.move(loads, positions_);
 }
 
 void TensorMass::compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
-  compliance_->fill(vertices, patch);
+  compliance_.fill(vertices, patch);
 }
 
 std::span<const Vec3> TensorMass::apply(std::span<const NodalLoad> loads) noexcept {
@@ -217,7 +182,7 @@ std::span<const Vec3> TensorMass::apply(std::span<const NodalLoad> loads) noexce
 
 Mat3 TensorMass::later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
   if (!told_) return Mat3::Zero();
-  return told_->compliance(loads, seconds) - compliance_->of_loads(loads);
+  return told_->compliance(loads, seconds) - compliance_.of_loads(loads);
 }
 
 void TensorMass::modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept {
@@ -233,11 +198,7 @@ std::span<const Vec3> TensorMass::nodes() const noexcept {
   if (supports_) return {};  // what these do inside is not kept
   for (std::size_t node = 0; node < nodes_.size(); ++node) {
     const int place = tensors_.places()[node];
-    if (place >= 0) nodes_[node] = mesh_rest_[node] + Eigen::Map<const Vec3>(state().u.data() + 3 * place);
-  }
-  for (std::size_t k = 0; lumped_ && !ended_ && k < loads_.size(); ++k) {
-    const auto vertex = static_cast<std::size_t>(loads_[k].vertex);
-    if (first_[vertex] >= 0) nodes_[node_[vertex]] = positions_[vertex];
+    if (place >= 0) nodes_[node] = mesh_rest_[node] + Eigen::Map<const Vec3>(begin_.u.data() + 3 * place);
   }
   return nodes_;
 }
@@ -245,15 +206,13 @@ std::span<const Vec3> TensorMass::nodes() const noexcept {
 std::vector<MemoryPart> TensorMass::memory() const {
   std::vector<MemoryPart> parts{
       {"tensors", tensors_.bytes(),
-       fmt::format("{} vertices, {} edges; {} sub-steps of {:.3g} ms{}", tensors_.vertices(),
-                   tensors_.edges(), instants_ * sub_steps_, 1e3 * sub_step_,
-                   scaling_ ? fmt::format("; {:.2g} g more for stiff elements", 1e3 * scaling_->added) : "")},
+       fmt::format("{} vertices, {} edges; {} sub-steps of {:.3g} ms", tensors_.vertices(), tensors_.edges(),
+                   instants_ * sub_steps_, 1e3 * sub_step_)},
+      {"compliance", compliance_.bytes()},
       {"motion", motion_.bytes() + 4 * force_.size() * sizeof(double)},
       {"positions", (rest_.size() + free_.size() + positions_.size() + 2 * nodes_.size()) * sizeof(Vec3) +
                         loads_.capacity() * sizeof(NodalLoad) + first_.size() * sizeof(int) +
-                        compliance_->index_bytes()}};
-  if (dense_)
-    parts.insert(parts.begin() + 1, {"compliance", dense_->bytes()});  // else each vertex for itself
+                        compliance_.index_bytes()}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
   if (told_) parts.push_back({"motion told to clients", told_->bytes(), told_->detail()});
   return parts;

@@ -1,10 +1,11 @@
 #pragma once
+#include <memory>
+
 #include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/deformation/explicit_motion.h"
-#include "sim_server/deformation/lumped_compliance.h"
-#include "sim_server/deformation/mass_scaling.h"
 #include "sim_server/deformation/moving_supports.h"
+#include "sim_server/deformation/surface_compliance.h"
 #include "sim_server/deformation/told_motion.h"
 
 namespace palpate::sim {
@@ -21,16 +22,13 @@ namespace palpate::sim {
 /// contact. What the body does by itself and what it does by its supports add up, as it is linear: where
 /// supports move, the second comes from `support_responses`, with inertia and damping and exact in time, and
 /// costs no sub-step anything. Clients are told its slow modes (`ToldMotion`), for which set-up factors K.
-/// Tissue that can be cut has a contact instant in each sub-step, over which each vertex gives way alone
-/// (`LumpedCompliance`): nothing that was computed beforehand is of tissue that is no more. Its sub-steps are
-/// as short as its stiffest elements ask for, so that they stay stable whatever is removed; the very stiffest
-/// get a little more mass instead (`MassScaling`). Its clients are told no
-/// modes, and no tangents: those of so short a time are far too steep. At such short instants
-/// contact in a pit of a coarse mesh chatters by some percent; more `instants` end that.
+/// Tissue that can be cut moves as `CuttableMotion` says.
 class TensorMass : public DeformationModel {
  public:
   /// Throws `Error` as `SurfaceCompliance`, or where the scene names no rate.
   explicit TensorMass(const ModelInputs& inputs);
+  /// The model of a scene: this one, or `CuttableMotion` where it has [cutting].
+  static std::unique_ptr<DeformationModel> make(const ModelInputs& inputs);
   /// Before anything is allocated.
   static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   /// Any `dt` > 0 is taken for one period: callers step at the scene's rate, though their times may jitter
@@ -39,17 +37,15 @@ class TensorMass : public DeformationModel {
   bool force_leads() const noexcept override { return sub_steps_ == 1; }
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
-  const ComplianceSource* compliance_source() const noexcept override { return compliance_; }
-  bool compliance_is_constant() const noexcept override { return !lumped_; }
+  const ComplianceSource* compliance_source() const noexcept override { return &compliance_; }
+  bool compliance_is_constant() const noexcept override { return true; }
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
-  bool knows_later_compliance() const noexcept override { return !lumped_; }
   const SlowModes* slow_modes() const noexcept override { return told_ ? &told_->modes() : nullptr; }
   void modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   /// At the beginning of the period; empty where supports move.
   std::span<const Vec3> nodes() const noexcept override;
-  Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
   std::vector<MemoryPart> memory() const override;
 
   int sub_steps() const { return sub_steps_; }
@@ -60,19 +56,12 @@ class TensorMass : public DeformationModel {
   void precompute(const ModelInputs& inputs);
   void run_period(ExplicitMotion& motion, const std::vector<double>& force) const noexcept;
   void end_period() noexcept;
-  void end_sub_step() noexcept;
-  const ExplicitMotion::State& state() const { return lumped_ ? motion_.state : begin_; }
   void calm_loaded() noexcept;
   void update_free() noexcept;
   void press(std::span<const NodalLoad> loads) noexcept;
 
-  std::optional<MassScaling> scaling_;      // of tissue that may be cut
-  std::optional<SurfaceCompliance> dense_;  // computed beforehand, of tissue that is not cut
+  SurfaceCompliance compliance_;
   ElasticTensors tensors_;
-  std::optional<LumpedCompliance> lumped_;  // of tissue that may be
-  VertexCompliance* compliance_ = nullptr;  // one of the two
-  std::optional<Material> cut_material_;    // of tissue that may be cut
-  bool ended_ = false;                      // the period in hand has its end already, as tissue was removed
   int instants_ = 1;                        // within a step of the scene
   int sub_steps_ = 1;                       // from one to the next
   double sub_step_ = 0;                     // s
@@ -83,7 +72,6 @@ class TensorMass : public DeformationModel {
   std::optional<MovingSupports> supports_;  // where some move
   std::optional<ToldMotion> told_;          // to clients, unless the scene leaves it out
   std::vector<int> first_;                  // per surface vertex: its first number in `motion_`, or -1: fixed
-  std::vector<int> node_;                   // per surface vertex: its node; only of tissue that may be cut
   std::vector<Vec3> rest_, free_, positions_;  // m
   std::vector<Vec3> mesh_rest_;                // of all vertices, m
   mutable std::vector<Vec3> nodes_;            // of `nodes`

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "sim_server/elasticity/element.h"
-#include "sim_server/elasticity/laws.h"
 
 namespace palpate::sim {
 namespace {
@@ -179,7 +178,6 @@ void ElasticTensors::add(const TetMesh& mesh, std::size_t tetrahedron, const Mat
   const auto& x = mesh.vertices;
   const LinearTetrahedron element({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
   const Moduli moduli = LinearLaw::moduli(material);
-  const LinearLaw law(moduli, Mat3::Identity());
   const double mass =
       material.density * element.volume * (mass_factors_.empty() ? 1 : mass_factors_[tetrahedron]);
   using Tensor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -190,9 +188,8 @@ void ElasticTensors::add(const TetMesh& mesh, std::size_t tetrahedron, const Mat
     for (int b = 0; b < 4; ++b) {
       const int j = place_[t[b]];
       if (j < 0 || j > i || !wanted(i, j)) continue;
-      const Vec3 &gi = element.gradient[a], &gj = element.gradient[b];
       const Mat3 block =
-          stiffness * element.volume * (law.block(0, gi, gj) + moduli.lambda * gi * gj.transpose());
+          stiffness * element.volume * stiffness_per_volume(moduli, element.gradient[a], element.gradient[b]);
       if (j < i) {
         Eigen::Map<Tensor>(edge_tensor(i, j)) += block;
         continue;

@@ -1,0 +1,283 @@
+#include "sim_server/deformation/condensed_rest.h"
+
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <map>
+
+#include "common/error.h"
+#include "sim_server/deformation/linear_statics.h"
+#include "sim_server/elasticity/element.h"
+#include "sim_server/elasticity/tensors.h"
+#include "sim_server/mesh/disjoint_sets.h"
+#include "sim_server/mesh/loose_parts.h"
+
+namespace palpate::sim {
+namespace {
+
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+void sort_unique(std::vector<int>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+/// Where a number is in an ascending list that has it.
+int place_in(const std::vector<int>& list, int number) {
+  return static_cast<int>(std::ranges::lower_bound(list, number) - list.begin());
+}
+
+/// What is held while the motion stands still: what is fixed, and all that moves; ascending.
+std::vector<int> held_by(const std::vector<int>& fixed, const std::vector<int>& places) {
+  std::vector<int> held = fixed;
+  for (int v = 0; v < static_cast<int>(places.size()); ++v) {
+    if (places[static_cast<std::size_t>(v)] >= 0) held.push_back(v);
+  }
+  sort_unique(held);
+  return held;
+}
+
+void require_held_rest(const ModelInputs& inputs, std::span<const int> held) {
+  const std::vector<LoosePart> loose = loose_parts(inputs.mesh, held);
+  if (!loose.empty())
+    fail(
+        "{}: of what is not in motion, {}; a larger `layers`, or another region of [cutting], would hold "
+        "them",
+        inputs.scene.source, to_text(loose.front()));
+}
+
+/// A part of the body while its matrices are made: mesh vertices, ascending.
+struct PartNodes {
+  std::vector<int> border;              ///< in motion, that share a tetrahedron with it
+  std::vector<int> inner;               ///< condensed, that share one with the border
+  std::vector<std::size_t> tetrahedra;  ///< that have both
+};
+
+/// K_rb of a part: rows by `rows` (mesh vertices), columns by its border.
+SparseMatrix coupling_of(const ModelInputs& inputs, const PartNodes& part, const std::vector<int>& rows,
+                         const std::vector<int>& part_of) {
+  const TetMesh& mesh = inputs.mesh;
+  const Moduli moduli = LinearLaw::moduli(*inputs.scene.material);
+  Triplets entries;
+  for (const std::size_t t : part.tetrahedra) {
+    const Tetrahedron& corners = mesh.tetrahedra[t];
+    std::array<Vec3, 4> x;
+    for (std::size_t i = 0; i < 4; ++i) x[i] = mesh.vertices[static_cast<std::size_t>(corners[i])];
+    const LinearTetrahedron element(x);
+    const double weight = element.volume * (mesh.stiffness.empty() ? 1 : mesh.stiffness[t]);
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < 4; ++b) {
+        if (part_of[static_cast<std::size_t>(corners[a])] < 0 ||
+            !std::ranges::binary_search(part.border, corners[b]))
+          continue;
+        const Mat3 block = weight * stiffness_per_volume(moduli, element.gradient[a], element.gradient[b]);
+        const int row = 3 * place_in(rows, corners[a]), column = 3 * place_in(part.border, corners[b]);
+        for (int i = 0; i < 9; ++i) entries.emplace_back(row + i % 3, column + i / 3, block(i % 3, i / 3));
+      }
+    }
+  }
+  SparseMatrix coupling(static_cast<Eigen::Index>(3 * rows.size()),
+                        static_cast<Eigen::Index>(3 * part.border.size()));
+  coupling.setFromTriplets(entries.begin(), entries.end());
+  return coupling;
+}
+
+std::vector<PartNodes> nodes_of_parts(const TetMesh& mesh, const std::vector<int>& places,
+                                      const std::vector<int>& part_of) {
+  const auto count = static_cast<std::size_t>(1 + *std::ranges::max_element(part_of));
+  std::vector<PartNodes> parts(count);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    int part = -1;
+    bool at_border = false;
+    for (const int v : mesh.tetrahedra[t]) {
+      part = std::max(part, part_of[static_cast<std::size_t>(v)]);
+      at_border = at_border || places[static_cast<std::size_t>(v)] >= 0;
+    }
+    if (part < 0 || !at_border) continue;
+    PartNodes& nodes = parts[static_cast<std::size_t>(part)];
+    nodes.tetrahedra.push_back(t);
+    for (const int v : mesh.tetrahedra[t]) {
+      if (places[static_cast<std::size_t>(v)] >= 0) nodes.border.push_back(v);
+      if (part_of[static_cast<std::size_t>(v)] >= 0) nodes.inner.push_back(v);
+    }
+  }
+  for (PartNodes& nodes : parts) {
+    sort_unique(nodes.border);
+    sort_unique(nodes.inner);
+  }
+  return parts;
+}
+
+}  // namespace
+
+CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& places)
+    : part_(inputs.surface.vertices.size(), -1),
+      row_(inputs.surface.vertices.size(), -1),
+      seen_(part_.size(), 0) {
+  const std::vector<int> held = held_by(inputs.fixed, places);
+  require_held_rest(inputs, held);
+  find_parts(inputs.mesh, held);
+  const ModelInputs still{inputs.scene,     inputs.mesh,     inputs.surface,    held,
+                          inputs.reachable, inputs.progress, inputs.free_bytes, inputs.cache};
+  const LinearStatics statics(still);
+  if (statics.dofs.count == 0) return;
+  for (const int vertex : inputs.reachable) {
+    const int part = part_of(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
+    if (part < 0) continue;
+    auto& of_part = all_[static_cast<std::size_t>(part)].surface;
+    part_[static_cast<std::size_t>(vertex)] = part;
+    row_[static_cast<std::size_t>(vertex)] = static_cast<int>(3 * of_part.size());
+    of_part.push_back(vertex);
+    vertices_.push_back(vertex);
+  }
+  watched_.reserve(vertices_.size());
+  const std::vector<PartNodes> nodes = nodes_of_parts(inputs.mesh, places, part_of_);
+  for (std::size_t p = 0; p < all_.size(); ++p) {
+    Part& part = all_[p];
+    for (const int v : nodes[p].border) part.border.push_back(3 * places[static_cast<std::size_t>(v)]);
+    std::vector<int> rows = nodes[p].inner;
+    for (const int vertex : part.surface)
+      rows.push_back(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
+    sort_unique(rows);
+    const SparseMatrix coupling = coupling_of(inputs, nodes[p], rows, part_of_);
+    condense(inputs, statics, rows, coupling, part);
+  }
+}
+
+void CondensedRest::find_parts(const TetMesh& mesh, std::span<const int> held) {
+  std::vector<char> condensed(mesh.vertices.size(), 1);
+  for (const int v : held) condensed[static_cast<std::size_t>(v)] = 0;
+  DisjointSets sets(mesh.vertices.size());
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    int first = -1;
+    for (const int v : t) {
+      if (condensed[static_cast<std::size_t>(v)] == 0) continue;
+      if (first >= 0) sets.join(first, v);
+      first = v;
+    }
+  }
+  std::map<int, int> number;  // of sets, by their representatives
+  part_of_.assign(mesh.vertices.size(), -1);
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+    if (condensed[static_cast<std::size_t>(v)] != 0)
+      part_of_[static_cast<std::size_t>(v)] =
+          number.emplace(sets.of(v), static_cast<int>(number.size())).first->second;
+  }
+  all_.resize(number.size());
+}
+
+/// B, T and W of a part from the rows and columns `rows` (mesh vertices) of K_rr^-1.
+void CondensedRest::condense(const ModelInputs& inputs, const LinearStatics& statics,
+                             const std::vector<int>& rows, const SparseMatrix& coupling, Part& part) {
+  const auto size = static_cast<Eigen::Index>(3 * rows.size()), border = coupling.cols();
+  const auto surface = static_cast<Eigen::Index>(3 * part.surface.size());
+  require_memory(8.0 * static_cast<double>(size * (size + border) + border * (border + surface)),
+                 inputs.free_bytes, inputs.scene.source,
+                 fmt::format("condensing what is not in motion to {} vertices", rows.size()),
+                 "give [[tool]] a `reach` box around the part it touches");
+  std::vector<int> unknowns;
+  for (const int v : rows) {
+    for (int axis = 0; axis < 3; ++axis)
+      unknowns.push_back(statics.dofs.first[static_cast<std::size_t>(v)] + axis);
+  }
+  Eigen::MatrixXd inverse(size, size);
+  statics.factor().inverse_block(unknowns, inverse,
+                                 [&](double share) { inputs.progress(name_of(Stage::kCondensed), share); });
+  const Eigen::MatrixXd moved = inverse * coupling;  // where the border takes them, with the other sign
+  part.following = coupling.transpose() * moved;
+  part.carrying.resize(border, surface);
+  part.compliance.resize(surface, surface);
+  std::vector<Eigen::Index> at;
+  for (const int vertex : part.surface)
+    at.push_back(3 * place_in(rows, inputs.surface.vertices[static_cast<std::size_t>(vertex)]));
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const auto row = 3 * static_cast<Eigen::Index>(i);
+    part.carrying.middleCols<3>(row) = -moved.middleRows<3>(at[i]).transpose();
+    for (std::size_t j = 0; j < at.size(); ++j)
+      part.compliance.block<3, 3>(row, 3 * static_cast<Eigen::Index>(j)) = inverse.block<3, 3>(at[i], at[j]);
+  }
+  part.at = part.force = Eigen::VectorXd::Zero(border);
+}
+
+void CondensedRest::look_at(std::span<const double> motion) noexcept {
+  for (Part& part : all_) {
+    for (std::size_t b = 0; b < part.border.size(); ++b)
+      part.at.segment<3>(3 * static_cast<Eigen::Index>(b)) =
+          Eigen::Map<const Vec3>(motion.data() + part.border[b]);
+  }
+}
+
+void CondensedRest::follow(std::span<double> force) noexcept {
+  for (Part& part : all_) {
+    if (part.gone) continue;
+    part.force.noalias() = part.following.selfadjointView<Eigen::Lower>() * part.at;
+    for (std::size_t b = 0; b < part.border.size(); ++b)
+      Eigen::Map<Vec3>(force.data() + part.border[b]) +=
+          part.force.segment<3>(3 * static_cast<Eigen::Index>(b));
+  }
+}
+
+Vec3 CondensedRest::carried(int vertex) const noexcept {
+  const Part& part = all_[static_cast<std::size_t>(part_[static_cast<std::size_t>(vertex)])];
+  return part.carrying.middleCols<3>(row_[static_cast<std::size_t>(vertex)]).transpose() * part.at;
+}
+
+Mat3 CondensedRest::compliance(int vertex, int other) const noexcept {
+  const auto v = static_cast<std::size_t>(vertex), w = static_cast<std::size_t>(other);
+  if (part_[v] != part_[w]) return Mat3::Zero();
+  return all_[static_cast<std::size_t>(part_[v])].compliance.block<3, 3>(row_[v], row_[w]);
+}
+
+void CondensedRest::watch(std::span<const int> vertices) noexcept {
+  for (const int vertex : vertices) {
+    if (!has(vertex)) continue;
+    int& seen = seen_[static_cast<std::size_t>(vertex)];
+    if (seen < step_ - 1) watched_.push_back(vertex);
+    seen = step_;
+  }
+}
+
+void CondensedRest::begin_step() noexcept {
+  ++step_;
+  std::erase_if(watched_, [&](int vertex) { return seen_[static_cast<std::size_t>(vertex)] < step_ - 1; });
+}
+
+void CondensedRest::move(std::span<const NodalLoad> loads, std::span<const int> vertices,
+                         std::span<Vec3> positions) const noexcept {
+  for (const NodalLoad& load : loads) {
+    if (!has(load.vertex)) continue;
+    for (const int vertex : vertices)
+      positions[static_cast<std::size_t>(vertex)] += compliance(vertex, load.vertex) * load.force;
+  }
+}
+
+void CondensedRest::hand_down(const NodalLoad& load, std::span<double> force) const noexcept {
+  const auto v = static_cast<std::size_t>(load.vertex);
+  const Part& part = all_[static_cast<std::size_t>(part_[v])];
+  const auto columns = part.carrying.middleCols<3>(row_[v]);
+  for (std::size_t b = 0; b < part.border.size(); ++b)
+    Eigen::Map<Vec3>(force.data() + part.border[b]) +=
+        columns.middleRows<3>(3 * static_cast<Eigen::Index>(b)) * load.force;
+}
+
+double CondensedRest::remove(int part) noexcept {
+  Part& goes = all_[static_cast<std::size_t>(part)];
+  if (goes.gone) return 0;
+  goes.gone = true;
+  return -0.5 * goes.at.dot(goes.following.selfadjointView<Eigen::Lower>() * goes.at);
+}
+
+std::size_t CondensedRest::border() const {
+  std::size_t count = 0;
+  for (const Part& part : all_) count += part.border.size();
+  return count;
+}
+
+std::size_t CondensedRest::bytes() const {
+  std::size_t numbers = 0;
+  for (const Part& part : all_)
+    numbers += static_cast<std::size_t>(part.following.size() + part.carrying.size() +
+                                        part.compliance.size() + 2 * part.at.size());
+  return numbers * sizeof(double) + (part_of_.size() + 3 * part_.size() + 2 * vertices_.size()) * sizeof(int);
+}
+
+}  // namespace palpate::sim

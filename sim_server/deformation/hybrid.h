@@ -1,0 +1,32 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "sim_server/deformation/cuttable_motion.h"
+#include "sim_server/deformation/estimated_memory.h"
+
+namespace palpate::sim {
+
+/// What of a body is in motion, and how often the rest of it follows.
+struct HybridSettings {
+  int layers = 1;        ///< of tetrahedra in motion around what can be cut, [0, 100]
+  int follow_every = 8;  ///< sub-steps, [1, 1000]: how often the condensed rest follows the border
+
+  static constexpr std::array<std::string_view, 2> kKeys{"layers", "follow_every"};
+  static HybridSettings read(const Config& config);
+  std::string to_text() const;
+};
+
+/// Linear elastic tissue of which what can be cut is in motion, by tensor-mass, and the rest is condensed: a
+/// large part computed beforehand, and a small one whose topology can change (Cotin, Delingette and Ayache
+/// 2000, Vis. Comput. 16:437, section 5). See `CuttableMotion` and `CondensedRest`.
+struct Hybrid {
+  /// Throws `Error` as those, or where the scene has no [cutting].
+  static std::unique_ptr<DeformationModel> make(const ModelInputs& inputs);
+  /// Before anything is allocated.
+  static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
+};
+
+}  // namespace palpate::sim
