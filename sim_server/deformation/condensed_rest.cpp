@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "common/error.h"
@@ -10,6 +11,7 @@
 #include "sim_server/elasticity/tensors.h"
 #include "sim_server/mesh/disjoint_sets.h"
 #include "sim_server/mesh/loose_parts.h"
+#include "sim_server/sparse/symmetric_product.h"
 
 namespace palpate::sim {
 namespace {
@@ -107,19 +109,88 @@ std::vector<PartNodes> nodes_of_parts(const TetMesh& mesh, const std::vector<int
   return parts;
 }
 
+struct ModesOfPart {
+  Eigen::ArrayXd squares;  ///< (k) angular frequencies squared
+  Eigen::MatrixXd shapes;  ///< (unknowns x k), of unit mass
+};
+
+/// Of modes of all parts together those of one. Where parts swing alike, a mode may be of several: what each
+/// part does in it is a mode of that, too.
+ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& statics,
+                          const std::vector<int>& part_of, int part) {
+  constexpr double kShare = 1e-3;  // of a mode: less of it is rounding
+  const Eigen::VectorXd masses = statics.masses();
+  Eigen::VectorXd mine = Eigen::VectorXd::Zero(masses.size());
+  for (std::size_t v = 0; v < part_of.size(); ++v) {
+    if (part_of[v] == part) mine.segment<3>(statics.dofs.first[v]).setOnes();
+  }
+  ModesOfPart own{Eigen::ArrayXd(all.frequencies.size()),
+                  Eigen::MatrixXd(masses.size(), all.frequencies.size())};
+  Eigen::Index count = 0;
+  for (Eigen::Index k = 0; k < all.frequencies.size(); ++k) {
+    Eigen::VectorXd shape = all.shapes.col(k).cwiseProduct(mine);
+    for (Eigen::Index j = 0; j < count; ++j)
+      shape -= own.shapes.col(j).dot(masses.cwiseProduct(shape)) * own.shapes.col(j);
+    const double norm = std::sqrt(shape.dot(masses.cwiseProduct(shape)));
+    if (norm < kShare) continue;
+    own.squares[count] = all.frequencies[k] * all.frequencies[k];
+    own.shapes.col(count++) = shape / norm;
+  }
+  own.squares.conservativeResize(count);
+  own.shapes.conservativeResize(Eigen::NoChange, count);
+  return own;
+}
+
+/// Of (unknowns x k) the rows of these mesh vertices, three each.
+Eigen::MatrixXd rows_of(const Eigen::MatrixXd& shapes, const LinearStatics& statics,
+                        const std::vector<int>& vertices) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(3 * vertices.size()), shapes.cols());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    rows.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
+        shapes.middleRows<3>(statics.dofs.first[static_cast<std::size_t>(vertices[i])]);
+  return rows;
+}
+
 }  // namespace
 
-CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& places)
+CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& places, int modes)
     : part_(inputs.surface.vertices.size(), -1),
-      row_(inputs.surface.vertices.size(), -1),
-      seen_(part_.size(), 0) {
+      row_(part_),
+      seen_(part_.size(), 0),
+      damping_(inputs.scene.deformation.of<RayleighDamping>()) {
   const std::vector<int> held = held_by(inputs.fixed, places);
   require_held_rest(inputs, held);
   find_parts(inputs.mesh, held);
+  if (all_.empty()) return;
+  number_surface(inputs);
   const ModelInputs still{inputs.scene,     inputs.mesh,     inputs.surface,    held,
                           inputs.reachable, inputs.progress, inputs.free_bytes, inputs.cache};
   const LinearStatics statics(still);
-  if (statics.dofs.count == 0) return;
+  const std::vector<PartNodes> nodes = nodes_of_parts(inputs.mesh, places, part_of_);
+  VibrationModes found;
+  const int count = std::min(modes, statics.dofs.count - 1);
+  if (count > 0) found = statics.modes(count, inputs.scene.source);
+  for (std::size_t p = 0; p < all_.size(); ++p) {
+    Part& part = all_[p];
+    for (const int v : nodes[p].border) part.border.push_back(3 * places[static_cast<std::size_t>(v)]);
+    std::vector<int> rows = nodes[p].inner;
+    for (const int vertex : part.surface)
+      rows.push_back(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
+    sort_unique(rows);
+    const SparseMatrix coupling = coupling_of(inputs, nodes[p], rows, part_of_);
+    const ModesOfPart own = modes_of_part(found, statics, part_of_, static_cast<int>(p));
+    part.squares = own.squares;
+    part.driven = -rows_of(own.shapes, statics, rows).transpose() * coupling;
+    std::vector<int> surface;
+    for (const int vertex : part.surface)
+      surface.push_back(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
+    part.shapes = rows_of(own.shapes, statics, surface).transpose();
+    condense(inputs, statics, rows, coupling, part);
+    take_modes_out(part);
+  }
+}
+
+void CondensedRest::number_surface(const ModelInputs& inputs) {
   for (const int vertex : inputs.reachable) {
     const int part = part_of(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
     if (part < 0) continue;
@@ -130,17 +201,6 @@ CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& 
     vertices_.push_back(vertex);
   }
   watched_.reserve(vertices_.size());
-  const std::vector<PartNodes> nodes = nodes_of_parts(inputs.mesh, places, part_of_);
-  for (std::size_t p = 0; p < all_.size(); ++p) {
-    Part& part = all_[p];
-    for (const int v : nodes[p].border) part.border.push_back(3 * places[static_cast<std::size_t>(v)]);
-    std::vector<int> rows = nodes[p].inner;
-    for (const int vertex : part.surface)
-      rows.push_back(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
-    sort_unique(rows);
-    const SparseMatrix coupling = coupling_of(inputs, nodes[p], rows, part_of_);
-    condense(inputs, statics, rows, coupling, part);
-  }
 }
 
 void CondensedRest::find_parts(const TetMesh& mesh, std::span<const int> held) {
@@ -195,30 +255,62 @@ void CondensedRest::condense(const ModelInputs& inputs, const LinearStatics& sta
     for (std::size_t j = 0; j < at.size(); ++j)
       part.compliance.block<3, 3>(row, 3 * static_cast<Eigen::Index>(j)) = inverse.block<3, 3>(at[i], at[j]);
   }
-  part.at = part.force = Eigen::VectorXd::Zero(border);
 }
 
-void CondensedRest::look_at(std::span<const double> motion) noexcept {
+/// What modes do by themselves is no answer at once.
+void CondensedRest::take_modes_out(Part& part) {
+  const Eigen::Index border = part.following.cols(), count = part.squares.size();
+  const Eigen::MatrixXd answer = part.squares.inverse().matrix().asDiagonal() * part.driven;
+  part.following -= part.driven.transpose() * answer;
+  part.carrying -= answer.transpose() * part.shapes;
+  part.compliance -= part.shapes.transpose() * part.squares.inverse().matrix().asDiagonal() * part.shapes;
+  part.at = part.bent = part.force = Eigen::VectorXd::Zero(border);
+  part.p = part.p_v = part.p_bent = Eigen::VectorXd::Zero(count);
+}
+
+void CondensedRest::look_at(const std::vector<double>& u, const std::vector<double>& v) noexcept {
   for (Part& part : all_) {
-    for (std::size_t b = 0; b < part.border.size(); ++b)
-      part.at.segment<3>(3 * static_cast<Eigen::Index>(b)) =
-          Eigen::Map<const Vec3>(motion.data() + part.border[b]);
+    for (std::size_t b = 0; b < part.border.size(); ++b) {
+      const auto row = 3 * static_cast<Eigen::Index>(b);
+      part.at.segment<3>(row) = Eigen::Map<const Vec3>(u.data() + part.border[b]);
+      part.bent.segment<3>(row) =
+          part.at.segment<3>(row) + damping_.stiffness * Eigen::Map<const Vec3>(v.data() + part.border[b]);
+    }
+    part.p_bent = part.p + damping_.stiffness * part.p_v;
+    symmetric_product(part.following, part.bent, part.force);
   }
 }
 
-void CondensedRest::follow(std::span<double> force) noexcept {
-  for (Part& part : all_) {
-    if (part.gone) continue;
-    part.force.noalias() = part.following.selfadjointView<Eigen::Lower>() * part.at;
-    for (std::size_t b = 0; b < part.border.size(); ++b)
+void CondensedRest::follow(std::span<double> force) const noexcept {
+  for (const Part& part : all_) {
+    for (std::size_t b = 0; !part.gone && b < part.border.size(); ++b) {
+      const auto row = 3 * static_cast<Eigen::Index>(b);
       Eigen::Map<Vec3>(force.data() + part.border[b]) +=
-          part.force.segment<3>(3 * static_cast<Eigen::Index>(b));
+          part.force.segment<3>(row) + part.driven.middleCols<3>(row).transpose() * part.p_bent;
+    }
   }
+}
+
+void CondensedRest::advance(double h, std::span<const NodalLoad> loads) noexcept {
+  for (Part& part : all_) {
+    part.p_v *= 1 - h * damping_.mass;
+    part.p_v.array() -= h * part.squares * part.p_bent.array();
+    part.p_v.noalias() += h * (part.driven * part.bent);
+  }
+  for (const NodalLoad& load : loads) {
+    if (!has(load.vertex)) continue;
+    const auto v = static_cast<std::size_t>(load.vertex);
+    Part& part = all_[static_cast<std::size_t>(part_[v])];
+    part.p_v.noalias() += h * (part.shapes.middleCols<3>(row_[v]) * load.force);
+  }
+  for (Part& part : all_) part.p += h * part.p_v;
 }
 
 Vec3 CondensedRest::carried(int vertex) const noexcept {
-  const Part& part = all_[static_cast<std::size_t>(part_[static_cast<std::size_t>(vertex)])];
-  return part.carrying.middleCols<3>(row_[static_cast<std::size_t>(vertex)]).transpose() * part.at;
+  const auto v = static_cast<std::size_t>(vertex);
+  const Part& part = all_[static_cast<std::size_t>(part_[v])];
+  return part.carrying.middleCols<3>(row_[v]).transpose() * part.at +
+         part.shapes.middleCols<3>(row_[v]).transpose() * part.p;
 }
 
 Mat3 CondensedRest::compliance(int vertex, int other) const noexcept {
@@ -259,11 +351,27 @@ void CondensedRest::hand_down(const NodalLoad& load, std::span<double> force) co
         columns.middleRows<3>(3 * static_cast<Eigen::Index>(b)) * load.force;
 }
 
-double CondensedRest::remove(int part) noexcept {
+DeformationModel::Removed CondensedRest::remove(int part) noexcept {
   Part& goes = all_[static_cast<std::size_t>(part)];
-  if (goes.gone) return 0;
+  if (goes.gone) return {};
   goes.gone = true;
-  return -0.5 * goes.at.dot(goes.following.selfadjointView<Eigen::Lower>() * goes.at);
+  const double border = -0.5 * goes.at.dot(goes.following.selfadjointView<Eigen::Lower>() * goes.at);
+  const double modes =
+      0.5 * (goes.squares * goes.p.array().square()).sum() - goes.p.dot(goes.driven * goes.at);
+  return {.elastic = border + modes, .kinetic = 0.5 * goes.p_v.squaredNorm()};
+}
+
+double CondensedRest::highest_frequency() const {
+  double square = 0;
+  for (const Part& part : all_)
+    square = std::max(square, part.squares.size() > 0 ? part.squares.maxCoeff() : 0);
+  return std::sqrt(square);
+}
+
+std::size_t CondensedRest::modes() const {
+  std::size_t count = 0;
+  for (const Part& part : all_) count += static_cast<std::size_t>(part.squares.size());
+  return count;
 }
 
 std::size_t CondensedRest::border() const {
@@ -275,8 +383,9 @@ std::size_t CondensedRest::border() const {
 std::size_t CondensedRest::bytes() const {
   std::size_t numbers = 0;
   for (const Part& part : all_)
-    numbers += static_cast<std::size_t>(part.following.size() + part.carrying.size() +
-                                        part.compliance.size() + 2 * part.at.size());
+    numbers +=
+        static_cast<std::size_t>(part.following.size() + part.carrying.size() + part.compliance.size() +
+                                 part.driven.size() + part.shapes.size() + 3 * part.at.size());
   return numbers * sizeof(double) + (part_of_.size() + 3 * part_.size() + 2 * vertices_.size()) * sizeof(int);
 }
 

@@ -5,40 +5,49 @@
 
 #include "sim_server/deformation/deformation_model.h"
 #include "sim_server/deformation/model_inputs.h"
+#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/sparse/stiffness_matrix.h"
 
 namespace palpate::sim {
 
 struct LinearStatics;
 
-/// What of a linear tissue is not in motion: at rest at every instant, under what the border to the part in
-/// motion does to it and under what tools press. Condensed (Guyan 1965, AIAA J. 3:380; as the elementary
-/// deformations of Cotin, Delingette and Ayache 1999) to the vertices of that border, b, and to the surface
-/// that tools reach, s. With K of the whole body, r its vertices that are condensed, u displacements and f
-/// forces:
+/// What of a linear tissue is beside a part in motion: its slowest modes swing, all else of it is at rest at
+/// every instant, under what the border to the part in motion does to it and under what tools press.
+/// Condensed to the vertices of that border, b, and to the surface that tools reach, s (Guyan 1965, AIAA J.
+/// 3:380; with modes of the body whose border is held, as Craig and Bampton 1968, AIAA J. 6:1313, but coupled
+/// by stiffness, so that masses stay lumped). With K of the whole body, r its vertices that are condensed, u
+/// displacements, f forces, and phi the modes of K_rr (unit mass, frequencies w), whose amplitudes p = phi^T
+/// M u_r go by
+///   p'' + w^2 p = C u_b + phi_s^T f_s,   C = -phi^T K_rb:
 ///   force on the border where r stays at rest:  -K_bb u_b, which the tensors of the part in motion have;
-///   what r adds to it as it follows the border:  B u_b + T^T f_s,  B = K_br K_rr^-1 K_rb  (3b x 3b);
-///   where the surface then is:  T u_b + W f_s,  T = -(K_rr^-1 K_rb)_s,  W = (K_rr^-1)_ss.
-/// Parts of r that meet only through the border have matrices of their own. One thread; only the constructor
-/// allocates and throws. Bytes: 72 b^2 + 72 b s + 72 s^2 of each part, in vertices.
+///   what r adds to it:        B u_b + C^T p + T^T f_s,   B = K_br K_rr^-1 K_rb - C^T w^-2 C  (3b x 3b);
+///   where the surface is:     T u_b + phi_s p + W f_s,   T = -(K_rr^-1 K_rb)_s - phi_s w^-2 C,
+///                                                        W = (K_rr^-1)_ss - phi_s w^-2 phi_s^T.
+/// At rest that is the answer of the whole body. Rayleigh damping is that of the part in motion. Parts of r
+/// that meet only through the border have matrices of their own. One thread; only the constructor allocates
+/// and throws. Bytes: 72 b^2 + 72 b s + 72 s^2 + 24 k (b + s) of each part of k modes, in vertices.
 class CondensedRest {
  public:
   /// `places`: of each mesh vertex its place in the motion, or -1: it is fixed, or condensed. Factors K_rr,
   /// on all cores. Throws `Error` where some part of it is held by less than three vertices that are not in
   /// one line, or where all that would take more than the free memory of `inputs`.
-  CondensedRest(const ModelInputs& inputs, const std::vector<int>& places);
+  /// `modes`: how many swing, at most.
+  CondensedRest(const ModelInputs& inputs, const std::vector<int>& places, int modes);
 
-  /// Takes what the border has by now, of (3 x places).
-  void look_at(std::span<const double> motion) noexcept;
-  /// Adds B u_b of what was looked at to `force` (3 x places).
-  void follow(std::span<double> force) noexcept;
+  /// Takes where the border is by now and how fast (m, m/s; 3 x places). O(b^2).
+  void look_at(const std::vector<double>& u, const std::vector<double>& v) noexcept;
+  /// Adds what r does on the border as looked at, but for loads on r, to `force` (3 x places).
+  void follow(std::span<double> force) const noexcept;
+  /// The modes go on by h (s) from what was looked at, under these loads.
+  void advance(double h, std::span<const NodalLoad> loads) noexcept;
   /// Whether a surface vertex is condensed, and tools reach it.
   bool has(int vertex) const noexcept { return part_[static_cast<std::size_t>(vertex)] >= 0; }
   /// These, ascending.
   std::span<const int> vertices() const { return vertices_; }
-  /// T u_b of what was looked at, at one of them. O(b).
+  /// T u_b + phi_s p of what was looked at, at one of them. O(b).
   Vec3 carried(int vertex) const noexcept;
-  /// Contact looks at these surface vertices: until the step after next, they are kept where they are.
+  /// Contact looks at these surface vertices: they are `watched` until the step after next.
   void watch(std::span<const int> vertices) noexcept;
   /// Those of them that are condensed and reached.
   std::span<const int> watched() const { return watched_; }
@@ -54,27 +63,36 @@ class CondensedRest {
 
   /// The part that a mesh vertex belongs to, or -1.
   int part_of(int mesh_vertex) const { return part_of_[static_cast<std::size_t>(mesh_vertex)]; }
-  /// A whole part was removed: it does nothing any more. Returns what it gave to the elastic energy of the
-  /// border as looked at, -u_b^T B u_b / 2, J.
-  double remove(int part) noexcept;
+  /// A whole part was removed: it does nothing any more. Returns its elastic energy, less that of the border
+  /// with r at rest, and the kinetic energy of its modes, J.
+  DeformationModel::Removed remove(int part) noexcept;
 
+  /// Of all modes, angular, the highest, rad/s; 0: there are none.
+  double highest_frequency() const;
+  std::size_t modes() const;
   std::size_t parts() const { return all_.size(); }
   std::size_t border() const;  ///< vertices, each counted once a part
   std::size_t bytes() const;
 
  private:
   struct Part {
-    std::vector<int> border;     // first numbers in the motion
-    std::vector<int> surface;    // surface vertices
-    Eigen::MatrixXd following;   // B, of which the lower triangle is read
-    Eigen::MatrixXd carrying;    // T^T
-    Eigen::MatrixXd compliance;  // W
-    Eigen::VectorXd at, force;   // u_b, B u_b
+    std::vector<int> border;          // first numbers in the motion
+    std::vector<int> surface;         // surface vertices
+    Eigen::MatrixXd following;        // B, of which the lower triangle is read
+    Eigen::MatrixXd carrying;         // T^T
+    Eigen::MatrixXd compliance;       // W
+    Eigen::ArrayXd squares;           // w^2
+    Eigen::MatrixXd driven;           // C
+    Eigen::MatrixXd shapes;           // phi_s^T
+    Eigen::VectorXd p, p_v, p_bent;   // amplitudes, their rates, p + stiffness p_v
+    Eigen::VectorXd at, bent, force;  // u_b, u_b + stiffness v_b, B times that
     bool gone = false;
   };
   void find_parts(const TetMesh& mesh, std::span<const int> held);
+  void number_surface(const ModelInputs& inputs);
   static void condense(const ModelInputs& inputs, const LinearStatics& statics, const std::vector<int>& rows,
                        const SparseMatrix& coupling, Part& part);
+  static void take_modes_out(Part& part);
 
   std::vector<Part> all_;
   std::vector<int> part_of_;     // of mesh vertices
@@ -82,6 +100,7 @@ class CondensedRest {
   std::vector<int> vertices_, watched_;
   std::vector<int> seen_;  // of surface vertices: the step in which contact last looked at it
   int step_ = 2;
+  RayleighDamping damping_;
 };
 
 }  // namespace palpate::sim

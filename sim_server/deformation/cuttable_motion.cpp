@@ -13,7 +13,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostAddedMass = 1e-3;  // of the mass in motion, for its stiffest elements
+constexpr double kMostAddedMass = 1e-2;  // of the mass in motion, for its stiffest elements
+constexpr int kSubStepsPerLook = 8;      // at what contact looks at of the rest without pressing there
 
 const RayleighDamping& rayleigh_of(const Scene& scene) {
   return scene.deformation.of<RayleighDamping>();
@@ -51,23 +52,22 @@ double linear_energy(const LinearTetrahedron& element, const std::array<Vec3, 4>
 
 }  // namespace
 
-CuttableMotion::CuttableMotion(const ModelInputs& inputs) : CuttableMotion(inputs, nullptr, 1) {}
+CuttableMotion::CuttableMotion(const ModelInputs& inputs) : CuttableMotion(inputs, nullptr, 0) {}
 
-CuttableMotion::CuttableMotion(const ModelInputs& inputs, const std::vector<char>& moves, int follow_every)
-    : CuttableMotion(inputs, &moves, follow_every) {}
+CuttableMotion::CuttableMotion(const ModelInputs& inputs, const std::vector<char>& moves, int rest_modes)
+    : CuttableMotion(inputs, &moves, rest_modes) {}
 
-CuttableMotion::CuttableMotion(const ModelInputs& inputs, const std::vector<char>* moves, int follow_every)
+CuttableMotion::CuttableMotion(const ModelInputs& inputs, const std::vector<char>* moves, int rest_modes)
     : material_(inputs.scene.material.value_or(Material{})),
       scaling_(scaling_for(inputs, moves)),
       tensors_(inputs.mesh, material_, standing(inputs, moves), scaling_.factors),
-      follow_every_(follow_every),
       motion_(tensors_, rayleigh_of(inputs.scene)),
       force_(motion_.state.f),
       node_(inputs.surface.vertices),
       rest_places_(inputs.mesh.vertices),
       nodes_(rest_places_) {
+  if (moves != nullptr) rest_.emplace(inputs, tensors_.places(), rest_modes);
   choose_sub_step(inputs);
-  if (moves != nullptr) rest_.emplace(inputs, tensors_.places());
   for (const int vertex : node_) {
     free_.push_back(inputs.mesh.vertices[static_cast<std::size_t>(vertex)]);
     const int place = tensors_.places()[static_cast<std::size_t>(vertex)];
@@ -79,7 +79,8 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const std::vector<char
 }
 
 void CuttableMotion::choose_sub_step(const ModelInputs& inputs) {
-  const double longest = longest_sub_step(scaling_.frequency, rayleigh_of(inputs.scene));
+  const double modes = rest_ ? rest_->highest_frequency() : 0;  // adds at most so much (of squares)
+  const double longest = longest_sub_step(std::hypot(scaling_.frequency, modes), rayleigh_of(inputs.scene));
   instants_ = std::max(instants_of(inputs.scene.deformation, 1),
                        static_cast<int>(count_sub_steps(inputs.scene, longest)));
   sub_step_ = step_period(inputs.scene) / instants_;
@@ -89,7 +90,7 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
   if (dt > 0) {
     if (!ended_) end_sub_step();
     ended_ = false;
-    if (rest_ && instant_ % follow_every_ == 0) follow();
+    if (rest_) follow();
     take_sub_step();
     instant_ = (instant_ + 1) % instants_;
     update_free();
@@ -98,15 +99,22 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
   return {.positions = free_, .loaded = positions_};
 }
 
-/// The rest goes to where the border takes it by now: all of it where a step begins, and later in the step
-/// what contact looks at.
+/// The rest goes to where the border takes it by now: what is loaded, and, seldomer, what else contact looks
+/// at; all of it where a step ends.
 void CuttableMotion::follow() noexcept {
-  rest_->look_at(motion_.state.u);
+  rest_->look_at(motion_.state.u, motion_.state.v);
   std::fill(force_.begin(), force_.end(), 0);
   rest_->follow(force_);
-  if (instant_ == 0) rest_->begin_step();
-  for (const int vertex : instant_ == 0 ? rest_->vertices() : rest_->watched())
+  const auto carry = [&](int vertex) {
     free_[static_cast<std::size_t>(vertex)] = rest_place(vertex) + rest_->carried(vertex);
+  };
+  if (instant_ == 0) rest_->begin_step();
+  const bool ends = instant_ + 1 == instants_;
+  if (ends || instant_ % kSubStepsPerLook == 0)
+    std::ranges::for_each(ends ? rest_->vertices() : rest_->watched(), carry);
+  for (const NodalLoad& load : loads_) {
+    if (rest_->has(load.vertex)) carry(load.vertex);
+  }
 }
 
 /// Loads on the rest are handed down to the border, which takes them as forces of all of the sub-step.
@@ -115,6 +123,7 @@ void CuttableMotion::take_sub_step() noexcept {
   for (const NodalLoad& load : loads_) {
     if (rest_ && rest_->has(load.vertex)) rest_->hand_down(load, motion_.state.f);
   }
+  if (rest_) rest_->advance(sub_step_, loads_);
   motion_.run(sub_step_);
 }
 
@@ -193,7 +202,7 @@ DeformationModel::Removed CuttableMotion::lost_with(int tetrahedron, const CutMe
 DeformationModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra, const CutMesh& left) {
   if (!ended_) end_sub_step();
   ended_ = true;
-  if (rest_) rest_->look_at(motion_.state.u);
+  if (rest_) rest_->look_at(motion_.state.u, motion_.state.v);
   Removed gone;
   for (const int t : tetrahedra) {
     const Removed lost = lost_with(t, left);
@@ -201,7 +210,10 @@ DeformationModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra
     gone.kinetic += lost.kinetic;
     gone.momentum += lost.momentum;
     for (const int v : left.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
-      if (rest_ && rest_->part_of(v) >= 0) gone.elastic += rest_->remove(rest_->part_of(v));
+      if (!rest_ || rest_->part_of(v) < 0) continue;
+      const Removed part = rest_->remove(rest_->part_of(v));
+      gone.elastic += part.elastic;
+      gone.kinetic += part.kinetic;
     }
   }
   tensors_.remove(tetrahedra, left, material_);
@@ -228,8 +240,8 @@ std::vector<MemoryPart> CuttableMotion::memory() const {
                         (first_.size() + node_.size()) * sizeof(int)}};
   if (rest_)
     parts.push_back({"condensed rest", rest_->bytes(),
-                     fmt::format("{} parts, {} vertices at the border, {} that tools reach", rest_->parts(),
-                                 rest_->border(), rest_->vertices().size())});
+                     fmt::format("{} parts, {} modes, {} vertices at the border, {} that tools reach",
+                                 rest_->parts(), rest_->modes(), rest_->border(), rest_->vertices().size())});
   return parts;
 }
 

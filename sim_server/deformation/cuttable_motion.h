@@ -16,21 +16,17 @@ namespace palpate::sim {
 /// no tangents: those of so short a time are far too steep. At such short instants contact in a pit of a
 /// coarse mesh chatters by some percent; more `instants` end that.
 ///
-/// The rest has no mass of its own but for that at the border, where its tetrahedra give their quarters. It
-/// stays where it is, but for what tools press, until it follows the border, every so many sub-steps; from
-/// then on it pushes there by B u_b of that moment (block Gauss-Seidel in time, as the alternating method of
-/// Schwarz). That is right at rest, and stable however seldom it is done: a mode of frequency w in which B,
-/// or what is left of it where tools hold the rest, takes the share p of the stiffness that the border has
-/// where the rest stays, 0 <= p <= 1, goes over a time t with its centre held at p u_0, so that the
-/// determinant of the step is 1 - p + p cos(w t) and its trace p + (2 - p) cos(w t): both roots lie in the
-/// unit circle for all w t (Jury). It loses energy where it is late.
+/// The rest follows the border at each sub-step: what it does there is part of the stiffness of an explicit
+/// step, no stiffer than the border is where the rest is held (Guyan), so that sub-steps need not be shorter
+/// for it. Once in some sub-steps is no choice: where the rest takes the share p of a mode's stiffness away,
+/// it lags by p / (1 - p) / 2 of the time in between, and p is 0.9 to 1 of what moves slowly.
 class CuttableMotion : public DeformationModel {
  public:
   /// All of the body in motion. Throws `Error` where nothing holds it, or the scene names no rate.
   explicit CuttableMotion(const ModelInputs& inputs);
-  /// `moves`: of each mesh vertex, not 0 where it is in motion; the rest follows every `follow_every`
-  /// sub-steps. Throws `Error` as `CondensedRest`, too.
-  CuttableMotion(const ModelInputs& inputs, const std::vector<char>& moves, int follow_every);
+  /// `moves`: of each mesh vertex, not 0 where it is in motion; the rest is condensed, and swings in so many
+  /// modes at most. Throws `Error` as `CondensedRest`, too.
+  CuttableMotion(const ModelInputs& inputs, const std::vector<char>& moves, int rest_modes);
 
   int instants() const noexcept override { return instants_; }
   bool force_leads() const noexcept override { return true; }
@@ -49,7 +45,7 @@ class CuttableMotion : public DeformationModel {
   double sub_step() const { return sub_step_; }  ///< s
 
  private:
-  CuttableMotion(const ModelInputs& inputs, const std::vector<char>* moves, int follow_every);
+  CuttableMotion(const ModelInputs& inputs, const std::vector<char>* moves, int rest_modes);
   void choose_sub_step(const ModelInputs& inputs);
   void end_sub_step() noexcept;
   void take_sub_step() noexcept;
@@ -65,7 +61,6 @@ class CuttableMotion : public DeformationModel {
   MassScaling scaling_;
   ElasticTensors tensors_;
   std::optional<CondensedRest> rest_;
-  int follow_every_;
   ExplicitMotion motion_;           // free of the loads of this sub-step
   std::vector<double> force_;       // of the rest on the border, N
   int instants_ = 1, instant_ = 0;  // of a step; how many of this one are done

@@ -38,13 +38,12 @@ std::vector<char> in_motion(const ModelInputs& inputs, int layers) {
 HybridSettings HybridSettings::read(const Config& config) {
   HybridSettings read;
   read.layers = static_cast<int>(config.integer("layers", {0, 100, "layers of tetrahedra"}, read.layers));
-  read.follow_every =
-      static_cast<int>(config.integer("follow_every", {1, 1000, "sub-steps"}, read.follow_every));
+  read.rest_modes = static_cast<int>(config.integer("rest_modes", {0, 1000, "modes"}, read.rest_modes));
   return read;
 }
 
 std::string HybridSettings::to_text() const {
-  return fmt::format("layers = {}\nfollow_every = {}\n", layers, follow_every);
+  return fmt::format("layers = {}\nrest_modes = {}\n", layers, rest_modes);
 }
 
 std::unique_ptr<DeformationModel> Hybrid::make(const ModelInputs& inputs) {
@@ -54,7 +53,7 @@ std::unique_ptr<DeformationModel> Hybrid::make(const ModelInputs& inputs) {
         "\"tensor_mass\"",
         inputs.scene.source);
   const auto& settings = inputs.scene.deformation.of<HybridSettings>();
-  return std::make_unique<CuttableMotion>(inputs, in_motion(inputs, settings.layers), settings.follow_every);
+  return std::make_unique<CuttableMotion>(inputs, in_motion(inputs, settings.layers), settings.rest_modes);
 }
 
 double Hybrid::estimated_bytes(const Scene& scene, const MeshCounts& counts) {

@@ -9,12 +9,17 @@
 
 namespace palpate::sim {
 
-/// What of a body is in motion, and how often the rest of it follows.
+/// What of a body is in motion, and how the rest of it is.
 struct HybridSettings {
-  int layers = 1;        ///< of tetrahedra in motion around what can be cut, [0, 100]
-  int follow_every = 8;  ///< sub-steps, [1, 1000]: how often the condensed rest follows the border
+#ifdef PALPATE_WITH_SPECTRA
+  static constexpr int kUsualModes = 40;
+#else
+  static constexpr int kUsualModes = 0;  ///< a build without Spectra finds none
+#endif
+  int rest_modes = kUsualModes;  ///< of the condensed rest, that swing, [0, 1000]
+  int layers = 1;                ///< of tetrahedra in motion around what can be cut, [0, 100]
 
-  static constexpr std::array<std::string_view, 2> kKeys{"layers", "follow_every"};
+  static constexpr std::array<std::string_view, 2> kKeys{"layers", "rest_modes"};
   static HybridSettings read(const Config& config);
   std::string to_text() const;
 };

@@ -3,14 +3,16 @@
 // BLAS and LAPACK, by their Fortran names.
 extern "C" {
 // NOLINTBEGIN(bugprone-macro-parentheses): a type is named
-#define PALPATE_BLAS(S, p)                                                                                 \
-  void p##gemm_(const char*, const char*, const int*, const int*, const int*, const S*, const S*,          \
-                const int*, const S*, const int*, const S*, S*, const int*);                               \
-  void p##gemv_(const char*, const int*, const int*, const S*, const S*, const int*, const S*, const int*, \
-                const S*, S*, const int*);                                                                 \
-  void p##trsm_(const char*, const char*, const char*, const char*, const int*, const int*, const S*,      \
-                const S*, const int*, S*, const int*);                                                     \
-  void p##trsv_(const char*, const char*, const char*, const int*, const S*, const int*, S*, const int*);  \
+#define PALPATE_BLAS(S, p)                                                                                   \
+  void p##gemm_(const char*, const char*, const int*, const int*, const int*, const S*, const S*,            \
+                const int*, const S*, const int*, const S*, S*, const int*);                                 \
+  void p##gemv_(const char*, const int*, const int*, const S*, const S*, const int*, const S*, const int*,   \
+                const S*, S*, const int*);                                                                   \
+  void p##symv_(const char*, const int*, const S*, const S*, const int*, const S*, const int*, const S*, S*, \
+                const int*);                                                                                 \
+  void p##trsm_(const char*, const char*, const char*, const char*, const int*, const int*, const S*,        \
+                const S*, const int*, S*, const int*);                                                       \
+  void p##trsv_(const char*, const char*, const char*, const int*, const S*, const int*, S*, const int*);    \
   void p##potrf_(const char*, const int*, S*, const int*, int*);
 PALPATE_BLAS(double, d)
 PALPATE_BLAS(float, s)
@@ -29,6 +31,7 @@ template <>
 struct Blas<double> {
   static constexpr auto gemm = dgemm_;
   static constexpr auto gemv = dgemv_;
+  static constexpr auto symv = dsymv_;
   static constexpr auto trsm = dtrsm_;
   static constexpr auto trsv = dtrsv_;
   static constexpr auto potrf = dpotrf_;
@@ -37,6 +40,7 @@ template <>
 struct Blas<float> {
   static constexpr auto gemm = sgemm_;
   static constexpr auto gemv = sgemv_;
+  static constexpr auto symv = ssymv_;
   static constexpr auto trsm = strsm_;
   static constexpr auto trsv = strsv_;
   static constexpr auto potrf = spotrf_;

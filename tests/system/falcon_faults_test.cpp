@@ -262,7 +262,7 @@ TEST_CASE("Falcon faults: locked, then held by another client, then free: the cl
       session.usb.start("haptic_client", {"run", session.bench.client, "--server", other.address});
   REQUIRE(second->wait_for("another program holds the USB device"));
   CHECK(session.press());  // the first one goes on
-  session.end();
+  session.end(false);
   REQUIRE(second->wait_for("Falcon homed: ready"));
   CHECK(session.pushes());
   second->signal(SIGINT);
