@@ -61,12 +61,6 @@ constexpr std::array kModels{
          .cuts = true,
          .unneeded = {{"factor of the stiffness matrix, kept",
                        "explicit steps solve nothing; set-up lets its own go"}}}),
-    row_of<Hybrid, RayleighDamping, ContactInstants, HybridSettings>(
-        {.name = "hybrid",
-         .summary = "linear elastic: what can be cut in motion as tensor_mass, the rest condensed, at rest",
-         .materials = Materials::kPlain,
-         .moves = true,
-         .cuts = true}),
     row_of<Implicit, RayleighDamping, ImplicitSettings, ContactInstants, ClientModes>(
         {.name = "implicit",
          .summary = "motion of any law, element and load, by implicit steps",
@@ -84,6 +78,14 @@ constexpr std::array kModels{
     row_of<Spring, SpringSettings>({.name = "spring",
                                     .summary = "no deformation; the organ hangs on a spring that hardens",
                                     .moves = true}),
+    // Those that need [cutting] are the last.
+    row_of<Hybrid, RayleighDamping, ContactInstants, HybridSettings>(
+        {.name = "hybrid",
+         .summary = "linear elastic: what can be cut in motion as tensor_mass, the rest condensed, at rest",
+         .materials = Materials::kPlain,
+         .moves = true,
+         .cuts = true,
+         .needs_cutting = true}),
 };
 
 bool takes(const DeformationModelRow& row, std::string_view key) {
@@ -105,6 +107,11 @@ void refuse_keys_of_others(const Config& config, const DeformationModelRow& row)
 
 std::span<const DeformationModelRow> deformation_models() {
   return kModels;
+}
+
+std::span<const DeformationModelRow> models_without_cutting() {
+  const auto end = std::ranges::find_if(kModels, &DeformationModelRow::needs_cutting);
+  return {kModels.begin(), end};
 }
 
 const DeformationModelRow& model_of(const DeformationSettings& settings) {

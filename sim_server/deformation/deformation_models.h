@@ -32,6 +32,7 @@ struct DeformationModelRow {
   bool moves = false;  ///< the organ has inertia, or goes as one piece; false: at rest at every instant
   bool flies = false;  ///< nothing need hold the body: it has mass
   bool cuts = false;   ///< tissue can be removed while it is felt (`remove`)
+  bool needs_cutting = false;  ///< only of scenes with [cutting]
   /// What other models build and this one need not, for `explain`.
   struct Unneeded {
     std::string_view what, note;
@@ -57,6 +58,8 @@ struct DeformationModelRow {
   }
 };
 std::span<const DeformationModelRow> deformation_models();
+/// Those that need no [cutting].
+std::span<const DeformationModelRow> models_without_cutting();
 
 /// The row of `settings.model`. Throws `Error` where there is none.
 const DeformationModelRow& model_of(const DeformationSettings& settings);

@@ -71,7 +71,7 @@ class Planner {
     cases_ = &plan.cases;
     add("scene", base_, 0);
     for (const DeformationModelRow& row : deformation_models()) {
-      if (row.deforms()) add("model", with_model(base_, row), 0);
+      if (row.deforms() && (base_.cutting || !row.needs_cutting)) add("model", with_model(base_, row), 0);
     }
     for (const ElementKind element : kElements) {
       if (element == ElementKind::kNodalPressure && !base_.inclusions.empty()) continue;  // of one stiffness

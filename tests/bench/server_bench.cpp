@@ -157,7 +157,7 @@ void run_virtual_session(benchmark::State& state) {
 }  // namespace
 
 void add_server_rows() {
-  for (const DeformationModelRow& row : deformation_models()) {
+  for (const DeformationModelRow& row : models_without_cutting()) {
     const std::string_view name = row.name;
     add(fmt::format("step/{}/free", name), [name](benchmark::State& state) { run_free(state, name); });
     add(fmt::format("step/{}/contact", name), [name](benchmark::State& state) { run_contact(state, name); });

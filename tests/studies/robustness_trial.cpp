@@ -82,7 +82,7 @@ class Watch {
 const std::vector<Column>& columns() {
   static const std::vector<Column> all = [] {
     std::vector<Column> found;
-    for (const DeformationModelRow& row : deformation_models()) {
+    for (const DeformationModelRow& row : models_without_cutting()) {
       if (row.materials != Materials::kAny) {
         found.push_back({std::string(row.name), &row, ElasticLaw::kLinear});
         continue;

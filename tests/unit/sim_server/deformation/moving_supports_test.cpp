@@ -49,7 +49,7 @@ double way_of(const SupportMotion& motion, double t) {
 /// Of these, the models that this build has.
 std::vector<std::string_view> built(std::initializer_list<std::string_view> names) {
   std::vector<std::string_view> all;
-  for (const DeformationModelRow& row : deformation_models()) {
+  for (const DeformationModelRow& row : models_without_cutting()) {
     if (std::find(names.begin(), names.end(), row.name) != names.end()) all.push_back(row.name);
   }
   return all;
@@ -65,7 +65,7 @@ struct Bench {
   Bench(const Scene& scene, TetMesh of)
       : mesh(with_nodes(std::move(of), scene.material->element)), fixed(fixed_vertices(scene, mesh)) {
     for (int v = 0; v < static_cast<int>(surface.vertices.size()); ++v) reachable.push_back(v);
-    for (const DeformationModelRow& row : deformation_models()) {
+    for (const DeformationModelRow& row : models_without_cutting()) {
       if (row.name == scene.deformation.model)
         model = row.make({scene, mesh, surface, fixed, reachable, kSilent});
     }

@@ -44,7 +44,7 @@ Scene block_scene(std::vector<SupportMotion> motions, std::string_view model = "
 /// All that follow their supports.
 std::vector<std::string_view> models() {
   std::vector<std::string_view> names;
-  for (const DeformationModelRow& row : deformation_models()) {
+  for (const DeformationModelRow& row : models_without_cutting()) {
     if (row.deforms()) names.push_back(row.name);
   }
   return names;
