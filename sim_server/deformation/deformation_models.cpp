@@ -81,7 +81,8 @@ constexpr std::array kModels{
     // Those that need [cutting] are the last.
     row_of<Hybrid, RayleighDamping, ContactInstants, HybridSettings>(
         {.name = "hybrid",
-         .summary = "linear elastic: what can be cut in motion as tensor_mass, the rest condensed, at rest",
+         .summary = "linear elastic: what can be cut in motion as tensor_mass, the rest condensed to its "
+                    "slowest modes",
          .materials = Materials::kPlain,
          .moves = true,
          .cuts = true,
