@@ -6,6 +6,7 @@
 #include <map>
 
 #include "common/error.h"
+#include "common/memory_budget.h"
 #include "sim_server/deformation/linear_statics.h"
 #include "sim_server/elasticity/element.h"
 #include "sim_server/elasticity/tensors.h"
@@ -15,6 +16,8 @@
 
 namespace palpate::sim {
 namespace {
+
+constexpr int kUnknownsPerMode = 8;  // at least
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
@@ -126,8 +129,9 @@ ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& static
   }
   ModesOfPart own{Eigen::ArrayXd(all.frequencies.size()),
                   Eigen::MatrixXd(masses.size(), all.frequencies.size())};
+  const auto most = static_cast<Eigen::Index>(mine.sum()) / kUnknownsPerMode;
   Eigen::Index count = 0;
-  for (Eigen::Index k = 0; k < all.frequencies.size(); ++k) {
+  for (Eigen::Index k = 0; k < all.frequencies.size() && count < most; ++k) {
     Eigen::VectorXd shape = all.shapes.col(k).cwiseProduct(mine);
     for (Eigen::Index j = 0; j < count; ++j)
       shape -= own.shapes.col(j).dot(masses.cwiseProduct(shape)) * own.shapes.col(j);
@@ -139,6 +143,39 @@ ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& static
   own.squares.conservativeResize(count);
   own.shapes.conservativeResize(Eigen::NoChange, count);
   return own;
+}
+
+/// What of the mass of a part, where its border goes as one piece, is not in its modes: kg, the mean over
+/// three directions.
+double mass_beside_modes(const LinearStatics& statics, const std::vector<int>& rows,
+                         const SparseMatrix& coupling, const Eigen::MatrixXd& driven,
+                         const Eigen::ArrayXd& squares) {
+  Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(statics.dofs.count, 3), together(coupling.cols(), 3);
+  for (Eigen::Index b = 0; b < coupling.cols(); b += 3) together.middleRows<3>(b).setIdentity();
+  const Eigen::MatrixXd at_rows = coupling * together;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    pull.middleRows<3>(statics.dofs.first[static_cast<std::size_t>(rows[i])]) =
+        at_rows.middleRows<3>(3 * static_cast<Eigen::Index>(i));
+  const Eigen::MatrixXd goes = statics.factor().solve(pull);
+  const double all = goes.cwiseProduct(statics.masses().asDiagonal() * goes).sum();
+  const Eigen::MatrixXd amplitudes = squares.inverse().matrix().asDiagonal() * (driven * together);
+  return std::max(0.0, (all - amplitudes.squaredNorm()) / 3);
+}
+
+/// `mass` (kg) shared by the vertices of a border as the tetrahedra are that they share with the part.
+std::vector<double> shared_mass(const TetMesh& mesh, const PartNodes& part, double mass) {
+  std::vector<double> share(part.border.size(), 0);
+  double all = 0;
+  for (const std::size_t t : part.tetrahedra) {
+    for (const int v : mesh.tetrahedra[t]) {
+      if (!std::ranges::binary_search(part.border, v)) continue;
+      const double volume = six_volumes(mesh, mesh.tetrahedra[t]);
+      share[static_cast<std::size_t>(place_in(part.border, v))] += volume;
+      all += volume;
+    }
+  }
+  for (double& kg : share) kg *= mass / all;
+  return share;
 }
 
 /// Of (unknowns x k) the rows of these mesh vertices, three each.
@@ -157,6 +194,7 @@ CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& 
     : part_(inputs.surface.vertices.size(), -1),
       row_(part_),
       seen_(part_.size(), 0),
+      pressed_(part_.size(), Vec3::Zero()),
       damping_(inputs.scene.deformation.of<RayleighDamping>()) {
   const std::vector<int> held = held_by(inputs.fixed, places);
   require_held_rest(inputs, held);
@@ -168,7 +206,9 @@ CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& 
   const LinearStatics statics(still);
   const std::vector<PartNodes> nodes = nodes_of_parts(inputs.mesh, places, part_of_);
   VibrationModes found;
-  const int count = std::min(modes, statics.dofs.count - 1);
+  const int count = std::min(modes, statics.dofs.count / kUnknownsPerMode);
+  require_memory(8.0 * statics.dofs.count * (4.0 * count + 20), free_memory(), inputs.scene.source,
+                 fmt::format("{} modes of what is not in motion", count), "ask for fewer `rest_modes`");
   if (count > 0) found = statics.modes(count, inputs.scene.source);
   for (std::size_t p = 0; p < all_.size(); ++p) {
     Part& part = all_[p];
@@ -185,6 +225,8 @@ CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& 
     for (const int vertex : part.surface)
       surface.push_back(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
     part.shapes = rows_of(own.shapes, statics, surface).transpose();
+    part.border_mass = shared_mass(inputs.mesh, nodes[p],
+                                   mass_beside_modes(statics, rows, coupling, part.driven, part.squares));
     condense(inputs, statics, rows, coupling, part);
     take_modes_out(part);
   }
@@ -230,8 +272,9 @@ void CondensedRest::condense(const ModelInputs& inputs, const LinearStatics& sta
                              const std::vector<int>& rows, const SparseMatrix& coupling, Part& part) {
   const auto size = static_cast<Eigen::Index>(3 * rows.size()), border = coupling.cols();
   const auto surface = static_cast<Eigen::Index>(3 * part.surface.size());
-  require_memory(8.0 * static_cast<double>(size * (size + border) + border * (border + surface)),
-                 inputs.free_bytes, inputs.scene.source,
+  require_memory(8.0 * static_cast<double>(size * (size + border) + 2 * border * (border + surface) +
+                                           2 * surface * surface),
+                 free_memory(), inputs.scene.source,
                  fmt::format("condensing what is not in motion to {} vertices", rows.size()),
                  "give [[tool]] a `reach` box around the part it touches");
   std::vector<int> unknowns;
@@ -261,18 +304,28 @@ void CondensedRest::condense(const ModelInputs& inputs, const LinearStatics& sta
 void CondensedRest::take_modes_out(Part& part) {
   const Eigen::Index border = part.following.cols(), count = part.squares.size();
   const Eigen::MatrixXd answer = part.squares.inverse().matrix().asDiagonal() * part.driven;
-  part.following -= part.driven.transpose() * answer;
-  part.carrying -= answer.transpose() * part.shapes;
-  part.compliance -= part.shapes.transpose() * part.squares.inverse().matrix().asDiagonal() * part.shapes;
+  part.following.noalias() -= part.driven.transpose() * answer;
+  part.carrying.noalias() -= answer.transpose() * part.shapes;
+  const Eigen::MatrixXd weighted = part.squares.inverse().matrix().asDiagonal() * part.shapes;
+  part.compliance.noalias() -= part.shapes.transpose() * weighted;
   part.at = part.bent = part.force = Eigen::VectorXd::Zero(border);
   part.p = part.p_v = part.p_bent = Eigen::VectorXd::Zero(count);
 }
 
-void CondensedRest::look_at(const std::vector<double>& u, const std::vector<double>& v) noexcept {
+void CondensedRest::stand_at(const std::vector<double>& u) noexcept {
   for (Part& part : all_) {
+    for (std::size_t b = 0; b < part.border.size(); ++b)
+      part.at.segment<3>(3 * static_cast<Eigen::Index>(b)) =
+          Eigen::Map<const Vec3>(u.data() + part.border[b]);
+  }
+}
+
+void CondensedRest::look_at(const std::vector<double>& u, const std::vector<double>& v) noexcept {
+  stand_at(u);
+  for (Part& part : all_) {
+    if (part.gone) continue;
     for (std::size_t b = 0; b < part.border.size(); ++b) {
       const auto row = 3 * static_cast<Eigen::Index>(b);
-      part.at.segment<3>(row) = Eigen::Map<const Vec3>(u.data() + part.border[b]);
       part.bent.segment<3>(row) =
           part.at.segment<3>(row) + damping_.stiffness * Eigen::Map<const Vec3>(v.data() + part.border[b]);
     }
@@ -293,6 +346,7 @@ void CondensedRest::follow(std::span<double> force) const noexcept {
 
 void CondensedRest::advance(double h, std::span<const NodalLoad> loads) noexcept {
   for (Part& part : all_) {
+    if (part.gone) continue;
     part.p_v *= 1 - h * damping_.mass;
     part.p_v.array() -= h * part.squares * part.p_bent.array();
     part.p_v.noalias() += h * (part.driven * part.bent);
@@ -333,12 +387,18 @@ void CondensedRest::begin_step() noexcept {
   std::erase_if(watched_, [&](int vertex) { return seen_[static_cast<std::size_t>(vertex)] < step_ - 1; });
 }
 
-void CondensedRest::move(std::span<const NodalLoad> loads, std::span<const int> vertices,
-                         std::span<Vec3> positions) const noexcept {
-  for (const NodalLoad& load : loads) {
-    if (!has(load.vertex)) continue;
-    for (const int vertex : vertices)
-      positions[static_cast<std::size_t>(vertex)] += compliance(vertex, load.vertex) * load.force;
+void CondensedRest::press(std::span<const NodalLoad> loads, bool all, std::span<Vec3> positions) noexcept {
+  const auto moved_at = [&](int vertex) {
+    Vec3 moved = Vec3::Zero();
+    for (const NodalLoad& load : loads) {
+      if (has(load.vertex)) moved += compliance(vertex, load.vertex) * load.force;
+    }
+    return moved;
+  };
+  for (const int vertex : vertices_) {
+    const auto v = static_cast<std::size_t>(vertex);
+    if (all) pressed_[v] = moved_at(vertex);
+    positions[v] += all || !is_watched(vertex) ? pressed_[v] : moved_at(vertex);
   }
 }
 
@@ -359,6 +419,15 @@ DeformationModel::Removed CondensedRest::remove(int part) noexcept {
   const double modes =
       0.5 * (goes.squares * goes.p.array().square()).sum() - goes.p.dot(goes.driven * goes.at);
   return {.elastic = border + modes, .kinetic = 0.5 * goes.p_v.squaredNorm()};
+}
+
+std::vector<CondensedRest::BorderMass> CondensedRest::border_masses() const {
+  std::vector<BorderMass> masses;
+  for (const Part& part : all_) {
+    for (std::size_t b = 0; b < part.border.size(); ++b)
+      masses.push_back({part.border[b], part.border_mass[b]});
+  }
+  return masses;
 }
 
 double CondensedRest::highest_frequency() const {

@@ -24,6 +24,8 @@ struct LinearStatics;
 ///   what r adds to it:        B u_b + C^T p + T^T f_s,   B = K_br K_rr^-1 K_rb - C^T w^-2 C  (3b x 3b);
 ///   where the surface is:     T u_b + phi_s p + W f_s,   T = -(K_rr^-1 K_rb)_s - phi_s w^-2 C,
 ///                                                        W = (K_rr^-1)_ss - phi_s w^-2 phi_s^T.
+/// What of r no mode moves has its mass at the border: as much in all as it has where the border goes as one
+/// piece (Guyan's mass matrix, less that of the modes, lumped), shared as the tetrahedra there are.
 /// At rest that is the answer of the whole body. Rayleigh damping is that of the part in motion. Parts of r
 /// that meet only through the border have matrices of their own. One thread; only the constructor allocates
 /// and throws. Bytes: 72 b^2 + 72 b s + 72 s^2 + 24 k (b + s) of each part of k modes, in vertices.
@@ -32,11 +34,15 @@ class CondensedRest {
   /// `places`: of each mesh vertex its place in the motion, or -1: it is fixed, or condensed. Factors K_rr,
   /// on all cores. Throws `Error` where some part of it is held by less than three vertices that are not in
   /// one line, or where all that would take more than the free memory of `inputs`.
-  /// `modes`: how many swing, at most.
+  /// `modes`: how many swing, at
+  /// most; of each part no more than an eighth of its unknowns, so that the rest stays compliant where tools
+  /// press: contact would be too stiff for explicit steps without.
   CondensedRest(const ModelInputs& inputs, const std::vector<int>& places, int modes);
 
   /// Takes where the border is by now and how fast (m, m/s; 3 x places). O(b^2).
   void look_at(const std::vector<double>& u, const std::vector<double>& v) noexcept;
+  /// Where the border is by now, for `carried` alone. O(b).
+  void stand_at(const std::vector<double>& u) noexcept;
   /// Adds what r does on the border as looked at, but for loads on r, to `force` (3 x places).
   void follow(std::span<double> force) const noexcept;
   /// The modes go on by h (s) from what was looked at, under these loads.
@@ -55,17 +61,24 @@ class CondensedRest {
   void begin_step() noexcept;
   /// Of two of them: how one moves per force on the other, m/N.
   Mat3 compliance(int vertex, int other) const noexcept;
-  /// Moves these of them (`positions` of surface vertices, m) by W f_s. Loads on others are passed over.
-  void move(std::span<const NodalLoad> loads, std::span<const int> vertices,
-            std::span<Vec3> positions) const noexcept;
+  /// Moves them (`positions` of surface vertices, m) by W f_s; those that are not watched by that of when
+  /// `all` were asked for last. Loads on others are passed over. O(loads x what is watched), or of all.
+  void press(std::span<const NodalLoad> loads, bool all, std::span<Vec3> positions) noexcept;
   /// Adds T^T f_s of one load on one of them to `force` (3 x places).
   void hand_down(const NodalLoad& load, std::span<double> force) const noexcept;
 
   /// The part that a mesh vertex belongs to, or -1.
   int part_of(int mesh_vertex) const { return part_of_[static_cast<std::size_t>(mesh_vertex)]; }
   /// A whole part was removed: it does nothing any more. Returns its elastic energy, less that of the border
-  /// with r at rest, and the kinetic energy of its modes, J.
+  /// with r at rest, and the kinetic energy of its modes, J. Their momentum is not counted.
   DeformationModel::Removed remove(int part) noexcept;
+
+  /// Mass of r that belongs to the border: first number in the motion, kg.
+  struct BorderMass {
+    int first;
+    double kg;
+  };
+  std::vector<BorderMass> border_masses() const;
 
   /// Of all modes, angular, the highest, rad/s; 0: there are none.
   double highest_frequency() const;
@@ -78,6 +91,7 @@ class CondensedRest {
   struct Part {
     std::vector<int> border;          // first numbers in the motion
     std::vector<int> surface;         // surface vertices
+    std::vector<double> border_mass;  // kg
     Eigen::MatrixXd following;        // B, of which the lower triangle is read
     Eigen::MatrixXd carrying;         // T^T
     Eigen::MatrixXd compliance;       // W
@@ -89,6 +103,7 @@ class CondensedRest {
     bool gone = false;
   };
   void find_parts(const TetMesh& mesh, std::span<const int> held);
+  bool is_watched(int vertex) const { return seen_[static_cast<std::size_t>(vertex)] >= step_ - 1; }
   void number_surface(const ModelInputs& inputs);
   static void condense(const ModelInputs& inputs, const LinearStatics& statics, const std::vector<int>& rows,
                        const SparseMatrix& coupling, Part& part);
@@ -100,6 +115,7 @@ class CondensedRest {
   std::vector<int> vertices_, watched_;
   std::vector<int> seen_;  // of surface vertices: the step in which contact last looked at it
   int step_ = 2;
+  std::vector<Vec3> pressed_;  // of surface vertices: W f_s when all were asked for last, m
   RayleighDamping damping_;
 };
 

@@ -66,7 +66,10 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const std::vector<char
       node_(inputs.surface.vertices),
       rest_places_(inputs.mesh.vertices),
       nodes_(rest_places_) {
-  if (moves != nullptr) rest_.emplace(inputs, tensors_.places(), rest_modes);
+  if (moves != nullptr) {
+    rest_.emplace(inputs, tensors_.places(), rest_modes);
+    for (const auto& [first, kg] : rest_->border_masses()) tensors_.add_mass(first / 3, kg);
+  }
   choose_sub_step(inputs);
   for (const int vertex : node_) {
     free_.push_back(inputs.mesh.vertices[static_cast<std::size_t>(vertex)]);
@@ -74,7 +77,8 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const std::vector<char
     first_.push_back(place < 0 ? -1 : 3 * place);
   }
   positions_ = free_;
-  loads_.reserve(kMaxTools * inputs.reachable.size());
+  loads_.reserve(kMaxTools * node_.size());
+  kept_.reserve(loads_.capacity());
   compliance_.emplace(tensors_, first_, rest_ ? &*rest_ : nullptr, sub_step_, held_stiffness(inputs.scene));
 }
 
@@ -92,19 +96,42 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
     ended_ = false;
     if (rest_) follow();
     take_sub_step();
-    instant_ = (instant_ + 1) % instants_;
     update_free();
+    if (rest_) carry_rest();
+    instant_ = (instant_ + 1) % instants_;
     press();
   }
   return {.positions = free_, .loaded = positions_};
 }
 
-/// The rest goes to where the border takes it by now: what is loaded, and, seldomer, what else contact looks
-/// at; all of it where a step ends.
+/// What the rest does on the border where both are by now.
 void CuttableMotion::follow() noexcept {
   rest_->look_at(motion_.state.u, motion_.state.v);
   std::fill(force_.begin(), force_.end(), 0);
   rest_->follow(force_);
+}
+
+/// The rest goes to where the border takes it at the end of the sub-step, if loads on that stay as they are:
+/// what is loaded, and, seldomer, what else contact looks at; all of it where a step ends.
+void CuttableMotion::carry_rest() noexcept {
+  const auto at = [&](const NodalLoad& load) {
+    return Eigen::Map<Vec3>(motion_.state.u.data() + first_[static_cast<std::size_t>(load.vertex)]);
+  };
+  const auto moves = [&](const NodalLoad& load) {
+    return first_[static_cast<std::size_t>(load.vertex)] >= 0;
+  };
+  kept_.clear();
+  for (const NodalLoad& load : loads_) {
+    if (moves(load)) kept_.push_back(at(load));
+  }
+  for (const NodalLoad& load : loads_) {
+    if (moves(load)) at(load) += sub_step_ * kick_of(load);
+  }
+  rest_->stand_at(motion_.state.u);
+  auto before = kept_.begin();
+  for (const NodalLoad& load : loads_) {
+    if (moves(load)) at(load) = *before++;
+  }
   const auto carry = [&](int vertex) {
     free_[static_cast<std::size_t>(vertex)] = rest_place(vertex) + rest_->carried(vertex);
   };
@@ -140,7 +167,7 @@ void CuttableMotion::end_sub_step() noexcept {
   for (const NodalLoad& load : loads_) {
     const int first = first_[static_cast<std::size_t>(load.vertex)];
     if (first < 0) continue;
-    const Vec3 kick = sub_step_ / tensors_.masses()[static_cast<std::size_t>(first / 3)] * load.force;
+    const Vec3 kick = kick_of(load);
     Eigen::Map<Vec3>(motion_.state.v.data() + first) += kick;
     Eigen::Map<Vec3>(motion_.state.u.data() + first) += sub_step_ * kick;
   }

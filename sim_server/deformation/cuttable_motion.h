@@ -51,6 +51,12 @@ class CuttableMotion : public DeformationModel {
   void take_sub_step() noexcept;
   void follow() noexcept;
   void update_free() noexcept;
+  void carry_rest() noexcept;
+  /// What a load on a vertex in motion changes its velocity by over a sub-step, m/s.
+  Vec3 kick_of(const NodalLoad& load) const {
+    const int place = first_[static_cast<std::size_t>(load.vertex)] / 3;
+    return sub_step_ / tensors_.masses()[static_cast<std::size_t>(place)] * load.force;
+  }
   const Vec3& rest_place(int vertex) const {
     return rest_places_[static_cast<std::size_t>(node_[static_cast<std::size_t>(vertex)])];
   }
@@ -67,6 +73,7 @@ class CuttableMotion : public DeformationModel {
   double sub_step_ = 0;             // s
   std::optional<LumpedCompliance> compliance_;
   bool ended_ = false;                  // the sub-step in hand has its end, as tissue was removed
+  std::vector<Vec3> kept_;              // of `carry_rest`
   std::vector<NodalLoad> loads_;        // over it
   std::vector<int> first_;              // per surface vertex: its first number in `motion_`, or -1
   std::vector<int> node_;               // per surface vertex: its mesh vertex

@@ -47,11 +47,7 @@ std::string HybridSettings::to_text() const {
 }
 
 std::unique_ptr<DeformationModel> Hybrid::make(const ModelInputs& inputs) {
-  if (!inputs.scene.cutting)
-    fail(
-        "{}: model \"hybrid\" moves what [cutting] says can be cut, and the scene has none; add one, or take "
-        "\"tensor_mass\"",
-        inputs.scene.source);
+  if (!inputs.scene.cutting) fail("{}: model \"hybrid\" needs a [cutting] section", inputs.scene.source);
   const auto& settings = inputs.scene.deformation.of<HybridSettings>();
   return std::make_unique<CuttableMotion>(inputs, in_motion(inputs, settings.layers), settings.rest_modes);
 }

@@ -51,7 +51,7 @@ void LumpedCompliance::move(std::span<const NodalLoad> loads, bool all,
     if (rest_ == nullptr || !rest_->has(load.vertex))
       positions[static_cast<std::size_t>(load.vertex)] += own(load.vertex) * load.force;
   }
-  if (rest_ != nullptr) rest_->move(loads, all ? rest_->vertices() : rest_->watched(), positions);
+  if (rest_ != nullptr) rest_->press(loads, all, positions);
 }
 
 }  // namespace palpate::sim

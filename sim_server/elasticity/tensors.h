@@ -36,6 +36,9 @@ class ElasticTensors {
   /// O(removed), whatever the size of the mesh: some 20 us each.
   void remove(std::span<const int> removed, const CutMesh& left, const Material& material);
 
+  /// From now on this vertex has so much (kg, >= 0) besides what its tetrahedra give.
+  void add_mass(int place, double kg);
+
   /// How many vectors `multiply_wide` takes at once.
   static constexpr int kWide = 8;
   /// y = K x: forces (n x 3, N) of displacements (n x 3, m), n = `vertices()`.
@@ -46,7 +49,7 @@ class ElasticTensors {
 
   /// Of each mesh vertex: its place among the free ones, or -1.
   const std::vector<int>& places() const { return place_; }
-  /// Lumped mass of each free vertex: a quarter of that of each tetrahedron around it, kg.
+  /// Lumped mass of each free vertex: a quarter of that of each tetrahedron around it, and what was added, kg.
   const std::vector<double>& masses() const { return mass_; }
   int vertices() const { return static_cast<int>(mass_.size()); }
   int edges() const { return static_cast<int>(neighbour_.size()); }
@@ -63,6 +66,7 @@ class ElasticTensors {
   std::vector<int> place_;
   std::vector<double> mass_factors_;  // of tetrahedra, or empty
   std::vector<double> mass_;
+  std::vector<double> added_;  // of `mass_`, by `add_mass`; or empty
   std::vector<double> vertex_tensors_;  // xx xy xz yy yz zz
   // Of vertex i, those to neighbours before it: from first_edge_[i] to first_edge_[i + 1].
   std::vector<int> first_edge_, neighbour_;

@@ -96,6 +96,11 @@ void require_cutting(const Scene& scene) {
   if (cutter != scene.tools.end() && !scene.cutting)
     fail("{}: `cut_buttons`: the scene has no [cutting] that says how; add one, or remove this",
          cutter->cut_where);
+  if (!scene.cutting && model_of(scene.deformation).needs_cutting)
+    fail(
+        "{}: model \"{}\" moves what [cutting] says can be cut, and the scene has none; add one, or take "
+        "\"tensor_mass\"",
+        scene.deformation.where, scene.deformation.model);
   if (!scene.cutting) return;
   if (cutter == scene.tools.end())
     fail("{}: no [[tool]] cuts; give one `cut_buttons`, such as 1", scene.cutting->where);
