@@ -20,9 +20,9 @@ inline Mat3 stiffness_per_volume(const Moduli& moduli, const Vec3& gi, const Vec
 /// and used for both of its ends. Of a tetrahedron of volume V whose shape functions have gradients g (their
 /// equation 12): K_ij = V `stiffness_per_volume`, K_ji = K_ij^T.
 /// Vertices are numbered along a space-filling curve, so that what meets lies close together in memory: 76
-/// bytes an edge and 52 a vertex, about 100 a tetrahedron. A product takes 0.25 of the time of Eigen's with
-/// the same sparse matrix by rows, 0.3 to 0.6 of that with its lower triangle, and for eight vectors 0.4 of
-/// that by rows (`scripts/bench tensors`).
+/// bytes an edge and 52 a vertex, about 100 a tetrahedron. A product takes 0.20 to 0.27 of the time of
+/// Eigen's with the same sparse matrix by rows, 0.33 to 0.37 of that with its lower triangle, and for eight
+/// vectors 0.24 to 0.34 of that by rows (`scripts/bench --quick '^tensors'`, 3 to 105 thousand tetrahedra).
 class ElasticTensors {
  public:
   /// O(m log m). Summed in tetrahedron order, so the same mesh gives the same bits. `mass_factors`: of the
@@ -43,13 +43,14 @@ class ElasticTensors {
   static constexpr int kWide = 8;
   /// y = K x: forces (n x 3, N) of displacements (n x 3, m), n = `vertices()`.
   void multiply(const double* x, double* y) const noexcept;
-  /// The same for eight vectors side by side (n x 3 x 8, those of one number together), at about a third of
+  /// The same for eight vectors side by side (n x 3 x 8, those of one number together), at about half of
   /// the time for each: tensors are read once.
   void multiply_wide(const double* x, double* y) const noexcept;
 
   /// Of each mesh vertex: its place among the free ones, or -1.
   const std::vector<int>& places() const { return place_; }
-  /// Lumped mass of each free vertex: a quarter of that of each tetrahedron around it, and what was added, kg.
+  /// Lumped mass of each free vertex: a quarter of that of each tetrahedron around it, and what was added,
+  /// kg.
   const std::vector<double>& masses() const { return mass_; }
   int vertices() const { return static_cast<int>(mass_.size()); }
   int edges() const { return static_cast<int>(neighbour_.size()); }
@@ -66,7 +67,7 @@ class ElasticTensors {
   std::vector<int> place_;
   std::vector<double> mass_factors_;  // of tetrahedra, or empty
   std::vector<double> mass_;
-  std::vector<double> added_;  // of `mass_`, by `add_mass`; or empty
+  std::vector<double> added_;           // of `mass_`, by `add_mass`; or empty
   std::vector<double> vertex_tensors_;  // xx xy xz yy yz zz
   // Of vertex i, those to neighbours before it: from first_edge_[i] to first_edge_[i + 1].
   std::vector<int> first_edge_, neighbour_;
