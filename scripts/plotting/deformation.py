@@ -20,7 +20,8 @@ import sys
 from pictures import draw_folder, in_words, plain_numbers, save
 
 LEAST = 1e-3  # %: what is less is drawn there
-COLOURS = {"quasi_static": "tab:blue", "tensor_mass": "tab:orange", "implicit": "tab:green", "reduced": "tab:purple"}
+COLOURS = {"quasi_static": "tab:blue", "tensor_mass": "tab:orange", "implicit": "tab:green", "reduced": "tab:purple",
+           "hybrid": "tab:red"}
 MARKS = {"p1": "o", "p1_nodal_pressure": "s", "p2": "D"}
 BETTER = {"fontsize": 8, "color": "0.35", "ha": "left", "va": "bottom"}
 

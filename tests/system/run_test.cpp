@@ -96,7 +96,7 @@ TEST_CASE(
   const auto config =
       folder.write("client.toml", "server = \"" + address + "\"\n[trajectory]\nfile = \"press.csv\"\n");
   Process client("haptic_client",
-                 {"run", config.string(), "--seconds", "8", "--trace", trace, "--report", report});
+                 {"run", config.string(), "--seconds", "90", "--trace", trace, "--report", report});
   REQUIRE(client.wait_for("connected"));
   std::this_thread::sleep_for(std::chrono::milliseconds(3000));
   server->process.signal(SIGKILL);
@@ -105,6 +105,8 @@ TEST_CASE(
   std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it is there before the server is back
   server = std::make_unique<Server>(std::vector<std::string>{}, address);
   REQUIRE(client.wait_for("is back: soft start", 5));
+  std::this_thread::sleep_for(std::chrono::milliseconds(3000));  // the force rises
+  client.signal(SIGINT);
   CHECK(client.wait() == 0);
   const std::string& said = client.output();
   CHECK(said.find("force goes to zero") == said.rfind("force goes to zero"));
