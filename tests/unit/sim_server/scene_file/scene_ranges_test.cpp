@@ -220,7 +220,9 @@ TEST_CASE("[deformation]: a key of other models says whose it is") {
            Wrong{"[deformation]", "refresh_steps = 4", "factors where it has to", "for pcg and quasi_newton"},
            Wrong{"[deformation]", "rayleigh_mass = 1", "`[deformation] rayleigh_mass`",
                  "known to: tensor_mass, implicit", "quasi_static"},
+#ifdef PALPATE_WITH_SPECTRA
            Wrong{"[deformation]", "modes = 20", "`[deformation] modes`", "known to: ", "implicit"},
+#endif
            Wrong{"[deformation]", "stiffness = 800", "`[deformation] stiffness`", "known to: rigid",
                  "quasi_static"},
            Wrong{"[deformation]", "spring_stiffness = [1, 1, 1]", "`[deformation] spring_stiffness`",
