@@ -31,12 +31,11 @@ struct LinearStatics;
 /// and throws. Bytes: 72 b^2 + 72 b s + 72 s^2 + 24 k (b + s) of each part of k modes, in vertices.
 class CondensedRest {
  public:
-  /// `places`: of each mesh vertex its place in the motion, or -1: it is fixed, or condensed. Factors K_rr,
-  /// on all cores. Throws `Error` where some part of it is held by less than three vertices that are not in
-  /// one line, or where all that would take more than the free memory of `inputs`.
-  /// `modes`: how many swing, at
-  /// most; of each part no more than an eighth of its unknowns, so that the rest stays compliant where tools
-  /// press: contact would be too stiff for explicit steps without.
+  /// `places`: of each mesh vertex its place in the motion, or -1: it is fixed, or condensed. `modes`: how
+  /// many swing, at most; no more than one for eight unknowns of a part, so that contact on the rest stays
+  /// compliant enough for explicit steps. Factors K_rr, on all cores. Throws `Error` where some part of it is
+  /// held by less than three vertices that are not in one line, or where all that would take more memory than
+  /// is free.
   CondensedRest(const ModelInputs& inputs, const std::vector<int>& places, int modes);
 
   /// Takes where the border is by now and how fast (m, m/s; 3 x places). O(b^2).

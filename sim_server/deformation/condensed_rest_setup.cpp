@@ -1,6 +1,4 @@
 // How a rest is condensed: the set-up of CondensedRest.
-#include "sim_server/deformation/condensed_rest.h"
-
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "common/error.h"
 #include "common/memory_budget.h"
+#include "sim_server/deformation/condensed_rest.h"
 #include "sim_server/deformation/linear_statics.h"
 #include "sim_server/elasticity/element.h"
 #include "sim_server/elasticity/tensors.h"

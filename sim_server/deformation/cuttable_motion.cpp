@@ -262,7 +262,7 @@ std::vector<MemoryPart> CuttableMotion::memory() const {
        fmt::format("{} vertices, {} edges; {} sub-steps of {:.3g} ms; {:.2g} g more for stiff elements",
                    tensors_.vertices(), tensors_.edges(), instants_, 1e3 * sub_step_, 1e3 * scaling_.added)},
       {"motion", motion_.bytes() + force_.size() * sizeof(double)},
-      {"positions", (free_.size() + positions_.size() + 2 * nodes_.size()) * sizeof(Vec3) +
+      {"positions", (free_.size() + positions_.size() + 2 * nodes_.size() + kept_.capacity()) * sizeof(Vec3) +
                         loads_.capacity() * sizeof(NodalLoad) +
                         (first_.size() + node_.size()) * sizeof(int)}};
   if (rest_)

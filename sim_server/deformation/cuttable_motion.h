@@ -73,7 +73,7 @@ class CuttableMotion : public DeformationModel {
   double sub_step_ = 0;             // s
   std::optional<LumpedCompliance> compliance_;
   bool ended_ = false;                  // the sub-step in hand has its end, as tissue was removed
-  std::vector<Vec3> kept_;              // of `carry_rest`
+  std::vector<Vec3> kept_;              // of `carry_rest`: where loaded vertices are without their loads, m
   std::vector<NodalLoad> loads_;        // over it
   std::vector<int> first_;              // per surface vertex: its first number in `motion_`, or -1
   std::vector<int> node_;               // per surface vertex: its mesh vertex

@@ -6,18 +6,14 @@
 
 #include "sim_server/deformation/cuttable_motion.h"
 #include "sim_server/deformation/estimated_memory.h"
+#include "sim_server/deformation/slow_modes.h"
 
 namespace palpate::sim {
 
 /// What of a body is in motion, and how the rest of it is.
 struct HybridSettings {
-#ifdef PALPATE_WITH_SPECTRA
-  static constexpr int kUsualModes = 40;
-#else
-  static constexpr int kUsualModes = 0;  ///< a build without Spectra finds none
-#endif
-  int rest_modes = kUsualModes;  ///< of the condensed rest, that swing, [0, 1000]
-  int layers = 1;                ///< of tetrahedra in motion around what can be cut, [0, 100]
+  int rest_modes = ClientModes::kUsual;  ///< of the condensed rest, that swing, [0, 1000]
+  int layers = 1;                        ///< of tetrahedra in motion around what can be cut, [0, 100]
 
   static constexpr std::array<std::string_view, 2> kKeys{"layers", "rest_modes"};
   static HybridSettings read(const Config& config);
