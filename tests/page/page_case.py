@@ -5,9 +5,10 @@ import time
 
 import browser
 import fake_server
+import page_numbers
 
 
-class PageCase:
+class PageCase(page_numbers.PageNumbers):
     """Each test has a page of its own; the browser is started once."""
 
     pictures = None  # folder for screenshots; none: none are kept
@@ -41,18 +42,6 @@ class PageCase:
 
     def text(self, name):
         return self.browser.evaluate(f"document.getElementById({json.dumps(name)}).textContent")
-
-    def number(self, name):
-        """What the list of numbers says."""
-        return self.browser.evaluate(
-            "[...document.querySelectorAll('#numbers dt')].filter(d => d.textContent === " + json.dumps(name) +
-            ").map(d => d.nextSibling.firstChild.textContent)[0] ?? ''")
-
-    def wait_number(self, name, good, seconds=10):
-        end = time.monotonic() + seconds
-        while not good(self.number(name)):
-            self.assertLess(time.monotonic(), end, f"{name}: {self.number(name)}")
-            time.sleep(0.05)
 
     def stage(self):
         return self.browser.evaluate("(({x, y, width, height}) => [x, y, width, height])"

@@ -17,6 +17,7 @@ import time
 import unittest
 
 import browser
+import page_numbers
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = PICTURES = KIND = None
@@ -56,7 +57,7 @@ class Program:
             self.process.wait()
 
 
-class SessionTest(unittest.TestCase):
+class SessionTest(page_numbers.PageNumbers, unittest.TestCase):
     scene, client, device = "liver_paper", "liver_paper", []
 
     def setUp(self):
@@ -82,23 +83,6 @@ class SessionTest(unittest.TestCase):
     def start_client(self):
         return self.start("haptic_client", "run", f"configs/clients/{self.client}.toml", "--server", f"127.0.0.1:{self.udp}",
                           *self.device)
-
-    def number(self, name):
-        return self.browser.evaluate(
-            f"[...document.querySelectorAll('#numbers dt')].filter(d => d.textContent === '{name}')"
-            ".map(d => d.nextSibling.firstChild.textContent)[0] ?? ''")
-
-    def wait_number(self, name, good, seconds=30):
-        end = time.monotonic() + seconds
-        while True:
-            text = self.number(name)
-            try:
-                if good(text):
-                    return text
-            except ValueError:
-                pass  # a dash: not known yet
-            self.assertLess(time.monotonic(), end, f"{name}: {text}")
-            time.sleep(0.03)
 
     def place(self):
         return [float(x) for x in self.number("Place x, y, z").replace("\u2212", "-").split()]
