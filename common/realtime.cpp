@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace palpate {
 
@@ -17,6 +19,14 @@ std::string lock_memory() {
 
 void name_thread(const char* name) {
   pthread_setname_np(pthread_self(), name);
+}
+
+void make_background(const char* name) {
+  constexpr int kNice = 10;
+  name_thread(name);
+  const sched_param param{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &param);
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);  // of this thread alone, on Linux
 }
 
 std::string make_realtime(pthread_t thread, const char* name, int priority) {

@@ -16,4 +16,8 @@ void name_thread(const char* name);
 /// to change.
 std::string make_realtime(pthread_t thread, const char* name, int priority);
 
+/// Lets the calling thread, which the thread that started it may have given real-time priority, work beside
+/// all others: no real time, and less of the processor where that is scarce. With a name as above.
+void make_background(const char* name);
+
 }  // namespace palpate

@@ -72,7 +72,7 @@ std::vector<Removal> read_removals(const std::filesystem::path& file, const Simu
     if (!(number >= 0 && number < tetrahedra && number == std::floor(number)))
       fail("{}: data row {} names tetrahedron {:g}, and the mesh has 0 to {:g}; is it of another mesh?",
            file.string(), row + 1, number, tetrahedra - 1);
-    if (!simulation.resection()->left().is_removable(static_cast<int>(number)))
+    if (simulation.resection()->left().removable(static_cast<int>(number)) == Removable::kNever)
       fail(
           "{}: data row {} names tetrahedron {:g}, which the scene's [cutting] does not let go; is it of "
           "another "

@@ -3,16 +3,6 @@
 #include <algorithm>
 
 namespace palpate::sim {
-namespace {
-
-Vec3 centre_of(const TetMesh& mesh, const Tetrahedron& t) {
-  Vec3 centre = Vec3::Zero();
-  for (const int v : t) centre += mesh.vertices[static_cast<std::size_t>(v)] / 4;
-  return centre;
-}
-
-}  // namespace
-
 Resection::Resection(const Cutting& cutting, const TetMesh& mesh, std::span<const int> held, Surface& surface)
     : plan_(cutting.plan),
       smallest_piece_(cutting.smallest_piece),
@@ -57,6 +47,17 @@ std::span<const int> Resection::remove(std::span<const int> tetrahedra, Surface&
     take_out(piece.tetrahedra, surface);
   }
   return removed_;
+}
+
+void Resection::grow(const DeformationModel::Growth& growth) {
+  left_.allow(growth.allowed);
+  if (growth.begun) growth_.begun = true;
+  if (growth.allowed.empty() && growth.failure.empty()) return;
+  growth_.begun = false;
+  growth_.times += growth.failure.empty() ? 1 : 0;
+  growth_.failures += growth.failure.empty() ? 0 : 1;
+  growth_.tetrahedra += growth.allowed.size();
+  if (!growth.failure.empty()) growth_.last_failure = growth.failure;
 }
 
 void Resection::take_out(std::span<const int> tetrahedra, Surface& surface) {

@@ -1,5 +1,6 @@
 #pragma once
 #include "sim_server/cutting/cautery.h"
+#include "sim_server/deformation/deformation_model.h"
 #include "sim_server/mesh/pieces.h"
 
 namespace palpate::sim {
@@ -41,6 +42,17 @@ class Resection {
   /// Of what the last of these removed, what was asked for: without the pieces that it cut off.
   std::span<const int> asked_for() const { return std::span(removed_).first(asked_for_); }
 
+  /// What can be removed grows, as the model says.
+  void grow(const DeformationModel::Growth& growth);
+  struct Growth {
+    bool begun = false;          ///< and not yet ended
+    std::size_t times = 0;       ///< that more could be removed
+    std::size_t tetrahedra = 0;  ///< that could in all of them
+    std::size_t failures = 0;
+    std::string last_failure = {};  ///< why
+  };
+  const Growth& growth() const { return growth_; }
+
   const CutMesh& left() const { return left_; }
   /// Grows with each `advance` that removed something: of which surface the triangles are.
   std::uint32_t version() const { return version_; }
@@ -63,6 +75,7 @@ class Resection {
   std::size_t asked_for_ = 0;
   std::uint32_t version_ = 0;
   ResectionTotals totals_;
+  Growth growth_;
 };
 
 }  // namespace palpate::sim

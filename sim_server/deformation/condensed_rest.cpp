@@ -82,18 +82,15 @@ void CondensedRest::begin_step() noexcept {
   std::erase_if(watched_, [&](int vertex) { return seen_[static_cast<std::size_t>(vertex)] < step_ - 1; });
 }
 
-void CondensedRest::press(std::span<const NodalLoad> loads, bool all, std::span<Vec3> positions) noexcept {
-  const auto moved_at = [&](int vertex) {
-    Vec3 moved = Vec3::Zero();
-    for (const NodalLoad& load : loads) {
-      if (has(load.vertex)) moved += compliance(vertex, load.vertex) * load.force;
-    }
-    return moved;
-  };
-  for (const int vertex : vertices_) {
+void CondensedRest::press(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
+                          std::span<Vec3> positions) const noexcept {
+  const std::span<const int> pressed = all ? vertices() : watched();
+  for (const int vertex : pressed) {
     const auto v = static_cast<std::size_t>(vertex);
-    if (all) pressed_[v] = moved_at(vertex);
-    positions[v] += all || !is_watched(vertex) ? pressed_[v] : moved_at(vertex);
+    positions[v] = free[v];
+    for (const NodalLoad& load : loads) {
+      if (has(load.vertex)) positions[v] += compliance(vertex, load.vertex) * load.force;
+    }
   }
 }
 
@@ -114,6 +111,65 @@ DeformationModel::Removed CondensedRest::remove(int part) noexcept {
   const double modes =
       0.5 * (goes.squares * goes.p.array().square()).sum() - goes.p.dot(goes.driven * goes.at);
   return {.elastic = border + modes, .kinetic = 0.5 * goes.p_v.squaredNorm()};
+}
+
+void CondensedRest::stand_still(const std::vector<double>& x, std::span<const NodalLoad> loads) noexcept {
+  stand_at(x);
+  for (Part& part : all_) {
+    part.p.noalias() = part.driven * part.at;
+    part.p_v.setZero();
+  }
+  for (const NodalLoad& load : loads) {
+    if (!has(load.vertex)) continue;
+    const auto v = static_cast<std::size_t>(load.vertex);
+    Part& part = all_[static_cast<std::size_t>(part_[v])];
+    part.p.noalias() += part.shapes.middleCols<3>(row_[v]) * load.force;
+  }
+  for (Part& part : all_) {
+    part.p.array() /= part.squares;
+    part.p_bent = part.p;
+    part.bent = part.at;
+    symmetric_product(part.following, part.bent, part.force);
+  }
+}
+
+CondensedRest::Swing CondensedRest::swing() const {
+  Swing all;
+  for (const Part& part : all_) {
+    all.p.push_back(part.p);
+    all.v.push_back(part.p_v);
+  }
+  return all;
+}
+
+void CondensedRest::set_swing(const Swing& swing) {
+  for (std::size_t p = 0; p < all_.size(); ++p) {
+    all_[p].p = swing.p[p];
+    all_[p].p_v = swing.v[p];
+  }
+}
+
+CondensedRest::Swing CondensedRest::swing_after(const CondensedRest& before, const Swing& swing) const {
+  Swing own;
+  for (const Part& part : all_) {
+    const auto of_before = static_cast<std::size_t>(before.part_of(part.inner.front()));
+    const Part& was = before.all_[of_before];
+    Eigen::MatrixXd shapes(was.squares.size(), part.all_shapes.cols());  // of `before`, at these vertices
+    for (std::size_t i = 0; i < part.inner.size(); ++i) {
+      const auto at = std::ranges::lower_bound(was.inner, part.inner[i]) - was.inner.begin();
+      shapes.middleCols<3>(3 * static_cast<Eigen::Index>(i)) = was.all_shapes.middleCols<3>(3 * at);
+    }
+    const Eigen::MatrixXd overlap = part.all_shapes * part.masses.asDiagonal() * shapes.transpose();
+    own.p.push_back(overlap * swing.p[of_before]);
+    own.v.push_back(overlap * swing.v[of_before]);
+  }
+  return own;
+}
+
+Vec3 CondensedRest::shape_at(int mesh_vertex, const std::vector<Eigen::VectorXd>& amplitudes) const {
+  const auto p = static_cast<std::size_t>(part_of(mesh_vertex));
+  const auto at = std::ranges::lower_bound(all_[p].inner, mesh_vertex) - all_[p].inner.begin();
+  return all_[p].all_shapes.middleCols<3>(3 * at).transpose() * amplitudes[p];
 }
 
 std::vector<CondensedRest::BorderMass> CondensedRest::border_masses() const {
@@ -147,9 +203,9 @@ std::size_t CondensedRest::border() const {
 std::size_t CondensedRest::bytes() const {
   std::size_t numbers = 0;
   for (const Part& part : all_)
-    numbers +=
-        static_cast<std::size_t>(part.following.size() + part.carrying.size() + part.compliance.size() +
-                                 part.driven.size() + part.shapes.size() + 3 * part.at.size());
+    numbers += static_cast<std::size_t>(part.following.size() + part.carrying.size() +
+                                        part.compliance.size() + part.driven.size() + part.shapes.size() +
+                                        3 * part.at.size() + part.all_shapes.size() + part.masses.size());
   return numbers * sizeof(double) + (part_of_.size() + 3 * part_.size() + 2 * vertices_.size()) * sizeof(int);
 }
 

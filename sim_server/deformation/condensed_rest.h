@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -31,12 +32,16 @@ struct LinearStatics;
 /// and throws. Bytes: 72 b^2 + 72 b s + 72 s^2 + 24 k (b + s) of each part of k modes, in vertices.
 class CondensedRest {
  public:
-  /// `places`: of each mesh vertex its place in the motion, or -1: it is fixed, or condensed. `modes`: how
-  /// many swing, at most; no more than one for eight unknowns of a part, so that contact on the rest stays
-  /// compliant enough for explicit steps. Factors K_rr, on all cores. Throws `Error` where some part of it is
-  /// held by less than three vertices that are not in one line, or where all that would take more memory than
-  /// is free.
-  CondensedRest(const ModelInputs& inputs, const std::vector<int>& places, int modes);
+  /// The modes that swing.
+  struct Modes {
+    int most = 0;  ///< and no more than one for eight unknowns of a part, so that contact stays compliant
+    double highest = std::numeric_limits<double>::infinity();  ///< rad/s: none above it
+    bool keeps_shapes = false;  ///< of all of r, for a rest that takes over from this one (`swing_after`)
+  };
+  /// `places`: of each mesh vertex its place in the motion, or -1: it is fixed, or condensed. Factors K_rr,
+  /// on all cores. Throws `Error` where some part of it is held by less than three vertices that are not in
+  /// one line, or where all that would take more memory than is free.
+  CondensedRest(const ModelInputs& inputs, const std::vector<int>& places, const Modes& modes);
 
   /// Takes where the border is by now and how fast (m, m/s; 3 x places). O(b^2).
   void look_at(const std::vector<double>& u, const std::vector<double>& v) noexcept;
@@ -60,9 +65,10 @@ class CondensedRest {
   void begin_step() noexcept;
   /// Of two of them: how one moves per force on the other, m/N.
   Mat3 compliance(int vertex, int other) const noexcept;
-  /// Moves them (`positions` of surface vertices, m) by W f_s; those that are not watched by that of when
-  /// `all` were asked for last. Loads on others are passed over. O(loads x what is watched), or of all.
-  void press(std::span<const NodalLoad> loads, bool all, std::span<Vec3> positions) noexcept;
+  /// Puts what is watched, or `all` of them, where `free` and W f_s say (surface vertices, m). Loads on
+  /// others are passed over. O(loads x what is watched), or of all.
+  void press(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
+             std::span<Vec3> positions) const noexcept;
   /// Adds T^T f_s of one load on one of them to `force` (3 x places).
   void hand_down(const NodalLoad& load, std::span<double> force) const noexcept;
 
@@ -71,6 +77,20 @@ class CondensedRest {
   /// A whole part was removed: it does nothing any more. Returns its elastic energy, less that of the border
   /// with r at rest, and the kinetic energy of its modes, J. Their momentum is not counted.
   DeformationModel::Removed remove(int part) noexcept;
+
+  /// The border stands at `x` (3 x places), these loads are held, and the modes are where they balance:
+  /// `follow` says what r does on it then, but for loads. O(b^2).
+  void stand_still(const std::vector<double>& x, std::span<const NodalLoad> loads) noexcept;
+  /// Amplitudes of the modes of each part, m sqrt(kg), and their rates.
+  struct Swing {
+    std::vector<Eigen::VectorXd> p, v;
+  };
+  Swing swing() const;
+  void set_swing(const Swing& swing);
+  /// What modes of this rest move as `before`, of which it is a part, does in `swing`. Both keep shapes.
+  Swing swing_after(const CondensedRest& before, const Swing& swing) const;
+  /// How a mesh vertex of r moves in `amplitudes` (of `Swing`) alone, m. Of a rest that keeps shapes.
+  Vec3 shape_at(int mesh_vertex, const std::vector<Eigen::VectorXd>& amplitudes) const;
 
   /// Mass of r that belongs to the border: first number in the motion, kg.
   struct BorderMass {
@@ -99,14 +119,17 @@ class CondensedRest {
     Eigen::MatrixXd shapes;           // phi_s^T
     Eigen::VectorXd p, p_v, p_bent;   // amplitudes, their rates, p + stiffness p_v
     Eigen::VectorXd at, bent, force;  // u_b, u_b + stiffness v_b, B times that
+    std::vector<int> inner;           // mesh vertices, ascending; these three where shapes are kept
+    Eigen::VectorXd masses;           // of their unknowns, kg
+    Eigen::MatrixXd all_shapes;       // phi^T at them
     bool gone = false;
   };
   void find_parts(const TetMesh& mesh, std::span<const int> held);
-  bool is_watched(int vertex) const { return seen_[static_cast<std::size_t>(vertex)] >= step_ - 1; }
   void number_surface(const ModelInputs& inputs);
   static void condense(const ModelInputs& inputs, const LinearStatics& statics, const std::vector<int>& rows,
                        const SparseMatrix& coupling, Part& part);
   static void take_modes_out(Part& part);
+  void keep_shapes(const LinearStatics& statics, const Eigen::MatrixXd& shapes, int part);
 
   std::vector<Part> all_;
   std::vector<int> part_of_;     // of mesh vertices
@@ -114,7 +137,6 @@ class CondensedRest {
   std::vector<int> vertices_, watched_;
   std::vector<int> seen_;  // of surface vertices: the step in which contact last looked at it
   int step_ = 2;
-  std::vector<Vec3> pressed_;  // of surface vertices: W f_s when all were asked for last, m
   RayleighDamping damping_;
 };
 

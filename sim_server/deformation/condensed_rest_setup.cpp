@@ -119,7 +119,7 @@ struct ModesOfPart {
 /// Of modes of all parts together those of one. Where parts swing alike, a mode may be of several: what each
 /// part does in it is a mode of that, too.
 ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& statics,
-                          const std::vector<int>& part_of, int part) {
+                          const std::vector<int>& part_of, int part, double highest) {
   constexpr double kShare = 1e-3;  // of a mode: less of it is rounding
   const Eigen::VectorXd masses = statics.masses();
   Eigen::VectorXd mine = Eigen::VectorXd::Zero(masses.size());
@@ -131,6 +131,7 @@ ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& static
   const auto most = static_cast<Eigen::Index>(mine.sum()) / kUnknownsPerMode;
   Eigen::Index count = 0;
   for (Eigen::Index k = 0; k < all.frequencies.size() && count < most; ++k) {
+    if (all.frequencies[k] > highest) break;
     Eigen::VectorXd shape = all.shapes.col(k).cwiseProduct(mine);
     for (Eigen::Index j = 0; j < count; ++j)
       shape -= own.shapes.col(j).dot(masses.cwiseProduct(shape)) * own.shapes.col(j);
@@ -189,11 +190,10 @@ Eigen::MatrixXd rows_of(const Eigen::MatrixXd& shapes, const LinearStatics& stat
 
 }  // namespace
 
-CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& places, int modes)
+CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& places, const Modes& modes)
     : part_(inputs.surface.vertices.size(), -1),
       row_(part_),
       seen_(part_.size(), 0),
-      pressed_(part_.size(), Vec3::Zero()),
       damping_(inputs.scene.deformation.of<RayleighDamping>()) {
   const std::vector<int> held = held_by(inputs.fixed, places);
   require_held_rest(inputs, held);
@@ -205,7 +205,7 @@ CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& 
   const LinearStatics statics(still);
   const std::vector<PartNodes> nodes = nodes_of_parts(inputs.mesh, places, part_of_);
   VibrationModes found;
-  const int count = std::min(modes, statics.dofs.count / kUnknownsPerMode);
+  const int count = std::min(modes.most, statics.dofs.count / kUnknownsPerMode);
   require_memory(8.0 * statics.dofs.count * (4.0 * count + 20), free_memory(), inputs.scene.source,
                  fmt::format("{} modes of what is not in motion", count), "ask for fewer `rest_modes`");
   if (count > 0) found = statics.modes(count, inputs.scene.source);
@@ -217,7 +217,7 @@ CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& 
       rows.push_back(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
     sort_unique(rows);
     const SparseMatrix coupling = coupling_of(inputs, nodes[p], rows, part_of_);
-    const ModesOfPart own = modes_of_part(found, statics, part_of_, static_cast<int>(p));
+    const ModesOfPart own = modes_of_part(found, statics, part_of_, static_cast<int>(p), modes.highest);
     part.squares = own.squares;
     part.driven = -rows_of(own.shapes, statics, rows).transpose() * coupling;
     std::vector<int> surface;
@@ -226,13 +226,19 @@ CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& 
     part.shapes = rows_of(own.shapes, statics, surface).transpose();
     part.border_mass = shared_mass(inputs.mesh, nodes[p],
                                    mass_beside_modes(statics, rows, coupling, part.driven, part.squares));
+    if (modes.keeps_shapes) keep_shapes(statics, own.shapes, static_cast<int>(p));
     condense(inputs, statics, rows, coupling, part);
     take_modes_out(part);
   }
 }
 
 void CondensedRest::number_surface(const ModelInputs& inputs) {
+  std::vector<char> is_corner(inputs.surface.vertices.size(), 0);  // else it is inside, until tissue goes
+  for (const Triangle& triangle : inputs.surface.triangles) {
+    for (const int v : triangle) is_corner[static_cast<std::size_t>(v)] = 1;
+  }
   for (const int vertex : inputs.reachable) {
+    if (is_corner[static_cast<std::size_t>(vertex)] == 0) continue;
     const int part = part_of(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
     if (part < 0) continue;
     auto& of_part = all_[static_cast<std::size_t>(part)].surface;
@@ -297,6 +303,19 @@ void CondensedRest::condense(const ModelInputs& inputs, const LinearStatics& sta
     for (std::size_t j = 0; j < at.size(); ++j)
       part.compliance.block<3, 3>(row, 3 * static_cast<Eigen::Index>(j)) = inverse.block<3, 3>(at[i], at[j]);
   }
+}
+
+void CondensedRest::keep_shapes(const LinearStatics& statics, const Eigen::MatrixXd& shapes, int part) {
+  Part& of_part = all_[static_cast<std::size_t>(part)];
+  for (int v = 0; v < static_cast<int>(part_of_.size()); ++v) {
+    if (part_of(v) == part) of_part.inner.push_back(v);
+  }
+  of_part.all_shapes = rows_of(shapes, statics, of_part.inner).transpose();
+  const Eigen::VectorXd masses = statics.masses();
+  of_part.masses.resize(of_part.all_shapes.cols());
+  for (std::size_t i = 0; i < of_part.inner.size(); ++i)
+    of_part.masses.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+        masses.segment<3>(statics.dofs.first[static_cast<std::size_t>(of_part.inner[i])]);
 }
 
 /// What modes do by themselves is no answer at once.

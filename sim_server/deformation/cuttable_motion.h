@@ -1,9 +1,10 @@
 #pragma once
 #include <optional>
 
-#include "sim_server/deformation/explicit_motion.h"
+#include "sim_server/deformation/cuttable_body.h"
 #include "sim_server/deformation/lumped_compliance.h"
 #include "sim_server/deformation/mass_scaling.h"
+#include "sim_server/deformation/region_growth.h"
 
 namespace palpate::sim {
 
@@ -24,9 +25,9 @@ class CuttableMotion : public DeformationModel {
  public:
   /// All of the body in motion. Throws `Error` where nothing holds it, or the scene names no rate.
   explicit CuttableMotion(const ModelInputs& inputs);
-  /// `moves`: of each mesh vertex, not 0 where it is in motion; the rest is condensed, and swings in so many
-  /// modes at most. Throws `Error` as `CondensedRest`, too.
-  CuttableMotion(const ModelInputs& inputs, const std::vector<char>& moves, int rest_modes);
+  /// A region of it in motion; the rest is condensed. Grows where the scene has [cutting.growth]. Throws
+  /// `Error` as `CondensedRest`, too.
+  CuttableMotion(const ModelInputs& inputs, const RegionInMotion& region);
 
   int instants() const noexcept override { return instants_; }
   bool force_leads() const noexcept override { return true; }
@@ -40,13 +41,16 @@ class CuttableMotion : public DeformationModel {
   /// Empty where some of the body is condensed.
   std::span<const Vec3> nodes() const noexcept override;
   Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
+  Growth grow(const CutMesh& left) override;
   std::vector<MemoryPart> memory() const override;
 
   double sub_step() const { return sub_step_; }  ///< s
 
  private:
-  CuttableMotion(const ModelInputs& inputs, const std::vector<char>* moves, int rest_modes);
-  void choose_sub_step(const ModelInputs& inputs);
+  CuttableMotion(const ModelInputs& inputs, const RegionInMotion* region);
+  void choose_sub_step(const ModelInputs& inputs, double modes);
+  void look_at_body();
+  void end_contact() noexcept;
   void end_sub_step() noexcept;
   void take_sub_step() noexcept;
   void follow() noexcept;
@@ -54,8 +58,8 @@ class CuttableMotion : public DeformationModel {
   void carry_rest() noexcept;
   /// What a load on a vertex in motion changes its velocity by over a sub-step, m/s.
   Vec3 kick_of(const NodalLoad& load) const {
-    const int place = first_[static_cast<std::size_t>(load.vertex)] / 3;
-    return sub_step_ / tensors_.masses()[static_cast<std::size_t>(place)] * load.force;
+    const int place = body_->first[static_cast<std::size_t>(load.vertex)] / 3;
+    return sub_step_ / body_->tensors.masses()[static_cast<std::size_t>(place)] * load.force;
   }
   const Vec3& rest_place(int vertex) const {
     return rest_places_[static_cast<std::size_t>(node_[static_cast<std::size_t>(vertex)])];
@@ -64,10 +68,11 @@ class CuttableMotion : public DeformationModel {
   Removed lost_with(int tetrahedron, const CutMesh& left) const;
 
   Material material_;
+  double held_stiffness_;  // N/m
   MassScaling scaling_;
-  ElasticTensors tensors_;
-  std::optional<CondensedRest> rest_;
-  ExplicitMotion motion_;           // free of the loads of this sub-step
+  std::unique_ptr<CuttableBody> body_;  // its motion free of the loads of this sub-step
+  std::optional<RegionGrowth> growth_;
+  std::vector<int> allowed_;        // of `grow`
   std::vector<double> force_;       // of the rest on the border, N
   int instants_ = 1, instant_ = 0;  // of a step; how many of this one are done
   double sub_step_ = 0;             // s
@@ -75,7 +80,7 @@ class CuttableMotion : public DeformationModel {
   bool ended_ = false;                  // the sub-step in hand has its end, as tissue was removed
   std::vector<Vec3> kept_;              // of `carry_rest`: where loaded vertices are without their loads, m
   std::vector<NodalLoad> loads_;        // over it
-  std::vector<int> first_;              // per surface vertex: its first number in `motion_`, or -1
+  std::vector<int> moving_, held_;      // surface vertices: in motion; loaded, and not in motion
   std::vector<int> node_;               // per surface vertex: its mesh vertex
   std::vector<Vec3> free_, positions_;  // of surface vertices, m
   std::vector<Vec3> rest_places_;       // of mesh vertices, m

@@ -133,6 +133,16 @@ class DeformationModel {
     return {};
   }
 
+  /// How what can be removed grows.
+  struct Growth {
+    bool begun = false;            ///< from now on the background is at it
+    std::span<const int> allowed;  ///< it has ended: these tetrahedra can be removed from now on
+    std::string failure;           ///< it has ended, and all stays as it is: why
+  };
+  /// Between two steps, before anything of the next is removed: what of this can be said now. Allocates where
+  /// it says anything, and may wait for the background.
+  virtual Growth grow([[maybe_unused]] const CutMesh& left) { return {}; }
+
   /// What this model holds in memory.
   virtual std::vector<MemoryPart> memory() const = 0;
 };

@@ -22,8 +22,10 @@ class LumpedCompliance final : public ComplianceSource {
   void fill(int node, ContactPatch& patch) const noexcept override;
   /// As `DeformationModel::compliance`.
   void fill(std::span<const int> vertices, ContactPatch& patch) const noexcept;
-  /// Moves `positions` (surface vertices, m) by what `loads` do; `all` as in `CondensedRest::press`.
-  void move(std::span<const NodalLoad> loads, bool all, std::span<Vec3> positions) const noexcept;
+  /// Moves `positions` (surface vertices, m), those of loads at `free`, by what `loads` do; `all` as in
+  /// `CondensedRest::press`.
+  void move(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
+            std::span<Vec3> positions) const noexcept;
 
  private:
   Mat3 block(int vertex, int other) const noexcept;

@@ -18,10 +18,12 @@ Triangle ascending(Triangle t) {
 }
 
 /// The vertices of a surface with those of what may be removed, ascending.
-std::vector<int> all_vertices(const Surface& surface, const TetMesh& mesh, std::span<const char> removable) {
+std::vector<int> all_vertices(const Surface& surface, const TetMesh& mesh,
+                              std::span<const Removable> removable) {
   std::vector<int> all = surface.vertices;
   for (std::size_t t = 0; t < removable.size(); ++t) {
-    if (removable[t] != 0) all.insert(all.end(), mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
+    if (removable[t] != Removable::kNever)
+      all.insert(all.end(), mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
   }
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -30,7 +32,7 @@ std::vector<int> all_vertices(const Surface& surface, const TetMesh& mesh, std::
 
 }  // namespace
 
-CutMesh::CutMesh(const TetMesh& mesh, std::vector<char> removable, Surface& surface)
+CutMesh::CutMesh(const TetMesh& mesh, std::vector<Removable> removable, Surface& surface)
     : mesh_(mesh),
       neighbours_(face_neighbours(mesh)),
       left_(mesh.tetrahedra.size(), 1),
@@ -71,6 +73,10 @@ CutMesh::CutMesh(const TetMesh& mesh, std::vector<char> removable, Surface& surf
       ++uses_[static_cast<std::size_t>(triangle[i])];
     }
   }
+}
+
+void CutMesh::allow(std::span<const int> tetrahedra) {
+  for (const int t : tetrahedra) removable_[static_cast<std::size_t>(t)] = Removable::kNow;
 }
 
 std::span<const int> CutMesh::around(int vertex) const {

@@ -10,6 +10,13 @@
 
 namespace palpate::sim {
 
+/// Whether a tetrahedron may be removed.
+enum class Removable : char {
+  kNever,
+  kLater,  ///< once it was allowed
+  kNow,
+};
+
 /// What is left of a mesh while tetrahedra are removed, and its surface. A removal looks at the tetrahedron
 /// and at the four across its faces: O(1), whatever the size of the mesh. Faces between two that are left
 /// become surface when one of them goes, outward from the other; those on the surface go with their
@@ -18,14 +25,17 @@ namespace palpate::sim {
 /// is joined by a hinge or a ball joint, as in the mesh that is left. One thread.
 class CutMesh {
  public:
-  /// Gives `surface`, the boundary of `mesh`, the vertices of the tetrahedra that may be removed, in whose
-  /// numbers its triangles are from then on. `removable`: of each tetrahedron, not 0 where it may be. The
-  /// mesh outlives this. O(m log m).
-  CutMesh(const TetMesh& mesh, std::vector<char> removable, Surface& surface);
+  /// Gives `surface`, the boundary of `mesh`, the vertices of the tetrahedra that may ever be removed, in
+  /// whose numbers its triangles are from then on. `removable`: of each tetrahedron. The mesh outlives this.
+  /// O(m log m).
+  CutMesh(const TetMesh& mesh, std::vector<Removable> removable, Surface& surface);
 
   const TetMesh& mesh() const { return mesh_; }
   bool is_left(int tetrahedron) const { return left_[static_cast<std::size_t>(tetrahedron)] != 0; }
-  bool is_removable(int tetrahedron) const { return removable_[static_cast<std::size_t>(tetrahedron)] != 0; }
+  Removable removable(int tetrahedron) const { return removable_[static_cast<std::size_t>(tetrahedron)]; }
+  bool is_removable(int tetrahedron) const { return removable(tetrahedron) == Removable::kNow; }
+  /// From now on these may be removed, of which that was said for later.
+  void allow(std::span<const int> tetrahedra);
   std::size_t count() const { return count_; }  ///< of what is left
   /// All tetrahedra around a mesh vertex, left or not, ascending.
   std::span<const int> around(int vertex) const;
@@ -51,8 +61,9 @@ class CutMesh {
 
   const TetMesh& mesh_;
   std::vector<std::array<int, 4>> neighbours_;  // of each tetrahedron, at first
-  std::vector<char> left_, removable_;          // of tetrahedra
-  std::vector<char> inner_;                     // of faces, 4 t + k: inside at first
+  std::vector<char> left_;                      // of tetrahedra
+  std::vector<Removable> removable_;
+  std::vector<char> inner_;  // of faces, 4 t + k: inside at first
   std::size_t count_;
   double cut_area_ = 0;                     // m^2
   std::vector<int> around_, around_first_;  // of mesh vertices

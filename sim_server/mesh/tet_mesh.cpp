@@ -102,6 +102,12 @@ void sort_tags(TetMesh& mesh) {
   std::erase_if(mesh.tagged_triangles, [](const auto& tag) { return tag.second.empty(); });
 }
 
+Vec3 centre_of(const TetMesh& mesh, const Tetrahedron& t) {
+  Vec3 centre = Vec3::Zero();
+  for (const int v : t) centre += mesh.vertices[static_cast<std::size_t>(v)] / 4;
+  return centre;
+}
+
 double six_volumes(const TetMesh& mesh, const Tetrahedron& t) {
   const std::vector<Vec3>& x = mesh.vertices;
   return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).dot(x[t[3]] - x[t[0]]);

@@ -46,6 +46,9 @@ void sort_tags(TetMesh& mesh);
 /// Six times the signed volume of tetrahedron `t`, m^3.
 double six_volumes(const TetMesh& mesh, const Tetrahedron& t);
 
+/// The mean of the corners of tetrahedron `t`, m.
+Vec3 centre_of(const TetMesh& mesh, const Tetrahedron& t);
+
 /// The smallest of the six dihedral angles of `t`, radians; of one that is flat 0.
 double smallest_dihedral(const TetMesh& mesh, const Tetrahedron& t);
 

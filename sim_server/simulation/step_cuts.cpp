@@ -49,6 +49,7 @@ std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs
 
 /// Before the tissue goes on.
 void Simulation::cut(std::span<const ToolInput> inputs, double dt) {
+  cut_->resection.grow(tissue_.model->grow(cut_->resection.left()));
   const std::span<const int> removed = remove_tissue(inputs, dt);
   if (removed.empty()) return;
   for (const int tetrahedron : cut_->resection.asked_for()) cut_->removed.push_back({time_, tetrahedron});

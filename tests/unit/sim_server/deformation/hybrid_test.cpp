@@ -1,6 +1,8 @@
 #include "sim_server/deformation/hybrid.h"
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <numeric>
 
 #include "sim_server/deformation/contact_instants.h"
@@ -226,6 +228,112 @@ TEST_CASE("hybrid: a piece that is cut off goes with what of it is condensed") {
     for (const int v : triangle) CHECK(hybrid.rest()[static_cast<std::size_t>(v)].x() < 1e-2);
   }
 }
+
+namespace {
+
+/// A block whose cut may leave the 6 mm around its middle plane, half a second after it came near.
+Scene growing_scene(double after = 0.5) {
+  Scene scene = hybrid_scene();
+  scene.deformation.of<ContactInstants>().instants = 400;
+  scene.cutting->growth = CutGrowth{.reach = 0.01, .after = after, .where = "test"};
+  return scene;
+}
+
+std::size_t gone_beyond(const Simulation& simulation, double x) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < simulation.mesh().tetrahedra.size(); ++t)
+    count += !simulation.resection()->left().is_left(static_cast<int>(t)) &&
+             centre_of(simulation.mesh(), simulation.mesh().tetrahedra[t]).x() > x;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "hybrid: as what can be cut grows, no force of a tool at rest changes, and it is right after that") {
+  for (const double x : {-0.011, 0.012, 0.022}) {  // will stay condensed, is among what joins, stays
+    CAPTURE(x);
+    Simulation hybrid(growing_scene(12), block());
+    const ResectionTotals& totals = hybrid.resection()->totals();
+    int begun = 0;
+    for (int i = 0; i < 45; ++i) {
+      press(hybrid, Vec3(0.003, 0.001, 0.0005), true);
+      if (begun == 0 && hybrid.resection()->growth().begun) begun = i;
+    }
+    REQUIRE(totals.tetrahedra > 5);
+    REQUIRE(begun > 0);
+    REQUIRE(gone_beyond(hybrid, 0.006) == 0);
+    const Vec3 place(x, -0.001, 0.0005);
+    pressed_slowly(hybrid, place);
+    Vec3 before = Vec3::Zero(), after = before;
+    for (int i = 45 + 23; i < begun + 360; ++i) before = press(hybrid, place).force;
+    REQUIRE(hybrid.resection()->growth().times == 0);
+    double largest = 0;
+    for (int i = 0; i < 20; ++i) {
+      after = press(hybrid, place).force;
+      largest = std::max(largest, (after - before).norm());
+    }
+    CHECK(hybrid.resection()->growth().times == 1);
+    CHECK(hybrid.resection()->growth().tetrahedra > 50);
+    REQUIRE(before.norm() > 0.1);
+    CHECK(largest < 1e-5 * before.norm());
+    Simulation whole(static_scene(), what_is_left(hybrid));
+    const Vec3 right = pressed_slowly(whole, place).force;
+    CHECK((before - right).norm() < 1e-5 * right.norm());
+    CHECK((after - right).norm() < 1e-5 * right.norm());
+  }
+}
+
+TEST_CASE(
+    "hybrid: what can be cut grows until all of it can, and the tool goes on cutting; each time the same") {
+  const auto cut_across = [] {
+    Scene scene = growing_scene();
+    scene.cutting->growth->reach = 0.03;
+    auto simulation = std::make_unique<Simulation>(scene, block());
+    for (int i = 0; i < 240; ++i)
+      press(*simulation, Vec3(std::min(0.02, 0.0002 * i), 0.001 - 1e-5 * i, 0.0005), true);
+    return simulation;
+  };
+  const auto first = cut_across(), second = cut_across();
+  CHECK(first->resection()->growth().times >= 1);
+  CHECK(first->resection()->growth().failures == 0);
+  CHECK(gone_beyond(*first, 0.012) > 5);
+  CHECK(first->flagged().to_text().empty());
+  CHECK(first->failures().other == 0);
+  CHECK(first->state_hash() == second->state_hash());
+}
+
+#ifdef PALPATE_WITH_SPECTRA
+TEST_CASE("hybrid: in motion, nothing is felt of the step in which what can be cut grows") {
+  // Against one that could be cut there from the beginning, along the same motion.
+  Scene scene = growing_scene(2), large = scene;
+  scene.deformation.of<RayleighDamping>() =
+      large.deformation.of<RayleighDamping>() = {.mass = 5, .stiffness = 2e-5};
+  large.cutting->plan->within = 0.017;
+  large.cutting->growth.reset();
+  Simulation growing(scene, block()), from_the_start(large, block());
+  double before = 0, at = 0, most = 0;
+  int grown = -1;
+  for (int i = 0; i < 150; ++i) {
+    const bool hot = i < 30;
+    const double t = i * kStep;
+    const Vec3 p = hot ? Vec3(0.004, 0.0015, 0.0005)
+                       : Vec3(0.014, 5e-4 - 1.5e-3 * std::sin(2 * 3.14159 * 2.3 * t), 0.0005);
+    const Vec3 felt = press(growing, p, hot).force, right = press(from_the_start, p, hot).force;
+    if (grown < 0 && growing.resection()->growth().times > 0) grown = i;
+    if (hot) continue;
+    most = std::max(most, right.norm());
+    const double away = (felt - right).norm();
+    if (grown < 0) before = std::max(before, away);
+    if (grown >= 0 && i < grown + 10) at = std::max(at, away);
+  }
+  REQUIRE(grown > 40);
+  REQUIRE(most > 0.1);
+  INFO(before << " " << at << " of " << most);
+  CHECK(at < 1.2 * before);
+  CHECK(at < 0.05 * most);
+}
+#endif
 
 TEST_CASE("hybrid: it says what it lacks") {
   Scene scene = hybrid_scene();

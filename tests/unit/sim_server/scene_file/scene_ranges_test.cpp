@@ -123,7 +123,8 @@ TEST_CASE("[cutting]: values out of range, and a scene in which nothing could be
   const std::string power = cuts + "power = 0", energy = cuts + "energy = 1", spot = cuts + "spot = 0",
                     piece = cuts + "smallest_piece = -1", wrong_key = cuts + "watts = 5",
                     normal = plan + "normal = [0, 0, 0]", within = plan + "normal = [1, 0, 0]\nwithin = 0",
-                    alone = cuts.substr(0, cuts.size() - 1);
+                    growth = cuts + "[cutting.growth]", reach = growth + "\nreach = 0",
+                    after = growth + "\nafter = 0", alone = cuts.substr(0, cuts.size() - 1);
   for (const Wrong& wrong : {
            Wrong{"[[tool]]", "cut_buttons = 0", "cut_buttons", "between 1 and 65535"},
            Wrong{"[[tool]]", "cut_buttons = 1", "cut_buttons", "no [cutting] that says how"},
@@ -137,6 +138,9 @@ TEST_CASE("[cutting]: values out of range, and a scene in which nothing could be
            Wrong{"[[tool]]", wrong_key.c_str(), "watts", "power"},
            Wrong{"[[tool]]", normal.c_str(), "normal", "a length above 0"},
            Wrong{"[[tool]]", within.c_str(), "within", "(m)"},
+           Wrong{"[[tool]]", reach.c_str(), "reach", "between 0.0001 and 1 (m)", "hybrid"},
+           Wrong{"[[tool]]", after.c_str(), "after", "between 0.1 and 3600 (s)", "hybrid"},
+           Wrong{"[[tool]]", growth.c_str(), "moves all of the body", "remove this", "tensor_mass"},
        })
     check_refused(wrong);
 }

@@ -1,0 +1,68 @@
+#include "sim_server/deformation/cuttable_body.h"
+
+#include <algorithm>
+
+namespace palpate::sim {
+namespace {
+
+/// Vertices that are fixed or not in motion, ascending.
+std::vector<int> standing(const ModelInputs& inputs, const std::vector<char>* moves) {
+  std::vector<int> still = inputs.fixed;
+  for (std::size_t v = 0; moves != nullptr && v < moves->size(); ++v) {
+    if ((*moves)[v] == 0) still.push_back(static_cast<int>(v));
+  }
+  std::sort(still.begin(), still.end());
+  still.erase(std::unique(still.begin(), still.end()), still.end());
+  return still;
+}
+
+}  // namespace
+
+CuttableBody::CuttableBody(const ModelInputs& inputs, const std::vector<double>& mass_factors,
+                           const std::vector<char>* moves, const CondensedRest::Modes& modes)
+    : tensors(inputs.mesh, *inputs.scene.material, standing(inputs, moves), mass_factors),
+      motion(tensors, inputs.scene.deformation.of<RayleighDamping>()) {
+  if (moves != nullptr) {
+    rest.emplace(inputs, tensors.places(), modes);
+    for (const auto& [number, kg] : rest->border_masses()) tensors.add_mass(number / 3, kg);
+  }
+  for (const int vertex : inputs.surface.vertices) {
+    const int place = tensors.places()[static_cast<std::size_t>(vertex)];
+    first.push_back(place < 0 ? -1 : 3 * place);
+  }
+}
+
+DeformationModel::Removed CuttableBody::remove(std::span<const int> tetrahedra, const CutMesh& left,
+                                               const Material& material) {
+  DeformationModel::Removed gone;
+  tensors.remove(tetrahedra, left, material);
+  const auto is_left = [&](int other) { return left.is_left(other); };
+  for (const int t : tetrahedra) {
+    for (const int v : left.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
+      if (rest && rest->part_of(v) >= 0) {
+        const DeformationModel::Removed part = rest->remove(rest->part_of(v));
+        gone.elastic += part.elastic;
+        gone.kinetic += part.kinetic;
+      }
+      const int place = tensors.places()[static_cast<std::size_t>(v)];
+      if (place >= 0 && std::ranges::none_of(left.around(v), is_left))  // else it would drift for ever
+        Eigen::Map<Vec3>(motion.state.v.data() + 3 * place).setZero();
+    }
+  }
+  return gone;
+}
+
+void CuttableBody::static_force(const std::vector<double>& x, std::span<const NodalLoad> loads,
+                                std::vector<double>& force) noexcept {
+  tensors.multiply(x.data(), force.data());
+  for (double& newton : force) newton = -newton;
+  if (rest) rest->stand_still(x, loads);
+  if (rest) rest->follow(force);
+  for (const NodalLoad& load : loads) {
+    const int number = first[static_cast<std::size_t>(load.vertex)];
+    if (number >= 0) Eigen::Map<Vec3>(force.data() + number) += load.force;
+    if (rest && rest->has(load.vertex)) rest->hand_down(load, force);
+  }
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,82 @@
+#include "sim_server/deformation/hand_over.h"
+
+#include "common/error.h"
+
+namespace palpate::sim {
+
+HandOver::HandOver(CuttableBody& after, const CuttableBody& before)
+    : after_(after), force_(after.motion.state.u.size()) {
+  const std::vector<int>&now = after.tensors.places(), &was = before.tensors.places();
+  for (std::size_t v = 0; v < now.size(); ++v) {
+    if (now[v] < 0) continue;
+    if (was[v] >= 0)
+      shared_.push_back({3 * was[v], 3 * now[v]});
+    else
+      joining_.push_back({static_cast<int>(v), 3 * now[v]});
+  }
+  const auto size = static_cast<Eigen::Index>(3 * joining_.size());
+  Eigen::MatrixXd stiffness(size, size);
+  std::vector<double> x(force_.size(), 0);
+  for (Eigen::Index k = 0; k < size; ++k) {
+    double& moved = x[static_cast<std::size_t>(joining_[static_cast<std::size_t>(k / 3)].number + k % 3)];
+    moved = 1;
+    after.static_force(x, {}, force_);
+    moved = 0;
+    for (std::size_t i = 0; i < joining_.size(); ++i)
+      stiffness.block<3, 1>(3 * static_cast<Eigen::Index>(i), k) =
+          -Eigen::Map<const Vec3>(force_.data() + joining_[i].number);
+  }
+  stiffness_.compute(stiffness);
+  if (size > 0 && stiffness_.info() != Eigen::Success) fail("what would join is held by nothing");
+}
+
+std::vector<double> HandOver::shared(const std::vector<double>& of_before) const {
+  std::vector<double> x(after_.motion.state.u.size(), 0);
+  for (const auto& [before, after] : shared_)
+    Eigen::Map<Vec3>(x.data() + after) = Eigen::Map<const Vec3>(of_before.data() + before);
+  return x;
+}
+
+/// Vertices that join go to where these loads balance, and so do the modes of the rest.
+void HandOver::balance(std::vector<double>& x, std::span<const NodalLoad> loads) {
+  after_.static_force(x, loads, force_);
+  Eigen::VectorXd moved(static_cast<Eigen::Index>(3 * joining_.size()));
+  for (std::size_t i = 0; i < joining_.size(); ++i)
+    moved.segment<3>(3 * static_cast<Eigen::Index>(i)) =
+        Eigen::Map<const Vec3>(force_.data() + joining_[i].number);
+  if (moved.size() > 0) stiffness_.solveInPlace(moved);
+  for (std::size_t i = 0; i < joining_.size(); ++i)
+    Eigen::Map<Vec3>(x.data() + joining_[i].number) = moved.segment<3>(3 * static_cast<Eigen::Index>(i));
+  after_.static_force(x, loads, force_);
+}
+
+void HandOver::operator()(CuttableBody& before, std::span<const NodalLoad> loads) {
+  CondensedRest::Swing swing = before.rest->swing(), balanced, still;
+  std::vector<double> v = shared(before.motion.state.v), u = shared(before.motion.state.u);
+  balance(v, {});
+  balanced.v = after_.rest->swing().p;
+  before.rest->stand_still(before.motion.state.v, {});
+  still.v = before.rest->swing().p;
+  balance(u, loads);
+  balanced.p = after_.rest->swing().p;
+  before.rest->stand_still(before.motion.state.u, loads);
+  still.p = before.rest->swing().p;
+  for (std::size_t part = 0; part < swing.p.size(); ++part) {  // what is besides
+    swing.p[part] -= still.p[part];
+    swing.v[part] -= still.v[part];
+  }
+  for (const auto& [vertex, number] : joining_) {
+    Eigen::Map<Vec3>(u.data() + number) += before.rest->shape_at(vertex, swing.p);
+    Eigen::Map<Vec3>(v.data() + number) += before.rest->shape_at(vertex, swing.v);
+  }
+  const CondensedRest::Swing besides = after_.rest->swing_after(*before.rest, swing);
+  for (std::size_t part = 0; part < besides.p.size(); ++part) {
+    balanced.p[part] += besides.p[part];
+    balanced.v[part] += besides.v[part];
+  }
+  after_.rest->set_swing(balanced);
+  after_.motion.state.u = std::move(u);
+  after_.motion.state.v = std::move(v);
+}
+
+}  // namespace palpate::sim
