@@ -88,19 +88,42 @@ void ToolTissue::press() {
     mine.positions_here[v] = tissue_.positions[v] - mine.left * mine.shift[v];
 }
 
+void Tissue::set_free(const FreeMotion& motion) noexcept {
+  free = motion.positions;
+  velocities = motion.velocities;
+  carried = motion.carried;
+  if (!motion.loaded.empty()) positions = motion.loaded;
+  moved_ = motion.moved;
+  ++motions_;
+}
+
+/// What may have moved since a tool's contact was last solved; empty: any may have.
+std::span<const int> Tissue::moved_since(const ToolLoads& tool) const noexcept {
+  const bool of_one_motion = tool.solved_in + 1 >= motions_ && tool.carried.isZero(0);
+  return of_one_motion ? moved_ : std::span<const int>();
+}
+
+void Tissue::note_shift(ToolLoads& tool, std::span<const Vec3> positions, std::size_t vertex) noexcept {
+  tool.shift[vertex] = positions[vertex] - tool.solved[vertex] - tool.carried;
+}
+
 double ToolTissue::surface_motion(const Vec3& p, const Vec3& q, double reach) {
   auto& mine = tissue_.tools_[tool_];
   const Vec3 axis = q - p;
   const double length2 = axis.squaredNorm();
   double most = 0;
-  for (std::size_t v = 0; v < mine.shift.size(); ++v) {
-    const Vec3 from = mine.solved[v] + mine.carried;
-    mine.shift[v] = tissue_.positions[v] - from;
+  const auto look_at = [&](std::size_t v) {
+    Tissue::note_shift(mine, tissue_.positions, v);
     const double went = mine.shift[v].norm();
-    if (went <= most) continue;
+    if (went <= most) return;
+    const Vec3 from = tissue_.positions[v] - mine.shift[v];
     const double along = length2 > 0 ? std::clamp((from - p).dot(axis) / length2, 0.0, 1.0) : 0;
     if ((from - p - along * axis).norm() - went < reach) most = went;
-  }
+  };
+  const std::span<const int> moved = tissue_.moved_since(mine);
+  mine.shift_of_moved = !moved.empty();
+  for (const int v : moved) look_at(static_cast<std::size_t>(v));
+  for (std::size_t v = 0; moved.empty() && v < mine.shift.size(); ++v) look_at(v);
   return most;
 }
 
@@ -108,6 +131,9 @@ void ToolTissue::set_share_left(double left) {
   auto& mine = tissue_.tools_[tool_];
   mine.left = left;
   if (left == 0) return;
+  for (std::size_t v = 0; mine.shift_of_moved && v < mine.shift.size(); ++v)
+    Tissue::note_shift(mine, tissue_.positions, v);
+  mine.shift_of_moved = false;
   for (std::size_t v = 0; v < mine.shift.size(); ++v) {
     mine.positions_here[v] = tissue_.positions[v] - left * mine.shift[v];
     mine.free_here[v] = mine.free[v] - left * mine.shift[v];
@@ -116,9 +142,13 @@ void ToolTissue::set_share_left(double left) {
 
 void ToolTissue::mark_solved() noexcept {
   auto& mine = tissue_.tools_[tool_];
+  const std::span<const int> moved = tissue_.moved_since(mine);
+  for (const int v : moved)
+    mine.solved[static_cast<std::size_t>(v)] = tissue_.positions[static_cast<std::size_t>(v)];
+  if (moved.empty()) std::copy(tissue_.positions.begin(), tissue_.positions.end(), mine.solved.begin());
   mine.left = 0;
   mine.carried.setZero();
-  std::copy(tissue_.positions.begin(), tissue_.positions.end(), mine.solved.begin());
+  mine.solved_in = tissue_.motions_;
 }
 
 void ToolTissue::set_loads(std::span<const NodalLoad> loads) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -20,6 +21,9 @@ class Tissue {
   std::span<const Vec3> carried;     ///< as its supports alone have moved it; empty: they rest
   std::span<const Vec3> positions;   ///< now, under the loads of all tools
   std::vector<Vec3> before;          ///< at the end of the last step; empty where no tool has friction
+
+  /// It has gone on, or its linearisation has.
+  void set_free(const FreeMotion& motion) noexcept;
 
   /// Set-up: makes room for tools that load so many vertices each, and for which a surface that moved less
   /// than `still` (m) has not moved; the surface at rest is `free`.
@@ -50,12 +54,18 @@ class Tissue {
     Vec3 carried = Vec3::Zero();   // how far it and the organ have gone since, m
     std::vector<Vec3> shift;       // how far the surface has gone since then besides, m
     double left = 0;               // the share of `shift` that is still to come
+    bool shift_of_moved = false;   // it is told of what `moved_` says alone
+    std::uint64_t solved_in = 0;   // the motion in which that was
     std::vector<Vec3> positions_here, free_here;  // of the surface, at that
     std::span<const NodalLoad> own() const { return std::span(loads).subspan(others); }
   };
   bool meet(std::size_t tool);
+  std::span<const int> moved_since(const ToolLoads& tool) const noexcept;
+  static void note_shift(ToolLoads& tool, std::span<const Vec3> positions, std::size_t vertex) noexcept;
 
   std::vector<ToolLoads> tools_;
+  std::span<const int> moved_;  // by the last motion; empty: any may have
+  std::uint64_t motions_ = 1;   // so far
 };
 
 /// The tissue as one tool meets it: free of that tool, under the loads that the others put on it when this

@@ -79,6 +79,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
 /// It is another one than before.
 void CuttableMotion::look_at_body() {
   force_.assign(body_->motion.state.f.size(), 0);
+  moved_.reserve(2 * node_.size() + loads_.capacity());
   moving_.clear();
   for (std::size_t v = 0; v < node_.size(); ++v) {
     if (body_->first[v] >= 0) moving_.push_back(static_cast<int>(v));
@@ -104,9 +105,11 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
     update_free();
     if (body_->rest) carry_rest();
     instant_ = (instant_ + 1) % instants_;
+    note_moved();
     press();
   }
-  return {.positions = free_, .loaded = positions_};
+  const bool any_moved = instant_ == 0;  // where a step ends
+  return {.positions = free_, .loaded = positions_, .moved = any_moved ? std::span<const int>() : moved_};
 }
 
 /// What the rest does on the border where both are by now.
@@ -158,6 +161,13 @@ void CuttableMotion::take_sub_step() noexcept {
   }
   if (body_->rest) body_->rest->advance(sub_step_, loads_);
   body_->motion.run(sub_step_);
+}
+
+/// What is in motion, what contact looks at of the rest, and what it lets go of what is held.
+void CuttableMotion::note_moved() noexcept {
+  moved_.assign(moving_.begin(), moving_.end());
+  moved_.insert(moved_.end(), held_.begin(), held_.end());
+  if (body_->rest) moved_.insert(moved_.end(), body_->rest->watched().begin(), body_->rest->watched().end());
 }
 
 /// Where what is in motion goes free of loads.

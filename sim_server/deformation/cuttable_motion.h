@@ -54,6 +54,7 @@ class CuttableMotion : public DeformationModel {
   void end_sub_step() noexcept;
   void take_sub_step() noexcept;
   void follow() noexcept;
+  void note_moved() noexcept;
   void update_free() noexcept;
   void carry_rest() noexcept;
   /// What a load on a vertex in motion changes its velocity by over a sub-step, m/s.
@@ -81,6 +82,7 @@ class CuttableMotion : public DeformationModel {
   std::vector<Vec3> kept_;              // of `carry_rest`: where loaded vertices are without their loads, m
   std::vector<NodalLoad> loads_;        // over it
   std::vector<int> moving_, held_;      // surface vertices: in motion; loaded, and not in motion
+  std::vector<int> moved_;              // in this sub-step
   std::vector<int> node_;               // per surface vertex: its mesh vertex
   std::vector<Vec3> free_, positions_;  // of surface vertices, m
   std::vector<Vec3> rest_places_;       // of mesh vertices, m

@@ -267,7 +267,7 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
 void Simulation::solve_contacts() {
   settle();
   while (const auto motion = tissue_.model->relinearise()) {
-    set_free(*motion);
+    tissue_.set_free(*motion);
     if (std::ranges::any_of(tools_, &ToolContact::exhausted)) return flag_contacts();
     for (std::size_t i = 0; i < tools_.size(); ++i) {
       if (tools_[i].placed()) tools_[i].settle(tissue_.met_by(i));
@@ -304,7 +304,7 @@ void Simulation::move_organ(double dt) {
         0.5 * dt *
         tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.velocities, tissue_.loads_of(i));
   carry_before(tissue_, 0.5 * dt);
-  set_free(tissue_.model->free_motion(dt));
+  tissue_.set_free(tissue_.model->free_motion(dt));
   carry_before(tissue_, 0.5 * dt);
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
     surface_motion_[i] +=
@@ -315,13 +315,6 @@ void Simulation::move_organ(double dt) {
     tissue_.carry(i, surface_motion_[i]);
     tissue_.press(i);
   }
-}
-
-void Simulation::set_free(const FreeMotion& motion) {
-  tissue_.free = motion.positions;
-  tissue_.velocities = motion.velocities;
-  tissue_.carried = motion.carried;
-  if (!motion.loaded.empty()) tissue_.positions = motion.loaded;
 }
 
 ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {

@@ -189,7 +189,6 @@ class Simulation {
   void count_flagged() noexcept;
   void hold_answers(std::span<const ToolInput> inputs) noexcept;
   void move_organ(double dt);
-  void set_free(const FreeMotion& motion);
   void settle();
   void flag_contacts() noexcept;
   void solve_contacts();
