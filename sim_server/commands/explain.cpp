@@ -85,11 +85,13 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
     return fmt::format("{} vertices, {} triangles", surface.vertices.size(), surface.triangles.size());
   if (part == "resection") {
     const CutMesh& left = simulation.resection()->left();
-    std::size_t removable = 0;
+    std::array<std::size_t, 3> count{};
     for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t)
-      removable += left.is_removable(t) ? 1 : 0;
-    return fmt::format("{} of {} tetrahedra can be removed; their vertices count to the surface", removable,
-                       mesh.tetrahedra.size());
+      ++count[static_cast<std::size_t>(left.removable(t))];
+    const auto [never, later, now] = count;
+    return fmt::format("{} of {} tetrahedra can be removed{}; their vertices count to the surface", now,
+                       mesh.tetrahedra.size(),
+                       later > 0 ? fmt::format(", {} more as the cut comes near", later) : "");
   }
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
   if (part == "stiffness matrix" || part == "its factor")

@@ -101,6 +101,11 @@ Json resection_report(const Simulation& simulation) {
           {"elastic_J", all.elastic},
           {"kinetic_J", all.kinetic},
           {"momentum_Ns", {all.momentum.x(), all.momentum.y(), all.momentum.z()}},
+          {"growth",
+           {{"times", resection->growth().times},
+            {"tetrahedra", resection->growth().tetrahedra},
+            {"failures", resection->growth().failures},
+            {"last_failure", resection->growth().last_failure}}},
           {"hot_s", all.hot_time},
           {"contact_s", all.contact_time}};
 }
@@ -109,13 +114,20 @@ std::string resection_text(const Simulation& simulation) {
   const Resection* const resection = simulation.resection();
   if (resection == nullptr) return {};
   const ResectionTotals& all = resection->totals();
+  const Resection::Growth& growth = resection->growth();
+  std::string grown;
+  if (growth.times > 0)
+    grown = fmt::format("; what can be cut grew {} times, by {} tetrahedra", growth.times, growth.tetrahedra);
+  if (growth.failures > 0)
+    grown += fmt::format("; it could not grow {} times, the last time for: {}", growth.failures,
+                         growth.last_failure);
   return fmt::format(
       "removed {} of {} tetrahedra, {:.2f} ml, {:.2f} ml of them {} loose pieces; cut {:.1f} cm2, {:.1f} mm "
       "from "
-      "the plan on average and {:.1f} mm at most; {} pieces lie loose; {:.0f} J of heat in {:.1f} s",
+      "the plan on average and {:.1f} mm at most; {} pieces lie loose; {:.0f} J of heat in {:.1f} s{}",
       all.tetrahedra, all.tetrahedra + resection->left().count(), 1e6 * all.volume, 1e6 * all.dropped_volume,
       all.dropped_pieces, 1e4 * all.cut_area, 1e3 * all.mean_distance(), 1e3 * all.farthest, all.loose_pieces,
-      all.heat, all.hot_time);
+      all.heat, all.hot_time, grown);
 }
 
 }  // namespace palpate::sim

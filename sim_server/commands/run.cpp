@@ -20,6 +20,7 @@
 #include "sim_server/commands/page_news.h"
 #include "sim_server/commands/pictures.h"
 #include "sim_server/commands/resection_log.h"
+#include "sim_server/commands/run_news.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/net_link.h"
@@ -178,34 +179,6 @@ void print_summary(const Json& report, const FlaggedSteps& flagged) {
   std::fflush(stdout);
 }
 
-/// Says that a page has paused, or let go on.
-void tell_paused(bool paused, bool& told) {
-  if (paused != told) log::info("{}", paused ? "paused by a page" : "goes on");
-  told = paused;
-}
-
-/// Says which tools were taken and left since the last look.
-void tell_holders(const NetLink& link, bool paused, std::vector<bool>& told) {
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    const bool held = link.tools[i].held;
-    if (held == told[i]) continue;
-    const std::string tool = told.size() == 1 ? "the tool" : fmt::format("tool {} of {}", i + 1, told.size());
-    log::info("{}", held ? fmt::format("a client took {}{}", tool, paused ? "; a page has paused" : "")
-                         : fmt::format("the client is gone; {} is free", tool));
-    told[i] = held;
-  }
-}
-
-/// Says, once for each tool, that it left what the scene says it stays in.
-void tell_beyond(const SimLoop& loop, const Scene& scene, std::vector<bool>& told) {
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    if (told[i] || !loop.went_beyond[i]) continue;
-    log::warning("{}: tool {} went beyond this, where nothing is built that it could feel; make it wider",
-                 scene.tools[i].reach_where, i + 1);
-    told[i] = true;
-  }
-}
-
 /// The scene that a page chose, if one did; the choice is taken back where its file is wrong.
 std::optional<Scene> chosen_scene(ViewerFeed& feed, const std::vector<GalleryScene>& gallery) {
   const int chosen = feed.chosen;
@@ -226,8 +199,7 @@ std::optional<Scene> watch(NetLink& link, const SimLoop& loop, const Scene& scen
                            const std::vector<GalleryScene>& gallery, std::optional<double> seconds) {
   protocol::RecordingWatcher recording(recorder);
   const Time start = now();
-  std::vector<bool> told(scene.tools.size(), false), told_beyond = told;
-  bool told_paused = false;
+  RunNews news(scene);
   while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
     if (seconds && to_seconds(now() - start) >= *seconds) return {};
     if (view != nullptr) {
@@ -235,10 +207,7 @@ std::optional<Scene> watch(NetLink& link, const SimLoop& loop, const Scene& scen
     }
     recording.look();
     link.watcher.look("");
-    const bool paused = view != nullptr && view->feed().paused;
-    tell_paused(paused, told_paused);
-    tell_holders(link, paused, told);
-    tell_beyond(loop, scene, told_beyond);
+    news.tell(link, loop, view != nullptr && view->feed().paused);
   }
   return {};
 }

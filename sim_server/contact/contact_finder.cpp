@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace palpate::sim {
 namespace {
@@ -29,6 +28,27 @@ bool reaches(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const V
   if (p != q) return segment_triangle_distance(p, q, a, b, c) <= reach;
   const auto w = closest_point(p, a, b, c).weight;
   return (p - w[0] * a - w[1] * b - w[2] * c).squaredNorm() <= reach * reach;
+}
+
+/// m. A ray from a place that somebody chose may meet edges and vertices of a mesh that was made as a grid;
+/// none so little beside it.
+const Vec3 kBesideEdges(0, 1.3e-12, 2.7e-12);
+
+/// 1 where the ray from `p` along x leaves through the triangle, -1 where it enters, else 0.
+int crossing(const Vec3& x0, const Vec3& x1, const Vec3& x2, const Vec3& p) noexcept {
+  const auto all_beyond = [&](int axis) {
+    return (x0[axis] > p[axis] && x1[axis] > p[axis] && x2[axis] > p[axis]) ||
+           (x0[axis] < p[axis] && x1[axis] < p[axis] && x2[axis] < p[axis]);
+  };
+  if (all_beyond(1) || all_beyond(2)) return 0;
+  const Vec3 a = x0 - p, b = x1 - p, c = x2 - p;
+  // Signed areas of the projections along x of p with each edge: of one sign, p is between the edges.
+  const double ab = a.y() * b.z() - a.z() * b.y(), bc = b.y() * c.z() - b.z() * c.y(),
+               ca = c.y() * a.z() - c.z() * a.y();
+  const bool outward = ab > 0 && bc > 0 && ca > 0;
+  if (!outward && !(ab < 0 && bc < 0 && ca < 0)) return 0;
+  const double ahead = a.x() * bc + b.x() * ca + c.x() * ab;  // times their sum: how far along x
+  return outward ? (ahead > 0 ? 1 : 0) : (ahead < 0 ? -1 : 0);
 }
 
 }  // namespace
@@ -111,14 +131,11 @@ void ContactFinder::gather(std::span<const Vec3> positions, std::span<const Vec3
 }
 
 bool ContactFinder::inside(std::span<const Vec3> positions, const Vec3& p) const noexcept {
-  double solid_angle = 0;
-  for (const Triangle& t : closed_) {
-    const Vec3 a = positions[t[0]] - p, b = positions[t[1]] - p, c = positions[t[2]] - p;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    solid_angle +=
-        2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return solid_angle > 2 * std::numbers::pi;
+  const Vec3 beside = p + kBesideEdges;
+  int winding = 0;
+  for (const Triangle& t : closed_)
+    winding += crossing(positions[t[0]], positions[t[1]], positions[t[2]], beside);
+  return winding > 0;
 }
 
 Vec3 ContactFinder::Foot::of(std::span<const Vec3> at_vertices) const noexcept {

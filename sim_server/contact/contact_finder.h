@@ -37,8 +37,8 @@ class ContactFinder {
               double reach, ContactPatch& patch) noexcept;
   std::span<const int> vertices() const { return vertices_; }
 
-  /// Whether `p` lies inside the closed surface, by its winding number (Van Oosterom and Strackee 1983).
-  /// O(triangles).
+  /// Whether `p` lies inside the closed surface: its winding number, which counts the sheets that the ray
+  /// along x leaves, less those that it enters. O(triangles), of which a few are looked at.
   bool inside(std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
   /// A point of the surface, on one of its triangles.

@@ -135,6 +135,15 @@ void SimLoop::look_how_near(Time now) noexcept {
   }
 }
 
+void SimLoop::note_growth() noexcept {
+  if (simulation_.resection() == nullptr) return;
+  const Resection::Growth& now = simulation_.resection()->growth();
+  growth.begun.store(now.begun, std::memory_order_relaxed);
+  growth.failures.store(now.failures, std::memory_order_relaxed);
+  growth.tetrahedra.store(now.tetrahedra, std::memory_order_relaxed);
+  growth.times.store(now.times, std::memory_order_release);
+}
+
 void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept {
   const auto took_ns = static_cast<double>(took.count());
   bool contact = false, flagged = false;
@@ -152,6 +161,7 @@ void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, 
     largest = std::max(largest, newton);
   }
   look_how_near(start + took);
+  note_growth();
   stats_.step_ns.add(took.count());
   stats_.timeline.at(start) += {1, took_ns, took_ns, 0};
   if (contact) stats_.contact_step_ns.add(took.count());

@@ -101,6 +101,12 @@ class SimLoop {
   std::atomic<std::uint64_t> steps_done{0};
   std::atomic<double> newest_newton{0};
   std::array<std::atomic<bool>, kMaxTools> went_beyond{};  ///< of each tool, whether it ever was beyond
+  /// How what can be cut grows ([cutting.growth]): whether the background is at it, and how often it could
+  /// and could not; and tetrahedra that it let go in all.
+  struct Growth {
+    std::atomic<bool> begun{false};
+    std::atomic<std::uint64_t> times{0}, failures{0}, tetrahedra{0};
+  } growth{};
 
  private:
   bool read_inputs() noexcept;
@@ -109,6 +115,7 @@ class SimLoop {
   void tell_paused() noexcept;
   void count_beyond(std::size_t tool) noexcept;
   void look_how_near(Time now) noexcept;
+  void note_growth() noexcept;
   void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
 
   const Simulation& simulation_;

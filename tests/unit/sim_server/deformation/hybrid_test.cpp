@@ -285,7 +285,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "hybrid: what can be cut grows until all of it can, and the tool goes on cutting; each time the same") {
+    "hybrid: what can be cut grows until all of it can, and the tool goes on cutting, each time the same") {
   const auto cut_across = [] {
     Scene scene = growing_scene();
     scene.cutting->growth->reach = 0.03;
