@@ -43,6 +43,14 @@ class PageCase(page_numbers.PageNumbers):
     def text(self, name):
         return self.browser.evaluate(f"document.getElementById({json.dumps(name)}).textContent")
 
+    def wait_said(self, key, good=bool, seconds=10):
+        """Until `good` of all that the page has told the server under this key is true; all that."""
+        end = time.monotonic() + seconds
+        while not good(said := self.server.said(key)):
+            self.assertLess(time.monotonic(), end, f"{key}: {said}")
+            time.sleep(0.05)
+        return said
+
     def stage(self):
         return self.browser.evaluate("(({x, y, width, height}) => [x, y, width, height])"
                                      "(document.getElementById('stage').getBoundingClientRect())")

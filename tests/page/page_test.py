@@ -67,8 +67,7 @@ class PageTest(PageCase):
         for name, unit in [("stretch", "%"), ("pressure", "kPa"), ("strain_energy", "J/m"), ("displacement", "mm")]:
             self.choose("measures", name)
             self.browser.wait(f"document.getElementById('scale-top').textContent.includes({json.dumps(unit)})")
-        self.browser.wait("true")
-        self.assertEqual(self.server.said("want")[-2:], [{"field": "strain_energy"}, {"field": None}])
+        self.wait_said("want", lambda said: said[-2:] == [{"field": "strain_energy"}, {"field": None}])
         self.choose("measures", "plain")
         self.browser.wait("document.getElementById('scale').hidden")
         self.no_errors()
@@ -166,8 +165,8 @@ class PageTest(PageCase):
         self.wait_number("Step", lambda text: int(text) == step + 1)
         self.browser.key(" ")
         self.browser.wait("document.getElementById('status').textContent === 'Live'")
-        self.assertEqual(self.server.said("pause"), [True, False])
-        self.assertEqual(self.server.said("step"), [1])
+        self.wait_said("pause", lambda said: said == [True, False])
+        self.assertEqual(self.wait_said("step"), [1])
         self.no_errors()
 
     def test_tab_goes_through_the_drawings_and_escape_lets_go(self):
@@ -199,11 +198,9 @@ class PageTest(PageCase):
         self.open()
         self.browser.wait("!document.getElementById('scenes-label').hidden")
         self.choose("scenes", "liver_breathing")
-        self.browser.wait("true")
-        time.sleep(0.2)
-        self.assertEqual(self.server.said("choose"), ["liver_breathing"])
-        self.assertEqual(self.server.said("hello")[0], {"token": "abc"})
-        self.assertGreater(len(self.server.said("shown")), 0)
+        self.assertEqual(self.wait_said("choose"), ["liver_breathing"])
+        self.assertEqual(self.wait_said("hello")[0], {"token": "abc"})
+        self.wait_said("shown")
         self.no_errors()
 
     def test_it_connects_again_by_itself(self):
@@ -212,7 +209,7 @@ class PageTest(PageCase):
         self.server.drop_pages()
         self.browser.wait("document.getElementById('status').textContent.startsWith('No server')")
         self.browser.wait("document.getElementById('status').textContent === 'Live'")
-        self.assertEqual(len(self.server.said("hello")), 2)
+        self.wait_said("hello", lambda said: len(said) == 2)
 
     # Recordings
 
