@@ -45,16 +45,15 @@ void RunNews::tell_beyond(const SimLoop& loop) {
 
 /// Says how what can be cut grows.
 void RunNews::tell_growth(const SimLoop::Growth& now) {
-  if (const bool begun = now.begun; begun != growth_.begun) {
-    if (begun)
-      log::info("the cut has come near the end of what can be cut; in {:g} s it will go on beyond",
-                scene_.cutting->growth->after);
-    growth_.begun = begun;
-  }
   if (const std::size_t times = now.times; times > growth_.times) {
     log::info("{} more tetrahedra can be cut", now.tetrahedra - growth_.tetrahedra);
     growth_.times = times;
     growth_.tetrahedra = now.tetrahedra;
+  }
+  if (const std::size_t begun = now.begun; begun > growth_.begun) {
+    log::info("the cut has come near the end of what can be cut; in {:g} s it will go on beyond",
+              scene_.cutting->growth->after);
+    growth_.begun = begun;
   }
   if (const std::size_t failures = now.failures; failures > growth_.failures) {
     log::warning("{}: what can be cut stays as it is; the report at the end says why",

@@ -100,7 +100,12 @@ void Tissue::set_free(const FreeMotion& motion) noexcept {
 /// What may have moved since a tool's contact was last solved; empty: any may have.
 std::span<const int> Tissue::moved_since(const ToolLoads& tool) const noexcept {
   const bool of_one_motion = tool.solved_in + 1 >= motions_ && tool.carried.isZero(0);
-  return of_one_motion ? moved_ : std::span<const int>();
+  return of_one_motion && moved_ != nullptr ? std::span<const int>(*moved_) : std::span<const int>();
+}
+
+void Tissue::note_same_place() noexcept {
+  for (ToolLoads& tool : tools_) std::copy(positions.begin(), positions.end(), tool.solved.begin());
+  if (!before.empty()) std::copy(positions.begin(), positions.end(), before.begin());
 }
 
 void Tissue::note_shift(ToolLoads& tool, std::span<const Vec3> positions, std::size_t vertex) noexcept {

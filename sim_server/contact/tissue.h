@@ -25,6 +25,9 @@ class Tissue {
   /// It has gone on, or its linearisation has.
   void set_free(const FreeMotion& motion) noexcept;
 
+  /// Its model goes on as another: no vertex has moved in that.
+  void note_same_place() noexcept;
+
   /// Set-up: makes room for tools that load so many vertices each, and for which a surface that moved less
   /// than `still` (m) has not moved; the surface at rest is `free`.
   void reserve(std::span<const int> most_loads, std::span<const double> still);
@@ -64,8 +67,8 @@ class Tissue {
   static void note_shift(ToolLoads& tool, std::span<const Vec3> positions, std::size_t vertex) noexcept;
 
   std::vector<ToolLoads> tools_;
-  std::span<const int> moved_;  // by the last motion; empty: any may have
-  std::uint64_t motions_ = 1;   // so far
+  const std::vector<int>* moved_ = nullptr;  // by the last motion; null: any may have
+  std::uint64_t motions_ = 1;                // so far
 };
 
 /// The tissue as one tool meets it: free of that tool, under the loads that the others put on it when this

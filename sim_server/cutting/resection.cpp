@@ -51,9 +51,8 @@ std::span<const int> Resection::remove(std::span<const int> tetrahedra, Surface&
 
 void Resection::grow(const DeformationModel::Growth& growth) {
   left_.allow(growth.allowed);
-  if (growth.begun) growth_.begun = true;
+  growth_.begun += growth.begun ? 1 : 0;
   if (growth.allowed.empty() && growth.failure.empty()) return;
-  growth_.begun = false;
   growth_.times += growth.failure.empty() ? 1 : 0;
   growth_.failures += growth.failure.empty() ? 0 : 1;
   growth_.tetrahedra += growth.allowed.size();

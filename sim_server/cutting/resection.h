@@ -45,7 +45,7 @@ class Resection {
   /// What can be removed grows, as the model says.
   void grow(const DeformationModel::Growth& growth);
   struct Growth {
-    bool begun = false;          ///< and not yet ended
+    std::size_t begun = 0;       ///< times
     std::size_t times = 0;       ///< that more could be removed
     std::size_t tetrahedra = 0;  ///< that could in all of them
     std::size_t failures = 0;

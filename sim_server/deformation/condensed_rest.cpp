@@ -110,7 +110,10 @@ DeformationModel::Removed CondensedRest::remove(int part) noexcept {
   const double border = -0.5 * goes.at.dot(goes.following.selfadjointView<Eigen::Lower>() * goes.at);
   const double modes =
       0.5 * (goes.squares * goes.p.array().square()).sum() - goes.p.dot(goes.driven * goes.at);
-  return {.elastic = border + modes, .kinetic = 0.5 * goes.p_v.squaredNorm()};
+  const double kinetic = 0.5 * goes.p_v.squaredNorm();
+  goes.p.setZero();
+  goes.p_v.setZero();
+  return {.elastic = border + modes, .kinetic = kinetic};
 }
 
 void CondensedRest::stand_still(const std::vector<double>& x, std::span<const NodalLoad> loads) noexcept {
@@ -149,8 +152,8 @@ void CondensedRest::set_swing(const Swing& swing) {
   }
 }
 
-CondensedRest::Swing CondensedRest::swing_after(const CondensedRest& before, const Swing& swing) const {
-  Swing own;
+std::vector<CondensedRest::Overlap> CondensedRest::overlap_with(const CondensedRest& before) const {
+  std::vector<Overlap> overlaps;
   for (const Part& part : all_) {
     const auto of_before = static_cast<std::size_t>(before.part_of(part.inner.front()));
     const Part& was = before.all_[of_before];
@@ -159,11 +162,9 @@ CondensedRest::Swing CondensedRest::swing_after(const CondensedRest& before, con
       const auto at = std::ranges::lower_bound(was.inner, part.inner[i]) - was.inner.begin();
       shapes.middleCols<3>(3 * static_cast<Eigen::Index>(i)) = was.all_shapes.middleCols<3>(3 * at);
     }
-    const Eigen::MatrixXd overlap = part.all_shapes * part.masses.asDiagonal() * shapes.transpose();
-    own.p.push_back(overlap * swing.p[of_before]);
-    own.v.push_back(overlap * swing.v[of_before]);
+    overlaps.push_back({of_before, part.all_shapes * part.masses.asDiagonal() * shapes.transpose()});
   }
-  return own;
+  return overlaps;
 }
 
 Vec3 CondensedRest::shape_at(int mesh_vertex, const std::vector<Eigen::VectorXd>& amplitudes) const {

@@ -87,8 +87,13 @@ class CondensedRest {
   };
   Swing swing() const;
   void set_swing(const Swing& swing);
-  /// What modes of this rest move as `before`, of which it is a part, does in `swing`. Both keep shapes.
-  Swing swing_after(const CondensedRest& before, const Swing& swing) const;
+  /// Of a part of this rest with the modes of `before`, of which it is a part: phi^T M phi_before.
+  struct Overlap {
+    std::size_t part_of_before;
+    Eigen::MatrixXd matrix;
+  };
+  /// One for each part. Both keep shapes.
+  std::vector<Overlap> overlap_with(const CondensedRest& before) const;
   /// How a mesh vertex of r moves in `amplitudes` (of `Swing`) alone, m. Of a rest that keeps shapes.
   Vec3 shape_at(int mesh_vertex, const std::vector<Eigen::VectorXd>& amplitudes) const;
 

@@ -73,13 +73,14 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
   loads_.reserve(kMaxTools * node_.size());
   kept_.reserve(loads_.capacity());
   held_.reserve(loads_.capacity());
+  moving_.reserve(node_.size());
+  moved_.reserve(2 * node_.size() + loads_.capacity());
   look_at_body();
 }
 
 /// It is another one than before.
 void CuttableMotion::look_at_body() {
   force_.assign(body_->motion.state.f.size(), 0);
-  moved_.reserve(2 * node_.size() + loads_.capacity());
   moving_.clear();
   for (std::size_t v = 0; v < node_.size(); ++v) {
     if (body_->first[v] >= 0) moving_.push_back(static_cast<int>(v));
@@ -109,7 +110,7 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
     press();
   }
   const bool any_moved = instant_ == 0;  // where a step ends
-  return {.positions = free_, .loaded = positions_, .moved = any_moved ? std::span<const int>() : moved_};
+  return {.positions = free_, .loaded = positions_, .moved = any_moved ? nullptr : &moved_};
 }
 
 /// What the rest does on the border where both are by now.
@@ -214,6 +215,7 @@ std::span<const Vec3> CuttableMotion::apply(std::span<const NodalLoad> loads) no
     if (body_->rest) body_->rest->watch({&load.vertex, 1});
   }
   press();
+  note_moved();
   return positions_;
 }
 
@@ -284,8 +286,13 @@ DeformationModel::Growth CuttableMotion::grow(const CutMesh& left) {
   end_contact();
   grown.body->remove(grown.removed_since, left, material_);
   (*grown.hand_over)(*body_, loads_);
-  body_ = std::move(grown.body);
+  force_.reserve(grown.body->motion.state.f.size());  // from here on nothing throws
+  std::swap(body_, grown.body);
   look_at_body();
+  update_free();
+  for (const int vertex : moving_)
+    positions_[static_cast<std::size_t>(vertex)] = free_[static_cast<std::size_t>(vertex)];
+  for (const NodalLoad& load : loads_) body_->rest->watch({&load.vertex, 1});
   allowed_ = std::move(grown.allowed);
   return {false, allowed_, {}};
 }

@@ -38,8 +38,9 @@ struct FreeMotion {
   std::span<const Vec3> loaded = {};
   /// (n) as its supports alone have moved it; empty: they rest, or that is not known apart
   std::span<const Vec3> carried = {};
-  /// Surface vertices that may be elsewhere than at the end of the step before; empty: any may
-  std::span<const int> moved = {};
+  /// Surface vertices that may be elsewhere than at the end of the step before; `apply` may add to them.
+  /// Null: any may
+  const std::vector<int>* moved = nullptr;
 };
 
 /// Bytes that a part of the program holds, for reports.

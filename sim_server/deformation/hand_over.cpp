@@ -1,6 +1,9 @@
 #include "sim_server/deformation/hand_over.h"
 
+#include <fmt/core.h>
+
 #include "common/error.h"
+#include "common/memory_budget.h"
 
 namespace palpate::sim {
 
@@ -15,6 +18,9 @@ HandOver::HandOver(CuttableBody& after, const CuttableBody& before)
       joining_.push_back({static_cast<int>(v), 3 * now[v]});
   }
   const auto size = static_cast<Eigen::Index>(3 * joining_.size());
+  require_memory(2.0 * sizeof(double) * static_cast<double>(size * size), free_memory(), "[cutting.growth]",
+                 fmt::format("{} vertices that join what is in motion", joining_.size()),
+                 "a smaller `reach` takes less");
   Eigen::MatrixXd stiffness(size, size);
   std::vector<double> x(force_.size(), 0);
   for (Eigen::Index k = 0; k < size; ++k) {
@@ -28,6 +34,7 @@ HandOver::HandOver(CuttableBody& after, const CuttableBody& before)
   }
   stiffness_.compute(stiffness);
   if (size > 0 && stiffness_.info() != Eigen::Success) fail("what would join is held by nothing");
+  overlaps_ = after.rest->overlap_with(*before.rest);
 }
 
 std::vector<double> HandOver::shared(const std::vector<double>& of_before) const {
@@ -69,10 +76,10 @@ void HandOver::operator()(CuttableBody& before, std::span<const NodalLoad> loads
     Eigen::Map<Vec3>(u.data() + number) += before.rest->shape_at(vertex, swing.p);
     Eigen::Map<Vec3>(v.data() + number) += before.rest->shape_at(vertex, swing.v);
   }
-  const CondensedRest::Swing besides = after_.rest->swing_after(*before.rest, swing);
-  for (std::size_t part = 0; part < besides.p.size(); ++part) {
-    balanced.p[part] += besides.p[part];
-    balanced.v[part] += besides.v[part];
+  for (std::size_t part = 0; part < overlaps_.size(); ++part) {
+    const auto& [was, overlap] = overlaps_[part];
+    balanced.p[part] += overlap * swing.p[was];
+    balanced.v[part] += overlap * swing.v[was];
   }
   after_.rest->set_swing(balanced);
   after_.motion.state.u = std::move(u);

@@ -15,10 +15,12 @@ namespace palpate::sim {
 class HandOver {
  public:
   /// Both keep the shapes of modes. Of `before`, reads what never changes: another thread may step it.
-  /// O(j (edges + b^2) + j^3) of j unknowns that join; throws `Error` where S is singular.
+  /// O(j (edges + b^2) + j^3) of j unknowns that join; throws `Error` where S is singular, or where it would
+  /// take more memory than is free.
   HandOver(CuttableBody& after, const CuttableBody& before);
 
-  /// Puts `after` where `before` is, which bears these loads and is of no use from then on. O(edges + j^2).
+  /// Puts `after` where `before` is, which bears these loads and is of no use from then on. O(edges + b^2 +
+  /// j^2).
   void operator()(CuttableBody& before, std::span<const NodalLoad> loads);
 
   std::size_t joining() const { return joining_.size(); }  ///< vertices
@@ -38,7 +40,8 @@ class HandOver {
   };
   std::vector<Joining> joining_;
   Eigen::LLT<Eigen::MatrixXd> stiffness_;  // S
-  std::vector<double> force_;              // scratch, N
+  std::vector<CondensedRest::Overlap> overlaps_;
+  std::vector<double> force_;  // scratch, N
 };
 
 }  // namespace palpate::sim

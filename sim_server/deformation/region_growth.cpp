@@ -18,6 +18,39 @@ std::vector<int> gone_of(const CutMesh& left) {
   return gone;
 }
 
+/// Of each tetrahedron, a vertex that what can be cut shares with what can be later, if it can be cut and its
+/// centre is within `reach` (m) of one, or that one of its corners; else -1.
+std::vector<int> near_end_of(const TetMesh& mesh, std::span<const Removable> removable, double reach) {
+  std::vector<char> now(mesh.vertices.size(), 0), later(now);
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    for (const int v : mesh.tetrahedra[t]) {
+      now[static_cast<std::size_t>(v)] |= removable[t] == Removable::kNow;
+      later[static_cast<std::size_t>(v)] |= removable[t] == Removable::kLater;
+    }
+  }
+  std::vector<int> end;
+  for (std::size_t v = 0; v < now.size(); ++v) {
+    if (now[v] != 0 && later[v] != 0) end.push_back(static_cast<int>(v));
+  }
+  std::vector<int> near(mesh.tetrahedra.size(), -1);
+  for (std::size_t t = 0; t < near.size() && !end.empty(); ++t) {
+    if (removable[t] != Removable::kNow) continue;
+    const auto& corners = mesh.tetrahedra[t];
+    const Vec3 centre = centre_of(mesh, corners);
+    double closest = reach * reach;
+    for (const int v : end) {
+      const bool corner = std::ranges::find(corners, v) != corners.end();
+      const double away = corner ? 0 : (mesh.vertices[static_cast<std::size_t>(v)] - centre).squaredNorm();
+      if (away > closest) continue;
+      closest = away;
+      near[t] = v;
+    }
+  }
+  return near;
+}
+
+constexpr int kMostDoublings = 6;  // of the time until what could not be made is tried again
+
 }  // namespace
 
 RegionGrowth::RegionGrowth(const ModelInputs& inputs, RegionInMotion region, std::vector<double> mass_factors,
@@ -27,35 +60,14 @@ RegionGrowth::RegionGrowth(const ModelInputs& inputs, RegionInMotion region, std
       mass_factors_(std::move(mass_factors)),
       highest_(highest),
       steps_(std::max(1L, std::lround(inputs.scene.cutting->growth->after / step_period(inputs.scene)))) {
-  find_end();
-}
-
-/// Of what can be cut, what is within half of the reach of a vertex that it shares with what can be later.
-void RegionGrowth::find_end() {
-  const TetMesh& mesh = inputs_.mesh;
-  std::vector<char> now(mesh.vertices.size(), 0), later(now);
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    for (const int v : mesh.tetrahedra[t]) {
-      now[static_cast<std::size_t>(v)] |= region_.removable[t] == Removable::kNow;
-      later[static_cast<std::size_t>(v)] |= region_.removable[t] == Removable::kLater;
-    }
-  }
-  std::vector<int> end;
-  for (std::size_t v = 0; v < now.size(); ++v) {
-    if (now[v] != 0 && later[v] != 0) end.push_back(static_cast<int>(v));
-  }
-  near_end_.assign(mesh.tetrahedra.size(), -1);
-  for (std::size_t t = 0; t < mesh.tetrahedra.size() && !end.empty(); ++t) {
-    if (region_.removable[t] != Removable::kNow) continue;
-    const Vec3 centre = centre_of(mesh, mesh.tetrahedra[t]);
-    const auto away = [&](int v) {
-      const auto& corners = mesh.tetrahedra[t];
-      if (std::ranges::find(corners, v) != corners.end()) return 0.0;
-      return (mesh.vertices[static_cast<std::size_t>(v)] - centre).squaredNorm();
-    };
-    const int nearest = *std::ranges::min_element(end, {}, away);
-    if (std::sqrt(away(nearest)) <= inputs_.scene.cutting->growth->reach / 2) near_end_[t] = nearest;
-  }
+  const double near = inputs_.scene.cutting->growth->reach / 2;
+  near_end_ = near_end_of(inputs_.mesh, region_.removable, near);
+  if (std::ranges::none_of(near_end_, [](int v) { return v >= 0; }))
+    fail(
+        "{}: what can be cut touches nothing that could be cut later; make the region here larger than that "
+        "of "
+        "[cutting], or remove this",
+        inputs_.scene.cutting->growth->where);
 }
 
 void RegionGrowth::note_removed(std::span<const int> tetrahedra) {
@@ -88,46 +100,62 @@ std::vector<int> RegionGrowth::near_seeds(const CutMesh& left) const {
   return near;
 }
 
-void RegionGrowth::begin(const CuttableBody& now, const CutMesh& left) {
-  for (const int t : allowed_) region_.removable[static_cast<std::size_t>(t)] = Removable::kNow;
-  removed_since_.clear();
-  due_ = step_ + steps_;
-  work_ = std::async(std::launch::async, [this, &now, left,
-                                          moves = region_.vertices(inputs_.mesh, Removable::kNow)] {
+/// Nothing is changed where this throws.
+void RegionGrowth::begin(std::vector<int> allowed, const CuttableBody& now, const CutMesh& left) {
+  RegionInMotion larger = region_;
+  for (const int t : allowed) larger.removable[static_cast<std::size_t>(t)] = Removable::kNow;
+  work_ = std::async(std::launch::async, [this, &now, left, larger = std::move(larger),
+                                          allowed = std::move(allowed)] {
     make_background("palpate-growth");
     const Progress silent = [](std::string_view, double) {};
     const ModelInputs inputs{inputs_.scene, inputs_.mesh,      inputs_.surface,
                              inputs_.fixed, inputs_.reachable, silent};
-    const CondensedRest::Modes modes{.most = region_.rest_modes, .highest = highest_, .keeps_shapes = true};
-    Grown grown;
-    grown.body = std::make_unique<CuttableBody>(inputs, mass_factors_, &moves, modes);
-    grown.body->remove(gone_of(left), left, *inputs_.scene.material);
-    grown.hand_over = std::make_unique<HandOver>(*grown.body, now);
-    return grown;
+    const CondensedRest::Modes modes{.most = larger.rest_modes, .highest = highest_, .keeps_shapes = true};
+    const std::vector<char> moves = larger.vertices(inputs_.mesh, Removable::kNow);
+    Made made;
+    made.grown.body = std::make_unique<CuttableBody>(inputs, mass_factors_, &moves, modes);
+    made.grown.body->remove(gone_of(left), left, *inputs_.scene.material);
+    made.grown.hand_over = std::make_unique<HandOver>(*made.grown.body, now);
+    made.grown.allowed = allowed;
+    made.near_end = near_end_of(inputs_.mesh, larger.removable, inputs_.scene.cutting->growth->reach / 2);
+    made.region = larger;
+    return made;
   });
+  due_ = step_ + steps_;
+  removed_since_.clear();
+}
+
+/// What was removed meanwhile may be near the end of now, too.
+RegionGrowth::Step RegionGrowth::end() {
+  const std::vector<int> since = std::exchange(removed_since_, {});
+  Step step;
+  try {
+    Made made = work_.get();
+    made.grown.removed_since = since;
+    step.grown = std::move(made.grown);
+    region_ = std::move(made.region);
+    near_end_ = std::move(made.near_end);
+    seeds_.clear();
+    failures_ = 0;
+  } catch (const std::exception& error) {
+    step.failure = error.what();
+    not_before_ = step_ + (steps_ << std::min(failures_++, kMostDoublings));
+  }
+  note_removed(since);
+  return step;
 }
 
 RegionGrowth::Step RegionGrowth::step(const CuttableBody& now, const CutMesh& left) {
-  Step step;
   ++step_;
-  if (work_.valid() && step_ >= due_) {
-    try {
-      step.grown = work_.get();
-      step.grown->allowed = std::exchange(allowed_, {});
-      step.grown->removed_since = std::exchange(removed_since_, {});
-      find_end();
-      note_removed(step.grown->removed_since);  // that may be near the end of now, too
-    } catch (const std::exception& error) {
-      step.failure = error.what();
-      for (const int t : allowed_) region_.removable[static_cast<std::size_t>(t)] = Removable::kLater;
-      allowed_.clear();
-    }
-  } else if (!work_.valid() && !seeds_.empty()) {
-    allowed_ = near_seeds(left);
-    step.begun = !allowed_.empty();
-    if (step.begun) begin(now, left);
+  if (work_.valid()) return step_ >= due_ ? end() : Step{};
+  if (seeds_.empty() || step_ < not_before_) return {};
+  std::vector<int> allowed = near_seeds(left);
+  Step step;
+  step.begun = !allowed.empty();
+  if (step.begun)
+    begin(std::move(allowed), now, left);
+  else
     seeds_.clear();
-  }
   return step;
 }
 

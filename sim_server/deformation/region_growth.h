@@ -12,11 +12,13 @@ namespace palpate::sim {
 /// comes within half of `reach` of the end of what can be cut, the body that has all within `reach` of there
 /// in motion, too, is made in the background, while the one before goes on. It takes over in the step that
 /// comes `after` seconds later, at any speed of the machine: that step waits for it. So the same tool makes
-/// the same bits. Owned by the thread that steps; destroying it waits for the background.
+/// the same bits, unless memory ends: then what can be cut stays as it is, and the same is tried again after
+/// that time, doubled at each failure in a row. Owned by the thread that steps. Destroying it waits for the
+/// background.
 class RegionGrowth {
  public:
   /// `mass_factors`: of tetrahedra. `highest`: rad/s, of modes of the rest. The mesh outlives this. Of a
-  /// scene with [cutting.growth].
+  /// scene with [cutting.growth]. Throws `Error` where nothing could grow.
   RegionGrowth(const ModelInputs& inputs, RegionInMotion region, std::vector<double> mass_factors,
                double highest);
 
@@ -48,8 +50,14 @@ class RegionGrowth {
     Surface surface;
     std::vector<int> fixed, reachable;
   };
-  void find_end();
-  void begin(const CuttableBody& now, const CutMesh& left);
+  /// What the background makes.
+  struct Made {
+    Grown grown;
+    RegionInMotion region;
+    std::vector<int> near_end;
+  };
+  void begin(std::vector<int> allowed, const CuttableBody& now, const CutMesh& left);
+  Step end();
   std::vector<int> near_seeds(const CutMesh& left) const;
 
   Inputs inputs_;
@@ -57,10 +65,12 @@ class RegionGrowth {
   std::vector<double> mass_factors_;
   double highest_;
   long steps_, step_ = 0, due_ = 0;  // from begin to end; of all; when the background has its time
+  long not_before_ = 0;              // the next begins
+  int failures_ = 0;                 // in a row
   std::vector<int> near_end_;        // of each tetrahedron: a vertex at the end of what can be cut, or -1
   std::vector<int> seeds_;           // such vertices, where a cut has come near
-  std::vector<int> allowed_, removed_since_;  // of what is made in the background
-  std::future<Grown> work_;
+  std::vector<int> removed_since_;   // the background began
+  std::future<Made> work_;
 };
 
 }  // namespace palpate::sim

@@ -101,11 +101,10 @@ class SimLoop {
   std::atomic<std::uint64_t> steps_done{0};
   std::atomic<double> newest_newton{0};
   std::array<std::atomic<bool>, kMaxTools> went_beyond{};  ///< of each tool, whether it ever was beyond
-  /// How what can be cut grows ([cutting.growth]): whether the background is at it, and how often it could
-  /// and could not; and tetrahedra that it let go in all.
+  /// How what can be cut grows ([cutting.growth]): how often the background began, could, and could not; and
+  /// how many tetrahedra it let go in all.
   struct Growth {
-    std::atomic<bool> begun{false};
-    std::atomic<std::uint64_t> times{0}, failures{0}, tetrahedra{0};
+    std::atomic<std::uint64_t> begun{0}, times{0}, failures{0}, tetrahedra{0};
   } growth{};
 
  private:

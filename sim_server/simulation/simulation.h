@@ -169,9 +169,9 @@ class Simulation {
   std::span<const Removal> removals() const {
     return cut_ ? std::span<const Removal>(cut_->removed) : std::span<const Removal>();
   }
-  /// From now on this is removed, each in the first step that begins at its time or later (s, ascending), and
-  /// nothing by heat: so another rate can be held against the one at which they went. Of an organ that can be
-  /// cut.
+  /// From now on this is removed, each in the first step that begins at its time or later (s, ascending) and
+  /// in which it can be ([cutting.growth]), and nothing by heat: so another rate can be held against the one
+  /// at which they went. Of an organ that can be cut.
   void remove_at(std::vector<Removal> removals);
   const StepFailures& failures() const { return failures_; }
   const FlaggedSteps& flagged() const { return flagged_; }
@@ -211,6 +211,7 @@ class Simulation {
     std::vector<Removal> removed = {};
     std::optional<std::vector<Removal>> planned = {};  // to be removed, instead of by heat
     std::size_t done = 0;                              // of these
+    std::vector<int> waiting = {};                     // and what of these can be removed later only
   };
 
   std::unique_ptr<TetMesh> mesh_;  // what can be cut knows it by its place

@@ -36,12 +36,16 @@ std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs
     }
     return cut.resection.advance(cut.tips, tissue_.positions, dt, surface_);
   }
-  std::vector<int> due;
+  std::vector<int> due = std::exchange(cut.waiting, {});
   for (; cut.done < cut.planned->size() && (*cut.planned)[cut.done].t <= time_ + kRounding; ++cut.done) {
-    const int tetrahedron = (*cut.planned)[cut.done].tetrahedron;
-    const CutMesh& left = cut.resection.left();
-    if (left.is_left(tetrahedron) && left.is_removable(tetrahedron)) due.push_back(tetrahedron);
+    due.push_back((*cut.planned)[cut.done].tetrahedron);
   }
+  std::erase_if(due, [&](int tetrahedron) {
+    const CutMesh& left = cut.resection.left();
+    if (!left.is_left(tetrahedron)) return true;
+    if (left.removable(tetrahedron) == Removable::kLater) cut.waiting.push_back(tetrahedron);
+    return !left.is_removable(tetrahedron);
+  });
   std::ranges::sort(due);
   due.erase(std::unique(due.begin(), due.end()), due.end());
   return cut.resection.remove(due, surface_);
@@ -49,7 +53,9 @@ std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs
 
 /// Before the tissue goes on.
 void Simulation::cut(std::span<const ToolInput> inputs, double dt) {
-  cut_->resection.grow(tissue_.model->grow(cut_->resection.left()));
+  const DeformationModel::Growth growth = tissue_.model->grow(cut_->resection.left());
+  cut_->resection.grow(growth);
+  if (!growth.allowed.empty()) tissue_.note_same_place();
   const std::span<const int> removed = remove_tissue(inputs, dt);
   if (removed.empty()) return;
   for (const int tetrahedron : cut_->resection.asked_for()) cut_->removed.push_back({time_, tetrahedron});
