@@ -36,7 +36,7 @@ class CondensedRest {
   struct Modes {
     int most = 0;  ///< and no more than one for eight unknowns of a part, so that contact stays compliant
     double highest = std::numeric_limits<double>::infinity();  ///< rad/s: none above it
-    bool keeps_shapes = false;  ///< of all of r, for a rest that takes over from this one (`swing_after`)
+    bool keeps_shapes = false;  ///< of all of r, for a rest that takes over from this one (`overlap_with`)
   };
   /// `places`: of each mesh vertex its place in the motion, or -1: it is fixed, or condensed. Factors K_rr,
   /// on all cores. Throws `Error` where some part of it is held by less than three vertices that are not in
