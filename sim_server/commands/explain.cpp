@@ -89,9 +89,11 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
     for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t)
       ++count[static_cast<std::size_t>(left.removable(t))];
     const auto [never, later, now] = count;
-    return fmt::format("{} of {} tetrahedra can be removed{}; their vertices count to the surface", now,
+    const auto [spare, end] = left.spares();
+    return fmt::format("{} of {} tetrahedra can be removed{}; their vertices count to the surface{}", now,
                        mesh.tetrahedra.size(),
-                       later > 0 ? fmt::format(", {} more as the cut comes near", later) : "");
+                       later > 0 ? fmt::format(", {} more as the cut comes near", later) : "",
+                       end > spare ? fmt::format(", with {} more that a blade may need", end - spare) : "");
   }
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
   if (part == "stiffness matrix" || part == "its factor")

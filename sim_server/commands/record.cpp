@@ -127,6 +127,8 @@ int record(const RecordOptions& options) {
   require_resection("--resection", options.resection, scene);
   require_resection("--removals", options.removals, scene);
   if (!scene.cutting) require_resection("--remove", options.remove, scene);
+  require_no_blade("--removals", options.removals, scene);
+  require_no_blade("--remove", options.remove, scene);
   WholeFile out(options.out, Contents::kCapture);
   protocol::CaptureWriter capture(out.path());
   say_what_is_lost(motion, options, ticks_hz);

@@ -1,5 +1,6 @@
 #include "sim_server/commands/resection_log.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
@@ -13,18 +14,19 @@ namespace {
 
 constexpr const char* kColumns =
     "t_s,tool,x_m,y_m,z_m,force_N,contact,tetrahedra,removed_ml,dropped_ml,pieces_dropped,pieces_loose,"
-    "cut_area_cm2,mean_distance_mm,farthest_mm,heat_J,elastic_J,kinetic_J,hot_s,contact_s\n";
+    "cut_area_cm2,mean_distance_mm,farthest_mm,heat_J,elastic_J,kinetic_J,hot_s,contact_s,parted_cm2,"
+    "mean_parted_distance_mm\n";
 
 std::string row_text(const ResectionRow& row) {
   const ResectionTotals& all = row.totals;
   return fmt::format(
       "{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:."
       "6g},"
-      "{:.6g},{:.6g}\n",
+      "{:.6g},{:.6g},{:.6g},{:.6g}\n",
       row.t, row.tool + 1, row.p_W.x(), row.p_W.y(), row.p_W.z(), row.f_W.norm(), row.contact ? 1 : 0,
       all.tetrahedra, 1e6 * all.volume, 1e6 * all.dropped_volume, all.dropped_pieces, all.loose_pieces,
       1e4 * all.cut_area, 1e3 * all.mean_distance(), 1e3 * all.farthest, all.heat, all.elastic, all.kinetic,
-      all.hot_time, all.contact_time);
+      all.hot_time, all.contact_time, 1e4 * all.parted_area, 1e3 * all.mean_parted_distance());
 }
 
 }  // namespace
@@ -36,6 +38,15 @@ void require_resection(const char* option, const std::optional<std::filesystem::
     fail("{}: {} has no [cutting], so that nothing is removed; leave it out, or add one", option,
          scene.source);
   check_writable(*file, Contents::kTable);
+}
+
+void require_no_blade(const char* option, const std::optional<std::filesystem::path>& file,
+                      const Scene& scene) {
+  const auto blade =
+      std::ranges::find_if(scene.tools, [](const auto& tool) { return tool.blade.has_value(); });
+  if (file && blade != scene.tools.end())
+    fail("{}: {} parts tissue by a blade, which these files do not tell; leave it out", option,
+         blade->blade_where);
 }
 
 void write_resection(const std::filesystem::path& file, const Simulation& simulation) {
@@ -106,9 +117,25 @@ Json resection_report(const Simulation& simulation) {
             {"tetrahedra", resection->growth().tetrahedra},
             {"failures", resection->growth().failures},
             {"last_failure", resection->growth().last_failure}}},
+          {"parted_m2", all.parted_area},
+          {"mean_parted_distance_m", all.mean_parted_distance()},
+          {"vertices_slid", all.slides},
+          {"vertices_split", all.splits},
+          {"ran_out_of_vertices", all.ran_out},
           {"hot_s", all.hot_time},
           {"contact_s", all.contact_time}};
 }
+
+namespace {
+std::string parted_text(const ResectionTotals& all) {
+  if (all.slides == 0 && all.splits == 0) return {};
+  return fmt::format(
+      "; a blade parted {:.1f} cm2, {:.2f} mm from the plan on average: {} vertices became two, {} slid onto "
+      "its way{}",
+      1e4 * all.parted_area, 1e3 * all.mean_parted_distance(), all.splits, all.slides,
+      all.ran_out ? "; it went through more, for which there were no vertices left" : "");
+}
+}  // namespace
 
 std::string resection_text(const Simulation& simulation) {
   const Resection* const resection = simulation.resection();
@@ -127,7 +154,7 @@ std::string resection_text(const Simulation& simulation) {
       "the plan on average and {:.1f} mm at most; {} pieces lie loose; {:.0f} J of heat in {:.1f} s{}",
       all.tetrahedra, all.tetrahedra + resection->left().count(), 1e6 * all.volume, 1e6 * all.dropped_volume,
       all.dropped_pieces, 1e4 * all.cut_area, 1e3 * all.mean_distance(), 1e3 * all.farthest, all.loose_pieces,
-      all.heat, all.hot_time, grown);
+      all.heat, all.hot_time, parted_text(all) + grown);
 }
 
 }  // namespace palpate::sim

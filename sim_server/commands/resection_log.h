@@ -11,6 +11,10 @@ namespace palpate::sim {
 void require_resection(const char* option, const std::optional<std::filesystem::path>& file,
                        const Scene& scene);
 
+/// Throws `Error` where `option` names a FILE of removals, but a tool has a blade.
+void require_no_blade(const char* option, const std::optional<std::filesystem::path>& file,
+                      const Scene& scene);
+
 /// Writes a CSV with a row for each step with a hot tip: time, tool, place, force, and what the resection has
 /// come to by then; units stand in the names of the columns. Throws `Error` (run time).
 void write_resection(const std::filesystem::path& file, const Simulation& simulation);

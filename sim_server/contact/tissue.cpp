@@ -62,11 +62,28 @@ bool Tissue::meet(std::size_t tool) {
   mine.others = loads.size() - own;
   std::rotate(loads.begin(), loads.begin() + static_cast<long>(own), loads.end());
   positions = model->apply(std::span(loads).first(mine.others));
-  const bool moved = largest_move(mine.free, positions) > mine.still;
-  if (moved || mine.free.data() != mine.pushed.data())
-    std::copy(positions.begin(), positions.end(), mine.pushed.begin());
-  mine.free = mine.pushed;
+  const bool moved = push(mine);
   if (own > 0) press(tool);
+  return moved;
+}
+
+/// What is free to this tool is pushed to `positions`, if that moves it. Returns whether it does.
+bool Tissue::push(ToolLoads& tool) {
+  const bool was_pushed = tool.free.data() == tool.pushed.data();
+  const bool some = was_pushed && moved_ != nullptr && tool.pushed_in + 1 >= motions_;
+  double most = some ? 0 : largest_move(tool.free, positions);
+  for (std::size_t k = 0; some && k < moved_->size(); ++k) {
+    const auto v = static_cast<std::size_t>((*moved_)[k]);
+    most = std::max(most, (positions[v] - tool.pushed[v]).cwiseAbs().maxCoeff());
+  }
+  const bool moved = most > tool.still;
+  for (std::size_t k = 0; some && moved && k < moved_->size(); ++k) {
+    const auto v = static_cast<std::size_t>((*moved_)[k]);
+    tool.pushed[v] = positions[v];
+  }
+  if (!some && (moved || !was_pushed)) std::copy(positions.begin(), positions.end(), tool.pushed.begin());
+  tool.free = tool.pushed;
+  tool.pushed_in = motions_;
   return moved;
 }
 

@@ -52,6 +52,7 @@ class Tissue {
     std::size_t others = 0;        // how many of them are the others'
     std::span<const Vec3> free;    // the tissue's, or `pushed`
     std::vector<Vec3> pushed;      // free under the loads of the other tools; empty where there are none
+    std::uint64_t pushed_in = 0;   // the motion in which that was
     double still = 0;              // m
     std::vector<Vec3> solved;      // positions when its contact was last solved
     Vec3 carried = Vec3::Zero();   // how far it and the organ have gone since, m
@@ -63,6 +64,7 @@ class Tissue {
     std::span<const NodalLoad> own() const { return std::span(loads).subspan(others); }
   };
   bool meet(std::size_t tool);
+  bool push(ToolLoads& tool);
   std::span<const int> moved_since(const ToolLoads& tool) const noexcept;
   static void note_shift(ToolLoads& tool, std::span<const Vec3> positions, std::size_t vertex) noexcept;
 

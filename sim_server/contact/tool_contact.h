@@ -104,6 +104,7 @@ class ToolContact {
   bool exhausted() const;
   const ToolForce& force() const { return now_.force; }
   const Vec3& place() const { return now_.place.p_W; }
+  const ToolPose& pose() const { return now_.place; }
   double radius() const { return tool_.radius; }
   const Tool& shape() const { return tool_; }
   std::span<const Triangle> touchable() const { return finder_.touchable(); }

@@ -3,12 +3,17 @@
 #include <algorithm>
 
 namespace palpate::sim {
-Resection::Resection(const Cutting& cutting, const TetMesh& mesh, std::span<const int> held, Surface& surface)
+
+Resection::Resection(const Cutting& cutting, TetMesh& mesh, std::span<const int> held, Surface& surface,
+                     bool parts)
     : plan_(cutting.plan),
       smallest_piece_(cutting.smallest_piece),
-      left_(mesh, removable_tetrahedra(cutting, mesh), surface),
+      left_(parts ? CutMesh(mesh, removable_tetrahedra(cutting, mesh), surface, held)
+                  : CutMesh(mesh, removable_tetrahedra(cutting, mesh), surface)),
       pieces_(left_, held),
-      cautery_(cutting, mesh) {}
+      cautery_(cutting, mesh) {
+  if (parts) scalpel_.emplace(left_);
+}
 
 std::span<const int> Resection::advance(std::span<const HotTip> tips, std::span<const Vec3> positions,
                                         double dt, Surface& surface) {
@@ -25,7 +30,7 @@ std::span<const int> Resection::remove(std::span<const int> tetrahedra, Surface&
   removed_.clear();
   asked_for_ = tetrahedra.size();
   if (tetrahedra.empty()) return removed_;
-  ++version_;
+  note_change();
   take_out(tetrahedra, surface);
   if (plan_) {
     for (const int t : tetrahedra) {
@@ -35,7 +40,18 @@ std::span<const int> Resection::remove(std::span<const int> tetrahedra, Surface&
       totals_.farthest = std::max(totals_.farthest, away);
     }
   }
-  for (const Piece& piece : pieces_.cut_off(left_, tetrahedra)) {
+  judge(pieces_.cut_off(left_, tetrahedra), surface);
+  return removed_;
+}
+
+void Resection::note_change() {
+  version_ += changed_ ? 0 : 1;
+  changed_ = true;
+}
+
+/// What has come loose goes, or stays.
+void Resection::judge(std::span<const Piece> pieces, Surface& surface) {
+  for (const Piece& piece : pieces) {
     if (piece.held) continue;
     if (piece.volume >= smallest_piece_) {
       ++totals_.loose_pieces;
@@ -46,7 +62,31 @@ std::span<const int> Resection::remove(std::span<const int> tetrahedra, Surface&
     totals_.dropped_volume += piece.volume;
     take_out(piece.tetrahedra, surface);
   }
-  return removed_;
+}
+
+const Parted& Resection::part(const BladeEdge& was, const BladeEdge& is, std::span<Vec3> were,
+                              std::span<Vec3> are, Surface& surface) {
+  removed_.clear();
+  asked_for_ = 0;
+  parted_ = {};
+  parted_.stroke = scalpel_->cut(was, is, were, are, left_);
+  totals_.slides += parted_.stroke.slides.size();
+  if (parted_.stroke.faces.empty()) return parted_;
+  note_change();
+  const double before = left_.cut_area();
+  parted_.parting = left_.part(parted_.stroke.faces, surface);
+  parted_.area = 0.5 * (left_.cut_area() - before);
+  totals_.parted_area += parted_.area;
+  totals_.cut_area = left_.cut_area();
+  totals_.splits += parted_.parting.splits.size();
+  for (const int face : plan_ ? parted_.stroke.faces : std::vector<int>()) {
+    const double away = std::abs(plan_->distance(left_.centre_of_face(face)));
+    totals_.parted_distance_sum += left_.area_of(face) * away;
+    totals_.farthest = std::max(totals_.farthest, away);
+  }
+  totals_.ran_out = totals_.ran_out || parted_.parting.ran_out;
+  judge(pieces_.parted(left_, parted_.parting.tetrahedra), surface);
+  return parted_;
 }
 
 void Resection::grow(const DeformationModel::Growth& growth) {

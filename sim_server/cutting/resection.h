@@ -1,5 +1,8 @@
 #pragma once
+#include <optional>
+
 #include "sim_server/cutting/cautery.h"
+#include "sim_server/cutting/scalpel.h"
 #include "sim_server/deformation/deformation_model.h"
 #include "sim_server/mesh/pieces.h"
 
@@ -16,8 +19,14 @@ struct ResectionTotals {
   double distance_sum = 0, farthest = 0;      ///< from the plan: m x m^3 of what is gone; m
   double heat = 0, elastic = 0, kinetic = 0;  ///< J: put in by tips; that went with the tissue
   Vec3 momentum = Vec3::Zero();               ///< N s, the same
+  double parted_area = 0;                     ///< by blades, m^2: one side
+  double parted_distance_sum = 0;             ///< of that from the plan, m x m^2
+  std::uint64_t slides = 0, splits = 0;       ///< of vertices, by blades
+  bool ran_out = false;                       ///< of vertices: a blade has parted less than it went through
   double hot_time = 0, contact_time = 0;      ///< s with a tip hot; and that touched
 
+  /// Of what blades parted, from the plan, m; 0 where nothing is.
+  double mean_parted_distance() const { return parted_area > 0 ? parted_distance_sum / parted_area : 0; }
   /// Of what heat removed, from the plan, m; 0 where nothing is gone.
   double mean_distance() const {
     const double cut = volume - dropped_volume;
@@ -25,13 +34,23 @@ struct ResectionTotals {
   }
 };
 
+/// What a blade parted.
+struct Parted {
+  Stroke stroke;
+  Parting parting;
+  double area = 0;  ///< m^2, one side
+};
+
 /// What of an organ is left while it is cut. One thread; allocates.
 class Resection {
  public:
   /// Gives `surface` the vertices of all that can be cut (`CutMesh`). `held`: mesh vertices that are fixed,
   /// ascending. The mesh outlives this. Throws `Error` as `removable_tetrahedra`.
-  Resection(const Cutting& cutting, const TetMesh& mesh, std::span<const int> held, Surface& surface);
+  /// `parts`: by blades, too; the mesh then gets spare vertices, as `CutMesh` says.
+  Resection(const Cutting& cutting, TetMesh& mesh, std::span<const int> held, Surface& surface, bool parts);
 
+  /// What follows is of one more step.
+  void begin_step() { changed_ = false; }
   /// `dt` (s) of these hot tips, on the surface at `positions`. What is gone then, in the order in which it
   /// went: what heat removed, then pieces that it cut off. Changes `surface`.
   std::span<const int> advance(std::span<const HotTip> tips, std::span<const Vec3> positions, double dt,
@@ -41,6 +60,14 @@ class Resection {
 
   /// Of what the last of these removed, what was asked for: without the pieces that it cut off.
   std::span<const int> asked_for() const { return std::span(removed_).first(asked_for_); }
+
+  /// What a blade that `was` there and `is` here parts, of one that `parts`, as `Scalpel::cut`. The pieces
+  /// that it cut off and that go are `removed` then.
+  const Parted& part(const BladeEdge& was, const BladeEdge& is, std::span<Vec3> were, std::span<Vec3> are,
+                     Surface& surface);
+  std::span<const int> removed() const { return removed_; }
+  /// The way over which a blade does the work of what it parts, m.
+  double blade_size() const { return scalpel_->size(); }
 
   /// What can be removed grows, as the model says.
   void grow(const DeformationModel::Growth& growth);
@@ -54,7 +81,7 @@ class Resection {
   const Growth& growth() const { return growth_; }
 
   const CutMesh& left() const { return left_; }
-  /// Grows with each `advance` that removed something: of which surface the triangles are.
+  /// In how many steps it was cut so far: of which surface the triangles are.
   std::uint32_t version() const { return version_; }
   const ResectionTotals& totals() const { return totals_; }
   /// For what only the owner knows.
@@ -64,16 +91,21 @@ class Resection {
   static double estimated_bytes(double vertices, double tetrahedra, double faces);
 
  private:
+  void note_change();
   void take_out(std::span<const int> tetrahedra, Surface& surface);
+  void judge(std::span<const Piece> pieces, Surface& surface);
 
   std::optional<CutPlan> plan_;
   double smallest_piece_;  // m^3
   CutMesh left_;
   PieceFinder pieces_;
   Cautery cautery_;
+  std::optional<Scalpel> scalpel_;
+  Parted parted_;
   std::vector<int> removed_;
   std::size_t asked_for_ = 0;
   std::uint32_t version_ = 0;
+  bool changed_ = false;  // in this step
   ResectionTotals totals_;
   Growth growth_;
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim_server/deformation/mass_scaling.h"
+
 namespace palpate::sim {
 namespace {
 
@@ -50,6 +52,33 @@ DeformationModel::Removed CuttableBody::remove(std::span<const int> tetrahedra, 
     }
   }
   return gone;
+}
+
+void CuttableBody::part(std::span<const DeformationModel::Slide> slides, const Parting& parting,
+                        const CutMesh& left, const Material& material, double frequency) {
+  std::vector<int> reshaped;
+  for (const DeformationModel::Slide& slide : slides) {
+    const int place = tensors.places()[static_cast<std::size_t>(slide.vertex)];
+    const int other = tensors.places()[static_cast<std::size_t>(slide.towards)];
+    for (std::vector<double>* const all : {&motion.state.u, &motion.state.v}) {
+      Eigen::Map<Vec3> own(all->data() + 3 * place);
+      Vec3 end = Vec3::Zero();  // of what stands
+      if (other >= 0) end = Eigen::Map<const Vec3>(all->data() + 3 * other);
+      own += slide.share * (end - own);
+    }
+    for (const int t : left.around(slide.vertex)) {
+      if (left.is_left(t)) reshaped.push_back(t);
+    }
+  }
+  for (const Split& split : parting.splits) {
+    const int place = tensors.places()[static_cast<std::size_t>(split.vertex)];
+    for (const int t : left.around(split.copy)) reshaped.push_back(t);
+    first[static_cast<std::size_t>(left.number_of(split.copy))] = static_cast<int>(motion.state.u.size());
+    motion.append_copy_of(place);
+  }
+  for (const int t : reshaped)
+    tensors.set_mass_factor(t, mass_factor_of(left.mesh(), static_cast<std::size_t>(t), material, frequency));
+  tensors.part(parting, reshaped, left, material);
 }
 
 void CuttableBody::static_force(const std::vector<double>& x, std::span<const NodalLoad> loads,

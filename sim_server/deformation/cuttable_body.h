@@ -27,6 +27,11 @@ struct CuttableBody {
   DeformationModel::Removed remove(std::span<const int> tetrahedra, const CutMesh& left,
                                    const Material& material);
 
+  /// Slides and parts as `DeformationModel::part`. Where that makes an element so stiff that it would have a
+  /// higher frequency (rad/s) alone, its mass grows.
+  void part(std::span<const DeformationModel::Slide> slides, const Parting& parting, const CutMesh& left,
+            const Material& material, double frequency);
+
   /// The forces on what is in motion, N, where that stands at `x` (m; both 3 x vertices in motion) and the
   /// rest is at rest, under these loads. Moves the modes of the rest to where they balance. O(edges + b^2).
   void static_force(const std::vector<double>& x, std::span<const NodalLoad> loads,

@@ -72,9 +72,14 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
   positions_ = free_;
   loads_.reserve(kMaxTools * node_.size());
   kept_.reserve(loads_.capacity());
-  held_.reserve(loads_.capacity());
+  pressed_.reserve(loads_.capacity());
   moving_.reserve(node_.size());
-  moved_.reserve(2 * node_.size() + loads_.capacity());
+  exposed_.reserve(node_.size());
+  moved_.reserve(3 * node_.size());
+  shown_.resize(node_.size());
+  for (const Triangle& triangle : inputs.surface.triangles) {
+    for (const int corner : triangle) shown_[static_cast<std::size_t>(corner)] = 1;
+  }
   look_at_body();
 }
 
@@ -82,11 +87,26 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
 void CuttableMotion::look_at_body() {
   force_.assign(body_->motion.state.f.size(), 0);
   moving_.clear();
+  exposed_.clear();
   for (std::size_t v = 0; v < node_.size(); ++v) {
-    if (body_->first[v] >= 0) moving_.push_back(static_cast<int>(v));
+    if (body_->first[v] < 0) continue;
+    moving_.push_back(static_cast<int>(v));
+    if (shown_[v] != 0) exposed_.push_back(static_cast<int>(v));
   }
   compliance_.emplace(body_->tensors, body_->first, body_->rest ? &*body_->rest : nullptr, sub_step_,
                       held_stiffness_);
+}
+
+/// Those of these tetrahedra that are on the surface by now.
+void CuttableMotion::show_corners(std::span<const int> tetrahedra, const CutMesh& left) {
+  for (const int t : tetrahedra) {
+    for (const int corner : left.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
+      const int vertex = left.number_of(corner);
+      if (vertex < 0 || !left.on_surface(vertex) || shown_[static_cast<std::size_t>(vertex)] != 0) continue;
+      shown_[static_cast<std::size_t>(vertex)] = 1;
+      if (body_->first[static_cast<std::size_t>(vertex)] >= 0) exposed_.push_back(vertex);
+    }
+  }
 }
 
 /// `modes` of the rest add at most so much, of squares; rad/s.
@@ -103,14 +123,15 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
     ended_ = false;
     if (body_->rest) follow();
     take_sub_step();
-    update_free();
+    const bool ends = instant_ + 1 == instants_;
+    update_free(ends ? moving_ : exposed_);
     if (body_->rest) carry_rest();
     instant_ = (instant_ + 1) % instants_;
+    go_free(ends ? moving_ : exposed_);
     note_moved();
     press();
   }
-  const bool any_moved = instant_ == 0;  // where a step ends
-  return {.positions = free_, .loaded = positions_, .moved = any_moved ? nullptr : &moved_};
+  return {.positions = free_, .loaded = positions_, .moved = &moved_};
 }
 
 /// What the rest does on the border where both are by now.
@@ -164,16 +185,19 @@ void CuttableMotion::take_sub_step() noexcept {
   body_->motion.run(sub_step_);
 }
 
-/// What is in motion, what contact looks at of the rest, and what it lets go of what is held.
+/// What is shown of what is in motion, and what contact looks at of the rest: where a step ends, all of that.
 void CuttableMotion::note_moved() noexcept {
-  moved_.assign(moving_.begin(), moving_.end());
-  moved_.insert(moved_.end(), held_.begin(), held_.end());
-  if (body_->rest) moved_.insert(moved_.end(), body_->rest->watched().begin(), body_->rest->watched().end());
+  moved_.assign(exposed_.begin(), exposed_.end());
+  if (body_->rest) {
+    const auto rest = instant_ == 0 ? body_->rest->vertices() : body_->rest->watched();
+    moved_.insert(moved_.end(), rest.begin(), rest.end());
+  }
+  moved_by_itself_ = moved_.size();
 }
 
-/// Where what is in motion goes free of loads.
-void CuttableMotion::update_free() noexcept {
-  for (const int vertex : moving_) {
+/// Where these, in motion, go free of loads.
+void CuttableMotion::update_free(std::span<const int> vertices) noexcept {
+  for (const int vertex : vertices) {
     const auto v = static_cast<std::size_t>(vertex);
 
     free_[v] = rest_place(static_cast<int>(v)) +
@@ -192,16 +216,28 @@ void CuttableMotion::end_sub_step() noexcept {
   }
 }
 
-void CuttableMotion::press() noexcept {
-  const auto go_free = [this](int vertex) {
+void CuttableMotion::go_free(std::span<const int> vertices) noexcept {
+  for (const int vertex : vertices)
     positions_[static_cast<std::size_t>(vertex)] = free_[static_cast<std::size_t>(vertex)];
-  };
-  std::ranges::for_each(moving_, go_free);
-  std::ranges::for_each(held_, go_free);
-  held_.clear();
-  for (const NodalLoad& load : loads_) {
-    if (body_->first[static_cast<std::size_t>(load.vertex)] < 0) held_.push_back(load.vertex);
+}
+
+/// What is not in motion moves where it is pressed, and where it was.
+void CuttableMotion::note_pressed() noexcept {
+  for (const int vertex : pressed_) {
+    const auto pressed = std::span(moved_).subspan(moved_by_itself_);
+    if (body_->first[static_cast<std::size_t>(vertex)] < 0 &&
+        std::ranges::find(pressed, vertex) == pressed.end())
+      moved_.push_back(vertex);
   }
+}
+
+/// All else is where it is free.
+void CuttableMotion::press() noexcept {
+  note_pressed();
+  go_free(pressed_);
+  pressed_.clear();
+  for (const NodalLoad& load : loads_) pressed_.push_back(load.vertex);
+  note_pressed();
   compliance_->move(loads_, instant_ == 0, free_, positions_);
 }
 
@@ -215,7 +251,6 @@ std::span<const Vec3> CuttableMotion::apply(std::span<const NodalLoad> loads) no
     if (body_->rest) body_->rest->watch({&load.vertex, 1});
   }
   press();
-  note_moved();
   return positions_;
 }
 
@@ -273,9 +308,29 @@ DeformationModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra
   };
   for (const int t : tetrahedra) add(lost_with(t, left));
   add(body_->remove(tetrahedra, left, material_));
+  show_corners(tetrahedra, left);
   if (growth_) growth_->note_removed(tetrahedra);
   std::erase_if(loads_, [&](const NodalLoad& load) { return !left.on_surface(load.vertex); });
   return gone;
+}
+
+void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) {
+  end_contact();
+  body_->part(slides, parting, left, material_, scaling_.frequency);
+  const auto stand_anew = [&](int vertex) {
+    rest_places_[static_cast<std::size_t>(vertex)] = left.mesh().vertices[static_cast<std::size_t>(vertex)];
+  };
+  for (const Slide& slide : slides) stand_anew(slide.vertex);
+  for (const Split& split : parting.splits) stand_anew(split.copy);
+  show_corners(parting.tetrahedra, left);
+  look_at_body();
+  go_on_with_body();
+}
+
+/// What is in motion is where the body says.
+void CuttableMotion::go_on_with_body() noexcept {
+  update_free(moving_);
+  go_free(moving_);
 }
 
 DeformationModel::Growth CuttableMotion::grow(const CutMesh& left) {
@@ -289,9 +344,7 @@ DeformationModel::Growth CuttableMotion::grow(const CutMesh& left) {
   force_.reserve(grown.body->motion.state.f.size());  // from here on nothing throws
   std::swap(body_, grown.body);
   look_at_body();
-  update_free();
-  for (const int vertex : moving_)
-    positions_[static_cast<std::size_t>(vertex)] = free_[static_cast<std::size_t>(vertex)];
+  go_on_with_body();
   for (const NodalLoad& load : loads_) body_->rest->watch({&load.vertex, 1});
   allowed_ = std::move(grown.allowed);
   return {false, allowed_, {}};
@@ -305,8 +358,8 @@ std::vector<MemoryPart> CuttableMotion::memory() const {
                    1e3 * scaling_.added)},
       {"motion", body_->motion.bytes() + force_.size() * sizeof(double)},
       {"positions", (free_.size() + positions_.size() + 2 * nodes_.size() + kept_.capacity()) * sizeof(Vec3) +
-                        (moving_.capacity() + held_.capacity()) * sizeof(int) +
-                        loads_.capacity() * sizeof(NodalLoad) +
+                        (moving_.capacity() + exposed_.capacity() + pressed_.capacity()) * sizeof(int) +
+                        shown_.size() + loads_.capacity() * sizeof(NodalLoad) +
                         (body_->first.size() + node_.size()) * sizeof(int)}};
   if (growth_) parts.push_back({"growth", growth_->bytes()});
   if (body_->rest)

@@ -41,6 +41,7 @@ class CuttableMotion : public DeformationModel {
   /// Empty where some of the body is condensed.
   std::span<const Vec3> nodes() const noexcept override;
   Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
+  void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) override;
   Growth grow(const CutMesh& left) override;
   std::vector<MemoryPart> memory() const override;
 
@@ -50,12 +51,14 @@ class CuttableMotion : public DeformationModel {
   CuttableMotion(const ModelInputs& inputs, const RegionInMotion* region);
   void choose_sub_step(const ModelInputs& inputs, double modes);
   void look_at_body();
+  void show_corners(std::span<const int> tetrahedra, const CutMesh& left);
+  void go_on_with_body() noexcept;
   void end_contact() noexcept;
   void end_sub_step() noexcept;
   void take_sub_step() noexcept;
   void follow() noexcept;
   void note_moved() noexcept;
-  void update_free() noexcept;
+  void update_free(std::span<const int> vertices) noexcept;
   void carry_rest() noexcept;
   /// What a load on a vertex in motion changes its velocity by over a sub-step, m/s.
   Vec3 kick_of(const NodalLoad& load) const {
@@ -66,6 +69,8 @@ class CuttableMotion : public DeformationModel {
     return rest_places_[static_cast<std::size_t>(node_[static_cast<std::size_t>(vertex)])];
   }
   void press() noexcept;
+  void note_pressed() noexcept;
+  void go_free(std::span<const int> vertices) noexcept;
   Removed lost_with(int tetrahedron, const CutMesh& left) const;
 
   Material material_;
@@ -81,8 +86,11 @@ class CuttableMotion : public DeformationModel {
   bool ended_ = false;                  // the sub-step in hand has its end, as tissue was removed
   std::vector<Vec3> kept_;              // of `carry_rest`: where loaded vertices are without their loads, m
   std::vector<NodalLoad> loads_;        // over it
-  std::vector<int> moving_, held_;      // surface vertices: in motion; loaded, and not in motion
-  std::vector<int> moved_;              // in this sub-step
+  std::vector<char> shown_;             // of surface vertices: triangles have or had them as corners
+  std::vector<int> moving_, exposed_;   // surface vertices in motion; those of them that are shown
+  std::vector<int> pressed_;            // that are loaded, and not where they are free
+  std::vector<int> moved_;              // in this sub-step; those that are pressed last
+  std::size_t moved_by_itself_ = 0;     // so many of them are not
   std::vector<int> node_;               // per surface vertex: its mesh vertex
   std::vector<Vec3> free_, positions_;  // of surface vertices, m
   std::vector<Vec3> rest_places_;       // of mesh vertices, m

@@ -10,6 +10,7 @@
 namespace palpate::sim {
 
 class CutMesh;
+struct Parting;
 struct SlowModes;
 
 /// A force on one vertex of the surface.
@@ -135,6 +136,17 @@ class DeformationModel {
                          [[maybe_unused]] const CutMesh& left) {
     return {};
   }
+
+  /// A mesh vertex goes along an edge of what is left by this share of it, at rest, and as it is deformed.
+  struct Slide {
+    int vertex, towards;
+    double share;
+  };
+  /// Between two steps: these vertices slid, in this order, then faces were parted; `left` is what is left
+  /// by now. Copies of vertices are where these are, as fast. Of models whose row says `parts`. O(changed)
+  /// but for room. Allocates.
+  virtual void part([[maybe_unused]] std::span<const Slide> slides, [[maybe_unused]] const Parting& parting,
+                    [[maybe_unused]] const CutMesh& left) {}
 
   /// How what can be removed grows.
   struct Growth {

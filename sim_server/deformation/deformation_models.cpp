@@ -59,6 +59,7 @@ constexpr std::array kModels{
          .materials = Materials::kPlain,
          .moves = true,
          .cuts = true,
+         .parts = true,
          .unneeded = {{"factor of the stiffness matrix, kept",
                        "explicit steps solve nothing; set-up lets its own go"}}}),
     row_of<Implicit, RayleighDamping, ImplicitSettings, ContactInstants, ClientModes>(
@@ -86,6 +87,7 @@ constexpr std::array kModels{
          .materials = Materials::kPlain,
          .moves = true,
          .cuts = true,
+         .parts = true,
          .needs_cutting = true}),
 };
 

@@ -32,6 +32,7 @@ struct DeformationModelRow {
   bool moves = false;  ///< the organ has inertia, or goes as one piece; false: at rest at every instant
   bool flies = false;  ///< nothing need hold the body: it has mass
   bool cuts = false;   ///< tissue can be removed while it is felt (`remove`)
+  bool parts = false;  ///< and parted by a blade (`part`)
   bool needs_cutting = false;  ///< only of scenes with [cutting]
   /// What other models build and this one need not, for `explain`.
   struct Unneeded {

@@ -58,6 +58,12 @@ ExplicitMotion::ExplicitMotion(const ElasticTensors& tensors, const RayleighDamp
     all->assign(3 * tensors.masses().size() * columns, 0);
 }
 
+void ExplicitMotion::append_copy_of(int place) {
+  for (auto* const all : {&state.u, &state.v, &state.f, &bent_, &resistance_}) {
+    for (int i = 0; i < 3; ++i) all->push_back(double{(*all)[static_cast<std::size_t>(3 * place + i)]});
+  }
+}
+
 void ExplicitMotion::sub_step(double h, const std::vector<double>& force) noexcept {
   if (columns_ == 1) {
     tensors_.multiply(bent_.data(), resistance_.data());

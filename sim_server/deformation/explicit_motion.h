@@ -42,6 +42,10 @@ class ExplicitMotion {
   /// The same by one sub-step under the forces of `state`, as if they had always been there.
   void run(double h) noexcept;
 
+  /// The tensors have one more vertex, the last one: it is where this one is, as fast. Of one motion.
+  /// Allocates.
+  void append_copy_of(int place);
+
   std::size_t bytes() const { return 5 * state.u.size() * sizeof(double); }
 
  private:

@@ -26,12 +26,23 @@ double squared_frequency(const LinearTetrahedron& element, const Material& mater
   return solver.eigenvalues()[11] / (material.density / 4);
 }
 
+double squared_frequency_in(const TetMesh& mesh, std::size_t tetrahedron, const Material& material) {
+  const Tetrahedron& t = mesh.tetrahedra[tetrahedron];
+  const auto& x = mesh.vertices;
+  const LinearTetrahedron element({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
+  return (mesh.stiffness.empty() ? 1 : mesh.stiffness[tetrahedron]) * squared_frequency(element, material);
+}
+
 }  // namespace
+
+double mass_factor_of(const TetMesh& mesh, std::size_t tetrahedron, const Material& material,
+                      double frequency) {
+  return std::max(1.0, squared_frequency_in(mesh, tetrahedron, material) / (frequency * frequency));
+}
 
 MassScaling scale_masses(const TetMesh& mesh, const Material& material, double share,
                          std::span<const char> moves) {
   const auto is_in_motion = [&](int v) { return moves.empty() || moves[static_cast<std::size_t>(v)] != 0; };
-  const auto& x = mesh.vertices;
   std::vector<double> squares, masses;  // of each element: (rad/s)^2, kg
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
     const Tetrahedron& t = mesh.tetrahedra[e];
@@ -40,10 +51,8 @@ MassScaling scale_masses(const TetMesh& mesh, const Material& material, double s
       masses.push_back(0);
       continue;
     }
-    const LinearTetrahedron element({x[t[0]], x[t[1]], x[t[2]], x[t[3]]});
-    const double stiffness = mesh.stiffness.empty() ? 1 : mesh.stiffness[e];
-    squares.push_back(stiffness * squared_frequency(element, material));
-    masses.push_back(material.density * element.volume);
+    squares.push_back(squared_frequency_in(mesh, e, material));
+    masses.push_back(material.density * six_volumes(mesh, t) / 6);
   }
   std::vector<std::size_t> order(squares.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -25,4 +25,8 @@ struct MassScaling {
 MassScaling scale_masses(const TetMesh& mesh, const Material& material, double share,
                          std::span<const char> moves = {});
 
+/// The factor (>= 1) of its mass with which a tetrahedron alone has at most this frequency, rad/s.
+double mass_factor_of(const TetMesh& mesh, std::size_t tetrahedron, const Material& material,
+                      double frequency);
+
 }  // namespace palpate::sim

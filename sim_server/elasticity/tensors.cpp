@@ -136,25 +136,82 @@ ElasticTensors::ElasticTensors(const TetMesh& mesh, const Material& material, co
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) add(mesh, e, material, all);
 }
 
+namespace {
+void sort_each_once(auto& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+void add_left_around(const Tetrahedron& corners, const CutMesh& left, std::vector<int>& around) {
+  for (const int v : corners) {
+    for (const int other : left.around(v)) {
+      if (left.is_left(other)) around.push_back(other);
+    }
+  }
+}
+}  // namespace
+
+void ElasticTensors::note_touched(const Tetrahedron& corners, Touched& touched) const {
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) {
+      const auto [before, after] = std::minmax(place_[corners[a]], place_[corners[b]]);
+      if (before >= 0) touched.emplace_back(after, before);
+    }
+  }
+}
+
 void ElasticTensors::remove(std::span<const int> removed, const CutMesh& left, const Material& material) {
-  std::vector<std::pair<int, int>> touched;  // places, the later first; of a vertex twice the same
+  Touched touched;
   std::vector<int> around;
   for (const int t : removed) {
     const Tetrahedron& corners = left.mesh().tetrahedra[static_cast<std::size_t>(t)];
-    for (std::size_t a = 0; a < 4; ++a) {
-      for (std::size_t b = 0; b <= a; ++b) {
-        const auto [before, after] = std::minmax(place_[corners[a]], place_[corners[b]]);
-        if (before >= 0) touched.emplace_back(after, before);
-      }
-      for (const int other : left.around(corners[a])) {
-        if (left.is_left(other)) around.push_back(other);
-      }
+    note_touched(corners, touched);
+    add_left_around(corners, left, around);
+  }
+  sum_anew(touched, around, left, material);
+}
+
+void ElasticTensors::part(const Parting& parting, std::span<const int> reshaped, const CutMesh& left,
+                          const Material& material) {
+  for (const Split& split : parting.splits) append(split.copy, left);
+  Touched touched;
+  std::vector<int> around;
+  const auto note = [&](const Tetrahedron& corners) {
+    note_touched(corners, touched);
+    add_left_around(corners, left, around);
+  };
+  for (const auto& [t, before] : parting.changed) {
+    note(before);
+    note(left.mesh().tetrahedra[static_cast<std::size_t>(t)]);
+  }
+  for (const int t : reshaped) note(left.mesh().tetrahedra[static_cast<std::size_t>(t)]);
+  sum_anew(touched, around, left, material);
+}
+
+/// A vertex that had no tetrahedron gets the last place, with an edge to each that is before it.
+void ElasticTensors::append(int vertex, const CutMesh& left) {
+  const int place = place_[static_cast<std::size_t>(vertex)] = static_cast<int>(mass_.size());
+  std::vector<int> before;
+  for (const int t : left.around(vertex)) {
+    for (const int other : left.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
+      const int at = place_[static_cast<std::size_t>(other)];
+      if (at >= 0 && at < place) before.push_back(at);
     }
   }
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
+  sort_each_once(before);
+  neighbour_.insert(neighbour_.end(), before.begin(), before.end());
+  first_edge_.push_back(static_cast<int>(neighbour_.size()));
+  edge_tensors_.resize(9 * neighbour_.size() + 1, 0);  // a product reads one beyond
+  vertex_tensors_.resize(vertex_tensors_.size() + 6, 0);
+  mass_.push_back(1);  // stays, as any would, where none of its tetrahedra is left by now
+  if (!added_.empty()) added_.push_back(0);
+}
+
+/// Of what is `touched`, over the tetrahedra `around` it.
+void ElasticTensors::sum_anew(Touched& touched, std::vector<int>& around, const CutMesh& left,
+                              const Material& material) {
+  sort_each_once(touched);
+  sort_each_once(around);
   std::vector<double> mass_before;
   for (const auto& [i, j] : touched) {
     if (i != j) {

@@ -36,6 +36,18 @@ class ElasticTensors {
   /// O(removed), whatever the size of the mesh: some 20 us each.
   void remove(std::span<const int> removed, const CutMesh& left, const Material& material);
 
+  /// After faces have been parted: the copies of vertices have places after all others, with the edges that
+  /// they have now, and what is around tetrahedra that have other corners, or whose shape at rest has changed
+  /// (`reshaped`), is summed anew, as by `remove`. O(changed), but for room.
+  void part(const Parting& parting, std::span<const int> reshaped, const CutMesh& left,
+            const Material& material);
+
+  /// From now on a tetrahedron has this factor of its mass, once it is summed anew.
+  void set_mass_factor(int tetrahedron, double factor) {
+    if (mass_factors_.empty()) return;
+    mass_factors_[static_cast<std::size_t>(tetrahedron)] = factor;
+  }
+
   /// From now on this vertex has so much (kg, >= 0) besides what its tetrahedra give.
   void add_mass(int place, double kg);
 
@@ -63,6 +75,11 @@ class ElasticTensors {
   template <class Wanted>
   void add(const TetMesh& mesh, std::size_t tetrahedron, const Material& material, const Wanted& wanted);
   double* edge_tensor(int i, int j);
+  /// Places of the ends of edges, the later first; of a vertex twice the same.
+  using Touched = std::vector<std::pair<int, int>>;
+  void note_touched(const Tetrahedron& corners, Touched& touched) const;
+  void sum_anew(Touched& touched, std::vector<int>& around, const CutMesh& left, const Material& material);
+  void append(int vertex, const CutMesh& left);
 
   std::vector<int> place_;
   std::vector<double> mass_factors_;  // of tetrahedra, or empty

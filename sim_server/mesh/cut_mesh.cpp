@@ -32,6 +32,12 @@ std::vector<int> all_vertices(const Surface& surface, const TetMesh& mesh,
 
 }  // namespace
 
+/// The face of `other` that is towards `tetrahedron`.
+int CutMesh::facing(int other, int tetrahedron) const {
+  const auto& back = neighbours_[static_cast<std::size_t>(other)];
+  return 4 * other + static_cast<int>(std::ranges::find(back, tetrahedron) - back.begin());
+}
+
 CutMesh::CutMesh(const TetMesh& mesh, std::vector<Removable> removable, Surface& surface)
     : mesh_(mesh),
       neighbours_(face_neighbours(mesh)),
@@ -47,6 +53,7 @@ CutMesh::CutMesh(const TetMesh& mesh, std::vector<Removable> removable, Surface&
   }
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) around_first_[v + 1] += around_first_[v];
   around_.resize(4 * mesh.tetrahedra.size());
+  around_end_.assign(around_first_.begin() + 1, around_first_.end());
   std::vector<int> next = around_first_;
   std::map<Triangle, int> outer;
   for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) {
@@ -82,7 +89,7 @@ void CutMesh::allow(std::span<const int> tetrahedra) {
 std::span<const int> CutMesh::around(int vertex) const {
   const auto v = static_cast<std::size_t>(vertex);
   return std::span(around_).subspan(static_cast<std::size_t>(around_first_[v]),
-                                    static_cast<std::size_t>(around_first_[v + 1] - around_first_[v]));
+                                    static_cast<std::size_t>(around_end_[v] - around_first_[v]));
 }
 
 std::array<int, 4> CutMesh::neighbours(int tetrahedron) const {
@@ -93,7 +100,12 @@ std::array<int, 4> CutMesh::neighbours(int tetrahedron) const {
   return across;
 }
 
-/// At rest, m^2.
+Vec3 CutMesh::centre_of_face(int face) const {
+  Vec3 sum = Vec3::Zero();
+  for (const int v : corners_of_face(mesh_, face)) sum += mesh_.vertices[static_cast<std::size_t>(v)];
+  return sum / 3;
+}
+
 double CutMesh::area_of(int face) const {
   const auto [a, b, c] = corners_of_face(mesh_, face);
   const Vec3& x = mesh_.vertices[static_cast<std::size_t>(a)];
@@ -136,17 +148,15 @@ void CutMesh::remove(std::span<const int> tetrahedra, Surface& surface) {
       const int face = 4 * t + k, other = across[static_cast<std::size_t>(k)];
       if (slot_[static_cast<std::size_t>(face)] >= 0) drop_triangle(face, surface);
       if (other < 0 || !is_left(other)) continue;
-      const auto& back = neighbours_[static_cast<std::size_t>(other)];
-      const auto facing = std::ranges::find(back, t) - back.begin();
-      add_triangle(4 * other + static_cast<int>(facing), surface);
+      add_triangle(facing(other, t), surface);
     }
   }
 }
 
 std::size_t CutMesh::bytes() const {
   return neighbours_.size() * sizeof(neighbours_[0]) + left_.size() + removable_.size() + inner_.size() +
-         (around_.size() + around_first_.size() + number_.size() + faces_.size() + slot_.size() +
-          uses_.size()) *
+         (around_.size() + around_first_.size() + around_end_.size() + number_.size() + faces_.size() +
+          slot_.size() + uses_.size()) *
              sizeof(int);
 }
 

@@ -2,7 +2,9 @@
 /// A mesh of which tetrahedra are removed while it is in use.
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim_server/mesh/surface.h"
@@ -17,6 +19,21 @@ enum class Removable : char {
   kNow,
 };
 
+/// A vertex that became two, as the tetrahedra around it hang together by faces no more: some of them have
+/// `copy` as a corner now.
+struct Split {
+  int vertex, copy;
+};
+
+/// What the parting of faces changed of a mesh.
+struct Parting {
+  std::vector<int> tetrahedra;  ///< on both sides of the faces, ascending
+  std::vector<Split> splits;    ///< in order
+  /// Tetrahedra that have other corners now, ascending, and those they had before.
+  std::vector<std::pair<int, Tetrahedron>> changed;
+  bool ran_out = false;  ///< of vertices: some stayed one that should be two
+};
+
 /// What is left of a mesh while tetrahedra are removed, and its surface. A removal looks at the tetrahedron
 /// and at the four across its faces: O(1), whatever the size of the mesh. Faces between two that are left
 /// become surface when one of them goes, outward from the other; those on the surface go with their
@@ -29,6 +46,10 @@ class CutMesh {
   /// whose numbers its triangles are from then on. `removable`: of each tetrahedron. The mesh outlives this.
   /// O(m log m).
   CutMesh(const TetMesh& mesh, std::vector<Removable> removable, Surface& surface);
+  /// A mesh whose faces can be parted, too. It gets a spare vertex for each of those that may be removed,
+  /// after all others, which `surface` then has, too. `held`: vertices that stay one and where they are,
+  /// ascending.
+  CutMesh(TetMesh& mesh, std::vector<Removable> removable, Surface& surface, std::span<const int> held);
 
   const TetMesh& mesh() const { return mesh_; }
   bool is_left(int tetrahedron) const { return left_[static_cast<std::size_t>(tetrahedron)] != 0; }
@@ -45,6 +66,10 @@ class CutMesh {
   int tetrahedron_of(std::size_t slot) const { return faces_[slot] / 4; }
   /// Of the surface that was inside at first, at rest, m^2.
   double cut_area() const { return cut_area_; }
+  /// Of a mesh vertex, that on the surface; -1 where it can never be there.
+  int number_of(int vertex) const { return number_[static_cast<std::size_t>(vertex)]; }
+  /// Vertices that are of no tetrahedron yet, ascending.
+  std::pair<int, int> spares() const { return {next_spare_, spares_end_}; }
   /// Whether any triangle has this surface vertex as a corner.
   bool on_surface(int vertex) const { return uses_[static_cast<std::size_t>(vertex)] > 0; }
 
@@ -52,22 +77,51 @@ class CutMesh {
   /// of triangles in `surface` change: the last one fills a gap.
   void remove(std::span<const int> tetrahedra, Surface& surface);
 
+  double area_of(int face) const;       ///< of face 4 t + k, at rest, m^2
+  Vec3 centre_of_face(int face) const;  ///< m
+  /// Whether face 4 t + k is surface, of a tetrahedron that is left.
+  bool is_surface(int face) const { return slot_[static_cast<std::size_t>(face)] >= 0; }
+  /// Of face 4 t + k, that of the other tetrahedron that has it; -1: it is surface.
+  int across(int face) const;
+  /// Whether both tetrahedra of a face can be removed.
+  bool can_part(int face) const;
+  /// Whether this vertex can become two, or be moved: all around it can be removed, and it is not held.
+  bool is_free(int vertex) const;
+  /// Whether it is a corner of a face that was inside at first, and is surface now.
+  bool on_cut(int vertex) const;
+  /// Parts these faces, 4 t + k, that `can_part`: both sides become surface. Where the tetrahedra around a
+  /// vertex that `is_free` hang together by faces no more, all but the most that do get a vertex of their
+  /// own. So a face whose corners all stay one is a slit of no width. O(faces), whatever the size of the
+  /// mesh.
+  Parting part(std::span<const int> faces, Surface& surface);
+  /// Puts a vertex elsewhere, at rest, m. Of a mesh whose faces can be parted.
+  void move_vertex(int vertex, const Vec3& x);
+
   std::size_t bytes() const;
 
  private:
-  double area_of(int face) const;
+  int facing(int other, int tetrahedron) const;
   void add_triangle(int face, Surface& surface);
   void drop_triangle(int face, Surface& surface);
+  void add_spares(std::span<const int> held, Surface& surface);
+  using Changed = std::map<int, Tetrahedron>;
+  void split(int vertex, Surface& surface, Parting& parting, Changed& changed);
+  std::vector<std::vector<int>> fans_around(int vertex) const;
+  void give(const std::vector<int>& fan, const Split& split, Surface& surface, Changed& changed);
+  double cut_area_around(int vertex) const;
 
   const TetMesh& mesh_;
-  std::vector<std::array<int, 4>> neighbours_;  // of each tetrahedron, at first
+  TetMesh* parted_ = nullptr;  // the same, where its faces can be parted
+  std::vector<char> held_;     // of vertices, then
+  int next_spare_ = 0, spares_end_ = 0;
+  std::vector<std::array<int, 4>> neighbours_;  // of each tetrahedron, at first, but for faces parted since
   std::vector<char> left_;                      // of tetrahedra
   std::vector<Removable> removable_;
   std::vector<char> inner_;  // of faces, 4 t + k: inside at first
   std::size_t count_;
-  double cut_area_ = 0;                     // m^2
-  std::vector<int> around_, around_first_;  // of mesh vertices
-  std::vector<int> number_;                 // of mesh vertices on the surface, or -1
+  double cut_area_ = 0;                                  // m^2
+  std::vector<int> around_, around_first_, around_end_;  // of mesh vertices
+  std::vector<int> number_;                              // of mesh vertices on the surface, or -1
   std::vector<int> faces_, slot_;  // of each triangle its face 4 t + k; of each face its place, or -1
   std::vector<int> uses_;          // of surface vertices
 };

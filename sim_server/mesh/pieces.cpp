@@ -46,6 +46,15 @@ std::vector<PieceFinder::Front> PieceFinder::fronts_around(const CutMesh& mesh,
   return fronts;
 }
 
+std::vector<PieceFinder::Front> PieceFinder::fronts_at(std::span<const int> tetrahedra) {
+  std::vector<Front> fronts;
+  for (const int t : tetrahedra) {
+    front_of_[static_cast<std::size_t>(t)] = static_cast<int>(fronts.size());
+    fronts.push_back({.reached = {t}});
+  }
+  return fronts;
+}
+
 /// Looks around one more tetrahedron of a front that has one.
 void PieceFinder::grow(const CutMesh& mesh, Front& front, int number) {
   for (const int other : mesh.neighbours(front.reached[front.next++])) {
@@ -91,16 +100,27 @@ int PieceFinder::grow_until_apart(const CutMesh& mesh, std::vector<Front>& front
   return growing.empty() ? -1 : sets.of(growing[0]);
 }
 
-std::vector<Piece> PieceFinder::cut_off(const CutMesh& mesh, std::span<const int> removed) {
+template <class FrontsOf>
+std::vector<Piece> PieceFinder::cut_off_by(const CutMesh& mesh, std::span<const int> tetrahedra,
+                                           const FrontsOf& fronts_of) {
   std::map<int, std::vector<int>> of_bodies;
-  for (const int t : removed) of_bodies[body_of_[static_cast<std::size_t>(t)]].push_back(t);
+  for (const int t : tetrahedra) of_bodies[body_of_[static_cast<std::size_t>(t)]].push_back(t);
   std::vector<Piece> all;
   for (const auto& [body, of_body] : of_bodies) {
-    std::vector<Piece> pieces = cut_off_body(mesh, of_body, body);
+    std::vector<Piece> pieces = cut_off_body(mesh, fronts_of(of_body), body);
     name_bodies(pieces);
     std::ranges::move(pieces, std::back_inserter(all));
   }
   return all;
+}
+
+std::vector<Piece> PieceFinder::cut_off(const CutMesh& mesh, std::span<const int> removed) {
+  return cut_off_by(mesh, removed,
+                    [&](std::span<const int> of_body) { return fronts_around(mesh, of_body); });
+}
+
+std::vector<Piece> PieceFinder::parted(const CutMesh& mesh, std::span<const int> tetrahedra) {
+  return cut_off_by(mesh, tetrahedra, [&](std::span<const int> of_body) { return fronts_at(of_body); });
 }
 
 /// What is cut off is a body of its own from now on.
@@ -112,8 +132,7 @@ void PieceFinder::name_bodies(std::vector<Piece>& pieces) {
   }
 }
 
-std::vector<Piece> PieceFinder::cut_off_body(const CutMesh& mesh, std::span<const int> removed, int body) {
-  std::vector<Front> fronts = fronts_around(mesh, removed);
+std::vector<Piece> PieceFinder::cut_off_body(const CutMesh& mesh, std::vector<Front> fronts, int body) {
   DisjointSets sets(fronts.size());
   const int rest = grow_until_apart(mesh, fronts, sets);
   std::map<int, Front> whole;  // of each set

@@ -26,6 +26,8 @@ class PieceFinder {
   /// what was removed, in turns, until all of them have met but those of pieces that are at an end: O(what is
   /// cut off) and a search of some tetrahedra around where nothing is; of a body that nothing holds O(that).
   std::vector<Piece> cut_off(const CutMesh& mesh, std::span<const int> removed);
+  /// The same of faces that were parted, just now, between these tetrahedra, which are left.
+  std::vector<Piece> parted(const CutMesh& mesh, std::span<const int> tetrahedra);
 
  private:
   /// What one search has reached, in order; from `next` on, what it has not looked around yet.
@@ -33,9 +35,13 @@ class PieceFinder {
     std::vector<int> reached;
     std::size_t next = 0;
   };
-  std::vector<Piece> cut_off_body(const CutMesh& mesh, std::span<const int> removed, int body);
+  template <class FrontsOf>
+  std::vector<Piece> cut_off_by(const CutMesh& mesh, std::span<const int> tetrahedra,
+                                const FrontsOf& fronts_of);
+  std::vector<Piece> cut_off_body(const CutMesh& mesh, std::vector<Front> fronts, int body);
   void name_bodies(std::vector<Piece>& pieces);
   std::vector<Front> fronts_around(const CutMesh& mesh, std::span<const int> removed);
+  std::vector<Front> fronts_at(std::span<const int> tetrahedra);
   void grow(const CutMesh& mesh, Front& front, int number);
   int grow_until_apart(const CutMesh& mesh, std::vector<Front>& fronts, DisjointSets& sets);
   Piece piece_of(const CutMesh& mesh, std::vector<int> tetrahedra) const;

@@ -27,11 +27,15 @@ struct CutGrowth {
   std::string where{};             ///< "FILE:LINE" of this section
 };
 
-/// `[cutting]`: tools with `cut_buttons` remove tissue by heat while one of these is pressed.
+/// `[cutting]`: tools with `cut_buttons` remove tissue by heat, or part it by their `blade`, while one of
+/// these is pressed.
 struct Cutting {
   double power = 40;      ///< W into the tissue at the tip, (0, 1e6]
   double energy = 2.6e9;  ///< J/m^3 that make it vanish, [1e3, 1e12]: of water, from 37 C to vapour
   double spot = 1e-3;     ///< m from the tip's surface that heat goes, [1e-6, 0.05]
+  /// J/m^2 that a blade has to do for what it parts, [0, 1e5]: of bovine liver 164 (Gokgol, Basdogan and
+  /// Canadinc 2012).
+  double toughness = 164;
   /// m^3, [0, 1]: pieces that come loose and are smaller go; larger ones stay, free to move.
   double smallest_piece = 1e-6;
   std::optional<Region> region{};  ///< what can be cut; none: all, or what `plan` says

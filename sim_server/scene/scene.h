@@ -69,6 +69,10 @@ struct ToolSettings {
   std::string grasp_where{};          ///< "FILE:LINE" of either; empty where both are absent
   std::uint16_t cut_buttons = 0;      ///< of which any, while pressed, makes it cut; 0: none does, [0, 65535]
   std::string cut_where{};            ///< "FILE:LINE" of that; empty where it is absent
+  /// The end of its sharp edge, m, in its own frame; the edge begins at the centre of its tip. None: it cuts
+  /// by heat.
+  std::optional<Vec3> blade{};
+  std::string blade_where{};  ///< "FILE:LINE" of that; empty where it is absent
   bool grasps() const { return grasp_buttons != 0 || grasp_place.has_value(); }
 };
 

@@ -39,6 +39,7 @@ Cutting read_cutting(const Config& config) {
   cutting.power = config.number("power", {1e-6, 1e6, "W"}, cutting.power);
   cutting.energy = config.number("energy", {1e3, 1e12, "J/m^3"}, cutting.energy);
   cutting.spot = config.number("spot", {1e-6, 0.05, "m"}, cutting.spot);
+  cutting.toughness = config.number("toughness", {0, 1e5, "J/m^2"}, cutting.toughness);
   cutting.smallest_piece = config.number("smallest_piece", {0, 1, "m^3"}, cutting.smallest_piece);
   if (names_region(config)) cutting.region = read_region(config, "[cutting]");
   if (const auto plan = config.table("plan")) cutting.plan = read_plan(*plan);

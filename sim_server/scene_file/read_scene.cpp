@@ -108,6 +108,16 @@ void require_cutting(const Scene& scene) {
   if (!row.cuts)
     fail("{}: tissue of model \"{}\" cannot be cut; {} can", scene.cutting->where, row.name,
          models_that([](const DeformationModelRow& m) { return m.cuts; }));
+  const auto blade =
+      std::ranges::find_if(scene.tools, [](const auto& tool) { return tool.blade.has_value(); });
+  if (blade != scene.tools.end() && !row.parts)
+    fail("{}: tissue of model \"{}\" cannot be parted by a blade; {} can", blade->blade_where, row.name,
+         models_that([](const DeformationModelRow& m) { return m.parts; }));
+  if (blade != scene.tools.end() && scene.cutting->growth)
+    fail(
+        "{}: what can be cut does not grow where a blade parts it; remove this, and name all of it in "
+        "[cutting]",
+        scene.cutting->growth->where);
   if (scene.cutting->growth && !row.needs_cutting)
     fail("{}: model \"{}\" moves all of the body, of which [cutting] says what can be cut; remove this",
          scene.cutting->growth->where, row.name);
@@ -176,6 +186,17 @@ void read_shape(const Config& config, Tool& tool) {
   }
 }
 
+void read_blade(const Config& config, ToolSettings& tool) {
+  if (!config.has("blade")) return;
+  tool.blade_where = config.where("blade");
+  tool.blade = config.vector("blade", {-0.5, 0.5, "m"});
+  if (!(tool.blade->norm() >= 1e-4))
+    fail("{}: `blade` is the end of the edge as seen from the centre of the tip, 0.1 mm away at least",
+         tool.blade_where);
+  if (tool.cut_buttons == 0)
+    fail("{}: `blade`: nothing makes it cut; give this [[tool]] `cut_buttons`, such as 1", tool.blade_where);
+}
+
 ToolSettings read_tool(const Config& config) {
   ToolSettings tool;
   tool.where = config.where();
@@ -188,6 +209,7 @@ ToolSettings read_tool(const Config& config) {
     tool.cut_buttons = static_cast<std::uint16_t>(config.integer("cut_buttons", {1, 65535, "button bits"}));
     tool.cut_where = config.where("cut_buttons");
   }
+  read_blade(config, tool);
   config.reject_unknown();
   return tool;
 }

@@ -77,19 +77,27 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   progress(name_of(Stage::kSurface), 0);
   if (scene.material) *mesh_ = with_nodes(std::move(*mesh_), scene.material->element);
   surface_ = boundary_surface(*mesh_);
-  if (scene.cutting)
-    cut_.emplace(
-        Cut{Resection(*scene.cutting, *mesh_, fixed_vertices(scene, *mesh_), surface_), scene.tools});
+  const std::vector<int> fixed = fixed_vertices(scene, *mesh_);
+  std::vector<int> standing = fixed;
+  if (scene.cutting) {
+    const bool parts =
+        std::ranges::any_of(scene.tools, [](const auto& tool) { return tool.blade.has_value(); });
+    cut_.emplace(Cut{Resection(*scene.cutting, *mesh_, fixed, surface_, parts), scene.tools,
+                     scene.cutting->toughness});
+    cut_->blades.resize(scene.tools.size());
+    const auto [spare, end] = cut_->resection.left().spares();
+    for (int v = spare; v < end; ++v) standing.push_back(v);
+  }
   for (const int vertex : surface_.vertices) rest_.push_back(mesh_->vertices[vertex]);
   auto touchable = touchable_by(scene.tools, surface_, *mesh_);
   if (std::all_of(touchable.begin(), touchable.end(), [](const auto& list) { return list.empty(); }))
     fail("{}: no triangle of the surface lies within the tool's reach", scene.tools.front().reach_where);
-  const std::vector<int> reachable = vertices_of(touchable), fixed = fixed_vertices(scene, *mesh_);
+  const std::vector<int> reachable = vertices_of(touchable);
   require_memory_for(scene, Purpose::kServe, count_parts(*mesh_, surface_));
   const DeformationModelRow& row = model_of(scene.deformation);
   const bool stays = row.deforms() && !fixed.empty() && !supports_move(scene);
   if (stays) farthest_ = kRunAway * diagonal_of(rest_);
-  tissue_.model = row.make({scene, *mesh_, surface_, fixed, reachable, progress, free_memory(), cache});
+  tissue_.model = row.make({scene, *mesh_, surface_, standing, reachable, progress, free_memory(), cache});
   instants_ = tissue_.model->instants();
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;
@@ -194,6 +202,7 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
     static_cast<ToolForce&>(answers_[i]) = tools_[i].force();
     if (!tells_tangents) answers_[i].force = late_mean_[i];
     answers_[i].mean_force = mean_[i];
+    if (cut_) resist_blade(i, answers_[i]);
   }
   if (cut_) note_cut(inputs, dt);
   time_ += dt;

@@ -180,6 +180,10 @@ class Simulation {
   void advance(std::span<const ToolInput> inputs, double dt);
   void cut(std::span<const ToolInput> inputs, double dt);
   std::span<const int> remove_tissue(std::span<const ToolInput> inputs, double dt);
+  void part_tissue(std::span<const ToolInput> inputs);
+  void part_by(std::size_t tool);
+  void count_gone(const DeformationModel::Removed& gone);
+  void resist_blade(std::size_t tool, ToolAnswer& answer);
   void note_cut(std::span<const ToolInput> inputs, double dt);
   void change_surface();
   PathPoint at_instant(std::size_t tool, const ToolInput& input, int instant) const;
@@ -201,10 +205,21 @@ class Simulation {
   void tell_modes(std::size_t tool);
   bool ran_away() const noexcept;
 
+  /// A blade while it cuts.
+  struct Blade {
+    BladeEdge is{};                     // m
+    std::optional<BladeEdge> was = {};  // when what it parts was looked for last
+    std::vector<Vec3> were = {};        // surface vertices then, m
+    std::optional<Vec3> place = {};     // of the tool at the end of the step before, m
+    double owed = 0;                    // J of what it has parted
+    Vec3 force = Vec3::Zero();          // on it, N
+  };
   /// Of an organ that may be cut.
   struct Cut {
     Resection resection;
     std::vector<ToolSettings> tools;
+    double toughness;                               // J/m^2
+    std::vector<std::optional<Blade>> blades = {};  // of each tool that cuts by one now
     std::vector<HotTip> tips = {};
     std::vector<std::optional<Vec3>> hot_at = {};  // of each tool, where it was hot in the step before
     std::vector<ResectionRow> log = {};

@@ -9,6 +9,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kRounding = 1e-9;  // s
+constexpr double kAtRest = 2e-5;    // m in a step: a blade that goes less far is felt less
 
 bool is_hot(const ToolSettings& settings, const ToolContact& tool, const ToolInput& input) {
   return (input.buttons & settings.cut_buttons) != 0 && input.pose && tool.placed();
@@ -29,7 +30,7 @@ std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs
     cut.hot_at.resize(tools_.size());
     for (std::size_t i = 0; i < tools_.size(); ++i) {
       std::optional<Vec3> from = std::exchange(cut.hot_at[i], std::nullopt);
-      if (!is_hot(cut.tools[i], tools_[i], inputs[i])) continue;
+      if (cut.tools[i].blade || !is_hot(cut.tools[i], tools_[i], inputs[i])) continue;
       const Vec3& p = tools_[i].place();
       cut.tips.push_back({from.value_or(p), p, tools_[i].radius()});
       cut.hot_at[i] = p;
@@ -56,15 +57,84 @@ void Simulation::cut(std::span<const ToolInput> inputs, double dt) {
   const DeformationModel::Growth growth = tissue_.model->grow(cut_->resection.left());
   cut_->resection.grow(growth);
   if (!growth.allowed.empty()) tissue_.note_same_place();
+  cut_->resection.begin_step();
+  const std::uint32_t before = cut_->resection.version();
   const std::span<const int> removed = remove_tissue(inputs, dt);
-  if (removed.empty()) return;
-  for (const int tetrahedron : cut_->resection.asked_for()) cut_->removed.push_back({time_, tetrahedron});
-  const DeformationModel::Removed gone = tissue_.model->remove(removed, cut_->resection.left());
+  if (!removed.empty()) {
+    for (const int tetrahedron : cut_->resection.asked_for()) cut_->removed.push_back({time_, tetrahedron});
+    count_gone(tissue_.model->remove(removed, cut_->resection.left()));
+  }
+  if (!cut_->planned) part_tissue(inputs);
+  if (cut_->resection.version() != before) change_surface();
+}
+
+void Simulation::count_gone(const DeformationModel::Removed& gone) {
   ResectionTotals& totals = cut_->resection.totals();
   totals.elastic += gone.elastic;
   totals.kinetic += gone.kinetic;
   totals.momentum += gone.momentum;
-  change_surface();
+}
+
+/// Along the way of the blades in the step before.
+void Simulation::part_tissue(std::span<const ToolInput> inputs) {
+  Cut& cut = *cut_;
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    std::optional<Blade>& blade = cut.blades[i];
+    if (!cut.tools[i].blade || !is_hot(cut.tools[i], tools_[i], inputs[i])) {
+      blade.reset();
+      continue;
+    }
+    if (!blade) blade.emplace();
+    const ToolPose& pose = tools_[i].pose();
+    blade->is = {pose.p_W, pose.p_W + pose.q_W * *cut.tools[i].blade};
+    if (blade->was) {
+      part_by(i);
+    } else {
+      blade->was = blade->is;
+      blade->were.assign(tissue_.positions.begin(), tissue_.positions.end());
+    }
+  }
+}
+
+void Simulation::part_by(std::size_t tool) {
+  Blade& blade = *cut_->blades[tool];
+  Resection& resection = cut_->resection;
+  std::vector<Vec3> are(tissue_.positions.begin(), tissue_.positions.end());
+  const Parted& parted = resection.part(*blade.was, blade.is, blade.were, are, surface_);
+  if (!parted.stroke.moved) return;
+  blade.was = blade.is;
+  blade.were = std::move(are);
+  blade.owed += cut_->toughness * parted.area;
+  const CutMesh& left = resection.left();
+  const auto number = [&left](int vertex) { return static_cast<std::size_t>(left.number_of(vertex)); };
+  const auto stand_anew = [&](int vertex) {
+    rest_[number(vertex)] = mesh_->vertices[static_cast<std::size_t>(vertex)];
+  };
+  for (const DeformationModel::Slide& slide : parted.stroke.slides) stand_anew(slide.vertex);
+  for (const Split& split : parted.parting.splits) {
+    stand_anew(split.copy);
+    for (std::optional<Blade>& each : cut_->blades) {
+      if (each && each->was) each->were[number(split.copy)] = each->were[number(split.vertex)];
+    }
+  }
+  if (parted.stroke.slides.empty() && parted.stroke.faces.empty()) return;
+  tissue_.model->part(parted.stroke.slides, parted.parting, left);
+  if (!resection.removed().empty()) count_gone(tissue_.model->remove(resection.removed(), left));
+}
+
+/// Against its way in this step, so that it does the work that it owes over the next `blade_size` or so.
+void Simulation::resist_blade(std::size_t tool, ToolAnswer& answer) {
+  if (!cut_->blades[tool]) return;
+  Blade& blade = *cut_->blades[tool];
+  const Vec3& p = tools_[tool].place();
+  const Vec3 way = p - blade.place.value_or(p);
+  blade.place = p;
+  const double far = way.norm();
+  blade.force = -blade.owed / (cut_->resection.blade_size() + far) / (far + kAtRest) * way;
+  blade.owed += blade.force.dot(way);
+  answer.force += blade.force;
+  answer.mean_force += blade.force;
+  if (!tools_[tool].shape().trocar) answer.torque += 0.5 * (blade.is[1] - blade.is[0]).cross(blade.force);
 }
 
 void Simulation::change_surface() {
@@ -85,8 +155,9 @@ void Simulation::note_cut(std::span<const ToolInput> inputs, double dt) {
   if (touched) totals.contact_time += dt;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!is_hot(cut_->tools[i], tools_[i], inputs[i])) continue;
-    cut_->log.push_back(
-        {time_, i, tools_[i].place(), tools_[i].force().force, tools_[i].force().contacts > 0, totals});
+    Vec3 felt = tools_[i].force().force;
+    if (cut_->blades[i]) felt += cut_->blades[i]->force;
+    cut_->log.push_back({time_, i, tools_[i].place(), felt, tools_[i].force().contacts > 0, totals});
   }
 }
 

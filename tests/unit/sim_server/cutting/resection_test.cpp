@@ -191,11 +191,11 @@ TEST_CASE("a body can be cut until nothing but what holds it is left, or nothing
 }
 
 TEST_CASE("a tip that goes far in a step heats along its way, and by no more than its power") {
-  const TetMesh mesh = block();
+  TetMesh mesh = block();
   Surface surface = boundary_surface(mesh);
   std::vector<Vec3> positions;
   const Cutting cutting{.power = 1000, .energy = 1e6, .spot = 1e-3, .where = "test"};
-  Resection resection(cutting, mesh, {}, surface);
+  Resection resection(cutting, mesh, {}, surface, false);
   for (const int v : surface.vertices) positions.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
   const HotTip tip{Vec3(-0.02, 0.002, 0.001), Vec3(0.02, 0.002, 0.001), 0.002};
   double least = 1, most = -1;
@@ -241,13 +241,13 @@ TEST_CASE("a resection gives the same bytes each time") {
 }
 
 TEST_CASE("ten thousand removals leave a closed surface") {
-  const TetMesh mesh = soft_block(Vec3(0.1, 0.05, 0.1), {16, 8, 16});
+  TetMesh mesh = soft_block(Vec3(0.1, 0.05, 0.1), {16, 8, 16});
   Surface surface = boundary_surface(mesh);
   std::vector<int> held;
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
     if (mesh.vertices[static_cast<std::size_t>(v)].y() < -0.049) held.push_back(v);
   }
-  Resection resection(Cutting{.smallest_piece = 0, .where = "test"}, mesh, held, surface);
+  Resection resection(Cutting{.smallest_piece = 0, .where = "test"}, mesh, held, surface, false);
   std::vector<int> order(mesh.tetrahedra.size());
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::minstd_rand(5));

@@ -1,0 +1,70 @@
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "sim_server/deformation/deformation_model.h"
+#include "sim_server/mesh/cut_mesh.h"
+
+namespace palpate::sim {
+
+/// The sharp edge of a blade (m, world): from one end to the other.
+using BladeEdge = std::array<Vec3, 2>;
+
+/// What a blade did to tissue.
+struct Stroke {
+  bool moved = false;                                ///< far enough to be looked at
+  Vec3 way = Vec3::Zero();                           ///< of the blade through the tissue around it, m
+  std::vector<DeformationModel::Slide> slides = {};  ///< in order; done
+  std::vector<int> faces = {};                       ///< to be parted then, 4 t + k, each once
+};
+
+/// What a blade parts of a mesh of tetrahedra: the faces between those whose centres come to lie on two sides
+/// of where it went. First the vertices next to its way slide onto it along the edges that cross it, a little
+/// ahead of it, so that the cut is smooth (Nienhuys and van der Stappen 2001, who also part faces and slide
+/// vertices; which faces these are is found here by the line between the two centres, so that all of the way
+/// is parted, whatever could slide). A vertex slides once, by at most half of the edge, on the surface along
+/// that; it does not where an element would get too flat, or the body another volume. One thread; allocates.
+class Scalpel {
+ public:
+  /// O(tetrahedra).
+  explicit Scalpel(const CutMesh& mesh);
+
+  /// The mean edge of what can be cut, at rest, m.
+  double size() const { return edge_; }
+
+  /// What a blade that `was` there and `is` here by now has to part. `were`, `are`: the surface vertices then
+  /// and now, m. Slides vertices of the mesh, and of both. Nothing where it has hardly moved: it is to be
+  /// asked again, from where it was. O(tetrahedra).
+  Stroke cut(const BladeEdge& was, const BladeEdge& is, std::span<Vec3> were, std::span<Vec3> are,
+             CutMesh& mesh);
+
+  std::size_t bytes() const { return slid_.size(); }
+
+ private:
+  /// Where the blade goes through the tissue, about there.
+  struct Plane {
+    Vec3 origin, along, ahead, normal;  // of its edge: one end; to the other; where it goes; unit
+    double length, back;                // of the edge; that it has come, m
+  };
+  struct Crossing {
+    int vertex, towards;
+    double share, far;  // of the edge; m
+  };
+  std::vector<int> around(const BladeEdge& was, const BladeEdge& is, std::span<const Vec3> are,
+                          const CutMesh& mesh) const;
+  std::vector<Crossing> crossings(const Plane& plane, std::span<const int> near, std::span<const Vec3> are,
+                                  const CutMesh& mesh) const;
+  bool may_slide(const Crossing& crossing, const CutMesh& mesh) const;
+  bool slide(const Crossing& crossing, CutMesh& mesh) const;
+  void slide_onto(const Plane& plane, std::span<const int> near, std::span<Vec3> were, std::span<Vec3> are,
+                  CutMesh& mesh, std::vector<DeformationModel::Slide>& slides);
+  std::vector<int> faces_between(const BladeEdge& was, const BladeEdge& is, std::span<const int> near,
+                                 std::span<const Vec3> were, std::span<const Vec3> are,
+                                 const CutMesh& mesh) const;
+
+  double edge_ = 0, longest_ = 0, height_ = 0;  // m: of edges the mean and the longest; of heights the mean
+  std::vector<char> slid_;                      // of mesh vertices
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,295 @@
+#include "sim_server/cutting/scalpel.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "sim_server/deformation/contact_instants.h"
+#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/mesh/pieces.h"
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/catch.h"
+#include "tests/support/soft_block.h"
+#include "tests/support/tool_inputs.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+
+namespace {
+
+constexpr double kStep = 1.0 / 30;  // s
+constexpr double kDepth = 0.02;     // m
+
+/// A block whose inner vertices lie anywhere within a fifth of a cell of their places.
+TetMesh shaken_block(const std::array<int, 3>& cells) {
+  TetMesh mesh = soft_block(Vec3(0.04, kDepth, 0.04), cells);
+  std::minstd_rand random(11);
+  const auto outside = [](double x, double low, double high) { return x < low + 1e-9 || x > high - 1e-9; };
+  for (Vec3& x : mesh.vertices) {
+    Vec3 shift;
+    for (double& value : shift)
+      value = 0.2 * 0.04 / cells[0] * (2 * static_cast<double>(random()) / std::minstd_rand::max() - 1);
+    if (!outside(x.x(), -0.02, 0.02) && !outside(x.y(), -kDepth, 0) && !outside(x.z(), -0.02, 0.02))
+      x += shift;
+  }
+  return mesh;
+}
+
+/// A body at rest under a blade that goes along a plane.
+struct Cut {
+  explicit Cut(const std::array<int, 3>& cells) : mesh(shaken_block(cells)) {
+    for (const int v : surface.vertices) places.push_back(mesh.vertices[v]);
+  }
+  TetMesh mesh;
+  Surface surface = boundary_surface(mesh);
+  CutMesh cut{mesh, std::vector<Removable>(mesh.tetrahedra.size(), Removable::kNow), surface, {}};
+  std::vector<Vec3> places;
+  Scalpel scalpel{cut};
+  PieceFinder finder{cut, {}};
+  std::vector<Piece> pieces;
+  std::size_t slides = 0;
+
+  void go(const BladeEdge& was, const BladeEdge& is) {
+    std::vector<Vec3> were = places;
+    const Stroke stroke = scalpel.cut(was, is, were, places, cut);
+    slides += stroke.slides.size();
+    const Parting parting = cut.part(stroke.faces, surface);
+    for (const Split& split : parting.splits)
+      places[cut.number_of(split.copy)] = places[cut.number_of(split.vertex)];
+    for (Piece& piece : finder.parted(cut, parting.tetrahedra)) pieces.push_back(std::move(piece));
+  }
+  /// From outside to outside, in so many steps: turned by `turn` (rad) about z, and by `lean` about x.
+  void go_through(double x, double turn, double lean, int steps) {
+    const Quat q(Eigen::AngleAxisd(turn, Vec3::UnitZ()) * Eigen::AngleAxisd(lean, Vec3::UnitY()));
+    const Vec3 along = q * Vec3(0, -1, 0), ahead = q * Vec3(0, 0, 1), from(x, 0.02, 0);
+    const auto edge_at = [&](double share) {
+      const Vec3 a = from + (2 * share - 1) * 0.04 * ahead;
+      return BladeEdge{a, a + 0.06 * along};
+    };
+    for (int i = 1; i <= steps; ++i) go(edge_at((i - 1.0) / steps), edge_at(static_cast<double>(i) / steps));
+  }
+};
+
+/// Of the cut, from that plane: the root of the mean square, m.
+double roughness(const Cut& body, const Vec3& point, const Vec3& normal) {
+  double sum = 0, count = 0;
+  for (std::size_t v = 0; v < body.mesh.vertices.size(); ++v) {
+    if (body.cut.around(static_cast<int>(v)).empty() || !body.cut.on_cut(static_cast<int>(v))) continue;
+    sum += std::pow(normal.dot(body.mesh.vertices[v] - point), 2);
+    ++count;
+  }
+  return std::sqrt(sum / count);
+}
+
+Scene blade_scene(std::string_view model) {
+  Scene scene = soft_block_scene(kDepth, model, ElasticLaw::kLinear, 0.003);
+  scene.tools[0].cut_buttons = 1;
+  scene.tools[0].blade = Vec3(0, -0.012, 0);
+  scene.cutting = Cutting{.where = "test"};
+  scene.deformation.of<RayleighDamping>().stiffness = 1e-4;
+  return scene;
+}
+
+/// Along x over the top, pressed 0.5 mm deep.
+ToolAnswer slide_at(Simulation& simulation, double x, bool cuts) {
+  return step(simulation, Vec3(x, 0.0025, 0.001), {.buttons = static_cast<std::uint16_t>(cuts ? 1 : 0)},
+              kStep);
+}
+
+/// What is left of it, as a mesh of its own.
+TetMesh compact(const Simulation& simulation) {
+  const TetMesh& all = simulation.mesh();
+  TetMesh mesh;
+  std::vector<int> number(all.vertices.size(), -1);
+  for (int t = 0; t < static_cast<int>(all.tetrahedra.size()); ++t) {
+    if (!simulation.resection()->left().is_left(t)) continue;
+    Tetrahedron corners = all.tetrahedra[t];
+    for (int& v : corners) {
+      if (number[v] < 0) {
+        number[v] = static_cast<int>(mesh.vertices.size());
+        mesh.vertices.push_back(all.vertices[v]);
+      }
+      v = number[v];
+    }
+    mesh.tetrahedra.push_back(corners);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("a blade that went through a body has cut it in two, however fast it went, along its plane") {
+  for (const int steps : {1, 9, 60, 500}) {
+    for (const auto& [x, turn, lean] :
+         {std::tuple(0.0021, 0.0, 0.0), std::tuple(-0.0043, 0.3, 0.0), std::tuple(0.0067, -0.2, 0.4)}) {
+      CAPTURE(steps, x, turn, lean);
+      Cut body({12, 6, 12});
+      body.go_through(x, turn, lean, steps);
+      // In two: small pieces at most where the plane met the border at a corner of a tetrahedron.
+      const double volume = 0.04 * kDepth * 0.04;
+      std::vector<double> volumes;
+      for (const Piece& piece : body.pieces) volumes.push_back(piece.volume);
+      REQUIRE(!volumes.empty());
+      std::ranges::sort(volumes, std::greater());
+      const Quat q(Eigen::AngleAxisd(turn, Vec3::UnitZ()) * Eigen::AngleAxisd(lean, Vec3::UnitY()));
+      const Vec3 normal = q * Vec3::UnitX(), point(x, 0.02, 0);
+      double right = 0;  // on its side, by many points
+      const int n = 60;
+      for (int i = 0; i < n * n * n; ++i) {
+        const Vec3 p(0.04 * ((i % n + 0.5) / n - 0.5), -kDepth * ((i / n % n + 0.5) / n),
+                     0.04 * ((i / n / n + 0.5) / n - 0.5));
+        right += normal.dot(p - point) > 0 ? volume / (n * n * n) : 0;
+      }
+      const double smaller = std::min(right, volume - right);
+      CHECK(volumes[0] == Approx(smaller).epsilon(0.03));
+      CHECK(std::accumulate(volumes.begin() + 1, volumes.end(), 0.0) < 1e-3 * volume);
+      CHECK(roughness(body, point, normal) < 0.12 * body.scalpel.size());
+    }
+  }
+}
+
+TEST_CASE("hybrid: what a blade has parted bears a tool at rest as a body that was never whole") {
+  Scene scene = blade_scene("hybrid");
+  scene.tools[0].blade = Vec3(0, -0.008, 0);
+  scene.cutting->region =
+      Region{.box = Box{Vec3(-1, -0.012, -0.012), Vec3(0.002, 1, 0.012)}, .where = "test"};
+  scene.deformation.of<ContactInstants>().instants = 224;
+  Simulation cut(scene, shaken_block({8, 4, 8}));
+  for (int i = 0; i <= 60; ++i) slide_at(cut, -0.022 + 0.02 * i / 60, true);
+  REQUIRE(cut.resection()->totals().splits > 3);
+  Simulation whole(soft_block_scene(kDepth, "quasi_static", ElasticLaw::kLinear, 0.003), compact(cut));
+  const Vec3 place(-0.008, 0.001, 0.0035);
+  ToolAnswer felt, right;
+  for (int i = 0; i < 300; ++i) felt = step(cut, place, {}, kStep);
+  for (int i = 22; i >= 0; --i) right = step(whole, place + Vec3(0, 5e-4 * i, 0), {}, kStep);
+  REQUIRE(right.force.norm() > 0.05);
+  CHECK((felt.force - right.force).norm() < 1e-6 * right.force.norm());
+}
+
+TEST_CASE("what a blade has parted bears a tool at rest as a body that was never whole") {
+  Scene scene = blade_scene("tensor_mass");
+  scene.deformation.of<ContactInstants>().instants = 224;
+  Simulation cut(scene, shaken_block({8, 4, 8}));
+  for (int i = 0; i <= 60; ++i) slide_at(cut, -0.022 + 0.02 * i / 60, true);
+  const ResectionTotals& totals = cut.resection()->totals();
+  REQUIRE(totals.splits > 5);
+  CHECK(totals.parted_area == Approx(0.02 * 0.0095).epsilon(0.35));
+  CHECK(totals.tetrahedra == 0);
+  Scene whole_scene = soft_block_scene(kDepth, "quasi_static", ElasticLaw::kLinear, 0.003);
+  Simulation whole(whole_scene, compact(cut));
+  const Vec3 place(-0.008, 0.001, 0.0035);
+  ToolAnswer felt, right;
+  for (int i = 0; i < 300; ++i) felt = step(cut, place, {}, kStep);
+  for (int i = 22; i >= 0; --i) right = step(whole, place + Vec3(0, 5e-4 * i, 0), {}, kStep);
+  REQUIRE(right.force.norm() > 0.05);
+  CHECK((felt.force - right.force).norm() < 1e-6 * right.force.norm());
+}
+
+TEST_CASE("a blade does the work of what it parts, against its way") {
+  Scene scene = blade_scene("tensor_mass");
+  Simulation simulation(scene, shaken_block({12, 6, 12}));
+  const double speed = 0.02 / 60;  // m a step
+  double work = 0;                 // J
+  for (int i = 0; i <= 110; ++i) {
+    slide_at(simulation, -0.022 + speed * i, true);
+    const Vec3 on_blade = simulation.resection_log().back().f_W - simulation.tool(0).force().force;
+    CHECK(on_blade.x() <= 0);
+    CHECK(std::hypot(on_blade.y(), on_blade.z()) < 1e-9);
+    work -= on_blade.x() * speed;
+  }
+  // It owes a little at the end: what it parted last is done over the next length of an edge or so.
+  const double all = scene.cutting->toughness * simulation.resection()->totals().parted_area;
+  CHECK(work < all);
+  CHECK(work > 0.85 * all);
+  CHECK(simulation.flagged().to_text().empty());
+}
+
+TEST_CASE("a blade that goes anywhere, beside a hot tip, leaves a closed surface and a body that holds") {
+  Scene scene = blade_scene("tensor_mass");
+  scene.tools[0].reach.reset();
+  scene.tools.push_back(scene.tools[0]);
+  scene.tools[1].blade.reset();
+  scene.cutting->energy = 1e7;
+  scene.cutting->power = 3;
+  scene.cutting->smallest_piece = 1e-7;
+  Simulation simulation(scene, shaken_block({8, 4, 8}));
+  std::minstd_rand random(2);
+  const auto anywhere = [&](double most) {
+    return most * (2 * static_cast<double>(random()) / std::minstd_rand::max() - 1);
+  };
+  Vec3 from(0, 0.0025, 0), to = from;
+  Quat q_from = Quat::Identity(), q_to = q_from;
+  double largest = 0;
+  for (int i = 0; i < 600; ++i) {
+    if (i % 12 == 0) {  // up to 40 mm in 0.4 s
+      from = std::exchange(to, Vec3(anywhere(0.02), 0.0022 + anywhere(2e-3), anywhere(0.02)));
+      q_from = std::exchange(
+          q_to, Quat(Eigen::AngleAxisd(anywhere(0.6), Vec3(anywhere(1), anywhere(0.1), 1).normalized())));
+    }
+    const double share = (i % 12 + 1) / 12.0;
+    std::vector<ToolInput> inputs(2);
+    const bool bounces = i / 100 % 2 == 1 && i % 2 == 0;
+    inputs[0] = {.pose = ToolPose(Vec3(from + share * (to - from)), q_from.slerp(share, q_to)),
+                 .buttons = static_cast<std::uint16_t>(bounces ? 0 : 1)};
+    inputs[1] = {.pose = ToolPose(Vec3(-0.01 + 0.02 * i / 600, 0.0025, 0.012)), .buttons = 1};
+    for (const ToolAnswer& answer : simulation.step(inputs, kStep))
+      largest = std::max(largest, answer.force.norm());
+  }
+  const ResectionTotals& totals = simulation.resection()->totals();
+  CHECK(totals.splits > 50);
+  CHECK(totals.tetrahedra > 20);
+  CHECK(largest < 20);
+  CHECK(simulation.flagged().to_text() == "");
+  double volume = 0, enclosed = 0;
+  const CutMesh& left = simulation.resection()->left();
+  const TetMesh& mesh = simulation.mesh();
+  for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t)
+    volume += left.is_left(t) ? six_volumes(mesh, mesh.tetrahedra[t]) / 6 : 0;
+  for (const Triangle& t : simulation.surface().triangles) {
+    const auto at = [&](int v) { return mesh.vertices[simulation.surface().vertices[v]]; };
+    enclosed += at(t[0]).dot(at(t[1]).cross(at(t[2]))) / 6;
+  }
+  CHECK(enclosed == Approx(volume));
+  CHECK(volume == Approx(0.04 * kDepth * 0.04 - totals.volume).epsilon(1e-3));
+}
+
+TEST_CASE("halves that a blade has cut apart part under traction, and one that is held by nothing falls") {
+  Scene scene = blade_scene("tensor_mass");
+  scene.tools[0].blade = Vec3(0, -0.04, 0);
+  scene.tools.push_back(scene.tools[0]);
+  scene.tools[1].blade.reset();
+  scene.tools[1].cut_buttons = 0;
+  scene.tools[1].grasp_buttons = 2;
+  scene.fixed[0].box = {Vec3(-1, -1, -1), Vec3(-0.0199, 1, 1)};  // its left side
+  Simulation simulation(scene, shaken_block({8, 4, 8}));
+  const auto go = [&](double z, const std::optional<Vec3>& pull, bool cuts) {
+    std::vector<ToolInput> inputs(2);
+    inputs[0] = {.pose = ToolPose(Vec3(0.0011, 0.004, z)),
+                 .buttons = static_cast<std::uint16_t>(cuts ? 1 : 0)};
+    if (pull) inputs[1] = {.pose = ToolPose(*pull), .buttons = 2};
+    return simulation.step(inputs, kStep)[1].force.norm();
+  };
+  const Vec3 grip(0.012, 0.003, 0);
+  for (int i = 0; i < 10; ++i) go(-0.03, grip, false);
+  double pulled = 0;
+  for (int i = 0; i <= 40; ++i) pulled = go(-0.03, grip + Vec3(1e-4 * i, 0, 0), false);
+  REQUIRE(pulled > 0.1);
+  for (int i = 0; i <= 90; ++i) go(-0.03 + 0.06 * i / 90, grip + Vec3(4e-3, 0, 0), true);
+  CHECK(simulation.resection()->totals().loose_pieces == 1);
+  CHECK(simulation.resection()->totals().loose_volume == Approx(0.0189 * kDepth * 0.04).epsilon(0.05));
+  double held = 0;
+  for (int i = 0; i < 120; ++i) held = go(0.04, grip + Vec3(4e-3 + 1e-4 * i, 0, 0), false);
+  CHECK(held < 0.05 * pulled);
+}
+
+TEST_CASE("a run that parts tissue is the same each time") {
+  std::vector<std::uint64_t> hashes;
+  for (int run = 0; run < 2; ++run) {
+    Simulation simulation(blade_scene("tensor_mass"), shaken_block({8, 4, 8}));
+    for (int i = 0; i <= 60; ++i) slide_at(simulation, -0.022 + 0.02 * i / 60, true);
+    hashes.push_back(simulation.state_hash());
+  }
+  CHECK(hashes[0] == hashes[1]);
+}

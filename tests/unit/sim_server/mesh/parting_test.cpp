@@ -1,0 +1,242 @@
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+
+#include "sim_server/elasticity/tensors.h"
+#include "sim_server/mesh/cut_mesh.h"
+#include "sim_server/mesh/pieces.h"
+#include "sim_server/mesh/shapes.h"
+#include "tests/support/catch.h"
+#include "tests/support/soft_block.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+
+namespace {
+
+struct Body {
+  explicit Body(const std::array<int, 3>& cells, std::vector<int> held_vertices = {})
+      : mesh(soft_block(Vec3(0.04, 0.02, 0.04), cells)), held(std::move(held_vertices)) {}
+  TetMesh mesh;
+  std::vector<int> held;
+  Surface surface = boundary_surface(mesh);
+  CutMesh cut{mesh, std::vector<Removable>(mesh.tetrahedra.size(), Removable::kNow), surface, held};
+
+  std::vector<int> inner_faces() const {
+    std::vector<int> faces;
+    for (int face = 0; face < static_cast<int>(4 * mesh.tetrahedra.size()); ++face) {
+      if (cut.across(face) > face) faces.push_back(face);
+    }
+    return faces;
+  }
+};
+
+std::array<int, 3> corners_of(const TetMesh& mesh, int face) {
+  std::array<int, 3> corners{};
+  for (int k = 0, i = 0; k < 4; ++k) {
+    if (k != face % 4) corners[i++] = mesh.tetrahedra[face / 4][k];
+  }
+  std::ranges::sort(corners);
+  return corners;
+}
+
+/// Bodies that hang together by faces that were not parted: of each tetrahedron the lowest of its own.
+std::vector<int> bodies_without(const TetMesh& whole, const std::set<std::array<int, 3>>& parted) {
+  std::map<std::array<int, 3>, std::vector<int>> sides;
+  for (int face = 0; face < static_cast<int>(4 * whole.tetrahedra.size()); ++face)
+    sides[corners_of(whole, face)].push_back(face / 4);
+  std::vector<int> body(whole.tetrahedra.size());
+  for (std::size_t t = 0; t < body.size(); ++t) body[t] = static_cast<int>(t);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [corners, of] : sides) {
+      if (of.size() < 2 || parted.contains(corners) || body[of[0]] == body[of[1]]) continue;
+      body[of[0]] = body[of[1]] = std::min(body[of[0]], body[of[1]]);
+      changed = true;
+    }
+  }
+  return body;
+}
+
+/// Tetrahedra around each vertex of `mesh` that reach each other by faces with it: how many such fans it has.
+int most_fans(const Body& body, const std::set<int>& stay_one) {
+  int most = 0;
+  for (int v = 0; v < static_cast<int>(body.mesh.vertices.size()); ++v) {
+    if (stay_one.contains(v)) continue;
+    std::set<int> around;
+    for (int t = 0; t < static_cast<int>(body.mesh.tetrahedra.size()); ++t) {
+      if (std::ranges::count(body.mesh.tetrahedra[t], v) > 0) around.insert(t);
+    }
+    CHECK(std::ranges::equal(around, body.cut.around(v)));
+    int fans = 0;
+    for (; !around.empty(); ++fans) {
+      std::vector<int> fan{*around.begin()};
+      around.erase(around.begin());
+      for (std::size_t i = 0; i < fan.size(); ++i) {
+        for (int k = 0; k < 4; ++k) {
+          const int other = body.cut.across(4 * fan[i] + k);
+          if (body.mesh.tetrahedra[fan[i]][k] == v || other < 0 || !around.contains(other / 4)) continue;
+          around.erase(other / 4);
+          fan.push_back(other / 4);
+        }
+      }
+    }
+    most = std::max(most, fans);
+  }
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("parted faces are surface on both sides, and vertices are as many as there are fans around them") {
+  Body body({6, 2, 6});
+  const TetMesh whole = body.mesh;
+  const double volume = describe(whole).volume, area = 2 * 0.04 * 0.04 + 4 * 0.04 * 0.02;
+  std::minstd_rand random(5);
+  std::set<std::array<int, 3>> parted;  // by corners of the whole mesh
+  double parted_area = 0;
+  PieceFinder finder(body.cut, {});
+  std::size_t bodies = 1;
+  for (int round = 0; round < 6; ++round) {
+    // Some anywhere; then all in a plane, of which there are three.
+    std::vector<int> faces = body.inner_faces();
+    std::ranges::shuffle(faces, random);
+    if (round % 2 == 0) {
+      faces.resize(faces.size() / 40);
+    } else {
+      const Vec3 middle(0, -0.01, 0);
+      std::erase_if(faces, [&](int face) {
+        const auto side = [&](int t) {
+          return centre_of(whole, whole.tetrahedra[t])[round / 2] > middle[round / 2];
+        };
+        return side(face / 4) == side(body.cut.across(face) / 4);
+      });
+    }
+    for (const int face : faces) {
+      const auto [a, b, c] = corners_of(whole, face);
+      parted.insert({a, b, c});
+      parted_area +=
+          0.5 * (whole.vertices[b] - whole.vertices[a]).cross(whole.vertices[c] - whole.vertices[a]).norm();
+    }
+    const Parting parting = body.cut.part(faces, body.surface);
+    REQUIRE_FALSE(parting.ran_out);
+    CHECK(most_fans(body, {}) == 1);
+    // The surface: each parted face twice, what was outside once; closed; of the right area.
+    CHECK(body.surface.triangles.size() == boundary_surface(whole).triangles.size() + 2 * parted.size());
+    CHECK(body.cut.cut_area() == Approx(2 * parted_area));
+    double all = 0, six = 0;
+    std::map<std::pair<int, int>, int> along;
+    for (const Triangle& t : body.surface.triangles) {
+      std::array<Vec3, 3> x;
+      for (int i = 0; i < 3; ++i) {
+        x[i] = body.mesh.vertices[body.surface.vertices[t[i]]];
+        const int from = t[i], to = t[(i + 1) % 3];
+        along[std::minmax(from, to)] += from < to ? 1 : -1;
+      }
+      all += 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
+      six += x[0].dot(x[1].cross(x[2]));
+    }
+    CHECK(std::ranges::all_of(along, [](const auto& edge) { return edge.second == 0; }));
+    CHECK(all == Approx(area + 2 * parted_area));
+    CHECK(six / 6 == Approx(volume));
+    // Tetrahedra have the same corners as before, by place.
+    for (std::size_t t = 0; t < whole.tetrahedra.size(); ++t) {
+      for (int k = 0; k < 4; ++k)
+        CHECK(body.mesh.vertices[body.mesh.tetrahedra[t][k]] == whole.vertices[whole.tetrahedra[t][k]]);
+    }
+    // Pieces.
+    const std::vector<int> body_of = bodies_without(whole, parted);
+    const std::vector<Piece> found = finder.parted(body.cut, parting.tetrahedra);
+    const std::size_t now = std::set<int>(body_of.begin(), body_of.end()).size();
+    CHECK(found.size() == now - bodies);
+    bodies = now;
+    for (const Piece& piece : found) {
+      const int of = body_of[piece.tetrahedra.front()];
+      CHECK(std::ranges::count(body_of, of) == static_cast<std::ptrdiff_t>(piece.tetrahedra.size()));
+      for (const int t : piece.tetrahedra) CHECK(body_of[t] == of);
+    }
+  }
+  CHECK(bodies >= 8);
+}
+
+TEST_CASE("a vertex that is held, or beside what cannot be cut, stays one") {
+  TetMesh mesh = soft_block(Vec3(0.04, 0.02, 0.04), {4, 2, 4});
+  Surface surface = boundary_surface(mesh);
+  std::vector<Removable> removable;
+  for (const Tetrahedron& t : mesh.tetrahedra)
+    removable.push_back(centre_of(mesh, t).z() > 0 ? Removable::kNow : Removable::kNever);
+  std::vector<int> held;
+  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
+    if (mesh.vertices[v].y() < -0.019) held.push_back(v);
+  }
+  CutMesh cut(mesh, removable, surface, held);
+  std::vector<int> faces;
+  for (int face = 0; face < static_cast<int>(4 * mesh.tetrahedra.size()); ++face) {
+    if (cut.across(face) > face && cut.can_part(face)) faces.push_back(face);
+  }
+  const Parting parting = cut.part(faces, surface);
+  CHECK(parting.splits.size() > 10);
+  for (const Split& split : parting.splits) {
+    CHECK(mesh.vertices[split.vertex].z() > 1e-9);
+    CHECK(mesh.vertices[split.vertex].y() > -0.019);
+  }
+}
+
+TEST_CASE("tensors after slides and partings are those of a fresh assembly") {
+  Body body({6, 3, 6});
+  const Material material{.young_modulus = 1e4, .poisson_ratio = 0.4};
+  std::vector<int> standing;
+  for (int v = 0; v < static_cast<int>(body.mesh.vertices.size()); ++v) {
+    if (body.cut.around(v).empty() || body.mesh.vertices[v].y() < -0.019) standing.push_back(v);
+  }
+  ElasticTensors tensors(body.mesh, material, standing);
+  std::minstd_rand random(5);
+  for (int round = 0; round < 6; ++round) {
+    std::vector<int> reshaped;
+    for (int i = 0; i < 10; ++i) {
+      const int v = static_cast<int>(random() % (7 * 4 * 7));
+      Vec3 x = body.mesh.vertices[v];
+      for (double& coordinate : x) coordinate += 1e-4 * (static_cast<double>(random() % 100) / 50 - 1);
+      body.cut.move_vertex(v, x);
+      for (const int t : body.cut.around(v)) reshaped.push_back(t);
+    }
+    std::vector<int> faces = body.inner_faces();
+    std::ranges::shuffle(faces, random);
+    faces.resize(faces.size() / 5);
+    tensors.part(body.cut.part(faces, body.surface), reshaped, body.cut, material);
+    const std::vector<int> removed{static_cast<int>(random() % body.mesh.tetrahedra.size())};
+    if (!body.cut.is_left(removed[0])) continue;
+    body.cut.remove(removed, body.surface);
+    tensors.remove(removed, body.cut, material);
+  }
+  TetMesh left = body.mesh;
+  left.tetrahedra.clear();
+  for (int t = 0; t < static_cast<int>(body.mesh.tetrahedra.size()); ++t) {
+    if (body.cut.is_left(t)) left.tetrahedra.push_back(body.mesh.tetrahedra[t]);
+  }
+  std::vector<int> still;
+  for (int v = 0; v < static_cast<int>(left.vertices.size()); ++v) {
+    if (tensors.places()[v] < 0) still.push_back(v);
+  }
+  const ElasticTensors fresh(left, material, still);
+  REQUIRE(fresh.vertices() == tensors.vertices());
+  REQUIRE(fresh.vertices() > 300);
+  std::vector<double> x(3 * fresh.masses().size()), y(x.size()), x_fresh(x.size()), y_fresh(x.size());
+  for (double& value : x) value = static_cast<double>(random()) / std::minstd_rand::max() - 0.5;
+  for (std::size_t v = 0; v < left.vertices.size(); ++v) {
+    const int at = tensors.places()[v], at_fresh = fresh.places()[v];
+    for (int i = 0; at >= 0 && i < 3; ++i) x_fresh[3 * at_fresh + i] = x[3 * at + i];
+  }
+  tensors.multiply(x.data(), y.data());
+  fresh.multiply(x_fresh.data(), y_fresh.data());
+  const double size = *std::ranges::max_element(y);
+  for (std::size_t v = 0; v < left.vertices.size(); ++v) {
+    const int at = tensors.places()[v], at_fresh = fresh.places()[v];
+    for (int i = 0; at >= 0 && i < 3; ++i)
+      CHECK(std::abs(y[3 * at + i] - y_fresh[3 * at_fresh + i]) < 1e-12 * size);
+    if (at >= 0 && fresh.masses()[at_fresh] > 0)
+      CHECK(tensors.masses()[at] == Approx(fresh.masses()[at_fresh]).epsilon(1e-12));
+  }
+}
