@@ -186,7 +186,11 @@ LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
   }
   try {
     SetupTimes times(own.progress);
-    Simulation simulation(variant, own.simulation.mesh(), std::ref(times), own.cache);
+    TetMesh mesh = own.simulation.mesh();
+    const Resection* const resection = own.simulation.resection();
+    if (resection != nullptr && resection->left().spares().second > 0)  // it makes its own
+      mesh.vertices.resize(static_cast<std::size_t>(resection->left().spares().first));
+    Simulation simulation(variant, std::move(mesh), std::ref(times), own.cache);
     const Cost cost =
         cost_of(simulation, times, time_steps(variant, simulation, own.press, own.steps, own.progress));
     row.bytes = cost.bytes - own.cost.bytes;

@@ -66,6 +66,8 @@ class Resection {
   const Parted& part(const BladeEdge& was, const BladeEdge& is, std::span<Vec3> were, std::span<Vec3> are,
                      Surface& surface);
   std::span<const int> removed() const { return removed_; }
+  /// This mesh vertex never slides onto the way of a blade.
+  void keep(int vertex) { scalpel_->keep(vertex); }
   /// The way over which a blade does the work of what it parts, m.
   double blade_size() const { return scalpel_->size(); }
 

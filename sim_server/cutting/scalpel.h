@@ -30,6 +30,8 @@ class Scalpel {
   /// O(tetrahedra).
   explicit Scalpel(const CutMesh& mesh);
 
+  /// This mesh vertex never slides.
+  void keep(int vertex) { slid_[static_cast<std::size_t>(vertex)] = 1; }
   /// The mean edge of what can be cut, at rest, m.
   double size() const { return edge_; }
 

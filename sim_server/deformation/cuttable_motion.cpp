@@ -323,6 +323,7 @@ void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting,
   for (const Slide& slide : slides) stand_anew(slide.vertex);
   for (const Split& split : parting.splits) stand_anew(split.copy);
   show_corners(parting.tetrahedra, left);
+  for (const Split& split : parting.splits) shown_[static_cast<std::size_t>(left.number_of(split.copy))] = 1;
   look_at_body();
   go_on_with_body();
 }

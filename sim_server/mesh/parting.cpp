@@ -31,6 +31,7 @@ void CutMesh::add_spares(std::span<const int> held, Surface& surface) {
   uses_.resize(surface.vertices.size(), 0);
   held_.resize(mesh_.vertices.size(), 0);
   for (const int v : held) held_[static_cast<std::size_t>(v)] = 1;
+  around_first_.back() = 0;  // where those of the last vertex ended
   around_first_.resize(mesh_.vertices.size(), 0);
   around_end_.resize(mesh_.vertices.size(), 0);
 }

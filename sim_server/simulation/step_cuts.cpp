@@ -63,6 +63,7 @@ void Simulation::cut(std::span<const ToolInput> inputs, double dt) {
   if (!removed.empty()) {
     for (const int tetrahedron : cut_->resection.asked_for()) cut_->removed.push_back({time_, tetrahedron});
     count_gone(tissue_.model->remove(removed, cut_->resection.left()));
+    tissue_.note_same_place();  // of what is shown now, too
   }
   if (!cut_->planned) part_tissue(inputs);
   if (cut_->resection.version() != before) change_surface();
@@ -80,7 +81,9 @@ void Simulation::part_tissue(std::span<const ToolInput> inputs) {
   Cut& cut = *cut_;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     std::optional<Blade>& blade = cut.blades[i];
-    if (!cut.tools[i].blade || !is_hot(cut.tools[i], tools_[i], inputs[i])) {
+    if (!cut.tools[i].blade) continue;
+    const bool cuts = is_hot(cut.tools[i], tools_[i], inputs[i]);
+    if (!cuts && !(blade && tools_[i].placed())) {
       blade.reset();
       continue;
     }
@@ -89,6 +92,7 @@ void Simulation::part_tissue(std::span<const ToolInput> inputs) {
     blade->is = {pose.p_W, pose.p_W + pose.q_W * *cut.tools[i].blade};
     if (blade->was) {
       part_by(i);
+      if (!cuts) blade.reset();  // that was the way before it was let go
     } else {
       blade->was = blade->is;
       blade->were.assign(tissue_.positions.begin(), tissue_.positions.end());
@@ -100,6 +104,11 @@ void Simulation::part_by(std::size_t tool) {
   Blade& blade = *cut_->blades[tool];
   Resection& resection = cut_->resection;
   std::vector<Vec3> are(tissue_.positions.begin(), tissue_.positions.end());
+  for (std::size_t other = 0; other < tools_.size(); ++other) {  // what it holds stays in its grip
+    if (other == tool) continue;
+    for (const NodalLoad& load : tissue_.loads_of(other))
+      resection.keep(surface_.vertices[static_cast<std::size_t>(load.vertex)]);
+  }
   const Parted& parted = resection.part(*blade.was, blade.is, blade.were, are, surface_);
   if (!parted.stroke.moved) return;
   blade.was = blade.is;
@@ -110,7 +119,14 @@ void Simulation::part_by(std::size_t tool) {
   const auto stand_anew = [&](int vertex) {
     rest_[number(vertex)] = mesh_->vertices[static_cast<std::size_t>(vertex)];
   };
-  for (const DeformationModel::Slide& slide : parted.stroke.slides) stand_anew(slide.vertex);
+  for (const auto& [vertex, towards, share] : parted.stroke.slides) {
+    stand_anew(vertex);
+    for (std::size_t i = 0; i < tools_.size(); ++i) {
+      if (i == tool || !cut_->blades[i] || !cut_->blades[i]->was) continue;
+      std::vector<Vec3>& were = cut_->blades[i]->were;
+      were[number(vertex)] += share * (were[number(towards)] - were[number(vertex)]);
+    }
+  }
   for (const Split& split : parted.parting.splits) {
     stand_anew(split.copy);
     for (std::optional<Blade>& each : cut_->blades) {
@@ -119,6 +135,7 @@ void Simulation::part_by(std::size_t tool) {
   }
   if (parted.stroke.slides.empty() && parted.stroke.faces.empty()) return;
   tissue_.model->part(parted.stroke.slides, parted.parting, left);
+  tissue_.note_same_place();
   if (!resection.removed().empty()) count_gone(tissue_.model->remove(resection.removed(), left));
 }
 
