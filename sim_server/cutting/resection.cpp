@@ -111,7 +111,7 @@ void Resection::take_out(std::span<const int> tetrahedra, Surface& surface) {
 
 double Resection::estimated_bytes(double vertices, double tetrahedra, double faces) {
   constexpr double kNumbers = 4 + 4 + 4 + 2;  // neighbours, around, places of faces, bodies, fronts
-  return tetrahedra * (kNumbers * sizeof(int) + 6 + 2 * sizeof(double)) + vertices * (3 * sizeof(int) + 1) +
+  return tetrahedra * (kNumbers * sizeof(int) + 6 + 2 * sizeof(double)) + vertices * (4 * sizeof(int) + 1) +
          sizeof(int) + faces * sizeof(int);
 }
 
