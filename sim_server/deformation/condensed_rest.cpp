@@ -6,6 +6,16 @@
 #include "sim_server/sparse/symmetric_product.h"
 
 namespace palpate::sim {
+namespace {
+
+/// What three columns from `first` on of a matrix with a row for each mode do with these amplitudes. Without
+/// modes it has no address.
+Vec3 moved_by(const Eigen::MatrixXd& modes, Eigen::Index first, const Eigen::VectorXd& amplitudes) noexcept {
+  if (amplitudes.size() == 0) return Vec3::Zero();
+  return modes.middleCols<3>(first).transpose() * amplitudes;
+}
+
+}  // namespace
 
 void CondensedRest::stand_at(const std::vector<double>& u) noexcept {
   for (Part& part : all_) {
@@ -34,7 +44,7 @@ void CondensedRest::follow(std::span<double> force) const noexcept {
     for (std::size_t b = 0; !part.gone && b < part.border.size(); ++b) {
       const auto row = 3 * static_cast<Eigen::Index>(b);
       Eigen::Map<Vec3>(force.data() + part.border[b]) +=
-          part.force.segment<3>(row) + part.driven.middleCols<3>(row).transpose() * part.p_bent;
+          part.force.segment<3>(row) + moved_by(part.driven, row, part.p_bent);
     }
   }
 }
@@ -50,7 +60,7 @@ void CondensedRest::advance(double h, std::span<const NodalLoad> loads) noexcept
     if (!has(load.vertex)) continue;
     const auto v = static_cast<std::size_t>(load.vertex);
     Part& part = all_[static_cast<std::size_t>(part_[v])];
-    part.p_v.noalias() += h * (part.shapes.middleCols<3>(row_[v]) * load.force);
+    if (part.p.size() > 0) part.p_v.noalias() += h * (part.shapes.middleCols<3>(row_[v]) * load.force);
   }
   for (Part& part : all_) part.p += h * part.p_v;
 }
@@ -58,8 +68,7 @@ void CondensedRest::advance(double h, std::span<const NodalLoad> loads) noexcept
 Vec3 CondensedRest::carried(int vertex) const noexcept {
   const auto v = static_cast<std::size_t>(vertex);
   const Part& part = all_[static_cast<std::size_t>(part_[v])];
-  return part.carrying.middleCols<3>(row_[v]).transpose() * part.at +
-         part.shapes.middleCols<3>(row_[v]).transpose() * part.p;
+  return part.carrying.middleCols<3>(row_[v]).transpose() * part.at + moved_by(part.shapes, row_[v], part.p);
 }
 
 Mat3 CondensedRest::compliance(int vertex, int other) const noexcept {
@@ -126,7 +135,7 @@ void CondensedRest::stand_still(const std::vector<double>& x, std::span<const No
     if (!has(load.vertex)) continue;
     const auto v = static_cast<std::size_t>(load.vertex);
     Part& part = all_[static_cast<std::size_t>(part_[v])];
-    part.p.noalias() += part.shapes.middleCols<3>(row_[v]) * load.force;
+    if (part.p.size() > 0) part.p.noalias() += part.shapes.middleCols<3>(row_[v]) * load.force;
   }
   for (Part& part : all_) {
     part.p.array() /= part.squares;
@@ -158,7 +167,7 @@ std::vector<CondensedRest::Overlap> CondensedRest::overlap_with(const CondensedR
     const auto of_before = static_cast<std::size_t>(before.part_of(part.inner.front()));
     const Part& was = before.all_[of_before];
     Eigen::MatrixXd shapes(was.squares.size(), part.all_shapes.cols());  // of `before`, at these vertices
-    for (std::size_t i = 0; i < part.inner.size(); ++i) {
+    for (std::size_t i = 0; shapes.rows() > 0 && i < part.inner.size(); ++i) {
       const auto at = std::ranges::lower_bound(was.inner, part.inner[i]) - was.inner.begin();
       shapes.middleCols<3>(3 * static_cast<Eigen::Index>(i)) = was.all_shapes.middleCols<3>(3 * at);
     }
@@ -170,7 +179,7 @@ std::vector<CondensedRest::Overlap> CondensedRest::overlap_with(const CondensedR
 Vec3 CondensedRest::shape_at(int mesh_vertex, const std::vector<Eigen::VectorXd>& amplitudes) const {
   const auto p = static_cast<std::size_t>(part_of(mesh_vertex));
   const auto at = std::ranges::lower_bound(all_[p].inner, mesh_vertex) - all_[p].inner.begin();
-  return all_[p].all_shapes.middleCols<3>(3 * at).transpose() * amplitudes[p];
+  return moved_by(all_[p].all_shapes, 3 * at, amplitudes[p]);
 }
 
 std::vector<CondensedRest::BorderMass> CondensedRest::border_masses() const {
