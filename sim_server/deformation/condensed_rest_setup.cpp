@@ -182,7 +182,7 @@ std::vector<double> shared_mass(const TetMesh& mesh, const PartNodes& part, doub
 Eigen::MatrixXd rows_of(const Eigen::MatrixXd& shapes, const LinearStatics& statics,
                         const std::vector<int>& vertices) {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(3 * vertices.size()), shapes.cols());
-  for (std::size_t i = 0; i < vertices.size(); ++i)
+  for (std::size_t i = 0; shapes.cols() > 0 && i < vertices.size(); ++i)
     rows.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
         shapes.middleRows<3>(statics.dofs.first[static_cast<std::size_t>(vertices[i])]);
   return rows;
