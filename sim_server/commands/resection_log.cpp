@@ -1,6 +1,5 @@
 #include "sim_server/commands/resection_log.h"
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
@@ -29,6 +28,25 @@ std::string row_text(const ResectionRow& row) {
       all.hot_time, all.contact_time, 1e4 * all.parted_area, 1e3 * all.mean_parted_distance());
 }
 
+/// How far from the plan, where there is one.
+std::string away(bool planned, double metres, const char* how) {
+  return planned ? fmt::format(", {:.1f} mm from the plan {}", 1e3 * metres, how) : "";
+}
+
+std::string heat_text(const ResectionTotals& all, bool planned) {
+  if (all.hot_time == 0 && all.distance_sum == 0) return {};
+  return fmt::format("; {:.0f} J of heat in {:.1f} s{}", all.heat, all.hot_time,
+                     away(planned && all.mean_distance() > 0, all.mean_distance(), "on average"));
+}
+
+std::string parted_text(const ResectionTotals& all, bool planned) {
+  if (all.slides == 0 && all.splits == 0) return {};
+  return fmt::format("; a blade parted {:.1f} cm2{}: {} vertices became two, {} slid onto its way{}",
+                     1e4 * all.parted_area, away(planned, all.mean_parted_distance(), "on average"),
+                     all.splits, all.slides,
+                     all.ran_out ? "; it went through more, for which there were no vertices left" : "");
+}
+
 }  // namespace
 
 void require_resection(const char* option, const std::optional<std::filesystem::path>& file,
@@ -42,11 +60,9 @@ void require_resection(const char* option, const std::optional<std::filesystem::
 
 void require_no_blade(const char* option, const std::optional<std::filesystem::path>& file,
                       const Scene& scene) {
-  const auto blade =
-      std::ranges::find_if(scene.tools, [](const auto& tool) { return tool.blade.has_value(); });
-  if (file && blade != scene.tools.end())
+  if (file && scene.blade() != nullptr)
     fail("{}: {} parts tissue by a blade, which these files do not tell; leave it out", option,
-         blade->blade_where);
+         scene.blade()->blade_where);
 }
 
 void write_resection(const std::filesystem::path& file, const Simulation& simulation) {
@@ -126,17 +142,6 @@ Json resection_report(const Simulation& simulation) {
           {"contact_s", all.contact_time}};
 }
 
-namespace {
-std::string parted_text(const ResectionTotals& all) {
-  if (all.slides == 0 && all.splits == 0) return {};
-  return fmt::format(
-      "; a blade parted {:.1f} cm2, {:.2f} mm from the plan on average: {} vertices became two, {} slid onto "
-      "its way{}",
-      1e4 * all.parted_area, 1e3 * all.mean_parted_distance(), all.splits, all.slides,
-      all.ran_out ? "; it went through more, for which there were no vertices left" : "");
-}
-}  // namespace
-
 std::string resection_text(const Simulation& simulation) {
   const Resection* const resection = simulation.resection();
   if (resection == nullptr) return {};
@@ -148,13 +153,13 @@ std::string resection_text(const Simulation& simulation) {
   if (growth.failures > 0)
     grown += fmt::format("; it could not grow {} times, the last time for: {}", growth.failures,
                          growth.last_failure);
+  const bool planned = resection->has_plan();
   return fmt::format(
-      "removed {} of {} tetrahedra, {:.2f} ml, {:.2f} ml of them {} loose pieces; cut {:.1f} cm2, {:.1f} mm "
-      "from "
-      "the plan on average and {:.1f} mm at most; {} pieces lie loose; {:.0f} J of heat in {:.1f} s{}",
+      "removed {} of {} tetrahedra, {:.2f} ml, {:.2f} ml of them {} loose pieces; cut {:.1f} cm2{}; "
+      "{} pieces lie loose{}{}{}",
       all.tetrahedra, all.tetrahedra + resection->left().count(), 1e6 * all.volume, 1e6 * all.dropped_volume,
-      all.dropped_pieces, 1e4 * all.cut_area, 1e3 * all.mean_distance(), 1e3 * all.farthest, all.loose_pieces,
-      all.heat, all.hot_time, parted_text(all) + grown);
+      all.dropped_pieces, 1e4 * all.cut_area, away(planned, all.farthest, "at most"), all.loose_pieces,
+      heat_text(all, planned), parted_text(all, planned), grown);
 }
 
 }  // namespace palpate::sim

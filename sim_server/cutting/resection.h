@@ -85,6 +85,7 @@ class Resection {
   const CutMesh& left() const { return left_; }
   /// In how many steps it was cut so far: of which surface the triangles are.
   std::uint32_t version() const { return version_; }
+  bool has_plan() const { return plan_.has_value(); }
   const ResectionTotals& totals() const { return totals_; }
   /// For what only the owner knows.
   ResectionTotals& totals() { return totals_; }

@@ -192,6 +192,7 @@ void CuttableMotion::note_moved() noexcept {
     const auto rest = instant_ == 0 ? body_->rest->vertices() : body_->rest->watched();
     moved_.insert(moved_.end(), rest.begin(), rest.end());
   }
+  watched_ = body_->rest ? body_->rest->watched().size() : 0;
   moved_by_itself_ = moved_.size();
 }
 
@@ -221,8 +222,10 @@ void CuttableMotion::go_free(std::span<const int> vertices) noexcept {
     positions_[static_cast<std::size_t>(vertex)] = free_[static_cast<std::size_t>(vertex)];
 }
 
-/// What is not in motion moves where it is pressed, and where it was.
+/// What is not in motion moves where it is pressed, and where it was; so does what contact begins to look at.
 void CuttableMotion::note_pressed() noexcept {
+  for (; body_->rest && watched_ < body_->rest->watched().size(); ++watched_)
+    moved_.push_back(body_->rest->watched()[watched_]);
   for (const int vertex : pressed_) {
     const auto pressed = std::span(moved_).subspan(moved_by_itself_);
     if (body_->first[static_cast<std::size_t>(vertex)] < 0 &&

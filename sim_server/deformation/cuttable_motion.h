@@ -91,6 +91,7 @@ class CuttableMotion : public DeformationModel {
   std::vector<int> pressed_;            // that are loaded, and not where they are free
   std::vector<int> moved_;              // in this sub-step; those that are pressed last
   std::size_t moved_by_itself_ = 0;     // so many of them are not
+  std::size_t watched_ = 0;             // so many that contact looks at of the rest are among them
   std::vector<int> node_;               // per surface vertex: its mesh vertex
   std::vector<Vec3> free_, positions_;  // of surface vertices, m
   std::vector<Vec3> rest_places_;       // of mesh vertices, m

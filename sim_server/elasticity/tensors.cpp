@@ -123,20 +123,6 @@ template <int kColumns>
 }
 #endif
 
-}  // namespace
-
-ElasticTensors::ElasticTensors(const TetMesh& mesh, const Material& material, const std::vector<int>& fixed,
-                               std::vector<double> mass_factors)
-    : mass_factors_(std::move(mass_factors)) {
-  number(mesh, fixed);
-  find_edges(mesh);
-  vertex_tensors_.assign(6 * mass_.size(), 0);
-  edge_tensors_.assign(9 * neighbour_.size() + 1, 0);  // a product reads one beyond
-  const auto all = [](int, int) { return true; };
-  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) add(mesh, e, material, all);
-}
-
-namespace {
 void sort_each_once(auto& list) {
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -149,7 +135,19 @@ void add_left_around(const Tetrahedron& corners, const CutMesh& left, std::vecto
     }
   }
 }
+
 }  // namespace
+
+ElasticTensors::ElasticTensors(const TetMesh& mesh, const Material& material, const std::vector<int>& fixed,
+                               std::vector<double> mass_factors)
+    : mass_factors_(std::move(mass_factors)) {
+  number(mesh, fixed);
+  find_edges(mesh);
+  vertex_tensors_.assign(6 * mass_.size(), 0);
+  edge_tensors_.assign(9 * neighbour_.size() + 1, 0);  // a product reads one beyond
+  const auto all = [](int, int) { return true; };
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) add(mesh, e, material, all);
+}
 
 void ElasticTensors::note_touched(const Tetrahedron& corners, Touched& touched) const {
   for (std::size_t a = 0; a < 4; ++a) {

@@ -97,6 +97,11 @@ struct Scene {
   std::vector<std::filesystem::path> clients{};
   std::string source;  ///< the file, for messages
 
+  /// The first tool that cuts by a blade; null: none does.
+  const ToolSettings* blade() const {
+    const auto found = std::ranges::find_if(tools, [](const auto& tool) { return tool.blade.has_value(); });
+    return found == tools.end() ? nullptr : &*found;
+  }
   /// Whether nothing holds the body anywhere.
   bool flies() const {
     const auto displaces = [](const Load& load) { return load.kind == Load::Kind::kDisplacement; };

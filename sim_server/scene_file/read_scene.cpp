@@ -108,15 +108,14 @@ void require_cutting(const Scene& scene) {
   if (!row.cuts)
     fail("{}: tissue of model \"{}\" cannot be cut; {} can", scene.cutting->where, row.name,
          models_that([](const DeformationModelRow& m) { return m.cuts; }));
-  const auto blade =
-      std::ranges::find_if(scene.tools, [](const auto& tool) { return tool.blade.has_value(); });
-  if (blade != scene.tools.end() && !row.parts)
+  const ToolSettings* const blade = scene.blade();
+  if (blade != nullptr && !row.parts)
     fail("{}: tissue of model \"{}\" cannot be parted by a blade; {} can", blade->blade_where, row.name,
          models_that([](const DeformationModelRow& m) { return m.parts; }));
-  if (blade != scene.tools.end() && scene.cutting->growth)
+  if (blade != nullptr && scene.cutting->growth)
     fail(
-        "{}: what can be cut does not grow where a blade parts it; remove this, and name all of it in "
-        "[cutting]",
+        "{}: what can be cut does not grow where a blade parts it; remove this, and name all of it "
+        "in [cutting]",
         scene.cutting->growth->where);
   if (scene.cutting->growth && !row.needs_cutting)
     fail("{}: model \"{}\" moves all of the body, of which [cutting] says what can be cut; remove this",

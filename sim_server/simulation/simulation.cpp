@@ -80,8 +80,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   const std::vector<int> fixed = fixed_vertices(scene, *mesh_);
   std::vector<int> standing = fixed;
   if (scene.cutting) {
-    const bool parts =
-        std::ranges::any_of(scene.tools, [](const auto& tool) { return tool.blade.has_value(); });
+    const bool parts = scene.blade() != nullptr;
     cut_.emplace(Cut{Resection(*scene.cutting, *mesh_, fixed, surface_, parts), scene.tools,
                      scene.cutting->toughness});
     cut_->blades.resize(scene.tools.size());

@@ -167,7 +167,8 @@ void Simulation::change_surface() {
 void Simulation::note_cut(std::span<const ToolInput> inputs, double dt) {
   bool touched = false;
   for (std::size_t i = 0; i < tools_.size(); ++i)
-    touched = touched || (is_hot(cut_->tools[i], tools_[i], inputs[i]) && tools_[i].force().contacts > 0);
+    touched = touched || (!cut_->tools[i].blade && is_hot(cut_->tools[i], tools_[i], inputs[i]) &&
+                          tools_[i].force().contacts > 0);
   ResectionTotals& totals = cut_->resection.totals();
   if (touched) totals.contact_time += dt;
   for (std::size_t i = 0; i < tools_.size(); ++i) {

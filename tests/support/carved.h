@@ -1,5 +1,5 @@
 #pragma once
-/// Bodies cut out of a grid.
+/// Bodies cut out of others.
 #include <functional>
 #include <vector>
 
@@ -7,26 +7,34 @@
 
 namespace palpate::test {
 
-/// The tetrahedra of a grid (`grid_block`) whose middles are inside, with the vertices that they need.
-inline sim::TetMesh carved(const std::vector<double>& x, const std::vector<double>& y,
-                           const std::vector<double>& z, const std::function<bool(const Vec3&)>& inside) {
-  const sim::TetMesh whole = sim::grid_block(x, y, z);
+/// The tetrahedra that are `chosen`, by number, with the vertices that they need.
+inline sim::TetMesh part_of(const sim::TetMesh& whole, const std::function<bool(int)>& chosen) {
   sim::TetMesh mesh;
   std::vector<int> number(whole.vertices.size(), -1);
-  for (sim::Tetrahedron t : whole.tetrahedra) {
-    Vec3 middle = Vec3::Zero();
-    for (const int v : t) middle += whole.vertices[v] / 4;
-    if (!inside(middle)) continue;
-    for (int& v : t) {
+  for (int t = 0; t < static_cast<int>(whole.tetrahedra.size()); ++t) {
+    if (!chosen(t)) continue;
+    sim::Tetrahedron corners = whole.tetrahedra[t];
+    for (int& v : corners) {
       if (number[v] < 0) {
         number[v] = static_cast<int>(mesh.vertices.size());
         mesh.vertices.push_back(whole.vertices[v]);
       }
       v = number[v];
     }
-    mesh.tetrahedra.push_back(t);
+    mesh.tetrahedra.push_back(corners);
   }
   return mesh;
+}
+
+/// The tetrahedra of a grid (`grid_block`) whose middles are inside, with the vertices that they need.
+inline sim::TetMesh carved(const std::vector<double>& x, const std::vector<double>& y,
+                           const std::vector<double>& z, const std::function<bool(const Vec3&)>& inside) {
+  const sim::TetMesh whole = sim::grid_block(x, y, z);
+  return part_of(whole, [&](int t) {
+    Vec3 middle = Vec3::Zero();
+    for (const int v : whole.tetrahedra[t]) middle += whole.vertices[v] / 4;
+    return inside(middle);
+  });
 }
 
 }  // namespace palpate::test
