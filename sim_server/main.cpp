@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include "common/program.h"
+#include "sim_server/commands/condense.h"
 #include "sim_server/commands/explain.h"
 #include "sim_server/commands/gallery.h"
 #include "sim_server/commands/keygen.h"
@@ -35,6 +36,11 @@ void add_cache_options(CLI::App* command, sim::CacheOptions& options) {
 void add_cache_or_none(CLI::App* command, sim::CacheOptions& options) {
   add_cache_options(command, options);
   command->add_flag("--no-cache", options.none, "Compute everything anew, and keep nothing");
+}
+
+void add_condensed(CLI::App* command, sim::CacheOptions& options) {
+  command->add_option("--condensed", options.condensed,
+                      "Folder that `sim_server condense` made of this scene: set up from it");
 }
 
 void add_listen_options(CLI::App* command, sim::ListenOptions& options) {
@@ -74,6 +80,7 @@ CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
   add_viewer_option(command, options.viewer);
   command->get_option("--insecure")->description("Serve other machines without a key, or the page in clear");
   add_cache_or_none(command, options.cache);
+  add_condensed(command, options.cache);
   command->footer(
       models() +
       "Examples: sim_server run configs/scenes/liver.toml --report server.json\n"
@@ -115,6 +122,7 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
                       "Remove what this CSV lists (t_s, tetrahedron), as --removals writes it, instead of by "
                       "heat: the same cut at another --rate");
   add_cache_or_none(command, options.cache);
+  add_condensed(command, options.cache);
   command->footer(
       models() +
       "Examples:\n"
@@ -149,6 +157,23 @@ CLI::App* add_solve(CLI::App& app, sim::SolveOptions& options) {
       "Examples:\n"
       "  sim_server solve configs/scenes/liver_weight.toml --out liver.vtu --probe 0.1,0.03,0.02\n"
       "  sim_server solve configs/scenes/liver_weight.toml --seconds 2 --out end.vtu --series motion.pvd");
+  return command;
+}
+
+CLI::App* add_condense(CLI::App& app, sim::CondenseOptions& options) {
+  auto* command = app.add_subcommand(
+      "condense", "Set up a body too large for this machine, on many processes, for `run --condensed`");
+  command->add_option("SCENE", options.scene, "Scene file (TOML) of model quasi_static or reduced")
+      ->required();
+  command
+      ->add_option("--out", options.out,
+                   "Folder to keep the result in; what it has already is not made again")
+      ->required();
+  command->add_option("--report", options.report, "Write times and memory to this JSON file");
+  command->footer(
+      "Examples:\n"
+      "  mpirun -n 4 sim_server condense configs/scenes/liver.toml --out out/liver\n"
+      "  sim_server run configs/scenes/liver.toml --condensed out/liver");
   return command;
 }
 
@@ -242,6 +267,7 @@ CLI::App* add_view(CLI::App& app, sim::ViewOptions& options) {
   add_viewer_option(command, options.viewer);
   command->add_option("--seconds", options.seconds, "Stop after so many seconds (default: at Ctrl-C)");
   add_cache_or_none(command, options.cache);
+  add_condensed(command, options.cache);
   command->footer("Example: sim_server view F.pcap --scene configs/scenes/liver.toml");
   return command;
 }
@@ -313,6 +339,8 @@ int run(int argc, char** argv) {
   sim::StudyOptions studying;
   sim::CacheOptions cached;
   const auto* study = add_study(app, studying, cached);
+  sim::CondenseOptions condensing;
+  const auto* condense = add_condense(app, condensing);
   const auto* scenes = add_scenes(app);
   const auto* mesh_info = add_mesh_info(app, mesh_file);
   sim::ReplayOptions replaying;
@@ -344,6 +372,7 @@ int run(int argc, char** argv) {
     check(solving);
     return sim::solve(solving);
   }
+  if (*condense) return sim::condense(condensing);
   if (*study) {
     check(studying);
     return sim::study(studying, cached);

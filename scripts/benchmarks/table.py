@@ -25,7 +25,8 @@ OURS = "ours"  # last part of the name of a row whose neighbours are libraries t
 LEFT_OUT = "left out: "  # what a row says that the scene has no use for
 FRAME_NS, TICK_NS = 1e9 / 30, 1e9 / 4000  # the scene's rate, and the quickest a client may ask for
 COUNTERS = (("p50", ".0f", " us"), ("p99", ".0f", " us"), ("rate", ".0f", "/s"), ("reads", ".0f", " GB/s"),
-            ("touching", ".1f", ""), ("error", ".2g", " %"))  # what a row counts beside its time
+            ("touching", ".1f", ""), ("error", ".2g", " %"), ("worst", ".1f", " ms"), ("moved", ".0f", " mm"),
+            ("factors", ".0f", ""), ("sofa", ".4g", " ms"), ("ratio", ".1f", " times"))  # what a row counts beside its time
 SESSION = re.compile(r"virtual_session/(\d+)_s$")
 
 

@@ -6,6 +6,7 @@
 #include "common/error.h"
 #include "common/log.h"
 #include "common/memory_budget.h"
+#include "sim_server/deformation/deformation_models.h"
 
 namespace palpate::sim {
 namespace {
@@ -30,6 +31,14 @@ std::optional<SetupCache> open_cache(const CacheOptions& options) {
     return {};
   }
   return known_cache(options);
+}
+
+std::optional<Condensed> open_condensed(const CacheOptions& options, const Scene& scene) {
+  if (!options.condensed) return {};
+  if (!model_of(scene.deformation).condenses)
+    fail("--condensed: nothing of tissue of model \"{}\" ({}) is condensed; leave it out",
+         scene.deformation.model, scene.deformation.where);
+  return Condensed(*options.condensed);
 }
 
 int list_cache(const CacheOptions& options) {

@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "sim_server/scene/scene.h"
+#include "sim_server/setup_cache/condensed.h"
 #include "sim_server/setup_cache/setup_cache.h"
 
 namespace palpate::sim {
@@ -10,10 +12,15 @@ namespace palpate::sim {
 struct CacheOptions {
   std::optional<std::filesystem::path> folder;  ///< absent: the usual one
   bool none = false;
+  std::optional<std::filesystem::path> condensed;  ///< `--condensed DIR`
 };
 
 /// Nothing with `--no-cache`, or where no folder is known.
 std::optional<SetupCache> open_cache(const CacheOptions& options);
+
+/// What a session of `scene` takes its set-up from, with `--condensed`. Throws `Error` where that is no
+/// folder, or a scene of this model is not condensed.
+std::optional<Condensed> open_condensed(const CacheOptions& options, const Scene& scene);
 
 /// Prints the entries, the one used last first. Returns the exit code.
 int list_cache(const CacheOptions& options);

@@ -134,7 +134,9 @@ int record(const RecordOptions& options) {
   say_what_is_lost(motion, options, ticks_hz);
   ProgressLine progress;
   const auto cache = open_cache(options.cache);
-  Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr);
+  const auto condensed = open_condensed(options.cache, scene);
+  Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr,
+                        condensed ? &*condensed : nullptr);
   if (options.remove) simulation.remove_at(read_removals(*options.remove, simulation));
   const ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
   VirtualSession session(

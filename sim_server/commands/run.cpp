@@ -267,7 +267,9 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   const Time begin = now();
   SetupTimes progress{ProgressLine()};
   const auto cache = open_cache(options.cache);
-  Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr);
+  const auto condensed = open_condensed(options.cache, scene);
+  Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr,
+                        condensed ? &*condensed : nullptr);
   warn_if_slow(scene);
   warn_if_out_of_reach(simulation, scene);
   ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);

@@ -161,7 +161,9 @@ int view_capture(const ViewOptions& options) {
     scene = read_scene(*options.scene);
     SetupTimes progress{ProgressLine()};
     const auto cache = open_cache(options.cache);
-    simulation.emplace(*scene, std::ref(progress), cache ? &*cache : nullptr);
+    const auto condensed = open_condensed(options.cache, *scene);
+    simulation.emplace(*scene, std::ref(progress), cache ? &*cache : nullptr,
+                       condensed ? &*condensed : nullptr);
     facts = facts_of(*scene, *simulation);
   } else {
     facts.title = options.capture.filename().string();

@@ -52,7 +52,8 @@ constexpr std::array kModels{
         {.name = "rigid", .summary = "no deformation; force = stiffness x penetration depth"}),
     row_of<QuasiStatic>({.name = "quasi_static",
                          .summary = "linear elastic equilibrium by pre-computed compliance",
-                         .materials = Materials::kLinear}),
+                         .materials = Materials::kLinear,
+                         .condenses = true}),
     row_of<TensorMass, RayleighDamping, ContactInstants, ClientModes>(
         {.name = "tensor_mass",
          .summary = "linear elastic motion, explicit, by a tensor per vertex and edge",
@@ -74,7 +75,8 @@ constexpr std::array kModels{
         {.name = "reduced",
          .summary = "linear elastic: the slowest modes swing, the rest follows at once",
          .materials = Materials::kLinear,
-         .moves = true}),
+         .moves = true,
+         .condenses = true}),
 #endif
     row_of<Spring, SpringSettings>({.name = "spring",
                                     .summary = "no deformation; the organ hangs on a spring that hardens",

@@ -34,6 +34,7 @@ struct DeformationModelRow {
   bool cuts = false;   ///< tissue can be removed while it is felt (`remove`)
   bool parts = false;  ///< and parted by a blade (`part`)
   bool needs_cutting = false;  ///< only of scenes with [cutting]
+  bool condenses = false;      ///< all that its set-up takes long for can be condensed (`Condensed`)
   /// What other models build and this one need not, for `explain`.
   struct Unneeded {
     std::string_view what, note;

@@ -1,5 +1,8 @@
 #include "sim_server/deformation/linear_statics.h"
 
+#include <cassert>
+#include <cmath>
+
 #include "common/clock.h"
 #include "common/error.h"
 #include "sim_server/mesh/loose_parts.h"
@@ -24,26 +27,74 @@ std::span<const T> values(const T* first, Eigen::Index count) {
   return {first, static_cast<std::size_t>(count)};
 }
 
-void add(const SparseMatrix& k, Fingerprint& fingerprint) {
+/// Where a set-up finds what was computed before, and keeps what it computes: what was condensed, where there
+/// is that, else the cache, else nowhere.
+class KeptMatrices {
+ public:
+  explicit KeptMatrices(const ModelInputs& inputs) : inputs_(inputs) {}
+
+  bool any() const { return inputs_.condensed != nullptr || inputs_.cache != nullptr; }
+  bool of_any_build() const { return inputs_.condensed != nullptr; }
+  const char* name() const { return of_any_build() ? "what was condensed" : "the set-up cache"; }
+  Fingerprint fingerprint() const {
+    return Fingerprint(of_any_build() ? Fingerprint::For::kAnyBuild : Fingerprint::For::kThisBuild);
+  }
+  std::optional<MappedMatrix> find(const Digest& key, const std::string& what) const {
+    return of_any_build() ? inputs_.condensed->find(key, what, inputs_.scene.source)
+                          : inputs_.cache->find(key);
+  }
+  void keep(const EntryHeader& header, const Eigen::MatrixXd& matrix) const {
+    if (of_any_build()) return inputs_.condensed->keep(header, matrix);
+    inputs_.cache->keep(header, matrix);
+  }
+
+ private:
+  const ModelInputs& inputs_;
+};
+
+/// So many digits of a sum are the same in every build.
+std::string in_any_build(double sum) {
+  return fmt::format("{:.7e}", sum);
+}
+
+/// Of K and, for modes, of the masses: to the last bit, or to what every build agrees on, which is the
+/// pattern of K and sum_ij |K_ij| v_i v_j for two vectors v without an order.
+void add(const SparseMatrix& k, Fingerprint& fingerprint, bool of_any_build) {
   fingerprint.add(values(k.outerIndexPtr(), k.outerSize() + 1));
   fingerprint.add(values(k.innerIndexPtr(), k.nonZeros()));
-  fingerprint.add(values(k.valuePtr(), k.nonZeros()));
+  if (!of_any_build) return fingerprint.add(values(k.valuePtr(), k.nonZeros()));
+  for (const std::uint64_t seed : {0x9e3779b97f4a7c15U, 0xbf58476d1ce4e5b9U}) {
+    const auto at = [seed](Eigen::Index i) {  // a multiplicative hash: within [0.5, 1.5)
+      return 0.5 + 0x1p-32 * static_cast<double>((static_cast<std::uint64_t>(i) + 1) * seed >> 32U);
+    };
+    double sum = 0;
+    for (Eigen::Index column = 0; column < k.outerSize(); ++column) {
+      for (SparseMatrix::InnerIterator entry(k, column); entry; ++entry)
+        sum += std::abs(entry.value()) * at(entry.row()) * at(column);
+    }
+    fingerprint.add(std::span<const char>(in_any_build(sum)));
+  }
 }
 
 /// Of all that rows and columns of K^-1 follow from.
-Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows) {
-  Fingerprint fingerprint;
-  add(k, fingerprint);
+Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows, const KeptMatrices& kept) {
+  Fingerprint fingerprint = kept.fingerprint();
+  add(k, fingerprint, kept.of_any_build());
   fingerprint.add(rows);
   return fingerprint.digest();
 }
 
 #ifdef PALPATE_WITH_SPECTRA
 /// Of all that modes of vibration follow from.
-Digest key_of_modes(const SparseMatrix& k, const Eigen::VectorXd& masses, int count) {
-  Fingerprint fingerprint;
-  add(k, fingerprint);
-  fingerprint.add(values(masses.data(), masses.size()));
+Digest key_of_modes(const SparseMatrix& k, const Eigen::VectorXd& masses, int count,
+                    const KeptMatrices& kept) {
+  Fingerprint fingerprint = kept.fingerprint();
+  add(k, fingerprint, kept.of_any_build());
+  if (kept.of_any_build()) {
+    fingerprint.add(std::span<const char>(in_any_build(masses.sum()) + in_any_build(masses.squaredNorm())));
+  } else {
+    fingerprint.add(values(masses.data(), masses.size()));
+  }
   fingerprint.add(std::span<const int>(&count, 1));
   return fingerprint.digest();
 }
@@ -64,10 +115,29 @@ LinearStatics::LinearStatics(const ModelInputs& inputs)
       stiffness(stiffness_of(solid, dofs)),
       inputs_(inputs) {}
 
-const SparseCholesky& LinearStatics::factor() const {
+const FactoredMatrix& LinearStatics::factor() const {
   if (factor_) return *factor_;
   inputs_.progress(name_of(Stage::kFactor), 0);
-  return factor_.emplace(stiffness.lower(), inputs_.scene.source);
+  const std::string& where = inputs_.scene.source;
+  if (inputs_.condensed == nullptr) {
+    factor_ = std::make_unique<SparseCholesky>(stiffness.lower(), where);
+  } else if (inputs_.condensed->makes()) {
+    factor_ = inputs_.condensed->factor(stiffness.lower(), reachable_rows(), where);
+  } else {
+    fail("--condensed: {} needs a factor of its stiffness besides, as its supports move; leave it out",
+         where);
+  }
+  return *factor_;
+}
+
+/// Of K, three for each surface vertex that tools reach and nothing holds.
+std::vector<int> LinearStatics::reachable_rows() const {
+  std::vector<int> rows;
+  for (const int vertex : inputs_.reachable) {
+    const int first = dofs.first[inputs_.surface.vertices[vertex]];
+    if (first >= 0) rows.insert(rows.end(), {first, first + 1, first + 2});
+  }
+  return rows;
 }
 
 std::optional<MovingSupports> LinearStatics::supports(Following following) const {
@@ -86,46 +156,47 @@ VibrationModes LinearStatics::modes(int count, const std::string& where) const {
 #else
   const Eigen::VectorXd weights = masses();
   const auto find = [&] {
-    const SparseCholesky& of_stiffness = factor();
+    const FactoredMatrix& of_stiffness = factor();
     inputs_.progress(name_of(Stage::kModes), 0);
     return vibration_modes(of_stiffness, weights, count, where);
   };
-  if (inputs_.cache == nullptr) return find();
-  const Digest key = key_of_modes(stiffness.lower(), weights, count);
-  if (const auto kept = inputs_.cache->find(key)) {
-    const auto matrix = kept->matrix();  // the frequencies above the shapes
+  const KeptMatrices kept(inputs_);
+  if (!kept.any()) return find();
+  const Digest key = key_of_modes(stiffness.lower(), weights, count, kept);
+  if (const auto found = kept.find(key, fmt::format("{} modes of vibration", count))) {
+    const auto matrix = found->matrix();  // the frequencies above the shapes
     if (matrix.rows() == dofs.count + 1 && matrix.cols() == count)
-      return {matrix.row(0).transpose(), matrix.bottomRows(dofs.count), note_of_saved(*kept)};
+      return {matrix.row(0).transpose(), matrix.bottomRows(dofs.count), note_of_saved(*found, kept.name())};
   }
   const Time begin = now();
   VibrationModes found = find();
   Eigen::MatrixXd matrix(dofs.count + 1, count);
   matrix << found.frequencies.transpose(), found.shapes;
   const std::string what = fmt::format("{} modes, {}", count, inputs_.scene.mesh_file.filename().string());
-  inputs_.cache->keep({.key = key, .seconds = to_seconds(now() - begin), .what = what}, matrix);
+  kept.keep({.key = key, .seconds = to_seconds(now() - begin), .what = what}, matrix);
   return found;
 #endif
 }
 
 void LinearStatics::fill(SurfaceCompliance& compliance) const {
-  std::vector<int> rows;  // of K, for each of the compliance
-  for (const int vertex : compliance.vertices()) {
-    const int first = dofs.first[inputs_.surface.vertices[vertex]];
-    rows.insert(rows.end(), {first, first + 1, first + 2});
-  }
-  if (inputs_.cache == nullptr) return compute(compliance, rows);
-  const Digest key = key_of_compliance(stiffness.lower(), rows);
-  if (auto kept = inputs_.cache->find(key); kept && compliance.take(std::move(*kept))) return;
+  const std::vector<int> rows = reachable_rows();
+  assert(rows.size() == 3 * compliance.vertices().size());
+  const KeptMatrices kept(inputs_);
+  if (!kept.any()) return compute(compliance, rows);
+  const Digest key = key_of_compliance(stiffness.lower(), rows, kept);
+  const std::string what = fmt::format("compliance of {} nodes", compliance.vertices().size());
+  if (auto found = kept.find(key, what); found && compliance.take(std::move(*found), kept.name())) return;
   const Time begin = now();
   compute(compliance, rows);
-  const std::string what = fmt::format("compliance of {} nodes, {}", compliance.vertices().size(),
-                                       inputs_.scene.mesh_file.filename().string());
-  inputs_.cache->keep({.key = key, .seconds = to_seconds(now() - begin), .what = what}, compliance.matrix());
-  compliance.was_kept();
+  kept.keep({.key = key,
+             .seconds = to_seconds(now() - begin),
+             .what = what + ", " + inputs_.scene.mesh_file.filename().string()},
+            compliance.matrix());
+  compliance.was_kept_in(kept.name());
 }
 
 void LinearStatics::compute(SurfaceCompliance& compliance, std::span<const int> rows) const {
-  const SparseCholesky& of_stiffness = factor();
+  const FactoredMatrix& of_stiffness = factor();
   compliance.compute([&](Eigen::Ref<Eigen::MatrixXd> w) {
     of_stiffness.inverse_block(rows, w,
                                [&](double share) { inputs_.progress(name_of(Stage::kCompliance), share); });

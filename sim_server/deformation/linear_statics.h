@@ -20,22 +20,24 @@ struct LinearStatics {
   /// Tells the progress of `inputs`.
   explicit LinearStatics(const ModelInputs& inputs);
   /// Of K; made when first asked for. Throws `Error` where K is singular.
-  const SparseCholesky& factor() const;
+  const FactoredMatrix& factor() const;
   /// What moves the surface where some [[fixed]] has a motion.
   std::optional<MovingSupports> supports(Following following) const;
   /// Of each unknown, kg, lumped.
   Eigen::VectorXd masses() const { return masses_of(solid, dofs); }
   /// The `count` lowest modes of vibration over `dofs`, or what the cache of the inputs has of them. Throws
-  /// `Error`, beginning with `where`, as `vibration_modes`, and where the build has no Spectra.
+  /// `Error`, beginning with `where`, as `vibration_modes`, and where the build has no Spectra. "What the
+  /// inputs have" is the folder of `sim_server condense` where there is one, else the cache.
   VibrationModes modes(int count, const std::string& where) const;
   /// Fills `compliance` with J K^-1 J^T, on all cores, or with what the cache of the inputs has of it.
   void fill(SurfaceCompliance& compliance) const;
 
  private:
+  std::vector<int> reachable_rows() const;
   void compute(SurfaceCompliance& compliance, std::span<const int> rows) const;
 
   const ModelInputs& inputs_;
-  mutable std::optional<SparseCholesky> factor_;
+  mutable std::unique_ptr<FactoredMatrix> factor_;
 };
 
 }  // namespace palpate::sim

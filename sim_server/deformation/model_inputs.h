@@ -3,6 +3,7 @@
 #include "sim_server/deformation/setup_stages.h"
 #include "sim_server/mesh/surface.h"
 #include "sim_server/scene/scene.h"
+#include "sim_server/setup_cache/condensed.h"
 #include "sim_server/setup_cache/setup_cache.h"
 
 namespace palpate::sim {
@@ -16,8 +17,9 @@ struct ModelInputs {
   const std::vector<int>& fixed;
   const std::vector<int>& reachable;
   const Progress& progress;
-  double free_bytes = free_memory();  ///< that it may take
-  const SetupCache* cache = nullptr;  ///< where it may find what another start computed, and keep it
+  double free_bytes = free_memory();     ///< that it may take
+  const SetupCache* cache = nullptr;     ///< where it may find what another start computed, and keep it
+  const Condensed* condensed = nullptr;  ///< where it finds or keeps that instead
 };
 
 /// How stiff a vertex of a [[fixed]] is under a tool, N/m, whatever the model: 2000, which the limits of

@@ -82,13 +82,13 @@ void SurfaceCompliance::allocate() {
   new (&compliance_) Eigen::Map<Eigen::MatrixXd>(computed_.data(), rows, rows);
 }
 
-bool SurfaceCompliance::take(MappedMatrix&& kept) {
+bool SurfaceCompliance::take(MappedMatrix&& kept, std::string_view source) {
   const auto rows = static_cast<Eigen::Index>(3 * vertices_.size());
   const auto matrix = kept.matrix();
   if (matrix.rows() != rows || matrix.cols() != rows) return false;
   new (&compliance_) Eigen::Map<Eigen::MatrixXd>(const_cast<double*>(matrix.data()), rows, rows);
   kept_ = std::move(kept);
-  note_ = note_of_saved(*kept_);
+  note_ = note_of_saved(*kept_, source);
   return true;
 }
 

@@ -35,14 +35,15 @@ class SurfaceCompliance final : public ComplianceSource {
   /// The same where one call makes all of W, equal to its transpose.
   void compute(const std::function<void(Eigen::Ref<Eigen::MatrixXd> w)>& make);
 
-  /// Takes W from the cache. False where it is not of this size: then nothing is changed.
-  bool take(MappedMatrix&& kept);
+  /// Takes W from where it was kept, the `source` of which reports tell. False where it is not of this size:
+  /// then nothing is changed.
+  bool take(MappedMatrix&& kept, std::string_view source);
   /// W.
   Eigen::Ref<const Eigen::MatrixXd> matrix() const { return compliance_; }
   /// "1934 nodes, from the set-up cache, which saved 3.2 s".
   std::string detail() const;
-  /// W has been put into the cache.
-  void was_kept() { note_ = "now in the set-up cache"; }
+  /// W has been put there.
+  void was_kept_in(std::string_view where) { note_ = "now in " + std::string(where); }
 
   /// Adds sum_k weights_k s_k s_k^T, s_k: shape k over the rows. `shapes`: (3 surface vertices x k). Set-up,
   /// on all cores.

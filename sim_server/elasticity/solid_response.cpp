@@ -95,6 +95,22 @@ void Solid::evaluate(std::span<const Vec3> x, std::span<State> at_points, const 
   });
 }
 
+void Solid::node_rotations(std::span<const Vec3> x, std::span<Mat3> rotations) const {
+  std::vector<Mat3> sums(rest_.size(), Mat3::Zero());
+  each_element<LinearLaw>(x, 0, elements(), [&](const Element& element, const Mat3* F, const Mat3*) {
+    for (int q = 0; q < points_; ++q) {
+      for (int i = 0; i < corners_; ++i) sums[element.nodes[i]] += element.weight(q) * F[q];
+    }
+  });
+  for (Mat3& sum : sums) {
+    const double size = sum.norm();
+    sum = size > 0 ? Mat3(sum / size) : Mat3(Mat3::Identity());  // of a node that has no tetrahedron left
+  }
+  parallel_blocks(sums.size(), kTask, [&](std::size_t begin, std::size_t end) {
+    nearest_rotations(std::span(sums).subspan(begin, end - begin), rotations.subspan(begin, end - begin));
+  });
+}
+
 FibreLaw Solid::fibre_law(const Mat3& F) const {
   return {material_.fibres->modulus, material_.fibres->direction, F, material_.law == ElasticLaw::kLinear};
 }

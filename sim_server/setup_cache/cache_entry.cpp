@@ -108,8 +108,8 @@ Eigen::Map<Eigen::MatrixXd> MappedMatrix::matrix() const {
           static_cast<Eigen::Index>(header_.cols)};
 }
 
-std::string note_of_saved(const MappedMatrix& kept) {
-  return fmt::format("from the set-up cache, which saved {:.1f} s", kept.header().seconds);
+std::string note_of_saved(const MappedMatrix& kept, std::string_view source) {
+  return fmt::format("from {}, which saved {:.1f} s", source, kept.header().seconds);
 }
 
 void write_entry(const std::filesystem::path& file, const EntryHeader& header,

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "sim_server/setup_cache/fingerprint.h"
 
@@ -33,8 +34,8 @@ class MappedMatrix {
   EntryHeader header_;
 };
 
-/// "from the set-up cache, which saved 3.2 s".
-std::string note_of_saved(const MappedMatrix& kept);
+/// "from the set-up cache, which saved 3.2 s"; `source`: where it came from.
+std::string note_of_saved(const MappedMatrix& kept, std::string_view source = "the set-up cache");
 
 /// Writes an entry under another name, syncs and renames it: whole or not at all. Throws `Error`.
 void write_entry(const std::filesystem::path& file, const EntryHeader& header,

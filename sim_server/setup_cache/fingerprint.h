@@ -16,11 +16,13 @@ std::string to_text(const Digest& digest);
 /// Of some bytes.
 Digest digest_of(std::span<const std::byte> bytes);
 
-/// A hash of all that a result follows from. Begins with the program's own bytes and the processor's name and
-/// features: another build, or another processor, rounds otherwise.
+/// A hash of all that a result follows from.
 class Fingerprint {
  public:
-  Fingerprint();
+  /// For whom results are. `kThisBuild` begins with the program's own bytes and the processor's name and
+  /// features: another build, or another processor, rounds otherwise.
+  enum class For { kThisBuild, kAnyBuild };
+  explicit Fingerprint(For whom = For::kThisBuild);
   ~Fingerprint();
 
   template <class T>

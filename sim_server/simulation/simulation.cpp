@@ -68,10 +68,12 @@ std::string contact_stage(std::size_t tool, std::size_t tools) {
   return "preparing " + contact_part(tool, tools);
 }
 
-Simulation::Simulation(const Scene& scene, const Progress& progress, const SetupCache* cache)
-    : Simulation(scene, read_mesh_told(scene, progress), progress, cache) {}
+Simulation::Simulation(const Scene& scene, const Progress& progress, const SetupCache* cache,
+                       const Condensed* condensed)
+    : Simulation(scene, read_mesh_told(scene, progress), progress, cache, condensed) {}
 
-Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress, const SetupCache* cache)
+Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress, const SetupCache* cache,
+                       const Condensed* condensed)
     : mesh_(std::make_unique<TetMesh>(std::move(mesh))) {
   put_inclusions(scene, *mesh_);
   progress(name_of(Stage::kSurface), 0);
@@ -96,7 +98,8 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   const DeformationModelRow& row = model_of(scene.deformation);
   const bool stays = row.deforms() && !fixed.empty() && !supports_move(scene);
   if (stays) farthest_ = kRunAway * diagonal_of(rest_);
-  tissue_.model = row.make({scene, *mesh_, surface_, standing, reachable, progress, free_memory(), cache});
+  tissue_.model =
+      row.make({scene, *mesh_, surface_, standing, reachable, progress, free_memory(), cache, condensed});
   instants_ = tissue_.model->instants();
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;

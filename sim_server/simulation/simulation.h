@@ -109,12 +109,13 @@ struct StepFailures {
 /// it does (`DeformationModel`), and while tissue is cut.
 class Simulation {
  public:
-  /// With the mesh file that the scene names.
+  /// With the mesh file that the scene names. `condensed`: what set-up takes or makes instead of what the
+  /// cache has (`sim_server condense`).
   explicit Simulation(const Scene& scene, const Progress& progress = kSilent,
-                      const SetupCache* cache = nullptr);
+                      const SetupCache* cache = nullptr, const Condensed* condensed = nullptr);
   /// With a mesh made elsewhere.
   Simulation(const Scene& scene, TetMesh mesh, const Progress& progress = kSilent,
-             const SetupCache* cache = nullptr);
+             const SetupCache* cache = nullptr, const Condensed* condensed = nullptr);
 
   /// Advances the tissue by `dt` (s >= 0; the run begins at time 0) with one input for each tool. The
   /// answers, one for each tool, stay valid until the next step.

@@ -65,6 +65,7 @@ void Dynamics::start_step(double h) {
   at_predictor_ = true;
   motion_.begin_step(h);
   if (policy_.begin_step(motion_.time().steps())) exchange_factors();
+  matrix_.turn_to(solid_, motion_.position());
 }
 
 void Dynamics::factor() {

@@ -24,7 +24,8 @@ SparseCholesky::Precision precision_for(const Material& material, bool cut) {
 
 NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                            const std::string& where)
-    : alpha_(settings.rayleigh_mass),
+    : dofs_(&dofs),
+      alpha_(settings.rayleigh_mass),
       beta_(settings.rayleigh_stiffness),
       matrix_(at_rest(solid, dofs, settings.flies)),
       mean_diagonal_(matrix_.lower().diagonal().mean()),
@@ -33,6 +34,11 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
 void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
                          const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
   c_ = c;
+  turns_.clear();
+  if (solid.material().law != ElasticLaw::kLinear) {
+    built_turned_.resize(x.size());
+    solid.node_rotations(x, built_turned_);
+  }
   matrix_.set_zero();
   solid.add_stiffness(x, matrix_, viscosity, scratch);
   matrix_.lower() *= 1 + beta_ * c;
@@ -43,6 +49,29 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<
     matrix_.add_to_diagonal(masses, more);
     definite = factor_.refactor(matrix_.lower());
   }
+}
+
+void NewtonMatrix::turn_to(const Solid& solid, std::span<const Vec3> x) {
+  if (solid.material().law == ElasticLaw::kLinear) return;
+  turns_.resize(x.size());
+  solid.node_rotations(x, turns_);
+  for (std::size_t i = 0; i < built_turned_.size(); ++i) turns_[i] *= built_turned_[i].transpose();
+}
+
+Eigen::VectorXd NewtonMatrix::turned(const Eigen::VectorXd& v, bool back) const {
+  Eigen::VectorXd out = v;
+  for (std::size_t i = 0; i < turns_.size(); ++i) {
+    const int first = dofs_->first[i];
+    if (first < 0 || dofs_->held[i] != 0) continue;  // what is held along an axis stays there
+    const Vec3 at = v.segment<3>(first);
+    out.segment<3>(first) = back ? Vec3(turns_[i].transpose() * at) : Vec3(turns_[i] * at);
+  }
+  return out;
+}
+
+Eigen::VectorXd NewtonMatrix::turned_solve(const Eigen::VectorXd& b) const {
+  if (turns_.empty()) return solve(b).col(0);
+  return turned(solve(turned(b, true)).col(0), false);
 }
 
 void NewtonMatrix::check_precision() {

@@ -13,7 +13,7 @@ namespace palpate::sim {
 class NewtonMatrix {
  public:
   /// K of the solid at rest, factored; of one that flies with some inertia. Throws `Error`, beginning with
-  /// `where`, when `dofs` do not hold it.
+  /// `where`, when `dofs`, which must outlive this, do not hold it.
   NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                const std::string& where);
 
@@ -26,6 +26,12 @@ class NewtonMatrix {
   void check_precision();
   /// A^-1 b of the factor, for columns b over the unknowns.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return factor_.solve(b); }
+  /// Tells where the body is now (nodes, m), for `turned_solve`.
+  void turn_to(const Solid& solid, std::span<const Vec3> x);
+  /// Q A^-1 Q^T b, Q turning each node as the body there has turned since A was built: a body that was only
+  /// carried and turned about has that matrix, so the factor serves as long as nothing but that happens.
+  /// Before the first `turn_to`, and of the linear law, `solve`.
+  Eigen::VectorXd turned_solve(const Eigen::VectorXd& b) const;
   /// A^-1 of unit forces on the three unknowns from each of `first` on: (unknowns x 3 first.size()); of a
   /// factor in single precision by one step of refinement, which squares its error, where the first three
   /// leave more than `enough` of them.
@@ -40,11 +46,17 @@ class NewtonMatrix {
   std::size_t bytes() const { return matrix_.bytes() + factor_.bytes(); }
 
  private:
+  /// v, each node of it turned by its Q, or by Q^T.
+  Eigen::VectorXd turned(const Eigen::VectorXd& v, bool back) const;
+
+  const FreeDofs* dofs_;
   double alpha_, beta_;
   StiffnessMatrix matrix_;
   double mean_diagonal_;  // N/m
   SparseCholesky factor_;
   double c_ = 0;
+  std::vector<Mat3> built_turned_;  // (nodes) how they had turned where A was built; empty: not at all
+  std::vector<Mat3> turns_;         // (nodes) Q, or empty: none has turned
 };
 
 /// Columns of A^-1.

@@ -31,7 +31,7 @@ Eigen::VectorXd QuasiNewton::direction(const NewtonMatrix& matrix, const Eigen::
     alpha[k] = pairs_[k].s.dot(q) / pairs_[k].curvature;
     q -= alpha[k] * pairs_[k].y;
   }
-  Eigen::VectorXd r = matrix.solve(q).col(0);
+  Eigen::VectorXd r = matrix.turned_solve(q);
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     r += (alpha[k] - pairs_[k].y.dot(r) / pairs_[k].curvature) * pairs_[k].s;
   return r;

@@ -13,7 +13,7 @@ constexpr int kMostRestarts = 1000;
 /// v -> M^1/2 K^-1 M^1/2 v, as Spectra asks for it.
 struct Flexibility {
   using Scalar = double;
-  const SparseCholesky& stiffness;
+  const FactoredMatrix& stiffness;
   const Eigen::VectorXd& root;  // of the masses
 
   Eigen::Index rows() const { return root.size(); }
@@ -27,7 +27,7 @@ struct Flexibility {
 
 }  // namespace
 
-VibrationModes vibration_modes(const SparseCholesky& stiffness, const Eigen::VectorXd& masses, int count,
+VibrationModes vibration_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses, int count,
                                const std::string& where) {
   const Eigen::Index n = masses.size();
   if (count >= n)

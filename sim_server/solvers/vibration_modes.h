@@ -2,7 +2,7 @@
 #include <span>
 #include <string>
 
-#include "sim_server/sparse/sparse_cholesky.h"
+#include "sim_server/sparse/factored_matrix.h"
 
 namespace palpate::sim {
 
@@ -17,7 +17,7 @@ struct VibrationModes {
 /// M^1/2 K^-1 M^1/2, to 1e-10 of w^2. `stiffness`: the factor of K. `masses`: the diagonal of M, kg > 0, by
 /// unknowns. Starts from the same vector every time. Throws `Error`, beginning with `where`, where `count` is
 /// not below the number of unknowns. Cost: some 2 to 4 solves a mode. Allocates 2 `count` vectors.
-VibrationModes vibration_modes(const SparseCholesky& stiffness, const Eigen::VectorXd& masses, int count,
+VibrationModes vibration_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses, int count,
                                const std::string& where);
 
 }  // namespace palpate::sim

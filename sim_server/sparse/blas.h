@@ -13,7 +13,8 @@ extern "C" {
   void p##trsm_(const char*, const char*, const char*, const char*, const int*, const int*, const S*,        \
                 const S*, const int*, S*, const int*);                                                       \
   void p##trsv_(const char*, const char*, const char*, const int*, const S*, const int*, S*, const int*);    \
-  void p##potrf_(const char*, const int*, S*, const int*, int*);
+  void p##potrf_(const char*, const int*, S*, const int*, int*);                                             \
+  void p##potri_(const char*, const int*, S*, const int*, int*);
 PALPATE_BLAS(double, d)
 PALPATE_BLAS(float, s)
 #undef PALPATE_BLAS
@@ -35,6 +36,7 @@ struct Blas<double> {
   static constexpr auto trsm = dtrsm_;
   static constexpr auto trsv = dtrsv_;
   static constexpr auto potrf = dpotrf_;
+  static constexpr auto potri = dpotri_;
 };
 template <>
 struct Blas<float> {
@@ -44,6 +46,7 @@ struct Blas<float> {
   static constexpr auto trsm = strsm_;
   static constexpr auto trsv = strsv_;
   static constexpr auto potrf = spotrf_;
+  static constexpr auto potri = spotri_;
 };
 
 }  // namespace palpate::sim

@@ -5,14 +5,14 @@
 #include <string>
 
 #include "common/memory_budget.h"
-#include "sim_server/sparse/stiffness_matrix.h"
+#include "sim_server/sparse/factored_matrix.h"
 
 namespace palpate::sim {
 
 /// Sparse Cholesky factorisation of a symmetric positive definite matrix: by order and pattern of CHOLMOD,
 /// with our own numbers on all cores (`SupernodalFactor`), or, built with PALPATE_CHOLMOD=OFF, by Eigen. This
 /// is the one file that knows which. Set-up and background threads only.
-class SparseCholesky {
+class SparseCholesky final : public FactoredMatrix {
  public:
   /// Of the numbers of the factor. Single takes half the memory and time, and serves where what is solved for
   /// is looked at again: answers are right to some 1e-6 of their size times the condition of the matrix.
@@ -26,7 +26,7 @@ class SparseCholesky {
   /// rounding.
   SparseCholesky(const SparseMatrix& lower, const std::string& where,
                  Precision precision = Precision::kDouble, double free = free_memory());
-  ~SparseCholesky();
+  ~SparseCholesky() override;
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
@@ -38,13 +38,12 @@ class SparseCholesky {
   /// and the next is in double precision. Cost of a solve.
   void check_precision(const SparseMatrix& lower);
 
-  /// X = A^-1 B for dense B (n x k); allocates X. Several threads may ask at once.
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+  /// Several threads may ask at once.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const override;
 
-  /// Fills `block` (m x m) with the rows and columns `unknowns` of A^-1, equal to its transpose. On all
-  /// cores, the same bytes on any number of them; tells `progress` the share done, from the calling thread.
+  /// On all cores, the same bytes on any number of them. Any `unknowns`.
   void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
-                     const std::function<void(double)>& progress) const;
+                     const std::function<void(double)>& progress) const override;
 
   /// Of the factor that there is.
   Precision precision() const;

@@ -26,6 +26,7 @@ void add_removal_rows();
 void add_implicit_rows();
 void add_kernel_rows();
 void add_cholesky_rows();
+void add_race_rows();
 void add_falcon_rows();
 void add_viewer_rows();
 void add_telemetry_rows();

@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
     add_implicit_rows();
     add_kernel_rows();
     add_telemetry_rows();
+    add_race_rows();
 #ifdef PALPATE_WITH_CHOLMOD
     add_cholesky_rows();
 #endif

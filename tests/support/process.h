@@ -8,7 +8,7 @@ namespace palpate::test {
 /// A child process with its output collected; killed if it still runs when this goes.
 class Process {
  public:
-  /// Starts `program` (searched in build/.../bin) with `arguments`.
+  /// Starts `program` (in build/.../bin, unless its path is absolute) with `arguments`.
   Process(const std::string& program, const std::vector<std::string>& arguments);
   ~Process();
   Process(const Process&) = delete;

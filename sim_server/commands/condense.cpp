@@ -1,0 +1,122 @@
+#include "sim_server/commands/condense.h"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/clock.h"
+#include "common/error.h"
+#include "common/log.h"
+#include "common/memory_budget.h"
+#include "common/progress.h"
+#include "common/report.h"
+#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/distributed/mumps_factor.h"
+#include "sim_server/scene/held_motion.h"
+#include "sim_server/scene_file/read_scene.h"
+#include "sim_server/simulation/setup_times.h"
+#include "sim_server/simulation/simulation.h"
+
+namespace palpate::sim {
+namespace {
+
+void require_condensable(const Scene& scene) {
+  const DeformationModelRow& row = model_of(scene.deformation);
+  if (!row.condenses)
+    fail("{}: tissue of model \"{}\" is not condensed; {} are", scene.deformation.where, row.name,
+         models_that([](const DeformationModelRow& m) { return m.condenses; }));
+  if (supports_move(scene))
+    fail("{}: supports that move are not condensed; remove their [[fixed.motion]]", scene.source);
+}
+
+double sum_of(const std::vector<RankMemory>& ranks) {
+  double bytes = 0;
+  for (const RankMemory& rank : ranks) bytes += rank.bytes;
+  return bytes;
+}
+
+/// What the factor cost; nothing where all was there already.
+struct Condensing {
+  std::optional<MumpsCosts> costs;
+
+  MakeFactor maker() {
+    return [this](const SparseMatrix& lower, std::span<const int> kept, const std::string& where) {
+      const auto tell = [](const std::string& line) { log::info("{}", line); };
+      auto factor = std::make_unique<MumpsFactor>(lower, kept, where, tell);
+      costs = factor->costs();
+      return factor;
+    };
+  }
+};
+
+Json report_of(const CondenseOptions& options, const Simulation& simulation, const SetupTimes& times,
+               const Condensing& condensing, int ranks) {
+  Json report{{"scene", options.scene.string()},
+              {"folder", options.out.string()},
+              {"ranks", ranks},
+              {"tetrahedra", simulation.mesh().tetrahedra.size()},
+              {"stages_ms", times.to_json()}};
+  if (!condensing.costs) return report;
+  const MumpsCosts& costs = *condensing.costs;
+  report["factor"] = {{"unknowns", costs.unknowns},  {"kept", costs.kept},
+                      {"gflop", 1e-9 * costs.flops}, {"analysis_s", costs.analysis_s},
+                      {"factor_s", costs.factor_s},  {"schur_s", costs.schur_s}};
+  for (const RankMemory& rank : costs.memory) report["factor"]["rank_mb"].push_back(1e-6 * rank.bytes);
+  return report;
+}
+
+void print_costs(const MumpsCosts& costs) {
+  fmt::print(
+      "  factor: analysis {:.2f} s, numbers {:.2f} s ({:.3g} Gflop/s), Cholesky factor of what is kept "
+      "{:.2f} s\n",
+      costs.analysis_s, costs.factor_s, 1e-9 * costs.flops / costs.factor_s, costs.schur_s);
+  std::string ranks;
+  for (const RankMemory& rank : costs.memory) ranks += (ranks.empty() ? "" : ", ") + bytes_text(rank.bytes);
+  fmt::print("  its memory, by rank: {}; {} in all\n", ranks, bytes_text(sum_of(costs.memory)));
+}
+
+void condense_on_rank_0(const CondenseOptions& options, int ranks) {
+  const Scene scene = read_scene(options.scene);
+  require_condensable(scene);
+  if (options.report) check_writable(*options.report, Contents::kReport);
+  Condensing condensing;
+  const Condensed condensed(options.out, condensing.maker());
+  SetupTimes times{ProgressLine("what was complete is kept, and the next start goes on from there")};
+  const Time begin = now();
+  const Simulation simulation(scene, std::ref(times), nullptr, &condensed);
+  fmt::print("{}: {} tetrahedra condensed into {} on {} {} in {:.1f} s\n", scene.source,
+             simulation.mesh().tetrahedra.size(), options.out.string(), ranks, ranks == 1 ? "rank" : "ranks",
+             to_seconds(now() - begin));
+  for (const SetupTimes::Stage& stage : times.stages())
+    fmt::print("  {:<40}{:>9.2f} s\n", stage.name, to_seconds(stage.took));
+  for (const MemoryPart& part : simulation.memory()) {
+    if (!part.detail.empty())
+      fmt::print("  {}: {}, {}\n", part.name, bytes_text(static_cast<double>(part.bytes)), part.detail);
+  }
+  if (condensing.costs) print_costs(*condensing.costs);
+  fmt::print("  to feel it: sim_server run {} --condensed {}\n", options.scene.string(),
+             options.out.string());
+  if (options.report) write_json(*options.report, report_of(options, simulation, times, condensing, ranks));
+}
+
+/// Lets the other ranks go, whatever happens on this one.
+struct OtherRanks {
+  OtherRanks() = default;
+  ~OtherRanks() { end_mumps(); }
+  OtherRanks(const OtherRanks&) = delete;
+  OtherRanks& operator=(const OtherRanks&) = delete;
+};
+
+}  // namespace
+
+int condense(const CondenseOptions& options) {
+  const MpiRanks ranks;
+  if (ranks.rank() == 0) {
+    const OtherRanks released_at_the_end;
+    condense_on_rank_0(options, ranks.count());
+  } else {
+    serve_mumps();
+  }
+  return 0;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,51 @@
+#include "sim_server/setup_cache/condensed.h"
+
+#include <unistd.h>
+
+#include "common/error.h"
+
+namespace palpate::sim {
+
+Condensed::Condensed(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::error_code failed;
+  if (!std::filesystem::is_directory(folder_, failed))
+    fail("--condensed: \"{}\" is no folder; `sim_server condense SCENE --out {}` makes it", folder_.string(),
+         folder_.string());
+}
+
+Condensed::Condensed(std::filesystem::path folder, MakeFactor make_factor)
+    : folder_(std::move(folder)), make_factor_(std::move(make_factor)) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder_, failed);
+  if (!failed && access(folder_.c_str(), W_OK) != 0) failed = {errno, std::generic_category()};
+  if (failed) fail("--out: cannot keep anything in \"{}\": {}", folder_.string(), failed.message());
+}
+
+std::filesystem::path Condensed::file_of(const Digest& key) const {
+  return folder_ / (to_text(key) + ".setup");
+}
+
+std::optional<MappedMatrix> Condensed::find(const Digest& key, const std::string& what,
+                                            const std::string& scene) const {
+  const std::filesystem::path file = file_of(key);
+  std::error_code failed;
+  if (std::filesystem::exists(file, failed)) {
+    try {
+      return map_entry(file, key);
+    } catch (const Error& error) {
+      fail("{}; remove it and condense the scene again", error.what());
+    }
+  }
+  if (!makes())
+    fail(
+        "--condensed: \"{}\" holds no {} of {}: its mesh, material, [[fixed]], `reach` or model is another; "
+        "`sim_server condense {} --out {}` makes them",
+        folder_.string(), what, scene, scene, folder_.string());
+  return {};
+}
+
+void Condensed::keep(const EntryHeader& header, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const {
+  write_entry(file_of(header.key), header, matrix);
+}
+
+}  // namespace palpate::sim

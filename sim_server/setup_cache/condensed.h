@@ -1,0 +1,41 @@
+#pragma once
+#include "sim_server/setup_cache/cache_entry.h"
+#include "sim_server/sparse/factored_matrix.h"
+
+namespace palpate::sim {
+
+/// What `sim_server condense` computes of a scene, in a folder: matrices that take the set-up of a large body
+/// long, as files of the set-up cache, but under keys that any build on any processor finds again
+/// (`Fingerprint::For::kAnyBuild`). Set-up only; one thread.
+class Condensed {
+ public:
+  /// To take from: nothing is made. Throws `Error` where there is no such folder.
+  explicit Condensed(std::filesystem::path folder);
+  /// To make what is not in the folder, with factors by `make_factor`. Throws `Error` where nothing can be
+  /// kept there.
+  Condensed(std::filesystem::path folder, MakeFactor make_factor);
+
+  bool makes() const { return static_cast<bool>(make_factor_); }
+  /// Where it makes. Throws what `make_factor` throws.
+  std::unique_ptr<FactoredMatrix> factor(const SparseMatrix& lower, std::span<const int> kept,
+                                         const std::string& where) const {
+    return make_factor_(lower, kept, where);
+  }
+
+  /// The matrix kept under a key. Throws `Error`, with the file, where it is not sound; and where it is not
+  /// there and none is made, with `what` it would be ("modes of vibration") of which `scene`.
+  std::optional<MappedMatrix> find(const Digest& key, const std::string& what,
+                                   const std::string& scene) const;
+  /// Keeps a matrix: whole or not at all. Throws `Error` where that is not possible.
+  void keep(const EntryHeader& header, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const;
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path file_of(const Digest& key) const;
+
+  std::filesystem::path folder_;
+  MakeFactor make_factor_;
+};
+
+}  // namespace palpate::sim

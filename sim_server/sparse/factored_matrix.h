@@ -1,0 +1,34 @@
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "sim_server/sparse/stiffness_matrix.h"
+
+namespace palpate::sim {
+
+/// A^-1 of a symmetric positive definite matrix A (n x n), whoever factored A. Set-up and background threads
+/// only.
+class FactoredMatrix {
+ public:
+  FactoredMatrix() = default;
+  virtual ~FactoredMatrix() = default;
+  FactoredMatrix(FactoredMatrix&&) = default;
+  FactoredMatrix& operator=(FactoredMatrix&&) = default;
+
+  /// X = A^-1 B for dense B (n x k); allocates X.
+  virtual Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const = 0;
+  /// Fills `block` (m x m) with the rows and columns `unknowns` of A^-1, equal to its transpose; tells
+  /// `progress` the share done, from the calling thread.
+  virtual void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
+                             const std::function<void(double)>& progress) const = 0;
+};
+
+/// Factors the matrix whose lower triangle is given. `kept`: the unknowns of which `inverse_block` will be
+/// asked. Throws `Error`, beginning with `where`, as `SparseCholesky`.
+using MakeFactor = std::function<std::unique_ptr<FactoredMatrix>(
+    const SparseMatrix& lower, std::span<const int> kept, const std::string& where)>;
+
+}  // namespace palpate::sim

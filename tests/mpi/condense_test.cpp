@@ -1,0 +1,142 @@
+// `sim_server condense` as `mpirun` starts it: the answers of the built-in path whatever the number of ranks,
+// what a rank that dies leaves, and what a second start need not do.
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "sim_server/scene_file/read_scene.h"
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/catch.h"
+#include "tests/support/programs.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tool_inputs.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+using namespace palpate::test;
+using Catch::Contains;
+
+namespace {
+
+const std::string kScenes = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/";
+
+std::vector<std::string> arguments_of(int ranks, const std::string& scene, const std::string& folder) {
+  return {"--allow-run-as-root",
+          "--oversubscribe",
+          "-n",
+          std::to_string(ranks),
+          std::string(PALPATE_BIN_DIR) + "/sim_server",
+          "condense",
+          scene,
+          "--out",
+          folder};
+}
+
+std::string condense(int ranks, const std::string& scene, const std::string& folder, int expected_code = 0) {
+  return output_of(PALPATE_MPIRUN, arguments_of(ranks, scene, folder), expected_code, 100);
+}
+
+/// The scene of the paper's liver with another model and other lines put into its tool.
+std::string scene_with(const TemporaryFolder& folder, const std::string& model,
+                       const std::string& of_tool = "") {
+  std::string text = bytes_of(kScenes + "liver_paper.toml");
+  const auto put = [&](const std::string& old, const std::string& now) {
+    const std::size_t at = text.find(old);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, old.size(), now);
+  };
+  put("model = \"quasi_static\"", "model = \"" + model + "\"");
+  put("file = \"../meshes/", "file = \"" + std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/");
+  put("clients = [\"../clients/", "clients = [\"" + std::string(PALPATE_SOURCE_DIR) + "/configs/clients/");
+  put("[[tool]]\n", "[[tool]]\n" + of_tool);
+  const std::string file = (folder.path() / "scene.toml").string();
+  std::ofstream(file) << text;
+  return file;
+}
+
+/// What a tool feels that goes down onto a place of the surface.
+std::vector<Vec3> forces_of(const Scene& scene, const Condensed* condensed) {
+  Simulation simulation(scene, kSilent, nullptr, condensed);
+  const Triangle top = simulation.touchable(0).front();
+  const Vec3 place = simulation.rest()[top[0]];
+  std::vector<Vec3> forces;
+  for (int i = 0; i < 12; ++i)
+    forces.push_back(step(simulation, place + Vec3(0, 0.008 - 1e-3 * i, 0), {}, 1.0 / 30).force);
+  return forces;
+}
+
+void check_same_for_any_ranks(const std::string& model, const std::string& of_tool = "") {
+  const TemporaryFolder folder;
+  const std::string file = scene_with(folder, model, of_tool);
+  const Scene scene = read_scene(file);
+  const std::vector<Vec3> expected = forces_of(scene, nullptr);
+  for (const int ranks : {1, 2, 4}) {
+    CAPTURE(ranks);
+    const std::string out = (folder.path() / std::to_string(ranks)).string();
+    CHECK_THAT(condense(ranks, file, out), Contains("condensed into"));
+    const Condensed condensed(out);
+    const std::vector<Vec3> felt = forces_of(scene, &condensed);
+    double largest = 0;
+    for (std::size_t i = 0; i < felt.size(); ++i) {
+      CHECK((felt[i] - expected[i]).norm() <= 1e-8 * expected[i].norm());
+      largest = std::max(largest, felt[i].norm());
+    }
+    CHECK(largest > 0.01);
+  }
+}
+
+int files_in(const std::string& folder) {
+  const std::filesystem::directory_iterator files(folder);
+  return static_cast<int>(std::distance(begin(files), end(files)));
+}
+
+/// The processes that `mpirun` started.
+std::vector<pid_t> ranks_of(const Process& mpirun) {
+  const std::string id = std::to_string(mpirun.id());
+  std::ifstream children("/proc/" + id + "/task/" + id + "/children");
+  std::vector<pid_t> ranks;
+  for (pid_t rank = 0; children >> rank;) ranks.push_back(rank);
+  return ranks;
+}
+
+}  // namespace
+
+TEST_CASE("condense: what is felt is as without it, by 1, 2 and 4 ranks") {
+  check_same_for_any_ranks("quasi_static");
+}
+
+#ifdef PALPATE_WITH_SPECTRA
+TEST_CASE("condense: so it is of tissue that swings") {
+  check_same_for_any_ranks("reduced");
+}
+#endif
+
+TEST_CASE("condense: a second start finds what there is, and factors nothing") {
+  const TemporaryFolder folder;
+  const std::string file = scene_with(folder, "quasi_static"), out = (folder.path() / "out").string();
+  CHECK_THAT(condense(2, file, out), Contains("its memory, by rank"));
+  CHECK_THAT(condense(2, file, out), !Contains("its memory, by rank"));
+  CHECK(files_in(out) == 1);
+}
+
+TEST_CASE("condense: a rank that dies ends all within 10 s, and leaves nothing half-written") {
+  const int killed = GENERATE(0, 1);
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  Process mpirun(PALPATE_MPIRUN, arguments_of(2, kScenes + "liver.toml", out));
+  REQUIRE(mpirun.wait_for("of them kept", 60));  // it is factoring
+  const std::vector<pid_t> ranks = ranks_of(mpirun);
+  REQUIRE(ranks.size() == 2);
+  kill(ranks[static_cast<std::size_t>(killed)], SIGKILL);
+  CHECK(mpirun.wait(10) != 0);
+  CHECK(files_in(out) == 0);
+}
+
+TEST_CASE("condense: wrong input ends all ranks with one line and code 2") {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  CHECK_THAT(condense(2, kScenes + "liver_tensor_mass.toml", out, 2), Contains("quasi_static, reduced are"));
+  CHECK_THAT(condense(2, kScenes + "liver_breathing.toml", out, 2), Contains("supports that move"));
+  CHECK_THAT(condense(2, kScenes + "none.toml", out, 2), Contains("none.toml"));
+  CHECK_THAT(condense(2, kScenes + "liver.toml", "/dev/null/out", 2), Contains("--out"));
+}
