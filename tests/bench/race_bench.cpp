@@ -138,7 +138,7 @@ void pull_once(benchmark::State& state, const Racer& racer, Solver solver) {
 }
 
 void swing(benchmark::State& state, const Racer& racer, Solver solver) {
-  constexpr double kGravity = 20, kPeriod = 0.8;  // m/s^2, s: of a liver on too small a hold
+  constexpr double kGravity = 2, kPeriod = 0.8;  // m/s^2, s: of a liver on too small a hold
   const Body body(racer);
   const std::vector<double> masses = Solid(body.mesh, tissue(ElasticLaw::kLinear)).masses();
   const Forces forces = [&](int step) {

@@ -28,8 +28,8 @@ struct Body {
     }
     surface = boundary_surface(mesh);
     tensors = std::make_unique<ElasticTensors>(mesh, material, fixed);
-    resection =
-        std::make_unique<Resection>(Cutting{.smallest_piece = 0, .where = "bench"}, mesh, fixed, surface);
+    resection = std::make_unique<Resection>(Cutting{.smallest_piece = 0, .where = "bench"}, mesh, fixed,
+                                            surface, false);
     for (const int v : surface.vertices) rest.push_back(mesh.vertices[v]);
     order.resize(mesh.tetrahedra.size());
     std::iota(order.begin(), order.end(), 0);

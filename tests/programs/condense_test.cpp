@@ -22,7 +22,7 @@ std::string record(const TemporaryFolder& folder, const std::string& scene, cons
 }  // namespace
 
 TEST_CASE(
-    "--condensed: a folder that is not there, is of something else, or of a model that is not condensed") {
+    "condensed sets: a folder that is not there, is of something else, or of a model that is not condensed") {
   const TemporaryFolder folder;
   CHECK_THAT(record(folder, "liver_paper.toml", "/nowhere"), Contains("no folder"));
   CHECK_THAT(record(folder, "liver_paper.toml", folder.path().string()),
