@@ -1,6 +1,7 @@
 #include "sim_server/distributed/mpi_ranks.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <fmt/core.h>
 #include <mpi.h>
