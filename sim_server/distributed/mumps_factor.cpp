@@ -1,7 +1,7 @@
 #include "sim_server/distributed/mumps_factor.h"
 
 #include <algorithm>
-#include <cassert>
+#include <cmath>
 #include <dmumps_c.h>
 #include <stdexcept>
 
@@ -32,6 +32,13 @@ constexpr Eigen::Index kAtOnce = 32;  // right-hand sides
 /// The manual counts parameters from 1.
 int& control(DMUMPS_STRUC_C& mumps, int number) {
   return mumps.icntl[number - 1];
+}
+
+[[noreturn]] void fail_as_singular(const std::string& where) {
+  fail(
+      "{}: the stiffness matrix is singular: the fixed nodes do not hold the body; a [[fixed]] with three "
+      "that are not in line would",
+      where);
 }
 
 /// One job on this rank.
@@ -144,7 +151,9 @@ void MumpsFactor::analyse(const SparseMatrix& lower, const std::string& where) {
   mumps_->run(kAnalyse);
   require("analysis", where);
   costs_.flops = mumps.rinfog[0];
-  const std::string shortage = shortage_of(mumps_->memory(kTellNeed));
+  std::vector<RankMemory> need = mumps_->memory(kTellNeed);
+  need.front().bytes += sizeof(double) * std::pow(static_cast<double>(kept_.size()), 2);  // S, on rank 0
+  const std::string shortage = shortage_of(need);
   if (!shortage.empty())
     fail("{}: {}, for the Cholesky factor of {} unknowns; take more machines, or a coarser mesh", where,
          shortage, lower.rows());
@@ -172,19 +181,14 @@ void MumpsFactor::take_schur(const std::string& where) {
   const int size = static_cast<int>(kept_.size());
   int failed = 0;
   Blas<double>::potrf("L", &size, schur_.data(), &size, &failed);
-  if (failed != 0) fail("{}: the stiffness matrix is singular: the fixed nodes do not hold the body", where);
+  if (failed != 0) fail_as_singular(where);
 }
 
 void MumpsFactor::require(const char* stage, const std::string& where) const {
   constexpr int kSingular = -10, kSingularPattern = -6, kNotDefinite = -40, kNoMemory = -13, kElsewhere = -1;
   const int error = mumps_->data.infog[0], detail = mumps_->data.infog[1];
   if (error >= 0) return;
-  if (error == kSingular || error == kSingularPattern || error == kNotDefinite)
-    fail(
-        "{}: the stiffness matrix is singular: the fixed nodes do not hold the body; a [[fixed]] with three "
-        "that are "
-        "not in line would",
-        where);
+  if (error == kSingular || error == kSingularPattern || error == kNotDefinite) fail_as_singular(where);
   if (error == kNoMemory)
     fail("{}: memory ended in the {} of the stiffness matrix; take more machines, or a coarser mesh", where,
          stage);

@@ -61,7 +61,7 @@ class Solid {
   /// Adds the forces (nodes, N) of a force per volume (N/m^3), as the shape functions say.
   void add_body_forces(const Vec3& per_volume, std::span<Vec3> f) const;
   /// How each node has turned at positions `x` (nodes, m): the rotation nearest to the mean of the
-  /// deformation gradients around it, by volume. About a third of the cost of `forces`.
+  /// deformation gradients around it, by volume. O(elements); allocates.
   void node_rotations(std::span<const Vec3> x, std::span<Mat3> rotations) const;
   /// Lumped mass of each node, kg: a quarter of a tetrahedron for each vertex; of ten nodes 1/36 for a corner
   /// and 4/27 for the middle of an edge (Hinton, Rock and Zienkiewicz 1976).

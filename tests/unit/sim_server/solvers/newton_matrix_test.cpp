@@ -108,7 +108,7 @@ TEST_CASE("Newton matrix: what is held along an axis stays held") {
   CHECK((moved - kept).norm() <= 1e-6 * moved.norm());
 }
 
-TEST_CASE("dynamics: a body that spins freely by three turns goes on with two factors") {
+TEST_CASE("dynamics: a body that spins freely by three turns makes at most three factors") {
   const Solid solid = bar(ElementKind::kLinear);
   DynamicsSettings settings{.second_order = true, .flies = true};
   Dynamics dynamics(solid, std::vector<HeldAxes>(solid.rest().size(), 0), settings, "test");
