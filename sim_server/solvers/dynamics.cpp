@@ -64,7 +64,7 @@ void Dynamics::start_step(double h) {
   trial_residual_ = 0;
   at_predictor_ = true;
   motion_.begin_step(h);
-  if (policy_.begin_step(motion_.time().steps())) exchange_factors();
+  if (policy_.begin_step(motion_.time().steps(), cautious_)) exchange_factors();
   matrix_.turn_to(solid_, motion_.position());
 }
 

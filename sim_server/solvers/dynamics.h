@@ -12,7 +12,8 @@ namespace palpate::sim {
 /// by Newton's method on A = (1 + beta c) K + (c^2 + alpha c) M (`NewtonMatrix`), where `FactorPolicy` says
 /// which factor of A serves. Its search directions come in one of three ways:
 /// - from the sparse Cholesky factor of A, where a stale one serves as long as iterations with it are not
-/// slow;
+///   slow; where three new ones in a step have not been enough, by conjugate gradients that the last of them
+///   preconditions;
 /// - with a factor that is made in the background, of where the body was `refresh_steps` to twice as many
 ///   steps before (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159), as it is, and where that is
 ///   slow, by conjugate gradients that it preconditions (`conjugate_gradients`, `jacobian_times`), so that

@@ -3,6 +3,7 @@
 namespace palpate::sim {
 namespace {
 
+constexpr int kMostFactors = 3;     // on demand, in a step
 constexpr double kSlow = 0.3;       // share of the residual before: an iteration that leaves more is slow
 constexpr double kRounding = 1e-6;  // relative residual that may be rounding
 constexpr double kNegligibleShare = 1e-3;  // of a negligible force: a residual that may be rounding
@@ -10,9 +11,11 @@ constexpr double kSameRounding = 2;        // of a known rounding: a residual th
 
 }  // namespace
 
-bool FactorPolicy::begin_step(int steps_before) {
+bool FactorPolicy::begin_step(int steps_before, bool cautious) {
   comparable_ = false;
-  if (settings_.forgives && state_ == State::kWorn) state_ = State::kStale;
+  demanded_ = 0;
+  cautious_ = cautious;
+  if ((settings_.forgives || !settings_.background) && state_ == State::kWorn) state_ = State::kStale;
   const bool due = settings_.background && steps_before % settings_.refresh_steps == 0;
   if (!due || steps_before == exchanged_) return false;
   exchanged_ = steps_before;
@@ -32,8 +35,13 @@ FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double pre
     rounding_ = force;
     return Decision::kStop;
   }
-  state_ = State::kWorn;
-  if (settings_.background) return Decision::kKeep;
+  const bool another = cautious_ || demanded_ < kMostFactors;
+  if (settings_.background || before == State::kWorn || !another) {
+    state_ = State::kWorn;
+    return Decision::kKeep;
+  }
+  ++demanded_;
+  state_ = State::kFresh;
   return before == State::kStale ? Decision::kRefactor : Decision::kRefactorChecked;
 }
 

@@ -10,15 +10,18 @@ namespace palpate::sim {
 /// An iteration is slow where it leaves more than 30 % of the residual that the one before found under the
 /// same loads. What the factor is to the iteration that asks, and what a slow iteration leads to:
 ///
-/// | state     | the factor is                            | on demand                | in the background    |
-/// |-----------|------------------------------------------|--------------------------|----------------------|
-/// | kFresh    | of the very place and c of the iteration | kRefactorChecked, kWorn  | conjugate gradients, |
-/// | kStale    | of elsewhere, and has served well since  | kRefactor, kWorn         | kWorn                |
-/// | kWorn     | one that a slow iteration has been with  | kRefactorChecked, kWorn  |                      |
+/// | state     | the factor is                           | on demand                | in the background |
+/// |-----------|-----------------------------------------|--------------------------|-------------------|
+/// | kStale    | of elsewhere                            | kRefactor, kFresh        | kKeep, kWorn      |
+/// | kFresh    | made for the iteration before           | kRefactorChecked, kFresh | kKeep, kWorn      |
+/// | kWorn     | one that a slow iteration has been with | kKeep, kWorn             | kKeep, kWorn      |
 ///
-/// An iteration that is not slow leaves kWorn as it is, and makes kFresh of a factor made for it and kStale
-/// of any other. A new factor (`replaced`) begins as kStale. Of the quasi-Newton method, which learns in each
-/// step, a factor that is kWorn is kStale again when the next step begins.
+/// On demand a step makes three factors at most; after that a slow iteration makes kWorn of the last. With a
+/// factor that is kWorn, search directions are found by conjugate gradients which it preconditions. A body
+/// that was far from balance (`cautious`) gets all factors that it asks for. An iteration that is not slow
+/// leaves kWorn as it is, and makes kFresh of a factor made for it and kStale of any other. A new factor
+/// (`replaced`) begins as kStale. On demand, and of the quasi-Newton method, which learns in each step, a
+/// factor that is kWorn is kStale again when the next step begins.
 ///
 /// Rounding: where a slow iteration had a factor that is kFresh or kWorn and the residual is tiny, no factor
 /// lessens it. The iteration ends there (`kStop`), and so does from then on each that finds no more than
@@ -34,15 +37,15 @@ class FactorPolicy {
   };
   struct Settings {
     bool background = false;      ///< factors come from the background, none is made on demand
-    bool forgives = false;        ///< a factor that is worn is tried again in the next step
+    bool forgives = false;        ///< a factor of the background that is worn is tried again in the next step
     int refresh_steps = 8;        ///< between two factors of the background, >= 1
     double negligible_force = 0;  ///< N: of a residual of 1e-3 of it nothing is expected
   };
   explicit FactorPolicy(const Settings& settings) : settings_(settings) {}
 
   /// A step begins, after so many others: whether it takes the factor that the background has made, and has
-  /// the next one begun. Once for each number of steps.
-  bool begin_step(int steps_before);
+  /// the next one begun. Once for each number of steps. `cautious`: one before ended far from balance.
+  bool begin_step(int steps_before, bool cautious = false);
   /// The next residual is of other loads: that it is no smaller says nothing of the factor.
   void loads_changed() { comparable_ = false; }
   /// There is another factor, for another reason than a `Decision`.
@@ -53,13 +56,15 @@ class FactorPolicy {
 
   State state() const { return state_; }
   /// Whether the search direction is to be found by conjugate gradients that the factor preconditions.
-  bool uses_conjugate_gradients() const { return settings_.background && state_ == State::kWorn; }
+  bool uses_conjugate_gradients() const { return state_ == State::kWorn; }
 
  private:
   bool is_rounding(const Residual& residual) const;
 
   Settings settings_;
   State state_ = State::kStale;
+  bool cautious_ = false;
+  int demanded_ = 0;         // factors, in this step
   bool comparable_ = false;  // an iteration has been before, under the same loads
   double rounding_ = 0;      // residual that no factor lessens, N; 0: not known
   int exchanged_ = -1;       // steps before the last exchange

@@ -45,9 +45,10 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<
   matrix_.add_to_diagonal(masses, c * c + alpha_ * c);
   matrix_.close_held(mean_diagonal_);
   bool definite = factor_.refactor(matrix_.lower());
+  // Not for want of digits: double precision has been tried.
   for (double more = c * c; !definite && more < 1e6 * c * c; more *= 4) {
     matrix_.add_to_diagonal(masses, more);
-    definite = factor_.refactor(matrix_.lower());
+    definite = factor_.refactor(matrix_.lower(), SparseCholesky::Otherwise::kGiveUp);
   }
 }
 

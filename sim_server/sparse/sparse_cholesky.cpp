@@ -180,10 +180,10 @@ SparseCholesky::~SparseCholesky() = default;
 SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
-bool SparseCholesky::refactor(const SparseMatrix& lower) {
+bool SparseCholesky::refactor(const SparseMatrix& lower, Otherwise otherwise) {
   definite_ = lower.rows() == 0 || factor_->factorize(lower);
-  if (definite_ || !can_be_finer(*factor_)) return definite_;
-  factor_->take(Precision::kDouble);  // for want of digits?
+  if (definite_ || otherwise == Otherwise::kGiveUp || !can_be_finer(*factor_)) return definite_;
+  factor_->take(Precision::kDouble);
   definite_ = factor_->factorize(lower);
   if (!definite_) factor_->take(Precision::kSingle);
   return definite_;

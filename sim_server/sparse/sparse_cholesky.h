@@ -30,9 +30,11 @@ class SparseCholesky final : public FactoredMatrix {
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
+  /// What is done where a matrix is not positive definite in single precision: it may be for want of digits.
+  enum class Otherwise { kInDouble, kGiveUp };
   /// Factors other values on the same pattern. False where the matrix is not positive definite: then the
   /// factor is of no use until the next one, and what it answers is not a number.
-  bool refactor(const SparseMatrix& lower);
+  bool refactor(const SparseMatrix& lower, Otherwise otherwise = Otherwise::kInDouble);
 
   /// Of the matrix factored last: where the factor leaves more than a thousandth of a load, it is of no use,
   /// and the next is in double precision. Cost of a solve.

@@ -133,7 +133,8 @@ class Browser:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             for file in pathlib.Path(self.folder).glob(pattern):
-                if not list(file.parent.glob("*.crdownload")) + list(file.parent.glob("*.part")):
+                unfinished = list(file.parent.glob("*.crdownload")) + list(file.parent.glob("*.part"))
+                if not unfinished and file.stat().st_size > 0:  # Firefox names the file before it fills it
                     return file
             time.sleep(0.1)
         raise BrowserError(f"no file {pattern} after {seconds} s")

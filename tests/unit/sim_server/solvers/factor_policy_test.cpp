@@ -25,7 +25,7 @@ struct Iterations {
 
 }  // namespace
 
-TEST_CASE("factor policy: on demand, a slow iteration with a stale factor has A factored there") {
+TEST_CASE("factor policy: on demand, the first slow iteration of a step with a stale factor has A factored") {
   Iterations iterate{FactorPolicy({.refresh_steps = 1})};
   CHECK_FALSE(iterate.policy.begin_step(0));  // never exchanged
   CHECK(iterate(1, true) == Decision::kKeep);
@@ -34,15 +34,34 @@ TEST_CASE("factor policy: on demand, a slow iteration with a stale factor has A 
   CHECK(iterate.policy.state() == State::kStale);
   CHECK(iterate(0.02) == Decision::kKeep);
   CHECK(iterate(0.0061) == Decision::kRefactor);  // more than 30 %
-  CHECK(iterate.policy.state() == State::kWorn);
+  CHECK(iterate.policy.state() == State::kFresh);
   CHECK_FALSE(iterate.policy.uses_conjugate_gradients());
   CHECK(iterate(0.001) == Decision::kKeep);
-  CHECK(iterate.policy.state() == State::kWorn);
-  CHECK(iterate(0.001) == Decision::kRefactorChecked);
+  CHECK(iterate.policy.state() == State::kStale);
+  CHECK(iterate(0.0009) == Decision::kRefactor);
+  CHECK(iterate(0.0008) == Decision::kRefactorChecked);
+  CHECK(iterate(0.0007) == Decision::kKeep);  // three factors a step
+  CHECK(iterate.policy.uses_conjugate_gradients());
+  CHECK(iterate(0.0001) == Decision::kKeep);
+  CHECK(iterate.policy.uses_conjugate_gradients());  // not slow: as long as that serves
   CHECK_FALSE(iterate.policy.begin_step(1));
-  CHECK(iterate.policy.state() == State::kWorn);  // over steps
+  CHECK(iterate.policy.state() == State::kStale);
+  iterate(1);
+  CHECK(iterate(0.9) == Decision::kRefactor);  // of the next step
   iterate.policy.replaced();
   CHECK(iterate.policy.state() == State::kStale);
+}
+
+TEST_CASE("factor policy: a body that was far from balance gets every factor that it asks for") {
+  for (const bool cautious : {false, true}) {
+    Iterations iterate{FactorPolicy({})};
+    iterate.policy.begin_step(1, cautious);
+    iterate(1, true);
+    int factors = 0;
+    for (int i = 0; i < 20; ++i) factors += iterate(0.9) == Decision::kKeep ? 0 : 1;
+    CHECK(factors == (cautious ? 20 : 3));
+    CHECK(iterate.policy.uses_conjugate_gradients() != cautious);
+  }
 }
 
 TEST_CASE("factor policy: a slow iteration with a fresh factor has its digits checked") {
@@ -90,6 +109,16 @@ TEST_CASE("factor policy: a tiny residual that a fresh factor does not lessen is
   iterate.policy.begin_step(1);
   CHECK(iterate(1.5e-6) == Decision::kStop);  // the same rounding
   CHECK(iterate(1.7e-6) == Decision::kKeep);
+
+  // A tiny one that a stale factor leaves is not, whatever that factor has been through before.
+  Iterations later{FactorPolicy({})};
+  later(1);
+  CHECK(later(0.9) == Decision::kRefactor);
+  later(1e-2);
+  later.policy.begin_step(1);
+  later(1e-7);
+  CHECK(later(0.9e-7) == Decision::kRefactor);
+  CHECK(later(0.8e-7) == Decision::kStop);
 
   // Next to nothing at all: 1e-3 of a negligible force, though a large share of what acts.
   FactorPolicy still({.negligible_force = 1e-8});
