@@ -57,7 +57,7 @@ double solid_bytes(const MeshCounts& counts, ElementKind element) {
 
 double matrix_bytes(const MeshCounts& counts, ElementKind element) {
   const double nodes = nodes_of(counts, element), blocks = nodes + pairs_of(counts, element);
-  return 9 * kEntry * blocks + 4 * kInt * nodes;
+  return (9 * kEntry + kInt) * blocks + 5 * kInt * nodes;
 }
 
 double tensors_bytes(const MeshCounts& counts) {

@@ -1,8 +1,12 @@
 #include "sim_server/solvers/newton_matrix.h"
 
+#include <algorithm>
+
 namespace palpate::sim {
 namespace {
 
+constexpr double kMultiplications = 3e10;  // a second, of a factor in single precision; in double half of it
+constexpr double kPointSeconds = 2e-6;     // to assemble what one quadrature point gives
 constexpr double kFlies = 1;  // 1/s: the step of the matrix that shows whether a body that flies is sound
 
 StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
@@ -44,12 +48,21 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<
   matrix_.lower() *= 1 + beta_ * c;
   matrix_.add_to_diagonal(masses, c * c + alpha_ * c);
   matrix_.close_held(mean_diagonal_);
-  bool definite = factor_.refactor(matrix_.lower());
-  // Not for want of digits: double precision has been tried.
-  for (double more = c * c; !definite && more < 1e6 * c * c; more *= 4) {
-    matrix_.add_to_diagonal(masses, more);
-    definite = factor_.refactor(matrix_.lower(), SparseCholesky::Otherwise::kGiveUp);
+  if (factor_.refactor(matrix_.lower())) return;
+  // As much more as the last time, or a little less; then ever more (Waechter and Biegler 2006, algorithm
+  // IC).
+  double added = 0;
+  for (double more = std::max(c * c, more_inertia_ / 4); more < 1e6 * c * c; more *= 4) {
+    matrix_.add_to_diagonal(masses, more - added);
+    added = more_inertia_ = more;
+    if (factor_.refactor(matrix_.lower())) return;
   }
+}
+
+double NewtonMatrix::foretold_seconds(const Solid& solid) const {
+  const bool single = factor_.precision() == SparseCholesky::Precision::kSingle;
+  return factor_.multiplications() / (single ? kMultiplications : 0.5 * kMultiplications) +
+         kPointSeconds * static_cast<double>(solid.points());
 }
 
 void NewtonMatrix::turn_to(const Solid& solid, std::span<const Vec3> x) {

@@ -37,6 +37,9 @@ class NewtonMatrix {
   /// leave more than `enough` of them.
   Eigen::MatrixXd columns(std::span<const int> first, double enough) const;
 
+  /// What `build` may take (s) on one core of a desk computer whose other cores are at work, too: not
+  /// measured, so the same everywhere.
+  double foretold_seconds(const Solid& solid) const;
   /// c of the last `build`, 1/s; 0 before the first.
   double c() const { return c_; }
   /// Of K at rest, N/m.
@@ -55,6 +58,7 @@ class NewtonMatrix {
   double mean_diagonal_;  // N/m
   SparseCholesky factor_;
   double c_ = 0;
+  double more_inertia_ = 0;         // 1/s^2, that made the last indefinite A definite
   std::vector<Mat3> built_turned_;  // (nodes) how they had turned where A was built; empty: not at all
   std::vector<Mat3> turns_;         // (nodes) Q, or empty: none has turned
 };

@@ -30,11 +30,10 @@ class SparseCholesky final : public FactoredMatrix {
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
-  /// What is done where a matrix is not positive definite in single precision: it may be for want of digits.
-  enum class Otherwise { kInDouble, kGiveUp };
   /// Factors other values on the same pattern. False where the matrix is not positive definite: then the
-  /// factor is of no use until the next one, and what it answers is not a number.
-  bool refactor(const SparseMatrix& lower, Otherwise otherwise = Otherwise::kInDouble);
+  /// factor is of no use until the next one, and what it answers is not a number. Where it is not so in
+  /// single precision, that may be for want of digits: double precision is tried, until that has not helped.
+  bool refactor(const SparseMatrix& lower);
 
   /// Of the matrix factored last: where the factor leaves more than a thousandth of a load, it is of no use,
   /// and the next is in double precision. Cost of a solve.
@@ -49,6 +48,8 @@ class SparseCholesky final : public FactoredMatrix {
 
   /// Of the factor that there is.
   Precision precision() const;
+  /// That making a factor takes; also of those to come, which have the same pattern.
+  double multiplications() const;
   std::size_t bytes() const;
 
   /// The library behind it, for reports.
@@ -58,6 +59,7 @@ class SparseCholesky final : public FactoredMatrix {
   struct Factor;
   std::unique_ptr<Factor> factor_;
   bool definite_ = true;
+  bool double_was_no_help_ = false;
 };
 
 }  // namespace palpate::sim

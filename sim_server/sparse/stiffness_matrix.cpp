@@ -48,13 +48,13 @@ StiffnessMatrix::StiffnessMatrix(const FreeDofs& dofs, std::span<const int> grou
       }
     }
   }
-  Eigen::Index entries = 0;
   for (auto& rows : below) {
     std::sort(rows.begin(), rows.end());
     rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    entries += 9 * static_cast<Eigen::Index>(rows.size());
+    rows_.insert(rows_.end(), rows.begin(), rows.end());
+    rows_begin_.push_back(static_cast<int>(rows_.size()));
   }
-  matrix_.resizeNonZeros(entries);
+  matrix_.resizeNonZeros(9 * static_cast<Eigen::Index>(rows_.size()));
   int* const outer = matrix_.outerIndexPtr();
   int* inner = matrix_.innerIndexPtr();
   outer[0] = 0;
@@ -98,23 +98,15 @@ void StiffnessMatrix::add_to(int i, int j, const Mat3& block) noexcept {
   int row = block_[i], column = block_[j];
   const bool turned = row < column;
   if (turned) std::swap(row, column);
-  const int* const outer = matrix_.outerIndexPtr();
-  const int begin = outer[3 * column], length = outer[3 * column + 1] - begin;
-  // Rows come in threes: 3 row stands where its block does.
-  int low = 0, high = length / 3 - 1;
-  while (low < high) {
-    const int middle = (low + high) / 2;
-    if (matrix_.innerIndexPtr()[begin + 3 * middle] < 3 * row) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  assert(matrix_.innerIndexPtr()[begin + 3 * low] == 3 * row);
-  double* const value = matrix_.valuePtr() + begin + 3 * low;
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < 3; ++r) value[c * length + r] += turned ? block(c, r) : block(r, c);
-  }
+  const std::span<const int> rows =
+      std::span(rows_).subspan(rows_begin_[column], rows_begin_[column + 1] - rows_begin_[column]);
+  std::ptrdiff_t place = 0;  // counted, as there are few: a search would branch on each
+  for (const int other : rows) place += other < row ? 1 : 0;
+  assert(rows[place] == row);
+  const std::ptrdiff_t length = 3 * static_cast<std::ptrdiff_t>(rows.size());
+  double* const value = matrix_.valuePtr() + 9 * static_cast<std::ptrdiff_t>(rows_begin_[column]) + 3 * place;
+  const Mat3 to_add = turned ? Mat3(block.transpose()) : block;
+  for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(value + c * length) += to_add.col(c);
 }
 
 void StiffnessMatrix::add_to_diagonal(std::span<const double> per_node, double factor) noexcept {
@@ -141,7 +133,8 @@ Eigen::MatrixXd StiffnessMatrix::times(const Eigen::MatrixXd& x) const {
 
 std::size_t StiffnessMatrix::bytes() const {
   return static_cast<std::size_t>(matrix_.nonZeros()) * (sizeof(double) + sizeof(int)) +
-         (static_cast<std::size_t>(matrix_.cols()) + block_.size()) * sizeof(int);
+         (static_cast<std::size_t>(matrix_.cols()) + block_.size() + rows_.size() + rows_begin_.size()) *
+             sizeof(int);
 }
 
 }  // namespace palpate::sim

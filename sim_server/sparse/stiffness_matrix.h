@@ -34,7 +34,7 @@ struct FreeDofs {
 };
 
 /// A symmetric sparse matrix of 3 x 3 blocks over free nodes, of which the lower triangle is kept: one
-/// pattern, filled again and again without a search. Blocks on the diagonal are kept whole; what reads the
+/// pattern, filled again and again. Blocks on the diagonal are kept whole; what reads the
 /// lower triangle passes over the rest.
 class StiffnessMatrix {
  public:
@@ -47,7 +47,7 @@ class StiffnessMatrix {
   /// all is added.
   void close_held(double value) noexcept;
   /// Adds the block of rows of node `i` and columns of node `j`; also stands for the one of j and i. Each
-  /// pair once. Nothing where one is fixed.
+  /// pair once. Nothing where one is fixed. O(blocks in the column).
   void add(int i, int j, const Mat3& block) noexcept;
   /// Adds `factor` per_node[i] to the diagonal entries of each free node i.
   void add_to_diagonal(std::span<const double> per_node, double factor) noexcept;
@@ -66,6 +66,9 @@ class StiffnessMatrix {
   std::vector<int> block_;      // of each node: its number among the free ones; -1: fixed
   std::vector<HeldAxes> held_;  // of each node
   bool partly_held_ = false;    // any along some axes only
+  // Of block columns, one after another: the block rows from the diagonal down. Block k begins in column
+  // c at entry 9 rows_begin_[c] + 3 (k - rows_begin_[c]).
+  std::vector<int> rows_, rows_begin_{0};
   SparseMatrix matrix_;
 };
 

@@ -9,7 +9,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr int kBand = 256;  // rows of a supernode that one task works on
+constexpr int kBand = 256;   // rows of a supernode that one task works on
+constexpr int kPanel = 256;  // columns of a large one that are eliminated at once
 
 /// Whether ascending numbers leave none out.
 bool without_gap(std::span<const int> numbers) {
@@ -83,13 +84,13 @@ void SupernodalFactor<Scalar>::assemble(int s, int from, int to, const std::vect
   }
 }
 
-/// Columns of L of one supernode; where it is large, by bands of rows on all cores. `local` (n) is to write
-/// on: where each row of the matrix is in it.
+/// Columns of L of one supernode; where it is large, by panels of columns and bands of rows on all cores.
+/// `local` (n) is to write on: where each row of the matrix is in it.
 template <class Scalar>
 bool SupernodalFactor<Scalar>::eliminate(int s, bool large, std::vector<int>& local) {
   const std::span<const int> rows = pattern_->rows_of(s);
   for (std::size_t i = 0; i < rows.size(); ++i) local[rows[i]] = static_cast<int>(i);
-  const int height = static_cast<int>(rows.size()), columns = pattern_->columns(s), under = height - columns;
+  const int height = static_cast<int>(rows.size()), columns = pattern_->columns(s);
   const auto by_bands = [large](int count, const auto& work) {
     if (large) {
       parallel_blocks(static_cast<std::size_t>(count), kBand, [&](std::size_t begin, std::size_t end) {
@@ -101,14 +102,26 @@ bool SupernodalFactor<Scalar>::eliminate(int s, bool large, std::vector<int>& lo
   };
   by_bands(height, [&](int begin, int end) { assemble(s, begin, end, local); });
   Scalar* const l = block(s);
-  const Scalar one = 1;
-  int failed = 0;
-  Blas<Scalar>::potrf("L", &columns, l, &height, &failed);
-  if (failed != 0) return false;
-  by_bands(under, [&](int begin, int end) {
-    const int band = end - begin;
-    Blas<Scalar>::trsm("R", "L", "T", "N", &band, &columns, &one, l, &height, l + columns + begin, &height);
-  });
+  const Scalar one = 1, minus = -1;
+  const int panel = large ? kPanel : columns;
+  for (int from = 0; from < columns; from += panel) {
+    const int width = std::min(panel, columns - from), to = from + width;
+    Scalar* const at = l + static_cast<std::size_t>(from) * height;  // column `from`
+    int failed = 0;
+    Blas<Scalar>::potrf("L", &width, at + from, &height, &failed);
+    if (failed != 0) return false;
+    by_bands(height - to, [&](int begin, int end) {
+      const int band = end - begin;
+      Blas<Scalar>::trsm("R", "L", "T", "N", &band, &width, &one, at + from, &height, at + to + begin,
+                         &height);
+    });
+    // What is right of the panel, nothing above the diagonal.
+    by_bands(to < columns ? height - to : 0, [&](int begin, int end) {
+      const int band = end - begin, wide = std::min(columns - to, end);
+      Blas<Scalar>::gemm("N", "T", &band, &wide, &width, &minus, at + to + begin, &height, at + to, &height,
+                         &one, l + static_cast<std::size_t>(to) * height + to + begin, &height);
+    });
+  }
   return true;
 }
 

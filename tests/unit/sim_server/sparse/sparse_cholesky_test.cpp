@@ -92,6 +92,36 @@ TEST_CASE("a stiffness matrix times many columns is what a dense one gives") {
   CHECK((matrix.times(x) - dense * x).norm() < 1e-14 * dense.squaredNorm());
 }
 
+TEST_CASE("a matrix without a zero, many panels wide, is solved as its closed form says") {
+  // (n + 1/2) I - 1/2 1 1^T, whose inverse Sherman and Morrison give.
+  for (const int n : {255, 258, 768, 1029}) {
+    CAPTURE(n);
+    const SparseMatrix matrix = full(n);
+    const Eigen::VectorXd load = load_of(matrix.rows());
+    const double d = n + 0.5;
+    const Eigen::VectorXd exact = (load.array() + 0.5 * load.sum() / (d - 0.5 * n)).matrix() / d;
+    for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
+      const Eigen::MatrixXd found = SparseCholesky(matrix, "test", precision).solve(load);
+      CHECK((found - exact).norm() < (precision == Precision::kDouble ? 1e-13 : 1e-5) * exact.norm());
+    }
+  }
+}
+
+TEST_CASE("a matrix that is not positive definite leaves a factor in single precision there") {
+  StiffnessMatrix matrix = stiffness_of_block(4);
+  SparseCholesky factor(matrix.lower(), "test", Precision::kSingle);
+  const Precision before = factor.precision();
+  for (int i = 0; i < 2; ++i) {
+    matrix.lower() *= -1;
+    CHECK_FALSE(factor.refactor(matrix.lower()));
+    CHECK(factor.precision() == before);
+    CHECK(factor.solve(load_of(matrix.lower().rows())).hasNaN());
+    matrix.lower() *= -1;
+    CHECK(factor.refactor(matrix.lower()));
+    CHECK(factor.precision() == before);
+  }
+}
+
 TEST_CASE("a factor is made again of other numbers") {
   for (const Precision precision : {Precision::kDouble, Precision::kSingle}) {
     StiffnessMatrix matrix = stiffness_of_block(6);
