@@ -21,7 +21,6 @@ DynamicsSettings settings_of(const ModelInputs& inputs) {
   DynamicsSettings settings = dynamics_settings(inputs.scene.deformation);
   settings.flies = inputs.scene.flies();
   settings.cut = inputs.scene.cutting.has_value();
-  settings.period = step_period(inputs.scene) / instants_of(inputs.scene.deformation, 1);
   return settings;
 }
 
@@ -321,9 +320,7 @@ std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) {
 std::vector<MemoryPart> Implicit::memory() const {
   std::vector<MemoryPart> parts{
       {"elements", solid_.bytes() + dynamics_.scratch_bytes()},
-      {"motion", dynamics_.bytes(),
-       dynamics_.in_background() ? fmt::format("a new factor every {} steps", dynamics_.refresh_steps())
-                                 : ""},
+      {"motion", dynamics_.bytes()},
       {"compliance", static_cast<std::size_t>(columns_.size()) * sizeof(double)},
       {"positions", (rest_.size() + free_.size() + positions_.size() + external_.size()) * sizeof(Vec3) +
                         (node_.size() + dof_.size() + slot_.size()) * sizeof(int)}};

@@ -18,7 +18,7 @@ namespace palpate::sim {
 struct ImplicitSettings {
   bool second_order = false;  ///< `integrator` = "bdf2"; else "backward_euler"
   DynamicsSettings::Solver solver = DynamicsSettings::Solver::kDirect;
-  int refresh_steps = 0;    ///< from one factor of the background to the next, [1, 1000]; 0: what that takes
+  int refresh_steps = 8;    ///< from one factor of the background to the next, [1, 1000]
   int max_newton = 5;       ///< iterations of Newton's method in a step that balances, [1, 100]
   double tolerance = 1e-5;  ///< the relative residual that they may leave, [1e-12, 0.1]
 

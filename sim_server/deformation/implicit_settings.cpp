@@ -32,8 +32,8 @@ ImplicitSettings ImplicitSettings::read(const Config& config) {
          integrator);
   settings.solver =
       find_row(kSolvers, config.text("solver", "direct"), "solver", config.where("solver")).value;
-  if (config.says("refresh_steps"))
-    settings.refresh_steps = static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}));
+  settings.refresh_steps =
+      static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
   if (settings.solver == DynamicsSettings::Solver::kDirect && config.says("refresh_steps"))
     fail("{}: solver \"direct\" factors where it has to; refresh_steps is for pcg and quasi_newton",
          config.where("refresh_steps"));
@@ -49,8 +49,7 @@ std::string ImplicitSettings::to_text() const {
   if (solver != DynamicsSettings::Solver::kDirect) {
     const auto row =
         std::ranges::find_if(kSolvers, [this](const NamedSolver& s) { return s.value == solver; });
-    text += fmt::format("solver = \"{}\"\n", row->name);
-    if (refresh_steps > 0) text += fmt::format("refresh_steps = {}\n", refresh_steps);
+    text += fmt::format("solver = \"{}\"\nrefresh_steps = {}\n", row->name, refresh_steps);
   }
   return text + fmt::format("tolerance = {:g}\nmax_newton = {}\n", tolerance, max_newton);
 }

@@ -49,10 +49,7 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
       size_(diagonal_of(solid.rest())),
       policy_({.background = factors_in_background(solid, settings),
                .forgives = learns_,
-               .refresh_steps =
-                   settings.refresh_steps > 0
-                       ? settings.refresh_steps
-                       : FactorPolicy::refresh_steps_for(matrix_.foretold_seconds(solid), settings.period),
+               .refresh_steps = settings.refresh_steps,
                .negligible_force = kNegligibleWay * size_ * matrix_.mean_diagonal()}) {
   motion_.set_negligible_force(kNegligibleWay * size_ * matrix_.mean_diagonal());
   if (factors_in_background(solid, settings)) background_.emplace(solid, motion_.dofs(), settings, where);

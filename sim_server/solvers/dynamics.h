@@ -80,9 +80,6 @@ class Dynamics {
 
   /// The matrix A and its factor; stale where it was made in the background.
   const NewtonMatrix& matrix() const { return matrix_; }
-  bool in_background() const { return background_.has_value(); }
-  /// Steps between two factors of the background.
-  int refresh_steps() const { return policy_.refresh_steps(); }
   /// How often that has changed: what its `solve` gave stands while this does.
   int factors() const { return factors_; }
   /// The factor begun next in the background comes with the columns of A^-1 from these unknowns on.

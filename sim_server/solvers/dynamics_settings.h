@@ -15,8 +15,7 @@ struct DynamicsSettings {
     kQuasiNewton,         ///< which corrects it
   };
   Solver solver = Solver::kDirect;
-  int refresh_steps = 0;  ///< [1, 1000]; 0: as many as a factor may take to make, of steps of `period`
-  double period = 0;      ///< s
+  int refresh_steps = 8;  ///< [1, 1000]
   /// Norm of the residual that columns of compliance made in the background may leave of three unit forces.
   /// They are of where the body was some steps before.
   double tolerance = 0;

@@ -1,8 +1,5 @@
 #include "sim_server/solvers/factor_policy.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace palpate::sim {
 namespace {
 
@@ -13,10 +10,6 @@ constexpr double kNegligibleShare = 1e-3;  // of a negligible force: a residual 
 constexpr double kSameRounding = 2;        // of a known rounding: a residual that is the same rounding
 
 }  // namespace
-
-int FactorPolicy::refresh_steps_for(double seconds, double period) {
-  return period > 0 ? static_cast<int>(std::clamp(1 + std::ceil(seconds / period), 2.0, 1000.0)) : 2;
-}
 
 bool FactorPolicy::begin_step(int steps_before, bool cautious) {
   comparable_ = false;

@@ -28,10 +28,6 @@ namespace palpate::sim {
 /// twice that force.
 class FactorPolicy {
  public:
-  /// So many steps of `period` (s) from one factor of the background to the next that one which takes
-  /// `seconds` is ready by then: [2, 1000].
-  static int refresh_steps_for(double seconds, double period);
-
   enum class State { kFresh, kStale, kWorn };
   enum class Decision {
     kStop,             ///< the residual is rounding
@@ -59,7 +55,6 @@ class FactorPolicy {
   Decision decide(const Residual& residual, double previous, bool just_factored);
 
   State state() const { return state_; }
-  int refresh_steps() const { return settings_.refresh_steps; }
   /// Whether the search direction is to be found by conjugate gradients that the factor preconditions.
   bool uses_conjugate_gradients() const { return state_ == State::kWorn; }
 

@@ -5,8 +5,6 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMultiplications = 3e10;  // a second, of a factor in single precision; in double half of it
-constexpr double kPointSeconds = 2e-6;     // to assemble what one quadrature point gives
 constexpr double kFlies = 1;  // 1/s: the step of the matrix that shows whether a body that flies is sound
 
 StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
@@ -52,17 +50,12 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<
   // As much more as the last time, or a little less; then ever more (Waechter and Biegler 2006, algorithm
   // IC).
   double added = 0;
-  for (double more = std::max(c * c, more_inertia_ / 4); more < 1e6 * c * c; more *= 4) {
+  const double first = std::clamp(more_inertia_ / 4, c * c, 1e5 * c * c);
+  for (double more = first; more < 1e6 * c * c; more *= 4) {
     matrix_.add_to_diagonal(masses, more - added);
     added = more_inertia_ = more;
     if (factor_.refactor(matrix_.lower())) return;
   }
-}
-
-double NewtonMatrix::foretold_seconds(const Solid& solid) const {
-  const bool single = factor_.precision() == SparseCholesky::Precision::kSingle;
-  return factor_.multiplications() / (single ? kMultiplications : 0.5 * kMultiplications) +
-         kPointSeconds * static_cast<double>(solid.points());
 }
 
 void NewtonMatrix::turn_to(const Solid& solid, std::span<const Vec3> x) {

@@ -37,9 +37,6 @@ class NewtonMatrix {
   /// leave more than `enough` of them.
   Eigen::MatrixXd columns(std::span<const int> first, double enough) const;
 
-  /// What `build` may take (s) on one core of a desk computer whose other cores are at work, too: not
-  /// measured, so the same everywhere.
-  double foretold_seconds(const Solid& solid) const;
   /// c of the last `build`, 1/s; 0 before the first.
   double c() const { return c_; }
   /// Of K at rest, N/m.

@@ -25,7 +25,6 @@ struct SparseCholesky::Factor {
   std::optional<SupernodalFactor<float>> rough;
 
   bool countable() const { return pattern.countable; }
-  double multiplications() const { return pattern.multiplications; }
   std::size_t bytes() const {
     const std::size_t number = precision == Precision::kSingle ? sizeof(float) : sizeof(double);
     return pattern.values() * number + pattern.bytes();
@@ -73,20 +72,11 @@ struct SparseCholesky::Factor {
       return static_cast<std::size_t>(m_matrix.outerIndexPtr()[columns]) * (sizeof(double) + sizeof(int)) +
              3 * columns * sizeof(int);
     }
-    double multiplications() const {
-      double sum = 0;
-      for (Eigen::Index j = 0; j < m_matrix.outerSize(); ++j) {
-        const double high = m_matrix.outerIndexPtr()[j + 1] - m_matrix.outerIndexPtr()[j];
-        sum += 0.5 * high * high;
-      }
-      return sum;
-    }
   };
   Llt llt;
   Precision precision = Precision::kDouble;
 
   bool countable() const { return true; }
-  double multiplications() const { return llt.multiplications(); }
   std::size_t bytes() const { return llt.bytes(); }
   std::size_t work_bytes(const SparseMatrix& lower) const {
     return static_cast<std::size_t>(lower.nonZeros()) * (sizeof(double) + sizeof(int));  // a copy
@@ -221,10 +211,6 @@ void SparseCholesky::inverse_block(std::span<const int> unknowns, Eigen::Ref<Eig
   } else if (!unknowns.empty()) {
     factor_->inverse_block(unknowns, block, progress);
   }
-}
-
-double SparseCholesky::multiplications() const {
-  return factor_->multiplications();
 }
 
 SparseCholesky::Precision SparseCholesky::precision() const {

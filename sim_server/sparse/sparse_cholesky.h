@@ -48,8 +48,6 @@ class SparseCholesky final : public FactoredMatrix {
 
   /// Of the factor that there is.
   Precision precision() const;
-  /// That making a factor takes; also of those to come, which have the same pattern.
-  double multiplications() const;
   std::size_t bytes() const;
 
   /// The library behind it, for reports.

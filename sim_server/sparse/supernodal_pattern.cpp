@@ -178,6 +178,7 @@ void SupernodalPattern::cut_subtrees() {
   std::iota(begin.begin(), begin.end(), 0);
   std::vector<int> owner(order.size());
   for (int s = 0; s < count; ++s) std::fill(owner.begin() + first[s], owner.begin() + first[s + 1], s);
+  double all = 0;
   for (int s = 0; s < count; ++s) {
     const std::span<const int> below = rows_of(s);
     const auto high = static_cast<double>(below.size()), wide = static_cast<double>(columns(s));
@@ -188,16 +189,16 @@ void SupernodalPattern::cut_subtrees() {
              columns(u.source);
     }
     work[s] += own;
-    multiplications += own;
+    all += own;
     if (static_cast<int>(below.size()) == columns(s)) continue;
     parent[s] = owner[below[columns(s)]];
     work[parent[s]] += work[s];
     begin[parent[s]] = std::min(begin[parent[s]], begin[s]);
   }
   for (int s = count - 1; s >= 0; --s) {
-    if (work[s] > kLargestShare * multiplications) {
+    if (work[s] > kLargestShare * all) {
       top.push_back(s);
-    } else if (parent[s] < 0 || work[parent[s]] > kLargestShare * multiplications) {
+    } else if (parent[s] < 0 || work[parent[s]] > kLargestShare * all) {
       subtrees.push_back({begin[s], s + 1});
     }
   }

@@ -47,7 +47,6 @@ struct SupernodalPattern {
   std::vector<Update> updates;            ///< ascending by source
   std::vector<std::size_t> updates_begin;
   std::vector<int> place;  ///< of each entry of the matrix among the values; -1: not of the lower triangle
-  double multiplications = 0;     ///< to make the factor
   std::vector<Subtree> subtrees;  ///< as many of like work as keep a few cores busy
   std::vector<int> top;           ///< the supernodes above them, ascending
 

@@ -101,12 +101,6 @@ TEST_CASE("factor policy: of the background, a slow iteration goes on by conjuga
   }
 }
 
-TEST_CASE("factor policy: the next factor of the background is asked for when it may be ready") {
-  CHECK(FactorPolicy::refresh_steps_for(0.21, 0.05) == 6);  // five steps, and one
-  CHECK(FactorPolicy::refresh_steps_for(1e-5, 0.05) == 2);
-  CHECK(FactorPolicy::refresh_steps_for(1e5, 0.05) == 1000);
-}
-
 TEST_CASE("factor policy: a tiny residual that a fresh factor does not lessen is rounding from then on") {
   Iterations iterate{FactorPolicy({.negligible_force = 1e-8})};
   iterate(1e-6);
