@@ -47,8 +47,7 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<
   matrix_.add_to_diagonal(masses, c * c + alpha_ * c);
   matrix_.close_held(mean_diagonal_);
   if (factor_.refactor(matrix_.lower())) return;
-  // As much more as the last time, or a little less; then ever more (Waechter and Biegler 2006, algorithm
-  // IC).
+  // A quarter of what was enough last time, then ever more (Waechter and Biegler 2006, algorithm IC).
   double added = 0;
   const double first = std::clamp(more_inertia_ / 4, c * c, 1e5 * c * c);
   for (double more = first; more < 1e6 * c * c; more *= 4) {

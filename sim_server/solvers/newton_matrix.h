@@ -55,7 +55,7 @@ class NewtonMatrix {
   double mean_diagonal_;  // N/m
   SparseCholesky factor_;
   double c_ = 0;
-  double more_inertia_ = 0;         // 1/s^2, that made the last indefinite A definite
+  double more_inertia_ = 0;         // 1/s^2, the last that an indefinite A was given
   std::vector<Mat3> built_turned_;  // (nodes) how they had turned where A was built; empty: not at all
   std::vector<Mat3> turns_;         // (nodes) Q, or empty: none has turned
 };

@@ -34,8 +34,8 @@ struct FreeDofs {
 };
 
 /// A symmetric sparse matrix of 3 x 3 blocks over free nodes, of which the lower triangle is kept: one
-/// pattern, filled again and again. Blocks on the diagonal are kept whole; what reads the
-/// lower triangle passes over the rest.
+/// pattern, filled again and again. Blocks on the diagonal are kept whole; what reads the lower triangle
+/// passes over the rest.
 class StiffnessMatrix {
  public:
   /// `groups`: lists of nodes, one after the other, whose nodes all meet each other; group g is from first[g]

@@ -1,6 +1,7 @@
 // A factor that is turned with its nodes, on bodies that are carried and turned about: there it is exact.
 #include "sim_server/solvers/newton_matrix.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "sim_server/solvers/dynamics.h"
@@ -106,6 +107,28 @@ TEST_CASE("Newton matrix: what is held along an axis stays held") {
   Eigen::VectorXd kept = moved;
   dofs.hold(kept);
   CHECK((moved - kept).norm() <= 1e-6 * moved.norm());
+}
+
+TEST_CASE("Newton matrix: of a body about to buckle, with more inertia it still leads downhill, each time") {
+  for (const ElementKind element :
+       {ElementKind::kLinear, ElementKind::kQuadratic, ElementKind::kNodalPressure}) {
+    const Solid solid = bar(element);
+    const FreeDofs dofs(std::vector<HeldAxes>(solid.rest().size(), 0));
+    std::vector<Vec3> x;
+    for (const Vec3& p : solid.rest()) x.push_back(Vec3(0.4 * p[0], p[1], p[2]));
+    StiffnessMatrix exact = solid.stiffness_matrix(dofs);
+    solid.add_stiffness(x, exact);
+    exact.add_to_diagonal(solid.masses(), kC * kC);
+    const Eigen::MatrixXd a = Eigen::MatrixXd(exact.lower()).selfadjointView<Eigen::Lower>();
+    REQUIRE(Eigen::LLT<Eigen::MatrixXd>(a).info() != Eigen::Success);
+    Solid::Scratch scratch(solid);
+    NewtonMatrix matrix(solid, dofs, {.flies = true}, "test");
+    const Eigen::VectorXd load = some_load(dofs.count);
+    for (int i = 0; i < 3; ++i) {
+      matrix.build(solid, x, solid.masses(), {}, kC, scratch);
+      CHECK(matrix.solve(load).col(0).dot(load) > 0);
+    }
+  }
 }
 
 TEST_CASE("dynamics: a body that spins freely by three turns makes at most three factors") {
