@@ -10,6 +10,7 @@
 #include "common/progress.h"
 #include "common/text.h"
 #include "protocol/recorder.h"
+#include "sim_server/deformation/compliance_tolerance.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/setup_times.h"
@@ -21,7 +22,6 @@ namespace {
 constexpr double kLongSetUp = 1e4;    // ms: a scene whose variants are not built to compare
 constexpr double kMostVariant = 2e9;  // bytes of compliance that a variant is built with
 constexpr double kUsualFriction = 0.3;
-constexpr double kBytesPerPair = 72;  // of two nodes' compliance: 3 x 3 doubles
 constexpr double kBytesOfMotion =
     9 * 24 + 8;  // of a vertex, as `tensor_mass` keeps them: nine vectors, a mass
 /// What a variant is compared by. `setup_ms` is without reading the mesh, which all share.
@@ -51,8 +51,7 @@ std::size_t loaded_nodes(const Scene& scene, const Simulation& simulation) {
 /// By formula; what no elastic scene has is nothing.
 double compliance_bytes(const Scene& scene, const Simulation& simulation) {
   if (!model_of(scene.deformation).keeps_compliance()) return 0;
-  const auto nodes = static_cast<double>(loaded_nodes(scene, simulation));
-  return kBytesPerPair * nodes * nodes;
+  return scene.deformation.of<ComplianceTolerance>().bytes(loaded_nodes(scene, simulation));
 }
 
 /// The tool whose contact is called `part`, or null.
@@ -166,9 +165,12 @@ struct Own {
 };
 
 /// What setting up a variant would take, ms: compliance goes with the nodes that can be loaded.
-double foreseen_ms(double compliance_of_variant, const Own& own) {
-  const double kept = compliance_bytes(own.scene, own.simulation);
-  const double more = kept > 0 ? std::sqrt(compliance_of_variant / kept) - 1 : 0;
+double foreseen_ms(const Scene& variant, const Own& own) {
+  const auto nodes = [&](const Scene& scene) {
+    return static_cast<double>(
+        compliance_bytes(scene, own.simulation) > 0 ? loaded_nodes(scene, own.simulation) : 0);
+  };
+  const double more = nodes(own.scene) > 0 ? nodes(variant) / nodes(own.scene) - 1 : 0;
   return own.cost.setup_ms + std::max(more, 0.0) * own.compliance_ms;
 }
 
@@ -177,10 +179,10 @@ LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
   const double compliance = compliance_bytes(variant, own.simulation);
   if (compliance > kMostVariant) {
     row.bytes = compliance - compliance_bytes(own.scene, own.simulation);
-    row.note = "not built: too large (bytes: computed, 72 r^2)";
+    row.note = "not built: too large (bytes: computed)";
     return row;
   }
-  if (foreseen_ms(compliance, own) > kLongSetUp) {
+  if (foreseen_ms(variant, own) > kLongSetUp) {
     row.note = "not measured: it would take long to set up";
     return row;
   }
@@ -246,11 +248,11 @@ std::optional<LeftOut> friction(const Own& own) {
 LeftOut whole_compliance(const Own& own) {
   const TetMesh& mesh = own.simulation.mesh();
   const std::size_t free = mesh.vertices.size() - fixed_vertices(own.scene, mesh).size();
-  const auto n = static_cast<double>(free);
   return {.what = "compliance of the other free vertices",
           .why = own.scene.deformation.where,
-          .bytes = kBytesPerPair * n * n - compliance_bytes(own.scene, own.simulation),
-          .note = fmt::format("computed: 72 n^2 for all {} free vertices, less what is kept", free)};
+          .bytes = own.scene.deformation.of<ComplianceTolerance>().bytes(free) -
+                   compliance_bytes(own.scene, own.simulation),
+          .note = fmt::format("computed for all {} free vertices, less what is kept", free)};
 }
 
 /// Of a model at rest: what motion would hold.

@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "common/text.h"
+#include "sim_server/deformation/compliance_tolerance.h"
 #include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/hybrid.h"
 #include "sim_server/deformation/implicit.h"
@@ -50,11 +51,12 @@ constexpr DeformationModelRow row_of(DeformationModelRow row) {
 constexpr std::array kModels{
     row_of<Rigid, RigidSettings>(
         {.name = "rigid", .summary = "no deformation; force = stiffness x penetration depth"}),
-    row_of<QuasiStatic>({.name = "quasi_static",
-                         .summary = "linear elastic equilibrium by pre-computed compliance",
-                         .materials = Materials::kLinear,
-                         .condenses = true}),
-    row_of<TensorMass, RayleighDamping, ContactInstants, ClientModes>(
+    row_of<QuasiStatic, ComplianceTolerance>(
+        {.name = "quasi_static",
+         .summary = "linear elastic equilibrium by pre-computed compliance",
+         .materials = Materials::kLinear,
+         .condenses = true}),
+    row_of<TensorMass, RayleighDamping, ContactInstants, ClientModes, ComplianceTolerance>(
         {.name = "tensor_mass",
          .summary = "linear elastic motion, explicit, by a tensor per vertex and edge",
          .materials = Materials::kPlain,
@@ -71,7 +73,7 @@ constexpr std::array kModels{
          .flies = true,
          .cuts = true}),
 #ifdef PALPATE_WITH_SPECTRA
-    row_of<Reduced, RayleighDamping, ReducedSettings, ContactInstants>(
+    row_of<Reduced, RayleighDamping, ReducedSettings, ContactInstants, ComplianceTolerance>(
         {.name = "reduced",
          .summary = "linear elastic: the slowest modes swing, the rest follows at once",
          .materials = Materials::kLinear,

@@ -1,6 +1,5 @@
 #include "sim_server/deformation/linear_statics.h"
 
-#include <cassert>
 #include <cmath>
 
 #include "common/clock.h"
@@ -43,7 +42,7 @@ class KeptMatrices {
     return of_any_build() ? inputs_.condensed->find(key, what, inputs_.scene.source)
                           : inputs_.cache->find(key);
   }
-  void keep(const EntryHeader& header, const Eigen::MatrixXd& matrix) const {
+  void keep(const EntryHeader& header, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const {
     if (of_any_build()) return inputs_.condensed->keep(header, matrix);
     inputs_.cache->keep(header, matrix);
   }
@@ -76,11 +75,13 @@ void add(const SparseMatrix& k, Fingerprint& fingerprint, bool of_any_build) {
   }
 }
 
-/// Of all that rows and columns of K^-1 follow from.
-Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows, const KeptMatrices& kept) {
+/// Of all that rows and columns of K^-1 follow from. `tolerance`: 0 where they are dense.
+Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows, double tolerance,
+                         const KeptMatrices& kept) {
   Fingerprint fingerprint = kept.fingerprint();
   add(k, fingerprint, kept.of_any_build());
   fingerprint.add(rows);
+  if (tolerance > 0) fingerprint.add(std::span<const double>(&tolerance, 1));
   return fingerprint.digest();
 }
 
@@ -130,12 +131,12 @@ const FactoredMatrix& LinearStatics::factor() const {
   return *factor_;
 }
 
-/// Of K, three for each surface vertex that tools reach and nothing holds.
+/// Of K, three for each row of the compliance.
 std::vector<int> LinearStatics::reachable_rows() const {
   std::vector<int> rows;
-  for (const int vertex : inputs_.reachable) {
+  for (const int vertex : compliant_vertices(inputs_).order) {
     const int first = dofs.first[inputs_.surface.vertices[vertex]];
-    if (first >= 0) rows.insert(rows.end(), {first, first + 1, first + 2});
+    rows.insert(rows.end(), {first, first + 1, first + 2});
   }
   return rows;
 }
@@ -180,27 +181,18 @@ VibrationModes LinearStatics::modes(int count, const std::string& where) const {
 
 void LinearStatics::fill(SurfaceCompliance& compliance) const {
   const std::vector<int> rows = reachable_rows();
-  assert(rows.size() == 3 * compliance.vertices().size());
   const KeptMatrices kept(inputs_);
-  if (!kept.any()) return compute(compliance, rows);
-  const Digest key = key_of_compliance(stiffness.lower(), rows, kept);
+  if (!kept.any()) return compliance.compute(factor(), rows, inputs_.progress);
+  const Digest key = key_of_compliance(stiffness.lower(), rows, compliance.tolerance(), kept);
   const std::string what = fmt::format("compliance of {} nodes", compliance.vertices().size());
   if (auto found = kept.find(key, what); found && compliance.take(std::move(*found), kept.name())) return;
   const Time begin = now();
-  compute(compliance, rows);
-  kept.keep({.key = key,
-             .seconds = to_seconds(now() - begin),
-             .what = what + ", " + inputs_.scene.mesh_file.filename().string()},
-            compliance.matrix());
+  compliance.compute(factor(), rows, inputs_.progress);
+  const EntryHeader header{.key = key,
+                           .seconds = to_seconds(now() - begin),
+                           .what = what + ", " + inputs_.scene.mesh_file.filename().string()};
+  compliance.pass_to([&](const auto& matrix) { kept.keep(header, matrix); });
   compliance.was_kept_in(kept.name());
-}
-
-void LinearStatics::compute(SurfaceCompliance& compliance, std::span<const int> rows) const {
-  const FactoredMatrix& of_stiffness = factor();
-  compliance.compute([&](Eigen::Ref<Eigen::MatrixXd> w) {
-    of_stiffness.inverse_block(rows, w,
-                               [&](double share) { inputs_.progress(name_of(Stage::kCompliance), share); });
-  });
 }
 
 }  // namespace palpate::sim

@@ -34,7 +34,6 @@ struct LinearStatics {
 
  private:
   std::vector<int> reachable_rows() const;
-  void compute(SurfaceCompliance& compliance, std::span<const int> rows) const;
 
   const ModelInputs& inputs_;
   mutable std::unique_ptr<FactoredMatrix> factor_;

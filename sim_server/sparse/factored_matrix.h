@@ -24,6 +24,16 @@ class FactoredMatrix {
   /// `progress` the share done, from the calling thread.
   virtual void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
                              const std::function<void(double)>& progress) const = 0;
+
+  /// Rows of one group of unknowns, (its unknowns x m): those columns are there that belong to the groups
+  /// `with`, of which `group` is one.
+  using TakeRows = std::function<void(int group, std::span<const int> with, const Eigen::MatrixXd& rows)>;
+  /// The same block without holding all of it: `unknowns` are in groups, of which each one `begins` where it
+  /// is told, the last of these being m. Calls `take` once for each group, from several threads at once, so
+  /// that each pair of groups is there once; in an order, and to bytes, that do not depend on the number of
+  /// threads. Here by `inverse_block`.
+  virtual void inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
+                            const std::function<void(double)>& progress) const;
 };
 
 /// Factors the matrix whose lower triangle is given. `kept`: the unknowns of which `inverse_block` will be

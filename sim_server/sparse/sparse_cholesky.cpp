@@ -60,6 +60,15 @@ struct SparseCholesky::Factor {
     if (rough) return rough->inverse_block(unknowns, block, progress);
     fine->inverse_block(unknowns, block, progress);
   }
+  bool inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
+                    const std::function<void(double)>& progress) const {
+    if (rough) {
+      rough->inverse_rows(unknowns, begins, take, progress);
+    } else {
+      fine->inverse_rows(unknowns, begins, take, progress);
+    }
+    return true;
+  }
 };
 #else
 /// Always in double precision.
@@ -100,6 +109,10 @@ struct SparseCholesky::Factor {
         block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = moved[unknowns[i]];
     }
     block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
+  }
+  bool inverse_rows(std::span<const int>, std::span<const int>, const TakeRows&,
+                    const std::function<void(double)>&) const {
+    return false;
   }
 };
 #endif
@@ -211,6 +224,12 @@ void SparseCholesky::inverse_block(std::span<const int> unknowns, Eigen::Ref<Eig
   } else if (!unknowns.empty()) {
     factor_->inverse_block(unknowns, block, progress);
   }
+}
+
+void SparseCholesky::inverse_rows(std::span<const int> unknowns, std::span<const int> begins,
+                                  const TakeRows& take, const std::function<void(double)>& progress) const {
+  if (!definite_ || unknowns.empty() || !factor_->inverse_rows(unknowns, begins, take, progress))
+    FactoredMatrix::inverse_rows(unknowns, begins, take, progress);
 }
 
 SparseCholesky::Precision SparseCholesky::precision() const {

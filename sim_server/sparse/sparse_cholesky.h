@@ -45,6 +45,8 @@ class SparseCholesky final : public FactoredMatrix {
   /// On all cores, the same bytes on any number of them. Any `unknowns`.
   void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
                      const std::function<void(double)>& progress) const override;
+  void inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
+                    const std::function<void(double)>& progress) const override;
 
   /// Of the factor that there is.
   Precision precision() const;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kColumns = 96;  // of the inverse at once: enough to keep BLAS busy
 constexpr std::size_t kBlocks = 32;   // between two reports of progress
+constexpr std::size_t kGroups = 8;    // of rows between two reports
 
 }  // namespace
 
@@ -21,11 +22,8 @@ class InversePlan {
     std::vector<int> place(pattern.order.size());
     for (std::size_t k = 0; k < place.size(); ++k) place[pattern.order[k]] = static_cast<int>(k);
     for (std::size_t k = 0; k < unknowns.size(); ++k) wanted_[k] = {place[unknowns[k]], static_cast<int>(k)};
-    std::ranges::sort(wanted_);
     for (int s = 0; s < pattern.supernodes(); ++s)
       std::fill(node_.begin() + pattern.first[s], node_.begin() + pattern.first[s + 1], s);
-    above_.assign(static_cast<std::size_t>(pattern.supernodes()), 0);
-    mark_above(wanted_, above_);
   }
 
   /// An unknown: its place in the order of elimination, and its number among those wanted.
@@ -33,53 +31,53 @@ class InversePlan {
     int place, number;
     auto operator<=>(const Wanted&) const = default;  // NOLINT(modernize-use-nullptr): it is none
   };
-  std::span<const Wanted> wanted() const { return wanted_; }
+  std::span<Wanted> wanted() { return wanted_; }
   int supernode(const Wanted& one) const { return node_[one.place]; }
-  /// Whether something wanted is at or under a supernode in the tree of elimination.
-  bool above_wanted(int s) const { return above_[s] != 0; }
 
-  /// Marks the supernodes at or above those of `some`: where a load on them goes in forward elimination.
-  void mark_above(std::span<const Wanted> some, std::vector<char>& marks) const {
+  /// Of each supernode, whether it is at or above that of one of `some` in the tree of elimination: where a
+  /// load on them goes in forward elimination, and what their rows are found from in the backward one.
+  std::vector<char> above(std::span<const Wanted> some) const {
+    std::vector<char> marks(static_cast<std::size_t>(pattern_.supernodes()), 0);
     for (const Wanted& one : some) marks[supernode(one)] = 1;
     for (int s = 0; s < pattern_.supernodes(); ++s) {
       const std::span<const int> rows = pattern_.rows_of(s);
       const auto columns = static_cast<std::size_t>(pattern_.columns(s));
       if (marks[s] != 0 && rows.size() > columns) marks[node_[rows[columns]]] = 1;
     }
+    return marks;
   }
 
  private:
   const SupernodalPattern& pattern_;
-  std::vector<Wanted> wanted_;  // ascending by place
+  std::vector<Wanted> wanted_;  // ascending by number
   std::vector<int> node_;       // (n) supernode of each place
-  std::vector<char> above_;
 };
 
-/// Columns of the inverse from the place of the first of them downwards, for unit loads: transposed, so that
-/// what belongs to one unknown lies together.
+/// Columns of the inverse for unit loads, transposed, so that what belongs to one unknown lies together: the
+/// rows of the supernodes that are marked, and nothing before the first of these.
 template <class Scalar>
 class SupernodalFactor<Scalar>::InverseColumns {
  public:
+  /// `rows`: the supernodes above what is looked at. Loads ascend by place, and lie within these.
   InverseColumns(const SupernodalFactor& factor, const InversePlan& plan,
-                 std::span<const InversePlan::Wanted> loads)
+                 std::span<const InversePlan::Wanted> loads, std::span<const char> rows)
       : factor_(factor),
         pattern_(*factor.pattern_),
-        begin_(plan.supernode(loads.front())),
-        base_(pattern_.first[begin_]),
+        base_(pattern_.first[std::ranges::find(rows, 1) - rows.begin()]),
         count_(static_cast<int>(loads.size())),
         x_(Matrix::Zero(count_, static_cast<Eigen::Index>(pattern_.order.size()) - base_)) {
-    std::vector<char> loaded(static_cast<std::size_t>(pattern_.supernodes()), 0);
-    plan.mark_above(loads, loaded);
+    const std::vector<char> loaded = plan.above(loads);
     for (int j = 0; j < count_; ++j) x_(j, loads[j].place - base_) = 1;
-    for (int s = begin_; s < pattern_.supernodes(); ++s) {
+    for (int s = plan.supernode(loads.front()); s < pattern_.supernodes(); ++s) {
       if (loaded[s] != 0) forward(s);
     }
-    for (int s = pattern_.supernodes() - 1; s >= begin_; --s) {
-      if (plan.above_wanted(s)) backward(s);
+    for (int s = pattern_.supernodes() - 1; s >= 0; --s) {
+      if (rows[s] != 0) backward(s);
     }
   }
 
-  Scalar at(int load, int place) const { return x_(load, place - base_); }
+  /// What belongs to one unknown, (loads).
+  auto of(const InversePlan::Wanted& unknown) const { return x_.col(unknown.place - base_); }
 
  private:
   void forward(int s) {
@@ -113,7 +111,7 @@ class SupernodalFactor<Scalar>::InverseColumns {
 
   const SupernodalFactor& factor_;
   const SupernodalPattern& pattern_;
-  int begin_, base_, count_;
+  int base_, count_;
   Matrix x_;      // (count x places from `base_` on)
   Matrix below_;  // scratch
 };
@@ -121,27 +119,88 @@ class SupernodalFactor<Scalar>::InverseColumns {
 template <class Scalar>
 void SupernodalFactor<Scalar>::inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
                                              const std::function<void(double)>& progress) const {
-  const InversePlan plan(*pattern_, unknowns);
+  InversePlan plan(*pattern_, unknowns);
   const std::span wanted = plan.wanted();
+  std::ranges::sort(wanted);
   for (std::size_t from = 0; from < wanted.size(); from += kBlocks * kColumns) {
     progress(static_cast<double>(from) / static_cast<double>(wanted.size()));
     const std::span some = wanted.subspan(from, std::min(kBlocks * kColumns, wanted.size() - from));
     parallel_blocks(some.size(), kColumns, [&](std::size_t begin, std::size_t end) {
-      const InverseColumns columns(*this, plan, some.subspan(begin, end - begin));
-      for (std::size_t j = begin; j < end; ++j) {
-        for (const auto& row : wanted.subspan(from + j)) {
-          const auto value = static_cast<double>(columns.at(static_cast<int>(j - begin), row.place));
-          block(row.number, some[j].number) = value;
-          block(some[j].number, row.number) = value;
+      const std::span loads = some.subspan(begin, end - begin), rows = wanted.subspan(from + begin);
+      const InverseColumns columns(*this, plan, loads, plan.above(rows));
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        const auto row = columns.of(rows[k]);
+        for (std::size_t j = 0; j <= std::min(k, loads.size() - 1); ++j) {
+          const auto value = static_cast<double>(row[static_cast<Eigen::Index>(j)]);
+          block(rows[k].number, loads[j].number) = value;
+          block(loads[j].number, rows[k].number) = value;
         }
       }
     });
   }
 }
 
+/// Numbers of the groups, by where their unknowns are eliminated in the mean.
+template <class Wanted>
+std::vector<int> in_order_of_elimination(std::span<const Wanted> wanted, std::span<const int> begins) {
+  std::vector<std::pair<double, int>> groups;
+  for (std::size_t g = 0; g + 1 < begins.size(); ++g) {
+    double places = 0;
+    for (int k = begins[g]; k < begins[g + 1]; ++k) places += wanted[static_cast<std::size_t>(k)].place;
+    groups.emplace_back(places / (begins[g + 1] - begins[g]), static_cast<int>(g));
+  }
+  std::ranges::sort(groups);
+  std::vector<int> order;
+  for (const auto& [place, group] : groups) order.push_back(group);
+  return order;
+}
+
+template <class Scalar>
+void SupernodalFactor<Scalar>::inverse_rows(std::span<const int> unknowns, std::span<const int> begins,
+                                            const FactoredMatrix::TakeRows& take,
+                                            const std::function<void(double)>& progress) const {
+  InversePlan plan(*pattern_, unknowns);
+  const std::span<const InversePlan::Wanted> wanted = plan.wanted();
+  const std::vector<int> order = in_order_of_elimination(wanted, begins);
+  const auto unknowns_of = [&](int group) {
+    return wanted.subspan(static_cast<std::size_t>(begins[group]),
+                          static_cast<std::size_t>(begins[group + 1] - begins[group]));
+  };
+  const auto rows_of = [&](std::size_t k) {
+    const std::span with = std::span<const int>(order).subspan(k);
+    std::vector<InversePlan::Wanted> loads(unknowns_of(order[k]).begin(), unknowns_of(order[k]).end()), all;
+    std::ranges::sort(loads);
+    for (const int group : with) std::ranges::copy(unknowns_of(group), std::back_inserter(all));
+    const std::vector<char> above = plan.above(all);
+    Eigen::MatrixXd rows(static_cast<Eigen::Index>(loads.size()), static_cast<Eigen::Index>(wanted.size()));
+    for (std::size_t from = 0; from < loads.size(); from += kColumns) {
+      const std::span some = std::span(loads).subspan(from, std::min(kColumns, loads.size() - from));
+      const InverseColumns columns(*this, plan, some, above);
+      for (const InversePlan::Wanted& one : all) {
+        const auto row = columns.of(one);
+        for (std::size_t j = 0; j < some.size(); ++j)
+          rows(some[j].number - begins[order[k]], one.number) =
+              static_cast<double>(row[static_cast<Eigen::Index>(j)]);
+      }
+    }
+    take(order[k], with, rows);
+  };
+  for (std::size_t from = 0; from < order.size(); from += kGroups) {
+    progress(static_cast<double>(from) / static_cast<double>(order.size()));
+    parallel_blocks(std::min(kGroups, order.size() - from), 1,
+                    [&](std::size_t k, std::size_t) { rows_of(from + k); });
+  }
+}
+
 template void SupernodalFactor<double>::inverse_block(std::span<const int>, Eigen::Ref<Eigen::MatrixXd>,
                                                       const std::function<void(double)>&) const;
+template void SupernodalFactor<double>::inverse_rows(std::span<const int>, std::span<const int>,
+                                                     const FactoredMatrix::TakeRows&,
+                                                     const std::function<void(double)>&) const;
 template void SupernodalFactor<float>::inverse_block(std::span<const int>, Eigen::Ref<Eigen::MatrixXd>,
                                                      const std::function<void(double)>&) const;
+template void SupernodalFactor<float>::inverse_rows(std::span<const int>, std::span<const int>,
+                                                    const FactoredMatrix::TakeRows&,
+                                                    const std::function<void(double)>&) const;
 
 }  // namespace palpate::sim

@@ -1,6 +1,7 @@
 #include "sim_server/sparse/sparse_cholesky.h"
 
 #include <Eigen/Cholesky>
+#include <atomic>
 
 #ifdef PALPATE_WITH_TBB
 #include <oneapi/tbb/global_control.h>
@@ -69,6 +70,45 @@ TEST_CASE("a block of the inverse is that of the dense inverse, and symmetric to
     CHECK(last >= 0);
     CHECK((block - exact(unknowns, unknowns)).cwiseAbs().maxCoeff() < 1e-11 * exact.cwiseAbs().maxCoeff());
     CHECK(block == block.transpose());
+  }
+}
+
+TEST_CASE(
+    "rows of the inverse come group by group, each pair of groups once, as the dense inverse has them") {
+  const StiffnessMatrix matrix = stiffness_of_block(7);
+  const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix.lower()).selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd exact = dense.llt().solve(Eigen::MatrixXd::Identity(dense.rows(), dense.cols()));
+  const SparseCholesky factor(matrix.lower(), "test");
+  std::vector<int> unknowns;  // not in their order, and not all
+  for (int k = 0; k < dense.rows(); k += 2) unknowns.push_back((k * 577) % static_cast<int>(dense.rows()));
+  const auto m = static_cast<int>(unknowns.size());
+  for (const std::vector<int>& begins : {std::vector{0, 1, 130, 131, m - 7, m}, std::vector{0, m}}) {
+    const std::size_t groups = begins.size() - 1;
+    std::vector<std::vector<std::atomic<int>>> seen(groups);
+    for (auto& row : seen) row = std::vector<std::atomic<int>>(groups);
+    std::atomic<int> wrong = 0;
+    double last = -1;
+    const auto look = [&](int group, std::span<const int> with, const Eigen::MatrixXd& rows) {
+      const auto of = [&](int g) {
+        return Eigen::seq(begins[static_cast<std::size_t>(g)], begins[static_cast<std::size_t>(g) + 1] - 1);
+      };
+      for (const int other : with) {
+        ++seen[static_cast<std::size_t>(std::min(group, other))]
+              [static_cast<std::size_t>(std::max(group, other))];
+        const Eigen::MatrixXd right = exact(unknowns, unknowns)(of(group), of(other)),
+                              found = rows(Eigen::all, of(other));
+        if ((found - right).cwiseAbs().maxCoeff() > 1e-11 * exact.cwiseAbs().maxCoeff()) ++wrong;
+      }
+    };
+    factor.inverse_rows(unknowns, begins, look, [&](double share) {
+      CHECK(share > last);
+      last = share;
+    });
+    CHECK(wrong == 0);
+    CHECK(last >= 0);
+    for (std::size_t i = 0; i < groups; ++i) {
+      for (std::size_t j = 0; j < groups; ++j) CHECK(seen[i][j] == (i <= j ? 1 : 0));
+    }
   }
 }
 
