@@ -32,10 +32,7 @@ std::optional<LowRankFactors> low_rank_factors(Eigen::MatrixXd matrix, double to
     if (rank == most) return {};
     Eigen::Index largest = 0;
     squares.maxCoeff(&largest);
-    const auto before = basis.leftCols(rank);
-    Eigen::VectorXd column = matrix.col(largest);
-    column -= before * (before.transpose() * column);  // what rounding has left of those before
-    basis.col(rank) = column.normalized();
+    basis.col(rank) = matrix.col(largest).normalized();
     shares.row(rank).noalias() = basis.col(rank).transpose() * matrix;
     matrix.noalias() -= basis.col(rank) * shares.row(rank);
     squares = matrix.colwise().squaredNorm();

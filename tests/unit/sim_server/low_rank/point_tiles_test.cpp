@@ -6,14 +6,14 @@
 using namespace palpate;
 using namespace palpate::sim;
 
-TEST_CASE("tiles: points of a plate are halved along its longer side, then along the other") {
+TEST_CASE("tiles: points of a plate are halved along its longer side") {
   std::vector<Vec3> plate;
-  for (int x = 0; x < 8; ++x) {
-    for (int y = 0; y < 4; ++y) plate.emplace_back(0.01 * x, 0.009 * y, 0);
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 4; ++x) plate.emplace_back(0.009 * x, 0.01 * y, 0);
   }
   const PointTiles tiles = tiles_of(plate, 8);
   REQUIRE(tiles.begins == std::vector{0, 8, 16, 24, 32});
-  // Cut at x = 0.035, into squares of 4 x 4 points whose longer side is again that along x.
+  // Cut at y = 0.035, into squares of 4 x 4 points whose longer side is again that along y.
   for (int k = 0; k < 32; ++k) CHECK(tiles.order[static_cast<std::size_t>(k)] / 8 == k / 8);
 }
 
