@@ -114,6 +114,10 @@ CLI::App* add_record(CLI::App& app, sim::RecordOptions& options) {
   command->add_option("--seconds", options.seconds, "Virtual time (default: the motion once)");
   command->add_flag("!--plain", options.parts,
                     "Forces only: no tangents and surfaces, which some laws use (smaller)");
+  command->add_flag(
+      "--real-time", options.real_time,
+      "Step at the pace of the clock: a sample is as late as this machine makes it, as with `run` "
+      "(not the same bytes twice)");
   command->add_option("--report", options.report, "Write figures of the recording to this JSON file");
   add_resection_option(command, options.resection);
   command->add_option("--removals", options.removals,

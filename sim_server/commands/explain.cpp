@@ -248,10 +248,11 @@ std::optional<LeftOut> friction(const Own& own) {
 LeftOut whole_compliance(const Own& own) {
   const TetMesh& mesh = own.simulation.mesh();
   const std::size_t free = mesh.vertices.size() - fixed_vertices(own.scene, mesh).size();
+  const auto& settings = own.scene.deformation.of<ComplianceTolerance>();
+  const ComplianceTolerance as_kept{settings.of(loaded_nodes(own.scene, own.simulation))};
   return {.what = "compliance of the other free vertices",
           .why = own.scene.deformation.where,
-          .bytes = own.scene.deformation.of<ComplianceTolerance>().bytes(free) -
-                   compliance_bytes(own.scene, own.simulation),
+          .bytes = as_kept.bytes(free) - compliance_bytes(own.scene, own.simulation),
           .note = fmt::format("computed for all {} free vertices, less what is kept", free)};
 }
 

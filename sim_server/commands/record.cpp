@@ -69,6 +69,21 @@ std::uint64_t ticks_of(const Trajectory& motion, const RecordOptions& options, d
   return static_cast<std::uint64_t>(options.seconds.value_or(motion.duration()) * ticks_hz + 1e-6) + 1;
 }
 
+/// Steps begin when it is their time, and take what they take.
+class RealTime final : public StepClock {
+ public:
+  void begin(Time t) override {
+    if (!start_) start_ = now() - t;
+    sleep_until(*start_ + t);
+    began_ = now();
+  }
+  Time took() override { return now() - began_; }
+
+ private:
+  std::optional<Time> start_;
+  Time began_{};
+};
+
 void run_session(VirtualSession& session, std::uint64_t ticks, protocol::CaptureWriter& capture,
                  const RecordOptions& options, ProgressLine& progress) {
   for (std::uint64_t k = 0; k < ticks; ++k) {
@@ -103,6 +118,7 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
           {"force_samples", stats.force_samples},
           {"contact_steps", stats.in_contact},
           {"contact_step_ms", times_ms(stats.contact_step_ns)},
+          {"late", stats.late},
           {"flagged", stats.flagged},
           {"flagged_by", simulation.flagged().to_json()},
           {"max_newton", stats.max_newton},
@@ -139,10 +155,15 @@ int record(const RecordOptions& options) {
                         condensed ? &*condensed : nullptr);
   if (options.remove) simulation.remove_at(read_removals(*options.remove, simulation));
   const ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
-  VirtualSession session(
-      simulation, motions, scene.tools[options.tool - 1].shape.radius,
-      {options.rate_hz, ticks_hz, from_seconds(options.delay_ms / 1e3), options.parts, options.tool - 1},
-      capture, &errors);
+  RealTime clock;
+  const VirtualLink link{.rate_hz = options.rate_hz,
+                         .ticks_hz = ticks_hz,
+                         .delay = from_seconds(options.delay_ms / 1e3),
+                         .parts = options.parts,
+                         .tool = options.tool - 1,
+                         .clock = options.real_time ? &clock : nullptr};
+  VirtualSession session(simulation, motions, scene.tools[options.tool - 1].shape.radius, link, capture,
+                         &errors);
   const Time start = now();
   run_session(session, ticks, capture, options, progress);
   out.commit();
@@ -156,6 +177,9 @@ int record(const RecordOptions& options) {
       stats.in_contact, 1e-6 * stats.contact_step_ns.quantile(0.5),
       1e-6 * stats.contact_step_ns.quantile(0.99), stats.flagged,
       stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "", stats.max_newton);
+  if (options.real_time)
+    fmt::print("            {} of the deadlines of {:g} Hz passed over, as steps took too long\n", stats.late,
+               options.rate_hz);
   if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);
   if (options.resection) write_resection(*options.resection, simulation);
   if (options.removals) write_removals(*options.removals, simulation);

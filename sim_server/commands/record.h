@@ -16,7 +16,8 @@ struct RecordOptions {
   double delay_ms = 0;  ///< from reading the tool to having its force in the client, ms, [0, 10000]
   std::optional<double> ticks_hz;  ///< tool states a second, at least `rate_hz`; absent: 500 or `rate_hz`
   std::optional<double> seconds;   ///< absent: the motion of that tool once
-  bool parts = true;  ///< whether the samples carry all they can: tangents, surface, a second place
+  bool parts = true;       ///< whether the samples carry all they can: tangents, surface, a second place
+  bool real_time = false;  ///< whether steps take as long as they do, at the pace of the clock
   std::optional<std::filesystem::path> report;
   std::optional<std::filesystem::path> resection;  ///< CSV of what was removed
   /// CSV (t_s, tetrahedron) of the tetrahedra that went; and one of those that are to go, instead of by heat.
@@ -27,8 +28,8 @@ struct RecordOptions {
 /// Runs a scene in virtual time along recorded motions and writes what would have travelled as a capture:
 /// the same simulation, sessions and bytes as `run`, without sockets and clock, as fast as they go. Virtual
 /// time begins at 0; step n answers the newest tool state at n / rate, and its sample is in the client
-/// `delay` after that tool state was read. The same arguments give the same bytes. Throws `Error`. Returns
-/// the exit code.
+/// `delay` after that tool state was read, in `real_time` that much after its step is done. The same
+/// arguments give the same bytes, but in `real_time`. Throws `Error`. Returns the exit code.
 int record(const RecordOptions& options);
 
 }  // namespace palpate::sim

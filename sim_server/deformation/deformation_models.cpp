@@ -65,7 +65,7 @@ constexpr std::array kModels{
          .parts = true,
          .unneeded = {{"factor of the stiffness matrix, kept",
                        "explicit steps solve nothing; set-up lets its own go"}}}),
-    row_of<Implicit, RayleighDamping, ImplicitSettings, ContactInstants, ClientModes>(
+    row_of<Implicit, RayleighDamping, ImplicitSettings, ContactInstants, ClientModes, ComplianceTolerance>(
         {.name = "implicit",
          .summary = "motion of any law, element and load, by implicit steps",
          .materials = Materials::kAny,

@@ -1,9 +1,11 @@
 #include "sim_server/deformation/linear_statics.h"
 
+#include <cassert>
 #include <cmath>
 
 #include "common/clock.h"
 #include "common/error.h"
+#include "common/log.h"
 #include "sim_server/mesh/loose_parts.h"
 
 namespace palpate::sim {
@@ -75,13 +77,18 @@ void add(const SparseMatrix& k, Fingerprint& fingerprint, bool of_any_build) {
   }
 }
 
-/// Of all that rows and columns of K^-1 follow from. `tolerance`: 0 where they are dense.
-Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows, double tolerance,
-                         const KeptMatrices& kept) {
+/// Of all that rows and columns of K^-1 follow from, and how they are kept.
+Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows,
+                         const SurfaceCompliance& compliance, const KeptMatrices& kept) {
+  constexpr int kLayout = 1;  // of tiles in a file
   Fingerprint fingerprint = kept.fingerprint();
   add(k, fingerprint, kept.of_any_build());
   fingerprint.add(rows);
-  if (tolerance > 0) fingerprint.add(std::span<const double>(&tolerance, 1));
+  if (const double tolerance = compliance.tolerance(); tolerance > 0) {
+    fingerprint.add(std::span<const double>(&tolerance, 1));
+    fingerprint.add(std::span<const int>(compliance.tile_begins()));
+    fingerprint.add(std::span<const int>(&kLayout, 1));
+  }
   return fingerprint.digest();
 }
 
@@ -123,7 +130,7 @@ const FactoredMatrix& LinearStatics::factor() const {
   if (inputs_.condensed == nullptr) {
     factor_ = std::make_unique<SparseCholesky>(stiffness.lower(), where);
   } else if (inputs_.condensed->makes()) {
-    factor_ = inputs_.condensed->factor(stiffness.lower(), reachable_rows(), where);
+    factor_ = inputs_.condensed->factor(stiffness.lower(), rows_of(compliant_vertices(inputs_).order), where);
   } else {
     fail("--condensed: {} needs a factor of its stiffness besides, as its supports move; leave it out",
          where);
@@ -131,11 +138,12 @@ const FactoredMatrix& LinearStatics::factor() const {
   return *factor_;
 }
 
-/// Of K, three for each row of the compliance.
-std::vector<int> LinearStatics::reachable_rows() const {
+/// Of K, three for each of these surface vertices, which are free.
+std::vector<int> LinearStatics::rows_of(std::span<const int> vertices) const {
   std::vector<int> rows;
-  for (const int vertex : compliant_vertices(inputs_).order) {
+  for (const int vertex : vertices) {
     const int first = dofs.first[inputs_.surface.vertices[vertex]];
+    assert(first >= 0);
     rows.insert(rows.end(), {first, first + 1, first + 2});
   }
   return rows;
@@ -180,10 +188,10 @@ VibrationModes LinearStatics::modes(int count, const std::string& where) const {
 }
 
 void LinearStatics::fill(SurfaceCompliance& compliance) const {
-  const std::vector<int> rows = reachable_rows();
+  const std::vector<int> rows = rows_of(compliance.vertices());
   const KeptMatrices kept(inputs_);
   if (!kept.any()) return compliance.compute(factor(), rows, inputs_.progress);
-  const Digest key = key_of_compliance(stiffness.lower(), rows, compliance.tolerance(), kept);
+  const Digest key = key_of_compliance(stiffness.lower(), rows, compliance, kept);
   const std::string what = fmt::format("compliance of {} nodes", compliance.vertices().size());
   if (auto found = kept.find(key, what); found && compliance.take(std::move(*found), kept.name())) return;
   const Time begin = now();
@@ -191,8 +199,13 @@ void LinearStatics::fill(SurfaceCompliance& compliance) const {
   const EntryHeader header{.key = key,
                            .seconds = to_seconds(now() - begin),
                            .what = what + ", " + inputs_.scene.mesh_file.filename().string()};
-  compliance.pass_to([&](const auto& matrix) { kept.keep(header, matrix); });
-  compliance.was_kept_in(kept.name());
+  try {
+    compliance.pass_to([&](const auto& matrix) { kept.keep(header, matrix); });
+    compliance.was_kept_in(kept.name());
+  } catch (const Error& error) {
+    if (kept.of_any_build()) throw;
+    log::warning("set-up cache: nothing kept: {}", error.what());
+  }
 }
 
 }  // namespace palpate::sim

@@ -33,7 +33,7 @@ struct LinearStatics {
   void fill(SurfaceCompliance& compliance) const;
 
  private:
-  std::vector<int> reachable_rows() const;
+  std::vector<int> rows_of(std::span<const int> vertices) const;
 
   const ModelInputs& inputs_;
   mutable std::unique_ptr<FactoredMatrix> factor_;

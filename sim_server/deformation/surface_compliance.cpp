@@ -14,7 +14,6 @@ constexpr std::size_t kMostCalls = 16;        // between two reports of progress
 constexpr std::size_t kCache = 64;            // rows and columns that stay in the cache
 constexpr int kTile = 128;                    // nodes: fewer numbers in all than with 64 or 256, up to
 constexpr std::size_t kMany = 8000;           // nodes in all; from there on twice as many in a tile
-constexpr std::size_t kTiles = 8;             // between two reports of progress
 
 /// Equal by theory to its transpose; makes it so to the last bit, for contact and for Cholesky.
 void symmetrise(Eigen::Ref<Eigen::MatrixXd> m) {
@@ -120,8 +119,11 @@ bool SurfaceCompliance::take(MappedMatrix&& kept, std::string_view source) {
 
 void SurfaceCompliance::pass_to(
     const std::function<void(const Eigen::Ref<const Eigen::MatrixXd>&)>& keep) const {
-  if (tiles_) return keep(tiles_->packed());
-  keep(compliance_);
+  if (!tiles_) return keep(compliance_);
+  require_memory(static_cast<double>(tiles_->bytes()), free_memory(), source_,
+                 fmt::format("a copy of the compliance of {} nodes, to be kept,", vertices().size()),
+                 "without it, every start computes it anew");
+  keep(tiles_->packed());
 }
 
 std::string SurfaceCompliance::detail() const {
@@ -158,9 +160,9 @@ void SurfaceCompliance::compute(const FactoredMatrix& inverse_of, std::span<cons
 
 void SurfaceCompliance::compute(std::size_t at_once, const Respond& respond, const Progress& progress,
                                 std::size_t calls_per_report) {
-  if (tiles_) return compute_tiles(static_cast<Eigen::Index>(at_once), respond, progress);
   const auto rows = static_cast<std::size_t>(size());
   const std::size_t report = std::clamp<std::size_t>(calls_per_report, 1, kMostCalls) * at_once;
+  if (tiles_) return compute_tiles(at_once, report, respond, progress);
   allocate();
   for (std::size_t from = 0; from < rows; from += report) {
     progress(name_of(Stage::kCompliance), static_cast<double>(from) / static_cast<double>(rows));
@@ -172,23 +174,26 @@ void SurfaceCompliance::compute(std::size_t at_once, const Respond& respond, con
   symmetrise(compliance_);
 }
 
-void SurfaceCompliance::compute_tiles(Eigen::Index at_once, const Respond& respond,
+void SurfaceCompliance::compute_tiles(std::size_t at_once, std::size_t report, const Respond& respond,
                                       const Progress& progress) {
   const double free = free_memory();
-  const auto count = static_cast<std::size_t>(tiles_->tiles());
-  std::vector<int> all(count);
+  std::vector<int> all(static_cast<std::size_t>(tiles_->tiles()));
   std::iota(all.begin(), all.end(), 0);
-  const auto take = [&](std::size_t tile) {
-    const Eigen::Index begin = 3 * rows_.begins[tile], width = 3 * rows_.begins[tile + 1] - begin;
-    Eigen::MatrixXd columns(size(), width);
-    for (Eigen::Index from = 0; from < width; from += at_once)
-      respond(begin + from, columns.middleCols(from, std::min(at_once, width - from)));
-    tiles_->take(static_cast<int>(tile), std::span<const int>(all).subspan(tile), columns.transpose());
-  };
-  for (std::size_t from = 0; from < count; from += kTiles) {
+  for (const int tile : all) {
     require_room(static_cast<double>(tiles_->bytes()), free);
-    progress(name_of(Stage::kCompliance), static_cast<double>(from) / static_cast<double>(count));
-    parallel_blocks(std::min(kTiles, count - from), 1, [&](std::size_t k, std::size_t) { take(from + k); });
+    const Eigen::Index begin = 3 * rows_.begins[tile];
+    const auto width = static_cast<std::size_t>(3 * rows_.begins[tile + 1] - begin);
+    Eigen::MatrixXd columns(size(), static_cast<Eigen::Index>(width));
+    for (std::size_t from = 0; from < width; from += report) {
+      progress(name_of(Stage::kCompliance),
+               static_cast<double>(begin + static_cast<Eigen::Index>(from)) / static_cast<double>(size()));
+      parallel_blocks(std::min(report, width - from), at_once, [&](std::size_t first, std::size_t end) {
+        const auto at = static_cast<Eigen::Index>(from + first);
+        respond(begin + at, columns.middleCols(at, static_cast<Eigen::Index>(end - first)));
+      });
+    }
+    columns.transposeInPlace();
+    tiles_->take(tile, std::span<const int>(all).subspan(static_cast<std::size_t>(tile)), columns);
   }
 }
 

@@ -47,7 +47,7 @@ class SurfaceCompliance final : public ComplianceSource {
   /// Takes W from where it was kept, the `source` of which reports tell. False where it is not of this size:
   /// then nothing is changed.
   bool take(MappedMatrix&& kept, std::string_view source);
-  /// Passes W to `keep`, as `take` wants it.
+  /// Passes W to `keep`, as `take` wants it: tiles as a copy. Throws `Error` where there is no room for that.
   void pass_to(const std::function<void(const Eigen::Ref<const Eigen::MatrixXd>&)>& keep) const;
   /// "1934 nodes, from the set-up cache, which saved 3.2 s".
   std::string detail() const;
@@ -62,6 +62,8 @@ class SurfaceCompliance final : public ComplianceSource {
   const std::vector<int>& vertices() const { return rows_.order; }
   /// The tolerance of W in tiles; 0: it is dense.
   double tolerance() const { return tolerance_; }
+  /// Where its tiles begin, as rows of `vertices`.
+  const std::vector<int>& tile_begins() const { return rows_.begins; }
   /// First row of a surface vertex, or -1: fixed or out of reach.
   int row(int vertex) const { return row_[vertex]; }
 
@@ -86,7 +88,8 @@ class SurfaceCompliance final : public ComplianceSource {
   void allocate();
   Mat3 block(int vertex, int other) const noexcept;
   void require_room(double bytes, double free) const;
-  void compute_tiles(Eigen::Index at_once, const Respond& respond, const Progress& progress);
+  void compute_tiles(std::size_t at_once, std::size_t report, const Respond& respond,
+                     const Progress& progress);
 
   std::string source_;    // of the scene, for errors
   double tolerance_ = 0;  // 0: W is dense

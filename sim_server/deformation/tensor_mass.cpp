@@ -208,7 +208,7 @@ std::vector<MemoryPart> TensorMass::memory() const {
       {"tensors", tensors_.bytes(),
        fmt::format("{} vertices, {} edges; {} sub-steps of {:.3g} ms", tensors_.vertices(), tensors_.edges(),
                    instants_ * sub_steps_, 1e3 * sub_step_)},
-      {"compliance", compliance_.bytes()},
+      {"compliance", compliance_.bytes(), compliance_.detail()},
       {"motion", motion_.bytes() + 4 * force_.size() * sizeof(double)},
       {"positions", (rest_.size() + free_.size() + positions_.size() + 2 * nodes_.size()) * sizeof(Vec3) +
                         loads_.capacity() * sizeof(NodalLoad) + first_.size() * sizeof(int) +

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/parallel.h"
 #include "sim_server/low_rank/low_rank_factors.h"
 
 namespace palpate::sim {
@@ -14,6 +15,11 @@ constexpr Eigen::Index kPackedRows = 4096;  // of the matrix in a file
 
 std::size_t numbers(const Eigen::MatrixXf& left, const Eigen::MatrixXf& right) {
   return static_cast<std::size_t>(left.size() + right.size());
+}
+
+/// Of the matrix in a file: two numbers of single precision to one of its own, behind the ranks.
+Eigen::Index packed_columns(std::size_t pairs, std::size_t floats) {
+  return (static_cast<Eigen::Index>(pairs + (floats + 1) / 2) + kPackedRows - 1) / kPackedRows;
 }
 
 /// A rank as a file has it; nothing where it is none that a pair of this size can have.
@@ -45,7 +51,8 @@ void BlockLowRankMatrix::take(int tile, std::span<const int> with,
                               const Eigen::Ref<const Eigen::MatrixXd>& rows) {
   const auto block = [&](int other) { return rows.middleCols(3 * begins_[other], size(other)); };
   const double tolerance = tolerance_ * block(tile).diagonal().minCoeff();
-  for (const int other : with) compress(tile, other, block(other), tolerance);
+  parallel_blocks(with.size(), 1,
+                  [&](std::size_t k, std::size_t) { compress(tile, with[k], block(with[k]), tolerance); });
 }
 
 void BlockLowRankMatrix::compress(int tile, int other, const Eigen::Ref<const Eigen::MatrixXd>& block,
@@ -64,21 +71,20 @@ void BlockLowRankMatrix::compress(int tile, int other, const Eigen::Ref<const Ei
 }
 
 void BlockLowRankMatrix::add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd& weights) {
-  const Eigen::Index before = weights_.size(), all = before + weights.size();
+  const Eigen::Index more = weights.size(), all = signs_.size() + more;
   shapes_.conservativeResize(all, 3 * static_cast<Eigen::Index>(tile_of_.size()));
-  shapes_.bottomRows(weights.size()) = shapes.transpose();
-  weights_.conservativeResize(all);
-  weights_.tail(weights.size()) = weights;
+  shapes_.bottomRows(more) = weights.cwiseAbs().cwiseSqrt().asDiagonal() * shapes.transpose();
+  signs_.conservativeResize(all);
+  signs_.tail(more) = weights.cwiseSign();
   amplitudes_.resize(all);
 }
 
 Mat3 BlockLowRankMatrix::block(int row, int column) const noexcept {
   Mat3 block = tile_of_[row] <= tile_of_[column] ? block_of_pair(row, column)
                                                  : Mat3(block_of_pair(column, row).transpose());
-  for (Eigen::Index k = 0; k < weights_.size(); ++k) {
-    const Mat3 outer = shapes_.block<1, 3>(k, 3 * row).transpose() * shapes_.block<1, 3>(k, 3 * column);
-    block += weights_[k] * outer;  // in this order equal to its transpose to the last bit
-  }
+  if (signs_.size() == 0) return block;
+  const auto a = shapes_.middleCols<3>(3 * row), b = shapes_.middleCols<3>(3 * column);
+  block += a.transpose().lazyProduct(signs_.asDiagonal() * b);  // signs are exact: equal to its transpose
   return block;
 }
 
@@ -96,11 +102,11 @@ void BlockLowRankMatrix::add_product(std::span<const PointLoad> loads, Eigen::Ve
     const auto on_it = [&](const PointLoad& load) { return tile_of_[load.point] == tile; };
     if (std::ranges::any_of(loads, on_it)) add_of_tile(tile, loads, moved);
   }
-  if (weights_.size() == 0) return;
+  if (signs_.size() == 0) return;
   amplitudes_.setZero();
   for (const PointLoad& load : loads)
     amplitudes_.noalias() += shapes_.middleCols<3>(3 * static_cast<Eigen::Index>(load.point)) * load.force;
-  amplitudes_.array() *= weights_.array();
+  amplitudes_.array() *= signs_.array();
   moved.noalias() += shapes_.transpose() * amplitudes_;
 }
 
@@ -137,7 +143,7 @@ void BlockLowRankMatrix::add_of_tile(int loaded, std::span<const PointLoad> load
 }
 
 std::size_t BlockLowRankMatrix::bytes() const {
-  return bytes_ + static_cast<std::size_t>(shapes_.size() + 2 * weights_.size()) * sizeof(double);
+  return bytes_ + static_cast<std::size_t>(shapes_.size() + 2 * signs_.size()) * sizeof(double);
 }
 
 Eigen::Index BlockLowRankMatrix::largest_rank() const {
@@ -151,8 +157,7 @@ Eigen::Index BlockLowRankMatrix::largest_rank() const {
 Eigen::MatrixXd BlockLowRankMatrix::packed() const {
   std::size_t floats = 0;
   for (const Pair& pair : pairs_) floats += numbers(pair.left, pair.right);
-  const auto doubles = static_cast<Eigen::Index>(pairs_.size() + (floats + 1) / 2);
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(kPackedRows, (doubles + kPackedRows - 1) / kPackedRows);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(kPackedRows, packed_columns(pairs_.size(), floats));
   for (std::size_t k = 0; k < pairs_.size(); ++k)
     all.data()[k] = pairs_[k].product ? static_cast<double>(pairs_[k].left.rows()) : kDense;
   auto* to = reinterpret_cast<std::byte*>(all.data() + pairs_.size());
@@ -176,6 +181,7 @@ bool BlockLowRankMatrix::unpack(const Eigen::Ref<const Eigen::MatrixXd>& packed)
       const double told = packed.data()[index(first, second)];
       Pair& pair = pairs[index(first, second)];
       pair.product = told != kDense;
+      if (pair.product && first == second) return false;
       const auto rank = pair.product ? rank_of(told, std::min(size(first), size(second))) : size(first);
       if (!rank) return false;
       pair.left.resize(*rank, pair.product ? size(first) : size(second));
@@ -184,11 +190,13 @@ bool BlockLowRankMatrix::unpack(const Eigen::Ref<const Eigen::MatrixXd>& packed)
       if ((floats + 1) / 2 > doubles - pairs_.size()) return false;
     }
   }
+  if (packed.rows() != kPackedRows || packed.cols() != packed_columns(pairs.size(), floats)) return false;
   const auto* from = reinterpret_cast<const std::byte*>(packed.data() + pairs.size());
   for (Pair& pair : pairs) {
     for (Eigen::MatrixXf* const part : {&pair.left, &pair.right}) {
       const std::size_t bytes = static_cast<std::size_t>(part->size()) * sizeof(float);
       if (bytes > 0) std::memcpy(part->data(), from, bytes);
+      if (!part->allFinite()) return false;
       from += bytes;
     }
   }

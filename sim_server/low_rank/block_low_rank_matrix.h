@@ -17,9 +17,10 @@ struct PointLoad {
 /// A symmetric matrix W (3n x 3n) of 3 x 3 blocks, one for each pair of n points that lie in tiles of
 /// neighbours: block low-rank (Amestoy et al. 2015), each tile on the diagonal dense, each pair of tiles as a
 /// product of thin matrices (`LowRankFactors`) where that takes less. In single precision. What is given of a
-/// pair of tiles, loads on one and motions of the other, is kept to `tolerance` times the smallest diagonal
-/// number of W in the loaded tile, in Frobenius' norm: whatever the loads on a tile, no tile moves otherwise
-/// by more than that times their root sum square. Rounding adds 6e-8 of the numbers themselves.
+/// pair of tiles is kept, in Frobenius' norm, to `tolerance` times the smallest diagonal number of W in that
+/// of the two which `take` got first: loads of root sum square F on one of them move the other by no more
+/// than that times F otherwise. Where the second tile is stiffer, that is more of its own compliance.
+/// Rounding adds some 1e-7 of the largest numbers of the pair.
 class BlockLowRankMatrix {
  public:
   /// `begins`: (tiles + 1) the first point of each tile; last: n. All is 0 as yet.
@@ -30,10 +31,10 @@ class BlockLowRankMatrix {
 
   /// Set-up: takes rows of W (3 points of `tile` x 3n), of which only those columns are looked at that
   /// belong to the tiles `with`; `tile` must be one of them, and each pair of tiles comes once. Called by
-  /// several threads at once, of different tiles. Allocates.
+  /// several threads at once, of different tiles; on all cores. Allocates.
   void take(int tile, std::span<const int> with, const Eigen::Ref<const Eigen::MatrixXd>& rows);
 
-  /// Adds shapes diag(weights) shapes^T; shapes: (3n x k), in double precision. Set-up.
+  /// Adds shapes diag(weights) shapes^T; shapes: (3n x k), in double precision, and 1 <= k. Set-up.
   void add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd& weights);
 
   /// Block of two points. O(rank + k).
@@ -70,11 +71,11 @@ class BlockLowRankMatrix {
   std::vector<int> begins_;
   std::vector<int> tile_of_;  // (n)
   double tolerance_;
-  std::vector<Pair> pairs_;               // of tiles, first <= second
-  std::atomic<std::size_t> bytes_ = 0;    // of the pairs
-  Eigen::MatrixXd shapes_{0, 0};          // (k x 3n)
-  Eigen::VectorXd weights_, amplitudes_;  // (k)
-  Eigen::VectorXf sum_, part_;            // scratch of `add_product`: of a rank, of a tile
+  std::vector<Pair> pairs_;             // of tiles, first <= second
+  std::atomic<std::size_t> bytes_ = 0;  // of the pairs
+  Eigen::MatrixXd shapes_{0, 0};        // (k x 3n) times the roots of their weights
+  Eigen::VectorXd signs_, amplitudes_;  // (k) of the weights; scratch
+  Eigen::VectorXf sum_, part_;          // scratch of `add_product`: of a rank, of a tile
 };
 
 }  // namespace palpate::sim

@@ -11,10 +11,10 @@ struct LowRankFactors {
 };
 
 /// `matrix` (n x m) as such a product, by which it changes by no more than `tolerance` in Frobenius' norm,
-/// and by the rounding of single precision; nothing where the product would take as many numbers as the
-/// matrix. Columns are taken out one by one, always the largest of what is left (Gram and Schmidt, with
-/// pivots), and the product of those is cut to as few singular values as the tolerance needs. Allocates. 4 n
-/// m r flops.
+/// and by the rounding of single precision; nothing where so many columns would have to be taken that
+/// they would hold as many numbers as the matrix. Columns are taken out one by one, always the largest of
+/// what is left (Gram and Schmidt, with pivots), and the product of those is cut to as few singular values as
+/// the tolerance needs. Allocates. 6 n m r flops, and a singular value decomposition (r x m).
 std::optional<LowRankFactors> low_rank_factors(Eigen::MatrixXd matrix, double tolerance);
 
 }  // namespace palpate::sim

@@ -64,7 +64,7 @@ void VirtualSession::tick(std::uint64_t k) {
     state.flags |=
         ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface | ToolState::kWantsErrors;
     state.pages_taken = pages_;
-    state.lead_ns = (link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
+    state.lead_ns = (took_ + link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
   }
   note_paths(state);
   step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
@@ -79,13 +79,39 @@ void VirtualSession::tick(std::uint64_t k) {
   deliver(t);
 }
 
-/// Step n is due at n / rate, and answers the newest tool state there is then.
+/// Step n is due at n / rate; where steps take time, at a deadline that they put off. Either comes before the
+/// next tick.
+bool VirtualSession::is_due(double steps_due) const {
+  if (link_.clock != nullptr) return to_seconds(deadline()) < steps_due / link_.rate_hz - kNow;
+  return static_cast<double>(steps_) < steps_due - kNow * link_.rate_hz;
+}
+
+Time VirtualSession::deadline() const {
+  return put_off_to_ + from_seconds(static_cast<double>(steps_since_) / link_.rate_hz);
+}
+
+/// The deadline moves on by a period, or to the end of a step that took longer. When the step is done.
+Time VirtualSession::pass(Time begun, Time took) {
+  const Time done = begun + took;
+  took_ = took;
+  ++steps_since_;
+  if (done > deadline()) {
+    stats_.late += static_cast<std::uint64_t>(to_seconds(done - deadline()) * link_.rate_hz) + 1;
+    put_off_to_ = done;
+    steps_since_ = 0;
+  }
+  return done;
+}
+
+/// A step answers the newest tool state there is when it begins.
 void VirtualSession::step(const ToolState& state, double steps_due) {
-  if (static_cast<double>(steps_) >= steps_due - kNow * link_.rate_hz) return;
+  if (!is_due(steps_due)) return;
   ++steps_;
   // The organ stands as it does when the tool was read, so it moves from one answered tool state to the next.
   const double dt = to_seconds(Time{state.t_ns} - answered_);
   answered_ = Time{state.t_ns};
+  const Time begun = std::max(answered_, deadline());
+  if (link_.clock != nullptr) link_.clock->begin(begun);
   const Time begin = thread_time();
   const auto& outcome = served_.step(inputs_, dt)[link_.tool];
   if (outcome.force.contacts > 0) {
@@ -94,7 +120,8 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
   }
   stats_.flagged += outcome.force.flagged ? 1 : 0;
   stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
-  on_the_way_.push_back({Time{state.t_ns} + link_.delay, *outcome.answer});
+  const Time done = link_.clock == nullptr ? answered_ : pass(begun, link_.clock->took());
+  on_the_way_.push_back({done + link_.delay, *outcome.answer});
   on_the_way_.back().sample.tool = state.tool;
 }
 

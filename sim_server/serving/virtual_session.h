@@ -11,17 +11,31 @@
 
 namespace palpate::sim {
 
+/// Tells how long steps take.
+class StepClock {
+ public:
+  virtual ~StepClock() = default;
+  /// A step begins at `t` of virtual time.
+  virtual void begin(Time t) = 0;
+  /// It is done: what it took.
+  virtual Time took() = 0;
+};
+
 /// How a session in virtual time runs. Hz and s.
 struct VirtualLink {
   double rate_hz, ticks_hz;
   Time delay{};          ///< from reading the tool to having its force in the client
   bool parts = false;    ///< whether the client asks for all that a sample can carry
   std::size_t tool = 0;  ///< of the scene, that the session holds
+  /// Steps take as long as this says, as those of `SimLoop` do: a sample is on its way when its step is done,
+  /// and a step that took too long puts off those after it. Null: they take none.
+  StepClock* clock = nullptr;
 };
 
 /// Sums over a virtual session.
 struct VirtualSessionStats {
   std::uint64_t tool_states = 0, force_samples = 0, in_contact = 0, flagged = 0;
+  std::uint64_t late = 0;  ///< deadlines passed over because a step took too long
   double max_newton = 0;
   Histogram contact_step_ns;  ///< processor time of the steps in contact, with all that the client asks for
 };
@@ -59,7 +73,10 @@ class VirtualSession {
   void send_surface(const protocol::ForceSample& sample, Time t);
   void keep_page(std::uint32_t page, std::uint32_t first_tile, Time t);
   void send_page(std::uint32_t number, Time t);
+  bool is_due(double steps_due) const;
   void step(const protocol::ToolState& state, double steps_due);
+  Time deadline() const;
+  Time pass(Time begun, Time took);
   void note_paths(const protocol::ToolState& state);
   void deliver(Time t);
   protocol::Datagram travel(const protocol::Endpoint& from, const protocol::Endpoint& to,
@@ -82,6 +99,9 @@ class VirtualSession {
   std::deque<std::uint32_t> sent_;  // pages of tiles and shapes that the client still has, the oldest first
   std::vector<char> has_;           // by page from the first tile on: whether it is among them
   std::uint64_t steps_ = 0, newest_ = 0, pages_ = 0;
+  // Where steps take time: when one began that was put off, how many came since, and what the last one took.
+  Time put_off_to_{}, took_{};
+  std::uint64_t steps_since_ = 0;
   Time now_{}, answered_{};  // of the newest tool state, and of the newest that a step answered
   Vec3 newest_p_W_ = Vec3::Zero(), newest_v_W_ = Vec3::Zero();
   VirtualSessionStats stats_;

@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "common/memory_budget.h"
 #include "common/parallel.h"
 
 namespace palpate::sim {
@@ -9,6 +10,9 @@ namespace palpate::sim {
 void FactoredMatrix::inverse_rows(std::span<const int> unknowns, std::span<const int> begins,
                                   const TakeRows& take, const std::function<void(double)>& progress) const {
   const auto m = static_cast<Eigen::Index>(unknowns.size());
+  require_memory(static_cast<double>(m * m) * sizeof(double), free_memory(), "compliance",
+                 fmt::format("a dense block of the inverse, {} of its unknowns,", m),
+                 "give [[tool]] a `reach` box around the part it touches");
   Eigen::MatrixXd block(m, m);
   inverse_block(unknowns, block, progress);
   std::vector<int> groups(begins.size() - 1);

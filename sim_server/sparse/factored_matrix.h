@@ -30,8 +30,8 @@ class FactoredMatrix {
   using TakeRows = std::function<void(int group, std::span<const int> with, const Eigen::MatrixXd& rows)>;
   /// The same block without holding all of it: `unknowns` are in groups, of which each one `begins` where it
   /// is told, the last of these being m. Calls `take` once for each group, from several threads at once, so
-  /// that each pair of groups is there once; in an order, and to bytes, that do not depend on the number of
-  /// threads. Here by `inverse_block`.
+  /// that each pair of groups is there once; what one call gets does not depend on the number of threads.
+  /// Here by `inverse_block`: throws `Error` where there is no memory for all of the block.
   virtual void inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
                             const std::function<void(double)>& progress) const;
 };

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "common/error.h"
@@ -60,14 +61,10 @@ struct SparseCholesky::Factor {
     if (rough) return rough->inverse_block(unknowns, block, progress);
     fine->inverse_block(unknowns, block, progress);
   }
-  bool inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
+  void inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
                     const std::function<void(double)>& progress) const {
-    if (rough) {
-      rough->inverse_rows(unknowns, begins, take, progress);
-    } else {
-      fine->inverse_rows(unknowns, begins, take, progress);
-    }
-    return true;
+    if (rough) return rough->inverse_rows(unknowns, begins, take, progress);
+    fine->inverse_rows(unknowns, begins, take, progress);
   }
 };
 #else
@@ -110,9 +107,21 @@ struct SparseCholesky::Factor {
     }
     block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
   }
-  bool inverse_rows(std::span<const int>, std::span<const int>, const TakeRows&,
-                    const std::function<void(double)>&) const {
-    return false;
+  void inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
+                    const std::function<void(double)>& progress) const {
+    std::vector<int> groups(begins.size() - 1);
+    std::iota(groups.begin(), groups.end(), 0);
+    for (const int group : groups) {
+      progress(static_cast<double>(group) / static_cast<double>(groups.size()));
+      const int count = begins[group + 1] - begins[group];
+      Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(llt.rows(), count);
+      for (int k = 0; k < count; ++k) loads(unknowns[begins[group] + k], k) = 1;
+      const Eigen::MatrixXd moved = llt.solve(loads);
+      Eigen::MatrixXd rows(count, static_cast<Eigen::Index>(unknowns.size()));
+      for (std::size_t k = 0; k < unknowns.size(); ++k)
+        rows.col(static_cast<Eigen::Index>(k)) = moved.row(unknowns[k]).transpose();
+      take(group, std::span(groups).subspan(static_cast<std::size_t>(group)), rows);
+    }
   }
 };
 #endif
@@ -228,8 +237,8 @@ void SparseCholesky::inverse_block(std::span<const int> unknowns, Eigen::Ref<Eig
 
 void SparseCholesky::inverse_rows(std::span<const int> unknowns, std::span<const int> begins,
                                   const TakeRows& take, const std::function<void(double)>& progress) const {
-  if (!definite_ || unknowns.empty() || !factor_->inverse_rows(unknowns, begins, take, progress))
-    FactoredMatrix::inverse_rows(unknowns, begins, take, progress);
+  if (definite_ && !unknowns.empty()) return factor_->inverse_rows(unknowns, begins, take, progress);
+  FactoredMatrix::inverse_rows(unknowns, begins, take, progress);  // of what is not a number, or nothing
 }
 
 SparseCholesky::Precision SparseCholesky::precision() const {

@@ -31,7 +31,7 @@ class InversePlan {
     int place, number;
     auto operator<=>(const Wanted&) const = default;  // NOLINT(modernize-use-nullptr): it is none
   };
-  std::span<Wanted> wanted() { return wanted_; }
+  std::span<const Wanted> wanted() const { return wanted_; }
   int supernode(const Wanted& one) const { return node_[one.place]; }
 
   /// Of each supernode, whether it is at or above that of one of `some` in the tree of elimination: where a
@@ -45,6 +45,20 @@ class InversePlan {
       if (marks[s] != 0 && rows.size() > columns) marks[node_[rows[columns]]] = 1;
     }
     return marks;
+  }
+
+  /// Numbers of groups of the unknowns, by where these are eliminated in the mean.
+  std::vector<int> in_order_of_elimination(std::span<const int> begins) const {
+    std::vector<std::pair<double, int>> groups;
+    for (std::size_t g = 0; g + 1 < begins.size(); ++g) {
+      double places = 0;
+      for (int k = begins[g]; k < begins[g + 1]; ++k) places += wanted_[static_cast<std::size_t>(k)].place;
+      groups.emplace_back(places / (begins[g + 1] - begins[g]), static_cast<int>(g));
+    }
+    std::ranges::sort(groups);
+    std::vector<int> order;
+    for (const auto& [place, group] : groups) order.push_back(group);
+    return order;
   }
 
  private:
@@ -119,9 +133,10 @@ class SupernodalFactor<Scalar>::InverseColumns {
 template <class Scalar>
 void SupernodalFactor<Scalar>::inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
                                              const std::function<void(double)>& progress) const {
-  InversePlan plan(*pattern_, unknowns);
-  const std::span wanted = plan.wanted();
-  std::ranges::sort(wanted);
+  const InversePlan plan(*pattern_, unknowns);
+  std::vector<InversePlan::Wanted> sorted(plan.wanted().begin(), plan.wanted().end());
+  std::ranges::sort(sorted);
+  const std::span<const InversePlan::Wanted> wanted = sorted;
   for (std::size_t from = 0; from < wanted.size(); from += kBlocks * kColumns) {
     progress(static_cast<double>(from) / static_cast<double>(wanted.size()));
     const std::span some = wanted.subspan(from, std::min(kBlocks * kColumns, wanted.size() - from));
@@ -140,28 +155,13 @@ void SupernodalFactor<Scalar>::inverse_block(std::span<const int> unknowns, Eige
   }
 }
 
-/// Numbers of the groups, by where their unknowns are eliminated in the mean.
-template <class Wanted>
-std::vector<int> in_order_of_elimination(std::span<const Wanted> wanted, std::span<const int> begins) {
-  std::vector<std::pair<double, int>> groups;
-  for (std::size_t g = 0; g + 1 < begins.size(); ++g) {
-    double places = 0;
-    for (int k = begins[g]; k < begins[g + 1]; ++k) places += wanted[static_cast<std::size_t>(k)].place;
-    groups.emplace_back(places / (begins[g + 1] - begins[g]), static_cast<int>(g));
-  }
-  std::ranges::sort(groups);
-  std::vector<int> order;
-  for (const auto& [place, group] : groups) order.push_back(group);
-  return order;
-}
-
 template <class Scalar>
 void SupernodalFactor<Scalar>::inverse_rows(std::span<const int> unknowns, std::span<const int> begins,
                                             const FactoredMatrix::TakeRows& take,
                                             const std::function<void(double)>& progress) const {
-  InversePlan plan(*pattern_, unknowns);
+  const InversePlan plan(*pattern_, unknowns);
   const std::span<const InversePlan::Wanted> wanted = plan.wanted();
-  const std::vector<int> order = in_order_of_elimination(wanted, begins);
+  const std::vector<int> order = plan.in_order_of_elimination(begins);
   const auto unknowns_of = [&](int group) {
     return wanted.subspan(static_cast<std::size_t>(begins[group]),
                           static_cast<std::size_t>(begins[group + 1] - begins[group]));

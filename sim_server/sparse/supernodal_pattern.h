@@ -22,8 +22,8 @@ struct SupernodalPattern {
   };
 
   /// Of a matrix whose lower triangle is given in 3 x 3 blocks (`StiffnessMatrix`): the order is that of the
-  /// graph of its nodes, by AMD or METIS, of which gives the smaller factor. `countable` is false, and the
-  /// rest empty, where L has more than 2^31 entries. Throws `std::bad_alloc`.
+  /// graph of its nodes, by METIS, or by AMD where CHOLMOD has none. `countable` is false, and the rest
+  /// empty, where L has more than 2^31 entries. Throws `std::bad_alloc`.
   explicit SupernodalPattern(const SparseMatrix& lower);
 
   int supernodes() const { return static_cast<int>(first.size()) - 1; }

@@ -141,15 +141,45 @@ TEST_CASE("block low rank: what is packed comes back bit by bit, into a matrix o
   BlockLowRankMatrix coarse(Sheet(200).tiles.begins, kTolerance);
   CHECK_FALSE(coarse.unpack(packed.leftCols(1)));
   const Eigen::MatrixXd before = other.packed();
+  Eigen::MatrixXd changed = packed;
+  changed(0, 0) = 3;  // a tile on the diagonal as a product
+  CHECK_FALSE(other.unpack(changed));
+  changed = packed;
+  changed(4000, 0) = std::numeric_limits<double>::infinity();
+  CHECK_FALSE(other.unpack(changed));
+  Eigen::MatrixXd longer(packed.rows(), packed.cols() + 1);
+  longer << packed, packed.col(0);
+  CHECK_FALSE(other.unpack(longer));
   for (const double spoilt : {-2.0, 0.5, 1e300, std::numeric_limits<double>::quiet_NaN(), 151.0}) {
     CAPTURE(spoilt);
-    Eigen::MatrixXd changed = packed;
+    changed = packed;
     changed(1, 0) = spoilt;  // the rank of a pair
     CHECK_FALSE(other.unpack(changed));
   }
   CHECK_FALSE(other.unpack(packed.leftCols(packed.cols() - 1)));
   CHECK_FALSE(other.unpack(Eigen::MatrixXd::Zero(3, 3)));
   CHECK(other.packed() == before);
+}
+
+TEST_CASE(
+    "block low rank: the error is that of the tile that was taken first, also where the other is stiffer") {
+  Sheet sheet;
+  const auto& begins = sheet.tiles.begins;
+  Eigen::VectorXd stiffer = Eigen::VectorXd::Ones(3 * Sheet::kPoints);
+  stiffer.head(3 * begins[1]).setConstant(0.1);  // its compliance a hundredth
+  sheet.exact = stiffer.asDiagonal() * sheet.exact * stiffer.asDiagonal();
+  for (const int first : {0, 1}) {
+    BlockLowRankMatrix matrix(begins, kTolerance);
+    std::vector<int> order = ascending(matrix.tiles());
+    std::swap(order[0], order[static_cast<std::size_t>(first)]);
+    sheet.give(matrix, order);
+    const auto wrong = (dense(matrix, Sheet::kPoints) - sheet.exact)
+                           .block(0, 3 * begins[1], 3 * begins[1], 3 * (begins[2] - begins[1]))
+                           .norm();
+    const double softer = sheet.exact(3 * begins[1], 3 * begins[1]), bound = kTolerance * softer;
+    CHECK(wrong <= (first == 0 ? 0.01 : 1) * bound + 1e-6 * softer);
+    if (first == 1) CHECK(wrong > 0.02 * bound);
+  }
 }
 
 TEST_CASE("block low rank: one point, and tiles that lie on one another") {

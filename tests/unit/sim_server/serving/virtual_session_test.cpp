@@ -43,17 +43,19 @@ struct Press {
 struct Captured {
   std::vector<ToolState> states;
   std::vector<std::pair<Time, ForceSample>> samples;  // with the time they arrived
+  std::uint64_t late = 0;                             // deadlines
 };
 
 Captured run(const VirtualLink& link, double seconds, const std::filesystem::path& file) {
   Press press;
+  Captured found;
   {
     protocol::CaptureWriter capture(file);
     VirtualSession session(press.simulation, {&press.motion, 1}, 0.005, link, capture);
     for (std::uint64_t k = 0; k <= static_cast<std::uint64_t>(seconds * link.ticks_hz); ++k) session.tick(k);
     session.leave();
+    found.late = session.stats().late;
   }
-  Captured found;
   protocol::CaptureReader reader(file);
   protocol::CapturedDatagram captured;
   protocol::Datagram datagram;
@@ -143,6 +145,50 @@ TEST_CASE("virtual time: step n answers the newest pose at n / rate, its force a
     CHECK(state.newest_sample == newest);
     CHECK(state.p_W[1] == Approx(0.012 - 0.01 * 1e-9 * static_cast<double>(state.t_ns)));
     if (state.tick > 1) CHECK(state.v_W[1] == Approx(-0.01));
+  }
+}
+
+TEST_CASE("virtual time: steps that take none by their clock answer what they do without one") {
+  struct Clock final : StepClock {
+    void begin(Time) override {}
+    Time took() override { return 0ms; }
+  } clock;
+  const test::TemporaryFolder folder;
+  VirtualLink link{.rate_hz = 30, .ticks_hz = 500, .delay = 35ms};
+  const Captured without = run(link, 1, folder.path() / "a.pcap");
+  link.clock = &clock;
+  const Captured with = run(link, 1, folder.path() / "b.pcap");
+  REQUIRE(with.samples.size() >= 28);
+  REQUIRE(with.samples.size() <= without.samples.size());
+  for (std::size_t n = 0; n < with.samples.size(); ++n) {
+    CHECK(with.samples[n].second.tool_tick == without.samples[n].second.tool_tick);
+    CHECK(with.samples[n].second.f_W == without.samples[n].second.f_W);
+    // It leaves at its deadline, not at the tick before.
+    CHECK(std::abs(to_seconds(with.samples[n].first) - (static_cast<double>(n) / 30 + 0.035)) < 1e-6);
+  }
+  CHECK(with.late == 0);
+}
+
+TEST_CASE(
+    "virtual time: where steps take time, samples wait for their step, and a long one puts off the others") {
+  /// Steps of 10 ms, the fifth of 130 ms.
+  struct Clock final : StepClock {
+    std::vector<Time> begun;
+    void begin(Time t) override { begun.push_back(t); }
+    Time took() override { return begun.size() == 5 ? 130ms : 10ms; }
+  } clock;
+  const test::TemporaryFolder folder;
+  const Captured found =
+      run({.rate_hz = 25, .ticks_hz = 500, .delay = 3ms, .clock = &clock}, 0.5, folder.path() / "a.pcap");
+  // The deadlines at 200, 240 and 280 ms pass over while the fifth step is at work, from 160 to 290 ms.
+  CHECK(clock.begun ==
+        std::vector<Time>{0ms, 40ms, 80ms, 120ms, 160ms, 290ms, 330ms, 370ms, 410ms, 450ms, 490ms});
+  CHECK(found.late == 3);
+  REQUIRE(found.samples.size() == 10);  // the last is on the way
+  for (std::size_t n = 0; n < found.samples.size(); ++n) {
+    const auto& [arrived, sample] = found.samples[n];
+    CHECK(arrived == clock.begun[n] + (n == 4 ? 133ms : 13ms));
+    CHECK(sample.tool_tick == static_cast<std::uint64_t>(clock.begun[n] / 2ms) + 1);
   }
 }
 
