@@ -1,5 +1,7 @@
 #ifdef PALPATE_WITH_CAPTURE
 // Laws against the truth, offline: the real programs, virtual time.
+#include <chrono>
+
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -56,6 +58,30 @@ TEST_CASE("evaluate: on a grasped organ, the paper's protocol gives the paper's 
   CHECK(mean("linear_position") == Approx(0.1).epsilon(0.35));
   CHECK(mean("learned_stiffness") <= 0.03);
   CHECK(mean("tangent") <= 0.015);
+}
+
+TEST_CASE(
+    "record --real-time: it takes its time, and steps that take longer than a period are told as late") {
+  const TemporaryFolder folder;
+  const auto recorded = [&](const char* rate) {
+    const auto file = [&](const char* ending) {
+      return (folder.path() / (rate + std::string(ending))).string();
+    };
+    const auto begin = std::chrono::steady_clock::now();
+    output_of("sim_server",
+              {"record", std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_implicit.toml",
+               "--trajectory", kClient, "--rate", rate, "--seconds", "0.5", "--plain", "--real-time", "--out",
+               file(".pcap"), "--report", file(".json")},
+              0);
+    CHECK(std::chrono::steady_clock::now() - begin >= std::chrono::milliseconds(400));
+    return read_json(file(".json"));
+  };
+  CHECK(recorded("4")["force_samples"].get<int>() >= 1);
+  // A step of that takes some milliseconds, and no machine does it in a twentieth of one.
+  const Json hurried = recorded("20000");
+  const int samples = hurried["force_samples"].get<int>(), late = hurried["late"].get<int>();
+  CHECK(samples < 5000);
+  CHECK(samples + late > 9000);
 }
 
 TEST_CASE(
