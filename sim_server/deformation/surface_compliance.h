@@ -81,7 +81,9 @@ class SurfaceCompliance final : public ComplianceSource {
 
   /// Of W, and of the numbers of its rows.
   std::size_t bytes() const;
-  std::size_t index_bytes() const { return (row_.size() + vertices().size()) * sizeof(int); }
+  std::size_t index_bytes() const {
+    return (row_.size() + vertices().size()) * sizeof(int) + loads_.capacity() * sizeof(PointLoad);
+  }
 
  private:
   Eigen::Index size() const { return 3 * static_cast<Eigen::Index>(vertices().size()); }  // of W

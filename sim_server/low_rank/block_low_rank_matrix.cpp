@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "common/parallel.h"
 #include "sim_server/low_rank/low_rank_factors.h"
@@ -82,9 +83,11 @@ void BlockLowRankMatrix::add(const Eigen::MatrixXd& shapes, const Eigen::VectorX
 Mat3 BlockLowRankMatrix::block(int row, int column) const noexcept {
   Mat3 block = tile_of_[row] <= tile_of_[column] ? block_of_pair(row, column)
                                                  : Mat3(block_of_pair(column, row).transpose());
-  if (signs_.size() == 0) return block;
-  const auto a = shapes_.middleCols<3>(3 * row), b = shapes_.middleCols<3>(3 * column);
-  block += a.transpose().lazyProduct(signs_.asDiagonal() * b);  // signs are exact: equal to its transpose
+  for (Eigen::Index k = 0; k < signs_.size(); ++k) {
+    const Vec3 a = shapes_.block<1, 3>(k, 3 * row).transpose();
+    const Eigen::RowVector3d b = signs_[k] * shapes_.block<1, 3>(k, 3 * column);
+    block.noalias() += a * b;  // a sign rounds nothing: equal to the transpose of the block across
+  }
   return block;
 }
 

@@ -34,10 +34,10 @@ class BlockLowRankMatrix {
   /// several threads at once, of different tiles; on all cores. Allocates.
   void take(int tile, std::span<const int> with, const Eigen::Ref<const Eigen::MatrixXd>& rows);
 
-  /// Adds shapes diag(weights) shapes^T; shapes: (3n x k), in double precision, and 1 <= k. Set-up.
+  /// Adds shapes diag(weights) shapes^T; shapes: (3n x k), in double precision. Set-up.
   void add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd& weights);
 
-  /// Block of two points. O(rank + k).
+  /// Block of two points. No allocation. O(rank + k).
   Mat3 block(int row, int column) const noexcept;
   /// Adds W f to `moved` (3n). One thread; no allocation. O(n (rank x loaded tiles + k)).
   void add_product(std::span<const PointLoad> loads, Eigen::VectorXd& moved) noexcept;

@@ -1,6 +1,7 @@
 #include "sim_server/low_rank/low_rank_factors.h"
 
 #include <Eigen/SVD>
+#include <cmath>
 
 namespace palpate::sim {
 namespace {

@@ -120,7 +120,10 @@ TEST_CASE(
     {
       const test::AllocationGuard guard;
       matrix.add_product(loads, moved);
+      const Mat3 near = matrix.block(120, 121), far = matrix.block(399, 0);
       CHECK(guard.count() == 0);
+      CHECK(near.allFinite());
+      CHECK(far.allFinite());
     }
     moved.array() -= 0.25;
     CHECK((moved - exact * forces).cwiseAbs().maxCoeff() < 4 * kTolerance * sheet.smallest() * forces.norm());
