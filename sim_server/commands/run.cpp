@@ -15,6 +15,7 @@
 #include "protocol/key_file.h"
 #include "protocol/link_report.h"
 #include "protocol/recording_report.h"
+#include "sim_server/commands/budget_report.h"
 #include "sim_server/commands/gallery.h"
 #include "sim_server/commands/live_view.h"
 #include "sim_server/commands/page_news.h"
@@ -120,6 +121,7 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["late"] = stats.late;
   report["flagged"] = stats.flagged;
   report["flagged_by"] = simulation.flagged().to_json();
+  report["budget"] = budget_report(simulation);
   report["max_newton"] = stats.max_newton();
   report["tools"] = tools_report(stats, link, scene, errors);
   int sessions = 0;
@@ -154,7 +156,7 @@ void print_errors(const Json& report) {
   }
 }
 
-void print_summary(const Json& report, const FlaggedSteps& flagged) {
+void print_summary(const Json& report, const Simulation& simulation) {
   const auto ms = [&](const char* key, const char* q) { return report[key][q].get<double>(); };
   fmt::print(
       "sim_server: {} steps, {} in contact; a step takes {:.3f} ms (p50), {:.3f} (p99), {:.3f} (max)\n",
@@ -164,8 +166,10 @@ void print_summary(const Json& report, const FlaggedSteps& flagged) {
       "            in contact {:.3f} ms (p50), {:.3f} (p99); {} deadlines late; largest force {:.2f} N\n",
       ms("contact_step_ms", "p50"), ms("contact_step_ms", "p99"), report["late"].get<long>(),
       report["max_newton"].get<double>());
-  if (const std::string why = flagged.to_text(); !why.empty())
+  if (const std::string why = simulation.flagged().to_text(); !why.empty())
     fmt::print("            steps with a flagged force: {}\n", why);
+  if (const std::string ended = budget_text(simulation); !ended.empty())
+    fmt::print("            {}\n", ended);
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
     const Json& missed = report["tools"][i]["missed_by_m"];
     if (missed.is_null()) continue;
@@ -324,7 +328,7 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   }
   add_run(report, loop, link, simulation, scene, errors, now() - start);
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
-  print_summary(report, simulation.flagged());
+  print_summary(report, simulation);
   if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);
   if (options.resection) write_resection(*options.resection, simulation);
   if (options.report) write_json(*options.report, report);

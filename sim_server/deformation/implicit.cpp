@@ -1,6 +1,8 @@
 #include "sim_server/deformation/implicit.h"
 
 #include <algorithm>
+#include <fmt/core.h>
+#include <utility>
 
 #include "common/error.h"
 #include "sim_server/deformation/linear_statics.h"
@@ -88,6 +90,7 @@ Implicit::Implicit(const ModelInputs& inputs)
       instants_(instants_of(inputs.scene.deformation, 1)),
       period_(step_period(inputs.scene) / instants_),
       tolerance_(inputs.scene.deformation.of<ImplicitSettings>().tolerance),
+      column_tolerance_(inputs.scene.deformation.of<ImplicitSettings>().column_tolerance()),
       max_newton_(inputs.scene.deformation.of<ImplicitSettings>().max_newton),
       node_(inputs.surface.vertices),
       external_(static_cast<std::size_t>(solid_.nodes())),
@@ -193,11 +196,23 @@ std::optional<FreeMotion> Implicit::relinearise() {
   const int most = dynamics_.relative_residual() > kBalanced ? kMoreIterations * max_newton_ : max_newton_;
   if (is_linear() || ++iterations_ > most) return {};
   apply_new_loads();
+  dynamics_.charge_columns(std::exchange(solved_, 0));
+  if (!dynamics_.affords_iteration()) {
+    end_by_budget();
+    return {};
+  }
   if (!relinearised_) dynamics_.loads_changed();
   relinearised_ = true;
   if (dynamics_.iterate(external_forces(), tolerance_) <= tolerance_) return {};
   update_surface();
   return motion();
+}
+
+void Implicit::end_by_budget() {
+  dynamics_.look(external_forces());
+  if (dynamics_.relative_residual() <= tolerance_) return;
+  ++budget_use_.steps;
+  budget_use_.largest_residual = std::max(budget_use_.largest_residual, dynamics_.relative_residual());
 }
 
 bool Implicit::balanced() const noexcept {
@@ -267,7 +282,9 @@ void Implicit::find_columns(std::span<const int> vertices) const {
     slot_[v] = slots_ + static_cast<int>(missing.size());
     missing.push_back(dof_[v]);
   }
-  if (!missing.empty()) keep_columns(dynamics_.matrix().columns(missing, tolerance_));
+  if (missing.empty()) return;
+  keep_columns(dynamics_.matrix().columns(missing, column_tolerance_));
+  solved_ += static_cast<int>(missing.size());
 }
 
 void Implicit::keep_columns(const Eigen::MatrixXd& columns) const {
@@ -320,7 +337,7 @@ std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) {
 std::vector<MemoryPart> Implicit::memory() const {
   std::vector<MemoryPart> parts{
       {"elements", solid_.bytes() + dynamics_.scratch_bytes()},
-      {"motion", dynamics_.bytes()},
+      {"motion", dynamics_.bytes(), dynamics_.budget_text()},
       {"compliance", static_cast<std::size_t>(columns_.size()) * sizeof(double)},
       {"positions", (rest_.size() + free_.size() + positions_.size() + external_.size()) * sizeof(Vec3) +
                         (node_.size() + dof_.size() + slot_.size()) * sizeof(int)}};

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -21,9 +22,14 @@ struct ImplicitSettings {
   int refresh_steps = 8;    ///< from one factor of the background to the next, [1, 1000]
   int max_newton = 5;       ///< iterations of Newton's method in a step that balances, [1, 100]
   double tolerance = 1e-5;  ///< the relative residual that they may leave, [1e-12, 0.1]
+  double budget_ms = 0;     ///< that a step may cost by `StepCosts`, [0.01, 1e5]; 0: whatever it takes
 
-  static constexpr std::array<std::string_view, 5> kKeys{"integrator", "solver", "refresh_steps",
-                                                         "max_newton", "tolerance"};
+  /// Norm of the residual that columns of compliance may leave of three unit forces: less matters little, as
+  /// each iteration looks at the true forces again.
+  double column_tolerance() const { return std::min(1e-3, 100 * tolerance); }
+
+  static constexpr std::array<std::string_view, 6> kKeys{"integrator", "solver",    "refresh_steps",
+                                                         "max_newton", "tolerance", "budget_ms"};
   static ImplicitSettings read(const Config& config);
   std::string to_text() const;
 };
@@ -66,12 +72,14 @@ class Implicit : public DeformationModel {
   /// (`Dynamics::inside_out`).
   bool balanced() const noexcept override;
   bool inside_out() const noexcept override { return !is_linear() && dynamics_.inside_out(); }
+  BudgetUse budget_use() const noexcept override { return budget_use_; }
   std::span<const Vec3> nodes() const noexcept override { return dynamics_.position(); }
   Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
   std::vector<MemoryPart> memory() const override;
 
  private:
   void begin(const ModelInputs& inputs);
+  void end_by_budget();
   void apply_new_loads();
   FreeMotion motion() const;
   struct Carried {
@@ -103,7 +111,7 @@ class Implicit : public DeformationModel {
   std::optional<ToldRelaxation> relaxation_;  // of a tissue that relaxes
   double held_compliance_;                    // m/N, of a fixed vertex under the tool itself
   int instants_;                              // within a step of the scene
-  double period_, tolerance_;
+  double period_, tolerance_, column_tolerance_;
   int max_newton_, iterations_ = 0;  // of Newton's method in this step
   int factors_ = 0;                  // of the columns
   bool in_step_ = false;             // a step has begun
@@ -115,7 +123,8 @@ class Implicit : public DeformationModel {
   std::vector<NodalLoad> loads_, linearised_loads_;       // now; those that the linearisation was made under
   mutable std::vector<int> slot_;                         // per surface vertex: of its columns, or -1
   mutable std::vector<std::uint8_t> asked_;  // per surface vertex: for its columns, of this factor
-  mutable int slots_ = 0;
+  mutable int slots_ = 0, solved_ = 0;       // columns of vertices; those not yet charged to the budget
+  BudgetUse budget_use_;
   mutable Eigen::MatrixXd columns_;  // of A^-1, three a slot, m/N
 };
 

@@ -40,6 +40,8 @@ ImplicitSettings ImplicitSettings::read(const Config& config) {
   settings.max_newton =
       static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
   settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);
+  if (config.says("budget_ms"))
+    settings.budget_ms = config.number("budget_ms", {0.01, 1e5, "ms"}, settings.budget_ms);
   return settings;
 }
 
@@ -51,14 +53,20 @@ std::string ImplicitSettings::to_text() const {
         std::ranges::find_if(kSolvers, [this](const NamedSolver& s) { return s.value == solver; });
     text += fmt::format("solver = \"{}\"\nrefresh_steps = {}\n", row->name, refresh_steps);
   }
+  if (budget_ms > 0) text += fmt::format("budget_ms = {:g}\n", budget_ms);
   return text + fmt::format("tolerance = {:g}\nmax_newton = {}\n", tolerance, max_newton);
 }
 
 DynamicsSettings dynamics_settings(const DeformationSettings& settings) {
   const auto& damping = settings.of<RayleighDamping>();
   const auto& steps = settings.of<ImplicitSettings>();
-  return {damping.mass, damping.stiffness,   steps.second_order,
-          steps.solver, steps.refresh_steps, steps.tolerance};
+  return {.rayleigh_mass = damping.mass,
+          .rayleigh_stiffness = damping.stiffness,
+          .second_order = steps.second_order,
+          .solver = steps.solver,
+          .refresh_steps = steps.refresh_steps,
+          .tolerance = steps.column_tolerance(),
+          .budget_ms = steps.budget_ms / instants_of(settings, 1)};
 }
 
 }  // namespace palpate::sim

@@ -194,13 +194,19 @@ void Solid::add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Vis
                           });
       });
     });
-    for (std::size_t e = 0; e < count; ++e) {
-      const Mat3* block = scratch.blocks_.data() + e * blocks;
-      const int* const nodes = element_nodes_.data() + (from + e) * corners;
-      for (int i = 0; i < corners_; ++i) {
-        for (int j = 0; j <= i; ++j) k.add(nodes[i], nodes[j], *block++);
+    // Each share of the columns in the order of the elements, so that the sums are the same on any number of
+    // cores.
+    parallel_blocks(StiffnessMatrix::kShares, 1, [&](std::size_t share, std::size_t) {
+      for (std::size_t e = 0; e < count; ++e) {
+        const Mat3* block = scratch.blocks_.data() + e * blocks;
+        const int* const nodes = element_nodes_.data() + (from + e) * corners;
+        for (int i = 0; i < corners_; ++i) {
+          for (int j = 0; j <= i; ++j, ++block) {
+            if (k.is_of_share(share, nodes[i], nodes[j])) k.add(nodes[i], nodes[j], *block);
+          }
+        }
       }
-    }
+    });
   }
   if (averages()) add_nodal_stiffness(x, k, viscosity.scale);
 }

@@ -176,6 +176,8 @@ class Simulation {
   void remove_at(std::vector<Removal> removals);
   const StepFailures& failures() const { return failures_; }
   const FlaggedSteps& flagged() const { return flagged_; }
+  /// Steps that ended because their budget did.
+  DeformationModel::BudgetUse budget_use() const { return tissue_.model->budget_use(); }
 
  private:
   void advance(std::span<const ToolInput> inputs, double dt);

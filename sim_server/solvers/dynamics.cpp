@@ -1,7 +1,9 @@
 #include "sim_server/solvers/dynamics.h"
 
 #include <cmath>
+#include <fmt/core.h>
 
+#include "common/error.h"
 #include "sim_server/elasticity/inversion.h"
 #include "sim_server/mesh/bounding_box.h"
 
@@ -14,9 +16,11 @@ namespace {
 constexpr double kNegligibleWay = 1e-9, kElsewhere = 1e-4, kNudge = 1e-7;
 // Relative residuals. Where the last trial step of a step leaves more than the first, velocities mean
 // nothing, and the step ends at rest: each step from there lowers the energy, however far Newton's method is
-// from balance. Where no more than the second is left, and loads change by no more, the linearisation is
-// trusted without a line search. A body whose step began with no more than the third has come to rest.
-constexpr double kAdrift = 0.1, kTrusted = 0.1, kAtRest = 1e-6;
+// from balance. A step that has a budget often ends far from balance, and does so where more than the second
+// is left: to stop there costs the force more. Where no more than the third is left, and loads change by no
+// more, the linearisation is trusted without a line search. A body whose step began with no more than the
+// fourth has come to rest.
+constexpr double kAdrift = 0.1, kAdriftByBudget = 0.5, kTrusted = 0.1, kAtRest = 1e-6;
 
 double largest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
   double squared = 0;
@@ -33,6 +37,15 @@ bool factors_in_background(const Solid& solid, const DynamicsSettings& settings)
   return settings.solver != DynamicsSettings::Solver::kDirect && !one_factor_serves(solid, settings);
 }
 
+void require_budget(const StepCosts& costs, double budget_ms, bool background, const std::string& where) {
+  if (budget_ms == 0 || budget_ms >= costs.least(background)) return;
+  fail(
+      "{}: the least step of this mesh costs {:.1f} ms ({}), budget_ms = {:g} is less; take more{}, or a "
+      "coarser mesh",
+      where, costs.least(background), costs.to_text(), budget_ms,
+      background ? "" : ", solver = \"quasi_newton\", which makes its factors in the background");
+}
+
 bool learns(const Solid& solid, const DynamicsSettings& settings) {
   return factors_in_background(solid, settings) && settings.solver == DynamicsSettings::Solver::kQuasiNewton;
 }
@@ -46,6 +59,8 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
       learns_(learns(solid, settings)),
       motion_(solid, std::move(held), settings),
       matrix_(solid, motion_.dofs(), settings, where),
+      costs_(solid, matrix_),
+      budget_ms_(settings.budget_ms),
       size_(diagonal_of(solid.rest())),
       policy_({.background = factors_in_background(solid, settings),
                .forgives = learns_,
@@ -53,6 +68,7 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
                .negligible_force = kNegligibleWay * size_ * matrix_.mean_diagonal()}) {
   motion_.set_negligible_force(kNegligibleWay * size_ * matrix_.mean_diagonal());
   if (factors_in_background(solid, settings)) background_.emplace(solid, motion_.dofs(), settings, where);
+  require_budget(costs_, budget_ms_, background_.has_value() || linear_, where);
 }
 
 void Dynamics::set_state(std::vector<Vec3> x, std::span<const Vec3> v) {
@@ -60,6 +76,8 @@ void Dynamics::set_state(std::vector<Vec3> x, std::span<const Vec3> v) {
 }
 
 void Dynamics::start_step(double h) {
+  evaluations_before_ = motion_.evaluations();
+  spent_ms_ = costs_.evaluation / 2;  // the turns of the nodes
   quasi_newton_.restart();
   trial_residual_ = 0;
   at_predictor_ = true;
@@ -69,8 +87,9 @@ void Dynamics::start_step(double h) {
 }
 
 void Dynamics::factor() {
-  matrix_.build(solid_, motion_.position(), motion_.masses(), motion_.viscosity(), motion_.time().c(),
-                motion_.scratch());
+  const int made = matrix_.build(solid_, motion_.position(), motion_.masses(), motion_.viscosity(),
+                                 motion_.time().c(), motion_.scratch());
+  spent_ms_ += made * costs_.factor;
   factored_at_.assign(motion_.position().begin(), motion_.position().end());
   from_background_ = cut_since_factored_ = false;
   count_new_factor();
@@ -82,7 +101,7 @@ void Dynamics::count_new_factor() {
 }
 
 void Dynamics::refactor_if_moved() {
-  if (background_) return;
+  if (background_ || !affords(costs_.factor)) return;
   if (!cut_since_factored_ && largest_distance(motion_.position(), factored_at_) <= kElsewhere * size_)
     return;
   factor();
@@ -137,7 +156,7 @@ double Dynamics::iterate(std::span<const Vec3> external, double tolerance) {
   }
   if (residual.relative <= tolerance) return residual.relative;
   using Decision = FactorPolicy::Decision;
-  const Decision decision = policy_.decide(residual, previous, other_c);
+  const Decision decision = policy_.decide(residual, previous, other_c, affords(costs_.factor));
   if (decision == Decision::kStop) return 0;
   if (decision == Decision::kRefactorChecked) matrix_.check_precision();
   if (decision != Decision::kKeep) factor();
@@ -161,11 +180,18 @@ int Dynamics::solve(std::span<const Vec3> external, int max_iterations, double t
 Eigen::VectorXd Dynamics::search_direction(const Residual& residual, std::span<const Vec3> external) {
   if (learns_) quasi_newton_.add_point(motion_.unknowns(), -residual.force + motion_.by_unknowns(external));
   Eigen::VectorXd d = policy_.uses_conjugate_gradients() ? inexact_direction(residual, external)
-                                                         : quasi_newton_.direction(matrix_, residual.force);
+                                                         : solve_turned(residual.force);
   if (!d.allFinite()) d = residual.force / matrix_.largest_diagonal();
   return d;
 }
 
+/// By the factor, and what the quasi-Newton method has learned.
+Eigen::VectorXd Dynamics::solve_turned(const Eigen::VectorXd& b) {
+  spent_ms_ += costs_.solve;
+  return quasi_newton_.direction(matrix_, b);
+}
+
+/// By as many conjugate gradients as the budget has room for, one at least.
 Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<const Vec3> external) {
   const std::vector<Vec3> here(motion_.position().begin(), motion_.position().end());
   const auto times = [&](const Eigen::VectorXd& v) {
@@ -174,8 +200,11 @@ Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<
       return motion_.residual(external);
     });
   };
-  const auto precondition = [&](const Eigen::VectorXd& v) { return quasi_newton_.direction(matrix_, v); };
-  Eigen::VectorXd d = conjugate_gradients(residual.force, times, precondition);
+  const auto precondition = [&](const Eigen::VectorXd& v) { return solve_turned(v); };
+  ConjugateGradientSettings settings;
+  while (settings.max_iterations > 1 && !affords(settings.max_iterations * costs_.iteration()))
+    --settings.max_iterations;
+  Eigen::VectorXd d = conjugate_gradients(residual.force, times, precondition, settings);
   motion_.move_to(here);
   return d;
 }
@@ -214,13 +243,18 @@ void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> e
 }
 
 void Dynamics::finish_step() {
-  const bool adrift = trial_residual_ > kAdrift;
+  const bool adrift = trial_residual_ > (budget_ms_ > 0 ? kAdriftByBudget : kAdrift);
   cautious_ = adrift || (cautious_ && relative_residual_ > kAtRest);
   motion_.end_step(adrift);
 }
 
 bool Dynamics::inside_out() const {
   return may_stay_inverted(solid_.material()) && any_inverted(solid_, motion_.position());
+}
+
+std::string Dynamics::budget_text() const {
+  if (budget_ms_ == 0) return {};
+  return fmt::format("a step may cost {:g} ms of the reference machine: {}", budget_ms_, costs_.to_text());
 }
 
 std::size_t Dynamics::bytes() const {

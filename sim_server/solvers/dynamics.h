@@ -4,6 +4,7 @@
 #include "sim_server/solvers/equations_of_motion.h"
 #include "sim_server/solvers/factor_policy.h"
 #include "sim_server/solvers/quasi_newton.h"
+#include "sim_server/solvers/step_costs.h"
 
 namespace palpate::sim {
 
@@ -20,11 +21,13 @@ namespace palpate::sim {
 ///   no matrix is assembled in a step;
 /// - with the same factor by a quasi-Newton method (`QuasiNewton`), which takes fewer evaluations and solves,
 ///   and by conjugate gradients only in a step in which that is slow.
-/// All balance the same forces. Steps allocate; one thread, which uses all cores for the elements.
+/// All balance the same forces. Where a step has a budget (`DynamicsSettings::budget_ms`), none of these
+/// begins what that has no room for, by what it costs on a reference machine (`StepCosts`), so that the same
+/// is left undone on every machine. Steps allocate; one thread, which uses all cores for the elements.
 class Dynamics {
  public:
-  /// At rest. Throws `Error`, beginning with `where`, when the held nodes do not hold the body. The body must
-  /// outlive this.
+  /// At rest. Throws `Error`, beginning with `where`, when the held nodes do not hold the body, or the budget
+  /// is too small for a step. The body must outlive this.
   Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,
            const std::string& where);
 
@@ -48,6 +51,14 @@ class Dynamics {
   /// Factors A at the trial point, where the factor is of a place elsewhere and none comes from the
   /// background.
   void refactor_if_moved();
+  /// Whether the budget of the step has room for another iteration, and for a look at what that leaves.
+  bool affords_iteration() const { return affords(costs_.iteration() + costs_.evaluation); }
+  /// Evaluates the residual at the trial point, for `relative_residual`.
+  void look(std::span<const Vec3> external) { trial_residual_ = evaluate(external).relative; }
+  /// The columns of A^-1 of so many nodes have been solved for.
+  void charge_columns(int nodes) { spent_ms_ += costs_.columns(nodes); }
+  /// What a step may cost, and what its parts do, in words; empty: there is no budget.
+  std::string budget_text() const;
   /// The trial point is the end of the step.
   void finish_step();
 
@@ -103,6 +114,12 @@ class Dynamics {
  private:
   /// Whether one iteration with one factor solves a step, and all later ones.
   bool is_linear() const { return linear_; }
+  bool affords(double ms) const {
+    return budget_ms_ == 0 || spent_ms_ + evaluations() * costs_.evaluation + ms <= budget_ms_;
+  }
+  /// In this step.
+  int evaluations() const { return motion_.evaluations() - evaluations_before_; }
+  Eigen::VectorXd solve_turned(const Eigen::VectorXd& b);
   Residual evaluate(std::span<const Vec3> external);
   void factor();
   void count_new_factor();
@@ -117,7 +134,11 @@ class Dynamics {
   bool learns_;  // by the quasi-Newton method
   EquationsOfMotion motion_;
   NewtonMatrix matrix_;
-  double size_;  // of the body, m
+  StepCosts costs_;
+  double budget_ms_;            // 0: none
+  double spent_ms_ = 0;         // in this step, but for evaluations
+  int evaluations_before_ = 0;  // this step
+  double size_;                 // of the body, m
   FactorPolicy policy_;
   std::optional<BackgroundMatrix> background_;
   QuasiNewton quasi_newton_;

@@ -19,8 +19,9 @@ struct DynamicsSettings {
   /// Norm of the residual that columns of compliance made in the background may leave of three unit forces.
   /// They are of where the body was some steps before.
   double tolerance = 0;
-  bool cut = false;    ///< tetrahedra may be removed (`Dynamics::remove`): no factor serves for ever
-  bool flies = false;  ///< nothing need hold the body: it has mass
+  double budget_ms = 0;  ///< that a step may cost, by `StepCosts`; 0: whatever it takes
+  bool cut = false;      ///< tetrahedra may be removed (`Dynamics::remove`): no factor serves for ever
+  bool flies = false;    ///< nothing need hold the body: it has mass
 };
 
 }  // namespace palpate::sim

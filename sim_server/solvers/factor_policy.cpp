@@ -22,7 +22,8 @@ bool FactorPolicy::begin_step(int steps_before, bool cautious) {
   return true;
 }
 
-FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double previous, bool just_factored) {
+FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double previous, bool just_factored,
+                                            bool may_factor) {
   const double force = residual.relative * residual.force_scale;
   if (force <= kSameRounding * rounding_) return Decision::kStop;
   const State before = state_;
@@ -35,7 +36,7 @@ FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double pre
     rounding_ = force;
     return Decision::kStop;
   }
-  const bool another = cautious_ || demanded_ < kMostFactors;
+  const bool another = may_factor && (cautious_ || demanded_ < kMostFactors);
   if (settings_.background || before == State::kWorn || !another) {
     state_ = State::kWorn;
     return Decision::kKeep;

@@ -51,8 +51,9 @@ class FactorPolicy {
   /// There is another factor, for another reason than a `Decision`.
   void replaced() { state_ = State::kStale; }
   /// For an iteration that finds `residual`, where the one before it found the relative residual `previous`.
-  /// `just_factored`: A has been factored for it, after `replaced`.
-  Decision decide(const Residual& residual, double previous, bool just_factored);
+  /// `just_factored`: A has been factored for it, after `replaced`. `may_factor`: the step has the time for
+  /// one more factor; where it has not, the one that there is becomes kWorn.
+  Decision decide(const Residual& residual, double previous, bool just_factored, bool may_factor = true);
 
   State state() const { return state_; }
   /// Whether the search direction is to be found by conjugate gradients that the factor preconditions.

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "common/parallel.h"
+#include "common/realtime.h"
+
 namespace palpate::sim {
 namespace {
 
@@ -33,8 +36,8 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
       mean_diagonal_(matrix_.lower().diagonal().mean()),
       factor_(matrix_.lower(), where, precision_for(solid.material(), settings.cut)) {}
 
-void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
-                         const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
+int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
+                        const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
   c_ = c;
   turns_.clear();
   if (solid.material().law != ElasticLaw::kLinear) {
@@ -46,15 +49,18 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<
   matrix_.lower() *= 1 + beta_ * c;
   matrix_.add_to_diagonal(masses, c * c + alpha_ * c);
   matrix_.close_held(mean_diagonal_);
-  if (factor_.refactor(matrix_.lower())) return;
+  int factors = 1;
+  if (factor_.refactor(matrix_.lower())) return factors;
   // A quarter of what was enough last time, then ever more (Waechter and Biegler 2006, algorithm IC).
   double added = 0;
   const double first = std::clamp(more_inertia_ / 4, c * c, 1e5 * c * c);
   for (double more = first; more < 1e6 * c * c; more *= 4) {
     matrix_.add_to_diagonal(masses, more - added);
     added = more_inertia_ = more;
-    if (factor_.refactor(matrix_.lower())) return;
+    ++factors;
+    if (factor_.refactor(matrix_.lower())) break;
   }
+  return factors;
 }
 
 void NewtonMatrix::turn_to(const Solid& solid, std::span<const Vec3> x) {
@@ -113,8 +119,11 @@ void BackgroundMatrix::begin(std::span<const Vec3> x, std::span<const double> ma
   memory_.assign(viscosity.memory.begin(), viscosity.memory.end());
   made_.first = std::move(first);
   work_ = std::async(std::launch::async, [this, scale = viscosity.scale, c] {
-    matrix_.build(body(), x_, masses_, {scale, memory_}, c, scratch_);
-    made_.values = matrix_.columns(made_.first, tolerance_);
+    make_background("palpate-factor");
+    in_one_thread([&] {
+      matrix_.build(body(), x_, masses_, {scale, memory_}, c, scratch_);
+      made_.values = matrix_.columns(made_.first, tolerance_);
+    });
   });
 }
 

@@ -18,9 +18,9 @@ class NewtonMatrix {
                const std::string& where);
 
   /// A of the solid at `x` (nodes, m) with these masses (nodes, kg), factored. Where A is not positive
-  /// definite, as of a body about to buckle, with more inertia.
-  void build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
-             const Viscosity& viscosity, double c, Solid::Scratch& scratch);
+  /// definite, as of a body about to buckle, with more inertia. Returns how many factors that took.
+  int build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
+            const Viscosity& viscosity, double c, Solid::Scratch& scratch);
   /// To be called where iterations with the factor of the last `build` converge slowly: should that be for
   /// want of digits, the next is made in double precision. Costs a solve.
   void check_precision();
@@ -43,6 +43,7 @@ class NewtonMatrix {
   double mean_diagonal() const { return mean_diagonal_; }
   /// Of the A or K that is factored, N/m.
   double largest_diagonal() const { return matrix_.lower().diagonal().maxCoeff(); }
+  const SparseCholesky& factor() const { return factor_; }
   std::size_t bytes() const { return matrix_.bytes() + factor_.bytes(); }
 
  private:

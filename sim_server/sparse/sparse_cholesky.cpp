@@ -35,6 +35,7 @@ struct SparseCholesky::Factor {
     return (pattern.subtrees.size() + 1) * pattern.order.size() * sizeof(int);
   }
 
+  double multiplications() const { return pattern.multiplications; }
   bool factorize(const SparseMatrix& lower) {
     if (precision == Precision::kDouble) {
       if (!fine) fine.emplace(pattern);
@@ -78,6 +79,14 @@ struct SparseCholesky::Factor {
       return static_cast<std::size_t>(m_matrix.outerIndexPtr()[columns]) * (sizeof(double) + sizeof(int)) +
              3 * columns * sizeof(int);
     }
+    double multiplications() const {
+      double sum = 0;
+      for (Eigen::Index j = 0; j < m_matrix.outerSize(); ++j) {
+        const double rows = m_matrix.outerIndexPtr()[j + 1] - m_matrix.outerIndexPtr()[j];
+        sum += rows * rows / 2;
+      }
+      return sum;
+    }
   };
   Llt llt;
   Precision precision = Precision::kDouble;
@@ -88,6 +97,7 @@ struct SparseCholesky::Factor {
     return static_cast<std::size_t>(lower.nonZeros()) * (sizeof(double) + sizeof(int));  // a copy
   }
   std::size_t more_bytes() const { return 0; }
+  double multiplications() const { return llt.multiplications(); }
   void take(Precision) {}
   bool factorize(const SparseMatrix& lower) {
     llt.factorize(lower);
@@ -247,6 +257,10 @@ SparseCholesky::Precision SparseCholesky::precision() const {
 
 std::size_t SparseCholesky::bytes() const {
   return factor_->bytes();
+}
+
+double SparseCholesky::multiplications() const {
+  return factor_->multiplications();
 }
 
 const char* SparseCholesky::library() {

@@ -51,6 +51,8 @@ class SparseCholesky final : public FactoredMatrix {
   /// Of the factor that there is.
   Precision precision() const;
   std::size_t bytes() const;
+  /// That a factor takes, and of a solve about one for each four or eight bytes of it, twice.
+  double multiplications() const;
 
   /// The library behind it, for reports.
   static const char* library();

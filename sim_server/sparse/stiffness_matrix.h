@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -49,6 +50,12 @@ class StiffnessMatrix {
   /// Adds the block of rows of node `i` and columns of node `j`; also stands for the one of j and i. Each
   /// pair once. Nothing where one is fixed. O(blocks in the column).
   void add(int i, int j, const Mat3& block) noexcept;
+  /// Threads may add at once, each what is of a share of its own.
+  static constexpr std::size_t kShares = 4;
+  /// Whether the block that `add` would change is of this share.
+  bool is_of_share(std::size_t share, int i, int j) const noexcept {
+    return static_cast<std::size_t>(std::min(block_[i], block_[j])) % kShares == share;
+  }
   /// Adds `factor` per_node[i] to the diagonal entries of each free node i.
   void add_to_diagonal(std::span<const double> per_node, double factor) noexcept;
 

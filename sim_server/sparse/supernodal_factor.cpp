@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kBand = 256;   // rows of a supernode that one task works on
 constexpr int kPanel = 256;  // columns of a large one that are eliminated at once
+constexpr int kFew = 3;  // right-hand sides that go one by one: to multiply more at once BLAS packs the block
 
 /// Whether ascending numbers leave none out.
 bool without_gap(std::span<const int> numbers) {
@@ -141,7 +142,7 @@ auto SupernodalFactor<Scalar>::solve(const Matrix& b) const -> Matrix {
   return answer;
 }
 
-/// L x = b.
+/// L x = b. What is zero is passed over: of a load on one node all but the supernodes above it.
 template <class Scalar>
 void SupernodalFactor<Scalar>::forward(Matrix& x) const {
   const int n = static_cast<int>(x.rows()), count = static_cast<int>(x.cols()), step = 1;
@@ -152,13 +153,17 @@ void SupernodalFactor<Scalar>::forward(Matrix& x) const {
     const int height = static_cast<int>(rows.size()), columns = pattern_->columns(s),
               under = height - columns;
     const Scalar* const l = block(s);
+    if ((x.middleRows(pattern_->first[s], columns).array() == 0).all()) continue;
     Scalar* const own = x.data() + pattern_->first[s];
     product.resize(static_cast<std::size_t>(under) * count);
-    if (count == 1) {
-      Blas<Scalar>::trsv("L", "N", "N", &columns, l, &height, own, &step);
-      if (under > 0)
-        Blas<Scalar>::gemv("N", &under, &columns, &one, l + columns, &height, own, &step, &zero,
-                           product.data(), &step);
+    if (count <= kFew) {
+      for (int j = 0; j < count; ++j) {
+        Scalar* const column = own + static_cast<std::size_t>(j) * n;
+        Blas<Scalar>::trsv("L", "N", "N", &columns, l, &height, column, &step);
+        if (under > 0)
+          Blas<Scalar>::gemv("N", &under, &columns, &one, l + columns, &height, column, &step, &zero,
+                             product.data() + static_cast<std::size_t>(j) * under, &step);
+      }
     } else {
       Blas<Scalar>::trsm("L", "L", "N", "N", &columns, &count, &one, l, &height, own, &n);
       if (under > 0)
@@ -189,11 +194,14 @@ void SupernodalFactor<Scalar>::backward(Matrix& x) const {
       const Scalar* const column = x.data() + static_cast<std::size_t>(j) * n;
       for (int i = 0; i < under; ++i) below[j * under + i] = column[rows[columns + i]];
     }
-    if (count == 1) {
-      if (under > 0)
-        Blas<Scalar>::gemv("T", &under, &columns, &minus, l + columns, &height, below.data(), &step, &one,
-                           own, &step);
-      Blas<Scalar>::trsv("L", "T", "N", &columns, l, &height, own, &step);
+    if (count <= kFew) {
+      for (int j = 0; j < count; ++j) {
+        Scalar* const column = own + static_cast<std::size_t>(j) * n;
+        if (under > 0)
+          Blas<Scalar>::gemv("T", &under, &columns, &minus, l + columns, &height,
+                             below.data() + static_cast<std::size_t>(j) * under, &step, &one, column, &step);
+        Blas<Scalar>::trsv("L", "T", "N", &columns, l, &height, column, &step);
+      }
     } else {
       if (under > 0)
         Blas<Scalar>::gemm("T", "N", &columns, &count, &under, &minus, l + columns, &height, below.data(),

@@ -181,7 +181,7 @@ void SupernodalPattern::cut_subtrees() {
   std::iota(begin.begin(), begin.end(), 0);
   std::vector<int> owner(order.size());
   for (int s = 0; s < count; ++s) std::fill(owner.begin() + first[s], owner.begin() + first[s + 1], s);
-  double all = 0;
+  double& all = multiplications;
   for (int s = 0; s < count; ++s) {
     const std::span<const int> below = rows_of(s);
     const auto high = static_cast<double>(below.size()), wide = static_cast<double>(columns(s));

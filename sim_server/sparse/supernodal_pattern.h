@@ -49,6 +49,7 @@ struct SupernodalPattern {
   std::vector<int> place;  ///< of each entry of the matrix among the values; -1: not of the lower triangle
   std::vector<Subtree> subtrees;  ///< as many of like work as keep a few cores busy
   std::vector<int> top;           ///< the supernodes above them, ascending
+  double multiplications = 0;     ///< that a factor takes
 
  private:
   void find_updates();

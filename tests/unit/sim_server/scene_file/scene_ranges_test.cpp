@@ -94,6 +94,7 @@ TEST_CASE("[deformation]: values out of range, and names that are none") {
            Wrong{"[deformation]", "max_newton = 2.5", "max_newton", "a whole number"},
            Wrong{"[deformation]", "refresh_steps = 0", "refresh_steps", "between 1 and 1000 (steps)"},
            Wrong{"[deformation]", "refresh_steps = 1001", "refresh_steps", "between 1 and 1000"},
+           Wrong{"[deformation]", "budget_ms = 0", "budget_ms", "between 0.01 and 100000 (ms)"},
            Wrong{"[deformation]", "tolerance = 0", "tolerance", "between 1e-12 and 0.1"},
            Wrong{"[deformation]", "tolerance = 0.11", "tolerance", "between 1e-12 and 0.1"},
            Wrong{"[deformation]", "tolerance = nan", "tolerance", "between 1e-12 and 0.1"},

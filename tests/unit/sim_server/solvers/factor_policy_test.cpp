@@ -52,6 +52,20 @@ TEST_CASE("factor policy: on demand, the first slow iteration of a step with a s
   CHECK(iterate.policy.state() == State::kStale);
 }
 
+TEST_CASE(
+    "factor policy: where the step has no time for a factor, conjugate gradients go on with the old one") {
+  for (const bool cautious : {false, true}) {
+    FactorPolicy policy({});
+    policy.begin_step(1, cautious);
+    CHECK(policy.decide({{}, 1, 0.5}, 1, false, false) == Decision::kKeep);
+    CHECK(policy.decide({{}, 1, 0.4}, 0.5, false, false) == Decision::kKeep);
+    CHECK(policy.uses_conjugate_gradients());
+    policy.begin_step(2, cautious);
+    policy.decide({{}, 1, 0.5}, 1, false);
+    CHECK(policy.decide({{}, 1, 0.4}, 0.5, false) == Decision::kRefactor);  // the next has
+  }
+}
+
 TEST_CASE("factor policy: a body that was far from balance gets every factor that it asks for") {
   for (const bool cautious : {false, true}) {
     Iterations iterate{FactorPolicy({})};

@@ -1,0 +1,129 @@
+// What a step of `implicit` may cost ([deformation] budget_ms): bounded by counts, told, and made up for
+// later.
+#include "common/error.h"
+#include "sim_server/deformation/implicit.h"
+#include "sim_server/simulation/simulation.h"
+#include "tests/support/catch.h"
+#include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
+#include "tests/support/solids.h"
+
+using namespace palpate;
+using namespace palpate::sim;
+
+namespace {
+
+const Vec3 kSize(0.04, 0.016, 0.04);
+
+TetMesh block() {
+  return test::soft_block(kSize, {10, 4, 10});
+}
+
+/// `budget_ms` 0: none.
+Scene scene_of(double budget_ms, DynamicsSettings::Solver solver = DynamicsSettings::Solver::kQuasiNewton) {
+  Scene scene = test::soft_block_scene(kSize[1], "implicit", ElasticLaw::kCorotational);
+  scene.deformation.of<ImplicitSettings>().solver = solver;
+  scene.deformation.of<ImplicitSettings>().budget_ms = budget_ms;
+  scene.deformation.of<ImplicitSettings>().max_newton = 30;
+  return scene;
+}
+
+/// Pressed quickly to 4 mm, drawn along by 6 mm, then held still.
+ToolForce pressed_and_drawn(Simulation& simulation) {
+  ToolForce force;
+  for (int i = 0; i < 90; ++i) {
+    const double down = std::min(1.0, i / 4.0) * 0.0045, along = std::clamp(i - 10, 0, 10) * 6e-4;
+    force = simulation.step({Vec3(0.001 + along, 0.0055 - down, 0.0015)}, 1.0 / 30);
+  }
+  return force;
+}
+
+StepCosts costs_of(const TetMesh& mesh) {
+  const Solid solid(mesh, *scene_of(0).material);
+  std::vector<int> below;
+  for (int v = 0; v < solid.nodes(); ++v) {
+    if (solid.rest()[v][1] < 1e-9 - kSize[1]) below.push_back(v);
+  }
+  const FreeDofs dofs(solid.nodes(), below);
+  return {solid, NewtonMatrix(solid, dofs, {}, "test")};
+}
+
+}  // namespace
+
+TEST_CASE("budget of a step: what it costs is told from counts") {
+  const StepCosts costs = costs_of(block());
+  const double elements = static_cast<double>(block().tetrahedra.size());
+  CHECK(costs.evaluation == Approx(80e-6 * elements));  // ns an element, one point each
+  CHECK(costs.factor > 0.8e-3 * elements);              // us an element to assemble, and the numbers
+  CHECK(costs.columns(0) == 0);
+  CHECK(costs.columns(1) > costs.solve);
+  CHECK(costs.columns(10) < 10 * costs.columns(1));
+  CHECK(costs.least(false) == Approx(costs.least(true) + costs.factor));
+}
+
+TEST_CASE("budget of a step: an ample one changes nothing, to the last bit", "[threads]") {
+  Simulation without(scene_of(0), block()), ample(scene_of(1e4), block());
+  pressed_and_drawn(without);
+  pressed_and_drawn(ample);
+  CHECK(ample.state_hash() == without.state_hash());
+  CHECK(ample.budget_use().steps == 0);
+}
+
+TEST_CASE("budget of a step: a small one leaves steps before they have converged, which make it up at rest",
+          "[threads]") {
+  const StepCosts costs = costs_of(block());
+  Simulation without(scene_of(0), block()), small(scene_of(1.3 * costs.least(true)), block());
+  const ToolForce wanted = pressed_and_drawn(without), felt = pressed_and_drawn(small);
+  CHECK(small.budget_use().steps > 3);
+  CHECK(small.budget_use().largest_residual > scene_of(0).deformation.of<ImplicitSettings>().tolerance);
+  CHECK(wanted.force.norm() > 0.1);
+  CHECK((felt.force - wanted.force).norm() < 2e-3 * wanted.force.norm());
+  CHECK_FALSE(felt.flagged);
+}
+
+TEST_CASE("budget of a step: no iteration begins that it has no room for") {
+  const TetMesh mesh = block();
+  const Solid solid(mesh, *scene_of(0).material);
+  std::vector<HeldAxes> held(static_cast<std::size_t>(solid.nodes()), 0);
+  for (int v = 0; v < solid.nodes(); ++v) {
+    if (solid.rest()[v][1] < 1e-9 - kSize[1]) held[static_cast<std::size_t>(v)] = kAllAxes;
+  }
+  const StepCosts costs = costs_of(mesh);
+  const std::vector<Vec3> gravity(held.size(), Vec3(0, 0, 2e-3));  // N a node: it shears far
+  for (const double times : {1.0, 1.5, 3.0}) {
+    const double budget = times * costs.least(true);
+    Dynamics dynamics(solid, held,
+                      {.rayleigh_mass = 10,
+                       .solver = DynamicsSettings::Solver::kQuasiNewton,
+                       .refresh_steps = 1000,
+                       .budget_ms = budget},
+                      "test");
+    dynamics.start_step(1.0 / 30);
+    int iterations = 0;
+    while (dynamics.affords_iteration() && iterations < 1000) {
+      dynamics.iterate(gravity);
+      ++iterations;
+    }
+    CAPTURE(times, budget, costs.iteration());
+    CHECK(iterations >= 1);
+    CHECK(iterations * costs.iteration() <= budget);
+  }
+}
+
+TEST_CASE("budget of a step: one that has no room for the least step is refused, with what would help") {
+  const StepCosts costs = costs_of(block());
+  const auto refused = [](double budget_ms, DynamicsSettings::Solver solver) {
+    try {
+      Simulation(scene_of(budget_ms, solver), block());
+      return std::string();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  };
+  using Solver = DynamicsSettings::Solver;
+  CHECK(refused(1.1 * costs.least(true), Solver::kQuasiNewton).empty());
+  CHECK(refused(1.1 * costs.least(false), Solver::kDirect).empty());
+  CHECK(refused(0.9 * costs.least(true), Solver::kQuasiNewton).find("budget_ms = ") != std::string::npos);
+  const std::string direct = refused(1.1 * costs.least(true), Solver::kDirect);
+  CHECK(direct.find("solver = \"quasi_newton\"") != std::string::npos);
+}
