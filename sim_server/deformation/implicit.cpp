@@ -1,7 +1,6 @@
 #include "sim_server/deformation/implicit.h"
 
 #include <algorithm>
-#include <fmt/core.h>
 #include <utility>
 
 #include "common/error.h"

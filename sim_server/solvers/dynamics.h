@@ -55,6 +55,8 @@ class Dynamics {
   bool affords_iteration() const { return affords(costs_.iteration() + costs_.evaluation); }
   /// Evaluates the residual at the trial point, for `relative_residual`.
   void look(std::span<const Vec3> external) { trial_residual_ = evaluate(external).relative; }
+  /// What this step has cost so far, by `StepCosts`, ms.
+  double spent_ms() const { return spent_ms_ + evaluations() * costs_.evaluation; }
   /// The columns of A^-1 of so many nodes have been solved for.
   void charge_columns(int nodes) { spent_ms_ += costs_.columns(nodes); }
   /// What a step may cost, and what its parts do, in words; empty: there is no budget.
@@ -114,9 +116,7 @@ class Dynamics {
  private:
   /// Whether one iteration with one factor solves a step, and all later ones.
   bool is_linear() const { return linear_; }
-  bool affords(double ms) const {
-    return budget_ms_ == 0 || spent_ms_ + evaluations() * costs_.evaluation + ms <= budget_ms_;
-  }
+  bool affords(double ms) const { return budget_ms_ == 0 || spent_ms() + ms <= budget_ms_; }
   /// In this step.
   int evaluations() const { return motion_.evaluations() - evaluations_before_; }
   Eigen::VectorXd solve_turned(const Eigen::VectorXd& b);

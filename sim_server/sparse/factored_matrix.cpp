@@ -1,5 +1,6 @@
 #include "sim_server/sparse/factored_matrix.h"
 
+#include <fmt/core.h>
 #include <numeric>
 
 #include "common/memory_budget.h"

@@ -303,6 +303,28 @@ TEST_CASE(
   CHECK(first->state_hash() == second->state_hash());
 }
 
+TEST_CASE("hybrid: what is planned to be removed, but cannot be cut yet, waits until it can") {
+  Simulation cut(growing_scene(0.5), block());
+  for (int i = 0; i < 150; ++i) press(cut, Vec3(std::min(0.012, 0.0002 * i), 0.001 - 1e-5 * i, 0.0005), true);
+  const std::vector<Removal> planned(cut.removals().begin(), cut.removals().end());
+  REQUIRE(gone_beyond(cut, 0.006) > 0);
+  Simulation again(growing_scene(3), block());  // which grows later than these are due
+  again.remove_at(planned);
+  bool waited = false, early = false;
+  for (int i = 0; i < 300; ++i) {
+    press(again, Vec3(0, 0.03, 0));
+    const auto is_late = [&](const Removal& removal) {
+      return removal.t < i * kStep && again.resection()->left().is_left(removal.tetrahedron);
+    };
+    early |= again.resection()->growth().times == 0 && gone_beyond(again, 0.006) > 0;
+    waited |= again.resection()->growth().times == 0 && std::ranges::any_of(planned, is_late);
+  }
+  CHECK(waited);
+  CHECK_FALSE(early);
+  REQUIRE(again.resection()->growth().times > 0);
+  for (const Removal& removal : planned) CHECK_FALSE(again.resection()->left().is_left(removal.tetrahedron));
+}
+
 #ifdef PALPATE_WITH_SPECTRA
 TEST_CASE("hybrid: in motion, nothing is felt of the step in which what can be cut grows") {
   // Against one that could be cut there from the beginning, along the same motion.

@@ -1,5 +1,7 @@
 // What a step of `implicit` may cost ([deformation] budget_ms): bounded by counts, told, and made up for
 // later.
+#include <cmath>
+
 #include "common/error.h"
 #include "sim_server/deformation/implicit.h"
 #include "sim_server/simulation/simulation.h"
@@ -81,32 +83,92 @@ TEST_CASE("budget of a step: a small one leaves steps before they have converged
   CHECK_FALSE(felt.flagged);
 }
 
-TEST_CASE("budget of a step: no iteration begins that it has no room for") {
-  const TetMesh mesh = block();
-  const Solid solid(mesh, *scene_of(0).material);
-  std::vector<HeldAxes> held(static_cast<std::size_t>(solid.nodes()), 0);
-  for (int v = 0; v < solid.nodes(); ++v) {
-    if (solid.rest()[v][1] < 1e-9 - kSize[1]) held[static_cast<std::size_t>(v)] = kAllAxes;
-  }
-  const StepCosts costs = costs_of(mesh);
-  const std::vector<Vec3> gravity(held.size(), Vec3(0, 0, 2e-3));  // N a node: it shears far
-  for (const double times : {1.0, 1.5, 3.0}) {
-    const double budget = times * costs.least(true);
-    Dynamics dynamics(solid, held,
-                      {.rayleigh_mass = 10,
-                       .solver = DynamicsSettings::Solver::kQuasiNewton,
-                       .refresh_steps = 1000,
-                       .budget_ms = budget},
-                      "test");
-    dynamics.start_step(1.0 / 30);
-    int iterations = 0;
-    while (dynamics.affords_iteration() && iterations < 1000) {
-      dynamics.iterate(gravity);
-      ++iterations;
+namespace {
+
+/// A block held from below, in implicit dynamics.
+struct Sheared {
+  TetMesh mesh = block();
+  Solid solid{mesh, *scene_of(0).material};
+  StepCosts costs = costs_of(mesh);
+  std::vector<HeldAxes> held = std::vector<HeldAxes>(mesh.vertices.size(), 0);
+  std::vector<Vec3> load = std::vector<Vec3>(mesh.vertices.size(), Vec3(0, 0, 8e-3));  // N: it shears far
+
+  Sheared() {
+    for (std::size_t v = 0; v < held.size(); ++v) {
+      if (mesh.vertices[v][1] < 1e-9 - kSize[1]) held[v] = kAllAxes;
     }
-    CAPTURE(times, budget, costs.iteration());
-    CHECK(iterations >= 1);
-    CHECK(iterations * costs.iteration() <= budget);
+  }
+};
+
+/// Its second step: the first makes a factor for its length.
+struct SecondStep {
+  Dynamics dynamics;
+
+  SecondStep(const Sheared& body, double budget_ms, DynamicsSettings::Solver solver)
+      : dynamics(body.solid, body.held,
+                 {.rayleigh_mass = 10, .solver = solver, .refresh_steps = 1000, .budget_ms = budget_ms},
+                 "test") {
+    dynamics.start_step(1.0 / 30);
+    dynamics.iterate(body.load);
+    dynamics.finish_step();
+    dynamics.start_step(1.0 / 30);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("budget of a step: no iteration begins that it has no room for") {
+  using Solver = DynamicsSettings::Solver;
+  const Sheared body;
+  for (const Solver solver : {Solver::kQuasiNewton, Solver::kConjugateGradients}) {
+    for (const double times : {1.0, 1.5, 3.0, 5.0}) {
+      const double budget = times * body.costs.least(true);
+      SecondStep step(body, budget, solver);
+      Dynamics& dynamics = step.dynamics;
+      // Twisted, so that the factor is of elsewhere, and conjugate gradients take many iterations with it.
+      for (Vec3& x : dynamics.mutable_position())
+        x = Eigen::AngleAxisd(150 * (x[1] + kSize[1]), Vec3::UnitY()) * x;
+      int iterations = 0;
+      while (dynamics.affords_iteration() && iterations < 1000) {
+        dynamics.iterate(body.load);
+        ++iterations;
+      }
+      CAPTURE(times, budget, body.costs.iteration(), static_cast<int>(solver));
+      CHECK(iterations >= 1);
+      CHECK(iterations < 1000);
+      // But for the first product of conjugate gradients, and a line search that halves its step.
+      CHECK(dynamics.spent_ms() <= budget + body.costs.iteration() + 2 * body.costs.evaluation);
+    }
+  }
+}
+
+TEST_CASE("budget of a step: an iteration costs a solve and as many evaluations as it made") {
+  const Sheared body;
+  SecondStep step(body, 1e3, DynamicsSettings::Solver::kQuasiNewton);
+  Dynamics& dynamics = step.dynamics;
+  CHECK(dynamics.spent_ms() == Approx(body.costs.evaluation / 2));
+  dynamics.iterate(body.load);
+  const double evaluations =
+      (dynamics.spent_ms() - body.costs.solve) / body.costs.evaluation - 0.5;  // all the rest
+  CHECK(evaluations >= 1);
+  CHECK(evaluations == Approx(std::round(evaluations)));
+  CHECK(std::abs(body.costs.solve / body.costs.evaluation - std::round(evaluations)) > 0.01);
+}
+
+TEST_CASE("budget of a step: no factor is made that it has no room for, not even at rest") {
+  const Sheared body;
+  for (const bool ample : {false, true}) {
+    SecondStep step(body, ample ? 1e3 : body.costs.least(false) + 0.5 * body.costs.factor,
+                    DynamicsSettings::Solver::kDirect);
+    step.dynamics.iterate(body.load);
+    const int made = step.dynamics.factors();
+    step.dynamics.iterate(body.load);
+    step.dynamics.refactor_if_moved();
+    CHECK(step.dynamics.factors() > made);  // there is room for one
+    const int now = step.dynamics.factors();
+    step.dynamics.mutable_position().back() += Vec3(0, 0.004, 0);
+    step.dynamics.refactor_if_moved();
+    CHECK(step.dynamics.factors() == now + (ample ? 1 : 0));
   }
 }
 
