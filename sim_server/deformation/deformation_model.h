@@ -100,7 +100,7 @@ class DeformationModel {
   /// Steps that ended because their budget did, before they had converged.
   struct BudgetUse {
     std::uint64_t steps = 0;
-    double largest_residual = 0;  ///< relative, that the last iteration of one of these found
+    double largest_residual = 0;  ///< relative, that one of these left
   };
   /// So far, of models that have one.
   virtual BudgetUse budget_use() const noexcept { return {}; }

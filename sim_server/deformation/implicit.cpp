@@ -61,6 +61,8 @@ const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"implicit\" needs a [material] section", scene.source);
   step_period(scene);  // before any work
+  if (scene.material->is_linear() && !scene.cutting && scene.deformation.of<ImplicitSettings>().budget_ms > 0)
+    fail("{}: budget_ms bounds iterations, and law \"linear\" takes one; leave it out", scene.source);
   if (held_by_vertices(scene)) require_no_loose_part(inputs);
   inputs.progress(name_of(Stage::kStiffness), 0);
   return *scene.material;
@@ -150,6 +152,7 @@ FreeMotion Implicit::free_motion(double dt) {
     if (static_cast<double>(columns_.size()) * sizeof(double) > kMostColumnBytes) clear_columns();
     if (!triangles_.empty()) request_columns();
     dynamics_.start_step(period_);
+    columns_ms_ = 0;  // of the step before
     if (supports_) {
       supports_->advance(period_);
       scene_loads_.put_held(supports_->time(), dynamics_.mutable_position());
@@ -195,7 +198,7 @@ std::optional<FreeMotion> Implicit::relinearise() {
   const int most = dynamics_.relative_residual() > kBalanced ? kMoreIterations * max_newton_ : max_newton_;
   if (is_linear() || ++iterations_ > most) return {};
   apply_new_loads();
-  dynamics_.charge_columns(std::exchange(solved_, 0));
+  dynamics_.charge(std::exchange(columns_ms_, 0));
   if (!dynamics_.affords_iteration()) {
     end_by_budget();
     return {};
@@ -208,7 +211,7 @@ std::optional<FreeMotion> Implicit::relinearise() {
 }
 
 void Implicit::end_by_budget() {
-  dynamics_.look(external_forces());
+  dynamics_.end_by_budget(external_forces());
   if (dynamics_.relative_residual() <= tolerance_) return;
   ++budget_use_.steps;
   budget_use_.largest_residual = std::max(budget_use_.largest_residual, dynamics_.relative_residual());
@@ -283,7 +286,7 @@ void Implicit::find_columns(std::span<const int> vertices) const {
   }
   if (missing.empty()) return;
   keep_columns(dynamics_.matrix().columns(missing, column_tolerance_));
-  solved_ += static_cast<int>(missing.size());
+  columns_ms_ += dynamics_.costs().columns(static_cast<int>(missing.size()));
 }
 
 void Implicit::keep_columns(const Eigen::MatrixXd& columns) const {

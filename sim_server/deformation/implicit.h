@@ -68,7 +68,8 @@ class Implicit : public DeformationModel {
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) override;
   std::optional<FreeMotion> relinearise() override;
-  /// Whether the last iteration found a relative residual of at most 1 %, and no element inverted for good
+  /// Whether the last iteration found, or the budget left, a relative residual of at most 1 %, and no element
+  /// inverted for good
   /// (`Dynamics::inside_out`).
   bool balanced() const noexcept override;
   bool inside_out() const noexcept override { return !is_linear() && dynamics_.inside_out(); }
@@ -123,7 +124,8 @@ class Implicit : public DeformationModel {
   std::vector<NodalLoad> loads_, linearised_loads_;       // now; those that the linearisation was made under
   mutable std::vector<int> slot_;                         // per surface vertex: of its columns, or -1
   mutable std::vector<std::uint8_t> asked_;  // per surface vertex: for its columns, of this factor
-  mutable int slots_ = 0, solved_ = 0;       // columns of vertices; those not yet charged to the budget
+  mutable int slots_ = 0;
+  mutable double columns_ms_ = 0;  // of columns that are not yet charged to the budget
   BudgetUse budget_use_;
   mutable Eigen::MatrixXd columns_;  // of A^-1, three a slot, m/N
 };

@@ -16,10 +16,10 @@ namespace {
 constexpr double kNegligibleWay = 1e-9, kElsewhere = 1e-4, kNudge = 1e-7;
 // Relative residuals. Where the last trial step of a step leaves more than the first, velocities mean
 // nothing, and the step ends at rest: each step from there lowers the energy, however far Newton's method is
-// from balance. A step that has a budget often ends far from balance, and does so where more than the second
-// is left: to stop there costs the force more. Where no more than the third is left, and loads change by no
-// more, the linearisation is trusted without a line search. A body whose step began with no more than the
-// fourth has come to rest.
+// from balance. A step that ends by its budget does so where more than the second is left: to stop where it
+// is less costs the force more. Where no more than the third is left, and loads change by no more, the
+// linearisation is trusted without a line search. A body whose step began with no more than the fourth has
+// come to rest.
 constexpr double kAdrift = 0.1, kAdriftByBudget = 0.5, kTrusted = 0.1, kAtRest = 1e-6;
 
 double largest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
@@ -40,8 +40,8 @@ bool factors_in_background(const Solid& solid, const DynamicsSettings& settings)
 void require_budget(const StepCosts& costs, double budget_ms, bool background, const std::string& where) {
   if (budget_ms == 0 || budget_ms >= costs.least(background)) return;
   fail(
-      "{}: the least step of this mesh costs {:.1f} ms ({}), budget_ms = {:g} is less; take more{}, or a "
-      "coarser mesh",
+      "{}: the least implicit step of this mesh costs {:.1f} ms ({}), and budget_ms leaves {:g} ms for "
+      "each; take more{}, or a coarser mesh",
       where, costs.least(background), costs.to_text(), budget_ms,
       background ? "" : ", solver = \"quasi_newton\", which makes its factors in the background");
 }
@@ -77,6 +77,8 @@ void Dynamics::set_state(std::vector<Vec3> x, std::span<const Vec3> v) {
 
 void Dynamics::start_step(double h) {
   evaluations_before_ = motion_.evaluations();
+  iterations_ = 0;
+  ended_by_budget_ = false;
   spent_ms_ = costs_.evaluation / 2;  // the turns of the nodes
   quasi_newton_.restart();
   trial_residual_ = 0;
@@ -96,6 +98,7 @@ void Dynamics::factor() {
 }
 
 void Dynamics::count_new_factor() {
+  costs_ = StepCosts(solid_, matrix_);  // its precision may be another
   quasi_newton_.clear();
   ++factors_;
 }
@@ -141,6 +144,7 @@ Residual Dynamics::evaluate(std::span<const Vec3> external) {
 }
 
 double Dynamics::iterate(std::span<const Vec3> external, double tolerance) {
+  ++iterations_;
   const double previous = relative_residual_;
   if (at_predictor_) limit_predictor(external);
   const bool other_c = matrix_.c() != motion_.time().c();
@@ -150,15 +154,17 @@ double Dynamics::iterate(std::span<const Vec3> external, double tolerance) {
   }
   const Residual residual = evaluate(external);
   if (!std::isfinite(residual.relative)) {
-    motion_.move_to(motion_.time().position());
-    relative_residual_ = trial_residual_ = 1;
+    go_back();
     return 0;
   }
   if (residual.relative <= tolerance) return residual.relative;
   using Decision = FactorPolicy::Decision;
   const Decision decision = policy_.decide(residual, previous, other_c, affords(costs_.factor));
   if (decision == Decision::kStop) return 0;
-  if (decision == Decision::kRefactorChecked) matrix_.check_precision();
+  if (decision == Decision::kRefactorChecked) {
+    matrix_.check_precision();
+    spent_ms_ += costs_.solve;
+  }
   if (decision != Decision::kKeep) factor();
   const Eigen::VectorXd d = search_direction(residual, external);
   if (cautious_ || residual.relative > kTrusted) {
@@ -168,6 +174,18 @@ double Dynamics::iterate(std::span<const Vec3> external, double tolerance) {
     trial_residual_ = residual.relative;
   }
   return residual.relative;
+}
+
+void Dynamics::end_by_budget(std::span<const Vec3> external) {
+  ended_by_budget_ = true;
+  trial_residual_ = evaluate(external).relative;
+  if (!std::isfinite(relative_residual_)) go_back();
+}
+
+/// A trial point beyond all numbers.
+void Dynamics::go_back() {
+  motion_.move_to(motion_.time().position());
+  relative_residual_ = trial_residual_ = 1;
 }
 
 int Dynamics::solve(std::span<const Vec3> external, int max_iterations, double tolerance) {
@@ -191,7 +209,8 @@ Eigen::VectorXd Dynamics::solve_turned(const Eigen::VectorXd& b) {
   return quasi_newton_.direction(matrix_, b);
 }
 
-/// By as many conjugate gradients as the budget has room for, one at least.
+/// By as many conjugate gradients as the budget has room for, one at least. In the first iteration of a step
+/// they leave room for a second, and for columns, as contact is met between the two.
 Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<const Vec3> external) {
   const std::vector<Vec3> here(motion_.position().begin(), motion_.position().end());
   const auto times = [&](const Eigen::VectorXd& v) {
@@ -202,7 +221,9 @@ Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<
   };
   const auto precondition = [&](const Eigen::VectorXd& v) { return solve_turned(v); };
   ConjugateGradientSettings settings;
-  while (settings.max_iterations > 1 && !affords(settings.max_iterations * costs_.iteration()))
+  const double reserve =
+      2 * costs_.evaluation + (iterations_ == 1 ? costs_.iteration() + costs_.columns(1) : 0);
+  while (settings.max_iterations > 1 && !affords(settings.max_iterations * costs_.iteration() + reserve))
     --settings.max_iterations;
   Eigen::VectorXd d = conjugate_gradients(residual.force, times, precondition, settings);
   motion_.move_to(here);
@@ -243,7 +264,7 @@ void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> e
 }
 
 void Dynamics::finish_step() {
-  const bool adrift = trial_residual_ > (budget_ms_ > 0 ? kAdriftByBudget : kAdrift);
+  const bool adrift = trial_residual_ > (ended_by_budget_ ? kAdriftByBudget : kAdrift);
   cautious_ = adrift || (cautious_ && relative_residual_ > kAtRest);
   motion_.end_step(adrift);
 }
@@ -254,7 +275,8 @@ bool Dynamics::inside_out() const {
 
 std::string Dynamics::budget_text() const {
   if (budget_ms_ == 0) return {};
-  return fmt::format("a step may cost {:g} ms of the reference machine: {}", budget_ms_, costs_.to_text());
+  return fmt::format("an implicit step (one an instant) may cost {:g} ms of the reference machine: {}",
+                     budget_ms_, costs_.to_text());
 }
 
 std::size_t Dynamics::bytes() const {

@@ -42,7 +42,8 @@ class Dynamics {
   double iterate(std::span<const Vec3> external, double tolerance = 0);
   /// At most `max_iterations` of them, until the relative residual is at most `tolerance`. Returns how many.
   int solve(std::span<const Vec3> external, int max_iterations, double tolerance);
-  /// Norm of the residual that the last `iterate` found, as a share of the forces that act.
+  /// Norm of the residual that the last `iterate` or `end_by_budget` found, as a share of the forces that
+  /// act.
   double relative_residual() const { return relative_residual_; }
   /// Whether an element that is no sliver is inverted, of a law that can have a second rest there: St. Venant
   /// and Kirchhoff's, and the corotational one where nu is near one half. O(elements), a fraction of an
@@ -53,12 +54,13 @@ class Dynamics {
   void refactor_if_moved();
   /// Whether the budget of the step has room for another iteration, and for a look at what that leaves.
   bool affords_iteration() const { return affords(costs_.iteration() + costs_.evaluation); }
-  /// Evaluates the residual at the trial point, for `relative_residual`.
-  void look(std::span<const Vec3> external) { trial_residual_ = evaluate(external).relative; }
+  /// The step ends, as its budget does: evaluates the residual at the trial point, for `relative_residual`.
+  void end_by_budget(std::span<const Vec3> external);
   /// What this step has cost so far, by `StepCosts`, ms.
   double spent_ms() const { return spent_ms_ + evaluations() * costs_.evaluation; }
-  /// The columns of A^-1 of so many nodes have been solved for.
-  void charge_columns(int nodes) { spent_ms_ += costs_.columns(nodes); }
+  /// What `matrix` was asked for besides, ms by `costs`.
+  void charge(double ms) { spent_ms_ += ms; }
+  const StepCosts& costs() const { return costs_; }
   /// What a step may cost, and what its parts do, in words; empty: there is no budget.
   std::string budget_text() const;
   /// The trial point is the end of the step.
@@ -121,6 +123,7 @@ class Dynamics {
   int evaluations() const { return motion_.evaluations() - evaluations_before_; }
   Eigen::VectorXd solve_turned(const Eigen::VectorXd& b);
   Residual evaluate(std::span<const Vec3> external);
+  void go_back();
   void factor();
   void count_new_factor();
   void exchange_factors();
@@ -135,10 +138,12 @@ class Dynamics {
   EquationsOfMotion motion_;
   NewtonMatrix matrix_;
   StepCosts costs_;
-  double budget_ms_;            // 0: none
-  double spent_ms_ = 0;         // in this step, but for evaluations
-  int evaluations_before_ = 0;  // this step
-  double size_;                 // of the body, m
+  double budget_ms_;              // 0: none
+  double spent_ms_ = 0;           // in this step, but for evaluations
+  int evaluations_before_ = 0;    // this step
+  int iterations_ = 0;            // in this step
+  bool ended_by_budget_ = false;  // this step has
+  double size_;                   // of the body, m
   FactorPolicy policy_;
   std::optional<BackgroundMatrix> background_;
   QuasiNewton quasi_newton_;
