@@ -51,7 +51,7 @@ class SparseCholesky final : public FactoredMatrix {
   /// Of the factor that there is.
   Precision precision() const;
   std::size_t bytes() const;
-  /// That a factor takes, and of a solve about one for each four or eight bytes of it, twice.
+  /// That one factorisation takes, counted from the pattern.
   double multiplications() const;
 
   /// The library behind it, for reports.

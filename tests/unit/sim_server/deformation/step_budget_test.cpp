@@ -172,6 +172,14 @@ TEST_CASE("budget of a step: no factor is made that it has no room for, not even
   }
 }
 
+TEST_CASE("budget of a step: the linear law, which takes one iteration, has none to bound") {
+  Scene scene = scene_of(1e4, DynamicsSettings::Solver::kDirect);
+  scene.material->law = ElasticLaw::kLinear;
+  CHECK_THROWS_WITH(Simulation(scene, block()), Catch::Contains("law \"linear\" takes one; leave it out"));
+  scene.deformation.of<ImplicitSettings>().budget_ms = 0;
+  CHECK_NOTHROW(Simulation(scene, block()));
+}
+
 TEST_CASE("budget of a step: one that has no room for the least step is refused, with what would help") {
   const StepCosts costs = costs_of(block());
   const auto refused = [](double budget_ms, DynamicsSettings::Solver solver) {
