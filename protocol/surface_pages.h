@@ -14,7 +14,8 @@
 ///   shapes      for each cluster, `groups()` pages: s (1/sqrt(kg)) of modes `kModes` g to `kModes` g + 14 at
 ///   its
 ///               vertices, as a (3 kCluster x kModes) matrix, row by row
-/// Numbers beyond the last vertex or triangle are 0.
+/// Numbers beyond the last vertex or triangle are 0. A tile of tissue that can be cut may be known later than
+/// the rest (`SurfacePages::kNotYet`).
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -30,6 +31,9 @@ struct SurfacePages {
   static constexpr std::uint32_t kCluster = 5, kPerPage = SurfacePage::kValues / 3;
   static constexpr std::uint32_t kModes = SurfacePage::kValues / (3 * kCluster);  ///< on a page of shapes
   static_assert(3 * kCluster * 3 * kCluster == SurfacePage::kValues);
+  /// Added to the number of a page that is asked for before the server knows it: it will, ask again later.
+  /// Its values are 0.
+  static constexpr std::uint32_t kNotYet = 1U << 31U;
   static_assert(3 * kMostSlowModes <= SurfacePage::kValues);
   std::uint32_t vertices = 0, triangles = 0, modes = 0;
 

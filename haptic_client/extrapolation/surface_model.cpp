@@ -48,7 +48,13 @@ void SurfaceModel::announce(const protocol::SurfaceState& state, std::uint32_t m
 }
 
 void SurfaceModel::take(const SurfacePage& page) noexcept {
-  if (version_ == 0 || page.version != version_ || page.page >= pages_.count()) return;
+  if (version_ == 0 || page.version != version_) return;
+  if ((page.page & SurfacePages::kNotYet) != 0) {
+    Asked& asked = asked_[(page.page & ~SurfacePages::kNotYet) % kAsked];
+    asked.not_yet = asked.page == (page.page & ~SurfacePages::kNotYet);
+    return;
+  }
+  if (page.page >= pages_.count()) return;
   if (pages_.modes > 0 && page.page == pages_.spectrum()) {
     take_spectrum(page);
   } else if (page.page >= pages_.first_tile()) {
@@ -158,7 +164,7 @@ class SurfaceModel::Wishes {
     missing = true;
     Asked& asked = asked_[page % kAsked];
     if (full() || (asked.page == page && now_ms_ - asked.ms < patience_ms_)) return;
-    again += asked.page == page && asked.ms != 0 ? 1 : 0;
+    again += asked.page == page && asked.ms != 0 && !asked.not_yet ? 1 : 0;
     asked = {page, now_ms_};
     pages_[count_++] = page;
   }
@@ -200,6 +206,7 @@ bool SurfaceModel::choose(const Vec3& p, double reach, Wishes& wishes) noexcept 
 }
 
 std::optional<Time> SurfaceModel::waited_for(std::uint32_t page, Time now) const noexcept {
+  page &= ~SurfacePages::kNotYet;
   const Asked& asked = asked_[page % kAsked];
   if (asked.page != page || asked.ms == 0) return {};
   return std::chrono::milliseconds(to_ms(now) + 1 - asked.ms);

@@ -29,7 +29,7 @@ class SurfaceModel {
 
   /// What the server has; another version forgets all. Call it with every sample that tells.
   void announce(const protocol::SurfaceState& state, std::uint32_t modes = 0) noexcept;
-  /// A page came; one of another version changes nothing.
+  /// A page came, or that it will be known later; one of another version changes nothing.
   void take(const protocol::SurfacePage& page) noexcept;
 
   /// Writes into `pages` what to ask for at time `now`, for a tool at `p` (m, at rest): the shape, then the
@@ -41,7 +41,7 @@ class SurfaceModel {
   /// For how long at `now` a page has been asked for, to a millisecond; nothing where it was not, or that is
   /// forgotten.
   std::optional<Time> waited_for(std::uint32_t page, Time now) const noexcept;
-  /// How many pages were asked for once more, as they had not come.
+  /// How many pages were asked for once more, as no answer had come.
   std::uint64_t asked_again() const noexcept { return asked_again_; }
 
   /// Version 0: none is known.
@@ -72,6 +72,7 @@ class SurfaceModel {
   };
   struct Asked {
     std::uint32_t page = protocol::ToolState::kNoPage, ms = 0;
+    bool not_yet = false;  // said the server
   };
   void take_shape(const protocol::SurfacePage& page) noexcept;
   void complete_shape() noexcept;

@@ -75,6 +75,12 @@ std::string shape_of(const Tool& tool) {
   return tool.is_sphere() ? "sphere" : fmt::format("capsule, length {:g} mm", 1e3 * tool.length);
 }
 
+/// Of what can be cut, to tell clients its surface anew.
+bool keeps_factor(const Simulation& simulation) {
+  return std::ranges::any_of(simulation.memory(),
+                             [](const MemoryPart& part) { return part.name == "surface told to clients"; });
+}
+
 std::string detail_of(const Scene& scene, const Simulation& simulation, const std::string& part) {
   const TetMesh& mesh = simulation.mesh();
   const Surface& surface = simulation.surface();
@@ -96,7 +102,9 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
   }
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
   if (part == "stiffness matrix" || part == "its factor")
-    return model_of(scene.deformation).keeps_compliance() ? "freed after set-up" : "kept: part of motion";
+    return keeps_factor(simulation)                         ? "kept: part of surface told to clients"
+           : model_of(scene.deformation).keeps_compliance() ? "freed after set-up"
+                                                            : "kept: part of motion";
   if (const ToolSettings* tool = tool_of(scene, part)) {
     const std::size_t reached = reachable_vertices(surface, mesh, {tool, 1}).size();
     return fmt::format(
@@ -307,7 +315,7 @@ std::vector<LeftOut> left_out(Own& own) {
   if (!model.deforms() && !model.moves) rows.push_back(elasticity(own));
   if (model.keeps_compliance()) rows.push_back(whole_compliance(own));
   if (!model.moves) rows.push_back(motion(own));
-  if (model.unneeded)
+  if (model.unneeded && !keeps_factor(own.simulation))
     rows.push_back({.what = std::string(model.unneeded->what),
                     .why = own.scene.deformation.where,
                     .note = std::string(model.unneeded->note)});

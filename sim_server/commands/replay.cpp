@@ -40,7 +40,7 @@ int serve_replay(const ReplayOptions& options) {
   protocol::UdpSocket socket = open_socket(options.listen);
   SimMailboxes mailboxes;
   ForcePlayer player(forces, mailboxes);
-  NetLink link(socket, std::move(sessions), {}, mailboxes, nullptr);
+  NetLink link(socket, std::move(sessions), mailboxes, nullptr);
   std::jthread net([&] {
     name_thread("palpate-net");
     link.run();

@@ -279,8 +279,6 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
   warn_if_coarse(errors, simulation, scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);
-  std::vector<SurfacePager> pagers;
-  for (std::size_t i = 0; i < scene.tools.size(); ++i) pagers.emplace_back(simulation, i);
   SimMailboxes mailboxes;
   std::optional<Scene> chosen;
   const Time start = now();
@@ -288,7 +286,7 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   if (view) request->address.endpoint = view->viewer().endpoint();
   SimLoop loop(simulation, scene.rate_hz, mailboxes, scene.tools, errors, view.get());
   const auto page = view ? std::make_unique<PageMailboxes>() : nullptr;
-  NetLink link(socket, std::move(sessions), std::move(pagers), mailboxes, recorder.get(), page.get());
+  NetLink link(socket, std::move(sessions), mailboxes, recorder.get(), page.get());
   if (view) {
     view->feed().hooks = page_hooks(view->feed(), scene.tools.size(), *page, mailboxes.bell, start);
     if (!view->facts().fields.empty()) view->feed().hooks.field = strain_energy_of(scene, simulation);

@@ -67,6 +67,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
     highest = std::max(highest, kModesAsGrown * scaling_.frequency);
     growth_.emplace(inputs, *region, scaling_.factors, highest);
   }
+  if (told_bodies(inputs.scene) > 0) told_.emplace(inputs, body_->tensors);
   choose_sub_step(inputs, highest);
   for (const int vertex : node_) free_.push_back(rest_places_[static_cast<std::size_t>(vertex)]);
   positions_ = free_;
@@ -121,6 +122,7 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
   if (dt > 0) {
     if (!ended_) end_sub_step();
     ended_ = false;
+    if (body_->rest && told_ && told_->told() != nullptr) told_->told()->motion.go_on(sub_step_, loads_);
     if (body_->rest) follow();
     take_sub_step();
     const bool ends = instant_ + 1 == instants_;
@@ -302,6 +304,7 @@ void CuttableMotion::end_contact() noexcept {
 
 DeformationModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra, const CutMesh& left) {
   end_contact();
+  if (told_) told_->forget();
   if (body_->rest) body_->rest->look_at(body_->motion.state.u, body_->motion.state.v);
   Removed gone;
   const auto add = [&gone](const Removed& lost) {
@@ -319,6 +322,7 @@ DeformationModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra
 
 void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) {
   end_contact();
+  if (told_) told_->forget();
   body_->part(slides, parting, left, material_, scaling_.frequency);
   const auto stand_anew = [&](int vertex) {
     rest_places_[static_cast<std::size_t>(vertex)] = left.mesh().vertices[static_cast<std::size_t>(vertex)];
@@ -366,6 +370,10 @@ std::vector<MemoryPart> CuttableMotion::memory() const {
                         shown_.size() + loads_.capacity() * sizeof(NodalLoad) +
                         (body_->first.size() + node_.size()) * sizeof(int)}};
   if (growth_) parts.push_back({"growth", growth_->bytes()});
+  if (told_)
+    parts.push_back({"surface told to clients", told_->bytes(),
+                     fmt::format("near their tools, {:.2g} s after the last cut{}{}", told_->delay(),
+                                 told_->failure().empty() ? "" : "; not by now: ", told_->failure())});
   if (body_->rest)
     parts.push_back({"condensed rest", body_->rest->bytes(),
                      fmt::format("{} parts, {} modes, {} vertices at the border, {} that tools reach",

@@ -5,6 +5,7 @@
 #include "sim_server/deformation/lumped_compliance.h"
 #include "sim_server/deformation/mass_scaling.h"
 #include "sim_server/deformation/region_growth.h"
+#include "sim_server/deformation/told_nearby.h"
 
 namespace palpate::sim {
 
@@ -13,9 +14,10 @@ namespace palpate::sim {
 /// cut has, with some around them. Contact is solved at each sub-step of h, over which each vertex in motion
 /// gives way alone, by h^2 / m (`LumpedCompliance`): nothing that was computed beforehand is of tissue that
 /// is no more. Sub-steps are as short as the stiffest elements ask for, so that they stay stable whatever is
-/// removed; the very stiffest get a little more mass instead (`MassScaling`). Clients are told no modes, and
-/// no tangents: those of so short a time are far too steep. At such short instants contact in a pit of a
-/// coarse mesh chatters by some percent; more `instants` end that.
+/// removed; the very stiffest get a little more mass instead (`MassScaling`). Clients are told no tangents:
+/// those of so short a time are far too steep; but, while it is left alone, the surface near the tools with
+/// its slow modes (`ToldNearby`). At such short instants contact in a pit of
+/// a coarse mesh chatters by some percent; more `instants` end that.
 ///
 /// The rest follows the border at each sub-step: what it does there is part of the stiffness of an explicit
 /// step, no stiffer than the border is where the rest is held (Guyan), so that sub-steps need not be shorter
@@ -43,6 +45,11 @@ class CuttableMotion : public DeformationModel {
   Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
   void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) override;
   Growth grow(const CutMesh& left) override;
+  const SlowModes* slow_modes() const noexcept override;
+  void modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept override;
+  void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
+  std::shared_ptr<const ToldSurface> told() const noexcept override;
+  void tell_near(std::span<const ToldTool> tools, const CutMesh& left, bool waits) override;
   std::vector<MemoryPart> memory() const override;
 
   double sub_step() const { return sub_step_; }  ///< s
@@ -78,6 +85,7 @@ class CuttableMotion : public DeformationModel {
   MassScaling scaling_;
   std::unique_ptr<CuttableBody> body_;  // its motion free of the loads of this sub-step
   std::optional<RegionGrowth> growth_;
+  std::optional<ToldNearby> told_;  // to clients
   std::vector<int> allowed_;        // of `grow`
   std::vector<double> force_;       // of the rest on the border, N
   int instants_ = 1, instant_ = 0;  // of a step; how many of this one are done

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@ namespace palpate::sim {
 class CutMesh;
 struct Parting;
 struct SlowModes;
+struct ToldSurface;
 
 /// A force on one vertex of the surface.
 struct NodalLoad {
@@ -117,7 +119,7 @@ class DeformationModel {
   /// one instant chatters: the mean over the last quarter of a step is felt.
   virtual bool knows_later_compliance() const noexcept { return true; }
   /// The slow modes of a linear tissue that swings, for clients that step it between two samples; null: it
-  /// has none, or does not know them. They never change.
+  /// has none, or does not know them. They never change, unless the model has a `told`.
   virtual const SlowModes* slow_modes() const noexcept { return nullptr; }
   /// Amplitudes and rates (m sqrt(kg), m sqrt(kg)/s) of the told ones of these modes, as many each, at the
   /// end of the last step, under the loads of `apply`.
@@ -166,6 +168,19 @@ class DeformationModel {
   /// Between two steps, before anything of the next is removed: what of this can be said now. Allocates where
   /// it says anything, and may wait for the background.
   virtual Growth grow([[maybe_unused]] const CutMesh& left) { return {}; }
+
+  /// What clients may know by now of a surface that can be cut, with its `slow_modes`; null: nothing, as it
+  /// has been cut just now, or cannot be. Never changes once it is told, and may be read by any thread.
+  virtual std::shared_ptr<const ToldSurface> told() const noexcept { return {}; }
+  /// A tool whose client wants to know the surface.
+  struct ToldTool {
+    Vec3 p_W, v_W;  ///< m, m/s
+  };
+  /// Between two steps, when all was removed: what is `told` may change now, to be that near these tools.
+  /// `waits`: for the background, so that the same is told at the same step on every machine. Allocates
+  /// where anything changes.
+  virtual void tell_near([[maybe_unused]] std::span<const ToldTool> tools,
+                         [[maybe_unused]] const CutMesh& left, [[maybe_unused]] bool waits) {}
 
   /// What this model holds in memory.
   virtual std::vector<MemoryPart> memory() const = 0;

@@ -84,7 +84,7 @@ constexpr std::array kModels{
                                     .summary = "no deformation; the organ hangs on a spring that hardens",
                                     .moves = true}),
     // Those that need [cutting] are the last.
-    row_of<Hybrid, RayleighDamping, ContactInstants, HybridSettings>(
+    row_of<Hybrid, RayleighDamping, ContactInstants, HybridSettings, ClientModes>(
         {.name = "hybrid",
          .summary = "linear elastic: what can be cut in motion as tensor_mass, the rest condensed to its "
                     "slowest modes",

@@ -25,7 +25,8 @@ std::unique_ptr<DeformationModel> Hybrid::make(const ModelInputs& inputs) {
 }
 
 double Hybrid::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
-  return tensors_bytes(counts) + body_bytes(counts, scene.material->element, 1);
+  const int bodies = told_bodies(scene) + 1;
+  return tensors_bytes(counts) + bodies * body_bytes(counts, scene.material->element, 1);
 }
 
 }  // namespace palpate::sim

@@ -156,14 +156,14 @@ std::optional<MovingSupports> LinearStatics::supports(Following following) const
   return MovingSupports(inputs_, responses);
 }
 
-VibrationModes LinearStatics::modes(int count, const std::string& where) const {
+VibrationModes LinearStatics::modes(int count, const std::string& where,
+                                    [[maybe_unused]] const Eigen::VectorXd& weights) const {
 #ifndef PALPATE_WITH_SPECTRA
   fail(
       "{}: this build finds none of the {} modes of vibration asked for; configure it with "
       "-DPALPATE_SPECTRA=ON",
       where, count);
 #else
-  const Eigen::VectorXd weights = masses();
   const auto find = [&] {
     const FactoredMatrix& of_stiffness = factor();
     inputs_.progress(name_of(Stage::kModes), 0);

@@ -28,7 +28,9 @@ struct LinearStatics {
   /// The `count` lowest modes of vibration over `dofs`, or what the cache of the inputs has of them. Throws
   /// `Error`, beginning with `where`, as `vibration_modes`, and where the build has no Spectra. "What the
   /// inputs have" is the folder of `sim_server condense` where there is one, else the cache.
-  VibrationModes modes(int count, const std::string& where) const;
+  VibrationModes modes(int count, const std::string& where) const { return modes(count, where, masses()); }
+  /// The same of a body of other masses, of each unknown, kg > 0.
+  VibrationModes modes(int count, const std::string& where, const Eigen::VectorXd& masses) const;
   /// Fills `compliance` with J K^-1 J^T, on all cores, or with what the cache of the inputs has of it.
   void fill(SurfaceCompliance& compliance) const;
 

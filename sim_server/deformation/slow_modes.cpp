@@ -49,6 +49,14 @@ void SlowModes::take_out(std::span<const int> vertices, const Eigen::VectorXd& y
   }
 }
 
+void SlowModes::add_drive(std::span<const NodalLoad> loads,
+                          Eigen::Ref<Eigen::VectorXd> drive) const noexcept {
+  for (const NodalLoad& load : loads)
+    drive.noalias() +=
+        shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex)).leftCols(told).transpose() *
+        load.force;
+}
+
 Eigen::VectorXd SlowModes::told_at_rest() const {
   Eigen::VectorXd yields = Eigen::VectorXd::Zero(frequencies.size());
   yields.head(told) = frequencies.head(told).array().square().inverse();

@@ -59,6 +59,8 @@ struct SlowModes {
   /// no allocation.
   void take_out(std::span<const int> vertices, const Eigen::VectorXd& yields,
                 ContactPatch& patch) const noexcept;
+  /// Adds how hard these loads drive each of the told modes, N/sqrt(kg).
+  void add_drive(std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> drive) const noexcept;
   /// How far the told modes give way at rest, 1 / w^2, and the others not at all.
   Eigen::VectorXd told_at_rest() const;
   /// How much farther the first `end` modes give way to a force held for `seconds` than to one held for

@@ -73,6 +73,8 @@ std::unique_ptr<DeformationModel> TensorMass::make(const ModelInputs& inputs) {
 
 double TensorMass::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
   const bool factors = supports_move(scene) || scene.deformation.find<ClientModes>() != nullptr;
+  if (scene.cutting)
+    return tensors_bytes(counts) + told_bodies(scene) * body_bytes(counts, scene.material->element, 1);
   return tensors_bytes(counts) + (factors ? body_bytes(counts, scene.material->element, 1) : 0);
 }
 

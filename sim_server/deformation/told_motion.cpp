@@ -9,11 +9,6 @@
 namespace palpate::sim {
 namespace {
 
-VibrationModes modes_of(const ModelInputs& inputs, const LinearStatics& statics) {
-  const DeformationSettings& settings = inputs.scene.deformation;
-  return statics.modes(std::min(settings.of<ClientModes>().modes, statics.dofs.count - 1), settings.where);
-}
-
 std::vector<int> surface_unknowns(const ModelInputs& inputs, const LinearStatics& statics) {
   std::vector<int> first;
   for (const int vertex : inputs.surface.vertices) first.push_back(statics.dofs.first[vertex]);
@@ -22,9 +17,16 @@ std::vector<int> surface_unknowns(const ModelInputs& inputs, const LinearStatics
 
 }  // namespace
 
+VibrationModes told_modes(const ModelInputs& inputs, const LinearStatics& statics,
+                          const Eigen::VectorXd& masses) {
+  const DeformationSettings& settings = inputs.scene.deformation;
+  const int count = std::min(settings.of<ClientModes>().modes, statics.dofs.count - 1);
+  return statics.modes(count, settings.where, masses);
+}
+
 ToldMotion::ToldMotion(const ModelInputs& inputs, const LinearStatics& statics, std::span<const int> places,
                        std::span<const double> masses)
-    : ToldMotion(inputs, statics, modes_of(inputs, statics), places, masses) {}
+    : ToldMotion(inputs, statics, told_modes(inputs, statics, statics.masses()), places, masses) {}
 
 ToldMotion::ToldMotion(const ModelInputs& inputs, const LinearStatics& statics, const VibrationModes& found,
                        std::span<const int> places, std::span<const double> masses)
@@ -70,11 +72,7 @@ const Eigen::VectorXd& ToldMotion::amplitudes(std::span<const double> u) noexcep
 void ToldMotion::advance(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
                          Eigen::Ref<Eigen::VectorXd> v) noexcept {
   force_.setZero();
-  for (const NodalLoad& load : loads)
-    force_.noalias() += modes_.shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex))
-                            .leftCols(modes_.told)
-                            .transpose() *
-                        load.force;
+  modes_.add_drive(loads, force_);
   q = q_;
   v = v_;
   for (Eigen::Index k = 0; k < modes_.told; ++k) {
@@ -83,6 +81,26 @@ void ToldMotion::advance(double time, std::span<const NodalLoad> loads, Eigen::R
     step.advance(q[k], v[k], force_[k]);
   }
   stepped_ = time;
+}
+
+void ToldMotion::push(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
+                      Eigen::Ref<Eigen::VectorXd> v) noexcept {
+  force_.setZero();
+  modes_.add_drive(loads, force_);
+  q = q_ - time * v_;
+  v = v_ + time * force_;
+}
+
+void ToldMotion::stand_as(const ToldMotion& before) noexcept {
+  q_ = before.q_;
+  v_ = before.v_;
+}
+
+void ToldMotion::stand_under(std::span<const NodalLoad> loads) noexcept {
+  q_.setZero();
+  v_.setZero();
+  modes_.add_drive(loads, q_);
+  q_.array() /= modes_.frequencies.head(modes_.told).array().square();
 }
 
 std::size_t ToldMotion::bytes() const {

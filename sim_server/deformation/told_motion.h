@@ -10,6 +10,11 @@ namespace palpate::sim {
 
 struct LinearStatics;
 
+/// As many modes as a scene's `client_modes` asks for, or as the body has, of these masses of unknowns, kg.
+/// Throws `Error` as `vibration_modes`.
+VibrationModes told_modes(const ModelInputs& inputs, const LinearStatics& statics,
+                          const Eigen::VectorXd& masses);
+
 /// What clients are told of a linear tissue in motion whose model itself needs neither modes nor statics: the
 /// slow modes, where they stand, and the static compliance of all the rest at the surface. One thread; only
 /// set-up allocates.
@@ -19,6 +24,9 @@ class ToldMotion {
   /// place, kg. Throws `Error` as `SurfaceCompliance` and `vibration_modes`.
   ToldMotion(const ModelInputs& inputs, const LinearStatics& statics, std::span<const int> places,
              std::span<const double> masses);
+  /// The same with modes that were found before (`told_modes`).
+  ToldMotion(const ModelInputs& inputs, const LinearStatics& statics, const VibrationModes& found,
+             std::span<const int> places, std::span<const double> masses);
 
   const SlowModes& modes() const { return modes_; }
 
@@ -31,6 +39,18 @@ class ToldMotion {
   /// From there by `time` (s) under loads that are held, to amplitudes and rates.
   void advance(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
                Eigen::Ref<Eigen::VectorXd> v) noexcept;
+  /// To amplitudes as they were `time` (s) before it, and rates as they are where these loads, too, have
+  /// pushed since.
+  void push(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
+            Eigen::Ref<Eigen::VectorXd> v) noexcept;
+  /// Where the model has no state over all unknowns: goes on by `time` (s) under these loads, from where it
+  /// stood before, or `before` stands, or where they hold it; a linear body's modes go so by themselves.
+  void go_on(double time, std::span<const NodalLoad> loads) noexcept { advance(time, loads, q_, v_); }
+  void stand_as(const ToldMotion& before) noexcept;
+  void stand_under(std::span<const NodalLoad> loads) noexcept;
+  const Eigen::VectorXd& amplitudes() const noexcept { return q_; }
+  const Eigen::VectorXd& rates() const noexcept { return v_; }
+
   /// Of the surface that bears these loads, as one piece, to a force held for `seconds`, m/N; what is quicker
   /// than the told modes is at rest by then.
   Mat3 compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
@@ -44,9 +64,6 @@ class ToldMotion {
   std::string detail() const;
 
  private:
-  ToldMotion(const ModelInputs& inputs, const LinearStatics& statics, const VibrationModes& found,
-             std::span<const int> places, std::span<const double> masses);
-
   SlowModes modes_;
   SurfaceCompliance residual_;
   Eigen::MatrixXd shapes_;         // (unknowns of the model x told modes), 1/sqrt(kg)

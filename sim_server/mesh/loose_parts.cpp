@@ -124,45 +124,67 @@ std::vector<Hinge> hinges(const TetMesh& mesh) {
   return found;
 }
 
-std::vector<LoosePart> loose_parts(const TetMesh& mesh, std::span<const int> held) {
-  const std::vector<int> part = part_of_tetrahedra(mesh);
-  const int parts = part.empty() ? 0 : 1 + *std::ranges::max_element(part);
+namespace {
+
+/// Parts that hang together by whole faces, and which of them are held.
+struct HeldParts {
+  std::vector<int> part;        // of each tetrahedron
+  std::vector<LoosePart> each;  // as if it were loose
+  std::vector<char> is_held;
+};
+
+HeldParts held_parts(const TetMesh& mesh, std::span<const int> held) {
+  HeldParts found{part_of_tetrahedra(mesh), {}, {}};
+  const int parts = found.part.empty() ? 0 : 1 + *std::ranges::max_element(found.part);
   std::vector<std::vector<int>> vertices(static_cast<std::size_t>(parts));  // of each part
-  std::vector<LoosePart> found(static_cast<std::size_t>(parts));
-  for (std::size_t t = 0; t < part.size(); ++t) {
-    auto& own = vertices[part[t]];
+  found.each.resize(static_cast<std::size_t>(parts));
+  for (std::size_t t = 0; t < found.part.size(); ++t) {
+    auto& own = vertices[found.part[t]];
     own.insert(own.end(), mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
-    ++found[part[t]].tetrahedra;
+    ++found.each[found.part[t]].tetrahedra;
   }
   for (auto& own : vertices) {
     std::ranges::sort(own);
     own.erase(std::unique(own.begin(), own.end()), own.end());
   }
-  std::vector<char> stands(mesh.vertices.size(), 0), is_held(vertices.size(), 0);
+  std::vector<char> stands(mesh.vertices.size(), 0);
+  found.is_held.assign(vertices.size(), 0);
   for (const int v : held) stands[v] = 1;
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t p = 0; p < vertices.size(); ++p) {
-      if (is_held[p] != 0) continue;
+      if (found.is_held[p] != 0) continue;
       std::vector<Vec3> places;
       for (const int v : vertices[p]) {
         if (stands[v] != 0) places.push_back(mesh.vertices[v]);
       }
       bool holds = false;
-      found[p].hold = hold_of(places, holds);
-      found[p].place = places.empty() ? mesh.vertices[vertices[p].front()] : places.front();
+      found.each[p].hold = hold_of(places, holds);
+      found.each[p].place = places.empty() ? mesh.vertices[vertices[p].front()] : places.front();
       if (!holds) continue;
-      is_held[p] = 1;
+      found.is_held[p] = 1;
       changed = true;
       for (const int v : vertices[p]) stands[v] = 1;
     }
   }
+  return found;
+}
+
+}  // namespace
+
+std::vector<LoosePart> loose_parts(const TetMesh& mesh, std::span<const int> held) {
+  const HeldParts parts = held_parts(mesh, held);
   std::vector<LoosePart> loose;
-  for (std::size_t p = 0; p < found.size(); ++p) {
-    if (is_held[p] == 0) loose.push_back(found[p]);
+  for (std::size_t p = 0; p < parts.each.size(); ++p) {
+    if (parts.is_held[p] == 0) loose.push_back(parts.each[p]);
   }
   std::ranges::stable_sort(loose, std::greater<>(), &LoosePart::tetrahedra);
   return loose;
+}
+
+void drop_loose_parts(TetMesh& mesh, std::span<const int> held) {
+  const HeldParts parts = held_parts(mesh, held);
+  keep_tetrahedra(mesh, [&](std::size_t t) { return parts.is_held[parts.part[t]] != 0; });
 }
 
 std::string to_text(const LoosePart& part) {

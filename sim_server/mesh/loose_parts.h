@@ -23,6 +23,9 @@ struct LoosePart {
 /// line; parts that meet in an edge or a vertex only are joined by a hinge. O(m log m).
 std::vector<LoosePart> loose_parts(const TetMesh& mesh, std::span<const int> held);
 
+/// Takes the tetrahedra of such parts out of `mesh`; its vertices stay. O(m log m).
+void drop_loose_parts(TetMesh& mesh, std::span<const int> held);
+
 /// "3 of its tetrahedra hang on a hinge at 0.1,0,0".
 std::string to_text(const LoosePart& part);
 

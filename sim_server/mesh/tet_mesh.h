@@ -40,6 +40,20 @@ struct TetMesh {
 /// nodes need it; nothing where they are there. O(m log m).
 void add_mid_edges(TetMesh& mesh);
 
+/// Leaves of `mesh` the tetrahedra t of which `keep(t)`, in their order, and all vertices. O(m).
+template <class Keep>
+void keep_tetrahedra(TetMesh& mesh, const Keep& keep) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    if (!keep(t)) continue;
+    mesh.tetrahedra[kept] = mesh.tetrahedra[t];
+    if (!mesh.stiffness.empty()) mesh.stiffness[kept] = mesh.stiffness[t];
+    ++kept;
+  }
+  mesh.tetrahedra.resize(kept);
+  if (!mesh.stiffness.empty()) mesh.stiffness.resize(kept);
+}
+
 /// Puts tagged vertices and triangles in order, each once, and drops those below 0.
 void sort_tags(TetMesh& mesh);
 

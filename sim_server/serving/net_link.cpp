@@ -27,16 +27,14 @@ bool is_to_a_stranger(const protocol::ServerSessions::Outcome& outcome) {
 
 }  // namespace
 
-NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions,
-                 std::vector<SurfacePager> pagers, SimMailboxes& mailboxes, protocol::Recorder* recorder,
-                 PageMailboxes* page)
+NetLink::NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes,
+                 protocol::Recorder* recorder, PageMailboxes* page)
     : socket_(socket),
       recorder_(recorder),
       sessions_(std::move(sessions)),
-      pagers_(std::move(pagers)),
       mailboxes_(mailboxes),
       page_(page),
-      page_buckets_(pagers_.size(), {kPagesPerSecond, kPagesAtOnce}) {}
+      page_buckets_(kMaxTools, {kPagesPerSecond, kPagesAtOnce}) {}
 
 void NetLink::run() {
   socket_.run(mailboxes_.bell, std::chrono::milliseconds(50),
@@ -115,15 +113,15 @@ void NetLink::pass_on(std::uint64_t session, const protocol::ToolState& state) {
 /// The pages it asks for, each once, if they are of the surface that we have; what is lost, or too much at
 /// once, will be asked for again.
 void NetLink::send_pages(const protocol::ToolState& state, Time t) {
-  if (pagers_.empty()) return;
-  SurfacePager& pager = pagers_[state.tool];
-  if ((state.flags & protocol::ToolState::kAsksPages) == 0 || state.surface_version != pager.state().version)
-    return;
+  if ((state.flags & protocol::ToolState::kAsksPages) == 0) return;
+  std::shared_ptr<SurfacePager>& pager = pagers_[state.tool];
+  mailboxes_.tools[state.tool].pager.read(pager);
+  if (pager == nullptr || state.surface_version != pager->state().version) return;
   auto* const member = sessions_.holder(state.tool);
   protocol::SurfacePage page;
   for (auto number = state.pages.begin(); number != state.pages.end(); ++number) {
     if (std::find(state.pages.begin(), number, *number) != number) continue;
-    if (pager.page(*number, page) && page_buckets_[state.tool].take(t)) send(*member, page);
+    if (pager->page(*number, page) && page_buckets_[state.tool].take(t)) send(*member, page);
   }
 }
 
@@ -141,7 +139,7 @@ void NetLink::on_forces() {
 }
 
 void NetLink::send_pointers() {
-  for (std::size_t i = 0; i < pagers_.size(); ++i) {
+  for (std::size_t i = 0; i < kMaxTools; ++i) {
     protocol::Pointer pointer;
     if (!page_->tools[i].pointer.read(pointer)) continue;
     pointer.tool = static_cast<std::uint8_t>(i);
@@ -157,7 +155,7 @@ void NetLink::on_timer() {
 }
 
 void NetLink::tell_peers() {
-  for (std::size_t i = 0; i < pagers_.size(); ++i) {
+  for (std::size_t i = 0; i < kMaxTools; ++i) {
     const auto* const member = sessions_.holder(static_cast<std::uint8_t>(i));
     peers_[i] = member == nullptr ? PeerCounts{}
                                   : PeerCounts{true, member->endpoint, peers_[i].received, peers_[i].lost};

@@ -6,17 +6,15 @@
 #include "protocol/udp_socket.h"
 #include "sim_server/serving/page_mailboxes.h"
 #include "sim_server/serving/sim_loop.h"
-#include "sim_server/serving/surface_pager.h"
 
 namespace palpate::sim {
 
 /// The network thread of the server: datagrams in, sessions kept, forces out.
 class NetLink {
  public:
-  /// `pagers`: of each tool, or none. `recorder`: gets every datagram; may be null. `page`: of those that
-  /// watch; null: nobody can.
-  NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, std::vector<SurfacePager> pagers,
-          SimMailboxes& mailboxes, protocol::Recorder* recorder, PageMailboxes* page = nullptr);
+  /// `recorder`: gets every datagram; may be null. `page`: of those that watch; null: nobody can.
+  NetLink(protocol::UdpSocket& socket, protocol::ServerSessions sessions, SimMailboxes& mailboxes,
+          protocol::Recorder* recorder, PageMailboxes* page = nullptr);
 
   /// Serves until `stop`, then says Bye to every member.
   void run();
@@ -59,11 +57,11 @@ class NetLink {
   protocol::Recorder* recorder_;
   protocol::Endpoint peer_, own_;  // whom we last talked to, and how he sees us
   protocol::ServerSessions sessions_;
-  std::vector<SurfacePager> pagers_;
   SimMailboxes& mailboxes_;
   PageMailboxes* page_;
-  std::array<SessionInput, kMaxTools> inputs_;       // of each tool, the newest
-  std::vector<protocol::TokenBucket> page_buckets_;  // of each tool
+  std::array<SessionInput, kMaxTools> inputs_;                     // of each tool, the newest
+  std::vector<protocol::TokenBucket> page_buckets_;                // of each tool
+  std::array<std::shared_ptr<SurfacePager>, kMaxTools> pagers_{};  // of each tool, the newest; null: none
   protocol::LinkStats stats_;
   std::array<protocol::Endpoint, kMaxTools> asked_;  // which of our addresses the client of each tool asks
   std::array<PeerCounts, kMaxTools> peers_{};        // for pages

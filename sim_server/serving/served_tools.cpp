@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <new>
 
 #include "common/time.h"
-#include "sim_server/serving/surface_pager.h"
 
 namespace palpate::sim {
 using protocol::ForceSample;
@@ -54,15 +54,34 @@ Bend bend_between(const ToolPath::Point& before, const ToolPath::Point& now) noe
 ServedTools::ServedTools(Simulation& simulation, const ErrorOfForce* errors)
     : simulation_(simulation),
       errors_(errors),
+      pagers_(simulation.tools()),
+      surfaces_(simulation.tools()),
       holders_(simulation.tools()),
       paths_(simulation.tools(), std::vector<PathPoint>(static_cast<std::size_t>(simulation.instants() - 1))),
       inputs_(simulation.tools()),
       outcomes_(simulation.tools()) {
-  for (std::size_t i = 0; i < simulation.tools(); ++i) {
-    const SurfacePager pager(simulation, i);
-    surfaces_.push_back(pager.state());
-    if (simulation.told_modes() != nullptr && !simulation.told_modes()->relaxations.empty())
-      relaxation_.emplace(*simulation.told_modes(), pager.vertices());
+  make_pagers();
+  if (simulation.told_modes() != nullptr && !simulation.told_modes()->relaxations.empty())
+    relaxation_.emplace(*simulation.told_modes(), pagers_.back()->vertices());
+}
+
+/// One that there is no memory for tells nothing.
+void ServedTools::make_pagers() {
+  for (std::size_t i = 0; i < simulation_.tools(); ++i) {
+    surfaces_[i] = {};
+    pagers_[i] = std::make_shared<SurfacePager>(simulation_, i);
+    surfaces_[i] = pagers_[i]->state();
+  }
+}
+
+/// Where the simulation tells another surface from this step on, or none. Without memory for it, none.
+void ServedTools::follow_surface() noexcept {
+  if (simulation_.told_version() == told_version_) return;
+  told_version_ = simulation_.told_version();
+  try {
+    make_pagers();
+  } catch (const std::bad_alloc&) {
+    std::ranges::fill(surfaces_, protocol::SurfaceState{});
   }
 }
 
@@ -77,6 +96,7 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionI
   if (std::all_of(holders_.begin(), holders_.end(), [](const Holder& h) { return h.session == 0; }))
     return {};
   const std::span<const ToolAnswer> answers = simulation_.step(inputs_, dt);
+  follow_surface();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     outcomes_[i] = {answers[i], {}};
     if (inputs[i].session != 0 && inputs[i].fresh)
@@ -121,7 +141,10 @@ ToolInput ServedTools::input_of(std::size_t tool, const SessionInput& input) noe
   told.wants.tangent = input.fresh && says(protocol::ToolState::kWantsHere);
   if (wants(protocol::ToolState::kWantsAhead))
     told.wants.ahead = ToolWants::Ahead{to_seconds(Time{state.lead_ns}), state.v_W};
-  told.wants.surface_shift = wants(protocol::ToolState::kWantsSurface) && surfaces_[tool].version != 0;
+  // Of one that can be cut only where it is asked for, and of the shape of tool that clients know.
+  const bool told_later = simulation_.resection() != nullptr && simulation_.tool(tool).shape().is_sphere();
+  told.wants.surface_shift =
+      wants(protocol::ToolState::kWantsSurface) && (told_later || surfaces_[tool].version != 0);
   return told;
 }
 
@@ -159,7 +182,8 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
   flag(ForceSample::kFlagged, answer.flagged);
   flag(ForceSample::kHasHere, answer.here.has_value());
   flag(ForceSample::kHasAhead, answer.ahead.has_value());
-  flag(ForceSample::kHasSurface, answer.surface_shift_W.has_value());
+  const bool tells_surface = answer.surface_shift_W.has_value() && surfaces_[tool].version != 0;
+  flag(ForceSample::kHasSurface, tells_surface);
   if (answer.here) {
     sample.surface_v_W = answer.surface_v_W;
     sample.here = on_the_wire(*answer.here);
@@ -174,11 +198,11 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
     const Mat3& c = answer.others->compliance;
     sample.others = {answer.others->v_W, {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}};
   }
-  if (answer.surface_shift_W) {
+  if (tells_surface) {
     sample.surface = surfaces_[tool];
     sample.surface.shift_W = *answer.surface_shift_W;
   }
-  if (answer.modes != nullptr && answer.surface_shift_W) {
+  if (answer.modes != nullptr && tells_surface) {
     sample.flags |= ForceSample::kHasModes;
     sample.modes = on_the_wire(*answer.modes);
     if (answer.modal_loads != nullptr) {

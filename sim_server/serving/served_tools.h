@@ -4,6 +4,7 @@
 
 #include "protocol/messages.h"
 #include "sim_server/serving/relaxation_teller.h"
+#include "sim_server/serving/surface_pager.h"
 #include "sim_server/serving/tool_path.h"
 #include "sim_server/simulation/error_of_force.h"
 
@@ -19,7 +20,8 @@ struct SessionInput {
 };
 
 /// The simulation as clients meet it, each holding a tool in a session of its own: poses in, answers out. No
-/// clock, thread or socket, so it runs the same in the loop and in virtual time. One thread; no allocation.
+/// clock, thread or socket, so it runs the same in the loop and in virtual time. One thread; no allocation
+/// but where a simulation tells another surface.
 class ServedTools {
  public:
   /// `errors`: of the force, for answers that are to tell them; null: none does. Both outlive this.
@@ -41,6 +43,10 @@ class ServedTools {
   /// this session yet: no force where the tool is.
   std::optional<protocol::ForceSample> paused(std::size_t tool, const SessionInput& input) noexcept;
 
+  /// The surface that samples of a tool name by now. Another one only where `told_version` is another number.
+  const std::shared_ptr<SurfacePager>& pager(std::size_t tool) const { return pagers_[tool]; }
+  std::uint32_t told_version() const { return told_version_; }
+
  private:
   struct Holder {
     std::uint64_t session = 0, samples = 0;
@@ -48,6 +54,8 @@ class ServedTools {
     protocol::ForceSample last{};
   };
   void hand_over(std::size_t tool, std::uint64_t session) noexcept;
+  void make_pagers();
+  void follow_surface() noexcept;
   ToolInput input_of(std::size_t tool, const SessionInput& input) noexcept;
   void follow_path(std::size_t tool, const SessionInput& input, ToolInput& told) noexcept;
   protocol::ForceSample sample_of(std::size_t tool, const protocol::ToolState& state,
@@ -55,8 +63,10 @@ class ServedTools {
 
   Simulation& simulation_;
   const ErrorOfForce* errors_;
-  std::vector<protocol::SurfaceState> surfaces_;  // of each tool; version 0: none
-  std::optional<RelaxationTeller> relaxation_;    // where modes are told, of one tool, that relax
+  std::vector<std::shared_ptr<SurfacePager>> pagers_;  // of each tool
+  std::vector<protocol::SurfaceState> surfaces_;       // of each tool; version 0: none
+  std::uint32_t told_version_ = 0;
+  std::optional<RelaxationTeller> relaxation_;  // where modes are told, of one tool, that relax
   std::vector<Holder> holders_;
   std::vector<std::vector<PathPoint>> paths_;  // within a step, of each tool
   std::vector<ToolInput> inputs_;

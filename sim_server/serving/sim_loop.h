@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <atomic>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -22,8 +23,9 @@ struct ForceOutput {
 
 /// The mailboxes of one tool, so that none overtakes what is meant for another.
 struct ToolMailboxes {
-  LatestValue<SessionInput> input;  // network -> simulation
-  LatestValue<ForceOutput> force;   // simulation -> network
+  LatestValue<SessionInput> input;                   // network -> simulation
+  LatestValue<ForceOutput> force;                    // simulation -> network
+  LatestValue<std::shared_ptr<SurfacePager>> pager;  // simulation -> network, as seldom as one is made
 };
 
 /// Between the simulation thread and the network thread. `bell` rings when forces wait.
@@ -115,10 +117,12 @@ class SimLoop {
   void count_beyond(std::size_t tool) noexcept;
   void look_how_near(Time now) noexcept;
   void note_growth() noexcept;
+  void pass_surfaces_on();
   void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
 
   const Simulation& simulation_;
   ServedTools served_;
+  std::uint32_t passed_on_ = 0;  // which surface that is told
   SimMailboxes& mailboxes_;
   std::span<const ToolSettings> tools_;
   Time period_, next_look_{}, next_told_{};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/hash.h"
+#include "sim_server/deformation/told_nearby.h"
 
 namespace palpate::sim {
 using protocol::SurfacePage;
@@ -35,11 +36,11 @@ void cluster(std::span<int> vertices, const std::vector<Vec3>& rest) {
 }  // namespace
 
 SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
-    : simulation_(simulation), told_(simulation.told_modes()), tool_(static_cast<std::uint8_t>(tool)) {
-  const auto touchable = simulation.touchable(tool);
-  for (const Triangle& t : touchable) vertices_.insert(vertices_.end(), t.begin(), t.end());
-  std::sort(vertices_.begin(), vertices_.end());
-  vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    : simulation_(simulation),
+      nearby_(simulation.model().told()),
+      told_(simulation.told_modes()),
+      tool_(static_cast<std::uint8_t>(tool)) {
+  find_surface();
   if (!simulation.tool(tool).shape().is_sphere()) return;  // the only shape that clients know
   const bool constant = told_ != nullptr || simulation.model().compliance_is_constant();
   if (!constant || vertices_.size() > protocol::kMostSurfaceVertices) return;
@@ -55,23 +56,42 @@ SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
   state_.version = hash();
 }
 
+/// All that the tool can touch; of a surface that can be cut, what is told of it.
+void SurfacePager::find_surface() {
+  const auto is_told = [this](int v) {
+    return nearby_ == nullptr || std::ranges::binary_search(nearby_->shape.vertices, v);
+  };
+  for (const Triangle& t : simulation_.touchable(tool_)) {
+    if (!std::ranges::all_of(t, is_told)) continue;
+    triangles_.push_back(t);
+    vertices_.insert(vertices_.end(), t.begin(), t.end());
+  }
+  std::sort(vertices_.begin(), vertices_.end());
+  vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+}
+
 void SurfacePager::put_in_order() {
   cluster(vertices_, simulation_.rest());
   std::vector<int> number(simulation_.rest().size(), -1);
-  for (std::size_t i = 0; i < vertices_.size(); ++i) number[vertices_[i]] = static_cast<int>(i);
-  for (const Triangle& t : simulation_.touchable(tool_))
-    triangles_.push_back({number[t[0]], number[t[1]], number[t[2]]});
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    number[vertices_[i]] = static_cast<int>(i);
+    rest_.push_back(simulation_.rest()[vertices_[i]]);
+  }
+  for (Triangle& t : triangles_) t = {number[t[0]], number[t[1]], number[t[2]]};
 }
 
-/// Of the geometry and of how compliant each vertex is; never 0.
+/// Of the geometry and of how compliant each vertex is; of a surface that can be cut, which is told while it
+/// is felt, of when it is told instead of that. Never 0.
 std::uint32_t SurfacePager::hash() noexcept {
   Fnv1a hash;
   hash.add(triangles_.data(), triangles_.size() * sizeof(Triangle));
   hash.add(&state_.tool_radius, sizeof state_.tool_radius);
   hash.add(&state_.tool_compliance, sizeof state_.tool_compliance);
-  for (const int& vertex : vertices_) {
-    hash.add(simulation_.rest()[vertex]);
-    take_compliance({&vertex, 1});
+  if (nearby_) hash.add(&nearby_->model, sizeof nearby_->model);
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    hash.add(rest_[i]);
+    if (nearby_) continue;
+    take_compliance({&vertices_[i], 1});
     hash.add(Vec3(patch_.compliance.topLeftCorner<3, 1>()));
   }
   if (told_ != nullptr) {
@@ -83,19 +103,16 @@ std::uint32_t SurfacePager::hash() noexcept {
   return static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32) | 1;
 }
 
-std::vector<Vec3> SurfacePager::rest() const {
-  std::vector<Vec3> rest;
-  for (const int vertex : vertices_) rest.push_back(simulation_.rest()[vertex]);
-  return rest;
-}
-
 bool SurfacePager::page(std::uint32_t number, SurfacePage& out) noexcept {
   const SurfacePages pages = this->pages();
   if (state_.version == 0 || number >= pages.count()) return false;
   out = {.tool = tool_, .version = state_.version, .page = number};
   if (number >= pages.first_tile()) {
     if (number < pages.spectrum()) {
-      fill_tile(number, out);
+      if (knows_tile(number))
+        fill_tile(number, out);
+      else
+        out.page |= SurfacePages::kNotYet;
     } else if (number == pages.spectrum()) {
       fill_spectrum(out);
     } else {
@@ -108,9 +125,8 @@ bool SurfacePager::page(std::uint32_t number, SurfacePage& out) noexcept {
                     first = (positions ? number : number - pages.first_triangle_page()) * pages.kPerPage;
   for (std::size_t i = 0; i < pages.kPerPage && first + i < size; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      out.values[3 * i + axis] =
-          static_cast<float>(positions ? simulation_.rest()[vertices_[first + i]][static_cast<int>(axis)]
-                                       : triangles_[first + i][axis]);
+      out.values[3 * i + axis] = static_cast<float>(positions ? rest_[first + i][static_cast<int>(axis)]
+                                                              : triangles_[first + i][axis]);
     }
   }
   return true;
@@ -125,6 +141,7 @@ std::span<const int> SurfacePager::members(std::size_t cluster) const noexcept {
 void SurfacePager::take_compliance(std::span<const int> vertices) noexcept {
   if (told_ == nullptr) return simulation_.model().compliance(vertices, patch_);
   patch_.tool_compliance = 0;
+  if (nearby_) return nearby_->motion.residual_compliance(vertices, patch_);
   simulation_.model().residual_compliance(vertices, patch_);
 }
 
@@ -145,6 +162,14 @@ void SurfacePager::fill_shapes(std::uint32_t number, SurfacePage& out) const noe
   for (std::size_t i = 0; i < rows.size(); ++i)
     page.block(3 * static_cast<Eigen::Index>(i), 0, 3, count) =
         told_->shapes.block(3 * rows[i], first, 3, count).cast<float>();
+}
+
+/// Whether the compliance there is known by now.
+bool SurfacePager::knows_tile(std::uint32_t number) const noexcept {
+  if (nearby_ == nullptr) return true;
+  const auto known = [this](int v) { return std::ranges::binary_search(nearby_->compliant.vertices, v); };
+  const auto [a, b] = pages().clusters_of(number);
+  return std::ranges::all_of(members(a), known) && std::ranges::all_of(members(b), known);
 }
 
 void SurfacePager::fill_tile(std::uint32_t number, SurfacePage& out) noexcept {

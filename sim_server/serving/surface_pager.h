@@ -5,11 +5,12 @@
 namespace palpate::sim {
 
 /// The surface that one tool can touch, in pages (protocol/surface_pages.h) for clients that solve contact
-/// themselves. Reads only what a simulation never changes once it is built, so that a thread may answer
-/// requests from a pager of its own while another steps. Must not outlive the simulation.
+/// themselves; of one that can be cut, what `Simulation::told_version` tells of it. Reads only what a
+/// simulation never changes once the pager is made, so that a thread may answer requests from a pager of its
+/// own while another steps. Must not outlive the simulation.
 class SurfacePager {
  public:
-  /// O(n log n) for n vertices. Allocates; nothing else here does.
+  /// O(n log n) for n vertices. Between two steps. Allocates; nothing else here does.
   SurfacePager(const Simulation& simulation, std::size_t tool);
 
   /// Version 0: none, because the compliance of this tissue changes while it deforms, it is too large, or
@@ -23,15 +24,18 @@ class SurfacePager {
 
   /// Which vertex of the surface each vertex of the model is.
   std::span<const int> vertices() const { return vertices_; }
-  /// Where its vertices are at rest, in their order, m. Allocates.
-  std::vector<Vec3> rest() const;
+  /// Where its vertices are at rest, in their order, m.
+  std::span<const Vec3> rest() const { return rest_; }
 
-  /// Fills in a page of `state().version`; false when it has none of that number. About 2 us.
+  /// Fills in a page of `state().version`, or says in its number that it is not known yet; false when it has
+  /// none of that number. About 2 us.
   bool page(std::uint32_t number, protocol::SurfacePage& out) noexcept;
 
  private:
+  void find_surface();
   void put_in_order();
   std::uint32_t hash() noexcept;
+  bool knows_tile(std::uint32_t number) const noexcept;
   void fill_tile(std::uint32_t number, protocol::SurfacePage& out) noexcept;
   void fill_spectrum(protocol::SurfacePage& out) const noexcept;
   void fill_shapes(std::uint32_t number, protocol::SurfacePage& out) const noexcept;
@@ -39,9 +43,11 @@ class SurfacePager {
   std::span<const int> members(std::size_t cluster) const noexcept;
 
   const Simulation& simulation_;
-  const SlowModes* told_;  // null: none are told
+  std::shared_ptr<const ToldSurface> nearby_;  // of a surface that can be cut
+  const SlowModes* told_;                      // null: none are told
   std::uint8_t tool_;
   std::vector<int> vertices_;        // surface vertex of each vertex of the model
+  std::vector<Vec3> rest_;           // of these, m
   std::vector<Triangle> triangles_;  // corners: vertices of the model
   ContactPatch patch_;               // of two clusters
   protocol::SurfaceState state_;

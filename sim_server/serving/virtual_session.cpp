@@ -45,8 +45,9 @@ VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajector
       capture_(capture),
       server_(link.rate_hz, {tool_radius}),
       session_(session_number(motions[link.tool], link)),
-      pager_(simulation, link.tool),
-      near_(pager_.state().vertices) {}
+      near_(served_.pager(link.tool)->state().vertices) {
+  if (link.clock != nullptr) simulation.hurry();
+}
 
 Time VirtualSession::time_of(std::uint64_t k) const {
   return from_seconds(static_cast<double>(k) / link_.ticks_hz);
@@ -160,15 +161,25 @@ void VirtualSession::keep_session(Time t) {
   while (const auto hello = client_.poll(t)) to_server({}, *hello, t);
 }
 
-/// What the client lacks of it by now, around where the tool is, in the frame of the organ at rest.
+void VirtualSession::send_shape(Time t) {
+  const SurfacePager& pager = *served_.pager(link_.tool);
+  const SurfacePages pages = pager.pages();
+  surface_ = pager.state().version;
+  for (std::uint32_t page = 0; page < pages.first_tile(); ++page) send_page(page, t);
+  if (pages.modes > 0) send_page(pages.spectrum(), t);
+  near_ = NearTiles(pager.state().vertices);
+  near_.take(pager.rest());
+  has_.assign(pages.count() - pages.first_tile(), 0);
+  sent_.clear();
+}
+
+/// What the client lacks of it by now, around where the tool is, in the frame of the organ at rest. Of one
+/// that is told no more while a sample was on its way, nothing.
 void VirtualSession::send_surface(const ForceSample& sample, Time t) {
-  const SurfacePages pages = pager_.pages();
-  if (pages_ == 0) {
-    for (std::uint32_t page = 0; page < pages.first_tile(); ++page) send_page(page, t);
-    if (pages.modes > 0) send_page(pages.spectrum(), t);
-    near_.take(pager_.rest());
-    has_.assign(pages.count() - pages.first_tile(), 0);
-  }
+  const SurfacePager& pager = *served_.pager(link_.tool);
+  if (sample.surface.version != pager.state().version) return;
+  if (sample.surface.version != surface_) send_shape(t);
+  const SurfacePages pages = pager.pages();
   const double reach = NearTiles::reach(sample.surface.tool_radius, newest_v_W_.norm());
   near_.look(newest_p_W_ - sample.surface.shift_W);
   if (near_.distance() > reach && sample.f_W.isZero(0)) return;
@@ -181,22 +192,23 @@ void VirtualSession::send_surface(const ForceSample& sample, Time t) {
 /// Sends a page that the client no longer has, which then forgets its oldest.
 void VirtualSession::keep_page(std::uint32_t page, std::uint32_t first_tile, Time t) {
   const std::uint32_t tile = page - first_tile;
-  if (has_[tile] != 0) return;
+  if (has_[tile] != 0 || !send_page(page, t)) return;
   if (sent_.size() == NearTiles::kKept) {
     has_[sent_.front()] = 0;
     sent_.pop_front();
   }
   has_[tile] = 1;
   sent_.push_back(tile);
-  send_page(page, t);
 }
 
-void VirtualSession::send_page(std::uint32_t number, Time t) {
+/// Whether there is one by now. A client that asks in vain learns nothing, so it need not be in a capture.
+bool VirtualSession::send_page(std::uint32_t number, Time t) {
   SurfacePage page;
-  if (!pager_.page(number, page)) return;
+  if (!served_.pager(link_.tool)->page(number, page) || page.page != number) return false;
   auto* const member = server_.holder(client_.welcome().tool);
   to_client({session_, ++member->sent}, page, t);
   ++pages_;
+  return true;
 }
 
 void VirtualSession::leave() {

@@ -7,7 +7,6 @@
 #include "protocol/near_tiles.h"
 #include "protocol/session.h"
 #include "sim_server/serving/served_tools.h"
-#include "sim_server/serving/surface_pager.h"
 
 namespace palpate::sim {
 
@@ -43,9 +42,10 @@ struct VirtualSessionStats {
 /// A client and a server that talk without sockets and clock: the two ends of the session of one tool, which
 /// follows a motion exactly, and a capture of every datagram between them. Other tools that have a motion
 /// follow theirs, in sessions that are not captured; those without one are lifted. With `parts`, the client
-/// gets the shape of the surface right after its first sample, and its compliance where the tool comes near
-/// it: at once what our client would ask for there (protocol/near_tiles.h), and nothing where it stays away.
-/// Client and server stand at 192.0.2.1:45131 and 192.0.2.2:45130 (addresses for documentation, RFC 5737).
+/// gets the shape of the surface right after the first sample that names it, and its compliance where the
+/// tool comes near it: at once what our client would ask for there (protocol/near_tiles.h), and nothing where
+/// it stays away. Client and server stand at 192.0.2.1:45131 and 192.0.2.2:45130 (addresses for
+/// documentation, RFC 5737).
 class VirtualSession {
  public:
   /// `motions`: of the tools of the scene, in order, at least up to `link.tool`; outlive this. `tool_radius`:
@@ -71,8 +71,9 @@ class VirtualSession {
   };
   void keep_session(Time t);
   void send_surface(const protocol::ForceSample& sample, Time t);
+  void send_shape(Time t);
   void keep_page(std::uint32_t page, std::uint32_t first_tile, Time t);
-  void send_page(std::uint32_t number, Time t);
+  bool send_page(std::uint32_t number, Time t);
   bool is_due(double steps_due) const;
   void step(const protocol::ToolState& state, double steps_due);
   Time deadline() const;
@@ -94,7 +95,7 @@ class VirtualSession {
   protocol::ClientSession client_{protocol::Nonce{1}};
   protocol::LinkStats server_stats_, client_stats_;
   std::deque<OnTheWay> on_the_way_;
-  SurfacePager pager_;
+  std::uint32_t surface_ = 0;  // version of the one whose pages were sent
   protocol::NearTiles near_;
   std::deque<std::uint32_t> sent_;  // pages of tiles and shapes that the client still has, the oldest first
   std::vector<char> has_;           // by page from the first tile on: whether it is among them

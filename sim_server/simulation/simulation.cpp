@@ -122,14 +122,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
     tissue_.before.assign(tissue_.positions.begin(), tissue_.positions.end());
   const auto all_loads = static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
   if (tools_.size() > 1) coupling_.emplace(tools_.size(), rest_.size(), all_loads);
-  if (const SlowModes* const told = told_modes()) {
-    modes_.q = modes_.v = Eigen::VectorXd::Zero(told->told);
-    modes_.z.setZero(told->told, static_cast<Eigen::Index>(told->relaxations.size()));
-    modes_.psi.assign(rest_.size() * told->relaxations.size(), Vec3::Zero());
-    if (tools_.size() > 1) modal_loads_.assign(tools_.size(), modes_.q);
-    pair_.reserve(2, 0);
-    pair_.free.resize(2);
-  }
+  make_room_for_modes();
   came_from_.resize(tools_.size());
   lately_.resize(tools_.size());
   for (auto& were : lately_) were.reserve(2 * kApart + 1);
@@ -139,6 +132,17 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   inputs_.resize(tools_.size());
   surface_motion_.resize(tools_.size(), Vec3::Zero());
   answers_.resize(tools_.size());
+}
+
+void Simulation::make_room_for_modes() {
+  const SlowModes* const told = told_modes();
+  if (told == nullptr) return;
+  modes_.q = modes_.v = Eigen::VectorXd::Zero(told->told);
+  modes_.z.setZero(told->told, static_cast<Eigen::Index>(told->relaxations.size()));
+  modes_.psi.assign(rest_.size() * told->relaxations.size(), Vec3::Zero());
+  if (tools_.size() > 1) modal_loads_.assign(tools_.size(), modes_.q);
+  pair_.reserve(2, 0);
+  pair_.free.resize(2);
 }
 
 std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, double dt) noexcept {

@@ -33,7 +33,8 @@ struct ToolWants {
     Vec3 v_W;
   };
   std::optional<Ahead> ahead = {};
-  bool surface_shift = false;  ///< of a tool that does not grasp
+  bool surface_shift =
+      false;  ///< of a tool that does not grasp, where it is near what is told of the surface
 };
 
 /// Where a tool was at an instant within a step, and how it came from the one before.
@@ -142,6 +143,12 @@ class Simulation {
         modes != nullptr && modes->told > 0 && (tools_.size() == 1 || modes->relaxations.empty());
     return told ? modes : nullptr;
   }
+  /// Another number whenever clients are to be told another surface, or none any more (`ToldSurface`). Of a
+  /// tissue that is never cut, it stays 0.
+  std::uint32_t told_version() const { return told_version_; }
+  /// From now on no step waits for a background that makes what clients are told: it is told when it is
+  /// there, and that, but nothing else, depends on the machine.
+  void hurry() { hurries_ = true; }
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
   /// What a tool puts on the surface by now.
   std::span<const NodalLoad> loads(std::size_t tool) const noexcept { return tissue_.loads_of(tool); }
@@ -185,6 +192,8 @@ class Simulation {
   std::span<const int> remove_tissue(std::span<const ToolInput> inputs, double dt);
   void part_tissue(std::span<const ToolInput> inputs);
   void part_by(std::size_t tool);
+  void tell_near(std::span<const ToolInput> inputs);
+  void make_room_for_modes();
   void count_gone(const DeformationModel::Removed& gone);
   void resist_blade(std::size_t tool, ToolAnswer& answer);
   void note_cut(std::span<const ToolInput> inputs, double dt);
@@ -224,6 +233,8 @@ class Simulation {
     double toughness;                               // J/m^2
     std::vector<std::optional<Blade>> blades = {};  // of each tool that cuts by one now
     std::vector<HotTip> tips = {};
+    std::vector<DeformationModel::ToldTool> told_near = {};
+    std::shared_ptr<const ToldSurface> told = {};  // to clients
     std::vector<std::optional<Vec3>> hot_at = {};  // of each tool, where it was hot in the step before
     std::vector<ResectionRow> log = {};
     std::vector<Removal> removed = {};
@@ -250,6 +261,8 @@ class Simulation {
   std::vector<ToolInput> inputs_;       // for the step of tool 0 alone
   std::vector<ToolAnswer> answers_;
   SlowModes::State modes_;  // of the told modes
+  std::uint32_t told_version_ = 0;
+  bool hurries_ = false;
   std::vector<Eigen::VectorXd>
       modal_loads_;    // of the told modes, by the other tools of each, where there are some
   ContactPatch pair_;  // of two vertices, to ask how one moves the other

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "sim_server/deformation/told_nearby.h"
 #include "sim_server/simulation/simulation.h"
 
 namespace palpate::sim {
@@ -65,6 +66,7 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
     answer.ahead = {there, linearise_coupled(tool, p_W, there, nullptr)};
   }
   if (!wants.surface_shift || tools_[tool].holds()) return;  // what is grasped is no matter of contact
+  if (cut_ && !(cut_->told && cut_->told->covers(p_W))) return;
   answer.surface_shift_W = surface_shift(tool, p_W);
   if (told_modes() != nullptr) tell_modes(tool);
 }
@@ -79,11 +81,7 @@ void Simulation::tell_modes(std::size_t tool) {
   driven.setZero();
   for (std::size_t other = 0; other < tools_.size(); ++other) {
     if (other == tool) continue;
-    for (const NodalLoad& load : tissue_.loads_of(other))
-      driven.noalias() += told.shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex))
-                              .leftCols(told.told)
-                              .transpose() *
-                          load.force;
+    told.add_drive(tissue_.loads_of(other), driven);
   }
   answers_[tool].modal_loads = &driven;
 }

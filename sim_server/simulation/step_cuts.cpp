@@ -67,6 +67,23 @@ void Simulation::cut(std::span<const ToolInput> inputs, double dt) {
   }
   if (!cut_->planned) part_tissue(inputs);
   if (cut_->resection.version() != before) change_surface();
+  tell_near(inputs);
+}
+
+/// Another surface, or none, is told from this step on.
+void Simulation::tell_near(std::span<const ToolInput> inputs) {
+  Cut& cut = *cut_;
+  cut.told_near.clear();
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (inputs[i].wants.surface_shift && inputs[i].pose)
+      cut.told_near.push_back({inputs[i].pose->p_W, inputs[i].v_W});
+  }
+  tissue_.model->tell_near(cut.told_near, cut.resection.left(), !hurries_);
+  std::shared_ptr<const ToldSurface> told = tissue_.model->told();
+  if (told == cut.told) return;
+  cut.told = std::move(told);
+  ++told_version_;
+  make_room_for_modes();
 }
 
 void Simulation::count_gone(const DeformationModel::Removed& gone) {

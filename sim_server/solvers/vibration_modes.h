@@ -20,4 +20,11 @@ struct VibrationModes {
 VibrationModes vibration_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses, int count,
                                const std::string& where);
 
+/// The same from shapes of a body that was almost this one (unknowns x k, of full rank), by iterations of
+/// that subspace (Bathe and Wilson 1972, Int. J. Numer. Methods Eng. 6:213) until none of its w^2 changes by
+/// more than 1e-3, 8 at most. Whatever is left over, M-orthonormal shapes that are followed as if they were
+/// modes. k solves at once for an iteration.
+VibrationModes refined_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses,
+                             Eigen::MatrixXd shapes);
+
 }  // namespace palpate::sim

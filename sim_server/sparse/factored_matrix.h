@@ -34,6 +34,8 @@ class FactoredMatrix {
   /// Here by `inverse_block`: throws `Error` where there is no memory for all of the block.
   virtual void inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
                             const std::function<void(double)>& progress) const;
+  /// Of the factor that this process holds.
+  virtual std::size_t bytes() const { return 0; }
 };
 
 /// Factors the matrix whose lower triangle is given. `kept`: the unknowns of which `inverse_block` will be

@@ -50,7 +50,7 @@ class SparseCholesky final : public FactoredMatrix {
 
   /// Of the factor that there is.
   Precision precision() const;
-  std::size_t bytes() const;
+  std::size_t bytes() const override;
   /// That one factorisation takes, counted from the pattern.
   double multiplications() const;
 

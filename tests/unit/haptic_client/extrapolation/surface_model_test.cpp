@@ -233,3 +233,29 @@ TEST_CASE("surface model: what it forgot for want of room it asks for again wher
   CHECK(known_at_first() == kPairs);
   CHECK(fetch(0) == 0);
 }
+
+TEST_CASE("surface model: a page that is known later is asked for again, but was not lost") {
+  Served served;
+  served.fetch(Vec3::Zero(), 0);  // the shape, and what is nearest
+  const Vec3 far(0.02, 0, 0);
+  SurfaceModel& model = served.model;
+  Asked first, none, again;
+  REQUIRE(model.choose_missing(far, 0.003, served.now += 8ms, first));
+  for (const std::uint32_t number : first) {
+    if (number == ToolState::kNoPage) continue;
+    const auto waited = model.waited_for(number + SurfacePages::kNotYet, served.now + 5ms);
+    CHECK(waited == 5ms);
+    model.take({.version = model.version(), .page = number + SurfacePages::kNotYet});
+  }
+  CHECK(std::ranges::find(first, ToolState::kNoPage) == first.end());  // else what follows says little
+  served.now += 150ms;
+  if (model.choose_missing(far, 0.003, served.now, none))
+    for (const std::uint32_t number : none) CHECK(std::ranges::find(first, number) == first.end());
+  served.now += 100ms;
+  REQUIRE(model.choose_missing(far, 0.003, served.now, again));
+  CHECK(again == first);
+  CHECK(model.asked_again() == 0);
+  served.now += 250ms;  // nobody answers
+  REQUIRE(model.choose_missing(far, 0.003, served.now, again));
+  CHECK(model.asked_again() == first.size());
+}

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/deformation/slow_modes.h"
 #include "sim_server/serving/captured_steps.h"
 #include "sim_server/serving/virtual_session.h"
 #include "tests/support/catch.h"
@@ -133,5 +134,43 @@ TEST_CASE(
     CHECK(std::abs(often.removals()[i].t - removals[i].t) < 1 / 500.0 + 1e-9);
   }
 }
+
+#ifdef PALPATE_WITH_SPECTRA
+TEST_CASE("samples tell of a surface until it is cut, in that step no more, and of another one afterwards") {
+  const TemporaryFolder folder;
+  const std::string rows = "t_s,x_m,y_m,z_m\n0,0,0.0025,0\n3,0.004,0.002,0.0005\n";
+  const Trajectory path({.file = folder.write("still.csv", rows)});
+  Scene scene = cut_scene("tensor_mass");
+  scene.deformation.of<ClientModes>().modes = 20;
+  Simulation simulation(scene, block());
+  std::vector<Removal> removals;
+  const TetMesh& mesh = simulation.mesh();
+  for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) {
+    const Vec3 centre = centre_of(mesh, mesh.tetrahedra[static_cast<std::size_t>(t)]);
+    if (centre.norm() < 0.004) removals.push_back({1.5, t});
+  }
+  REQUIRE(removals.size() > 0);
+  simulation.remove_at(removals);
+  {
+    protocol::CaptureWriter capture(folder.path() / "a.pcap");
+    VirtualSession session(simulation, {&path, 1}, 0.003,
+                           {.rate_hz = kRate, .ticks_hz = kTicks, .parts = true}, capture);
+    for (std::uint64_t k = 0; k <= 3 * static_cast<std::uint64_t>(kTicks); ++k) session.tick(k);
+  }
+  std::vector<std::uint32_t> before, after;
+  for (const ForceSample& sample : samples_in(folder.path() / "a.pcap")) {
+    const bool tells = (sample.flags & ForceSample::kHasSurface) != 0;
+    CHECK(tells == ((sample.flags & ForceSample::kHasModes) != 0));
+    if (tells) (sample.cuts == 0 ? before : after).push_back(sample.surface.version);
+    if (sample.cuts == 1 && after.empty()) CHECK(!tells);
+  }
+  CHECK(before.size() > 60);  // of 75 samples; it takes 0.2 s to be told at first
+  CHECK(after.size() > 50);
+  CHECK(after.size() < 65);  // and 0.1 s alone, 0.2 s for the body, 0.2 s for the surface
+  CHECK(std::ranges::count(before, before.front()) == std::ssize(before));
+  CHECK(std::ranges::count(after, after.front()) == std::ssize(after));
+  CHECK(after.front() != before.front());
+}
+#endif
 
 #endif

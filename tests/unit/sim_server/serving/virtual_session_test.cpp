@@ -231,7 +231,8 @@ TEST_CASE("virtual time: of a long surface, compliance comes where the tool is")
   const auto all = whole_model(bar);
   CHECK(order.pages > all.first_tile());
   CHECK(order.pages - all.first_tile() < (all.count() - all.first_tile()) / 4);  // of 90 mm in 400
-  const std::vector<Vec3> rest = SurfacePager(bar, 0).rest();
+  const SurfacePager pager(bar, 0);
+  const std::span<const Vec3> rest = pager.rest();
   for (std::uint32_t i = 0; i < rest.size(); ++i) {
     if ((rest[i] - Vec3(0.02, 0, 0)).norm() > 0.01) continue;
     const std::uint32_t own = i / protocol::SurfacePages::kCluster;
