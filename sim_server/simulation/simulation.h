@@ -33,8 +33,7 @@ struct ToolWants {
     Vec3 v_W;
   };
   std::optional<Ahead> ahead = {};
-  bool surface_shift =
-      false;  ///< of a tool that does not grasp, where it is near what is told of the surface
+  bool surface_shift = false;  ///< of a tool that does not grasp
 };
 
 /// Where a tool was at an instant within a step, and how it came from the one before.

@@ -85,3 +85,20 @@ TEST_CASE("two bodies that meet in an edge are joined by a hinge, which holds no
   with_one_more.push_back(vertices(mesh, [](const Vec3& x) { return x == Vec3(2, 2, 0); }).front());
   CHECK(loose_parts(mesh, with_one_more).empty());
 }
+
+TEST_CASE("loose parts that are dropped leave what is held, its stiffness, and all vertices") {
+  TetMesh mesh = hinged_cubes();
+  const TetMesh whole = mesh;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)  // as many times as far along x
+    mesh.stiffness.push_back(1 + centre_of(mesh, mesh.tetrahedra[t])[0]);
+  drop_loose_parts(mesh, vertices(mesh, [](const Vec3& x) { return x[0] == 2; }));
+  CHECK(mesh.vertices == whole.vertices);
+  REQUIRE(2 * mesh.tetrahedra.size() == whole.tetrahedra.size());
+  REQUIRE(mesh.stiffness.size() == mesh.tetrahedra.size());
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    CHECK(centre_of(mesh, mesh.tetrahedra[t])[0] > 1);  // the first cube hung on a hinge
+    CHECK(mesh.stiffness[t] == 1 + centre_of(mesh, mesh.tetrahedra[t])[0]);
+  }
+  drop_loose_parts(mesh, {});
+  CHECK(mesh.tetrahedra.empty());
+}
