@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 namespace palpate::client {
@@ -12,6 +13,19 @@ constexpr double kNoticed = 0.1;  // of the force: about the smallest difference
 constexpr double kFloor = 0.1;    // of the peak
 
 }  // namespace
+
+Json to_json(const ErrorMetrics& m) {
+  return {{"mean_percent", m.mean_percent},
+          {"p99_percent", m.p99_percent},
+          {"max_percent", m.max_percent},
+          {"overshoot_percent", m.overshoot_percent},
+          {"jump_percent", m.jump_percent},
+          {"rough_percent", m.rough_percent},
+          {"exceed_percent", m.exceed_percent},
+          {"paper_mean_percent", m.paper_mean_percent},
+          {"paper_max_percent", m.paper_max_percent},
+          {"paper_max_force_percent", m.paper_max_force_percent}};
+}
 
 Reference::Reference(const Vec3& force) : f(force), norm(force.norm()), bin(ErrorTable::bin_of(norm)) {}
 
@@ -37,6 +51,7 @@ void ErrorTable::add(const Vec3& force, const Reference& reference) noexcept {
   ++pushing_;
   error_sum_ += error;
   error_max_ = std::max(error_max_, error);
+  force_max_ = std::max(force_max_, size);
   error_nN_.add(static_cast<std::int64_t>(std::min(error, 1e9) * 1e9));
   peak_ = std::max(peak_, reference.norm);
   exceed_ += error > kNoticed * std::max(reference.norm, kFloor * peak_) ? 1 : 0;
@@ -82,6 +97,7 @@ ErrorMetrics ErrorTable::metrics() const noexcept {
   m.mean_percent = 100 * (error_sum_ / pushing_) / std::sqrt(reference_squared_ / contact_);
   m.p99_percent = 100 * error_nN_.quantile(0.99) * 1e-9 / peak_;
   m.max_percent = 100 * error_max_ / peak_;
+  m.overshoot_percent = 100 * std::max(force_max_ / peak_ - 1, 0.0);
   m.exceed_percent = 100 * exceed_ / pushing_;
   m.jump_percent = 100 * jump_ / peak_;
   m.rough_percent = 100 * std::sqrt(rough_squared_ / ticks_) / peak_;

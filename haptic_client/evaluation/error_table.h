@@ -2,6 +2,7 @@
 #include <array>
 
 #include "common/histogram.h"
+#include "common/report.h"
 #include "common/types.h"
 
 namespace palpate::client {
@@ -9,17 +10,21 @@ namespace palpate::client {
 /// How far a law was off, over a run. Percentages. e = F - F_ref, at every tick where the reference or the
 /// law pushes; "peak" is the largest |F_ref| of the run.
 struct ErrorMetrics {
-  double mean_percent = 0;    ///< mean |e| / RMS of |F_ref| in contact
-  double p99_percent = 0;     ///< 99th percentile of |e| / peak
-  double max_percent = 0;     ///< largest |e| / peak
-  double exceed_percent = 0;  ///< of the ticks: |e| > 10 % of max(|F_ref|, 10 % of the peak so far)
-  double jump_percent = 0;    ///< largest |F after - F before| when a sample arrived, same place / peak
-  double rough_percent = 0;   ///< RMS of e above 30 Hz / peak
+  double mean_percent = 0;       ///< mean |e| / RMS of |F_ref| in contact
+  double p99_percent = 0;        ///< 99th percentile of |e| / peak
+  double max_percent = 0;        ///< largest |e| / peak
+  double overshoot_percent = 0;  ///< by how much the largest |F| is above the peak / peak; 0: it is not
+  double exceed_percent = 0;     ///< of the ticks: |e| > 10 % of max(|F_ref|, 10 % of the peak so far)
+  double jump_percent = 0;       ///< largest |F after - F before| when a sample arrived, same place / peak
+  double rough_percent = 0;      ///< RMS of e above 30 Hz / peak
   /// Picinbono and Lombardo 1999, section 4: |e| in percent of |F_ref|, mean and largest, and the largest |F|
   /// in percent of |F_ref|. As a quotient of two small numbers explodes at the onset of contact, |F_ref|
   /// counts as at least 10 % of the peak here.
   double paper_mean_percent = 0, paper_max_percent = 0, paper_max_force_percent = 0;
 };
+
+/// By their names, for reports.
+Json to_json(const ErrorMetrics& metrics);
 
 /// A reference force, prepared once for all laws.
 struct Reference {
@@ -64,7 +69,7 @@ class ErrorTable {
   std::array<Bin, kBins> bins_{};
   Histogram error_nN_;
   double pushing_ = 0, contact_ = 0, ticks_ = 0;  // ticks
-  double error_sum_ = 0, reference_squared_ = 0, peak_ = 0, error_max_ = 0, jump_ = 0;
+  double error_sum_ = 0, reference_squared_ = 0, peak_ = 0, error_max_ = 0, force_max_ = 0, jump_ = 0;
   double exceed_ = 0, rough_squared_ = 0;
   double b0_, a1_, a2_;
   Vec3 z1_ = Vec3::Zero(), z2_ = Vec3::Zero();

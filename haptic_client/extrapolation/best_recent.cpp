@@ -46,10 +46,10 @@ void BestRecent::restart() noexcept {
   ticks_.forget();
 }
 
-/// Which law is best stays; what they gave for the surface of before says nothing of that.
+/// Which law is best stays, and is judged by what they gave until then, too, which a hand felt as tissue
+/// went.
 void BestRecent::surface_cut() noexcept {
   for (Law& law : laws_) law.law->surface_cut();
-  ticks_.forget();
 }
 
 void BestRecent::begin_tick(Time now) noexcept {

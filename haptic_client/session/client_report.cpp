@@ -45,21 +45,12 @@ Json at_work_report(const std::string& law, const StandIns& stand_ins, std::uint
 Json methods_report(const Scoring& scoring) {
   Json methods = Json::object();
   for (std::size_t i = 0; i < scoring.names().size(); ++i) {
-    const ErrorMetrics m = scoring.metrics(i);
-    methods[scoring.names()[i]] = {
-        {"mean_percent", m.mean_percent},
-        {"p99_percent", m.p99_percent},
-        {"max_percent", m.max_percent},
-        {"exceed_percent", m.exceed_percent},
-        {"jump_percent", m.jump_percent},
-        {"rough_percent", m.rough_percent},
-        {"paper_mean_percent", m.paper_mean_percent},
-        {"paper_max_percent", m.paper_max_percent},
-        {"paper_max_force_percent", m.paper_max_force_percent},
-        {"ticks", scoring.ticks()},
-        {"at_work", at_work_report(scoring.names()[i], scoring.stand_ins(i), scoring.ticks())},
-        {"stand_ins", stand_ins_report(scoring.stand_ins(i))},
-        {"ns_per_tick", cost_of(scoring.names()[i]).tick_ns}};
+    Json method = to_json(scoring.metrics(i));
+    method["ticks"] = scoring.ticks();
+    method["at_work"] = at_work_report(scoring.names()[i], scoring.stand_ins(i), scoring.ticks());
+    method["stand_ins"] = stand_ins_report(scoring.stand_ins(i));
+    method["ns_per_tick"] = cost_of(scoring.names()[i]).tick_ns;
+    methods[scoring.names()[i]] = std::move(method);
   }
   return methods;
 }

@@ -27,6 +27,7 @@ TEST_CASE("errors of one tick in ten, by hand") {
   CHECK(m.mean_percent == Approx(2.5));
   CHECK(m.p99_percent == Approx(25).epsilon(0.004));
   CHECK(m.max_percent == Approx(25));
+  CHECK(m.overshoot_percent == Approx(25));
   CHECK(m.exceed_percent == Approx(10));
   CHECK(m.paper_mean_percent == Approx(2.5));
   CHECK(m.paper_max_percent == Approx(25));
@@ -50,6 +51,7 @@ TEST_CASE("a force where there should be none counts, but is no part of the pape
   table.add({0, 0.5, 0}, Reference(Vec3::Zero()));
   const ErrorMetrics m = table.metrics();
   CHECK(m.max_percent == Approx(50));
+  CHECK(m.overshoot_percent == 0);
   CHECK(m.mean_percent == Approx(100 * 0.5 / 4));
   CHECK(m.paper_max_percent == 0);
 }
