@@ -64,12 +64,12 @@ void Resection::judge(std::span<const Piece> pieces, Surface& surface) {
   }
 }
 
-const Parted& Resection::part(const BladeEdge& was, const BladeEdge& is, std::span<Vec3> were,
-                              std::span<Vec3> are, Surface& surface) {
+const Parted& Resection::part(const BladeWay& blade, std::span<Vec3> were, std::span<Vec3> are,
+                              Surface& surface) {
   removed_.clear();
   asked_for_ = 0;
   parted_ = {};
-  parted_.stroke = scalpel_->cut(was, is, were, are, left_);
+  parted_.stroke = scalpel_->cut(blade, were, are, left_);
   totals_.slides += parted_.stroke.slides.size();
   if (parted_.stroke.faces.empty()) return parted_;
   note_change();

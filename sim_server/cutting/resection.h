@@ -63,8 +63,7 @@ class Resection {
 
   /// What a blade that `was` there and `is` here parts, of one that `parts`, as `Scalpel::cut`. The pieces
   /// that it cut off and that go are `removed` then.
-  const Parted& part(const BladeEdge& was, const BladeEdge& is, std::span<Vec3> were, std::span<Vec3> are,
-                     Surface& surface);
+  const Parted& part(const BladeWay& blade, std::span<Vec3> were, std::span<Vec3> are, Surface& surface);
   std::span<const int> removed() const { return removed_; }
   /// This mesh vertex never slides onto the way of a blade.
   void keep(int vertex) { scalpel_->keep(vertex); }

@@ -8,10 +8,10 @@
 namespace palpate::sim {
 namespace {
 
-// Of the mean edge: how far ahead of the blade and beyond its ends vertices slide; how far behind it faces
-// are still parted, that a slide has brought there.
-constexpr double kAhead = 1, kBeyond = 0.5, kBehind = 0.25;
-constexpr double kLeastWay = 0.02;
+// Of the mean edge: how far ahead of the blade and beyond its ends vertices slide; how long its trail is; and
+// how far it goes before it is looked at. Of the trail: so far back faces are still parted, that a slide has
+// brought there.
+constexpr double kAhead = 1, kBeyond = 0.5, kTrail = 1, kLeastWay = 0.02, kBehind = 0.25;
 constexpr double kAlongItself = 1e-3;  // sine of the angle between an edge and its way, which parts nothing
 constexpr double kMostSlide = 0.5;     // of an edge
 constexpr double kLeastHeight = 0.3;  // of the mean shortest height of tetrahedra, unless it was lower before
@@ -177,43 +177,42 @@ void Scalpel::slide_onto(const Plane& plane, std::span<const int> near, std::spa
   } while (slides.size() > before);
 }
 
-/// Between centres of which the blade went through the line, in the tissue as it is now: where the blade was,
-/// that has since moved on.
-std::vector<int> Scalpel::faces_between(const BladeEdge& was, const BladeEdge& is, std::span<const int> near,
+/// Between centres of which the blade or its trail went through the line, in the tissue as it is now: where
+/// the blade was, that has since moved on.
+std::vector<int> Scalpel::faces_between(const BladeWay& blade, std::span<const int> near,
                                         std::span<const Vec3> were, std::span<const Vec3> are,
                                         const CutMesh& mesh) const {
   std::vector<int> faces;
-  const Vec3 blade = way_of(was, is);
   for (const int t : near) {
     const Vec3 p = centre_at(mesh, are, t), p_was = centre_at(mesh, were, t);
     for (int face = 4 * t; face < 4 * t + 4; ++face) {
       if (!mesh.can_part(face) || mesh.across(face) < face) continue;
       const int other = mesh.across(face) / 4;
       const Vec3 q = centre_at(mesh, are, other);
-      const Vec3 moved = 0.5 * (p - p_was + q - centre_at(mesh, were, other)), way = blade - moved;
-      const Vec3 shift = way.norm() > 0 ? Vec3(moved - kBehind * edge_ * way.normalized()) : moved;
-      if (goes_through({was[0] + shift, was[1] + shift}, is, p, q)) faces.push_back(face);
+      const Vec3 shift = 0.5 * (p - p_was + q - centre_at(mesh, were, other)) + kBehind * blade.trail;
+      if (goes_through({blade.was[0] + shift, blade.was[1] + shift}, blade.is, p, q)) faces.push_back(face);
     }
   }
   return faces;
 }
 
-Stroke Scalpel::cut(const BladeEdge& was, const BladeEdge& is, std::span<Vec3> were, std::span<Vec3> are,
-                    CutMesh& mesh) {
+Stroke Scalpel::cut(const BladeWay& blade, std::span<Vec3> were, std::span<Vec3> are, CutMesh& mesh) {
+  const auto& [was, is, trail] = blade;
   const std::vector<int> near = around(was, is, are, mesh);
   Vec3 tissue = Vec3::Zero();
   for (const int t : near) tissue += centre_at(mesh, are, t) - centre_at(mesh, were, t);
   Stroke stroke{.way = way_of(was, is) - tissue / std::max<double>(1, static_cast<double>(near.size()))};
   if (stroke.way.norm() < kLeastWay * edge_) return stroke;
   stroke.moved = true;
-  const Vec3 edge = is[1] - is[0], across = edge.cross(stroke.way);
-  if (across.norm() > kAlongItself * edge.norm() * stroke.way.norm()) {
+  const Vec3 edge = is[1] - is[0], course = stroke.way - trail, across = edge.cross(course);
+  stroke.trail = -std::min(1.0, kTrail * edge_ / course.norm()) * course;
+  if (across.norm() > kAlongItself * edge.norm() * course.norm()) {
     Plane plane{is[0], edge.normalized(), {}, across.normalized(), edge.norm(), {}};
     plane.ahead = plane.normal.cross(plane.along);
-    plane.back = stroke.way.dot(plane.ahead);
+    plane.back = course.dot(plane.ahead);
     slide_onto(plane, near, were, are, mesh, stroke.slides);
   }
-  stroke.faces = faces_between(was, is, near, were, are, mesh);
+  stroke.faces = faces_between(blade, near, were, are, mesh);
   return stroke;
 }
 

@@ -11,10 +11,19 @@ namespace palpate::sim {
 /// The sharp edge of a blade (m, world): from one end to the other.
 using BladeEdge = std::array<Vec3, 2>;
 
+/// How a blade went through tissue.
+struct BladeWay {
+  BladeEdge was, is;
+  /// From where it was to where its trail ends: it follows the blade as something that is dragged behind it,
+  /// so that tissue that trembles under a blade does not turn it about. m; 0 where it begins.
+  Vec3 trail = Vec3::Zero();
+};
+
 /// What a blade did to tissue.
 struct Stroke {
   bool moved = false;                                ///< far enough to be looked at
   Vec3 way = Vec3::Zero();                           ///< of the blade through the tissue around it, m
+  Vec3 trail = Vec3::Zero();                         ///< from where it is now, m
   std::vector<DeformationModel::Slide> slides = {};  ///< in order; done
   std::vector<int> faces = {};                       ///< to be parted then, 4 t + k, each once
 };
@@ -35,11 +44,10 @@ class Scalpel {
   /// The mean edge of what can be cut, at rest, m.
   double size() const { return edge_; }
 
-  /// What a blade that `was` there and `is` here by now has to part. `were`, `are`: the surface vertices then
-  /// and now, m. Slides vertices of the mesh, and of both. Nothing where it has hardly moved: it is to be
-  /// asked again, from where it was. O(tetrahedra).
-  Stroke cut(const BladeEdge& was, const BladeEdge& is, std::span<Vec3> were, std::span<Vec3> are,
-             CutMesh& mesh);
+  /// What a blade on this way has to part. `were`, `are`: the surface vertices when it was where it was, and
+  /// now, m. Slides vertices of the mesh, and of both. Nothing where it has hardly moved: it is to be asked
+  /// again, from where it was. O(tetrahedra).
+  Stroke cut(const BladeWay& blade, std::span<Vec3> were, std::span<Vec3> are, CutMesh& mesh);
 
   std::size_t bytes() const { return slid_.size(); }
 
@@ -61,9 +69,8 @@ class Scalpel {
   bool slide(const Crossing& crossing, CutMesh& mesh) const;
   void slide_onto(const Plane& plane, std::span<const int> near, std::span<Vec3> were, std::span<Vec3> are,
                   CutMesh& mesh, std::vector<DeformationModel::Slide>& slides);
-  std::vector<int> faces_between(const BladeEdge& was, const BladeEdge& is, std::span<const int> near,
-                                 std::span<const Vec3> were, std::span<const Vec3> are,
-                                 const CutMesh& mesh) const;
+  std::vector<int> faces_between(const BladeWay& blade, std::span<const int> near, std::span<const Vec3> were,
+                                 std::span<const Vec3> are, const CutMesh& mesh) const;
 
   double edge_ = 0, longest_ = 0, height_ = 0;  // m: of edges the mean and the longest; of heights the mean
   std::vector<char> slid_;                      // of mesh vertices

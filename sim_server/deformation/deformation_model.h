@@ -154,8 +154,8 @@ class DeformationModel {
     double share;
   };
   /// Between two steps: these vertices slid, in this order, then faces were parted; `left` is what is left
-  /// by now. Copies of vertices are where these are, as fast. Of models whose row says `parts`. O(changed)
-  /// but for room. Allocates.
+  /// by now. Copies of vertices are where these are, as fast. Of models whose row says `cuts`. O(changed)
+  /// but for room; `Implicit` factors anew in the next step. Allocates.
   virtual void part([[maybe_unused]] std::span<const Slide> slides, [[maybe_unused]] const Parting& parting,
                     [[maybe_unused]] const CutMesh& left) {}
 

@@ -62,7 +62,6 @@ constexpr std::array kModels{
          .materials = Materials::kPlain,
          .moves = true,
          .cuts = true,
-         .parts = true,
          .unneeded = {{"factor of the stiffness matrix, kept",
                        "explicit steps solve nothing; set-up lets its own go"}}}),
     row_of<Implicit, RayleighDamping, ImplicitSettings, ContactInstants, ClientModes, ComplianceTolerance>(
@@ -91,7 +90,6 @@ constexpr std::array kModels{
          .materials = Materials::kPlain,
          .moves = true,
          .cuts = true,
-         .parts = true,
          .needs_cutting = true}),
 };
 

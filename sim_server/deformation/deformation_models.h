@@ -31,8 +31,7 @@ struct DeformationModelRow {
   Materials materials = Materials::kNone;
   bool moves = false;  ///< the organ has inertia, or goes as one piece; false: at rest at every instant
   bool flies = false;  ///< nothing need hold the body: it has mass
-  bool cuts = false;   ///< tissue can be removed while it is felt (`remove`)
-  bool parts = false;  ///< and parted by a blade (`part`)
+  bool cuts = false;   ///< tissue can be removed and parted while it is felt (`remove`, `part`)
   bool needs_cutting = false;  ///< only of scenes with [cutting]
   bool condenses = false;      ///< all that its set-up takes long for can be condensed (`Condensed`)
   /// What other models build and this one need not, for `explain`.

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -77,12 +78,15 @@ class Implicit : public DeformationModel {
   BudgetUse budget_use() const noexcept override { return budget_use_; }
   std::span<const Vec3> nodes() const noexcept override { return dynamics_.position(); }
   Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
+  void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) override;
   std::vector<MemoryPart> memory() const override;
 
  private:
   void begin(const ModelInputs& inputs);
   void end_by_budget();
   void apply_new_loads();
+  void end_step_in_hand();
+  std::vector<Dynamics::NodeMass> masses_of(const std::set<int>& nodes, const CutMesh& left) const;
   FreeMotion motion() const;
   struct Carried {
     std::vector<Vec3> positions, velocities;

@@ -1,4 +1,4 @@
-// Tissue of Implicit that is removed while it is felt.
+// Tissue of Implicit that is removed or parted while it is felt.
 #include <algorithm>
 
 #include "sim_server/deformation/implicit.h"
@@ -20,14 +20,23 @@ double mass_at(int node, const CutMesh& left, double density) {
 }  // namespace
 
 /// What the contact of the last step did is done first, by the tissue that bore it.
+void Implicit::end_step_in_hand() {
+  if (!in_step_) return;
+  apply_new_loads();
+  dynamics_.finish_step();
+  in_step_ = false;
+}
+
+std::vector<Dynamics::NodeMass> Implicit::masses_of(const std::set<int>& nodes, const CutMesh& left) const {
+  std::vector<Dynamics::NodeMass> masses;
+  for (const int node : nodes) masses.push_back({node, mass_at(node, left, solid_.material().density)});
+  return masses;
+}
+
 DeformationModel::Removed Implicit::remove(std::span<const int> tetrahedra, const CutMesh& left) {
-  if (in_step_) {
-    apply_new_loads();
-    dynamics_.finish_step();
-    in_step_ = false;
-  }
+  end_step_in_hand();
   Removed gone;
-  std::vector<int> touched;
+  std::set<int> touched;
   for (const int t : tetrahedra) {
     const auto e = static_cast<std::size_t>(t);
     const Tetrahedron& corners = left.mesh().tetrahedra[e];
@@ -37,21 +46,45 @@ DeformationModel::Removed Implicit::remove(std::span<const int> tetrahedra, cons
       const Vec3& v = dynamics_.velocity()[static_cast<std::size_t>(node)];
       gone.kinetic += mass / 8 * v.squaredNorm();
       gone.momentum += mass / 4 * v;
-      touched.push_back(node);
+      touched.insert(node);
     }
     solid_.remove(e);
   }
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  std::vector<Dynamics::NodeMass> masses;
-  for (const int node : touched) {
-    masses.push_back({node, mass_at(node, left, solid_.material().density)});
-  }
-  dynamics_.remove(tetrahedra, masses);
+  dynamics_.remove(tetrahedra, masses_of(touched, left));
   const auto hangs_on_nothing = [&](const NodalLoad& load) { return !left.on_surface(load.vertex); };
   std::erase_if(loads_, hangs_on_nothing);
   linearised_loads_ = loads_;
   return gone;
+}
+
+void Implicit::part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) {
+  end_step_in_hand();
+  std::set<int> moved, reshaped;
+  const auto reshape_around = [&](int vertex) {
+    for (const int t : left.around(vertex)) {
+      if (left.is_left(t)) reshaped.insert(t);
+    }
+  };
+  for (const auto& [vertex, towards, share] : slides) {
+    dynamics_.slide(vertex, towards, share);
+    reshape_around(vertex);
+    moved.insert(vertex);
+  }
+  for (const auto& [vertex, copy] : parting.splits) {
+    dynamics_.copy(vertex, copy);
+    reshape_around(copy);
+    moved.insert({vertex, copy});
+  }
+  solid_.reshape(left.mesh(), std::vector(reshaped.begin(), reshaped.end()));
+  for (const int node : moved) {
+    const auto v = static_cast<std::size_t>(left.number_of(node));
+    positions_[v] = free_[v] = dynamics_.position()[static_cast<std::size_t>(node)];
+  }
+  for (const int t : reshaped) {
+    const Tetrahedron& corners = left.mesh().tetrahedra[static_cast<std::size_t>(t)];
+    moved.insert(corners.begin(), corners.end());
+  }
+  dynamics_.part(masses_of(moved, left));
 }
 
 }  // namespace palpate::sim

@@ -94,6 +94,21 @@ void Solid::remove(std::size_t e) {
   for (int q = 0; q < points_; ++q) weight_[Element(*this, e).point(q)] = 0;
 }
 
+void Solid::reshape(const TetMesh& mesh, std::span<const int> tetrahedra) {
+  for (const int t : tetrahedra) {
+    const auto e = static_cast<std::size_t>(t);
+    const Tetrahedron& corners = mesh.tetrahedra[e];
+    std::array<Vec3, 4> places;
+    for (std::size_t i = 0; i < 4; ++i)
+      places[i] = rest_[static_cast<std::size_t>(corners[i])] =
+          mesh.vertices[static_cast<std::size_t>(corners[i])];
+    const LinearTetrahedron element(places);
+    std::ranges::copy(corners, element_nodes_.begin() + static_cast<std::ptrdiff_t>(4 * e));
+    std::ranges::copy(element.gradient, gradient_.begin() + static_cast<std::ptrdiff_t>(4 * e));
+    weight_[e] = element.volume * stiffness_of(e);
+  }
+}
+
 std::vector<double> Solid::masses() const {
   std::vector<double> masses(rest_.size(), 0);
   for (std::size_t e = 0; e < elements(); ++e) {

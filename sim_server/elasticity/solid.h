@@ -31,9 +31,9 @@ struct Viscosity {
 /// (Zienkiewicz
 ///   and Taylor 2000, volume 1, tables 8.5 and 9.3).
 /// Sums run over tetrahedra in their order, whatever the number of threads: the same bytes. A body does not
-/// change after its construction but by `remove`; what a call writes to is the caller's `Scratch`, so that
-/// several threads may ask at once, each with its own. Calls without one make their own, which suits set-up
-/// and tests.
+/// change after its construction but by `remove` and `reshape`; what a call writes to is the caller's
+/// `Scratch`, so that several threads may ask at once, each with its own. Calls without one make their own,
+/// which suits set-up and tests.
 class Solid {
  public:
   class Scratch;
@@ -69,6 +69,9 @@ class Solid {
 
   /// Tetrahedron e is no more: from now on it has no volume, and resists nothing. Not of averaged dilation.
   void remove(std::size_t e);
+  /// These tetrahedra have the corners that `mesh` says, where it says: others than before, of as many nodes,
+  /// or elsewhere at rest. Of linear elements.
+  void reshape(const TetMesh& mesh, std::span<const int> tetrahedra);
   bool is_removed(std::size_t e) const { return weight_[e * static_cast<std::size_t>(points_)] == 0; }
   /// Elastic energy of one tetrahedron, J.
   double energy_of(std::size_t e, std::span<const Vec3> x) const;

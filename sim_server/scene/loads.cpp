@@ -11,6 +11,17 @@ Vec3 area_of(std::span<const Vec3> x, const std::array<int, 3>& corner) {
   return 0.5 * (x[corner[1]] - x[corner[0]]).cross(x[corner[2]] - x[corner[0]]);
 }
 
+/// What becomes the copy of a vertex is of no tetrahedron at first, and those that are held stay one.
+void let_go_of_spares(const TetMesh& mesh, std::vector<HeldAxes>& held) {
+  std::vector<char> is_corner(held.size(), 0);
+  for (const Tetrahedron& t : mesh.tetrahedra) {
+    for (const int v : t) is_corner[static_cast<std::size_t>(v)] = 1;
+  }
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    if (is_corner[v] == 0) held[v] = 0;
+  }
+}
+
 }  // namespace
 
 Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, const Solid& solid)
@@ -48,6 +59,7 @@ void Loads::hold(const Scene& scene, const TetMesh& mesh) {
   for (const FixedRegion& region : scene.fixed) {
     for (const int vertex : vertices_in(region, mesh)) held_[vertex] |= region.axes;
   }
+  if (scene.blade() != nullptr) let_go_of_spares(mesh, held_);
   bool moves = false;
   for (const Load& load : scene.loads) {
     if (load.kind != Load::Kind::kDisplacement) continue;

@@ -108,11 +108,7 @@ void require_cutting(const Scene& scene) {
   if (!row.cuts)
     fail("{}: tissue of model \"{}\" cannot be cut; {} can", scene.cutting->where, row.name,
          models_that([](const DeformationModelRow& m) { return m.cuts; }));
-  const ToolSettings* const blade = scene.blade();
-  if (blade != nullptr && !row.parts)
-    fail("{}: tissue of model \"{}\" cannot be parted by a blade; {} can", blade->blade_where, row.name,
-         models_that([](const DeformationModelRow& m) { return m.parts; }));
-  if (blade != nullptr && scene.cutting->growth)
+  if (scene.blade() != nullptr && scene.cutting->growth)
     fail(
         "{}: what can be cut does not grow where a blade parts it; remove this, and name all of it "
         "in [cutting]",

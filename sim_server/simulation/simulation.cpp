@@ -208,7 +208,7 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
     static_cast<ToolForce&>(answers_[i]) = tools_[i].force();
     if (!tells_tangents) answers_[i].force = late_mean_[i];
     answers_[i].mean_force = mean_[i];
-    if (cut_) resist_blade(i, answers_[i]);
+    if (cut_) resist_blade(i, dt, answers_[i]);
   }
   if (cut_) note_cut(inputs, dt);
   time_ += dt;

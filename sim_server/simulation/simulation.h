@@ -194,7 +194,8 @@ class Simulation {
   void tell_near(std::span<const ToolInput> inputs);
   void make_room_for_modes();
   void count_gone(const DeformationModel::Removed& gone);
-  void resist_blade(std::size_t tool, ToolAnswer& answer);
+  void resist_blade(std::size_t tool, double dt, ToolAnswer& answer);
+  bool feels_blade(std::size_t tool) const;
   void note_cut(std::span<const ToolInput> inputs, double dt);
   void change_surface();
   PathPoint at_instant(std::size_t tool, const ToolInput& input, int instant) const;
@@ -220,6 +221,7 @@ class Simulation {
   struct Blade {
     BladeEdge is{};                     // m
     std::optional<BladeEdge> was = {};  // when what it parts was looked for last
+    Vec3 trail = Vec3::Zero();          // `BladeWay`, m
     std::vector<Vec3> were = {};        // surface vertices then, m
     std::optional<Vec3> place = {};     // of the tool at the end of the step before, m
     double owed = 0;                    // J of what it has parted

@@ -46,7 +46,8 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   if (!input.pose || answer.flagged) return;
   const Vec3& p_W = input.pose->p_W;
   ToolWants wants = input.wants;
-  if (!tissue_.model->knows_later_compliance()) {
+  // Nor of the tissue alone where a blade is felt, too.
+  if (!tissue_.model->knows_later_compliance() || feels_blade(tool)) {
     wants.here = false;
     wants.ahead.reset();
   }

@@ -9,7 +9,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kRounding = 1e-9;  // s
-constexpr double kAtRest = 2e-5;    // m in a step: a blade that goes less far is felt less
+constexpr double kAtRest = 6e-4;    // m/s: a blade that goes slower is felt less
 
 bool is_hot(const ToolSettings& settings, const ToolContact& tool, const ToolInput& input) {
   return (input.buttons & settings.cut_buttons) != 0 && input.pose && tool.placed();
@@ -126,9 +126,10 @@ void Simulation::part_by(std::size_t tool) {
     for (const NodalLoad& load : tissue_.loads_of(other))
       resection.keep(surface_.vertices[static_cast<std::size_t>(load.vertex)]);
   }
-  const Parted& parted = resection.part(*blade.was, blade.is, blade.were, are, surface_);
+  const Parted& parted = resection.part({*blade.was, blade.is, blade.trail}, blade.were, are, surface_);
   if (!parted.stroke.moved) return;
   blade.was = blade.is;
+  blade.trail = parted.stroke.trail;
   blade.were = std::move(are);
   blade.owed += cut_->toughness * parted.area;
   const CutMesh& left = resection.left();
@@ -157,18 +158,22 @@ void Simulation::part_by(std::size_t tool) {
 }
 
 /// Against its way in this step, so that it does the work that it owes over the next `blade_size` or so.
-void Simulation::resist_blade(std::size_t tool, ToolAnswer& answer) {
+void Simulation::resist_blade(std::size_t tool, double dt, ToolAnswer& answer) {
   if (!cut_->blades[tool]) return;
   Blade& blade = *cut_->blades[tool];
   const Vec3& p = tools_[tool].place();
   const Vec3 way = p - blade.place.value_or(p);
   blade.place = p;
   const double far = way.norm();
-  blade.force = -blade.owed / (cut_->resection.blade_size() + far) / (far + kAtRest) * way;
+  blade.force = -blade.owed / (cut_->resection.blade_size() + far) / (far + kAtRest * dt) * way;
   blade.owed += blade.force.dot(way);
   answer.force += blade.force;
   answer.mean_force += blade.force;
   if (!tools_[tool].shape().trocar) answer.torque += 0.5 * (blade.is[1] - blade.is[0]).cross(blade.force);
+}
+
+bool Simulation::feels_blade(std::size_t tool) const {
+  return cut_ && cut_->blades[tool] && !cut_->blades[tool]->force.isZero(0);
 }
 
 void Simulation::change_surface() {

@@ -113,8 +113,7 @@ void Dynamics::refactor_if_moved() {
 
 /// Takes the factor that the background has made, and has it begin the next from where the body is now.
 void Dynamics::exchange_factors() {
-  if (background_->begun()) {
-    background_->exchange(matrix_);
+  if (background_->begun() && background_->exchange(matrix_)) {
     from_background_ = true;
     count_new_factor();
     policy_.replaced();
@@ -124,10 +123,21 @@ void Dynamics::exchange_factors() {
 }
 
 void Dynamics::remove(std::span<const int> tetrahedra, std::span<const NodeMass> masses) {
+  if (background_) background_->remove(tetrahedra);
+  go_on_with(masses);
+}
+
+void Dynamics::part(std::span<const NodeMass> masses) {
+  matrix_.parted();
+  if (background_) background_->parted();
+  go_on_with(masses);
+}
+
+/// Between two steps, with a body that has been cut.
+void Dynamics::go_on_with(std::span<const NodeMass> masses) {
   for (const auto& [node, mass] : masses) mass > 0 ? motion_.set_mass(node, mass) : motion_.stop(node);
   motion_.forget_forces();
   cut_since_factored_ = true;
-  if (background_) background_->remove(tetrahedra);
   quasi_newton_.clear();
   policy_.replaced();
 }

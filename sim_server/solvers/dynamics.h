@@ -76,6 +76,14 @@ class Dynamics {
   /// mass that it had. The factor is stale from now on. Of a body with `DynamicsSettings::cut`. An
   /// evaluation.
   void remove(std::span<const int> tetrahedra, std::span<const NodeMass> masses);
+  /// Between two steps: a node goes towards another by this share of the way, as fast as what is there.
+  void slide(int node, int towards, double share) { motion_.slide(node, towards, share); }
+  /// Between two steps: a node goes on from where another is, as fast.
+  void copy(int node, int copy) { motion_.slide(copy, node, 1); }
+  /// Between two steps, after these: tetrahedra have other corners, or corners elsewhere (`Solid::reshape`),
+  /// and with them these nodes' masses have changed. The next step factors A anew, with its pattern, whatever
+  /// its budget. Of a body with `DynamicsSettings::cut`. An evaluation.
+  void part(std::span<const NodeMass> masses);
 
   /// The trial point (nodes, m).
   std::span<const Vec3> position() const { return motion_.position(); }
@@ -124,6 +132,7 @@ class Dynamics {
   Eigen::VectorXd solve_turned(const Eigen::VectorXd& b);
   Residual evaluate(std::span<const Vec3> external);
   void go_back();
+  void go_on_with(std::span<const NodeMass> masses);
   void factor();
   void count_new_factor();
   void exchange_factors();

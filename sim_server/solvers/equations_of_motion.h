@@ -66,6 +66,13 @@ class EquationsOfMotion {
   /// force, which damping would answer.
   void set_mass(int node, double mass) { mass_[static_cast<std::size_t>(node)] = mass; }
   void stop(int node) { time_.stop(static_cast<std::size_t>(node)); }
+  /// Between two steps: a node goes towards another by this share of the way, as fast as what is there.
+  void slide(int node, int towards, double share) {
+    const auto i = static_cast<std::size_t>(node), j = static_cast<std::size_t>(towards);
+    time_.slide(i, j, share);
+    x_[i] = (1 - share) * x_[i] + share * x_[j];
+    internal_is_current_ = start_is_current_ = false;
+  }
   void forget_forces() {
     internal_is_current_ = start_is_current_ = false;
     update_internal();

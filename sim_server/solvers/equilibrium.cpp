@@ -33,7 +33,7 @@ class Newton {
         external_(internal_.size()) {
     solid.add_stiffness(solid.rest(), stiffness_, {}, scratch_);
     mean_diagonal_ = stiffness_.lower().diagonal().mean();
-    stiffness_.close_held(mean_diagonal_);
+    stiffness_.close_empty(mean_diagonal_);
     factor_.emplace(stiffness_.lower(), where, SparseCholesky::Precision::kSingle);
     negligible_force_ = kRestsWithin * diagonal_of(solid.rest()) * mean_diagonal_;
   }
@@ -82,11 +82,11 @@ class Newton {
     if (is_linear()) return true;  // as at rest, everywhere
     stiffness_.set_zero();
     solid_.add_stiffness(x, stiffness_, {}, scratch_);
-    stiffness_.close_held(mean_diagonal_);
+    stiffness_.close_empty(mean_diagonal_);
     if (factor_->refactor(stiffness_.lower())) return true;
     StiffnessMatrix at_rest = solid_.stiffness_matrix(dofs_);
     solid_.add_stiffness(solid_.rest(), at_rest, {}, scratch_);
-    at_rest.close_held(mean_diagonal_);
+    at_rest.close_empty(mean_diagonal_);
     double added = 0;
     for (double shift = kFirstShift; shift < kLastShift; shift *= 4) {
       stiffness_.lower() += (shift - added) * at_rest.lower();

@@ -1,6 +1,7 @@
 #include "sim_server/solvers/newton_matrix.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/parallel.h"
 #include "common/realtime.h"
@@ -14,7 +15,7 @@ StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
   StiffnessMatrix matrix = solid.stiffness_matrix(dofs);
   solid.add_stiffness(solid.rest(), matrix);
   if (flies) matrix.add_to_diagonal(solid.masses(), kFlies * kFlies);
-  matrix.close_held(matrix.lower().diagonal().mean());
+  matrix.close_empty(matrix.lower().diagonal().mean());
   return matrix;
 }
 
@@ -40,6 +41,8 @@ int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<c
                         const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
   c_ = c;
   turns_.clear();
+  const bool other_pattern = std::exchange(parted_, false);
+  if (other_pattern) matrix_ = solid.stiffness_matrix(*dofs_);
   if (solid.material().law != ElasticLaw::kLinear) {
     built_turned_.resize(x.size());
     solid.node_rotations(x, built_turned_);
@@ -48,7 +51,8 @@ int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<c
   solid.add_stiffness(x, matrix_, viscosity, scratch);
   matrix_.lower() *= 1 + beta_ * c;
   matrix_.add_to_diagonal(masses, c * c + alpha_ * c);
-  matrix_.close_held(mean_diagonal_);
+  matrix_.close_empty(mean_diagonal_);
+  if (other_pattern) factor_.take_pattern(matrix_.lower());
   int factors = 1;
   if (factor_.refactor(matrix_.lower())) return factors;
   // A quarter of what was enough last time, then ever more (Waechter and Biegler 2006, algorithm IC).
@@ -114,8 +118,14 @@ void BackgroundMatrix::begin(std::span<const Vec3> x, std::span<const double> ma
                              const Viscosity& viscosity, double c, std::vector<int> first) {
   x_.assign(x.begin(), x.end());
   masses_.assign(masses.begin(), masses.end());
+  if (std::exchange(outdated_, false)) {
+    own_ = solid_;
+    matrix_.parted();
+    removed_.clear();
+  }
   for (const int t : removed_) own_->remove(static_cast<std::size_t>(t));
   removed_.clear();
+  of_use_ = true;
   memory_.assign(viscosity.memory.begin(), viscosity.memory.end());
   made_.first = std::move(first);
   work_ = std::async(std::launch::async, [this, scale = viscosity.scale, c] {
@@ -127,10 +137,12 @@ void BackgroundMatrix::begin(std::span<const Vec3> x, std::span<const double> ma
   });
 }
 
-void BackgroundMatrix::exchange(NewtonMatrix& matrix) {
+bool BackgroundMatrix::exchange(NewtonMatrix& matrix) {
   work_.get();
+  if (!of_use_) return false;
   std::swap(matrix_, matrix);
   std::swap(made_, given_);
+  return true;
 }
 
 }  // namespace palpate::sim

@@ -21,6 +21,12 @@ class NewtonMatrix {
   /// definite, as of a body about to buckle, with more inertia. Returns how many factors that took.
   int build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
             const Viscosity& viscosity, double c, Solid::Scratch& scratch);
+  /// Other nodes of the solid meet than before: no factor serves until the next `build`, which takes the new
+  /// pattern.
+  void parted() {
+    parted_ = true;
+    c_ = 0;
+  }
   /// To be called where iterations with the factor of the last `build` converge slowly: should that be for
   /// want of digits, the next is made in double precision. Costs a solve.
   void check_precision();
@@ -37,7 +43,7 @@ class NewtonMatrix {
   /// leave more than `enough` of them.
   Eigen::MatrixXd columns(std::span<const int> first, double enough) const;
 
-  /// c of the last `build`, 1/s; 0 before the first.
+  /// c of the last `build`, 1/s; 0 before the first, and since `parted`.
   double c() const { return c_; }
   /// Of K at rest, N/m.
   double mean_diagonal() const { return mean_diagonal_; }
@@ -56,6 +62,7 @@ class NewtonMatrix {
   double mean_diagonal_;  // N/m
   SparseCholesky factor_;
   double c_ = 0;
+  bool parted_ = false;             // since the last `build`
   double more_inertia_ = 0;         // 1/s^2, the last that an indefinite A was given
   std::vector<Mat3> built_turned_;  // (nodes) how they had turned where A was built; empty: not at all
   std::vector<Mat3> turns_;         // (nodes) Q, or empty: none has turned
@@ -82,9 +89,15 @@ class BackgroundMatrix {
   void remove(std::span<const int> tetrahedra) {
     removed_.insert(removed_.end(), tetrahedra.begin(), tetrahedra.end());
   }
+  /// Other nodes of the solid meet than before: what was begun is of no use, and the next `begin` is of the
+  /// solid as it is then.
+  void parted() {
+    outdated_ = true;
+    of_use_ = false;
+  }
   bool begun() const { return work_.valid(); }
-  /// Waits for it, and exchanges it for `matrix`.
-  void exchange(NewtonMatrix& matrix);
+  /// Waits for it, and exchanges it for `matrix`, unless it is of no use any more. Returns whether it did.
+  bool exchange(NewtonMatrix& matrix);
   /// What came with the one given last. Valid until the next exchange.
   const Columns& columns() const { return given_; }
   /// Known beforehand: asked for while the thread works, too.
@@ -96,6 +109,8 @@ class BackgroundMatrix {
   const Solid& solid_;
   std::optional<Solid> own_;  // of a body that may be cut
   std::vector<int> removed_;  // since that was brought up to date
+  bool outdated_ = false;     // it was parted since
+  bool of_use_ = false;       // what has begun is
   std::vector<double> masses_;
   Solid::Scratch scratch_;
   NewtonMatrix matrix_;

@@ -35,6 +35,12 @@ class TimeStepping {
     v_[i] = earlier_v_[i] = Vec3::Zero();
     earlier_x_[i] = x_[i];
   }
+  /// Between two steps: a node goes towards another by this share of the way, and always was there, as fast
+  /// as what was.
+  void slide(std::size_t i, std::size_t towards, double share) {
+    for (std::vector<Vec3>* const of : {&x_, &v_, &earlier_x_, &earlier_v_})
+      (*of)[i] = (1 - share) * (*of)[i] + share * (*of)[towards];
+  }
   /// The internal forces (nodes, N) always were these.
   void forget_forces(std::span<const Vec3> internal) {
     f_.assign(internal.begin(), internal.end());

@@ -222,6 +222,11 @@ bool SparseCholesky::refactor(const SparseMatrix& lower) {
   return definite_;
 }
 
+void SparseCholesky::take_pattern(const SparseMatrix& lower) {
+  factor_ = std::make_unique<Factor>(lower, factor_->precision);
+  definite_ = false;
+}
+
 void SparseCholesky::check_precision(const SparseMatrix& lower) {
   if (!definite_ || !can_be_finer(*factor_)) return;
   const Eigen::MatrixXd load = alternating(lower.rows());

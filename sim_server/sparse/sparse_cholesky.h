@@ -35,6 +35,9 @@ class SparseCholesky final : public FactoredMatrix {
   /// single precision, that may be for want of digits: double precision is tried, until that has not helped.
   bool refactor(const SparseMatrix& lower);
 
+  /// The next `refactor` is of a matrix of this pattern; until then there is no factor.
+  void take_pattern(const SparseMatrix& lower);
+
   /// Of the matrix factored last: where the factor leaves more than a thousandth of a load, it is of no use,
   /// and the next is in double precision. Cost of a solve.
   void check_precision(const SparseMatrix& lower);

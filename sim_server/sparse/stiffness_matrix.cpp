@@ -85,12 +85,10 @@ void StiffnessMatrix::add(int i, int j, const Mat3& block) noexcept {
   add_to(i, j, free);
 }
 
-void StiffnessMatrix::close_held(double value) noexcept {
-  for (std::size_t i = 0; partly_held_ && i < held_.size(); ++i) {
-    if (held_[i] == 0 || block_[i] < 0) continue;
-    Mat3 block = Mat3::Zero();
-    for (int axis = 0; axis < 3; ++axis) block(axis, axis) = (held_[i] >> axis & 1) != 0 ? value : 0.0;
-    add_to(static_cast<int>(i), static_cast<int>(i), block);
+void StiffnessMatrix::close_empty(double value) noexcept {
+  for (Eigen::Index k = 0; k < matrix_.cols(); ++k) {  // the block on the diagonal is the first of its column
+    double& diagonal = matrix_.valuePtr()[matrix_.outerIndexPtr()[k] + static_cast<int>(k % 3)];
+    if (diagonal == 0) diagonal = value;
   }
 }
 

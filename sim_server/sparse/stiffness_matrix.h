@@ -44,9 +44,9 @@ class StiffnessMatrix {
   StiffnessMatrix(const FreeDofs& dofs, std::span<const int> groups, std::span<const int> first);
 
   void set_zero() noexcept;
-  /// Puts `value` on the diagonal where a node is held along an axis: its row and column are 0 else. After
-  /// all is added.
-  void close_held(double value) noexcept;
+  /// Puts `value` on the diagonal where that is 0: where a node is held along an axis, or is of no element,
+  /// so that its row and column are 0. After all is added.
+  void close_empty(double value) noexcept;
   /// Adds the block of rows of node `i` and columns of node `j`; also stands for the one of j and i. Each
   /// pair once. Nothing where one is fixed. O(blocks in the column).
   void add(int i, int j, const Mat3& block) noexcept;

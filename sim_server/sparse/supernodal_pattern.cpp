@@ -1,6 +1,7 @@
 #include "sim_server/sparse/supernodal_pattern.h"
 
 #include <algorithm>
+#include <mutex>
 #include <new>
 #include <numeric>
 #include <suitesparse/cholmod.h>
@@ -54,8 +55,12 @@ struct Cholmod {
   ~Cholmod() { cholmod_finish(&common); }
 
   /// The order of three unknowns a node. On all of 14 meshes of 343 to 20 402 nodes METIS gave the factor of
-  /// fewer multiplications, by 6 to 57 %; AMD serves where CHOLMOD was built without it.
+  /// fewer multiplications, by 6 to 57 %; AMD serves where CHOLMOD was built without it. METIS seeds the
+  /// sequence of random numbers that all threads share: two at a time would each find another order in each
+  /// run.
   std::vector<int> order_of(const NodeGraph& graph) {
+    static std::mutex one_at_a_time;
+    const std::scoped_lock lock(one_at_a_time);
     common.supernodal = CHOLMOD_SIMPLICIAL;
     common.nmethods = 1;
     cholmod_sparse nodes = view(graph.outer, graph.inner);

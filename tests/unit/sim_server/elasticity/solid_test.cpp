@@ -154,6 +154,34 @@ TEST_CASE("solid: masses add up to density times volume") {
   }
 }
 
+TEST_CASE("solid: reshaped, it is the body that another mesh would have made") {
+  TetMesh mesh = shaken_block();
+  mesh.stiffness.assign(mesh.tetrahedra.size(), 1);
+  for (std::size_t t = 0; t < mesh.stiffness.size(); t += 3) mesh.stiffness[t] = 5;
+  mesh.vertices.emplace_back(0.1, 0.2, 0.3);  // of no tetrahedron yet
+  Solid solid(mesh, tissue(ElasticLaw::kCorotational, ElementKind::kLinear));
+  const auto spare = static_cast<int>(mesh.vertices.size()) - 1;
+  constexpr int kMiddle = 13;
+  mesh.vertices[kMiddle] += Vec3(0.02, -0.01, 0.03);
+  mesh.vertices.back() = mesh.vertices[kMiddle];
+  std::vector<int> changed;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    Tetrahedron& corners = mesh.tetrahedra[t];
+    const auto corner = std::ranges::find(corners, kMiddle);
+    if (corner == corners.end()) continue;
+    if (t % 2 == 0) *corner = spare;
+    changed.push_back(static_cast<int>(t));
+  }
+  REQUIRE(changed.size() > 8);
+  solid.reshape(mesh, changed);
+  const Solid other(mesh, tissue(ElasticLaw::kCorotational, ElementKind::kLinear));
+  const std::vector<Vec3> x = deformed(other, 0.02);
+  CHECK(solid.rest() == other.rest());
+  CHECK(solid.masses() == other.masses());
+  CHECK(forces(solid, x) == forces(other, x));
+  CHECK(stiffness(solid, x) == stiffness(other, x));
+}
+
 #ifdef PALPATE_WITH_TBB
 TEST_CASE("solid: the same bytes with one thread and two") {
   std::vector<double> lines;

@@ -154,8 +154,6 @@ TEST_CASE("[cutting]: values out of range, and a scene in which nothing could be
 TEST_CASE("[cutting]: a region without any tetrahedron, elements and supports that cannot be cut") {
   const SceneWith nothing("[[tool]]", "cut_buttons = 1\n[cutting]\ncenter = [9, 9, 9]\nradius = 0.1");
   CHECK(nothing.error(true).find("no tetrahedron of the mesh lies in what can be cut") != std::string::npos);
-  const SceneWith parted("[[tool]]", "blade = [0, -0.01, 0]\ncut_buttons = 1\n[cutting]", "implicit");
-  CHECK(parted.error().find("cannot be parted by a blade; tensor_mass, hybrid can") != std::string::npos);
   const SceneWith quadratic("[material]", "element = \"p2\"\n[cutting]");
   CHECK(quadratic.error().find("cut") != std::string::npos);
 }

@@ -92,6 +92,44 @@ TEST_CASE("Newton matrix: one that was built elsewhere is turned by the differen
   CHECK((matrix.turned_solve(load) - right).norm() < 1e-5 * right.norm());
 }
 
+TEST_CASE(
+    "Newton matrix: of a body of which vertices became two, or came back to one, it is that of the body as "
+    "it is") {
+  TetMesh mesh = grid_block(test::lines(0, 0.06, 5), test::lines(0, 0.02, 2), test::lines(0, 0.02, 2));
+  const auto vertices = static_cast<int>(mesh.vertices.size());
+  for (int v = 0; v < vertices; ++v)
+    mesh.vertices.push_back(Vec3(mesh.vertices[static_cast<std::size_t>(v)]));
+  const TetMesh whole = mesh;
+  Solid solid(mesh, corotational(ElementKind::kLinear));
+  std::vector<HeldAxes> held(mesh.vertices.size(), 0);
+  for (int v = 0; v < vertices; ++v)
+    held[static_cast<std::size_t>(v)] = mesh.vertices[static_cast<std::size_t>(v)].x() == 0 ? kAllAxes : 0;
+  const FreeDofs dofs(held);
+  NewtonMatrix matrix(solid, dofs, {}, "test");
+  std::vector<int> beyond;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    if (centre_of(mesh, mesh.tetrahedra[t]).x() < 0.03) continue;
+    for (int& corner : mesh.tetrahedra[t]) corner += vertices;
+    beyond.push_back(static_cast<int>(t));
+  }
+  Solid::Scratch scratch(solid);
+  const Eigen::VectorXd load = some_load(dofs.count);
+  for (const TetMesh& now : {mesh, whole}) {
+    solid.reshape(now, beyond);
+    matrix.parted();
+    CHECK(matrix.c() == 0);
+    matrix.build(solid, solid.rest(), solid.masses(), {}, kC, scratch);
+    const Solid other(now, corotational(ElementKind::kLinear));
+    StiffnessMatrix exact = other.stiffness_matrix(dofs);
+    other.add_stiffness(other.rest(), exact);
+    exact.add_to_diagonal(other.masses(), kC * kC);
+    const Eigen::VectorXd moved = matrix.solve(load).col(0);
+    Eigen::VectorXd left = load - exact.times(moved).col(0);
+    for (Eigen::Index i = 0; i < left.size(); ++i) left[i] = exact.lower().coeff(i, i) > 0 ? left[i] : 0;
+    CHECK(left.norm() < 1e-4 * load.norm());
+  }
+}
+
 TEST_CASE("Newton matrix: what is held along an axis stays held") {
   const Solid solid = bar(ElementKind::kLinear);
   std::vector<HeldAxes> held(solid.rest().size(), 0);
