@@ -39,10 +39,9 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
 
 int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
                         const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
-  c_ = c;
+  c_ = 0;  // until all of this is done
   turns_.clear();
-  const bool other_pattern = std::exchange(parted_, false);
-  if (other_pattern) matrix_ = solid.stiffness_matrix(*dofs_);
+  if (parted_) matrix_ = solid.stiffness_matrix(*dofs_);
   if (solid.material().law != ElasticLaw::kLinear) {
     built_turned_.resize(x.size());
     solid.node_rotations(x, built_turned_);
@@ -52,18 +51,20 @@ int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<c
   matrix_.lower() *= 1 + beta_ * c;
   matrix_.add_to_diagonal(masses, c * c + alpha_ * c);
   matrix_.close_empty(mean_diagonal_);
-  if (other_pattern) factor_.take_pattern(matrix_.lower());
+  if (parted_) factor_.take_pattern(matrix_.lower());
+  parted_ = false;
+  bool definite = factor_.refactor(matrix_.lower());
   int factors = 1;
-  if (factor_.refactor(matrix_.lower())) return factors;
   // A quarter of what was enough last time, then ever more (Waechter and Biegler 2006, algorithm IC).
   double added = 0;
   const double first = std::clamp(more_inertia_ / 4, c * c, 1e5 * c * c);
-  for (double more = first; more < 1e6 * c * c; more *= 4) {
+  for (double more = first; !definite && more < 1e6 * c * c; more *= 4) {
     matrix_.add_to_diagonal(masses, more - added);
     added = more_inertia_ = more;
     ++factors;
-    if (factor_.refactor(matrix_.lower())) break;
+    definite = factor_.refactor(matrix_.lower());
   }
+  c_ = c;
   return factors;
 }
 
