@@ -311,7 +311,7 @@ void Implicit::compliance(std::span<const int> vertices, ContactPatch& patch) co
         block = 0.5 * (columns_.block<3, 3>(dof_[vertices[i]], 3 * slot_[vertices[j]]) +
                        columns_.block<3, 3>(dof_[vertices[j]], 3 * slot_[vertices[i]]).transpose());
       }
-      patch.compliance.block<3, 3>(3 * j, 3 * i) = block.transpose();
+      if (i != j) patch.compliance.block<3, 3>(3 * j, 3 * i) = block.transpose();
     }
   }
 }
