@@ -14,8 +14,8 @@ using BladeEdge = std::array<Vec3, 2>;
 /// How a blade went through tissue.
 struct BladeWay {
   BladeEdge was, is;
-  /// From where it was to where its trail ends: it follows the blade as something that is dragged behind it,
-  /// so that tissue that trembles under a blade does not turn it about. m; 0 where it begins.
+  /// From where it was to the end of its trail, which follows it as something dragged on a string (a
+  /// tractrix), so that tissue that trembles under a blade does not turn its way about. m; 0 where it begins.
   Vec3 trail = Vec3::Zero();
 };
 

@@ -22,6 +22,7 @@ struct Two {
   double first = 0, second = 0;
   Time now{};
   std::uint64_t number = 0;
+  bool cuts = false;  // before each sample
   std::unique_ptr<BestRecent> law;
 
   Two() {
@@ -33,8 +34,10 @@ struct Two {
   /// Ticks of 2 ms; every 30 ms a sample of 20 ms ago, when the force was 1 N.
   void go(double seconds, double right = 1) {
     for (const Time end = now + from_seconds(seconds); now < end; now += 2ms) {
-      if (now.count() % 30'000'000 == 0 && now > 20ms)
+      if (now.count() % 30'000'000 == 0 && now > 20ms) {
+        if (cuts) law->surface_cut();
         law->update({.number = ++number, .t = now - 20ms, .f = {0, right, 0}});
+      }
       law->begin_tick(now);
       law->force(Vec3::Zero(), now);
     }
@@ -78,6 +81,14 @@ TEST_CASE(
   laws.go(0.05);
   CHECK(laws.law->stand_in() == "second");  // forgotten
   laws.go(0.1);
+  CHECK(laws.law->stand_in() == "first");
+}
+
+TEST_CASE("best recent: what laws gave until tissue went counts, too, however often it goes") {
+  Two laws;
+  laws.first = 1, laws.second = 2;
+  laws.cuts = true;
+  laws.go(0.3);
   CHECK(laws.law->stand_in() == "first");
 }
 

@@ -81,6 +81,33 @@ TEST_CASE("time stepping: backward Euler is exact for lines, BDF2 for parabolas"
   CHECK(euler.acceleration_at(0, euler.velocity_at(0, line(6 * h))).norm() < 1e-9);
 }
 
+TEST_CASE(
+    "time stepping: a node that slid goes on along the way of what was there, a copy along the same way") {
+  const double h = 0.01;
+  const auto place = [](int node, double t) -> Vec3 {  // two that go along parabolas, and one that rests
+    return node == 0 ? Vec3(kX + t * kV + 0.5 * t * t * kA) : node == 1 ? Vec3(t * kX + t * t * kV) : kX;
+  };
+  const auto at = [&](double t) { return std::vector<Vec3>{place(0, t), place(1, t), place(2, t)}; };
+  TimeStepping time(at(0), true);
+  std::vector<Vec3> internal(3, Vec3::Zero());
+  for (int i = 1; i <= 5; ++i) {
+    time.begin(h);
+    time.end(at(i * h), internal, false);
+  }
+  time.slide(0, 1, 0.25);
+  time.slide(2, 1, 1);
+  const auto slid = [&](double t) -> Vec3 { return 0.75 * place(0, t) + 0.25 * place(1, t); };
+  CHECK((time.position()[0] - slid(5 * h)).norm() < 1e-15);
+  CHECK(time.position()[2] == time.position()[1]);
+  CHECK(time.velocity()[2] == time.velocity()[1]);
+  time.begin(h);
+  // BDF2 is exact for parabolas, so it finds their velocity at the end of the next step.
+  const Vec3 v = 0.75 * (kV + 6 * h * kA) + 0.25 * (kX + 2 * 6 * h * kV);
+  CHECK((time.velocity_at(0, slid(6 * h)) - v).norm() < 1e-12);
+  CHECK((time.velocity_at(2, place(1, 6 * h)) - (kX + 2 * 6 * h * kV)).norm() < 1e-12);
+  CHECK((time.acceleration_at(2, kX + 2 * 6 * h * kV) - 2 * kV).norm() < 1e-9);
+}
+
 TEST_CASE("time stepping: an oscillator loses what the formula says it does") {
   // With q = exp(i w t) ~ z^n, backward Euler has z = 1 / (1 - i w h), and BDF2 the larger root of
   // (3 z^2 - 4 z + 1) / 2 = i w h z^2.
