@@ -1,6 +1,7 @@
 #include "haptic_client/extrapolation/best_recent.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace palpate::client {
 namespace {
@@ -19,6 +20,7 @@ void BestRecent::update(const Sample& sample) noexcept {
   if (usable(sample)) {
     if (const Forces* const given = ticks_.at(sample.t)) judge(*given, sample.f);
     free_ = sample.f.isZero(0);
+    sizes_[samples_++ % kAfterCut] = sample.f.norm();
   }
   for (Law& law : laws_) law.law->update(sample);
 }
@@ -34,7 +36,7 @@ void BestRecent::judge(const Forces& given, const Vec3& right) noexcept {
     error_[i] += ((given[i] - right).norm() - error_[i]) / judged_;
     if (error_[i] < error_[best]) best = i;
   }
-  if (error_[best] < kBetter * error_[chosen_]) chosen_ = best;
+  if (error_[best] < (after_cut() ? 1 : kBetter) * error_[chosen_]) chosen_ = best;
 }
 
 void BestRecent::restart() noexcept {
@@ -43,12 +45,15 @@ void BestRecent::restart() noexcept {
   judged_ = 0;
   chosen_ = laws_.size() - 1;
   free_ = true;
+  sizes_ = {};
+  samples_ = cut_at_ = 0;
   ticks_.forget();
 }
 
 /// Which law is best stays, and is judged by what they gave until then, too, which a hand felt as tissue
 /// went.
 void BestRecent::surface_cut() noexcept {
+  cut_at_ = samples_ + 1;
   for (Law& law : laws_) law.law->surface_cut();
 }
 
@@ -59,10 +64,14 @@ void BestRecent::begin_tick(Time now) noexcept {
 
 Vec3 BestRecent::force(const Vec3& p, Time t) noexcept {
   Forces given{};
+  const double most =
+      after_cut() ? *std::ranges::max_element(sizes_) : std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < laws_.size(); ++i) {
     // A law that looks back alone would go on pulling where the tool is free.
     const bool none = free_ && sees_surface_[i] == 0;
     given[i] = none ? Vec3(Vec3::Zero()) : laws_[i].law->force(p, t);
+    const double size = given[i].norm();
+    if (size > most) given[i] *= most / size;
   }
   if (Forces* const tick = ticks_.add(std::max(now_, t))) *tick = given;
   return given[chosen_];

@@ -14,6 +14,8 @@ namespace palpate::client {
 /// samples with contact; one that was better by a fifth takes over (follow the leader, with hysteresis), and
 /// `ForceEstimate` blends it in. Of equals, and before the first sample, the last one. A tick costs what all
 /// of them cost together.
+/// For eight samples from a cut on, as tissue that goes is softer than all laws expect, none may give more
+/// than the largest of the last eight samples, and any law that was better takes over.
 class BestRecent : public Extrapolator {
  public:
   struct Law {
@@ -37,13 +39,17 @@ class BestRecent : public Extrapolator {
  private:
   using Forces = std::array<Vec3, kMost>;  // N, of the laws
   void judge(const Forces& given, const Vec3& right) noexcept;
+  bool after_cut() const { return cut_at_ > 0 && samples_ < cut_at_ + kAfterCut; }
 
   std::vector<Law> laws_;
   std::vector<char> sees_surface_;
   std::array<double, kMost> error_{};  // N, mean
   double judged_ = 0;                  // samples, up to those that the mean is of
   std::size_t chosen_;
-  bool free_ = true;  // the newest sample saw no contact
+  bool free_ = true;                           // the newest sample saw no contact
+  static constexpr std::size_t kAfterCut = 8;  // samples
+  std::array<double, kAfterCut> sizes_{};      // N, of the last ones
+  std::size_t samples_ = 0, cut_at_ = 0;       // so far; of those, when tissue was cut last, and one
   Time now_{};
   TickMemory<Forces> ticks_;
 };

@@ -1,6 +1,7 @@
 #include "sim_server/deformation/cuttable_body.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "sim_server/deformation/mass_scaling.h"
 
@@ -56,7 +57,7 @@ DeformationModel::Removed CuttableBody::remove(std::span<const int> tetrahedra, 
 
 void CuttableBody::part(std::span<const DeformationModel::Slide> slides, const Parting& parting,
                         const CutMesh& left, const Material& material, double frequency) {
-  std::vector<int> reshaped;
+  std::vector<int> slid;
   for (const DeformationModel::Slide& slide : slides) {
     const int place = tensors.places()[static_cast<std::size_t>(slide.vertex)];
     const int other = tensors.places()[static_cast<std::size_t>(slide.towards)];
@@ -66,15 +67,26 @@ void CuttableBody::part(std::span<const DeformationModel::Slide> slides, const P
       if (other >= 0) end = Eigen::Map<const Vec3>(all->data() + 3 * other);
       own += slide.share * (end - own);
     }
-    for (const int t : left.around(slide.vertex)) {
-      if (left.is_left(t)) reshaped.push_back(t);
-    }
+    slid.push_back(slide.vertex);
   }
+  reshape(slid, parting, left, material, frequency);
+}
+
+void CuttableBody::reshape(std::span<const int> slid, const Parting& parting, const CutMesh& left,
+                           const Material& material, double frequency) {
+  std::vector<int> reshaped;
+  const auto reshape_around = [&](int vertex) {
+    std::ranges::copy_if(left.around(vertex), std::back_inserter(reshaped),
+                         [&](int t) { return left.is_left(t); });
+  };
+  std::ranges::for_each(slid, reshape_around);
+  const auto first_of = [&](int vertex) -> int& {
+    return first[static_cast<std::size_t>(left.number_of(vertex))];
+  };
   for (const Split& split : parting.splits) {
-    const int place = tensors.places()[static_cast<std::size_t>(split.vertex)];
-    for (const int t : left.around(split.copy)) reshaped.push_back(t);
-    first[static_cast<std::size_t>(left.number_of(split.copy))] = static_cast<int>(motion.state.u.size());
-    motion.append_copy_of(place);
+    reshape_around(split.copy);
+    first_of(split.copy) = static_cast<int>(motion.state.u.size());
+    motion.append_copy_of(first_of(split.vertex) / 3);
   }
   for (const int t : reshaped)
     tensors.set_mass_factor(t, mass_factor_of(left.mesh(), static_cast<std::size_t>(t), material, frequency));

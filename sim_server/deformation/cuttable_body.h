@@ -32,6 +32,11 @@ struct CuttableBody {
   void part(std::span<const DeformationModel::Slide> slides, const Parting& parting, const CutMesh& left,
             const Material& material, double frequency);
 
+  /// Since a body was made of a mesh, these vertices of that slid and faces were parted, in any order; `left`
+  /// is now. The copies are where what they are of is.
+  void reshape(std::span<const int> slid, const Parting& parting, const CutMesh& left,
+               const Material& material, double frequency);
+
   /// The forces on what is in motion, N, where that stands at `x` (m; both 3 x vertices in motion) and the
   /// rest is at rest, under these loads. Moves the modes of the rest to where they balance. O(edges + b^2).
   void static_force(const std::vector<double>& x, std::span<const NodalLoad> loads,

@@ -65,7 +65,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
   double highest = body_->rest ? body_->rest->highest_frequency() : 0;
   if (grows) {
     highest = std::max(highest, kModesAsGrown * scaling_.frequency);
-    growth_.emplace(inputs, *region, scaling_.factors, highest);
+    growth_.emplace(inputs, *region, highest);
   }
   if (told_bodies(inputs.scene) > 0) told_.emplace(inputs, body_->tensors);
   choose_sub_step(inputs, highest);
@@ -324,6 +324,7 @@ void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting,
   end_contact();
   if (told_) told_->forget();
   body_->part(slides, parting, left, material_, scaling_.frequency);
+  if (growth_) growth_->note_parted(slides, parting);
   const auto stand_anew = [&](int vertex) {
     rest_places_[static_cast<std::size_t>(vertex)] = left.mesh().vertices[static_cast<std::size_t>(vertex)];
   };
@@ -347,7 +348,8 @@ DeformationModel::Growth CuttableMotion::grow(const CutMesh& left) {
   if (!step.grown) return {step.begun, {}, std::move(step.failure)};
   RegionGrowth::Grown& grown = *step.grown;
   end_contact();
-  grown.body->remove(grown.removed_since, left, material_);
+  grown.body->reshape(grown.since.slid, grown.since.parting, left, material_, scaling_.frequency);
+  grown.body->remove(grown.since.removed, left, material_);
   (*grown.hand_over)(*body_, loads_);
   force_.reserve(grown.body->motion.state.f.size());  // from here on nothing throws
   std::swap(body_, grown.body);

@@ -155,7 +155,7 @@ class DeformationModel {
   };
   /// Between two steps: these vertices slid, in this order, then faces were parted; `left` is what is left
   /// by now. Copies of vertices are where these are, as fast. Of models whose row says `cuts`. O(changed)
-  /// but for room; `Implicit` factors anew in the next step. Allocates.
+  /// but for room; of `Implicit` some solves in the next step. Allocates.
   virtual void part([[maybe_unused]] std::span<const Slide> slides, [[maybe_unused]] const Parting& parting,
                     [[maybe_unused]] const CutMesh& left) {}
 

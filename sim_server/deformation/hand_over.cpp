@@ -7,15 +7,11 @@
 
 namespace palpate::sim {
 
-HandOver::HandOver(CuttableBody& after, const CuttableBody& before)
+HandOver::HandOver(CuttableBody& after, const CuttableBody& before, const std::vector<int>& places)
     : after_(after), force_(after.motion.state.u.size()) {
-  const std::vector<int>&now = after.tensors.places(), &was = before.tensors.places();
+  const std::vector<int>& now = after.tensors.places();
   for (std::size_t v = 0; v < now.size(); ++v) {
-    if (now[v] < 0) continue;
-    if (was[v] >= 0)
-      shared_.push_back({3 * was[v], 3 * now[v]});
-    else
-      joining_.push_back({static_cast<int>(v), 3 * now[v]});
+    if (now[v] >= 0 && places[v] < 0) joining_.push_back({static_cast<int>(v), 3 * now[v]});
   }
   const auto size = static_cast<Eigen::Index>(3 * joining_.size());
   require_memory(2.0 * sizeof(double) * static_cast<double>(size * size), free_memory(), "[cutting.growth]",
@@ -37,10 +33,14 @@ HandOver::HandOver(CuttableBody& after, const CuttableBody& before)
   overlaps_ = after.rest->overlap_with(*before.rest);
 }
 
-std::vector<double> HandOver::shared(const std::vector<double>& of_before) const {
+/// Of all that is in motion in both.
+std::vector<double> HandOver::shared(const CuttableBody& before, const std::vector<double>& of_before) const {
+  const std::vector<int>&was = before.tensors.places(), &now = after_.tensors.places();
   std::vector<double> x(after_.motion.state.u.size(), 0);
-  for (const auto& [before, after] : shared_)
-    Eigen::Map<Vec3>(x.data() + after) = Eigen::Map<const Vec3>(of_before.data() + before);
+  for (std::size_t v = 0; v < now.size(); ++v) {
+    if (was[v] >= 0 && now[v] >= 0)
+      Eigen::Map<Vec3>(x.data() + 3 * now[v]) = Eigen::Map<const Vec3>(of_before.data() + 3 * was[v]);
+  }
   return x;
 }
 
@@ -59,7 +59,8 @@ void HandOver::balance(std::vector<double>& x, std::span<const NodalLoad> loads)
 
 void HandOver::operator()(CuttableBody& before, std::span<const NodalLoad> loads) {
   CondensedRest::Swing swing = before.rest->swing(), balanced, still;
-  std::vector<double> v = shared(before.motion.state.v), u = shared(before.motion.state.u);
+  std::vector<double> v = shared(before, before.motion.state.v), u = shared(before, before.motion.state.u);
+  force_.resize(u.size());
   balance(v, {});
   balanced.v = after_.rest->swing().p;
   before.rest->stand_still(before.motion.state.v, {});

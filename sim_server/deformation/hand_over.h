@@ -14,26 +14,23 @@ namespace palpate::sim {
 /// now does not have is lost.
 class HandOver {
  public:
-  /// Both keep the shapes of modes. Of `before`, reads what never changes: another thread may step it.
+  /// Both keep the shapes of modes. `places`: of the mesh vertices in the motion of `before`. Of that, reads
+  /// what never changes: another thread may step it.
   /// O(j (edges + b^2) + j^3) of j unknowns that join; throws `Error` where S is singular, or where it would
   /// take more memory than is free.
-  HandOver(CuttableBody& after, const CuttableBody& before);
+  HandOver(CuttableBody& after, const CuttableBody& before, const std::vector<int>& places);
 
-  /// Puts `after` where `before` is, which bears these loads and is of no use from then on. O(edges + b^2 +
-  /// j^2).
+  /// Puts `after` where `before` is, which bears these loads and is of no use from then on. What was parted
+  /// of one by now was parted of the other. O(edges + b^2 + j^2).
   void operator()(CuttableBody& before, std::span<const NodalLoad> loads);
 
   std::size_t joining() const { return joining_.size(); }  ///< vertices
 
  private:
-  std::vector<double> shared(const std::vector<double>& of_before) const;
+  std::vector<double> shared(const CuttableBody& before, const std::vector<double>& of_before) const;
   void balance(std::vector<double>& x, std::span<const NodalLoad> loads);
 
   CuttableBody& after_;
-  struct Shared {
-    int before, after;  // first numbers in the motions of a vertex
-  };
-  std::vector<Shared> shared_;
   struct Joining {
     int vertex;  // of the mesh
     int number;  // first, in the motion of `after`

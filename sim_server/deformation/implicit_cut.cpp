@@ -64,18 +64,18 @@ void Implicit::part(std::span<const Slide> slides, const Parting& parting, const
     for (const int t : left.around(vertex)) {
       if (left.is_left(t)) reshaped.insert(t);
     }
-  };
-  for (const auto& [vertex, towards, share] : slides) {
-    dynamics_.slide(vertex, towards, share);
-    reshape_around(vertex);
     moved.insert(vertex);
-  }
+  };
+  for (const Slide& slide : slides) reshape_around(slide.vertex);
+  for (const Split& split : parting.splits) reshape_around(split.copy);
+  const std::vector<int> tetrahedra(reshaped.begin(), reshaped.end());
+  dynamics_.note_shapes(tetrahedra);
+  for (const auto& [vertex, towards, share] : slides) dynamics_.slide(vertex, towards, share);
   for (const auto& [vertex, copy] : parting.splits) {
     dynamics_.copy(vertex, copy);
-    reshape_around(copy);
-    moved.insert({vertex, copy});
+    moved.insert(vertex);
   }
-  solid_.reshape(left.mesh(), std::vector(reshaped.begin(), reshaped.end()));
+  solid_.reshape(left.mesh(), tetrahedra);
   for (const int node : moved) {
     const auto v = static_cast<std::size_t>(left.number_of(node));
     positions_[v] = free_[v] = dynamics_.position()[static_cast<std::size_t>(node)];
@@ -84,7 +84,7 @@ void Implicit::part(std::span<const Slide> slides, const Parting& parting, const
     const Tetrahedron& corners = left.mesh().tetrahedra[static_cast<std::size_t>(t)];
     moved.insert(corners.begin(), corners.end());
   }
-  dynamics_.part(masses_of(moved, left));
+  dynamics_.part(parting.splits, masses_of(moved, left));
 }
 
 }  // namespace palpate::sim

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "common/error.h"
@@ -53,11 +54,9 @@ constexpr int kMostDoublings = 6;  // of the time until what could not be made i
 
 }  // namespace
 
-RegionGrowth::RegionGrowth(const ModelInputs& inputs, RegionInMotion region, std::vector<double> mass_factors,
-                           double highest)
+RegionGrowth::RegionGrowth(const ModelInputs& inputs, RegionInMotion region, double highest)
     : inputs_{inputs.scene, inputs.mesh, inputs.surface, inputs.fixed, inputs.reachable},
       region_(std::move(region)),
-      mass_factors_(std::move(mass_factors)),
       highest_(highest),
       steps_(std::max(1L, std::lround(inputs.scene.cutting->growth->after / step_period(inputs.scene)))) {
   const double near = inputs_.scene.cutting->growth->reach / 2;
@@ -72,9 +71,27 @@ RegionGrowth::RegionGrowth(const ModelInputs& inputs, RegionInMotion region, std
 
 void RegionGrowth::note_removed(std::span<const int> tetrahedra) {
   if (work_.valid()) {
-    removed_since_.insert(removed_since_.end(), tetrahedra.begin(), tetrahedra.end());
+    since_.removed.insert(since_.removed.end(), tetrahedra.begin(), tetrahedra.end());
     return;
   }
+  note_seeds(tetrahedra);
+}
+
+void RegionGrowth::note_parted(std::span<const DeformationModel::Slide> slides, const Parting& parting) {
+  if (!work_.valid()) return note_seeds(parting.tetrahedra);
+  for (const DeformationModel::Slide& slide : slides) since_.slid.push_back(slide.vertex);
+  Parting& all = since_.parting;
+  const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  add(all.tetrahedra, parting.tetrahedra);
+  add(all.splits, parting.splits);
+  for (const auto& change : parting.changed) {
+    const auto same = [&](const auto& other) { return other.first == change.first; };
+    if (std::ranges::none_of(all.changed, same)) all.changed.push_back(change);
+  }
+}
+
+/// A cut has come to these.
+void RegionGrowth::note_seeds(std::span<const int> tetrahedra) {
   for (const int t : tetrahedra) {
     const int seed = near_end_[static_cast<std::size_t>(t)];
     if (seed >= 0 && std::ranges::find(seeds_, seed) == seeds_.end()) seeds_.push_back(seed);
@@ -104,34 +121,49 @@ std::vector<int> RegionGrowth::near_seeds(const CutMesh& left) const {
 void RegionGrowth::begin(std::vector<int> allowed, const CuttableBody& now, const CutMesh& left) {
   RegionInMotion larger = region_;
   for (const int t : allowed) larger.removable[static_cast<std::size_t>(t)] = Removable::kNow;
-  work_ = std::async(std::launch::async, [this, &now, left, larger = std::move(larger),
-                                          allowed = std::move(allowed)] {
+  Begun begun{.mesh = inputs_.mesh,
+              .left = left,
+              .places = now.tensors.places(),
+              .mass_factors = now.tensors.mass_factors(),
+              .region = std::move(larger),
+              .allowed = std::move(allowed)};
+  work_ = std::async(std::launch::async, [this, &now, begun = std::move(begun)]() mutable {
     make_background("palpate-growth");
-    const Progress silent = [](std::string_view, double) {};
-    const ModelInputs inputs{inputs_.scene, inputs_.mesh,      inputs_.surface,
-                             inputs_.fixed, inputs_.reachable, silent};
-    const CondensedRest::Modes modes{.most = larger.rest_modes, .highest = highest_, .keeps_shapes = true};
-    const std::vector<char> moves = larger.vertices(inputs_.mesh, Removable::kNow);
-    Made made;
-    made.grown.body = std::make_unique<CuttableBody>(inputs, mass_factors_, &moves, modes);
-    made.grown.body->remove(gone_of(left), left, *inputs_.scene.material);
-    made.grown.hand_over = std::make_unique<HandOver>(*made.grown.body, now);
-    made.grown.allowed = allowed;
-    made.near_end = near_end_of(inputs_.mesh, larger.removable, inputs_.scene.cutting->growth->reach / 2);
-    made.region = larger;
-    return made;
+    return make(std::move(begun), now);
   });
   due_ = step_ + steps_;
-  removed_since_.clear();
+  since_ = {};
+}
+
+/// In the background, while steps go on with the body of `now`.
+RegionGrowth::Made RegionGrowth::make(Begun begun, const CuttableBody& now) const {
+  const TetMesh& mesh = begun.mesh;
+  const CutMesh left = begun.left.of_copy(mesh);
+  std::vector<int> fixed;  // of spare vertices, those that are no copies yet
+  std::ranges::copy_if(inputs_.fixed, std::back_inserter(fixed),
+                       [&](int v) { return begun.places[static_cast<std::size_t>(v)] < 0; });
+  const Progress silent = [](std::string_view, double) {};
+  const ModelInputs inputs{inputs_.scene, mesh, inputs_.surface, fixed, inputs_.reachable, silent};
+  const CondensedRest::Modes modes{
+      .most = begun.region.rest_modes, .highest = highest_, .keeps_shapes = true};
+  const std::vector<char> moves = begun.region.vertices(mesh, Removable::kNow);
+  Made made;
+  made.grown.body = std::make_unique<CuttableBody>(inputs, begun.mass_factors, &moves, modes);
+  made.grown.body->remove(gone_of(left), left, *inputs_.scene.material);
+  made.grown.hand_over = std::make_unique<HandOver>(*made.grown.body, now, begun.places);
+  made.grown.allowed = std::move(begun.allowed);
+  made.near_end = near_end_of(mesh, begun.region.removable, inputs_.scene.cutting->growth->reach / 2);
+  made.region = std::move(begun.region);
+  return made;
 }
 
 /// What was removed meanwhile may be near the end of now, too.
 RegionGrowth::Step RegionGrowth::end() {
-  const std::vector<int> since = std::exchange(removed_since_, {});
+  const Cuts since = std::exchange(since_, {});
   Step step;
   try {
     Made made = work_.get();
-    made.grown.removed_since = since;
+    made.grown.since = since;
     step.grown = std::move(made.grown);
     region_ = std::move(made.region);
     near_end_ = std::move(made.near_end);
@@ -141,7 +173,8 @@ RegionGrowth::Step RegionGrowth::end() {
     step.failure = error.what();
     not_before_ = step_ + (steps_ << std::min(failures_++, kMostDoublings));
   }
-  note_removed(since);
+  note_seeds(since.removed);
+  note_seeds(since.parting.tetrahedra);
   return step;
 }
 
@@ -161,7 +194,7 @@ RegionGrowth::Step RegionGrowth::step(const CuttableBody& now, const CutMesh& le
 
 std::size_t RegionGrowth::bytes() const {
   return (inputs_.fixed.size() + inputs_.reachable.size() + near_end_.size()) * sizeof(int) +
-         mass_factors_.size() * sizeof(double) + region_.removable.size();
+         region_.removable.size();
 }
 
 }  // namespace palpate::sim

@@ -17,20 +17,26 @@ namespace palpate::sim {
 /// background.
 class RegionGrowth {
  public:
-  /// `mass_factors`: of tetrahedra. `highest`: rad/s, of modes of the rest. The mesh outlives this. Of a
-  /// scene with [cutting.growth]. Throws `Error` where nothing could grow.
-  RegionGrowth(const ModelInputs& inputs, RegionInMotion region, std::vector<double> mass_factors,
-               double highest);
+  /// `highest`: rad/s, of modes of the rest. The mesh outlives this. Of a scene with [cutting.growth]. Throws
+  /// `Error` where nothing could grow.
+  RegionGrowth(const ModelInputs& inputs, RegionInMotion region, double highest);
 
   /// These were removed.
   void note_removed(std::span<const int> tetrahedra);
+  /// These slid, and faces were parted.
+  void note_parted(std::span<const DeformationModel::Slide> slides, const Parting& parting);
 
+  /// What happened to the mesh in some time, in whatever order.
+  struct Cuts {
+    std::vector<int> removed, slid;  ///< tetrahedra; vertices
+    Parting parting;                 ///< all of it in one
+  };
   /// A body that takes over.
   struct Grown {
     std::unique_ptr<CuttableBody> body;   ///< of what was left when it was begun
     std::unique_ptr<HandOver> hand_over;  ///< to it
     std::vector<int> allowed;             ///< tetrahedra that can be removed from now on
-    std::vector<int> removed_since;       ///< and those that were removed since it was begun
+    Cuts since;                           ///< it was begun
   };
   struct Step {
     bool begun = false;          ///< the background begins
@@ -50,6 +56,15 @@ class RegionGrowth {
     Surface surface;
     std::vector<int> fixed, reachable;
   };
+  /// What the background begins with, of its own.
+  struct Begun {
+    TetMesh mesh;
+    CutMesh left;             // of the mesh that steps go on with
+    std::vector<int> places;  // of vertices, in the motion of now
+    std::vector<double> mass_factors;
+    RegionInMotion region;
+    std::vector<int> allowed;
+  };
   /// What the background makes.
   struct Made {
     Grown grown;
@@ -57,19 +72,20 @@ class RegionGrowth {
     std::vector<int> near_end;
   };
   void begin(std::vector<int> allowed, const CuttableBody& now, const CutMesh& left);
+  Made make(Begun begun, const CuttableBody& now) const;
+  void note_seeds(std::span<const int> tetrahedra);
   Step end();
   std::vector<int> near_seeds(const CutMesh& left) const;
 
   Inputs inputs_;
   RegionInMotion region_;
-  std::vector<double> mass_factors_;
   double highest_;
   long steps_, step_ = 0, due_ = 0;  // from begin to end; of all; when the background has its time
   long not_before_ = 0;              // the next begins
   int failures_ = 0;                 // in a row
   std::vector<int> near_end_;        // of each tetrahedron: a vertex at the end of what can be cut, or -1
   std::vector<int> seeds_;           // such vertices, where a cut has come near
-  std::vector<int> removed_since_;   // the background began
+  Cuts since_;                       // the background began
   std::future<Made> work_;
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -56,6 +57,11 @@ class Solid {
   void add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Viscosity& viscosity,
                      Scratch& scratch) const;
   void add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Viscosity& viscosity = {}) const;
+  /// A block of it: the derivative of the force on node i by the place of node j, N/m.
+  using TakeBlock = std::function<void(int i, int j, const Mat3& block)>;
+  /// Those of one tetrahedron, each pair of its nodes once. Not of averaged dilation.
+  void stiffness_of(std::size_t e, std::span<const Vec3> x, const Viscosity& viscosity, Scratch& scratch,
+                    const TakeBlock& take) const;
   /// A matrix with room for it.
   StiffnessMatrix stiffness_matrix(const FreeDofs& dofs) const;
   /// Adds the forces (nodes, N) of a force per volume (N/m^3), as the shape functions say.

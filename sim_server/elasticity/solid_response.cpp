@@ -211,6 +211,20 @@ void Solid::add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Vis
   if (averages()) add_nodal_stiffness(x, k, viscosity.scale);
 }
 
+void Solid::stiffness_of(std::size_t e, std::span<const Vec3> x, const Viscosity& viscosity, Scratch& scratch,
+                         const TakeBlock& take) const {
+  std::array<Mat3, kMostCorners*(kMostCorners + 1) / 2> blocks;
+  with_law(material_.law, [&]<class Law>() {
+    each_element<Law>(x, e, e + 1, [&](const Element& element, const Mat3* F, const Mat3* R) {
+      element_stiffness<Law>(element, F, R, blocks.data(), viscosity, scratch);
+      const Mat3* block = blocks.data();
+      for (int i = 0; i < corners_; ++i) {
+        for (int j = 0; j <= i; ++j) take(element.nodes[i], element.nodes[j], *block++);
+      }
+    });
+  });
+}
+
 template <class Law>
 void Solid::element_stiffness(const Element& element, const Mat3* F, const Mat3* R, Mat3* k,
                               const Viscosity& viscosity, const Scratch& scratch) const {

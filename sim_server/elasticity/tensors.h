@@ -48,6 +48,9 @@ class ElasticTensors {
     mass_factors_[static_cast<std::size_t>(tetrahedron)] = factor;
   }
 
+  /// Of the mass of each tetrahedron; empty: all 1.
+  const std::vector<double>& mass_factors() const { return mass_factors_; }
+
   /// From now on this vertex has so much (kg, >= 0) besides what its tetrahedra give.
   void add_mass(int place, double kg);
 

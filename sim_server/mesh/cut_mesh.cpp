@@ -39,7 +39,7 @@ int CutMesh::facing(int other, int tetrahedron) const {
 }
 
 CutMesh::CutMesh(const TetMesh& mesh, std::vector<Removable> removable, Surface& surface)
-    : mesh_(mesh),
+    : mesh_(&mesh),
       neighbours_(face_neighbours(mesh)),
       left_(mesh.tetrahedra.size(), 1),
       removable_(std::move(removable)),
@@ -102,20 +102,20 @@ std::array<int, 4> CutMesh::neighbours(int tetrahedron) const {
 
 Vec3 CutMesh::centre_of_face(int face) const {
   Vec3 sum = Vec3::Zero();
-  for (const int v : corners_of_face(mesh_, face)) sum += mesh_.vertices[static_cast<std::size_t>(v)];
+  for (const int v : corners_of_face(*mesh_, face)) sum += mesh_->vertices[static_cast<std::size_t>(v)];
   return sum / 3;
 }
 
 double CutMesh::area_of(int face) const {
-  const auto [a, b, c] = corners_of_face(mesh_, face);
-  const Vec3& x = mesh_.vertices[static_cast<std::size_t>(a)];
-  return 0.5 * (mesh_.vertices[static_cast<std::size_t>(b)] - x)
-                   .cross(mesh_.vertices[static_cast<std::size_t>(c)] - x)
+  const auto [a, b, c] = corners_of_face(*mesh_, face);
+  const Vec3& x = mesh_->vertices[static_cast<std::size_t>(a)];
+  return 0.5 * (mesh_->vertices[static_cast<std::size_t>(b)] - x)
+                   .cross(mesh_->vertices[static_cast<std::size_t>(c)] - x)
                    .norm();
 }
 
 void CutMesh::add_triangle(int face, Surface& surface) {
-  Triangle triangle = corners_of_face(mesh_, face);
+  Triangle triangle = corners_of_face(*mesh_, face);
   for (int& corner : triangle) {
     corner = number_[static_cast<std::size_t>(corner)];
     ++uses_[static_cast<std::size_t>(corner)];

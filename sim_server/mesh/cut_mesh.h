@@ -51,7 +51,15 @@ class CutMesh {
   /// ascending.
   CutMesh(TetMesh& mesh, std::vector<Removable> removable, Surface& surface, std::span<const int> held);
 
-  const TetMesh& mesh() const { return mesh_; }
+  /// The same of a copy of its mesh, which outlives that: for another thread, to be read alone.
+  CutMesh of_copy(const TetMesh& mesh) const {
+    CutMesh same = *this;
+    same.mesh_ = &mesh;
+    same.parted_ = nullptr;
+    return same;
+  }
+
+  const TetMesh& mesh() const { return *mesh_; }
   bool is_left(int tetrahedron) const { return left_[static_cast<std::size_t>(tetrahedron)] != 0; }
   Removable removable(int tetrahedron) const { return removable_[static_cast<std::size_t>(tetrahedron)]; }
   bool is_removable(int tetrahedron) const { return removable(tetrahedron) == Removable::kNow; }
@@ -110,7 +118,7 @@ class CutMesh {
   void give(const std::vector<int>& fan, const Split& split, Surface& surface, Changed& changed);
   double cut_area_around(int vertex) const;
 
-  const TetMesh& mesh_;
+  const TetMesh* mesh_;
   TetMesh* parted_ = nullptr;  // the same, where its faces can be parted
   std::vector<char> held_;     // of vertices, then
   int next_spare_ = 0, spares_end_ = 0;

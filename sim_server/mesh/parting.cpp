@@ -14,26 +14,26 @@ CutMesh::CutMesh(TetMesh& mesh, std::vector<Removable> removable, Surface& surfa
 
 /// At the places of those of which they may become copies.
 void CutMesh::add_spares(std::span<const int> held, Surface& surface) {
-  std::vector<char> may_split(mesh_.vertices.size());
+  std::vector<char> may_split(mesh_->vertices.size());
   for (std::size_t t = 0; t < removable_.size(); ++t) {
     if (removable_[t] == Removable::kNever) continue;
-    for (const int v : mesh_.tetrahedra[t]) may_split[static_cast<std::size_t>(v)] = 1;
+    for (const int v : mesh_->tetrahedra[t]) may_split[static_cast<std::size_t>(v)] = 1;
   }
-  next_spare_ = static_cast<int>(mesh_.vertices.size());
+  next_spare_ = static_cast<int>(mesh_->vertices.size());
   for (std::size_t v = 0; v < may_split.size(); ++v) {
     if (may_split[v] == 0) continue;
-    const auto spare = static_cast<int>(mesh_.vertices.size());
-    parted_->vertices.push_back(Vec3(mesh_.vertices[v]));
+    const auto spare = static_cast<int>(mesh_->vertices.size());
+    parted_->vertices.push_back(Vec3(mesh_->vertices[v]));
     number_.push_back(static_cast<int>(surface.vertices.size()));
     surface.vertices.push_back(spare);
   }
-  spares_end_ = static_cast<int>(mesh_.vertices.size());
+  spares_end_ = static_cast<int>(mesh_->vertices.size());
   uses_.resize(surface.vertices.size(), 0);
-  held_.resize(mesh_.vertices.size(), 0);
+  held_.resize(mesh_->vertices.size(), 0);
   for (const int v : held) held_[static_cast<std::size_t>(v)] = 1;
   around_first_.back() = 0;  // where those of the last vertex ended
-  around_first_.resize(mesh_.vertices.size(), 0);
-  around_end_.resize(mesh_.vertices.size(), 0);
+  around_first_.resize(mesh_->vertices.size(), 0);
+  around_end_.resize(mesh_->vertices.size(), 0);
 }
 
 int CutMesh::across(int face) const {
@@ -53,7 +53,7 @@ bool CutMesh::is_free(int vertex) const {
 
 bool CutMesh::on_cut(int vertex) const {
   return std::ranges::any_of(around(vertex), [&](int t) {
-    const Tetrahedron& corners = mesh_.tetrahedra[static_cast<std::size_t>(t)];
+    const Tetrahedron& corners = mesh_->tetrahedra[static_cast<std::size_t>(t)];
     for (int k = 0; k < 4; ++k) {
       const auto face = static_cast<std::size_t>(4 * t + k);
       if (corners[static_cast<std::size_t>(k)] != vertex && slot_[face] >= 0 && inner_[face] != 0)
@@ -77,7 +77,7 @@ Parting CutMesh::part(std::span<const int> faces, Surface& surface) {
     }
     for (int k = 0; k < 4; ++k) {
       if (k != face % 4)
-        corners.push_back(mesh_.tetrahedra[static_cast<std::size_t>(face / 4)][static_cast<std::size_t>(k)]);
+        corners.push_back(mesh_->tetrahedra[static_cast<std::size_t>(face / 4)][static_cast<std::size_t>(k)]);
     }
   }
   for (std::vector<int>* const list : {&corners, &parting.tetrahedra}) {
@@ -106,7 +106,7 @@ std::vector<std::vector<int>> CutMesh::fans_around(int vertex) const {
       const int t = fan[next];
       const std::array<int, 4> others = neighbours(t);
       for (std::size_t k = 0; k < 4; ++k) {
-        if (mesh_.tetrahedra[static_cast<std::size_t>(t)][k] == vertex) continue;  // a face without it
+        if (mesh_->tetrahedra[static_cast<std::size_t>(t)][k] == vertex) continue;  // a face without it
         const auto found = std::ranges::find(waiting, others[k]);
         if (found == waiting.end()) continue;
         fan.push_back(*found);
@@ -136,7 +136,7 @@ void CutMesh::split(int vertex, Surface& surface, Parting& parting, Changed& cha
 /// These tetrahedra have the copy from now on.
 void CutMesh::give(const std::vector<int>& fan, const Split& split, Surface& surface, Changed& changed) {
   const auto v = static_cast<std::size_t>(split.vertex), copy = static_cast<std::size_t>(split.copy);
-  parted_->vertices[copy] = mesh_.vertices[v];
+  parted_->vertices[copy] = mesh_->vertices[v];
   const auto end = around_.begin() + around_end_[v];
   const auto moved = std::stable_partition(around_.begin() + around_first_[v], end,
                                            [&](int t) { return !std::ranges::binary_search(fan, t); });

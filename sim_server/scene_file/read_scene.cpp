@@ -108,11 +108,6 @@ void require_cutting(const Scene& scene) {
   if (!row.cuts)
     fail("{}: tissue of model \"{}\" cannot be cut; {} can", scene.cutting->where, row.name,
          models_that([](const DeformationModelRow& m) { return m.cuts; }));
-  if (scene.blade() != nullptr && scene.cutting->growth)
-    fail(
-        "{}: what can be cut does not grow where a blade parts it; remove this, and name all of it "
-        "in [cutting]",
-        scene.cutting->growth->where);
   if (scene.cutting->growth && !row.needs_cutting)
     fail("{}: model \"{}\" moves all of the body, of which [cutting] says what can be cut; remove this",
          scene.cutting->growth->where, row.name);

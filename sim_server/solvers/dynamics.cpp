@@ -19,8 +19,8 @@ constexpr double kNegligibleWay = 1e-9, kElsewhere = 1e-4, kNudge = 1e-7;
 // from balance. A step that ends by its budget does so where more than the second is left: to stop where it
 // is less costs the force more. Where no more than the third is left, and loads change by no more, the
 // linearisation is trusted without a line search. A body whose step began with no more than the fourth has
-// come to rest.
-constexpr double kAdrift = 0.1, kAdriftByBudget = 0.5, kTrusted = 0.1, kAtRest = 1e-6;
+// come to rest. A step with a bordered factor that ended with more than the fifth is the last with it.
+constexpr double kAdrift = 0.1, kAdriftByBudget = 0.5, kTrusted = 0.1, kAtRest = 1e-6, kBadlyServed = 0.01;
 
 double largest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
   double squared = 0;
@@ -86,6 +86,9 @@ void Dynamics::start_step(double h) {
   motion_.begin_step(h);
   if (policy_.begin_step(motion_.time().steps(), cautious_)) exchange_factors();
   matrix_.turn_to(solid_, motion_.position());
+  charge(2 * costs_.columns(matrix_.make_border(solid_, motion_.masses())));
+  const bool serves_badly = matrix_.is_bordered() && relative_residual_ > kBadlyServed;
+  if ((matrix_.border_misfits() || serves_badly) && affords(costs_.factor)) matrix_.expire();
 }
 
 void Dynamics::factor() {
@@ -113,7 +116,8 @@ void Dynamics::refactor_if_moved() {
 
 /// Takes the factor that the background has made, and has it begin the next from where the body is now.
 void Dynamics::exchange_factors() {
-  if (background_->begun() && background_->exchange(matrix_)) {
+  if (background_->begun()) {
+    background_->exchange(matrix_);
     from_background_ = true;
     count_new_factor();
     policy_.replaced();
@@ -127,10 +131,24 @@ void Dynamics::remove(std::span<const int> tetrahedra, std::span<const NodeMass>
   go_on_with(masses);
 }
 
-void Dynamics::part(std::span<const NodeMass> masses) {
-  matrix_.parted();
-  if (background_) background_->parted();
+void Dynamics::note_shapes(std::span<const int> tetrahedra) {
+  for (const int t : tetrahedra) {
+    NewtonMatrix::Blocks blocks;
+    auto* block = blocks.data();
+    solid_.stiffness_of(static_cast<std::size_t>(t), motion_.position(), motion_.viscosity(),
+                        motion_.scratch(),
+                        [&](int i, int j, const Mat3& k) { *block++ = matrix_.to_rest(i, j, k); });
+    matrix_.note_shape(t, blocks);
+    if (background_) background_->note_shape(t, blocks);
+  }
+}
+
+void Dynamics::part(std::span<const Split> splits, std::span<const NodeMass> masses) {
+  matrix_.part(splits);
+  if (background_) background_->part(splits);
   go_on_with(masses);
+  from_background_ = false;  // its columns are of nodes that were one
+  count_new_factor();
 }
 
 /// Between two steps, with a body that has been cut.

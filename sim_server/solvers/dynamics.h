@@ -76,14 +76,18 @@ class Dynamics {
   /// mass that it had. The factor is stale from now on. Of a body with `DynamicsSettings::cut`. An
   /// evaluation.
   void remove(std::span<const int> tetrahedra, std::span<const NodeMass> masses);
+  /// Between two steps, before `slide`, `copy` and `part`: these will have other shapes, or other corners.
+  /// O(tetrahedra).
+  void note_shapes(std::span<const int> tetrahedra);
   /// Between two steps: a node goes towards another by this share of the way, as fast as what is there.
   void slide(int node, int towards, double share) { motion_.slide(node, towards, share); }
   /// Between two steps: a node goes on from where another is, as fast.
   void copy(int node, int copy) { motion_.slide(copy, node, 1); }
   /// Between two steps, after these: tetrahedra have other corners, or corners elsewhere (`Solid::reshape`),
-  /// and with them these nodes' masses have changed. The next step factors A anew, with its pattern, whatever
-  /// its budget. Of a body with `DynamicsSettings::cut`. An evaluation.
-  void part(std::span<const NodeMass> masses);
+  /// these nodes became two, and with them these nodes' masses have changed. The factor is stale from now on,
+  /// but where the border that it gets does not fit: then the next step factors anew, if its budget lets it.
+  /// Of a body with `DynamicsSettings::cut`. An evaluation.
+  void part(std::span<const Split> splits, std::span<const NodeMass> masses);
 
   /// The trial point (nodes, m).
   std::span<const Vec3> position() const { return motion_.position(); }

@@ -1,5 +1,6 @@
 #include "sim_server/solvers/newton_matrix.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
@@ -10,6 +11,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kFlies = 1;  // 1/s: the step of the matrix that shows whether a body that flies is sound
+constexpr double kLeastOfBorder = 0.1;  // eigenvalue, of its mean diagonal, where it was not definite
 
 StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
   StiffnessMatrix matrix = solid.stiffness_matrix(dofs);
@@ -41,7 +43,8 @@ int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<c
                         const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
   c_ = 0;  // until all of this is done
   turns_.clear();
-  if (parted_) matrix_ = solid.stiffness_matrix(*dofs_);
+  const bool parted = !copies_.empty();
+  if (parted) matrix_ = solid.stiffness_matrix(*dofs_);
   if (solid.material().law != ElasticLaw::kLinear) {
     built_turned_.resize(x.size());
     solid.node_rotations(x, built_turned_);
@@ -49,10 +52,14 @@ int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<c
   matrix_.set_zero();
   solid.add_stiffness(x, matrix_, viscosity, scratch);
   matrix_.lower() *= 1 + beta_ * c;
-  matrix_.add_to_diagonal(masses, c * c + alpha_ * c);
+  inertia_ = c * c + alpha_ * c;
+  matrix_.add_to_diagonal(masses, inertia_);
   matrix_.close_empty(mean_diagonal_);
-  if (parted_) factor_.take_pattern(matrix_.lower());
-  parted_ = false;
+  if (parted) factor_.take_pattern(matrix_.lower());
+  copies_.clear();
+  shapes_.clear();
+  border_is_made_ = true;
+  border_misfits_ = false;
   bool definite = factor_.refactor(matrix_.lower());
   int factors = 1;
   // A quarter of what was enough last time, then ever more (Waechter and Biegler 2006, algorithm IC).
@@ -60,12 +67,109 @@ int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<c
   const double first = std::clamp(more_inertia_ / 4, c * c, 1e5 * c * c);
   for (double more = first; !definite && more < 1e6 * c * c; more *= 4) {
     matrix_.add_to_diagonal(masses, more - added);
+    inertia_ += more - added;
     added = more_inertia_ = more;
     ++factors;
     definite = factor_.refactor(matrix_.lower());
   }
   c_ = c;
   return factors;
+}
+
+Mat3 NewtonMatrix::to_rest(int i, int j, const Mat3& block) const {
+  if (turns_.empty()) return block;
+  const auto turned = [this](int node) -> Mat3 {
+    const auto n = static_cast<std::size_t>(node);
+    return turns_[n] * (built_turned_.empty() ? Mat3(Mat3::Identity()) : built_turned_[n]);
+  };
+  return turned(i).transpose() * block * turned(j);
+}
+
+void NewtonMatrix::part(std::span<const Split> splits) {
+  for (const auto& [node, copy] : splits) {
+    const auto before = std::ranges::find(copies_, node, &Copy::copy);
+    copies_.push_back({before != copies_.end() ? before->node : node, copy});
+    if (!built_turned_.empty())
+      built_turned_[static_cast<std::size_t>(copy)] = built_turned_[static_cast<std::size_t>(node)];
+  }
+  if (splits.empty()) return;
+  const auto ways = static_cast<Eigen::Index>(3 * copies_.size());
+  border_ = response_ = Eigen::MatrixXd::Zero(matrix_.lower().rows(), ways);
+  schur_.compute(mean_diagonal_ * Eigen::MatrixXd::Identity(ways, ways));
+  border_is_made_ = false;
+}
+
+int NewtonMatrix::make_border(const Solid& solid, std::span<const double> masses) {
+  if (std::exchange(border_is_made_, true)) return 0;
+  const int count = static_cast<int>(copies_.size());
+  corner_ = Eigen::MatrixXd::Zero(3 * count, 3 * count);
+  std::vector<int> copy_of(masses.size(), -1);
+  for (int k = 0; k < count; ++k) copy_of[static_cast<std::size_t>(copies_[k].copy)] = k;
+  for (const auto& [tetrahedron, blocks] : shapes_) {
+    const std::span<const int> nodes = solid.element(static_cast<std::size_t>(tetrahedron));
+    const Mat3* block = blocks.data();
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j, ++block) {
+        add_to_border(copy_of, nodes[i], nodes[j], (1 + beta_ * c_) * *block);
+        if (i != j) add_to_border(copy_of, nodes[j], nodes[i], (1 + beta_ * c_) * block->transpose());
+      }
+    }
+  }
+  for (const auto& [node, copy] : copies_)
+    add_to_border(copy_of, copy, copy, inertia_ * masses[static_cast<std::size_t>(copy)] * Mat3::Identity());
+  use_border();
+  return count;
+}
+
+/// The force on node i goes by `block` (N/m) with node j.
+void NewtonMatrix::add_to_border(std::span<const int> copy_of, int i, int j, const Mat3& block) {
+  const int by = copy_of[static_cast<std::size_t>(j)], on = copy_of[static_cast<std::size_t>(i)];
+  if (by < 0) return;
+  Mat3 there = block;
+  if (!built_turned_.empty())
+    there = built_turned_[static_cast<std::size_t>(i)] * block *
+            built_turned_[static_cast<std::size_t>(j)].transpose();
+  if (on >= 0) corner_.block<3, 3>(3 * on, 3 * by) += there;
+  const int node = on >= 0 ? copies_[static_cast<std::size_t>(on)].node : i, first = first_of(node);
+  const HeldAxes held = dofs_->held[static_cast<std::size_t>(node)];
+  for (int axis = 0; first >= 0 && axis < 3; ++axis) {
+    if ((held >> axis & 1) == 0) border_.block<1, 3>(first + axis, 3 * by) += there.row(axis);
+  }
+}
+
+/// Where the factor is of a body of another shape, the Schur complement need not be definite: it is made so.
+void NewtonMatrix::use_border() {
+  response_ = factor_.solve(border_);
+  response_ += factor_.solve(border_ - matrix_.times(response_));
+  Eigen::MatrixXd schur = corner_ - border_.transpose() * response_;
+  schur = 0.5 * (schur + schur.transpose()).eval();
+  schur_.compute(schur);
+  border_misfits_ = schur_.info() != Eigen::Success;
+  if (!border_misfits_) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(schur);
+  const double least = kLeastOfBorder * std::max(corner_.diagonal().mean(), mean_diagonal_);
+  schur_.compute(modes.eigenvectors() * modes.eigenvalues().cwiseMax(least).asDiagonal() *
+                 modes.eigenvectors().transpose());
+}
+
+Eigen::MatrixXd NewtonMatrix::solve(const Eigen::MatrixXd& b) const {
+  if (copies_.empty()) return factor_.solve(b);
+  Eigen::MatrixXd loads = b, ways(border_.cols(), b.cols());
+  for (std::size_t k = 0; k < copies_.size(); ++k) {
+    const int node = first_of(copies_[k].node), copy = first_of(copies_[k].copy);
+    ways.middleRows<3>(static_cast<Eigen::Index>(3 * k)) = loads.middleRows<3>(copy);
+    loads.middleRows<3>(node) += loads.middleRows<3>(copy);
+    loads.middleRows<3>(copy).setZero();
+  }
+  Eigen::MatrixXd x = factor_.solve(loads);
+  ways -= border_.transpose() * x;
+  schur_.solveInPlace(ways);
+  x -= response_ * ways;
+  for (std::size_t k = 0; k < copies_.size(); ++k) {
+    x.middleRows<3>(first_of(copies_[k].copy)) =
+        x.middleRows<3>(first_of(copies_[k].node)) + ways.middleRows<3>(static_cast<Eigen::Index>(3 * k));
+  }
+  return x;
 }
 
 void NewtonMatrix::turn_to(const Solid& solid, std::span<const Vec3> x) {
@@ -100,7 +204,8 @@ Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first, double enough)
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(matrix_.lower().rows(), 3 * count);
   for (Eigen::Index k = 0; k < count; ++k) unit.block<3, 3>(first[k], 3 * k).setIdentity();
   Eigen::MatrixXd found = solve(unit);
-  if (count == 0 || factor_.precision() == SparseCholesky::Precision::kDouble) return found;
+  if (count == 0 || !copies_.empty() || factor_.precision() == SparseCholesky::Precision::kDouble)
+    return found;
   const Eigen::MatrixXd sample = unit.leftCols<3>() - matrix_.times(found.leftCols<3>());
   if (!(sample.norm() <= enough)) found += solve(unit - matrix_.times(found));
   return found;
@@ -115,18 +220,22 @@ BackgroundMatrix::BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, con
       tolerance_(settings.tolerance),
       bytes_(scratch_.bytes() + matrix_.bytes() + (own_ ? own_->bytes() : 0)) {}
 
+void BackgroundMatrix::part(std::span<const Split> splits) {
+  outdated_ = true;
+  if (!begun()) return matrix_.part(splits);
+  splits_.insert(splits_.end(), splits.begin(), splits.end());
+}
+
 void BackgroundMatrix::begin(std::span<const Vec3> x, std::span<const double> masses,
                              const Viscosity& viscosity, double c, std::vector<int> first) {
   x_.assign(x.begin(), x.end());
   masses_.assign(masses.begin(), masses.end());
   if (std::exchange(outdated_, false)) {
     own_ = solid_;
-    matrix_.parted();
     removed_.clear();
   }
   for (const int t : removed_) own_->remove(static_cast<std::size_t>(t));
   removed_.clear();
-  of_use_ = true;
   memory_.assign(viscosity.memory.begin(), viscosity.memory.end());
   made_.first = std::move(first);
   work_ = std::async(std::launch::async, [this, scale = viscosity.scale, c] {
@@ -138,12 +247,15 @@ void BackgroundMatrix::begin(std::span<const Vec3> x, std::span<const double> ma
   });
 }
 
-bool BackgroundMatrix::exchange(NewtonMatrix& matrix) {
+void BackgroundMatrix::exchange(NewtonMatrix& matrix) {
   work_.get();
-  if (!of_use_) return false;
+  if (!splits_.empty()) made_ = {};  // columns as if none had become two
+  for (const auto& [tetrahedron, blocks] : shapes_) matrix_.note_shape(tetrahedron, blocks);
+  matrix_.part(splits_);
+  shapes_.clear();
+  splits_.clear();
   std::swap(matrix_, matrix);
   std::swap(made_, given_);
-  return true;
 }
 
 }  // namespace palpate::sim

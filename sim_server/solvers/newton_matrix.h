@@ -1,8 +1,12 @@
 #pragma once
+#include <Eigen/Cholesky>
+#include <array>
 #include <future>
+#include <map>
 #include <optional>
 
 #include "sim_server/elasticity/solid.h"
+#include "sim_server/mesh/cut_mesh.h"
 #include "sim_server/solvers/dynamics_settings.h"
 #include "sim_server/sparse/sparse_cholesky.h"
 
@@ -21,17 +25,32 @@ class NewtonMatrix {
   /// definite, as of a body about to buckle, with more inertia. Returns how many factors that took.
   int build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
             const Viscosity& viscosity, double c, Solid::Scratch& scratch);
-  /// Other nodes of the solid meet than before: no factor serves until the next `build`, which takes the new
-  /// pattern.
-  void parted() {
-    parted_ = true;
-    c_ = 0;
-  }
+  /// The stiffness of a tetrahedron, N/m: of each pair of its corners (i, j <= i), by rows.
+  using Blocks = std::array<Mat3, 10>;
+  /// A tetrahedron gets another shape, or other corners. These were its blocks, at rest in the frames of its
+  /// nodes (`to_rest`): kept, unless it did so before since the last `build`.
+  void note_shape(int tetrahedron, const Blocks& blocks) { shapes_.try_emplace(tetrahedron, blocks); }
+  /// A block of rows of node i and columns of j, N/m, as if neither had turned, by the last `turn_to`.
+  Mat3 to_rest(int i, int j, const Mat3& block) const;
+  /// These nodes became two, none of which is held; all tetrahedra around them have been noted. Until the
+  /// next `build`, which takes the new pattern, A is bordered by the ways of the copies from their nodes
+  /// (augmented matrices: Yeung, Crouch and Pothen 2016, ACM Trans. Graph. 35:18): the factor, of the body as
+  /// if each pair still were one, serves on.
+  void part(std::span<const Split> splits);
+  /// Makes the border of A since the last `part`, of the solid as it is now. Returns how many copies it took;
+  /// 0: nothing was to be done. O(elements), and of as many nodes two times `columns`.
+  int make_border(const Solid& solid, std::span<const double> masses);
+  /// Whether nodes have become two since the last `build`.
+  bool is_bordered() const { return !copies_.empty(); }
+  /// Whether the factor is of a body of so different a shape that the border made last does not fit it.
+  bool border_misfits() const { return border_misfits_; }
+  /// The factor is not to be used any more.
+  void expire() { c_ = 0; }
   /// To be called where iterations with the factor of the last `build` converge slowly: should that be for
   /// want of digits, the next is made in double precision. Costs a solve.
   void check_precision();
-  /// A^-1 b of the factor, for columns b over the unknowns.
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return factor_.solve(b); }
+  /// A^-1 b of the factor, and of the border, for columns b over the unknowns.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
   /// Tells where the body is now (nodes, m), for `turned_solve`.
   void turn_to(const Solid& solid, std::span<const Vec3> x);
   /// Q A^-1 Q^T b, Q turning each node as the body there has turned since A was built: a body that was only
@@ -40,10 +59,10 @@ class NewtonMatrix {
   Eigen::VectorXd turned_solve(const Eigen::VectorXd& b) const;
   /// A^-1 of unit forces on the three unknowns from each of `first` on: (unknowns x 3 first.size()); of a
   /// factor in single precision by one step of refinement, which squares its error, where the first three
-  /// leave more than `enough` of them.
+  /// leave more than `enough` of them, and where none is bordered.
   Eigen::MatrixXd columns(std::span<const int> first, double enough) const;
 
-  /// c of the last `build`, 1/s; 0 before the first, and since `parted`.
+  /// c of the last `build`, 1/s; 0 before the first, and since `expire`.
   double c() const { return c_; }
   /// Of K at rest, N/m.
   double mean_diagonal() const { return mean_diagonal_; }
@@ -53,6 +72,13 @@ class NewtonMatrix {
   std::size_t bytes() const { return matrix_.bytes() + factor_.bytes(); }
 
  private:
+  /// Of two nodes that were one when A was built.
+  struct Copy {
+    int node, copy;
+  };
+  int first_of(int node) const { return dofs_->first[static_cast<std::size_t>(node)]; }
+  void add_to_border(std::span<const int> copy_of, int i, int j, const Mat3& block);
+  void use_border();
   /// v, each node of it turned by its Q, or by Q^T.
   Eigen::VectorXd turned(const Eigen::VectorXd& v, bool back) const;
 
@@ -62,7 +88,14 @@ class NewtonMatrix {
   double mean_diagonal_;  // N/m
   SparseCholesky factor_;
   double c_ = 0;
-  bool parted_ = false;             // since the last `build`
+  double inertia_ = 0;            // 1/s^2, what masses are times in A
+  std::map<int, Blocks> shapes_;  // since the last `build`, of tetrahedra
+  std::vector<Copy> copies_;      // since the last `build`, in order
+  bool border_is_made_ = true, border_misfits_ = false;
+  // By copies, three ways each, N/m: how forces follow those ways, on the body as if none had become two, and
+  // on the copies; what the body does against the first; and the Schur complement of the whole.
+  Eigen::MatrixXd border_, corner_, response_;
+  Eigen::LLT<Eigen::MatrixXd> schur_;
   double more_inertia_ = 0;         // 1/s^2, the last that an indefinite A was given
   std::vector<Mat3> built_turned_;  // (nodes) how they had turned where A was built; empty: not at all
   std::vector<Mat3> turns_;         // (nodes) Q, or empty: none has turned
@@ -89,15 +122,17 @@ class BackgroundMatrix {
   void remove(std::span<const int> tetrahedra) {
     removed_.insert(removed_.end(), tetrahedra.begin(), tetrahedra.end());
   }
-  /// Other nodes of the solid meet than before: what was begun is of no use, and the next `begin` is of the
-  /// solid as it is then.
-  void parted() {
-    outdated_ = true;
-    of_use_ = false;
+  /// As `NewtonMatrix`, of what was begun.
+  void note_shape(int tetrahedron, const NewtonMatrix::Blocks& blocks) {
+    begun() ? static_cast<void>(shapes_.try_emplace(tetrahedron, blocks))
+            : matrix_.note_shape(tetrahedron, blocks);
   }
+  /// Tetrahedra of the solid have other shapes, and these nodes became two: what was begun will be bordered
+  /// (`NewtonMatrix::part`), and the next `begin` is of the solid as it is then.
+  void part(std::span<const Split> splits);
   bool begun() const { return work_.valid(); }
-  /// Waits for it, and exchanges it for `matrix`, unless it is of no use any more. Returns whether it did.
-  bool exchange(NewtonMatrix& matrix);
+  /// Waits for it, and exchanges it for `matrix`.
+  void exchange(NewtonMatrix& matrix);
   /// What came with the one given last. Valid until the next exchange.
   const Columns& columns() const { return given_; }
   /// Known beforehand: asked for while the thread works, too.
@@ -107,10 +142,11 @@ class BackgroundMatrix {
   const Solid& body() const { return own_ ? *own_ : solid_; }
 
   const Solid& solid_;
-  std::optional<Solid> own_;  // of a body that may be cut
-  std::vector<int> removed_;  // since that was brought up to date
-  bool outdated_ = false;     // it was parted since
-  bool of_use_ = false;       // what has begun is
+  std::optional<Solid> own_;                    // of a body that may be cut
+  std::vector<int> removed_;                    // since that was brought up to date
+  bool outdated_ = false;                       // it was parted since
+  std::map<int, NewtonMatrix::Blocks> shapes_;  // since what has begun
+  std::vector<Split> splits_;                   // the same
   std::vector<double> masses_;
   Solid::Scratch scratch_;
   NewtonMatrix matrix_;

@@ -86,7 +86,7 @@ TEST_CASE(
 
 TEST_CASE("best recent: what laws gave until tissue went counts, too, however often it goes") {
   Two laws;
-  laws.first = 1, laws.second = 2;
+  laws.first = 1, laws.second = 0.4;
   laws.cuts = true;
   laws.go(0.3);
   CHECK(laws.law->stand_in() == "first");
@@ -105,4 +105,42 @@ TEST_CASE(
   CHECK(laws.law->stand_in() == "first");
   laws.go(0.1);
   CHECK(laws.felt() == 1);
+}
+
+TEST_CASE(
+    "best recent: for eight samples from a cut on no law gives more than the largest of the last eight") {
+  Two laws;
+  laws.first = laws.second = 1.2;
+  laws.go(1);
+  CHECK(laws.felt() == 1.2);
+  laws.cuts = true;
+  laws.go(0.03);
+  laws.cuts = false;
+  CHECK(laws.felt() == Approx(1));
+  laws.go(0.03, 0.7);  // a seventh of the window on, that of 1 N is the largest still
+  CHECK(laws.felt() == Approx(1));
+  laws.first = laws.second = 0.4;  // less is given as it is
+  CHECK(laws.felt() == 0.4);
+  laws.first = laws.second = 1.2;
+  laws.go(0.18, 0.7);
+  CHECK(laws.felt() == Approx(1));
+  laws.go(0.03, 0.7);
+  CHECK(laws.felt() == 1.2);
+  laws.cuts = true;
+  laws.go(0.03, 0.7);
+  CHECK(laws.felt() == Approx(0.7));
+  laws.law->restart();
+  laws.cuts = false;
+  laws.go(0.03, 0.7);
+  CHECK(laws.felt() == 1.2);
+}
+
+TEST_CASE("best recent: from a cut on a law that was a bit better takes over, too") {
+  Two laws;
+  laws.first = 0.91, laws.second = 0.9;  // off by 0.09 and 0.1 N
+  laws.go(3);
+  REQUIRE(laws.law->stand_in() == "second");
+  laws.cuts = true;
+  laws.go(0.03);
+  CHECK(laws.law->stand_in() == "first");
 }

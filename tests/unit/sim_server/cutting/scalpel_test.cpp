@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "sim_server/deformation/contact_instants.h"
@@ -119,10 +120,14 @@ ToolAnswer slide_at(Simulation& simulation, double x, bool cuts, double dt = kSt
   return step(simulation, Vec3(x, 0.0025, 0.001), {.buttons = static_cast<std::uint16_t>(cuts ? 1 : 0)}, dt);
 }
 
-/// Parted along x, then at rest: the force is that of linear elasticity on what is left as a mesh of its own.
-void check_bears_as_never_whole(Scene scene) {
-  Simulation cut(scene, shaken_block({8, 4, 8}));
-  for (int i = 0; i <= 60; ++i) slide_at(cut, -0.022 + 0.02 * i / 60, true);
+std::unique_ptr<Simulation> parted_along_x(const Scene& scene) {
+  auto cut = std::make_unique<Simulation>(scene, shaken_block({8, 4, 8}));
+  for (int i = 0; i <= 60; ++i) slide_at(*cut, -0.022 + 0.02 * i / 60, true);
+  return cut;
+}
+
+/// At rest by and by: the force is that of linear elasticity on what is left as a mesh of its own.
+void check_bears_as_never_whole(Simulation& cut) {
   const ResectionTotals& totals = cut.resection()->totals();
   REQUIRE(totals.splits > 3);
   CHECK(totals.tetrahedra == 0);
@@ -134,6 +139,10 @@ void check_bears_as_never_whole(Scene scene) {
   for (int i = 22; i >= 0; --i) right = step(whole, place + Vec3(0, 5e-4 * i, 0), {}, kStep);
   REQUIRE(right.force.norm() > 0.05);
   CHECK((felt.force - right.force).norm() < 1e-6 * right.force.norm());
+}
+
+void check_bears_as_never_whole(const Scene& scene) {
+  check_bears_as_never_whole(*parted_along_x(scene));
 }
 
 constexpr int kAnything = 600;  // steps
@@ -301,6 +310,26 @@ TEST_CASE("hybrid: what a blade has parted bears a tool at rest as a body that w
   scene.cutting->region =
       Region{.box = Box{Vec3(-1, -0.012, -0.012), Vec3(0.002, 1, 0.012)}, .where = "test"};
   check_bears_as_never_whole(finely_stepped(std::move(scene)));
+}
+
+TEST_CASE("hybrid: what can be cut grows where a blade parts it, and bears a tool as if never whole",
+          "[threads]") {
+  Scene scene = finely_stepped(blade_scene("hybrid"));
+  scene.tools[0].blade = Vec3(0, -0.008, 0);
+  scene.cutting->region =
+      Region{.box = Box{Vec3(-1, -0.012, -0.012), Vec3(-0.01, 1, 0.012)}, .where = "test"};
+  scene.cutting->growth = CutGrowth{.reach = 0.008, .after = 0.5, .where = "test"};
+  const auto cut = parted_along_x(scene), again = parted_along_x(scene);
+  CHECK(cut->resection()->growth().times > 0);
+  CHECK(cut->resection()->growth().failures == 0);
+  CHECK(cut->flagged().to_text().empty());
+  CHECK(cut->state_hash() == again->state_hash());
+  double farthest = -1;  // m, of copies
+  const int copies = cut->resection()->left().spares().first;
+  for (int v = copies - static_cast<int>(cut->resection()->totals().splits); v < copies; ++v)
+    farthest = std::max(farthest, cut->mesh().vertices[static_cast<std::size_t>(v)].x());
+  CHECK(farthest > -0.008);
+  check_bears_as_never_whole(*cut);
 }
 
 TEST_CASE("the area that a blade has parted is that of its way within the body") {

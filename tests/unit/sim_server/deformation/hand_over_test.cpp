@@ -83,7 +83,7 @@ TEST_CASE("hand-over: where the rest is at rest, the body that takes over is whe
   before.rest->stand_still(before.motion.state.u, {});
   before.rest->set_swing({before.rest->swing().p, rates});
   const std::vector<Vec3> places = bodies.shape_of(before, before.motion.state.u);
-  HandOver hand_over(after, before);
+  HandOver hand_over(after, before, before.tensors.places());
   CHECK(hand_over.joining() > 30);
   hand_over(before, {});
   CHECK(largest(places) > 1e-4);
@@ -108,7 +108,7 @@ TEST_CASE("hand-over: a rest that swings in its slowest mode swings on") {
   before.rest->set_swing({swing.v, swing.p});
   const std::vector<Vec3> speeds = bodies.shape_of(before, before.motion.state.v);
   before.rest->set_swing(swing);
-  HandOver hand_over(after, before);
+  HandOver hand_over(after, before, before.tensors.places());
   hand_over(before, {});
   const CondensedRest::Swing own = after.rest->swing();
   CHECK(apart(bodies.shape_of(after, after.motion.state.u), places) < 0.03 * largest(places));

@@ -3,6 +3,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <set>
 
 #include "sim_server/solvers/dynamics.h"
 #include "tests/support/catch.h"
@@ -43,6 +45,88 @@ Eigen::VectorXd some_load(Eigen::Index n) {
   return Eigen::VectorXd::NullaryExpr(
       n, [](Eigen::Index i) { return std::sin(1.0 + 2.3 * double(i * i % 97)); });
 }
+
+/// A bar that is held at one end, and cut half through where x is 24 mm: vertices there became two, and one
+/// of the copies once more.
+struct PartedBar {
+  TetMesh whole = grid_block(test::lines(0, 0.06, 5), test::lines(0, 0.02, 2), test::lines(0, 0.02, 2));
+  TetMesh parted;
+  std::vector<Split> splits;
+  std::vector<int> beyond;  // tetrahedra that have copies as corners
+
+  PartedBar() {
+    const auto vertices = static_cast<int>(whole.vertices.size());
+    std::set<int> of_near, split;
+    for (const Tetrahedron& corners : whole.tetrahedra) {
+      if (centre_of(whole, corners).x() < 0.024) of_near.insert(corners.begin(), corners.end());
+    }
+    for (int v = 0; v < vertices; ++v) whole.vertices.push_back(Vec3(whole.vertices[std::size_t(v)]));
+    whole.vertices.push_back(Vec3(whole.vertices.back()));
+    parted = whole;
+    for (std::size_t t = 0; t < parted.tetrahedra.size(); ++t) {
+      if (centre_of(whole, whole.tetrahedra[t]).x() < 0.024) continue;
+      bool changed = false;
+      for (int& corner : parted.tetrahedra[t]) {
+        if (of_near.contains(corner) && whole.vertices[std::size_t(corner)].y() > 0) {
+          split.insert(corner);
+          corner += vertices;
+          changed = true;
+        }
+      }
+      if (changed) beyond.push_back(static_cast<int>(t));
+    }
+    for (const int v : split) splits.push_back({v, v + vertices});
+    // One tetrahedron alone with a copy of a copy.
+    const int copy = splits.back().copy;
+    splits.push_back({copy, 2 * vertices});
+    whole.vertices.back() = parted.vertices.back() = Vec3(whole.vertices[std::size_t(copy)]);
+    for (const int t : beyond) {
+      Tetrahedron& corners = parted.tetrahedra[std::size_t(t)];
+      if (std::ranges::find(corners, copy) == corners.end()) continue;
+      std::ranges::replace(corners, copy, 2 * vertices);
+      break;
+    }
+  }
+  std::vector<HeldAxes> held() const {
+    std::vector<HeldAxes> held;
+    for (const Vec3& x : whole.vertices) held.push_back(x.x() == 0 ? kAllAxes : 0);
+    return held;
+  }
+  FreeDofs dofs() const { return FreeDofs(held()); }
+  /// On vertices that have tetrahedra.
+  Eigen::VectorXd load(const FreeDofs& dofs) const {
+    const Eigen::VectorXd some = some_load(dofs.count);
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(dofs.count);
+    for (const Tetrahedron& corners : parted.tetrahedra) {
+      for (const int v : corners) {
+        const int first = dofs.first[std::size_t(v)];
+        if (first >= 0) load.segment<3>(first) = some.segment<3>(first);
+      }
+    }
+    return load;
+  }
+  /// Of those that will be parted, of a solid at `x`; of tissue so many times as stiff.
+  void note_shapes(const Solid& solid, const std::vector<Vec3>& x, NewtonMatrix& matrix,
+                   double stiffer = 1) const {
+    Solid::Scratch scratch(solid);
+    for (const int t : beyond) {
+      NewtonMatrix::Blocks blocks;
+      auto* block = blocks.data();
+      solid.stiffness_of(std::size_t(t), x, {}, scratch,
+                         [&](int i, int j, const Mat3& k) { *block++ = stiffer * matrix.to_rest(i, j, k); });
+      matrix.note_shape(t, blocks);
+    }
+  }
+  /// A of the parted one, at `x`.
+  StiffnessMatrix matrix(const FreeDofs& dofs, const std::vector<Vec3>& x) const {
+    const Solid solid(parted, corotational(ElementKind::kLinear));
+    StiffnessMatrix exact = solid.stiffness_matrix(dofs);
+    solid.add_stiffness(x, exact);
+    exact.add_to_diagonal(solid.masses(), kC * kC);
+    exact.close_empty(exact.lower().diagonal().mean());
+    return exact;
+  }
+};
 
 }  // namespace
 
@@ -93,41 +177,97 @@ TEST_CASE("Newton matrix: one that was built elsewhere is turned by the differen
 }
 
 TEST_CASE(
-    "Newton matrix: of a body of which vertices became two, or came back to one, it is that of the body as "
-    "it is") {
-  TetMesh mesh = grid_block(test::lines(0, 0.06, 5), test::lines(0, 0.02, 2), test::lines(0, 0.02, 2));
-  const auto vertices = static_cast<int>(mesh.vertices.size());
-  for (int v = 0; v < vertices; ++v)
-    mesh.vertices.push_back(Vec3(mesh.vertices[static_cast<std::size_t>(v)]));
-  const TetMesh whole = mesh;
-  Solid solid(mesh, corotational(ElementKind::kLinear));
-  std::vector<HeldAxes> held(mesh.vertices.size(), 0);
-  for (int v = 0; v < vertices; ++v)
-    held[static_cast<std::size_t>(v)] = mesh.vertices[static_cast<std::size_t>(v)].x() == 0 ? kAllAxes : 0;
-  const FreeDofs dofs(held);
+    "Newton matrix: of a body of which vertices became two, the next one is that of the body as it is") {
+  const PartedBar bar;
+  const FreeDofs dofs = bar.dofs();
+  Solid solid(bar.whole, corotational(ElementKind::kLinear));
   NewtonMatrix matrix(solid, dofs, {}, "test");
-  std::vector<int> beyond;
-  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
-    if (centre_of(mesh, mesh.tetrahedra[t]).x() < 0.03) continue;
-    for (int& corner : mesh.tetrahedra[t]) corner += vertices;
-    beyond.push_back(static_cast<int>(t));
-  }
   Solid::Scratch scratch(solid);
-  const Eigen::VectorXd load = some_load(dofs.count);
-  for (const TetMesh& now : {mesh, whole}) {
-    solid.reshape(now, beyond);
-    matrix.parted();
-    CHECK(matrix.c() == 0);
+  solid.reshape(bar.parted, bar.beyond);
+  matrix.part(bar.splits);
+  matrix.build(solid, solid.rest(), solid.masses(), {}, kC, scratch);
+  const Eigen::VectorXd load = bar.load(dofs), moved = matrix.solve(load).col(0);
+  const Eigen::VectorXd left = load - bar.matrix(dofs, solid.rest()).times(moved).col(0);
+  CHECK(left.norm() < 1e-4 * load.norm());
+}
+
+TEST_CASE("Newton matrix: bordered, the one from before vertices became two solves what the body is now") {
+  const PartedBar bar;
+  const FreeDofs dofs = bar.dofs();
+  for (const bool turned : {false, true}) {
+    CAPTURE(turned);
+    Solid solid(bar.whole, corotational(ElementKind::kLinear));
+    NewtonMatrix matrix(solid, dofs, {}, "test");
+    Solid::Scratch scratch(solid);
     matrix.build(solid, solid.rest(), solid.masses(), {}, kC, scratch);
-    const Solid other(now, corotational(ElementKind::kLinear));
-    StiffnessMatrix exact = other.stiffness_matrix(dofs);
-    other.add_stiffness(other.rest(), exact);
-    exact.add_to_diagonal(other.masses(), kC * kC);
-    const Eigen::VectorXd moved = matrix.solve(load).col(0);
-    Eigen::VectorXd left = load - exact.times(moved).col(0);
-    for (Eigen::Index i = 0; i < left.size(); ++i) left[i] = exact.lower().coeff(i, i) > 0 ? left[i] : 0;
+    const std::vector<Vec3> x = turned ? carried(solid) : solid.rest();
+    matrix.turn_to(solid, x);
+    bar.note_shapes(solid, x, matrix);
+    solid.reshape(bar.parted, bar.beyond);
+    matrix.part(std::span(bar.splits).first(3));  // at once or by and by
+    matrix.part(std::span(bar.splits).subspan(3));
+    matrix.turn_to(solid, x);
+    CHECK(matrix.make_border(solid, solid.masses()) == static_cast<int>(bar.splits.size()));
+    CHECK(matrix.make_border(solid, solid.masses()) == 0);
+    const Eigen::VectorXd load = bar.load(dofs);
+    const Eigen::VectorXd left = load - bar.matrix(dofs, x).times(matrix.turned_solve(load)).col(0);
     CHECK(left.norm() < 1e-4 * load.norm());
+    // As columns, too.
+    const std::vector<int> first{dofs.first[static_cast<std::size_t>(bar.splits.back().copy)]};
+    const Eigen::MatrixXd column = matrix.columns(first, 1e-3);
+    CHECK((column.col(1) - matrix.solve(Eigen::VectorXd::Unit(dofs.count, first[0] + 1))).norm() <
+          1e-4 * column.col(1).norm());
   }
+}
+
+TEST_CASE("dynamics: in the step after nodes became two no factor is made, and it converges as any",
+          "[threads]") {
+  using Solver = DynamicsSettings::Solver;
+  const PartedBar bar;
+  for (const Solver solver : {Solver::kDirect, Solver::kConjugateGradients, Solver::kQuasiNewton}) {
+    Solid solid(bar.whole, corotational(ElementKind::kLinear));
+    Dynamics dynamics(solid, bar.held(), {.solver = solver, .refresh_steps = 1000, .cut = true}, "test");
+    std::vector<Vec3> pull(solid.rest().size(), Vec3::Zero());  // by 27 mm
+    for (std::size_t i = 0; i < pull.size(); ++i)
+      pull[i].z() = solid.rest()[i].x() > 0.059 && solid.masses()[i] > 0 ? 3e-3 : 0;
+    const auto step = [&] {
+      dynamics.start_step(1.0 / 60);
+      const int iterations = dynamics.solve(pull, 50, 1e-8);
+      CHECK(dynamics.relative_residual() <= 1e-8);
+      dynamics.finish_step();
+      return iterations;
+    };
+    for (int i = 0; i < 10; ++i) step();
+    const int ordinary = step(), factors = dynamics.factors();
+    dynamics.note_shapes(bar.beyond);
+    for (const auto& [node, copy] : bar.splits) dynamics.copy(node, copy);
+    solid.reshape(bar.parted, bar.beyond);
+    std::vector<Dynamics::NodeMass> masses;
+    for (int node = 0; node < solid.nodes(); ++node)
+      masses.push_back({node, solid.masses()[static_cast<std::size_t>(node)]});
+    dynamics.part(bar.splits, masses);
+    const int after = step();
+    CAPTURE(static_cast<int>(solver), ordinary, after);
+    CHECK(after <= ordinary + 5);
+    if (solver != Solver::kDirect) CHECK(dynamics.factors() == factors + 1);  // the same, with a border
+  }
+}
+
+TEST_CASE("Newton matrix: a border that does not fit the factor still makes it positive definite") {
+  const PartedBar bar;
+  const FreeDofs dofs = bar.dofs();
+  Solid solid(bar.whole, corotational(ElementKind::kLinear));
+  NewtonMatrix matrix(solid, dofs, {}, "test");
+  Solid::Scratch scratch(solid);
+  matrix.build(solid, solid.rest(), solid.masses(), {}, kC, scratch);
+  bar.note_shapes(solid, solid.rest(), matrix, 6);
+  solid.reshape(bar.parted, bar.beyond);
+  matrix.part(bar.splits);
+  matrix.make_border(solid, solid.masses());
+  const Eigen::MatrixXd inverse = matrix.solve(Eigen::MatrixXd::Identity(dofs.count, dofs.count));
+  CHECK((inverse - inverse.transpose()).norm() < 1e-4 * inverse.norm());
+  const Eigen::LLT<Eigen::MatrixXd> definite(0.5 * (inverse + inverse.transpose()));
+  CHECK(definite.info() == Eigen::Success);
 }
 
 TEST_CASE("Newton matrix: what is held along an axis stays held") {
