@@ -38,7 +38,7 @@ class NewtonMatrix {
   /// if each pair still were one, serves on.
   void part(std::span<const Split> splits);
   /// Makes the border of A since the last `part`, of the solid as it is now. Returns how many copies it took;
-  /// 0: nothing was to be done. O(elements), and of as many nodes two times `columns`.
+  /// 0: nothing was to be done. O(nodes + noted tetrahedra), and of as many nodes two times `columns`.
   int make_border(const Solid& solid, std::span<const double> masses);
   /// Whether nodes have become two since the last `build`.
   bool is_bordered() const { return !copies_.empty(); }
@@ -69,7 +69,10 @@ class NewtonMatrix {
   /// Of the A or K that is factored, N/m.
   double largest_diagonal() const { return matrix_.lower().diagonal().maxCoeff(); }
   const SparseCholesky& factor() const { return factor_; }
-  std::size_t bytes() const { return matrix_.bytes() + factor_.bytes(); }
+  std::size_t bytes() const {
+    return matrix_.bytes() + factor_.bytes() +
+           static_cast<std::size_t>(border_.size() + response_.size()) * sizeof(double);
+  }
 
  private:
   /// Of two nodes that were one when A was built.

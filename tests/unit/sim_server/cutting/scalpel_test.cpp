@@ -3,18 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <random>
+#include <numeric>
 
-#include "sim_server/deformation/contact_instants.h"
-#include "sim_server/deformation/implicit.h"
-#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/mesh/pieces.h"
-#include "sim_server/simulation/simulation.h"
-#include "tests/support/carved.h"
 #include "tests/support/catch.h"
-#include "tests/support/soft_block.h"
-#include "tests/support/tool_inputs.h"
+#include "tests/support/shaken_block.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -22,23 +15,7 @@ using namespace palpate::test;
 
 namespace {
 
-constexpr double kStep = 1.0 / 30;  // s
-constexpr double kDepth = 0.02;     // m
-
-/// A block whose inner vertices lie anywhere within a fifth of a cell of their places.
-TetMesh shaken_block(const std::array<int, 3>& cells) {
-  TetMesh mesh = soft_block(Vec3(0.04, kDepth, 0.04), cells);
-  std::minstd_rand random(11);
-  const auto outside = [](double x, double low, double high) { return x < low + 1e-9 || x > high - 1e-9; };
-  for (Vec3& x : mesh.vertices) {
-    Vec3 shift;
-    for (double& value : shift)
-      value = 0.2 * 0.04 / cells[0] * (2 * static_cast<double>(random()) / std::minstd_rand::max() - 1);
-    if (!outside(x.x(), -0.02, 0.02) && !outside(x.y(), -kDepth, 0) && !outside(x.z(), -0.02, 0.02))
-      x += shift;
-  }
-  return mesh;
-}
+constexpr double kDepth = 0.02;  // m
 
 /// A body at rest under a blade that goes along a plane.
 struct Cut {
@@ -87,146 +64,6 @@ double roughness(const Cut& body, const Vec3& point, const Vec3& normal) {
   }
   return std::sqrt(sum / count);
 }
-
-Scene blade_scene(std::string_view model) {
-  Scene scene = soft_block_scene(kDepth, model, ElasticLaw::kLinear, 0.003);
-  scene.tools[0].cut_buttons = 1;
-  scene.tools[0].blade = Vec3(0, -0.012, 0);
-  scene.cutting = Cutting{.where = "test"};
-  scene.deformation.of<RayleighDamping>().stiffness = 1e-4;
-  return scene;
-}
-
-Scene finely_stepped(Scene scene) {
-  scene.deformation.of<ContactInstants>().instants = 224;
-  return scene;
-}
-
-using Solver = DynamicsSettings::Solver;
-using Slide = DeformationModel::Slide;
-
-Scene implicit_scene(ElasticLaw law, Solver solver) {
-  Scene scene = blade_scene("implicit");
-  scene.material->law = law;
-  auto& settings = scene.deformation.of<ImplicitSettings>();
-  settings.solver = solver;
-  settings.tolerance = 1e-9;
-  settings.max_newton = 50;
-  return scene;
-}
-
-/// Along x over the top, pressed 0.5 mm deep.
-ToolAnswer slide_at(Simulation& simulation, double x, bool cuts, double dt = kStep) {
-  return step(simulation, Vec3(x, 0.0025, 0.001), {.buttons = static_cast<std::uint16_t>(cuts ? 1 : 0)}, dt);
-}
-
-std::unique_ptr<Simulation> parted_along_x(const Scene& scene) {
-  auto cut = std::make_unique<Simulation>(scene, shaken_block({8, 4, 8}));
-  for (int i = 0; i <= 60; ++i) slide_at(*cut, -0.022 + 0.02 * i / 60, true);
-  return cut;
-}
-
-/// At rest by and by: the force is that of linear elasticity on what is left as a mesh of its own.
-void check_bears_as_never_whole(Simulation& cut) {
-  const ResectionTotals& totals = cut.resection()->totals();
-  REQUIRE(totals.splits > 3);
-  CHECK(totals.tetrahedra == 0);
-  Simulation whole(soft_block_scene(kDepth, "quasi_static", ElasticLaw::kLinear, 0.003),
-                   part_of(cut.mesh(), [&](int t) { return cut.resection()->left().is_left(t); }));
-  const Vec3 place(-0.008, 0.001, 0.0035);
-  ToolAnswer felt, right;
-  for (int i = 0; i < 300; ++i) felt = step(cut, place, {}, kStep);
-  for (int i = 22; i >= 0; --i) right = step(whole, place + Vec3(0, 5e-4 * i, 0), {}, kStep);
-  REQUIRE(right.force.norm() > 0.05);
-  CHECK((felt.force - right.force).norm() < 1e-6 * right.force.norm());
-}
-
-void check_bears_as_never_whole(const Scene& scene) {
-  check_bears_as_never_whole(*parted_along_x(scene));
-}
-
-constexpr int kAnything = 600;  // steps
-
-/// A blade and a hot tip on their ways: how many of the steps were flagged.
-std::uint64_t flagged_by_anything(Scene scene) {
-  scene.tools[0].reach.reset();
-  scene.tools.push_back(scene.tools[0]);
-  scene.tools[1].blade.reset();
-  scene.cutting->energy = 1e7;
-  scene.cutting->power = 3;
-  scene.cutting->smallest_piece = 1e-7;
-  Simulation simulation(scene, shaken_block({8, 4, 8}));
-  std::minstd_rand random(2);
-  const auto anywhere = [&](double most) {
-    return most * (2 * static_cast<double>(random()) / std::minstd_rand::max() - 1);
-  };
-  Vec3 from(0, 0.0025, 0), to = from;
-  Quat q_from = Quat::Identity(), q_to = q_from;
-  double largest = 0;
-  for (int i = 0; i < kAnything; ++i) {
-    if (i % 12 == 0) {  // up to 40 mm in 0.4 s
-      from = std::exchange(to, Vec3(anywhere(0.02), 0.0022 + anywhere(2e-3), anywhere(0.02)));
-      q_from = std::exchange(
-          q_to, Quat(Eigen::AngleAxisd(anywhere(0.6), Vec3(anywhere(1), anywhere(0.1), 1).normalized())));
-    }
-    const double share = (i % 12 + 1) / 12.0;
-    std::vector<ToolInput> inputs(2);
-    const bool bounces = i / 100 % 2 == 1 && i % 2 == 0;
-    inputs[0] = {.pose = ToolPose(Vec3(from + share * (to - from)), q_from.slerp(share, q_to)),
-                 .buttons = static_cast<std::uint16_t>(bounces ? 0 : 1)};
-    inputs[1] = {.pose = ToolPose(Vec3(-0.01 + 0.02 * i / kAnything, 0.0025, 0.012)), .buttons = 1};
-    for (const ToolAnswer& answer : simulation.step(inputs, kStep))
-      largest = std::max(largest, answer.force.norm());
-  }
-  const ResectionTotals& totals = simulation.resection()->totals();
-  CHECK(totals.splits > 50);
-  CHECK(totals.tetrahedra > 20);
-  CHECK(largest < 20);
-  double volume = 0, enclosed = 0;
-  const CutMesh& left = simulation.resection()->left();
-  const TetMesh& mesh = simulation.mesh();
-  for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t)
-    volume += left.is_left(t) ? six_volumes(mesh, mesh.tetrahedra[t]) / 6 : 0;
-  for (const Triangle& t : simulation.surface().triangles) {
-    const auto at = [&](int v) { return mesh.vertices[simulation.surface().vertices[v]]; };
-    enclosed += at(t[0]).dot(at(t[1]).cross(at(t[2]))) / 6;
-  }
-  CHECK(enclosed == Approx(volume));
-  CHECK(volume == Approx(0.04 * kDepth * 0.04 - totals.volume).epsilon(1e-3));
-  const FlaggedSteps& flagged = simulation.flagged();
-  CHECK(flagged.threw + flagged.ran_away + flagged.inside_out + flagged.tools == 0);
-  return flagged.not_balanced + flagged.contact;
-}
-
-/// A half is pulled while a blade cuts it off, then carried away.
-void check_halves_part(Scene scene) {
-  scene.tools[0].blade = Vec3(0, -0.04, 0);
-  scene.tools.push_back(scene.tools[0]);
-  scene.tools[1].blade.reset();
-  scene.tools[1].cut_buttons = 0;
-  scene.tools[1].grasp_buttons = 2;
-  scene.fixed[0].box = {Vec3(-1, -1, -1), Vec3(-0.0199, 1, 1)};  // its left side
-  Simulation simulation(scene, shaken_block({8, 4, 8}));
-  const auto go = [&](double z, const std::optional<Vec3>& pull, bool cuts) {
-    std::vector<ToolInput> inputs(2);
-    inputs[0] = {.pose = ToolPose(Vec3(0.0011, 0.004, z)),
-                 .buttons = static_cast<std::uint16_t>(cuts ? 1 : 0)};
-    if (pull) inputs[1] = {.pose = ToolPose(*pull), .buttons = 2};
-    return simulation.step(inputs, kStep)[1].force.norm();
-  };
-  const Vec3 grip(0.012, 0.003, 0);
-  for (int i = 0; i < 10; ++i) go(-0.03, grip, false);
-  double pulled = 0;
-  for (int i = 0; i <= 40; ++i) pulled = go(-0.03, grip + Vec3(1e-4 * i, 0, 0), false);
-  REQUIRE(pulled > 0.1);
-  for (int i = 0; i <= 90; ++i) go(-0.03 + 0.06 * i / 90, grip + Vec3(4e-3, 0, 0), true);
-  CHECK(simulation.resection()->totals().loose_pieces == 1);
-  CHECK(simulation.resection()->totals().loose_volume == Approx(0.0189 * kDepth * 0.04).epsilon(0.05));
-  double held = 0;
-  for (int i = 0; i < 120; ++i) held = go(0.04, grip + Vec3(4e-3 + 1e-4 * i, 0, 0), false);
-  CHECK(held < 0.05 * pulled);
-}
-
 }  // namespace
 
 TEST_CASE("a blade that went through a body has cut it in two, however fast it went, along its plane") {
@@ -276,7 +113,7 @@ TEST_CASE("tissue that trembles under a blade is parted as tissue at rest is") {
       const Stroke stroke = body.scalpel.cut({was, is, body.trail}, were, are, body.cut);
       if (!stroke.moved) continue;
       const Parting parting = body.cut.part(stroke.faces, body.surface);
-      for (const Slide& slide : stroke.slides) {
+      for (const DeformationModel::Slide& slide : stroke.slides) {
         Vec3& x = body.places[body.cut.number_of(slide.vertex)];
         x += slide.share * (body.places[body.cut.number_of(slide.towards)] - x);
       }
@@ -293,133 +130,4 @@ TEST_CASE("tissue that trembles under a blade is parted as tissue at rest is") {
   const double still = parted_area(0);
   REQUIRE(still > 2 * 0.04 * kDepth);
   CHECK(parted_area(1e-4) == Approx(still).epsilon(0.15));
-}
-
-TEST_CASE("what a blade has parted bears a tool at rest as a body that was never whole") {
-  check_bears_as_never_whole(finely_stepped(blade_scene("tensor_mass")));
-}
-
-TEST_CASE("implicit: what a blade has parted bears a tool at rest as a body that was never whole") {
-  for (const auto solver : {Solver::kDirect, Solver::kConjugateGradients, Solver::kQuasiNewton})
-    check_bears_as_never_whole(implicit_scene(ElasticLaw::kLinear, solver));
-}
-
-TEST_CASE("hybrid: what a blade has parted bears a tool at rest as a body that was never whole") {
-  Scene scene = blade_scene("hybrid");
-  scene.tools[0].blade = Vec3(0, -0.008, 0);
-  scene.cutting->region =
-      Region{.box = Box{Vec3(-1, -0.012, -0.012), Vec3(0.002, 1, 0.012)}, .where = "test"};
-  check_bears_as_never_whole(finely_stepped(std::move(scene)));
-}
-
-TEST_CASE("hybrid: what can be cut grows where a blade parts it, and bears a tool as if never whole",
-          "[threads]") {
-  Scene scene = finely_stepped(blade_scene("hybrid"));
-  scene.tools[0].blade = Vec3(0, -0.008, 0);
-  scene.cutting->region =
-      Region{.box = Box{Vec3(-1, -0.012, -0.012), Vec3(-0.01, 1, 0.012)}, .where = "test"};
-  scene.cutting->growth = CutGrowth{.reach = 0.008, .after = 0.5, .where = "test"};
-  const auto cut = parted_along_x(scene), again = parted_along_x(scene);
-  CHECK(cut->resection()->growth().times > 0);
-  CHECK(cut->resection()->growth().failures == 0);
-  CHECK(cut->flagged().to_text().empty());
-  CHECK(cut->state_hash() == again->state_hash());
-  double farthest = -1;  // m, of copies
-  const int copies = cut->resection()->left().spares().first;
-  for (int v = copies - static_cast<int>(cut->resection()->totals().splits); v < copies; ++v)
-    farthest = std::max(farthest, cut->mesh().vertices[static_cast<std::size_t>(v)].x());
-  CHECK(farthest > -0.008);
-  check_bears_as_never_whole(*cut);
-}
-
-TEST_CASE("the area that a blade has parted is that of its way within the body") {
-  Simulation simulation(blade_scene("tensor_mass"), shaken_block({16, 8, 16}));
-  for (int i = 0; i <= 60; ++i) slide_at(simulation, -0.022 + 0.02 * i / 60, true);
-  CHECK(simulation.resection()->totals().splits > 5);
-  CHECK(simulation.resection()->totals().parted_area ==
-        Approx(0.018 * 0.0095).epsilon(0.2));  // cells of 2.5 mm
-}
-
-TEST_CASE("a blade does the work of what it parts, against its way") {
-  Scene scene = blade_scene("tensor_mass");
-  Simulation simulation(scene, shaken_block({12, 6, 12}));
-  const double speed = 0.02 / 60;  // m a step
-  double work = 0;                 // J
-  for (int i = 0; i <= 110; ++i) {
-    slide_at(simulation, -0.022 + speed * i, true);
-    const Vec3 on_blade = simulation.resection_log().back().f_W - simulation.tool(0).force().force;
-    CHECK(on_blade.x() <= 0);
-    CHECK(std::hypot(on_blade.y(), on_blade.z()) < 1e-9);
-    work -= on_blade.x() * speed;
-  }
-  // It owes a little at the end: what it parted last is done over the next length of an edge or so.
-  const double all = scene.cutting->toughness * simulation.resection()->totals().parted_area;
-  CHECK(work < all);
-  CHECK(work > 0.85 * all);
-  CHECK(simulation.flagged().to_text().empty());
-}
-
-TEST_CASE("a blade is felt alike at every rate of steps") {
-  const auto largest_at = [](double rate) {
-    Scene scene = implicit_scene(ElasticLaw::kLinear, Solver::kDirect);
-    scene.rate_hz = rate;
-    Simulation simulation(scene, shaken_block({8, 4, 8}));
-    double largest = 0;  // N
-    for (int i = 0; i <= 2 * rate; ++i) {
-      slide_at(simulation, -0.022 + 0.01 * i / rate, true, 1 / rate);
-      const Vec3 on_blade = simulation.resection_log().back().f_W - simulation.tool(0).force().force;
-      largest = std::max(largest, on_blade.norm());
-    }
-    return largest;
-  };
-  const double often = largest_at(600);
-  REQUIRE(often > 0.3);
-  CHECK(largest_at(30) == Approx(often).epsilon(0.1));
-}
-
-TEST_CASE("of a blade that is felt nobody is told a tangent, which would be of the tissue alone") {
-  Simulation simulation(implicit_scene(ElasticLaw::kLinear, Solver::kDirect), shaken_block({8, 4, 8}));
-  const auto here_at = [&](int i, bool cuts) {
-    ToolInput input{.buttons = static_cast<std::uint16_t>(cuts ? 1 : 0)};
-    input.wants.here = true;
-    return step(simulation, Vec3(-0.018 + 1e-3 * i, 0.0025, 0.001), input, kStep).here.has_value();
-  };
-  for (int i = 0; i < 3; ++i) CHECK(here_at(i, false));
-  int felt = 0;
-  for (int i = 3; i < 20; ++i) {
-    const bool told = here_at(i, true);
-    const Vec3 on_blade = simulation.resection_log().back().f_W - simulation.tool(0).force().force;
-    CHECK(told == on_blade.isZero(0));
-    felt += told ? 0 : 1;
-  }
-  CHECK(felt > 10);
-  here_at(20, false);
-  CHECK(here_at(20, false));
-}
-
-TEST_CASE("a blade that goes anywhere, beside a hot tip, leaves a closed surface and a body that holds") {
-  CHECK(flagged_by_anything(blade_scene("tensor_mass")) == 0);
-}
-
-TEST_CASE("implicit: a blade that goes anywhere, beside a hot tip, leaves a body that holds") {
-  for (const auto solver : {Solver::kDirect, Solver::kQuasiNewton})
-    CHECK(flagged_by_anything(implicit_scene(ElasticLaw::kCorotational, solver)) < kAnything / 20);
-}
-
-TEST_CASE("halves that a blade has cut apart part under traction, and one that is held by nothing falls") {
-  check_halves_part(blade_scene("tensor_mass"));
-  check_halves_part(implicit_scene(ElasticLaw::kCorotational, Solver::kDirect));
-}
-
-TEST_CASE("a run that parts tissue is the same each time") {
-  for (const Scene& scene :
-       {blade_scene("tensor_mass"), implicit_scene(ElasticLaw::kCorotational, Solver::kConjugateGradients)}) {
-    std::vector<std::uint64_t> hashes;
-    for (int run = 0; run < 2; ++run) {
-      Simulation simulation(scene, shaken_block({8, 4, 8}));
-      for (int i = 0; i <= 60; ++i) slide_at(simulation, -0.022 + 0.02 * i / 60, true);
-      hashes.push_back(simulation.state_hash());
-    }
-    CHECK(hashes[0] == hashes[1]);
-  }
 }
