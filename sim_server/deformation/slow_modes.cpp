@@ -8,6 +8,13 @@
 
 namespace palpate::sim {
 
+int ClientModes::usual() noexcept {
+#ifdef PALPATE_WITH_SPECTRA
+  return 40;
+#else
+  return 0;
+#endif
+}
 ClientModes ClientModes::read(const Config& config) {
   ClientModes read;
   read.modes = static_cast<int>(config.integer("client_modes", {0, kMostSlowModes, "modes"}, read.modes));

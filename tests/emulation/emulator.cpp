@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "tests/emulation/wire.h"
+#include "tests/support/paths.h"
 
 namespace palpate::test {
 namespace {
@@ -84,7 +85,7 @@ nlohmann::json Emulator::state(const std::string& device) const {
 }
 
 std::vector<std::pair<std::string, std::string>> Emulator::environment() const {
-  const std::string shim = std::string(PALPATE_BIN_DIR) + "/libusb_vhci_shim.so";
+  const std::string shim = bin_dir() + "/libusb_vhci_shim.so";
   if (shim.find_first_of(" :") != std::string::npos)  // it would not be loaded, and real devices be taken
     throw std::runtime_error(shim + ": a library to preload has neither space nor colon in its path");
   const char* options = std::getenv("ASAN_OPTIONS");

@@ -7,6 +7,7 @@
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tool_inputs.h"
@@ -18,14 +19,14 @@ using Catch::Contains;
 
 namespace {
 
-const std::string kScenes = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/";
+const std::string kScenes = source_dir() + "/configs/scenes/";
 
 std::vector<std::string> arguments_of(int ranks, const std::string& scene, const std::string& folder) {
   return {"--allow-run-as-root",
           "--oversubscribe",
           "-n",
           std::to_string(ranks),
-          std::string(PALPATE_BIN_DIR) + "/sim_server",
+          bin_dir() + "/sim_server",
           "condense",
           scene,
           "--out",
@@ -46,8 +47,8 @@ std::string scene_with(const TemporaryFolder& folder, const std::string& model,
     text.replace(at, old.size(), now);
   };
   put("model = \"quasi_static\"", "model = \"" + model + "\"");
-  put("file = \"../meshes/", "file = \"" + std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/");
-  put("clients = [\"../clients/", "clients = [\"" + std::string(PALPATE_SOURCE_DIR) + "/configs/clients/");
+  put("file = \"../meshes/", "file = \"" + source_dir() + "/configs/meshes/");
+  put("clients = [\"../clients/", "clients = [\"" + source_dir() + "/configs/clients/");
   put("[[tool]]\n", "[[tool]]\n" + of_tool);
   const std::string file = (folder.path() / "scene.toml").string();
   std::ofstream(file) << text;

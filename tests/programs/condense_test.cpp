@@ -1,4 +1,5 @@
 // What `--condensed` refuses, and `sim_server condense` in a build without MPI; with it: tests/mpi.
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -8,8 +9,7 @@ using Catch::Contains;
 namespace {
 
 std::string record(const TemporaryFolder& folder, const std::string& scene, const std::string& condensed) {
-  const std::string configs = std::string(PALPATE_SOURCE_DIR) + "/configs/",
-                    out = (folder.path() / "out.pcap").string();
+  const std::string configs = source_dir() + "/configs/", out = (folder.path() / "out.pcap").string();
   const std::string said =
       output_of("sim_server",
                 {"record", configs + "scenes/" + scene, "--trajectory", configs + "clients/liver_paper.toml",
@@ -34,8 +34,8 @@ TEST_CASE(
 TEST_CASE("condense: a build without MPI says what would have it") {
   const TemporaryFolder folder;
   CHECK_THAT(output_of("sim_server",
-                       {"condense", std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_paper.toml",
-                        "--out", (folder.path() / "out").string()},
+                       {"condense", source_dir() + "/configs/scenes/liver_paper.toml", "--out",
+                        (folder.path() / "out").string()},
                        2),
              Contains("-DPALPATE_MPI=ON"));
 }

@@ -2,6 +2,7 @@
 // Laws against the truth, offline: the real programs, virtual time.
 #include <chrono>
 
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -41,7 +42,7 @@ Json without_timings(Json rows) {
 
 TEST_CASE("evaluate: on a grasped organ, the paper's protocol gives the paper's table") {
   const Study study;
-  const std::string root = PALPATE_SOURCE_DIR;
+  const std::string root = source_dir();
   output_of(
       "sim_server",
       {"record", root + "/configs/scenes/grasp.toml", "--trajectory", root + "/configs/clients/grasp.toml",
@@ -69,9 +70,9 @@ TEST_CASE(
     };
     const auto begin = std::chrono::steady_clock::now();
     output_of("sim_server",
-              {"record", std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_implicit.toml",
-               "--trajectory", kClient, "--rate", rate, "--seconds", "0.5", "--plain", "--real-time", "--out",
-               file(".pcap"), "--report", file(".json")},
+              {"record", source_dir() + "/configs/scenes/liver_implicit.toml", "--trajectory", kClient,
+               "--rate", rate, "--seconds", "0.5", "--plain", "--real-time", "--out", file(".pcap"),
+               "--report", file(".json")},
               0);
     CHECK(std::chrono::steady_clock::now() - begin >= std::chrono::milliseconds(400));
     return read_json(file(".json"));
@@ -87,7 +88,7 @@ TEST_CASE(
 TEST_CASE(
     "evaluate --keep 4 of a capture at 80 Hz is what a capture at 20 Hz gives, where tissue is at rest") {
   const Study study;
-  const std::string root = PALPATE_SOURCE_DIR;
+  const std::string root = source_dir();
   for (const char* rate : {"80", "20"}) {
     output_of(
         "sim_server",

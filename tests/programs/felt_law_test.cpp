@@ -3,6 +3,7 @@
 // time.
 #include <cstdio>
 
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 /// What a line of Python says that has `tool`, what the picture of a session is drawn from.
 std::string drawn(const std::filesystem::path& report, const std::string& expression) {
-  const std::string folder = std::string(PALPATE_SOURCE_DIR) + "/scripts/plotting";
+  const std::string folder = source_dir() + "/scripts/plotting";
   const std::string command =
       "/usr/bin/python3 -B -c \"import sys; from pathlib import Path; sys.path.insert(0, '" + folder +
       "'); import session_report as s; tool = s.read_tools(s.read_json(Path('" + report.string() +

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -34,8 +35,7 @@ bool has(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("mesh info of the shipped liver: no faults, exit 0") {
-  Process process("sim_server",
-                  {"mesh", "info", std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh"});
+  Process process("sim_server", {"mesh", "info", source_dir() + "/configs/meshes/liver_paper.msh"});
   CHECK(process.wait() == 0);
   CHECK(has(process.output(), "faults              none"));
 }

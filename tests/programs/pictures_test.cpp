@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace palpate::test;
@@ -14,7 +15,7 @@ namespace {
 /// Exit code and output of a script of plotting/.
 std::pair<int, std::string> plotted(const std::string& arguments) {
   const std::string command =
-      "/usr/bin/python3 -B " + std::string(PALPATE_SOURCE_DIR) + "/scripts/plotting/" + arguments + " 2>&1";
+      "/usr/bin/python3 -B " + source_dir() + "/scripts/plotting/" + arguments + " 2>&1";
   FILE* const out = popen(command.c_str(), "r");
   REQUIRE(out != nullptr);
   std::string text;

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <numbers>
 
+#include "tests/support/paths.h"
 #include "tests/support/solve_bench.h"
 #include "tests/support/vtu.h"
 
@@ -208,8 +209,8 @@ TEST_CASE("solve: the example of its help can be run, its probe is in the liver"
   CHECK(output_of("sim_server", {"solve", "--help"}, 0)
             .find("sim_server solve " + scene + " --out liver.vtu --probe " + place) != std::string::npos);
   output_of("sim_server",
-            {"solve", std::string(PALPATE_SOURCE_DIR) + "/" + scene, "--out",
-             (folder.path() / "liver.vtu").string(), "--probe", place},
+            {"solve", source_dir() + "/" + scene, "--out", (folder.path() / "liver.vtu").string(), "--probe",
+             place},
             0);
 }
 

@@ -5,6 +5,7 @@
 
 #include "tests/support/catch.h"
 #include "tests/support/column.h"
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -90,9 +91,8 @@ TEST_CASE("study: a scene without tissue is refused with what to take") {
 TEST_CASE("study: asked to end in the middle of a case it ends at once, and nobody is left behind") {
   Bench bench;
   // A reference on the liver takes minutes.
-  Process study(
-      "sim_server",
-      {"study", std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_implicit.toml", "--out", bench.out});
+  Process study("sim_server",
+                {"study", source_dir() + "/configs/scenes/liver_implicit.toml", "--out", bench.out});
   REQUIRE(study.wait_for("reference: "));
   study.signal(SIGTERM);
   CHECK(study.wait(5) == 1);

@@ -9,6 +9,8 @@
 #include <thread>
 #include <unistd.h>
 
+#include "tests/support/paths.h"
+
 namespace palpate::test {
 namespace {
 
@@ -33,7 +35,7 @@ void pause() {
 Process::Process(const std::string& program, const std::vector<std::string>& arguments) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("pipe");
-  const std::string path = std::filesystem::path(PALPATE_BIN_DIR) / program;
+  const std::string path = std::filesystem::path(bin_dir()) / program;
   std::vector<char*> argv{const_cast<char*>(path.c_str())};
   for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);

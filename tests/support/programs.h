@@ -6,12 +6,13 @@
 #include <stdexcept>
 
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/process.h"
 
 namespace palpate::test {
 
-inline const std::string kScene = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_paper.toml";
-inline const std::string kClient = std::string(PALPATE_SOURCE_DIR) + "/configs/clients/liver_paper.toml";
+inline const std::string kScene = source_dir() + "/configs/scenes/liver_paper.toml";
+inline const std::string kClient = source_dir() + "/configs/clients/liver_paper.toml";
 
 /// A server of the liver on a port of its own (or a given one), ready.
 struct Server {

@@ -2,12 +2,13 @@
 #include "sim_server/deformation/spring.h"
 #include "sim_server/scene/scene.h"
 #include "sim_server/scene_file/read_scene.h"
+#include "tests/support/paths.h"
 
 namespace palpate::test {
 
 /// A scene that ships, with paths that work from anywhere.
 inline sim::Scene example_scene(const std::string& name) {
-  return sim::read_scene(std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/" + name + ".toml");
+  return sim::read_scene(source_dir() + "/configs/scenes/" + name + ".toml");
 }
 
 inline sim::Scene liver_scene() {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/web_page.h"
@@ -40,7 +41,7 @@ inline std::string body_of(const std::string& answer) {
   return end == std::string::npos ? "" : answer.substr(end + 4);
 }
 inline std::string dist(const std::string& file) {
-  return bytes_of(std::filesystem::path(PALPATE_SOURCE_DIR) / "sim_server/viewer/page/dist" / file);
+  return bytes_of(std::filesystem::path(source_dir()) / "sim_server/viewer/page/dist" / file);
 }
 
 }  // namespace palpate::test

@@ -5,6 +5,7 @@
 
 #include "protocol/c_interface/palpate.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -53,7 +54,7 @@ struct Session {
 
 std::string rigid_block(const TemporaryFolder& folder) {
   return folder
-      .write("rigid.toml", std::string("[mesh]\nfile = \"") + PALPATE_SOURCE_DIR +
+      .write("rigid.toml", std::string("[mesh]\nfile = \"") + source_dir() +
                                "/configs/meshes/block.msh\"\n[deformation]\nmodel = \"rigid\"\nstiffness = "
                                "500\n[[tool]]\nradius = 0.006\n")
       .string();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/web_page.h"
@@ -27,14 +28,14 @@ TEST_CASE("choice: a scene that is wrong is told of, and the one before goes on"
   const fs::path scenes = folder.path() / "share/palpate/scenes";
   fs::create_directories(folder.path() / "bin"), fs::create_directories(scenes);
   const fs::path program = folder.path() / "bin" / "sim_server";
-  fs::copy_file(fs::path(PALPATE_BIN_DIR) / "sim_server", program);
-  const std::string mesh = std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/block.msh";
+  fs::copy_file(fs::path(bin_dir()) / "sim_server", program);
+  const std::string mesh = source_dir() + "/configs/meshes/block.msh";
   std::ofstream(scenes / "good.toml") << scene_on("Good", mesh);
   std::ofstream(scenes / "other.toml") << scene_on("Other", mesh);
   std::ofstream(scenes / "unreadable.toml") << "# Needs: nothing.\ntitle = \"Unreadable\"\nnonsense = 1\n";
   const std::string no_mesh = folder.write("none.msh", "no mesh").string();
   std::ofstream(scenes / "unbuildable.toml") << scene_on("Unbuildable", no_mesh);
-  const auto called = fs::relative(program, PALPATE_BIN_DIR).string();
+  const auto called = fs::relative(program, bin_dir()).string();
   Process server(called, {"run", (scenes / "good.toml").string(), "--listen", "127.0.0.1:0", "--viewer", "0",
                           "--cache", (folder.path() / "cache").string()});
   const PageAddress address = PageAddress::of(server);

@@ -2,6 +2,7 @@
 #include <csignal>
 
 #include "tests/support/falcon_bench.h"
+#include "tests/support/paths.h"
 
 using namespace palpate::test;
 using Json = nlohmann::json;
@@ -123,7 +124,7 @@ TEST_CASE("devices: what is plugged in, and the rule that gives access where it 
   CHECK(said.find("--device falcon:3-2    no permission") != std::string::npos);
   CHECK(said.find("--device falcon:4-3    another program holds") != std::string::npos);
   // The rule that is printed is the one that ships.
-  const std::string rules = bytes_of(std::string(PALPATE_SOURCE_DIR) + "/configs/udev/70-palpate.rules");
+  const std::string rules = bytes_of(source_dir() + "/configs/udev/70-palpate.rules");
   const std::size_t rule = rules.find("SUBSYSTEM");
   CHECK(said.find(rules.substr(rule, rules.find('\n', rule) - rule)) != std::string::npos);
 }

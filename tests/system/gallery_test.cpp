@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "tests/support/contract.h"
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/web_page.h"
@@ -38,7 +39,7 @@ std::vector<std::string> clients_in(const std::string& text, const fs::path& fol
 
 std::vector<GalleryScene> gallery() {
   std::vector<GalleryScene> scenes;
-  const fs::path folder = fs::path(PALPATE_SOURCE_DIR) / "configs" / "scenes";
+  const fs::path folder = fs::path(source_dir()) / "configs" / "scenes";
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string text = bytes_of(entry.path());
     const std::size_t needs = text.find("# Needs: ");

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -18,7 +19,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-const std::string kScenes = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/";
+const std::string kScenes = source_dir() + "/configs/scenes/";
 
 /// A liver by some model, without anything that it does not need.
 std::string minimal(const std::string& model, const std::string& more = "") {

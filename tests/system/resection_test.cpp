@@ -4,6 +4,7 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -12,7 +13,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-const std::string kConfigs = std::string(PALPATE_SOURCE_DIR) + "/configs/";
+const std::string kConfigs = source_dir() + "/configs/";
 const std::string kRelay = "127.0.0.7:45137";
 
 /// Of a table: the numbers of its last row under these names.

@@ -6,6 +6,7 @@
 
 #include "protocol/udp_socket.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -215,8 +216,7 @@ TEST_CASE("garbage on the server's port is counted, and changes nothing") {
 
 TEST_CASE("wrong input: one line that says what, where and what to do, exit 2, nothing left behind") {
   const TemporaryFolder folder;
-  const std::string mesh =
-      "[mesh]\nfile = \"" + std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh\"\n";
+  const std::string mesh = "[mesh]\nfile = \"" + source_dir() + "/configs/meshes/liver_paper.msh\"\n";
   const std::string fixed = "[[fixed]]\nbox = [[-1, -1, -1], [1, 1, -0.06]]\n";
   const std::string rest =
       "[material]\nyoung_modulus = 1e4\npoisson_ratio = 0.45\n[deformation]\nmodel = "
@@ -282,7 +282,7 @@ TEST_CASE("wrong input: one line that says what, where and what to do, exit 2, n
 
 TEST_CASE("what is there already is kept: an output never takes the place of a mesh, a scene or a motion") {
   const TemporaryFolder folder;
-  const std::string root = PALPATE_SOURCE_DIR;
+  const std::string root = source_dir();
   const auto copied = [&](const std::string& from) {
     const auto file = folder.path() / std::filesystem::path(from).filename();
     std::filesystem::copy_file(root + "/configs/" + from, file);
@@ -318,8 +318,7 @@ TEST_CASE("what is there already is kept: an output never takes the place of a m
 TEST_CASE("a tool that was held, but never touched: the server says so, and how near it came") {
   const TemporaryFolder folder;
   const std::string report = (folder.path() / "server.json").string();
-  Server server({"--report", report}, "127.0.0.1:0",
-                std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/block.toml");
+  Server server({"--report", report}, "127.0.0.1:0", source_dir() + "/configs/scenes/block.toml");
   // The hand holds still at (0, 0.1, 0); the block's top is y = 0, the tool's radius 6 mm.
   const std::string client = folder.write("client.toml", "").string();
   Process process("haptic_client", {"run", client, "--server", server.address, "--seconds", "1"});

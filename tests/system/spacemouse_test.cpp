@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "tests/emulation/emulator.h"
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -11,7 +12,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-const std::string kMouseClient = std::string(PALPATE_SOURCE_DIR) + "/configs/clients/spacemouse.toml";
+const std::string kMouseClient = source_dir() + "/configs/clients/spacemouse.toml";
 constexpr double kStart[] = {-0.03, 0.09, 0.01};  // m, of that file
 constexpr double kSpeed = 0.05;                   // m/s, of that file
 
@@ -118,7 +119,7 @@ TEST_CASE("SpaceMouse: locked, and the rule that is printed is the one that ship
   CHECK(said.find("SpaceNavigator ") != std::string::npos);
   CHECK(said.find("SpaceMouse Wireless ") != std::string::npos);
   CHECK(said.find("--device spacemouse:1-1    no permission") != std::string::npos);
-  std::istringstream rules(bytes_of(std::string(PALPATE_SOURCE_DIR) + "/configs/udev/70-palpate.rules"));
+  std::istringstream rules(bytes_of(source_dir() + "/configs/udev/70-palpate.rules"));
   int found = 0;
   for (std::string rule; std::getline(rules, rule);) {
     if (rule.empty() || rule[0] == '#') continue;

@@ -2,6 +2,7 @@
 #include <csignal>
 #include <thread>
 
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 
@@ -11,7 +12,7 @@ using Json = nlohmann::json;
 TEST_CASE("two clients on one liver: each holds a tool, one leaves and the other goes on") {
   const TemporaryFolder folder;
   const auto file = [&](const char* name) { return (folder.path() / name).string(); };
-  const std::string scene = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_two_tools.toml";
+  const std::string scene = source_dir() + "/configs/scenes/liver_two_tools.toml";
   Process server("sim_server", {"run", scene, "--listen", "127.0.0.1:0", "--report", file("server.json")});
   REQUIRE(server.wait_for("listening on "));
   const std::string& said = server.output();

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/web_page.h"
@@ -104,7 +105,7 @@ TEST_CASE("view: a capture with its scene is stepped again, to the same forces")
   CHECK(viewed.said.find("is it the scene") == std::string::npos);
 
   // Another scene is not taken for it.
-  const std::string other = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/liver_tensor_mass.toml";
+  const std::string other = source_dir() + "/configs/scenes/liver_tensor_mass.toml";
   CHECK(Viewed({file, "--scene", other}).said.find("is it the scene") != std::string::npos);
 
   // Without one there is no organ, but tools and forces.
@@ -129,7 +130,7 @@ TEST_CASE("view: what is no capture of a session is told in one line") {
 TEST_CASE("scenes: the gallery is found beside an installed program as in the source") {
   const auto said = output_of("sim_server", {"scenes"}, 0);
   namespace fs = std::filesystem;
-  for (const auto& entry : fs::directory_iterator(fs::path(PALPATE_SOURCE_DIR) / "configs" / "scenes")) {
+  for (const auto& entry : fs::directory_iterator(fs::path(source_dir()) / "configs" / "scenes")) {
     const bool told = said.find(fmt::format("\n{}: ", entry.path().stem().string())) != std::string::npos;
     CAPTURE(entry.path());
     CHECK(told == (bytes_of(entry.path()).find("\n# Needs: ") != std::string::npos));
@@ -140,8 +141,8 @@ TEST_CASE("scenes: the gallery is found beside an installed program as in the so
   fs::create_directories(folder.path() / "bin");
   fs::create_directories(folder.path() / "share/palpate/scenes");
   const auto program = folder.path() / "bin" / "sim_server";
-  const auto called = fs::relative(program, PALPATE_BIN_DIR).string();
-  fs::copy_file(fs::path(PALPATE_BIN_DIR) / "sim_server", program);
+  const auto called = fs::relative(program, bin_dir()).string();
+  fs::copy_file(fs::path(bin_dir()) / "sim_server", program);
   const auto installed = output_of(called, {"scenes"}, 2);
   CHECK(std::ranges::count(installed, '\n') == 1);
   std::ofstream(folder.path() / "share/palpate/scenes/mine.toml")

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/watched_server.h"
 
 using namespace palpate::test;
@@ -210,8 +211,7 @@ TEST_CASE("viewer: strain energy is sent to who wants it, where the model knows 
 
   const std::string scene = GENERATE("liver_implicit", "liver_tensor_mass");
   CAPTURE(scene);
-  Server server({"--viewer", "0"}, "127.0.0.1:0",
-                std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/" + scene + ".toml");
+  Server server({"--viewer", "0"}, "127.0.0.1:0", source_dir() + "/configs/scenes/" + scene + ".toml");
   const PageAddress address = PageAddress::of(server.process);
   Process client("haptic_client", client_arguments(server.address, {"--seconds", "6"}));
   WebPage looks(address), wants(address);

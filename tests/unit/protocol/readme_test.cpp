@@ -5,6 +5,7 @@
 
 #include "protocol/codec.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 
 using namespace palpate::protocol;
 
@@ -12,7 +13,7 @@ namespace {
 
 /// The cells "payload" and "datagram" of the table of messages, by the name of the message.
 std::map<std::string, std::pair<std::string, std::string>> sizes_told() {
-  std::ifstream file(PALPATE_SOURCE_DIR "/protocol/README.md");
+  std::ifstream file(palpate::test::source_dir() + "/protocol/README.md");
   std::map<std::string, std::pair<std::string, std::string>> told;
   std::string line;
   while (std::getline(file, line) && line.find("## Messages") == std::string::npos) {

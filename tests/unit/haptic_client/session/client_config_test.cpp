@@ -2,6 +2,7 @@
 
 #include "common/error.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace palpate;
@@ -13,8 +14,7 @@ TEST_CASE("an empty client file means the defaults, and the file that ships is r
   CHECK(config.server == "127.0.0.1:45130");
   CHECK(config.rate_hz == 500);
   CHECK_FALSE(config.device.trajectory);
-  CHECK(read_client_config(std::string(PALPATE_SOURCE_DIR) + "/configs/clients/liver_paper.toml")
-            .device.trajectory);
+  CHECK(read_client_config(test::source_dir() + "/configs/clients/liver_paper.toml").device.trajectory);
 }
 
 TEST_CASE(
@@ -50,8 +50,7 @@ TEST_CASE("a SpaceMouse: its table is read, and the file that ships begins above
   CHECK(config.device.spacemouse.reach == 1);
   for (const char* wrong : {"speed = 2", "speed = 0", "reach = 1.1", "force = 1"})
     CHECK_THROWS_AS(read_client_config(folder.write("c.toml", std::string("[spacemouse]\n") + wrong)), Error);
-  const ClientConfig shipped =
-      read_client_config(std::string(PALPATE_SOURCE_DIR) + "/configs/clients/spacemouse.toml");
+  const ClientConfig shipped = read_client_config(test::source_dir() + "/configs/clients/spacemouse.toml");
   CHECK(shipped.device.name == "spacemouse");
   CHECK(shipped.workspace.to_world(Vec3::Zero()) == Vec3(-0.03, 0.09, 0.01));
 }

@@ -7,6 +7,7 @@
 
 #include "protocol/c_interface/palpate.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace palpate::test;
@@ -27,7 +28,7 @@ Scene open_scene(const std::string& file) {
   return Scene(scene);
 }
 
-const std::string kConfigs = std::string(PALPATE_SOURCE_DIR) + "/configs/";
+const std::string kConfigs = source_dir() + "/configs/";
 
 template <class Struct = palpate_tool_state>
 Struct at(double x, double y, double z) {

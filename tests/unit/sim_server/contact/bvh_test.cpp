@@ -9,6 +9,7 @@
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/random.h"
 
 using namespace palpate;
@@ -40,7 +41,7 @@ struct Skin {
 };
 
 TetMesh liver() {
-  return read_mesh(PALPATE_SOURCE_DIR "/configs/meshes/liver_paper.msh");
+  return read_mesh(test::source_dir() + "/configs/meshes/liver_paper.msh");
 }
 
 /// A cube of edges 8 mm, 80 mm wide, drawn into a ball: many of its triangles are equally far from its

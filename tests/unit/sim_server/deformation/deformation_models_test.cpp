@@ -5,12 +5,13 @@
 #include <sstream>
 
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 
 using namespace palpate;
 using namespace palpate::sim;
 
 TEST_CASE("nothing outside sim_server/deformation knows the name of a model") {
-  const std::filesystem::path root(PALPATE_SOURCE_DIR);
+  const std::filesystem::path root(test::source_dir());
   int files = 0;
   for (const char* part : {"common", "protocol", "sim_server", "haptic_client"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / part)) {

@@ -4,6 +4,7 @@
 #include "sim_server/elasticity/tensors.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/solids.h"
 
 using namespace palpate;
@@ -17,7 +18,7 @@ TetMesh block() {
 }
 
 TetMesh liver() {
-  return read_mesh(std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh");
+  return read_mesh(test::source_dir() + "/configs/meshes/liver_paper.msh");
 }
 
 MeshCounts counts_of(const TetMesh& mesh) {

@@ -3,12 +3,12 @@
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/surface.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 
 using namespace palpate::sim;
 
 TEST_CASE("the shipped liver has the size of the paper's: 1394 vertices, 8347 edges, 6342 tetrahedra") {
-  const MeshInfo info =
-      describe(read_mesh(std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh"));
+  const MeshInfo info = describe(read_mesh(palpate::test::source_dir() + "/configs/meshes/liver_paper.msh"));
   CHECK(info.vertices == Approx(1394).epsilon(0.03));
   CHECK(info.edges == Approx(8347).epsilon(0.03));
   CHECK(info.tetrahedra == Approx(6342).epsilon(0.03));

@@ -8,6 +8,7 @@
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/mesh/surface.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 
 namespace palpate::sim {
 namespace {
@@ -62,7 +63,7 @@ TEST_CASE("what is tagged stays tagged, and no more") {
 }
 
 TEST_CASE("of an irregular mesh too, all parts fit together, and each is as stiff as what it was cut from") {
-  TetMesh liver = read_mesh(std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh");
+  TetMesh liver = read_mesh(test::source_dir() + "/configs/meshes/liver_paper.msh");
   const double volume = describe(liver).volume;
   for (const Tetrahedron& t : liver.tetrahedra)
     liver.stiffness.push_back(liver.vertices[t[0]].x() > 0 ? 2 : 1);

@@ -13,6 +13,7 @@
 #include "sim_server/simulation/simulation.h"
 #include "sim_server/simulation/touchable.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/random.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tool_inputs.h"
@@ -26,7 +27,7 @@ constexpr double kNearer = 0.02;  // m: tissue that deforms
 
 Scene scene_with(const std::string& tool, const std::string& fixed = "") {
   const test::TemporaryFolder folder;
-  const std::string mesh = std::string(PALPATE_SOURCE_DIR) + "/configs/meshes/liver_paper.msh";
+  const std::string mesh = test::source_dir() + "/configs/meshes/liver_paper.msh";
   const auto file = folder.write("scene.toml", "[mesh]\nfile = \"" + mesh +
                                                    "\"\n[deformation]\nmodel = \"quasi_static\"\n"
                                                    "[material]\nyoung_modulus = 1e4\npoisson_ratio = 0.4\n"
@@ -145,7 +146,7 @@ TEST_CASE(
 TEST_CASE("tool reach: the scenes that ship leave much of the liver out, and lose nothing of the force") {
   for (const char* name : {"liver_falcon", "liver_trocar"}) {
     DYNAMIC_SECTION(name) {
-      const Scene scene = read_scene(std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/" + name + ".toml");
+      const Scene scene = read_scene(test::source_dir() + "/configs/scenes/" + name + ".toml");
       Scene whole = scene;
       whole.tools[0].reach.reset();
       Simulation some(scene), all(whole);
@@ -153,8 +154,8 @@ TEST_CASE("tool reach: the scenes that ship leave much of the liver out, and los
         return reachable_vertices(simulation.surface(), simulation.mesh(), of.tools).size();
       };
       CHECK(10 * nodes(some, scene) < 8 * nodes(all, whole));
-      const Trajectory motion(TrajectorySettings{.file = std::string(PALPATE_SOURCE_DIR) +
-                                                         "/configs/trajectories/liver_paper.csv"});
+      const Trajectory motion(
+          TrajectorySettings{.file = test::source_dir() + "/configs/trajectories/liver_paper.csv"});
       double most = 0, off = 0;
       for (int i = 0; i < 600; ++i) {
         const Vec3 place = motion.at(i / 30.0);

@@ -9,6 +9,7 @@
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace palpate;
@@ -150,7 +151,7 @@ TEST_CASE(
     "found") {
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path());
-  const std::string scenes = std::string(PALPATE_SOURCE_DIR) + "/configs/scenes/";
+  const std::string scenes = test::source_dir() + "/configs/scenes/";
 #ifdef PALPATE_WITH_SPECTRA
   const std::vector<const char*> names{"liver_paper", "liver_reduced", "liver_tensor_mass", "liver_implicit"};
 #else

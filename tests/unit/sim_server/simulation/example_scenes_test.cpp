@@ -3,6 +3,7 @@
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 #include "tests/support/scenes.h"
 
 using namespace palpate;
@@ -11,7 +12,7 @@ using namespace palpate::sim;
 TEST_CASE("a finger on the liver, and an instrument: pressed from above they feel it, explain tells of it") {
   for (const char* name : {"liver_capsule", "liver_trocar"}) {
     CAPTURE(name);
-    const Scene scene = read_scene(fmt::format("{}/configs/scenes/{}.toml", PALPATE_SOURCE_DIR, name));
+    const Scene scene = read_scene(fmt::format("{}/configs/scenes/{}.toml", test::source_dir(), name));
     Simulation simulation(scene);
     const Vec3 above(-0.03, 0.1, 0.005);
     CHECK(simulation.step(above, 1 / scene.rate_hz).contacts == 0);
