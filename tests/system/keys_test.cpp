@@ -31,6 +31,50 @@ struct KeyBench {
   }
 };
 
+}  // namespace
+
+#ifdef PALPATE_WITH_CAPTURE
+TEST_CASE("keys: with the same key a session is as ever, and every datagram of the capture has a tag of it") {
+  const KeyBench bench;
+  const std::string capture = (bench.folder.path() / "F.pcap").string();
+  Server server(bench.with_key());
+  output_of("haptic_client",
+            client_arguments(server.address, bench.with_key({"--seconds", "1", "--report", bench.report,
+                                                             "--record", capture})),
+            0);
+  const Json tool = read_json(bench.report)["tools"][0];
+  CHECK(tool["force"]["samples"].get<int>() > 15);
+  CHECK(tool["link"]["rejected"] == 0);
+  // And what was captured replays as ever: payloads are readable.
+  CHECK_THAT(output_of("haptic_client", {"replay", capture, "--client", kClient}, 0),
+             Catch::Contains("felt"));
+}
+#endif
+
+TEST_CASE("keys: another key, none, or one where the server has none: exit 1, and what to look at") {
+  const KeyBench bench, other;
+  Server keyed(bench.with_key());
+  for (const auto& more : {std::vector<std::string>{"--key", other.key}, std::vector<std::string>{}})
+    CHECK_THAT(output_of("haptic_client", client_arguments(keyed.address, more), 1), Catch::Contains("key"));
+  Server open;
+  CHECK_THAT(output_of("haptic_client", client_arguments(open.address, bench.with_key()), 1),
+             Catch::Contains("with the same key"));
+}
+
+TEST_CASE("keys: neither program leaves this machine without one, exit 2") {
+  CHECK_THAT(output_of("sim_server", {"run", kScene, "--listen", "0.0.0.0:0"}, 2),
+             Catch::Contains("keygen") && Catch::Contains("--insecure"));
+  CHECK_THAT(output_of("haptic_client", client_arguments("10.255.255.1:45130", {}), 2),
+             Catch::Contains("keygen") && Catch::Contains("--insecure"));
+  const KeyBench bench;
+  ::chmod(bench.key.c_str(), 0644);
+  CHECK_THAT(output_of("sim_server", {"run", kScene, "--key", bench.key}, 2), Catch::Contains("chmod 600"));
+  CHECK_THAT(output_of("sim_server", {"keygen", bench.key}, 2), Catch::Contains("is there already"));
+}
+
+#ifdef PALPATE_WITH_CAPTURE
+namespace {
+
 /// Sends what `make` gives, `per_ms` datagrams each millisecond, from a socket of its own.
 class Flood {
  public:
@@ -88,46 +132,6 @@ std::size_t state(std::uint64_t k, std::span<std::byte> out) {
 
 }  // namespace
 
-#ifdef PALPATE_WITH_CAPTURE
-TEST_CASE("keys: with the same key a session is as ever, and every datagram of the capture has a tag of it") {
-  const KeyBench bench;
-  const std::string capture = (bench.folder.path() / "F.pcap").string();
-  Server server(bench.with_key());
-  output_of("haptic_client",
-            client_arguments(server.address, bench.with_key({"--seconds", "1", "--report", bench.report,
-                                                             "--record", capture})),
-            0);
-  const Json tool = read_json(bench.report)["tools"][0];
-  CHECK(tool["force"]["samples"].get<int>() > 15);
-  CHECK(tool["link"]["rejected"] == 0);
-  // And what was captured replays as ever: payloads are readable.
-  CHECK_THAT(output_of("haptic_client", {"replay", capture, "--client", kClient}, 0),
-             Catch::Contains("felt"));
-}
-#endif
-
-TEST_CASE("keys: another key, none, or one where the server has none: exit 1, and what to look at") {
-  const KeyBench bench, other;
-  Server keyed(bench.with_key());
-  for (const auto& more : {std::vector<std::string>{"--key", other.key}, std::vector<std::string>{}})
-    CHECK_THAT(output_of("haptic_client", client_arguments(keyed.address, more), 1), Catch::Contains("key"));
-  Server open;
-  CHECK_THAT(output_of("haptic_client", client_arguments(open.address, bench.with_key()), 1),
-             Catch::Contains("with the same key"));
-}
-
-TEST_CASE("keys: neither program leaves this machine without one, exit 2") {
-  CHECK_THAT(output_of("sim_server", {"run", kScene, "--listen", "0.0.0.0:0"}, 2),
-             Catch::Contains("keygen") && Catch::Contains("--insecure"));
-  CHECK_THAT(output_of("haptic_client", client_arguments("10.255.255.1:45130", {}), 2),
-             Catch::Contains("keygen") && Catch::Contains("--insecure"));
-  const KeyBench bench;
-  ::chmod(bench.key.c_str(), 0644);
-  CHECK_THAT(output_of("sim_server", {"run", kScene, "--key", bench.key}, 2), Catch::Contains("chmod 600"));
-  CHECK_THAT(output_of("sim_server", {"keygen", bench.key}, 2), Catch::Contains("is there already"));
-}
-
-#ifdef PALPATE_WITH_CAPTURE
 TEST_CASE(
     "keys: an established session keeps its rate under floods, and a client that joins under one gets in") {
   const KeyBench bench;
