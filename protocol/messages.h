@@ -229,6 +229,8 @@ struct ForceSample {
   static constexpr std::uint32_t kWantsTelemetry = 1024, kPaused = 2048;
   /// And more parts.
   static constexpr std::uint32_t kHasModalLoads = 4096, kHasCuts = 8192;
+  /// The tip was hot, or the blade cut: what it touches may give way at any time.
+  static constexpr std::uint32_t kCutting = 16384;
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
   std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:

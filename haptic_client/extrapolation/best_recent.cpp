@@ -7,6 +7,7 @@ namespace palpate::client {
 namespace {
 constexpr double kSamples = 32;  // that the mean error is of
 constexpr double kBetter = 0.8;  // of the error of the law that is felt
+constexpr double kLead = 1.03;   // of the largest force lately: what a law may foresee where the tool cuts
 }  // namespace
 
 BestRecent::BestRecent(std::vector<Law> laws) : laws_(std::move(laws)), chosen_(laws_.size() - 1) {
@@ -20,6 +21,7 @@ void BestRecent::update(const Sample& sample) noexcept {
   if (usable(sample)) {
     if (const Forces* const given = ticks_.at(sample.t)) judge(*given, sample.f);
     free_ = sample.f.isZero(0);
+    cutting_ = sample.cutting;
     sizes_[samples_++ % kAfterCut] = sample.f.norm();
   }
   for (Law& law : laws_) law.law->update(sample);
@@ -45,6 +47,7 @@ void BestRecent::restart() noexcept {
   judged_ = 0;
   chosen_ = laws_.size() - 1;
   free_ = true;
+  cutting_ = false;
   sizes_ = {};
   samples_ = cut_at_ = 0;
   ticks_.forget();
@@ -64,8 +67,8 @@ void BestRecent::begin_tick(Time now) noexcept {
 
 Vec3 BestRecent::force(const Vec3& p, Time t) noexcept {
   Forces given{};
-  const double most =
-      after_cut() ? *std::ranges::max_element(sizes_) : std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  if (cutting_ || after_cut()) most = (cutting_ ? kLead : 1) * *std::ranges::max_element(sizes_);
   for (std::size_t i = 0; i < laws_.size(); ++i) {
     // A law that looks back alone would go on pulling where the tool is free.
     const bool none = free_ && sees_surface_[i] == 0;

@@ -14,8 +14,10 @@ namespace palpate::client {
 /// samples with contact; one that was better by a fifth takes over (follow the leader, with hysteresis), and
 /// `ForceEstimate` blends it in. Of equals, and before the first sample, the last one. A tick costs what all
 /// of them cost together.
-/// For eight samples from a cut on, as tissue that goes is softer than all laws expect, none may give more
-/// than the largest of the last eight samples, and any law that was better takes over.
+/// While the tool cuts, and for eight samples from any cut on, tissue may be gone that no sample has told of
+/// yet, and what is left is softer than all laws expect: none may give more than the
+/// largest of the last eight samples (while it cuts, 3 % more), and from a cut on any law that was better
+/// takes over.
 class BestRecent : public Extrapolator {
  public:
   struct Law {
@@ -46,7 +48,7 @@ class BestRecent : public Extrapolator {
   std::array<double, kMost> error_{};  // N, mean
   double judged_ = 0;                  // samples, up to those that the mean is of
   std::size_t chosen_;
-  bool free_ = true;                           // the newest sample saw no contact
+  bool free_ = true, cutting_ = false;         // the newest sample saw no contact; its tool cut
   static constexpr std::size_t kAfterCut = 8;  // samples
   std::array<double, kAfterCut> sizes_{};      // N, of the last ones
   std::size_t samples_ = 0, cut_at_ = 0;       // so far; of those, when tissue was cut last, and one

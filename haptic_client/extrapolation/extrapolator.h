@@ -60,6 +60,7 @@ struct Sample {
   std::optional<Surface> surface = {};
   std::optional<OtherTools> others = {};  ///< what `surface_v` has of them, and more
   std::uint32_t cuts = 0;                 ///< in how many steps so far tissue has been removed
+  bool cutting = false;                   ///< by this tool: what it touches may give way at any time
 };
 
 /// Whether a law may look at the sample at all: its vectors are finite.

@@ -33,6 +33,7 @@ double seconds_between(const ToolState& before, Time t) {
 Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
   Sample sample{s.number, Time{s.tool_t_ns}, s.p_W, s.f_W, s.surface_v_W};
   if ((s.flags & ForceSample::kHasCuts) != 0) sample.cuts = s.cuts;
+  sample.cutting = (s.flags & ForceSample::kCutting) != 0;
   if ((s.flags & ForceSample::kHasHere) != 0) sample.here = linearised(s.p_W, s.f_W, s.here);
   if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = linearised(s.ahead_p_W, s.ahead_f_W, s.ahead);
   if ((s.flags & ForceSample::kHasOthers) != 0) {

@@ -98,7 +98,7 @@ return function()
     {"ahead", "\"ahead\" follows"}, {"surface", "\"surface\" follows"}, {"errors", "\"errors\" follows"},
     {"others", "\"others\" follows"}, {"modes", "\"modes\" follows"}, {"mean", "\"mean\" follows"},
     {"relaxed", "\"relaxed\" follows"}, {"wants_telemetry", "Asks for Telemetry"}, {"paused", "Paused"},
-    {"loads", "\"loads\" follows"}, {"cuts", "\"cuts\" follows"},
+    {"loads", "\"loads\" follows"}, {"cuts", "\"cuts\" follows"}, {"cutting", "Cutting"},
   })
   group("here.surface_v", "Surface velocity", "m/s", XYZ)
   group("ahead.p", "Place ahead", "m", XYZ)

@@ -199,6 +199,7 @@ std::optional<FreeMotion> Implicit::relinearise() {
   if (is_linear() || ++iterations_ > most) return {};
   apply_new_loads();
   dynamics_.charge(std::exchange(columns_ms_, 0));
+  if (iterations_ == max_newton_ + 1) dynamics_.replace_background_factor();
   if (!dynamics_.affords_iteration()) {
     end_by_budget();
     return {};

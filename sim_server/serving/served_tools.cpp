@@ -217,6 +217,7 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
   if (const Resection* const resection = simulation_.resection()) {
     sample.flags |= ForceSample::kHasCuts;
     sample.cuts = resection->version();
+    if (answer.cutting) sample.flags |= ForceSample::kCutting;
   }
   if (errors_ != nullptr && (state.flags & protocol::ToolState::kWantsErrors) != 0) {
     sample.flags |= ForceSample::kHasErrors;

@@ -278,18 +278,21 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
   }
 }
 
-/// Contact of all tools, and again where a linearisation about where it led says something else.
+/// Contact of all tools, and again where a linearisation about where it led says something else. Where no
+/// more contact is to be found in this step, the body is still brought to balance with the last.
 void Simulation::solve_contacts() {
   settle();
+  bool found = true;
   while (const auto motion = tissue_.model->relinearise()) {
     tissue_.set_free(*motion);
-    if (std::ranges::any_of(tools_, &ToolContact::exhausted)) return flag_contacts();
+    found = found && std::ranges::none_of(tools_, &ToolContact::exhausted);
+    if (!found) continue;
     for (std::size_t i = 0; i < tools_.size(); ++i) {
       if (tools_[i].placed()) tools_[i].settle(tissue_.met_by(i));
     }
     settle();
   }
-  if (!tissue_.model->balanced()) flag_contacts();
+  if (!found || !tissue_.model->balanced()) flag_contacts();
 }
 
 /// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.

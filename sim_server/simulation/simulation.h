@@ -78,6 +78,7 @@ struct ToolAnswer : ToolForce {
   const SlowModes::State* modes = nullptr;
   /// With them: how hard the other tools drive each, N/sqrt(kg); null: there are none.
   const Eigen::VectorXd* modal_loads = nullptr;
+  bool cutting = false;  ///< its tip is hot, or its blade cuts: what it touches may give way at any time
 };
 
 /// A tetrahedron that is gone.
@@ -236,7 +237,8 @@ class Simulation {
     std::vector<HotTip> tips = {};
     std::vector<DeformationModel::ToldTool> told_near = {};
     std::shared_ptr<const ToldSurface> told = {};  // to clients
-    std::vector<std::optional<Vec3>> hot_at = {};  // of each tool, where it was hot in the step before
+    std::vector<std::optional<Vec3>> hot_at =
+        {};  // of each tool that was hot in the step before, where that began
     std::vector<ResectionRow> log = {};
     std::vector<Removal> removed = {};
     std::optional<std::vector<Removal>> planned = {};  // to be removed, instead of by heat

@@ -22,18 +22,17 @@ void Simulation::remove_at(std::vector<Removal> removals) {
   cut_->done = 0;
 }
 
-/// `dt` of heat along the way of the tips in the step before; or what was planned for now.
+/// `dt` of heat along the way of the tips that were hot in the step before; or what was planned for now.
 std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs, double dt) {
   Cut& cut = *cut_;
   if (!cut.planned) {
     cut.tips.clear();
     cut.hot_at.resize(tools_.size());
     for (std::size_t i = 0; i < tools_.size(); ++i) {
-      std::optional<Vec3> from = std::exchange(cut.hot_at[i], std::nullopt);
-      if (cut.tools[i].blade || !is_hot(cut.tools[i], tools_[i], inputs[i])) continue;
       const Vec3& p = tools_[i].place();
-      cut.tips.push_back({from.value_or(p), p, tools_[i].radius()});
-      cut.hot_at[i] = p;
+      const std::optional<Vec3> from = std::exchange(cut.hot_at[i], std::nullopt);
+      if (from && tools_[i].placed()) cut.tips.push_back({*from, p, tools_[i].radius()});
+      if (!cut.tools[i].blade && is_hot(cut.tools[i], tools_[i], inputs[i])) cut.hot_at[i] = p;
     }
     return cut.resection.advance(cut.tips, tissue_.positions, dt, surface_);
   }
@@ -185,7 +184,7 @@ void Simulation::change_surface() {
     tools_[i].change_surface(rest_, surface_, std::move(touchable[i]), on_surface);
 }
 
-/// What a step with a hot tip came to.
+/// What a step with tools that cut came to.
 void Simulation::note_cut(std::span<const ToolInput> inputs, double dt) {
   bool touched = false;
   for (std::size_t i = 0; i < tools_.size(); ++i)
@@ -194,7 +193,8 @@ void Simulation::note_cut(std::span<const ToolInput> inputs, double dt) {
   ResectionTotals& totals = cut_->resection.totals();
   if (touched) totals.contact_time += dt;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (!is_hot(cut_->tools[i], tools_[i], inputs[i])) continue;
+    answers_[i].cutting = is_hot(cut_->tools[i], tools_[i], inputs[i]);
+    if (!answers_[i].cutting) continue;
     Vec3 felt = tools_[i].force().force;
     if (cut_->blades[i]) felt += cut_->blades[i]->force;
     cut_->log.push_back({time_, i, tools_[i].place(), felt, tools_[i].force().contacts > 0, totals});

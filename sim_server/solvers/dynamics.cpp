@@ -114,6 +114,12 @@ void Dynamics::refactor_if_moved() {
   policy_.replaced();
 }
 
+void Dynamics::replace_background_factor() {
+  if (!background_ || !affords(costs_.factor)) return;
+  factor();
+  policy_.replaced();
+}
+
 /// Takes the factor that the background has made, and has it begin the next from where the body is now.
 void Dynamics::exchange_factors() {
   if (background_->begun()) {

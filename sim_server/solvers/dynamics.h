@@ -52,6 +52,8 @@ class Dynamics {
   /// Factors A at the trial point, where the factor is of a place elsewhere and none comes from the
   /// background.
   void refactor_if_moved();
+  /// Factors at the trial point, in place of what the background made elsewhere, if the budget has room.
+  void replace_background_factor();
   /// Whether the budget of the step has room for another iteration, and for a look at what that leaves.
   bool affords_iteration() const { return affords(costs_.iteration() + costs_.evaluation); }
   /// The step ends, as its budget does: evaluates the residual at the trial point, for `relative_residual`.

@@ -6,6 +6,7 @@
 using namespace palpate::test;
 using Catch::Contains;
 
+#ifdef PALPATE_WITH_CAPTURE
 namespace {
 
 std::string record(const TemporaryFolder& folder, const std::string& scene, const std::string& condensed) {
@@ -29,6 +30,7 @@ TEST_CASE(
              Contains("holds no compliance of 566 nodes"));
   CHECK_THAT(record(folder, "liver_tensor_mass.toml", folder.path().string()), Contains("leave it out"));
 }
+#endif
 
 #ifndef PALPATE_WITH_MPI
 TEST_CASE("condense: a build without MPI says what would have it") {

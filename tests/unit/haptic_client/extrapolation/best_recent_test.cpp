@@ -23,6 +23,7 @@ struct Two {
   Time now{};
   std::uint64_t number = 0;
   bool cuts = false;  // before each sample
+  bool cutting = false;
   std::unique_ptr<BestRecent> law;
 
   Two() {
@@ -36,7 +37,7 @@ struct Two {
     for (const Time end = now + from_seconds(seconds); now < end; now += 2ms) {
       if (now.count() % 30'000'000 == 0 && now > 20ms) {
         if (cuts) law->surface_cut();
-        law->update({.number = ++number, .t = now - 20ms, .f = {0, right, 0}});
+        law->update({.number = ++number, .t = now - 20ms, .f = {0, right, 0}, .cutting = cutting});
       }
       law->begin_tick(now);
       law->force(Vec3::Zero(), now);
@@ -132,6 +133,20 @@ TEST_CASE(
   laws.law->restart();
   laws.cuts = false;
   laws.go(0.03, 0.7);
+  CHECK(laws.felt() == 1.2);
+}
+
+TEST_CASE(
+    "best recent: while the tool cuts no law gives 3 % more than the largest of the last eight samples") {
+  Two laws;
+  laws.first = laws.second = 1.2;
+  laws.go(1);
+  REQUIRE(laws.felt() == 1.2);
+  laws.cutting = true;
+  laws.go(1);
+  CHECK(laws.felt() == Approx(1.03));
+  laws.cutting = false;
+  laws.go(0.03);
   CHECK(laws.felt() == 1.2);
 }
 

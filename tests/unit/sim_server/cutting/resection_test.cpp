@@ -210,6 +210,20 @@ TEST_CASE("a tip that goes far in a step heats along its way, and by no more tha
   CHECK(resection.totals().heat == Approx(1000 * kStep));
 }
 
+TEST_CASE("a tip heats for as long as it is pressed, never before") {
+  Simulation simulation(cut_scene("tensor_mass", 200), block());
+  const ResectionTotals& totals = simulation.resection()->totals();
+  CHECK_FALSE(press(simulation, Vec3(0.001, 0.001, 0.0005), false).cutting);
+  CHECK(press(simulation, Vec3(0.001, 0.001, 0.0005), true).cutting);
+  CHECK(totals.hot_time == 0);  // the button went down somewhere in that step
+  CHECK(totals.tetrahedra == 0);
+  CHECK_FALSE(press(simulation, Vec3(0.001, 0.001, 0.0005), false).cutting);
+  CHECK(totals.hot_time == kStep);
+  CHECK(totals.tetrahedra > 0);
+  press(simulation, Vec3(0.001, 0.001, 0.0005), false);
+  CHECK(totals.hot_time == kStep);
+}
+
 TEST_CASE("stiff and nearly incompressible tissue is cut, too") {
   for (const char* const model : {"tensor_mass", "implicit"}) {
     CAPTURE(model);

@@ -93,18 +93,28 @@ TEST_CASE("a recorded resection, stepped again from its capture alone, gives the
   }
 }
 
-TEST_CASE("samples of tissue that can be cut say in how many steps it was, and of no surface or modes") {
+TEST_CASE(
+    "samples of tissue that can be cut say in how many steps it was, whether the tool cuts, and of no "
+    "surface or modes") {
   const TemporaryFolder folder;
   Simulation simulation(cut_scene("tensor_mass"), block());
   record(simulation, motion(folder), folder.path() / "a.pcap");
   std::uint32_t before = 0;
+  int samples = 0, said = 0;
+  bool cutting = false;
   for (const ForceSample& sample : samples_in(folder.path() / "a.pcap")) {
+    ++samples;
     CHECK((sample.flags & ForceSample::kHasCuts) != 0);
     CHECK((sample.flags & (ForceSample::kHasSurface | ForceSample::kHasModes)) == 0);
     CHECK(sample.cuts >= before);
     CHECK(sample.cuts <= before + 1);
     before = sample.cuts;
+    cutting = (sample.flags & ForceSample::kCutting) != 0;
+    said += cutting ? 1 : 0;
   }
+  CHECK(cutting);
+  CHECK(said > samples / 2);
+  CHECK(said < samples);  // the button was let go, at times
   CHECK(before == simulation.resection()->version());
   CHECK(before > 5);
 }

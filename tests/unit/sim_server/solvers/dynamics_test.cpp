@@ -213,6 +213,35 @@ TEST_CASE("dynamics: solved with a factor of the background, a step ends where a
   }
 }
 
+TEST_CASE(
+    "dynamics: in place of a factor of the background one is made where the body is, if the budget has "
+    "room") {
+  const Solid solid(small_block(), soft(ElasticLaw::kCorotational));
+  const std::vector<Vec3> force = pull(solid, {0.4, 0.3, 0});
+  const auto residual_after = [&](DynamicsSettings settings, int& factors) {
+    Dynamics dynamics(solid, held_below(solid), settings, "test");
+    dynamics.start_step(0.02);
+    dynamics.solve(force, 4, 1e-12);
+    const int before = dynamics.factors();
+    dynamics.replace_background_factor();
+    factors = dynamics.factors() - before;
+    dynamics.loads_changed();
+    dynamics.solve(force, 2, 1e-12);
+    return dynamics.relative_residual();
+  };
+  DynamicsSettings settings{.solver = DynamicsSettings::Solver::kConjugateGradients, .refresh_steps = 1000};
+  int factors = 0;
+  CHECK(residual_after(settings, factors) < 1e-6);  // Newton's own steps: quadratic
+  CHECK(factors == 1);
+  settings.budget_ms =
+      StepCosts(solid, Dynamics(solid, held_below(solid), settings, "test").matrix()).least(true);
+  residual_after(settings, factors);
+  CHECK(factors == 0);
+  settings = {};
+  residual_after(settings, factors);
+  CHECK(factors == 0);
+}
+
 TEST_CASE("dynamics: backward Euler never makes energy, whatever the law and the step") {
   for (const ElasticLaw law : {ElasticLaw::kLinear, ElasticLaw::kCorotational, ElasticLaw::kNeoHookean}) {
     const Solid solid(small_block(), soft(law));
