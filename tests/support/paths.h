@@ -4,8 +4,8 @@
 namespace palpate::test {
 
 /// Where this clone lies, and where its programs are: absolute, without a slash at the end. Functions, so
-/// that what a test compiles to does not depend on where it was compiled: other clones and other builds find
-/// it in ccache.
+/// that what a test compiles to does not depend on either: other builds find it in ccache, and no warning
+/// comes with a longer path.
 const std::string& source_dir();
 const std::string& bin_dir();
 
