@@ -64,6 +64,13 @@ double left_of_addresses(const std::filesystem::path& root) {
 
 }  // namespace
 
+double resident_memory() {
+  std::ifstream file("/proc/self/statm");
+  double all = 0, resident = 0, of_files = 0;
+  file >> all >> resident >> of_files;
+  return (resident - of_files) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
 double free_memory(const std::filesystem::path& root) {
   const auto kilobytes = number_after(root / "proc/meminfo", "MemAvailable:");
   double free = kilobytes ? 1024 * *kilobytes : std::numeric_limits<double>::infinity();

@@ -11,6 +11,10 @@ namespace palpate {
 /// `root`: the folder that holds proc/ and sys/. Set-up only: it reads files.
 double free_memory(const std::filesystem::path& root = "/");
 
+/// Resident memory of this process now but for pages of files (programs and libraries, which a child gets as
+/// it uses them), bytes; 0 where the system does not tell.
+double resident_memory();
+
 /// "2.6 GB", "27 MB".
 std::string bytes_text(double bytes);
 

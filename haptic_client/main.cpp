@@ -204,6 +204,20 @@ std::vector<client::ClientConfig> read_configs(const std::vector<std::string>& f
   return configs;
 }
 
+/// Tests the device, or where none is named the link to the server. Both go over what the client file says.
+int run_commtest(const std::string& server, const std::string& device, const std::string& file,
+                 Overrides& overrides, const client::CommtestOptions& options) {
+  require_within(options.seconds, 1, 86400, "--seconds", "s");
+  require_within(options.wait, 0.1, 3600, "--wait", "s");
+  if (!server.empty()) overrides.server = server;
+  client::ClientConfig config = read_config(file, overrides);
+  if (!server.empty()) config.server_where = "ADDR:PORT";
+  if (device.empty()) return client::test_link(config, options);
+  client::choose_device(config.device, device, "--usb");
+  if (file.empty()) config.rate_hz = client::row_of(config.device).limits(config.device).usual_rate_hz;
+  return client::test_device(config, options);
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Drives a force-feedback device at haptic rate from forces computed by sim_server."};
   app.require_subcommand(1);
@@ -238,17 +252,7 @@ int run(int argc, char** argv) {
     client::choose_device(config.device, device, "DEVICE");
     return client::calibrate(config, mass);
   }
-  if (*commtest) {
-    require_within(testing.seconds, 1, 86400, "--seconds", "s");
-    require_within(testing.wait, 0.1, 3600, "--wait", "s");
-    if (!tested_server.empty()) overrides.server = tested_server;
-    client::ClientConfig config = read_config(file, overrides);
-    if (!tested_server.empty()) config.server_where = "ADDR:PORT";
-    if (tested_device.empty()) return client::test_link(config, testing);
-    client::choose_device(config.device, tested_device, "--usb");
-    if (file.empty()) config.rate_hz = client::row_of(config.device).limits(config.device).usual_rate_hz;
-    return client::test_device(config, testing);
-  }
+  if (*commtest) return run_commtest(tested_server, tested_device, file, overrides, testing);
   if (*replay) {
     if (replaying.rate_hz) require_within(*replaying.rate_hz, 1, 20000, "--rate", "Hz");
     if (live && replaying.rate_hz) fail("--rate: a live replay has the capture's own rate");

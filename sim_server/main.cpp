@@ -167,16 +167,20 @@ CLI::App* add_solve(CLI::App& app, sim::SolveOptions& options) {
 CLI::App* add_condense(CLI::App& app, sim::CondenseOptions& options) {
   auto* command = app.add_subcommand(
       "condense", "Set up a body too large for this machine, on many processes, for `run --condensed`");
-  command->add_option("SCENE", options.scene, "Scene file (TOML) of model quasi_static or reduced")
-      ->required();
+  const std::string models =
+      sim::models_that([](const sim::DeformationModelRow& row) { return row.condenses; });
+  command->add_option("SCENE", options.scene, "Scene file (TOML) of one of the models " + models)->required();
   command
       ->add_option("--out", options.out,
                    "Folder to keep the result in; what it has already is not made again")
       ->required();
+  command->add_flag("--iterative", options.iterative,
+                    "Solve by conjugate gradients where a factor finds no memory: many times as long");
   command->add_option("--report", options.report, "Write times and memory to this JSON file");
   command->footer(
       "Examples:\n"
       "  mpirun -n 4 sim_server condense configs/scenes/liver.toml --out out/liver\n"
+      "  mpirun -n 4 sim_server condense configs/scenes/liver.toml --out out/liver --iterative\n"
       "  sim_server run configs/scenes/liver.toml --condensed out/liver");
   return command;
 }
@@ -305,26 +309,38 @@ std::pair<CLI::App*, CLI::App*> add_cache(CLI::App& app, sim::CacheOptions& opti
   return {list, clear};
 }
 
-void check(const sim::SolveOptions& options) {
+/// The options of a command that serves, for a time if one is given; throws `Error` unless that is sensible.
+template <class Options>
+const Options& with_sensible_time(const Options& options) {
+  if (options.seconds) require_at_least(*options.seconds, 1e-3, "--seconds", "s");
+  return options;
+}
+
+/// The options of another command; throws `Error` unless they are within their bounds.
+const auto& checked(const sim::SolveOptions& options) {
   if (options.seconds) require_within(*options.seconds, 1e-6, 1e6, "--seconds", "s");
   require_within(options.step, 1e-6, 1e3, "--step", "s");
   require_within(options.frames, 1, 100000, "--frames", "files");
+  return options;
 }
 
-void check(const sim::ExplainOptions& options) {
+const auto& checked(const sim::ExplainOptions& options) {
   require_within(options.steps, 1, 100000, "--steps", "steps");
+  return options;
 }
 
-void check(const sim::StudyOptions& options) {
+const auto& checked(const sim::StudyOptions& options) {
   if (options.budget_ms) require_within(*options.budget_ms, 1e-3, 1e6, "--budget-ms", "ms");
   require_within(options.latency_ms, 0, 1000, "--latency-ms", "ms");
+  return options;
 }
 
-void check(const sim::RecordOptions& options) {
+const auto& checked(const sim::RecordOptions& options) {
   require_within(options.rate_hz, 1, 20000, "--rate", "Hz");
   require_within(options.delay_ms, 0, 10000, "--delay-ms", "ms");
   if (options.ticks_hz) require_within(*options.ticks_hz, 1, 20000, "--ticks", "Hz");
   if (options.seconds) require_within(*options.seconds, 1e-3, 1e5, "--seconds", "s");
+  return options;
 }
 
 int run(int argc, char** argv) {
@@ -357,36 +373,17 @@ int run(int argc, char** argv) {
   if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
   if (*mesh_info) return sim::print_mesh_info(mesh_file);
   if (*scenes) return sim::list_scenes();
-  if (*replay) {
-    if (replaying.seconds) require_at_least(*replaying.seconds, 1e-3, "--seconds", "s");
-    return sim::serve_replay(replaying);
-  }
-  if (*view) {
-    if (viewing.seconds) require_at_least(*viewing.seconds, 1e-3, "--seconds", "s");
-    return sim::view_capture(viewing);
-  }
+  if (*replay) return sim::serve_replay(with_sensible_time(replaying));
+  if (*view) return sim::view_capture(with_sensible_time(viewing));
   if (*keygen) return sim::make_key(making.file, making.add);
   if (*list) return sim::list_cache(cached);
   if (*clear) return sim::clear_cache(cached);
-  if (*explain) {
-    check(explaining);
-    return sim::run_explain(explaining);
-  }
-  if (*solve) {
-    check(solving);
-    return sim::solve(solving);
-  }
+  if (*explain) return sim::run_explain(checked(explaining));
+  if (*solve) return sim::solve(checked(solving));
   if (*condense) return sim::condense(condensing);
-  if (*study) {
-    check(studying);
-    return sim::study(studying, cached);
-  }
-  if (*record) {
-    check(recording);
-    return sim::record(recording);
-  }
-  if (serving.seconds) require_at_least(*serving.seconds, 1e-3, "--seconds", "s");
-  return sim::run_server(serving);
+  if (*study) return sim::study(checked(studying), cached);
+  if (*record) return sim::record(checked(recording));
+  return sim::run_server(with_sensible_time(serving));
 }
 
 }  // namespace

@@ -23,6 +23,44 @@ double along(const Contact& c, const Vec3& direction, int tip, const Eigen::Ref<
   return direction.dot(relative) + (c.at_tip(direction) - direction).dot(u.segment<3>(3 * tip));
 }
 
+/// Where the nodes are, displaced by `u`, in `places`, which has room for them.
+void deform(std::span<const Vec3> free, const Eigen::Ref<const Eigen::VectorXd>& u,
+            std::vector<Vec3>& places) {
+  places.assign(free.begin(), free.end());
+  for (std::size_t i = 0; i < free.size(); ++i) places[i] += u.segment<3>(3 * static_cast<Eigen::Index>(i));
+}
+
+/// Features farther than what still moves (`change`, m) cannot touch in this iteration; the next looks again.
+double margin_for(double change, const Tool& tool) noexcept {
+  return std::clamp(kMargin * change, kMinReach * tool.radius, kMaxReach * tool.radius);
+}
+
+/// How much of the way to the next solution plain iteration goes: less where it swings, more where it creeps
+/// (towards a snap-through, say).
+class PlainStep {
+ public:
+  /// `onward`: the solution lies on the side to which the last step went.
+  double after(bool onward) noexcept {
+    onward_run_ = onward ? onward_run_ + 1 : 0;
+    share_ = std::clamp(share_ * (onward ? 1.3 : 0.5), 0.1, onward_run_ > 6 ? 4.0 : 1.0);
+    return share_;
+  }
+
+ private:
+  double share_ = kFirstStep;
+  int onward_run_ = 0;
+};
+
+/// Whose turn it is: Newton's, but after each of its failures plain iteration's, ever longer.
+class NewtonTurns {
+ public:
+  void miss() noexcept { plain_left_ = 2 << ++failures_; }
+  bool next() noexcept { return --plain_left_ < 0; }
+
+ private:
+  int failures_ = 0, plain_left_ = 0;
+};
+
 }  // namespace
 
 const ContactSolver::Effort ContactSolver::kUsualEffort{};
@@ -164,17 +202,15 @@ ContactForce ContactSolver::solve(ContactPatch& patch, const Tool& tool, const T
   ContactForce result;
   result.converged = false;
   auto next = next_.head(3 * (m + 1)), increment = increment_.head(3 * (m + 1));
-  double change = effort.expected * tool.radius, last_change = tool.radius, step = kFirstStep;
-  int newton_failures = 0, plain_left = 0, onward_run = 0;
+  double change = effort.expected * tool.radius, last_change = tool.radius;
+  PlainStep step;
+  NewtonTurns turns;
   bool newton_worked = false;
   while (true) {
     ++result.iterations;
-    deformed_.assign(patch.free.begin(), patch.free.end());
-    for (int i = 0; i < m; ++i) deformed_[i] += u.segment<3>(3 * i);
-    // Features farther than what still moves cannot touch in this iteration; the next one looks again.
-    const double margin = std::clamp(kMargin * change, kMinReach * tool.radius, kMaxReach * tool.radius);
-    find_contacts_on_patch(deformed_, patch.triangles, tool, {pose.p_W + u.tail<3>(), pose.q_W}, margin,
-                           contacts_);
+    deform(patch.free, u, deformed_);
+    find_contacts_on_patch(deformed_, patch.triangles, tool, {pose.p_W + u.tail<3>(), pose.q_W},
+                           margin_for(change, tool), contacts_);
     const auto rows = static_cast<double>(contacts_.size()) * rows_of_contact();
     if (!work_.spend(rows * (27.0 * m + 9 * rows))) {
       contacts_.clear();
@@ -186,16 +222,12 @@ ContactForce ContactSolver::solve(ContactPatch& patch, const Tool& tool, const T
     change = (next - u).cwiseAbs().maxCoeff();
     result.converged = change <= effort.tolerance * tool.radius && !work_.is_spent();
     if (result.converged || result.iterations == effort.max_iterations) break;
-    // Plain iteration, where Newton fails (ever longer, each time it does): shorter steps where it swings,
-    // longer ones where it creeps (towards a snap-through, say), never so long that the surface could pass
-    // the tip.
+    // Plain iteration, where Newton fails: never so far that the surface could pass the tip.
     const bool onward = result.iterations == 1 || increment.dot(next - u) > 0;
-    onward_run = onward ? onward_run + 1 : 0;
-    step = std::clamp(step * (onward ? 1.3 : 0.5), 0.1, onward_run > 6 ? 4.0 : 1.0);
-    increment = std::min(step, kLongestMove * tool.radius / change) * (next - u);
-    if (newton_worked && change > last_change) plain_left = 2 << ++newton_failures;
+    increment = std::min(step.after(onward), kLongestMove * tool.radius / change) * (next - u);
+    if (newton_worked && change > last_change) turns.miss();
     last_change = change;
-    newton_worked = --plain_left < 0 && newton_step(patch, u, change, next) &&
+    newton_worked = turns.next() && newton_step(patch, u, change, next) &&
                     (next - u).cwiseAbs().maxCoeff() < kLongestMove * tool.radius;
     if (newton_worked) {
       u = next;

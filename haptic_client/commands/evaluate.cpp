@@ -63,9 +63,9 @@ double bytes_for(const Wants& wants, protocol::ForceSample sample) {
   return static_cast<double>(protocol::encode({}, sample, bytes));
 }
 
-Evaluation run(const std::filesystem::path& file, const std::vector<std::string>& laws,
-               const EvaluateOptions& options, const Truth* truth, ProgressLine& progress) {
-  const CaptureSurvey found = survey(file, [](double) {});
+/// An evaluation of the longest run of a capture, before its first tick.
+Evaluation begin_evaluation(const CaptureSurvey& found, const std::vector<std::string>& laws,
+                            const EvaluateOptions& options, const Truth* truth) {
   const auto longest = std::max_element(found.runs.begin(), found.runs.end(),
                                         [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
   Evaluation e;
@@ -75,28 +75,61 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   e.plain = scorings(laws, e.ticks_hz, 0, truth);
   e.plain.front().judge_between_samples();
   e.blended = scorings(laws, e.ticks_hz, options.blend_ms / 1e3, truth);
+  return e;
+}
+
+/// What laws know of the surface by now.
+struct KnownSurface {
+  SurfaceModel model;
+  protocol::SurfacePages pages;
+};
+
+/// The pages that a tick was the first to have. `compliance`: how many times as compliant as it was sent laws
+/// see the surface.
+void take_pages(const CapturedTick& tick, double compliance, KnownSurface& surface, Evaluation& e) {
+  for (const protocol::SurfacePage& page : tick.pages)
+    surface.model.take(with_compliance(page, surface.pages, compliance));
+  e.model_bytes += kPageBytes * static_cast<double>(tick.pages.size());
+}
+
+/// The sample that arrived in a tick, as laws get it; its age, and its bytes for each law by what that wants,
+/// are added to those before.
+std::optional<Sample> take_sample(const CapturedTick& tick, const std::vector<Wants>& wants,
+                                  KnownSurface& surface, Evaluation& e) {
+  if (!tick.arrived) return {};
+  const protocol::SurfaceState& state = tick.arrived->surface;
+  if (state.version != 0) surface.pages = {state.vertices, state.triangles};
+  const Sample sample = sample_of(*tick.arrived, &surface.model);
+  ++e.samples;
+  e.age += to_seconds(Time{tick.state.t_ns} - sample.t);
+  for (std::size_t i = 0; i < wants.size(); ++i) e.bytes[i] += bytes_for(wants[i], *tick.arrived);
+  return sample;
+}
+
+void require_scored(const Evaluation& e, const std::filesystem::path& file) {
+  if (e.samples < 2 || !(e.seconds > 0))
+    fail("{}: has fewer than two force samples; nothing to evaluate", file.string());
+  if (e.plain.front().scored() == 0)
+    fail(
+        "{}: no two force samples are near enough in time to score what lies between; a smaller --keep, or a "
+        "faster capture",
+        file.string());
+}
+
+Evaluation run(const std::filesystem::path& file, const std::vector<std::string>& laws,
+               const EvaluateOptions& options, const Truth* truth, ProgressLine& progress) {
+  Evaluation e = begin_evaluation(survey(file, [](double) {}), laws, options, truth);
   CapturedSession session(file, e.run);
   std::optional<protocol::ToolState> before;
   ErrorSums ignored;
-  SurfaceModel model;
-  protocol::SurfacePages pages;
+  KnownSurface surface;
   std::vector<Wants> wants;
   for (const std::string& law : laws) wants.push_back(wants_of(law));
   for (CapturedTick tick; session.next(tick);) {
     const Time t{tick.state.t_ns};
     if (tick.arrived && (tick.arrived->number - 1) % options.keep != 0) tick.arrived.reset();
-    std::optional<Sample> sample;
-    for (const protocol::SurfacePage& page : tick.pages)
-      model.take(with_compliance(page, pages, options.compliance));
-    e.model_bytes += kPageBytes * static_cast<double>(tick.pages.size());
-    if (tick.arrived) {
-      const protocol::SurfaceState& surface = tick.arrived->surface;
-      if (surface.version != 0) pages = {surface.vertices, surface.triangles};
-      sample = sample_of(*tick.arrived, &model);
-      ++e.samples;
-      e.age += to_seconds(t - sample->t);
-      for (std::size_t i = 0; i < laws.size(); ++i) e.bytes[i] += bytes_for(wants[i], *tick.arrived);
-    }
+    take_pages(tick, options.compliance, surface, e);
+    const std::optional<Sample> sample = take_sample(tick, wants, surface, e);
     for (auto* all : {&e.plain, &e.blended}) {
       for (Scoring& scoring : *all) scoring.tick(tick.state.p_W, t, sample ? &*sample : nullptr, ignored);
     }
@@ -108,13 +141,7 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
     if (tick.state.tick % 4096 == 0) progress(file.filename().string(), session.share());
   }
   progress(file.filename().string(), 1);
-  if (e.samples < 2 || !(e.seconds > 0))
-    fail("{}: has fewer than two force samples; nothing to evaluate", file.string());
-  if (e.plain.front().scored() == 0)
-    fail(
-        "{}: no two force samples are near enough in time to score what lies between; a smaller --keep, or a "
-        "faster capture",
-        file.string());
+  require_scored(e, file);
   return e;
 }
 

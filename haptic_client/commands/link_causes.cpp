@@ -82,22 +82,23 @@ std::vector<std::string> link_causes(const protocol::Endpoint& local) {
   const std::uint32_t own =
       std::uint32_t{a[0]} << 24 | std::uint32_t{a[1]} << 16 | std::uint32_t{a[2]} << 8 | a[3];
   const std::vector<Interface> all = interfaces();
-  const auto way = std::find_if(all.begin(), all.end(), [&](const Interface& i) { return i.address == own; });
-  if (way == all.end()) return causes;
-  if (is_wireless(way->name))
-    causes.push_back(fmt::format("the way goes over {}, which is wireless: use a cable", way->name));
+  const auto route =
+      std::find_if(all.begin(), all.end(), [&](const Interface& i) { return i.address == own; });
+  if (route == all.end()) return causes;
+  if (is_wireless(route->name))
+    causes.push_back(fmt::format("the route goes over {}, which is wireless: use a cable", route->name));
   else
     causes.push_back(
         fmt::format("if round trips come in steps of tens of us, {} coalesces interrupts: `sudo ethtool -C "
                     "{} rx-usecs 0`",
-                    way->name, way->name));
+                    route->name, route->name));
   for (const Interface& other : all) {
-    if (other.name == way->name || (other.address & other.mask) != (own & way->mask) ||
-        other.mask != way->mask)
+    if (other.name == route->name || (other.address & other.mask) != (own & route->mask) ||
+        other.mask != route->mask)
       continue;
     causes.push_back(
         fmt::format("{} is in the same network as {}, and answers may come by either: take one down",
-                    other.name, way->name));
+                    other.name, route->name));
   }
   return causes;
 }

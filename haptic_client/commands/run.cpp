@@ -61,6 +61,33 @@ void check_together(const std::vector<ClientConfig>& configs) {
   }
 }
 
+std::vector<ToolFiles> files_of_tools(const ClientOptions& options, std::size_t tools) {
+  std::vector<ToolFiles> files;
+  for (std::size_t i = 1; i <= tools; ++i)
+    files.push_back(
+        {numbered(options.trace, i, tools), numbered(options.record, i, tools), options.record_mb});
+  return files;
+}
+
+/// That the files of a run can be written, and none over another or over a motion that is read.
+void check_files(const std::optional<Path>& report, const std::vector<ToolFiles>& files,
+                 const std::vector<ClientConfig>& configs) {
+  std::vector<NamedFile> written{{"--report", report}};
+  for (const ToolFiles& tool : files)
+    written.insert(written.end(), {{"--trace", tool.trace}, {"--record", tool.record}});
+  require_distinct(written);
+  for (const ClientConfig& config : configs) {  // several may follow the same one
+    if (!config.device.trajectory) continue;
+    std::vector<NamedFile> with_motion = written;
+    with_motion.push_back({"the [trajectory] of the client file", config.device.trajectory->file});
+    require_distinct(with_motion);
+  }
+  if (report) check_writable(*report, Contents::kReport);
+  for (const ToolFiles& tool : files) {
+    if (tool.trace) check_writable(*tool.trace, Contents::kTable);
+  }
+}
+
 /// A device may be plugged in later; but one that is looked for in the wrong place never will be.
 void tell_missing_ports(const std::vector<ClientConfig>& configs) {
   for (const ClientConfig& config : configs) {
@@ -115,24 +142,8 @@ void watch(std::list<HeldTool>& tools, std::optional<double> seconds) {
 
 int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& options) {
   check_together(configs);
-  std::vector<NamedFile> written{{"--report", options.report}};
-  std::vector<ToolFiles> files;
-  for (std::size_t i = 1; i <= configs.size(); ++i) {
-    files.push_back({numbered(options.trace, i, configs.size()), numbered(options.record, i, configs.size()),
-                     options.record_mb});
-    written.insert(written.end(), {{"--trace", files.back().trace}, {"--record", files.back().record}});
-  }
-  require_distinct(written);
-  for (const ClientConfig& config : configs) {  // several may follow the same one
-    if (!config.device.trajectory) continue;
-    std::vector<NamedFile> with_motion = written;
-    with_motion.push_back({"the [trajectory] of the client file", config.device.trajectory->file});
-    require_distinct(with_motion);
-  }
-  if (options.report) check_writable(*options.report, Contents::kReport);
-  for (const ToolFiles& tool : files) {
-    if (tool.trace) check_writable(*tool.trace, Contents::kTable);
-  }
+  const std::vector<ToolFiles> files = files_of_tools(options, configs.size());
+  check_files(options.report, files, configs);
   tell_missing_ports(configs);
   Guardian guardian(configs);  // before any thread; goes after the tools
   std::list<HeldTool> tools;

@@ -90,13 +90,13 @@ bool BetweenSamples::has_slopes() const noexcept {
   return depth > kLeastDepth && -touching.f.dot(touching.k * free.normal) > 0;
 }
 
-Vec3 BetweenSamples::hermite(const Vec3& x, double way) const noexcept {
+Vec3 BetweenSamples::hermite(const Vec3& x, double share) const noexcept {
   const bool pushed = !before_.f.isZero(0), pushes = !after_.f.isZero(0);
   if (!pushed && !pushes) return Vec3::Zero();
   if (!pushed || !pushes) return onset(x);
   const Mat3 &k = before_.here->k, stiffer = after_.here->k - k;
   const Vec3 d = x - before_.p;
-  return before_.f + k * d + way * (stiffer * (d - 0.5 * way * end_)) + smooth(way) * missed_;
+  return before_.f + k * d + share * (stiffer * (d - 0.5 * share * end_)) + smooth(share) * missed_;
 }
 
 /// The tool is free at one of the samples, and touches at the other.

@@ -66,7 +66,7 @@ class BetweenSamples {
   static Vec3 corrected(const End& end, const Vec3& local) noexcept;
   bool ends_agree(const PathTick& last) noexcept;
   Vec3 contact(const PathTick& tick) const noexcept;
-  Vec3 hermite(const Vec3& x, double way) const noexcept;
+  Vec3 hermite(const Vec3& x, double share) const noexcept;
   Vec3 onset(const Vec3& x) const noexcept;
 
   const Sample &before_, &after_;

@@ -1,15 +1,22 @@
 #pragma once
+#include <cmath>
+
 #include "protocol/surface_pages.h"
 
 namespace palpate::client {
 
 /// A page of a surface model (`pages`: of the whole of it) as a server would send it that takes the tissue
-/// for `factor` times as compliant as it is: how a law does on a wrong model. Shape and force stay as they
-/// are.
+/// for `factor` times as compliant as it is: how a law does on a wrong model. Places and mass stay as they
+/// are, so that modes are slower by the root of it.
 inline protocol::SurfacePage with_compliance(protocol::SurfacePage page, const protocol::SurfacePages& pages,
                                              double factor) noexcept {
   if (page.page < pages.first_tile()) return page;
-  for (float& value : page.values) value *= static_cast<float>(factor);
+  if (page.page < pages.spectrum()) {
+    for (float& value : page.values) value *= static_cast<float>(factor);
+  } else if (page.page == pages.spectrum()) {
+    for (std::size_t k = 0; k < page.values.size(); k += 3)
+      page.values[k] /= static_cast<float>(std::sqrt(factor));
+  }
   return page;
 }
 

@@ -12,10 +12,10 @@ namespace {
 constexpr int kMostNodes = 96, kMostTriangles = 160;
 // Of the tool radius: how far from the tool a patch reaches, on the deformed surface; and how far the tool
 // may go on it, as what it presses may move as far again.
-constexpr double kMargin = 0.25, kStride = 0.12;
-constexpr double kMostStrides = 16, kMostEntering = 32;  // a tick
-constexpr double kLeastDepth = 1e-4;                     // of the tool radius
-constexpr int kFarCreepAge = 16;                         // increments
+constexpr double kMargin = 0.25, kLongestIncrement = 0.12;
+constexpr double kMostIncrements = 16, kMostEntering = 32;  // a tick
+constexpr double kLeastDepth = 1e-4;                        // of the tool radius
+constexpr int kFarCreepAge = 16;                            // increments
 constexpr int kMostNear = 2048;  // vertices: a compliance by which more come near the tool is none
 
 }  // namespace
@@ -51,14 +51,15 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p,
                                        const ModalMemory* memory) noexcept {
   if ((memory != nullptr) != (memory_ != nullptr)) lift();  // its patch was taken for another frame
   memory_ = memory;
-  const double longest = kStride * surface.tool.radius;
-  if (version_ != surface.model->generation() || (p - state_.place).norm() > kMostStrides * longest) lift();
+  const double longest = kLongestIncrement * surface.tool.radius;
+  if (version_ != surface.model->generation() || (p - state_.place).norm() > kMostIncrements * longest)
+    lift();
   if (!surface.model->has_shape() || !p.allFinite()) {
     lift();
     return {};
   }
   work_left_ = kMostWork;
-  const double most = state_.placed ? kMostStrides : kMostEntering;
+  const double most = state_.placed ? kMostIncrements : kMostEntering;
   if (!state_.placed) enter(surface, p);
   if (const Vec3 motion = p - state_.place; state_.contacts > 0 && motion.norm() <= near(surface)) {
     const Vec3 force = state_.force + state_.tangent * motion;
@@ -101,7 +102,7 @@ ContactSolver::Effort ContactOnPatch::effort(const Surface& surface) const noexc
 }
 
 bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
-  if ((p - center_).norm() > kStride * surface.tool.radius && !take_patch(surface, p)) return false;
+  if ((p - center_).norm() > kLongestIncrement * surface.tool.radius && !take_patch(surface, p)) return false;
   const Vec3 tip = state_.place + state_.tip_offset, motion = p - state_.place, before = state_.force;
   const int touched = state_.contacts;
   state_.place = p;
@@ -325,7 +326,7 @@ void ContactOnPatch::enter(const Surface& surface, const Vec3& p) noexcept {
   state_.place = p;
   center_.setConstant(std::numeric_limits<double>::max());  // no patch yet
   double best = std::numeric_limits<double>::max(), side = 0;
-  Vec3 door = p;
+  Vec3 entry = p;
   for (const auto& t : surface.model->triangles()) {
     const Vec3 &a = rest[t[0]], &b = rest[t[1]], &c = rest[t[2]];
     const auto w = closest_point(p, a, b, c).weight;
@@ -336,10 +337,10 @@ void ContactOnPatch::enter(const Surface& surface, const Vec3& p) noexcept {
     if (same ? std::abs(out) <= std::abs(side) : distance > best) continue;
     best = std::min(distance, best);
     side = out;
-    door = q;
+    entry = q;
   }
   if (!(side < 0)) return;
-  state_.place = door + surface.tool.radius * (door - p).normalized();
+  state_.place = entry + surface.tool.radius * (entry - p).normalized();
   if (!state_.place.allFinite()) state_.place = p;
 }
 

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/ages.h"
+
 namespace palpate::client {
 namespace {
-constexpr Time kStep = std::chrono::microseconds(500);  // what remains to a tick is by Taylor's series
-constexpr Time kLongest = std::chrono::milliseconds(300);
+constexpr Time kStep = std::chrono::microseconds(500);   // what remains to a tick is by Taylor's series
 constexpr double kFarthestSwing = 0.2;                   // m: no organ swings so far
 constexpr double kSamePlace = 1e-3;                      // m
 constexpr Time kTrend = std::chrono::milliseconds(100);  // so long a trend is believed
@@ -62,7 +63,7 @@ bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
     correct(*before, t);
     compared_ = t;
     if (!(at(state_.q).norm() <= kFarthestSwing)) begin(t, f);
-  } else if (!known_ || t - compared_ > kLongest) {
+  } else if (!known_ || t - compared_ > kOutage) {
     take_loads(surface.modal_loads, t);
     begin(t, f);
   }  // else it stood nowhere yet at that time
@@ -256,7 +257,7 @@ ModalNumbers ModalMemory::force_of(const Vec3& f) const noexcept {
 }
 
 void ModalMemory::advance(Time t) noexcept {
-  if (t - time_ > kLongest) return restart();
+  if (t - time_ > kOutage) return restart();
   for (; time_ + kStep <= t; time_ += kStep)
     short_step_.advance(state_, driven_ ? all_forces(time_ + kStep / 2) : force_);
   if (system_.terms > 0) {

@@ -25,7 +25,7 @@ class TickMemory {
   Entry* at(Time t) noexcept {
     for (std::size_t back = 1; back <= std::min(written_, kTicks); ++back) {
       Row& row = ring_[(written_ - back) % kTicks];
-      if (row.t <= t) return t - row.t <= kLongestTick ? &row.entry : nullptr;
+      if (row.t <= t) return t - row.t <= kLongestGap ? &row.entry : nullptr;
     }
     return nullptr;
   }
@@ -43,7 +43,7 @@ class TickMemory {
 
  private:
   static constexpr std::size_t kTicks = 1024;
-  static constexpr Time kLongestTick = std::chrono::milliseconds(12);
+  static constexpr Time kLongestGap = std::chrono::milliseconds(12);
   struct Row {
     Time t;
     Entry entry;

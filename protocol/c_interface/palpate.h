@@ -105,7 +105,7 @@ PALPATE_API size_t palpate_scene_tools(const palpate_scene* scene);
 /// One step of `dt` s, 0 to 3600, rounded to whole ns: no clock, the same arguments give the same bytes.
 /// `tools` and `samples`: one for each tool of the scene, in its order; lift a tool with PALPATE_LOST. A
 /// value that is not finite, or beyond 1e9, is wrong input, and nothing happens. Uses both cores of large
-/// models; allocates with the model `implicit` only.
+/// models. Allocates with the model `implicit`, and with any model of tissue that can be cut.
 PALPATE_API int palpate_scene_step(palpate_scene* scene, const palpate_tool_state* tools, size_t count,
                                    double dt, palpate_force_sample* samples, char* error, size_t error_size);
 

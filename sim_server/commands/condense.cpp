@@ -10,6 +10,7 @@
 #include "common/progress.h"
 #include "common/report.h"
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/distributed/hypre_pcg.h"
 #include "sim_server/distributed/mumps_factor.h"
 #include "sim_server/scene/held_motion.h"
 #include "sim_server/scene_file/read_scene.h"
@@ -34,19 +35,33 @@ double sum_of(const std::vector<RankMemory>& ranks) {
   return bytes;
 }
 
-/// What the factor cost; nothing where all was there already.
+/// What the factor, or solving without one, cost; nothing where all was there already.
 struct Condensing {
-  std::optional<MumpsCosts> costs;
+  bool iterative;
+  std::optional<MumpsCosts> of_factor{};
+  std::shared_ptr<const PcgCosts> of_solves{};
 
   MakeFactor maker() {
-    return [this](const SparseMatrix& lower, std::span<const int> kept, const std::string& where) {
+    return [this](const SparseMatrix& lower, std::span<const int> kept,
+                  const std::string& where) -> std::unique_ptr<FactoredMatrix> {
       const auto tell = [](const std::string& line) { log::info("{}", line); };
+      if (iterative) {
+        auto pcg = std::make_unique<HyprePcg>(lower, where, tell);
+        of_solves = pcg->costs();
+        return pcg;
+      }
       auto factor = std::make_unique<MumpsFactor>(lower, kept, where, tell);
-      costs = factor->costs();
+      of_factor = factor->costs();
       return factor;
     };
   }
 };
+
+Json to_json(const std::vector<RankMemory>& ranks) {
+  Json mb = Json::array();
+  for (const RankMemory& rank : ranks) mb.push_back(1e-6 * rank.bytes);
+  return mb;
+}
 
 Json report_of(const CondenseOptions& options, const Simulation& simulation, const SetupTimes& times,
                const Condensing& condensing, int ranks) {
@@ -55,13 +70,26 @@ Json report_of(const CondenseOptions& options, const Simulation& simulation, con
               {"ranks", ranks},
               {"tetrahedra", simulation.mesh().tetrahedra.size()},
               {"stages_ms", times.to_json()}};
-  if (!condensing.costs) return report;
-  const MumpsCosts& costs = *condensing.costs;
-  report["factor"] = {{"unknowns", costs.unknowns},  {"kept", costs.kept},
-                      {"gflop", 1e-9 * costs.flops}, {"analysis_s", costs.analysis_s},
-                      {"factor_s", costs.factor_s},  {"schur_s", costs.schur_s}};
-  for (const RankMemory& rank : costs.memory) report["factor"]["rank_mb"].push_back(1e-6 * rank.bytes);
+  if (condensing.of_factor) {
+    const MumpsCosts& costs = *condensing.of_factor;
+    report["factor"] = {{"unknowns", costs.unknowns},      {"kept", costs.kept},
+                        {"gflop", 1e-9 * costs.flops},     {"analysis_s", costs.analysis_s},
+                        {"factor_s", costs.factor_s},      {"schur_s", costs.schur_s},
+                        {"rank_mb", to_json(costs.memory)}};
+  } else if (condensing.of_solves) {
+    const PcgCosts& costs = *condensing.of_solves;
+    report["iterative"] = {{"unknowns", costs.unknowns},      {"entries", costs.entries},
+                           {"setup_s", costs.setup_s},        {"systems", costs.systems},
+                           {"solve_s", costs.solve_s},        {"iterations", costs.iterations},
+                           {"rank_mb", to_json(costs.memory)}};
+  }
   return report;
+}
+
+void print_memory(const char* of_what, const std::vector<RankMemory>& ranks) {
+  std::string each;
+  for (const RankMemory& rank : ranks) each += (each.empty() ? "" : ", ") + bytes_text(rank.bytes);
+  fmt::print("  {} memory, by rank: {}; {} in all\n", of_what, each, bytes_text(sum_of(ranks)));
 }
 
 void print_costs(const MumpsCosts& costs) {
@@ -69,16 +97,21 @@ void print_costs(const MumpsCosts& costs) {
       "  factor: analysis {:.2f} s, numbers {:.2f} s ({:.3g} Gflop/s), Cholesky factor of what is kept "
       "{:.2f} s\n",
       costs.analysis_s, costs.factor_s, 1e-9 * costs.flops / costs.factor_s, costs.schur_s);
-  std::string ranks;
-  for (const RankMemory& rank : costs.memory) ranks += (ranks.empty() ? "" : ", ") + bytes_text(rank.bytes);
-  fmt::print("  its memory, by rank: {}; {} in all\n", ranks, bytes_text(sum_of(costs.memory)));
+  print_memory("its", costs.memory);
+}
+
+void print_costs(const PcgCosts& costs) {
+  fmt::print(
+      "  conjugate gradients: multigrid {:.2f} s, {} right-hand sides {:.2f} s, of {:.0f} iterations each\n",
+      costs.setup_s, costs.systems, costs.solve_s, static_cast<double>(costs.iterations) / costs.systems);
+  print_memory("all", costs.memory);
 }
 
 void condense_on_rank_0(const CondenseOptions& options, int ranks) {
   const Scene scene = read_scene(options.scene);
   require_condensable(scene);
   if (options.report) check_writable(*options.report, Contents::kReport);
-  Condensing condensing;
+  Condensing condensing{options.iterative};
   const Condensed condensed(options.out, condensing.maker());
   SetupTimes times{ProgressLine("what was complete is kept, and the next start goes on from there")};
   const Time begin = now();
@@ -92,7 +125,8 @@ void condense_on_rank_0(const CondenseOptions& options, int ranks) {
     if (!part.detail.empty())
       fmt::print("  {}: {}, {}\n", part.name, bytes_text(static_cast<double>(part.bytes)), part.detail);
   }
-  if (condensing.costs) print_costs(*condensing.costs);
+  if (condensing.of_factor) print_costs(*condensing.of_factor);
+  if (condensing.of_solves) print_costs(*condensing.of_solves);
   fmt::print("  to feel it: sim_server run {} --condensed {}\n", options.scene.string(),
              options.out.string());
   if (options.report) write_json(*options.report, report_of(options, simulation, times, condensing, ranks));
@@ -100,8 +134,9 @@ void condense_on_rank_0(const CondenseOptions& options, int ranks) {
 
 /// Lets the other ranks go, whatever happens on this one.
 struct OtherRanks {
-  OtherRanks() = default;
-  ~OtherRanks() { end_mumps(); }
+  void (*end)();
+  explicit OtherRanks(void (*how)()) : end(how) {}
+  ~OtherRanks() { end(); }
   OtherRanks(const OtherRanks&) = delete;
   OtherRanks& operator=(const OtherRanks&) = delete;
 };
@@ -111,8 +146,10 @@ struct OtherRanks {
 int condense(const CondenseOptions& options) {
   const MpiRanks ranks;
   if (ranks.rank() == 0) {
-    const OtherRanks released_at_the_end;
+    const OtherRanks released_at_the_end(options.iterative ? end_hypre : end_mumps);
     condense_on_rank_0(options, ranks.count());
+  } else if (options.iterative) {
+    serve_hypre();
   } else {
     serve_mumps();
   }

@@ -6,6 +6,7 @@ namespace palpate::sim {
 
 struct CondenseOptions {
   std::filesystem::path scene, out;
+  bool iterative = false;  ///< conjugate gradients in place of a factor
   std::optional<std::filesystem::path> report;
 };
 

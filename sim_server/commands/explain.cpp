@@ -22,8 +22,7 @@ namespace {
 constexpr double kLongSetUp = 1e4;    // ms: a scene whose variants are not built to compare
 constexpr double kMostVariant = 2e9;  // bytes of compliance that a variant is built with
 constexpr double kUsualFriction = 0.3;
-constexpr double kBytesOfMotion =
-    9 * 24 + 8;  // of a vertex, as `tensor_mass` keeps them: nine vectors, a mass
+constexpr double kBytesOfMotion = 9 * 24 + 8;  // of a vertex in explicit steps: nine vectors, a mass
 /// What a variant is compared by. `setup_ms` is without reading the mesh, which all share.
 struct Cost {
   double bytes = 0, setup_ms = 0, step_ms = 0;

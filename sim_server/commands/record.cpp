@@ -56,6 +56,26 @@ void require_files_apart(const RecordOptions& options, const Scene& scene) {
                       {"--remove", options.remove}});
 }
 
+/// That all files can be written, and mean something for this scene: said before anything is set up.
+void check_record_files(const RecordOptions& options, const Scene& scene) {
+  require_files_apart(options, scene);
+  if (options.report) check_writable(*options.report, Contents::kReport);
+  require_resection("--resection", options.resection, scene);
+  require_resection("--removals", options.removals, scene);
+  if (!scene.cutting) require_resection("--remove", options.remove, scene);
+  require_no_blade("--removals", options.removals, scene);
+  require_no_blade("--remove", options.remove, scene);
+}
+
+/// Tool states a second, Hz.
+double tick_rate_of(const RecordOptions& options) {
+  const double ticks_hz = options.ticks_hz.value_or(std::max(kUsualTicks, options.rate_hz));
+  if (ticks_hz < options.rate_hz)
+    fail("--ticks: {} Hz is less than --rate {} Hz; every step answers a tool state", ticks_hz,
+         options.rate_hz);
+  return ticks_hz;
+}
+
 void say_what_is_lost(const Trajectory& motion, const RecordOptions& options, double ticks_hz) {
   if (motion.rate_hz() <= ticks_hz * 1.001) return;
   log::info("{}: has {:.0f} rows a second, the capture keeps {:g}; `--ticks {:.0f}` keeps all",
@@ -128,25 +148,36 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
           {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
 }
 
+/// Figures of a recording whose `virtual_s` of virtual time took `took` (both s).
+void print_recording(const RecordOptions& options, const VirtualSessionStats& stats,
+                     const protocol::CaptureWriter& capture, const Simulation& simulation, double virtual_s,
+                     double took) {
+  fmt::print(
+      "sim_server: {:.1f} s of virtual time in {:.2f} s; {} packets ({} tool states, {} force samples), {} "
+      "bytes; {} steps in contact ({:.2f} ms median, {:.2f} ms p99 of processor time), {} flagged{}, largest "
+      "force {:.2f} N\n",
+      virtual_s, took, capture.packets(), stats.tool_states, stats.force_samples, capture.bytes(),
+      stats.in_contact, 1e-6 * stats.contact_step_ns.quantile(0.5),
+      1e-6 * stats.contact_step_ns.quantile(0.99), stats.flagged,
+      stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "", stats.max_newton);
+  if (options.real_time)
+    fmt::print("            {} of the deadlines of {:g} Hz passed over, as steps took too long\n", stats.late,
+               options.rate_hz);
+  if (const std::string ended = budget_text(simulation); !ended.empty())
+    fmt::print("            {}\n", ended);
+  if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);
+}
+
 }  // namespace
 
 int record(const RecordOptions& options) {
   Scene scene = read_scene(options.scene);
   scene.rate_hz = options.rate_hz;
-  const double ticks_hz = options.ticks_hz.value_or(std::max(kUsualTicks, options.rate_hz));
-  if (ticks_hz < options.rate_hz)
-    fail("--ticks: {} Hz is less than --rate {} Hz; every step answers a tool state", ticks_hz,
-         options.rate_hz);
+  const double ticks_hz = tick_rate_of(options);
   const std::vector<Trajectory> motions = read_motions(options, scene);
   const Trajectory& motion = motions[options.tool - 1];
   const std::uint64_t ticks = ticks_of(motion, options, ticks_hz);
-  require_files_apart(options, scene);
-  if (options.report) check_writable(*options.report, Contents::kReport);
-  require_resection("--resection", options.resection, scene);
-  require_resection("--removals", options.removals, scene);
-  if (!scene.cutting) require_resection("--remove", options.remove, scene);
-  require_no_blade("--removals", options.removals, scene);
-  require_no_blade("--remove", options.remove, scene);
+  check_record_files(options, scene);
   WholeFile out(options.out, Contents::kCapture);
   protocol::CaptureWriter capture(out.path());
   say_what_is_lost(motion, options, ticks_hz);
@@ -170,21 +201,7 @@ int record(const RecordOptions& options) {
   run_session(session, ticks, capture, options, progress);
   out.commit();
   const double took = to_seconds(now() - start), virtual_s = to_seconds(session.time_of(ticks - 1));
-  const VirtualSessionStats& stats = session.stats();
-  fmt::print(
-      "sim_server: {:.1f} s of virtual time in {:.2f} s; {} packets ({} tool states, {} force samples), {} "
-      "bytes; {} steps in contact ({:.2f} ms median, {:.2f} ms p99 of processor time), {} flagged{}, largest "
-      "force {:.2f} N\n",
-      virtual_s, took, capture.packets(), stats.tool_states, stats.force_samples, capture.bytes(),
-      stats.in_contact, 1e-6 * stats.contact_step_ns.quantile(0.5),
-      1e-6 * stats.contact_step_ns.quantile(0.99), stats.flagged,
-      stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "", stats.max_newton);
-  if (options.real_time)
-    fmt::print("            {} of the deadlines of {:g} Hz passed over, as steps took too long\n", stats.late,
-               options.rate_hz);
-  if (const std::string ended = budget_text(simulation); !ended.empty())
-    fmt::print("            {}\n", ended);
-  if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);
+  print_recording(options, session.stats(), capture, simulation, virtual_s, took);
   if (options.resection) write_resection(*options.resection, simulation);
   if (options.removals) write_removals(*options.removals, simulation);
   if (options.report)

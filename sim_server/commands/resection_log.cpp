@@ -14,18 +14,19 @@ namespace {
 constexpr const char* kColumns =
     "t_s,tool,x_m,y_m,z_m,force_N,contact,tetrahedra,removed_ml,dropped_ml,pieces_dropped,pieces_loose,"
     "cut_area_cm2,mean_distance_mm,farthest_mm,heat_J,elastic_J,kinetic_J,hot_s,contact_s,parted_cm2,"
-    "mean_parted_distance_mm\n";
+    "mean_parted_distance_mm,at_end_s\n";
 
 std::string row_text(const ResectionRow& row) {
   const ResectionTotals& all = row.totals;
   return fmt::format(
       "{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:."
       "6g},"
-      "{:.6g},{:.6g},{:.6g},{:.6g}\n",
+      "{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n",
       row.t, row.tool + 1, row.p_W.x(), row.p_W.y(), row.p_W.z(), row.f_W.norm(), row.contact ? 1 : 0,
       all.tetrahedra, 1e6 * all.volume, 1e6 * all.dropped_volume, all.dropped_pieces, all.loose_pieces,
       1e4 * all.cut_area, 1e3 * all.mean_distance(), 1e3 * all.farthest, all.heat, all.elastic, all.kinetic,
-      all.hot_time, all.contact_time, 1e4 * all.parted_area, 1e3 * all.mean_parted_distance());
+      all.hot_time, all.contact_time, 1e4 * all.parted_area, 1e3 * all.mean_parted_distance(),
+      all.time_at_end);
 }
 
 /// How far from the plan, where there is one.
@@ -35,8 +36,10 @@ std::string away(bool planned, double metres, const char* how) {
 
 std::string heat_text(const ResectionTotals& all, bool planned) {
   if (all.hot_time == 0 && all.distance_sum == 0) return {};
-  return fmt::format("; {:.0f} J of heat in {:.1f} s{}", all.heat, all.hot_time,
-                     away(planned && all.mean_distance() > 0, all.mean_distance(), "on average"));
+  const std::string at_end =
+      all.time_at_end > 0 ? fmt::format("; {:.1f} s at the end of what can be cut", all.time_at_end) : "";
+  return fmt::format("; {:.0f} J of heat in {:.1f} s{}{}", all.heat, all.hot_time,
+                     away(planned && all.mean_distance() > 0, all.mean_distance(), "on average"), at_end);
 }
 
 std::string parted_text(const ResectionTotals& all, bool planned) {
@@ -139,7 +142,8 @@ Json resection_report(const Simulation& simulation) {
           {"vertices_split", all.splits},
           {"ran_out_of_vertices", all.ran_out},
           {"hot_s", all.hot_time},
-          {"contact_s", all.contact_time}};
+          {"contact_s", all.contact_time},
+          {"at_end_s", all.time_at_end}};
 }
 
 std::string resection_text(const Simulation& simulation) {

@@ -4,6 +4,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "common/ages.h"
 #include "common/clock.h"
 #include "common/error.h"
 #include "common/interrupt.h"
@@ -37,12 +38,13 @@ void warn_if_refused(const std::string& refused) {
   if (!refused.empty()) log::warning("{}", refused);
 }
 
-/// Clients let go of a force that is older than 300 ms.
+/// Clients let go of a force that is older than `kOutage`; a third of that is for the link, and steps that
+/// are late.
 void warn_if_slow(const Scene& scene) {
-  if (scene.rate_hz > 0 && scene.rate_hz < 5) {
-    log::warning("{}: at {} steps per second the force fades between samples; 5 or more keep it",
-                 scene.source, scene.rate_hz);
-  }
+  const double least_hz = 1.5 / to_seconds(kOutage);
+  if (scene.rate_hz > 0 && scene.rate_hz < least_hz)
+    log::warning("{}: at {} steps per second the force fades between samples; {:g} or more keep it",
+                 scene.source, scene.rate_hz, least_hz);
 }
 
 /// Everything known about the scene before the loop starts.
@@ -247,12 +249,8 @@ std::unique_ptr<LiveView> open_view(const ViewRequest& request, const Scene& sce
   return std::make_unique<LiveView>(request.address, request.token, std::move(facts), simulation, start);
 }
 
-/// One scene, from its set-up to its report. What it listens on is put into `options` and `request`, so that
-/// the next scene is found there; `before`, which stands in for it where its set-up fails, is let go when it
-/// is ready. Returns what a page chose, of `gallery`.
-std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewRequest>& request,
-                                 const std::vector<GalleryScene>& gallery, const Scene& scene,
-                                 std::optional<Scene>& before) {
+/// That the files of a run can be written, and none over another: said before the set-up.
+void check_run_files(const ServerOptions& options, const Scene& scene) {
   require_distinct({{"SCENE", scene.source},
                     {scene.mesh_where, scene.mesh_file},
                     {"--report", options.report},
@@ -260,6 +258,60 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
                     {"--record", options.record}});
   if (options.report) check_writable(*options.report, Contents::kReport);
   require_resection("--resection", options.resection, scene);
+}
+
+/// The thread that writes the capture; none without a recorder.
+std::jthread start_recording(protocol::Recorder* recorder) {
+  if (recorder == nullptr) return {};
+  return std::jthread([recorder](const std::stop_token& stop) {
+    name_thread("palpate-record");
+    recorder->run(stop);
+  });
+}
+
+/// The thread that serves the page; none where there is no page.
+std::jthread start_viewing(LiveView* view) {
+  if (view == nullptr) return {};
+  return std::jthread([view](const std::stop_token& stop) {
+    name_thread("palpate-view");
+    const std::stop_callback ends(stop, [view] { view->viewer().stop(); });
+    view->viewer().run();
+  });
+}
+
+/// Simulation, network, recording and page, each in a thread of its own, until `watching`, in this one, is
+/// over or throws. Returns what it returned.
+template <class Watching>
+auto serve_until(SimLoop& loop, NetLink& link, protocol::Recorder* recorder, LiveView* view,
+                 const Watching& watching) {
+  const std::jthread recording = start_recording(recorder);
+  const std::jthread net([&](const std::stop_token& stop) {
+    name_thread("palpate-net");
+    const std::stop_callback ends(stop, [&] { link.stop(); });
+    link.run();
+  });
+  const std::jthread viewing = start_viewing(view);
+  std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
+  warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kPriority));
+  warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
+  return watching();               // then each is asked to stop, the simulation first
+}
+
+/// What came of a run: on the terminal, and in the files that were asked for.
+void tell_results(const ServerOptions& options, const Simulation& simulation, const Json& report) {
+  print_summary(report, simulation);
+  if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);
+  if (options.resection) write_resection(*options.resection, simulation);
+  if (options.report) write_json(*options.report, report);
+}
+
+/// One scene, from its set-up to its report. What it listens on is put into `options` and `request`, so that
+/// the next scene is found there; `before`, which stands in for it where its set-up fails, is let go when it
+/// is ready. Returns what a page chose, of `gallery`.
+std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewRequest>& request,
+                                 const std::vector<GalleryScene>& gallery, const Scene& scene,
+                                 std::optional<Scene>& before) {
+  check_run_files(options, scene);
   std::vector<double> radii;
   for (const ToolSettings& tool : scene.tools) radii.push_back(tool.shape.radius);
   protocol::ServerSessions sessions = sessions_for(options.listen, scene.rate_hz, radii);
@@ -280,7 +332,6 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   warn_if_coarse(errors, simulation, scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);
   SimMailboxes mailboxes;
-  std::optional<Scene> chosen;
   const Time start = now();
   const auto view = request ? open_view(*request, scene, simulation, gallery, start) : nullptr;
   if (view) request->address.endpoint = view->viewer().endpoint();
@@ -291,45 +342,16 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
     view->feed().hooks = page_hooks(view->feed(), scene.tools.size(), *page, mailboxes.bell, start);
     if (!view->facts().fields.empty()) view->feed().hooks.field = strain_energy_of(scene, simulation);
   }
-  {
-    std::jthread recording;
-    if (recorder) {
-      recording = std::jthread([&](const std::stop_token& stop) {
-        name_thread("palpate-record");
-        recorder->run(stop);
-      });
-    }
-    std::jthread net([&] {
-      name_thread("palpate-net");
-      link.run();
-    });
-    std::jthread viewing;
-    if (view) {
-      viewing = std::jthread([&] {
-        name_thread("palpate-view");
-        view->viewer().run();
-      });
-    }
-    std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
-    warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kPriority));
-    warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
+  auto chosen = serve_until(loop, link, recorder.get(), view.get(), [&] {
     if (view) log::info("the live page: {}", view->link());
     log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
               report["setup_ms"].get<double>() / 1e3, options.listen.address);
     before.reset();
-    chosen = watch(link, loop, scene, recorder.get(), view.get(), gallery, options.seconds);
-    sim.request_stop();
-    sim.join();
-    if (view) view->viewer().stop();
-    link.stop();
-    net.join();
-  }
+    return watch(link, loop, scene, recorder.get(), view.get(), gallery, options.seconds);
+  });
   add_run(report, loop, link, simulation, scene, errors, now() - start);
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
-  print_summary(report, simulation);
-  if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);
-  if (options.resection) write_resection(*options.resection, simulation);
-  if (options.report) write_json(*options.report, report);
+  tell_results(options, simulation, report);
   return chosen;
 }
 

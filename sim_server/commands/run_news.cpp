@@ -11,6 +11,7 @@ void RunNews::tell(const NetLink& link, const SimLoop& loop, bool paused) {
   tell_paused(paused);
   tell_holders(link, paused);
   tell_beyond(loop);
+  tell_end(loop);
   if (scene_.cutting && scene_.cutting->growth) tell_growth(loop.growth);
 }
 
@@ -41,6 +42,16 @@ void RunNews::tell_beyond(const SimLoop& loop) {
                  scene_.tools[i].reach_where, i + 1);
     beyond_[i] = true;
   }
+}
+
+/// Says, once, that a hot tip is at tissue that cannot be cut.
+void RunNews::tell_end(const SimLoop& loop) {
+  if (at_end_ || !loop.cut_to_end) return;
+  log::warning("{}: a hot tip is at tissue that cannot be cut; {}", scene_.cutting->where,
+               scene_.cutting->growth
+                   ? "[cutting.growth] lets a cut go on that comes near its end slowly enough"
+                   : "a larger region or `within`, or [cutting.growth], would let the cut go on");
+  at_end_ = true;
 }
 
 /// Says how what can be cut grows.

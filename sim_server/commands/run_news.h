@@ -8,7 +8,8 @@
 namespace palpate::sim {
 
 /// What a run says while it goes on, once each: who takes tools and leaves them, that a page has paused, that
-/// a tool left its reach, how what can be cut grows. Of the thread that watches the run.
+/// a tool left its reach, that a cut came to the end of what can be cut, and how that grows. Of the thread
+/// that watches the run.
 class RunNews {
  public:
   /// Of a scene, which outlives this.
@@ -20,10 +21,11 @@ class RunNews {
   void tell_paused(bool paused);
   void tell_holders(const NetLink& link, bool paused);
   void tell_beyond(const SimLoop& loop);
+  void tell_end(const SimLoop& loop);
   void tell_growth(const SimLoop::Growth& now);
 
   const Scene& scene_;
-  bool paused_ = false;
+  bool paused_ = false, at_end_ = false;
   std::vector<bool> held_, beyond_;
   Resection::Growth growth_;
 };

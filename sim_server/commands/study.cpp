@@ -10,6 +10,7 @@
 #include "common/error.h"
 #include "common/hash.h"
 #include "common/log.h"
+#include "common/memory_budget.h"
 #include "common/progress.h"
 #include "common/report.h"
 #include "sim_server/scene_file/read_scene.h"
@@ -165,7 +166,7 @@ void keep_for_sessions(const CacheOptions& options, Runner& runner, const Scene&
 
 int study(const StudyOptions& options, const CacheOptions& cache) {
   const Time begin = now();
-  const double empty = own_bytes();
+  const double empty = resident_memory();
   const Scene scene = read_scene(options.scene);
   StudyPlan plan = plan_study(scene, options);
   std::error_code failed;

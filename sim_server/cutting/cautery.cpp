@@ -23,24 +23,26 @@ Cautery::Cautery(const Cutting& cutting, const TetMesh& mesh)
 }
 
 /// Faces that take heat of a ball around `p`, by how much.
-std::vector<Cautery::Exposed> Cautery::exposed_to(const Vec3& p, double radius, const CutMesh& mesh,
-                                                  const Surface& surface,
-                                                  std::span<const Vec3> positions) const {
-  std::vector<Exposed> exposed;
+Cautery::Touched Cautery::touched_by(const Vec3& p, double radius, const CutMesh& mesh,
+                                     const Surface& surface, std::span<const Vec3> positions) const {
+  Touched touched;
   for (std::size_t slot = 0; slot < surface.triangles.size(); ++slot) {
     const Triangle& t = surface.triangles[slot];
     const Vec3 &a = positions[static_cast<std::size_t>(t[0])], &b = positions[static_cast<std::size_t>(t[1])],
                &c = positions[static_cast<std::size_t>(t[2])];
     if (!may_reach(a, b, c, p, radius + spot_)) continue;
-    const int tetrahedron = mesh.tetrahedron_of(slot);
-    if (!mesh.is_removable(tetrahedron)) continue;
     const auto w = closest_point(p, a, b, c).weight;
     const double gap = (p - w[0] * a - w[1] * b - w[2] * c).norm() - radius;
     if (!(gap < spot_)) continue;
+    const int tetrahedron = mesh.tetrahedron_of(slot);
+    if (!mesh.is_removable(tetrahedron)) {
+      touched.end = true;
+      continue;
+    }
     const double area = 0.5 * (b - a).cross(c - a).norm();
-    exposed.push_back({tetrahedron, area * std::min(1.0, 1 - gap / spot_)});
+    touched.exposed.push_back({tetrahedron, area * std::min(1.0, 1 - gap / spot_)});
   }
-  return exposed;
+  return touched;
 }
 
 void Cautery::give(double joule, std::span<const Exposed> exposed, std::vector<int>& gone) {
@@ -59,11 +61,14 @@ std::vector<int> Cautery::heat(std::span<const HotTip> tips, const CutMesh& mesh
                                std::span<const Vec3> positions, double dt) {
   std::vector<int> gone;
   for (const HotTip& tip : tips) {
-    const Vec3 way = tip.p_W - tip.from_W;
-    const double parts = std::clamp(std::ceil(way.norm() / (kPart * tip.radius)), 1.0, kMostParts);
-    for (double k = 1; k <= parts; ++k)
-      give(power_ * dt / parts,
-           exposed_to(tip.from_W + k / parts * way, tip.radius, mesh, surface, positions), gone);
+    const Vec3 motion = tip.p_W - tip.from_W;
+    const double parts = std::clamp(std::ceil(motion.norm() / (kPart * tip.radius)), 1.0, kMostParts);
+    for (double k = 1; k <= parts; ++k) {
+      const Touched touched =
+          touched_by(tip.from_W + k / parts * motion, tip.radius, mesh, surface, positions);
+      give(power_ * dt / parts, touched.exposed, gone);
+      time_at_end_ += touched.end ? dt / parts : 0;
+    }
   }
   std::sort(gone.begin(), gone.end());
   gone.erase(std::unique(gone.begin(), gone.end()), gone.end());

@@ -28,6 +28,8 @@ class Cautery {
                         std::span<const Vec3> positions, double dt);
   /// So far, J: into tissue, whether that is gone or still there.
   double spent() const { return spent_; }
+  /// So far, s: in which a tip was as near to tissue that cannot be removed.
+  double time_at_end() const { return time_at_end_; }
   std::size_t bytes() const { return 2 * taken_.size() * sizeof(double); }
 
  private:
@@ -35,13 +37,17 @@ class Cautery {
     int tetrahedron;
     double weight;  // m^2
   };
-  std::vector<Exposed> exposed_to(const Vec3& p, double radius, const CutMesh& mesh, const Surface& surface,
-                                  std::span<const Vec3> positions) const;
+  struct Touched {
+    std::vector<Exposed> exposed;
+    bool end = false;  // tissue that cannot be removed, too
+  };
+  Touched touched_by(const Vec3& p, double radius, const CutMesh& mesh, const Surface& surface,
+                     std::span<const Vec3> positions) const;
   void give(double joule, std::span<const Exposed> exposed, std::vector<int>& gone);
 
   double power_, spot_;                 // W, m
   std::vector<double> taken_, needed_;  // of each tetrahedron, J
-  double spent_ = 0;
+  double spent_ = 0, time_at_end_ = 0;
 };
 
 }  // namespace palpate::sim

@@ -22,6 +22,7 @@ std::span<const int> Resection::advance(std::span<const HotTip> tips, std::span<
   if (tips.empty()) return removed_;
   const std::vector<int> gone = cautery_.heat(tips, left_, surface, positions, dt);
   totals_.heat = cautery_.spent();
+  totals_.time_at_end = cautery_.time_at_end();
   totals_.hot_time += dt;
   return remove(gone, surface);
 }
@@ -64,7 +65,7 @@ void Resection::judge(std::span<const Piece> pieces, Surface& surface) {
   }
 }
 
-const Parted& Resection::part(const BladeWay& blade, std::span<Vec3> were, std::span<Vec3> are,
+const Parted& Resection::part(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are,
                               Surface& surface) {
   removed_.clear();
   asked_for_ = 0;

@@ -24,6 +24,7 @@ struct ResectionTotals {
   std::uint64_t slides = 0, splits = 0;       ///< of vertices, by blades
   bool ran_out = false;                       ///< of vertices: a blade has parted less than it went through
   double hot_time = 0, contact_time = 0;      ///< s with a tip hot; and that touched
+  double time_at_end = 0;                     ///< s, of each tip: hot, at tissue that cannot be removed
 
   /// Of what blades parted, from the plan, m; 0 where nothing is.
   double mean_parted_distance() const { return parted_area > 0 ? parted_distance_sum / parted_area : 0; }
@@ -63,7 +64,7 @@ class Resection {
 
   /// What a blade that `was` there and `is` here parts, of one that `parts`, as `Scalpel::cut`. The pieces
   /// that it cut off and that go are `removed` then.
-  const Parted& part(const BladeWay& blade, std::span<Vec3> were, std::span<Vec3> are, Surface& surface);
+  const Parted& part(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are, Surface& surface);
   std::span<const int> removed() const { return removed_; }
   /// This mesh vertex never slides onto the way of a blade.
   void keep(int vertex) { scalpel_->keep(vertex); }

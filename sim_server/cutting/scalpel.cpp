@@ -11,7 +11,7 @@ namespace {
 // Of the mean edge: how far ahead of the blade and beyond its ends vertices slide; how long its trail is; and
 // how far it goes before it is looked at. Of the trail: so far back faces are still parted, that a slide has
 // brought there.
-constexpr double kAhead = 1, kBeyond = 0.5, kTrail = 1, kLeastWay = 0.02, kBehind = 0.25;
+constexpr double kAhead = 1, kBeyond = 0.5, kTrail = 1, kLeastMotion = 0.02, kBehind = 0.25;
 constexpr double kAlongItself = 1e-3;  // sine of the angle between an edge and its way, which parts nothing
 constexpr double kMostSlide = 0.5;     // of an edge
 constexpr double kLeastHeight = 0.3;  // of the mean shortest height of tetrahedra, unless it was lower before
@@ -44,7 +44,7 @@ bool goes_through(const BladeEdge& was, const BladeEdge& is, const Vec3& p, cons
 }
 
 /// Of its middle, m.
-Vec3 way_of(const BladeEdge& was, const BladeEdge& is) {
+Vec3 motion_of(const BladeEdge& was, const BladeEdge& is) {
   return 0.5 * (is[0] + is[1] - was[0] - was[1]);
 }
 
@@ -119,12 +119,12 @@ std::vector<Scalpel::Crossing> Scalpel::crossings(const Plane& plane, std::span<
            ahead <= kAhead * edge_;
   };
   const auto look_at = [&](int v, int w) {
-    const Vec3 &x = at(mesh, are, v), way = at(mesh, are, w) - x;
-    const double from = plane.normal.dot(x - plane.origin), to = from + plane.normal.dot(way);
+    const Vec3 &x = at(mesh, are, v), along = at(mesh, are, w) - x;
+    const double from = plane.normal.dot(x - plane.origin), to = from + plane.normal.dot(along);
     const double share = from / (from - to);
     if (from * to < 0 && share <= kMostSlide && slid_[static_cast<std::size_t>(v)] == 0 &&
-        meets(x + share * way))
-      found.push_back({v, w, share, share * way.norm()});
+        meets(x + share * along))
+      found.push_back({v, w, share, share * along.norm()});
   };
   for (const int t : near) {
     const Tetrahedron& corners = mesh.mesh().tetrahedra[static_cast<std::size_t>(t)];
@@ -179,7 +179,7 @@ void Scalpel::slide_onto(const Plane& plane, std::span<const int> near, std::spa
 
 /// Between centres of which the blade or its trail went through the line, in the tissue as it is now: where
 /// the blade was, that has since moved on.
-std::vector<int> Scalpel::faces_between(const BladeWay& blade, std::span<const int> near,
+std::vector<int> Scalpel::faces_between(const BladeSweep& blade, std::span<const int> near,
                                         std::span<const Vec3> were, std::span<const Vec3> are,
                                         const CutMesh& mesh) const {
   std::vector<int> faces;
@@ -196,15 +196,16 @@ std::vector<int> Scalpel::faces_between(const BladeWay& blade, std::span<const i
   return faces;
 }
 
-Stroke Scalpel::cut(const BladeWay& blade, std::span<Vec3> were, std::span<Vec3> are, CutMesh& mesh) {
+Stroke Scalpel::cut(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are, CutMesh& mesh) {
   const auto& [was, is, trail] = blade;
   const std::vector<int> near = around(was, is, are, mesh);
   Vec3 tissue = Vec3::Zero();
   for (const int t : near) tissue += centre_at(mesh, are, t) - centre_at(mesh, were, t);
-  Stroke stroke{.way = way_of(was, is) - tissue / std::max<double>(1, static_cast<double>(near.size()))};
-  if (stroke.way.norm() < kLeastWay * edge_) return stroke;
+  Stroke stroke{.motion =
+                    motion_of(was, is) - tissue / std::max<double>(1, static_cast<double>(near.size()))};
+  if (stroke.motion.norm() < kLeastMotion * edge_) return stroke;
   stroke.moved = true;
-  const Vec3 edge = is[1] - is[0], course = stroke.way - trail, across = edge.cross(course);
+  const Vec3 edge = is[1] - is[0], course = stroke.motion - trail, across = edge.cross(course);
   stroke.trail = -std::min(1.0, kTrail * edge_ / course.norm()) * course;
   if (across.norm() > kAlongItself * edge.norm() * course.norm()) {
     Plane plane{is[0], edge.normalized(), {}, across.normalized(), edge.norm(), {}};

@@ -12,7 +12,7 @@ namespace palpate::sim {
 using BladeEdge = std::array<Vec3, 2>;
 
 /// How a blade went through tissue.
-struct BladeWay {
+struct BladeSweep {
   BladeEdge was, is;
   /// From where it was to the end of its trail, which follows it as something dragged on a string (a
   /// tractrix), so that tissue that trembles under a blade does not turn its way about. m; 0 where it begins.
@@ -22,7 +22,7 @@ struct BladeWay {
 /// What a blade did to tissue.
 struct Stroke {
   bool moved = false;                                ///< far enough to be looked at
-  Vec3 way = Vec3::Zero();                           ///< of the blade through the tissue around it, m
+  Vec3 motion = Vec3::Zero();                        ///< of the blade through the tissue around it, m
   Vec3 trail = Vec3::Zero();                         ///< from where it is now, m
   std::vector<DeformationModel::Slide> slides = {};  ///< in order; done
   std::vector<int> faces = {};                       ///< to be parted then, 4 t + k, each once
@@ -47,7 +47,7 @@ class Scalpel {
   /// What a blade on this way has to part. `were`, `are`: the surface vertices when it was where it was, and
   /// now, m. Slides vertices of the mesh, and of both. Nothing where it has hardly moved: it is to be asked
   /// again, from where it was. O(tetrahedra).
-  Stroke cut(const BladeWay& blade, std::span<Vec3> were, std::span<Vec3> are, CutMesh& mesh);
+  Stroke cut(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are, CutMesh& mesh);
 
   std::size_t bytes() const { return slid_.size(); }
 
@@ -69,8 +69,9 @@ class Scalpel {
   bool slide(const Crossing& crossing, CutMesh& mesh) const;
   void slide_onto(const Plane& plane, std::span<const int> near, std::span<Vec3> were, std::span<Vec3> are,
                   CutMesh& mesh, std::vector<DeformationModel::Slide>& slides);
-  std::vector<int> faces_between(const BladeWay& blade, std::span<const int> near, std::span<const Vec3> were,
-                                 std::span<const Vec3> are, const CutMesh& mesh) const;
+  std::vector<int> faces_between(const BladeSweep& blade, std::span<const int> near,
+                                 std::span<const Vec3> were, std::span<const Vec3> are,
+                                 const CutMesh& mesh) const;
 
   double edge_ = 0, longest_ = 0, height_ = 0;  // m: of edges the mean and the longest; of heights the mean
   std::vector<char> slid_;                      // of mesh vertices

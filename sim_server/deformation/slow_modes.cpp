@@ -8,7 +8,7 @@
 
 namespace palpate::sim {
 
-int ClientModes::usual() noexcept {
+int ClientModes::by_default() noexcept {
 #ifdef PALPATE_WITH_SPECTRA
   return 40;
 #else

@@ -17,8 +17,8 @@ namespace palpate::sim {
 
 /// For models that could do without modes themselves.
 struct ClientModes {
-  static int usual() noexcept;  ///< 40; 0 in a build without Spectra, which finds none
-  int modes = usual();          ///< `client_modes`, that clients are told of, [0, kMostSlowModes]
+  static int by_default() noexcept;  ///< 40; 0 in a build without Spectra, which finds none
+  int modes = by_default();          ///< `client_modes`, that clients are told of, [0, kMostSlowModes]
 
   static constexpr std::array<std::string_view, 1> kKeys{"client_modes"};
   static ClientModes read(const Config& config);

@@ -155,8 +155,10 @@ void MumpsFactor::analyse(const SparseMatrix& lower, const std::string& where) {
   need.front().bytes += sizeof(double) * std::pow(static_cast<double>(kept_.size()), 2);  // S, on rank 0
   const std::string shortage = shortage_of(need);
   if (!shortage.empty())
-    fail("{}: {}, for the Cholesky factor of {} unknowns; take more machines, or a coarser mesh", where,
-         shortage, lower.rows());
+    fail(
+        "{}: {}, for the Cholesky factor of {} unknowns; take more machines, `--iterative`, or a coarser "
+        "mesh",
+        where, shortage, lower.rows());
 }
 
 void MumpsFactor::factor(const std::string& where) {

@@ -225,7 +225,7 @@ void find_slivers(const TetMesh& mesh, std::vector<MeshFault>& all) {
       {Cure::kAccepted, count, "slivers",
        fmt::format(
            "tetrahedron {} (vertices {}) at {} has a dihedral angle of {:.2g} degrees, below {:.0f}; the "
-           "shortest height of all is {:.2g} mm, {:.2g} of the median: model \"tensor_mass\" needs some "
+           "shortest height of all is {:.2g} mm, {:.2g} of the median: explicit steps need some "
            "{:.0f} times the sub-steps (with `rayleigh_stiffness` up to {:.0f} times), and equations are "
            "as much as {:.0f} times worse conditioned",
            worst, fmt::join(mesh.tetrahedra[worst], " "), text(mesh.vertices[mesh.tetrahedra[worst][0]]),

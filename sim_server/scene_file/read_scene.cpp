@@ -99,8 +99,9 @@ void require_cutting(const Scene& scene) {
   if (!scene.cutting && model_of(scene.deformation).needs_cutting)
     fail(
         "{}: model \"{}\" moves what [cutting] says can be cut, and the scene has none; add one, or take "
-        "\"tensor_mass\"",
-        scene.deformation.where, scene.deformation.model);
+        "another model that can be cut ({})",
+        scene.deformation.where, scene.deformation.model,
+        models_that([](const DeformationModelRow& m) { return m.cuts && !m.needs_cutting; }));
   if (!scene.cutting) return;
   if (cutter == scene.tools.end())
     fail("{}: no [[tool]] cuts; give one `cut_buttons`, such as 1", scene.cutting->where);
@@ -240,6 +241,42 @@ std::vector<std::filesystem::path> read_clients(const Config& config) {
   return clients;
 }
 
+void read_rate(const Config& config, Scene& scene) {
+  scene.rate_hz = config.number("rate_hz", {0, 10000, "Hz"}, scene.rate_hz);
+  if (config.has("rate_hz")) scene.rate_where = config.where("rate_hz");
+  if (scene.rate_hz > 0 && scene.rate_hz < 1)
+    fail("{}: `rate_hz` must be 0 or from 1 to 10000 Hz", config.where("rate_hz"));
+}
+
+/// `[mesh]`, and whether its file is there.
+void read_mesh_section(const Config& mesh, Scene& scene) {
+  scene.mesh_file = mesh.file("file");
+  scene.mesh_where = mesh.where("file");
+  scene.mesh_scale = mesh.number("scale", {1e-6, 1e3, "m per unit of the file"}, scene.mesh_scale);
+  scene.mesh_refinements = mesh.number("refine", {0, 2, "times"}, 0);
+  if (2 * scene.mesh_refinements != std::floor(2 * scene.mesh_refinements))
+    fail("{}: `[mesh] refine` must be 0, 0.5, 1, 1.5 or 2 times", mesh.where("refine"));
+  mesh.reject_unknown();
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(scene.mesh_file, ignored)) {
+    fail("{}: `[mesh] file`: {}: {}", mesh.where("file"), scene.mesh_file.string(),
+         std::filesystem::is_directory(scene.mesh_file, ignored) ? "a folder, not a mesh" : "no such file");
+  }
+}
+
+/// `[material]` with its inclusions.
+void read_tissue(const Config& material, Scene& scene) {
+  scene.inclusions = read_inclusions(material);
+  scene.material = read_material(material);
+  scene.material_where = material.where();
+  if (!scene.inclusions.empty() && scene.material->element == ElementKind::kNodalPressure)
+    fail(
+        "{}: [[material.inclusion]]: element \"p1_nodal_pressure\" averages over tissue of one stiffness; "
+        "take "
+        "\"p1\" or \"p2\"",
+        scene.inclusions.front().where);
+}
+
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
@@ -247,37 +284,13 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   Scene scene;
   scene.source = file.string();
   scene.title = config.text("title", file.stem().string());
-  scene.rate_hz = config.number("rate_hz", {0, 10000, "Hz"}, scene.rate_hz);
-  if (config.has("rate_hz")) scene.rate_where = config.where("rate_hz");
-  if (scene.rate_hz > 0 && scene.rate_hz < 1)
-    fail("{}: `rate_hz` must be 0 or from 1 to 10000 Hz", config.where("rate_hz"));
+  read_rate(config, scene);
   const auto mesh = config.table("mesh");
   if (!mesh) fail("{}: missing section [mesh] with `file`", config.where());
-  scene.mesh_file = mesh->file("file");
-  scene.mesh_where = mesh->where("file");
-  scene.mesh_scale = mesh->number("scale", {1e-6, 1e3, "m per unit of the file"}, scene.mesh_scale);
-  scene.mesh_refinements = mesh->number("refine", {0, 2, "times"}, 0);
-  if (2 * scene.mesh_refinements != std::floor(2 * scene.mesh_refinements))
-    fail("{}: `[mesh] refine` must be 0, 0.5, 1, 1.5 or 2 times", mesh->where("refine"));
-  mesh->reject_unknown();
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(scene.mesh_file, ignored)) {
-    fail("{}: `[mesh] file`: {}: {}", mesh->where("file"), scene.mesh_file.string(),
-         std::filesystem::is_directory(scene.mesh_file, ignored) ? "a folder, not a mesh" : "no such file");
-  }
+  read_mesh_section(*mesh, scene);
   for (const Config& fixed : config.tables("fixed")) scene.fixed.push_back(read_fixed(fixed));
   for (const Config& load : config.tables("load")) scene.loads.push_back(read_load(load));
-  if (const auto material = config.table("material")) {
-    scene.inclusions = read_inclusions(*material);
-    scene.material = read_material(*material);
-    scene.material_where = material->where();
-    if (!scene.inclusions.empty() && scene.material->element == ElementKind::kNodalPressure)
-      fail(
-          "{}: [[material.inclusion]]: element \"p1_nodal_pressure\" averages over tissue of one stiffness; "
-          "take "
-          "\"p1\" or \"p2\"",
-          scene.inclusions.front().where);
-  }
+  if (const auto material = config.table("material")) read_tissue(*material, scene);
   const auto deformation = config.table("deformation");
   if (!deformation && purpose == Purpose::kServe)
     fail("{}: missing section [deformation] with `model`", config.where());

@@ -37,6 +37,41 @@ protocol::ModalLoads on_the_wire(const Eigen::VectorXd& loads) noexcept {
   return told;
 }
 
+/// What the force is around the tool, now and ahead, and how the other tools move it.
+void tell_nearby(const ToolAnswer& answer, ForceSample& sample) noexcept {
+  if (answer.here) {
+    sample.flags |= ForceSample::kHasHere;
+    sample.surface_v_W = answer.surface_v_W;
+    sample.here = on_the_wire(*answer.here);
+  }
+  if (answer.ahead) {
+    sample.flags |= ForceSample::kHasAhead;
+    sample.ahead_p_W = answer.ahead->p_W;
+    sample.ahead_f_W = answer.ahead->there.force;
+    sample.ahead = on_the_wire(answer.ahead->there);
+  }
+  if (answer.others) {
+    sample.flags |= ForceSample::kHasOthers;
+    const Mat3& c = answer.others->compliance;
+    sample.others = {answer.others->v_W, {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}};
+  }
+}
+
+/// Where the `surface` that the client knows is, and how it swings.
+void tell_surface(const ToolAnswer& answer, const protocol::SurfaceState& surface,
+                  ForceSample& sample) noexcept {
+  if (!answer.surface_shift_W) return;
+  sample.flags |= ForceSample::kHasSurface;
+  sample.surface = surface;
+  sample.surface.shift_W = *answer.surface_shift_W;
+  if (answer.modes == nullptr) return;
+  sample.flags |= ForceSample::kHasModes;
+  sample.modes = on_the_wire(*answer.modes);
+  if (answer.modal_loads == nullptr) return;
+  sample.flags |= ForceSample::kHasModalLoads;
+  sample.modal_loads = on_the_wire(*answer.modal_loads);
+}
+
 ToolPath::Point point_of(const protocol::ToolState& state) noexcept {
   return {state.t_ns, pose_of(state), state.v_W};
 }
@@ -177,39 +212,10 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
                      .p_W = state.p_W,
                      .f_W = answer.force,
                      .torque_W = answer.torque};
-  const auto flag = [&](std::uint32_t bit, bool set) { sample.flags |= set ? bit : 0; };
-  flag(ForceSample::kInContact, answer.contacts > 0);
-  flag(ForceSample::kFlagged, answer.flagged);
-  flag(ForceSample::kHasHere, answer.here.has_value());
-  flag(ForceSample::kHasAhead, answer.ahead.has_value());
-  const bool tells_surface = answer.surface_shift_W.has_value() && surfaces_[tool].version != 0;
-  flag(ForceSample::kHasSurface, tells_surface);
-  if (answer.here) {
-    sample.surface_v_W = answer.surface_v_W;
-    sample.here = on_the_wire(*answer.here);
-  }
-  if (answer.ahead) {
-    sample.ahead_p_W = answer.ahead->p_W;
-    sample.ahead_f_W = answer.ahead->there.force;
-    sample.ahead = on_the_wire(answer.ahead->there);
-  }
-  flag(ForceSample::kHasOthers, answer.others.has_value());
-  if (answer.others) {
-    const Mat3& c = answer.others->compliance;
-    sample.others = {answer.others->v_W, {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}};
-  }
-  if (tells_surface) {
-    sample.surface = surfaces_[tool];
-    sample.surface.shift_W = *answer.surface_shift_W;
-  }
-  if (answer.modes != nullptr && tells_surface) {
-    sample.flags |= ForceSample::kHasModes;
-    sample.modes = on_the_wire(*answer.modes);
-    if (answer.modal_loads != nullptr) {
-      sample.flags |= ForceSample::kHasModalLoads;
-      sample.modal_loads = on_the_wire(*answer.modal_loads);
-    }
-  }
+  if (answer.contacts > 0) sample.flags |= ForceSample::kInContact;
+  if (answer.flagged) sample.flags |= ForceSample::kFlagged;
+  tell_nearby(answer, sample);
+  if (surfaces_[tool].version != 0) tell_surface(answer, surfaces_[tool], sample);
   if (simulation_.instants() > 1 && answer.here) {
     sample.flags |= ForceSample::kHasMean;
     sample.mean_f_W = answer.mean_force;

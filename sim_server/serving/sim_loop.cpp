@@ -143,13 +143,14 @@ void SimLoop::look_how_near(Time now) noexcept {
   }
 }
 
-void SimLoop::note_growth() noexcept {
+void SimLoop::note_cuts() noexcept {
   if (simulation_.resection() == nullptr) return;
   const Resection::Growth& now = simulation_.resection()->growth();
   growth.begun.store(now.begun, std::memory_order_relaxed);
   growth.failures.store(now.failures, std::memory_order_relaxed);
   growth.tetrahedra.store(now.tetrahedra, std::memory_order_relaxed);
   growth.times.store(now.times, std::memory_order_release);
+  if (simulation_.resection()->totals().time_at_end > 0) cut_to_end.store(true, std::memory_order_relaxed);
 }
 
 void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept {
@@ -169,7 +170,7 @@ void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, 
     largest = std::max(largest, newton);
   }
   look_how_near(start + took);
-  note_growth();
+  note_cuts();
   stats_.step_ns.add(took.count());
   stats_.timeline.at(start) += {1, took_ns, took_ns, 0};
   if (contact) stats_.contact_step_ns.add(took.count());

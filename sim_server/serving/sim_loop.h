@@ -108,6 +108,7 @@ class SimLoop {
   struct Growth {
     std::atomic<std::uint64_t> begun{0}, times{0}, failures{0}, tetrahedra{0};
   } growth{};
+  std::atomic<bool> cut_to_end{false};  ///< whether a hot tip ever was at tissue that cannot be cut
 
  private:
   bool read_inputs() noexcept;
@@ -116,7 +117,7 @@ class SimLoop {
   void tell_paused() noexcept;
   void count_beyond(std::size_t tool) noexcept;
   void look_how_near(Time now) noexcept;
-  void note_growth() noexcept;
+  void note_cuts() noexcept;
   void pass_surfaces_on();
   void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
 

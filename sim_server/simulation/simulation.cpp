@@ -37,6 +37,45 @@ std::vector<int> on_surface(std::span<const int> vertices, const Surface& surfac
   return found;
 }
 
+/// Triangles of the surface that each tool can touch; one of the tools at least can touch some.
+std::vector<std::vector<Triangle>> some_touchable(const Scene& scene, const Surface& surface,
+                                                  const TetMesh& mesh) {
+  auto touchable = touchable_by(scene.tools, surface, mesh);
+  if (std::all_of(touchable.begin(), touchable.end(), [](const auto& list) { return list.empty(); }))
+    fail("{}: no triangle of the surface lies within the tool's reach", scene.tools.front().reach_where);
+  return touchable;
+}
+
+/// Each tool of the scene, on an organ of which the vertices `held` are held to something.
+std::vector<ToolContact> make_tools(const Scene& scene, std::span<const Vec3> rest, const Surface& surface,
+                                    std::vector<std::vector<Triangle>> touchable, std::span<const int> held,
+                                    const Progress& progress) {
+  std::vector<ToolContact> tools;
+  tools.reserve(scene.tools.size());
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    const std::string stage = contact_stage(i, scene.tools.size());
+    progress(stage, 0);
+    tools.emplace_back(scene.tools[i], rest, surface, std::move(touchable[i]), held,
+                       scene.cutting.has_value());
+    progress(stage, 1);
+  }
+  return tools;
+}
+
+/// The tissue gets room for what these tools load. Returns how many loads all of them have at most.
+std::size_t make_room_for_loads(const std::vector<ToolContact>& tools, Tissue& tissue) {
+  std::vector<int> most_loads;
+  std::vector<double> still;
+  for (const ToolContact& tool : tools) {
+    most_loads.push_back(tool.max_nodes());
+    still.push_back(kStill * tool.radius());
+  }
+  tissue.reserve(most_loads, still);
+  if (std::any_of(tools.begin(), tools.end(), [](const ToolContact& tool) { return tool.has_friction(); }))
+    tissue.before.assign(tissue.positions.begin(), tissue.positions.end());
+  return static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
+}
+
 /// A force of an organ that is no more: half of it a step.
 void fade(ToolForce& force) noexcept {
   force.force *= 0.5;
@@ -90,9 +129,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
     for (int v = spare; v < end; ++v) standing.push_back(v);
   }
   for (const int vertex : surface_.vertices) rest_.push_back(mesh_->vertices[vertex]);
-  auto touchable = touchable_by(scene.tools, surface_, *mesh_);
-  if (std::all_of(touchable.begin(), touchable.end(), [](const auto& list) { return list.empty(); }))
-    fail("{}: no triangle of the surface lies within the tool's reach", scene.tools.front().reach_where);
+  auto touchable = some_touchable(scene, surface_, *mesh_);
   const std::vector<int> reachable = vertices_of(touchable);
   require_memory_for(scene, Purpose::kServe, count_parts(*mesh_, surface_));
   const DeformationModelRow& row = model_of(scene.deformation);
@@ -105,32 +142,16 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   tissue_.free = tissue_.positions = motion.positions;
   tissue_.velocities = motion.velocities;
   const std::vector<int> held = on_surface(fixed, surface_);
-  std::vector<int> most_loads;
-  std::vector<double> still;
-  tools_.reserve(scene.tools.size());
-  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
-    const std::string stage = contact_stage(i, scene.tools.size());
-    progress(stage, 0);
-    tools_.emplace_back(scene.tools[i], tissue_.free, surface_, std::move(touchable[i]), held,
-                        cut_.has_value());
-    most_loads.push_back(tools_.back().max_nodes());
-    still.push_back(kStill * tools_.back().radius());
-    progress(stage, 1);
-  }
-  tissue_.reserve(most_loads, still);
-  if (std::any_of(tools_.begin(), tools_.end(), [](const ToolContact& tool) { return tool.has_friction(); }))
-    tissue_.before.assign(tissue_.positions.begin(), tissue_.positions.end());
-  const auto all_loads = static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
+  tools_ = make_tools(scene, tissue_.free, surface_, std::move(touchable), held, progress);
+  const std::size_t all_loads = make_room_for_loads(tools_, tissue_);
   if (tools_.size() > 1) coupling_.emplace(tools_.size(), rest_.size(), all_loads);
   make_room_for_modes();
   came_from_.resize(tools_.size());
   lately_.resize(tools_.size());
   for (auto& were : lately_) were.reserve(2 * kApart + 1);
-  mean_.resize(tools_.size(), Vec3::Zero());
-  late_mean_.resize(tools_.size(), Vec3::Zero());
-  velocities_.resize(tools_.size(), Vec3::Zero());
+  for (auto* zeros : {&mean_, &late_mean_, &velocities_, &surface_motion_})
+    zeros->resize(tools_.size(), Vec3::Zero());
   inputs_.resize(tools_.size());
-  surface_motion_.resize(tools_.size(), Vec3::Zero());
   answers_.resize(tools_.size());
 }
 
@@ -369,6 +390,11 @@ std::uint64_t Simulation::state_hash() const noexcept {
   Fnv1a hash;
   hash.add(tissue_.positions.data(), tissue_.positions.size_bytes());
   for (const ToolForce& answer : answers_) hash.add(answer.force);
+  if (cut_) {
+    const std::uint64_t left = cut_->resection.left().count();
+    hash.add(&left, sizeof left);
+    hash.add(surface_.triangles.data(), surface_.triangles.size() * sizeof(Triangle));
+  }
   return hash.value();
 }
 

@@ -107,7 +107,7 @@ struct StepFailures {
 /// by one thread. A step depends on nothing but its arguments and the state, and does not throw: where the
 /// model does, its answers are those of the step before, flagged (half of their forces each further time in
 /// a row), and the failure is counted. A step does not allocate, lock or log, but for a model that says that
-/// it does (`DeformationModel`), and while tissue is cut.
+/// it does (`DeformationModel`), and where the scene has [cutting], whether or not it is being cut.
 class Simulation {
  public:
   /// With the mesh file that the scene names. `condensed`: what set-up takes or makes instead of what the
@@ -222,7 +222,7 @@ class Simulation {
   struct Blade {
     BladeEdge is{};                     // m
     std::optional<BladeEdge> was = {};  // when what it parts was looked for last
-    Vec3 trail = Vec3::Zero();          // `BladeWay`, m
+    Vec3 trail = Vec3::Zero();          // `BladeSweep`, m
     std::vector<Vec3> were = {};        // surface vertices then, m
     std::optional<Vec3> place = {};     // of the tool at the end of the step before, m
     double owed = 0;                    // J of what it has parted

@@ -161,11 +161,11 @@ void Simulation::resist_blade(std::size_t tool, double dt, ToolAnswer& answer) {
   if (!cut_->blades[tool]) return;
   Blade& blade = *cut_->blades[tool];
   const Vec3& p = tools_[tool].place();
-  const Vec3 way = p - blade.place.value_or(p);
+  const Vec3 motion = p - blade.place.value_or(p);
   blade.place = p;
-  const double far = way.norm();
-  blade.force = -blade.owed / (cut_->resection.blade_size() + far) / (far + kAtRest * dt) * way;
-  blade.owed += blade.force.dot(way);
+  const double far = motion.norm();
+  blade.force = -blade.owed / (cut_->resection.blade_size() + far) / (far + kAtRest * dt) * motion;
+  blade.owed += blade.force.dot(motion);
   answer.force += blade.force;
   answer.mean_force += blade.force;
   if (!tools_[tool].shape().trocar) answer.torque += 0.5 * (blade.is[1] - blade.is[0]).cross(blade.force);

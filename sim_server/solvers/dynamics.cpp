@@ -13,7 +13,7 @@ namespace {
 // Shares of the size of the body. A force that moves a node by less than the first counts as none, so that a
 // body at rest is at rest; a factor of a place farther off than the second is of elsewhere; and so far nodes
 // are moved to find how forces change.
-constexpr double kNegligibleWay = 1e-9, kElsewhere = 1e-4, kNudge = 1e-7;
+constexpr double kNegligibleDisplacement = 1e-9, kElsewhere = 1e-4, kNudge = 1e-7;
 // Relative residuals. Where the last trial step of a step leaves more than the first, velocities mean
 // nothing, and the step ends at rest: each step from there lowers the energy, however far Newton's method is
 // from balance. A step that ends by its budget does so where more than the second is left: to stop where it
@@ -65,8 +65,8 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
       policy_({.background = factors_in_background(solid, settings),
                .forgives = learns_,
                .refresh_steps = settings.refresh_steps,
-               .negligible_force = kNegligibleWay * size_ * matrix_.mean_diagonal()}) {
-  motion_.set_negligible_force(kNegligibleWay * size_ * matrix_.mean_diagonal());
+               .negligible_force = kNegligibleDisplacement * size_ * matrix_.mean_diagonal()}) {
+  motion_.set_negligible_force(kNegligibleDisplacement * size_ * matrix_.mean_diagonal());
   if (factors_in_background(solid, settings)) background_.emplace(solid, motion_.dofs(), settings, where);
   require_budget(costs_, budget_ms_, background_.has_value() || linear_, where);
 }

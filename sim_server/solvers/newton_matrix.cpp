@@ -93,9 +93,9 @@ void NewtonMatrix::part(std::span<const Split> splits) {
       built_turned_[static_cast<std::size_t>(copy)] = built_turned_[static_cast<std::size_t>(node)];
   }
   if (splits.empty()) return;
-  const auto ways = static_cast<Eigen::Index>(3 * copies_.size());
-  border_ = response_ = Eigen::MatrixXd::Zero(matrix_.lower().rows(), ways);
-  schur_.compute(mean_diagonal_ * Eigen::MatrixXd::Identity(ways, ways));
+  const auto size = static_cast<Eigen::Index>(3 * copies_.size());
+  border_ = response_ = Eigen::MatrixXd::Zero(matrix_.lower().rows(), size);
+  schur_.compute(mean_diagonal_ * Eigen::MatrixXd::Identity(size, size));
   border_is_made_ = false;
 }
 
@@ -154,20 +154,20 @@ void NewtonMatrix::use_border() {
 
 Eigen::MatrixXd NewtonMatrix::solve(const Eigen::MatrixXd& b) const {
   if (copies_.empty()) return factor_.solve(b);
-  Eigen::MatrixXd loads = b, ways(border_.cols(), b.cols());
+  Eigen::MatrixXd loads = b, apart(border_.cols(), b.cols());
   for (std::size_t k = 0; k < copies_.size(); ++k) {
     const int node = first_of(copies_[k].node), copy = first_of(copies_[k].copy);
-    ways.middleRows<3>(static_cast<Eigen::Index>(3 * k)) = loads.middleRows<3>(copy);
+    apart.middleRows<3>(static_cast<Eigen::Index>(3 * k)) = loads.middleRows<3>(copy);
     loads.middleRows<3>(node) += loads.middleRows<3>(copy);
     loads.middleRows<3>(copy).setZero();
   }
   Eigen::MatrixXd x = factor_.solve(loads);
-  ways -= border_.transpose() * x;
-  schur_.solveInPlace(ways);
-  x -= response_ * ways;
+  apart -= border_.transpose() * x;
+  schur_.solveInPlace(apart);
+  x -= response_ * apart;
   for (std::size_t k = 0; k < copies_.size(); ++k) {
     x.middleRows<3>(first_of(copies_[k].copy)) =
-        x.middleRows<3>(first_of(copies_[k].node)) + ways.middleRows<3>(static_cast<Eigen::Index>(3 * k));
+        x.middleRows<3>(first_of(copies_[k].node)) + apart.middleRows<3>(static_cast<Eigen::Index>(3 * k));
   }
   return x;
 }

@@ -23,7 +23,8 @@ VibrationModes vibration_modes(const FactoredMatrix& stiffness, const Eigen::Vec
 /// The same from shapes of a body that was almost this one (unknowns x k, of full rank), by iterations of
 /// that subspace (Bathe and Wilson 1972, Int. J. Numer. Methods Eng. 6:213) until none of its w^2 changes by
 /// more than 1e-3, 8 at most. Whatever is left over, M-orthonormal shapes that are followed as if they were
-/// modes. k solves at once for an iteration.
+/// modes. k solves at once for an iteration; Lanczos' method, which starts from one vector, has no use for
+/// the shapes.
 VibrationModes refined_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses,
                              Eigen::MatrixXd shapes);
 

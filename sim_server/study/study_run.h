@@ -39,10 +39,6 @@ void write_trace(const std::filesystem::path& file, const Trace& trace);
 /// Reads it, or gives nothing where there is none, or not a whole one.
 std::optional<Trace> read_trace(const std::filesystem::path& file);
 
-/// Resident memory of this process now but for pages of files (programs and libraries, which a child gets as
-/// it uses them), bytes; 0 where the system does not tell.
-double own_bytes();
-
 /// A case that came to no end: refused, out of memory, crashed. The other cases of a study go on.
 struct CaseFailed : Error {
   using Error::Error;

@@ -12,6 +12,7 @@
 
 #include "common/error.h"
 #include "common/interrupt.h"
+#include "common/memory_budget.h"
 #include "common/report.h"
 #include "sim_server/study/study_run.h"
 
@@ -95,13 +96,6 @@ std::optional<Trace> read_trace(const std::filesystem::path& path) {
   return trace;
 }
 
-double own_bytes() {
-  std::ifstream file("/proc/self/statm");
-  double all = 0, resident = 0, of_files = 0;
-  file >> all >> resident >> of_files;
-  return (resident - of_files) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
 namespace {
 
 /// In the child: does `work`, and says what went wrong.
@@ -143,7 +137,7 @@ std::optional<std::string> hear(int in) {
 
 double run_apart(const std::string& name, const std::function<void()>& work) {
   malloc_trim(0);  // what is free here is not the child's
-  const double inherited = own_bytes();
+  const double inherited = resident_memory();
   int said[2];
   if (pipe(said) != 0) fail_at_run_time("{}: no pipe: {}", name, std::strerror(errno));
   const pid_t child = fork();

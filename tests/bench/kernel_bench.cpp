@@ -1,7 +1,7 @@
-// What we wrote ourselves beside what a library has for it, on the same numbers: rotations and dense systems
-// beside Eigen, the complementarity problem beside Open Dynamics Engine's solver (Dantzig's method), where
-// that is installed (on Debian: libdart-external-odelcpsolver-dev). A row whose answer is not ours says so in
-// place of a time.
+// What we wrote ourselves beside what a library has for it, on the same numbers: rotations, dense systems and
+// matrices of low rank beside Eigen, the complementarity problem beside Open Dynamics Engine's solver
+// (Dantzig's method), where that is installed (on Debian: libdart-external-odelcpsolver-dev). A row whose
+// answer is not ours says so in place of a time.
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -14,6 +14,7 @@
 #include "common/contact/complementarity.h"
 #include "common/contact/dense_solve.h"
 #include "sim_server/elasticity/rotations.h"
+#include "sim_server/low_rank/low_rank_factors.h"
 #include "tests/bench/bench.h"
 #include "tests/support/random.h"
 
@@ -164,6 +165,45 @@ void run_dense(benchmark::State& state, int n, bool ours) {
   });
 }
 
+/// The whole singular value decomposition, of which no more is kept than the tolerance needs.
+LowRankFactors factors_by_singular_values(const Eigen::MatrixXd& matrix, double tolerance) {
+  const Eigen::BDCSVD<Eigen::MatrixXf> svd(matrix.cast<float>(), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::VectorXf& values = svd.singularValues();
+  Eigen::Index rank = values.size();
+  while (rank > 0 && double{values.tail(values.size() - rank + 1).norm()} <= tolerance) --rank;
+  return {values.head(rank).asDiagonal() * svd.matrixU().leftCols(rank).transpose(),
+          svd.matrixV().leftCols(rank).transpose()};
+}
+
+/// How points of one cube answer to loads on those of another, twice its edge away, as 1 / distance, to 1e-4.
+/// The label is the rank that was found.
+void run_low_rank(benchmark::State& state, int n, bool ours) {
+  test::Random random(11);
+  const auto points = [&](double from) {
+    Eigen::Matrix3Xd all(3, n);
+    for (Eigen::Index i = 0; i < all.size(); ++i) all.data()[i] = random.between(0, 1);
+    all.row(0).array() += from;
+    return all;
+  };
+  const Eigen::Matrix3Xd here = points(0), there = points(2);
+  Eigen::MatrixXd matrix(n, n);
+  for (int i = 0; i < n; ++i) matrix.col(i) = (here.colwise() - there.col(i)).colwise().norm().cwiseInverse();
+  const double tolerance = 1e-4 * matrix.norm();
+  LowRankFactors found;
+  const auto work = [&] {
+    found = ours ? *low_rank_factors(matrix, tolerance) : factors_by_singular_values(matrix, tolerance);
+  };
+  work();
+  const Eigen::MatrixXd made = (found.left.transpose() * found.right).cast<double>();
+  if (!((made - matrix).norm() <= 1.01 * tolerance))
+    return state.SkipWithError("farther from the matrix than asked for");
+  show(state, static_cast<std::uint64_t>(found.left.rows()));
+  for (auto _ : state) {
+    work();
+    benchmark::ClobberMemory();
+  }
+}
+
 }  // namespace
 
 void add_kernel_rows() {
@@ -182,6 +222,10 @@ void add_kernel_rows() {
     add(fmt::format("dense_system/{}/ours", n), [n](benchmark::State& state) { run_dense(state, n, true); });
     add(fmt::format("dense_system/{}/eigen", n),
         [n](benchmark::State& state) { run_dense(state, n, false); });
+  }
+  for (const int n : {64, 192}) {
+    add(fmt::format("low_rank/{}/ours", n), [n](benchmark::State& state) { run_low_rank(state, n, true); });
+    add(fmt::format("low_rank/{}/eigen", n), [n](benchmark::State& state) { run_low_rank(state, n, false); });
   }
 }
 

@@ -4,6 +4,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/contract.h"
 #include "tests/support/model_bench.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/solids.h"
 
 using namespace palpate;
@@ -14,14 +15,14 @@ namespace {
 
 constexpr double kPeriod = 1.0 / 30;
 
-/// A block of 30 x 12 x 30 mm, its top at y = 0, its bottom held, under a sphere of 5 mm.
-TetMesh block(const ModelCase& choice) {
+/// `little_block`, but for the last bits of its vertices.
+TetMesh block_for(const ModelCase& choice) {
   const int n = choice.element == ElementKind::kQuadratic ? 4 : 6;
   return grid_block(lines(-0.015, 0.015, n), lines(-0.012, 0, n / 2), lines(-0.015, 0.015, n));
 }
-Scene block_scene(const ModelCase& choice, double friction = 0) {
-  Scene scene =
-      scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4}, {Vec3(-1, -1, -1), Vec3(1, -0.0119, 1)}, 0.005);
+/// Under a sphere of 5 mm.
+Scene scene_for(const ModelCase& choice, double friction = 0) {
+  Scene scene = little_block_scene();
   choice.choose(scene);
   scene.tools[0].shape.friction = friction;
   scene.rate_hz = 1 / kPeriod;
@@ -45,7 +46,7 @@ struct Way {
 
 /// What the server answers to that in the end.
 protocol::ForceSample answer_to(const ModelCase& choice, const Way& way, ToolForce* felt = nullptr) {
-  Simulation simulation(block_scene(choice, way.friction), block(choice));
+  Simulation simulation(scene_for(choice, way.friction), block_for(choice));
   ServedTools served(simulation);
   std::vector<SessionInput> inputs{{7, {.flags = protocol::ToolState::kWantsHere}, true}};
   protocol::ToolState& state = inputs[0].state;
@@ -128,10 +129,10 @@ CONTRACT("with friction the stiffness sent is that of a tool that sticks, or sli
 
 CONTRACT("a tool that holds tissue where it rests feels nothing, and nothing moves", ModelCase, choice,
          model_cases()) {
-  Scene scene = block_scene(choice);
+  Scene scene = scene_for(choice);
   const Vec3 place(0.001, 0.005, 0.0005);
   scene.tools[0].grasp_place = place;
-  Simulation simulation(scene, block(choice));
+  Simulation simulation(scene, block_for(choice));
   for (int i = 0; i < 10; ++i) {
     const ToolForce felt = simulation.step(place, kPeriod);
     REQUIRE(felt.contacts > 0);
@@ -143,7 +144,7 @@ CONTRACT("a tool that holds tissue where it rests feels nothing, and nothing mov
 
 CONTRACT("a tool that presses and lets go never gets out more work than it put in", ModelCase, choice,
          model_cases()) {
-  Simulation simulation(block_scene(choice), block(choice));
+  Simulation simulation(scene_for(choice), block_for(choice));
   double work = 0, most = 0, least = 0;
   Vec3 before(0.001, 0.0052, 0.0015);
   for (int i = 0; i <= 40; ++i) {

@@ -33,8 +33,11 @@ std::vector<std::string> arguments_of(int ranks, const std::string& scene, const
           folder};
 }
 
-std::string condense(int ranks, const std::string& scene, const std::string& folder, int expected_code = 0) {
-  return output_of(PALPATE_MPIRUN, arguments_of(ranks, scene, folder), expected_code, 100);
+std::string condense(int ranks, const std::string& scene, const std::string& folder, int expected_code = 0,
+                     const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments = arguments_of(ranks, scene, folder);
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return output_of(PALPATE_MPIRUN, arguments, expected_code, 100);
 }
 
 /// The scene of the paper's liver with another model and other lines put into its tool.
@@ -66,7 +69,8 @@ std::vector<Vec3> forces_of(const Scene& scene, const Condensed* condensed) {
   return forces;
 }
 
-void check_same_for_any_ranks(const std::string& model, const std::string& of_tool = "") {
+void check_same_for_any_ranks(const std::string& model, const std::string& of_tool = "",
+                              const std::vector<std::string>& more = {}) {
   const TemporaryFolder folder;
   const std::string file = scene_with(folder, model, of_tool);
   const Scene scene = read_scene(file);
@@ -74,7 +78,7 @@ void check_same_for_any_ranks(const std::string& model, const std::string& of_to
   for (const int ranks : {1, 2, 4}) {
     CAPTURE(ranks);
     const std::string out = (folder.path() / std::to_string(ranks)).string();
-    CHECK_THAT(condense(ranks, file, out), Contains("condensed into"));
+    CHECK_THAT(condense(ranks, file, out, 0, more), Contains("condensed into"));
     const Condensed condensed(out);
     const std::vector<Vec3> felt = forces_of(scene, &condensed);
     double largest = 0;
@@ -111,6 +115,14 @@ TEST_CASE("condense: so it is of tissue that swings") {
   check_same_for_any_ranks("reduced");
 }
 #endif
+
+TEST_CASE("condense: so it is by conjugate gradients, without a factor") {
+  const std::string small = "reach = [[0.0, 0.03, 0.03], [0.006, 0.06, 0.06]]\n";
+  check_same_for_any_ranks("quasi_static", small, {"--iterative"});
+#ifdef PALPATE_WITH_SPECTRA
+  check_same_for_any_ranks("reduced", small, {"--iterative"});
+#endif
+}
 
 TEST_CASE("condense: a second start finds what there is, and factors nothing") {
   const TemporaryFolder folder;

@@ -92,7 +92,8 @@ inline int held_until_fresh(const ModelCase& choice) {
   return exempt(choice, "slope in motion") ? 60 : 0;
 }
 
-/// One case for each thing that a row takes.
+/// One case for each thing that a row takes. A model that moves only what [cutting] says has tests of its
+/// own, which hold it against a body all at rest, and to the last bit against one all in motion.
 inline std::vector<ModelCase> model_cases() {
   using sim::ElasticLaw;
   using sim::ElementKind;

@@ -17,6 +17,20 @@ inline std::vector<double> lines(double from, double to, int n) {
   return at;
 }
 
+/// count + 1 lines, the first at `from`, `step` from each to the next. To the last bit they may be others
+/// than those of `lines`.
+inline std::vector<double> lines_by(double from, double step, int count) {
+  std::vector<double> at;
+  for (int i = 0; i <= count; ++i) at.push_back(from + i * step);
+  return at;
+}
+
+/// A block from the origin to `size` (m), in so many cells along x, y and z.
+inline sim::TetMesh corner_block(const Vec3& size, const std::array<int, 3>& cells) {
+  return sim::grid_block(lines(0, size[0], cells[0]), lines(0, size[1], cells[1]),
+                         lines(0, size[2], cells[2]));
+}
+
 /// The vertices moved by a map that keeps tetrahedra the right way round.
 inline sim::TetMesh mapped(sim::TetMesh mesh, const std::function<Vec3(const Vec3&)>& map) {
   for (Vec3& x : mesh.vertices) x = map(x);

@@ -8,6 +8,7 @@
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "tests/support/catch.h"
+#include "tests/support/solids.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace palpate;
@@ -17,14 +18,9 @@ namespace {
 
 constexpr double kTop = 0.03, kReachFrom = 0.029;  // m
 
-std::vector<double> lines(double from, double step, int count) {
-  std::vector<double> all;
-  for (int i = 0; i <= count; ++i) all.push_back(from + i * step);
-  return all;
-}
-
-TetMesh block() {
-  return grid_block(lines(-0.04, 0.01, 8), lines(0, 0.01, 3), lines(0, 0.01, 4));
+/// 80 x 30 x 40 mm, in cells of 10 mm, held at z = 0.
+TetMesh shelf() {
+  return grid_block(test::lines_by(-0.04, 0.01, 8), test::lines_by(0, 0.01, 3), test::lines_by(0, 0.01, 4));
 }
 
 /// The mesh as Gmsh MSH 2.2.
@@ -52,13 +48,13 @@ std::string model(const std::string& name) {
   return "\n[deformation]\nmodel = \"" + name + "\"\n";
 }
 
-/// A scene file around `block()`, explained.
+/// A scene file around `shelf()`, explained.
 struct Bench {
   test::TemporaryFolder folder;
   std::string text, file;
   Explanation explanation;
 
-  explicit Bench(const std::string& scene, const TetMesh& mesh = block()) : text(scene) {
+  explicit Bench(const std::string& scene, const TetMesh& mesh = shelf()) : text(scene) {
     folder.write("block.msh", as_gmsh(mesh));
     file = folder.write("scene.toml", text).string();
     explanation = explain(read_scene(file));
@@ -90,7 +86,7 @@ struct Bench {
 
 /// Free surface vertices of the block on triangles that come up to `from_y`, by the triangles themselves.
 double reachable_free(double from_y) {
-  const TetMesh mesh = block();
+  const TetMesh mesh = shelf();
   const Surface surface = boundary_surface(mesh);
   std::set<int> found;
   for (const Triangle& t : surface.triangles) {
@@ -131,7 +127,7 @@ TEST_CASE("explain: what a quasi-static scene with a reach builds, by line, and 
   CHECK(bench.explanation.scene.rate_where == bench.line("rate_hz"));
 
   CHECK(static_cast<double>(bench.built("compliance").bytes) == 72 * r * r);
-  const TetMesh mesh = block();
+  const TetMesh mesh = shelf();
   CHECK(bench.built("mesh").bytes == 24 * mesh.vertices.size() + 16 * mesh.tetrahedra.size());
   for (const BuiltPart& part : bench.explanation.built) CHECK(part.setup_ms >= 0);
 
@@ -183,7 +179,7 @@ TEST_CASE("explain: motion at rest, tangents and a tool's tree are left out, by 
   const LeftOut* motion = rests.left_out("motion");
   REQUIRE(motion != nullptr);
   CHECK(motion->why == rests.line("model = "));
-  const TetMesh mesh = block();
+  const TetMesh mesh = shelf();
   CHECK(motion->bytes.value() == 224.0 * static_cast<double>(mesh.vertices.size()));
   CHECK(rests.left_out("collision tree of tool 2")->why == rests.line("reach = "));
   CHECK(rests.left_out("collision tree of tool 1") == nullptr);
@@ -243,7 +239,7 @@ TEST_CASE("explain: what elasticity would need is named where the scene lacks it
 }
 
 TEST_CASE("explain: a variant whose compliance would fill 2 GB is computed, not built") {
-  const TetMesh plate = grid_block(lines(0, 0.002, 55), {0, 0.002}, lines(0, 0.002, 55));
+  const TetMesh plate = grid_block(test::lines_by(0, 0.002, 55), {0, 0.002}, test::lines_by(0, 0.002, 55));
   const Bench bench(kMesh + kFixed + kMaterial + model("quasi_static") + "compliance_tolerance = 0\n" +
                         kTool + "reach = [[0.09, -1, 0.09], [1, 1, 1]]\n",
                     plate);

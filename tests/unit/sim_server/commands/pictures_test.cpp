@@ -10,7 +10,7 @@ using namespace palpate::sim;
 namespace {
 
 /// A block of 60 x 40 x 60 mm, held at the bottom, y = 0.
-Scene block_scene(const std::string& model, ElementKind element) {
+Scene coarse_block_scene(const std::string& model, ElementKind element) {
   Material material{.young_modulus = 2e3, .poisson_ratio = 0.3};
   material.element = element;
   Scene scene = test::scene_of(material, Box{{-1, -1, -1}, {1, 1e-6, 1}}, 0.005);
@@ -18,7 +18,7 @@ Scene block_scene(const std::string& model, ElementKind element) {
   scene.rate_hz = 30;
   return scene;
 }
-TetMesh block() {
+TetMesh coarse_block() {
   const std::vector<double> x{0, 0.02, 0.04, 0.06}, y{0, 0.02, 0.04};
   return grid_block(x, y, x);
 }
@@ -27,8 +27,8 @@ TetMesh block() {
 
 TEST_CASE("pictures: stretched evenly, all of a body has the energy density of that strain") {
   for (const ElementKind element : {ElementKind::kLinear, ElementKind::kQuadratic}) {
-    const Scene scene = block_scene("implicit", element);
-    const Simulation simulation(scene, block());
+    const Scene scene = coarse_block_scene("implicit", element);
+    const Simulation simulation(scene, coarse_block());
     REQUIRE(facts_of(scene, simulation).fields == std::vector<std::string>{"strain_energy"});
     std::vector<Vec3> nodes = simulation.mesh().vertices;
     constexpr double kStrain = 0.01;
@@ -43,15 +43,15 @@ TEST_CASE("pictures: stretched evenly, all of a body has the energy density of t
 }
 
 TEST_CASE("pictures: a model that knows its surface alone offers no field") {
-  const Scene scene = block_scene("quasi_static", ElementKind::kLinear);
-  const Simulation simulation(scene, block());
+  const Scene scene = coarse_block_scene("quasi_static", ElementKind::kLinear);
+  const Simulation simulation(scene, coarse_block());
   CHECK(facts_of(scene, simulation).fields.empty());
 }
 
 TEST_CASE("pictures: what is held and what a tool reaches is told, and the loads are the tool's force") {
-  Scene scene = block_scene("quasi_static", ElementKind::kLinear);
+  Scene scene = coarse_block_scene("quasi_static", ElementKind::kLinear);
   scene.tools[0].reach = Box{{0, 0.03, 0}, {0.025, 0.05, 0.025}};
-  Simulation simulation(scene, block());
+  Simulation simulation(scene, coarse_block());
   const SceneFacts facts = facts_of(scene, simulation);
   for (std::size_t v = 0; v < facts.organ.rest.size(); ++v) {
     CHECK(((facts.organ.flags[v] & OrganShape::kFixed) != 0) == (facts.organ.rest[v][1] < 1e-6));

@@ -12,15 +12,10 @@ namespace {
 
 constexpr double kDt = 0.03, kRadius = 0.005;
 
-/// 80 x 30 x 40 mm, top at y = 0, held at the bottom, nodes 5 mm apart.
-TetMesh block() {
-  return test::soft_block({0.08, 0.03, 0.04}, {16, 6, 8});
-}
-
 Simulation organ(const Tool& tool) {
-  Scene scene = test::soft_block_scene(0.03, "quasi_static", ElasticLaw::kLinear, kRadius);
+  Scene scene = test::wide_block_scene(1, kRadius);
   scene.tools[0].shape = tool;
-  return Simulation(scene, block());
+  return Simulation(scene, test::wide_block());
 }
 
 const std::array<Tool, 4> kTools{Tool{kRadius}, Tool{kRadius, 0.3}, Tool{.radius = kRadius, .length = 0.015},

@@ -20,21 +20,15 @@ constexpr double kDt = 0.03, kRadius = 0.005, kMu = 0.3;
 
 using Places = std::vector<std::optional<ToolPose>>;
 
-/// A block of soft tissue, 80 x 30 x 40 mm, top at y = 0, held at the bottom, nodes 5 mm apart.
-TetMesh block() {
-  return test::soft_block({0.08, 0.03, 0.04}, {16, 6, 8});
-}
-
-Scene scene(std::size_t tools, double friction, const std::string& model = "quasi_static") {
-  Scene scene = test::soft_block_scene(0.03, model, ElasticLaw::kLinear, kRadius);
-  scene.tools[0].shape.friction = friction;
-  scene.tools.resize(tools, scene.tools.front());
+Scene rubbed_scene(std::size_t tools, double friction, const std::string& model = "quasi_static") {
+  Scene scene = test::wide_block_scene(tools, kRadius, model);
+  for (auto& tool : scene.tools) tool.shape.friction = friction;
   return scene;
 }
 
 struct Block : Simulation {
   explicit Block(std::size_t tools = 1, double friction = kMu, const std::string& model = "quasi_static")
-      : Simulation(scene(tools, friction, model), block()) {}
+      : Simulation(rubbed_scene(tools, friction, model), test::wide_block()) {}
   std::vector<ToolForce> at(const Places& places) {
     const auto forces = Simulation::step(test::inputs(places), kDt);
     return {forces.begin(), forces.end()};
@@ -158,9 +152,9 @@ TEST_CASE("friction: tools that change places feel the same, whoever comes first
 }
 
 TEST_CASE("friction: a tool with, and one without, on one organ") {
-  Scene mixed = scene(2, 0);
+  Scene mixed = rubbed_scene(2, 0);
   mixed.tools[1].shape.friction = kMu;
-  Simulation simulation(mixed, block());
+  Simulation simulation(mixed, test::wide_block());
   Block alone(1, kMu);
   Places places{{}, press(0, 0.002)};
   simulation.step(test::inputs(places), kDt);

@@ -1,4 +1,5 @@
 // Tools that grasp, and the organ on a spring.
+#include <array>
 #include <fmt/format.h>
 
 #include "common/error.h"
@@ -21,14 +22,11 @@ using namespace palpate::sim;
 namespace {
 
 constexpr double kDt = 0.03;
+constexpr std::array kCells{10, 4, 10};
 const Vec3 kPlace(0.001, 0.005, 0.0005);  // the tool touches the top, y = 0
 
-TetMesh block() {
-  return test::soft_block({0.03, 0.012, 0.03}, {10, 4, 10});
-}
-
-Scene block_scene(const std::string& model = "quasi_static") {
-  Scene scene = test::soft_block_scene(0.012, model);
+Scene grasping_scene(const std::string& model = "quasi_static") {
+  Scene scene = test::little_block_scene(model);
   scene.tools[0].grasp_place = kPlace;
   return scene;
 }
@@ -37,7 +35,7 @@ const Vec3 kStiffness(40, 50, 60);
 constexpr double kHardening = 0.07;
 
 Scene spring_scene() {
-  Scene scene = block_scene("spring");
+  Scene scene = grasping_scene("spring");
   scene.deformation.of<SpringSettings>().stiffness = kStiffness;
   scene.deformation.of<SpringSettings>().hardening_length = kHardening;
   return scene;
@@ -62,7 +60,7 @@ Mat3 slope_of(Simulation& organ, const Vec3& p) {
 }  // namespace
 
 TEST_CASE("a grasped organ on a spring pulls by the spring's formula, with its exact tangent") {
-  Simulation organ(spring_scene(), block());
+  Simulation organ(spring_scene(), test::little_block(kCells));
   test::Random random(5);
   for (int i = 0; i < 20; ++i) {
     const Vec3 x = random.vector(0.04);
@@ -81,7 +79,7 @@ TEST_CASE("a grasped organ on a spring pulls by the spring's formula, with its e
 }
 
 TEST_CASE("grasped tissue: linear, both ways, with the slope of the force as tangent") {
-  Simulation organ(block_scene(), block());
+  Simulation organ(grasping_scene(), test::little_block(kCells));
   const Vec3 x(0.002, 0.003, -0.001);  // up: away from the tissue
   const ToolForce once = organ.step(kPlace + x, kDt), twice = organ.step(kPlace + 2 * x, kDt);
   REQUIRE(once.contacts > 3);
@@ -100,18 +98,18 @@ TEST_CASE("grasped tissue: linear, both ways, with the slope of the force as tan
 }
 
 TEST_CASE("a grip on a wall that only answers to penetration has that stiffness") {
-  Scene scene = block_scene("rigid");
+  Scene scene = grasping_scene("rigid");
   scene.deformation.of<RigidSettings>().stiffness = 700;
-  Simulation wall(scene, block());
+  Simulation wall(scene, test::little_block(kCells));
   const Vec3 x(0.001, 0.002, -0.003);
   CHECK((wall.step(kPlace + x, kDt).force + 700 * x).norm() < 1e-5);
 }
 
 TEST_CASE("a button closes the jaws without a jump, and opens them") {
-  Scene scene = block_scene();
+  Scene scene = grasping_scene();
   scene.tools[0].grasp_place.reset();
   scene.tools[0].grasp_buttons = 6;
-  Simulation organ(scene, block());
+  Simulation organ(scene, test::little_block(kCells));
   const Vec3 pressed = kPlace - Vec3(0, 0.0015, 0), above = kPlace + Vec3(0, 0.002, 0);
   const ToolForce contact = organ.step(pressed, kDt);
   REQUIRE(contact.force[1] > 0.05);
@@ -134,10 +132,10 @@ TEST_CASE("a button closes the jaws without a jump, and opens them") {
 }
 
 TEST_CASE("served: the buttons of a tool state grasp, parts are told without effect, or allocation") {
-  Scene scene = block_scene();
+  Scene scene = grasping_scene();
   scene.tools[0].grasp_place.reset();
   scene.tools[0].grasp_buttons = 1;
-  Simulation organ(scene, block());
+  Simulation organ(scene, test::little_block(kCells));
   ServedTools tools(organ);
   std::vector<SessionInput> inputs{{7, {.tick = 1}, true}};
   auto& state = inputs[0].state;
@@ -168,12 +166,12 @@ TEST_CASE("served: the buttons of a tool state grasp, parts are told without eff
 }
 
 TEST_CASE("a grip that cannot be is refused in one line") {
-  Scene scene = block_scene();
+  Scene scene = grasping_scene();
   scene.tools[0].grasp_place = Vec3(0, 0.02, 0);
   scene.tools[0].grasp_where = "scene.toml:9";
   const auto set_up = [&](const Scene& wrong) {
     try {
-      const Simulation organ(wrong, block());
+      const Simulation organ(wrong, test::little_block(kCells));
     } catch (const Error& e) {
       return std::string(e.what());
     }
@@ -182,7 +180,7 @@ TEST_CASE("a grip that cannot be is refused in one line") {
   CHECK(
       set_up(scene) ==
       "scene.toml:9: no vertex of the surface that the tool may touch lies within 6.25 mm of `grasp_place`");
-  Scene spring = block_scene("spring");
+  Scene spring = grasping_scene("spring");
   spring.deformation.where = "scene.toml:5";
   spring.deformation.of<SpringSettings>().stiffness.reset();
   CHECK(set_up(spring) == "scene.toml:5: model \"spring\" needs `spring_stiffness`, [x, y, z] in N/m");

@@ -24,6 +24,7 @@ TEST_CASE("nothing outside sim_server/deformation knows the name of a model") {
       for (const DeformationModelRow& row : deformation_models()) {
         CAPTURE(file, row.name);
         CHECK(text.str().find('"' + std::string(row.name) + '"') == std::string::npos);
+        CHECK(text.str().find("\\\"" + std::string(row.name) + "\\\"") == std::string::npos);
       }
     }
   }

@@ -25,7 +25,7 @@ struct TwoBodies {
     std::iota(reachable.begin(), reachable.end(), 0);
     const ModelInputs inputs{scene, mesh, surface, fixed, reachable, kSilent};
     const std::vector<double> masses(mesh.tetrahedra.size(), 1);
-    const CondensedRest::Modes modes{.most = ClientModes::usual(), .keeps_shapes = true};
+    const CondensedRest::Modes modes{.most = ClientModes::by_default(), .keeps_shapes = true};
     const std::vector<char> less = from_to(-0.006, 0.006), more = from_to(-0.006, 0.016);
     before.emplace(inputs, masses, &less, modes);
     after.emplace(inputs, masses, &more, modes);

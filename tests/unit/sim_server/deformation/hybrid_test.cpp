@@ -9,6 +9,7 @@
 #include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
+#include "tests/support/cut_bodies.h"
 #include "tests/support/soft_block.h"
 #include "tests/support/tool_inputs.h"
 
@@ -42,13 +43,7 @@ Scene static_scene() {
 }
 
 TetMesh what_is_left(const Simulation& simulation) {
-  TetMesh rest = simulation.mesh();
-  rest.tetrahedra.clear();
-  for (std::size_t t = 0; t < simulation.mesh().tetrahedra.size(); ++t) {
-    if (simulation.resection()->left().is_left(static_cast<int>(t)))
-      rest.tetrahedra.push_back(simulation.mesh().tetrahedra[t]);
-  }
-  return rest;
+  return rest_of(simulation.mesh(), simulation.resection()->left());
 }
 
 ToolAnswer press(Simulation& simulation, const Vec3& p, bool hot = false) {

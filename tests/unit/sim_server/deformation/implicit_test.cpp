@@ -19,12 +19,8 @@ using namespace palpate::test;
 
 namespace {
 
-TetMesh block() {
-  return test::soft_block({0.04, 0.016, 0.04}, {10, 4, 10});
-}
-
-Scene block_scene(std::string_view model, ElasticLaw law = ElasticLaw::kLinear, double friction = 0) {
-  Scene scene = test::soft_block_scene(0.016, model, law);
+Scene damped_scene(std::string_view model, ElasticLaw law = ElasticLaw::kLinear, double friction = 0) {
+  Scene scene = shallow_block_scene(model, law);
   scene.deformation.of<RayleighDamping>().mass = 20;
   scene.deformation.of<RayleighDamping>().stiffness = 0.01;
   scene.tools[0].shape.friction = friction;
@@ -43,8 +39,8 @@ ToolForce pressed(Simulation& simulation, double depth, double dt = 1.0 / 30) {
 
 TEST_CASE("implicit: a sphere on a linear block is felt as in quasi-statics, with and without friction") {
   for (const double friction : {0.0, 0.3}) {
-    Simulation moving(block_scene("implicit", ElasticLaw::kLinear, friction), block()),
-        resting(block_scene("quasi_static", ElasticLaw::kLinear, friction), block());
+    Simulation moving(damped_scene("implicit", ElasticLaw::kLinear, friction), shallow_block()),
+        resting(damped_scene("quasi_static", ElasticLaw::kLinear, friction), shallow_block());
     const ToolForce a = pressed(moving, 0.003), b = pressed(resting, 0.003);
     CAPTURE(friction);
     CHECK(b.force.norm() > 0.3);
@@ -58,16 +54,16 @@ TEST_CASE(
     "implicit: in contact the other laws come to the force that statics give for where the surface is") {
   for (const ElasticLaw law :
        {ElasticLaw::kCorotational, ElasticLaw::kStVenantKirchhoff, ElasticLaw::kNeoHookean}) {
-    Scene scene = block_scene("implicit", law);
+    Scene scene = damped_scene("implicit", law);
     scene.deformation.of<ImplicitSettings>().tolerance = 1e-9;
     scene.deformation.of<ImplicitSettings>().max_newton = 30;
-    Simulation simulation(scene, block());
+    Simulation simulation(scene, shallow_block());
     // Saint Venant and Kirchhoff's collapses under more.
     const ToolForce felt = pressed(simulation, law == ElasticLaw::kStVenantKirchhoff ? 0.002 : 0.004);
     REQUIRE(felt.contacts > 0);
     // The same body with its surface held where it is now, but for what moves freely inside: the force that
     // the held surface takes is the tool's.
-    const Solid solid(block(), *scene.material);
+    const Solid solid(shallow_block(), *scene.material);
     std::vector<HeldAxes> held(solid.rest().size(), 0);
     std::vector<Vec3> moved(held.size(), Vec3::Zero());
     for (std::size_t v = 0; v < simulation.surface().vertices.size(); ++v) {
@@ -88,10 +84,10 @@ TEST_CASE(
 }
 
 TEST_CASE("implicit: the force does not depend on how old the factor is") {
-  Scene scene = block_scene("implicit", ElasticLaw::kCorotational);
+  Scene scene = damped_scene("implicit", ElasticLaw::kCorotational);
   scene.deformation.of<ImplicitSettings>().tolerance = 1e-8;
   scene.deformation.of<ImplicitSettings>().max_newton = 60;
-  Simulation once(scene, block()), again(scene, block());
+  Simulation once(scene, shallow_block()), again(scene, shallow_block());
   // The second has been bent elsewhere before: its factor is another's.
   for (int i = 0; i < 30; ++i) again.step({Vec3(-0.012, 0.001, -0.01)}, 1.0 / 30);
   for (int i = 0; i < 150; ++i) again.step({Vec3(0, 0.03, 0)}, 1.0 / 30);
@@ -104,7 +100,7 @@ TEST_CASE("implicit: with a factor of the background the force is that of a fact
   using Solver = DynamicsSettings::Solver;
   // Pressed and drawn along, then let go; the largest difference of forces, and the largest force, N.
   const auto drawn = [](Scene scene, std::vector<Vec3>& forces) {
-    Simulation simulation(scene, block());
+    Simulation simulation(scene, shallow_block());
     for (int i = 0; i < 50; ++i) {
       const double down = i < 40 ? std::min(1.0, i / 10.0) * 0.0045 : -0.01,
                    along = std::max(0, i - 10) * 2e-4;
@@ -117,7 +113,7 @@ TEST_CASE("implicit: with a factor of the background the force is that of a fact
   for (const ElasticLaw law : {ElasticLaw::kCorotational, ElasticLaw::kNeoHookean}) {
     // With friction the way there counts, which looks at the surface at other moments.
     for (const double friction : {0.0, 0.2}) {
-      Scene scene = block_scene("implicit", law, friction);
+      Scene scene = damped_scene("implicit", law, friction);
       const DeformationSettings usual = scene.deformation;
       scene.deformation.of<ImplicitSettings>().tolerance = 1e-9;
       scene.deformation.of<ImplicitSettings>().max_newton = 60;
@@ -144,15 +140,15 @@ TEST_CASE("implicit: with a factor of the background the force is that of a fact
 }
 
 TEST_CASE("implicit: the tangent is what the force changes by over one step") {
-  const Scene scene = block_scene("implicit");
-  Simulation simulation(scene, block());
+  const Scene scene = damped_scene("implicit");
+  Simulation simulation(scene, shallow_block());
   const ToolForce before = pressed(simulation, 0.003);
   const Vec3 place(0.001, 0.0025 - 0.0005, 0.0015);
   for (int axis = 0; axis < 3; ++axis) {
     const double h = 1e-6;
     Vec3 change[2];
     for (const int side : {0, 1}) {
-      Simulation other(scene, block());
+      Simulation other(scene, shallow_block());
       pressed(other, 0.003);
       const Vec3 at = simulation.tool(0).place() + (side == 0 ? -h : h) * Vec3::Unit(axis);
       change[side] = other.step({at}, 1.0 / 30).force;
@@ -163,12 +159,12 @@ TEST_CASE("implicit: the tangent is what the force changes by over one step") {
 }
 
 TEST_CASE("implicit: under its own weight it begins at rest and stays there") {
-  Scene scene = block_scene("implicit", ElasticLaw::kNeoHookean);
+  Scene scene = damped_scene("implicit", ElasticLaw::kNeoHookean);
   Load weight{};
   weight.kind = Load::Kind::kGravity;
   weight.vector = Vec3(9.81, 0, 0);
   scene.loads.push_back(weight);
-  Simulation simulation(scene, block());
+  Simulation simulation(scene, shallow_block());
   const std::vector<Vec3> begin(simulation.positions().begin(), simulation.positions().end());
   double sagged = 0;
   for (std::size_t v = 0; v < begin.size(); ++v)
@@ -248,7 +244,7 @@ TEST_CASE("implicit: a body that a displacement alone holds is served in its sha
   };
   const Vec3 shift(0, 0.002, 0);
   scene.loads = {held(-0.021, -0.019, shift), held(0.019, 0.021, shift)};
-  Simulation simulation(scene, block());
+  Simulation simulation(scene, shallow_block());
   for (int i = 0; i < 3; ++i) {
     double most = 0;
     for (std::size_t v = 0; v < simulation.rest().size(); ++v)
@@ -262,7 +258,7 @@ TEST_CASE("implicit: two blocks that share an edge are refused, with the hinge a
   const auto either = [](const Vec3& x) { return (x.x() < 0) == (x.y() < -0.008); };
   const TetMesh crossed = carved(lines(-0.02, 0.02, 4), lines(-0.016, 0, 4), lines(-0.02, 0.02, 2), either);
   for (const ElasticLaw law : {ElasticLaw::kLinear, ElasticLaw::kNeoHookean}) {
-    CHECK_THROWS_WITH(Simulation(block_scene("implicit", law), crossed),
+    CHECK_THROWS_WITH(Simulation(damped_scene("implicit", law), crossed),
                       Catch::Contains("hang on a hinge at 0,-0.008,"));
   }
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <complex>
 #include <numbers>
 
@@ -30,17 +31,7 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kTau = 2 * std::numbers::pi;
-const Box kBottom{Vec3(-1, -1, -1), Vec3(1, -0.0159, 1)};
-
-TetMesh block() {
-  return test::soft_block({0.04, 0.016, 0.04}, {6, 3, 6});
-}
-
-Scene block_scene(std::string_view model) {
-  Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4}, kBottom, 0.005);
-  scene.deformation.model = model;
-  return scene;
-}
+constexpr std::array kCells{6, 3, 6};
 
 double way_of(const SupportMotion& motion, double t) {
   return motion.amplitude * std::sin(kTau * t / motion.period + motion.phase);
@@ -153,11 +144,12 @@ TEST_CASE("moving supports: implicit steps come to the oscillator, of first orde
 
 TEST_CASE("moving supports: a whole block swings as a dense complex solution says") {
   for (const std::string_view model : built({"tensor_mass", "reduced"})) {
-    Scene scene = block_scene(model);
+    Scene scene = shallow_block_scene(model);
     scene.deformation.of<RayleighDamping>().mass = 5;
     scene.deformation.of<RayleighDamping>().stiffness = 3e-4;
-    const ElasticTensors tensors(block(), *scene.material, fixed_vertices(scene, block()));
-    const DenseTissue dense(block(), *scene.material, tensors);
+    const ElasticTensors tensors(shallow_block(kCells), *scene.material,
+                                 fixed_vertices(scene, shallow_block(kCells)));
+    const DenseTissue dense(shallow_block(kCells), *scene.material, tensors);
     const double slowest = std::sqrt(dense.squares[0]);
     for (const double ratio : {0.1, 1.0, 2.3}) {
       const SupportMotion motion{Vec3(0.6, 0, 0.8), 0.001, kTau / (ratio * slowest), 1.1};
@@ -170,7 +162,7 @@ TEST_CASE("moving supports: a whole block swings as a dense complex solution say
       const Eigen::VectorXd e = motion.direction.replicate(tensors.vertices(), 1);
       const Eigen::VectorXcd answer =
           matrix.lu().solve(Complex(1, w * 3e-4) * (dense.stiffness * e).cast<Complex>());
-      const Bench bench(scene, block());
+      const Bench bench(scene, shallow_block(kCells));
       for (int step = 1; step < 4; ++step) {
         const FreeMotion moved = bench.model->free_motion(1.0 / 30);
         const Eigen::VectorXd u =
@@ -192,14 +184,15 @@ TEST_CASE("moving supports: a whole block swings as a dense complex solution say
 TEST_CASE("moving supports: slow motion leads all models where statics stand, stretched or as one") {
   for (const bool as_one : {false, true}) {
     const auto scene_with = [&](std::string_view model) {
-      Scene scene = block_scene(model);
+      Scene scene = shallow_block_scene(model);
       scene.fixed[0].motions = {{Vec3(0.6, 0.8, 0), 0.003, 20, 0.5}};
       if (!as_one) scene.fixed.push_back({{Box{Vec3(0.0199, -0.015, -1), Vec3(1, 1, 1)}, "", "test"}});
       return scene;
     };
     const SupportMotion motion = scene_with("quasi_static").fixed[0].motions[0];
     for (const std::string_view model : built({"tensor_mass", "implicit", "reduced"})) {
-      const Bench moving(scene_with(model), block()), still(scene_with("quasi_static"), block());
+      const Bench moving(scene_with(model), shallow_block(kCells)),
+          still(scene_with("quasi_static"), shallow_block(kCells));
       for (int step = 0; step < 300; ++step) {
         const double dt = step == 0 ? 0 : 1.0 / 30;
         const FreeMotion a = moving.model->free_motion(dt), b = still.model->free_motion(dt);

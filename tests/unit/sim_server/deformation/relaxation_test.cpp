@@ -2,6 +2,7 @@
 // same function R(t) = 1 - sum g_i (1 - exp(-t / tau_i)), so where the shape of the body is held and inertia
 // is negligible, so does every force, under any law: the tissue is in the jaws of a tool, as a sphere's area
 // of contact would change.
+#include <array>
 #include <cmath>
 
 #include "sim_server/deformation/implicit.h"
@@ -18,11 +19,8 @@ using namespace palpate::test;
 
 namespace {
 
+constexpr std::array kCells{6, 3, 6};
 const Vec3 kPlace(0.001, 0.005, 0.0005);  // the tool touches the top, y = 0
-
-TetMesh block() {
-  return test::soft_block({0.03, 0.012, 0.03}, {6, 3, 6});
-}
 
 Scene grasped(std::string_view model, ElasticLaw law, std::vector<Relaxation> relaxations, double rate_hz) {
   Scene scene = scene_of({.young_modulus = 1e4,
@@ -63,14 +61,14 @@ TEST_CASE("relaxation: the force of tissue that is grasped and held away fades a
   constexpr double kRate = 30;
   for (const ElasticLaw law : {ElasticLaw::kLinear, ElasticLaw::kCorotational, ElasticLaw::kStVenantKirchhoff,
                                ElasticLaw::kNeoHookean}) {
-    Simulation elastic(grasped("implicit", law, {}, kRate), block());
+    Simulation elastic(grasped("implicit", law, {}, kRate), little_block(kCells));
     Vec3 full = Vec3::Zero();
     for (int i = 0; i < 5; ++i) full = elastic.step(kPlace + away, 1 / kRate).force;
     if (law == ElasticLaw::kLinear) {
-      Simulation still(grasped("quasi_static", law, {}, kRate), block());
+      Simulation still(grasped("quasi_static", law, {}, kRate), little_block(kCells));
       CHECK((still.step(kPlace + away, 1 / kRate).force - full).norm() < 1e-6 * full.norm());
     }
-    Simulation simulation(grasped("implicit", law, kSeries, kRate), block());
+    Simulation simulation(grasped("implicit", law, kSeries, kRate), little_block(kCells));
     for (int i = 1; i <= 120; ++i) {
       const Vec3 force = simulation.step(kPlace + away, 1 / kRate).force;
       const double t = i / kRate;
@@ -87,7 +85,7 @@ TEST_CASE(
   // Of one term: u(t) = u_0 (1 - g exp(-(1 - g) t / tau)) / (1 - g), by Laplace's transform of R. A load
   // comes evenly within its first step: as if all at once in the middle of it.
   const double share = 0.4, time = 0.3, end = 0.6;
-  const TetMesh mesh = block();
+  const TetMesh mesh = little_block(kCells);
   const Surface surface = boundary_surface(mesh);
   const auto moved_by_the_end = [&](std::vector<Relaxation> relaxations, double rate_hz) {
     Scene scene = grasped("implicit", ElasticLaw::kLinear, std::move(relaxations), rate_hz);

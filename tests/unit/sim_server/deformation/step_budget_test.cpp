@@ -15,15 +15,11 @@ using namespace palpate::sim;
 
 namespace {
 
-const Vec3 kSize(0.04, 0.016, 0.04);
-
-TetMesh block() {
-  return test::soft_block(kSize, {10, 4, 10});
-}
+constexpr double kDepth = 0.016;  // m, of test::shallow_block
 
 /// `budget_ms` 0: none.
 Scene scene_of(double budget_ms, DynamicsSettings::Solver solver = DynamicsSettings::Solver::kQuasiNewton) {
-  Scene scene = test::soft_block_scene(kSize[1], "implicit", ElasticLaw::kCorotational);
+  Scene scene = test::shallow_block_scene("implicit", ElasticLaw::kCorotational);
   scene.deformation.of<ImplicitSettings>().solver = solver;
   scene.deformation.of<ImplicitSettings>().budget_ms = budget_ms;
   scene.deformation.of<ImplicitSettings>().max_newton = 30;
@@ -44,7 +40,7 @@ StepCosts costs_of(const TetMesh& mesh) {
   const Solid solid(mesh, *scene_of(0).material);
   std::vector<int> below;
   for (int v = 0; v < solid.nodes(); ++v) {
-    if (solid.rest()[v][1] < 1e-9 - kSize[1]) below.push_back(v);
+    if (solid.rest()[v][1] < 1e-9 - kDepth) below.push_back(v);
   }
   const FreeDofs dofs(solid.nodes(), below);
   return {solid, NewtonMatrix(solid, dofs, {}, "test")};
@@ -53,8 +49,8 @@ StepCosts costs_of(const TetMesh& mesh) {
 }  // namespace
 
 TEST_CASE("budget of a step: what it costs is told from counts") {
-  const StepCosts costs = costs_of(block());
-  const double elements = static_cast<double>(block().tetrahedra.size());
+  const StepCosts costs = costs_of(test::shallow_block());
+  const double elements = static_cast<double>(test::shallow_block().tetrahedra.size());
   CHECK(costs.evaluation == Approx(80e-6 * elements));  // ns an element, one point each
   CHECK(costs.factor > 0.8e-3 * elements);              // us an element to assemble, and the numbers
   CHECK(costs.columns(0) == 0);
@@ -64,7 +60,7 @@ TEST_CASE("budget of a step: what it costs is told from counts") {
 }
 
 TEST_CASE("budget of a step: an ample one changes nothing, to the last bit", "[threads]") {
-  Simulation without(scene_of(0), block()), ample(scene_of(1e4), block());
+  Simulation without(scene_of(0), test::shallow_block()), ample(scene_of(1e4), test::shallow_block());
   pressed_and_drawn(without);
   pressed_and_drawn(ample);
   CHECK(ample.state_hash() == without.state_hash());
@@ -73,8 +69,9 @@ TEST_CASE("budget of a step: an ample one changes nothing, to the last bit", "[t
 
 TEST_CASE("budget of a step: a small one leaves steps before they have converged, which make it up at rest",
           "[threads]") {
-  const StepCosts costs = costs_of(block());
-  Simulation without(scene_of(0), block()), small(scene_of(1.3 * costs.least(true)), block());
+  const StepCosts costs = costs_of(test::shallow_block());
+  Simulation without(scene_of(0), test::shallow_block()),
+      small(scene_of(1.3 * costs.least(true)), test::shallow_block());
   const ToolForce wanted = pressed_and_drawn(without), felt = pressed_and_drawn(small);
   CHECK(small.budget_use().steps > 3);
   CHECK(small.budget_use().largest_residual > scene_of(0).deformation.of<ImplicitSettings>().tolerance);
@@ -87,7 +84,7 @@ namespace {
 
 /// A block held from below, in implicit dynamics.
 struct Sheared {
-  TetMesh mesh = block();
+  TetMesh mesh = test::shallow_block();
   Solid solid{mesh, *scene_of(0).material};
   StepCosts costs = costs_of(mesh);
   std::vector<HeldAxes> held = std::vector<HeldAxes>(mesh.vertices.size(), 0);
@@ -95,7 +92,7 @@ struct Sheared {
 
   Sheared() {
     for (std::size_t v = 0; v < held.size(); ++v) {
-      if (mesh.vertices[v][1] < 1e-9 - kSize[1]) held[v] = kAllAxes;
+      if (mesh.vertices[v][1] < 1e-9 - kDepth) held[v] = kAllAxes;
     }
   }
 };
@@ -127,7 +124,7 @@ TEST_CASE("budget of a step: no iteration begins that it has no room for") {
       Dynamics& dynamics = step.dynamics;
       // Twisted, so that the factor is of elsewhere, and conjugate gradients take many iterations with it.
       for (Vec3& x : dynamics.mutable_position())
-        x = Eigen::AngleAxisd(150 * (x[1] + kSize[1]), Vec3::UnitY()) * x;
+        x = Eigen::AngleAxisd(150 * (x[1] + kDepth), Vec3::UnitY()) * x;
       int iterations = 0;
       while (dynamics.affords_iteration() && iterations < 1000) {
         dynamics.iterate(body.load);
@@ -175,16 +172,17 @@ TEST_CASE("budget of a step: no factor is made that it has no room for, not even
 TEST_CASE("budget of a step: the linear law, which takes one iteration, has none to bound") {
   Scene scene = scene_of(1e4, DynamicsSettings::Solver::kDirect);
   scene.material->law = ElasticLaw::kLinear;
-  CHECK_THROWS_WITH(Simulation(scene, block()), Catch::Contains("law \"linear\" takes one; leave it out"));
+  CHECK_THROWS_WITH(Simulation(scene, test::shallow_block()),
+                    Catch::Contains("law \"linear\" takes one; leave it out"));
   scene.deformation.of<ImplicitSettings>().budget_ms = 0;
-  CHECK_NOTHROW(Simulation(scene, block()));
+  CHECK_NOTHROW(Simulation(scene, test::shallow_block()));
 }
 
 TEST_CASE("budget of a step: one that has no room for the least step is refused, with what would help") {
-  const StepCosts costs = costs_of(block());
+  const StepCosts costs = costs_of(test::shallow_block());
   const auto refused = [](double budget_ms, DynamicsSettings::Solver solver) {
     try {
-      Simulation(scene_of(budget_ms, solver), block());
+      Simulation(scene_of(budget_ms, solver), test::shallow_block());
       return std::string();
     } catch (const Error& error) {
       return std::string(error.what());

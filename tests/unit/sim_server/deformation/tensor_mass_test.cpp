@@ -13,6 +13,7 @@
 #include "tests/support/dense_tissue.h"
 #include "tests/support/scenes.h"
 #include "tests/support/soft_block.h"
+#include "tests/support/solids.h"
 #include "tests/support/tool_inputs.h"
 
 using namespace palpate;
@@ -22,27 +23,11 @@ namespace {
 
 constexpr double kPeriod = 1.0 / 30;
 
-std::vector<double> lines(double from, double step, int count) {
-  std::vector<double> all;
-  for (int i = 0; i <= count; ++i) all.push_back(from + i * step);
-  return all;
-}
-
-/// A soft block, top at y = 0, 40 x 16 x 40 mm, held at its bottom.
-TetMesh block() {
-  return test::soft_block({0.04, 0.016, 0.04}, {10, 4, 10});
-}
-
-Scene block_scene(std::string_view model) {
-  Scene scene = test::soft_block_scene(0.016, model);
-  return scene;
-}
-
 /// Models without a simulation: all of the surface within reach, or its top.
 struct Bench {
-  TetMesh mesh = block();
+  TetMesh mesh = test::shallow_block();
   Surface surface = boundary_surface(mesh);
-  Scene scene = block_scene("tensor_mass");
+  Scene scene = test::shallow_block_scene("tensor_mass");
   std::vector<int> fixed = fixed_vertices(scene, mesh), reachable;
 
   Bench() {
@@ -219,7 +204,8 @@ TEST_CASE("tensor_mass: what cannot be is refused in one line") {
   CHECK(refusal(bench) == "test: model \"tensor_mass\" needs a [material] section");
   Bench large;
   large.scene.deformation.of<ComplianceTolerance>().relative = 0;
-  large.mesh = grid_block(lines(0, 0.001, 60), lines(-0.016, 0.008, 2), lines(0, 0.001, 130));
+  large.mesh = grid_block(test::lines_by(0, 0.001, 60), test::lines_by(-0.016, 0.008, 2),
+                          test::lines_by(0, 0.001, 130));
   large.surface = boundary_surface(large.mesh);
   large.reachable.clear();
   for (int v = 0; v < static_cast<int>(large.surface.vertices.size()); ++v) large.reachable.push_back(v);
@@ -228,7 +214,8 @@ TEST_CASE("tensor_mass: what cannot be is refused in one line") {
 }
 
 TEST_CASE("a sphere on a block of tensor_mass: the force comes to that of quasi_static") {
-  Simulation moving(block_scene("tensor_mass"), block()), still(block_scene("quasi_static"), block());
+  Simulation moving(test::shallow_block_scene("tensor_mass"), test::shallow_block()),
+      still(test::shallow_block_scene("quasi_static"), test::shallow_block());
   const Vec3 pressed(0.001, 0.0035, 0.002);  // 1.5 mm deep at rest
   const ToolForce expected = still.step(pressed, kPeriod);
   REQUIRE(expected.force[1] > 0.1);
@@ -248,7 +235,7 @@ TEST_CASE("a sphere on a block of tensor_mass: the force comes to that of quasi_
 
 TEST_CASE("tensor_mass: the tangent is the slope of the force over a period") {
   const auto felt_at = [](const Vec3& last) {
-    Simulation simulation(block_scene("tensor_mass"), block());
+    Simulation simulation(test::shallow_block_scene("tensor_mass"), test::shallow_block());
     for (int i = 0; i < 5; ++i)
       simulation.step(Vec3(0.001 + 0.0004 * i, 0.0045 - 0.0003 * i, 0.002), kPeriod);
     return simulation.step(last, kPeriod);
@@ -266,7 +253,8 @@ TEST_CASE("tensor_mass: the tangent is the slope of the force over a period") {
 }
 
 TEST_CASE("tensor_mass: a step of the simulation does not allocate, and equal runs are equal") {
-  Simulation one(block_scene("tensor_mass"), block()), two(block_scene("tensor_mass"), block());
+  Simulation one(test::shallow_block_scene("tensor_mass"), test::shallow_block()),
+      two(test::shallow_block_scene("tensor_mass"), test::shallow_block());
   const auto step = [](Simulation& s, int i) { s.step(Vec3(0.0002 * i, 0.004, 0.002), kPeriod); };
   std::size_t allocations = 1;
   {
@@ -281,11 +269,12 @@ TEST_CASE("tensor_mass: a step of the simulation does not allocate, and equal ru
 
 TEST_CASE("two tools on tensor_mass come to rest as on quasi_static, and let go") {
   const auto two_tools = [](std::string_view model) {
-    Scene scene = block_scene(model);
+    Scene scene = test::shallow_block_scene(model);
     scene.tools.push_back(scene.tools[0]);
     return scene;
   };
-  Simulation moving(two_tools("tensor_mass"), block()), still(two_tools("quasi_static"), block());
+  Simulation moving(two_tools("tensor_mass"), test::shallow_block()),
+      still(two_tools("quasi_static"), test::shallow_block());
   const std::vector<std::optional<ToolPose>> places{ToolPose(Vec3(-0.007, 0.004, 0)),
                                                     ToolPose(Vec3(0.006, 0.0035, 0.001))};
   const auto expected = still.step(test::inputs(places), kPeriod);
@@ -302,7 +291,8 @@ TEST_CASE(
     "tensor_mass: at rates near that of its sub-steps a tool at rest feels a steady force, that of statics") {
   Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.45},
                                {Vec3(-1, -1, -1), Vec3(1, -0.0149, 1)}, 0.004);
-  const TetMesh mesh = grid_block(lines(-0.015, 0.005, 6), lines(-0.015, 0.005, 3), lines(-0.015, 0.005, 6));
+  const TetMesh mesh = grid_block(test::lines_by(-0.015, 0.005, 6), test::lines_by(-0.015, 0.005, 3),
+                                  test::lines_by(-0.015, 0.005, 6));
   const Vec3 place(0.001, 0.001, 0.002);
   Simulation still(scene, mesh);
   const Vec3 expected = still.step(place, 1).force;

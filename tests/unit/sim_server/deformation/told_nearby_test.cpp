@@ -20,13 +20,13 @@ namespace {
 
 constexpr double kRate = 50;  // Hz
 
-Scene block_scene(const char* model) {
-  Scene scene = soft_block_scene(0.02, model, ElasticLaw::kLinear, 0.003);
+Scene uncut_scene(const char* model) {
+  Scene scene = deep_block_scene(model, 0.003);
   scene.rate_hz = kRate;
   return scene;
 }
 Scene cut_scene(const char* model) {
-  Scene scene = block_scene(model);
+  Scene scene = uncut_scene(model);
   scene.deformation.of<RayleighDamping>() = {.mass = 40, .stiffness = 1e-4};
   scene.deformation.of<ClientModes>().modes = 20;
   scene.tools[0].cut_buttons = 2;
@@ -35,9 +35,10 @@ Scene cut_scene(const char* model) {
     scene.cutting->plan = CutPlan{.point = Vec3::Zero(), .normal = Vec3::UnitX(), .within = 0.011};
   return scene;
 }
-/// Vertices inside moved at random: some elements are far stiffer than others, and get more mass.
-TetMesh block(double moved = 0, const std::array<int, 3>& cells = {8, 4, 8}) {
-  TetMesh mesh = soft_block(Vec3(0.04, 0.02, 0.04), cells);
+/// Vertices inside moved at random, by up to so much along each axis (m): some elements are far stiffer than
+/// others, and get more mass.
+TetMesh stirred_block(double moved) {
+  TetMesh mesh = deep_block();
   Random random(7);
   for (Vec3& x : mesh.vertices) {
     const Vec3 by = random.vector(moved);
@@ -81,7 +82,7 @@ Eigen::MatrixXd told_compliance(const Simulation& simulation, std::span<const in
 }
 /// The same by the static model of a mesh that never was another.
 Eigen::MatrixXd static_compliance(const TetMesh& mesh, std::span<const int> nodes) {
-  const Simulation still(block_scene("quasi_static"), mesh);
+  const Simulation still(uncut_scene("quasi_static"), mesh);
   const std::vector<int>& of = still.surface().vertices;
   std::vector<int> vertices;
   for (const int node : nodes)
@@ -148,7 +149,7 @@ TEST_CASE("a surface that can be cut: where a tool holds still, its modes stand 
   for (const auto& [model, moved] :
        {std::pair("tensor_mass", 0.0), std::pair("tensor_mass", 0.0013), std::pair("hybrid", 0.0013)}) {
     CAPTURE(model, moved);
-    Told told(block(moved), model);
+    Told told(stirred_block(moved), model);
     const ToolAnswer& answer = told.go_on(150);
     REQUIRE(answer.contacts > 0);
     REQUIRE(answer.modes != nullptr);
@@ -165,7 +166,7 @@ TEST_CASE("a surface that can be cut: where a tool holds still, its modes stand 
 TEST_CASE("a surface that can be cut: it moves to where its told modes and the rest's compliance lead") {
   for (const char* model : {"tensor_mass", "hybrid"}) {
     CAPTURE(model);
-    Told told(block(), model);
+    Told told(deep_block(), model);
     int steps = 0;  // it holds still, and what is told begins as it stands
     while (told.step().modes == nullptr && steps < 60) ++steps;
     double off = 0, largest = 0;
@@ -183,7 +184,7 @@ TEST_CASE("a surface that can be cut: it moves to where its told modes and the r
 }
 
 TEST_CASE("a surface that can be cut: what is told of it, before and after, is a static model's compliance") {
-  const TetMesh mesh = block();
+  const TetMesh mesh = deep_block();
   Told told{TetMesh(mesh)};
   const std::vector<Removal> removals = some_removed(mesh);
   REQUIRE(removals.size() == 6);
@@ -206,7 +207,7 @@ TEST_CASE("a surface that can be cut: what is told of it, before and after, is a
 }
 
 TEST_CASE("a surface that can be cut is told no more in the step that cuts it, and anew at a fixed step") {
-  const TetMesh mesh = block();
+  const TetMesh mesh = deep_block();
   std::vector<std::uint32_t> versions[2];
   for (int run = 0; run < 2; ++run) {
     Told told{TetMesh(mesh)};
@@ -231,7 +232,7 @@ TEST_CASE("a surface that can be cut is told no more in the step that cuts it, a
 }
 
 TEST_CASE("a surface that can be cut: cut again while it is looked at, it is told of what is left at last") {
-  const TetMesh mesh = block();
+  const TetMesh mesh = deep_block();
   Told told{TetMesh(mesh)};
   std::vector<Removal> removals = some_removed(mesh);
   for (std::size_t k = 0; k < removals.size(); ++k) removals[k].t = 1 + 0.16 * static_cast<double>(k);
@@ -252,7 +253,7 @@ TEST_CASE("a surface that can be cut: cut again while it is looked at, it is tol
 }
 
 TEST_CASE("a surface that can be cut: compliance follows the tool within one model, its pages come later") {
-  Told told(block(0, {24, 4, 24}));  // 1538 vertices on the surface: of 250 it is told
+  Told told(deep_block({24, 4, 24}));  // 1538 vertices on the surface: of 250 it is told
   told.input.pose = ToolPose(Vec3(-0.008, 0.003, 0));
   told.go_on(60);
   SurfacePager here(told.simulation, 0);
@@ -281,7 +282,7 @@ TEST_CASE("a surface that can be cut: compliance follows the tool within one mod
 }
 
 TEST_CASE("a surface that can be cut: who is in a hurry waits for nothing, and is told it later") {
-  const TetMesh mesh = block();
+  const TetMesh mesh = deep_block();
   Told told{TetMesh(mesh)};
   told.simulation.hurry();
   const auto told_by_now = [&] { return told.step().modes != nullptr; };

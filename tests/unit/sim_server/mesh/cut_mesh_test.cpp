@@ -1,62 +1,18 @@
 #include "sim_server/mesh/cut_mesh.h"
 
 #include <algorithm>
-#include <map>
 #include <random>
 
 #include "sim_server/mesh/pieces.h"
-#include "sim_server/mesh/shapes.h"
 #include "tests/support/catch.h"
+#include "tests/support/cut_bodies.h"
+#include "tests/support/solids.h"
 
 using namespace palpate;
 using namespace palpate::sim;
+using namespace palpate::test;
 
 namespace {
-
-/// What is left, as a mesh of its own with the same vertices.
-TetMesh rest_of(const TetMesh& mesh, const CutMesh& cut) {
-  TetMesh rest{.vertices = mesh.vertices, .tetrahedra = {}, .surface_tags = {}};
-  for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) {
-    if (cut.is_left(t)) rest.tetrahedra.push_back(mesh.tetrahedra[t]);
-  }
-  return rest;
-}
-
-/// Triangles by mesh vertices, each with its smallest corner first, in order.
-std::vector<Triangle> in_order(std::vector<Triangle> triangles) {
-  for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-  std::sort(triangles.begin(), triangles.end());
-  return triangles;
-}
-std::vector<Triangle> by_mesh_vertices(const Surface& surface) {
-  std::vector<Triangle> triangles = surface.triangles;
-  for (Triangle& t : triangles) {
-    for (int& v : t) v = surface.vertices[v];
-  }
-  return triangles;
-}
-
-/// How many more triangles go along an edge one way than the other, for those edges where any do.
-int open_edges(const std::vector<Triangle>& triangles) {
-  std::map<std::pair<int, int>, int> along;
-  for (const Triangle& t : triangles) {
-    for (int i = 0; i < 3; ++i) {
-      const int a = t[i], b = t[(i + 1) % 3];
-      along[std::minmax(a, b)] += a < b ? 1 : -1;
-    }
-  }
-  return static_cast<int>(std::ranges::count_if(along, [](const auto& edge) { return edge.second != 0; }));
-}
-
-/// From 0 to n, in steps of `size` / n.
-std::vector<double> lines(int n, double size) {
-  std::vector<double> at;
-  for (int i = 0; i <= n; ++i) at.push_back(size / n * i);
-  return at;
-}
-TetMesh block(const Vec3& size, const std::array<int, 3>& cells) {
-  return grid_block(lines(cells[0], size.x()), lines(cells[1], size.y()), lines(cells[2], size.z()));
-}
 
 struct Cutting {
   explicit Cutting(TetMesh made) : mesh(std::move(made)) {}
@@ -89,7 +45,7 @@ std::vector<std::vector<int>> flooded_pieces(const TetMesh& mesh, const CutMesh&
 }  // namespace
 
 TEST_CASE("the surface of what is left is that of a mesh of what is left, after each removal") {
-  Cutting body(block(Vec3(3, 2, 2), {3, 2, 2}));
+  Cutting body(test::corner_block(Vec3(3, 2, 2), {3, 2, 2}));
   std::vector<int> order(body.mesh.tetrahedra.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
   std::shuffle(order.begin(), order.end(), std::minstd_rand(7));
@@ -112,7 +68,7 @@ TEST_CASE("the surface of what is left is that of a mesh of what is left, after 
 }
 
 TEST_CASE("only what may be removed gives the surface its vertices") {
-  TetMesh mesh = block(Vec3(4, 4, 4), {4, 4, 4});
+  TetMesh mesh = test::corner_block(Vec3(4, 4, 4), {4, 4, 4});
   Surface surface = boundary_surface(mesh);
   const std::size_t outside = surface.vertices.size();
   std::vector<Removable> removable(mesh.tetrahedra.size(), Removable::kNever);
@@ -125,7 +81,7 @@ TEST_CASE("only what may be removed gives the surface its vertices") {
 }
 
 TEST_CASE("the area of a cut is that of the walls of a slit, and none once all is gone") {
-  Cutting body(block(Vec3(4, 1, 1), {4, 2, 2}));
+  Cutting body(test::corner_block(Vec3(4, 1, 1), {4, 2, 2}));
   const auto remove = [&](double from, double to) {
     std::vector<int> gone;
     for (int t = 0; t < static_cast<int>(body.mesh.tetrahedra.size()); ++t) {
@@ -144,7 +100,7 @@ TEST_CASE("the area of a cut is that of the walls of a slit, and none once all i
 TEST_CASE("what removals cut off is what a flood of the whole mesh finds") {
   std::minstd_rand random(11);
   for (int round = 0; round < 20; ++round) {
-    Cutting body(block(Vec3(4, 2, 2), {4, 2, 2}));
+    Cutting body(test::corner_block(Vec3(4, 2, 2), {4, 2, 2}));
     std::vector<int> held;
     for (int v = 0; v < static_cast<int>(body.mesh.vertices.size()); ++v) {
       if (body.mesh.vertices[v].x() == 0) held.push_back(v);
@@ -189,7 +145,7 @@ TEST_CASE("what removals cut off is what a flood of the whole mesh finds") {
 }
 
 TEST_CASE("a held piece stays, however small it is beside a loose one") {
-  Cutting body(block(Vec3(6, 1, 1), {6, 1, 1}));
+  Cutting body(test::corner_block(Vec3(6, 1, 1), {6, 1, 1}));
   std::vector<int> held;
   for (int v = 0; v < static_cast<int>(body.mesh.vertices.size()); ++v) {
     if (body.mesh.vertices[v].x() == 0) held.push_back(v);
@@ -210,7 +166,7 @@ TEST_CASE("a held piece stays, however small it is beside a loose one") {
 }
 
 TEST_CASE("a piece goes whole with tissue that could not be cut, and leaves no surface behind") {
-  const TetMesh mesh = block(Vec3(8, 3, 3), {8, 3, 3});
+  const TetMesh mesh = test::corner_block(Vec3(8, 3, 3), {8, 3, 3});
   Surface surface = boundary_surface(mesh);
   std::vector<Removable> removable;
   std::vector<int> slit;

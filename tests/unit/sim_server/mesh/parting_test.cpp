@@ -18,7 +18,7 @@ namespace {
 
 struct Body {
   explicit Body(const std::array<int, 3>& cells, std::vector<int> held_vertices = {})
-      : mesh(soft_block(Vec3(0.04, 0.02, 0.04), cells)), held(std::move(held_vertices)) {}
+      : mesh(deep_block(cells)), held(std::move(held_vertices)) {}
   TetMesh mesh;
   std::vector<int> held;
   Surface surface = boundary_surface(mesh);
@@ -162,7 +162,7 @@ TEST_CASE("parted faces are surface on both sides, and vertices are as many as t
 }
 
 TEST_CASE("a vertex that is held, or beside what cannot be cut, stays one") {
-  TetMesh mesh = soft_block(Vec3(0.04, 0.02, 0.04), {4, 2, 4});
+  TetMesh mesh = deep_block({4, 2, 4});
   Surface surface = boundary_surface(mesh);
   std::vector<Removable> removable;
   for (const Tetrahedron& t : mesh.tetrahedra)

@@ -13,7 +13,8 @@
 namespace palpate::sim {
 namespace {
 
-TetMesh block() {
+/// Cells of several sizes, with the vertices at y = 0 tagged "floor".
+TetMesh uneven_block() {
   TetMesh mesh = grid_block({0, 0.01, 0.03}, {0, 0.02}, {0, 0.01, 0.015});
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (mesh.vertices[v].y() == 0) mesh.surface_tags["floor"].push_back(static_cast<int>(v));
@@ -23,13 +24,13 @@ TetMesh block() {
 
 /// 0.5 mm in a corner, growing away from there.
 TetMesh in_a_corner() {
-  return graded(block(), [](const Vec3& x) { return 0.0005 + 0.5 * x.norm(); });
+  return graded(uneven_block(), [](const Vec3& x) { return 0.0005 + 0.5 * x.norm(); });
 }
 
 }  // namespace
 
 TEST_CASE("a refined mesh has eight tetrahedra for one, an eighth in size, in the same place") {
-  const TetMesh coarse = block(), fine = refined(coarse);
+  const TetMesh coarse = uneven_block(), fine = refined(coarse);
   REQUIRE(fine.tetrahedra.size() == 8 * coarse.tetrahedra.size());
   for (std::size_t t = 0; t < fine.tetrahedra.size(); ++t) {
     const double whole = six_volumes(coarse, coarse.tetrahedra[t / 8]);
@@ -41,19 +42,19 @@ TEST_CASE("a refined mesh has eight tetrahedra for one, an eighth in size, in th
 }
 
 TEST_CASE("a refined mesh fits together: its surface is that of the coarse one, cut in four") {
-  const TetMesh coarse = block(), fine = refined(refined(coarse));
+  const TetMesh coarse = uneven_block(), fine = refined(refined(coarse));
   CHECK(boundary_surface(fine).triangles.size() == 16 * boundary_surface(coarse).triangles.size());
   CHECK(describe(fine).volume == Approx(0.03 * 0.02 * 0.015).epsilon(1e-12));
 }
 
 TEST_CASE("a refined mesh keeps its quality") {
-  const TetMesh coarse = block();
+  const TetMesh coarse = uneven_block();
   const double once = describe(refined(coarse)).min_dihedral;
   CHECK(describe(refined(refined(refined(coarse)))).min_dihedral > 0.99 * once);
 }
 
 TEST_CASE("what is tagged stays tagged, and no more") {
-  for (const TetMesh& fine : {refined(block()), halved(halved(block())), in_a_corner()}) {
+  for (const TetMesh& fine : {refined(uneven_block()), halved(halved(uneven_block())), in_a_corner()}) {
     for (std::size_t v = 0; v < fine.vertices.size(); ++v) {
       const auto& floor = fine.surface_tags.at("floor");
       const bool tagged = std::find(floor.begin(), floor.end(), static_cast<int>(v)) != floor.end();
@@ -86,7 +87,7 @@ TEST_CASE("of an irregular mesh too, all parts fit together, and each is as stif
 }
 
 TEST_CASE("a halved mesh fills the same place, fits together, and is between the mesh and a refined one") {
-  const TetMesh coarse = block(), fine = halved(coarse), twice = halved(fine), near = in_a_corner();
+  const TetMesh coarse = uneven_block(), fine = halved(coarse), twice = halved(fine), near = in_a_corner();
   CHECK(fine.tetrahedra.size() >= 2 * coarse.tetrahedra.size());
   CHECK(fine.tetrahedra.size() < 8 * coarse.tetrahedra.size());
   for (const TetMesh* mesh : {&fine, &twice, &near}) {
@@ -117,7 +118,7 @@ TEST_CASE("a graded mesh is as fine as asked where asked, not everywhere, and ke
     largest = std::max(largest, longest);
   }
   CHECK(largest > 0.008);
-  CHECK(describe(mesh).min_dihedral > 0.3 * describe(block()).min_dihedral);
+  CHECK(describe(mesh).min_dihedral > 0.3 * describe(uneven_block()).min_dihedral);
 }
 
 }  // namespace palpate::sim

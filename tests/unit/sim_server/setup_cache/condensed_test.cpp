@@ -2,6 +2,7 @@
 // one.
 #include "sim_server/setup_cache/condensed.h"
 
+#include <array>
 #include <fstream>
 
 #include "common/error.h"
@@ -20,15 +21,8 @@ using Catch::Contains;
 
 namespace {
 
-constexpr double kDepth = 0.02, kStep = 1.0 / 30;
-
-TetMesh block(double depth = kDepth) {
-  return test::soft_block(Vec3(0.04, depth, 0.04), {4, 2, 4});
-}
-
-Scene scene_of_model(std::string_view model) {
-  return test::soft_block_scene(kDepth, model);
-}
+constexpr double kStep = 1.0 / 30;
+constexpr std::array kCells{4, 2, 4};
 
 /// Makes factors, and counts them.
 MakeFactor built_in(int& made) {
@@ -48,21 +42,21 @@ std::vector<Vec3> forces_of(Simulation& simulation) {
 void check_taken_as_made(std::string_view model, int entries, std::optional<double> tolerance = {}) {
   const test::TemporaryFolder folder;
   int made = 0;
-  Scene scene = scene_of_model(model);
+  Scene scene = test::deep_block_scene(model);
   scene.deformation.of<ComplianceTolerance>().relative = tolerance;
-  Simulation fresh(scene, block());
+  Simulation fresh(scene, test::deep_block(kCells));
   const std::vector<Vec3> expected = forces_of(fresh);
   REQUIRE(expected.back().norm() > 0.05);
   const Condensed making(folder.path(), built_in(made));
   for (int start = 0; start < 2; ++start) {  // the second finds all of it
-    Simulation simulation(scene, block(), kSilent, nullptr, &making);
+    Simulation simulation(scene, test::deep_block(kCells), kSilent, nullptr, &making);
     CHECK(made == 1);
     CHECK(forces_of(simulation) == expected);
   }
   const std::filesystem::directory_iterator files(folder.path());
   CHECK(std::distance(begin(files), end(files)) == entries);
   const Condensed taking(folder.path());
-  Simulation simulation(scene, block(), kSilent, nullptr, &taking);
+  Simulation simulation(scene, test::deep_block(kCells), kSilent, nullptr, &taking);
   CHECK(forces_of(simulation) == expected);
 }
 
@@ -86,32 +80,32 @@ TEST_CASE("condensed: so does one with modes of vibration") {
 TEST_CASE("condensed: modes that were asked for are not another number of them, nor of another density") {
   const test::TemporaryFolder folder;
   int made = 0;
-  Scene scene = scene_of_model("reduced");
+  Scene scene = test::deep_block_scene("reduced");
   const Condensed making(folder.path(), built_in(made));
-  const Simulation one(scene, block(), kSilent, nullptr, &making);
+  const Simulation one(scene, test::deep_block(kCells), kSilent, nullptr, &making);
   const Condensed taking(folder.path());
   scene.material->density *= 1.0001;
-  check_refused(scene, block(), taking, "modes");
+  check_refused(scene, test::deep_block(kCells), taking, "modes");
 }
 #endif
 
 TEST_CASE("condensed: what was made of another mesh, material, support or reach is refused") {
   const test::TemporaryFolder folder;
   int made = 0;
-  const Scene scene = scene_of_model("quasi_static");
+  const Scene scene = test::deep_block_scene("quasi_static");
   const Condensed making(folder.path(), built_in(made));
-  const Simulation one(scene, block(), kSilent, nullptr, &making);
+  const Simulation one(scene, test::deep_block(kCells), kSilent, nullptr, &making);
   const Condensed taking(folder.path());
-  TetMesh moved = block();
+  TetMesh moved = test::deep_block(kCells);
   moved.vertices[moved.vertices.size() / 2] += Vec3(1e-6, 0, 0);  // one vertex by 1/10000 of an edge
   check_refused(scene, moved, taking, "compliance");
-  check_refused(scene, test::soft_block(Vec3(0.04, kDepth, 0.04), {4, 2, 5}), taking, "compliance");
+  check_refused(scene, test::deep_block({4, 2, 5}), taking, "compliance");
   Scene other = scene;
   other.material->young_modulus *= 1 + 1e-6;
-  check_refused(other, block(), taking, "compliance");
+  check_refused(other, test::deep_block(kCells), taking, "compliance");
   other = scene;
   other.tools[0].reach = Box{Vec3(-0.011, -1, -0.011), Vec3(0.011, 1, 0.011)};
-  check_refused(other, block(), taking, "compliance");
+  check_refused(other, test::deep_block(kCells), taking, "compliance");
 }
 
 TEST_CASE(
@@ -119,14 +113,14 @@ TEST_CASE(
     "makes") {
   const test::TemporaryFolder folder;
   int made = 0;
-  const Scene scene = scene_of_model("quasi_static");
+  const Scene scene = test::deep_block_scene("quasi_static");
   const Condensed making(folder.path(), built_in(made));
-  { const Simulation one(scene, block(), kSilent, nullptr, &making); }
+  { const Simulation one(scene, test::deep_block(kCells), kSilent, nullptr, &making); }
   const std::filesystem::path file = std::filesystem::directory_iterator(folder.path())->path();
   std::filesystem::resize_file(file, std::filesystem::file_size(file) - 8);
   const Condensed taking(folder.path());
   for (const Condensed* condensed : {&making, &taking})
-    CHECK_THROWS_WITH(Simulation(scene, block(), kSilent, nullptr, condensed),
+    CHECK_THROWS_WITH(Simulation(scene, test::deep_block(kCells), kSilent, nullptr, condensed),
                       Contains(file.filename().string()) && Contains("condense the scene again"));
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double kDt = 1.0 / 30, kRadius = 0.006;
 
 /// 60 x 40 x 60 mm, bottom at y = -0.04 held.
-Simulation block(const std::string& model, double young_modulus) {
+Simulation organ(const std::string& model, double young_modulus) {
   Scene scene = scene_of({.young_modulus = young_modulus}, {Vec3(-1, -1, -1), Vec3(1, -0.0399, 1)}, kRadius);
   scene.deformation.model = model;
   scene.deformation.of<SpringSettings>().stiffness = Vec3::Constant(300);
@@ -36,7 +36,7 @@ TEST_CASE("the force on linear tissue is in proportion to its modulus, from a pa
   // Equilibrium K u = f: with all of K scaled and the motion the same, so are the forces.
   for (const char* model : {"quasi_static", "implicit"}) {
     const auto over_modulus = [&](double modulus) {
-      Simulation simulation = block(model, modulus);
+      Simulation simulation = organ(model, modulus);
       return Vec3(force_at(simulation, Vec3(0.002, kRadius - 0.002, 0.001)) / modulus);
     };
     const Vec3 right = over_modulus(1e4);
@@ -55,12 +55,12 @@ TEST_CASE("a held face is the same wall in every model that deforms or moves") {
     for (const double depth : {0.0002, 0.001, 0.002}) {
       // Three vertices share what presses between them, so that the wall is one to three times as stiff as a
       // vertex: 2000 N/m; more where the tool's ball lies on more of them.
-      Simulation simulation = block(std::string(row.name), 1e4);
+      Simulation simulation = organ(std::string(row.name), 1e4);
       const double force = -force_at(simulation, Vec3(0.002, -0.04 - kRadius + depth, 0.001)).y();
       CAPTURE(row.name, depth, force);
       CHECK(force > 0.99 * 2000 * depth);
       CHECK(force < 1.01 * 6000 * depth);
-      Simulation same = block("quasi_static", 1e4);
+      Simulation same = organ("quasi_static", 1e4);
       CHECK(force == Approx(-force_at(same, Vec3(0.002, -0.04 - kRadius + depth, 0.001)).y()).epsilon(1e-3));
     }
   }

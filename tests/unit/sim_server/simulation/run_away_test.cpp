@@ -4,7 +4,6 @@
 #include "sim_server/solvers/dynamics.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
-#include "tests/support/scenes.h"
 #include "tests/support/soft_block.h"
 #include "tests/support/solids.h"
 
@@ -18,18 +17,6 @@ constexpr double kDt = 1.0 / 30, kRadius = 0.004;
 constexpr std::array kLaws{ElasticLaw::kCorotational, ElasticLaw::kNeoHookean,
                            ElasticLaw::kStVenantKirchhoff};
 
-/// 30 x 15 x 30 mm, top at y = 0.
-TetMesh block() {
-  return test::soft_block({0.03, 0.015, 0.03}, {6, 3, 6});
-}
-
-Scene block_scene(const std::string& model, ElasticLaw law, double poisson_ratio = 0.45) {
-  Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = poisson_ratio, .law = law},
-                         {Vec3(-1, -1, -1), Vec3(1, -0.0149, 1)}, kRadius);
-  scene.deformation.model = model;
-  return scene;
-}
-
 /// From rest, m.
 double largest_way(const Simulation& simulation) {
   double most = 0;
@@ -40,7 +27,7 @@ double largest_way(const Simulation& simulation) {
 
 /// Presses to that depth (m), lets go, and waits for 2 s.
 Simulation let_go_of(const Scene& scene, double depth) {
-  Simulation simulation(scene, block());
+  Simulation simulation(scene, thick_block());
   for (int i = 0; i < 60; ++i)
     simulation.step(ToolPose(Vec3(0.001, kRadius - depth * std::min(1.0, i / 30.0), 0.002)), kDt);
   const std::vector<ToolInput> away(1);
@@ -53,7 +40,7 @@ Simulation let_go_of(const Scene& scene, double depth) {
 TEST_CASE("run away: scattered or flattened, a body comes back to rest, or says that it does not") {
   for (const ElasticLaw law : kLaws) {
     for (const bool flat : {false, true}) {
-      const Solid solid(block(), {.young_modulus = 1e4, .poisson_ratio = 0.45, .law = law});
+      const Solid solid(thick_block(), {.young_modulus = 1e4, .poisson_ratio = 0.45, .law = law});
       std::vector<HeldAxes> held;
       std::vector<Vec3> x = solid.rest();
       Random random(7);
@@ -90,7 +77,7 @@ TEST_CASE("run away: let go, every law comes back, nearly incompressible too") {
   for (const ElasticLaw law : kLaws) {
     for (const double poisson_ratio : {0.45, 0.4999}) {
       CAPTURE(static_cast<int>(law), poisson_ratio);
-      CHECK(largest_way(let_go_of(block_scene("implicit", law, poisson_ratio), 0.003)) < 1e-5);
+      CHECK(largest_way(let_go_of(thick_block_scene("implicit", law, kRadius, poisson_ratio), 0.003)) < 1e-5);
     }
   }
 }
@@ -100,13 +87,13 @@ TEST_CASE("run away: of every model, the surface that nobody touches any more is
     if (!row.deforms()) continue;
     const std::string model(row.name);
     CAPTURE(model);
-    CHECK(largest_way(let_go_of(block_scene(model, ElasticLaw::kLinear), 0.003)) < 1e-5);
+    CHECK(largest_way(let_go_of(thick_block_scene(model, ElasticLaw::kLinear, kRadius), 0.003)) < 1e-5);
   }
 }
 
 TEST_CASE("run away: a tool that appears deep inside is felt or flagged, never lost in the tissue") {
   for (const ElasticLaw law : kLaws) {
-    Simulation simulation(block_scene("implicit", law), block());
+    Simulation simulation(thick_block_scene("implicit", law, kRadius), thick_block());
     const Vec3 inside(0.001, kRadius - 0.0105, 0.002);
     simulation.step(ToolPose(inside + Vec3(0, 0.1, 0)), kDt);
     ToolForce force;
@@ -121,23 +108,23 @@ TEST_CASE("run away: a tool that appears deep inside is felt or flagged, never l
 
 TEST_CASE(
     "run away: the force of an organ that is far from itself is flagged, and fades, wherever the tool goes") {
-  Scene scene = block_scene("implicit", ElasticLaw::kLinear);
+  Scene scene = thick_block_scene("implicit", ElasticLaw::kLinear, kRadius);
   const Vec3 inside(0.001, kRadius - 0.003, 0.002);
   // It sinks by about density x g x height^2 / (2 E): 11 mm and 22 m, as the linear law knows no end.
   for (const auto& [g, lost] : {std::pair(1e3, false), std::pair(2e6, true)}) {
     CAPTURE(g);
     scene.loads = {{.kind = Load::Kind::kGravity, .vector = Vec3(0, -g, 0)}};
-    Simulation heavy(scene, block());
+    Simulation heavy(scene, thick_block());
     CHECK(heavy.step(ToolPose(inside), kDt).flagged == lost);
     CHECK((largest_way(heavy) > 3 * std::hypot(0.03, 0.015, 0.03)) == lost);
   }
 }
 
 TEST_CASE("run away: what was felt before an organ ran away fades, and does not come to another hand") {
-  Scene scene = block_scene("quasi_static", ElasticLaw::kLinear);
+  Scene scene = thick_block_scene("quasi_static", ElasticLaw::kLinear, kRadius);
   const Vec3 place(0.001, kRadius, 0.002), far = place + Vec3(0, 1, 0);  // 20 times its size
   scene.tools[0].grasp_place = place;
-  Simulation simulation(scene, block());
+  Simulation simulation(scene, thick_block());
   const ToolForce felt = simulation.step(ToolPose(place + Vec3(0, 0.002, 0)), kDt);
   CHECK_FALSE(felt.flagged);
   REQUIRE(felt.force.norm() > 0.1);

@@ -4,7 +4,7 @@
 #include "sim_server/deformation/spring.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
-#include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/solids.h"
 
 using namespace palpate;
@@ -15,16 +15,9 @@ namespace {
 
 constexpr double kDt = 1.0 / 30, kRadius = 0.004;
 
-/// 30 x 15 x 30 mm of 10 kPa, edges of 5 mm, top at y = 0, held at its bottom.
-Simulation block(const Scene& scene) {
+/// On `thick_block`, but for the last bits of its vertices.
+Simulation organ(const Scene& scene) {
   return {scene, grid_block(lines(-0.015, 0.015, 6), lines(-0.015, 0, 3), lines(-0.015, 0.015, 6))};
-}
-
-Scene block_scene(std::string_view model, ElasticLaw law) {
-  Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.45, .law = law},
-                         {Vec3(-1, -1, -1), Vec3(1, -0.0149, 1)}, kRadius);
-  scene.deformation.model = model;
-  return scene;
 }
 
 }  // namespace
@@ -34,7 +27,8 @@ TEST_CASE("a tool that the tissue closed over is taken back to the side it touch
   // tool.
   const Vec3 deep(0.001, kRadius - 0.0105, 0.002);
   for (const ElasticLaw law : {ElasticLaw::kCorotational, ElasticLaw::kNeoHookean}) {
-    Simulation at_once = block(block_scene("implicit", law)), slowly = block(block_scene("implicit", law));
+    const Scene scene = thick_block_scene("implicit", law, kRadius);
+    Simulation at_once = organ(scene), slowly = organ(scene);
     double most = 0;
     for (int i = 0; i < 60; ++i)
       most = std::max(most, slowly.step(ToolPose(deep + (1 - i / 59.0) * Vec3(0, 0.0125, 0)), kDt).force.y());
@@ -50,10 +44,10 @@ TEST_CASE("a tool that the tissue closed over is taken back to the side it touch
 
 TEST_CASE("two tools that pinch what cannot give way stay where they were, flagged, and find back") {
   // A body on a spring of 800 N/m: no place is left for it once both tools are 1 mm beyond its sides.
-  Scene scene = block_scene("spring", ElasticLaw::kLinear);
+  Scene scene = thick_block_scene("spring", ElasticLaw::kLinear, kRadius);
   scene.deformation.of<SpringSettings>().stiffness = Vec3(800, 800, 800);
   scene.tools.push_back(scene.tools.front());
-  Simulation simulation = block(scene);
+  Simulation simulation = organ(scene);
   const double touching = 0.015 + kRadius;
   const auto step = [&](double left, double right) {  // how far each presses into the sides at rest, m
     const std::vector<ToolInput> inputs{{.pose = ToolPose(Vec3(-touching + left, -0.005, 0.002))},

@@ -13,17 +13,16 @@ namespace {
 constexpr double kDt = 0.03;
 const Vec3 kPlaces[] = {{-0.01, 0, 0}, {0.01, 0, 0}, {0.02, 0, 0.01}};
 
-/// A block of 80 x 30 x 40 mm, of whose top tools hold a vertex each; tools with a small `radius` hold one.
+/// A wide block, of whose top tools hold a vertex each; tools with a small `radius` hold one.
 Scene held_block(std::size_t tools, double radius) {
-  Scene scene = test::soft_block_scene(0.03, "quasi_static", ElasticLaw::kLinear, radius);
-  scene.tools.resize(tools, scene.tools.front());
+  Scene scene = test::wide_block_scene(tools, radius);
   for (std::size_t i = 0; i < tools; ++i) scene.tools[i].grasp_place = kPlaces[i];
   return scene;
 }
 
 struct Held : Simulation {
   explicit Held(std::size_t tools, double radius = 0.001)
-      : Simulation(held_block(tools, radius), test::soft_block({0.08, 0.03, 0.04}, {16, 6, 8})) {}
+      : Simulation(held_block(tools, radius), test::wide_block()) {}
   /// Each tool so far from where it grasped (m), at a velocity (m/s).
   std::span<const ToolAnswer> at(std::span<const Vec3> moved, std::span<const Vec3> velocities) {
     std::vector<ToolInput> inputs(moved.size());
@@ -106,11 +105,10 @@ TEST_CASE("tools that are told of each other: a step does not allocate") {
 
 TEST_CASE(
     "two tools that press one place: no tangent is more than ten times that with the other's load held") {
-  Scene scene = test::soft_block_scene(0.03);
-  scene.tools.resize(2, scene.tools.front());
+  const Scene scene = test::wide_block_scene(2, 0.005);
   int settled = 0;
   for (const double apart : {0.0, 1e-4, 5e-4, 1e-3, 2e-3, 4e-3}) {
-    Simulation block(scene, test::soft_block({0.08, 0.03, 0.04}, {16, 6, 8}));
+    Simulation block(scene, test::wide_block());
     std::vector<ToolInput> inputs(2);
     for (int step = 0; step < 10; ++step) {
       for (std::size_t i = 0; i < 2; ++i)

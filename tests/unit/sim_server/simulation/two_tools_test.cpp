@@ -20,18 +20,6 @@ constexpr double kDt = 0.03, kRadius = 0.005;
 
 using Places = std::vector<std::optional<ToolPose>>;
 
-/// A block of soft tissue, 80 x 30 x 40 mm around x = z = 0, top at y = 0, held at the bottom, nodes 5 mm
-/// apart.
-TetMesh block() {
-  return test::soft_block({0.08, 0.03, 0.04}, {16, 6, 8});
-}
-
-Scene scene(std::size_t tools, const std::string& model = "quasi_static") {
-  Scene scene = test::soft_block_scene(0.03, model, ElasticLaw::kLinear, kRadius);
-  scene.tools.resize(tools, scene.tools.front());
-  return scene;
-}
-
 /// The tool centre that presses `depth` deep at x.
 Vec3 press(double x, double depth) {
   return {x, kRadius - depth, 0.0013};
@@ -39,7 +27,7 @@ Vec3 press(double x, double depth) {
 
 struct Block : Simulation {
   explicit Block(std::size_t tools, const std::string& model = "quasi_static")
-      : Simulation(scene(tools, model), block()) {}
+      : Simulation(test::wide_block_scene(tools, kRadius, model), test::wide_block()) {}
   std::vector<ToolForce> at(const Places& places) {
     const auto forces = Simulation::step(test::inputs(places), kDt);
     return {forces.begin(), forces.end()};
@@ -65,7 +53,7 @@ double top_near(const Simulation& block, double x) {
 /// vertices inside it free of load. Nothing of compliance or contact.
 Eigen::VectorXd holding_forces(const Simulation& block) {
   const TetMesh& mesh = block.mesh();
-  const Scene made = scene(1);
+  const Scene made = test::wide_block_scene(1, kRadius);
   const FreeDofs dofs(static_cast<int>(mesh.vertices.size()), fixed_vertices(made, mesh));
   const Eigen::MatrixXd stiffness = test::dense_stiffness(Solid(mesh, *made.material), dofs);
   std::vector<int> surface, inside;
@@ -258,18 +246,19 @@ TEST_CASE("two tools on a rigid organ do not feel each other") {
 
 TEST_CASE("tools of their own size and reach: compliance is kept for what either can reach") {
   const auto compliance = [](const Simulation& simulation) { return simulation.memory().front().bytes; };
-  Scene left = scene(1), right = scene(1), both = scene(2), overlapping = scene(2);
+  Scene left = test::wide_block_scene(1, kRadius), right = test::wide_block_scene(1, kRadius),
+        both = test::wide_block_scene(2, kRadius), overlapping = test::wide_block_scene(2, kRadius);
   const Box west{Vec3(-1, -0.001, -1), Vec3(-0.021, 1, 1)}, east{Vec3(0.021, -0.001, -1), Vec3(1, 1, 1)};
   left.tools[0].reach = both.tools[0].reach = overlapping.tools[0].reach = overlapping.tools[1].reach = west;
   right.tools[0].reach = both.tools[1].reach = east;
   both.tools[1].shape.radius = 0.003;
   const auto nodes = [&](const Scene& s) {
-    return std::sqrt(static_cast<double>(compliance(Simulation(s, block()))) / 72);
+    return std::sqrt(static_cast<double>(compliance(Simulation(s, test::wide_block()))) / 72);
   };
   CHECK(nodes(both) == nodes(left) + nodes(right));
   CHECK(nodes(overlapping) == nodes(left));
   // Each touches where it reaches, with its own radius, and nowhere else.
-  Simulation simulation(both, block());
+  Simulation simulation(both, test::wide_block());
   const Places swapped{Vec3(0.03, 0.002, 0), Vec3(-0.03, 0.002, 0)};
   for (const ToolForce& force : simulation.step(test::inputs(swapped), kDt)) CHECK(force.contacts == 0);
   simulation.lift_tool(0);
@@ -315,9 +304,9 @@ TEST_CASE("any paths of two tools give finite forces, in settled answers but for
 }
 
 TEST_CASE("steps of eight tools in contact do not allocate, and leave the tissue at rest when all go") {
-  Scene made = scene(8);
+  Scene made = test::wide_block_scene(8, kRadius);
   made.tools[0].shape.radius = 0.001;  // its own patch is small: the loads of the others need room with it
-  Simulation eight(made, block());
+  Simulation eight(made, test::wide_block());
   const std::uint64_t rest = eight.state_hash();
   std::vector<ToolInput> all(8), some(8), none(8);
   for (int i = 0; i < 8; ++i) {
