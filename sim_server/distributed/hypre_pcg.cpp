@@ -15,7 +15,11 @@ namespace palpate::sim {
 namespace {
 
 /// What rank 0 has the others do.
-enum Word { kReturn, kShareOut, kSetUp, kSolve, kForget, kTellNeed, kTellUsed };
+enum class PcgWord { kReturn, kShareOut, kSetUp, kSolve, kForget, kTellNeed, kTellUsed };
+
+void send(PcgWord word) {
+  send_word(static_cast<int>(word));
+}
 
 constexpr int kPerNode = 3;           // unknowns
 constexpr double kTolerance = 1e-11;  // of a residual, relative to its right-hand side
@@ -113,37 +117,6 @@ Rows receive_rows() {
   return rows;
 }
 
-/// A vector of which this rank has some rows.
-class Vector {
- public:
-  Vector(int first, int count) : count_(count) {
-    HYPRE_IJVectorCreate(MPI_COMM_WORLD, first, first + count - 1, &vector_);
-    HYPRE_IJVectorSetObjectType(vector_, HYPRE_PARCSR);
-    set(std::vector<double>(static_cast<std::size_t>(count)));
-  }
-  ~Vector() { HYPRE_IJVectorDestroy(vector_); }
-  Vector(const Vector&) = delete;
-  Vector& operator=(const Vector&) = delete;
-
-  void set(const std::vector<double>& values) {
-    HYPRE_IJVectorInitialize(vector_);
-    HYPRE_IJVectorSetValues(vector_, count_, nullptr, values.data());
-    HYPRE_IJVectorAssemble(vector_);
-  }
-  void get(std::vector<double>& values) const {
-    HYPRE_IJVectorGetValues(vector_, count_, nullptr, values.data());
-  }
-  HYPRE_ParVector object() const {
-    void* object = nullptr;
-    HYPRE_IJVectorGetObject(vector_, &object);
-    return static_cast<HYPRE_ParVector>(object);
-  }
-
- private:
-  HYPRE_IJVector vector_{};
-  int count_;
-};
-
 }  // namespace
 
 /// What one rank has of the matrix, the multigrid and the vectors.
@@ -225,6 +198,37 @@ class HyprePcg::Share {
   }
 
  private:
+  /// A vector of which this rank has some rows.
+  class Vector {
+   public:
+    Vector(int first, int count) : count_(count) {
+      HYPRE_IJVectorCreate(MPI_COMM_WORLD, first, first + count - 1, &vector_);
+      HYPRE_IJVectorSetObjectType(vector_, HYPRE_PARCSR);
+      set(std::vector<double>(static_cast<std::size_t>(count)));
+    }
+    ~Vector() { HYPRE_IJVectorDestroy(vector_); }
+    Vector(const Vector&) = delete;
+    Vector& operator=(const Vector&) = delete;
+
+    void set(const std::vector<double>& values) {
+      HYPRE_IJVectorInitialize(vector_);
+      HYPRE_IJVectorSetValues(vector_, count_, nullptr, values.data());
+      HYPRE_IJVectorAssemble(vector_);
+    }
+    void get(std::vector<double>& values) const {
+      HYPRE_IJVectorGetValues(vector_, count_, nullptr, values.data());
+    }
+    HYPRE_ParVector object() const {
+      void* object = nullptr;
+      HYPRE_IJVectorGetObject(vector_, &object);
+      return static_cast<HYPRE_ParVector>(object);
+    }
+
+   private:
+    HYPRE_IJVector vector_{};
+    int count_;
+  };
+
   HYPRE_ParCSRMatrix object() const {
     void* object = nullptr;
     HYPRE_IJMatrixGetObject(matrix_, &object);
@@ -243,15 +247,15 @@ HyprePcg::HyprePcg(const SparseMatrix& lower, const std::string& where,
   const Time start = now();
   HYPRE_Init();
   share_out(lower, tell);
-  send_word(kSetUp);
+  send(PcgWord::kSetUp);
   share_->set_up();
-  send_word(kTellUsed);
+  send(PcgWord::kTellUsed);
   costs_->memory = gather_memory(resident_memory());
   costs_->setup_s = to_seconds(now() - start);
 }
 
 HyprePcg::~HyprePcg() {
-  send_word(kForget);
+  send(PcgWord::kForget);
 }
 
 /// The whole matrix is on rank 0 only until each has its rows.
@@ -266,14 +270,14 @@ void HyprePcg::share_out(const SparseMatrix& lower, const std::function<void(con
   const double need = kBytesPerEntry * static_cast<double>(whole.nonZeros()) / ranks;
   tell(fmt::format("{} unknowns, {:.3g} million entries: some {} on each rank", whole.rows(),
                    1e-6 * static_cast<double>(whole.nonZeros()), bytes_text(need)));
-  send_word(kTellNeed);
+  send(PcgWord::kTellNeed);
   MPI_Bcast(const_cast<double*>(&need), 1, MPI_DOUBLE, 0, MPI_COMM_WORLD);
   const std::string shortage = shortage_of(gather_memory(need));
   if (!shortage.empty())
     fail("{}: {}, for conjugate gradients with {} unknowns; take more machines, or a coarser mesh", where_,
          shortage, whole.rows());
   const std::vector<int> first = first_rows(whole.rows(), ranks);
-  send_word(kShareOut);
+  send(PcgWord::kShareOut);
   for (int rank = 1; rank < ranks; ++rank)
     send_rows(
         rows_of(whole, first[static_cast<std::size_t>(rank)], first[static_cast<std::size_t>(rank) + 1]),
@@ -288,7 +292,7 @@ Eigen::VectorXd HyprePcg::solve_one(const Eigen::VectorXd& b) const {
   placed(places_) = b;
   if (placed.isZero(0)) return placed;
   Eigen::VectorXd x(b.size());
-  send_word(kSolve);
+  send(PcgWord::kSolve);
   share_->solve(placed.data(), x.data());
   ++costs_->systems;
   costs_->iterations += share_->iterations();
@@ -328,18 +332,20 @@ void HyprePcg::inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::Ma
 void serve_hypre() {
   HYPRE_Init();
   std::unique_ptr<HyprePcg::Share> share;
-  for (int word = wait_for_word(); word != kReturn; word = wait_for_word()) {
-    if (word == kTellNeed) {
+  while (true) {
+    const auto word = static_cast<PcgWord>(wait_for_word());
+    if (word == PcgWord::kReturn) return;
+    if (word == PcgWord::kTellNeed) {
       double need = 0;
       MPI_Bcast(&need, 1, MPI_DOUBLE, 0, MPI_COMM_WORLD);
       gather_memory(need);
-    } else if (word == kShareOut) {
+    } else if (word == PcgWord::kShareOut) {
       share = std::make_unique<HyprePcg::Share>(receive_rows());
-    } else if (word == kSetUp) {
+    } else if (word == PcgWord::kSetUp) {
       share->set_up();
-    } else if (word == kTellUsed) {
+    } else if (word == PcgWord::kTellUsed) {
       gather_memory(resident_memory());
-    } else if (word == kSolve) {
+    } else if (word == PcgWord::kSolve) {
       share->solve(nullptr, nullptr);
     } else {
       share.reset();
@@ -348,7 +354,7 @@ void serve_hypre() {
 }
 
 void end_hypre() {
-  send_word(kReturn);
+  send(PcgWord::kReturn);
 }
 
 }  // namespace palpate::sim
