@@ -390,11 +390,7 @@ std::uint64_t Simulation::state_hash() const noexcept {
   Fnv1a hash;
   hash.add(tissue_.positions.data(), tissue_.positions.size_bytes());
   for (const ToolForce& answer : answers_) hash.add(answer.force);
-  if (cut_) {
-    const std::uint64_t left = cut_->resection.left().count();
-    hash.add(&left, sizeof left);
-    hash.add(surface_.triangles.data(), surface_.triangles.size() * sizeof(Triangle));
-  }
+  if (cut_) hash.add(surface_.triangles.data(), surface_.triangles.size() * sizeof(Triangle));
   return hash.value();
 }
 
