@@ -191,6 +191,7 @@ CLI::App* add_explain(CLI::App& app, sim::ExplainOptions& options) {
   command->add_option("SCENE", options.scene, "Scene file (TOML)")->required();
   command->add_option("--json", options.json, "Write the same to this JSON file");
   add_cache_or_none(command, options.cache);
+  add_condensed(command, options.cache);
   command
       ->add_option(
           "--why", options.why,

@@ -4,7 +4,9 @@
 Called by scripts/study, which builds the program first. Each scene gets a folder with its
 rows.csv, timing.csv, along.csv, reference.csv and summary.json. Blocks of 3 to 300 thousand
 tetrahedra (made here, gone afterwards) are explained by model: cost.json, time a step in contact,
-set-up, bytes. Timed runs go one at a time. Interrupted, it goes on where it was.
+set-up, bytes. With --million also one of a million, condensed by conjugate gradients on two ranks
+of MPI, as its factor would take more than 20 GB; that needs scripts/setup --mpi. Timed runs go one
+at a time. Interrupted, it goes on where it was.
 
 Writes into --out: the folders, block_coarse.msh (a mesh that advice may name), cost.json and
 summary.json (the rows of all scenes).
@@ -31,9 +33,10 @@ BLOCK_EDGE = 4
 # (Pa) and nu, while it presses by less than this share of the radius. The layer is endless, the sides of the block are
 # free, which makes it a few percent softer.
 BALL, LAYER, MODULUS, POISSON, SHALLOW = 0.006, 0.040, 48e3, 0.45, 0.2
-# Cells along x and z of a block, half as many along y; and the most that a model is asked for.
+# Cells along x and z of a block, half as many along y: 3 to 292 thousand tetrahedra.
 SIZES = (10, 15, 22, 32, 46)
-MOST = {"tensor_mass": 46, "quasi_static": 22, "implicit": 32}
+MODELS = ("tensor_mass", "hybrid", "quasi_static", "reduced", "implicit")
+MILLION, MPI_BUILD = 70, ROOT / "build" / "mpi" / "bin" / "sim_server"  # 1 029 000 tetrahedra
 SCENE = """title = "A block of {n} x {m} x {n} cells"
 rate_hz = 30
 [mesh]
@@ -49,6 +52,9 @@ model = "{model}"
 [[tool]]
 radius = 0.003
 reach = [[-0.0025, -0.0025, -0.0025], [0.0025, 0.0025, 0.0025]]
+"""
+CUTTING = """[cutting]
+box = [[-0.005, -0.005, -0.005], [0.005, 0.005, 0.005]]
 """
 KUHN = ((1, 2, 4), (1, 4, 2), (2, 1, 4), (2, 4, 1), (4, 1, 2), (4, 2, 1))  # ways from a corner: bits x, y, z
 
@@ -93,17 +99,49 @@ def run(*arguments):
         raise SystemExit(f"study deformation: sim_server {' '.join(map(str, arguments))} ended with {ended.returncode}")
 
 
+def tetrahedra_of(n):
+    return 6 * n * n * (n // 2)
+
+
+def write_scene(folder, model, n):
+    """Of a block that is written beside it. Returns both files."""
+    mesh, scene = folder / f"block_{n}.msh", folder / f"block_{n}_{model}.toml"
+    write_block(mesh, n)
+    text = SCENE.format(n=n, m=n // 2, mesh=mesh, model=model) + (CUTTING if model == "hybrid" else "")
+    scene.write_text(text, encoding="ascii")
+    return mesh, scene
+
+
 def cost_of(folder, model, n):
     """Measured by this program before, or now."""
-    mesh, scene, found = folder / f"block_{n}.msh", folder / f"block_{n}_{model}.toml", folder / f"{model}_{n}.json"
+    found = folder / f"{model}_{n}.json"
     if not found.exists():
-        write_block(mesh, n)
-        scene.write_text(SCENE.format(n=n, m=n // 2, mesh=mesh, model=model), encoding="ascii")
-        subprocess.run([SERVER, "explain", scene, "--json", found, "--steps", "20"], check=True, stdout=subprocess.DEVNULL)
+        mesh, scene = write_scene(folder, model, n)
+        subprocess.run([SERVER, "explain", scene, "--no-cache", "--json", found, "--steps", "20"], check=True,
+                       stdout=subprocess.DEVNULL)
         mesh.unlink()
     told = json.loads(found.read_text(encoding="utf-8"))
-    return {"model": model, "tetrahedra": 6 * n * n * (n // 2), "step_ms_p50": told["contact"]["step_ms"]["p50"],
+    return {"model": model, "tetrahedra": tetrahedra_of(n), "step_ms_p50": told["contact"]["step_ms"]["p50"],
             "setup_ms": told["setup_ms"], "bytes": told["bytes"]}
+
+
+def cost_of_condensed(folder, n):
+    """The same of a quasi-static body that two ranks condense; its set-up is what they take."""
+    made, found = folder / f"condensed_{n}_made.json", folder / f"condensed_{n}.json"
+    if not found.exists():
+        mesh, scene = write_scene(folder, "quasi_static", n)
+        kept = folder / f"condensed_{n}"
+        if not made.exists():
+            ranks = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2"]
+            subprocess.run([*ranks, MPI_BUILD, "condense", scene, "--out", kept, "--iterative", "--report", made],
+                           check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([SERVER, "explain", scene, "--condensed", kept, "--json", found, "--steps", "20"], check=True,
+                       stdout=subprocess.DEVNULL)
+        mesh.unlink()
+    told = json.loads(found.read_text(encoding="utf-8"))
+    stages = json.loads(made.read_text(encoding="utf-8"))["stages_ms"]
+    return {"model": "condensed", "tetrahedra": tetrahedra_of(n), "step_ms_p50": told["contact"]["step_ms"]["p50"],
+            "setup_ms": sum(stages.values()), "bytes": told["bytes"]}
 
 
 def sphere_on_layer(depth):
@@ -139,6 +177,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True, help="folder; made if it is not there")
     parser.add_argument("--quick", action="store_true", help="one scene, coarse reference, meshes to 10 thousand")
+    parser.add_argument("--million", action="store_true", help="a condensed block of a million tetrahedra besides")
     options = parser.parse_args()
     rows = []
     options.out.mkdir(parents=True, exist_ok=True)
@@ -157,11 +196,13 @@ def main():
         rows += json.loads((folder / "summary.json").read_text(encoding="utf-8"))["rows"]
     costs = options.out / "cost" / hashlib.sha256(SERVER.read_bytes() + SCENE.encode()).hexdigest()[:16]
     costs.mkdir(parents=True, exist_ok=True)
-    sizes = [(model, n) for model, most in MOST.items() for n in SIZES if n <= (15 if options.quick else most)]
     found = []
-    for model, n in sizes:
-        say(f"{model} of {6 * n * n * (n // 2)} tetrahedra")
+    for model, n in [(model, n) for model in MODELS for n in (SIZES[:2] if options.quick else SIZES)]:
+        say(f"{model} of {tetrahedra_of(n)} tetrahedra")
         found.append(cost_of(costs, model, n))
+    if options.million:
+        say(f"a condensed body of {tetrahedra_of(MILLION)} tetrahedra, half an hour")
+        found.append(cost_of_condensed(costs, MILLION))
     (options.out / "cost.json").write_text(json.dumps(found, indent=1) + "\n", encoding="ascii")
     (options.out / "summary.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     return 0

@@ -165,6 +165,7 @@ struct Own {
   const Progress& progress;
   int steps;  // timed free, and in contact
   const SetupCache* cache;
+  const Condensed* condensed;
   Simulation simulation;
   Press press;
   Cost cost;
@@ -199,7 +200,7 @@ LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
     const Resection* const resection = own.simulation.resection();
     if (resection != nullptr && resection->left().spares().second > 0)  // it makes its own
       mesh.vertices.resize(static_cast<std::size_t>(resection->left().spares().first));
-    Simulation simulation(variant, std::move(mesh), std::ref(times), own.cache);
+    Simulation simulation(variant, std::move(mesh), std::ref(times), own.cache, own.condensed);
     const Cost cost =
         cost_of(simulation, times, time_steps(variant, simulation, own.press, own.steps, own.progress));
     row.bytes = cost.bytes - own.cost.bytes;
@@ -330,9 +331,11 @@ std::vector<LeftOut> left_out(Own& own) {
 
 }  // namespace
 
-Explanation explain(const Scene& scene, const Progress& progress, int steps, const SetupCache* cache) {
+Explanation explain(const Scene& scene, const Progress& progress, int steps, const SetupCache* cache,
+                    const Condensed* condensed) {
   SetupTimes times(progress);
-  Own own{scene, progress, steps, cache, Simulation(scene, std::ref(times), cache), {}, {}};
+  Own own{scene, progress, steps, cache, condensed, Simulation(scene, std::ref(times), cache, condensed),
+          {},    {}};
   own.press = find_press(scene, own.simulation);
   Explanation explanation{.scene = scene,
                           .built = built_parts(scene, own.simulation, times),
@@ -351,7 +354,9 @@ int run_explain(const ExplainOptions& options) {
   require_distinct({{"SCENE", options.scene}, {"--json", options.json}});
   if (options.json) check_writable(*options.json, Contents::kReport);
   const auto cache = open_cache(options.cache);
-  const Explanation explanation = explain(scene, ProgressLine(), options.steps, cache ? &*cache : nullptr);
+  const auto condensed = open_condensed(options.cache, scene);
+  const Explanation explanation = explain(scene, ProgressLine(), options.steps, cache ? &*cache : nullptr,
+                                          condensed ? &*condensed : nullptr);
   fmt::print("{}", options.why ? why_text(explanation, *options.why) : to_text(explanation));
   if (options.json) write_json(*options.json, to_json(explanation));
   return 0;

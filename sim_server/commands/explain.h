@@ -49,10 +49,11 @@ struct Explanation {
 };
 
 /// Builds the scene and, where that takes no more than 10 s, a variant for each thing it leaves out, and
-/// steps them all, `steps` free and as many in contact each. Throws `Error` where the scene itself cannot be
-/// built. Takes as long as all those set-ups, and the memory of two of them.
+/// steps them all, `steps` free and as many in contact each; those that are not among what is `condensed`
+/// are not built. Throws `Error` where the scene itself cannot be built. Takes as long as all those set-ups,
+/// and the memory of two of them.
 Explanation explain(const Scene& scene, const Progress& progress = kSilent, int steps = 200,
-                    const SetupCache* cache = nullptr);
+                    const SetupCache* cache = nullptr, const Condensed* condensed = nullptr);
 
 /// Which line of the scene asks for a part, or leaves it out, and what it costs or saves. Throws `Error`
 /// naming the parts that there are.

@@ -30,6 +30,12 @@ int place_in(const std::vector<int>& list, int number) {
   return static_cast<int>(std::ranges::lower_bound(list, number) - list.begin());
 }
 
+/// A <- A - X^T X, of a symmetric A: its lower triangle, mirrored, so that it is symmetric to the last bit.
+void subtract_gram(const Eigen::MatrixXd& x, Eigen::MatrixXd& a) {
+  a.selfadjointView<Eigen::Lower>().rankUpdate(x.transpose(), -1.0);
+  a.triangularView<Eigen::StrictlyUpper>() = a.transpose();
+}
+
 /// What is held while the motion stands still: what is fixed, and all that moves; ascending.
 std::vector<int> held_by(const std::vector<int>& fixed, const std::vector<int>& places) {
   std::vector<int> held = fixed;
@@ -321,11 +327,12 @@ void CondensedRest::keep_shapes(const LinearStatics& statics, const Eigen::Matri
 /// What modes do by themselves is no answer at once.
 void CondensedRest::take_modes_out(Part& part) {
   const Eigen::Index border = part.following.cols(), count = part.squares.size();
-  const Eigen::MatrixXd answer = part.squares.inverse().matrix().asDiagonal() * part.driven;
-  part.following.noalias() -= part.driven.transpose() * answer;
-  part.carrying.noalias() -= answer.transpose() * part.shapes;
-  const Eigen::MatrixXd weighted = part.squares.inverse().matrix().asDiagonal() * part.shapes;
-  part.compliance.noalias() -= part.shapes.transpose() * weighted;
+  const Eigen::VectorXd inverse_frequencies = part.squares.rsqrt();
+  const Eigen::MatrixXd driven = inverse_frequencies.asDiagonal() * part.driven,
+                        shapes = inverse_frequencies.asDiagonal() * part.shapes;
+  subtract_gram(driven, part.following);
+  part.carrying.noalias() -= driven.transpose() * shapes;
+  subtract_gram(shapes, part.compliance);
   part.at = part.bent = part.force = Eigen::VectorXd::Zero(border);
   part.p = part.p_v = part.p_bent = Eigen::VectorXd::Zero(count);
 }

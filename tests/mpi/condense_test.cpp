@@ -132,6 +132,19 @@ TEST_CASE("condense: a second start finds what there is, and factors nothing") {
   CHECK(files_in(out) == 1);
 }
 
+TEST_CASE("condense: `explain` tells of a body as it was condensed, and builds nothing beyond that") {
+  const TemporaryFolder folder;
+  const std::string reach = "reach = [[0.0, 0.03, 0.03], [0.006, 0.06, 0.06]]\n";
+  const std::string file = scene_with(folder, "quasi_static", reach), out = (folder.path() / "out").string();
+  condense(1, file, out);
+  const std::string told =
+      output_of("sim_server", {"explain", file, "--no-cache", "--condensed", out, "--steps", "3"}, 0);
+  CHECK_THAT(told, Contains("which saved"));                   // by the scene's own compliance
+  CHECK_THAT(told, Contains("cannot be built: --condensed"));  // the surface out of reach
+  CHECK_THAT(output_of("sim_server", {"explain", kScenes + "liver_tensor_mass.toml", "--condensed", out}, 2),
+             Contains("leave it out"));
+}
+
 TEST_CASE("condense: a rank that dies ends all within 10 s, and leaves nothing half-written") {
   const int killed = GENERATE(0, 1);
   const TemporaryFolder folder;

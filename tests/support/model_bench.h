@@ -38,6 +38,8 @@ struct ModelBench {
     scene.deformation.of<sim::RayleighDamping>().stiffness = setting.rayleigh_stiffness;
     scene.fixed[0].box.reset();  // a ball turns with the scene: this one is so large that it is flat
     scene.fixed[0].ball = sim::Ball{setting.place * Vec3(0.015, 0.01, -10), 10.001};
+    if (scene.cutting)
+      scene.cutting->region = sim::Region{.ball = sim::Ball{setting.place * Vec3(10.015, 0.01, 0.01), 10}};
     for (Vec3& x : mesh.vertices) x = setting.place * x;
     surface = sim::boundary_surface(mesh);
     fixed = sim::fixed_vertices(scene, mesh);
@@ -47,11 +49,17 @@ struct ModelBench {
   int size() const { return static_cast<int>(surface.vertices.size()); }
   const Vec3& rest(int v) const { return mesh.vertices[surface.vertices[v]]; }
 
-  /// Where one step under these loads leads, looked at again until all is said.
-  std::vector<Vec3> step(std::span<const sim::NodalLoad> loads) {
-    model->free_motion(1 / scene.rate_hz);
+  /// Where the next of the instants of a step leads under these loads, looked at again until all is said.
+  std::span<const Vec3> instant(std::span<const sim::NodalLoad> loads) {
+    model->free_motion(1 / scene.rate_hz / model->instants());
     std::span<const Vec3> moved = model->apply(loads);
     while (model->relinearise()) moved = model->apply(loads);
+    return moved;
+  }
+  /// Where one step under these loads leads.
+  std::vector<Vec3> step(std::span<const sim::NodalLoad> loads) {
+    for (int i = 1; i < model->instants(); ++i) instant(loads);
+    const std::span<const Vec3> moved = instant(loads);
     return {moved.begin(), moved.end()};
   }
   /// By surface vertices, m/N.

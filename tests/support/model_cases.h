@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_server/deformation/deformation_models.h"
+#include "sim_server/deformation/hybrid.h"
 #include "sim_server/deformation/implicit.h"
 #include "sim_server/deformation/reduced.h"
 
@@ -45,7 +46,8 @@ struct ModelCase {
     const auto all = words();
     return word == "no linear law" ? !linear() : std::find(all.begin(), all.end(), word) != all.end();
   }
-  /// Writes the choice into a scene, and has iterations go on until rounding ends them.
+  /// Writes the choice into a scene, and has iterations go on until rounding ends them. Where it moves only
+  /// what can be cut, that is what lies beyond z = 0.
   void choose(sim::Scene& scene) const {
     scene.deformation.model = row.name;
     scene.material->law = law;
@@ -56,6 +58,9 @@ struct ModelCase {
     scene.deformation.of<sim::ImplicitSettings>().solver = solver;
     scene.deformation.of<sim::ImplicitSettings>().refresh_steps = 2;
     scene.deformation.of<sim::ReducedSettings>().modes = 8;
+    scene.deformation.of<sim::HybridSettings>() = {.rest_modes = 8, .layers = 0};
+    if (row.needs_cutting)
+      scene.cutting = sim::Cutting{.region = sim::Region{.box = sim::Box{Vec3(-1, -1, 0), Vec3(1, 1, 1)}}};
     scene.deformation.of<sim::ImplicitSettings>().tolerance = 1e-11;
     scene.deformation.of<sim::ImplicitSettings>().max_newton = 60;
   }
@@ -77,6 +82,8 @@ inline const std::vector<Exemption> kExemptions{
     {"implicit", {"no linear law"}, "slope in motion", "its factor is of where the body was before"},
     {"tensor_mass", {}, "energy in one place", "leapfrog keeps that between two places"},
     {"implicit", {"BDF2"}, "energy step by step", "what it does not raise is of two steps together"},
+    {"hybrid", {}, "energy in motion", "what its rest does besides its modes has no inertia"},
+    {"hybrid", {}, "tangents", "contact gives way over a sub-step, so that it tells clients none"},
     {"reduced", {}, "energy step by step", "exact in time, so that differences do not tell velocities"},
     {"implicit", {"stvk"}, "deep press", "its law softens under pressure, and collapses under so much"},
 };
@@ -92,14 +99,13 @@ inline int held_until_fresh(const ModelCase& choice) {
   return exempt(choice, "slope in motion") ? 60 : 0;
 }
 
-/// One case for each thing that a row takes. A model that moves only what [cutting] says has tests of its
-/// own, which hold it against a body all at rest, and to the last bit against one all in motion.
+/// One case for each thing that a row takes.
 inline std::vector<ModelCase> model_cases() {
   using sim::ElasticLaw;
   using sim::ElementKind;
   using Solver = ModelCase::Solver;
   std::vector<ModelCase> cases;
-  for (const sim::DeformationModelRow& row : sim::models_without_cutting()) {
+  for (const sim::DeformationModelRow& row : sim::deformation_models()) {
     cases.push_back({row});
     if (row.materials == sim::Materials::kLinear) {
       cases.push_back({.row = row, .element = ElementKind::kQuadratic});

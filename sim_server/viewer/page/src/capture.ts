@@ -46,7 +46,6 @@ function write_caption(context: CanvasRenderingContext2D, caption: Caption, left
 /** Films the canvas until told to stop. */
 export class Video {
   private recorder_: MediaRecorder | null = null;
-  private readonly parts_: Blob[] = [];
 
   get running(): boolean {
     return this.recorder_ !== null;
@@ -59,11 +58,9 @@ export class Video {
       note("This browser cannot record a video.");
       return false;
     }
-    this.parts_.length = 0;
     const recorder = new MediaRecorder(canvas.captureStream(30), { mimeType: kind, videoBitsPerSecond: 6e6 });
-    recorder.ondataavailable = (event) => event.data.size > 0 && this.parts_.push(event.data);
-    recorder.onstop = () => save_file(name(kind.includes("mp4") ? "mp4" : "webm"), new Blob(this.parts_, { type: kind }));
-    recorder.start(1000);
+    recorder.ondataavailable = (event) => save_file(name(kind.includes("mp4") ? "mp4" : "webm"), event.data);
+    recorder.start(); // in one piece: of several, Firefox may give the first one last
     this.recorder_ = recorder;
     return true;
   }
