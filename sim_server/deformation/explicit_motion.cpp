@@ -64,6 +64,16 @@ void ExplicitMotion::append_copy_of(int place) {
   }
 }
 
+void ExplicitMotion::add_to_last(int place, double h, const Vec3& force) noexcept {
+  const auto at = [place](std::vector<double>& numbers) {
+    return Eigen::Map<Vec3>(numbers.data() + 3 * place);
+  };
+  const Vec3 kick = h / tensors_.masses()[static_cast<std::size_t>(place)] * force;
+  at(state.f) += force;
+  at(state.v) += kick;
+  at(state.u) += h * kick;
+}
+
 void ExplicitMotion::sub_step(double h, const std::vector<double>& force) noexcept {
   if (columns_ == 1) {
     tensors_.multiply(bent_.data(), resistance_.data());

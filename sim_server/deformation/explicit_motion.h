@@ -41,6 +41,9 @@ class ExplicitMotion {
   void run(int steps, double h, const std::vector<double>& force) noexcept;
   /// The same by one sub-step under the forces of `state`, as if they had always been there.
   void run(double h) noexcept;
+  /// Adds a force (N) on one vertex to those of the last sub-step, which was of `h` (s): it has moved nothing
+  /// else yet. Of one motion.
+  void add_to_last(int place, double h, const Vec3& force) noexcept;
 
   /// The tensors have one more vertex, the last one: it is where this one is, as fast. Of one motion.
   /// Allocates.

@@ -125,8 +125,9 @@ FreeMotion TensorMass::free_motion(double dt) noexcept {
 /// One sub-step alone takes these forces for all of it, not their mean with those before: else forces that
 /// are to lead somewhere at its end would have to swing about that mean.
 void TensorMass::run_period(ExplicitMotion& motion, const std::vector<double>& force) const noexcept {
-  if (sub_steps_ == 1) motion.state.f = force;
-  motion.run(sub_steps_, sub_step_, force);
+  if (sub_steps_ > 1) return motion.run(sub_steps_, sub_step_, force);
+  motion.state.f = force;
+  motion.run(sub_step_);
 }
 
 /// Where the body goes free of loads: by itself, and by its supports.
@@ -138,16 +139,23 @@ void TensorMass::update_free() noexcept {
   }
 }
 
-/// From the state at the end of the period without loads to that with them, where the next one begins.
+/// From the state at the end of the period without loads to that with them, where the next one begins. Over
+/// one sub-step a load moves nothing but what it is on, so that nothing need be run again.
 void TensorMass::end_period() noexcept {
   if (!loads_.empty()) {
-    motion_.state = begin_;
-    for (const NodalLoad& load : loads_) {
-      if (compliance_.gives_way(load.vertex))
-        Eigen::Map<Vec3>(force_.data() + first_[load.vertex]) += load.force;
+    const auto each_load = [&](const auto& act) {
+      for (const NodalLoad& load : loads_) {
+        if (compliance_.gives_way(load.vertex)) act(first_[load.vertex], load.force);
+      }
+    };
+    if (sub_steps_ == 1) {
+      each_load([&](int first, const Vec3& force) { motion_.add_to_last(first / 3, sub_step_, force); });
+    } else {
+      motion_.state = begin_;
+      each_load([&](int first, const Vec3& force) { Eigen::Map<Vec3>(force_.data() + first) += force; });
+      run_period(motion_, force_);
+      std::fill(force_.begin(), force_.end(), 0);
     }
-    run_period(motion_, force_);
-    std::fill(force_.begin(), force_.end(), 0);
     if (sub_steps_ <= kFew) calm_loaded();
   }
   begin_ = motion_.state;

@@ -19,10 +19,10 @@ namespace palpate::sim {
 /// (`SurfaceCompliance`). Where a period is a few sub-steps, what a load stops at its end would swing back in
 /// the next: its velocity along the load becomes what it went by on average, if that is less (the velocity
 /// stage of RATTLE, Andersen 1983, J. Comput. Phys. 52:24). A period costs N sub-steps, twice that in
-/// contact. What the body does by itself and what it does by its supports add up, as it is linear: where
-/// supports move, the second comes from `support_responses`, with inertia and damping and exact in time, and
-/// costs no sub-step anything. Clients are told its slow modes (`ToldMotion`), for which set-up factors K.
-/// Tissue that can be cut moves as `CuttableMotion` says.
+/// contact where N is not 1. What the body does by itself and what it does by its supports add up, as it is
+/// linear: where supports move, the second comes from `support_responses`, with inertia and damping and exact
+/// in time, and costs no sub-step anything. Clients are told its slow modes (`ToldMotion`), for which set-up
+/// factors K. Tissue that can be cut moves as `CuttableMotion` says.
 class TensorMass : public DeformationModel {
  public:
   /// Throws `Error` as `SurfaceCompliance`, or where the scene names no rate.

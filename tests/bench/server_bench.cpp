@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "sim_server/deformation/compliance_tolerance.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/serving/virtual_session.h"
 #include "tests/bench/bench.h"
@@ -32,8 +33,21 @@ std::array<Vec3, kSlideSteps> slide(const Vec3& place, const Vec3& along, double
 /// Not a model, but the scene of the liver under a tool that rubs on it: about 20 nodes are near.
 constexpr std::string_view kFriction = "friction";
 
+/// At rest with the compliance of all of the surface kept, densely, or in tiles of low rank.
+constexpr std::string_view kDense = "dense", kTiles = "tiles";
+
+Scene at_rest_and_all_in_reach(double compliance_tolerance) {
+  Scene scene = liver_scene_with("quasi_static");
+  for (ToolSettings& tool : scene.tools) tool.reach.reset();
+  scene.deformation.of<ComplianceTolerance>().relative = compliance_tolerance;
+  return scene;
+}
+
 Scene scene_called(std::string_view name) {
-  return name == kFriction ? test::example_scene("liver_friction") : liver_scene_with(name);
+  if (name == kFriction) return test::example_scene("liver_friction");
+  if (name == kDense) return at_rest_and_all_in_reach(0);
+  if (name == kTiles) return at_rest_and_all_in_reach(1e-4);
+  return liver_scene_with(name);
 }
 
 /// A liver with a place to press on, built when a row first needs it.
@@ -56,8 +70,8 @@ struct Liver {
   std::uint64_t hash = 0, free_hash = 0;
 };
 
-/// The liver with a model, or with friction; null, and the row says so, where the scene lacks what the model
-/// needs.
+/// The liver with a model, or as one of these scenes; null, and the row says so, where the scene lacks what
+/// the model needs.
 Liver* liver(benchmark::State& state, std::string_view model) {
   static std::map<std::string_view, Liver> built;
   try {
@@ -162,7 +176,10 @@ void add_server_rows() {
     add(fmt::format("step/{}/free", name), [name](benchmark::State& state) { run_free(state, name); });
     add(fmt::format("step/{}/contact", name), [name](benchmark::State& state) { run_contact(state, name); });
   }
-  add("step/quasi_static/friction", [](benchmark::State& state) { run_contact(state, kFriction); });
+  for (const std::string_view scene : {kFriction, kDense, kTiles}) {
+    add(fmt::format("step/quasi_static/{}", scene),
+        [scene](benchmark::State& state) { run_contact(state, scene); });
+  }
   add("contact/flat_patch", run_contact_alone);
   add("virtual_session/5_s", run_virtual_session);
 }

@@ -84,6 +84,28 @@ double kept_energy(const Tissue& tissue, const ExplicitMotion& motion, double h)
 
 }  // namespace
 
+TEST_CASE("ExplicitMotion: a force that is added to the last sub-step did what it would have done in it") {
+  const Tissue tissue;
+  constexpr int kPlace = 5;
+  constexpr double kStep = 1e-4;  // s
+  const Vec3 force(0.02, -0.05, 0.01);
+  ExplicitMotion within(tissue.tensors, {3, 2e-4}), added = within;
+  for (ExplicitMotion* const motion : {&within, &added}) {
+    start_in(*motion, tissue.dense.modes.col(2));
+    for (int i = 0; i < 5; ++i) motion->run(kStep);
+  }
+  Eigen::Map<Vec3>(within.state.f.data() + 3 * kPlace) = force;
+  within.run(kStep);
+  added.run(kStep);
+  added.add_to_last(kPlace, kStep, force);
+  for (const auto& [a, b] :
+       {std::pair(&within.state.u, &added.state.u), std::pair(&within.state.v, &added.state.v),
+        std::pair(&within.state.f, &added.state.f)}) {
+    CHECK((as_vector(*a) - as_vector(*b)).norm() <= 1e-14 * as_vector(*a).norm());
+    CHECK(as_vector(*a).norm() > 0);
+  }
+}
+
 TEST_CASE("tensors: the product is that of the dense stiffness, also eight at once") {
   const Tissue tissue;
   const auto n = static_cast<std::size_t>(3 * tissue.tensors.vertices());
