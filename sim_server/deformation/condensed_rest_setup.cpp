@@ -32,6 +32,7 @@ int place_in(const std::vector<int>& list, int number) {
 
 /// A <- A - X^T X, of a symmetric A: its lower triangle, mirrored, so that it is symmetric to the last bit.
 void subtract_gram(const Eigen::MatrixXd& x, Eigen::MatrixXd& a) {
+  if (x.size() == 0) return;  // no modes, or no surface
   a.selfadjointView<Eigen::Lower>().rankUpdate(x.transpose(), -1.0);
   a.triangularView<Eigen::StrictlyUpper>() = a.transpose();
 }

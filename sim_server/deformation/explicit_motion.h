@@ -22,8 +22,8 @@ double count_sub_steps(const Scene& scene, double longest);
 /// The free vertices of a linear tissue in motion, by the semi-implicit (symplectic) Euler method with
 /// lumped masses M:
 ///   v += h (M^-1 (f - K (u + stiffness v)) - mass v),   u += h v.
-/// Several motions side by side: (n x 3 x columns), those of one number together. One thread; only the
-/// constructor allocates.
+/// Several motions side by side: (n x 3 x columns), those of one number together. One motion of a large body
+/// goes on by all cores, with the same bits whatever their number. Only the constructor allocates.
 class ExplicitMotion {
  public:
   /// At rest. `columns`: 1 or `ElasticTensors::kWide`. `tensors` must outlive it.
@@ -41,6 +41,10 @@ class ExplicitMotion {
   void run(int steps, double h, const std::vector<double>& force) noexcept;
   /// The same by one sub-step under the forces of `state`, as if they had always been there.
   void run(double h) noexcept;
+  /// Goes on by one sub-step without forces, and leaves where it was in `begin`, a state of this size.
+  /// Nothing but `add_to_last` may have changed `state` since it was at rest or the last sub-step ended. Of
+  /// one motion.
+  void run_free(State& begin, double h) noexcept;
   /// Adds a force (N) on one vertex to those of the last sub-step, which was of `h` (s): it has moved nothing
   /// else yet. Of one motion.
   void add_to_last(int place, double h, const Vec3& force) noexcept;
@@ -60,6 +64,7 @@ class ExplicitMotion {
   RayleighDamping damping_;
   int columns_;
   std::vector<double> bent_, resistance_;  // u + stiffness v, m; K times that, N
+  ElasticTensors::Ahead ahead_;            // of that product, of one motion
 };
 
 }  // namespace palpate::sim

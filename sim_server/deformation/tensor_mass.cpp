@@ -110,8 +110,7 @@ void TensorMass::precompute(const ModelInputs& inputs) {
 
 FreeMotion TensorMass::free_motion(double dt) noexcept {
   if (dt > 0) {
-    end_period();
-    run_period(motion_, force_);
+    run_on();
     if (supports_) supports_->advance(sub_steps_ * sub_step_);
     update_free();
     press(loads_);
@@ -125,9 +124,8 @@ FreeMotion TensorMass::free_motion(double dt) noexcept {
 /// One sub-step alone takes these forces for all of it, not their mean with those before: else forces that
 /// are to lead somewhere at its end would have to swing about that mean.
 void TensorMass::run_period(ExplicitMotion& motion, const std::vector<double>& force) const noexcept {
-  if (sub_steps_ > 1) return motion.run(sub_steps_, sub_step_, force);
-  motion.state.f = force;
-  motion.run(sub_step_);
+  if (sub_steps_ == 1) motion.state.f = force;
+  motion.run(sub_steps_, sub_step_, force);
 }
 
 /// Where the body goes free of loads: by itself, and by its supports.
@@ -139,40 +137,44 @@ void TensorMass::update_free() noexcept {
   }
 }
 
-/// From the state at the end of the period without loads to that with them, where the next one begins. Over
-/// one sub-step a load moves nothing but what it is on, so that nothing need be run again.
-void TensorMass::end_period() noexcept {
+/// Of the loads that move something: their first number, and their force.
+template <class Act>
+void TensorMass::for_loads(const Act& act) const {
+  for (const NodalLoad& load : loads_) {
+    if (compliance_.gives_way(load.vertex)) act(first_[load.vertex], load.force);
+  }
+}
+
+/// The next period, free of loads, from where the last one led with its own. Over one sub-step a load moves
+/// nothing but what it is on, so that nothing need be run again.
+void TensorMass::run_on() noexcept {
+  if (sub_steps_ == 1) {
+    for_loads([&](int first, const Vec3& force) { motion_.add_to_last(first / 3, sub_step_, force); });
+    return motion_.run_free(begin_, sub_step_);
+  }
   if (!loads_.empty()) {
-    const auto each_load = [&](const auto& act) {
-      for (const NodalLoad& load : loads_) {
-        if (compliance_.gives_way(load.vertex)) act(first_[load.vertex], load.force);
-      }
-    };
-    if (sub_steps_ == 1) {
-      each_load([&](int first, const Vec3& force) { motion_.add_to_last(first / 3, sub_step_, force); });
-    } else {
-      motion_.state = begin_;
-      each_load([&](int first, const Vec3& force) { Eigen::Map<Vec3>(force_.data() + first) += force; });
-      run_period(motion_, force_);
-      std::fill(force_.begin(), force_.end(), 0);
-    }
+    motion_.state = begin_;
+    for_loads([&](int first, const Vec3& force) { Eigen::Map<Vec3>(force_.data() + first) += force; });
+    run_period(motion_, force_);
+    std::fill(force_.begin(), force_.end(), 0);
     if (sub_steps_ <= kFew) calm_loaded();
   }
   begin_ = motion_.state;
+  run_period(motion_, force_);
 }
 
 void TensorMass::calm_loaded() noexcept {
-  for (const NodalLoad& load : loads_) {
-    const double newton = load.force.norm();
-    if (!compliance_.gives_way(load.vertex) || !(newton > 0)) continue;
-    const auto at = [first = first_[load.vertex]](std::vector<double>& numbers) {
+  for_loads([&](int first, const Vec3& force) {
+    const double newton = force.norm();
+    if (!(newton > 0)) return;
+    const auto at = [first](std::vector<double>& numbers) {
       return Eigen::Map<Vec3>(numbers.data() + first);
     };
-    const Vec3 along = load.force / newton;
+    const Vec3 along = force / newton;
     const double mean = (at(motion_.state.u) - at(begin_.u)).dot(along) / (sub_steps_ * sub_step_),
                  now = at(motion_.state.v).dot(along);
     if (std::abs(mean) < std::abs(now)) at(motion_.state.v) += (mean - now) * along;
-  }
+  });
 }
 
 void TensorMass::press(std::span<const NodalLoad> loads) noexcept {

@@ -55,7 +55,9 @@ class TensorMass : public DeformationModel {
   void choose_sub_step(const ModelInputs& inputs);
   void precompute(const ModelInputs& inputs);
   void run_period(ExplicitMotion& motion, const std::vector<double>& force) const noexcept;
-  void end_period() noexcept;
+  template <class Act>
+  void for_loads(const Act& act) const;
+  void run_on() noexcept;
   void calm_loaded() noexcept;
   void update_free() noexcept;
   void press(std::span<const NodalLoad> loads) noexcept;

@@ -1,13 +1,18 @@
 #include "sim_server/elasticity/tensors.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
+#include "common/parallel.h"
 #include "sim_server/elasticity/element.h"
 
 namespace palpate::sim {
 namespace {
+
+constexpr std::size_t kEdgesPerPart = 30'000;  // at least: of less, waking a core takes as long
 
 /// A place on the curve that visits the cells of a grid octant by octant (Morton 1966): the bits of the three
 /// cell numbers in turn. `x`: in units of the box of all, 0 to 1.
@@ -26,24 +31,29 @@ std::uint64_t on_the_curve(const Vec3& x) {
 /// Four numbers side by side, of which three are used.
 using Four [[gnu::vector_size(32)]] = double;
 using Two [[gnu::vector_size(16)]] = double;
+/// The tensors, and where they belong.
+struct TensorsInPlace {
+  const int *first_edge, *neighbour;
+  const double *vertex, *edge;
+};
 template <class Numbers>
 [[gnu::always_inline]] inline void load(const double* from, Numbers& to) {
   std::memcpy(&to, from, sizeof to);
 }
 
-/// y = K x of one vector. Row i also adds to the rows of its neighbours, which come before it. Each line of a
-/// tensor meets both ends of its edge as it was read: the own row is summed along the lines, lane by lane,
-/// and across the lanes once a vertex. Reads one number beyond `edge`. Any vector width gives the same bits.
-[[gnu::always_inline]] inline void product_of_one(int n, const int* __restrict first_edge,
-                                                  const int* __restrict neighbour,
-                                                  const double* __restrict vertex,
-                                                  const double* __restrict edge, const double* __restrict x,
-                                                  double* __restrict y) {
-  for (int i = 0; i < n; ++i, vertex += 6) {
+/// y = K x of one vector, rows `begin` to `end`. Row i also adds to the rows of its neighbours, which come
+/// before it: to `ahead` where they come before `begin`. Each line of a tensor meets both ends of its edge as
+/// it was read: the own row is summed along the lines, lane by lane, and across the lanes once a vertex.
+/// Reads one number beyond the tensors of edges. Any vector width gives the same bits.
+[[gnu::always_inline]] inline void product_of_one(int begin, int end, const TensorsInPlace& k,
+                                                  const double* __restrict x, double* __restrict y,
+                                                  double* __restrict ahead) {
+  const double* __restrict edge = k.edge + 9 * std::ptrdiff_t{k.first_edge[begin]};
+  const double* __restrict vertex = k.vertex + 6 * std::ptrdiff_t{begin};
+  for (int i = begin; i < end; ++i, vertex += 6) {
     const double a = x[3 * i], b = x[3 * i + 1], d = x[3 * i + 2];
     Four px{}, py{}, pz{};
-    for (int e = first_edge[i]; e < first_edge[i + 1]; ++e, edge += 9) {
-      const std::ptrdiff_t j = 3 * std::ptrdiff_t{neighbour[e]};
+    const auto meet = [&](std::ptrdiff_t j, double* __restrict to) __attribute__((always_inline)) {
       Four xj, along_x, along_y, along_z;
       load(x + j, xj);
       load(edge, along_x);
@@ -54,11 +64,16 @@ template <class Numbers>
       pz += along_z * xj;
       const Four to_j = along_x * a + along_y * b + along_z * d;
       Two two;  // as it was written: else the processor waits
-      load(y + j, two);
+      load(to + j, two);
       two += Two{to_j[0], to_j[1]};
-      std::memcpy(y + j, &two, sizeof two);
-      y[j + 2] += to_j[2];
-    }
+      std::memcpy(to + j, &two, sizeof two);
+      to[j + 2] += to_j[2];
+      edge += 9;
+    };
+    int e = k.first_edge[i];
+    const int last = k.first_edge[i + 1];
+    for (; e < last && k.neighbour[e] < begin; ++e) meet(3 * std::ptrdiff_t{k.neighbour[e]}, ahead);
+    for (; e < last; ++e) meet(3 * std::ptrdiff_t{k.neighbour[e]}, y);
     double* yi = y + 3 * std::ptrdiff_t{i};
     yi[0] = vertex[0] * a + vertex[1] * b + vertex[2] * d + (px[0] + px[1] + px[2]);
     yi[1] = vertex[1] * a + vertex[3] * b + vertex[4] * d + (py[0] + py[1] + py[2]);
@@ -114,14 +129,20 @@ template <int kColumns>
                                           double* __restrict y) {
   product<ElasticTensors::kWide>(n, first_edge, neighbour, vertex, edge, x, y);
 }
-[[gnu::target("avx2")]] void product_of_one_avx2(int n, const int* __restrict first_edge,
-                                                 const int* __restrict neighbour,
-                                                 const double* __restrict vertex,
-                                                 const double* __restrict edge, const double* __restrict x,
-                                                 double* __restrict y) {
-  product_of_one(n, first_edge, neighbour, vertex, edge, x, y);
+[[gnu::target("avx2")]] void product_of_one_avx2(int begin, int end, const TensorsInPlace& k,
+                                                 const double* __restrict x, double* __restrict y,
+                                                 double* __restrict ahead) {
+  product_of_one(begin, end, k, x, y, ahead);
 }
 #endif
+
+void product_of_rows(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
+                     double* ahead) noexcept {
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2")) return product_of_one_avx2(begin, end, k, x, y, ahead);
+#endif
+  product_of_one(begin, end, k, x, y, ahead);
+}
 
 void sort_each_once(auto& list) {
   std::sort(list.begin(), list.end());
@@ -197,6 +218,11 @@ void ElasticTensors::append(int vertex, const CutMesh& left) {
     }
   }
   sort_each_once(before);
+  Part& last = parts_.back();
+  for (const int at : before) {
+    if (at < last.begin && std::ranges::find(last.reaches, at) == last.reaches.end())
+      last.reaches.push_back(at);
+  }
   neighbour_.insert(neighbour_.end(), before.begin(), before.end());
   first_edge_.push_back(static_cast<int>(neighbour_.size()));
   edge_tensors_.resize(9 * neighbour_.size() + 1, 0);  // a product reads one beyond
@@ -272,6 +298,23 @@ void ElasticTensors::find_edges(const TetMesh& mesh) {
     neighbour_.push_back(before);
   }
   for (std::size_t i = 1; i < first_edge_.size(); ++i) first_edge_[i] += first_edge_[i - 1];
+  share_out();
+}
+
+/// About as many edges for each of two, four, eight ... parts, so that as many cores end together.
+void ElasticTensors::share_out() {
+  const std::size_t edges = neighbour_.size(),
+                    count = std::max<std::size_t>(1, std::bit_floor(edges / kEdgesPerPart));
+  for (std::size_t p = 0; p < count; ++p) {
+    const auto first = std::ranges::lower_bound(first_edge_, static_cast<int>(edges * p / count));
+    parts_.push_back({static_cast<int>(first - first_edge_.begin()), {}});
+  }
+  for (std::size_t p = 1; p < count; ++p) {
+    for (int e = first_edge_[parts_[p].begin]; e < first_edge_[end_of_part(p)]; ++e) {
+      if (neighbour_[e] < parts_[p].begin) parts_[p].reaches.push_back(neighbour_[e]);
+    }
+    sort_each_once(parts_[p].reaches);
+  }
 }
 
 /// Of an edge that there is, j < i.
@@ -315,14 +358,30 @@ void ElasticTensors::add(const TetMesh& mesh, std::size_t tetrahedron, const Mat
 }
 
 void ElasticTensors::multiply(const double* x, double* y) const noexcept {
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) {
-    return product_of_one_avx2(vertices(), first_edge_.data(), neighbour_.data(), vertex_tensors_.data(),
-                               edge_tensors_.data(), x, y);
+  const TensorsInPlace k{first_edge_.data(), neighbour_.data(), vertex_tensors_.data(), edge_tensors_.data()};
+  product_of_rows(0, vertices(), k, x, y, nullptr);
+}
+
+void ElasticTensors::multiply(const double* x, double* y, Ahead& ahead) const noexcept {
+  const TensorsInPlace k{first_edge_.data(), neighbour_.data(), vertex_tensors_.data(), edge_tensors_.data()};
+  const auto multiply_parts = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      product_of_rows(parts_[p].begin, end_of_part(p), k, x, y, ahead[p].data());
+  };
+  if (parts_.size() == 1) return multiply_parts(0, 1);
+  parallel_blocks(parts_.size(), 1, multiply_parts);
+  for (std::size_t p = 1; p < parts_.size(); ++p) {
+    double* const from = ahead[p].data();
+    for (const int row : parts_[p].reaches) {
+      for (int i = 3 * row; i < 3 * row + 3; ++i) y[i] += std::exchange(from[i], 0);
+    }
   }
-#endif
-  product_of_one(vertices(), first_edge_.data(), neighbour_.data(), vertex_tensors_.data(),
-                 edge_tensors_.data(), x, y);
+}
+
+ElasticTensors::Ahead ElasticTensors::room_ahead() const {
+  Ahead ahead;
+  for (const Part& part : parts_) ahead.emplace_back(3 * static_cast<std::size_t>(part.begin), 0);
+  return ahead;
 }
 
 void ElasticTensors::multiply_wide(const double* x, double* y) const noexcept {

@@ -56,8 +56,14 @@ class ElasticTensors {
 
   /// How many vectors `multiply_wide` takes at once.
   static constexpr int kWide = 8;
+  /// What parts of a product add to rows of parts before them: for each part, and 0 between two products.
+  using Ahead = std::vector<std::vector<double>>;
+  Ahead room_ahead() const;
   /// y = K x: forces (n x 3, N) of displacements (n x 3, m), n = `vertices()`.
   void multiply(const double* x, double* y) const noexcept;
+  /// The same on all cores, in parts of 30 thousand edges or more; the same bits whatever the number of
+  /// threads.
+  void multiply(const double* x, double* y, Ahead& ahead) const noexcept;
   /// The same for eight vectors side by side (n x 3 x 8, those of one number together), at about half of
   /// the time for each: tensors are read once.
   void multiply_wide(const double* x, double* y) const noexcept;
@@ -83,6 +89,13 @@ class ElasticTensors {
   void note_touched(const Tetrahedron& corners, Touched& touched) const;
   void sum_anew(Touched& touched, std::vector<int>& around, const CutMesh& left, const Material& material);
   void append(int vertex, const CutMesh& left);
+  void share_out();
+  /// Rows that one thread does of a product.
+  struct Part {
+    int begin;
+    std::vector<int> reaches;  // rows before them that it adds to
+  };
+  int end_of_part(std::size_t p) const { return p + 1 < parts_.size() ? parts_[p + 1].begin : vertices(); }
 
   std::vector<int> place_;
   std::vector<double> mass_factors_;  // of tetrahedra, or empty
@@ -92,6 +105,7 @@ class ElasticTensors {
   // Of vertex i, those to neighbours before it: from first_edge_[i] to first_edge_[i + 1].
   std::vector<int> first_edge_, neighbour_;
   std::vector<double> edge_tensors_;  // row by row
+  std::vector<Part> parts_;
 };
 
 }  // namespace palpate::sim

@@ -2,13 +2,18 @@
 // frequency w goes on by q'' = (t q' - a q), t = 1 + a - h^2 w^2, a = 1 - h (mass + stiffness w^2).
 #include "sim_server/deformation/explicit_motion.h"
 
+#include <algorithm>
 #include <numbers>
+#ifdef PALPATE_WITH_TBB
+#include <oneapi/tbb/global_control.h>
+#endif
 
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 #include "tests/support/dense_tissue.h"
 #include "tests/support/random.h"
+#include "tests/support/soft_block.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -96,7 +101,11 @@ TEST_CASE("ExplicitMotion: a force that is added to the last sub-step did what i
   }
   Eigen::Map<Vec3>(within.state.f.data() + 3 * kPlace) = force;
   within.run(kStep);
-  added.run(kStep);
+  const ExplicitMotion::State begin = added.state;
+  ExplicitMotion::State before = added.state;
+  added.run_free(before, kStep);
+  CHECK(before.u == begin.u);
+  CHECK(before.v == begin.v);
   added.add_to_last(kPlace, kStep, force);
   for (const auto& [a, b] :
        {std::pair(&within.state.u, &added.state.u), std::pair(&within.state.v, &added.state.v),
@@ -261,3 +270,29 @@ TEST_CASE("explicit motion: sub-steps do not allocate") {
   }
   CHECK(allocations == 0);
 }
+
+#ifdef PALPATE_WITH_TBB
+TEST_CASE("ExplicitMotion: a large body moves the same, to the last bit, by one thread, two and four") {
+  const TetMesh mesh = test::soft_block(Vec3(0.04, 0.04, 0.04), {24, 24, 24});
+  const ElasticTensors tensors(mesh, kSoft, {0, 1, 2});
+  REQUIRE(tensors.room_ahead().size() > 1);
+  std::vector<ExplicitMotion::State> ends;
+  for (const std::size_t threads : {1, 2, 4}) {
+    const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+    ExplicitMotion motion(tensors, {3, 2e-4});
+    std::minstd_rand random(7);
+    for (double& x : motion.state.u) x = 1e-3 * static_cast<double>(random()) / std::minstd_rand::max();
+    ExplicitMotion::State before = motion.state;
+    for (int i = 0; i < 10; ++i) {
+      motion.run(1e-4);
+      motion.run_free(before, 1e-4);
+    }
+    ends.push_back(motion.state);
+  }
+  for (const ExplicitMotion::State& end : ends) {
+    CHECK(end.u == ends[0].u);
+    CHECK(end.v == ends[0].v);
+  }
+  CHECK(std::ranges::count(ends[0].v, 0.0) == 0);
+}
+#endif

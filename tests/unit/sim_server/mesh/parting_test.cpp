@@ -240,3 +240,38 @@ TEST_CASE("tensors after slides and partings are those of a fresh assembly") {
       CHECK(tensors.masses()[at] == Approx(fresh.masses()[at_fresh]).epsilon(1e-12));
   }
 }
+
+TEST_CASE("a product of tensors in parts is that in one, also where vertices have become two") {
+  Body body({22, 22, 22});
+  const Material material{.young_modulus = 1e4, .poisson_ratio = 0.4};
+  std::vector<int> standing;
+  for (int v = 0; v < static_cast<int>(body.mesh.vertices.size()); ++v) {
+    if (body.cut.around(v).empty()) standing.push_back(v);
+  }
+  ElasticTensors tensors(body.mesh, material, standing);
+  ElasticTensors::Ahead ahead = tensors.room_ahead();
+  REQUIRE(ahead.size() > 1);
+  std::minstd_rand random(5);
+  const auto check_same = [&] {
+    std::vector<double> x(3 * tensors.masses().size()), in_one(x.size()), in_parts(x.size());
+    for (double& value : x) value = static_cast<double>(random()) / std::minstd_rand::max() - 0.5;
+    tensors.multiply(x.data(), in_one.data());
+    const double size = std::abs(*std::ranges::max_element(in_one));
+    for (int again = 0; again < 2; ++again) {
+      tensors.multiply(x.data(), in_parts.data(), ahead);
+      double off = 0;
+      for (std::size_t i = 0; i < x.size(); ++i) off = std::max(off, std::abs(in_parts[i] - in_one[i]));
+      CHECK(off < 1e-13 * size);
+    }
+  };
+  check_same();
+  const std::size_t before = tensors.masses().size();
+  for (int round = 0; round < 3; ++round) {
+    std::vector<int> faces = body.inner_faces();
+    std::ranges::shuffle(faces, random);
+    faces.resize(faces.size() / 3);
+    tensors.part(body.cut.part(faces, body.surface), {}, body.cut, material);
+    check_same();
+  }
+  CHECK(tensors.masses().size() > before + 100);
+}
