@@ -56,11 +56,12 @@ struct MemoryPart {
 
 /// A tissue. Every model answers the same questions (where would you go, how compliant are you, here are the
 /// loads: move), so that one contact solver serves them all. Vertices are those of the surface (`Surface`),
-/// positions in m in the world frame. One thread. Answers of the models that are computed beforehand neither
-/// allocate nor throw. One that solves in each step (`Implicit`), and one of tissue that can be cut,
-/// allocates, may start threads and wait for them, and throws what those do (`std::bad_alloc`), which
-/// `Simulation::step` catches. A factor made in a step locks for as long as its order is found, and warns in
-/// the log where memory does not let it be as fine as it should be.
+/// positions in m in the world frame. One thread; explicit steps of a large body hand parts of them to others
+/// (oneTBB). Answers of the models that are computed beforehand neither allocate nor throw. One that solves
+/// in each step (`Implicit`), and one of tissue that can be cut, allocates, may start threads and wait for
+/// them, and throws what those do (`std::bad_alloc`), which `Simulation::step` catches. A factor made in a
+/// step locks for as long as its order is found, and warns in the log where memory does not let it be as fine
+/// as it should be.
 class DeformationModel {
  public:
   virtual ~DeformationModel() = default;
