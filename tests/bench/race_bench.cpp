@@ -2,11 +2,11 @@
 // thread, 2 cores of AMD Zen 3, one run), on meshes of 6, 30 and 100 thousand tetrahedra in the folder that
 // $PALPATE_RACE_MESHES names (peer_liver_S.msh, _M, _L). A body of E = 5 kPa and nu = 0.45 is held where y >=
 // 48 mm and pulled by 0.3 N along -y where x >= 88 mm, from rest. `race/explicit`: a sub-step of linear
-// tensors, one thread. `race/implicit`: steps of 20 ms of corotational tissue solved to 1e-5 of the forces,
-// by each solver: beside the mean stand the median and the worst step, and how many factors were made.
-// `race/swing`: the same body swung by gravity that turns about, its tip by a third of its length and more.
-// `race/static`: the linear equilibrium, assembled, factored and solved once. `sofa` and `ratio` are of that
-// run, on another machine: a ratio says something only where both are raced anew.
+// tensors, by one thread, and by all cores. `race/implicit`: steps of 20 ms of corotational tissue solved to
+// 1e-5 of the forces, by each solver: beside the mean stand the median and the worst step, and how many
+// factors were made. `race/swing`: the same body swung by gravity that turns about, its tip by a third of its
+// length and more. `race/static`: the linear equilibrium, assembled, factored and solved once. `sofa` and
+// `ratio` are of that run, on another machine: a ratio says something only where both are raced anew.
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "common/clock.h"
+#include "common/parallel.h"
 #include "sim_server/deformation/explicit_motion.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/solvers/dynamics.h"
@@ -73,7 +74,7 @@ void compare(benchmark::State& state, double ours_ms, double peers_ms) {
   state.counters["ratio"] = peers_ms / ours_ms;
 }
 
-void run_explicit(benchmark::State& state, const Racer& racer) {
+void run_explicit(benchmark::State& state, const Racer& racer, bool all_cores) {
   const Body body(racer);
   const ElasticTensors tensors(body.mesh, tissue(ElasticLaw::kLinear), body.fixed);
   const RayleighDamping damping{0.1, 0};
@@ -84,13 +85,21 @@ void run_explicit(benchmark::State& state, const Racer& racer) {
   for (std::size_t v = 0; v < pull.size(); ++v) {
     if (tensors.places()[v] >= 0) Eigen::Map<Vec3>(force.data() + 3 * tensors.places()[v]) = pull[v];
   }
-  const Time begin = now();
+  Time begin{};
   int calls = 0;
-  time_calls(state, 10, [&] {
-    ++calls;
-    motion.run(1, h, force);
-    return motion.state.u[force.size() / 2];
-  });
+  const auto race = [&] {
+    begin = now();
+    time_calls(state, 10, [&] {
+      ++calls;
+      motion.run(1, h, force);
+      return motion.state.u[force.size() / 2];
+    });
+  };
+  if (all_cores) {
+    race();
+  } else {
+    in_one_thread(race);
+  }
   compare(state, 1e3 * to_seconds(now() - begin) / calls, racer.explicit_ms);
 }
 
@@ -184,7 +193,10 @@ void add_race_rows() {
                                 std::pair{"quasi_newton", Solver::kQuasiNewton}};
   for (const Racer& racer : kRacers) {
     const std::string name = racer.name;
-    add("race/explicit/" + name, [&racer](benchmark::State& state) { run_explicit(state, racer); });
+    for (const bool all : {false, true}) {
+      add("race/explicit/" + name + (all ? "/all_cores" : ""),
+          [&racer, all](benchmark::State& state) { run_explicit(state, racer, all); });
+    }
     for (const auto& [solver_name, solver] : kSolvers) {
       add("race/implicit/" + name + "/" + solver_name,
           [&racer, solver = solver](benchmark::State& state) { pull_once(state, racer, solver); })
