@@ -53,7 +53,8 @@ model = "{model}"
 radius = 0.003
 reach = [[-0.0025, -0.0025, -0.0025], [0.0025, 0.0025, 0.0025]]
 """
-CUTTING = """[cutting]
+CUTTING = """cut_buttons = 1
+[cutting]
 box = [[-0.005, -0.005, -0.005], [0.005, 0.005, 0.005]]
 """
 KUHN = ((1, 2, 4), (1, 4, 2), (2, 1, 4), (2, 4, 1), (4, 1, 2), (4, 2, 1))  # ways from a corner: bits x, y, z
