@@ -195,7 +195,7 @@ def main():
             found["reference"]["closed_form_percent"] = against_closed_form(folder)
             (folder / "summary.json").write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
         rows += json.loads((folder / "summary.json").read_text(encoding="utf-8"))["rows"]
-    costs = options.out / "cost" / hashlib.sha256(SERVER.read_bytes() + SCENE.encode()).hexdigest()[:16]
+    costs = options.out / "cost" / hashlib.sha256(SERVER.read_bytes() + (SCENE + CUTTING).encode()).hexdigest()[:16]
     costs.mkdir(parents=True, exist_ok=True)
     found = []
     for model, n in [(model, n) for model in MODELS for n in (SIZES[:2] if options.quick else SIZES)]:
