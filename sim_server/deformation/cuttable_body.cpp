@@ -21,6 +21,13 @@ std::vector<int> standing(const ModelInputs& inputs, const std::vector<char>* mo
 
 }  // namespace
 
+std::vector<int> fixed_by_now(std::span<const int> fixed, std::span<const int> places) {
+  std::vector<int> stand;
+  std::ranges::copy_if(fixed, std::back_inserter(stand),
+                       [&](int v) { return places[static_cast<std::size_t>(v)] < 0; });
+  return stand;
+}
+
 CuttableBody::CuttableBody(const ModelInputs& inputs, const std::vector<double>& mass_factors,
                            const std::vector<char>* moves, const CondensedRest::Modes& modes)
     : tensors(inputs.mesh, *inputs.scene.material, standing(inputs, moves), mass_factors),

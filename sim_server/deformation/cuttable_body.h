@@ -6,6 +6,10 @@
 
 namespace palpate::sim {
 
+/// Of `fixed`, which has all spare vertices of a mesh that can be parted, those that stand by now: the spares
+/// that became a copy of another vertex are in motion, with a place there. Ascending where `fixed` is.
+std::vector<int> fixed_by_now(std::span<const int> fixed, std::span<const int> places);
+
 /// A linear elastic body of which vertices are in motion by explicit steps, with a tensor per vertex and edge
 /// (`ElasticTensors`), and the rest, if any, is condensed: what it is, and where it is by now. It stays where
 /// it was made.

@@ -8,8 +8,9 @@
 
 namespace palpate::sim {
 
-/// What a model is built from. `fixed`: mesh vertices that move only with their [[fixed.motion]].
-/// `reachable`: surface vertices the tool can load.
+/// What a model is built from. `fixed`: mesh vertices that move only with their [[fixed.motion]], ascending;
+/// of a mesh that can be parted also all spare ones, which are of no tetrahedron until they are copies of
+/// others. `reachable`: surface vertices the tool can load.
 struct ModelInputs {
   const Scene& scene;
   const TetMesh& mesh;

@@ -139,9 +139,7 @@ void RegionGrowth::begin(std::vector<int> allowed, const CuttableBody& now, cons
 RegionGrowth::Made RegionGrowth::make(Begun begun, const CuttableBody& now) const {
   const TetMesh& mesh = begun.mesh;
   const CutMesh left = begun.left.of_copy(mesh);
-  std::vector<int> fixed;  // of spare vertices, those that are no copies yet
-  std::ranges::copy_if(inputs_.fixed, std::back_inserter(fixed),
-                       [&](int v) { return begun.places[static_cast<std::size_t>(v)] < 0; });
+  const std::vector<int> fixed = fixed_by_now(inputs_.fixed, begun.places);
   const Progress silent = [](std::string_view, double) {};
   const ModelInputs inputs{inputs_.scene, mesh, inputs_.surface, fixed, inputs_.reachable, silent};
   const CondensedRest::Modes modes{
@@ -157,6 +155,12 @@ RegionGrowth::Made RegionGrowth::make(Begun begun, const CuttableBody& now) cons
   return made;
 }
 
+/// What can be cut stays as it is, and for a while nothing is begun.
+void RegionGrowth::put_off(const std::exception& error, Step& step) {
+  step.failure = error.what();
+  not_before_ = step_ + (steps_ << std::min(failures_++, kMostDoublings));
+}
+
 /// What was removed meanwhile may be near the end of now, too.
 RegionGrowth::Step RegionGrowth::end() {
   const Cuts since = std::exchange(since_, {});
@@ -170,8 +174,7 @@ RegionGrowth::Step RegionGrowth::end() {
     seeds_.clear();
     failures_ = 0;
   } catch (const std::exception& error) {
-    step.failure = error.what();
-    not_before_ = step_ + (steps_ << std::min(failures_++, kMostDoublings));
+    put_off(error, step);
   }
   note_seeds(since.removed);
   note_seeds(since.parting.tetrahedra);
@@ -183,12 +186,17 @@ RegionGrowth::Step RegionGrowth::step(const CuttableBody& now, const CutMesh& le
   if (work_.valid()) return step_ >= due_ ? end() : Step{};
   if (seeds_.empty() || step_ < not_before_) return {};
   std::vector<int> allowed = near_seeds(left);
-  Step step;
-  step.begun = !allowed.empty();
-  if (step.begun)
-    begin(std::move(allowed), now, left);
-  else
+  if (allowed.empty()) {
     seeds_.clear();
+    return {};
+  }
+  Step step;
+  try {
+    begin(std::move(allowed), now, left);
+    step.begun = true;
+  } catch (const std::exception& error) {
+    put_off(error, step);
+  }
   return step;
 }
 

@@ -41,7 +41,7 @@ class RegionGrowth {
   struct Step {
     bool begun = false;          ///< the background begins
     std::optional<Grown> grown;  ///< it has ended, and this takes over
-    std::string failure;         ///< it has ended, and what can be cut stays as it is; why
+    std::string failure;         ///< it has ended, or could not begin: what can be cut stays as it is; why
   };
   /// A step begins. `now`: the body that is in use. Waits for the background where its time has come.
   Step step(const CuttableBody& now, const CutMesh& left);
@@ -75,6 +75,7 @@ class RegionGrowth {
   Made make(Begun begun, const CuttableBody& now) const;
   void note_seeds(std::span<const int> tetrahedra);
   Step end();
+  void put_off(const std::exception& error, Step& step);
   std::vector<int> near_seeds(const CutMesh& left) const;
 
   Inputs inputs_;

@@ -32,14 +32,14 @@ ToldMotion::ToldMotion(const ModelInputs& inputs, const LinearStatics& statics, 
                        std::span<const int> places, std::span<const double> masses)
     : modes_(found, surface_unknowns(inputs, statics), inputs.scene.deformation.of<RayleighDamping>()),
       residual_(inputs),
-      shapes_(3 * static_cast<Eigen::Index>(masses.size()), modes_.told),
-      masses_(shapes_.rows()),
+      shapes_(Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(masses.size()), modes_.told)),
+      masses_(Eigen::VectorXd::Zero(shapes_.rows())),
       weighted_(shapes_.rows()) {
   for (std::size_t node = 0; node < places.size(); ++node) {
-    if (places[node] < 0) continue;
+    const int first = statics.dofs.first[node];
+    if (places[node] < 0 || first < 0) continue;  // the rest; what the modes do not know
     const Eigen::Index row = 3 * places[node];
-    if (modes_.told > 0)
-      shapes_.middleRows<3>(row) = found.shapes.middleRows<3>(statics.dofs.first[node]).leftCols(modes_.told);
+    if (modes_.told > 0) shapes_.middleRows<3>(row) = found.shapes.middleRows<3>(first).leftCols(modes_.told);
     masses_.segment<3>(row).setConstant(masses[static_cast<std::size_t>(places[node])]);
   }
   q_ = v_ = force_ = Eigen::VectorXd::Zero(modes_.told);

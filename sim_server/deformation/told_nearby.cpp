@@ -8,6 +8,7 @@
 
 #include "common/parallel.h"
 #include "common/realtime.h"
+#include "sim_server/deformation/cuttable_body.h"
 #include "sim_server/deformation/linear_statics.h"
 #include "sim_server/mesh/loose_parts.h"
 
@@ -39,12 +40,13 @@ std::vector<int> fixed_of(const TetMesh& mesh, std::span<const int> standing) {
   return fixed;
 }
 
-/// Adds the `most` on the surface that are nearest to `place`.
-void add_nearest(const Vec3& place, const ToldNearby::Tissue& tissue, std::size_t most,
+/// Adds the `most` on the surface that are nearest to `place`, of those that `known` is true of.
+template <class Known>
+void add_nearest(const Vec3& place, const ToldNearby::Tissue& tissue, const Known& known, std::size_t most,
                  ToldSurface::Part& part) {
   std::vector<std::pair<double, int>> near;  // m^2
   for (int v = 0; v < static_cast<int>(tissue.positions.size()); ++v) {
-    if (tissue.left.on_surface(v))
+    if (tissue.left.on_surface(v) && known(v))
       near.emplace_back((tissue.positions[static_cast<std::size_t>(v)] - place).squaredNorm(), v);
   }
   ToldSurface::Ball ball{place, std::numeric_limits<double>::infinity()};
@@ -87,8 +89,9 @@ struct ToldNearby::Body {
 
   /// All else. `before`: a body of which some was cut since, whose modes these are like; null: none.
   void make(const Body* before) {
-    drop_loose_parts(mesh, owner_.fixed_);  // a tool just pushes them away
-    fixed = fixed_of(mesh, owner_.fixed_);
+    standing = fixed_by_now(owner_.fixed_, places);
+    drop_loose_parts(mesh, standing);  // a tool just pushes them away
+    fixed = fixed_of(mesh, standing);
     statics.emplace(inputs);
     modes = before != nullptr && before->modes.shapes.cols() < statics->dofs.count
                 ? refined_modes(statics->factor(), masses_in_motion(), shapes_of(*before))
@@ -100,24 +103,34 @@ struct ToldNearby::Body {
   ModelInputs inputs_for(const std::vector<int>& vertices) const {
     return {owner_.scene_, mesh, owner_.surface_, fixed, vertices, progress_};
   }
+  /// Whether this surface vertex is known here: it was held, or is of a part that hangs on what was.
+  bool has(int vertex) const {
+    const int node = owner_.surface_.vertices[static_cast<std::size_t>(vertex)];
+    return moves(vertex) || std::ranges::binary_search(standing, node);
+  }
+  bool moves(int vertex) const {
+    return statics->dofs.first[owner_.surface_.vertices[static_cast<std::size_t>(vertex)]] >= 0;
+  }
   std::size_t bytes() const {
-    return (fixed.size() + places.size()) * sizeof(int) + masses.size() * sizeof(double) +
+    return (standing.size() + fixed.size() + places.size()) * sizeof(int) + masses.size() * sizeof(double) +
            static_cast<std::size_t>(modes.shapes.size()) * sizeof(double) + statics->factor().bytes();
   }
 
   TetMesh mesh;
-  std::vector<int> fixed, places;
+  std::vector<int> standing, fixed;  // by themselves; besides, what no tetrahedron has
+  std::vector<int> places;
   std::vector<double> masses;
   std::optional<LinearStatics> statics;
   VibrationModes modes;
 
  private:
-  /// Those that it moves with, a little more than it has (`MassScaling`), kg by unknowns.
+  /// Those that what is in motion moves with, a little more than it has (`MassScaling`); of the rest those
+  /// that it has. kg by unknowns.
   Eigen::VectorXd masses_in_motion() const {
     Eigen::VectorXd of_unknowns = statics->masses();
     for (std::size_t node = 0; node < places.size(); ++node) {
       const int first = statics->dofs.first[node];
-      if (first >= 0)
+      if (first >= 0 && places[node] >= 0)
         of_unknowns.segment<3>(first).setConstant(masses[static_cast<std::size_t>(places[node])]);
     }
     return of_unknowns;
@@ -226,12 +239,14 @@ void ToldNearby::begin_surface(std::span<const Tool> tools, const Tissue& tissue
                        return told_->shape.holds(expected_place(tool), kStays);
                      });
   if (stays) shape = told_->shape;
-  const std::uint32_t model = stays ? told_->model : ++models_;
+  const auto known = [this](int vertex) { return body_->has(vertex); };
   for (const Tool& tool : tools) {
     const Vec3 place = expected_place(tool);
-    if (!stays) add_nearest(place, tissue, kShape, shape);
-    add_nearest(place, tissue, kCompliant, compliant);
+    if (!stays) add_nearest(place, tissue, known, kShape, shape);
+    add_nearest(place, tissue, known, kCompliant, compliant);
   }
+  if (std::ranges::none_of(compliant.vertices, [&](int v) { return body_->moves(v); })) return;
+  const std::uint32_t model = stays ? told_->model : ++models_;
   begin(surface_steps_, [body = body_, shape = std::move(shape), compliant = std::move(compliant), model] {
     std::shared_ptr<ToldSurface> surface(
         new ToldSurface{ToldMotion(body->inputs_for(compliant.vertices), *body->statics, body->modes,

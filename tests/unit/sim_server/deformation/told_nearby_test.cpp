@@ -10,6 +10,7 @@
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
+#include "tests/support/shaken_block.h"
 #include "tests/support/soft_block.h"
 
 using namespace palpate;
@@ -49,8 +50,8 @@ TetMesh stirred_block(double moved) {
 
 /// A tool that presses, and whose client wants to know the surface.
 struct Told {
-  explicit Told(TetMesh mesh, const char* model = "tensor_mass")
-      : simulation(cut_scene(model), std::move(mesh)) {}
+  explicit Told(TetMesh mesh, const char* model = "tensor_mass") : Told(cut_scene(model), std::move(mesh)) {}
+  Told(const Scene& scene, TetMesh mesh) : simulation(scene, std::move(mesh)) {}
   Simulation simulation;
   ToolInput input{.pose = ToolPose(Vec3(0.001, 0.001, 0.0005)), .wants = {.surface_shift = true}};
 
@@ -229,6 +230,80 @@ TEST_CASE("a surface that can be cut is told no more in the step that cuts it, a
   CHECK(back - (v.begin() + 50) >= 3 * 5);
   CHECK(back - (v.begin() + 50) <= 3 * 5 + 8);
   CHECK(v.back() == *back);
+}
+
+TEST_CASE("a surface that can be cut: what a blade has parted is told as a static model's compliance of it") {
+  Scene scene = cut_scene("tensor_mass");
+  scene.tools[0].blade = Vec3(0, -0.012, 0);
+  Told told(scene, shaken_block({8, 4, 8}));
+  told.input.buttons = 2;
+  for (int k = 0; k <= 60; ++k) {
+    told.input.pose = ToolPose(Vec3(-0.022 + 0.02 * k / 60, 0.0025, 0.001));
+    told.step();
+  }
+  told.input.buttons = 0;
+  told.go_on(60);
+  const Resection& cut = *told.simulation.resection();
+  REQUIRE(cut.totals().splits > 3);
+  REQUIRE(told.simulation.told_modes() != nullptr);
+  const TetMesh& parted = told.simulation.mesh();
+  TetMesh left;  // without spare vertices
+  std::vector<int> number(parted.vertices.size(), -1);
+  for (int v = 0; v < static_cast<int>(number.size()); ++v) {
+    if (cut.left().around(v).empty()) continue;
+    number[static_cast<std::size_t>(v)] = static_cast<int>(left.vertices.size());
+    left.vertices.push_back(parted.vertices[static_cast<std::size_t>(v)]);
+  }
+  for (Tetrahedron t : parted.tetrahedra) {
+    for (int& v : t) v = number[static_cast<std::size_t>(v)];
+    left.tetrahedra.push_back(t);
+  }
+  REQUIRE(cut.totals().tetrahedra == 0);
+  const auto whole = static_cast<int>(shaken_block({8, 4, 8}).vertices.size());
+  std::vector<int> nodes, same;  // on the top, beside where the blade went: copies, too
+  int copies = 0;
+  for (int v = 0; v < static_cast<int>(number.size()); ++v) {
+    const Vec3& x = parted.vertices[static_cast<std::size_t>(v)];
+    if (x[1] < -0.001 || std::abs(x[2]) > 0.006 || x[0] > 0 || number[static_cast<std::size_t>(v)] < 0)
+      continue;
+    nodes.push_back(v);
+    same.push_back(number[static_cast<std::size_t>(v)]);
+    copies += v >= whole ? 1 : 0;
+  }
+  REQUIRE(copies > 0);
+  const Eigen::MatrixXd right = static_compliance(left, same);
+  CHECK((told_compliance(told.simulation, nodes) - right).norm() < 1e-6 * right.norm());
+}
+
+TEST_CASE("a surface that can be cut: of a piece that hangs on nothing nothing is told, nor of its motion") {
+  const TetMesh mesh = deep_block();
+  for (const char* model : {"tensor_mass", "hybrid"}) {
+    CAPTURE(model);
+    Scene scene = cut_scene(model);
+    scene.cutting->smallest_piece = 0;
+    if (scene.cutting->plan)
+      scene.cutting->plan = CutPlan{.point = Vec3(0.01, 0, 0), .normal = Vec3::UnitX(), .within = 0.0155};
+    Told told(scene, TetMesh(mesh));
+    std::vector<Removal> around;  // of a corner of the top: what is between it and the rest
+    const auto in_piece = [](const Vec3& x) { return x[0] > 0.0049 && x[1] > -0.0051 && x[2] > 0.0049; };
+    const auto in_box = [](const Vec3& x) { return x[0] > -1e-9 && x[1] > -0.0101 && x[2] > -1e-9; };
+    for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) {
+      const Vec3 centre = centre_of(mesh, mesh.tetrahedra[static_cast<std::size_t>(t)]);
+      if (in_box(centre) && !in_piece(centre)) around.push_back({0.5, t});
+    }
+    told.simulation.remove_at(around);
+    told.input.pose = ToolPose(Vec3(0.004, 0.001, 0.004));
+    told.go_on(100);
+    const auto surface = told.simulation.model().told();
+    REQUIRE(surface != nullptr);
+    REQUIRE(told.simulation.resection()->totals().tetrahedra == around.size());
+    const auto of_piece = [&](int vertex) {
+      return in_piece(mesh.vertices[static_cast<std::size_t>(told.simulation.surface().vertices[vertex])]);
+    };
+    CHECK(surface->shape.vertices.size() > 50);
+    CHECK(std::ranges::none_of(surface->shape.vertices, of_piece));
+    CHECK(std::ranges::none_of(surface->compliant.vertices, of_piece));
+  }
 }
 
 TEST_CASE("a surface that can be cut: cut again while it is looked at, it is told of what is left at last") {
