@@ -186,6 +186,7 @@ int record(const RecordOptions& options) {
   const auto condensed = open_condensed(options.cache, scene);
   Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr,
                         condensed ? &*condensed : nullptr);
+  if (!options.resection) simulation.keep_no_log();
   if (options.remove) simulation.remove_at(read_removals(*options.remove, simulation));
   const ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
   RealTime clock;

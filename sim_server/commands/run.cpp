@@ -326,6 +326,7 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   const auto condensed = open_condensed(options.cache, scene);
   Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr,
                         condensed ? &*condensed : nullptr);
+  if (!options.resection) simulation.keep_no_log();
   warn_if_slow(scene);
   warn_if_out_of_reach(simulation, scene);
   ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);

@@ -66,8 +66,8 @@ class Resection {
   /// that it cut off and that go are `removed` then.
   const Parted& part(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are, Surface& surface);
   std::span<const int> removed() const { return removed_; }
-  /// This mesh vertex never slides onto the way of a blade.
-  void keep(int vertex) { scalpel_->keep(vertex); }
+  /// These mesh vertices, and no others that have not slid yet, do not slide onto the way of a blade.
+  void keep(std::vector<int> vertices) { scalpel_->keep(std::move(vertices)); }
   /// The way over which a blade does the work of what it parts, m.
   double blade_size() const { return scalpel_->size(); }
 

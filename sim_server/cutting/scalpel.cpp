@@ -122,8 +122,7 @@ std::vector<Scalpel::Crossing> Scalpel::crossings(const Plane& plane, std::span<
     const Vec3 &x = at(mesh, are, v), along = at(mesh, are, w) - x;
     const double from = plane.normal.dot(x - plane.origin), to = from + plane.normal.dot(along);
     const double share = from / (from - to);
-    if (from * to < 0 && share <= kMostSlide && slid_[static_cast<std::size_t>(v)] == 0 &&
-        meets(x + share * along))
+    if (from * to < 0 && share <= kMostSlide && !stays(v) && meets(x + share * along))
       found.push_back({v, w, share, share * along.norm()});
   };
   for (const int t : near) {
@@ -137,7 +136,12 @@ std::vector<Scalpel::Crossing> Scalpel::crossings(const Plane& plane, std::span<
   return found;
 }
 
-/// Of a vertex that has not slid.
+/// It has slid, or is not to.
+bool Scalpel::stays(int vertex) const {
+  return slid_[static_cast<std::size_t>(vertex)] != 0 || std::ranges::find(kept_, vertex) != kept_.end();
+}
+
+/// Of a vertex that does not stay.
 bool Scalpel::may_slide(const Crossing& crossing, const CutMesh& mesh) const {
   if (!mesh.is_free(crossing.vertex) || mesh.on_cut(crossing.vertex)) return false;
   return !mesh.on_surface(mesh.number_of(crossing.vertex)) ||
@@ -165,8 +169,7 @@ void Scalpel::slide_onto(const Plane& plane, std::span<const int> near, std::spa
     before = slides.size();
     for (const Crossing& crossing : crossings(plane, near, are, mesh)) {
       const auto [v, w, share, far] = crossing;
-      const bool slid = slid_[static_cast<std::size_t>(v)] != 0 || slid_[static_cast<std::size_t>(w)] != 0;
-      if (slid || !may_slide(crossing, mesh) || !slide(crossing, mesh)) continue;
+      if (stays(v) || stays(w) || !may_slide(crossing, mesh) || !slide(crossing, mesh)) continue;
       for (const std::span<Vec3> positions : {were, are}) {
         Vec3& x = positions[static_cast<std::size_t>(mesh.number_of(v))];
         x += share * (at(mesh, positions, w) - x);

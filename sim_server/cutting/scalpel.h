@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim_server/deformation/deformation_model.h"
@@ -39,8 +40,8 @@ class Scalpel {
   /// O(tetrahedra).
   explicit Scalpel(const CutMesh& mesh);
 
-  /// This mesh vertex never slides.
-  void keep(int vertex) { slid_[static_cast<std::size_t>(vertex)] = 1; }
+  /// These mesh vertices do not slide in the next `cut`s, in place of those that were said before.
+  void keep(std::vector<int> vertices) { kept_ = std::move(vertices); }
   /// The mean edge of what can be cut, at rest, m.
   double size() const { return edge_; }
 
@@ -65,6 +66,7 @@ class Scalpel {
                           const CutMesh& mesh) const;
   std::vector<Crossing> crossings(const Plane& plane, std::span<const int> near, std::span<const Vec3> are,
                                   const CutMesh& mesh) const;
+  bool stays(int vertex) const;
   bool may_slide(const Crossing& crossing, const CutMesh& mesh) const;
   bool slide(const Crossing& crossing, CutMesh& mesh) const;
   void slide_onto(const Plane& plane, std::span<const int> near, std::span<Vec3> were, std::span<Vec3> are,
@@ -75,6 +77,7 @@ class Scalpel {
 
   double edge_ = 0, longest_ = 0, height_ = 0;  // m: of edges the mean and the longest; of heights the mean
   std::vector<char> slid_;                      // of mesh vertices
+  std::vector<int> kept_;
 };
 
 }  // namespace palpate::sim

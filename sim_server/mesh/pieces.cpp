@@ -4,6 +4,7 @@
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <utility>
 
 namespace palpate::sim {
 namespace {
@@ -30,6 +31,7 @@ PieceFinder::PieceFinder(const CutMesh& mesh, std::span<const int> held)
     for (const int reached : all.reached) body_of_[static_cast<std::size_t>(reached)] = number;
     body_held_.push_back(piece_of(mesh, std::move(all.reached)).held ? 1 : 0);
   }
+  let_go_.assign(body_held_.size(), 0);
   front_of_.assign(front_of_.size(), -1);
 }
 
@@ -115,8 +117,20 @@ std::vector<Piece> PieceFinder::cut_off_by(const CutMesh& mesh, std::span<const 
 }
 
 std::vector<Piece> PieceFinder::cut_off(const CutMesh& mesh, std::span<const int> removed) {
+  for (const int t : removed) {
+    if (lets_go(mesh, t)) let_go_[static_cast<std::size_t>(body_of_[static_cast<std::size_t>(t)])] = 1;
+  }
   return cut_off_by(mesh, removed,
                     [&](std::span<const int> of_body) { return fronts_around(mesh, of_body); });
+}
+
+/// Whether a held vertex of this one, which is gone, is of nothing else of its body any more.
+bool PieceFinder::lets_go(const CutMesh& mesh, int removed) const {
+  const int body = body_of_[static_cast<std::size_t>(removed)];
+  const auto holds = [&](int t) { return mesh.is_left(t) && body_of_[static_cast<std::size_t>(t)] == body; };
+  return std::ranges::any_of(mesh.mesh().tetrahedra[static_cast<std::size_t>(removed)], [&](int v) {
+    return held_[static_cast<std::size_t>(v)] != 0 && std::ranges::none_of(mesh.around(v), holds);
+  });
 }
 
 std::vector<Piece> PieceFinder::parted(const CutMesh& mesh, std::span<const int> tetrahedra) {
@@ -129,6 +143,7 @@ void PieceFinder::name_bodies(std::vector<Piece>& pieces) {
     for (const int t : piece.tetrahedra)
       body_of_[static_cast<std::size_t>(t)] = static_cast<int>(body_held_.size());
     body_held_.push_back(piece.held ? 1 : 0);
+    let_go_.push_back(0);
   }
 }
 
@@ -145,9 +160,11 @@ std::vector<Piece> PieceFinder::cut_off_body(const CutMesh& mesh, std::vector<Fr
   for (const auto& [set, front] : whole) {
     if (set != rest) pieces.push_back(piece_of(mesh, front.reached));
   }
-  // What was not followed is what holds the body, unless something else is held, or nothing is.
+  // What was not followed is what holds the body, unless something else is held, nothing is, or it was let
+  // go of.
   char& body_held = body_held_[static_cast<std::size_t>(body)];
-  const bool all_known = rest < 0 || body_held == 0 || std::ranges::any_of(pieces, &Piece::held);
+  const bool let_go = std::exchange(let_go_[static_cast<std::size_t>(body)], 0) != 0 && body_held != 0;
+  const bool all_known = rest < 0 || body_held == 0 || let_go || std::ranges::any_of(pieces, &Piece::held);
   if (rest >= 0 && all_known) {
     Front& front = whole[rest];
     while (front.next < front.reached.size()) grow(mesh, front, rest);
@@ -156,7 +173,7 @@ std::vector<Piece> PieceFinder::cut_off_body(const CutMesh& mesh, std::vector<Fr
   if (all_known && !pieces.empty()) {
     const auto stays = piece_that_stays(pieces);
     body_held = stays->held ? 1 : 0;
-    pieces.erase(stays);
+    if (stays->held || !let_go) pieces.erase(stays);
   }
   for (const auto& [set, front] : whole) {
     for (const int t : front.reached) front_of_[static_cast<std::size_t>(t)] = -1;

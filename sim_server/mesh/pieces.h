@@ -22,9 +22,10 @@ class PieceFinder {
   PieceFinder(const CutMesh& mesh, std::span<const int> held);
 
   /// What the removal of these tetrahedra, just now, has cut off: of each body that hung together before, all
-  /// pieces but one. That one is held, where any is, and else the largest. Searches from the neighbours of
-  /// what was removed, in turns, until all of them have met but those of pieces that are at an end: O(what is
-  /// cut off) and a search of some tetrahedra around where nothing is; of a body that nothing holds O(that).
+  /// pieces but one. That one is held, where any is, and else the largest; but it is told, too, where the
+  /// body was held until now and the last that held it is gone. Searches from the neighbours of what was
+  /// removed, in turns, until all of them have met but those of pieces that are at an end: O(what is cut off)
+  /// and a search of some tetrahedra around where nothing is; of a body that nothing holds O(that).
   std::vector<Piece> cut_off(const CutMesh& mesh, std::span<const int> removed);
   /// The same of faces that were parted, just now, between these tetrahedra, which are left.
   std::vector<Piece> parted(const CutMesh& mesh, std::span<const int> tetrahedra);
@@ -44,11 +45,13 @@ class PieceFinder {
   std::vector<Front> fronts_at(std::span<const int> tetrahedra);
   void grow(const CutMesh& mesh, Front& front, int number);
   int grow_until_apart(const CutMesh& mesh, std::vector<Front>& fronts, DisjointSets& sets);
+  bool lets_go(const CutMesh& mesh, int removed) const;
   Piece piece_of(const CutMesh& mesh, std::vector<int> tetrahedra) const;
 
   std::vector<char> held_;    // of vertices
   std::vector<int> body_of_;  // of tetrahedra: which hang together
   std::vector<char> body_held_;
+  std::vector<char> let_go_;   // of bodies: a held vertex is of nothing any more
   std::vector<int> front_of_;  // of tetrahedra, during a search; -1: not reached
 };
 

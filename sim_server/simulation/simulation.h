@@ -169,6 +169,10 @@ class Simulation {
   std::uint64_t state_hash() const noexcept;
   /// What is left of an organ that is cut, and what has been removed; null: nothing can be.
   const Resection* resection() const { return cut_ ? &cut_->resection : nullptr; }
+  /// From now on only the last row of the log is kept: of a run that may go on for days.
+  void keep_no_log() {
+    if (cut_) cut_->logs = false;
+  }
   /// A row for each step with a tip that was hot.
   std::span<const ResectionRow> resection_log() const {
     return cut_ ? std::span<const ResectionRow>(cut_->log) : std::span<const ResectionRow>();
@@ -218,10 +222,10 @@ class Simulation {
   void tell_modes(std::size_t tool);
   bool ran_away() const noexcept;
 
-  /// A blade while it cuts.
+  /// A blade while it cuts, and until it has done the work of that.
   struct Blade {
     BladeEdge is{};                     // m
-    std::optional<BladeEdge> was = {};  // when what it parts was looked for last
+    std::optional<BladeEdge> was = {};  // when what it parts was looked for last; none: it was let go
     Vec3 trail = Vec3::Zero();          // `BladeSweep`, m
     std::vector<Vec3> were = {};        // surface vertices then, m
     std::optional<Vec3> place = {};     // of the tool at the end of the step before, m
@@ -233,12 +237,13 @@ class Simulation {
     Resection resection;
     std::vector<ToolSettings> tools;
     double toughness;                               // J/m^2
-    std::vector<std::optional<Blade>> blades = {};  // of each tool that cuts by one now
+    std::vector<std::optional<Blade>> blades = {};  // of each tool
     std::vector<HotTip> tips = {};
     std::vector<DeformationModel::ToldTool> told_near = {};
     std::shared_ptr<const ToldSurface> told = {};  // to clients
     std::vector<std::optional<Vec3>> hot_at = {};  // of tools hot in the step before, where that began
     std::vector<ResectionRow> log = {};
+    bool logs = true;
     std::vector<Removal> removed = {};
     std::optional<std::vector<Removal>> planned = {};  // to be removed, instead of by heat
     std::size_t done = 0;                              // of these

@@ -8,8 +8,9 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kRounding = 1e-9;  // s
-constexpr double kAtRest = 6e-4;    // m/s: a blade that goes slower is felt less
+constexpr double kRounding = 1e-9;   // s
+constexpr double kAtRest = 6e-4;     // m/s: a blade that goes slower is felt less
+constexpr double kWorkedOff = 1e-7;  // J: what a blade that was let go still owes is felt no more
 
 bool is_hot(const ToolSettings& settings, const ToolContact& tool, const ToolInput& input) {
   return (input.buttons & settings.cut_buttons) != 0 && input.pose && tool.placed();
@@ -99,17 +100,16 @@ void Simulation::part_tissue(std::span<const ToolInput> inputs) {
     std::optional<Blade>& blade = cut.blades[i];
     if (!cut.tools[i].blade) continue;
     const bool cuts = is_hot(cut.tools[i], tools_[i], inputs[i]);
-    if (!cuts && !(blade && tools_[i].placed())) {
-      blade.reset();
-      continue;
-    }
+    if (!tools_[i].placed() || (!cuts && blade && !blade->was && blade->owed < kWorkedOff)) blade.reset();
+    if (!blade && !cuts) continue;
     if (!blade) blade.emplace();
     const ToolPose& pose = tools_[i].pose();
     blade->is = {pose.p_W, pose.p_W + pose.q_W * *cut.tools[i].blade};
     if (blade->was) {
       part_by(i);
-      if (!cuts) blade.reset();  // that was the way before it was let go
-    } else {
+      if (!cuts) blade->was.reset();  // that was the way before it was let go
+    } else if (cuts) {
+      blade->trail.setZero();
       blade->was = blade->is;
       blade->were.assign(tissue_.positions.begin(), tissue_.positions.end());
     }
@@ -120,11 +120,13 @@ void Simulation::part_by(std::size_t tool) {
   Blade& blade = *cut_->blades[tool];
   Resection& resection = cut_->resection;
   std::vector<Vec3> are(tissue_.positions.begin(), tissue_.positions.end());
-  for (std::size_t other = 0; other < tools_.size(); ++other) {  // what it holds stays in its grip
+  std::vector<int> touched;  // by others: what one holds stays in its grip
+  for (std::size_t other = 0; other < tools_.size(); ++other) {
     if (other == tool) continue;
     for (const NodalLoad& load : tissue_.loads_of(other))
-      resection.keep(surface_.vertices[static_cast<std::size_t>(load.vertex)]);
+      touched.push_back(surface_.vertices[static_cast<std::size_t>(load.vertex)]);
   }
+  resection.keep(std::move(touched));
   const Parted& parted = resection.part({*blade.was, blade.is, blade.trail}, blade.were, are, surface_);
   if (!parted.stroke.moved) return;
   blade.was = blade.is;
@@ -197,6 +199,7 @@ void Simulation::note_cut(std::span<const ToolInput> inputs, double dt) {
     if (!answers_[i].cutting) continue;
     Vec3 felt = tools_[i].force().force;
     if (cut_->blades[i]) felt += cut_->blades[i]->force;
+    if (!cut_->logs) cut_->log.clear();
     cut_->log.push_back({time_, i, tools_[i].place(), felt, tools_[i].force().contacts > 0, totals});
   }
 }

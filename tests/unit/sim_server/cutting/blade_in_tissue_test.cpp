@@ -226,6 +226,28 @@ TEST_CASE("a blade does the work of what it parts, against its way") {
   CHECK(simulation.flagged().to_text().empty());
 }
 
+TEST_CASE(
+    "a blade that is let go on its way is felt until it has done the work that it owes, and no longer") {
+  Scene scene = blade_scene("tensor_mass");
+  Simulation simulation(scene, shaken_block({12, 6, 12}));
+  const double speed = 0.02 / 60;                 // m a step
+  double work = 0, before = 0, largest_drop = 0;  // J, N
+  for (int i = 0; i <= 110; ++i) {
+    // It cuts in every third step alone, and is let go for good in the middle of the block.
+    const ToolAnswer felt = slide_at(simulation, -0.022 + speed * i, i < 66 && i % 3 != 2);
+    const double along = simulation.tool(0).force().force.x() - felt.force.x();
+    work += along * speed;
+    if (i == 66) largest_drop = before - along;
+    before = along;
+  }
+  const double all = scene.cutting->toughness * simulation.resection()->totals().parted_area;
+  REQUIRE(all > 1e-4);
+  CHECK(work < all);
+  CHECK(work > 0.95 * all);
+  CHECK(largest_drop < 0.3);
+  CHECK(std::abs(before) < 0.05);  // 15 mm later
+}
+
 TEST_CASE("a blade is felt alike at every rate of steps") {
   const auto largest_at = [](double rate) {
     Scene scene = implicit_scene(ElasticLaw::kLinear, Solver::kDirect);

@@ -96,6 +96,19 @@ TEST_CASE("a blade that went through a body has cut it in two, however fast it w
   }
 }
 
+TEST_CASE("what another tool touches does not slide onto the way of a blade, as long as it does") {
+  Cut body({12, 6, 12});
+  std::vector<int> all(body.mesh.vertices.size());
+  std::iota(all.begin(), all.end(), 0);
+  body.scalpel.keep(all);
+  body.go_through(-0.0071, 0, 0, 20);
+  CHECK(body.slides == 0);
+  body.trail.setZero();
+  body.scalpel.keep({});
+  body.go_through(0.0062, 0, 0, 20);
+  CHECK(body.slides > 20);
+}
+
 TEST_CASE("tissue that trembles under a blade is parted as tissue at rest is") {
   const auto parted_area = [](double trembles) {  // m, across the way of the blade
     Cut body({12, 6, 12});
