@@ -1,5 +1,6 @@
 #include "sim_server/deformation/explicit_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -10,15 +11,21 @@
 namespace palpate::sim {
 namespace {
 constexpr int kMostProducts = 1000;
-constexpr double kSettled = 1e-6;        // growth of the Rayleigh quotient
-constexpr double kMostSubSteps = 2e4;    // no step of so many is in time
-constexpr std::size_t kPerBlock = 8192;  // vertices: some 20 us
+constexpr double kSettled = 1e-6;      // growth of the Rayleigh quotient
+constexpr double kMostSubSteps = 2e4;  // no step of so many is in time
 
-/// Of a large body by all cores.
+/// `work(begin, end)` for the vertices of each part of a product, on as many cores.
 template <class Work>
-void for_vertices(std::size_t count, const Work& work) {
-  if (count <= kPerBlock) return work(0, count);
-  parallel_blocks(count, kPerBlock, work);
+void for_parts(const ElasticTensors& tensors, const Work& work) {
+  parallel_blocks(tensors.parts(), 1, [&](std::size_t p, std::size_t) {
+    const auto [begin, end] = tensors.rows_of_part(p);
+    work(p, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+  });
+}
+
+void multiply(const ElasticTensors& tensors, const double* x, double* y, ElasticTensors::Ahead& ahead) {
+  parallel_blocks(tensors.parts(), 1,
+                  [&](std::size_t p, std::size_t) { tensors.multiply_part(p, x, y, ahead); });
 }
 }  // namespace
 
@@ -87,55 +94,52 @@ void ExplicitMotion::add_to_last(int place, double h, const Vec3& force) noexcep
 
 void ExplicitMotion::sub_step(double h, const std::vector<double>& force) noexcept {
   if (columns_ == 1) {
-    tensors_.multiply(bent_.data(), resistance_.data(), ahead_);
-    advance<1>(h, force.data());
+    multiply(tensors_, bent_.data(), resistance_.data(), ahead_);
+    for_parts(tensors_, [&](std::size_t p, std::size_t begin, std::size_t end) {
+      tensors_.gather_part(p, resistance_.data(), ahead_);
+      advance<1>(begin, end, h, force.data());
+    });
   } else {
     tensors_.multiply_wide(bent_.data(), resistance_.data());
-    advance<ElasticTensors::kWide>(h, force.data());
+    advance<ElasticTensors::kWide>(0, tensors_.masses().size(), h, force.data());
   }
 }
 
 template <int kColumns>
-void ExplicitMotion::advance(double h, const double* __restrict force) noexcept {
+void ExplicitMotion::advance(std::size_t begin, std::size_t end, double h,
+                             const double* __restrict force) noexcept {
   const double keep = 1 - h * damping_.mass, stiffness = damping_.stiffness;
-  const std::vector<double>& masses = tensors_.masses();
-  const auto advance_vertices = [&](std::size_t begin, std::size_t end) {
-    const double* __restrict resistance = resistance_.data();
-    double* __restrict u = state.u.data(), * __restrict v = state.v.data(), * __restrict bent = bent_.data();
-    std::size_t k = 3 * kColumns * begin;
-    for (std::size_t vertex = begin; vertex < end; ++vertex) {
-      const double kick = h / masses[vertex];
-      for (int i = 0; i < 3 * kColumns; ++i, ++k) {
-        v[k] = keep * v[k] + kick * (force[k] - resistance[k]);
-        u[k] += h * v[k];
-        bent[k] = u[k] + stiffness * v[k];
-      }
+  const double* __restrict masses = tensors_.masses().data(), * __restrict resistance = resistance_.data();
+  double* __restrict u = state.u.data(), * __restrict v = state.v.data(), * __restrict bent = bent_.data();
+  std::size_t k = 3 * kColumns * begin;
+  for (std::size_t vertex = begin; vertex < end; ++vertex) {
+    const double kick = h / masses[vertex];
+    for (int i = 0; i < 3 * kColumns; ++i, ++k) {
+      v[k] = keep * v[k] + kick * (force[k] - resistance[k]);
+      u[k] += h * v[k];
+      bent[k] = u[k] + stiffness * v[k];
     }
-  };
-  if (kColumns == 1) {
-    for_vertices(masses.size(), advance_vertices);
-  } else {
-    advance_vertices(0, masses.size());
   }
 }
 
 void ExplicitMotion::run(double h) noexcept {
-  for_vertices(bent_.size() / 3, [&](std::size_t begin, std::size_t end) {
+  for_parts(tensors_, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t k = 3 * begin; k < 3 * end; ++k) bent_[k] = state.u[k] + damping_.stiffness * state.v[k];
   });
   sub_step(h, state.f);
 }
 
-void ExplicitMotion::run_free(State& begin, double h) noexcept {
-  std::swap(begin, state);
-  tensors_.multiply(bent_.data(), resistance_.data(), ahead_);
+void ExplicitMotion::run_free(State& before, double h) noexcept {
+  std::swap(before, state);
+  multiply(tensors_, bent_.data(), resistance_.data(), ahead_);
   const double keep = 1 - h * damping_.mass;
-  for_vertices(tensors_.masses().size(), [&](std::size_t first, std::size_t end) {
-    for (std::size_t vertex = first; vertex < end; ++vertex) {
+  for_parts(tensors_, [&](std::size_t p, std::size_t begin, std::size_t end) {
+    tensors_.gather_part(p, resistance_.data(), ahead_);
+    for (std::size_t vertex = begin; vertex < end; ++vertex) {
       const double kick = h / tensors_.masses()[vertex];
       for (std::size_t k = 3 * vertex; k < 3 * vertex + 3; ++k) {
-        state.v[k] = keep * begin.v[k] - kick * resistance_[k];
-        state.u[k] = begin.u[k] + h * state.v[k];
+        state.v[k] = keep * before.v[k] - kick * resistance_[k];
+        state.u[k] = before.u[k] + h * state.v[k];
         state.f[k] = 0;
         bent_[k] = state.u[k] + damping_.stiffness * state.v[k];
       }
@@ -144,14 +148,19 @@ void ExplicitMotion::run_free(State& begin, double h) noexcept {
 }
 
 void ExplicitMotion::run(int steps, double h, const std::vector<double>& force) noexcept {
-  auto& [u, v, f] = state;
-  for (std::size_t k = 0; k < u.size(); ++k) {
-    f[k] = 0.5 * (f[k] + force[k]);
-    bent_[k] = u[k] + damping_.stiffness * v[k];
-  }
+  std::vector<double>& f = state.f;
+  const std::size_t numbers = 3 * static_cast<std::size_t>(columns_);  // of a vertex
+  for_parts(tensors_, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t k = numbers * begin; k < numbers * end; ++k) {
+      f[k] = 0.5 * (f[k] + force[k]);
+      bent_[k] = state.u[k] + damping_.stiffness * state.v[k];
+    }
+  });
   sub_step(h, f);
   for (int i = 1; i < steps; ++i) sub_step(h, force);
-  f = force;
+  for_parts(tensors_, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::copy_n(force.data() + numbers * begin, numbers * (end - begin), f.data() + numbers * begin);
+  });
 }
 
 }  // namespace palpate::sim

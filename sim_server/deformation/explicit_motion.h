@@ -41,10 +41,10 @@ class ExplicitMotion {
   void run(int steps, double h, const std::vector<double>& force) noexcept;
   /// The same by one sub-step under the forces of `state`, as if they had always been there.
   void run(double h) noexcept;
-  /// Goes on by one sub-step without forces, and leaves where it was in `begin`, a state of this size.
+  /// Goes on by one sub-step without forces, and leaves where it was in `before`, a state of this size.
   /// Nothing but `add_to_last` may have changed `state` since it was at rest or the last sub-step ended. Of
   /// one motion.
-  void run_free(State& begin, double h) noexcept;
+  void run_free(State& before, double h) noexcept;
   /// Adds a force (N) on one vertex to those of the last sub-step, which was of `h` (s): it has moved nothing
   /// else yet. Of one motion.
   void add_to_last(int place, double h, const Vec3& force) noexcept;
@@ -58,7 +58,7 @@ class ExplicitMotion {
  private:
   void sub_step(double h, const std::vector<double>& force) noexcept;
   template <int kColumns>
-  void advance(double h, const double* force) noexcept;
+  void advance(std::size_t begin, std::size_t end, double h, const double* force) noexcept;
 
   const ElasticTensors& tensors_;
   RayleighDamping damping_;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/parallel.h"
 #include "sim_server/elasticity/element.h"
 #include "sim_server/elasticity/tensor_products.h"
 
@@ -246,18 +245,18 @@ void ElasticTensors::multiply(const double* x, double* y) const noexcept {
   product_of_rows(0, vertices(), k, x, y, nullptr);
 }
 
-void ElasticTensors::multiply(const double* x, double* y, Ahead& ahead) const noexcept {
+void ElasticTensors::multiply_part(std::size_t p, const double* x, double* y, Ahead& ahead) const noexcept {
   const TensorsInPlace k{first_edge_.data(), neighbour_.data(), vertex_tensors_.data(), edge_tensors_.data()};
-  const auto multiply_parts = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p)
-      product_of_rows(parts_[p].begin, end_of_part(p), k, x, y, ahead[p].data());
-  };
-  if (parts_.size() == 1) return multiply_parts(0, 1);
-  parallel_blocks(parts_.size(), 1, multiply_parts);
-  for (std::size_t p = 1; p < parts_.size(); ++p) {
-    double* const from = ahead[p].data();
-    for (const int row : parts_[p].reaches) {
-      for (int i = 3 * row; i < 3 * row + 3; ++i) y[i] += std::exchange(from[i], 0);
+  product_of_rows(parts_[p].begin, end_of_part(p), k, x, y, ahead[p].data());
+}
+
+void ElasticTensors::gather_part(std::size_t p, double* y, Ahead& ahead) const noexcept {
+  const auto [begin, end] = rows_of_part(p);
+  for (std::size_t after = p + 1; after < parts_.size(); ++after) {
+    const std::vector<int>& reaches = parts_[after].reaches;
+    double* const from = ahead[after].data();
+    for (auto row = std::ranges::lower_bound(reaches, begin); row != reaches.end() && *row < end; ++row) {
+      for (int i = 3 * *row; i < 3 * *row + 3; ++i) y[i] += std::exchange(from[i], 0);
     }
   }
 }

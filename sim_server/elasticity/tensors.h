@@ -1,5 +1,6 @@
 #pragma once
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim_server/elasticity/laws.h"
@@ -61,9 +62,14 @@ class ElasticTensors {
   Ahead room_ahead() const;
   /// y = K x: forces (n x 3, N) of displacements (n x 3, m), n = `vertices()`.
   void multiply(const double* x, double* y) const noexcept;
-  /// The same on all cores, in parts of 30 thousand edges or more; the same bits whatever the number of
-  /// threads.
-  void multiply(const double* x, double* y, Ahead& ahead) const noexcept;
+  /// The same in parts of 30 thousand edges or more, which the tensors alone decide, on as many cores: first
+  /// `multiply_part` of each, then `gather_part` of each, after which the rows of that part are done. The
+  /// same bits whatever the number of threads. Who uses a part's rows on the core that made them keeps them
+  /// in its cache.
+  std::size_t parts() const { return parts_.size(); }
+  std::pair<int, int> rows_of_part(std::size_t p) const { return {parts_[p].begin, end_of_part(p)}; }
+  void multiply_part(std::size_t p, const double* x, double* y, Ahead& ahead) const noexcept;
+  void gather_part(std::size_t p, double* y, Ahead& ahead) const noexcept;
   /// The same for eight vectors side by side (n x 3 x 8, those of one number together), at about half of
   /// the time for each: tensors are read once.
   void multiply_wide(const double* x, double* y) const noexcept;
