@@ -12,14 +12,18 @@ namespace palpate {
 
 /// Calls `work(begin, end)` for blocks of `block` of the numbers 0 to n, on all cores (oneTBB), or one after
 /// the other where it is not built in. What one call writes no other may touch: so the result is the same
-/// whatever the number of threads, bit by bit.
+/// whatever the number of threads, bit by bit. While it waits, a thread takes up no work of a loop around
+/// this one: what that holds is there once a core, however loops are nested.
 template <class Work>
 void parallel_blocks(std::size_t n, std::size_t block, const Work& work) {
 #ifdef PALPATE_WITH_TBB
   using Block = oneapi::tbb::blocked_range<std::size_t>;
   const std::size_t blocks = (n + block - 1) / block;
-  oneapi::tbb::parallel_for(Block(0, blocks, 1), [&](const Block& range) {
-    for (std::size_t b = range.begin(); b != range.end(); ++b) work(b * block, std::min(n, (b + 1) * block));
+  oneapi::tbb::this_task_arena::isolate([&] {
+    oneapi::tbb::parallel_for(Block(0, blocks, 1), [&](const Block& range) {
+      for (std::size_t b = range.begin(); b != range.end(); ++b)
+        work(b * block, std::min(n, (b + 1) * block));
+    });
   });
 #else
   for (std::size_t begin = 0; begin < n; begin += block) work(begin, std::min(n, begin + block));

@@ -96,7 +96,8 @@ void print_costs(const MumpsCosts& costs) {
   fmt::print(
       "  factor: analysis {:.2f} s, numbers {:.2f} s ({:.3g} Gflop/s), Cholesky factor of what is kept "
       "{:.2f} s\n",
-      costs.analysis_s, costs.factor_s, 1e-9 * costs.flops / costs.factor_s, costs.schur_s);
+      costs.analysis_s, costs.factor_s, costs.flops > 0 ? 1e-9 * costs.flops / costs.factor_s : 0.0,
+      costs.schur_s);
   print_memory("its", costs.memory);
 }
 

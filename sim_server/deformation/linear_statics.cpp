@@ -59,7 +59,8 @@ std::string in_any_build(double sum) {
 }
 
 /// Of K and, for modes, of the masses: to the last bit, or to what every build agrees on, which is the
-/// pattern of K and sum_ij |K_ij| v_i v_j for two vectors v without an order.
+/// pattern of K, and sum_ij |K_ij| v_i v_j and sum_ij K_ij w_i w_j for two vectors v, w = v - 1 without an
+/// order. The second tells a body from its mirror image, and one that was turned.
 void add(const SparseMatrix& k, Fingerprint& fingerprint, bool of_any_build) {
   fingerprint.add(values(k.outerIndexPtr(), k.outerSize() + 1));
   fingerprint.add(values(k.innerIndexPtr(), k.nonZeros()));
@@ -68,12 +69,14 @@ void add(const SparseMatrix& k, Fingerprint& fingerprint, bool of_any_build) {
     const auto at = [seed](Eigen::Index i) {  // a multiplicative hash: within [0.5, 1.5)
       return 0.5 + 0x1p-32 * static_cast<double>((static_cast<std::uint64_t>(i) + 1) * seed >> 32U);
     };
-    double sum = 0;
+    double sizes = 0, signs = 0;
     for (Eigen::Index column = 0; column < k.outerSize(); ++column) {
-      for (SparseMatrix::InnerIterator entry(k, column); entry; ++entry)
-        sum += std::abs(entry.value()) * at(entry.row()) * at(column);
+      for (SparseMatrix::InnerIterator entry(k, column); entry; ++entry) {
+        sizes += std::abs(entry.value()) * at(entry.row()) * at(column);
+        signs += entry.value() * (at(entry.row()) - 1) * (at(column) - 1);
+      }
     }
-    fingerprint.add(std::span<const char>(in_any_build(sum)));
+    fingerprint.add(std::span<const char>(in_any_build(sizes) + in_any_build(signs)));
   }
 }
 

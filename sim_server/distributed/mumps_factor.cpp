@@ -7,6 +7,7 @@
 
 #include "common/clock.h"
 #include "common/error.h"
+#include "common/memory_budget.h"
 #include "sim_server/sparse/blas.h"
 
 namespace palpate::sim {
@@ -106,7 +107,13 @@ MumpsFactor::MumpsFactor(const SparseMatrix& lower, std::span<const int> kept, c
     : mumps_(std::make_unique<Instance>()) {
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);  // a rank a core
   for (const int unknown : kept) kept_.push_back(unknown + 1);
+  costs_.unknowns = lower.rows();
   const Time start = now();
+  if (kept_.size() == static_cast<std::size_t>(lower.rows())) {
+    take_all(lower, where);
+    costs_.schur_s = to_seconds(now() - start);
+    return;
+  }
   analyse(lower, where);
   const Time analysed = now();
   tell(
@@ -116,7 +123,6 @@ MumpsFactor::MumpsFactor(const SparseMatrix& lower, std::span<const int> kept, c
   factor(where);
   const Time factored = now();
   take_schur(where);
-  costs_.unknowns = lower.rows();
   costs_.kept = schur_.rows();
   costs_.analysis_s = to_seconds(analysed - start);
   costs_.factor_s = to_seconds(factored - analysed);
@@ -152,7 +158,7 @@ void MumpsFactor::analyse(const SparseMatrix& lower, const std::string& where) {
   require("analysis", where);
   costs_.flops = mumps.rinfog[0];
   std::vector<RankMemory> need = mumps_->memory(kTellNeed);
-  need.front().bytes += sizeof(double) * std::pow(static_cast<double>(kept_.size()), 2);  // S, on rank 0
+  need.front().bytes += 2 * sizeof(double) * std::pow(static_cast<double>(kept_.size()), 2);  // S, S^-1
   const std::string shortage = shortage_of(need);
   if (!shortage.empty())
     fail(
@@ -173,6 +179,26 @@ void MumpsFactor::factor(const std::string& where) {
     mumps_->run(kFactor);
   }
   require("factorisation", where);
+  costs_.memory = mumps_->memory(kTellUsed);
+}
+
+/// Where all is kept, S is A, and MUMPS, which would have nothing to do, is not asked.
+void MumpsFactor::take_all(const SparseMatrix& lower, const std::string& where) {
+  const auto size = static_cast<Eigen::Index>(kept_.size());
+  require_memory(2.0 * sizeof(double) * static_cast<double>(size * size), free_memory(), where,
+                 fmt::format("the dense stiffness matrix of {} unknowns, all of which are reached,", size),
+                 "give [[tool]] a `reach` box around the part it touches");
+  std::vector<int> place(kept_.size());
+  for (int k = 0; k < static_cast<int>(kept_.size()); ++k) place[static_cast<std::size_t>(kept_[k] - 1)] = k;
+  schur_ = Eigen::MatrixXd::Zero(size, size);
+  for (Eigen::Index column = 0; column < lower.outerSize(); ++column) {
+    for (SparseMatrix::InnerIterator entry(lower, column); entry; ++entry) {
+      const int i = place[static_cast<std::size_t>(entry.row())], j = place[static_cast<std::size_t>(column)];
+      if (entry.row() >= column) schur_(std::min(i, j), std::max(i, j)) = entry.value();
+    }
+  }
+  take_schur(where);
+  costs_.kept = size;
   costs_.memory = mumps_->memory(kTellUsed);
 }
 
@@ -202,26 +228,42 @@ void MumpsFactor::require(const char* stage, const std::string& where) const {
 
 /// Forward elimination of all that is not kept, S, and back.
 Eigen::MatrixXd MumpsFactor::solve(const Eigen::MatrixXd& b) const {
+  if (schur_.rows() == b.rows()) return solve_all(b);
   DMUMPS_STRUC_C& mumps = mumps_->data;
   Eigen::MatrixXd x = b, reduced(schur_.rows(), std::min(kAtOnce, b.cols()));
   mumps.lrhs = mumps.n;
   mumps.redrhs = reduced.data();
   mumps.lredrhs = static_cast<int>(schur_.rows());
+  const auto run_solve = [&](int which) {
+    control(mumps, 26) = which;
+    mumps_->run(kSolve);
+    require("solution", "condense");
+  };
+  constexpr int kWhole = 0, kForward = 1, kBack = 2;
   const auto lower = schur_.triangularView<Eigen::Lower>();
   for (Eigen::Index first = 0; first < b.cols(); first += kAtOnce) {
     const Eigen::Index count = std::min(kAtOnce, b.cols() - first);
     mumps.nrhs = static_cast<int>(count);
     mumps.rhs = x.col(first).data();
-    for (const int half : {1, 2}) {
-      control(mumps, 26) = schur_.size() == 0 ? 0 : half;
-      mumps_->run(kSolve);
-      require("solution", "condense");
-      if (schur_.size() == 0) break;
-      if (half == 2) continue;
-      lower.solveInPlace(reduced.leftCols(count));
-      lower.transpose().solveInPlace(reduced.leftCols(count));
+    if (schur_.size() == 0) {
+      run_solve(kWhole);
+      continue;
     }
+    run_solve(kForward);
+    lower.solveInPlace(reduced.leftCols(count));
+    lower.transpose().solveInPlace(reduced.leftCols(count));
+    run_solve(kBack);
   }
+  return x;
+}
+
+Eigen::MatrixXd MumpsFactor::solve_all(const Eigen::MatrixXd& b) const {
+  Eigen::MatrixXd x(b.rows(), b.cols()), in_order = x;
+  for (Eigen::Index k = 0; k < b.rows(); ++k) in_order.row(k) = b.row(kept_[static_cast<std::size_t>(k)] - 1);
+  const auto lower = schur_.triangularView<Eigen::Lower>();
+  lower.solveInPlace(in_order);
+  lower.transpose().solveInPlace(in_order);
+  for (Eigen::Index k = 0; k < b.rows(); ++k) x.row(kept_[static_cast<std::size_t>(k)] - 1) = in_order.row(k);
   return x;
 }
 

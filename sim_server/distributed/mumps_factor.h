@@ -24,7 +24,8 @@ struct MumpsCosts {
 class MumpsFactor final : public FactoredMatrix {
  public:
   /// Throws `Error`, beginning with `where`, where A is not positive definite, or memory ends on some rank:
-  /// told from the analysis, before it is taken. Memory on rank 0: A once more as indices, and S.
+  /// told from the analysis, before it is taken. Memory on rank 0: A once more with its indices, S, and room
+  /// for S^-1.
   MumpsFactor(const SparseMatrix& lower, std::span<const int> kept, const std::string& where,
               const std::function<void(const std::string&)>& tell);
   ~MumpsFactor() override;
@@ -42,7 +43,9 @@ class MumpsFactor final : public FactoredMatrix {
   struct Instance;
   void analyse(const SparseMatrix& lower, const std::string& where);
   void factor(const std::string& where);
+  void take_all(const SparseMatrix& lower, const std::string& where);
   void take_schur(const std::string& where);
+  Eigen::MatrixXd solve_all(const Eigen::MatrixXd& b) const;
   void require(const char* stage, const std::string& where) const;
 
   std::unique_ptr<Instance> mumps_;

@@ -17,7 +17,9 @@ namespace {
 
 constexpr std::size_t kPage = 4096;  // of the header: the matrix begins where a page does
 constexpr std::array<char, 16> kMagic{"palpate set-up\n"};
-constexpr std::uint64_t kVersion = 1, kMostRows = 1 << 20;
+constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 48;  // of a matrix: its bytes can be counted
+constexpr std::string_view kPartEnding = ".part";
 
 /// The header as it lies in the file, native byte order: the processor is part of the key.
 struct Header {
@@ -62,9 +64,8 @@ void write_all(const File& file, const void* data, std::size_t bytes, const std:
   }
 }
 
-void write_whole(const std::filesystem::path& name, const Header& header,
+void write_whole(const File& file, const std::filesystem::path& name, const Header& header,
                  const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
-  const File file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
   if (file.handle < 0) fail("{}: cannot be made: {}", name.string(), std::strerror(errno));
   std::array<char, kPage> page{};
   std::memcpy(page.data(), &header, sizeof(header));
@@ -76,7 +77,8 @@ void write_whole(const std::filesystem::path& name, const Header& header,
 /// Where its own words are right: magic, version, checksum, and sizes that a matrix can have.
 bool is_sound(const Header& header) {
   return header.magic == kMagic && header.version == kVersion && checksum_of(header) == header.header &&
-         header.rows <= kMostRows && header.cols <= kMostRows && header.what.back() == '\0';
+         header.rows <= kMostNumbers &&
+         header.cols <= kMostNumbers / std::max<std::uint64_t>(header.rows, 1) && header.what.back() == '\0';
 }
 
 EntryHeader told(const Header& header) {
@@ -125,15 +127,31 @@ void write_entry(const std::filesystem::path& file, const EntryHeader& header,
   std::copy_n(header.what.begin(), std::min(header.what.size(), raw.what.size() - 1), raw.what.begin());
   raw.matrix = digest_of(std::as_bytes(std::span(matrix.data(), static_cast<std::size_t>(matrix.size()))));
   raw.header = checksum_of(raw);
-  const std::filesystem::path part = file.string() + fmt::format(".{}.part", ::getpid());
+  std::string part = fmt::format("{}.XXXXXX{}", file.string(), kPartEnding);
+  const File written(::mkostemps(part.data(), static_cast<int>(kPartEnding.size()), O_CLOEXEC));
   try {
-    write_whole(part, raw, matrix);
+    write_whole(written, part, raw, matrix);
     std::filesystem::rename(part, file);
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);
     throw;
   }
+}
+
+int remove_parts(const std::filesystem::path& folder, std::chrono::seconds older) {
+  using std::filesystem::file_time_type;
+  std::error_code failed;
+  int removed = 0;
+  for (std::filesystem::directory_iterator at(folder, failed), end; !failed && at != end;
+       at.increment(failed)) {
+    if (at->path().extension() != kPartEnding) continue;
+    std::error_code unknown;  // another one may remove it, too
+    const file_time_type written = at->last_write_time(unknown);
+    if (!unknown && written <= file_time_type::clock::now() - older)
+      removed += std::filesystem::remove(at->path(), unknown) ? 1 : 0;
+  }
+  return removed;
 }
 
 MappedMatrix map_entry(const std::filesystem::path& name, const Digest& key) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -37,9 +38,14 @@ class MappedMatrix {
 /// "from the set-up cache, which saved 3.2 s"; `source`: where it came from.
 std::string note_of_saved(const MappedMatrix& kept, std::string_view source = "the set-up cache");
 
-/// Writes an entry under another name, syncs and renames it: whole or not at all. Throws `Error`.
+/// Writes an entry under another name, which no other writer has, syncs and renames it: whole or not at all.
+/// Throws `Error`.
 void write_entry(const std::filesystem::path& file, const EntryHeader& header,
                  const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+
+/// Removes what writers that were interrupted left in a folder, if it has not changed for so long; how many
+/// files that were.
+int remove_parts(const std::filesystem::path& folder, std::chrono::seconds older = std::chrono::hours(1));
 
 /// Maps the entry with this key. Throws `Error` with what is wrong with it: nothing of it is trusted before
 /// its size and both checksums agree. O(bytes).

@@ -45,6 +45,7 @@ std::optional<MappedMatrix> Condensed::find(const Digest& key, const std::string
 }
 
 void Condensed::keep(const EntryHeader& header, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const {
+  remove_parts(folder_);
   write_entry(file_of(header.key), header, matrix);
 }
 

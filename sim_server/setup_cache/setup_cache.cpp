@@ -13,8 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kEnding = ".setup";
-constexpr const char* kPartEnding = ".part";
-constexpr std::chrono::hours kOld{1};  // of what a writer that was interrupted left behind
 
 /// Files of a folder with an ending; none where it cannot be read.
 std::vector<fs::path> files_in(const fs::path& folder, std::string_view ending) {
@@ -24,17 +22,6 @@ std::vector<fs::path> files_in(const fs::path& folder, std::string_view ending) 
     if (at->path().extension() == ending && at->is_regular_file(failed)) files.push_back(at->path());
   }
   return files;
-}
-
-/// Removes what an interrupted writer left behind, if it is that old.
-int remove_parts(const fs::path& folder, std::chrono::seconds older) {
-  int removed = 0;
-  for (const fs::path& part : files_in(folder, kPartEnding)) {
-    std::error_code failed;
-    const auto written = fs::last_write_time(part, failed);
-    if (!failed && written <= fs::file_time_type::clock::now() - older) removed += fs::remove(part, failed);
-  }
-  return removed;
 }
 
 }  // namespace
@@ -72,7 +59,7 @@ void SetupCache::keep(const EntryHeader& header, const Eigen::Ref<const Eigen::M
   try {
     if (static_cast<double>(matrix.size()) * sizeof(double) > most_bytes_) return;
     fs::create_directories(folder_);
-    remove_parts(folder_, kOld);
+    remove_parts(folder_);
     write_entry(file_of(header.key), header, matrix);
     make_room(header.key);
   } catch (const std::exception& error) {

@@ -120,10 +120,10 @@ void Dynamics::replace_background_factor() {
   policy_.replaced();
 }
 
-/// Takes the factor that the background has made, and has it begin the next from where the body is now.
+/// Takes the factor that the background has made, if it made one, and has it begin the next from where the
+/// body is now.
 void Dynamics::exchange_factors() {
-  if (background_->begun()) {
-    background_->exchange(matrix_);
+  if (background_->begun() && background_->exchange(matrix_)) {
     from_background_ = true;
     count_new_factor();
     policy_.replaced();

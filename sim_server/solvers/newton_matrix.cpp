@@ -72,6 +72,7 @@ int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<c
     ++factors;
     definite = factor_.refactor(matrix_.lower());
   }
+  definite_ = definite;
   c_ = c;
   return factors;
 }
@@ -247,15 +248,27 @@ void BackgroundMatrix::begin(std::span<const Vec3> x, std::span<const double> ma
   });
 }
 
-void BackgroundMatrix::exchange(NewtonMatrix& matrix) {
-  work_.get();
+bool BackgroundMatrix::exchange(NewtonMatrix& matrix) {
+  try {
+    work_.get();
+  } catch (...) {
+    catch_up();
+    throw;
+  }
   if (!splits_.empty()) made_ = {};  // columns as if none had become two
+  catch_up();
+  if (!matrix_.is_definite()) return false;
+  std::swap(matrix_, matrix);
+  std::swap(made_, given_);
+  return true;
+}
+
+/// With what happened to the body since it was begun.
+void BackgroundMatrix::catch_up() {
   for (const auto& [tetrahedron, blocks] : shapes_) matrix_.note_shape(tetrahedron, blocks);
   matrix_.part(splits_);
   shapes_.clear();
   splits_.clear();
-  std::swap(matrix_, matrix);
-  std::swap(made_, given_);
 }
 
 }  // namespace palpate::sim

@@ -40,6 +40,8 @@ class NewtonMatrix {
   /// Makes the border of A since the last `part`, of the solid as it is now. Returns how many copies it took;
   /// 0: nothing was to be done. O(nodes + noted tetrahedra), and of as many nodes two times `columns`.
   int make_border(const Solid& solid, std::span<const double> masses);
+  /// Whether the last `build` came to a factor: no inertia was enough for a body that is turned inside out.
+  bool is_definite() const { return definite_; }
   /// Whether nodes have become two since the last `build`.
   bool is_bordered() const { return !copies_.empty(); }
   /// Whether the factor is of a body of so different a shape that the border made last does not fit it.
@@ -94,7 +96,7 @@ class NewtonMatrix {
   double inertia_ = 0;            // 1/s^2, what masses are times in A
   std::map<int, Blocks> shapes_;  // since the last `build`, of tetrahedra
   std::vector<Copy> copies_;      // since the last `build`, in order
-  bool border_is_made_ = true, border_misfits_ = false;
+  bool border_is_made_ = true, border_misfits_ = false, definite_ = true;
   // By copies, three ways each, N/m: how forces follow those ways, on the body as if none had become two, and
   // on the copies; what the body does against the first; and the Schur complement of the whole.
   Eigen::MatrixXd border_, corner_, response_;
@@ -134,8 +136,9 @@ class BackgroundMatrix {
   /// (`NewtonMatrix::part`), and the next `begin` is of the solid as it is then.
   void part(std::span<const Split> splits);
   bool begun() const { return work_.valid(); }
-  /// Waits for it, and exchanges it for `matrix`.
-  void exchange(NewtonMatrix& matrix);
+  /// Waits for it, and exchanges it for `matrix`, unless it is not definite. Returns whether it did. Throws
+  /// what the thread threw: the next one can be begun all the same.
+  bool exchange(NewtonMatrix& matrix);
   /// What came with the one given last. Valid until the next exchange.
   const Columns& columns() const { return given_; }
   /// Known beforehand: asked for while the thread works, too.
@@ -143,6 +146,7 @@ class BackgroundMatrix {
 
  private:
   const Solid& body() const { return own_ ? *own_ : solid_; }
+  void catch_up();
 
   const Solid& solid_;
   std::optional<Solid> own_;                    // of a body that may be cut

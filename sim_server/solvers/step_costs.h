@@ -19,9 +19,11 @@ struct StepCosts {
   double columns(int nodes) const { return nodes > 0 ? (1.3 + 0.4 * nodes) * solve : 0; }
   /// One iteration of Newton's method.
   double iteration() const { return evaluation + solve; }
-  /// The least step: two iterations with contact at one node, and a factor where none comes from the
-  /// background.
-  double least(bool background) const { return 2 * iteration() + columns(1) + (background ? 0 : factor); }
+  /// The least step: the turns of the nodes, two iterations with contact at one node, the residual at its
+  /// end, and a factor where none comes from the background.
+  double least(bool background) const {
+    return 2 * iteration() + 1.5 * evaluation + columns(1) + (background ? 0 : factor);
+  }
   std::string to_text() const;
 };
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "sim_server/mesh/shapes.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
@@ -95,6 +96,40 @@ int files_in(const std::string& folder) {
   return static_cast<int>(std::distance(begin(files), end(files)));
 }
 
+void write_mesh(const std::filesystem::path& file, const TetMesh& mesh) {
+  std::ofstream out(file);
+  out.precision(17);
+  out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << mesh.vertices.size() << "\n";
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Vec3& x = mesh.vertices[v];
+    out << v + 1 << " " << x[0] << " " << x[1] << " " << x[2] << "\n";
+  }
+  out << "$EndNodes\n$Elements\n" << mesh.tetrahedra.size() << "\n";
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    out << t + 1 << " 4 2 1 1";
+    for (const int v : mesh.tetrahedra[t]) out << " " << v + 1;
+    out << "\n";
+  }
+  out << "$EndElements\n";
+}
+
+/// A plate one cell thick, held along an edge, or its mirror image: the scene.
+std::string plate_scene(const TemporaryFolder& folder, bool mirrored) {
+  TetMesh plate = grid_block({0, 0.01, 0.02, 0.03, 0.04}, {0, 0.005}, {0, 0.012, 0.02, 0.03});
+  for (Vec3& x : plate.vertices) x[0] = (mirrored ? -1 : 1) * (x[0] + 0.2 * x[2]);
+  if (mirrored) {
+    for (Tetrahedron& t : plate.tetrahedra) std::swap(t[0], t[1]);
+  }
+  const std::string name = mirrored ? "mirrored" : "plate";
+  write_mesh(folder.path() / (name + ".msh"), plate);
+  const std::string file = (folder.path() / (name + ".toml")).string();
+  std::ofstream(file) << "[mesh]\nfile = \"" << name << ".msh\"\n"
+                      << "[deformation]\nmodel = \"quasi_static\"\n"
+                      << "[material]\nyoung_modulus = 1e4\npoisson_ratio = 0.4\n"
+                      << "[[fixed]]\nbox = [[-1, -1, -0.001], [1, 1, 0.001]]\n[[tool]]\nradius = 0.004\n";
+  return file;
+}
+
 /// The processes that `mpirun` started.
 std::vector<pid_t> ranks_of(const Process& mpirun) {
   const std::string id = std::to_string(mpirun.id());
@@ -122,6 +157,23 @@ TEST_CASE("condense: so it is by conjugate gradients, without a factor") {
 #ifdef PALPATE_WITH_SPECTRA
   check_same_for_any_ranks("reduced", small, {"--iterative"});
 #endif
+}
+
+TEST_CASE("condense: so it is of a plate whose nodes are all reached, and its mirror image is another body") {
+  const TemporaryFolder folder;
+  const std::string file = plate_scene(folder, false), mirrored = plate_scene(folder, true);
+  const Scene scene = read_scene(file);
+  const std::vector<Vec3> expected = forces_of(scene, nullptr);
+  REQUIRE(expected.back().norm() > 0.01);
+  for (const int ranks : {1, 2}) {
+    const std::string out = (folder.path() / std::to_string(ranks)).string();
+    condense(ranks, file, out);
+    const Condensed condensed(out);
+    const std::vector<Vec3> felt = forces_of(scene, &condensed);
+    for (std::size_t i = 0; i < felt.size(); ++i)
+      CHECK((felt[i] - expected[i]).norm() <= 1e-8 * expected[i].norm());
+    CHECK_THROWS_WITH(forces_of(read_scene(mirrored), &condensed), Contains("holds no compliance"));
+  }
 }
 
 TEST_CASE("condense: a second start finds what there is, and factors nothing") {

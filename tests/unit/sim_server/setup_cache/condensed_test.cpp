@@ -100,6 +100,17 @@ TEST_CASE("condensed: what was made of another mesh, material, support or reach 
   moved.vertices[moved.vertices.size() / 2] += Vec3(1e-6, 0, 0);  // one vertex by 1/10000 of an edge
   check_refused(scene, moved, taking, "compliance");
   check_refused(scene, test::deep_block({4, 2, 5}), taking, "compliance");
+  const auto turned = [](const Vec3& signs) {  // of stiffnesses only the signs between axes are others
+    TetMesh mesh = test::deep_block(kCells);
+    for (Vec3& x : mesh.vertices) x = x.cwiseProduct(signs);
+    for (Tetrahedron& t : mesh.tetrahedra) {
+      if (signs.prod() < 0) std::swap(t[0], t[1]);
+    }
+    return mesh;
+  };
+  check_refused(scene, turned(Vec3(-1, 1, 1)), taking, "compliance");
+  check_refused(scene, turned(Vec3(1, 1, -1)), taking, "compliance");
+  check_refused(scene, turned(Vec3(-1, 1, -1)), taking, "compliance");
   Scene other = scene;
   other.material->young_modulus *= 1 + 1e-6;
   check_refused(other, test::deep_block(kCells), taking, "compliance");
@@ -122,6 +133,21 @@ TEST_CASE(
   for (const Condensed* condensed : {&making, &taking})
     CHECK_THROWS_WITH(Simulation(scene, test::deep_block(kCells), kSilent, nullptr, condensed),
                       Contains(file.filename().string()) && Contains("condense the scene again"));
+}
+
+TEST_CASE("condensed: what an interrupted writer left goes when something is kept, once it is old") {
+  namespace fs = std::filesystem;
+  const test::TemporaryFolder folder;
+  const fs::path old = folder.path() / "0123.setup.abcdef.part",
+                 live = folder.path() / "0123.setup.live00.part";
+  for (const fs::path& part : {old, live}) std::ofstream(part) << "half";
+  fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(2));
+  int made = 0;
+  const Condensed making(folder.path(), built_in(made));
+  const Simulation one(test::deep_block_scene("quasi_static"), test::deep_block(kCells), kSilent, nullptr,
+                       &making);
+  CHECK_FALSE(fs::exists(old));
+  CHECK(fs::exists(live));
 }
 
 TEST_CASE("condensed: a folder that is not there, or that nothing can be kept in, is refused at once") {

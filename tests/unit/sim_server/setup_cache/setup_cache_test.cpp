@@ -62,6 +62,16 @@ TEST_CASE("setup cache: what is kept is found, bit by bit, and stays as it is wh
   }
 }
 
+TEST_CASE("setup cache: a matrix of more than a million rows is found, as of the modes of a large organ") {
+  const test::TemporaryFolder folder;
+  const SetupCache cache(folder.path());
+  const Eigen::MatrixXd tall = Eigen::VectorXd::LinSpaced(1'300'000, 0, 1);
+  cache.keep({.key = key_of(1), .what = "modes"}, tall);
+  const auto found = cache.find(key_of(1));
+  REQUIRE(found);
+  CHECK(found->matrix() == tall);
+}
+
 TEST_CASE("setup cache: an entry with any byte of header or numbers changed, or cut, is never taken") {
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path());
