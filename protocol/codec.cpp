@@ -16,10 +16,14 @@ constexpr double kMaxMagnitude = 1e9;   // of any position, speed or force: beyo
 constexpr float kMaxAmplitude = 1e6F;   // of a mode, m sqrt(kg), and of its rate
 constexpr float kMaxRelaxation = 1e6F;  // s
 constexpr float kMaxPercent = 1e6F;     // of an error of a force
-constexpr std::int64_t kMaxLead = 10'000'000'000;  // ns
+constexpr std::int64_t kMaxLead = 10'000'000'000;         // ns
+constexpr std::int64_t kMaxTime = std::int64_t{1} << 61;  // ns, 73 years: times of any two can be subtracted
 
 bool small(const Vec3& v) noexcept {
   return v.cwiseAbs().maxCoeff() <= kMaxMagnitude;
+}
+bool is_time(std::int64_t t_ns) noexcept {
+  return t_ns >= -kMaxTime && t_ns <= kMaxTime;
 }
 bool valid(const Hello&) noexcept {
   return true;
@@ -40,7 +44,7 @@ bool valid(const ToolState& m) noexcept {
   const auto& q = m.q_W;
   const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   return m.tool < kMaxTools && m.tick > 0 && small(m.p_W) && small(m.v_W) && std::abs(norm - 1) < 1e-6 &&
-         m.lead_ns >= 0 && m.lead_ns <= kMaxLead;
+         is_time(m.t_ns) && m.lead_ns >= 0 && m.lead_ns <= kMaxLead;
 }
 bool valid(const Linearisation& m) noexcept {
   const bool tangent =
@@ -68,10 +72,11 @@ bool valid(const ModalState& m) noexcept {
          std::all_of(m.v.begin(), m.v.end(), bounded);
 }
 bool valid(const ForceSample& m) noexcept {
-  return m.tool < kMaxTools && m.number > 0 && small(m.p_W) && small(m.f_W) && small(m.torque_W) &&
-         small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) && small(m.ahead_f_W) &&
-         valid(m.ahead) && valid(m.surface) && valid(m.errors.mesh) && valid(m.errors.time_step) &&
-         valid(m.others) && valid(m.modes) && small(m.mean_f_W) && valid(m.relaxed) && valid(m.modal_loads);
+  return m.tool < kMaxTools && m.number > 0 && is_time(m.tool_t_ns) && small(m.p_W) && small(m.f_W) &&
+         small(m.torque_W) && small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) &&
+         small(m.ahead_f_W) && valid(m.ahead) && valid(m.surface) && valid(m.errors.mesh) &&
+         valid(m.errors.time_step) && valid(m.others) && valid(m.modes) && small(m.mean_f_W) &&
+         valid(m.relaxed) && valid(m.modal_loads);
 }
 bool valid(const SurfacePage& m) noexcept {
   return m.tool < kMaxTools && m.page != ToolState::kNoPage &&

@@ -46,7 +46,8 @@ void judge_stiffness(const TestedLink& link, Verdict& verdict) {
   }
   const std::string law =
       fmt::format("with samples {:.1f} ms old (p99) \"{}\" is stable up to {:.0f} N/m on the study's walls",
-                  link.age_p99_ms, link.law, *limit);
+                  link.age_p99_ms, link.law, *limit) +
+      (link.law == "local_contact" ? " (no surface is told of these: \"two_tangents\" stood in for it)" : "");
   if (link.stiffest_n_m == 0) {
     worsen(verdict, Grade::kWarn, law + "; nothing was touched, so how stiff the scene is is not known");
   } else {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
+#include "common/log.h"
 #include "common/progress.h"
 #include "common/report.h"
 #include "common/text.h"
@@ -118,7 +119,10 @@ void require_scored(const Evaluation& e, const std::filesystem::path& file) {
 
 Evaluation run(const std::filesystem::path& file, const std::vector<std::string>& laws,
                const EvaluateOptions& options, const Truth* truth, ProgressLine& progress) {
-  Evaluation e = begin_evaluation(survey(file, [](double) {}), laws, options, truth);
+  const CaptureSurvey found = survey(file, [](double) {});
+  if (!found.trouble.empty())
+    log::warning("{}: {}; what was read until then is evaluated", file.string(), found.trouble);
+  Evaluation e = begin_evaluation(found, laws, options, truth);
   CapturedSession session(file, e.run);
   std::optional<protocol::ToolState> before;
   ErrorSums ignored;
@@ -174,9 +178,12 @@ void add_rows(Json& rows, const std::string& world, const Evaluation& e, bool wi
         row["bytes_per_sample"] = e.bytes[number] / samples;
         row["model_bytes"] = wants_of(scoring.names()[law]).surface ? e.model_bytes : 0;
         row["between"] = between;
-        row["between_mean_percent"] = own.mean_percent;
-        row["between_p99_percent"] = own.p99_percent;
-        row["between_max_percent"] = own.max_percent;
+        const auto beside_truth = [with_truth](double percent) {
+          return with_truth ? Json(percent) : Json();
+        };
+        row["between_mean_percent"] = beside_truth(own.mean_percent);
+        row["between_p99_percent"] = beside_truth(own.p99_percent);
+        row["between_max_percent"] = beside_truth(own.max_percent);
         ++number;
         rows.push_back(row);
       }

@@ -83,11 +83,18 @@ Falcon::~Falcon() {
   port_->close();
 }
 
-/// What is on the way goes first: a port takes one transfer at a time.
+/// What is on the way goes first: a port takes one transfer at a time. Until the zero that follows it has
+/// left, four times at most.
 void Falcon::stop() noexcept {
-  drain(*port_);
-  machine_.command(*port_, {0, 0, 0});
-  drain(*port_);
+  constexpr int kTimes = 4;
+  bool left = false;
+  for (int i = 0; i < kTimes && !left; ++i) {
+    drain(*port_);
+    const bool free = port_->state() == UsbTransport::State::kIdle;
+    machine_.command(*port_, {0, 0, 0});
+    drain(*port_);
+    left = free && port_->state() == UsbTransport::State::kIdle;
+  }
 }
 
 DeviceReading Falcon::read(Time now) noexcept {

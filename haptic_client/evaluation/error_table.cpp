@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -35,6 +36,8 @@ int ErrorTable::bin_of(double newton) noexcept {
 }
 
 ErrorTable::ErrorTable(double rate_hz) {
+  if (rate_hz <= 2 * kRoughHz)
+    rough_squared_ = std::numeric_limits<double>::quiet_NaN();  // no filter does that
   const double w = std::tan(std::numbers::pi * kRoughHz / rate_hz), root = std::numbers::sqrt2 * w;
   b0_ = 1 / (1 + root + w * w);
   a1_ = 2 * (w * w - 1) * b0_;

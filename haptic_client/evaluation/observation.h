@@ -28,7 +28,7 @@ using SessionTimeline = Timeline<SessionCell>;
 /// ticks. Memory is taken at the beginning and stays. Haptic thread, after the force was written.
 class Observation {
  public:
-  /// `laws`, `where`: see `Scoring`. `keep`: how many of the last ticks to keep (0: none; 0.6 kB each).
+  /// `laws`, `where`: see `Scoring`. `keep`: how many of the last ticks to keep (0: none; 3.2 kB each).
   Observation(const std::vector<std::string>& laws, double rate_hz, const std::string& where,
               std::size_t keep, double blend = 0, const Truth* truth = nullptr);
 

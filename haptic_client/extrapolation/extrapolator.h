@@ -68,6 +68,19 @@ inline bool usable(const Sample& sample) noexcept {
   return sample.p.allFinite() && sample.f.allFinite();
 }
 
+/// A force `f` by a law that began from the force `felt`, without what of it would pull: there is none where
+/// the part of `f` along `felt` is gone or turned about. What lies across `felt`, as of friction, goes to
+/// nothing with that part, from a fifth of `felt` on, so that no force ends at once.
+inline Vec3 without_pull(const Vec3& f, const Vec3& felt) noexcept {
+  constexpr double kShare = 0.2;
+  const double size = felt.norm();
+  if (!(size > 0) || !(f.dot(felt) > 0)) return Vec3::Zero();
+  const double share = f.dot(felt) / (kShare * size * size);
+  if (!(share < 1)) return f;
+  const Vec3 along = f.dot(felt) / (size * size) * felt;
+  return along + share * (f - along);
+}
+
 /// Whether a law may look at this part of a sample: it is within the bounds of the protocol, what a server
 /// can mean in SI units.
 inline bool usable(const Linearised& l) noexcept {

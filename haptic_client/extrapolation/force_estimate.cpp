@@ -29,8 +29,20 @@ Vec3 ForceEstimate::force(const Vec3& p, Time t) noexcept {
   const Vec3 f = law_force(p, t);
   if (!(blend_ > 0)) return f;
   if (law_->stepped_down() != stepped_down_) blend_from(last_, f, t);
-  last_ = f.isZero(0) ? f : Vec3(f + std::exp(-to_seconds(t - changed_) / blend_) * offset_);  // free at once
-  return last_;
+  return last_ = blended(f, t);
+}
+
+/// A tool that is free is so at once, and comes into contact again as the law says. What is blended in is at
+/// most `kMostBlended` times the force, so that it leaves with that, and never turns it about: no pull.
+Vec3 ForceEstimate::blended(const Vec3& f, Time t) noexcept {
+  constexpr double kMostBlended = 3;
+  if (f.isZero(0)) offset_.setZero();
+  Vec3 offset = std::exp(-to_seconds(t - changed_) / blend_) * offset_;
+  const double size = offset.norm(), most = kMostBlended * f.norm();
+  if (size > most) offset *= most / size;
+  const Vec3 sum = f + offset;
+  const double along = sum.dot(f);
+  return along < 0 ? Vec3(sum - along / f.squaredNorm() * f) : sum;
 }
 
 void ForceEstimate::blend_from(const Vec3& before, const Vec3& after, Time t) noexcept {

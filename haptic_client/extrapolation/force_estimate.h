@@ -42,6 +42,7 @@ class ForceEstimate {
   std::unique_ptr<Extrapolator> law_;
   Vec3 law_force(const Vec3& p, Time t) noexcept;
   Time law_time(Time t) const noexcept;
+  Vec3 blended(const Vec3& f, Time t) noexcept;
   void blend_from(const Vec3& before, const Vec3& after, Time t) noexcept;
 
   bool sees_surface_;

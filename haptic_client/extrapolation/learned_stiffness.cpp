@@ -35,8 +35,7 @@ Vec3 LearnedStiffness::force(const Vec3& p, Time) noexcept {
   if (samples_.count == 0) return Vec3::Zero();
   const Vec3 x = p - newest.p;
   if (!(x.cwiseAbs().maxCoeff() < kFarthest)) return newest.f;
-  const Vec3 f = newest.f + b_ * x;
-  return f.dot(newest.f) >= 0 ? f : Vec3(Vec3::Zero());
+  return without_pull(newest.f + b_ * x, newest.f);
 }
 
 }  // namespace palpate::client

@@ -4,7 +4,6 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kFastest = 10;  // m/s
 constexpr double kSteady = 0.5;  // of a velocity
 constexpr double kHardest = 20;  // m/s^2: a beating heart has about 5
 }  // namespace

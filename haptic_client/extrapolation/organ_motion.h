@@ -12,6 +12,7 @@ namespace palpate::client {
 /// acceleration where it changes by more than half of itself: one of them has come, or gone. About 2 ns.
 class OrganMotion {
  public:
+  static constexpr double kFastest = 10;  ///< m/s: what goes faster is no organ, and stands still
   /// A sample later than the one before. Without `here` it says nothing of motion, and the organ rests.
   void update(const Sample& sample) noexcept;
   /// Forgets all samples.

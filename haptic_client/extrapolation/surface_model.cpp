@@ -55,6 +55,7 @@ void SurfaceModel::take(const SurfacePage& page) noexcept {
     return;
   }
   if (page.page >= pages_.count()) return;
+  if (Asked& asked = asked_[page.page % kAsked]; asked.page == page.page) asked = {};
   if (pages_.modes > 0 && page.page == pages_.spectrum()) {
     take_spectrum(page);
   } else if (page.page >= pages_.first_tile()) {
@@ -163,9 +164,11 @@ class SurfaceModel::Wishes {
   void add(std::uint32_t page) {
     missing = true;
     Asked& asked = asked_[page % kAsked];
-    if (full() || (asked.page == page && now_ms_ - asked.ms < patience_ms_)) return;
-    again += asked.page == page && asked.ms != 0 && !asked.not_yet ? 1 : 0;
-    asked = {page, now_ms_};
+    const bool same = asked.page == page, waits = asked.ms != 0 && now_ms_ - asked.ms < patience_ms_;
+    if (full() || (waits && (same || !asked.not_yet))) return;  // two pages may share a record: in turn
+    const bool once_more = same && asked.ms != 0 && !asked.not_yet;
+    again += once_more ? 1 : 0;
+    asked = {page, now_ms_, false, once_more};
     pages_[count_++] = page;
   }
   bool missing = false;     ///< something is, asked for or not
@@ -208,7 +211,7 @@ bool SurfaceModel::choose(const Vec3& p, double reach, Wishes& wishes) noexcept 
 std::optional<Time> SurfaceModel::waited_for(std::uint32_t page, Time now) const noexcept {
   page &= ~SurfacePages::kNotYet;
   const Asked& asked = asked_[page % kAsked];
-  if (asked.page != page || asked.ms == 0) return {};
+  if (asked.page != page || asked.ms == 0 || asked.again) return {};
   return std::chrono::milliseconds(to_ms(now) + 1 - asked.ms);
 }
 

@@ -73,6 +73,7 @@ class SurfaceModel {
   struct Asked {
     std::uint32_t page = protocol::ToolState::kNoPage, ms = 0;
     bool not_yet = false;  // said the server
+    bool again = false;    // asked for more than once
   };
   void take_shape(const protocol::SurfacePage& page) noexcept;
   void complete_shape() noexcept;

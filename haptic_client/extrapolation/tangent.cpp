@@ -24,8 +24,7 @@ Vec3 force_at(const Linearised& l, const Vec3& p) noexcept {
     const double depth = l.gap + l.normal.dot(x);
     return depth < 0 ? Vec3(depth * (l.k * l.normal)) : Vec3(Vec3::Zero());
   }
-  const Vec3 f = l.f + l.k * x;
-  return f.dot(l.f) > 0 ? f : Vec3(Vec3::Zero());
+  return without_pull(l.f + l.k * x, l.f);
 }
 
 void Tangent::update(const Sample& sample) noexcept {

@@ -1,11 +1,13 @@
 #include "haptic_client/pipeline/page_pace.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate::client {
 namespace {
 
 constexpr Time kPeriod = std::chrono::milliseconds(100), kWaits = std::chrono::milliseconds(30);
+constexpr Time kWindow = std::chrono::seconds(10);  // of the quickest
 constexpr Time kLeastPatience = std::chrono::milliseconds(200), kMostPatience = std::chrono::seconds(2);
 constexpr double kMostTokens = 8, kFaster = 1.5, kSlower = 0.5;
 
@@ -19,6 +21,10 @@ std::size_t PagePace::allowed(Time now) noexcept {
     adapt();
     period_ = now;
   }
+  if (now - window_ >= kWindow) {
+    quickest_before_ = std::exchange(quickest_, std::nullopt);
+    window_ = now;
+  }
   tokens_ = std::min(tokens_ + rate_ * dt, kMostTokens);
   return static_cast<std::size_t>(std::max(tokens_, 0.0));
 }
@@ -27,10 +33,18 @@ void PagePace::came(Time took) noexcept {
   ++came_;
   quickest_ = std::min(quickest_.value_or(took), took);
   slowest_ = std::max(slowest_, took);
+  backoff_ = {};
+}
+
+std::optional<Time> PagePace::quickest() const noexcept {
+  if (!quickest_ || !quickest_before_) return quickest_ ? quickest_ : quickest_before_;
+  return std::min(*quickest_, *quickest_before_);
 }
 
 void PagePace::adapt() noexcept {
-  const bool waits = quickest_ && slowest_ - *quickest_ > kWaits;
+  if (lost_ > 0) backoff_ = std::min(2 * patience(), kMostPatience);
+  const auto quickest = this->quickest();
+  const bool waits = quickest && slowest_ - *quickest > kWaits;
   if (waits || lost_ > 0) {
     rate_ = std::max(kSlower * rate_, kSlowest);
   } else if (came_ > 0) {
@@ -41,7 +55,8 @@ void PagePace::adapt() noexcept {
 }
 
 Time PagePace::patience() const noexcept {
-  return quickest_ ? std::clamp(3 * *quickest_, kLeastPatience, kMostPatience) : kLeastPatience;
+  const Time usual = std::clamp(3 * quickest().value_or(Time{}), kLeastPatience, kMostPatience);
+  return std::max(usual, backoff_);
 }
 
 }  // namespace palpate::client

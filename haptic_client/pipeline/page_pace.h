@@ -10,7 +10,8 @@ namespace palpate::client {
 /// How many pages of the surface to ask for, so that they do not fill the queue of a slow link, in which
 /// samples would wait behind them: each 100 ms the rate grows by half while pages come almost as quickly as
 /// the quickest, and is halved where one waited 30 ms longer or was lost (as LEDBAT, RFC 6817, takes queueing
-/// delay for the signal of congestion). Pure; haptic thread.
+/// delay for the signal of congestion; the quickest of the last 10 to 20 s, as RFC 6817 has it for a way that
+/// becomes another one). Pure; haptic thread.
 class PagePace {
  public:
   static constexpr double kSlowest = 20, kFastest = 1000;  ///< pages a second
@@ -18,23 +19,27 @@ class PagePace {
   /// How many may be asked for now.
   std::size_t allowed(Time now) noexcept;
   void asked(std::size_t pages) noexcept { tokens_ -= static_cast<double>(pages); }
-  /// A page came `took` after it was asked for.
+  /// A page came `took` after it was asked for, once: which of several asks was answered nobody knows (Karn
+  /// and Partridge 1987).
   void came(Time took) noexcept;
   /// So many pages are asked for once more.
   void lost(std::uint64_t pages) noexcept { lost_ += pages; }
 
-  /// After how long a page that did not come is lost: 200 ms, or more where the way is longer.
+  /// After how long a page that did not come is lost: 200 ms, or more where the way is longer; twice as long
+  /// each time that pages are, until one comes that was asked for once.
   Time patience() const noexcept;
   double rate() const noexcept { return rate_; }
 
  private:
   void adapt() noexcept;
+  std::optional<Time> quickest() const noexcept;
 
   double rate_ = 250, tokens_ = 8;
-  std::uint64_t came_ = 0, lost_ = 0;  // in this period
-  std::optional<Time> quickest_;       // of all pages
-  Time slowest_{};                     // in this period
-  Time last_{}, period_{};
+  std::uint64_t came_ = 0, lost_ = 0;               // in this period
+  std::optional<Time> quickest_, quickest_before_;  // in this window of time, and in the one before
+  Time slowest_{};                                  // in this period
+  Time backoff_{};                                  // the least patience, since pages were lost
+  Time last_{}, period_{}, window_{};
 };
 
 }  // namespace palpate::client

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "haptic_client/extrapolation/organ_motion.h"
+
 namespace palpate::client {
 using protocol::ForceSample;
 using protocol::ToolState;
@@ -12,7 +14,8 @@ constexpr double kVelocityFilter = 0.005;                  // s, time constant o
 constexpr int kLeadFilter = 8;                             // samples
 constexpr Time kAskPeriod = std::chrono::milliseconds(8);  // a thousand pages a second at most
 constexpr double kDamperShare = 0.25;                      // of the largest force: all dampers together
-constexpr double kFadeDamping = 2;  // N s/m, in the device frame, while the force fades
+constexpr double kFadeDamping = 2;         // N s/m, in the device frame, while the force fades
+constexpr double kFadeDampingRise = 0.03;  // s, from none to all of it and back: no step of a fast hand
 
 Mat3 symmetric(const std::array<double, 6>& k) noexcept {
   Mat3 m;
@@ -120,9 +123,12 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
   }
   result.tool.newest_sample = estimate_.newest().number;
   if (model_) ask_for_pages(result.tool, now);
-  if (felt_.tick > 0)
+  if (felt_.tick > 0) {
+    const Vec3& surface_v = estimate_.newest().surface_v;
+    const bool organ = surface_v.norm() <= OrganMotion::kFastest;
     passivity_.moved(now, workspace_.motion_to_device(tool.p_W - felt_.p_W),
-                     workspace_.motion_to_device(estimate_.newest().surface_v), dt);
+                     workspace_.motion_to_device(organ ? surface_v : Vec3(Vec3::Zero())), dt);
+  }
   result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
   if (result.tool.newest_sample > 0) {
     if (stats_.told == 0) stats_.first_told = now;
@@ -165,7 +171,10 @@ Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept 
   const Passivity::Ruling passive = passivity_.rule(dt);
   const Watchdog::Ruling watchdog = rule_by_age(tool, dt);
   if (off) watchdog_.restart();  // so that it comes back softly
-  const double damping = passive.damping + (watchdog.damper ? watchdog.gain * kFadeDamping : 0);
+  const double fade = watchdog.damper && !off ? watchdog.gain * kFadeDamping : 0,
+               step = kFadeDamping / kFadeDampingRise * std::clamp(dt, 0.0, kLongestTick);
+  fade_damping_ += std::clamp(fade - fade_damping_, -step, step);
+  const double damping = passive.damping + fade_damping_;
   const Vec3 damper_D = limiter_.within(kDamperShare, -damping * workspace_.motion_to_device(tool.v_W));
   const Vec3 f_D =
       off ? limiter_.drop() : limiter_.push(watchdog.gain * passive.gain * felt_D + damper_D, dt);

@@ -118,6 +118,7 @@ class Pipeline {
   Workspace workspace_;
   Passivity passivity_;
   Watchdog watchdog_;
+  double fade_damping_ = 0;  // N s/m
   Limiter limiter_;
   FeltShare felt_share_;
   double law_newton_ = 0;

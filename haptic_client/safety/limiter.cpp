@@ -41,8 +41,9 @@ Vec3 Limiter::within(double share, const Vec3& f_D) const noexcept {
 }
 
 void Limiter::watch_for_storm(bool slewed, double dt) noexcept {
-  window_ += dt;
-  slewed_time_ += slewed ? dt : 0;
+  const double counts = std::clamp(dt, 0.0, kLongestTick);  // one late tick is no storm
+  window_ += counts;
+  slewed_time_ += slewed ? counts : 0;
   if (window_ < kStormWindow) return;
   if (slewed_time_ > kStormShare * window_) latch(Fault::kStorm);
   window_ = slewed_time_ = 0;

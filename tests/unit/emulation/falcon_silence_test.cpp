@@ -45,6 +45,19 @@ class WatchedPort : public test::EmulatedPort {
   int& tries_before_;
 };
 
+/// A port whose first transfers stay on the way for so many looks at it.
+class SlowPort : public test::EmulatedPort {
+ public:
+  using EmulatedPort::EmulatedPort;
+  void hold_up(int looks) { looks_ = looks; }
+  State state() const noexcept override {
+    return looks_ > 0 && looks_-- > 0 ? State::kBusy : EmulatedPort::state();
+  }
+
+ private:
+  mutable int looks_ = 0;
+};
+
 nlohmann::json state_of(emulation::Falcon& falcon) {
   return nlohmann::json::parse(falcon.state(0));
 }
@@ -68,4 +81,24 @@ TEST_CASE("a Falcon that another program holds does not keep the dead client's w
   CHECK(state_of(falcon)["dac"] == nlohmann::json({0, 0, 0}));
   CHECK(tries_before == 1);
   CHECK(tries > 50);  // the other was waited for
+}
+
+TEST_CASE("a Falcon that is let go of gets its zero, also when its last force is held up for a second") {
+  emulation::Falcon falcon({.loaded = true, .homed = true});
+  auto owned = std::make_unique<SlowPort>(falcon);
+  SlowPort& port = *owned;
+  Falcon device(std::move(owned), {}, 10000, 1);
+  Time t = Time::zero();
+  bool valid = false;
+  for (int tick = 0; tick < 5000 && !valid; ++tick) {
+    port.advance(t += std::chrono::milliseconds(1));
+    valid = device.read(t).valid;
+    device.write(Vec3::Zero());
+  }
+  REQUIRE(valid);
+  device.write({0, 2, 0});
+  REQUIRE(state_of(falcon)["dac"] != nlohmann::json({0, 0, 0}));
+  port.hold_up(400);  // looked at each 2 ms: beyond what one wait for it bears
+  device.stop();
+  CHECK(state_of(falcon)["dac"] == nlohmann::json({0, 0, 0}));
 }

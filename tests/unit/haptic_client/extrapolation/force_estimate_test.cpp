@@ -38,6 +38,17 @@ struct StoodInForASample : StoodInFor {
   void update(const Sample& sample) noexcept override { simpler = sample.number == 2; }
 };
 
+/// A spring from y = 0 down that is as strong 1 mm below as the newest sample says.
+class SampledSpring : public Extrapolator {
+ public:
+  void update(const Sample& sample) noexcept override { newton_ = sample.f[1]; }
+  void restart() noexcept override {}
+  Vec3 force(const Vec3& p, Time) noexcept override { return {0, newton_ * std::max(-p[1], 0.0) / 1e-3, 0}; }
+
+ private:
+  double newton_ = 0;
+};
+
 }  // namespace
 
 /// 25 N/s, sampled every 40 ms, samples `latency` old when they arrive; the newest is of 400 ms.
@@ -153,4 +164,38 @@ TEST_CASE("without blending a simpler law stands in at once") {
   CHECK(estimate.force({0, 0, 0}, 48ms)[1] == 1);
   CHECK(estimate.force({0, 0, 0}, 50ms)[1] == 3);
   CHECK(estimate.force({0, 0, 0}, 80ms)[1] == 1);
+}
+
+TEST_CASE("what is blended in leaves with the force, and is not there when the tool comes back") {
+  ForceEstimate estimate(std::make_unique<SampledSpring>(), 0.010);
+  const Vec3 deep(0, -1e-3, 0);
+  REQUIRE(estimate.take({1, 0ms, deep, {0, 1.5, 0}}, deep, 0ms));
+  double before = estimate.force(deep, 33ms)[1];
+  REQUIRE(before > 1.4);
+  REQUIRE(estimate.take({2, 33ms, deep, {0, 0.5, 0}}, deep, 33ms));
+  CHECK(estimate.force(deep, 33ms)[1] == Approx(before));  // nothing jumps
+  for (int i = 1; i <= 200; ++i) {                         // out, within 2 ms
+    const Vec3 p(0, -1e-3 + 5e-6 * i, 0);
+    const double f = estimate.force(p, 33ms + i * Time{10us})[1];
+    CHECK(std::abs(f - before) < 0.02);
+    before = f;
+  }
+  CHECK(before == 0);
+  CHECK(estimate.force({0, -2e-6, 0}, 36ms)[1] == Approx(0.001));
+}
+
+TEST_CASE("what is blended in makes no force pull") {
+  ForceEstimate estimate(std::make_unique<SampledSpring>(), 0.010);
+  const Vec3 deep(0, -1e-3, 0);
+  REQUIRE(estimate.take({1, 0ms, deep, {0, 0.2, 0}}, deep, 0ms));
+  double before = estimate.force(deep, 33ms)[1];
+  REQUIRE(before > 0.18);
+  REQUIRE(estimate.take({2, 33ms, deep, {0, 1.5, 0}}, deep, 33ms));
+  CHECK(estimate.force(deep, 33ms)[1] == Approx(before));
+  for (int i = 1; i <= 200; ++i) {
+    const double f = estimate.force({0, -1e-3 + 5e-6 * i, 0}, 33ms + i * Time{10us})[1];
+    CHECK(f > -1e-15);
+    CHECK(std::abs(f - before) < 0.02);
+    before = f;
+  }
 }

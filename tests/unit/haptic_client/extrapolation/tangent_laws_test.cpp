@@ -129,3 +129,20 @@ TEST_CASE("a sample without tangents: the stiffness that was learned") {
   CHECK(tangent->force(p, 110ms) == learned->force(p, 110ms));
   CHECK(learned->force(p, 110ms)[1] == Approx(3.15).epsilon(1e-3));
 }
+
+TEST_CASE("no force along a tangent ends at once, or pulls, as a tool lifts off sideways, with friction") {
+  Linearised l{.p = Vec3::Zero(), .f = {0, 1, 0}, .normal = {0, 1, 0}};
+  l.k = -500 * Mat3::Identity();
+  for (const double sideways : {0.0, 0.3, 1.0, 3.0}) {
+    Vec3 before = l.f;
+    for (int i = 1; i <= 1000; ++i) {
+      const Vec3 f = force_at(l, 1e-5 * i * Vec3(sideways, 0.4, 0));
+      CHECK(f[1] >= 0);
+      CHECK((f - before).norm() < 0.12);
+      before = f;
+    }
+    CHECK(before == Vec3::Zero());
+  }
+  // Far from there it is the tangent.
+  CHECK(force_at(l, {1e-3, -1e-3, 0}) == Vec3(-0.5, 1.5, 0));
+}

@@ -81,3 +81,29 @@ TEST_CASE("pages: the patience is three times what the quickest took, 200 ms at 
   slow.came(900ms);
   CHECK(slow.patience() == 2s);
 }
+
+TEST_CASE(
+    "pages: where all are lost the patience doubles up to 2 s, until one comes that was asked for once") {
+  PagePace pace{};
+  Time now = 1000s;
+  pace.allowed(now);
+  for (const Time expected : {Time{400ms}, Time{800ms}, Time{1600ms}, Time{2000ms}, Time{2000ms}}) {
+    pace.lost(3);
+    pace.allowed(now += 100ms);
+    CHECK(pace.patience() == expected);
+  }
+  pace.came(210ms);
+  CHECK(pace.patience() == 630ms);
+}
+
+TEST_CASE(
+    "pages: on a way that has become longer by 100 ms the rate is the fastest again within half a minute") {
+  Line line{.bytes_per_s = 1e8, .delay = 5ms};
+  line.run(2s);
+  REQUIRE(line.pace.rate() == PagePace::kFastest);
+  line.delay = 105ms;
+  line.run(1s);
+  CHECK(line.pace.rate() < 100);  // as if pages queued
+  line.run(24s);
+  CHECK(line.pace.rate() == PagePace::kFastest);
+}

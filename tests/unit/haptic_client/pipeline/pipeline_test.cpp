@@ -83,6 +83,31 @@ TEST_CASE("the link dies: force is exactly zero 400 ms after the last sample, an
   CHECK(pipeline.watchdog().ramped() == 1);
 }
 
+TEST_CASE("the link dies under a fast hand: what brakes it comes and goes within ticks, not at once") {
+  for (const Time back_after : {Time{350ms}, Time{500ms}}) {
+    Pipeline pipeline = make();
+    Time t = warm_up(pipeline, {0, 0, 0});
+    const Time last = t;
+    const double speed = 0.4;  // m/s
+    Vec3 p = Vec3::Zero(), before = Vec3::Zero();
+    double largest = 0, brake = 0;
+    std::uint64_t number = 900;
+    while (t < last + 600ms) {
+      t += kTick;
+      p[0] += speed * to_seconds(kTick);
+      ForceSample sample = sample_at(++number, t, p, {0, 0, 0});
+      const bool arrives = t - last > back_after;
+      const TickResult result = pipeline.tick({.t = t, .p_D = p}, arrives ? &sample : nullptr);
+      largest = std::max(largest, (result.f_D - before).norm());
+      brake = std::max(brake, -result.f_D[0]);
+      before = result.f_D;
+    }
+    CHECK(brake > 0.2);
+    CHECK(largest < 0.08);
+    CHECK(before == Vec3::Zero());
+  }
+}
+
 TEST_CASE("a force beyond the limit is clamped and counted, also while it fades in") {
   Pipeline pipeline = make();
   const Time t = warm_up(pipeline, {0, 100, 0});

@@ -117,6 +117,14 @@ TEST_CASE("a storm of slew cuts latches, a long steady clamp does not") {
   CHECK(shaken.fault() == Fault::kStorm);
 }
 
+TEST_CASE("one tick that comes late is no storm, however late") {
+  Limiter limiter({.max_force = 8, .max_slew = 160});
+  for (int tick = 0; tick < 10; ++tick) limit(limiter, kNone);
+  limit(limiter, {4, 0, 0}, 1.2);
+  for (int tick = 0; tick < 100; ++tick) limit(limiter, {4, 0, 0});
+  CHECK(limiter.fault() == Fault::kNone);
+}
+
 TEST_CASE("half a second of a force that no tissue makes latches, a shorter one or a stiff wall does not") {
   const double dt = 0.002;
   for (const double size : {799.0, 801.0, 1e9}) {
