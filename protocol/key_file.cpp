@@ -1,7 +1,9 @@
 #include "protocol/key_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -57,13 +59,16 @@ Key read_line(const std::string& line, const std::string& where) {
   return {static_cast<std::uint8_t>(number), *bytes};
 }
 
-/// In one piece, and to the disk.
-void append(int descriptor, const std::string& text, const std::filesystem::path& file) {
+/// In one piece, and to the disk; else the file is removed.
+void write_whole(int descriptor, const std::string& text, const std::filesystem::path& file) {
   const bool written = ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
                        ::fsync(descriptor) == 0;
   const int why = errno;
   ::close(descriptor);
-  if (!written) fail_at_run_time("{}: cannot be written ({})", file.string(), std::strerror(why));
+  if (written) return;
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  fail_at_run_time("{}: cannot be written ({})", file.string(), std::strerror(why));
 }
 
 }  // namespace
@@ -92,9 +97,12 @@ Key add_new_key(const std::filesystem::path& file, bool add) {
   std::string text;
   if (add) {
     const std::vector<Key> keys = read_keys(file);
-    if (keys.back().number == kMostKeys)
-      fail("{}: has key 255, the last there is; make a new file", file.string());
-    key.number = static_cast<std::uint8_t>(keys.back().number + 1);
+    const std::uint8_t last = std::ranges::max(keys, {}, &Key::number).number;
+    if (last == kMostKeys) fail("{}: has key 255, the last there is; make a new file", file.string());
+    key.number = static_cast<std::uint8_t>(last + 1);
+    std::ifstream in(file, std::ios::binary);
+    text.assign(std::istreambuf_iterator<char>(in), {});
+    if (!text.ends_with('\n')) text += '\n';
   } else {
     text =
         "# Whoever has this file can push the motors of a device. Copy it to both machines, keep it at mode "
@@ -102,13 +110,17 @@ Key add_new_key(const std::filesystem::path& file, bool add) {
   }
   text += fmt::format("{} {} ", kWord, key.number);
   for (const std::uint8_t byte : key.bytes) text += fmt::format("{:02x}", byte);
-  const int flags = add ? O_WRONLY | O_APPEND : O_WRONLY | O_CREAT | O_EXCL;
-  const int descriptor = ::open(file.c_str(), flags | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  // A new one must not be there; one that is there is replaced as a whole.
+  std::string written = add ? file.string() + ".XXXXXX" : file.string();
+  const int descriptor =
+      add ? ::mkostemp(written.data(), O_CLOEXEC)
+          : ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (descriptor < 0 && errno == EEXIST)
     fail("{}: is there already; --add puts a new key behind the old ones, or choose another name",
          file.string());
-  if (descriptor < 0) fail_at_run_time("{}: cannot be written ({})", file.string(), std::strerror(errno));
-  append(descriptor, text + "\n", file);
+  if (descriptor < 0) fail_at_run_time("{}: cannot be written ({})", written, std::strerror(errno));
+  write_whole(descriptor, text + "\n", written);
+  if (add) std::filesystem::rename(written, file);
   return key;
 }
 

@@ -170,13 +170,14 @@ ServerSessions::Outcome ServerSessions::greet(const Datagram& datagram, const He
 ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Key& shared, const Endpoint& from,
                                               Time now, const Fresh& fresh) {
   auto member = std::find_if(members_.begin(), members_.end(), [&](const Member& m) {
-    return m.nonce == hello.nonce && (m.endpoint == from || !keys_.empty());
+    return m.nonce == hello.nonce && m.key == shared.number && (m.endpoint == from || !keys_.empty());
   });
   if (member == members_.end()) {
     const auto tool = free_tool();
     if (!tool) return {.answer = {{Header{}, Refuse{hello.nonce, hello.attempt, RefuseReason::kNoFreeTool}}}};
     member = members_.insert(
         member, {.session = number_like(fresh.session),
+                 .key = shared.number,
                  .nonce = hello.nonce,
                  .server_nonce = fresh.nonce,
                  .tool = *tool,

@@ -86,6 +86,7 @@ class ServerSessions {
   static constexpr std::uint64_t kFarthestState = 100;  ///< datagrams ahead: 1 s of the slowest client
   struct Member {
     std::uint64_t session = 0, sent = 0;
+    std::uint8_t key = 0;  ///< the number of the one that it joined with; 0: none
     Nonce nonce{}, server_nonce{};
     Endpoint endpoint{};
     std::uint8_t tool = 0;

@@ -34,7 +34,9 @@ void require_array(Struct* array, std::size_t count, const char* name) {
 /// A scene with its tools, each in the hand of the caller. Time is that of the steps.
 struct palpate_scene {
   explicit palpate_scene(const char* file)
-      : simulation(sim::read_scene(file)), served(simulation), inputs(simulation.tools()) {}
+      : simulation(sim::read_scene(file)), served(simulation), inputs(simulation.tools()) {
+    simulation.keep_no_log();
+  }
 
   void step(const palpate_tool_state* tools, Time dt, palpate_force_sample* samples);
 

@@ -201,9 +201,8 @@ std::optional<Scene> chosen_scene(ViewerFeed& feed, const std::vector<GallerySce
 /// Waits for Ctrl-C, the end of `seconds` or another scene that a page chose, which is returned, telling who
 /// comes and goes.
 std::optional<Scene> watch(NetLink& link, const SimLoop& loop, const Scene& scene,
-                           const protocol::Recorder* recorder, LiveView* view,
+                           protocol::RecordingWatcher& recording, LiveView* view,
                            const std::vector<GalleryScene>& gallery, std::optional<double> seconds) {
-  protocol::RecordingWatcher recording(recorder);
   const Time start = now();
   RunNews news(scene);
   while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
@@ -254,6 +253,7 @@ void check_run_files(const ServerOptions& options, const Scene& scene) {
   require_distinct({{"SCENE", scene.source},
                     {scene.mesh_where, scene.mesh_file},
                     {"--report", options.report},
+                    {"--key", options.listen.key},
                     {"--resection", options.resection},
                     {"--record", options.record}});
   if (options.report) check_writable(*options.report, Contents::kReport);
@@ -343,13 +343,15 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
     view->feed().hooks = page_hooks(view->feed(), scene.tools.size(), *page, mailboxes.bell, start);
     if (!view->facts().fields.empty()) view->feed().hooks.field = strain_energy_of(scene, simulation);
   }
+  protocol::RecordingWatcher recording(recorder.get());
   auto chosen = serve_until(loop, link, recorder.get(), view.get(), [&] {
     if (view) log::info("the live page: {}", view->link());
     log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
               report["setup_ms"].get<double>() / 1e3, options.listen.address);
     before.reset();
-    return watch(link, loop, scene, recorder.get(), view.get(), gallery, options.seconds);
+    return watch(link, loop, scene, recording, view.get(), gallery, options.seconds);
   });
+  recording.look();  // what was written at the end
   add_run(report, loop, link, simulation, scene, errors, now() - start);
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
   tell_results(options, simulation, report);

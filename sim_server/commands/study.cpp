@@ -74,7 +74,9 @@ class Runner {
 
   Trace run(const StudyCase& one, double share) {
     progress_(fmt::format("{}: {}", one.axis, one.name()), share);
-    const std::filesystem::path file = folder_ / (one.name() + ".trace");
+    // The check may be a case under the same name, but for what its tool reaches.
+    const std::filesystem::path file =
+        folder_ / ((one.axis == "check" ? "check-" : "") + one.name() + ".trace");
     if (const std::optional<Trace> before = read_trace(file)) return *before;
     const double bytes =
         run_apart(one.name(), [&] { write_trace(file, run_case(one, *motion_, seconds_, sites_)); });

@@ -105,9 +105,13 @@ class Rerun {
   double dt_ = 0, off_ = 0, largest_ = 0;
 };
 
-/// All of the capture into `session`; `rerun` may be null.
-void make_session(const std::filesystem::path& capture, Rerun* rerun, RecordedSession& session) {
+/// All of the capture, of about so many answers, into `session`; `rerun` may be null.
+void make_session(const std::filesystem::path& capture, std::size_t answers, Rerun* rerun,
+                  RecordedSession& session) {
+  constexpr std::size_t kBetweenReports = 100;
   Time t{}, newest{};
+  ProgressLine progress("nothing is shown");
+  std::size_t taken = 0;
   // Nothing is known of how far each step goes.
   if (rerun == nullptr) session.picture().simulated = std::numeric_limits<double>::quiet_NaN();
   bool pending = false, all = true;
@@ -123,6 +127,9 @@ void make_session(const std::filesystem::path& capture, Rerun* rerun, RecordedSe
         if (rerun != nullptr) rerun->take(state);
       },
       [&](const CapturedAnswer& answer) {
+        if (taken++ % kBetweenReports == 0)
+          progress("reading the capture",
+                   std::min(1.0, static_cast<double>(taken) / static_cast<double>(answers)));
         if (answer.begins_step) finish();
         newest = std::max(newest, answer.t);
         t = newest;
@@ -164,6 +171,7 @@ int view_capture(const ViewOptions& options) {
     const auto condensed = open_condensed(options.cache, *scene);
     simulation.emplace(*scene, std::ref(progress), cache ? &*cache : nullptr,
                        condensed ? &*condensed : nullptr);
+    simulation->keep_no_log();
     facts = facts_of(*scene, *simulation);
   } else {
     facts.title = options.capture.filename().string();
@@ -174,7 +182,7 @@ int view_capture(const ViewOptions& options) {
   facts.recorded = true;
   RecordedSession session(facts);
   auto rerun = simulation ? std::make_unique<Rerun>(*simulation) : nullptr;
-  make_session(options.capture, rerun.get(), session);
+  make_session(options.capture, forces.samples.size(), rerun.get(), session);
   if (rerun) tell_how_far_off(*rerun, *options.scene);
   ViewerFeed feed(facts.organ.rest);
   Viewer viewer(*address, "", facts, feed, &session.bytes());

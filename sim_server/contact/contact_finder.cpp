@@ -8,6 +8,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kMostBalls = 3;
+constexpr double kNothing = 1e-9;  // m
 
 /// Whether the triangle's bounding box comes within `reach` of that of p and q: cheap, never wrong on the
 /// safe side.
@@ -25,6 +26,7 @@ Eigen::AlignedBox3d box_around(const Vec3& p, const Vec3& q, double reach) noexc
 /// Whether the axis from p to q comes within `reach` of the triangle.
 bool reaches(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& q,
              double reach) noexcept {
+  if (reach < 0) return false;
   if (p != q) return segment_triangle_distance(p, q, a, b, c) <= reach;
   const auto w = closest_point(p, a, b, c).weight;
   return (p - w[0] * a - w[1] * b - w[2] * c).squaredNorm() <= reach * reach;
@@ -122,10 +124,38 @@ bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, c
   return fits;
 }
 
+/// Of those between `reach` and `more` away, for all of which there is no room, the nearest, and of equally
+/// far ones the first: a long axis is as far from all that it lies on.
+void ContactFinder::add_some(std::span<const Vec3> positions, const Vec3& p, const Vec3& q, double reach,
+                             double more, ContactPatch& patch) noexcept {
+  for (int halved = 0; halved < 12; ++halved) {
+    const double middle = 0.5 * (std::max(reach, 0.0) + more);
+    (try_gather(positions, p, q, middle, patch) ? reach : more) = middle;
+  }
+  try_gather(positions, p, q, reach, patch);
+  for (std::size_t i = 0; i < vertices_.size(); ++i) slot_of_vertex_[vertices_[i]] = static_cast<int>(i);
+  for (const int near : bvh_.near(box_around(p, q, more))) {
+    if (static_cast<int>(patch.triangles.size()) >= max_triangles_) break;
+    const Triangle& t = triangles_[near];
+    const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
+    if (!reaches(a, b, c, p, q, more) || reaches(a, b, c, p, q, reach)) continue;
+    Triangle local;
+    for (int i = 0; i < 3; ++i) local[i] = slot_of(t[i]);
+    if (*std::min_element(local.begin(), local.end()) >= 0) patch.triangles.push_back(local);
+  }
+  for (const int vertex : vertices_) slot_of_vertex_[vertex] = -1;
+}
+
 void ContactFinder::gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p,
                            const Vec3& q, double reach, ContactPatch& patch) noexcept {
   bvh_.refit(positions);
-  while (!try_gather(positions, p, q, reach, patch)) reach *= 0.9;
+  double more = reach;  // of which there is no room for all
+  while (!try_gather(positions, p, q, reach, patch)) {
+    more = reach;
+    reach = reach > kNothing ? 0.9 * reach : -1;
+  }
+  if (reach < more && 2 * static_cast<int>(patch.triangles.size()) < max_triangles_)
+    add_some(positions, p, q, reach, more, patch);
   patch.free.clear();
   for (const int vertex : vertices_) patch.free.push_back(free[vertex]);
 }

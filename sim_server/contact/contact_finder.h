@@ -68,6 +68,9 @@ class ContactFinder {
   bool try_gather(std::span<const Vec3> positions, const Vec3& p, const Vec3& q, double reach,
                   ContactPatch& patch) noexcept;
 
+  void add_some(std::span<const Vec3> positions, const Vec3& p, const Vec3& q, double reach, double more,
+                ContactPatch& patch) noexcept;
+
   Foot closest_on(int triangle, std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
   void note_openings();

@@ -58,7 +58,13 @@ void Grip::close(const Vec3& p_W, std::span<const Vec3> positions) noexcept {
   closed_ = true;
   for (const int vertex : touchable_) {
     const Vec3 offset = positions[vertex] - p_W;
-    if (offset.norm() > reach_ || vertices_.size() == max_nodes_) continue;
+    if (offset.norm() > reach_) continue;
+    if (vertices_.size() == max_nodes_) {  // the nearest stay, in their order
+      const auto farthest = std::ranges::max_element(offsets_, {}, &Vec3::norm) - offsets_.begin();
+      if (!(offset.norm() < offsets_[static_cast<std::size_t>(farthest)].norm())) continue;
+      vertices_.erase(vertices_.begin() + farthest);
+      offsets_.erase(offsets_.begin() + farthest);
+    }
     vertices_.push_back(vertex);
     offsets_.push_back(offset);
   }

@@ -38,6 +38,13 @@ void Tissue::drop_loads(const std::function<bool(int)>& on_surface) {
   }
 }
 
+void Tissue::lift(std::size_t tool) noexcept {
+  ToolLoads& mine = tools_[tool];
+  mine.loads.clear();
+  mine.others = 0;
+  mine.left = 0;
+}
+
 ToolTissue Tissue::met_by(std::size_t tool) {
   return {*this, tool, meet(tool)};
 }

@@ -38,12 +38,15 @@ class Tissue {
   std::span<const NodalLoad> loads_of(std::size_t tool) const noexcept { return tools_[tool].own(); }
   /// What is kept for this tool alone.
   std::size_t bytes_of(std::size_t tool) const { return tools_[tool].pushed.size() * sizeof(Vec3); }
+  /// A tool that is lifted has no loads, and knows of no other's.
+  void lift(std::size_t tool) noexcept;
   /// The tool went along with the organ by `motion` (m): so did what it last met.
   void carry(std::size_t tool, const Vec3& motion) noexcept { tools_[tool].carried += motion; }
   /// Tissue has been removed: the loads on vertices that are not `on_surface` any more go with it.
   void drop_loads(const std::function<bool(int)>& on_surface);
-  /// `positions`, under the loads of now.
+  /// `positions`, under the loads of now, or where no tool has any.
   void press(std::size_t tool) { positions = model->apply(tools_[tool].loads); }
+  void press_by_none() { positions = model->apply({}); }
 
  private:
   friend class ToolTissue;

@@ -39,8 +39,9 @@ struct ImplicitSettings {
 DynamicsSettings dynamics_settings(const DeformationSettings& settings);
 
 /// Tissue of any law in motion, by implicit steps of T, from one instant of contact to the next (`Dynamics`):
-/// stable whatever the stiffness. At rest under the scene's [[load]] when the run begins; where nothing is
-/// fixed, at rest without, and it flies. A step iterates once under the loads of the last one, linearises
+/// stable whatever the stiffness. At rest under the scene's [[load]] when the run begins, of which a tissue
+/// that relaxes has not relaxed yet: it goes on to give way. Where nothing is fixed, at rest without, and it
+/// flies. A step iterates once under the loads of the last one, linearises
 /// there, and answers the contact solver from that: compliance W = J A^-1 J^T, dt^2 of the mass-like matrix
 /// in it, which is also that over the sample interval, as loads are held over the step. Then it iterates
 /// again from where contact led, until Newton's method has converged with contact inside its loop, at most

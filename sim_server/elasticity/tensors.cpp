@@ -103,8 +103,9 @@ void ElasticTensors::append(int vertex, const CutMesh& left) {
   sort_each_once(before);
   Part& last = parts_.back();
   for (const int at : before) {
-    if (at < last.begin && std::ranges::find(last.reaches, at) == last.reaches.end())
-      last.reaches.push_back(at);
+    if (at >= last.begin) continue;
+    const auto place_of = std::ranges::lower_bound(last.reaches, at);  // they are looked up by parts
+    if (place_of == last.reaches.end() || *place_of != at) last.reaches.insert(place_of, at);
   }
   neighbour_.insert(neighbour_.end(), before.begin(), before.end());
   first_edge_.push_back(static_cast<int>(neighbour_.size()));

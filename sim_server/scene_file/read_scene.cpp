@@ -80,6 +80,11 @@ void require_what_the_model_can(const Scene& scene) {
     fail("{}: [[load]]: model \"{}\" bears tools only; {} would, or `sim_server solve`",
          scene.loads.front().region.where, settings.model, models_that(any));
   require_material_of(scene, row);
+  for (const Load& load : scene.loads) {
+    if (load.kind == Load::Kind::kDisplacement && load.axes != kAllAxes)
+      fail("{}: [[load]]: `axes`: only `sim_server solve` moves vertices along some axes; remove it",
+           load.region.where);
+  }
   for (const FixedRegion& region : scene.fixed) {
     if (region.axes != kAllAxes)
       fail("{}: `axes`: only `sim_server solve` holds vertices along some axes; remove it", region.where);

@@ -14,6 +14,7 @@ using namespace protocol;
 namespace {
 
 constexpr std::size_t kMostSessions = 1000;
+constexpr double kFastest = 1e6;  // Hz: what a Welcome may say
 
 struct Session {
   std::map<std::uint64_t, ForceSample> samples;  // by number; what the capture holds twice counts once
@@ -62,7 +63,11 @@ CapturedForces read_captured_forces(const std::filesystem::path& capture) {
   });
   if (longest == sessions.end() || longest->second.samples.size() < 2)
     fail("{}: holds no force samples of Palpate, so there is nothing to play", capture.string());
-  return in_order(longest->second);
+  CapturedForces forces = in_order(longest->second);
+  if (const double rate = forces.rate_hz(); !(rate > 0 && rate <= kFastest))
+    fail("{}: its force samples come at {:.3g} Hz by their times; at most {:g} Hz can be played",
+         capture.string(), rate, kFastest);
+  return forces;
 }
 
 }  // namespace palpate::sim

@@ -24,8 +24,12 @@ void ForcePlayer::look() noexcept {
     ended = false;
   }
   if (session_ == 0 || next_ == forces_.samples.size()) return;
-  const Time due = begin_ + Time{forces_.samples[next_].tool_t_ns - forces_.samples.front().tool_t_ns};
-  if (now() < due) return;
+  const Time since = now() - begin_;
+  const auto is_due = [&](std::size_t i) {
+    return Time{forces_.samples[i].tool_t_ns - forces_.samples.front().tool_t_ns} <= since;
+  };
+  if (!is_due(next_)) return;
+  while (next_ + 1 < forces_.samples.size() && is_due(next_ + 1)) ++next_;  // the newest, of more than one
   ForceOutput output{session_, forces_.samples[next_++]};
   ForceSample& sample = output.sample;
   const protocol::ToolState& state = input_.state;

@@ -48,14 +48,14 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   const Time t = now();
   Datagram datagram;
   if (const Verdict verdict = protocol::decode(bytes, datagram); verdict != Verdict::kAccepted) {
-    record(t, from, own_towards(from), bytes, false);
+    record(t, from, Way::kIn, bytes, false);
     return refuse(verdict, bytes, from);
   }
   const std::size_t before = sessions_.members().size();
   const std::uint64_t received = stats_.received, lost = stats_.lost;
   const auto outcome = sessions_.receive(datagram, from, t, fresh_for(datagram), stats_);
   // Before any answer to it, as a reader of the capture expects.
-  record(t, from, own_towards(from), bytes, stats_.received > received && !is_to_a_stranger(outcome));
+  record(t, from, Way::kIn, bytes, stats_.received > received && !is_to_a_stranger(outcome));
   // A new member stands at the end.
   if (sessions_.members().size() > before) {
     const std::uint8_t tool = sessions_.members().back().tool;
@@ -81,9 +81,10 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
 }
 
 /// Into the recording, if there is one. `ours`: of a session; of all else there may be any number.
-void NetLink::record(Time t, const Endpoint& from, const Endpoint& to, std::span<const std::byte> bytes,
-                     bool ours) {
+void NetLink::record(Time t, const Endpoint& peer, Way way, std::span<const std::byte> bytes, bool ours) {
   if (recorder_ == nullptr) return;
+  const Endpoint& own = own_towards(peer);
+  const Endpoint &from = way == Way::kIn ? peer : own, &to = way == Way::kIn ? own : peer;
   if (ours) {
     recorder_->note(t, from, to, bytes);
   } else {
@@ -197,7 +198,7 @@ void NetLink::answer(const protocol::ServerSessions::Outcome& outcome, const End
 }
 
 void NetLink::send(std::span<const std::byte> bytes, const Endpoint& to, const Endpoint& from, bool ours) {
-  record(now(), own_towards(to), to, bytes, ours);
+  record(now(), to, Way::kOut, bytes, ours);
   if (!socket_.send(bytes, to, from)) ++stats_.sent;
 }
 

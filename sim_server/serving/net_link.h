@@ -48,8 +48,8 @@ class NetLink {
   void answer(const protocol::ServerSessions::Outcome& outcome, const protocol::Endpoint& to);
   void send(std::span<const std::byte> bytes, const protocol::Endpoint& to, const protocol::Endpoint& from,
             bool ours);
-  void record(Time t, const protocol::Endpoint& from, const protocol::Endpoint& to,
-              std::span<const std::byte> bytes, bool ours);
+  enum class Way { kIn, kOut };
+  void record(Time t, const protocol::Endpoint& peer, Way way, std::span<const std::byte> bytes, bool ours);
 
   const protocol::Endpoint& own_towards(const protocol::Endpoint& peer);
 

@@ -349,11 +349,15 @@ void Simulation::move_organ(double dt) {
     surface_motion_[i] +=
         0.5 * dt *
         tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.velocities, tissue_.loads_of(i));
+  bool pressed = false;
   for (std::size_t i = 0; moves && i < tools_.size(); ++i) {
     tools_[i].carry(surface_motion_[i]);
     tissue_.carry(i, surface_motion_[i]);
+    if (!tools_[i].placed()) continue;
     tissue_.press(i);
+    pressed = true;
   }
+  if (moves && !pressed) tissue_.press_by_none();
 }
 
 ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
@@ -361,11 +365,16 @@ ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
   return step(inputs_, dt).front();
 }
 
-void Simulation::lift_tool(std::size_t tool) {
+void Simulation::lift_tool(std::size_t tool) noexcept {
   answers_[tool] = {};
   came_from_[tool].reset();
   lately_[tool].clear();
-  if (!tissue_.loads_of(tool).empty()) tissue_.met_by(tool).release();
+  try {
+    if (!tissue_.loads_of(tool).empty()) tissue_.met_by(tool).release();
+  } catch (const std::exception&) {
+    // Memory ended. Its loads are gone all the same: the next step goes on without them, or tells why not.
+  }
+  tissue_.lift(tool);
   tools_[tool].lift();
 }
 

@@ -129,8 +129,8 @@ class Simulation {
   /// `step` gave for that place, with its tangent; null: to be found out. At most two contact solves.
   Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt);
 
-  /// Takes a tool away: the tissue goes free of it. Throws what the model throws.
-  void lift_tool(std::size_t tool = 0);
+  /// Takes a tool away: the tissue goes free of it.
+  void lift_tool(std::size_t tool = 0) noexcept;
 
   std::size_t tools() const { return tools_.size(); }
   /// How often contact is solved within a step.

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kNearby = 2;            // of the tool radius: how far off a surface is told
 constexpr double kTouch = 0.04;          // of the tool radius: how deep to ask how stiff it is
+constexpr double kFastestTool = 10;      // m/s: faster is an encoder that jumped, which others do not feel
 constexpr double kFarthestAhead = 2e-3;  // m; without a bound, fast tools fare worse
 
 }  // namespace
@@ -23,7 +24,8 @@ void Simulation::couple(std::span<const ToolInput> inputs) {
   if (!coupled_) return;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     tools_[i].differentiate(tissue_.met_by(i));
-    velocities_[i] = inputs[i].pose ? inputs[i].v_W : Vec3::Zero();
+    const bool known = inputs[i].pose && inputs[i].v_W.norm() <= kFastestTool;
+    velocities_[i] = known ? inputs[i].v_W : Vec3::Zero();
   }
   coupling_->update(tissue_, tools_, velocities_);
 }

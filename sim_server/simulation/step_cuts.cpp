@@ -166,7 +166,9 @@ void Simulation::resist_blade(std::size_t tool, double dt, ToolAnswer& answer) {
   const Vec3 motion = p - blade.place.value_or(p);
   blade.place = p;
   const double far = motion.norm();
-  blade.force = -blade.owed / (cut_->resection.blade_size() + far) / (far + kAtRest * dt) * motion;
+  blade.force.setZero();
+  if (far > 0)
+    blade.force = -blade.owed / (cut_->resection.blade_size() + far) / (far + kAtRest * dt) * motion;
   blade.owed += blade.force.dot(motion);
   answer.force += blade.force;
   answer.mean_force += blade.force;

@@ -95,8 +95,27 @@ TEST_CASE("a new key is random, in a file of its owner's alone, and replaces non
   REQUIRE(keys.size() == 2);
   CHECK(keys[0].bytes == first.bytes);
   CHECK(keys[1].bytes == second.bytes);
+  CHECK((::stat(f.file.c_str(), &status) == 0 && (status.st_mode & 0777) == 0600));
+  const std::filesystem::directory_iterator files(f.folder.path());
+  CHECK(std::distance(begin(files), end(files)) == 1);  // nothing stays beside it
   CHECK_THROWS_AS(add_new_key(f.folder.path() / "none.key", true), Error);
   CHECK_THROWS_AS(add_new_key(f.folder.path() / "none" / "a.key", false), Error);
+}
+
+TEST_CASE("a new key goes behind others in any order, and behind a last line that does not end") {
+  KeyFolder f;
+  add_new_key(f.file, false);
+  std::string text;
+  {
+    std::ifstream in(f.file);
+    text.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  const std::string line = text.substr(text.rfind('\n', text.size() - 2) + 1);
+  std::string seventh = line;
+  seventh.replace(seventh.find(" 1 "), 3, " 7 ");
+  { std::ofstream(f.file) << seventh << line.substr(0, line.size() - 1); }
+  CHECK(add_new_key(f.file, true).number == 8);
+  CHECK(read_keys(f.file).size() == 3);
 }
 
 TEST_CASE("only on this machine is no key needed") {

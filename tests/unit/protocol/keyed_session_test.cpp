@@ -252,3 +252,14 @@ TEST_CASE(
     CHECK(n.to_client(n.sample()));
   }
 }
+
+TEST_CASE("who has another key of the server and another client's nonce does not get that client's session") {
+  Network n;
+  REQUIRE(n.shake_hands());
+  REQUIRE(n.to_server(n.state()));
+  Network other(kNewer);  // the same nonce, as it is read from the line
+  other.server = n.server;
+  other.fresh = 50;
+  CHECK_FALSE(other.shake_hands());  // there is one tool, and it is held
+  CHECK(other.server.members().size() == 1);
+}

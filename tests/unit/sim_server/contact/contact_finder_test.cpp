@@ -56,3 +56,29 @@ TEST_CASE("contact finder: inside is where the surface winds around, at rest, be
     CHECK(in > 50);
   }
 }
+
+TEST_CASE("contact finder: an axis that lies on more triangles than there is room for is not without any") {
+  const TetMesh mesh = soft_block(Vec3(0.1, 0.02, 0.03), {20, 4, 6});
+  const Surface surface = boundary_surface(mesh);
+  std::vector<Vec3> rest;
+  for (const int v : surface.vertices) rest.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+  const double radius = 0.001, length = 0.09;
+  ContactFinder finder(rest, surface.triangles, surface.triangles, 2 * radius, length, {},
+                       ContactFinder::kUsualRoom);
+  ContactPatch patch;
+  patch.reserve(finder.max_nodes(), finder.max_triangles());
+  for (const double height : {0.0, 5e-4, 1e-3}) {
+    for (int i = 0; i <= 20; ++i) {  // across two rows of squares, from line to line
+      const Vec3 p(-0.045, height, -0.005 + 5e-4 * i), q = p + Vec3(length, 0, 0);
+      finder.gather(rest, rest, p, q, 1.2 * radius, patch);
+      CAPTURE(height, i);
+      CHECK(patch.triangles.size() >= 30);
+      double nearest = 1;
+      for (const Triangle& t : patch.triangles) {
+        const auto at = [&](int node) { return rest[static_cast<std::size_t>(finder.vertices()[node])]; };
+        for (const int node : t) nearest = std::min(nearest, std::abs(at(node).z() - p.z()));
+      }
+      CHECK(nearest < 0.0051);
+    }
+  }
+}

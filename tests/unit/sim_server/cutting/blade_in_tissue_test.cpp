@@ -248,6 +248,13 @@ TEST_CASE(
   CHECK(std::abs(before) < 0.05);  // 15 mm later
 }
 
+TEST_CASE("a blade in a step of no time feels nothing that is not finite") {
+  Simulation simulation(blade_scene("tensor_mass"), shaken_block({8, 4, 8}));
+  for (int i = 0; i < 30; ++i) slide_at(simulation, -0.022 + 3e-4 * i, true);
+  for (int i = 0; i < 3; ++i) CHECK(slide_at(simulation, -0.022 + 3e-4 * 29, true, 0).force.allFinite());
+  CHECK(slide_at(simulation, -0.022 + 3e-4 * 30, true).force.allFinite());
+}
+
 TEST_CASE("a blade is felt alike at every rate of steps") {
   const auto largest_at = [](double rate) {
     Scene scene = implicit_scene(ElasticLaw::kLinear, Solver::kDirect);

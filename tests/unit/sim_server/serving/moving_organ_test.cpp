@@ -279,3 +279,33 @@ TEST_CASE("a motion that cannot be is refused in one line") {
         ":6: `direction` needs a length above 0");
   CHECK(error(good + "\nperoid = 3", "quasi_static").starts_with(":9: unknown key"));
 }
+
+TEST_CASE(
+    "moving organ: of two tools that pressed and were lifted, one before the other, nothing stays behind") {
+  for (const std::string_view model : models()) {
+    CAPTURE(model);
+    Scene scene = block_scene({kBreath}, model, 0.01);
+    scene.tools.push_back(scene.tools[0]);
+    Simulation two(scene, block()), none(scene, block());
+    std::vector<ToolInput> inputs(2);
+    const auto go_on = [&](int steps) {
+      for (int i = 0; i < steps; ++i) {
+        two.step(inputs, 0.01);
+        none.step(std::vector<ToolInput>(2), 0.01);
+      }
+    };
+    inputs[0].pose = ToolPose(kPressed);
+    inputs[1].pose = ToolPose(kPressed + Vec3(0.012, 0, 0));
+    go_on(40);
+    REQUIRE(two.tool(0).force().contacts > 0);
+    two.lift_tool(1);  // its client has left
+    inputs[1].pose.reset();
+    go_on(10);
+    inputs[0].pose = ToolPose(kPressed + Vec3(0, 0.03, 0));
+    go_on(400);
+    double off = 0;
+    for (std::size_t v = 0; v < two.positions().size(); ++v)
+      off = std::max(off, (two.positions()[v] - none.positions()[v]).norm());
+    CHECK(off < 2e-5);  // where 1.5 mm were pressed
+  }
+}

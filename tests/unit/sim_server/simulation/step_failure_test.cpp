@@ -73,4 +73,19 @@ TEST_CASE("the force of a tissue that answers no more fades, and a lifted tool f
   const AllocationFailure failure(1);
   CHECK(simulation.step(away, kDt).front().force.isZero());
 }
+
+TEST_CASE(
+    "a tool whose client leaves when memory has ended is lifted all the same, and the tissue goes free") {
+  Simulation simulation = pressed_block();
+  {
+    const AllocationFailure failure(1);
+    simulation.lift_tool(0);
+  }
+  const std::vector<ToolInput> away(1);
+  for (int i = 0; i < 60; ++i) CHECK(simulation.step(away, kDt).front().force.isZero());
+  double off = 0;
+  for (std::size_t v = 0; v < simulation.positions().size(); ++v)
+    off = std::max(off, (simulation.positions()[v] - simulation.rest()[v]).norm());
+  CHECK(off < 1e-4);
+}
 #endif

@@ -124,3 +124,16 @@ TEST_CASE(
   }
   CHECK(settled > 10);
 }
+
+TEST_CASE("a tool whose velocity no hand has moves no surface under another") {
+  Held block(2);
+  const std::vector<Vec3> moved{{0, 0.004, 0.001}, {0.002, 0.003, 0}};
+  const auto told = [&](const Vec3& v) {
+    const std::vector<Vec3> velocities{v, Vec3::Zero()};
+    const auto answer = block.at(moved, velocities)[1];
+    return answer.others ? answer.others->v_W.norm() : 0;
+  };
+  told({0, 1, 0});
+  CHECK(told({0, 1, 0}) > 1e-3);
+  CHECK(told({0, 100, 0}) == 0);
+}

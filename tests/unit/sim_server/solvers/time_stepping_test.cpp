@@ -130,6 +130,7 @@ TEST_CASE("time stepping: a step that ends at rest forgets the velocities, a res
   time.begin(0.01);
   CHECK(time.velocity_at(0, kX).norm() < 1e-12);
   CHECK(time.acceleration_at(0, Vec3::Zero()) == Vec3(0, 0, 0));
+  CHECK(time.change_of_force(0, kA).norm() < 1e-12);  // as if it had been there before
 
   time = stepped(true, 0.01, 4, [](double t) -> Vec3 { return kX + t * kV; });
   time.restart(std::vector<Vec3>{kA}, std::vector<Vec3>{kV}, std::vector<Vec3>{kX});
