@@ -32,15 +32,12 @@ Vec3 ForceEstimate::force(const Vec3& p, Time t) noexcept {
   return last_ = blended(f, t);
 }
 
-/// A tool that is free is so at once, and comes into contact again as the law says. What is blended in is at
-/// most `kMostBlended` times the force, so that it leaves with that, and never turns it about: no pull.
+/// What is blended in goes with the force of the law, as that gets less than when it began: a tool that
+/// leaves is free at once, comes into contact again as the law says, and no force pulls.
 Vec3 ForceEstimate::blended(const Vec3& f, Time t) noexcept {
-  constexpr double kMostBlended = 3;
   if (f.isZero(0)) offset_.setZero();
-  Vec3 offset = std::exp(-to_seconds(t - changed_) / blend_) * offset_;
-  const double size = offset.norm(), most = kMostBlended * f.norm();
-  if (size > most) offset *= most / size;
-  const Vec3 sum = f + offset;
+  const double size = f.norm(), share = size < began_ ? size / began_ : 1;
+  const Vec3 sum = f + share * std::exp(-to_seconds(t - changed_) / blend_) * offset_;
   const double along = sum.dot(f);
   return along < 0 ? Vec3(sum - along / f.squaredNorm() * f) : sum;
 }
@@ -48,6 +45,7 @@ Vec3 ForceEstimate::blended(const Vec3& f, Time t) noexcept {
 void ForceEstimate::blend_from(const Vec3& before, const Vec3& after, Time t) noexcept {
   stepped_down_ = law_->stepped_down();
   offset_ = before - after;
+  began_ = after.norm();
   changed_ = t;
 }
 

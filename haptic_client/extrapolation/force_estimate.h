@@ -49,6 +49,7 @@ class ForceEstimate {
   double blend_;                // s
   Vec3 offset_ = Vec3::Zero();  // what the newest sample, or a simpler law that stands in, took away, N
   Time changed_{};              // when it did
+  double began_ = 0;            // the force of the law then, N
   Vec3 last_ = Vec3::Zero();    // force given, N
   bool stepped_down_ = false;
   Sample newest_;

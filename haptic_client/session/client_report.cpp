@@ -208,10 +208,10 @@ void print_scores(const Json& tool) {
              "average", "maximal", "max force", "ns/tick");
   for (const auto& [name, m] : methods.items()) {
     const auto number = [&m = m](const char* key) { return m[key].get<double>(); };
-    fmt::print("          {:46}{:11.3f}{:11.3f}{:11.2f}   {:12.3f}{:12.1f}{:12.1f}   {:7.1f}\n",
+    fmt::print("          {:46}{:11.3f}{:11.3f}{:11.2f}   {:12.3f}{:12.1f}{:12.1f}   {:>7}\n",
                row_name(name, m), number("mean_percent"), number("p99_percent"), number("max_percent"),
                number("paper_mean_percent"), number("paper_max_percent"), number("paper_max_force_percent"),
-               number("ns_per_tick"));
+               m["ns_per_tick"].is_null() ? "-" : fmt::format("{:.1f}", number("ns_per_tick")));
   }
   print_stand_ins(methods);
 }
