@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
@@ -120,7 +121,11 @@ Key add_new_key(const std::filesystem::path& file, bool add) {
          file.string());
   if (descriptor < 0) fail_at_run_time("{}: cannot be written ({})", written, std::strerror(errno));
   write_whole(descriptor, text + "\n", written);
-  if (add) std::filesystem::rename(written, file);
+  if (add && std::rename(written.c_str(), file.c_str()) != 0) {
+    const int why = errno;
+    ::unlink(written.c_str());
+    fail_at_run_time("{}: cannot be replaced ({})", file.string(), std::strerror(why));
+  }
   return key;
 }
 

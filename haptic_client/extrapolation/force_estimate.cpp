@@ -38,8 +38,8 @@ Vec3 ForceEstimate::blended(const Vec3& f, Time t) noexcept {
   if (f.isZero(0)) offset_.setZero();
   const double size = f.norm(), share = size < began_ ? size / began_ : 1;
   const Vec3 sum = f + share * std::exp(-to_seconds(t - changed_) / blend_) * offset_;
-  const double along = sum.dot(f);
-  return along < 0 ? Vec3(sum - along / f.squaredNorm() * f) : sum;
+  const Vec3 push = f.stableNormalized();
+  return sum - std::min(sum.dot(push), 0.0) * push;
 }
 
 void ForceEstimate::blend_from(const Vec3& before, const Vec3& after, Time t) noexcept {

@@ -14,7 +14,7 @@ constexpr int kMostProducts = 1000;
 constexpr double kSettled = 1e-6;      // growth of the Rayleigh quotient
 constexpr double kMostSubSteps = 2e4;  // no step of so many is in time
 
-/// `work(begin, end)` for the vertices of each part of a product, on as many cores.
+/// `work(part, begin, end)` for the vertices of each part of a product, on as many cores.
 template <class Work>
 void for_parts(const ElasticTensors& tensors, const Work& work) {
   parallel_blocks(tensors.parts(), 1, [&](std::size_t p, std::size_t) {

@@ -365,19 +365,6 @@ ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
   return step(inputs_, dt).front();
 }
 
-void Simulation::lift_tool(std::size_t tool) noexcept {
-  answers_[tool] = {};
-  came_from_[tool].reset();
-  lately_[tool].clear();
-  try {
-    if (!tissue_.loads_of(tool).empty()) tissue_.met_by(tool).release();
-  } catch (const std::exception&) {
-    // Memory ended. Its loads are gone all the same: the next step goes on without them, or tells why not.
-  }
-  tissue_.lift(tool);
-  tools_[tool].lift();
-}
-
 std::vector<MemoryPart> Simulation::memory() const {
   std::vector<MemoryPart> parts = tissue_.model->memory();
   parts.push_back({"mesh", mesh_->vertices.size() * sizeof(Vec3) +

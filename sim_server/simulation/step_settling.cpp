@@ -1,4 +1,4 @@
-// How several tools come to rest on one tissue: parts of Simulation.
+// How several tools come to rest on one tissue, and leave it: parts of Simulation.
 #include <algorithm>
 
 #include "sim_server/simulation/simulation.h"
@@ -59,6 +59,19 @@ void Simulation::restore_touching() {
     if (touched || touches(tools_[i])) tools_[i].flag();
   }
   for (std::size_t i = 0; i < tools_.size(); ++i) tissue_.met_by(i).mark_solved();  // with all loads back
+}
+
+void Simulation::lift_tool(std::size_t tool) noexcept {
+  answers_[tool] = {};
+  came_from_[tool].reset();
+  lately_[tool].clear();
+  try {
+    if (!tissue_.loads_of(tool).empty()) tissue_.met_by(tool).release();
+  } catch (const std::exception&) {
+    // Memory ended. Its loads are gone all the same: the next step goes on without them, or tells why not.
+  }
+  tissue_.lift(tool);
+  tools_[tool].lift();
 }
 
 }  // namespace palpate::sim
