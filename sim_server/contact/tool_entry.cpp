@@ -47,11 +47,15 @@ void ToolContact::place_outside(const ToolPose& pose, ToolTissue tissue) {
 
 /// Whether the tissue has closed over a tool that touched it, as after a change of shape beyond what its
 /// compliance foretold. Then the tool stands before the surface again, without a load, and has not arrived.
+/// Where that is farther away than a tool drags tissue, the surface is that of an equilibrium that was not
+/// found: the tool stays, without a load.
 bool ToolContact::recover_from_inside(ToolTissue tissue) {
   const ToolPose there = now_.place;
   if (!finder_.inside(tissue.positions(), there.p_W + now_.tip_offset)) return false;
   place_outside(there, tissue);
-  return now_.place.p_W != there.p_W;
+  const double back = (now_.place.p_W - there.p_W).norm();
+  if (back > farthest_drag_) now_.place = there;
+  return back > 0;
 }
 
 /// Where the tip was when the place `inside` on the axis, at that share of it, stood before `entry`.

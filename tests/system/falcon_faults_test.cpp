@@ -20,7 +20,8 @@ TEST_CASE(
   check_lines(session.said(), {"loading the Falcon's firmware", "pull the grip", "homed: ready"});
 }
 
-TEST_CASE("Falcon faults: an image that is too short or too long is refused, half of one is told of once") {
+TEST_CASE("Falcon faults: an image that is too short or too long is refused, half of one is told of once",
+          "[beside]") {
   Session session({}, {"permission"});  // so that the first client keeps off
   const auto image = [&](std::size_t size) {
     return session.bench.folder.write("other.bin", std::string(size, 'x')).string();

@@ -1,57 +1,20 @@
-// The scenes that come with Palpate and say what they need: each loads, is touched by the motion made for it,
-// in virtual time and live, and a page sees its surface move.
+// The scenes that come with Palpate and say what they need: each is touched live by the motion made for it,
+// and a page sees its surface move.
+#include "tests/support/gallery.h"
+
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <functional>
 
 #include "tests/support/contract.h"
-#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/web_page.h"
 
 using namespace palpate::test;
 
-namespace {
-
 namespace fs = std::filesystem;
-
-/// A scene file with "# Needs: " in its head.
-struct GalleryScene {
-  std::string name, file, needs;
-  std::vector<std::string> clients;  // those that it names
-};
-
-/// What stands in quotes after "clients = [" in a scene file of ours, from its folder.
-std::vector<std::string> clients_in(const std::string& text, const fs::path& folder) {
-  std::vector<std::string> clients;
-  const std::size_t begin = text.find("clients = [");
-  if (begin == std::string::npos) return clients;
-  const std::size_t end = text.find(']', begin);
-  for (std::size_t at = text.find('"', begin); at < end; at = text.find('"', at + 1)) {
-    const std::size_t close = text.find('"', at + 1);
-    clients.push_back((folder / text.substr(at + 1, close - at - 1)).lexically_normal().string());
-    at = close;
-  }
-  return clients;
-}
-
-std::vector<GalleryScene> gallery() {
-  std::vector<GalleryScene> scenes;
-  const fs::path folder = fs::path(source_dir()) / "configs" / "scenes";
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string text = bytes_of(entry.path());
-    const std::size_t needs = text.find("# Needs: ");
-    if (needs == std::string::npos) continue;
-    scenes.push_back({entry.path().stem().string(), entry.path().string(),
-                      text.substr(needs + 2, text.find('\n', needs) - needs - 2), clients_in(text, folder)});
-  }
-  std::ranges::sort(scenes, {}, &GalleryScene::name);
-  return scenes;
-}
-
-}  // namespace
 
 TEST_CASE("gallery: the scenes that a newcomer is told of are there, with what each needs") {
   const auto said = output_of("sim_server", {"scenes"}, 0);
@@ -71,22 +34,6 @@ TEST_CASE("gallery: the scenes that a newcomer is told of are there, with what e
     }
   }
 }
-
-#ifdef PALPATE_WITH_CAPTURE
-CONTRACT("a scene of the gallery is touched in virtual time", GalleryScene, scene, gallery()) {
-  const TemporaryFolder folder;
-  const std::string report = (folder.path() / "report.json").string();
-  std::vector<std::string> arguments{"record", scene.file, "--rate", "30", "--seconds", "8", "--plain"};
-  for (const std::string& client : scene.clients) arguments.insert(arguments.end(), {"--trajectory", client});
-  arguments.insert(arguments.end(), {"--report", report, "--out", (folder.path() / "F.pcap").string()});
-  output_of("sim_server", arguments, 0, 100);
-  const auto figures = read_json(report);
-  CHECK(figures["contact_steps"].get<int>() > 10);
-  CHECK(figures["flagged"] == 0);
-  CHECK(figures["max_newton"].get<double>() > 0.05);
-  CHECK(figures["max_newton"].get<double>() < 20);
-}
-#endif
 
 #ifdef PALPATE_WITH_VIEWER
 CONTRACT("a scene of the gallery is felt, and seen by a page", GalleryScene, scene, gallery()) {

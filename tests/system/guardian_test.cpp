@@ -10,7 +10,7 @@ using Json = nlohmann::json;
 namespace {
 
 /// No torque on any motor within so many seconds.
-bool falls_silent(const Emulator& falcons, const std::string& port, double seconds) {
+bool goes_silent(const Emulator& falcons, const std::string& port, double seconds) {
   return falcons.wait_for(
       port,
       [](const Json& s) {
@@ -39,7 +39,7 @@ struct Leaning {
     if (!client->wait_for("Falcon homed: ready")) throw std::runtime_error(client->output());
     if (!leans(falcon, "2-1")) throw std::runtime_error("no force: " + falcon.state("2-1").dump());
   }
-  bool falls_silent() const { return ::falls_silent(falcon, "2-1", 2); }
+  bool falls_silent() const { return goes_silent(falcon, "2-1", 2); }
   /// By the client, or by its guardian when it is dead.
   bool said(const std::string& text) const {
     for (int i = 0; i < 400 && client->output().find(text) == std::string::npos; ++i)
@@ -89,7 +89,7 @@ TEST_CASE("guardian: with a port, another Falcon is left alone") {
 TEST_CASE("guardian: a client that was stopped is ended, and its device switched off") {
   Leaning hand("falcon:2-1");
   hand.client->signal(SIGSTOP);
-  CHECK(falls_silent(hand.falcon, "2-1", 4));
+  CHECK(goes_silent(hand.falcon, "2-1", 4));
   CHECK(hand.said("the client stands still"));
   CHECK(hand.client->wait() == -SIGKILL);
 }
@@ -106,7 +106,7 @@ TEST_CASE("guardian: a device that is gone does not keep the other waiting") {
   falcons.command("unplug 2-1");
   REQUIRE(client->wait_for("unplugged"));
   client->signal(SIGKILL);
-  CHECK(falls_silent(falcons, "3-2", 0.8));
+  CHECK(goes_silent(falcons, "3-2", 0.8));
 }
 
 TEST_CASE("guardian: without a port, a Falcon that another program holds keeps nobody waiting") {
@@ -120,12 +120,12 @@ TEST_CASE("guardian: without a port, a Falcon that another program holds keeps n
   REQUIRE(client->wait_for("Falcon homed: ready"));
   REQUIRE(leans(falcons, "3-2"));
   client->signal(SIGKILL);
-  CHECK(falls_silent(falcons, "3-2", 0.8));
+  CHECK(goes_silent(falcons, "3-2", 0.8));
 }
 
 TEST_CASE("Ctrl-C: the force is off before anything is reported") {
   Leaning hand("falcon:2-1");
   hand.client->signal(SIGINT);
-  CHECK(falls_silent(hand.falcon, "2-1", 0.5));
+  CHECK(goes_silent(hand.falcon, "2-1", 0.5));
   CHECK(hand.client->wait() == 0);
 }

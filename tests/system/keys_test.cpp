@@ -51,7 +51,8 @@ TEST_CASE("keys: with the same key a session is as ever, and every datagram of t
 }
 #endif
 
-TEST_CASE("keys: another key, none, or one where the server has none: exit 1, and what to look at") {
+TEST_CASE("keys: another key, none, or one where the server has none: exit 1, and what to look at",
+          "[beside]") {
   const KeyBench bench, other;
   Server keyed(bench.with_key());
   for (const auto& more : {std::vector<std::string>{"--key", other.key}, std::vector<std::string>{}})

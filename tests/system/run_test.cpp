@@ -185,7 +185,7 @@ TEST_CASE("Ctrl-C while waiting for a server ends the client, exit 0, with its r
   CHECK(client.output().find("largest force") == std::string::npos);
 }
 
-TEST_CASE("no server: exit 1 after 5 s with what to look at, port in use: exit 1") {
+TEST_CASE("no server: exit 1 after 5 s with what to look at, port in use: exit 1", "[beside]") {
   CHECK(output_of("haptic_client", client_arguments("127.0.0.1:9", {}), 1)
             .find("no answer from a server at 127.0.0.1:9") != std::string::npos);
   // The limited broadcast: the system refuses to send there.
