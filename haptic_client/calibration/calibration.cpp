@@ -11,11 +11,11 @@ namespace {
 using Stage = CalibrationStage;
 using Trouble = CalibrationTrouble;
 
-constexpr double kLongestLoss = 1;                // s
-constexpr double kForceFilter = 0.3;              // s, while the weight is awaited
-constexpr double kLeastShare = 0.5;               // of m g, as assumed: a weight hangs there
-constexpr double kLetDown = 2;                    // s
-constexpr double kHighestTorqueConstant = 10000;  // DAC units per N m, that is plausible
+constexpr double kLongestLoss = 1;    // s
+constexpr double kForceFilter = 0.3;  // s, while the weight is awaited
+constexpr double kLeastShare = 0.5;   // of m g, as assumed: a weight hangs there
+constexpr double kLetDown = 2;        // s
+constexpr double kToSpare = 1.25;     // of what is plausible, for what is measured
 
 /// s, until a stage is given up.
 double patience_in(Stage stage) {
@@ -102,7 +102,8 @@ void Calibration::step(const Vec3& p_D, const Vec3& f_D, double dt) noexcept {
       both_.add(p_D, f_D, dt);
       if (!both_.done()) return;
       force_ = both_.force();
-      return weight_is_there() ? end(Trouble::kNone) : enter(Stage::kHang);
+      if (!weight_is_there()) return enter(Stage::kHang);
+      return end(is_plausible() ? Trouble::kNone : Trouble::kImplausible);
     default:
       return;
   }
@@ -143,6 +144,11 @@ CalibrationProgress Calibration::progress() const noexcept {
 
 double Calibration::torque_constant() const noexcept {
   return settings_.assumed * difference().norm() / (settings_.mass * kGravity);
+}
+
+bool Calibration::is_plausible() const noexcept {
+  return torque_constant() * kToSpare >= kLowestTorqueConstant &&
+         torque_constant() <= kToSpare * kHighestTorqueConstant;
 }
 
 double Calibration::uncertainty() const noexcept {

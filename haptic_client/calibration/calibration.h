@@ -22,14 +22,15 @@ enum class CalibrationStage : std::uint8_t {
 /// Why there is no result.
 enum class CalibrationTrouble : std::uint8_t {
   kNone,
-  kNotHomed,   ///< no position within two minutes
-  kNotMoved,   ///< the grip did not come to the middle
-  kHeld,       ///< a hand did not let it go
-  kUnsteady,   ///< the readings did not agree
-  kNoWeight,   ///< the force did not change as it must
-  kTooHeavy,   ///< all the force there is does not lift the weight
-  kLost,       ///< the device gave no position for more than a second
-  kOscillates  ///< the limiter switched the force off
+  kNotHomed,     ///< no position within two minutes
+  kNotMoved,     ///< the grip did not come to the middle
+  kHeld,         ///< a hand did not let it go
+  kUnsteady,     ///< the readings did not agree
+  kNoWeight,     ///< the force did not change as it must
+  kImplausible,  ///< no device has the constant that would follow: another weight hangs there
+  kTooHeavy,     ///< all the force there is does not lift the weight
+  kLost,         ///< the device gave no position for more than a second
+  kOscillates    ///< the limiter switched the force off
 };
 
 /// What a calibration tells while it runs.
@@ -55,6 +56,9 @@ class Calibration {
     Vec3 centre_D{0, 0, 0.11};      ///< m: where the grip is held
   };
   static constexpr double kGravity = 9.80665;  ///< m/s2
+
+  /// DAC units per N m that are plausible.
+  static constexpr double kLowestTorqueConstant = 2300, kHighestTorqueConstant = 10000;
 
   explicit Calibration(const Settings& settings);
 
@@ -85,6 +89,7 @@ class Calibration {
   void step(const Vec3& p_D, const Vec3& f_D, double dt) noexcept;
   void give_up_in_time() noexcept;
   bool weight_is_there() const noexcept;
+  bool is_plausible() const noexcept;
   Vec3 goal() const noexcept;
 
   Settings settings_;

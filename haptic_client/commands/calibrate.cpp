@@ -26,22 +26,22 @@ using Stage = CalibrationStage;
 using Trouble = CalibrationTrouble;
 
 constexpr double kLeastMass = 0.05, kMostMass = 0.5;  // kg
-constexpr double kLowestTorqueConstant = 2300;        // DAC units per N m, that is plausible
 constexpr double kMostTilt = 10;                      // degrees
 constexpr int kPatience = 30;                         // looks of 100 ms
 constexpr int kLooks = 10, kAbsences = 5;             // looks between two at what is plugged in; of those
 
 /// Haptic thread: ticks until the calibration has ended or is asked to stop; writes zero force last.
 void run_loop(const std::stop_token& stop, Device& device, Calibration& calibration, Time period,
-              LatestValue<CalibrationProgress>& progress, std::atomic<std::uint64_t>* heartbeat) noexcept {
+              LatestValue<CalibrationProgress>& progress, Heartbeat* heartbeat) noexcept {
   for (Time deadline = now(); !stop.stop_requested() && !calibration.ended();) {
     sleep_until(deadline);
     device.write(calibration.tick(device.read(now())));
     progress.write(calibration.progress());
-    if (heartbeat != nullptr) heartbeat->fetch_add(1, std::memory_order_relaxed);
+    if (heartbeat != nullptr) heartbeat->beat();
     deadline = std::max(deadline + period, now());  // what is late is given up
   }
   device.stop();
+  if (heartbeat != nullptr) heartbeat->end();
 }
 
 std::string what_to_do(const CalibrationProgress& progress, double mass) {
@@ -134,6 +134,12 @@ bool guide(LatestValue<CalibrationProgress>& newest, const Device& device, const
           "must "
           "by more than {:.2f} N; hang it on and let go, or give the right --mass",
           mass, calibration.difference().norm(), mass * Calibration::kGravity / 2);
+    case Trouble::kImplausible:
+      fail_at_run_time(
+          "a weight of {:g} kg would mean a torque constant of {:.0f}, and Falcons have some {:g} to {:g}; "
+          "weigh what hangs on the grip, and give it as --mass",
+          mass, calibration.torque_constant(), Calibration::kLowestTorqueConstant,
+          Calibration::kHighestTorqueConstant);
     case Trouble::kTooHeavy:
       if (largest < kLeastMass || largest >= mass)
         fail_at_run_time("all of the {:g} N did not lift the weight; nothing may hold it or hang beside it",
@@ -172,7 +178,7 @@ int calibrate(ClientConfig config, double mass) {
          config.device.name);
   require_within(mass, kLeastMass, kMostMass, "--mass", "kg");
   FalconSettings& falcon = config.device.falcon;
-  falcon.torque_constant = std::min(falcon.torque_constant, kLowestTorqueConstant);
+  falcon.torque_constant = std::min(falcon.torque_constant, Calibration::kLowestTorqueConstant);
   Guardian guardian({&config, 1});  // before any thread; goes after the device
   const DeviceRow& row = find_row(devices(), config.device.name, "device", config.device.where);
   const std::unique_ptr<Device> device = row.make(config.device);
@@ -183,7 +189,7 @@ int calibrate(ClientConfig config, double mass) {
   {
     std::jthread loop([&](const std::stop_token& stop) {
       run_loop(stop, *device, calibration, row.limits(config.device).min_period, progress,
-               guardian.heartbeat());
+               guardian.heartbeat(0));
     });
     if (const auto refused = make_realtime(loop.native_handle(), "palpate-haptic", kHapticPriority);
         !refused.empty())

@@ -43,13 +43,13 @@ double percent(double part, double whole) {
 }
 
 /// The law is the one that was at work, which need not be the one asked for.
-TestedLink tested_link(const Json& tool) {
+TestedLink tested_link(const Json& tool, double seconds) {
   const Json& link = tool["link"];
   const double came = tool["force"]["samples"].get<double>(), lost = link["values_lost"].get<double>();
   return {.law = tool["felt"]["law"].get<std::string>(),
           .age_p99_ms = link["age_ms"]["p99"].get<double>(),
           .stiffest_n_m = link["stiffest_n_m"].get<double>(),
-          .samples_hz = tool["motion"]["sample_rate_hz"].get<double>(),
+          .samples_hz = came / seconds,  // of all the time, so that a server that went silent shows
           .rate_hz = tool["link"]["rate_hz"].get<double>(),
           .loss_percent = percent(lost, lost + came),
           .connected = came > 0};
@@ -109,7 +109,8 @@ int test_link(const ClientConfig& asked, const CommtestOptions& options) {
   if (options.json) check_writable(*options.json, Contents::kReport);
   HeldTool tool(config, {}, "", options.seconds);
   LinkProbe probe(server_of(config), key_of(config));
-  if (!tool.connect(from_seconds(options.wait))) return 0;
+  if (!tool.connect(from_seconds(options.wait)))
+    fail_at_run_time("commtest: interrupted before a server at {} had answered", config.server);
   fmt::print("testing the link for {:g} s, with a simulated hand, which holds a tool meanwhile\n",
              options.seconds);
   std::fflush(stdout);
@@ -119,7 +120,7 @@ int test_link(const ClientConfig& asked, const CommtestOptions& options) {
   tool.stop();
   probe.stop();
   const Json of_tool = tool.report();
-  const Verdict verdict = judge(tested_link(of_tool));
+  const Verdict verdict = judge(tested_link(of_tool, seconds));
   const Json report = {{"server", config.server},
                        {"seconds", seconds},
                        {"round_trip", probe_report(probe.figures())},

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "common/ages.h"
+#include "common/text.h"
 #include "common/time.h"
+#include "haptic_client/extrapolation/extrapolators.h"
 
 namespace palpate::client {
 namespace {
@@ -47,7 +49,9 @@ void judge_stiffness(const TestedLink& link, Verdict& verdict) {
   const std::string law =
       fmt::format("with samples {:.1f} ms old (p99) \"{}\" is stable up to {:.0f} N/m on the study's walls",
                   link.age_p99_ms, link.law, *limit) +
-      (link.law == "local_contact" ? " (no surface is told of these: \"two_tangents\" stood in for it)" : "");
+      (find_row(extrapolators(), link.law, "law", "commtest").make()->wants().surface
+           ? " (no surface is told of these, so that a law without one stood in)"
+           : "");
   if (link.stiffest_n_m == 0) {
     worsen(verdict, Grade::kWarn, law + "; nothing was touched, so how stiff the scene is is not known");
   } else {

@@ -154,7 +154,8 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   const bool connected =
       std::all_of(tools.begin(), tools.end(), [](HeldTool& tool) { return tool.connect(); });
   if (connected) {
-    for (HeldTool& tool : tools) tool.start(guardian.heartbeat());
+    std::size_t i = 0;
+    for (HeldTool& tool : tools) tool.start(guardian.heartbeat(i++));
     // After the threads, whose stacks a small limit would not hold.
     if (const std::string refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
     watch(tools, options.seconds);
@@ -164,13 +165,14 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   for (HeldTool& tool : tools) tool.stop();
   Json report = {{"server", configs.front().server}, {"tools", Json::array()}};
   for (const HeldTool& tool : tools) report["tools"].push_back(tool.report());
+  // Files first: what is printed may go to a pipe that has been closed.
+  if (options.report) write_json(*options.report, report);
+  for (const HeldTool& tool : tools) tool.write_files();
   if (connected)
     print_report(report);
   else
     fmt::print("haptic_client: ended before a server at {} had answered; nothing was felt\n",
                configs.front().server);
-  for (const HeldTool& tool : tools) tool.write_files();
-  if (options.report) write_json(*options.report, report);
   for (std::size_t i = 0; i < configs.size(); ++i) {
     const DeviceSettings& device = configs[i].device;
     if (never_there(configs[i], report["tools"][i])) fail_at_run_time("{}", no_device_text(device));

@@ -68,6 +68,8 @@ std::optional<std::size_t> CaptureSorter::sort_state(const ToolState& state, con
     return {};
   }
   if (!link->up.accept(header.sequence)) return {};
+  // Before the first tick, of a tool that waits for others to be let in: it says nothing of a place.
+  if (state.tick == 1 && (state.flags & ToolState::kDeviceLost) != 0) return {};
   ++run->ticks;
   const std::size_t index = run - runs_.data();
   const Time t{state.t_ns};

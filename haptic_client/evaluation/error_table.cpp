@@ -96,7 +96,10 @@ ErrorTable::Paper ErrorTable::paper(double floor) const noexcept {
 
 ErrorMetrics ErrorTable::metrics() const noexcept {
   ErrorMetrics m;
-  if (contact_ == 0 || peak_ == 0) return m;
+  if (contact_ == 0 || peak_ == 0) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return {kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
+  }
   m.mean_percent = 100 * (error_sum_ / pushing_) / std::sqrt(reference_squared_ / contact_);
   m.p99_percent = 100 * error_nN_.quantile(0.99) * 1e-9 / peak_;
   m.max_percent = 100 * error_max_ / peak_;

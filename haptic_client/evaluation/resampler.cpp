@@ -37,7 +37,10 @@ bool Resampler::next(CapturedTick& out) {
   const double share =
       after_ ? static_cast<double>(t.count() - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns) : 0;
   out.state = a;
-  out.state.flags = std::exchange(flags_, std::uint16_t{0});
+  // What lasts until the next tick, and what happened once.
+  constexpr std::uint16_t kLasting = protocol::ToolState::kDeviceLost | protocol::ToolState::kClutched;
+  out.state.flags =
+      static_cast<std::uint16_t>(std::exchange(flags_, std::uint16_t{0}) | (a.flags & kLasting));
   out.state.tick = ++k_;
   out.state.t_ns = t.count();
   out.state.p_W = a.p_W + share * (b.p_W - a.p_W);

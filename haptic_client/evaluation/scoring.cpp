@@ -14,7 +14,7 @@ constexpr double kLongestWait = 3 * to_seconds(kOutage);  // s
 }  // namespace
 
 ErrorSums& ErrorSums::operator+=(const ErrorSums& other) noexcept {
-  ticks += other.ticks;
+  contact += other.contact;
   reference_squared += other.reference_squared;
   for (std::size_t i = 0; i < error.size(); ++i) error[i] += other.error[i];
   return *this;
@@ -132,7 +132,7 @@ void Scoring::score(const Pending& tick, const Vec3& right, ErrorSums& sums) noe
   const Reference reference(right);
   newly_scored_.push_back({tick.number, right});
   ++scored_;
-  ++sums.ticks;
+  sums.contact += reference.norm > 0 ? 1 : 0;
   sums.reference_squared += reference.norm * reference.norm;
   exchanged_ += std::abs(right.dot(tick.moved));
   for (std::size_t i = 0; i < laws_.size(); ++i) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,8 @@ constexpr std::size_t kMaxLaws = 8;  ///< scored side by side
 
 /// Errors of all scored laws in one stretch of time. Adds up, for `Timeline`.
 struct ErrorSums {
-  double ticks = 0, reference_squared = 0;  ///< N^2, sum
-  std::array<double, kMaxLaws> error{};     ///< N, sum of |e| per law
+  double contact = 0, reference_squared = 0;  ///< ticks in which the reference pushes; N^2, sum
+  std::array<double, kMaxLaws> error{};       ///< N, sum of |e| per law
   ErrorSums& operator+=(const ErrorSums& other) noexcept;
 };
 
@@ -54,9 +55,10 @@ class Scoring {
   /// The own error of that force; nothing unless `judge_between_samples`.
   ErrorMetrics between_metrics() const noexcept { return own_ ? own_->metrics() : ErrorMetrics{}; }
   /// Work that the law did on the tool beyond that of the reference, in percent of what the reference
-  /// exchanged with it both ways; on a closed path in an elastic tissue that energy comes from nowhere.
+  /// exchanged with it both ways; on a closed path in an elastic tissue that energy comes from nowhere. NaN:
+  /// there was none.
   double energy_percent(std::size_t law) const noexcept {
-    return exchanged_ > 0 ? 100 * excess_[law] / (exchanged_ / 2) : 0;
+    return exchanged_ > 0 ? 100 * excess_[law] / (exchanged_ / 2) : std::numeric_limits<double>::quiet_NaN();
   }
   /// Which simpler laws stood in for it, in how many of `ticks()`.
   const StandIns& stand_ins(std::size_t law) const noexcept { return stand_ins_[law]; }

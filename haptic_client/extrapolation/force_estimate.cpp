@@ -10,8 +10,9 @@ bool ForceEstimate::take(const Sample& sample, const Vec3& p, Time now) noexcept
   const bool in_order = sample.t >= Time::zero() && sample.t <= now && (first || sample.t > newest_.t);
   if (!in_order || !usable(sample)) return false;
   const Vec3 before = blend_ > 0 ? force(p, now) : Vec3(Vec3::Zero());
+  const bool another = !first && sample.number <= newest_.number;  // a server that begins anew counts anew
   period_ = first ? Time::zero() : sample.t - newest_.t;
-  if (period_ > kOutage) {
+  if (period_ > kOutage || another) {
     law_->restart();  // no line leads from before it to here
     period_ = Time::zero();
   } else if (!first && sample.cuts != newest_.cuts) {
@@ -22,6 +23,7 @@ bool ForceEstimate::take(const Sample& sample, const Vec3& p, Time now) noexcept
   newest_ = sample;
   law_->update(sample);
   if (blend_ > 0) blend_from(before, law_force(p, now), now);
+  if (another) offset_.setZero();
   return true;
 }
 

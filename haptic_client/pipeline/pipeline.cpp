@@ -212,10 +212,12 @@ void Pipeline::follow_path(const ToolState& tool, double dt) noexcept {
 
 bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexcept {
   const Vec3 before = estimate_.newest().p;
+  const bool another = arrived.number <= estimate_.newest().number;
   if (!estimate_.take(sample_of(arrived, model_.get()), p_W, now)) {
     ++stats_.overtaken;
     return false;
   }
+  if (another) watchdog_.restart();  // perhaps another organ: force from none again
   const Sample& newest = estimate_.newest();
   passivity_.sampled(newest.t, workspace_.motion_to_device(newest.p), workspace_.to_device(newest.f),
                      limiter_.max_force());

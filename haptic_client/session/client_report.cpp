@@ -1,6 +1,7 @@
 #include "haptic_client/session/client_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -76,9 +77,10 @@ Json timeline_report(const SessionTimeline& timeline, const Scoring& scoring) {
   for (std::size_t i = 0; i < timeline.size(); ++i) {
     const SessionCell& cell = timeline[i];
     Json errors = Json::object();
-    const double rms = std::sqrt(per(cell.errors.reference_squared, cell.errors.ticks));
+    const double rms = std::sqrt(per(cell.errors.reference_squared, cell.errors.contact));
     for (std::size_t law = 0; law < scoring.names().size(); ++law) {
-      errors[scoring.names()[law]] = 100 * per(per(cell.errors.error[law], cell.errors.ticks), rms);
+      errors[scoring.names()[law]] =
+          rms > 0 ? Json(100 * per(per(cell.errors.error[law], cell.errors.contact), rms)) : Json();
     }
     cells.push_back({{"t_s", static_cast<double>(i) * to_seconds(timeline.width())},
                      {"ticks", cell.ticks},
@@ -88,6 +90,7 @@ Json timeline_report(const SessionTimeline& timeline, const Scoring& scoring) {
                      {"samples", cell.samples},
                      {"step_ms_mean", 1e-6 * per(cell.step_ns_sum, cell.samples)},
                      {"step_ms_max", 1e-6 * cell.step_ns_max},
+                     {"contact_ticks", cell.errors.contact},
                      {"error_percent", errors}});
   }
   return {{"cell_s", to_seconds(timeline.width())}, {"cells", cells}};
@@ -123,8 +126,9 @@ void print_drift(const Json& tool) {
     add(fmt::format("step {} ms", drift("samples", column("step_ms_mean"))));
   const auto method = tool["method"].get<std::string>();
   if (tool["methods"].contains(method)) {
-    add(fmt::format("error {} %", drift("samples", [&](const Json& cell) {
-                      return cell["error_percent"][method].get<double>();
+    add(fmt::format("error {} %", drift("contact_ticks", [&](const Json& cell) {
+                      const Json& error = cell["error_percent"][method];
+                      return error.is_null() ? 0 : error.get<double>();
                     })));
   }
   if (!text.empty()) fmt::print("  drift   first to last quarter: {}\n", text);
@@ -202,6 +206,10 @@ void print_scores(const Json& tool) {
       "second\n",
       tool["scored_ticks"].get<long>(), reference_text(tool["reference"]),
       motion["sample_rate_hz"].get<double>());
+  if (std::isnan(methods.begin().value()["mean_percent"].get<double>())) {
+    fmt::print("          nothing was touched, so that no law can be wrong\n");
+    return print_stand_ins(methods);
+  }
   fmt::print("          {:46}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
              "paper: % of the force on the line", "");
   fmt::print("          {:46}{:>11}{:>11}{:>11}   {:>12}{:>12}{:>12}   {:>7}\n", "law", "mean", "p99", "max",

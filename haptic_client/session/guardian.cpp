@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <csignal>
 #include <fcntl.h>
+#include <memory>
 #include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <vector>
 
 #include "common/error.h"
 #include "common/log.h"
@@ -20,19 +22,31 @@ constexpr int kMostStill = 15;  // looks without a heartbeat, once there was one
 
 enum class Ending { kGoodbye, kDied, kStopped };
 
-/// Waits until the client says goodbye, dies, or stands still.
-Ending wait_for_end(int pipe, const std::atomic<std::uint64_t>& beats) {
-  std::uint64_t seen = 0;
-  for (int still = 0; still < kMostStill;) {
+/// One loop, as it was seen last.
+struct SeenLoop {
+  std::uint64_t ticks = 0;
+  int still = 0;  // looks
+
+  bool stands_still(const Heartbeat& beats) {
+    const std::uint64_t now = beats.ticks;
+    still = now == ticks && now > 0 && now != Heartbeat::kEnded ? still + 1 : 0;
+    ticks = now;
+    return still >= kMostStill;
+  }
+};
+
+/// Waits until the client says goodbye, dies, or one of its loops stands still.
+Ending wait_for_end(int pipe, std::span<const Heartbeat> beats) {
+  std::vector<SeenLoop> loops(beats.size());
+  for (;;) {
     pollfd end{pipe, POLLIN, 0};
     const int ready = poll(&end, 1, kLook);
     char byte;
     if (ready > 0) return read(pipe, &byte, 1) > 0 ? Ending::kGoodbye : Ending::kDied;
-    const std::uint64_t now = beats;
-    still = now == seen && now > 0 ? still + 1 : 0;
-    seen = now;
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+      if (loops[i].stands_still(beats[i])) return Ending::kStopped;
+    }
   }
-  return Ending::kStopped;
 }
 
 void make_safe(const ClientConfig& config) {
@@ -48,8 +62,7 @@ void make_safe(const ClientConfig& config) {
 }
 
 /// The whole life of the guardian.
-void guard(int pipe, pid_t client, const std::atomic<std::uint64_t>& beats,
-           std::span<const ClientConfig> configs) {
+void guard(int pipe, pid_t client, std::span<const Heartbeat> beats, std::span<const ClientConfig> configs) {
   setsid();  // a signal to the client's group is not for us
   prctl(PR_SET_NAME, "palpate-guard");
   const Ending ending = wait_for_end(pipe, beats);
@@ -76,9 +89,11 @@ Guardian::Guardian(std::span<const ClientConfig> configs) {
     return row_of(config.device).make_safe != nullptr;
   });
   if (!needed) return;
-  void* const page = mmap(nullptr, sizeof *beats_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  void* const page = mmap(nullptr, configs.size() * sizeof *beats_, PROT_READ | PROT_WRITE,
+                          MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (page == MAP_FAILED) fail_at_run_time("no memory for the guardian process");
-  beats_ = new (page) std::atomic<std::uint64_t>(0);
+  beats_ = static_cast<Heartbeat*>(page);
+  std::uninitialized_default_construct_n(beats_, configs.size());
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail_at_run_time("no pipe for the guardian process; too many open files?");
   const pid_t client = getpid();
@@ -86,7 +101,7 @@ Guardian::Guardian(std::span<const ClientConfig> configs) {
   if (child_ < 0) fail_at_run_time("no guardian process could be started; too many processes?");
   if (child_ == 0) {
     close(ends[1]);
-    guard(ends[0], client, *beats_, configs);
+    guard(ends[0], client, {beats_, configs.size()}, configs);
     _exit(0);
   }
   close(ends[0]);

@@ -1,10 +1,9 @@
 #pragma once
-#include <atomic>
-#include <cstdint>
 #include <span>
 #include <sys/types.h>
 
 #include "haptic_client/session/client_config.h"
+#include "haptic_client/session/heartbeat.h"
 
 namespace palpate::client {
 
@@ -12,10 +11,10 @@ namespace palpate::client {
 /// included, it takes the devices over, sends them zero force and leaves. (libusb cannot be called from a
 /// signal handler, and there is none for `kill -9`.) The kernel gives a dead process's devices back within
 /// milliseconds. It notices the death by the end of a pipe whose other end only this process holds; a process
-/// that was stopped (Ctrl-Z, a debugger) or hangs, by 1.5 s without a heartbeat, and then kills it. It does
-/// not react to Ctrl-C, nor to signals to the group of this process. What it cannot help: a frozen machine,
-/// the loss of power, a pulled cable. While it guards, this process leaves no core dump, which would hold the
-/// device for as long as it is written.
+/// that was stopped (Ctrl-Z, a debugger) or hangs, by 1.5 s without a heartbeat of one of its loops, and then
+/// kills it. It does not react to Ctrl-C, nor to signals to the group of this process. What it cannot help: a
+/// frozen machine, the loss of power, a pulled cable. While it guards, this process leaves no core dump,
+/// which would hold the device for as long as it is written.
 class Guardian {
  public:
   /// Forks, if one of these devices has motors that must not be left alone. Call it before any thread is
@@ -24,15 +23,15 @@ class Guardian {
   ~Guardian() { dismiss(); }
   /// All is well: the devices have had their zero. The guardian goes without touching them.
   void dismiss();
-  /// For the haptic loops: each adds to it at every tick. Null: nothing is guarded.
-  std::atomic<std::uint64_t>* heartbeat() const { return beats_; }
+  /// For the haptic loop of the device `i` of `configs`. Null: nothing is guarded.
+  Heartbeat* heartbeat(std::size_t i) const { return beats_ == nullptr ? nullptr : beats_ + i; }
   Guardian(const Guardian&) = delete;
   Guardian& operator=(const Guardian&) = delete;
 
  private:
   int pipe_ = -1;  // none: nothing to guard
   pid_t child_ = -1;
-  std::atomic<std::uint64_t>* beats_ = nullptr;  // shared with the guardian
+  Heartbeat* beats_ = nullptr;  // of each device, shared with the guardian
 };
 
 }  // namespace palpate::client

@@ -35,6 +35,7 @@ void HapticLoop::run(const std::stop_token& stop) noexcept {
     deadline += period_;
   }
   device_.stop();
+  if (heartbeat != nullptr) heartbeat->end();
 }
 
 TickResult HapticLoop::tick() noexcept {
@@ -66,7 +67,7 @@ void HapticLoop::tell(const TickResult& result) noexcept {
   missed.store(stats_.missed, std::memory_order_relaxed);
   newest_newton.store(result.f_D.norm(), std::memory_order_relaxed);
   newest_age_ns.store(pipeline_.age_ns(), std::memory_order_relaxed);
-  if (heartbeat != nullptr) heartbeat->fetch_add(1, std::memory_order_relaxed);
+  if (heartbeat != nullptr) heartbeat->beat();
   law_newton.store(pipeline_.law_newton(), std::memory_order_relaxed);
   gain.store(pipeline_.passivity().gain(), std::memory_order_relaxed);
   paused.store(pipeline_.paused(), std::memory_order_relaxed);

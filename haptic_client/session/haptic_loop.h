@@ -7,6 +7,7 @@
 #include "common/latest_value.h"
 #include "common/spsc_ring.h"
 #include "haptic_client/evaluation/observation.h"
+#include "haptic_client/session/heartbeat.h"
 #include "haptic_client/session/telemetry_maker.h"
 
 namespace palpate::client {
@@ -55,9 +56,9 @@ class HapticLoop {
   /// (N) and the gain of passivity.
   std::atomic<bool> weak{false};
   std::atomic<double> law_newton{0}, gain{1};
-  std::atomic<bool> paused{false};                  ///< the simulation is
-  std::atomic<bool> rearm{false};                   ///< set it to clear a latched fault
-  std::atomic<std::uint64_t>* heartbeat = nullptr;  ///< gets one more at every tick; set it before `run`
+  std::atomic<bool> paused{false};  ///< the simulation is
+  std::atomic<bool> rearm{false};   ///< set it to clear a latched fault
+  Heartbeat* heartbeat = nullptr;   ///< beats at every tick; set it before `run`
 
  private:
   TickResult tick() noexcept;

@@ -83,7 +83,7 @@ bool HeldTool::connect(Time patience) {
   return true;
 }
 
-void HeldTool::start(std::atomic<std::uint64_t>* heartbeat) {
+void HeldTool::start(Heartbeat* heartbeat) {
   loop_.heartbeat = heartbeat;
   haptic_thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
   if (const auto refused = make_realtime(haptic_thread_.native_handle(), "palpate-haptic", kHapticPriority);
@@ -158,9 +158,10 @@ void HeldTool::look() {
 }
 
 std::string HeldTool::progress() const {
-  const std::int64_t age = std::max<std::int64_t>(loop_.newest_age_ns, 0);
-  return fmt::format("|F| {:5.2f} N  age {:5.1f} ms  ticks {} ({} missed)", loop_.newest_newton.load(),
-                     static_cast<double>(age) / 1e6, loop_.ticks.load(), loop_.missed.load());
+  const std::int64_t age = loop_.newest_age_ns;
+  return fmt::format("|F| {:5.2f} N  age {:>5} ms  ticks {} ({} missed)", loop_.newest_newton.load(),
+                     age < 0 ? "-" : fmt::format("{:.1f}", static_cast<double>(age) / 1e6),
+                     loop_.ticks.load(), loop_.missed.load());
 }
 
 Json HeldTool::report() const {

@@ -35,7 +35,7 @@ class HeldTool {
   /// Our own address on the way to the server.
   protocol::Endpoint local() const { return socket_.local_towards(server_); }
   /// The haptic loop runs from here on, and beats for the guardian (null: there is none).
-  void start(std::atomic<std::uint64_t>* heartbeat);
+  void start(Heartbeat* heartbeat);
   /// The haptic loop ends; zero force has left.
   void halt() { haptic_thread_ = {}; }
   /// The link and the recording end, too, which may take as long as the disk does.

@@ -51,9 +51,16 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   }
   figures_.received(bytes.size(), socket_.arrived());
   if (message != nullptr) pass_on(*message, socket_.arrived());
-  welcomed = session_.welcomed();
+  if (const bool was = welcomed.exchange(session_.welcomed()); !was && session_.welcomed()) let_go();
   refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
   greet();
+}
+
+/// Another session begins, perhaps with another scene: what a page pressed in the one before is up.
+void NetLink::let_go() {
+  if (pointer_.buttons == 0) return;
+  pointer_.buttons = 0;
+  mailboxes_.pointer.write(pointer_);
 }
 
 void NetLink::pass_on(const protocol::Message& message, Time t) {
@@ -65,7 +72,10 @@ void NetLink::pass_on(const protocol::Message& message, Time t) {
     mailboxes_.pages.push(*page);
     figures_.page(t);
   }
-  if (const auto* pointer = std::get_if<protocol::Pointer>(&message)) mailboxes_.pointer.write(*pointer);
+  if (const auto* pointer = std::get_if<protocol::Pointer>(&message)) {
+    pointer_ = *pointer;
+    mailboxes_.pointer.write(pointer_);
+  }
 }
 
 void NetLink::on_tool_states() {
@@ -87,8 +97,10 @@ void NetLink::on_timer() {
   watcher.note(stats_);
   greet();
   if (!session_.welcomed() || ticking_ || ++idle_timers_ < kPatientTimers) return;
-  send(protocol::ToolState{
-      .tool = session_.welcome().tool, .tick = 1, .flags = protocol::ToolState::kDeviceLost});
+  send(protocol::ToolState{.tool = session_.welcome().tool,
+                           .tick = 1,
+                           .t_ns = now().count(),
+                           .flags = protocol::ToolState::kDeviceLost});
 }
 
 void NetLink::greet() {

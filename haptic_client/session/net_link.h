@@ -41,12 +41,14 @@ class NetLink {
   void on_timer();
   void pass_on(const protocol::Message& message, Time t);
   void greet();
+  void let_go();
   void send(const protocol::Message& message);
 
   protocol::UdpSocket& socket_;
   protocol::Endpoint server_, own_;
   protocol::Recorder* recorder_;
   HapticMailboxes& mailboxes_;
+  protocol::Pointer pointer_{};  // the newest of a page
   protocol::ClientSession session_;
   bool ticking_ = false;  // tool states have come from the haptic loop
   int idle_timers_ = 0;   // looks at the session before that

@@ -1,6 +1,7 @@
 #include "haptic_client/session/whole_error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -41,11 +42,13 @@ Json whole_error_report(const std::string& method, const Observation& observatio
                   {{"mesh", told.mesh.source == ErrorSource::kNone ? "none: this tissue has no mesh"
                                                                    : how_of(told.mesh)},
                    {"motion", how_of(told.time_step)},
-                   {"extrapolation", "unknown: no tick was scored"}}}};
+                   {"extrapolation", "unknown: nothing was felt between two samples"}}}};
   const auto row = std::ranges::find(scoring.names(), method);
   if (row == scoring.names().end() || scoring.scored() == 0) return report;
   const auto at = static_cast<std::size_t>(row - scoring.names().begin());
-  report["extrapolation_percent"] = scoring.metrics(at).mean_percent;
+  const double percent = scoring.metrics(at).mean_percent;
+  if (std::isnan(percent)) return report;
+  report["extrapolation_percent"] = percent;
   report["how"]["extrapolation"] =
       fmt::format("measured here, latency included, against the force between samples ({})",
                   name_of(scoring.mostly_between()));

@@ -90,6 +90,9 @@ def run(program, pattern, quick):
         return json.loads(out.read_text())
 
 
+NS = {"ns": 1, "us": 1e3, "ms": 1e6, "s": 1e9}  # a row's own unit
+
+
 def rows_of(result):
     """{name: {"ns": median, "cv": percent, "hash": text, "also": text}} and {name: why it was skipped}."""
     rows, skipped = {}, {}
@@ -102,7 +105,7 @@ def rows_of(result):
         key = "real_time" if "manual_time" in entry["run_name"] else "cpu_time"
         row = rows.setdefault(name, {"hash": entry.get("label", ""), "also": ""})
         if kind == "median":
-            row["ns"] = entry[key]
+            row["ns"] = entry[key] * NS[entry["time_unit"]]
             row["also"] = ", ".join(f"{what} {entry[what]:{form}}{unit}" for what, form, unit in COUNTERS if what in entry)
         elif kind == "cv":
             row["cv"] = 100 * entry[key]

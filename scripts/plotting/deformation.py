@@ -41,12 +41,14 @@ def label_of(row):
 
 
 def case_in_words(name):
-    """MODEL-LAW-ELEMENT-MESH-rN-DTms-TOLERANCE-ITERATIONS-INTEGRATION, for people; any other name as it is."""
-    parts = re.fullmatch(r"(\w+)-(\w+)-(\w+)-(.+)-r(\d+)-([\d.]+)ms-(.+)", name)
+    """MODEL-LAW-ELEMENT-MESH-rN[-EDGEmm]-DTms[-TOLERANCE-ITERATIONS-INTEGRATION], for people; any other name as it is."""
+    parts = re.fullmatch(r"(\w+)-(\w+)-(\w+)-(.+)-r(\d+(?:\.5)?)(?:-([\d.]+)mm)?-([\d.]+)ms(?:-.+)?", name)
     if not parts:
         return name
-    model, law, element, mesh, refined, step, _ = parts.groups()
+    model, law, element, mesh, refined, edge, step = parts.groups()
     once = {"0": "", "1": " refined once,"}.get(refined, f" refined {refined} times,")
+    if edge:
+        once += f" edges of {edge} mm,"
     return f"{in_words(model)}, {in_words(law)}, {in_words(element)} on {mesh},{once} steps of {float(step):.3g} ms"
 
 
@@ -226,7 +228,10 @@ def draw_cost(folder, note, extra):
 
 
 def draw_study(folder, note, extra):
-    folders = [f for f in (folder, *sorted(folder.glob("*/"))) if (f / "along.csv").exists()]
+    # Scenes of an earlier study, of more of them, are not of this one.
+    scenes = folder / "scenes.json"
+    within = [folder / name for name in json.loads(scenes.read_text(encoding="utf-8"))] if scenes.exists() else [folder, *sorted(folder.glob("*/"))]
+    folders = [f for f in within if (f / "along.csv").exists()]
     if not folders:
         raise ValueError("no summary.json with along.csv")
     for one in folders:

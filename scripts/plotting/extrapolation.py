@@ -93,7 +93,7 @@ def write_table(folder, name, title, header, lines):
     table = [*zip(*heads),
              *([f"{x:.3f}" if isinstance(x, float) else x for x in line] for line in lines)]
     widths = [max(9, *map(len, column)) + 1 for column in zip(*table)]
-    text = [title] + [f"{law:<24}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths[1:]))
+    text = [title, *filter(None, [quick_note(folder)])] + [f"{law:<24}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths[1:]))
                       for law, *cells in table]
     (folder / f"{name}.txt").write_text("\n".join(text) + "\n", encoding="ascii")
     print("\n".join(text) + "\n")
@@ -162,16 +162,18 @@ def law_table(rows, folder):
 
 
 def world_table(rows, folder):
-    rows = chosen(rows, reference="truth", speed_m_s=SPEED, rate_hz=RATE, blended=False)
+    rows = [row for row in chosen(rows, reference="truth", rate_hz=RATE, blended=False)
+            if row["motion"] == "presses" or row["speed_m_s"] == SPEED]
     delay = min(values(rows, "delay_ms"), key=lambda d: abs(d - 35))
+    rows = [{**row, "world": row["world"] + ("_presses" if row["motion"] == "presses" else "")} for row in rows]
     worlds = values(rows, "world")
     lines = []
     for law in values(rows, "method"):
         found = [average(chosen(rows, method=law, world=world, delay_ms=delay)) for world in worlds]
         lines.append([law, *(row[key] if row else "" for row in found for key in ("mean_percent", "max_percent"))])
     header = ["law"] + [f"{world} {what} %" for world in worlds for what in ("mean", "max")]
-    write_table(folder, "worlds", f"Against the true force in every world: {RATE:g} Hz, {SPEED:g} m/s, {delay:g} ms\n"
-                "(average of the motions; max: the worst of them)", header, lines)
+    write_table(folder, "worlds", f"Against the true force in every world: {RATE:g} Hz, {SPEED:g} m/s (presses faster), {delay:g} ms\n"
+                "(average of the motions; max: the worst of them; presses apart)", header, lines)
 
 
 class Sheets:
@@ -362,7 +364,7 @@ def main():
     arguments = parser.parse_args()
     try:
         draw(arguments.folder, arguments.plot_format)
-    except (Unusable, CannotSave) as problem:
+    except (Unusable, CannotSave, OSError) as problem:
         print(f"extrapolation.py: {problem}", file=sys.stderr)
         return 2
     except ImportError:

@@ -164,8 +164,8 @@ def draw_scores(axis, tool, styles):
         axis.text(0.04, row + 0.5, f"{tool.names[law]}, felt" if felt else tool.names[law], weight=weight, **size)
         for x, key, _, decimals in columns:
             value = scores[key]
-            axis.text(x, row + 0.5, f"{value:.{decimals}f}" if value < 1e6 else f"{value:.2e}", ha="right",
-                      weight=weight, **size)
+            text = "-" if math.isnan(value) else f"{value:.{decimals}f}" if value < 1e6 else f"{value:.2e}"
+            axis.text(x, row + 0.5, text, ha="right", weight=weight, **size)
 
 
 def draw(tool, paths):

@@ -190,7 +190,7 @@ def read_tool(report, server, node, index, count):
     methods, line = node["methods"], node["timeline"]
     laws = methods.keys()
     felt_name, felt_row = felt_of(node, laws)
-    scores = {law: {key: methods[law][key].number() for key, _, _ in PAPER_SCORES + SCORES}
+    scores = {law: {key: methods[law][key].number(or_null=True) for key, _, _ in PAPER_SCORES + SCORES}
               for law in laws}
     timeline = Timeline.read(line, ("ticks", "missed", "tick_us_mean", "tick_us_max", "samples",
                                     "step_ms_mean", "step_ms_max"), ("ticks", "missed"))

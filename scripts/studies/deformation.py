@@ -70,7 +70,7 @@ def write_block(file, n):
             for k in range(n + 1):
                 number[i, j, k] = len(number) + 1
     cells = [(i, j, k) for i in range(n) for j in range(m) for k in range(n)]
-    with open(file, "w", encoding="ascii") as out:
+    with open(file, "w", encoding="utf-8") as out:
         print(f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(number)}", file=out)
         for (i, j, k), v in number.items():
             print(v, i * step - 0.03, (j - m) * 0.03 / m, k * step - 0.03, file=out)
@@ -109,7 +109,7 @@ def write_scene(folder, model, n):
     mesh, scene = folder / f"block_{n}.msh", folder / f"block_{n}_{model}.toml"
     write_block(mesh, n)
     text = SCENE.format(n=n, m=n // 2, mesh=mesh, model=model) + (CUTTING if model == "hybrid" else "")
-    scene.write_text(text, encoding="ascii")
+    scene.write_text(text, encoding="utf-8")
     return mesh, scene
 
 
@@ -165,7 +165,7 @@ def against_closed_form(folder):
     """By how much (%) the reference's force on the block is above (below: negative) the closed form, on average over
     the steps in which it is pressed by 0.1 to 0.2 radii."""
     off = []
-    with open(folder / "reference.csv", encoding="ascii", newline="") as lines:
+    with open(folder / "reference.csv", encoding="utf-8", newline="") as lines:
         for row in csv.DictReader(lines):
             depth = BALL - float(row["y_m"])  # the top is y = 0
             if 0.1 * BALL <= depth <= SHALLOW * BALL:
@@ -204,7 +204,8 @@ def main():
     if options.million:
         say(f"a condensed body of {tetrahedra_of(MILLION)} tetrahedra, half an hour")
         found.append(cost_of_condensed(costs, MILLION))
-    (options.out / "cost.json").write_text(json.dumps(found, indent=1) + "\n", encoding="ascii")
+    (options.out / "cost.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    (options.out / "scenes.json").write_text(json.dumps(QUICK if options.quick else SCENES) + "\n", encoding="utf-8")
     (options.out / "summary.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     return 0
 

@@ -57,7 +57,7 @@ def make_motions(folder, quick):
                         *(("--rate", LONG_RUN_HZ) if at_samples else ()))
             client = made[stretch, at_samples, tool] = motion.with_suffix(".toml")
             client.write_text(f'[trajectory]\nfile = "{motion}"\ncolumns = ["t_s", "x_mm", "y_mm", "z_mm"]\n'
-                              f"scale = 0.001\noffset = {place}\n", encoding="ascii")
+                              f"scale = 0.001\noffset = {place}\n", encoding="utf-8")
     return made
 
 

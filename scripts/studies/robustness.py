@@ -106,7 +106,8 @@ def main():
         writer.writeheader()
         writer.writerows(rows)
     counts = Counter(row["outcome"] for row in rows)
-    text = f"{len(rows)} cells: {', '.join(f'{counts[o]} {o}' for o in SIGNS if counts[o])}\n\n" + table_of(rows, cases, models)
+    text = "quick study (--quick): too few cases to judge by\n" if options.quick else ""
+    text += f"{len(rows)} cells: {', '.join(f'{counts[o]} {o}' for o in SIGNS if counts[o])}\n\n" + table_of(rows, cases, models)
     (options.out / "robustness.txt").write_text(text, encoding="ascii")
     print(text, end="")
     return 1 if any(row["outcome"] in ("wrong", "exploded") for row in rows) else 0

@@ -79,6 +79,9 @@ void LiveView::turned(const LoopTurn& turn) noexcept {
     return;
   }
   note(turn);
+  const bool wants = feed_.wants_field.load(std::memory_order_relaxed);
+  owed_ = owed_ || (wants && !wanted_field_);  // while paused, too
+  wanted_field_ = wants;
   const Time time = now();
   if ((!owed_ && pages == pages_) || time - shown_ < kPictureEach) return;
   pages_ = pages;
@@ -93,7 +96,7 @@ void LiveView::turned(const LoopTurn& turn) noexcept {
   picture.tools = newest_.tools;
   show_organ(simulation_, picture);
   feed_.pictures.publish();
-  if (feed_.wants_field.load(std::memory_order_relaxed) && time - field_shown_ >= kFieldEach) {
+  if (wants && time - field_shown_ >= kFieldEach) {
     field_shown_ = time;
     std::ranges::copy(simulation_.model().nodes(), feed_.nodes.back().begin());
     feed_.nodes.publish();

@@ -1,6 +1,7 @@
 #include "sim_server/commands/page_news.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <memory>
 
@@ -24,6 +25,7 @@ SeenClient::Name name_of(const protocol::Telemetry::Name& told) {
 /// What is known of the client of one tool, and of the link to it.
 class ToolNews {
  public:
+  ToolNews() { client_.errors_percent.fill(std::nanf("")); }
   void take(const protocol::Telemetry& told, Time now, Time began, ViewerFeed& feed);
   void count(const PeerCounts& counts, Time now, SeenPeer& seen);
 
@@ -118,6 +120,7 @@ void ToolNews::count(const PeerCounts& counts, Time now, SeenPeer& seen) {
   if (!counts.held || (!marks_.empty() && counts.received < marks_.back().received)) marks_.clear();
   if (!counts.held) {
     seen = {};
+    *this = {};  // whoever holds it next is another client
     return;
   }
   marks_.push_back({now, counts.received, counts.lost});

@@ -93,7 +93,10 @@ SceneFacts facts_of(const Scene& scene, const Simulation& simulation) {
   // Of an organ that is cut, the body that is coloured would have to be cut, too.
   if (!simulation.model().nodes().empty() && scene.material && !scene.cutting)
     facts.fields = {"strain_energy"};
-  for (const ToolSettings& tool : scene.tools) facts.tools.push_back(tool.shape);
+  for (const ToolSettings& tool : scene.tools) {
+    facts.tools.push_back(tool.shape);
+    facts.blades = facts.blades || tool.blade;
+  }
   return facts;
 }
 
@@ -101,8 +104,9 @@ void show_tool(const SessionInput& input, const ServedTools::Outcome* outcome, d
                SeenTool& seen) noexcept {
   const bool lost = (input.state.flags & protocol::ToolState::kDeviceLost) != 0;
   seen.held = input.session != 0 && !lost;
+  if (!seen.held) seen = {.pose = seen.pose, .sample = seen.sample};  // nobody feels what the last one felt
   if (seen.held) seen.pose = pose_of(input.state);
-  if (outcome == nullptr) return;
+  if (outcome == nullptr || !seen.held) return;
   const ToolForce& force = outcome->force;
   seen.contact = force.contacts > 0;
   seen.flagged = force.flagged;
@@ -114,21 +118,39 @@ void show_tool(const SessionInput& input, const ServedTools::Outcome* outcome, d
     seen.errors = outcome->answer->errors;
 }
 
+namespace {
+
+/// Without memory for the triangles the picture keeps those it has.
+void show_cuts(const Simulation& simulation, Picture& picture) noexcept try {
+  picture.triangles = simulation.surface().triangles;
+  picture.cuts = simulation.resection()->version();
+} catch (const std::bad_alloc&) {
+}
+
+SeenResection seen_of(const Resection& resection) noexcept {
+  const ResectionTotals& all = resection.totals();
+  SeenResection seen{.tetrahedra = all.tetrahedra,
+                     .volume = all.volume,
+                     .cut_area = all.cut_area,
+                     .loose_pieces = all.loose_pieces};
+  if (resection.has_plan() && all.tetrahedra > 0) {
+    seen.mean_distance = all.mean_distance();
+    seen.farthest = all.farthest;
+  }
+  if (resection.has_plan() && all.parted_area > 0) seen.mean_parted_distance = all.mean_parted_distance();
+  return seen;
+}
+
+}  // namespace
+
 void show_organ(const Simulation& simulation, Picture& picture) noexcept {
   std::size_t k = 0;
   for (const Vec3& p : simulation.positions()) {
     for (int i = 0; i < 3; ++i) picture.positions[k++] = static_cast<float>(p[i]);
   }
   const Resection* const resection = simulation.resection();
-  if (resection != nullptr && resection->version() != picture.cuts) {
-    picture.cuts = resection->version();
-    picture.triangles = simulation.surface().triangles;
-  }
-  if (resection != nullptr) {
-    const ResectionTotals& all = resection->totals();
-    picture.resection = {all.tetrahedra,      all.volume,   all.cut_area,
-                         all.mean_distance(), all.farthest, all.loose_pieces};
-  }
+  if (resection != nullptr && resection->version() != picture.cuts) show_cuts(simulation, picture);
+  if (resection != nullptr) picture.resection = seen_of(*resection);
   for (std::size_t i = 0; i < simulation.tools(); ++i) show_loads(simulation.loads(i), picture.tools[i]);
 }
 

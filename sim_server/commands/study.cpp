@@ -141,13 +141,15 @@ const StudyCase* with_shortest_steps(const StudyCase& own, std::span<const Study
   return shortest;
 }
 
-/// Keeps what the study says of the scene as it is, for the reports of sessions: the error of the scene with
-/// the shortest steps is that of its mesh, and what its own steps give beside them that of the time step.
-void keep_for_sessions(const CacheOptions& options, Runner& runner, const Scene& scene,
-                       const StudyResult& result, const Trace& reference, double seconds) {
+/// Keeps what the study says of the scene as it is, for the reports of sessions; a quick one where there is
+/// none yet. The error of the scene with the shortest steps is that of its mesh, and what its own steps give
+/// beside them that of the time step.
+void keep_for_sessions(const CacheOptions& where, const StudyOptions& options, Runner& runner,
+                       const Scene& scene, const StudyResult& result, const Trace& reference,
+                       double seconds) {
   const auto own = std::ranges::find(result.rows, "scene", [](const StudyRow& row) { return row.one.axis; });
-  const auto cache = open_cache(options);
-  if (!cache || own == result.rows.end()) return;
+  const auto cache = open_cache(where);
+  if (!cache || own == result.rows.end() || (options.quick && find_studied(*cache, scene))) return;
   const StudyCase* shortest = with_shortest_steps(own->one, result.rows);
   const Trace by_shortest = runner.run(*shortest, 1);
   const StudyErrors mesh = errors_of(by_shortest, reference, runner.motion(), 0),
@@ -202,7 +204,7 @@ int study(const StudyOptions& options, const CacheOptions& cache) {
                      result.refused.front().second);
   mark_front(result.rows);
   write_study(options, result);
-  keep_for_sessions(cache, runner, scene, result, reference, to_seconds(now() - begin));
+  keep_for_sessions(cache, options, runner, scene, result, reference, to_seconds(now() - begin));
   fmt::print("{}", to_text(result));
   if (scene.tools.size() > 1)
     fmt::print("Only tool 1 of {} is moved and compared; the others are away.\n", scene.tools.size());

@@ -20,6 +20,13 @@ constexpr std::array<char, 16> kMagic{"palpate set-up\n"};
 constexpr std::uint64_t kVersion = 1;
 constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 48;  // of a matrix: its bytes can be counted
 constexpr std::string_view kPartEnding = ".part";
+constexpr std::size_t kRandom = 7;  // of ".XXXXXX"
+
+/// KEY.setup.XXXXXX.part
+bool is_part_name(std::string_view name) {
+  return name.ends_with(kPartEnding) && name.size() > kRandom + kPartEnding.size() &&
+         is_entry_name(name.substr(0, name.size() - kRandom - kPartEnding.size()));
+}
 
 /// The header as it lies in the file, native byte order: the processor is part of the key.
 struct Header {
@@ -131,6 +138,7 @@ void write_entry(const std::filesystem::path& file, const EntryHeader& header,
   const File written(::mkostemps(part.data(), static_cast<int>(kPartEnding.size()), O_CLOEXEC));
   try {
     write_whole(written, part, raw, matrix);
+    if (::fchmod(written.handle, 0644) != 0) fail("{}: cannot be written: {}", part, std::strerror(errno));
     std::filesystem::rename(part, file);
   } catch (...) {
     std::error_code ignored;
@@ -139,13 +147,20 @@ void write_entry(const std::filesystem::path& file, const EntryHeader& header,
   }
 }
 
+bool is_entry_name(std::string_view name) {
+  constexpr std::string_view kEnding = ".setup";
+  constexpr std::size_t kDigits = 32;  // of a key
+  return name.size() == kDigits + kEnding.size() && name.ends_with(kEnding) &&
+         name.substr(0, kDigits).find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
 int remove_parts(const std::filesystem::path& folder, std::chrono::seconds older) {
   using std::filesystem::file_time_type;
   std::error_code failed;
   int removed = 0;
   for (std::filesystem::directory_iterator at(folder, failed), end; !failed && at != end;
        at.increment(failed)) {
-    if (at->path().extension() != kPartEnding) continue;
+    if (!is_part_name(at->path().filename().native())) continue;
     std::error_code unknown;  // another one may remove it, too
     const file_time_type written = at->last_write_time(unknown);
     if (!unknown && written <= file_time_type::clock::now() - older)
@@ -156,7 +171,7 @@ int remove_parts(const std::filesystem::path& folder, std::chrono::seconds older
 
 MappedMatrix map_entry(const std::filesystem::path& name, const Digest& key) {
   const File file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.handle < 0) fail("{}: cannot be read: {}", name.string(), std::strerror(errno));
+  if (file.handle < 0) fail_at_run_time("{}: cannot be read: {}", name.string(), std::strerror(errno));
   struct stat status {};
   Header header{};
   if (::fstat(file.handle, &status) != 0 || ::read(file.handle, &header, sizeof(header)) != sizeof(header))
@@ -167,7 +182,7 @@ MappedMatrix map_entry(const std::filesystem::path& name, const Digest& key) {
   if (static_cast<std::size_t>(status.st_size) != bytes) fail("{}: is cut off", name.string());
   void* const begin =
       ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_POPULATE, file.handle, 0);
-  if (begin == MAP_FAILED) fail("{}: cannot be mapped: {}", name.string(), std::strerror(errno));
+  if (begin == MAP_FAILED) fail_at_run_time("{}: cannot be mapped: {}", name.string(), std::strerror(errno));
   MappedMatrix mapped(begin, bytes, told(header));
   const auto matrix = mapped.matrix();
   if (digest_of(std::as_bytes(std::span(matrix.data(), static_cast<std::size_t>(matrix.size())))) !=

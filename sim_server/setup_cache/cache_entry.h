@@ -43,12 +43,17 @@ std::string note_of_saved(const MappedMatrix& kept, std::string_view source = "t
 void write_entry(const std::filesystem::path& file, const EntryHeader& header,
                  const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
+/// Whether a file is called KEY.setup (32 digits), as no other program calls its own: a folder may be
+/// anybody's.
+bool is_entry_name(std::string_view name);
+
 /// Removes what writers that were interrupted left in a folder, if it has not changed for so long; how many
 /// files that were.
 int remove_parts(const std::filesystem::path& folder, std::chrono::seconds older = std::chrono::hours(1));
 
-/// Maps the entry with this key. Throws `Error` with what is wrong with it: nothing of it is trusted before
-/// its size and both checksums agree. O(bytes).
+/// Maps the entry with this key. Throws `Error` with what is wrong with it, of kind `kRun` where that is not
+/// the file itself, but that it cannot be opened or mapped: nothing of it is trusted before its size and both
+/// checksums agree. O(bytes).
 MappedMatrix map_entry(const std::filesystem::path& file, const Digest& key);
 
 /// The header alone; nothing where there is none that is sound.

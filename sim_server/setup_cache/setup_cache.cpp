@@ -14,12 +14,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kEnding = ".setup";
 
-/// Files of a folder with an ending; none where it cannot be read.
-std::vector<fs::path> files_in(const fs::path& folder, std::string_view ending) {
+/// The entries of a folder; none where it cannot be read.
+std::vector<fs::path> entries_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code failed;
   for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
-    if (at->path().extension() == ending && at->is_regular_file(failed)) files.push_back(at->path());
+    if (is_entry_name(at->path().filename().native()) && at->is_regular_file(failed))
+      files.push_back(at->path());
   }
   return files;
 }
@@ -49,8 +50,9 @@ std::optional<MappedMatrix> SetupCache::find(const Digest& key) const {
     fs::last_write_time(file, fs::file_time_type::clock::now(), failed);  // it is in use
     return found;
   } catch (const Error& error) {
-    log::warning("set-up cache: {}; it is removed and made again", error.what());
-    fs::remove(file, failed);
+    const bool spoilt = error.exit_code() == static_cast<int>(Error::Kind::kInput);
+    log::warning("set-up cache: {}; it is {}made again", error.what(), spoilt ? "removed and " : "");
+    if (spoilt) fs::remove(file, failed);
     return {};
   }
 }
@@ -88,7 +90,7 @@ void SetupCache::make_room(const Digest& newest) const {
 
 std::vector<SetupCache::Entry> SetupCache::list() const {
   std::vector<Entry> entries;
-  for (const fs::path& file : files_in(folder_, kEnding)) {
+  for (const fs::path& file : entries_in(folder_)) {
     std::error_code failed;
     Entry entry{file, static_cast<double>(fs::file_size(file, failed)), fs::last_write_time(file, failed),
                 read_header(file)};

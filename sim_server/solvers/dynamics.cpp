@@ -82,6 +82,7 @@ void Dynamics::start_step(double h) {
   spent_ms_ = costs_.evaluation / 2;  // the turns of the nodes
   quasi_newton_.restart();
   trial_residual_ = 0;
+  iterated_ = false;
   at_predictor_ = true;
   motion_.begin_step(h);
   if (policy_.begin_step(motion_.time().steps(), cautious_)) exchange_factors();
@@ -178,6 +179,13 @@ Residual Dynamics::evaluate(std::span<const Vec3> external) {
 }
 
 double Dynamics::iterate(std::span<const Vec3> external, double tolerance) {
+  iterated_ = false;  // where this throws
+  const double left = newton_iteration(external, tolerance);
+  iterated_ = true;
+  return left;
+}
+
+double Dynamics::newton_iteration(std::span<const Vec3> external, double tolerance) {
   ++iterations_;
   const double previous = relative_residual_;
   if (at_predictor_) limit_predictor(external);
@@ -287,6 +295,7 @@ void Dynamics::limit_predictor(std::span<const Vec3> external) {
 }
 
 void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> external) {
+  if (!d.allFinite()) return;
   if (is_linear()) return motion_.move_by(d);
   double squared = 0;
   for (std::size_t i = 0; i < motion_.last_external().size(); ++i)
@@ -297,8 +306,9 @@ void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> e
   search_along(d, motion_.residual(external), external);
 }
 
+/// A step that an exception ended stands at its predictor, where no force has been at work.
 void Dynamics::finish_step() {
-  const bool adrift = trial_residual_ > (ended_by_budget_ ? kAdriftByBudget : kAdrift);
+  const bool adrift = !iterated_ || trial_residual_ > (ended_by_budget_ ? kAdriftByBudget : kAdrift);
   cautious_ = adrift || (cautious_ && relative_residual_ > kAtRest);
   motion_.end_step(adrift);
 }

@@ -142,6 +142,7 @@ class Dynamics {
   void factor();
   void count_new_factor();
   void exchange_factors();
+  double newton_iteration(std::span<const Vec3> external, double tolerance);
   Eigen::VectorXd search_direction(const Residual& residual, std::span<const Vec3> external);
   Eigen::VectorXd inexact_direction(const Residual& residual, std::span<const Vec3> external);
   void search_along(const Eigen::VectorXd& d, const Residual& residual, std::span<const Vec3> external);
@@ -168,6 +169,7 @@ class Dynamics {
   std::vector<Vec3> factored_at_;  // m, where A was factored last, but in the background
   std::vector<int> requested_columns_;
   double relative_residual_ = 0;  // that the last iteration found
+  bool iterated_ = false;         // in this step, to an end
   double trial_residual_ = 0;     // relative, at the last trial step of this step; 1: none was accepted
   bool at_predictor_ = false;     // no iteration of this step has been
   bool cautious_ = false;         // a step ended far from balance, and the body has not come to rest since

@@ -41,7 +41,7 @@ class Newton {
   /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.
   bool advance(std::vector<Vec3>& x, double from, double to) {
     share_ = to;
-    if (load_.start.empty()) move_supports(x, to - from);
+    if (load_.start.empty() && !move_supports(x, to - from)) return false;
     double before = std::numeric_limits<double>::infinity();
     const double enough = is_linear() ? std::min(kSharp, settings_.tolerance) : settings_.tolerance;
     for (int i = 0; i <= settings_.max_newton; ++i) {
@@ -111,8 +111,11 @@ class Newton {
       return true;
     }
     const double before = potential(x), slope = residual.dot(d), norm = residual.norm();
+    const std::vector<Vec3> external =
+        external_;  // a pressure changes as the body does: the energy is that of this one
     for (double length = 1; length > kShortestStep; length /= 2) {
       move_along(from, length, d, x);
+      external_ = external;
       if (potential(x) <= before - kArmijo * length * slope || residual_at(x).norm() < norm) return true;
     }
     x = from;
@@ -127,9 +130,9 @@ class Newton {
   }
 
   /// The supports move on by a share of all that they do, and the body with them as its tangent stiffness
-  /// says.
-  void move_supports(std::vector<Vec3>& x, double share) {
-    if (load_.moved.empty()) return;
+  /// says; false: it says nothing, and nothing has moved.
+  bool move_supports(std::vector<Vec3>& x, double share) {
+    if (load_.moved.empty()) return true;
     const auto moved_by = [&](double part) {
       std::vector<Vec3> moved = x;
       for (std::size_t i = 0; i < x.size(); ++i) {
@@ -141,10 +144,11 @@ class Newton {
     const std::vector<Vec3> ahead = moved_by(kSupportNudge * share);
     const Eigen::VectorXd before = residual_at(x);
     const Eigen::VectorXd pull = (residual_at(ahead) - before) / kSupportNudge;
-    if (!factor_at(x)) return;
+    if (!factor_at(x)) return false;
     const Eigen::VectorXd d = factor_->solve(pull).col(0);
     x = moved_by(share);
     move_along(x, 1, d, x);
+    return true;
   }
 
   const Solid& solid_;

@@ -25,7 +25,8 @@ bool FactorPolicy::begin_step(int steps_before, bool cautious) {
 FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double previous, bool just_factored,
                                             bool may_factor) {
   const double force = residual.relative * residual.force_scale;
-  if (force <= kSameRounding * rounding_) return Decision::kStop;
+  // Learnt under large forces, it is a large residual under small ones.
+  if (force <= kSameRounding * rounding_ && is_rounding(residual, kSameRounding)) return Decision::kStop;
   const State before = state_;
   if (!comparable_ || !(residual.relative > kSlow * previous)) {
     comparable_ = true;
@@ -46,9 +47,9 @@ FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double pre
   return before == State::kStale ? Decision::kRefactor : Decision::kRefactorChecked;
 }
 
-bool FactorPolicy::is_rounding(const Residual& residual) const {
-  return residual.relative <= kRounding ||
-         residual.relative * residual.force_scale <= kNegligibleShare * settings_.negligible_force;
+bool FactorPolicy::is_rounding(const Residual& residual, double times) const {
+  return residual.relative <= times * kRounding ||
+         residual.relative * residual.force_scale <= times * kNegligibleShare * settings_.negligible_force;
 }
 
 }  // namespace palpate::sim

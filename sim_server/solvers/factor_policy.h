@@ -60,7 +60,7 @@ class FactorPolicy {
   bool uses_conjugate_gradients() const { return state_ == State::kWorn; }
 
  private:
-  bool is_rounding(const Residual& residual) const;
+  bool is_rounding(const Residual& residual, double times = 1) const;
 
   Settings settings_;
   State state_ = State::kStale;

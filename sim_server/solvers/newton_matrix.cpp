@@ -78,10 +78,11 @@ int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<c
 }
 
 Mat3 NewtonMatrix::to_rest(int i, int j, const Mat3& block) const {
-  if (turns_.empty()) return block;
+  if (turns_.empty() && built_turned_.empty()) return block;
   const auto turned = [this](int node) -> Mat3 {
     const auto n = static_cast<std::size_t>(node);
-    return turns_[n] * (built_turned_.empty() ? Mat3(Mat3::Identity()) : built_turned_[n]);
+    return (turns_.empty() ? Mat3(Mat3::Identity()) : turns_[n]) *
+           (built_turned_.empty() ? Mat3(Mat3::Identity()) : built_turned_[n]);
   };
   return turned(i).transpose() * block * turned(j);
 }
@@ -204,6 +205,7 @@ Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first, double enough)
   const auto count = static_cast<Eigen::Index>(first.size());
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(matrix_.lower().rows(), 3 * count);
   for (Eigen::Index k = 0; k < count; ++k) unit.block<3, 3>(first[k], 3 * k).setIdentity();
+  if (!definite_) return unit / mean_diagonal_;  // each by itself, as there is no factor
   Eigen::MatrixXd found = solve(unit);
   if (count == 0 || !copies_.empty() || factor_.precision() == SparseCholesky::Precision::kDouble)
     return found;

@@ -213,6 +213,7 @@ SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
 bool SparseCholesky::refactor(const SparseMatrix& lower) {
+  definite_ = false;  // where this throws
   definite_ = lower.rows() == 0 || factor_->factorize(lower);
   if (definite_ || double_was_no_help_ || !can_be_finer(*factor_)) return definite_;
   factor_->take(Precision::kDouble);

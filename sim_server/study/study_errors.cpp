@@ -1,5 +1,6 @@
 #include "sim_server/study/study_errors.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate::sim {
@@ -69,13 +70,14 @@ StudyErrors errors_of(const Trace& trace, const Trace& reference, const Trajecto
       moved += truth.squaredNorm();
     }
   }
-  StudyErrors errors{force.percent(),
-                     moved > 0 ? 100 * std::sqrt(off / moved) : 0,
-                     felt_error(trace, reference, motion, latency),
-                     {}};
+  StudyErrors errors{.force = force.percent(),
+                     .surface = moved > 0 ? 100 * std::sqrt(off / moved) : 0,
+                     .felt = felt_error(trace, reference, motion, latency),
+                     .along = {}};
   for (std::size_t k = 0; k < trace.forces.size(); ++k) {
     const double away = (trace.forces[k] - reference.forces[same_time(trace, reference, k)]).norm();
     errors.along.push_back(force.rms() > 0 ? 100 * away / force.rms() : 0);
+    errors.worst_force = std::max(errors.worst_force, errors.along.back());
   }
   return errors;
 }

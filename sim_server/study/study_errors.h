@@ -7,6 +7,7 @@ namespace palpate::sim {
 struct StudyErrors {
   /// Mean of |F - F_ref| over the steps in which either touches, of the root mean square of F_ref there.
   double force = 0;
+  double worst_force = 0;  ///< the largest |F - F_ref| of a step, of the same
   /// Root mean square over all sites and steps of |u - u_ref|, of that of u_ref.
   double surface = 0;
   /// As `force`, of what a client renders at 1 kHz: each step begins with the tool's place then, takes its

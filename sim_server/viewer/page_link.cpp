@@ -69,7 +69,9 @@ bool PageLink::next_surface(const Showing& showing, Time now, Bytes& out) {
                 has_, whole, out);
   surface_ = showing.pictures;
   surface_at_ = now;
-  if (tells_) on_the_way_.push_back(static_cast<std::uint32_t>(picture.step));
+  // The same step may be shown again, as when a page opens while paused: it is told of once.
+  const auto step = static_cast<std::uint32_t>(picture.step);
+  if (tells_ && (on_the_way_.empty() || on_the_way_.back() != step)) on_the_way_.push_back(step);
   return true;
 }
 
@@ -82,6 +84,17 @@ void PageLink::shown(std::uint32_t step) noexcept {
   tells_ = true;
   const auto found = std::find(on_the_way_.rbegin(), on_the_way_.rend(), step);
   on_the_way_.erase(on_the_way_.begin(), found.base());
+}
+
+void PageLink::pointed(const PagePointer& pointer) {
+  std::erase_if(pressed_, [&](const PagePointer& before) { return before.tool == pointer.tool; });
+  if (pointer.buttons != 0) pressed_.push_back(pointer);
+}
+
+std::vector<PagePointer> PageLink::released() const {
+  std::vector<PagePointer> released = pressed_;
+  for (PagePointer& pointer : released) pointer.buttons = 0;
+  return released;
 }
 
 bool PageLink::next_sample(const Showing& showing, Bytes& out) {
@@ -97,7 +110,7 @@ bool PageLink::next_sample(const Showing& showing, Bytes& out) {
 
 bool PageLink::next_of_client(const Showing& showing, Bytes& out, Kind& kind) {
   for (std::size_t i = 0; i < showing.clients.size(); ++i) {
-    if (showing.client_news[i] == clients_[i]) continue;
+    if (showing.client_news[i] == clients_[i] || !showing.peers[i].held) continue;
     clients_[i] = showing.client_news[i];
     kind = put_text(client_text(showing.clients[i]), out);
     return true;

@@ -51,6 +51,10 @@ class PageLink {
   bool wants_field() const noexcept { return wants_field_; }
   /// It drew the surface of this step, so those before are no longer on their way.
   void shown(std::uint32_t step) noexcept;
+  /// It moved a tool, or pressed its buttons.
+  void pointed(const PagePointer& pointer);
+  /// The tools whose buttons it holds down, where it left them, with these up: of a page that is gone.
+  std::vector<PagePointer> released() const;
   /// The next surface is a whole one, and so are the triangles before it, where some have been removed.
   void forget_surface() noexcept {
     has_.clear();
@@ -88,6 +92,7 @@ class PageLink {
   std::string refused_;
   bool tells_ = false;                     // what it drew
   std::vector<std::uint32_t> on_the_way_;  // steps of surfaces, the oldest first
+  std::vector<PagePointer> pressed_;
 };
 
 }  // namespace palpate::sim

@@ -2,6 +2,7 @@
 /// What a page is shown, as small structs: nothing here knows how a session is served.
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct SceneFacts {
   std::vector<std::string> gallery{};  ///< other scenes that may be chosen; empty: none
   bool pausable = false;               ///< whether who has the token may pause it
   bool recorded = false;
+  bool blades = false;  ///< whether one may part the organ
   std::vector<std::string> fields{};  ///< what the organ can be coloured by here
 };
 
@@ -56,10 +58,13 @@ struct SeenTool {
   DiscretisationErrors errors{};  ///< of that force, where its client asks for them
 };
 
-/// What a resection has come to. m^3, m^2, m.
+/// What a resection has come to. m^3, m^2, m. Distances are from the plan: of what heat removed, and of what a
+/// blade parted; NaN where there is none.
 struct SeenResection {
   std::uint64_t tetrahedra = 0;  ///< gone
-  double volume = 0, cut_area = 0, mean_distance = 0, farthest = 0;
+  double volume = 0, cut_area = 0;
+  double mean_distance = std::numeric_limits<double>::quiet_NaN(), farthest = mean_distance,
+         mean_parted_distance = mean_distance;
   int loose_pieces = 0;
 };
 

@@ -1,13 +1,16 @@
-#include "sim_server/viewer/port_probe.h"
-
 #include <cerrno>
 #include <cstring>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace palpate::sim {
+#include "common/error.h"
+#include "sim_server/viewer/viewer.h"
 
+namespace palpate::sim {
+namespace {
+
+/// Why this address cannot be listened on (TCP), in words; empty: it can. Listens there for a moment.
 std::string why_not(const protocol::Endpoint& endpoint) {
   const int fd = socket(endpoint.v6 ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (fd < 0) return endpoint.v6 && errno == EAFNOSUPPORT ? "this machine has no IPv6" : std::strerror(errno);
@@ -27,6 +30,14 @@ std::string why_not(const protocol::Endpoint& endpoint) {
   if (why == EACCES) return "ports below 1024 need root; choose another port";
   if (why == EADDRNOTAVAIL) return "this machine has no such address";
   return why == 0 ? "" : std::strerror(why);
+}
+
+}  // namespace
+
+void require_free(const ViewerAddress& address) {
+  const std::string why = why_not(address.endpoint);
+  if (!why.empty())
+    fail("--viewer: cannot listen on {} (TCP): {}", protocol::to_string(address.endpoint), why);
 }
 
 }  // namespace palpate::sim

@@ -92,6 +92,7 @@ std::string scene_text(const SceneFacts& scene, bool may_control) {
             {"control", may_control},
             {"pausable", may_control && scene.pausable},
             {"recorded", scene.recorded},
+            {"blades", scene.blades},
             {"fields", scene.fields}};
   if (may_control) json["scenes"] = scene.gallery;
   return dumped({{"scene", json}});
@@ -101,9 +102,13 @@ namespace {
 
 Json resection_json(const std::optional<SeenResection>& resection) {
   if (!resection) return nullptr;
-  return {{"tetrahedra", resection->tetrahedra},    {"volume", brief(resection->volume)},
-          {"cut_area", brief(resection->cut_area)}, {"mean_distance", brief(resection->mean_distance)},
-          {"farthest", brief(resection->farthest)}, {"loose_pieces", resection->loose_pieces}};
+  return {{"tetrahedra", resection->tetrahedra},
+          {"volume", brief(resection->volume)},
+          {"cut_area", brief(resection->cut_area)},
+          {"mean_distance", number_or_null(resection->mean_distance)},
+          {"farthest", number_or_null(resection->farthest)},
+          {"mean_parted_distance", number_or_null(resection->mean_parted_distance)},
+          {"loose_pieces", resection->loose_pieces}};
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "protocol/auth.h"
 #include "protocol/udp_socket.h"
 #include "sim_server/viewer/page_files.h"
-#include "sim_server/viewer/port_probe.h"
 #include "sim_server/viewer/showing_maker.h"
 
 namespace palpate::sim {
@@ -46,12 +45,6 @@ struct Fetch {
 };
 
 }  // namespace
-
-void require_free(const ViewerAddress& address) {
-  const std::string why = why_not(address.endpoint);
-  if (!why.empty())
-    fail("--viewer: cannot listen on {} (TCP): {}", protocol::to_string(address.endpoint), why);
-}
 
 struct Viewer::Server {
   struct Page {
@@ -180,6 +173,7 @@ int Viewer::Server::on_event(lws* wsi, lws_callback_reasons reason, void* user, 
       return live && *page != nullptr ? server->send_next(**page) : -1;
     case LWS_CALLBACK_CLOSED:
       if (live && *page != nullptr) {
+        for (const PagePointer& released : (*page)->link.released()) server->feed.hooks.point(released);
         server->pages.remove_if([&](const Page& other) { return &other == *page; });
         server->feed.pages = static_cast<int>(server->pages.size());
         *page = nullptr;
@@ -347,6 +341,7 @@ void Viewer::Server::control(Page& page, const PageMessage& message) {
   } else if (const auto* pointer = std::get_if<PagePointer>(&message)) {
     if (pointer->tool >= scene.tools.size()) return page.link.refuse("the scene has no such tool");
     if (!feed.hooks.point) return page.link.refuse("no mouse moves a tool here");
+    page.link.pointed(*pointer);
     feed.hooks.point(*pointer);
   } else if (const auto* choose = std::get_if<PageChoose>(&message)) {
     const auto found = std::ranges::find(scene.gallery, choose->scene);

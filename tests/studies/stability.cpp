@@ -146,7 +146,7 @@ Json row_of(const Cell& cell, double direct, PressAndSlide& slides) {
           {"world", world},
           {"stable_to_n_m", limit},
           {"direct_limit_n_m", direct},
-          {"force_error_percent", cell.world == kSwings ? Json(nullptr) : Json(100 * error)}};
+          {"force_error_percent", cell.world == kSwings || limit == 0 ? Json() : Json(100 * error)}};
 }
 
 std::vector<Cell> cells(bool quick) {

@@ -125,6 +125,18 @@ TEST_CASE("calibration: much less than the weight that was named does not count 
   CHECK(table.calibration.difference()[1] == Approx(0.08 * 9.80665).epsilon(0.1));
 }
 
+TEST_CASE(
+    "calibration: another weight than the one named would mean a constant that no device has, and is no "
+    "result") {
+  Table table({.torque_constant = 5000}, 0.05);
+  table.on_entering[Stage::kHang] = "hand weight 0.3";
+  table.run();
+  CHECK(table.calibration.ended());
+  CHECK(table.calibration.trouble() == Trouble::kImplausible);
+  CHECK(table.calibration.torque_constant() == Approx(30000).epsilon(0.02));
+  CHECK(table.state()["dac"] == nlohmann::json({0, 0, 0}));
+}
+
 TEST_CASE("calibration: a hand on the grip is noticed, and what it let go of is weighed all the same") {
   for (const char* hand : {"hand stiffness 150 damping 3", "hand stiffness 600 damping 10"}) {
     for (const double torque_constant : {2300.0, 10000.0}) {

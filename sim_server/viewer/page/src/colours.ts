@@ -27,10 +27,19 @@ export const kRamp: [number, number, number][] = [
   [1.0, 0.955, 0.72],
 ];
 
+/** A blade moves vertices within the body at rest, of which the page is told no more. */
+export function rest_moved(session: Session): boolean {
+  return session.scene?.blades === true && (session.shape?.topology.version ?? 0) > 1;
+}
+
 /** The measure's numbers at the vertices, SI; false where there are none to show. */
 export function measure(session: Session, name: string, out: Float32Array): boolean {
   const { shape, field } = session;
   if (!shape) return false;
+  if ((name === "displacement" || name === "stretch") && rest_moved(session)) {
+    out.fill(0);
+    return false;
+  }
   if (name === "displacement") shape.displacement(out);
   else if (name === "stretch") shape.stretch(out);
   else if (name === "pressure") shape.pressure(out, session.state?.tools ?? []);

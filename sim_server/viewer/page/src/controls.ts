@@ -33,7 +33,10 @@ export class Controls {
     const keys = by_id<HTMLDialogElement>("keys");
     by_id("help").onclick = () => keys.showModal();
     list_keys(by_id("key-list"));
-    this.scenes_.onchange = () => does_.choose(this.scenes_.value);
+    this.scenes_.onchange = () => {
+      does_.choose(this.scenes_.value);
+      this.scenes_key_ = ""; // until that scene is there, the list shows the one that is
+    };
     const seconds = by_id<HTMLSelectElement>("seconds");
     seconds.onchange = () => does_.seconds(Number(seconds.value));
     by_id("picture-canvas").addEventListener("pointerdown", () => (this.touched_ = true));

@@ -1,5 +1,5 @@
 // What the picture's colours, arrows and lengths stand for, and the choice of what is drawn.
-import { draw_ramp, kMeasures, nice_above } from "./colours";
+import { draw_ramp, kMeasures, nice_above, rest_moved } from "./colours";
 import { by_id, plain_number, set_text } from "./dom";
 import { kLooks, type Look } from "./organ";
 import type { Session } from "./session";
@@ -33,6 +33,7 @@ export class Legend {
   }
 
   want(): void {
+    if (this.view_.measure.name !== "strain_energy") this.session_.field = null; // it will be old
     this.want_(this.view_.measure.name === "strain_energy" ? "strain_energy" : null);
   }
 
@@ -52,7 +53,7 @@ export class Legend {
     const plain = measure.name === "plain";
     by_id("scale").hidden = plain || !measured;
     by_id("scale-note").hidden = plain || measured;
-    set_text(by_id("scale-note"), "no numbers yet");
+    set_text(by_id("scale-note"), rest_moved(this.session_) ? "not known after a blade has cut" : "no numbers yet");
     set_text(by_id("scale-middle"), plain_number(top / 2));
     set_text(by_id("scale-top"), `${plain_number(top)} ${measure.unit}`);
     const metres = orbit.metres_per_pixel(height);

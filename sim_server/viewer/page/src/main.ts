@@ -63,13 +63,19 @@ class Page {
       this.plots_.theme();
     });
     this.session_.listen((change, message) => {
-      if (change === "scene") this.legend_?.scene();
+      if (change === "scene") this.new_scene();
       if (message?.kind === "refused") note(`The server refused: ${message.why}`);
     });
     const embedded = document.getElementById("session");
     if (embedded) void this.open_recording(unpack(embedded.textContent ?? ""));
     else this.connect();
     requestAnimationFrame((now) => this.frame(now));
+  }
+
+  private new_scene(): void {
+    this.legend_?.scene();
+    this.touch_?.reset();
+    if (this.controls_.tool >= (this.session_.scene?.tools.length ?? 0)) this.choose_tool(0);
   }
 
   private connect(): void {
@@ -142,7 +148,9 @@ class Page {
       zoom: (factor) => this.move(() => this.view_?.orbit.zoom(factor)),
       turn: (yaw, pitch) => this.move(() => this.view_?.orbit.turn(yaw, pitch)),
       nudge: (right, up, away) => this.nudge(right, up, away),
-      grip: (held) => this.controls_.touchable().length && this.touch_?.set_buttons(held ? 1 : 0),
+      grip: (held) => {
+        if (!held || this.controls_.touchable().length > 0) this.touch_?.set_buttons(held ? 1 : 0);
+      },
       choose_tool: (tool) => this.choose_tool(tool),
       picture: () => this.picture(),
       video: () => this.film(),

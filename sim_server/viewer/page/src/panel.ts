@@ -41,7 +41,7 @@ export class Panel {
     const { state } = this.session_;
     const client = this.session_.clients.get(this.tool);
     const now = state?.tools[this.tool];
-    const felt = client?.felt ?? now?.f;
+    const felt = now?.held ? (client?.felt ?? now.f) : null;
     set_text(by_id("big-force"), felt ? fixed(Math.hypot(...felt), 2) : kNone);
     set_text(by_id("big-force-name"), client?.felt ? "Force felt" : "Force");
     set_text(by_id("big-age"), fixed(client?.age_ms, 0));
@@ -73,7 +73,7 @@ export class Panel {
       rows.push(["Place x, y, z", now.p.map((x) => fixed(1e3 * x, 1)).join("  "), "mm"]);
       if (shape) {
         const radius = this.session_.scene?.tools[this.tool]?.radius ?? 0;
-        rows.push(["Tip to organ", now.contact ? "0.0" : fixed(1e3 * Math.max(0, shape.nearest(now.p).distance - radius), 1), "mm"]);
+        rows.push(["Tip to organ", now.contact ? "0.0" : fixed(1e3 * Math.max(0, shape.distance(now.p) - radius), 1), "mm"]);
       }
       rows.push(["Force computed", fixed(Math.hypot(...now.f), 2), "N"]);
       if (now.flagged) rows.push(["Server says", "no force: this step is flagged", ""]);
@@ -89,7 +89,10 @@ export class Panel {
   /** All that is known of it: no small error stands without the large one beside it. */
   private error_rows(client: Client | undefined): Row[] {
     const now = this.session_.state?.tools[this.tool];
-    if (!now?.held) return [];
+    if (!now?.held) {
+      set_text(by_id("error-beside"), "");
+      return [];
+    }
     const felt = client ? client.errors_percent[client.laws.indexOf(client.law.split(":")[0]!)] : null;
     const { mesh, time_step } = now;
     set_text(by_id("error-beside"), mesh.percent === null ? "mesh not known" : `mesh ${figures(mesh.percent)} % ${mesh.source}`);
@@ -147,10 +150,15 @@ function resection_rows(cut: Resected): Row[] {
     ["Removed", fixed(1e6 * cut.volume, 2), "ml"],
     ["Tetrahedra gone", String(cut.tetrahedra), ""],
     ["Cut, both sides", fixed(1e4 * cut.cut_area, 1), "cm\u00b2"],
-    ["From the plan, mean", fixed(1e3 * cut.mean_distance, 1), "mm"],
-    ["From the plan, farthest", fixed(1e3 * cut.farthest, 1), "mm"],
+    ["From the plan, mean", millimetres(cut.mean_distance), "mm"],
+    ["From the plan, farthest", millimetres(cut.farthest), "mm"],
+    ["Parted, from the plan", millimetres(cut.mean_parted_distance), "mm"],
     ["Pieces cut loose", String(cut.loose_pieces), ""],
   ];
+}
+
+function millimetres(metres: number | null): string {
+  return fixed(metres === null ? null : 1e3 * metres, 1);
 }
 
 function client_rows(client: Client): Row[] {

@@ -23,12 +23,14 @@ interface Piece {
 
 const kHeader = 16; // bytes before each record's own
 const kPieceSeconds = 1;
+const kFewestPieces = 16; // where pieces are as large as the limit lets them be
 
 export class Recording {
   private scene_: Record | null = null;
   private topology_: Record | null = null; // the one that the first piece begins with
   private pieces_: Piece[] = [];
   private bytes_ = 0;
+  private state_ = ""; // what the last one kept says of time: the same again, as while paused, is not kept
 
   constructor(private readonly limits_: Limits = { seconds: 120, bytes: 48e6 }) {}
 
@@ -50,14 +52,22 @@ export class Recording {
       this.scene_ = recorded(record);
     } else if (record.topology && this.pieces_.length === 0) {
       this.topology_ = record;
-    } else if (this.scene_) {
+    } else if (this.scene_ && !this.said_before(message, session)) {
       this.begin_piece(session);
       if (this.pieces_.length) this.push(record);
     }
     this.trim();
   }
 
+  private said_before(message: Message, session: Session): boolean {
+    if (message.kind !== "state") return false;
+    const before = this.state_;
+    this.state_ = `${session.t} ${message.state.step} ${message.state.paused}`;
+    return this.state_ === before;
+  }
+
   clear(): void {
+    this.state_ = "";
     this.pieces_ = [];
     this.bytes_ = 0;
     this.topology_ = null;
@@ -77,7 +87,8 @@ export class Recording {
   private begin_piece(session: Session): void {
     const { shape, t } = session;
     if (!shape?.known) return;
-    if (this.pieces_.length && t - this.last().t < kPieceSeconds && t >= this.last().t) return;
+    const small = () => this.last().bytes < this.limits_.bytes / kFewestPieces;
+    if (this.pieces_.length && t - this.last().t < kPieceSeconds && t >= this.last().t && small()) return;
     if (this.pieces_.length && t < this.last().t) this.pieces_ = [];
     if (this.pieces_.length === 0) this.bytes_ = 0;
     this.pieces_.push({ t, bytes: 0, records: [] });

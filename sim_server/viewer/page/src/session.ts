@@ -113,6 +113,7 @@ export class Session {
   private take_state(state: State): Change {
     if (this.state && state.step !== this.state.step && state.step_ms !== null) this.steps.push(state.t, [state.step_ms]);
     this.state = state;
+    for (const tool of this.clients.keys()) if (!state.tools[tool]?.held) this.clients.delete(tool); // it left
     this.t = Math.max(this.t, state.t);
     return "state";
   }

@@ -8,6 +8,7 @@ export class Shape {
   readonly q: Uint16Array; // 3n, as sent
   readonly p: Float32Array; // 3n, m
   readonly normals: Float32Array; // 3n, unit, outward
+  used: Uint8Array; // whether a vertex is of a triangle: others are inside, or gone
   known = false; // whether a surface message has come since the topology
   step = 0;
   t = 0;
@@ -20,6 +21,7 @@ export class Shape {
     this.p = topology.rest.slice();
     this.normals = new Float32Array(3 * this.n);
     this.metric_ = rest_metric(topology);
+    this.used = used_by(topology);
     this.update_normals();
   }
 
@@ -44,6 +46,7 @@ export class Shape {
   /** Takes other triangles of the same vertices, or says no: of vertices, or in places, that are not here. */
   cut(triangles: Triangles): boolean {
     const had = this.topology.corners;
+    if (triangles.places && triangles.m > had.length / 3 + triangles.places.length) return false;
     const corners = new Uint32Array(3 * triangles.m);
     if (triangles.corners.some((v) => v >= this.n)) return false;
     if (triangles.places) {
@@ -55,6 +58,7 @@ export class Shape {
     this.topology = { ...this.topology, version: triangles.version, corners };
     this.m = triangles.m;
     this.metric_ = rest_metric(this.topology);
+    this.used = used_by(this.topology);
     this.update_normals();
     return true;
   }
@@ -88,7 +92,7 @@ export class Shape {
     const { rest } = this.topology;
     for (let i = 0; i < this.n; i++) {
       const j = 3 * i;
-      out[i] = Math.hypot(p[j] - rest[j], p[j + 1] - rest[j + 1], p[j + 2] - rest[j + 2]);
+      out[i] = this.used[i] ? Math.hypot(p[j] - rest[j], p[j + 1] - rest[j + 1], p[j + 2] - rest[j + 2]) : 0;
     }
   }
 
@@ -154,11 +158,21 @@ export class Shape {
     return out;
   }
 
-  /** The vertex nearest to a place, and how far it is, m. */
-  nearest(place: ArrayLike<number>): { vertex: number; distance: number } {
+  /** How far a place is from the surface, m. */
+  distance(place: ArrayLike<number>): number {
+    const { corners } = this.topology;
+    let least = Infinity;
+    for (let i = 0; i < corners.length; i += 3)
+      least = Math.min(least, squared_to_triangle(this.p, corners[i], corners[i + 1], corners[i + 2], place));
+    return Math.sqrt(least);
+  }
+
+  /** The vertex of the surface nearest to a place. */
+  nearest(place: ArrayLike<number>): number {
     let vertex = -1;
     let least = Infinity;
     for (let i = 0; i < this.n; i++) {
+      if (!this.used[i]) continue;
       const x = this.p[3 * i] - place[0], y = this.p[3 * i + 1] - place[1], z = this.p[3 * i + 2] - place[2];
       const squared = x * x + y * y + z * z;
       if (squared < least) {
@@ -166,7 +180,7 @@ export class Shape {
         vertex = i;
       }
     }
-    return { vertex, distance: Math.sqrt(least) };
+    return vertex;
   }
 }
 
@@ -174,6 +188,29 @@ function metric(p: Float32Array, a: number, b: number, c: number): [number, numb
   const ux = p[3 * b] - p[3 * a], uy = p[3 * b + 1] - p[3 * a + 1], uz = p[3 * b + 2] - p[3 * a + 2];
   const vx = p[3 * c] - p[3 * a], vy = p[3 * c + 1] - p[3 * a + 1], vz = p[3 * c + 2] - p[3 * a + 2];
   return [ux * ux + uy * uy + uz * uz, ux * vx + uy * vy + uz * vz, vx * vx + vy * vy + vz * vz];
+}
+
+/** Of a place from a triangle, m2: in the plane's coordinates along its edges, held within it (Ericson 2005, 5.1.5). */
+function squared_to_triangle(p: Float32Array, a: number, b: number, c: number, place: ArrayLike<number>): number {
+  const ux = p[3 * b] - p[3 * a], uy = p[3 * b + 1] - p[3 * a + 1], uz = p[3 * b + 2] - p[3 * a + 2];
+  const vx = p[3 * c] - p[3 * a], vy = p[3 * c + 1] - p[3 * a + 1], vz = p[3 * c + 2] - p[3 * a + 2];
+  const x = place[0] - p[3 * a], y = place[1] - p[3 * a + 1], z = place[2] - p[3 * a + 2];
+  const uu = ux * ux + uy * uy + uz * uz, uv = ux * vx + uy * vy + uz * vz, vv = vx * vx + vy * vy + vz * vz;
+  const du = x * ux + y * uy + z * uz, dv = x * vx + y * vy + z * vz;
+  const away = (s: number, t: number) => (x - s * ux - t * vx) ** 2 + (y - s * uy - t * vy) ** 2 + (z - s * uz - t * vz) ** 2;
+  const det = uu * vv - uv * uv;
+  const s = (vv * du - uv * dv) / det, t = (uu * dv - uv * du) / det;
+  if (det > 0 && s >= 0 && t >= 0 && s + t <= 1) return away(s, t);
+  const clamp = (x: number) => (x > 0 ? Math.min(x, 1) : 0); // of what is no number, too
+  const on_u = clamp(du / uu), on_v = clamp(dv / vv);
+  const across = clamp((dv - du + uu - uv) / (uu - 2 * uv + vv)); // from b to c
+  return Math.min(away(on_u, 0), away(0, on_v), away(1 - across, across));
+}
+
+function used_by({ rest, corners }: Topology): Uint8Array {
+  const used = new Uint8Array(rest.length / 3);
+  for (const vertex of corners) used[vertex] = 1;
+  return used;
 }
 
 function rest_metric({ rest, corners }: Topology): Float32Array {

@@ -23,6 +23,7 @@ export interface Scene {
   control: boolean;
   pausable: boolean;
   recorded: boolean;
+  blades: boolean; // whether a blade may part the organ
   fields: string[];
 }
 
@@ -44,13 +45,14 @@ export interface ToolNow {
   loads: [number, number, number, number][]; // vertex; N, on the organ
 }
 
-/** What has been cut away: m3, m2 of both sides, m from the plan. */
+/** What has been cut away: m3, m2 of both sides, m from the plan; null: there is none, or nothing was cut so. */
 export interface Resected {
   tetrahedra: number;
   volume: number;
   cut_area: number;
-  mean_distance: number;
-  farthest: number;
+  mean_distance: number | null;
+  farthest: number | null;
+  mean_parted_distance: number | null;
   loose_pieces: number;
 }
 
@@ -133,6 +135,7 @@ function scene(x: Json): Scene {
     control: x.control === true,
     pausable: x.pausable === true,
     recorded: x.recorded === true,
+    blades: x.blades === true,
     fields: list(x.fields).map(text),
   };
 }
@@ -173,8 +176,9 @@ function resected(x: Json): Resected {
     tetrahedra: number(x.tetrahedra) ?? 0,
     volume: number(x.volume) ?? 0,
     cut_area: number(x.cut_area) ?? 0,
-    mean_distance: number(x.mean_distance) ?? 0,
-    farthest: number(x.farthest) ?? 0,
+    mean_distance: number(x.mean_distance),
+    farthest: number(x.farthest),
+    mean_parted_distance: number(x.mean_parted_distance),
     loose_pieces: number(x.loose_pieces) ?? 0,
   };
 }

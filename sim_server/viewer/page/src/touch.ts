@@ -8,6 +8,7 @@ const kGrab = 26; // pixels: this near to a tip, a press takes the tool where it
 const kFar = 0.025; // m: beyond, a tool does not plough through the organ to get there, but is lifted over it
 const kLift = 0.35; // of the way
 const kQuickest = 0.3; // m/s, while it goes there
+const kSendEach = 15; // ms at least: a display may be faster than the server listens
 const kLinger = 900; // ms that the plane stays after a key
 
 export class Touch {
@@ -19,6 +20,7 @@ export class Touch {
   private route_: Vector3[] = []; // on the way to the wanted place
   private readonly sent_ = new Vector3();
   private framed_ = 0; // ms
+  private sent_at_ = 0; // ms
   private shown_until_ = 0;
   private unsent_ = false;
 
@@ -63,6 +65,14 @@ export class Touch {
     this.unsent_ = true;
   }
 
+  /** Another scene, or another connection to it: nothing is held any more, and no button is down. */
+  reset(): void {
+    this.active = this.unsent_ = false;
+    this.buttons = 0;
+    this.route_ = [];
+    this.shown_until_ = 0;
+  }
+
   /** By keys: right, up and away from the camera, m. */
   nudge(right: number, up: number, away: number, now: number): void {
     if (!this.view_.tools[this.tool]) return;
@@ -83,17 +93,26 @@ export class Touch {
     this.buttons = buttons;
     if (!this.active && this.view_.tools[this.tool] && !this.unsent_) this.take_up();
     this.unsent_ = true;
+    if (buttons === 0) this.send(); // a page that is not seen draws no frame
   }
 
-  /** Once a frame: sends what is new, and while the button is down always; draws the plane. */
+  private send(): void {
+    this.follow_route(0);
+    this.send_(this.tool, [this.sent_.x, this.sent_.y, this.sent_.z], this.buttons);
+    this.unsent_ = this.route_.length > 0; // it also gets there if the button is up by then
+  }
+
+  /** Once a frame: sends what is new, and while the button is down always, if it is time; draws the plane. */
   frame(now: number, half: number): void {
     const { touch_plane, orbit, tools } = this.view_;
     if (this.active || this.unsent_) {
       this.follow_route((now - this.framed_) / 1000);
-      this.send_(this.tool, [this.sent_.x, this.sent_.y, this.sent_.z], this.buttons);
+      if (now - this.sent_at_ >= kSendEach) {
+        this.sent_at_ = now;
+        this.send();
+      }
     }
     this.framed_ = now;
-    this.unsent_ = this.route_.length > 0; // it also gets there if the button is up by then
     const shown = this.active || now < this.shown_until_;
     if (shown !== touch_plane.group.visible || shown) this.view_.invalidate();
     if (shown && tools[this.tool]) {

@@ -193,7 +193,7 @@ export class View {
   /** The surface's normal where it is nearest to a place. */
   private outward(place: ArrayLike<number>): Vector3 {
     const { shape } = this.session_;
-    return shape ? new Vector3().fromArray(shape.normals, 3 * shape.nearest(place).vertex) : new Vector3(0, 0, 1);
+    return shape ? new Vector3().fromArray(shape.normals, 3 * shape.nearest(place)) : new Vector3(0, 0, 1);
   }
 
   /** The first view of a scene; again when the first state says where the tool is. */

@@ -58,6 +58,35 @@ test("a recording is bounded in time and in bytes, and its oldest piece begins w
   assert.ok(session.shape?.known);
 });
 
+test("a session that is paused takes no room, and one without time is still in pieces", () => {
+  const session = new Session();
+  const recording = new Recording({ seconds: 20, bytes: 1e5 });
+  const add = (data: string | ArrayBuffer) => {
+    const message = decode(data)!;
+    session.apply(message);
+    recording.add(data, message, session);
+  };
+  for (const [, data] of steps(20)) add(data);
+  const paused = JSON.stringify({ state: { t: 1.9, step: 19, paused: true } });
+  add(paused);
+  const { bytes } = recording;
+  for (let i = 0; i < 1000; i++) add(paused);
+  assert.equal(recording.bytes, bytes);
+  // What a client tells goes on; it has no time of its own.
+  for (let i = 0; i < 5000; i++) add(JSON.stringify({ client: { tool: 0, missed: i } }));
+  assert.ok(recording.bytes < 1.1e5, `${recording.bytes}`);
+});
+
+test("a client that left is shown no more", () => {
+  const session = new Session();
+  const state = (held: boolean) => JSON.stringify({ state: { t: 1, tools: [{ held }] } });
+  session.apply(decode(state(true)));
+  session.apply(decode('{"client": {"tool": 0, "age_ms": 7}}'));
+  assert.equal(session.clients.get(0)?.age_ms, 7);
+  session.apply(decode(state(false)));
+  assert.equal(session.clients.size, 0);
+});
+
 test("a seek shows what was there, whether it goes on, back, or a little", () => {
   const { playback, session } = play(record(600, 1e9, 1e9));
   for (const step of [300, 301, 40, 599, 1, 450]) {

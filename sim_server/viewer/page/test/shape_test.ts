@@ -97,3 +97,30 @@ test("the legend's top is a number one can read, rises at once and falls late", 
   assert.equal(scale.follow(0.0001, mm, 1000), 5);
   near(scale.follow(0.0001, mm, 9000), 0.5, 1e-12);
 });
+
+test("a place is as far from the surface as from its faces, edges and corners, whichever is nearest", () => {
+  const flat = (corners: number[], rest: number[]): Shape =>
+    new Shape({ ...(decode(tetrahedron(1)) as Topology), rest: Float32Array.from(rest), corners: Uint32Array.from(corners) });
+  // The last vertex is of no triangle: inside, or cut away.
+  const body = flat([0, 1, 2], [0, 0, 0, 0.03, 0, 0, 0, 0.03, 0, 0.01, 0.01, 0.004]);
+  near(body.distance([0.01, 0.01, 0.004]), 0.004, 1e-8); // over the face, 10 mm and more from any corner
+  near(body.distance([-0.003, 0.01, 0.004]), 0.005, 1e-8); // beside an edge
+  near(body.distance([0.02, 0.02, 0]), 0.01 / Math.SQRT2, 1e-8); // beyond the longest one
+  near(body.distance([0.033, -0.004, 0]), 0.005, 1e-8); // at a corner
+  near(body.distance([0.01, 0.01, -0.2]), 0.2, 1e-7);
+  near(flat([0, 1, 1], [0, 0, 0, 0.03, 0, 0]).distance([0.015, 0.02, 0]), 0.02, 1e-8); // one without an area
+  assert.equal(body.nearest([0.01, 0.01, 0.004]), 0);
+  const out = new Float32Array(4);
+  body.p[9] += 0.5;
+  body.displacement(out);
+  assert.equal(out[3], 0);
+});
+
+test("triangles that are more than are named are refused", () => {
+  const body = shape();
+  const had = body.m;
+  const one = { kind: "triangles" as const, version: 2, places: Uint32Array.of(0), corners: Uint32Array.of(0, 1, 2) };
+  assert.equal(body.cut({ ...one, m: had + 2 }), false);
+  assert.equal(body.cut({ ...one, m: 1e9 }), false);
+  assert.equal(body.cut({ ...one, m: had + 1 }), true);
+});

@@ -301,6 +301,45 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("states of a tool that waits to be let in are no ticks of its session") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.pcap";
+  {
+    CaptureOf capture(file);
+    for (std::uint64_t k = 1; k <= 3; ++k)
+      capture.state({.tick = 1, .t_ns = static_cast<std::int64_t>(k), .flags = ToolState::kDeviceLost}, k);
+    for (std::uint64_t tick = 1; tick <= 101; ++tick) {
+      ToolState state = state_at(tick, 0);
+      state.t_ns += 3600'000'000'000;  // up for an hour by then
+      capture.state(state, 3 + tick);
+    }
+    capture.close();
+  }
+  CHECK(survey(file, kQuiet).runs[0].ticks_hz() == Approx(500));
+  const auto ticks = all_ticks(file, 0);
+  REQUIRE(ticks.size() == 101);
+  CHECK(ticks[0].state.flags == 0);
+}
+
+TEST_CASE("at a higher rate what lasts until the next tick is of all ticks until then") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.pcap";
+  {
+    CaptureOf capture(file);
+    for (std::uint64_t tick = 1; tick <= 100; ++tick) {
+      ToolState state = state_at(tick, 0);
+      if (tick >= 30 && tick < 60) state.flags = ToolState::kClutched;
+      capture.state(state, tick);
+    }
+    capture.close();
+  }
+  CapturedSession session(file, 0);
+  Resampler resampler(session, 2000);
+  int clutched = 0;
+  for (CapturedTick tick; resampler.next(tick);) clutched += tick.state.flags == ToolState::kClutched ? 1 : 0;
+  CHECK(clutched == 4 * 30);
+}
+
 TEST_CASE("at another rate no event of a tick is lost or doubled, and a long gap is not filled") {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.pcap";
@@ -322,7 +361,8 @@ TEST_CASE("at another rate no event of a tick is lost or doubled, and a long gap
     std::map<int, int> events;
     std::size_t ticks = 0;
     for (CapturedTick tick; resampler.next(tick); ++ticks) ++events[tick.state.flags];
-    CHECK(events[ToolState::kDeviceLost] == 1);
+    CHECK(events[ToolState::kDeviceLost] ==
+          std::max(1, static_cast<int>(rate / 500)));  // it lasts for a tick
     CHECK(events[ToolState::kRearmed] == 1);
     CHECK(static_cast<double>(ticks) == Approx(0.2 * rate).margin(3 + 0.002 * rate));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <vector>
 
@@ -11,11 +12,14 @@
 using namespace palpate;
 using namespace palpate::client;
 
-TEST_CASE("no contact, no errors") {
+TEST_CASE("no contact, no errors: what was not measured is no number") {
   ErrorTable table(500);
   for (int i = 0; i < 10; ++i) table.add(Vec3::Zero(), Reference(Vec3::Zero()));
-  CHECK(table.metrics().mean_percent == 0);
-  CHECK(table.metrics().max_percent == 0);
+  const ErrorMetrics m = table.metrics();
+  CHECK(std::isnan(m.mean_percent));
+  CHECK(std::isnan(m.max_percent));
+  CHECK(std::isnan(m.paper_max_force_percent));
+  CHECK(to_json(m).dump().find(R"("overshoot_percent":null)") != std::string::npos);
 }
 
 TEST_CASE("errors of one tick in ten, by hand") {

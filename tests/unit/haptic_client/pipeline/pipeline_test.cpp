@@ -132,6 +132,20 @@ TEST_CASE("after an outage the laws do not draw a line from before it") {
   CHECK(last.norm() > 0);
 }
 
+TEST_CASE("a server that begins anew, at once, is met as after an outage: no line from before, and softly") {
+  Pipeline pipeline = make(2);  // linear in position
+  Time t = warm_up(pipeline, {0, 0.5, 0});
+  REQUIRE(pipeline.tick({.t = t}, nullptr).f_D.norm() == Approx(0.5));
+  // Its first samples, of another organ, 20 ms after the last of the one before.
+  for (std::uint64_t number = 1; number <= 2; ++number) {
+    t += 10ms;
+    const ForceSample fresh = sample_at(number, t, {0, 1e-6 * static_cast<double>(number), 0}, {0, 1.5, 0});
+    const Vec3 f = pipeline.tick({.t = t}, &fresh).f_D;
+    CHECK(f.norm() <= 1.5 * 0.020 + 1e-12);  // of a soft start of 1 s
+  }
+  CHECK(pipeline.stats().overtaken == 0);
+}
+
 TEST_CASE("duplicates and latecomers do not reach the law") {
   Pipeline pipeline = make(1);  // linear in time: two equal times would divide by zero
   Time t = warm_up(pipeline, {0, 1, 0});

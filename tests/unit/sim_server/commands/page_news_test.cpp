@@ -1,5 +1,6 @@
 #include "sim_server/commands/page_news.h"
 
+#include <cmath>
 #include <limits>
 
 #include "tests/support/catch.h"
@@ -32,4 +33,41 @@ TEST_CASE("page news: ticks have a time of ours, whatever the client's clock say
     CHECK(ticks.t + 2 * 0.002 == Approx(to_seconds(now - began)).margin(1e-5));
     now += std::chrono::milliseconds(30);
   }
+}
+
+TEST_CASE("page news: nothing of a client that left is said of the next") {
+  const std::vector<Vec3> rest(3, Vec3::Zero());
+  ViewerFeed feed(rest);
+  PageMailboxes mailboxes;
+  Doorbell bell;
+  const Time began = std::chrono::seconds(1000);
+  const auto hooks = page_hooks(feed, 1, mailboxes, bell, began);
+  Time now = began;
+  const auto tell = [&](std::uint8_t named, float error) {
+    now += std::chrono::seconds(1);
+    protocol::Telemetry told;
+    told.t_ns = now.count();
+    told.laws = 2;
+    told.named = named;
+    told.error_percent = error;
+    mailboxes.tools[0].telemetry.push(told);
+    hooks.news(now);
+  };
+  const auto hold = [&](bool held) {
+    PeerCounts counts;
+    counts.held = held;
+    mailboxes.tools[0].peer.write(counts);
+    hooks.news(now);
+  };
+  hold(true);
+  tell(0, 3);
+  CHECK(feed.clients[0].errors_percent[0] == 3);
+  CHECK(std::isnan(feed.clients[0].errors_percent[1]));  // not told yet
+  tell(1, 4);
+  CHECK(feed.clients[0].errors_percent[1] == 4);
+  hold(false);
+  hold(true);
+  tell(0, 5);
+  CHECK(feed.clients[0].errors_percent[0] == 5);
+  CHECK(std::isnan(feed.clients[0].errors_percent[1]));
 }

@@ -75,3 +75,44 @@ TEST_CASE("pictures: what is held and what a tool reaches is told, and the loads
     CHECK(static_cast<double>(picture.positions[3 * v + 1]) ==
           Approx(simulation.positions()[v][1]).margin(1e-7));
 }
+
+TEST_CASE("pictures: of a tool that nobody holds any more no force is shown, nor the errors of whom it was") {
+  SeenTool seen;
+  ServedTools::Outcome outcome;
+  outcome.force.force = Vec3(0, 1, 0);
+  outcome.force.contacts = 2;
+  outcome.answer.emplace();
+  outcome.answer->number = 7;
+  outcome.answer->flags = protocol::ForceSample::kHasErrors;
+  outcome.answer->errors.mesh = {ErrorSource::kMeasured, 12};
+  SessionInput input;
+  input.session = 1;
+  show_tool(input, &outcome, 1, seen);
+  CHECK(seen.f_W == Vec3(0, 1, 0));
+  CHECK(seen.contact);
+  CHECK(seen.errors.mesh.percent == 12);
+  show_tool(input, nullptr, 2, seen);  // no step meanwhile: it feels what it felt
+  CHECK(seen.f_W == Vec3(0, 1, 0));
+  input.session = 0;
+  show_tool(input, nullptr, 3, seen);
+  CHECK(seen.f_W.isZero(0));
+  CHECK_FALSE(seen.contact);
+  CHECK_FALSE(seen.errors.mesh.known());
+}
+
+TEST_CASE("pictures: how far from the plan something was cut is told where there is a plan, and a cut") {
+  Scene scene = coarse_block_scene("tensor_mass", ElementKind::kLinear);
+  scene.tools[0].cut_buttons = 1;
+  for (const bool planned : {false, true}) {
+    scene.cutting = Cutting{.where = "test"};
+    if (planned) scene.cutting->plan = CutPlan{.point = Vec3(0.03, 0, 0), .normal = Vec3(1, 0, 0)};
+    const Simulation simulation(scene, coarse_block());
+    Picture picture;
+    picture.positions.resize(3 * simulation.positions().size());
+    show_organ(simulation, picture);
+    REQUIRE(picture.resection.has_value());
+    CHECK(std::isnan(picture.resection->mean_distance));
+    CHECK(std::isnan(picture.resection->farthest));
+    CHECK(std::isnan(picture.resection->mean_parted_distance));
+  }
+}

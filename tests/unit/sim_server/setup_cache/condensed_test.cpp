@@ -138,8 +138,8 @@ TEST_CASE(
 TEST_CASE("condensed: what an interrupted writer left goes when something is kept, once it is old") {
   namespace fs = std::filesystem;
   const test::TemporaryFolder folder;
-  const fs::path old = folder.path() / "0123.setup.abcdef.part",
-                 live = folder.path() / "0123.setup.live00.part";
+  const fs::path old = folder.path() / "0123456789abcdef0123456789abcdef.setup.abcdef.part",
+                 live = folder.path() / "0123456789abcdef0123456789abcdef.setup.live00.part";
   for (const fs::path& part : {old, live}) std::ofstream(part) << "half";
   fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(2));
   int made = 0;

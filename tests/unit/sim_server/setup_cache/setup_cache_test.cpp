@@ -128,10 +128,13 @@ TEST_CASE("setup cache: clear removes what it wrote, and nothing else") {
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path());
   cache.keep({.key = key_of(1), .what = ""}, numbers(3));
-  write_bytes(folder.path() / "notes.txt", "mine");
-  write_bytes(folder.path() / "0123.setup.77.part", "half");  // of a writer that was interrupted
+  const std::vector<std::string> others{"notes.txt", "film.mkv.part", "windows.setup",
+                                        "0123456789abcdef0123456789abcdeF.setup", "a.setup.abcdef.part"};
+  for (const std::string& other : others) write_bytes(folder.path() / other, "mine");
+  write_bytes(folder.path() / "0123456789abcdef0123456789abcdef.setup.abcd77.part",
+              "half");  // of a writer that was interrupted
   CHECK(cache.clear().first == 2);
-  CHECK(bytes_of(folder.path() / "notes.txt") == "mine");
+  for (const std::string& other : others) CHECK(bytes_of(folder.path() / other) == "mine");
 }
 
 TEST_CASE("setup cache: a folder that cannot be written to costs a warning, no more") {

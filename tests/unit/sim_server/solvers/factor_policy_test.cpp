@@ -124,6 +124,13 @@ TEST_CASE("factor policy: a tiny residual that a fresh factor does not lessen is
   CHECK(iterate(1.5e-6) == Decision::kStop);  // the same rounding
   CHECK(iterate(1.7e-6) == Decision::kKeep);
 
+  // Learnt under large forces, it says nothing of small ones.
+  FactorPolicy light({});
+  CHECK(light.decide({{}, 1e3, 0.9e-6}, 1, true) != Decision::kStop);
+  CHECK(light.decide({{}, 1e3, 0.8e-6}, 0.9e-6, false) == Decision::kStop);
+  light.begin_step(1, false);
+  CHECK(light.decide({{}, 1, 1e-3}, 1, false) != Decision::kStop);
+
   // A tiny one that a stale factor leaves is not, whatever that factor has been through before.
   Iterations later{FactorPolicy({})};
   later(1);

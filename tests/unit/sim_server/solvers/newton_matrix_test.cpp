@@ -194,14 +194,15 @@ TEST_CASE(
 TEST_CASE("Newton matrix: bordered, the one from before vertices became two solves what the body is now") {
   const PartedBar bar;
   const FreeDofs dofs = bar.dofs();
-  for (const bool turned : {false, true}) {
-    CAPTURE(turned);
+  // Made at rest; or where the body is, and cut before anything has turned.
+  for (const auto& [turned, made_there] : {std::pair{false, false}, {true, false}, {true, true}}) {
+    CAPTURE(turned, made_there);
     Solid solid(bar.whole, corotational(ElementKind::kLinear));
     NewtonMatrix matrix(solid, dofs, {}, "test");
     Solid::Scratch scratch(solid);
-    matrix.build(solid, solid.rest(), solid.masses(), {}, kC, scratch);
     const std::vector<Vec3> x = turned ? carried(solid) : solid.rest();
-    matrix.turn_to(solid, x);
+    matrix.build(solid, made_there ? x : solid.rest(), solid.masses(), {}, kC, scratch);
+    if (!made_there) matrix.turn_to(solid, x);
     bar.note_shapes(solid, x, matrix);
     solid.reshape(bar.parted, bar.beyond);
     matrix.part(std::span(bar.splits).first(3));  // at once or by and by

@@ -42,6 +42,7 @@ TEST_CASE("a force that is a tenth too large is wrong by a tenth of its mean, of
   CHECK(errors.surface == Approx(10).epsilon(1e-9));
   CHECK(errors.along.size() == 200);
   CHECK(errors.along.back() == Approx(10 * 200 / std::sqrt(201. * 401 / 6)).epsilon(1e-9));
+  CHECK(errors.worst_force == errors.along.back());
 }
 
 TEST_CASE("what is right but late is felt late, by the step and the link, and held for a step") {

@@ -149,6 +149,35 @@ TEST_CASE("viewer: a page that tells what it drew has at most four surfaces on t
   CHECK(session.page.step == 50);
 }
 
+TEST_CASE("viewer: a step that is shown again, as when other pages come and go while paused, is on its way once") {
+  Session session;
+  session.link.greet(false);
+  session.step(1);
+  session.take_all();
+  session.link.shown(1);
+  for (int other = 0; other < 10; ++other) {
+    session.step(2);
+    session.take_all();
+  }
+  session.step(3, 0.5F);
+  session.take_all();
+  CHECK(session.page.step == 3);
+  CHECK(session.page.positions[0] == Approx(0.5).margin(1e-4));
+}
+
+TEST_CASE("viewer: a page that is gone holds no button down") {
+  PageLink link(1s);
+  CHECK(link.released().empty());
+  link.pointed({.tool = 0, .p_W = {1, 0, 0}, .buttons = 1, .number = 1});
+  link.pointed({.tool = 1, .p_W = {2, 0, 0}, .buttons = 1, .number = 2});
+  link.pointed({.tool = 1, .p_W = {3, 0, 0}, .buttons = 0, .number = 3});
+  link.pointed({.tool = 0, .p_W = {4, 0, 0}, .buttons = 2, .number = 4});
+  REQUIRE(link.released().size() == 1);
+  CHECK(link.released()[0].tool == 0);
+  CHECK(link.released()[0].p_W == Vec3(4, 0, 0));
+  CHECK(link.released()[0].buttons == 0);
+}
+
 TEST_CASE("viewer: what is cut away is told place by place, and wholly to a page that comes late") {
   Session session;
   session.link.greet(false);
@@ -257,6 +286,9 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   client.intervention_counts = {3};
   session.feed->clients[0] = client;
   ++session.feed->client_news[0];
+  session.maker->look(session.time);
+  CHECK(session.take_all() == 0);  // of a client that has left
+  session.feed->peers[0].held = true;
   ClientTicks ticks{.tool = 0, .laws = 2, .count = 1};
   for (int k = 0; k < 20; ++k) {
     session.feed->ticks.push_back(ticks);
