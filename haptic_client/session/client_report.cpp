@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/core.h>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "common/text.h"
@@ -96,7 +97,7 @@ Json timeline_report(const SessionTimeline& timeline, const Scoring& scoring) {
   return {{"cell_s", to_seconds(timeline.width())}, {"cells", cells}};
 }
 
-/// Mean over the cells [from, to) of what `value` says of each, weighted by `weight`.
+/// Mean over the cells [from, to) of what `value` says of each, weighted by `weight`; NaN: there is none.
 double mean_over(const Json& cells, std::size_t from, std::size_t to, const char* weight, auto value) {
   double sum = 0, count = 0;
   for (std::size_t i = from; i < to; ++i) {
@@ -104,7 +105,12 @@ double mean_over(const Json& cells, std::size_t from, std::size_t to, const char
     sum += w * value(cells[i]);
     count += w;
   }
-  return per(sum, count);
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// "-" of what was not measured.
+std::string two_decimals(double value) {
+  return std::isnan(value) ? "-" : fmt::format("{:.2f}", value);
 }
 
 void print_drift(const Json& tool) {
@@ -112,8 +118,8 @@ void print_drift(const Json& tool) {
   const std::size_t n = cells.size(), part = n / 4;
   if (part == 0) return;
   const auto drift = [&](const char* weight, auto value) {
-    return fmt::format("{:.2f} -> {:.2f}", mean_over(cells, 0, part, weight, value),
-                       mean_over(cells, n - part, n, weight, value));
+    return fmt::format("{} -> {}", two_decimals(mean_over(cells, 0, part, weight, value)),
+                       two_decimals(mean_over(cells, n - part, n, weight, value)));
   };
   const auto column = [](const char* key) {
     return [key](const Json& cell) { return cell[key].get<double>(); };
