@@ -8,7 +8,8 @@
 namespace palpate::client {
 
 /// How far a law was off, over a run. Percentages. e = F - F_ref, at every tick where the reference or the
-/// law pushes; "peak" is the largest |F_ref| of the run. Where the reference never pushed, NaN, null in reports.
+/// law pushes; "peak" is the largest |F_ref| of the run. Where the reference never pushed, NaN, null in
+/// reports.
 struct ErrorMetrics {
   double mean_percent = 0;       ///< mean |e| / RMS of |F_ref| in contact
   double p99_percent = 0;        ///< 99th percentile of |e| / peak

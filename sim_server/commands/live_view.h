@@ -48,7 +48,7 @@ class LiveView final : public LoopObserver {
   int pages_ = 0;      // when it last looked
   bool owed_ = false;  // a picture of what was stepped
   bool wanted_field_ = false;
-  Picture newest_;     // without positions
+  Picture newest_;  // without positions
 };
 
 }  // namespace palpate::sim

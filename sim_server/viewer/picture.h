@@ -30,7 +30,7 @@ struct SceneFacts {
   std::vector<std::string> gallery{};  ///< other scenes that may be chosen; empty: none
   bool pausable = false;               ///< whether who has the token may pause it
   bool recorded = false;
-  bool blades = false;  ///< whether one may part the organ
+  bool blades = false;                ///< whether one may part the organ
   std::vector<std::string> fields{};  ///< what the organ can be coloured by here
 };
 
@@ -58,8 +58,8 @@ struct SeenTool {
   DiscretisationErrors errors{};  ///< of that force, where its client asks for them
 };
 
-/// What a resection has come to. m^3, m^2, m. Distances are from the plan: of what heat removed, and of what a
-/// blade parted; NaN where there is none.
+/// What a resection has come to. m^3, m^2, m. Distances are from the plan: of what heat removed, and of what
+/// a blade parted; NaN where there is none.
 struct SeenResection {
   std::uint64_t tetrahedra = 0;  ///< gone
   double volume = 0, cut_area = 0;

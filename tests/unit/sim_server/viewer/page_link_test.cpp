@@ -149,7 +149,8 @@ TEST_CASE("viewer: a page that tells what it drew has at most four surfaces on t
   CHECK(session.page.step == 50);
 }
 
-TEST_CASE("viewer: a step that is shown again, as when other pages come and go while paused, is on its way once") {
+TEST_CASE(
+    "viewer: a step that is shown again, as when other pages come and go while paused, is on its way once") {
   Session session;
   session.link.greet(false);
   session.step(1);
