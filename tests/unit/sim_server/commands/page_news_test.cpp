@@ -8,13 +8,26 @@
 using namespace palpate;
 using namespace palpate::sim;
 
-TEST_CASE("page news: ticks have a time of ours, whatever the client's clock says") {
-  const std::vector<Vec3> rest(3, Vec3::Zero());
-  ViewerFeed feed(rest);
+namespace {
+
+/// A page's feed of one tool.
+struct NewsBench {
+  std::vector<Vec3> rest = std::vector<Vec3>(3, Vec3::Zero());
+  ViewerFeed feed{rest};
   PageMailboxes mailboxes;
   Doorbell bell;
-  const Time began = std::chrono::seconds(1000);
-  const auto hooks = page_hooks(feed, 1, mailboxes, bell, began);
+  Time began = std::chrono::seconds(1000);
+  ViewerFeed::Hooks hooks = page_hooks(feed, 1, mailboxes, bell, began);
+};
+
+}  // namespace
+
+TEST_CASE("page news: ticks have a time of ours, whatever the client's clock says") {
+  NewsBench bench;
+  ViewerFeed& feed = bench.feed;
+  PageMailboxes& mailboxes = bench.mailboxes;
+  const ViewerFeed::Hooks& hooks = bench.hooks;
+  const Time began = bench.began;
   // Each is far from the one before, so it counts as a clock set anew: its newest tick is of now.
   Time now = began + std::chrono::seconds(5);
   constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
@@ -36,12 +49,11 @@ TEST_CASE("page news: ticks have a time of ours, whatever the client's clock say
 }
 
 TEST_CASE("page news: nothing of a client that left is said of the next") {
-  const std::vector<Vec3> rest(3, Vec3::Zero());
-  ViewerFeed feed(rest);
-  PageMailboxes mailboxes;
-  Doorbell bell;
-  const Time began = std::chrono::seconds(1000);
-  const auto hooks = page_hooks(feed, 1, mailboxes, bell, began);
+  NewsBench bench;
+  ViewerFeed& feed = bench.feed;
+  PageMailboxes& mailboxes = bench.mailboxes;
+  const ViewerFeed::Hooks& hooks = bench.hooks;
+  const Time began = bench.began;
   Time now = began;
   const auto tell = [&](std::uint8_t named, float error) {
     now += std::chrono::seconds(1);
