@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "common/fast_blas.h"
 #include "common/program.h"
 #include "sim_server/commands/condense.h"
 #include "sim_server/commands/explain.h"
@@ -75,6 +76,7 @@ CLI::App* add_run(CLI::App& app, sim::ServerOptions& options) {
   command
       ->add_option("--record-mb", options.record_mb,
                    "Go on in a new file at this size (F-2.pcap, ...); ten are kept")
+      ->needs("--record")
       ->check(CLI::Range(0.01, 1e6));
   add_resection_option(command, options.resection);
   add_viewer_option(command, options.viewer);
@@ -277,6 +279,8 @@ CLI::App* add_view(CLI::App& app, sim::ViewOptions& options) {
   command->add_option("--seconds", options.seconds, "Stop after so many seconds (default: at Ctrl-C)");
   add_cache_or_none(command, options.cache);
   add_condensed(command, options.cache);
+  for (const char* of_scene : {"--cache", "--no-cache", "--condensed"})
+    command->get_option(of_scene)->needs("--scene");
   command->footer("Example: sim_server view F.pcap --scene configs/scenes/liver.toml");
   return command;
 }
@@ -390,5 +394,6 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  palpate::begin_with_fast_blas(argv);
   return palpate::run_program("sim_server", argc, argv, &run);
 }

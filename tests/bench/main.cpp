@@ -1,10 +1,12 @@
 #include <cstdio>
 
+#include "common/fast_blas.h"
 #include "tests/bench/bench.h"
 
 int main(int argc, char** argv) {
   using namespace palpate;
   using namespace palpate::bench;
+  begin_with_fast_blas(argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {
