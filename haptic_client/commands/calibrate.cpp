@@ -40,8 +40,8 @@ void run_loop(const std::stop_token& stop, Device& device, Calibration& calibrat
     if (heartbeat != nullptr) heartbeat->beat();
     deadline = std::max(deadline + period, now());  // what is late is given up
   }
-  device.stop();
-  if (heartbeat != nullptr) heartbeat->end();
+  const bool at_rest = device.stop();
+  if (heartbeat != nullptr) heartbeat->end(at_rest);
 }
 
 std::string what_to_do(const CalibrationProgress& progress, double mass) {
@@ -197,7 +197,7 @@ int calibrate(ClientConfig config, double mass) {
     if (const auto refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
     interrupted = guide(progress, *device, config.device, mass);
   }
-  if (interrupted) fail_at_run_time("interrupted; nothing was measured, the force is off");
+  if (interrupted) fail_at_run_time("interrupted; nothing was measured");
   if (calibration.trouble() != Trouble::kNone) explain(calibration, config, mass, device->status());
   print_result(calibration);
   return 0;

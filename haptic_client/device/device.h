@@ -33,8 +33,13 @@ class Device {
     (void)p_D;
     (void)buttons;
   }
-  /// The last call: zero force, and it has left when this returns (half a second at most).
-  virtual void stop() noexcept { write(Vec3::Zero()); }
+  /// The last call: zero force. Whether it has left when this returns, or there never was any; if not, the
+  /// device is free for who takes it over. Waits for that, where transfers hang for seconds; the guardian,
+  /// who watches, does not wait so long.
+  virtual bool stop() noexcept {
+    write(Vec3::Zero());
+    return true;
+  }
   /// Writes so far whose force its motors could not give whole. The haptic thread, or once it has ended.
   virtual std::uint64_t cut_by_motors() const noexcept { return 0; }
   /// What the user should know or do, a static text; empty where there is nothing to say. Any thread.

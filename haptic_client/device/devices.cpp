@@ -44,7 +44,8 @@ std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
                                   settings.falcon.torque_constant, settings.falcon.frozen_fade);
 }
 
-/// All that are there, if no port was asked for: which one the dead process had is not known.
+/// All that are there, if no port was asked for: which one the dead process had is not known, and the system
+/// may not have taken it back yet.
 int make_falcon_safe(const DeviceSettings& settings) {
 #ifdef PALPATE_WITH_USB
   if (!settings.port.empty()) {
@@ -58,7 +59,7 @@ int make_falcon_safe(const DeviceSettings& settings) {
     if (look > 0) sleep_until(now() + std::chrono::milliseconds(100));
     std::vector<std::unique_ptr<UsbTransport>> ports;
     for (const UsbDevice& device : find_usb({kFalconIds})) {
-      if (device.access.empty()) ports.push_back(std::make_unique<UsbPort>(UsbKind{kFalconIds}, device.path));
+      if (!device.locked) ports.push_back(std::make_unique<UsbPort>(UsbKind{kFalconIds}, device.path));
     }
     silenced = silence_falcons(ports);
   }

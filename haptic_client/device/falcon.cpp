@@ -85,7 +85,7 @@ Falcon::~Falcon() {
 
 /// What is on the way goes first: a port takes one transfer at a time. Until the zero that follows it has
 /// left, four times at most.
-void Falcon::stop() noexcept {
+bool Falcon::stop() noexcept {
   constexpr int kTimes = 4;
   bool left = false;
   for (int i = 0; i < kTimes && !left; ++i) {
@@ -95,6 +95,21 @@ void Falcon::stop() noexcept {
     drain(*port_);
     left = free && port_->state() == UsbTransport::State::kIdle;
   }
+  if (left) machine_.note_at_rest();
+  return !machine_.may_push() || stop_after_fault();
+}
+
+/// A transfer failed under force, and the port is closed by now, or about to be: it is opened anew.
+bool Falcon::stop_after_fault() noexcept {
+  constexpr int kTimes = 5;
+  for (int i = 0; i < kTimes; ++i) {
+    if (i > 0) sleep_until(now() + std::chrono::milliseconds(10));
+    port_->close();
+    if (!port_->open(now() + i * std::chrono::seconds(1)) || !send_zero(*port_)) continue;
+    machine_.note_at_rest();
+    return true;
+  }
+  return false;
 }
 
 DeviceReading Falcon::read(Time now) noexcept {

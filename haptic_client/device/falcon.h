@@ -39,11 +39,13 @@ class Falcon : public Device {
   ~Falcon() override;
   DeviceReading read(Time now) noexcept override;
   void write(const Vec3& f_D) noexcept override;
-  void stop() noexcept override;
+  bool stop() noexcept override;
   std::uint64_t cut_by_motors() const noexcept override { return cut_; }
   const char* status() const noexcept override { return machine_.message(); }
 
  private:
+  bool stop_after_fault() noexcept;
+
   std::unique_ptr<UsbTransport> port_;
   FalconMachine machine_;
   double torque_constant_;

@@ -251,6 +251,9 @@ void FalconMachine::command(UsbTransport& port, const std::array<std::int16_t, 3
   pushes_ = std::any_of(command.torque.begin(), command.torque.end(),
                         [](std::int16_t t) { return t >= kPushing || t <= -kPushing; });
   for (std::int16_t& t : command.torque) t = static_cast<std::int16_t>(gain_ * t);
+  if (zero_goes_) may_push_ = false;  // it has left
+  zero_goes_ = command.torque == std::array<std::int16_t, 3>{};
+  if (!zero_goes_) may_push_ = true;
   port.write(encode_falcon(command));
 }
 
@@ -270,6 +273,7 @@ void FalconMachine::lose(UsbTransport& port, Time now) noexcept {
 
 void FalconMachine::give_up(UsbTransport& port, Time now, Time wait, const char* message) noexcept {
   port.close();
+  zero_goes_ = false;  // it may not have left
   message_ = message;
   enter(FalconPhase::kClosed, now);
   retry_at_ = now + wait;

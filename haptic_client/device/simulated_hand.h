@@ -30,8 +30,14 @@ class SimulatedHand {
   void push(const Vec3& force) noexcept { force_ = force; }
   const Vec3& place() const noexcept { return p_; }
 
-  static constexpr double kSubStep =
-      0.25e-3;  ///< s, at most: w dt = 0.1 for 5 kN/m on 30 g, well inside stability
+  static constexpr double kSubStep = 0.25e-3;  ///< s, at most
+  /// Whether sub-steps of that follow it, with some room: semi-implicit Euler of a spring k and a damper c on
+  /// m is stable where h^2 k / m + 2 h c / m < 4.
+  static bool is_stable(const OperatorSettings& hand) noexcept {
+    constexpr double kMost = 3;
+    return kSubStep * (kSubStep * hand.hand_stiffness + 2 * (hand.hand_damping + hand.device_damping)) <
+           kMost * hand.mass;
+  }
   static constexpr double kLongest = 0.1;  ///< s between two readings; after more the hand has paused, too
 
  private:

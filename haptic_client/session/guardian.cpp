@@ -20,7 +20,11 @@ namespace {
 constexpr int kLook = 100;      // ms
 constexpr int kMostStill = 15;  // looks without a heartbeat, once there was one
 
-enum class Ending { kGoodbye, kDied, kStopped };
+enum class Ending { kGoodbye, kDied, kStopped, kLeftPushing };
+
+bool left_pushing(const Heartbeat& beats) {
+  return beats.ticks == Heartbeat::kLeftPushing;
+}
 
 /// One loop, as it was seen last.
 struct SeenLoop {
@@ -29,19 +33,21 @@ struct SeenLoop {
 
   bool stands_still(const Heartbeat& beats) {
     const std::uint64_t now = beats.ticks;
-    still = now == ticks && now > 0 && now != Heartbeat::kEnded ? still + 1 : 0;
+    still = now == ticks && now > 0 && now < Heartbeat::kLeftPushing ? still + 1 : 0;
     ticks = now;
     return still >= kMostStill;
   }
 };
 
-/// Waits until the client says goodbye, dies, or one of its loops stands still.
+/// Waits until the client says goodbye, dies, or one of its loops stands still or has left its device
+/// pushing.
 Ending wait_for_end(int pipe, std::span<const Heartbeat> beats) {
   std::vector<SeenLoop> loops(beats.size());
   for (;;) {
     pollfd end{pipe, POLLIN, 0};
     const int ready = poll(&end, 1, kLook);
     char byte;
+    if (std::ranges::any_of(beats, left_pushing)) return Ending::kLeftPushing;
     if (ready > 0) return read(pipe, &byte, 1) > 0 ? Ending::kGoodbye : Ending::kDied;
     for (std::size_t i = 0; i < loops.size(); ++i) {
       if (loops[i].stands_still(beats[i])) return Ending::kStopped;
@@ -49,15 +55,14 @@ Ending wait_for_end(int pipe, std::span<const Heartbeat> beats) {
   }
 }
 
-void make_safe(const ClientConfig& config) {
+void make_safe(const ClientConfig& config, const char* why) {
   const std::string name = config.device.name + (config.device.port.empty() ? "" : ":") + config.device.port;
   try {
     if (row_of(config.device).make_safe(config.device) == 0)
       fail_at_run_time("it is not plugged in, or another program holds it");
-    log::warning("the client died; zero force sent to {}", name);
+    log::warning("{}; zero force sent to {}", why, name);
   } catch (const std::exception& e) {
-    log::error("the client died; {} could not be taken over ({}): if it still pushes, switch it off", name,
-               e.what());
+    log::error("{}; {} could not be taken over ({}): if it still pushes, switch it off", why, name, e.what());
   }
 }
 
@@ -71,11 +76,14 @@ void guard(int pipe, pid_t client, std::span<const Heartbeat> beats, std::span<c
     log::error("the client stands still with a device in its hand; it is ended");
     kill(client, SIGKILL);
   }
-  for (const ClientConfig& config : configs) {  // at the same time: one must not wait for another
-    if (row_of(config.device).make_safe == nullptr) continue;
+  const bool some = ending == Ending::kLeftPushing;   // the client lives, and holds the others
+  for (std::size_t i = 0; i < configs.size(); ++i) {  // at the same time: one must not wait for another
+    const ClientConfig& config = configs[i];
+    if (row_of(config.device).make_safe == nullptr || (some && !left_pushing(beats[i]))) continue;
     const pid_t child = fork();
     if (child > 0) continue;
-    make_safe(config);  // here, where there can be no other process
+    make_safe(config, some ? "the device did not take its last zero"
+                           : "the client died");  // here, where there can be no other process
     if (child == 0) _exit(0);
   }
   while (wait(nullptr) > 0) {

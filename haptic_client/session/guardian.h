@@ -21,7 +21,8 @@ class Guardian {
   /// started and any device opened. Throws `Error` when the system gives no process.
   explicit Guardian(std::span<const ClientConfig> configs);
   ~Guardian() { dismiss(); }
-  /// All is well: the devices have had their zero. The guardian goes without touching them.
+  /// All loops have ended. The guardian goes, and touches only devices that were left pushing (`Heartbeat`),
+  /// as it does as soon as one is.
   void dismiss();
   /// For the haptic loop of the device `i` of `configs`. Null: nothing is guarded.
   Heartbeat* heartbeat(std::size_t i) const { return beats_ == nullptr ? nullptr : beats_ + i; }

@@ -34,8 +34,8 @@ void HapticLoop::run(const std::stop_token& stop) noexcept {
     tell_page(result);
     deadline += period_;
   }
-  device_.stop();
-  if (heartbeat != nullptr) heartbeat->end();
+  const bool at_rest = device_.stop();
+  if (heartbeat != nullptr) heartbeat->end(at_rest);
 }
 
 TickResult HapticLoop::tick() noexcept {

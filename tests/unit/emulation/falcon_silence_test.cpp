@@ -45,6 +45,33 @@ class WatchedPort : public test::EmulatedPort {
   int& tries_before_;
 };
 
+/// A port of which a transfer fails when that is asked for; then it must be opened again, if it can be.
+class FailingPort : public test::EmulatedPort {
+ public:
+  using EmulatedPort::EmulatedPort;
+  void fail(bool for_good) {
+    lost_ = true;
+    gone_ = for_good;
+  }
+  bool open(Time now) noexcept override {
+    if (gone_) return false;
+    lost_ = false;
+    return EmulatedPort::open(now);
+  }
+  void close() noexcept override {
+    lost_ = false;
+    EmulatedPort::close();
+  }
+  bool write(std::span<const std::byte> out) noexcept override {
+    return state() == State::kIdle && EmulatedPort::write(out);
+  }
+  State state() const noexcept override { return lost_ ? State::kLost : EmulatedPort::state(); }
+  const char* trouble() const noexcept override { return lost_ ? "a transfer failed" : ""; }
+
+ private:
+  bool lost_ = false, gone_ = false;
+};
+
 /// A port whose first transfers stay on the way for so many looks at it.
 class SlowPort : public test::EmulatedPort {
  public:
@@ -61,6 +88,27 @@ class SlowPort : public test::EmulatedPort {
 nlohmann::json state_of(emulation::Falcon& falcon) {
   return nlohmann::json::parse(falcon.state(0));
 }
+
+/// A homed Falcon under force.
+template <class Port>
+struct Pushing {
+  explicit Pushing(emulation::Falcon& falcon)
+      : owned(std::make_unique<Port>(falcon)), port(*owned), device(std::move(owned), {}, 10000, 1) {
+    bool valid = false;
+    for (int tick = 0; tick < 5000 && !valid; ++tick) {
+      port.advance(t += std::chrono::milliseconds(1));
+      valid = device.read(t).valid;
+      device.write(Vec3::Zero());
+    }
+    REQUIRE(valid);
+    device.write({0, 2, 0});
+    REQUIRE(state_of(falcon)["dac"] != nlohmann::json({0, 0, 0}));
+  }
+  std::unique_ptr<Port> owned;
+  Port& port;
+  Falcon device;
+  Time t = Time::zero();
+};
 
 }  // namespace
 
@@ -85,20 +133,33 @@ TEST_CASE("a Falcon that another program holds does not keep the dead client's w
 
 TEST_CASE("a Falcon that is let go of gets its zero, also when its last force is held up for a second") {
   emulation::Falcon falcon({.loaded = true, .homed = true});
-  auto owned = std::make_unique<SlowPort>(falcon);
-  SlowPort& port = *owned;
-  Falcon device(std::move(owned), {}, 10000, 1);
-  Time t = Time::zero();
-  bool valid = false;
-  for (int tick = 0; tick < 5000 && !valid; ++tick) {
-    port.advance(t += std::chrono::milliseconds(1));
-    valid = device.read(t).valid;
-    device.write(Vec3::Zero());
-  }
-  REQUIRE(valid);
-  device.write({0, 2, 0});
-  REQUIRE(state_of(falcon)["dac"] != nlohmann::json({0, 0, 0}));
-  port.hold_up(400);  // looked at each 2 ms: beyond what one wait for it bears
-  device.stop();
+  Pushing<SlowPort> held(falcon);
+  held.port.hold_up(400);  // looked at each 2 ms: beyond what one wait for it bears
+  CHECK(held.device.stop());
   CHECK(state_of(falcon)["dac"] == nlohmann::json({0, 0, 0}));
+}
+
+TEST_CASE("a Falcon of which a transfer failed under force gets its zero at the end all the same") {
+  const bool looked_at = GENERATE(false, true);  // whether the driver has seen it, and waits to try again
+  emulation::Falcon falcon({.loaded = true, .homed = true});
+  Pushing<FailingPort> held(falcon);
+  held.port.fail(false);
+  if (looked_at) held.device.read(held.t += std::chrono::milliseconds(1));
+  REQUIRE(state_of(falcon)["dac"] != nlohmann::json({0, 0, 0}));
+  CHECK(held.device.stop());
+  CHECK(state_of(falcon)["dac"] == nlohmann::json({0, 0, 0}));
+}
+
+TEST_CASE("a Falcon that cannot be reached any more is said to push where it may, and only there") {
+  const bool pushes = GENERATE(true, false);
+  emulation::Falcon falcon({.loaded = true, .homed = true});
+  Pushing<FailingPort> held(falcon);
+  for (int tick = 0; tick < 3 && !pushes; ++tick) {
+    held.port.advance(held.t += std::chrono::milliseconds(1));
+    held.device.read(held.t);
+    held.device.write(Vec3::Zero());
+  }
+  held.port.fail(true);
+  held.device.read(held.t += std::chrono::milliseconds(1));
+  CHECK(held.device.stop() == !pushes);
 }
