@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "common/csv.h"
 #include "common/error.h"
@@ -16,17 +17,32 @@ constexpr const char* kColumns =
     "cut_area_cm2,mean_distance_mm,farthest_mm,heat_J,elastic_J,kinetic_J,hot_s,contact_s,parted_cm2,"
     "mean_parted_distance_mm,at_end_s\n";
 
-std::string row_text(const ResectionRow& row) {
+/// Distances from the plan of what was removed, and of what was parted; nothing where there is no plan, or
+/// none of it yet.
+struct FromPlan {
+  std::optional<double> mean, farthest, mean_parted;  // m
+
+  FromPlan(const ResectionTotals& all, bool planned) {
+    if (planned && all.tetrahedra > 0) mean = all.mean_distance(), farthest = all.farthest;
+    if (planned && all.parted_area > 0) mean_parted = all.mean_parted_distance();
+  }
+};
+
+/// mm, or an empty cell.
+std::string cell_of(const std::optional<double>& metres) {
+  return metres ? fmt::format("{:.6g}", 1e3 * *metres) : "";
+}
+
+std::string row_text(const ResectionRow& row, bool planned) {
   const ResectionTotals& all = row.totals;
+  const FromPlan away(all, planned);
   return fmt::format(
-      "{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:."
-      "6g},"
-      "{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n",
+      "{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{},{},{:.6g},{},{},{:.6g},{:.6g},{:.6g},"
+      "{:.6g},{:.6g},{:.6g},{},{:.6g}\n",
       row.t, row.tool + 1, row.p_W.x(), row.p_W.y(), row.p_W.z(), row.f_W.norm(), row.contact ? 1 : 0,
       all.tetrahedra, 1e6 * all.volume, 1e6 * all.dropped_volume, all.dropped_pieces, all.loose_pieces,
-      1e4 * all.cut_area, 1e3 * all.mean_distance(), 1e3 * all.farthest, all.heat, all.elastic, all.kinetic,
-      all.hot_time, all.contact_time, 1e4 * all.parted_area, 1e3 * all.mean_parted_distance(),
-      all.time_at_end);
+      1e4 * all.cut_area, cell_of(away.mean), cell_of(away.farthest), all.heat, all.elastic, all.kinetic,
+      all.hot_time, all.contact_time, 1e4 * all.parted_area, cell_of(away.mean_parted), all.time_at_end);
 }
 
 /// How far from the plan, where there is one.
@@ -72,7 +88,8 @@ void write_resection(const std::filesystem::path& file, const Simulation& simula
   WholeFile whole(file, Contents::kTable);
   std::ofstream out(whole.path());
   out << kColumns;
-  for (const ResectionRow& row : simulation.resection_log()) out << row_text(row);
+  for (const ResectionRow& row : simulation.resection_log())
+    out << row_text(row, simulation.resection()->has_plan());
   out.close();
   if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
   whole.commit();
@@ -117,6 +134,8 @@ Json resection_report(const Simulation& simulation) {
   const Resection* const resection = simulation.resection();
   if (resection == nullptr) return nullptr;
   const ResectionTotals& all = resection->totals();
+  const FromPlan away(all, resection->has_plan());
+  const auto known = [](const std::optional<double>& metres) { return metres ? Json(*metres) : Json(); };
   return {{"tetrahedra", all.tetrahedra},
           {"tetrahedra_left", resection->left().count()},
           {"removed_m3", all.volume},
@@ -125,8 +144,8 @@ Json resection_report(const Simulation& simulation) {
           {"pieces_loose", all.loose_pieces},
           {"loose_m3", all.loose_volume},
           {"cut_area_m2", all.cut_area},
-          {"mean_distance_m", all.mean_distance()},
-          {"farthest_m", all.farthest},
+          {"mean_distance_m", known(away.mean)},
+          {"farthest_m", known(away.farthest)},
           {"heat_J", all.heat},
           {"elastic_J", all.elastic},
           {"kinetic_J", all.kinetic},
@@ -137,7 +156,7 @@ Json resection_report(const Simulation& simulation) {
             {"failures", resection->growth().failures},
             {"last_failure", resection->growth().last_failure}}},
           {"parted_m2", all.parted_area},
-          {"mean_parted_distance_m", all.mean_parted_distance()},
+          {"mean_parted_distance_m", known(away.mean_parted)},
           {"vertices_slid", all.slides},
           {"vertices_split", all.splits},
           {"ran_out_of_vertices", all.ran_out},

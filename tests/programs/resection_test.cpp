@@ -1,5 +1,6 @@
 // The shipped scenes in which tissue is cut, in virtual time, and their tables.
 #ifdef PALPATE_WITH_CAPTURE
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -23,7 +24,7 @@ std::map<std::string, std::vector<double>> columns_of(const std::string& file) {
   while (std::getline(in, line)) {
     std::size_t at = 0;
     for (std::istringstream row(line); std::getline(row, cell, ',');)
-      columns[titles.at(at++)].push_back(std::stod(cell));
+      columns[titles.at(at++)].push_back(cell.empty() ? std::nan("") : std::stod(cell));
     REQUIRE(at == titles.size());
   }
   return columns;
@@ -49,9 +50,9 @@ TEST_CASE("hepatic_resection.toml: a hot tip cuts along the plan, as the table s
   const TemporaryFolder folder;
   const auto file = [&](const char* name) { return (folder.path() / name).string(); };
   std::vector<std::string> first =
-      recording_of("hepatic_resection.toml", {"resection.toml"}, "3", file("a.pcap"));
+      recording_of("hepatic_resection.toml", {"resection.toml", "lobe.toml"}, "3", file("a.pcap"));
   std::vector<std::string> again =
-      recording_of("hepatic_resection.toml", {"resection.toml"}, "3", file("b.pcap"));
+      recording_of("hepatic_resection.toml", {"resection.toml", "lobe.toml"}, "3", file("b.pcap"));
   first.insert(first.end(), {"--resection", file("a.csv"), "--removals", file("list.csv")});
   again.insert(again.end(), {"--resection", file("b.csv"), "--remove", file("list.csv")});
   output_of("sim_server", first, 0);
@@ -59,6 +60,7 @@ TEST_CASE("hepatic_resection.toml: a hot tip cuts along the plan, as the table s
 
   auto a = columns_of(file("a.csv")), b = columns_of(file("b.csv"));
   REQUIRE(a["t_s"].size() > 60);
+  std::erase_if(a["farthest_mm"], [](double distance) { return std::isnan(distance); });  // of nothing yet
   for (const char* const title : {"t_s", "tetrahedra", "removed_ml", "cut_area_cm2", "farthest_mm", "heat_J",
                                   "elastic_J", "kinetic_J", "hot_s", "contact_s"}) {
     CAPTURE(title);
