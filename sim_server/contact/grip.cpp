@@ -32,6 +32,11 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
   vertices_.reserve(max_nodes_);
   offsets_.reserve(max_nodes_);
   patch_.reserve(static_cast<int>(max_nodes_), 1);
+  const auto most = 3 * static_cast<Eigen::Index>(max_nodes_);
+  for (BoundedMatrix* const matrix : {&compliance_, &factor_}) {
+    matrix->reserve(most, most);
+    matrix->shape(0, 0);
+  }
   misfit_.resize(3 * static_cast<Eigen::Index>(max_nodes_));
   spread_.resize(3 * static_cast<Eigen::Index>(max_nodes_), 3);
   if (!tool.grasp_place) return;
@@ -92,7 +97,7 @@ double Grip::misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const N
   return largest;
 }
 
-/// The compliance under the loads of now, as its Cholesky factor.
+/// The compliance under the loads of now, as its Cholesky factor: that of before, where it is the same.
 bool Grip::factor(const ToolTissue& tissue) {
   tissue.model().compliance(vertices_, patch_);
   const auto m = static_cast<Eigen::Index>(vertices_.size());
@@ -103,15 +108,20 @@ bool Grip::factor(const ToolTissue& tissue) {
   }
   contact_compliance_ = ContactSolver::contact_compliance(patch_, static_cast<int>(m));
   system.diagonal().array() += contact_compliance_;
-  Eigen::Ref<Eigen::MatrixXd> in_place(system);
-  return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(in_place).info() == Eigen::Success;
+  if (compliance_.rows() == 3 * m && compliance_ == system) return factored_;
+  compliance_.shape(3 * m, 3 * m);
+  factor_.shape(3 * m, 3 * m);
+  compliance_ = system;
+  factor_ = system;
+  Eigen::Ref<Eigen::MatrixXd> in_place(factor_);
+  factored_ = Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(in_place).info() == Eigen::Success;
+  return factored_;
 }
 
 Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
   const std::size_t held = vertices_.size();
   const auto size = 3 * static_cast<Eigen::Index>(held);
   const std::span<NodalLoad> own = tissue.loads_on(vertices_);
-  const auto lower = patch_.compliance.topLeftCorner(size, size).triangularView<Eigen::Lower>();
   Pull pull{.vertices = static_cast<int>(held)};
   for (bool still = false; !still; ++pull.rounds) {
     tissue.press();
@@ -119,6 +129,7 @@ Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
     pull.converged = factor(tissue) && (still || pull.rounds < kMaxRounds);
     if (still || !pull.converged) break;
     auto change = misfit_.head(size);
+    const auto lower = factor_.triangularView<Eigen::Lower>();
     lower.solveInPlace(change);
     lower.adjoint().solveInPlace(change);
     for (std::size_t i = 0; i < held; ++i)
@@ -128,13 +139,13 @@ Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
   if (!pull.converged) return pull;
   auto spread = spread_.topRows(size);  // L^-1 E
   for (Eigen::Index i = 0; i < size; i += 3) spread.middleRows<3>(i).setIdentity();
-  lower.solveInPlace(spread);
+  factor_.triangularView<Eigen::Lower>().solveInPlace(spread);
   pull.tangent.noalias() = -spread.transpose() * spread;
   return pull;
 }
 
 std::size_t Grip::bytes() const {
-  return patch_.compliance.bytes();
+  return patch_.compliance.bytes() + compliance_.bytes() + factor_.bytes();
 }
 
 }  // namespace palpate::sim

@@ -59,7 +59,9 @@ class Grip {
   bool pressed_ = false, closed_ = false;
   std::vector<int> touchable_, vertices_;
   std::vector<Vec3> offsets_;
-  ContactPatch patch_;             // its compliance, factored in place
+  ContactPatch patch_;
+  BoundedMatrix compliance_, factor_;  // (3m x 3m) of the vertices when last factored, m/N; and its factor
+  bool factored_ = false;
   double contact_compliance_ = 0;  // m/N, in series with each vertex
   Eigen::VectorXd misfit_;         // (3m), m
   Eigen::Matrix<double, Eigen::Dynamic, 3> spread_;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/core.h>
+#include <iterator>
 
 #include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/linear_statics.h"
@@ -76,6 +76,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
   pressed_.reserve(loads_.capacity());
   moving_.reserve(node_.size());
   exposed_.reserve(node_.size());
+  near_.reserve(node_.size() + loads_.capacity());
   moved_.reserve(3 * node_.size());
   shown_.resize(node_.size());
   for (const Triangle& triangle : inputs.surface.triangles) {
@@ -86,6 +87,8 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
 
 /// It is another one than before.
 void CuttableMotion::look_at_body() {
+  changed_ = true;
+  narrowed_ = false;
   force_.assign(body_->motion.state.f.size(), 0);
   moving_.clear();
   exposed_.clear();
@@ -118,6 +121,30 @@ void CuttableMotion::choose_sub_step(const ModelInputs& inputs, double modes) {
   sub_step_ = step_period(inputs.scene) / instants_;
 }
 
+/// What may come into a place before the step ends counts to it, and so does all that is loaded.
+void CuttableMotion::narrow(std::span<const Neighbourhood> places) noexcept {
+  constexpr double kFaster = 2;  // than anything on the surface is by now
+  near_.clear();
+  narrowed_ = !places.empty();
+  if (!narrowed_) return;
+  double fastest = 0;  // squared
+  for (const int vertex : exposed_) {
+    const int first = body_->first[static_cast<std::size_t>(vertex)];
+    fastest = std::max(fastest, Eigen::Map<const Vec3>(body_->motion.state.v.data() + first).squaredNorm());
+  }
+  const double way = kFaster * std::sqrt(fastest) * sub_step_ * instants_;
+  std::ranges::copy_if(exposed_, std::back_inserter(near_), [&](int vertex) {
+    return std::ranges::any_of(places, [&](const Neighbourhood& place) {
+      return (free_[static_cast<std::size_t>(vertex)] - place.middle).norm() <= place.radius + way;
+    });
+  });
+  for (const NodalLoad& load : loads_) {
+    if (body_->first[static_cast<std::size_t>(load.vertex)] >= 0) near_.push_back(load.vertex);
+  }
+  // None at all would mean that any may have moved.
+  if (near_.empty() && !exposed_.empty()) near_.push_back(exposed_.front());
+}
+
 FreeMotion CuttableMotion::free_motion(double dt) noexcept {
   if (dt > 0) {
     if (!ended_) end_sub_step();
@@ -126,10 +153,10 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
     if (body_->rest) follow();
     take_sub_step();
     const bool ends = instant_ + 1 == instants_;
-    update_free(ends ? moving_ : exposed_);
+    update_free(ends ? moving_ : looked_at());
     if (body_->rest) carry_rest();
     instant_ = (instant_ + 1) % instants_;
-    go_free(ends ? moving_ : exposed_);
+    go_free(ends ? moving_ : looked_at());
     note_moved();
     press();
   }
@@ -179,17 +206,21 @@ void CuttableMotion::carry_rest() noexcept {
 
 /// Loads on the rest are handed down to the border, which takes them as forces of all of the sub-step.
 void CuttableMotion::take_sub_step() noexcept {
-  std::copy(force_.begin(), force_.end(), body_->motion.state.f.begin());
-  for (const NodalLoad& load : loads_) {
-    if (body_->rest && body_->rest->has(load.vertex)) body_->rest->hand_down(load, body_->motion.state.f);
+  if (body_->rest) {
+    std::copy(force_.begin(), force_.end(), body_->motion.state.f.begin());
+    for (const NodalLoad& load : loads_) {
+      if (body_->rest->has(load.vertex)) body_->rest->hand_down(load, body_->motion.state.f);
+    }
+    body_->rest->advance(sub_step_, loads_);
   }
-  if (body_->rest) body_->rest->advance(sub_step_, loads_);
-  body_->motion.run(sub_step_);
+  changed_ ? body_->motion.run(sub_step_) : body_->motion.run_on(sub_step_);
+  changed_ = false;
 }
 
 /// What is shown of what is in motion, and what contact looks at of the rest: where a step ends, all of that.
 void CuttableMotion::note_moved() noexcept {
-  moved_.assign(exposed_.begin(), exposed_.end());
+  const std::vector<int>& seen = instant_ == 0 ? exposed_ : looked_at();
+  moved_.assign(seen.begin(), seen.end());
   if (body_->rest) {
     const auto rest = instant_ == 0 ? body_->rest->vertices() : body_->rest->watched();
     moved_.insert(moved_.end(), rest.begin(), rest.end());
@@ -213,9 +244,7 @@ void CuttableMotion::end_sub_step() noexcept {
   for (const NodalLoad& load : loads_) {
     const int first = body_->first[static_cast<std::size_t>(load.vertex)];
     if (first < 0) continue;
-    const Vec3 kick = kick_of(load);
-    Eigen::Map<Vec3>(body_->motion.state.v.data() + first) += kick;
-    Eigen::Map<Vec3>(body_->motion.state.u.data() + first) += sub_step_ * kick;
+    body_->motion.kick(first / 3, sub_step_, kick_of(load));
   }
 }
 
@@ -304,6 +333,7 @@ void CuttableMotion::end_contact() noexcept {
 
 DeformationModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra, const CutMesh& left) {
   end_contact();
+  changed_ = true;
   if (told_) told_->forget();
   if (body_->rest) body_->rest->look_at(body_->motion.state.u, body_->motion.state.v);
   Removed gone;
@@ -358,30 +388,6 @@ DeformationModel::Growth CuttableMotion::grow(const CutMesh& left) {
   for (const NodalLoad& load : loads_) body_->rest->watch({&load.vertex, 1});
   allowed_ = std::move(grown.allowed);
   return {false, allowed_, {}};
-}
-
-std::vector<MemoryPart> CuttableMotion::memory() const {
-  std::vector<MemoryPart> parts{
-      {"tensors", body_->tensors.bytes(),
-       fmt::format("{} vertices, {} edges; {} sub-steps of {:.3g} ms; {:.2g} g more for stiff elements",
-                   body_->tensors.vertices(), body_->tensors.edges(), instants_, 1e3 * sub_step_,
-                   1e3 * scaling_.added)},
-      {"motion", body_->motion.bytes() + force_.size() * sizeof(double)},
-      {"positions", (free_.size() + positions_.size() + 2 * nodes_.size() + kept_.capacity()) * sizeof(Vec3) +
-                        (moving_.capacity() + exposed_.capacity() + pressed_.capacity()) * sizeof(int) +
-                        shown_.size() + loads_.capacity() * sizeof(NodalLoad) +
-                        (body_->first.size() + node_.size()) * sizeof(int)}};
-  if (growth_) parts.push_back({"growth", growth_->bytes()});
-  if (told_)
-    parts.push_back({"surface told to clients", told_->bytes(),
-                     fmt::format("near their tools, {:.2g} s after the last cut{}{}", told_->delay(),
-                                 told_->failure().empty() ? "" : "; not by now: ", told_->failure())});
-  if (body_->rest)
-    parts.push_back({"condensed rest", body_->rest->bytes(),
-                     fmt::format("{} parts, {} modes, {} vertices at the border, {} that tools reach",
-                                 body_->rest->parts(), body_->rest->modes(), body_->rest->border(),
-                                 body_->rest->vertices().size())});
-  return parts;
 }
 
 }  // namespace palpate::sim

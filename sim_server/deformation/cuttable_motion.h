@@ -34,6 +34,7 @@ class CuttableMotion : public DeformationModel {
   int instants() const noexcept override { return instants_; }
   bool force_leads() const noexcept override { return true; }
   /// Any `dt` > 0 is taken for one sub-step.
+  void narrow(std::span<const Neighbourhood> places) noexcept override;
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   const ComplianceSource* compliance_source() const noexcept override { return &*compliance_; }
@@ -65,6 +66,7 @@ class CuttableMotion : public DeformationModel {
   void take_sub_step() noexcept;
   void follow() noexcept;
   void note_moved() noexcept;
+  const std::vector<int>& looked_at() const noexcept { return narrowed_ ? near_ : exposed_; }
   void update_free(std::span<const int> vertices) noexcept;
   void carry_rest() noexcept;
   /// What a load on a vertex in motion changes its velocity by over a sub-step, m/s.
@@ -91,11 +93,14 @@ class CuttableMotion : public DeformationModel {
   int instants_ = 1, instant_ = 0;  // of a step; how many of this one are done
   double sub_step_ = 0;             // s
   std::optional<LumpedCompliance> compliance_;
+  bool changed_ = true;                 // the body is not as its last sub-step left it
   bool ended_ = false;                  // the sub-step in hand has its end, as tissue was removed
   std::vector<Vec3> kept_;              // of `carry_rest`: where loaded vertices are without their loads, m
   std::vector<NodalLoad> loads_;        // over it
   std::vector<char> shown_;             // of surface vertices: triangles have or had them as corners
   std::vector<int> moving_, exposed_;   // surface vertices in motion; those of them that are shown
+  std::vector<int> near_;               // of these, where contact looks within a step
+  bool narrowed_ = false;               // to `near_`
   std::vector<int> pressed_;            // that are loaded, and not where they are free
   std::vector<int> moved_;              // in this sub-step; those that are pressed last
   std::size_t moved_by_itself_ = 0;     // so many of them are not

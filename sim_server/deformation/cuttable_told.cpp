@@ -1,4 +1,6 @@
-// What clients are told of a tissue that is cut: parts of CuttableMotion.
+// What clients are told of a tissue that is cut, and reports of what it holds: parts of CuttableMotion.
+#include <fmt/core.h>
+
 #include "sim_server/deformation/cuttable_motion.h"
 
 namespace palpate::sim {
@@ -37,6 +39,30 @@ void CuttableMotion::tell_near(std::span<const ToldTool> tools, const CutMesh& l
   if (!body_->rest || now == nullptr || now == before.get()) return;
   if (before != nullptr) return now->motion.stand_as(before->motion);  // a cut would have ended that
   now->motion.stand_under(loads_);
+}
+
+std::vector<MemoryPart> CuttableMotion::memory() const {
+  std::vector<MemoryPart> parts{
+      {"tensors", body_->tensors.bytes(),
+       fmt::format("{} vertices, {} edges; {} sub-steps of {:.3g} ms; {:.2g} g more for stiff elements",
+                   body_->tensors.vertices(), body_->tensors.edges(), instants_, 1e3 * sub_step_,
+                   1e3 * scaling_.added)},
+      {"motion", body_->motion.bytes() + force_.size() * sizeof(double)},
+      {"positions", (free_.size() + positions_.size() + 2 * nodes_.size() + kept_.capacity()) * sizeof(Vec3) +
+                        (moving_.capacity() + exposed_.capacity() + pressed_.capacity()) * sizeof(int) +
+                        shown_.size() + loads_.capacity() * sizeof(NodalLoad) +
+                        (body_->first.size() + node_.size()) * sizeof(int)}};
+  if (growth_) parts.push_back({"growth", growth_->bytes()});
+  if (told_)
+    parts.push_back({"surface told to clients", told_->bytes(),
+                     fmt::format("near their tools, {:.2g} s after the last cut{}{}", told_->delay(),
+                                 told_->failure().empty() ? "" : "; not by now: ", told_->failure())});
+  if (body_->rest)
+    parts.push_back({"condensed rest", body_->rest->bytes(),
+                     fmt::format("{} parts, {} modes, {} vertices at the border, {} that tools reach",
+                                 body_->rest->parts(), body_->rest->modes(), body_->rest->border(),
+                                 body_->rest->vertices().size())});
+  return parts;
 }
 
 }  // namespace palpate::sim

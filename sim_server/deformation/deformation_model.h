@@ -47,6 +47,12 @@ struct FreeMotion {
   const std::vector<int>* moved = nullptr;
 };
 
+/// Around a tool, where contact may look, m, world.
+struct Neighbourhood {
+  Vec3 middle;
+  double radius;
+};
+
 /// Bytes that a part of the program holds, for reports.
 struct MemoryPart {
   std::string name;
@@ -72,6 +78,10 @@ class DeformationModel {
   /// Whether a force belongs to where it begins to lead the surface, not to the end of the step that it is
   /// held for. Then contact is solved with the tool one such step ahead of the force that is felt.
   virtual bool force_leads() const noexcept { return false; }
+
+  /// At all instants of the step to come but the last, contact looks nowhere else: a model of many may tell
+  /// only there where the tissue is until the step ends. Empty: anywhere.
+  virtual void narrow(std::span<const Neighbourhood> places) noexcept { (void)places; }
 
   /// Where would you go freely in `dt` (s), without any contact?
   virtual FreeMotion free_motion(double dt) = 0;

@@ -71,25 +71,30 @@ double count_sub_steps(const Scene& scene, double longest) {
 ExplicitMotion::ExplicitMotion(const ElasticTensors& tensors, const RayleighDamping& damping, int columns)
     : tensors_(tensors), damping_(damping), columns_(columns) {
   if (columns == 1) ahead_ = tensors.room_ahead();
-  for (auto* const all : {&state.u, &state.v, &state.f, &bent_, &resistance_})
+  for (auto* const all : {&state.u, &state.v, &state.f})
     all->assign(3 * tensors.masses().size() * columns, 0);
+  for (auto* const all : {&bent_, &resistance_}) all->assign(apart() * tensors.masses().size(), 0);
 }
 
 void ExplicitMotion::append_copy_of(int place) {
-  for (auto* const all : {&state.u, &state.v, &state.f, &bent_, &resistance_}) {
-    for (int i = 0; i < 3; ++i) all->push_back(double{(*all)[static_cast<std::size_t>(3 * place + i)]});
-  }
+  const auto append = [place](std::vector<double>& all, int apart) {
+    for (int i = 0; i < apart; ++i) all.push_back(double{all[static_cast<std::size_t>(apart * place + i)]});
+  };
+  for (auto* const all : {&state.u, &state.v, &state.f}) append(*all, 3);
+  for (auto* const all : {&bent_, &resistance_}) append(*all, ElasticTensors::kApart);
 }
 
 void ExplicitMotion::add_to_last(int place, double h, const Vec3& force) noexcept {
-  const auto at = [place](std::vector<double>& numbers) {
-    return Eigen::Map<Vec3>(numbers.data() + 3 * place);
-  };
-  const Vec3 kick = h / tensors_.masses()[static_cast<std::size_t>(place)] * force;
-  at(state.f) += force;
-  at(state.v) += kick;
-  at(state.u) += h * kick;
-  at(bent_) += (h + damping_.stiffness) * kick;
+  Eigen::Map<Vec3>(state.f.data() + std::ptrdiff_t{3} * place) += force;
+  kick(place, h, h / tensors_.masses()[static_cast<std::size_t>(place)] * force);
+}
+
+void ExplicitMotion::kick(int place, double h, const Vec3& dv) noexcept {
+  const std::ptrdiff_t first = std::ptrdiff_t{3} * place,
+                       apart = std::ptrdiff_t{ElasticTensors::kApart} * place;
+  Eigen::Map<Vec3>(state.v.data() + first) += dv;
+  Eigen::Map<Vec3>(state.u.data() + first) += h * dv;
+  Eigen::Map<Vec3>(bent_.data() + apart) += (h + damping_.stiffness) * dv;
 }
 
 void ExplicitMotion::sub_step(double h, const std::vector<double>& force) noexcept {
@@ -111,21 +116,31 @@ void ExplicitMotion::advance(std::size_t begin, std::size_t end, double h,
   const double keep = 1 - h * damping_.mass, stiffness = damping_.stiffness;
   const double* __restrict masses = tensors_.masses().data(), * __restrict resistance = resistance_.data();
   double* __restrict u = state.u.data(), * __restrict v = state.v.data(), * __restrict bent = bent_.data();
-  std::size_t k = 3 * kColumns * begin;
+  constexpr std::size_t kNumbers = 3 * kColumns, kFar = kColumns == 1 ? ElasticTensors::kApart : kNumbers;
   for (std::size_t vertex = begin; vertex < end; ++vertex) {
     const double kick = h / masses[vertex];
-    for (int i = 0; i < 3 * kColumns; ++i, ++k) {
-      v[k] = keep * v[k] + kick * (force[k] - resistance[k]);
+    for (std::size_t i = 0; i < kNumbers; ++i) {
+      const std::size_t k = kNumbers * vertex + i, apart = kFar * vertex + i;
+      v[k] = keep * v[k] + kick * (force[k] - resistance[apart]);
       u[k] += h * v[k];
-      bent[k] = u[k] + stiffness * v[k];
+      bent[apart] = u[k] + stiffness * v[k];
+    }
+  }
+}
+
+/// Of vertices `begin` to `end`: what the next product is of.
+void ExplicitMotion::bend(std::size_t begin, std::size_t end) noexcept {
+  const std::size_t numbers = 3 * static_cast<std::size_t>(columns_), far = apart();
+  for (std::size_t vertex = begin; vertex < end; ++vertex) {
+    for (std::size_t i = 0; i < numbers; ++i) {
+      const std::size_t k = numbers * vertex + i;
+      bent_[far * vertex + i] = state.u[k] + damping_.stiffness * state.v[k];
     }
   }
 }
 
 void ExplicitMotion::run(double h) noexcept {
-  for_parts(tensors_, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t k = 3 * begin; k < 3 * end; ++k) bent_[k] = state.u[k] + damping_.stiffness * state.v[k];
-  });
+  for_parts(tensors_, [&](std::size_t, std::size_t begin, std::size_t end) { bend(begin, end); });
   sub_step(h, state.f);
 }
 
@@ -137,11 +152,12 @@ void ExplicitMotion::run_free(State& before, double h) noexcept {
     tensors_.gather_part(p, resistance_.data(), ahead_);
     for (std::size_t vertex = begin; vertex < end; ++vertex) {
       const double kick = h / tensors_.masses()[vertex];
-      for (std::size_t k = 3 * vertex; k < 3 * vertex + 3; ++k) {
-        state.v[k] = keep * before.v[k] - kick * resistance_[k];
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t k = 3 * vertex + i, apart = ElasticTensors::kApart * vertex + i;
+        state.v[k] = keep * before.v[k] - kick * resistance_[apart];
         state.u[k] = before.u[k] + h * state.v[k];
         state.f[k] = 0;
-        bent_[k] = state.u[k] + damping_.stiffness * state.v[k];
+        bent_[apart] = state.u[k] + damping_.stiffness * state.v[k];
       }
     }
   });
@@ -151,10 +167,8 @@ void ExplicitMotion::run(int steps, double h, const std::vector<double>& force) 
   std::vector<double>& f = state.f;
   const std::size_t numbers = 3 * static_cast<std::size_t>(columns_);  // of a vertex
   for_parts(tensors_, [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t k = numbers * begin; k < numbers * end; ++k) {
-      f[k] = 0.5 * (f[k] + force[k]);
-      bent_[k] = state.u[k] + damping_.stiffness * state.v[k];
-    }
+    for (std::size_t k = numbers * begin; k < numbers * end; ++k) f[k] = 0.5 * (f[k] + force[k]);
+    bend(begin, end);
   });
   sub_step(h, f);
   for (int i = 1; i < steps; ++i) sub_step(h, force);

@@ -41,6 +41,11 @@ class ExplicitMotion {
   void run(int steps, double h, const std::vector<double>& force) noexcept;
   /// The same by one sub-step under the forces of `state`, as if they had always been there.
   void run(double h) noexcept;
+  /// The same where nothing but `kick` has changed `state` since the last sub-step.
+  void run_on(double h) noexcept { sub_step(h, state.f); }
+  /// Changes the velocity of a vertex by `dv` (m/s), as if that had been so over the last sub-step, of `h`
+  /// (s). Of one motion.
+  void kick(int place, double h, const Vec3& dv) noexcept;
   /// Goes on by one sub-step without forces, and leaves where it was in `before`, a state of this size.
   /// Nothing but `add_to_last` may have changed `state` since it was at rest or the last sub-step ended. Of
   /// one motion.
@@ -53,7 +58,7 @@ class ExplicitMotion {
   /// Allocates.
   void append_copy_of(int place);
 
-  std::size_t bytes() const { return 5 * state.u.size() * sizeof(double); }
+  std::size_t bytes() const { return (3 * state.u.size() + 2 * bent_.size()) * sizeof(double); }
 
  private:
   void sub_step(double h, const std::vector<double>& force) noexcept;
@@ -63,6 +68,12 @@ class ExplicitMotion {
   const ElasticTensors& tensors_;
   RayleighDamping damping_;
   int columns_;
+  /// Of a motion, numbers of a vertex lie so far apart in the two below.
+  std::size_t apart() const {
+    return columns_ == 1 ? ElasticTensors::kApart : 3 * static_cast<std::size_t>(columns_);
+  }
+  void bend(std::size_t begin, std::size_t end) noexcept;
+
   std::vector<double> bent_, resistance_;  // u + stiffness v, m; K times that, N
   ElasticTensors::Ahead ahead_;            // of that product, of one motion
 };

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "common/parallel.h"
@@ -93,9 +94,10 @@ struct ToldNearby::Body {
     drop_loose_parts(mesh, standing);  // a tool just pushes them away
     fixed = fixed_of(mesh, standing);
     statics.emplace(inputs);
-    modes = before != nullptr && before->modes.shapes.cols() < statics->dofs.count
-                ? refined_modes(statics->factor(), masses_in_motion(), shapes_of(*before))
-                : told_modes(inputs, *statics, masses_in_motion());
+    std::optional<VibrationModes> refined;
+    if (before != nullptr && before->modes.shapes.cols() < statics->dofs.count)
+      refined = refined_modes(statics->factor(), masses_in_motion(), shapes_of(*before));
+    modes = refined ? std::move(*refined) : told_modes(inputs, *statics, masses_in_motion());
     (void)statics->factor();
     inputs.cache = nullptr;
     progress_ = [](std::string_view, double) {};

@@ -16,19 +16,40 @@ template <class Numbers>
   std::memcpy(&to, from, sizeof to);
 }
 
-/// y = K x of one vector, rows `begin` to `end`. Row i also adds to the rows of its neighbours, which come
-/// before it: to `ahead` where they come before `begin`. Each line of a tensor meets both ends of its edge as
-/// it was read: the own row is summed along the lines, lane by lane, and across the lanes once a vertex.
-/// Reads one number beyond the tensors of edges. Any vector width gives the same bits.
+/// Adds the first three of four numbers to those of a vertex; where vertices are four apart, all.
+template <int kStride>
+[[gnu::always_inline]] inline void add_to_vertex(const Four& more, double* __restrict to) {
+  if constexpr (kStride == 4) {
+    Four whole;
+    load(to, whole);
+    whole += more;
+    std::memcpy(to, &whole, sizeof whole);
+  } else {
+    Two two;  // as it was written: else the processor waits
+    load(to, two);
+    two += Two{more[0], more[1]};
+    std::memcpy(to, &two, sizeof two);
+    to[2] += more[2];
+  }
+}
+
+/// y = K x of one vector, vertices `kStride` numbers apart, rows `begin` to `end`. Row i also adds to the
+/// rows of its neighbours, which come before it: to `ahead` where they come before `begin`. Each line of a
+/// tensor meets both ends of its edge as it was read: the own row is summed along the lines, lane by lane,
+/// and across the lanes once a vertex. Reads one number beyond the tensors of edges. Any vector width gives
+/// the same bits.
+template <int kStride>
 [[gnu::always_inline]] inline void product_of_one(int begin, int end, const TensorsInPlace& k,
                                                   const double* __restrict x, double* __restrict y,
                                                   double* __restrict ahead) {
   const double* __restrict edge = k.edge + 9 * std::ptrdiff_t{k.first_edge[begin]};
   const double* __restrict vertex = k.vertex + 6 * std::ptrdiff_t{begin};
   for (int i = begin; i < end; ++i, vertex += 6) {
-    const double a = x[3 * i], b = x[3 * i + 1], d = x[3 * i + 2];
+    const double* const xi = x + std::ptrdiff_t{kStride} * i;
+    const double a = xi[0], b = xi[1], d = xi[2];
     Four px{}, py{}, pz{};
-    const auto meet = [&](std::ptrdiff_t j, double* __restrict to) __attribute__((always_inline)) {
+    const auto meet = [&](int other, double* __restrict to) __attribute__((always_inline)) {
+      const std::ptrdiff_t j = std::ptrdiff_t{kStride} * other;
       Four xj, along_x, along_y, along_z;
       load(x + j, xj);
       load(edge, along_x);
@@ -37,22 +58,18 @@ template <class Numbers>
       px += along_x * xj;
       py += along_y * xj;
       pz += along_z * xj;
-      const Four to_j = along_x * a + along_y * b + along_z * d;
-      Two two;  // as it was written: else the processor waits
-      load(to + j, two);
-      two += Two{to_j[0], to_j[1]};
-      std::memcpy(to + j, &two, sizeof two);
-      to[j + 2] += to_j[2];
+      add_to_vertex<kStride>(along_x * a + along_y * b + along_z * d, to + j);
       edge += 9;
     };
     int e = k.first_edge[i];
     const int last = k.first_edge[i + 1];
-    for (; e < last && k.neighbour[e] < begin; ++e) meet(3 * std::ptrdiff_t{k.neighbour[e]}, ahead);
-    for (; e < last; ++e) meet(3 * std::ptrdiff_t{k.neighbour[e]}, y);
-    double* yi = y + 3 * std::ptrdiff_t{i};
+    for (; e < last && k.neighbour[e] < begin; ++e) meet(k.neighbour[e], ahead);
+    for (; e < last; ++e) meet(k.neighbour[e], y);
+    double* yi = y + std::ptrdiff_t{kStride} * i;
     yi[0] = vertex[0] * a + vertex[1] * b + vertex[2] * d + (px[0] + px[1] + px[2]);
     yi[1] = vertex[1] * a + vertex[3] * b + vertex[4] * d + (py[0] + py[1] + py[2]);
     yi[2] = vertex[2] * a + vertex[4] * b + vertex[5] * d + (pz[0] + pz[1] + pz[2]);
+    if constexpr (kStride == 4) yi[3] = 0;
   }
 }
 
@@ -104,21 +121,33 @@ template <int kColumns>
                                           double* __restrict y) {
   product<kEight>(n, first_edge, neighbour, vertex, edge, x, y);
 }
+template <int kStride>
 [[gnu::target("avx2")]] void product_of_one_avx2(int begin, int end, const TensorsInPlace& k,
                                                  const double* __restrict x, double* __restrict y,
                                                  double* __restrict ahead) {
-  product_of_one(begin, end, k, x, y, ahead);
+  product_of_one<kStride>(begin, end, k, x, y, ahead);
 }
 #endif
+
+template <int kStride>
+void product_on_this_processor(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
+                               double* ahead) {
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2")) return product_of_one_avx2<kStride>(begin, end, k, x, y, ahead);
+#endif
+  product_of_one<kStride>(begin, end, k, x, y, ahead);
+}
 
 }  // namespace
 
 void product_of_rows(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
                      double* ahead) noexcept {
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) return product_of_one_avx2(begin, end, k, x, y, ahead);
-#endif
-  product_of_one(begin, end, k, x, y, ahead);
+  product_on_this_processor<3>(begin, end, k, x, y, ahead);
+}
+
+void product_of_rows_apart(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
+                           double* ahead) noexcept {
+  product_on_this_processor<kNumbersApart>(begin, end, k, x, y, ahead);
 }
 
 void product_of_eight(int n, const TensorsInPlace& k, const double* x, double* y) noexcept {

@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "sim_server/elasticity/element.h"
-#include "sim_server/elasticity/tensor_products.h"
 
 namespace palpate::sim {
 namespace {
 
-constexpr std::size_t kEdgesPerPart = 30'000;  // at least: of less, waking a core takes as long
+constexpr std::size_t kEdgesPerPart = 20'000;  // at least: of less, waking a core takes as long
 
 /// A place on the curve that visits the cells of a grid octant by octant (Morton 1966): the bits of the three
 /// cell numbers in turn. `x`: in units of the box of all, 0 to 1.
@@ -248,7 +247,7 @@ void ElasticTensors::multiply(const double* x, double* y) const noexcept {
 
 void ElasticTensors::multiply_part(std::size_t p, const double* x, double* y, Ahead& ahead) const noexcept {
   const TensorsInPlace k{first_edge_.data(), neighbour_.data(), vertex_tensors_.data(), edge_tensors_.data()};
-  product_of_rows(parts_[p].begin, end_of_part(p), k, x, y, ahead[p].data());
+  product_of_rows_apart(parts_[p].begin, end_of_part(p), k, x, y, ahead[p].data());
 }
 
 void ElasticTensors::gather_part(std::size_t p, double* y, Ahead& ahead) const noexcept {
@@ -257,14 +256,14 @@ void ElasticTensors::gather_part(std::size_t p, double* y, Ahead& ahead) const n
     const std::vector<int>& reaches = parts_[after].reaches;
     double* const from = ahead[after].data();
     for (auto row = std::ranges::lower_bound(reaches, begin); row != reaches.end() && *row < end; ++row) {
-      for (int i = 3 * *row; i < 3 * *row + 3; ++i) y[i] += std::exchange(from[i], 0);
+      for (int i = kApart * *row; i < kApart * *row + 3; ++i) y[i] += std::exchange(from[i], 0);
     }
   }
 }
 
 ElasticTensors::Ahead ElasticTensors::room_ahead() const {
   Ahead ahead;
-  for (const Part& part : parts_) ahead.emplace_back(3 * static_cast<std::size_t>(part.begin), 0);
+  for (const Part& part : parts_) ahead.emplace_back(kApart * static_cast<std::size_t>(part.begin), 0);
   return ahead;
 }
 

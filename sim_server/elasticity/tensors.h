@@ -5,6 +5,7 @@
 
 #include "sim_server/elasticity/laws.h"
 #include "sim_server/elasticity/material.h"
+#include "sim_server/elasticity/tensor_products.h"
 #include "sim_server/mesh/cut_mesh.h"
 
 namespace palpate::sim {
@@ -57,15 +58,17 @@ class ElasticTensors {
 
   /// How many vectors `multiply_wide` takes at once.
   static constexpr int kWide = 8;
+  /// How many numbers apart vertices are in the vectors of a product in parts; the last of each is of no use.
+  static constexpr int kApart = kNumbersApart;
   /// What parts of a product add to rows of parts before them: for each part, and 0 between two products.
   using Ahead = std::vector<std::vector<double>>;
   Ahead room_ahead() const;
   /// y = K x: forces (n x 3, N) of displacements (n x 3, m), n = `vertices()`.
   void multiply(const double* x, double* y) const noexcept;
-  /// The same in parts of 30 thousand edges or more, which the tensors alone decide, on as many cores: first
-  /// `multiply_part` of each, then `gather_part` of each, after which the rows of that part are done. The
-  /// same bits whatever the number of threads. Who uses a part's rows on the core that made them keeps them
-  /// in its cache.
+  /// The same of vectors of n x `kApart`, in parts of 20 thousand edges or more, which the tensors alone
+  /// decide, on as many cores: first `multiply_part` of each, then `gather_part` of each, after which the
+  /// rows of that part are done. The same bits whatever the number of threads. Who uses a part's rows on the
+  /// core that made them keeps them in its cache.
   std::size_t parts() const { return parts_.size(); }
   std::pair<int, int> rows_of_part(std::size_t p) const { return {parts_[p].begin, end_of_part(p)}; }
   void multiply_part(std::size_t p, const double* x, double* y, Ahead& ahead) const noexcept;

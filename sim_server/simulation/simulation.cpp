@@ -148,6 +148,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   make_room_for_modes();
   came_from_.resize(tools_.size());
   lately_.resize(tools_.size());
+  places_.reserve(tools_.size());
   for (auto& were : lately_) were.reserve(2 * kApart + 1);
   for (auto* zeros : {&mean_, &late_mean_, &velocities_, &surface_motion_})
     zeros->resize(tools_.size(), Vec3::Zero());
@@ -211,6 +212,7 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
   std::fill(late_mean_.begin(), late_mean_.end(), Vec3::Zero());
   if (cut_) cut(inputs, dt);
   for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].press(inputs[i].buttons);
+  if (instants_ > 1) narrow_to_tools(inputs);
   for (int instant = 1; instant <= instants_; ++instant) advance_to_instant(inputs, instant, dt / instants_);
   for (std::size_t i = 0; i < tools_.size(); ++i) came_from_[i] = inputs[i].pose;
   lost_ = ran_away();

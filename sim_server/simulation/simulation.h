@@ -209,6 +209,7 @@ class Simulation {
   void advance_to_instant(std::span<const ToolInput> inputs, int instant, double dt);
   void count_flagged() noexcept;
   void hold_answers(std::span<const ToolInput> inputs) noexcept;
+  void narrow_to_tools(std::span<const ToolInput> inputs);
   void move_organ(double dt);
   void settle();
   void flag_contacts() noexcept;
@@ -265,6 +266,7 @@ class Simulation {
   std::vector<Vec3> mean_, late_mean_;  // of the forces at the instants, and at the last of them, N
   std::vector<Vec3> velocities_;        // of the tools, m/s
   std::vector<Vec3> surface_motion_;    // of the surface at each tool in this step, m
+  std::vector<Neighbourhood> places_;   // around the ways of the tools in this step
   std::vector<ToolInput> inputs_;       // for the step of tool 0 alone
   std::vector<ToolAnswer> answers_;
   SlowModes::State modes_;  // of the told modes

@@ -1,12 +1,12 @@
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "common/error.h"
 #include "sim_server/solvers/vibration_modes.h"
 
 namespace palpate::sim {
 
-VibrationModes refined_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses,
-                             Eigen::MatrixXd shapes) {
+std::optional<VibrationModes> refined_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses,
+                                            Eigen::MatrixXd shapes) {
   constexpr int kMost = 8;
   constexpr double kSettled = 1e-3;
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(shapes.cols());
@@ -15,16 +15,17 @@ VibrationModes refined_modes(const FactoredMatrix& stiffness, const Eigen::Vecto
     const Eigen::MatrixXd next = stiffness.solve(forces);
     const Eigen::MatrixXd of_stiffness = next.transpose() * forces,
                           of_masses = next.transpose() * masses.asDiagonal() * next;
+    if (of_masses.llt().info() != Eigen::Success) return {};  // the eigen-solver does not look
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> small(
         0.5 * (of_stiffness + of_stiffness.transpose()), of_masses);
-    if (small.info() != Eigen::Success) fail("modes of vibration cannot be found from those of another body");
+    if (small.info() != Eigen::Success || !(small.eigenvalues().array() > 0).all()) return {};
     shapes.noalias() = next * small.eigenvectors();
     const double change =
         ((small.eigenvalues() - squares).array() / small.eigenvalues().array()).abs().maxCoeff();
     squares = small.eigenvalues();
     if (change < kSettled) break;
   }
-  return {squares.cwiseSqrt(), std::move(shapes)};
+  return VibrationModes{squares.cwiseSqrt(), std::move(shapes)};
 }
 
 }  // namespace palpate::sim

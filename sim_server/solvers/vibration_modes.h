@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <string>
 
@@ -20,12 +21,12 @@ struct VibrationModes {
 VibrationModes vibration_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses, int count,
                                const std::string& where);
 
-/// The same from shapes of a body that was almost this one (unknowns x k, of full rank), by iterations of
+/// The same from shapes of a body that was almost this one (unknowns x k), by iterations of
 /// that subspace (Bathe and Wilson 1972, Int. J. Numer. Methods Eng. 6:213) until none of its w^2 changes by
 /// more than 1e-3, 8 at most. Whatever is left over, M-orthonormal shapes that are followed as if they were
 /// modes. k solves at once for an iteration; Lanczos' method, which starts from one vector, has no use for
-/// the shapes.
-VibrationModes refined_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses,
-                             Eigen::MatrixXd shapes);
+/// the shapes. Nothing where these do not span k dimensions, as what some moved alone is cut away.
+std::optional<VibrationModes> refined_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses,
+                                            Eigen::MatrixXd shapes);
 
 }  // namespace palpate::sim
