@@ -27,6 +27,11 @@ struct Config::Node {
   std::string full(const std::string& key) const {
     return name.empty() ? key : fmt::format("{} {}", name, key);
   }
+  /// "tool.cone" for a section `cone` of a [[tool]].
+  std::string name_of(const std::string& section) const {
+    const std::size_t first = name.find_first_not_of('['), last = name.find(']');
+    return name.empty() ? section : fmt::format("{}.{}", name.substr(first, last - first), section);
+  }
   /// The node of `key`; null when absent and `required` is false.
   const toml::node* get(const std::string& key, bool required) {
     const toml::node* node = find(key);
@@ -173,8 +178,8 @@ std::optional<Config> Config::table(const std::string& key) const {
   const toml::node* node = node_->find(key);
   if (node == nullptr) return {};
   if (!node->is_table()) node_->wrong(*node, key, fmt::format("a table `[{}]`", key));
-  return Config(
-      std::make_shared<Node>(Node{node_->root, node->as_table(), node_->file, fmt::format("[{}]", key), {}}));
+  return Config(std::make_shared<Node>(
+      Node{node_->root, node->as_table(), node_->file, fmt::format("[{}]", node_->name_of(key)), {}}));
 }
 
 std::vector<Config> Config::tables(const std::string& key) const {
@@ -187,7 +192,7 @@ std::vector<Config> Config::tables(const std::string& key) const {
   }
   for (const toml::node& entry : *array) {
     all.push_back(Config(std::make_shared<Node>(
-        Node{node_->root, entry.as_table(), node_->file, fmt::format("[[{}]]", key), {}})));
+        Node{node_->root, entry.as_table(), node_->file, fmt::format("[[{}]]", node_->name_of(key)), {}})));
   }
   return all;
 }

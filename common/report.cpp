@@ -125,6 +125,18 @@ void write_json(const fs::path& file, const Json& json) {
   write_whole(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", Contents::kReport);
 }
 
+namespace {
+
+/// Text as a cell, in quotes where it holds what would end one (RFC 4180).
+std::string cell_of(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
 std::string csv_of(const Json& rows) {
   std::vector<std::string> lines(1);
   for (const auto& [key, value] : rows.front().items())
@@ -132,7 +144,7 @@ std::string csv_of(const Json& rows) {
   for (const Json& row : rows) {
     std::string line;
     for (const auto& [key, value] : row.items()) {
-      const std::string cell = value.is_string() ? value.get<std::string>() : value.dump();
+      const std::string cell = value.is_string() ? cell_of(value.get<std::string>()) : value.dump();
       line += fmt::format("{}{}", line.empty() ? "" : ",", cell);
     }
     lines.push_back(line);

@@ -39,6 +39,8 @@ class ClientSession {
   std::size_t write(const Message& message, std::span<std::byte> out) noexcept;
 
   bool welcomed() const noexcept { return current_.session != 0; }
+  /// Of the session; another one after a server has begun anew. 0: none yet.
+  std::uint64_t number() const noexcept { return current_.session; }
   const Welcome& welcome() const noexcept { return welcome_; }
   /// Why the server last said no, until it says yes.
   std::optional<RefuseReason> refused() const noexcept { return refused_; }

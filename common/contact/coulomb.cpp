@@ -20,6 +20,13 @@ Eigen::Vector2d project(const Eigen::Vector2d& v, double r) {
   return size <= r ? v : Eigen::Vector2d(r / size * v);
 }
 
+void put_into_cones(double mu, Eigen::Ref<Eigen::VectorXd> z) {
+  for (Eigen::Index k = 0; k < z.size(); k += 3) {
+    z[k] = std::max(0.0, z[k]);
+    z.segment<2>(k + 1) = project(z.segment<2>(k + 1), mu * z[k]);
+  }
+}
+
 }  // namespace
 
 CoulombSolver::CoulombSolver(int capacity)
@@ -44,8 +51,10 @@ bool CoulombSolver::solve(const Matrix& g_matrix, const Vector& g, double mu,
     if (!spend(static_cast<double>(sweeps) * static_cast<double>(z.size() * z.size()))) break;
     relax(g_matrix, g, mu, sweeps, z);
   }
-  if (work_ != nullptr && work_->is_spent()) return false;
-  return newton(g_matrix, g, mu, z);
+  const bool spent = work_ != nullptr && work_->is_spent();
+  if (!spent && newton(g_matrix, g, mu, z)) return true;
+  put_into_cones(mu, z);
+  return false;
 }
 
 /// Force per slack, from the diagonal of G.

@@ -26,7 +26,8 @@ std::uint32_t palpate_capture::direction(const protocol::CapturedDatagram& packe
     return packet.to == server ? PALPATE_TO_SERVER : PALPATE_TO_CLIENT;
   }
   const bool to_server = std::holds_alternative<protocol::Hello>(message) ||
-                         std::holds_alternative<protocol::ToolState>(message);
+                         std::holds_alternative<protocol::ToolState>(message) ||
+                         std::holds_alternative<protocol::Telemetry>(message);
   server = to_server ? packet.to : packet.from;
   knows_server = true;
   return to_server ? PALPATE_TO_SERVER : PALPATE_TO_CLIENT;

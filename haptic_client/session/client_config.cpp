@@ -18,6 +18,12 @@ OperatorSettings read_operator(const Config& config) {
   hand.hand_damping = config.number("hand_damping", {0, 1e3, "N s/m"}, hand.hand_damping);
   hand.max_force = config.number("max_force", {0.01, 100, "N"}, hand.max_force);
   config.reject_unknown();
+  if (!SimulatedHand::is_stable(hand))
+    fail(
+        "{}: a hand of {:g} kg that is damped by {:g} and {:g} N s/m moves faster than its sub-steps of {:g} "
+        "ms "
+        "follow; take a larger `mass` or less damping",
+        config.where(), hand.mass, hand.hand_damping, hand.device_damping, 1e3 * SimulatedHand::kSubStep);
   return hand;
 }
 

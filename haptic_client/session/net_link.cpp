@@ -1,5 +1,7 @@
 #include "haptic_client/session/net_link.h"
 
+#include <utility>
+
 #include "common/clock.h"
 
 namespace palpate::client {
@@ -51,7 +53,8 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   }
   figures_.received(bytes.size(), socket_.arrived());
   if (message != nullptr) pass_on(*message, socket_.arrived());
-  if (const bool was = welcomed.exchange(session_.welcomed()); !was && session_.welcomed()) let_go();
+  if (std::exchange(session_number_, session_.number()) != session_.number()) let_go();
+  welcomed = session_.welcomed();
   refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
   greet();
 }

@@ -49,6 +49,7 @@ class NetLink {
   protocol::Recorder* recorder_;
   HapticMailboxes& mailboxes_;
   protocol::Pointer pointer_{};  // the newest of a page
+  std::uint64_t session_number_ = 0;
   protocol::ClientSession session_;
   bool ticking_ = false;  // tool states have come from the haptic loop
   int idle_timers_ = 0;   // looks at the session before that

@@ -44,11 +44,19 @@ std::vector<Trajectory> read_motions(const RecordOptions& options, const Scene& 
   return motions;
 }
 
+/// The CSV that a client file names; a CSV itself.
+std::filesystem::path file_of_motion(const std::filesystem::path& file) {
+  if (file.extension() != ".toml") return file;
+  const auto section = Config::read(file).table("trajectory");
+  return section && section->has("file") ? section->file("file") : file;
+}
+
 void require_files_apart(const RecordOptions& options, const Scene& scene) {
   for (const auto& trajectory : options.trajectories)
     require_distinct({{"SCENE", options.scene},
                       {scene.mesh_where, scene.mesh_file},
                       {"--trajectory", trajectory},
+                      {"the motion of --trajectory", file_of_motion(trajectory)},
                       {"--out", options.out},
                       {"--report", options.report},
                       {"--resection", options.resection},
@@ -172,6 +180,7 @@ void print_recording(const RecordOptions& options, const VirtualSessionStats& st
 
 int record(const RecordOptions& options) {
   Scene scene = read_scene(options.scene);
+  const double studied_hz = scene.rate_hz;
   scene.rate_hz = options.rate_hz;
   const double ticks_hz = tick_rate_of(options);
   const std::vector<Trajectory> motions = read_motions(options, scene);
@@ -188,7 +197,9 @@ int record(const RecordOptions& options) {
                         condensed ? &*condensed : nullptr);
   if (!options.resection) simulation.keep_no_log();
   if (options.remove) simulation.remove_at(read_removals(*options.remove, simulation));
-  const ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
+  auto studied = cache ? find_studied(*cache, scene) : std::nullopt;
+  if (studied && studied_hz != options.rate_hz) studied->time_step = {};  // of other steps
+  const ErrorOfForce errors(scene, simulation, studied);
   RealTime clock;
   const VirtualLink link{.rate_hz = options.rate_hz,
                          .ticks_hz = ticks_hz,

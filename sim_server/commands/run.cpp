@@ -152,7 +152,8 @@ void print_errors(const Json& report) {
                felt["elements_per_radius"].get<double>(),
                cost_text("the mesh costs", felt, "mesh_percent", "mesh"),
                cost_text("the time step", felt, "motion_percent", "motion"));
-    if (felt["how"]["mesh"] != name_of(ErrorSource::kMeasured))
+    const Json& how = felt["how"]["mesh"];
+    if (how != name_of(ErrorSource::kMeasured) && how != name_of(ErrorSource::kNone))
       fmt::print("            `sim_server study {} --out DIR` measures both for this scene\n",
                  report["scene"].get<std::string>());
   }
@@ -329,7 +330,9 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   if (!options.resection) simulation.keep_no_log();
   warn_if_slow(scene);
   warn_if_out_of_reach(simulation, scene);
-  ErrorOfForce errors(scene, simulation, cache ? find_studied(*cache, scene) : std::nullopt);
+  auto studied = cache ? find_studied(*cache, scene) : std::nullopt;
+  if (studied && scene.rate_hz == 0) studied->time_step = {};  // steps are as clients ask for them
+  ErrorOfForce errors(scene, simulation, studied);
   warn_if_coarse(errors, simulation, scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);
   SimMailboxes mailboxes;

@@ -121,6 +121,7 @@ StudyRow row_of(const Scene& scene, const StudyCase& one, const Trace& trace, co
   row.tetrahedra = trace.tetrahedra;
   row.nodes = trace.nodes;
   row.flagged = trace.flagged;
+  row.touched = trace.step_ms_p50 > 0;
   row.state_hash = trace.state_hash;
   row.step_ms_p50 = trace.step_ms_p50;
   row.step_ms_p99 = trace.step_ms_p99;
@@ -151,9 +152,15 @@ void keep_for_sessions(const CacheOptions& where, const StudyOptions& options, R
   const auto cache = open_cache(where);
   if (!cache || own == result.rows.end() || (options.quick && find_studied(*cache, scene))) return;
   const StudyCase* shortest = with_shortest_steps(own->one, result.rows);
-  const Trace by_shortest = runner.run(*shortest, 1);
+  const Trace by_shortest = runner.run(*shortest, 1), by_own = runner.run(own->one, 1);
+  if (shortest->scene.rate_hz <= own->one.scene.rate_hz || by_shortest.flagged > 0 || by_own.flagged > 0) {
+    log::info(
+        "not kept for the reports of sessions: the scene has not settled in every step, or ran with no "
+        "shorter ones");
+    return;
+  }
   const StudyErrors mesh = errors_of(by_shortest, reference, runner.motion(), 0),
-                    step = errors_of(runner.run(own->one, 1), by_shortest, runner.motion(), 0);
+                    step = errors_of(by_own, by_shortest, runner.motion(), 0);
   if (result.own.force > 0.5 * mesh.force) {
     log::info(
         "not kept for the reports of sessions: the reference itself may be {:.2g} % off, the mesh {:.2g} %",

@@ -11,6 +11,7 @@
 #include "common/log.h"
 #include "common/progress.h"
 #include "common/realtime.h"
+#include "protocol/session.h"
 #include "protocol/udp_socket.h"
 #include "sim_server/commands/pictures.h"
 #include "sim_server/scene_file/read_scene.h"
@@ -61,10 +62,17 @@ class Rerun {
       : simulation_(simulation),
         served_(simulation),
         inputs_(simulation.tools()),
+        answered_(simulation.tools()),
         captured_(simulation.tools()) {}
 
   void take(const protocol::ToolState& state) {
     if (state.tool < inputs_.size()) inputs_[state.tool].path.add(state);
+  }
+  /// The tool of this session is in no hand from the next step on.
+  void let_go(std::uint64_t session) {
+    for (SessionInput& input : inputs_) {
+      if (input.session == session) input = {};
+    }
   }
   /// For the step to come.
   void take(const CapturedAnswer& answer) {
@@ -72,8 +80,12 @@ class Rerun {
       fail("the capture has tool {}, and the scene only {}", answer.sample.tool + 1, inputs_.size());
     SessionInput& input = inputs_[answer.sample.tool];
     const double dt = seconds_between(input.state.t_ns, answer.state.t_ns);
-    if (answer.begins_step) dt_ = input.session != 0 && dt > 0 && dt < kLongestStep ? dt : 0;
-    input.session = 1U + answer.sample.tool;
+    if (answer.begins_step) {
+      dt_ = input.session == answer.session && dt > 0 && dt < kLongestStep ? dt : 0;
+      drop_silent(answer.t);
+    }
+    input.session = answer.session;
+    answered_[answer.sample.tool] = answer.t;
     input.state = answer.state;
     // What a client asks for besides its force changes nothing here.
     input.state.flags &= protocol::ToolState::kDeviceLost;
@@ -98,9 +110,17 @@ class Rerun {
   double largest() const { return largest_; }
 
  private:
+  /// As a server drops clients that it has not heard of for so long.
+  void drop_silent(Time t) {
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      if (t - answered_[i] > protocol::ServerSessions::kTimeout) inputs_[i].session = 0;
+    }
+  }
+
   const Simulation& simulation_;
   ServedTools served_;
   std::vector<SessionInput> inputs_;
+  std::vector<Time> answered_;  // by tool: when last, in the capture
   std::vector<Vec3> captured_;
   double dt_ = 0, off_ = 0, largest_ = 0;
 };
@@ -140,6 +160,10 @@ void make_session(const std::filesystem::path& capture, std::size_t answers, Rer
         } else if (answer.begins_step) {
           ++session.picture().step;
         }
+      },
+      [&](std::uint64_t left) {
+        finish();
+        if (rerun != nullptr) rerun->let_go(left);
       });
   finish();
   if (!all)

@@ -32,6 +32,7 @@ class Cursor {
     wide_ = wide;
   }
   bool binary() const { return binary_; }
+  std::size_t bytes_in_all() const { return bytes_.size(); }
   const std::string& file() const { return file_; }
 
   // `what` says in an error what was expected.
@@ -116,7 +117,8 @@ class Cursor {
   std::string section() {
     start_token();
     const std::string_view name = line();
-    if (name.size() < 2 || name[0] != '$') wrong("expected a section ($Name), found {}", found());
+    if (name.size() < 2 || name.size() > kLongestName || name[0] != '$')
+      wrong("expected a section ($Name), found {}", found());
     return std::string(name.substr(1));
   }
 
@@ -146,6 +148,8 @@ class Cursor {
   }
 
  private:
+  static constexpr std::size_t kLongestName = 64;  // of a section
+
   std::size_t left() const { return bytes_.size() - at_; }
   void start_token() {
     while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;

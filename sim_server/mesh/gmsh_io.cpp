@@ -39,7 +39,8 @@ int nodes_of_type(std::int64_t type) {
 
 /// A solid element that is no tetrahedron: leaving it out would leave a hole.
 bool is_other_solid(std::int64_t type) {
-  return (type >= 5 && type <= 7) || (type >= 12 && type <= 14) || (type >= 17 && type <= 19);
+  return (type >= 5 && type <= 7) || (type >= 12 && type <= 14) || (type >= 17 && type <= 19) || type == 92 ||
+         type == 93;
 }
 
 bool is_curved_tetrahedron(std::int64_t type) {
@@ -276,7 +277,9 @@ class MeshReader {
 
   void tag_surfaces() {
     for (const auto& [group, nodes] : vertices_of_group_) {
-      for (const std::int64_t physical : physicals(group)) {
+      const std::vector<std::int64_t> all_physicals = physicals(group);
+      require_room_for(all_physicals.size(), nodes.size() / 3);
+      for (const std::int64_t physical : all_physicals) {
         if (physical == 0) continue;  // Gmsh's way to say "in no physical group"
         std::vector<int>& vertices = all_.surface_tags[tag_name(physical)];
         vertices.insert(vertices.end(), nodes.begin(), nodes.end());
@@ -286,6 +289,16 @@ class MeshReader {
       }
     }
     sort_tags(all_);
+  }
+
+  /// Each physical group of an entity keeps all triangles of that: a short list of both must not ask for more
+  /// memory than reading the file does.
+  void require_room_for(std::size_t groups, std::size_t triangles) {
+    constexpr std::size_t kFewest = 100'000;
+    tagged_ += groups * triangles;
+    if (tagged_ > std::max(kFewest, cursor_.bytes_in_all()))
+      cursor_.wrong("a surface of {} triangles in {} physical groups, which keep them all; take fewer groups",
+                    triangles, groups);
   }
 
   std::vector<std::int64_t> physicals(std::int64_t group) const {
@@ -301,6 +314,7 @@ class MeshReader {
   }
 
   Cursor cursor_;
+  std::size_t tagged_ = 0;  // triangles of all physical groups
   bool has_nodes_ = false, has_elements_ = false, is_41_ = false;
   std::vector<std::int64_t> node_numbers_;              // of each vertex, in file order
   std::vector<std::pair<std::int64_t, int>> index_of_;  // node number, vertex; sorted
@@ -329,16 +343,17 @@ std::string read_bytes(const std::filesystem::path& file) {
 
 }  // namespace
 
-CheckedMesh check_mesh(const std::filesystem::path& file) {
+CheckedMesh check_mesh(const std::filesystem::path& file, double scale) {
   const std::string bytes = read_bytes(file);
   if (!bytes.starts_with("$MeshFormat")) fail_other_format(file, bytes);
   CheckedMesh checked{MeshReader(file.string(), bytes).read(), {}};
+  for (Vec3& x : checked.mesh.vertices) x *= scale;
   checked.faults = mend(checked.mesh);
   return checked;
 }
 
-TetMesh read_mesh(const std::filesystem::path& file) {
-  CheckedMesh checked = check_mesh(file);
+TetMesh read_mesh(const std::filesystem::path& file, double scale) {
+  CheckedMesh checked = check_mesh(file, scale);
   require_usable(checked.faults, file.string());
   const std::string mended = mended_in_short(checked.faults);
   if (!mended.empty()) log::info("{}: {}", file.string(), mended);

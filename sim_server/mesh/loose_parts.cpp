@@ -116,10 +116,12 @@ std::vector<Hinge> hinges(const TetMesh& mesh) {
     const std::vector<int> number = parts.numbers();
     for (int& p : part) p = number[p];
   }
+  std::vector<std::size_t> size(static_cast<std::size_t>(1 + std::ranges::max(part)), 0);
+  for (const int p : part) ++size[static_cast<std::size_t>(p)];
   std::vector<Hinge> found;
   for_pairs(joints, [&](const std::array<int, 2>& two, const std::vector<int>& vertices) {
-    const auto size = [&](int p) { return static_cast<std::size_t>(std::ranges::count(part, p)); };
-    found.push_back({{size(two[0]), size(two[1])}, vertices});
+    found.push_back(
+        {{size[static_cast<std::size_t>(two[0])], size[static_cast<std::size_t>(two[1])]}, vertices});
   });
   return found;
 }

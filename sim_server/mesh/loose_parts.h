@@ -26,7 +26,7 @@ std::vector<LoosePart> loose_parts(const TetMesh& mesh, std::span<const int> hel
 /// Takes the tetrahedra of such parts out of `mesh`; its vertices stay. O(m log m).
 void drop_loose_parts(TetMesh& mesh, std::span<const int> held);
 
-/// "3 of its tetrahedra hang on a hinge at 0.1,0,0".
+/// "3 tetrahedra hang on a hinge at 0.1,0,0".
 std::string to_text(const LoosePart& part);
 
 /// Two parts that meet in vertices of one line only: about it one can turn against the other.

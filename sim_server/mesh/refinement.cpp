@@ -37,14 +37,24 @@ Edge edge_of(int a, int b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Middles of `edges`, the last vertices of `fine`, have a tag where both ends have it.
-void tag_middles(const std::vector<Edge>& edges, TetMesh& fine) {
+/// Middles of `edges`, the last vertices of `fine`, have a tag where a tagged triangle of `coarse` has the
+/// edge; of a tag without triangles, where both ends have it.
+void tag_middles(const std::vector<Edge>& edges, const TetMesh& coarse, TetMesh& fine) {
   const std::size_t first = fine.vertices.size() - edges.size();
   for (auto& [name, tagged] : fine.surface_tags) {
+    std::set<Edge> sides;
+    const auto triangles = coarse.tagged_triangles.find(name);
+    const bool has_triangles = triangles != coarse.tagged_triangles.end();
+    if (has_triangles) {
+      for (const auto& [a, b, c] : triangles->second)
+        sides.insert({edge_of(a, b), edge_of(b, c), edge_of(a, c)});
+    }
     std::vector<std::uint8_t> has(first, 0);
     for (const int v : tagged) has[v] = 1;
     for (std::size_t k = 0; k < edges.size(); ++k) {
-      if (has[edges[k][0]] != 0 && has[edges[k][1]] != 0) tagged.push_back(static_cast<int>(first + k));
+      const auto [a, b] = edges[k];
+      if (has_triangles ? sides.contains(edge_of(a, b)) : has[a] != 0 && has[b] != 0)
+        tagged.push_back(static_cast<int>(first + k));
     }
   }
 }
@@ -124,7 +134,7 @@ TetMesh cut_at(const std::vector<Edge>& edges, const TetMesh& mesh) {
     middle_of[edge] = static_cast<int>(fine.vertices.size());
     fine.vertices.push_back((mesh.vertices[edge[0]] + mesh.vertices[edge[1]]) / 2);
   }
-  tag_middles(edges, fine);
+  tag_middles(edges, mesh, fine);
   for (const auto& [name, triangles] : mesh.tagged_triangles) {
     for (const Triangle& triangle : triangles) {
       for (const Triangle& part : halves_of(triangle, middle_of)) fine.tagged_triangles[name].push_back(part);
@@ -161,7 +171,7 @@ TetMesh refined(const TetMesh& mesh) {
   TetMesh with_middles = mesh;
   add_mid_edges(with_middles);
   TetMesh fine{.vertices = with_middles.vertices, .tetrahedra = {}, .surface_tags = mesh.surface_tags};
-  tag_middles(with_middles.mid_edges, fine);
+  tag_middles(with_middles.mid_edges, mesh, fine);
   for (const auto& [name, triangles] : mesh.tagged_triangles) {
     for (const auto& [a, b, c] : triangles) {
       const int ab = with_middles.middle(a, b), bc = with_middles.middle(b, c),

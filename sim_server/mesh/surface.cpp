@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <fmt/ranges.h>
 #include <iterator>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -106,9 +107,12 @@ OuterFaces outer_faces(const TetMesh& mesh) {
 }
 
 std::string describe(const OverlappingFace& face) {
+  constexpr std::size_t kShown = 6;
+  const auto shown = std::span(face.tetrahedra).first(std::min(kShown, face.tetrahedra.size()));
   return fmt::format(
-      "the face of vertices {} belongs to {} tetrahedra ({}), but a solid has one on each side of a face",
-      face.vertices, face.tetrahedra.size(), fmt::join(face.tetrahedra, ", "));
+      "the face of vertices {} belongs to {} tetrahedra ({}{}), but a solid has one on each side of a face",
+      face.vertices, face.tetrahedra.size(), fmt::join(shown, ", "),
+      shown.size() < face.tetrahedra.size() ? ", ..." : "");
 }
 
 Surface boundary_surface(const TetMesh& mesh) {

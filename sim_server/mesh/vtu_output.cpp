@@ -74,11 +74,31 @@ void write_vtu(const std::filesystem::path& file, std::span<const Vec3> points, 
   write_whole(file, text + appended.bytes() + "\n</AppendedData>\n</VTKFile>\n");
 }
 
+namespace {
+
+std::string in_xml(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '&') {
+      escaped += "&amp;";
+    } else if (c == '<') {
+      escaped += "&lt;";
+    } else if (c == '"') {
+      escaped += "&quot;";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+}  // namespace
+
 void write_pvd(const std::filesystem::path& file,
                const std::vector<std::pair<double, std::filesystem::path>>& at_times) {
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (const auto& [time, name] : at_times)
-    text += fmt::format("<DataSet timestep=\"{:.9g}\" file=\"{}\"/>\n", time, name.string());
+    text += fmt::format("<DataSet timestep=\"{:.9g}\" file=\"{}\"/>\n", time, in_xml(name.string()));
   write_whole(file, text + "</Collection>\n</VTKFile>\n");
 }
 

@@ -44,10 +44,10 @@ Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, co
              load.region.where);
       for (const int v : vertices) dead_[v] += load.vector / static_cast<double>(vertices.size());
     } else if (load.kind == Load::Kind::kTraction) {
-      for (const Face& face : faces_in(load.region, mesh, surface))
+      for (const Face& face : movable_faces_in(load.region, mesh, surface))
         push(face, area_of(rest_, face.corners).norm() * load.vector, dead_);
     } else if (load.kind == Load::Kind::kPressure) {
-      pressures_.push_back({load.pressure, faces_in(load.region, mesh, surface)});
+      pressures_.push_back({load.pressure, movable_faces_in(load.region, mesh, surface)});
     }
   }
 }
@@ -105,7 +105,8 @@ void Loads::put_held(double t, std::span<Vec3> x) const noexcept {
 std::vector<Loads::Face> Loads::faces_in(const Region& region, const TetMesh& mesh, const Surface& surface) {
   std::vector<char> inside(mesh.vertices.size(), 0);
   for (const int v : vertices_in(region, mesh)) inside[v] = 1;
-  const auto tagged = mesh.tagged_triangles.find(region.surface_tag);
+  const auto tagged = region.surface_tag.empty() ? mesh.tagged_triangles.end()
+                                                 : mesh.tagged_triangles.find(region.surface_tag);
   const auto is_in = [&](Triangle corners) {
     if (tagged == mesh.tagged_triangles.end())
       return std::all_of(corners.begin(), corners.end(), [&](int corner) { return inside[corner] != 0; });
@@ -123,8 +124,22 @@ std::vector<Loads::Face> Loads::faces_in(const Region& region, const TetMesh& me
     }
     if (is_in(face.corners)) faces.push_back(face);
   }
+  if (faces.empty() && tagged != mesh.tagged_triangles.end())
+    fail("{}: no triangle of \"{}\" is on the boundary of the body; tag its outside", region.where,
+         region.surface_tag);
   if (faces.empty())
     fail("{}: no triangle of the boundary has all its corners in this region; make it larger", region.where);
+  return faces;
+}
+
+std::vector<Loads::Face> Loads::movable_faces_in(const Region& region, const TetMesh& mesh,
+                                                 const Surface& surface) const {
+  std::vector<Face> faces = faces_in(region, mesh, surface);
+  const auto is_held = [&](const Face& face) {
+    return std::ranges::all_of(face.pushed, [&](int node) { return held_[node] == kAllAxes; });
+  };
+  if (std::ranges::all_of(faces, is_held))
+    fail("{}: every vertex in this region is held, so that the load would move nothing", region.where);
   return faces;
 }
 

@@ -37,6 +37,8 @@ class Loads {
   };
   void hold(const Scene& scene, const TetMesh& mesh);
   static std::vector<Face> faces_in(const Region& region, const TetMesh& mesh, const Surface& surface);
+  /// Throws `Error` where all of them are held.
+  std::vector<Face> movable_faces_in(const Region& region, const TetMesh& mesh, const Surface& surface) const;
   static void push(const Face& face, const Vec3& force, std::span<Vec3> f);
 
   bool follows_ = false;           // pressure goes with the surface

@@ -1,17 +1,31 @@
 #include "sim_server/scene/scene.h"
 
+#include <fmt/core.h>
+
 #include "common/log.h"
+#include "common/memory_budget.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/mesh_faults.h"
 #include "sim_server/mesh/refinement.h"
 
 namespace palpate::sim {
+namespace {
+
+/// Bytes a tetrahedron: eight in its place, with their vertices, and, for the surface, four faces of each.
+constexpr double kRefiningTakes = 8 * (16 + 4 * 32 + 8);
+
+}  // namespace
 
 TetMesh read_mesh_of(const Scene& scene) {
-  TetMesh mesh = read_mesh(scene.mesh_file);
-  for (Vec3& x : mesh.vertices) x *= scene.mesh_scale;
+  TetMesh mesh = read_mesh(scene.mesh_file, scene.mesh_scale);
   if (const std::string odd = odd_size(mesh); !odd.empty()) log::warning("{}: {}", scene.mesh_where, odd);
-  for (double left = scene.mesh_refinements; left > 0; --left) mesh = left < 1 ? halved(mesh) : refined(mesh);
+  for (double left = scene.mesh_refinements; left > 0; --left) {
+    require_memory(kRefiningTakes * static_cast<double>(mesh.tetrahedra.size()), free_memory(),
+                   scene.mesh_where,
+                   fmt::format("cutting {} tetrahedra into smaller ones", mesh.tetrahedra.size()),
+                   "take a smaller `refine` or a coarser mesh");
+    mesh = left < 1 ? halved(mesh) : refined(mesh);
+  }
   return mesh;
 }
 

@@ -210,7 +210,7 @@ ToolSettings read_tool(const Config& config) {
   return tool;
 }
 
-/// The organ comes nearer by as much as its supports move.
+/// The organ comes nearer by as much as its supports move, or are put elsewhere.
 void reach_what_moves(Scene& scene) {
   double farthest = 0;
   for (const FixedRegion& region : scene.fixed) {
@@ -218,6 +218,11 @@ void reach_what_moves(Scene& scene) {
     for (const SupportMotion& motion : region.motions) own += motion.amplitude;
     farthest = std::max(farthest, own);
   }
+  double put = 0;  // by displacements, which hold besides
+  for (const Load& load : scene.loads) {
+    if (load.kind == Load::Kind::kDisplacement) put = std::max(put, load.vector.norm());
+  }
+  farthest += put;
   for (ToolSettings& tool : scene.tools) {
     if (tool.reach && farthest > 0) tool.reach = widened(*tool.reach, farthest);
   }

@@ -35,7 +35,8 @@ ToolState state_of(const HeldSession& session, const ForceSample& sample) {
 
 std::size_t read_captured_steps(const std::filesystem::path& capture,
                                 const std::function<void(const ToolState&)>& on_state,
-                                const std::function<void(const CapturedAnswer&)>& on_answer) {
+                                const std::function<void(const CapturedAnswer&)>& on_answer,
+                                const std::function<void(std::uint64_t session)>& on_left) {
   CaptureReader reader(capture);
   std::map<std::uint64_t, HeldSession> sessions;
   std::array<bool, kMaxTools> answered{};  // in this step
@@ -66,8 +67,10 @@ std::size_t read_captured_steps(const std::filesystem::path& capture,
       const bool begins = answers == 0 || answered[sample->tool];
       if (begins) answered = {};
       answered[sample->tool] = true;
-      on_answer({captured.t - *first, state_of(session, *sample), *sample, begins});
+      on_answer({captured.t - *first, state_of(session, *sample), *sample, number, begins});
       ++answers;
+    } else if (std::holds_alternative<Bye>(datagram.message) && on_left) {
+      on_left(number);
     }
   }
   if (const std::string trouble = reader.trouble(); !trouble.empty())

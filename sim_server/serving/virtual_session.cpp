@@ -114,13 +114,18 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
   const Time begun = std::max(answered_, deadline());
   if (link_.clock != nullptr) link_.clock->begin(begun);
   const Time begin = thread_time();
-  const auto& outcome = served_.step(inputs_, dt)[link_.tool];
-  if (outcome.force.contacts > 0) {
+  const auto outcomes = served_.step(inputs_, dt);
+  const Time took = thread_time() - begin;
+  const auto touches = [](const ServedTools::Outcome& o) { return o.force.contacts > 0; };
+  const auto is_flagged = [](const ServedTools::Outcome& o) { return o.force.flagged; };
+  if (std::ranges::any_of(outcomes, touches)) {
     ++stats_.in_contact;
-    stats_.contact_step_ns.add((thread_time() - begin).count());
+    stats_.contact_step_ns.add(took.count());
   }
-  stats_.flagged += outcome.force.flagged ? 1 : 0;
-  stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
+  stats_.flagged += std::ranges::any_of(outcomes, is_flagged) ? 1 : 0;
+  for (const ServedTools::Outcome& outcome : outcomes)
+    stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
+  const ServedTools::Outcome& outcome = outcomes[link_.tool];
   const Time done = link_.clock == nullptr ? answered_ : pass(begun, link_.clock->took());
   on_the_way_.push_back({done + link_.delay, *outcome.answer});
   on_the_way_.back().sample.tool = state.tool;

@@ -16,7 +16,8 @@ ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
                            const std::optional<DiscretisationErrors>& studied) {
   const bool deforms = scene.material && model_of(scene.deformation).deforms();
   for (const ToolSettings& tool : scene.tools) {
-    DiscretisationErrors errors = studied.value_or(DiscretisationErrors{});
+    DiscretisationErrors errors;
+    if (studied && tools_.empty() && !tool.grasps()) errors = *studied;  // it pressed with the first tool
     if (!deforms) errors.mesh.source = ErrorSource::kNone;
     if (!steps_matter(scene, tool)) errors.time_step = {.source = ErrorSource::kNone};
     std::optional<ElementKind> element;

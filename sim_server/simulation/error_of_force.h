@@ -11,7 +11,8 @@ namespace palpate::sim {
 /// the step alone, so that no step is too long. One thread.
 class ErrorOfForce {
  public:
-  /// `studied`: of this scene. `simulation` is read here only. O(vertices x tools).
+  /// `studied`: of this scene, pressed with its first tool. `simulation` is read here only. O(vertices x
+  /// tools).
   ErrorOfForce(const Scene& scene, const Simulation& simulation,
                const std::optional<DiscretisationErrors>& studied = {});
 

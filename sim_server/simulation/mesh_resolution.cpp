@@ -76,7 +76,7 @@ MeshResolution::Sums MeshResolution::sums_of(std::span<const NodalLoad> loads) c
   Sums sums;
   for (const NodalLoad& load : loads) {
     const double weight = load.force.norm();
-    if (!std::isfinite(weight)) continue;
+    if (!std::isfinite(weight) || fineness_[load.vertex] == 0) continue;  // that of a copy is not known
     sums.elements += weight * fineness_[load.vertex];
     sums.weight += weight;
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/clock.h"
+#include "common/error.h"
 #include "sim_server/simulation/touchable.h"
 
 namespace palpate::sim {
@@ -84,6 +85,12 @@ Press find_press(const Scene& scene, Simulation& simulation) {
     if (force.contacts > 0 && !force.flagged) return press;
     unsettled.insert(force.contacts > 0 ? unsettled.begin() : unsettled.end(), press);
   }
+  if (unsettled.empty())
+    fail(
+        "{}: the first [[tool]] reaches nothing of the organ, so that no step in contact can be timed; widen "
+        "its "
+        "`reach`, or put another one first",
+        scene.tools.front().where);
   return unsettled.front();
 }
 
@@ -108,6 +115,7 @@ StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& pr
   }
   const Vec3 tangent = press.normal.unitOrthogonal();
   approach(scene, simulation, press);
+  const FlaggedSteps before = simulation.flagged();
   for (int i = 1; i <= steps; ++i) {
     const ToolForce force =
         timed_step(simulation, inputs, press.place + slide(i) * tangent, dt, times.contact_ns);
@@ -115,7 +123,7 @@ StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& pr
     times.flagged += force.flagged ? 1 : 0;
     tell(steps + i);
   }
-  times.why = simulation.flagged().to_text();
+  times.why = (simulation.flagged() - before).to_text();
   return times;
 }
 

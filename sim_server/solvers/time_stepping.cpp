@@ -20,6 +20,7 @@ void TimeStepping::restart(std::span<const Vec3> x, std::span<const Vec3> v, std
   x_.assign(x.begin(), x.end());
   earlier_x_ = x_;
   if (!v.empty()) v_.assign(v.begin(), v.end());
+  earlier_v_ = v_;
   f_.assign(internal.begin(), internal.end());
   earlier_f_ = f_;
 }

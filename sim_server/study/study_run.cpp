@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/clock.h"
+#include "common/hash.h"
 #include "common/report.h"
 #include "sim_server/contact/contact_finder.h"
 #include "sim_server/simulation/step_times.h"
@@ -63,6 +64,18 @@ std::vector<Vec3> compared_sites(const StudyCase& one, const Box& box) {
   return sites;
 }
 
+namespace {
+
+/// Of the end, where the tool has left and much may be as at rest, and of all forces before.
+std::uint64_t hash_of(std::span<const Vec3> forces, std::uint64_t end) {
+  Fnv1a hash;
+  for (const Vec3& force : forces) hash.add(force);
+  hash.add(&end, sizeof end);
+  return hash.value();
+}
+
+}  // namespace
+
 Trace run_case(const StudyCase& one, const Trajectory& motion, double seconds, std::span<const Vec3> sites) {
   const Time begin = now();
   Simulation simulation = simulation_of(one);
@@ -89,7 +102,7 @@ Trace run_case(const StudyCase& one, const Trajectory& motion, double seconds, s
   }
   trace.step_ms_p50 = ns.quantile(0.5) / 1e6;
   trace.step_ms_p99 = ns.quantile(0.99) / 1e6;
-  trace.state_hash = simulation.state_hash();
+  trace.state_hash = hash_of(trace.forces, simulation.state_hash());
   return trace;
 }
 

@@ -48,8 +48,8 @@ Json facts_of(const StudyRow& row) {
 
 /// What depends on the machine.
 Json times_of(const StudyRow& row) {
-  return {{"step_ms_p50", row.step_ms_p50},
-          {"step_ms_p99", row.step_ms_p99},
+  return {{"step_ms_p50", row.touched ? Json(row.step_ms_p50) : Json()},
+          {"step_ms_p99", row.touched ? Json(row.step_ms_p99) : Json()},
           {"setup_ms", row.setup_ms},
           {"peak_bytes", row.peak_bytes},
           {"on_front", row.on_front}};
@@ -108,10 +108,11 @@ std::string settings_of(const StudyRow& row, const Scene& asked) {
 void mark_front(std::vector<StudyRow>& rows) {
   for (StudyRow& row : rows) {
     row.on_front =
-        row.flagged == 0 && std::none_of(rows.begin(), rows.end(), [&](const StudyRow& other) {
+        row.flagged == 0 && row.touched && std::none_of(rows.begin(), rows.end(), [&](const StudyRow& other) {
           const auto [error, time] = std::pair(other.errors.force, other.step_ms_p50);
           const bool better = error < row.errors.force || time < row.step_ms_p50;
-          return other.flagged == 0 && error <= row.errors.force && time <= row.step_ms_p50 && better;
+          return other.flagged == 0 && other.touched && error <= row.errors.force &&
+                 time <= row.step_ms_p50 && better;
         });
   }
 }
@@ -127,7 +128,10 @@ std::string to_text(const StudyResult& result) {
         "{} {:<9} {:<58} {:>10} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>8.0f}{}\n",
         row.on_front ? '*' : ' ', row.one.axis, row.one.name(), row.tetrahedra, row.errors.force,
         row.errors.worst_force, row.errors.surface, row.errors.felt, row.step_ms_p50, row.setup_ms / 1e3,
-        row.peak_bytes / 1e6, row.flagged > 0 ? fmt::format("  {} steps flagged", row.flagged) : "");
+        row.peak_bytes / 1e6,
+        row.flagged > 0 ? fmt::format("  {} steps flagged", row.flagged)
+        : !row.touched  ? "  never touched"
+                        : "");
   }
   for (const auto& [name, why] : result.refused) text += fmt::format("  refused   {}: {}\n", name, why);
   return text + "* on the front: nothing settled has as small an error of the force in less time\n";
@@ -136,7 +140,7 @@ std::string to_text(const StudyResult& result) {
 std::string advice(const StudyResult& result, double budget_ms, const Scene& asked) {
   const StudyRow* best = nullptr;
   for (const StudyRow& row : result.rows) {
-    if (row.one.refinements > 0 || row.flagged > 0) continue;
+    if (row.one.refinements > 0 || row.flagged > 0 || !row.touched) continue;
     if (row.step_ms_p50 > std::min(budget_ms, dt_ms(row))) continue;
     if (best == nullptr || row.errors.felt < best->errors.felt) best = &row;
   }

@@ -9,7 +9,8 @@ struct StudyRow {
   StudyCase one;
   StudyErrors errors;
   std::size_t tetrahedra = 0, nodes = 0;
-  int flagged = 0;  ///< steps
+  int flagged = 0;      ///< steps
+  bool touched = true;  ///< in some step; else no time of steps in contact is known
   std::uint64_t state_hash = 0;
   double step_ms_p50 = 0, step_ms_p99 = 0, setup_ms = 0, peak_bytes = 0;
   bool on_front = false;  ///< no other row has a smaller error of the force at no more time a step

@@ -37,21 +37,29 @@ void rest_and_leave(ForceEstimate& estimate, Part part) {
   test::ServedBlock block(Time::zero(), 1, kPeriod);
   Vec3 settled = Vec3::Zero(), given = Vec3::Zero();
   std::uint64_t free = 0;
+  const test::AllocationGuard guard;
+  bool ticks_allocate_nothing = true;
   for (Time t{1}; t < kAMinute + std::chrono::milliseconds(500); t += kPeriod / 3) {
     const Vec3 p = t < kAMinute ? kPressed : kAway;
     if (const auto sent = block.exchange(t, p, Vec3::Zero())) {
       Sample sample = sample_of(*sent, &told().model);
       part(sample);
-      REQUIRE(estimate.take(sample, p, t));
+      const std::size_t before_sample = guard.count();
+      const bool taken = estimate.take(sample, p, t);
+      ticks_allocate_nothing = guard.count() == before_sample && ticks_allocate_nothing;
+      REQUIRE(taken);
       free += sample.f.isZero(0) ? 1 : 0;
     }
+    const std::size_t before_tick = guard.count();
     given = estimate.force(p, t);
+    ticks_allocate_nothing = guard.count() == before_tick && ticks_allocate_nothing;
     REQUIRE(given.allFinite());
     if (estimate.newest().number == 2 && settled.isZero(0)) settled = given;
     if (estimate.newest().number >= 2 && t < kAMinute)
       REQUIRE((given - settled).norm() <= 1e-9 * settled.norm());
     if (free > 0) REQUIRE(given == Vec3::Zero());
   }
+  CHECK(ticks_allocate_nothing);
   CHECK(settled.norm() > 0.1);
   CHECK(free > 10);
 }

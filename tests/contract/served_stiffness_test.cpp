@@ -86,6 +86,16 @@ Mat3 tangent_of(const protocol::ForceSample& sample) {
 
 }  // namespace
 
+CONTRACT("a model that knows no compliance of later tells clients no tangents, in contact and before it",
+         ModelCase, choice, model_cases([](const ModelCase& c) { return !tells_tangents(c); })) {
+  for (const Vec3& place : {Vec3(0.003, 0.0030, 0.0015), Vec3(0.003, 0.0052, 0.0015)}) {
+    ToolForce felt;
+    const protocol::ForceSample sample = answer_to(choice, {.last = place}, &felt);
+    CHECK((felt.contacts > 0) == (place.y() < 0.005));
+    CHECK((sample.flags & (protocol::ForceSample::kHasHere | protocol::ForceSample::kHasAhead)) == 0);
+  }
+}
+
 CONTRACT(
     "the stiffness sent to the client is the slope of the server's own force over the sample "
     "interval",

@@ -130,6 +130,7 @@ TEST_CASE("laws_animation.py: a small GIF of two laws, in as many pictures as fo
        at = drawn.find("\x21\xf9\x04", at + 1))
     ++pictures;
   CHECK(pictures >= 12);
+  CHECK(pictures <= 14);
 
   const auto [wrong, told] = plotted("laws_animation.py " + csv + " " + gif + " --laws late absent");
   CHECK(wrong == 2);

@@ -224,6 +224,12 @@ TEST_CASE("solve: a tag that the mesh has not, and a region without a triangle, 
             .find("no triangle of the boundary") != std::string::npos);
   CHECK(refused(kFixed + "[[load]]\nforce = [0, 1, 0]\ncenter = [0, 1, 0]\nradius = 0.01\n")
             .find("no vertex of the mesh lies in this ball") != std::string::npos);
+  for (const char* load : {"pressure = 1", "traction = [0, 1, 0]", "force = [0, 1, 0]"}) {
+    CAPTURE(load);
+    CHECK(refused(fmt::format("[[fixed]]\nsurface_tag = \"bottom\"\n[[load]]\n{}\nsurface_tag = \"bottom\"\n",
+                              load))
+              .find("would move nothing") != std::string::npos);
+  }
 }
 
 TEST_CASE("solve: each support bears what it holds, also where supports share vertices on different axes") {

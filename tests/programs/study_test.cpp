@@ -1,7 +1,11 @@
 // sim_server study: the same rows every time, from where it was left.
+#include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <fmt/core.h>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include "tests/support/catch.h"
 #include "tests/support/column.h"
@@ -94,7 +98,15 @@ TEST_CASE("study: asked to end in the middle of a case it ends at once, and nobo
   Process study("sim_server",
                 {"study", source_dir() + "/configs/scenes/liver_implicit.toml", "--out", bench.out});
   REQUIRE(study.wait_for("reference: "));
+  const std::string list = fmt::format("/proc/{0}/task/{0}/children", study.id());
+  pid_t child = 0;
+  for (int k = 0; k < 500 && child == 0; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::ifstream(list) >> child;
+  }
+  REQUIRE(child > 0);
   study.signal(SIGTERM);
   CHECK(study.wait(5) == 1);
+  CHECK((kill(child, 0) == -1 && errno == ESRCH));
   CHECK(study.output().find("interrupted; the same command goes on from there") != std::string::npos);
 }

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "common/clock.h"
+#include "protocol/capture.h"
 #include "protocol/key_file.h"
 #include "protocol/session.h"
 #include "protocol/udp_socket.h"
@@ -45,6 +46,15 @@ TEST_CASE("keys: with the same key a session is as ever, and every datagram of t
   const Json tool = read_json(bench.report)["tools"][0];
   CHECK(tool["force"]["samples"].get<int>() > 15);
   CHECK(tool["link"]["rejected"] == 0);
+  palpate::protocol::CaptureReader reader(capture);
+  palpate::protocol::CapturedDatagram datagram;
+  std::size_t captured = 0;
+  for (; reader.next(datagram); ++captured) {
+    constexpr std::size_t kTagBytesAt = 8;  // protocol/README.md
+    REQUIRE(datagram.bytes.size() > kTagBytesAt);
+    CHECK(std::to_integer<std::size_t>(datagram.bytes[kTagBytesAt]) == palpate::protocol::kTagBytes);
+  }
+  CHECK(captured > 500);
   // And what was captured replays as ever: payloads are readable.
   CHECK_THAT(output_of("haptic_client", {"replay", capture, "--client", kClient}, 0),
              Catch::Contains("felt"));

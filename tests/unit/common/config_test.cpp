@@ -70,6 +70,15 @@ TEST_CASE("every wrong value names line, key and what was expected") {
   CHECK(error_of([] {
           config_of("[t]\nb = [[1,0,0],[0,1,1]]").table("t")->box("b");
         }).starts_with(":2: `[t] b` must be [minimum"));
+  CHECK(error_of([] {
+          config_of("[[t]]\n[t.u]\n[[t.u.v]]")
+              .tables("t")
+              .front()
+              .table("u")
+              ->tables("v")
+              .front()
+              .number("a", {});
+        }) == ":3: missing key `[[t.u.v]] a`");
   CHECK(error_of([] { config_of("t = 1").table("t"); }) == ":1: `t` must be a table `[t]`");
   CHECK(error_of([] { config_of("[t]").tables("t"); }) ==
         ":1: `t` must be one or more tables `[[t]]` (two brackets)");

@@ -123,6 +123,26 @@ TEST_CASE("Coulomb: the derivative of the solution agrees with finite difference
   }
 }
 
+TEST_CASE("Coulomb: where work ends, forces are in the friction cones, wherever they started") {
+  test::Random random(6);
+  CoulombSolver solver(6);
+  WorkBudget work;
+  solver.count_work(work);
+  int unsolved = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Problem problem = random_problem(random, 6, 0);
+    Eigen::VectorXd z(problem.g.size());
+    for (double& force : z) force = random.between(-1, 1);
+    work.allow(1 + 200.0 * (i % 10));
+    unsolved += solver.solve(problem.g_matrix, problem.g, problem.mu, z) ? 0 : 1;
+    for (Eigen::Index k = 0; k < z.size(); k += 3) {
+      CHECK(z[k] >= 0);
+      CHECK(z.segment<2>(k + 1).norm() <= problem.mu * z[k] * (1 + 1e-12) + 1e-12);
+    }
+  }
+  CHECK(unsolved > 10);
+}
+
 TEST_CASE("Coulomb: a solve does not allocate") {
   test::Random random(4);
   const Problem problem = random_problem(random, 10, 0);

@@ -20,7 +20,8 @@ constexpr double kForce = 3, kSlew = 500;  // N, N/s
 /// Numbers, ordinary ones and others; the same for the same seed.
 class Wild {
  public:
-  explicit Wild(std::uint64_t seed) : random_(seed) {}
+  /// `any_count`: also of more than there is room for, which the codec refuses.
+  Wild(std::uint64_t seed, bool any_count) : random_(seed), any_count_(any_count) {}
   std::uint64_t below(std::uint64_t end) { return random_.bits() % end; }
   bool once_in(std::uint64_t n) { return below(n) == 0; }
 
@@ -52,7 +53,8 @@ class Wild {
     s.tool_t_ns = (now - Time{static_cast<Time::rep>(below(400'000'000))}).count();
     if (once_in(100)) s.tool_t_ns = std::numeric_limits<std::int64_t>::min();
     if (once_in(100)) s.tool_t_ns = std::numeric_limits<std::int64_t>::max();
-    s.flags = static_cast<std::uint32_t>(below(128));
+    s.flags = static_cast<std::uint32_t>(below(2 * ForceSample::kCutting));
+    if (!once_in(40)) s.flags &= ~ForceSample::kPaused;
     s.others.v_W = vector();
     for (double& c : s.others.compliance) c = once_in(20) ? number() : ordinary(0.01);
     s.surface_v_W = vector(), s.here = linearisation();
@@ -64,7 +66,36 @@ class Wild {
                  .tool_friction = once_in(30) ? number() : 0.3,
                  .tool_compliance = once_in(30) ? number() : 0,
                  .shift_W = once_in(10) ? place() : Vec3(Vec3::Zero())};
+    s.mean_f_W = vector();
+    s.cuts = static_cast<std::uint32_t>(once_in(40) ? below(3) : 1);
+    add_motion(s);
     return s;
+  }
+
+  /// Mostly of as many modes as `page` has room for with the 6 vertices and 8 triangles of `sample`.
+  void add_motion(ForceSample& s) {
+    const auto amplitude = [&] { return static_cast<float>(once_in(40) ? number() : ordinary(1e-3)); };
+    const auto fill = [&](auto& numbers) {
+      for (float& x : numbers) x = amplitude();
+    };
+    s.modes.count = count(3, s.modes.q.size());
+    s.modal_loads.count = count(s.modes.count, s.modal_loads.load.size());
+    s.relaxed.terms = count(1 + below(2), s.relaxed.share.size());
+    s.relaxed.count = count(3, s.relaxed.z.size() / s.relaxed.share.size());
+    s.relaxed.first = count(0, s.modes.q.size() - std::min<std::size_t>(s.relaxed.count, s.modes.q.size()));
+    s.relaxed.vertices = count(2, s.relaxed.vertex.size() / s.relaxed.share.size());
+    fill(s.modes.q), fill(s.modes.v), fill(s.modal_loads.load);
+    s.relaxed.terms = static_cast<std::uint8_t>(once_in(10) ? below(256) : 1 + below(2));
+    s.relaxed.first = static_cast<std::uint8_t>(once_in(10) ? below(256) : 0);
+    s.relaxed.count = static_cast<std::uint8_t>(once_in(10) ? below(256) : 3);
+    s.relaxed.vertices = static_cast<std::uint8_t>(once_in(10) ? below(256) : 2);
+    for (float& share : s.relaxed.share) share = once_in(20) ? amplitude() : 0.3F;
+    for (float& time : s.relaxed.time) time = once_in(20) ? amplitude() : 0.5F;
+    fill(s.relaxed.z);
+    for (auto& vertex : s.relaxed.vertex) {
+      vertex.number = static_cast<std::uint16_t>(once_in(20) ? below(65536) : below(6));
+      fill(vertex.psi);
+    }
   }
 
   protocol::SurfacePage page() {
@@ -78,21 +109,28 @@ class Wild {
 
  private:
   static constexpr double kSizes[] = {0, 1e-9, 1e-3, 1, 1e30, 1e-320};
+  /// Now and then another one than usual.
+  std::uint8_t count(std::uint64_t usual, std::size_t most) {
+    return static_cast<std::uint8_t>(once_in(10) ? below(any_count_ ? 256 : most + 1) : usual);
+  }
+
   test::Random random_;
+  bool any_count_;
 };
 
 /// Whether the client would let this in from the wire.
 bool is_let_in(const protocol::Message& message) {
-  std::array<std::byte, protocol::kMaxDatagram> bytes;
+  std::array<std::byte, 4 * protocol::kMaxDatagram> bytes;  // with all parts at once it may be longer
   protocol::Datagram out;
   const std::size_t size = protocol::encode({1, 1}, message, bytes);
-  return protocol::decode(std::span(bytes).first(size), out) == protocol::Verdict::kAccepted;
+  return size <= protocol::kMaxDatagram &&
+         protocol::decode(std::span(bytes).first(size), out) == protocol::Verdict::kAccepted;
 }
 
 /// Runs a law on wild input; returns the largest force that came out.
 double largest_force(const ExtrapolatorRow& law, bool through_the_wire, int ticks) {
   Pipeline pipeline(law.make(), {}, {.max_force = kForce, .max_slew = kSlew});
-  Wild wild(13);
+  Wild wild(13, through_the_wire);
   Time t = 1s;
   Vec3 last = Vec3::Zero();
   double largest = 0;

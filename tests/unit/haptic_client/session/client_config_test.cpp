@@ -55,6 +55,16 @@ TEST_CASE("a SpaceMouse: its table is read, and the file that ships begins above
   CHECK(shipped.workspace.to_world(Vec3::Zero()) == Vec3(-0.03, 0.09, 0.01));
 }
 
+TEST_CASE("a simulated hand that its sub-steps cannot follow is refused, with what would do") {
+  const test::TemporaryFolder folder;
+  const auto read = [&](const std::string& keys) {
+    return read_client_config(folder.write("c.toml", "[operator]\n" + keys));
+  };
+  CHECK_THROWS_WITH(read("mass = 0.05\nhand_damping = 500\n"), Catch::Contains("take a larger `mass`"));
+  CHECK_NOTHROW(read("mass = 0.3\nhand_damping = 500\n"));
+  CHECK_NOTHROW(read("mass = 0.01\nhand_stiffness = 1e5\n"));
+}
+
 TEST_CASE("a motion told in the world reaches the same place through any workspace") {
   const test::TemporaryFolder folder;
   folder.write("m.csv", "t_s,x_m,y_m,z_m\n0,10,20,30\n1,10,20,30\n");

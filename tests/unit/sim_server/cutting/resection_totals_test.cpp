@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "sim_server/cutting/resection.h"
 #include "sim_server/elasticity/tensors.h"
@@ -98,7 +100,12 @@ TEST_CASE("a tip that goes far in a step heats along its way, and by no more tha
   for (const int v : surface.vertices) positions.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
   const HotTip tip{Vec3(-0.02, 0.002, 0.001), Vec3(0.02, 0.002, 0.001), 0.002};
   double least = 1, most = -1;
+  std::set<int> columns;  // of 5 mm, in which something went
   for (const int t : resection.advance({&tip, 1}, positions, kStep, surface)) {
+    double middle = 0;
+    for (const int v : mesh.tetrahedra[static_cast<std::size_t>(t)])
+      middle += mesh.vertices[static_cast<std::size_t>(v)].x() / 4;
+    columns.insert(static_cast<int>(std::floor(middle / 0.005)));
     for (const int v : mesh.tetrahedra[static_cast<std::size_t>(t)]) {
       least = std::min(least, mesh.vertices[static_cast<std::size_t>(v)].x());
       most = std::max(most, mesh.vertices[static_cast<std::size_t>(v)].x());
@@ -106,6 +113,7 @@ TEST_CASE("a tip that goes far in a step heats along its way, and by no more tha
   }
   CHECK(least == Approx(-0.02));
   CHECK(most == Approx(0.02));
+  CHECK(columns.size() == 8);  // not at its ends alone
   CHECK(resection.totals().heat == Approx(1000 * kStep));
 }
 

@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "tests/support/catch.h"
 #include "tests/support/paths.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -45,4 +47,54 @@ TEST_CASE("every model says what it will take, and reads back what it writes") {
     CHECK(to_text(read_deformation(*Config::read(file).table("deformation"))) == text);
   }
   std::filesystem::remove(file);
+}
+
+namespace {
+
+bool is_in_this_build(std::string_view key) {
+#ifdef PALPATE_WITH_SPECTRA
+  return !key.empty();
+#else
+  return key != "client_modes";
+#endif
+}
+
+}  // namespace
+
+TEST_CASE("what a scene sets of its model is written as it was read, each key") {
+  // Not what is taken where nothing is said, and as numbers are written.
+  const std::map<std::string_view, std::string> values{{"stiffness", "321"},
+                                                       {"spring_stiffness", "[11, 22, 33]"},
+                                                       {"hardening_length", "0.0123"},
+                                                       {"compliance_tolerance", "0.0025"},
+                                                       {"rayleigh_mass", "7"},
+                                                       {"rayleigh_stiffness", "0.00035"},
+                                                       {"instants", "3"},
+                                                       {"modes", "17"},
+                                                       {"client_modes", "11"},
+                                                       {"layers", "2"},
+                                                       {"rest_modes", "13"},
+                                                       {"integrator", "\"bdf2\""},
+                                                       {"solver", "\"pcg\""},
+                                                       {"refresh_steps", "19"},
+                                                       {"max_newton", "23"},
+                                                       {"tolerance", "0.00015"},
+                                                       {"budget_ms", "29"}};
+  const test::TemporaryFolder folder;
+  for (const DeformationModelRow& row : deformation_models()) {
+    std::string text = "[deformation]\nmodel = \"" + std::string(row.name) + "\"\n";
+    for (const std::string_view key : row.keys()) {
+      CAPTURE(row.name, key);
+      REQUIRE(values.contains(key));
+      if (!is_in_this_build(key)) continue;
+      text += std::string(key) + " = " + values.at(key) + "\n";
+    }
+    const auto file = folder.write("deformation.toml", text);
+    const std::string written = to_text(read_deformation(*Config::read(file).table("deformation")));
+    for (const std::string_view key : row.keys()) {
+      if (!is_in_this_build(key)) continue;
+      CAPTURE(row.name, key, written);
+      CHECK(written.find("\n" + std::string(key) + " = " + values.at(key) + "\n") != std::string::npos);
+    }
+  }
 }

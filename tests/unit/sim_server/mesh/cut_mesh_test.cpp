@@ -74,6 +74,15 @@ TEST_CASE("only what may be removed gives the surface its vertices") {
   std::vector<Removable> removable(mesh.tetrahedra.size(), Removable::kNever);
   const CutMesh nothing(mesh, removable, surface);
   CHECK(surface.vertices.size() == outside);
+  std::vector<char> is_corner(mesh.vertices.size(), 0);  // of what may go: one half
+  for (const int v : surface.vertices) is_corner[static_cast<std::size_t>(v)] = 1;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size() / 2; ++t) {
+    removable[t] = Removable::kNow;
+    for (const int v : mesh.tetrahedra[t]) is_corner[static_cast<std::size_t>(v)] = 1;
+  }
+  const CutMesh half(mesh, removable, surface);
+  CHECK(surface.vertices.size() == static_cast<std::size_t>(std::ranges::count(is_corner, 1)));
+  CHECK(surface.vertices.size() < mesh.vertices.size());
   removable.assign(removable.size(), Removable::kNow);
   const CutMesh all(mesh, removable, surface);
   CHECK(surface.vertices.size() == mesh.vertices.size());

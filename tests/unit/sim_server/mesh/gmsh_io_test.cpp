@@ -279,6 +279,29 @@ TEST_CASE("counts that lie are found before memory is asked for", "[mesh]") {
   CHECK(scratch.error_of(w.out).find(fmt::format("FILE: byte {}: {} nodes announced", at, huge)) == 0);
 }
 
+TEST_CASE("triangles that many physical groups would keep are refused before memory is asked for", "[mesh]") {
+  const Scratch scratch;
+  const auto file = [&](int groups, int triangles) {
+    std::string text = kHead41 + fmt::format("$Entities\n0 0 1 0\n1 0 0 0 1 1 1 {}", groups);
+    for (int k = 1; k <= groups; ++k) text += fmt::format(" {}", k);
+    text += " 0\n$EndEntities\n$Nodes\n1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n";
+    text += fmt::format("$Elements\n2 {0} 1 {0}\n3 1 4 1\n1 1 2 3 4\n2 1 2 {1}\n", triangles + 1, triangles);
+    for (int k = 0; k < triangles; ++k) text += fmt::format("{} 1 3 2\n", k + 2);
+    return text + "$EndElements\n";
+  };
+  CHECK(scratch.error_of(file(2000, 2000)).find("2000 triangles in 2000 physical groups") !=
+        std::string::npos);
+  CHECK(scratch.error_of(file(20, 2000)).empty());
+}
+
+TEST_CASE("what is said of a mesh in other units than metres is said in metres", "[mesh]") {
+  const Scratch scratch;
+  const std::string text =
+      kHead22 + "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n" + kElements22;
+  CHECK(check_mesh(scratch.write(text), 0.001).mesh.vertices[1] == Vec3(0.001, 0, 0));
+  CHECK(describe(read_mesh(scratch.write(text), 0.001)).volume == Approx(1e-9 / 6));
+}
+
 TEST_CASE("counts that are too small or do not add up", "[mesh]") {
   const Scratch scratch;
   CHECK(scratch.error_of(kHead22 + replaced(kNodes22, "\n4\n", "\n3\n")) ==

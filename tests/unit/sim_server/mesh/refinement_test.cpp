@@ -8,7 +8,9 @@
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/mesh/surface.h"
 #include "tests/support/catch.h"
+#include "tests/support/cut_bodies.h"
 #include "tests/support/paths.h"
+#include "tests/support/solids.h"
 
 namespace palpate::sim {
 namespace {
@@ -59,6 +61,28 @@ TEST_CASE("what is tagged stays tagged, and no more") {
       const auto& floor = fine.surface_tags.at("floor");
       const bool tagged = std::find(floor.begin(), floor.end(), static_cast<int>(v)) != floor.end();
       CHECK(tagged == (fine.vertices[v].y() == 0));
+    }
+  }
+}
+
+TEST_CASE("a middle between two tagged vertices is not tagged where no tagged triangle has the edge") {
+  TetMesh coarse =
+      palpate::test::corner_block(Vec3(1, 1, 1), {1, 1, 1});  // every vertex on both ends, or one
+  for (const Triangle& triangle : palpate::test::by_mesh_vertices(boundary_surface(coarse))) {
+    const auto at = [&](double x) {
+      return std::ranges::all_of(triangle, [&](int v) { return coarse.vertices[v].x() == x; });
+    };
+    if (!at(0) && !at(1)) continue;
+    coarse.tagged_triangles["ends"].push_back(triangle);
+    for (const int v : triangle) coarse.surface_tags["ends"].push_back(v);
+  }
+  sort_tags(coarse);
+  REQUIRE(coarse.surface_tags.at("ends").size() == coarse.vertices.size());
+  for (const TetMesh& fine : {refined(coarse), halved(halved(coarse))}) {
+    const auto& ends = fine.surface_tags.at("ends");
+    for (std::size_t v = 0; v < fine.vertices.size(); ++v) {
+      const double x = fine.vertices[v].x();
+      CHECK(std::ranges::binary_search(ends, static_cast<int>(v)) == (x == 0 || x == 1));
     }
   }
 }

@@ -153,8 +153,14 @@ TEST_CASE("[cutting]: values out of range, and a scene in which nothing could be
 TEST_CASE("[cutting]: a region without any tetrahedron, elements and supports that cannot be cut") {
   const SceneWith nothing("[[tool]]", "cut_buttons = 1\n[cutting]\ncenter = [9, 9, 9]\nradius = 0.1");
   CHECK(nothing.error(true).find("no tetrahedron of the mesh lies in what can be cut") != std::string::npos);
-  const SceneWith quadratic("[material]", "element = \"p2\"\n[cutting]");
-  CHECK(quadratic.error().find("cut") != std::string::npos);
+  const std::string cutter = "\n[[tool]]\nradius = 0.01\ncut_buttons = 1\n[cutting]";
+  const SceneWith quadratic("[material]", "element = \"p2\"" + cutter);
+  CHECK(quadratic.error().find("tissue of element \"p2\" cannot be cut") != std::string::npos);
+  const SceneWith loaded("[[tool]]", "cut_buttons = 1\n[cutting]\n[[load]]\ngravity = [0, -9.81, 0]");
+  CHECK(loaded.error().find("cannot bear loads besides tools yet") != std::string::npos);
+  const std::string motion = "[[fixed.motion]]\ndirection = [0, 1, 0]\namplitude = 0.001\nperiod = 1";
+  CHECK(SceneWith("[[fixed]]", motion + cutter).error().find("cannot move with its supports yet") !=
+        std::string::npos);
 }
 
 TEST_CASE("[material]: values out of range, and names that are none") {

@@ -83,7 +83,7 @@ TEST_CASE("a recorded resection, stepped again from its capture alone, gives the
     REQUIRE((first.resection()->growth().times > 0) == grows);
     ServedTools served(second);
     std::vector<SessionInput> inputs(1);
-    std::size_t answers = 0;
+    std::size_t answers = 0, left = 0;
     read_captured_steps(
         folder.path() / "a.pcap", [&](const ToolState& state) { inputs[0].path.add(state); },
         [&](const CapturedAnswer& answer) {
@@ -95,11 +95,32 @@ TEST_CASE("a recorded resection, stepped again from its capture alone, gives the
           CHECK(outcome.force.force == answer.sample.f_W);
           CHECK(outcome.answer->cuts == answer.sample.cuts);
           ++answers;
-        });
+        },
+        [&](std::uint64_t) { ++left; });
     CHECK(answers > 40);
+    CHECK(left == 1);
     CHECK(second.state_hash() == hash);
     CHECK(second.resection()->totals().tetrahedra == first.resection()->totals().tetrahedra);
   }
+}
+
+TEST_CASE("tissue that can be cut by tensor_mass gives way over a sub-step, and tells no tangents of that") {
+  Simulation simulation(cut_scene("tensor_mass"), deep_block());
+  ServedTools served(simulation);
+  std::vector<SessionInput> inputs{{7, {.flags = ToolState::kWantsHere | ToolState::kWantsAhead}, true}};
+  ToolState& state = inputs[0].state;
+  int touched = 0;
+  for (int k = 1; k <= 30; ++k) {
+    ++state.tick;
+    state.t_ns += 20'000'000;
+    state.p_W = Vec3(0.001, 0.0045 - 1e-4 * k, 0.0005);
+    const auto& outcome = served.step(inputs, 0.02).front();
+    touched += outcome.force.contacts > 0 ? 1 : 0;
+    REQUIRE(outcome.answer);
+    CHECK((outcome.answer->flags & (ForceSample::kHasHere | ForceSample::kHasAhead)) == 0);
+  }
+  CHECK(touched > 5);
+  CHECK(touched < 30);
 }
 
 TEST_CASE(

@@ -51,6 +51,15 @@ TEST_CASE("mesh resolution: where edges have a vertex in their middle, an elemen
         Approx(kRadius / (2 * two.h)));
 }
 
+TEST_CASE("mesh resolution: a copy of a vertex, of which nothing is known, tells nothing") {
+  TwoTriangles two;
+  two.rest.push_back(two.rest[0]);
+  two.surface.vertices.push_back(6);  // of no triangle yet
+  const MeshResolution mesh(two.surface, two.rest, kRadius);
+  CHECK_FALSE(mesh.of(std::vector<NodalLoad>{{6, {0, 1, 0}}}));
+  CHECK(*mesh.of(std::vector<NodalLoad>{{0, {0, 1, 0}}, {6, {0, 1, 0}}}) == Approx(kRadius / two.h));
+}
+
 TEST_CASE("error of the force: friction and tissue in motion depend on the steps taken, the others do not") {
   const auto source = [](const std::string& model, double friction) {
     Scene scene = test::liver_scene();
@@ -75,6 +84,7 @@ TEST_CASE(
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path() / "cache");
   Scene scene = test::liver_scene();
+  scene.tools.push_back(scene.tools.front());  // the study pressed with the first alone
   scene.source = folder.write("scene.toml", "rate_hz = 30").string();
   CHECK_FALSE(find_studied(cache, scene));
   keep_studied(cache, scene, {{ErrorSource::kMeasured, 12.5F}, {ErrorSource::kMeasured, 0.25F}}, 60);
@@ -88,6 +98,9 @@ TEST_CASE(
   CHECK(errors.mesh.source == ErrorSource::kMeasured);
   CHECK(errors.mesh.percent == 12.5F);
   CHECK(errors.time_step.source == ErrorSource::kNone);  // this scene makes none
+  CHECK(ErrorOfForce(scene, simulation, found).of_step(1, loads).mesh.source == ErrorSource::kEstimated);
+  scene.tools.front().grasp_buttons = 1;  // the study held nothing
+  CHECK(ErrorOfForce(scene, simulation, found).of_step(0, loads).mesh.source == ErrorSource::kUnknown);
   folder.write("scene.toml", "rate_hz = 31");
   CHECK_FALSE(find_studied(cache, scene));
 }

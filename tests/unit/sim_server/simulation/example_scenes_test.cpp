@@ -42,6 +42,8 @@ TEST_CASE("a tip that rubs on the liver is held back sideways, by no more than f
   for (int i = 0; i < 10; ++i) force = simulation.step(place += 0.001 * Vec3::UnitX(), dt);
   CHECK_FALSE(force.flagged);
   CHECK(force.force.x() < before - 0.1 * force.force.y());
+  // Of 0.3, on a surface that may lean by some degrees.
+  CHECK(std::abs(force.force.x() - before) < 0.45 * force.force.y());
 }
 
 TEST_CASE("the liver is harder to press above its lump, by every model, and beside it as without") {

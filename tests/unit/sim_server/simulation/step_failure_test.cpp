@@ -14,14 +14,19 @@ namespace {
 constexpr double kDt = 1.0 / 30, kRadius = 0.004;
 const ToolPose kPressed(Vec3(0.001, kRadius - 0.002, 0.002));
 
-/// A block of corotational tissue, pressed by 2 mm until it rests.
-[[maybe_unused]] Simulation pressed_block() {
+const std::vector<ToolInput> kTwo{{.pose = kPressed},
+                                  {.pose = ToolPose(Vec3(-0.009, kRadius - 0.002, 0.002))}};
+
+/// A block of corotational tissue, pressed by 2 mm, by one tool or by two, until it rests.
+[[maybe_unused]] Simulation pressed_block(bool by_two = false) {
   Scene scene = scene_of({.young_modulus = 1e4, .poisson_ratio = 0.45, .law = ElasticLaw::kCorotational},
                          {Vec3(-1, -1, -1), Vec3(1, -0.0149, 1)}, kRadius);
   scene.deformation.model = "implicit";
+  if (by_two) scene.tools.push_back(scene.tools.front());
   Simulation simulation(scene,
                         grid_block(lines(-0.015, 0.015, 4), lines(-0.015, 0, 2), lines(-0.015, 0.015, 4)));
-  for (int i = 0; i < 20; ++i) simulation.step(kPressed, kDt);
+  for (int i = 0; i < 20; ++i)
+    by_two ? void(simulation.step(kTwo, kDt)) : void(simulation.step(kPressed, kDt));
   return simulation;
 }
 
@@ -76,12 +81,18 @@ TEST_CASE("the force of a tissue that answers no more fades, and a lifted tool f
 
 TEST_CASE(
     "a tool whose client leaves when memory has ended is lifted all the same, and the tissue goes free") {
-  Simulation simulation = pressed_block();
+  Simulation simulation = pressed_block(true);
   {
     const AllocationFailure failure(1);
     simulation.lift_tool(0);
+    CHECK(failure.happened());
   }
-  const std::vector<ToolInput> away(1);
+  std::vector<ToolInput> left = kTwo;
+  left[0].pose.reset();
+  const auto answers = simulation.step(left, kDt);
+  CHECK(answers[0].force.isZero());
+  CHECK(answers[1].force.norm() > 0.05);
+  const std::vector<ToolInput> away(2);
   for (int i = 0; i < 60; ++i) CHECK(simulation.step(away, kDt).front().force.isZero());
   double off = 0;
   for (std::size_t v = 0; v < simulation.positions().size(); ++v)

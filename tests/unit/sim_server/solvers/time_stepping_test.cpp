@@ -138,4 +138,9 @@ TEST_CASE("time stepping: a step that ends at rest forgets the velocities, a res
   time.begin(0.01);
   CHECK(time.velocity_at(0, kA).norm() < 1e-10);
   CHECK(time.change_of_force(0, kX).norm() < 1e-15);
+
+  time = stepped(true, 0.01, 4, [](double t) -> Vec3 { return kX + t * kV; });
+  time.restart(std::vector<Vec3>{kA}, std::vector<Vec3>{-kV}, std::vector<Vec3>{kX});
+  time.begin(0.01);
+  CHECK(time.acceleration_at(0, -kV).norm() < 1e-9);  // it goes on as it is, whatever it was before
 }
