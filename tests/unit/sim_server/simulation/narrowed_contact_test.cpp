@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kStep = 1.0 / 30, kDepth = 0.02;
 
-/// A block under two tools, of which one is far away: a ball, or a capsule, which could touch anywhere along itself,
-/// so that contact is looked for everywhere.
+/// A block under two tools, of which one is far away: a ball, or a capsule, which could touch anywhere along
+/// itself, so that contact is looked for everywhere.
 Simulation block_of(const char* model, bool narrowed) {
   Scene scene = soft_block_scene(kDepth, model, ElasticLaw::kLinear, 0.003);
   scene.tools[0].cut_buttons = 1;
