@@ -44,11 +44,12 @@ std::vector<Trajectory> read_motions(const RecordOptions& options, const Scene& 
   return motions;
 }
 
-/// The CSV that a client file names; a CSV itself.
-std::filesystem::path file_of_motion(const std::filesystem::path& file) {
-  if (file.extension() != ".toml") return file;
-  const auto section = Config::read(file).table("trajectory");
-  return section && section->has("file") ? section->file("file") : file;
+/// The CSV that a client file names.
+std::optional<std::filesystem::path> file_of_motion(const std::filesystem::path& client) {
+  if (client.extension() != ".toml") return {};
+  const auto section = Config::read(client).table("trajectory");
+  if (!section || !section->has("file")) return {};
+  return section->file("file");
 }
 
 void require_files_apart(const RecordOptions& options, const Scene& scene) {
