@@ -1,9 +1,11 @@
 #include "haptic_client/device/devices.h"
 
 #include <array>
+#include <set>
 
 #include "common/clock.h"
 #include "common/error.h"
+#include "common/log.h"
 #include "common/text.h"
 #include "haptic_client/device/usb_port.h"
 
@@ -49,21 +51,23 @@ std::unique_ptr<Device> make_falcon(const DeviceSettings& settings) {
 int make_falcon_safe(const DeviceSettings& settings) {
 #ifdef PALPATE_WITH_USB
   if (!settings.port.empty()) {
-    std::vector<std::unique_ptr<UsbTransport>> port;
+    UsbPorts port;
     port.push_back(usb_port(settings, {kFalconIds}));
-    return silence_falcons(port);
+    return silence_falcons(std::move(port)).falcons;
   }
-  constexpr int kLooks = 10;  // in a second: one that is just being enumerated again is there soon
-  int silenced = 0;
-  for (int look = 0; look < kLooks && silenced == 0; ++look) {
-    if (look > 0) sleep_until(now() + std::chrono::milliseconds(100));
-    std::vector<std::unique_ptr<UsbTransport>> ports;
+  std::set<std::string> seen;
+  const Silenced silenced = silence_falcons({}, [&seen](UsbPorts& ports) {
     for (const UsbDevice& device : find_usb({kFalconIds})) {
-      if (!device.locked) ports.push_back(std::make_unique<UsbPort>(UsbKind{kFalconIds}, device.path));
+      if (!device.locked && seen.insert(device.path).second)
+        ports.push_back(std::make_unique<UsbPort>(UsbKind{kFalconIds}, device.path));
     }
-    silenced = silence_falcons(ports);
-  }
-  return silenced;
+  });
+  if (silenced.falcons > 0 && silenced.held > 0)
+    log::warning(
+        "{} more Falcons could not be taken over, as another program holds them: if one pushes, switch it "
+        "off",
+        silenced.held);
+  return silenced.falcons;
 #else
   (void)settings;
   return 0;

@@ -54,20 +54,20 @@ std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
   return image;
 }
 
-int silence_falcons(std::span<const std::unique_ptr<UsbTransport>> ports) {
-  constexpr int kTries = 100;
-  std::vector<UsbTransport*> waiting;
-  for (const auto& port : ports) waiting.push_back(port.get());
-  int silenced = 0;
-  for (int i = 0; i < kTries && !waiting.empty(); ++i) {
+Silenced silence_falcons(UsbPorts ports, const std::function<void(UsbPorts&)>& add_new) {
+  constexpr int kTriesALook = 10;
+  Silenced silenced;
+  const Time end = now() + std::chrono::seconds(1);
+  for (int i = 0; now() < end; ++i) {
     if (i > 0) sleep_until(now() + std::chrono::milliseconds(10));
+    if (add_new && i % kTriesALook == 0) add_new(ports);
     const Time looks = now() + i * std::chrono::seconds(1);  // it looks each time, not twice a second
-    std::erase_if(waiting, [&](UsbTransport* port) {
-      if (!port->open(looks)) return false;
-      silenced += send_zero(*port) ? 1 : 0;
-      return true;
-    });
+    silenced.falcons += static_cast<int>(std::erase_if(ports, [&](const std::unique_ptr<UsbTransport>& port) {
+      return port->open(looks) && send_zero(*port);
+    }));
+    if (ports.empty() && (silenced.falcons > 0 || !add_new)) break;
   }
+  silenced.held = static_cast<int>(ports.size());
   return silenced;
 }
 
@@ -79,7 +79,7 @@ Falcon::Falcon(std::unique_ptr<UsbTransport> port, std::vector<std::byte> firmwa
       p_D_(falcon::kCentre) {}
 
 Falcon::~Falcon() {
-  Falcon::stop();
+  if (!handed_over_) Falcon::stop();
   port_->close();
 }
 
@@ -90,13 +90,13 @@ bool Falcon::stop() noexcept {
   bool left = false;
   for (int i = 0; i < kTimes && !left; ++i) {
     drain(*port_);
-    const bool free = port_->state() == UsbTransport::State::kIdle;
-    machine_.command(*port_, {0, 0, 0});
+    const bool went = machine_.command(*port_, {0, 0, 0});
     drain(*port_);
-    left = free && port_->state() == UsbTransport::State::kIdle;
+    left = went && port_->state() == UsbTransport::State::kIdle;
   }
   if (left) machine_.note_at_rest();
-  return !machine_.may_push() || stop_after_fault();
+  handed_over_ = machine_.may_push() && !stop_after_fault();
+  return !handed_over_;
 }
 
 /// A transfer failed under force, and the port is closed by now, or about to be: it is opened anew.

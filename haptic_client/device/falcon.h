@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -24,10 +25,17 @@ std::vector<std::byte> read_firmware(const std::filesystem::path& file);
 
 inline constexpr std::array kFalconIds{UsbId{0x0403, 0xcb48}};
 
+using UsbPorts = std::vector<std::unique_ptr<UsbTransport>>;
+
+/// How many Falcons had their zero, and how many were not free, or did not take it.
+struct Silenced {
+  int falcons = 0, held = 0;
+};
+
 /// Opens Falcons that another process may just have left, each as soon as it is free (one that is held does
-/// not keep the others waiting), sends each zero torque and closes it again. Waits for them, a second at
-/// most; returns how many had their zero.
-int silence_falcons(std::span<const std::unique_ptr<UsbTransport>> ports);
+/// not keep the others waiting), sends each zero torque and closes it again. `add_new`: looks, ten times, for
+/// more; one that is just being enumerated again is there soon. A second in all, and what a transfer takes.
+Silenced silence_falcons(UsbPorts ports, const std::function<void(UsbPorts&)>& add_new = {});
 
 /// A Novint Falcon: grip position in m in its own frame (x right, y up, z out towards the user), force of its
 /// three motors. No force before it is homed. One USB exchange a tick, which overlaps the tick: the position
@@ -50,6 +58,7 @@ class Falcon : public Device {
   FalconMachine machine_;
   double torque_constant_;
   Vec3 p_D_;
+  bool handed_over_ = false;  // its zero did not leave: who takes it over needs the port
   bool valid_ = false;
   std::uint64_t cut_ = 0;
 };

@@ -242,19 +242,21 @@ void FalconMachine::watch_encoders(Time now) noexcept {
   gain_ = std::clamp(gain_ + (frozen ? -dt : dt) / kFadeTime, 0.0, 1.0);
 }
 
-void FalconMachine::command(UsbTransport& port, const std::array<std::int16_t, 3>& torque) noexcept {
+bool FalconMachine::command(UsbTransport& port, const std::array<std::int16_t, 3>& torque) noexcept {
   const bool ready = phase_ == FalconPhase::kReady;
-  if (!ready && phase_ != FalconPhase::kUnhomed) return;
-  if (port.state() != UsbTransport::State::kIdle) return;  // the last one is still on the way
+  if (!ready && phase_ != FalconPhase::kUnhomed) return false;
+  if (port.state() != UsbTransport::State::kIdle) return false;  // the last one is still on the way
   FalconCommand command{.green = ready, .red = !ready};
   if (ready) command.torque = torque;
   pushes_ = std::any_of(command.torque.begin(), command.torque.end(),
                         [](std::int16_t t) { return t >= kPushing || t <= -kPushing; });
   for (std::int16_t& t : command.torque) t = static_cast<std::int16_t>(gain_ * t);
   if (zero_goes_) may_push_ = false;  // it has left
-  zero_goes_ = command.torque == std::array<std::int16_t, 3>{};
-  if (!zero_goes_) may_push_ = true;
-  port.write(encode_falcon(command));
+  const bool is_zero = command.torque == std::array<std::int16_t, 3>{};
+  if (!is_zero) may_push_ = true;
+  const bool went = port.write(encode_falcon(command));
+  zero_goes_ = is_zero && went;
+  return went;
 }
 
 std::optional<FalconStatus> FalconMachine::status(Time now) const noexcept {

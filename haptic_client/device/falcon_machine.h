@@ -32,8 +32,8 @@ class FalconMachine {
   /// Takes what came from the device and goes on.
   void poll(UsbTransport& port, Time now) noexcept;
   /// Sends the motors' command (DAC units), less where encoders stand still for too long; zero where the
-  /// device is not ready.
-  void command(UsbTransport& port, const std::array<std::int16_t, 3>& torque) noexcept;
+  /// device is not ready. Whether it went: not while the last one is on the way, nor before firmware runs.
+  bool command(UsbTransport& port, const std::array<std::int16_t, 3>& torque) noexcept;
 
   /// Sets the line as running firmware wants it.
   static void normal_mode(UsbTransport& port) noexcept;

@@ -20,12 +20,6 @@ namespace {
 constexpr int kLook = 100;      // ms
 constexpr int kMostStill = 15;  // looks without a heartbeat, once there was one
 
-enum class Ending { kGoodbye, kDied, kStopped, kLeftPushing };
-
-bool left_pushing(const Heartbeat& beats) {
-  return beats.ticks == Heartbeat::kLeftPushing;
-}
-
 /// One loop, as it was seen last.
 struct SeenLoop {
   std::uint64_t ticks = 0;
@@ -39,22 +33,6 @@ struct SeenLoop {
   }
 };
 
-/// Waits until the client says goodbye, dies, or one of its loops stands still or has left its device
-/// pushing.
-Ending wait_for_end(int pipe, std::span<const Heartbeat> beats) {
-  std::vector<SeenLoop> loops(beats.size());
-  for (;;) {
-    pollfd end{pipe, POLLIN, 0};
-    const int ready = poll(&end, 1, kLook);
-    char byte;
-    if (std::ranges::any_of(beats, left_pushing)) return Ending::kLeftPushing;
-    if (ready > 0) return read(pipe, &byte, 1) > 0 ? Ending::kGoodbye : Ending::kDied;
-    for (std::size_t i = 0; i < loops.size(); ++i) {
-      if (loops[i].stands_still(beats[i])) return Ending::kStopped;
-    }
-  }
-}
-
 void make_safe(const ClientConfig& config, const char* why) {
   const std::string name = config.device.name + (config.device.port.empty() ? "" : ":") + config.device.port;
   try {
@@ -66,25 +44,62 @@ void make_safe(const ClientConfig& config, const char* why) {
   }
 }
 
-/// The whole life of the guardian.
-void guard(int pipe, pid_t client, std::span<const Heartbeat> beats, std::span<const ClientConfig> configs) {
+/// The devices of a client, each until it was taken over.
+class Guarded {
+ public:
+  Guarded(std::span<const ClientConfig> configs, std::span<const Heartbeat> beats)
+      : configs_(configs), beats_(beats), loops_(configs.size()), taken_(configs.size(), 0) {}
+
+  /// Those whose loop is over, and has left them pushing: the client lives, and holds the others.
+  void take_left_pushing() {
+    for (std::size_t i = 0; i < configs_.size(); ++i) {
+      if (beats_[i].ticks == Heartbeat::kLeftPushing) take(i, "the device did not take its last zero");
+    }
+  }
+  void take_all() {
+    for (std::size_t i = 0; i < configs_.size(); ++i) take(i, "the client died");
+  }
+  /// Whether a loop stands still; to be asked at each look.
+  bool stands_still() {
+    bool still = false;
+    for (std::size_t i = 0; i < loops_.size(); ++i) still |= loops_[i].stands_still(beats_[i]);
+    return still;
+  }
+
+ private:
+  /// In a process of its own: one must not wait for another.
+  void take(std::size_t i, const char* why) {
+    if (taken_[i] != 0 || row_of(configs_[i].device).make_safe == nullptr) return;
+    taken_[i] = 1;
+    const pid_t child = fork();
+    if (child > 0) return;
+    make_safe(configs_[i], why);  // here, where there can be no other process
+    if (child == 0) _exit(0);
+  }
+
+  std::span<const ClientConfig> configs_;
+  std::span<const Heartbeat> beats_;
+  std::vector<SeenLoop> loops_;
+  std::vector<char> taken_;
+};
+
+/// The whole life of the guardian: until the client says goodbye, dies, or one of its loops stands still.
+void guard(int pipe, pid_t client, Guarded guarded) {
   setsid();  // a signal to the client's group is not for us
   prctl(PR_SET_NAME, "palpate-guard");
-  const Ending ending = wait_for_end(pipe, beats);
-  if (ending == Ending::kGoodbye) return;
-  if (ending == Ending::kStopped) {
-    log::error("the client stands still with a device in its hand; it is ended");
-    kill(client, SIGKILL);
-  }
-  const bool some = ending == Ending::kLeftPushing;   // the client lives, and holds the others
-  for (std::size_t i = 0; i < configs.size(); ++i) {  // at the same time: one must not wait for another
-    const ClientConfig& config = configs[i];
-    if (row_of(config.device).make_safe == nullptr || (some && !left_pushing(beats[i]))) continue;
-    const pid_t child = fork();
-    if (child > 0) continue;
-    make_safe(config, some ? "the device did not take its last zero"
-                           : "the client died");  // here, where there can be no other process
-    if (child == 0) _exit(0);
+  for (bool over = false; !over;) {
+    pollfd end{pipe, POLLIN, 0};
+    over = poll(&end, 1, kLook) > 0;
+    guarded.take_left_pushing();  // also where it says goodbye, which it does after
+    char byte;
+    if (over) {
+      if (read(pipe, &byte, 1) <= 0) guarded.take_all();
+    } else if (guarded.stands_still()) {
+      log::error("the client stands still with a device in its hand; it is ended");
+      kill(client, SIGKILL);
+      guarded.take_all();
+      over = true;
+    }
   }
   while (wait(nullptr) > 0) {
   }
@@ -109,7 +124,7 @@ Guardian::Guardian(std::span<const ClientConfig> configs) {
   if (child_ < 0) fail_at_run_time("no guardian process could be started; too many processes?");
   if (child_ == 0) {
     close(ends[1]);
-    guard(ends[0], client, {beats_, configs.size()}, configs);
+    guard(ends[0], client, Guarded(configs, {beats_, configs.size()}));
     _exit(0);
   }
   close(ends[0]);

@@ -181,8 +181,9 @@ def draw_scene(folder, note, extra):
     found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     rows, truth = found["rows"], found["reference"]
     figure, axes = pyplot.subplots(2, 2, figsize=(15, 10), layout="constrained")
-    front = draw_front(axes[0][0], rows)
-    draw_felt(axes[0][1], rows)
+    timed = [r for r in rows if r["step_ms_p50"] is not None]  # others never touched
+    front = draw_front(axes[0][0], timed)
+    draw_felt(axes[0][1], timed)
     draw_along(axes[1][0], rows, read_along(folder / "along.csv"))
     dear = draw_price(axes[1][1], rows)
     closed = truth.get("closed_form_percent")

@@ -68,12 +68,8 @@ class Rerun {
   void take(const protocol::ToolState& state) {
     if (state.tool < inputs_.size()) inputs_[state.tool].path.add(state);
   }
-  /// The tool of this session is in no hand from the next step on.
-  void let_go(std::uint64_t session) {
-    for (SessionInput& input : inputs_) {
-      if (input.session == session) input = {};
-    }
-  }
+  /// The tool of this session is in no hand from the step on that the next answer begins.
+  void let_go(std::uint64_t session) { left_.push_back(session); }
   /// For the step to come.
   void take(const CapturedAnswer& answer) {
     if (answer.sample.tool >= inputs_.size())
@@ -82,7 +78,7 @@ class Rerun {
     const double dt = seconds_between(input.state.t_ns, answer.state.t_ns);
     if (answer.begins_step) {
       dt_ = input.session == answer.session && dt > 0 && dt < kLongestStep ? dt : 0;
-      drop_silent(answer.t);
+      drop_who_left(answer.t);
     }
     input.session = answer.session;
     answered_[answer.sample.tool] = answer.t;
@@ -110,11 +106,13 @@ class Rerun {
   double largest() const { return largest_; }
 
  private:
-  /// As a server drops clients that it has not heard of for so long.
-  void drop_silent(Time t) {
+  /// And clients that a server drops, as it has not heard of them for so long.
+  void drop_who_left(Time t) {
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
-      if (t - answered_[i] > protocol::ServerSessions::kTimeout) inputs_[i].session = 0;
+      const bool silent = t - answered_[i] > protocol::ServerSessions::kTimeout;
+      if (silent || std::ranges::count(left_, inputs_[i].session) > 0) inputs_[i].session = 0;
     }
+    left_.clear();
   }
 
   const Simulation& simulation_;
@@ -122,6 +120,7 @@ class Rerun {
   std::vector<SessionInput> inputs_;
   std::vector<Time> answered_;  // by tool: when last, in the capture
   std::vector<Vec3> captured_;
+  std::vector<std::uint64_t> left_;  // sessions, since the last step began
   double dt_ = 0, off_ = 0, largest_ = 0;
 };
 
@@ -162,7 +161,6 @@ void make_session(const std::filesystem::path& capture, std::size_t answers, Rer
         }
       },
       [&](std::uint64_t left) {
-        finish();
         if (rerun != nullptr) rerun->let_go(left);
       });
   finish();

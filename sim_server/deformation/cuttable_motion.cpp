@@ -53,6 +53,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
     : material_(inputs.scene.material.value_or(Material{})),
       held_stiffness_(held_stiffness(inputs.scene)),
       scaling_(scaling_for(inputs, region)),
+      near_(inputs),
       node_(inputs.surface.vertices),
       rest_places_(inputs.mesh.vertices),
       nodes_(rest_places_) {
@@ -76,8 +77,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
   pressed_.reserve(loads_.capacity());
   moving_.reserve(node_.size());
   exposed_.reserve(node_.size());
-  near_.reserve(node_.size() + loads_.capacity());
-  moved_.reserve(3 * node_.size());
+  moved_.reserve(4 * node_.size());
   shown_.resize(node_.size());
   for (const Triangle& triangle : inputs.surface.triangles) {
     for (const int corner : triangle) shown_[static_cast<std::size_t>(corner)] = 1;
@@ -88,7 +88,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
 /// It is another one than before.
 void CuttableMotion::look_at_body() {
   changed_ = true;
-  narrowed_ = false;
+  near_.look_everywhere();
   force_.assign(body_->motion.state.f.size(), 0);
   moving_.clear();
   exposed_.clear();
@@ -121,28 +121,28 @@ void CuttableMotion::choose_sub_step(const ModelInputs& inputs, double modes) {
   sub_step_ = step_period(inputs.scene) / instants_;
 }
 
-/// What may come into a place before the step ends counts to it, and so does all that is loaded.
 void CuttableMotion::narrow(std::span<const Neighbourhood> places) noexcept {
   constexpr double kFaster = 2;  // than anything on the surface is by now
-  near_.clear();
-  narrowed_ = !places.empty();
-  if (!narrowed_) return;
-  double fastest = 0;  // squared
+  double fastest = 0;            // squared
   for (const int vertex : exposed_) {
     const int first = body_->first[static_cast<std::size_t>(vertex)];
     fastest = std::max(fastest, Eigen::Map<const Vec3>(body_->motion.state.v.data() + first).squaredNorm());
   }
-  const double way = kFaster * std::sqrt(fastest) * sub_step_ * instants_;
-  std::ranges::copy_if(exposed_, std::back_inserter(near_), [&](int vertex) {
-    return std::ranges::any_of(places, [&](const Neighbourhood& place) {
-      return (free_[static_cast<std::size_t>(vertex)] - place.middle).norm() <= place.radius + way;
-    });
-  });
+  near_.look_in(places, exposed_, free_, kFaster * std::sqrt(fastest) * sub_step_ * instants_);
   for (const NodalLoad& load : loads_) {
-    if (body_->first[static_cast<std::size_t>(load.vertex)] >= 0) near_.push_back(load.vertex);
+    if (body_->first[static_cast<std::size_t>(load.vertex)] >= 0) near_.add(load.vertex);
   }
   // None at all would mean that any may have moved.
-  if (near_.empty() && !exposed_.empty()) near_.push_back(exposed_.front());
+  if (near_.vertices().empty() && !exposed_.empty()) near_.add(exposed_.front());
+}
+
+/// Contact begins to load a vertex in motion that it did not look at: that is told from here on.
+void CuttableMotion::look_at(int vertex) noexcept {
+  const bool told = !near_.narrowed() || instant_ == 0 || body_->first[static_cast<std::size_t>(vertex)] < 0;
+  if (told || !near_.add(vertex)) return;
+  update_free({&vertex, 1});
+  go_free({&vertex, 1});
+  moved_.push_back(vertex);
 }
 
 FreeMotion CuttableMotion::free_motion(double dt) noexcept {
@@ -283,6 +283,7 @@ std::span<const Vec3> CuttableMotion::apply(std::span<const NodalLoad> loads) no
   loads_.assign(loads.begin(), loads.end());
   for (const NodalLoad& load : loads_) {
     if (body_->rest) body_->rest->watch({&load.vertex, 1});
+    look_at(load.vertex);
   }
   press();
   return positions_;
@@ -359,7 +360,10 @@ void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting,
     rest_places_[static_cast<std::size_t>(vertex)] = left.mesh().vertices[static_cast<std::size_t>(vertex)];
   };
   for (const Slide& slide : slides) stand_anew(slide.vertex);
-  for (const Split& split : parting.splits) stand_anew(split.copy);
+  for (const Split& split : parting.splits) {
+    stand_anew(split.copy);
+    near_.copy(left.number_of(split.vertex), left.number_of(split.copy));
+  }
   show_corners(parting.tetrahedra, left);
   for (const Split& split : parting.splits) shown_[static_cast<std::size_t>(left.number_of(split.copy))] = 1;
   look_at_body();

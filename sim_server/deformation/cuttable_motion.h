@@ -4,6 +4,7 @@
 #include "sim_server/deformation/cuttable_body.h"
 #include "sim_server/deformation/lumped_compliance.h"
 #include "sim_server/deformation/mass_scaling.h"
+#include "sim_server/deformation/near_tools.h"
 #include "sim_server/deformation/region_growth.h"
 #include "sim_server/deformation/told_nearby.h"
 
@@ -66,7 +67,10 @@ class CuttableMotion : public DeformationModel {
   void take_sub_step() noexcept;
   void follow() noexcept;
   void note_moved() noexcept;
-  const std::vector<int>& looked_at() const noexcept { return narrowed_ ? near_ : exposed_; }
+  void look_at(int vertex) noexcept;
+  const std::vector<int>& looked_at() const noexcept {
+    return near_.narrowed() ? near_.vertices() : exposed_;
+  }
   void update_free(std::span<const int> vertices) noexcept;
   void carry_rest() noexcept;
   /// What a load on a vertex in motion changes its velocity by over a sub-step, m/s.
@@ -99,8 +103,7 @@ class CuttableMotion : public DeformationModel {
   std::vector<NodalLoad> loads_;        // over it
   std::vector<char> shown_;             // of surface vertices: triangles have or had them as corners
   std::vector<int> moving_, exposed_;   // surface vertices in motion; those of them that are shown
-  std::vector<int> near_;               // of these, where contact looks within a step
-  bool narrowed_ = false;               // to `near_`
+  NearTools near_;                      // of these, where contact looks within a step
   std::vector<int> pressed_;            // that are loaded, and not where they are free
   std::vector<int> moved_;              // in this sub-step; those that are pressed last
   std::size_t moved_by_itself_ = 0;     // so many of them are not

@@ -61,23 +61,24 @@ void Simulation::restore_touching() {
   for (std::size_t i = 0; i < tools_.size(); ++i) tissue_.met_by(i).mark_solved();  // with all loads back
 }
 
-/// A ball looks around itself alone; what is longer may touch anywhere along itself.
+/// A ball on its way looks around that alone; what is longer may touch anywhere along itself, and what
+/// appears is put outside first, wherever that is.
 void Simulation::narrow_to_tools(std::span<const ToolInput> inputs) {
   constexpr double kAround =
       4;  // tool radii about its way: beyond what it touches, holds, or is taken back to
   places_.clear();
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!inputs[i].pose) continue;
-    if (!tools_[i].shape().is_sphere()) {
+    if (!tools_[i].shape().is_sphere() || !tools_[i].placed() || !came_from_[i]) {
       places_.clear();
       break;
     }
     const Vec3& to = inputs[i].pose->p_W;
-    const Vec3 middle = came_from_[i] ? Vec3(0.5 * (came_from_[i]->p_W + to)) : to;
+    const Vec3 middle = 0.5 * (came_from_[i]->p_W + to);
     double farthest = (to - middle).norm();
     for (const PathPoint& point : inputs[i].path)
       farthest = std::max(farthest, (point.pose.p_W - middle).norm());
-    if (tools_[i].placed()) farthest = std::max(farthest, (tools_[i].place() - middle).norm());
+    farthest = std::max(farthest, (tools_[i].place() - middle).norm());
     places_.push_back({middle, farthest + kAround * tools_[i].radius()});
   }
   tissue_.model->narrow(places_);

@@ -109,6 +109,25 @@ TEST_CASE("guardian: a device that is gone does not keep the other waiting") {
   CHECK(goes_silent(falcons, "3-2", 0.8));
 }
 
+TEST_CASE("guardian: each device that does not take its last zero is looked after, also one after another") {
+  const Bench bench;
+  Wall wall(bench.folder.write("two.toml", bytes_of(bench.scene) + "[[tool]]\nradius = 0.005\n").string());
+  Emulator falcons({"falcon:2-1", "falcon:3-2"}, {"--loaded", "--homed"});
+  for (const char* port : {"2-1", "3-2"}) falcons.command(std::string("hand ") + port + " place 0 0 0.13");
+  auto client = falcons.start("haptic_client", {"run", bench.client, "--device", "falcon:2-1", "--device",
+                                                "falcon:3-2", "--server", wall.address});
+  REQUIRE(client->wait_for("tool 1 (falcon:2-1): Falcon homed"));
+  REQUIRE(client->wait_for("tool 2 (falcon:3-2): Falcon homed"));
+  for (const char* port : {"2-1", "3-2"}) REQUIRE(leans(falcons, port));
+  for (const char* port : {"2-1", "3-2"}) falcons.command(std::string("unplug ") + port);
+  REQUIRE(client->wait_for("tool 1 (falcon:2-1): the Falcon was unplugged"));
+  client->signal(SIGINT);
+  CHECK(client->wait() == 0);
+  for (const char* port : {"2-1", "3-2"})
+    CHECK(client->output().find(std::string("did not take its last zero; falcon:") + port +
+                                " could not be taken over") != std::string::npos);
+}
+
 TEST_CASE("guardian: without a port, a Falcon that another program holds keeps nobody waiting") {
   const Bench bench;
   Wall wall(bench);

@@ -125,7 +125,9 @@ TEST_CASE("a Falcon that another program holds does not keep the dead client's w
   std::vector<std::unique_ptr<UsbTransport>> ports;
   ports.push_back(std::make_unique<HeldPort>(tries));
   ports.push_back(std::make_unique<WatchedPort>(falcon, tries, tries_before));
-  CHECK(silence_falcons(ports) == 1);
+  const Silenced silenced = silence_falcons(std::move(ports));
+  CHECK(silenced.falcons == 1);
+  CHECK(silenced.held == 1);
   CHECK(state_of(falcon)["dac"] == nlohmann::json({0, 0, 0}));
   CHECK(tries_before == 1);
   CHECK(tries > 50);  // the other was waited for

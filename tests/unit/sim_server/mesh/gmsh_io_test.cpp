@@ -294,14 +294,6 @@ TEST_CASE("triangles that many physical groups would keep are refused before mem
   CHECK(scratch.error_of(file(20, 2000)).empty());
 }
 
-TEST_CASE("what is said of a mesh in other units than metres is said in metres", "[mesh]") {
-  const Scratch scratch;
-  const std::string text =
-      kHead22 + "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n" + kElements22;
-  CHECK(check_mesh(scratch.write(text), 0.001).mesh.vertices[1] == Vec3(0.001, 0, 0));
-  CHECK(describe(read_mesh(scratch.write(text), 0.001)).volume == Approx(1e-9 / 6));
-}
-
 TEST_CASE("counts that are too small or do not add up", "[mesh]") {
   const Scratch scratch;
   CHECK(scratch.error_of(kHead22 + replaced(kNodes22, "\n4\n", "\n3\n")) ==

@@ -1,10 +1,13 @@
 #include "sim_server/scene_file/read_scene.h"
 
+#include <cmath>
 #include <fmt/format.h>
 
 #include "common/error.h"
 #include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/mesh_faults.h"
+#include "sim_server/mesh/tet_mesh.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
 #include "tests/support/temporary_folder.h"
@@ -128,6 +131,10 @@ TEST_CASE("scale of a mesh: one in millimetres is used in metres, one of no orga
   const TetMesh scaled = read_mesh_of(scene_of_scale("scale = 0.001\n"));
   CHECK((scaled.vertices[1] - Vec3(0.1, 0, 0)).norm() < 1e-15);
   CHECK(odd_size(scaled).empty());
+  // What is said of the file is said in metres, too.
+  const double volume = 0.1 * 0.08 * 0.06 / 6;
+  CHECK(check_mesh(folder.path() / "organ.msh", 0.001).mesh.vertices == scaled.vertices);
+  CHECK(std::abs(describe(scaled).volume - volume) < 1e-12 * volume);
   CHECK(odd_size(read_mesh_of(scene_of_scale(""))).find("scale = 0.001") != std::string::npos);
   CHECK(odd_size(read_mesh_of(scene_of_scale("scale = 1e-5\n"))).find("0.001 m long") != std::string::npos);
   CHECK_THROWS_AS(scene_of_scale("scale = 0\n"), Error);
