@@ -56,17 +56,21 @@ int make_falcon_safe(const DeviceSettings& settings) {
     return silence_falcons(std::move(port)).falcons;
   }
   std::set<std::string> seen;
-  const Silenced silenced = silence_falcons({}, [&seen](UsbPorts& ports) {
+  int locked = 0;  // at the last look
+  const Silenced silenced = silence_falcons({}, [&](UsbPorts& ports) {
+    locked = 0;
     for (const UsbDevice& device : find_usb({kFalconIds})) {
-      if (!device.locked && seen.insert(device.path).second)
+      if (device.locked)
+        ++locked;
+      else if (seen.insert(device.path).second)
         ports.push_back(std::make_unique<UsbPort>(UsbKind{kFalconIds}, device.path));
     }
   });
-  if (silenced.falcons > 0 && silenced.held > 0)
+  if (const int others = silenced.held + locked; silenced.falcons > 0 && others > 0)
     log::warning(
-        "{} more Falcons could not be taken over, as another program holds them: if one pushes, switch it "
-        "off",
-        silenced.held);
+        "{} more Falcons could not be taken over, as another program holds them or they cannot be opened: if "
+        "one pushes, switch it off",
+        others);
   return silenced.falcons;
 #else
   (void)settings;

@@ -34,7 +34,8 @@ struct Silenced {
 
 /// Opens Falcons that another process may just have left, each as soon as it is free (one that is held does
 /// not keep the others waiting), sends each zero torque and closes it again. `add_new`: looks, ten times, for
-/// more; one that is just being enumerated again is there soon. A second in all, and what a transfer takes.
+/// more, also where others had their zero: one that is just being enumerated again is there soon. A second in
+/// all, at most, and what transfers take.
 Silenced silence_falcons(UsbPorts ports, const std::function<void(UsbPorts&)>& add_new = {});
 
 /// A Novint Falcon: grip position in m in its own frame (x right, y up, z out towards the user), force of its

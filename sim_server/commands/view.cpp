@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/core.h>
 #include <limits>
+#include <set>
 #include <thread>
 
 #include "common/clock.h"
@@ -69,7 +70,7 @@ class Rerun {
     if (state.tool < inputs_.size()) inputs_[state.tool].path.add(state);
   }
   /// The tool of this session is in no hand from the step on that the next answer begins.
-  void let_go(std::uint64_t session) { left_.push_back(session); }
+  void let_go(std::uint64_t session) { left_.insert(session); }
   /// For the step to come.
   void take(const CapturedAnswer& answer) {
     if (answer.sample.tool >= inputs_.size())
@@ -110,9 +111,8 @@ class Rerun {
   void drop_who_left(Time t) {
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
       const bool silent = t - answered_[i] > protocol::ServerSessions::kTimeout;
-      if (silent || std::ranges::count(left_, inputs_[i].session) > 0) inputs_[i].session = 0;
+      if (silent || left_.contains(inputs_[i].session)) inputs_[i].session = 0;
     }
-    left_.clear();
   }
 
   const Simulation& simulation_;
@@ -120,7 +120,7 @@ class Rerun {
   std::vector<SessionInput> inputs_;
   std::vector<Time> answered_;  // by tool: when last, in the capture
   std::vector<Vec3> captured_;
-  std::vector<std::uint64_t> left_;  // sessions, since the last step began
+  std::set<std::uint64_t> left_;  // sessions: an answer that was under way is of its own step alone
   double dt_ = 0, off_ = 0, largest_ = 0;
 };
 

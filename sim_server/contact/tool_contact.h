@@ -100,6 +100,8 @@ class ToolContact {
   bool placed() const { return now_.placed; }
   /// Whether it has tissue in its jaws.
   bool holds() const { return grip_ && grip_->holds(); }
+  /// Whether it lets go at the next `advance_to`.
+  bool opens() const { return grip_ && grip_->opens(); }
   /// Whether this step has used up its contact linearisations.
   bool exhausted() const;
   const ToolForce& force() const { return now_.force; }

@@ -53,7 +53,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
     : material_(inputs.scene.material.value_or(Material{})),
       held_stiffness_(held_stiffness(inputs.scene)),
       scaling_(scaling_for(inputs, region)),
-      near_(inputs),
+      near_(inputs.surface.vertices.size()),
       node_(inputs.surface.vertices),
       rest_places_(inputs.mesh.vertices),
       nodes_(rest_places_) {
@@ -121,14 +121,15 @@ void CuttableMotion::choose_sub_step(const ModelInputs& inputs, double modes) {
   sub_step_ = step_period(inputs.scene) / instants_;
 }
 
-void CuttableMotion::narrow(std::span<const Neighbourhood> places) noexcept {
+void CuttableMotion::narrow(std::span<const Neighbourhood> places,
+                            std::span<const Triangle> triangles) noexcept {
   constexpr double kFaster = 2;  // than anything on the surface is by now
   double fastest = 0;            // squared
   for (const int vertex : exposed_) {
     const int first = body_->first[static_cast<std::size_t>(vertex)];
     fastest = std::max(fastest, Eigen::Map<const Vec3>(body_->motion.state.v.data() + first).squaredNorm());
   }
-  near_.look_in(places, exposed_, free_, kFaster * std::sqrt(fastest) * sub_step_ * instants_);
+  near_.look_in(places, triangles, body_->first, free_, kFaster * std::sqrt(fastest) * sub_step_ * instants_);
   for (const NodalLoad& load : loads_) {
     if (body_->first[static_cast<std::size_t>(load.vertex)] >= 0) near_.add(load.vertex);
   }
@@ -360,10 +361,7 @@ void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting,
     rest_places_[static_cast<std::size_t>(vertex)] = left.mesh().vertices[static_cast<std::size_t>(vertex)];
   };
   for (const Slide& slide : slides) stand_anew(slide.vertex);
-  for (const Split& split : parting.splits) {
-    stand_anew(split.copy);
-    near_.copy(left.number_of(split.vertex), left.number_of(split.copy));
-  }
+  for (const Split& split : parting.splits) stand_anew(split.copy);
   show_corners(parting.tetrahedra, left);
   for (const Split& split : parting.splits) shown_[static_cast<std::size_t>(left.number_of(split.copy))] = 1;
   look_at_body();

@@ -35,7 +35,7 @@ class CuttableMotion : public DeformationModel {
   int instants() const noexcept override { return instants_; }
   bool force_leads() const noexcept override { return true; }
   /// Any `dt` > 0 is taken for one sub-step.
-  void narrow(std::span<const Neighbourhood> places) noexcept override;
+  void narrow(std::span<const Neighbourhood> places, std::span<const Triangle> triangles) noexcept override;
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   const ComplianceSource* compliance_source() const noexcept override { return &*compliance_; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/contact/contact_solver.h"
+#include "sim_server/mesh/tet_mesh.h"
 
 namespace palpate::sim {
 
@@ -80,8 +81,10 @@ class DeformationModel {
   virtual bool force_leads() const noexcept { return false; }
 
   /// At all instants of the step to come but the last, contact looks nowhere else: a model of many may tell
-  /// only there where the tissue is until the step ends. Empty: anywhere.
-  virtual void narrow(std::span<const Neighbourhood> places) noexcept { (void)places; }
+  /// only there where the tissue is until the step ends. Empty: anywhere. `triangles`: the surface.
+  virtual void narrow(std::span<const Neighbourhood> places, std::span<const Triangle> triangles) noexcept {
+    (void)places, (void)triangles;
+  }
 
   /// Where would you go freely in `dt` (s), without any contact?
   virtual FreeMotion free_motion(double dt) = 0;

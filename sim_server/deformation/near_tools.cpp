@@ -1,35 +1,31 @@
 #include "sim_server/deformation/near_tools.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpate::sim {
 
-NearTools::NearTools(const ModelInputs& inputs) : has_(inputs.surface.vertices.size(), 0) {
-  constexpr double kStretched = 2;  // edges are no longer than that of their length at rest
-  std::vector<double> longest(inputs.mesh.vertices.size(), 0);
-  for (const Tetrahedron& t : inputs.mesh.tetrahedra) {
-    for (const auto& [a, b] : kEdges) {
-      const double length = (inputs.mesh.vertices[t[a]] - inputs.mesh.vertices[t[b]]).norm();
-      for (const int vertex : {t[a], t[b]}) longest[vertex] = std::max(longest[vertex], length);
-    }
-  }
-  for (const int node : inputs.surface.vertices)
-    reach_.push_back(kStretched * longest[static_cast<std::size_t>(node)]);
-  vertices_.reserve(has_.size());
-}
-
-void NearTools::look_in(std::span<const Neighbourhood> places, std::span<const int> all,
-                        std::span<const Vec3> positions, double way) noexcept {
+void NearTools::look_in(std::span<const Neighbourhood> places, std::span<const Triangle> triangles,
+                        std::span<const int> in_motion, std::span<const Vec3> positions,
+                        double way) noexcept {
   for (const int vertex : vertices_) has_[static_cast<std::size_t>(vertex)] = 0;
   vertices_.clear();
   narrowed_ = !places.empty();
   if (!narrowed_) return;
-  for (const int vertex : all) {
-    const auto v = static_cast<std::size_t>(vertex);
-    const auto is_in = [&](const Neighbourhood& place) {
-      return (positions[v] - place.middle).norm() <= place.radius + reach_[v] + way;
+  for (const Triangle& triangle : triangles) {
+    const auto corner = [&](std::size_t k) -> const Vec3& {
+      return positions[static_cast<std::size_t>(triangle[k])];
     };
-    if (std::ranges::any_of(places, is_in)) add(vertex);
+    // No point of it is farther than that from its first corner.
+    const double longest =
+        std::sqrt(std::max((corner(1) - corner(0)).squaredNorm(), (corner(2) - corner(0)).squaredNorm()));
+    const auto is_in = [&](const Neighbourhood& place) {
+      return (corner(0) - place.middle).norm() <= place.radius + longest + way;
+    };
+    if (std::ranges::none_of(places, is_in)) continue;
+    for (const int vertex : triangle) {
+      if (in_motion[static_cast<std::size_t>(vertex)] >= 0) add(vertex);
+    }
   }
 }
 

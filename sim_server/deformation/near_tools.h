@@ -3,27 +3,24 @@
 #include <vector>
 
 #include "sim_server/deformation/deformation_model.h"
-#include "sim_server/deformation/model_inputs.h"
 
 namespace palpate::sim {
 
 /// The surface vertices of a tissue that contact can come to within a step, where it looks around the tools
-/// alone (`DeformationModel::narrow`): the corners of all that lies in such a place, what may come into one
-/// before the step ends, and what is loaded. Only the constructor allocates, and `copy`.
+/// alone (`DeformationModel::narrow`): the corners of each triangle of which some is in such a place, or may
+/// come into one before the step ends, and what is loaded. Only the constructor allocates.
 class NearTools {
  public:
-  /// Everywhere. O(tetrahedra).
-  explicit NearTools(const ModelInputs& inputs);
-
-  /// Of a vertex that became two.
-  void copy(int vertex, int copy) {
-    reach_[static_cast<std::size_t>(copy)] = reach_[static_cast<std::size_t>(vertex)];
+  /// Everywhere.
+  explicit NearTools(std::size_t surface_vertices) : has_(surface_vertices, 0) {
+    vertices_.reserve(surface_vertices);
   }
+
   void look_everywhere() noexcept { narrowed_ = false; }
-  /// In these places alone (none: everywhere), of the vertices `all`, which are at `positions` (m) and go by
-  /// at most `way` (m) until the step ends.
-  void look_in(std::span<const Neighbourhood> places, std::span<const int> all,
-               std::span<const Vec3> positions, double way) noexcept;
+  /// In these places alone (none: everywhere). Surface vertices are at `positions` (m) and go by at most
+  /// `way` (m) until the step ends; those of which `in_motion` is negative do not count. O(triangles).
+  void look_in(std::span<const Neighbourhood> places, std::span<const Triangle> triangles,
+               std::span<const int> in_motion, std::span<const Vec3> positions, double way) noexcept;
   /// Contact looks at this vertex, too. Whether it did not before.
   bool add(int vertex) noexcept;
 
@@ -32,8 +29,6 @@ class NearTools {
   const std::vector<int>& vertices() const noexcept { return vertices_; }
 
  private:
-  std::vector<double>
-      reach_;              // of surface vertices: how far a point of a triangle may be from that corner, m
   std::vector<char> has_;  // of surface vertices
   std::vector<int> vertices_;
   bool narrowed_ = false;

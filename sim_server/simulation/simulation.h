@@ -209,6 +209,7 @@ class Simulation {
   void advance_to_instant(std::span<const ToolInput> inputs, int instant, double dt);
   void count_flagged() noexcept;
   void hold_answers(std::span<const ToolInput> inputs) noexcept;
+  bool looks_everywhere(std::size_t tool, const ToolInput& input) const noexcept;
   void narrow_to_tools(std::span<const ToolInput> inputs);
   void move_organ(double dt);
   void settle();
@@ -267,6 +268,7 @@ class Simulation {
   std::vector<Vec3> velocities_;        // of the tools, m/s
   std::vector<Vec3> surface_motion_;    // of the surface at each tool in this step, m
   std::vector<Neighbourhood> places_;   // around the ways of the tools in this step
+  bool let_go_ = false;                 // some tissue was, since the last step
   std::vector<ToolInput> inputs_;       // for the step of tool 0 alone
   std::vector<ToolAnswer> answers_;
   SlowModes::State modes_;  // of the told modes

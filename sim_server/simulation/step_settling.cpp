@@ -1,5 +1,6 @@
 // How several tools come to rest on one tissue, and leave it: parts of Simulation.
 #include <algorithm>
+#include <utility>
 
 #include "sim_server/simulation/simulation.h"
 
@@ -61,18 +62,24 @@ void Simulation::restore_touching() {
   for (std::size_t i = 0; i < tools_.size(); ++i) tissue_.met_by(i).mark_solved();  // with all loads back
 }
 
-/// A ball on its way looks around that alone; what is longer may touch anywhere along itself, and what
-/// appears is put outside first, wherever that is.
+/// Whether contact is to be looked for everywhere: what is longer than a ball may touch anywhere along
+/// itself, what appears is put outside first, wherever that is, and tissue that is let go springs back, as
+/// far as it was pulled.
+bool Simulation::looks_everywhere(std::size_t tool, const ToolInput& input) const noexcept {
+  if (!input.pose) return !tissue_.loads_of(tool).empty();
+  const ToolContact& contact = tools_[tool];
+  return !contact.shape().is_sphere() || !contact.placed() || !came_from_[tool] || contact.opens();
+}
+
+/// A ball on its way looks around that alone.
 void Simulation::narrow_to_tools(std::span<const ToolInput> inputs) {
   constexpr double kAround =
       4;  // tool radii about its way: beyond what it touches, holds, or is taken back to
   places_.clear();
-  for (std::size_t i = 0; i < tools_.size(); ++i) {
+  bool everywhere = std::exchange(let_go_, false);
+  for (std::size_t i = 0; i < tools_.size(); ++i) everywhere = looks_everywhere(i, inputs[i]) || everywhere;
+  for (std::size_t i = 0; i < tools_.size() && !everywhere; ++i) {
     if (!inputs[i].pose) continue;
-    if (!tools_[i].shape().is_sphere() || !tools_[i].placed() || !came_from_[i]) {
-      places_.clear();
-      break;
-    }
     const Vec3& to = inputs[i].pose->p_W;
     const Vec3 middle = 0.5 * (came_from_[i]->p_W + to);
     double farthest = (to - middle).norm();
@@ -81,13 +88,14 @@ void Simulation::narrow_to_tools(std::span<const ToolInput> inputs) {
     farthest = std::max(farthest, (tools_[i].place() - middle).norm());
     places_.push_back({middle, farthest + kAround * tools_[i].radius()});
   }
-  tissue_.model->narrow(places_);
+  tissue_.model->narrow(places_, surface_.triangles);
 }
 
 void Simulation::lift_tool(std::size_t tool) noexcept {
   answers_[tool] = {};
   came_from_[tool].reset();
   lately_[tool].clear();
+  let_go_ = let_go_ || !tissue_.loads_of(tool).empty();
   try {
     if (!tissue_.loads_of(tool).empty()) tissue_.met_by(tool).release();
   } catch (const std::exception&) {

@@ -91,7 +91,7 @@ TEST_CASE(
   });
   const int vertex = static_cast<int>(top - surface.vertices.begin());
   const std::vector<Neighbourhood> far{{Vec3(0, 5, 0), 0.001}};
-  near.narrow(far);
+  near.narrow(far, surface.triangles);
   near.free_motion(near.sub_step());
   everywhere.free_motion(near.sub_step());
   for (int k = 0; k < 50; ++k) {
@@ -109,6 +109,45 @@ TEST_CASE(
        mesh.vertices[static_cast<std::size_t>(surface.vertices[static_cast<std::size_t>(vertex)])])
           .norm();
   CHECK(went > 1e-6);
+}
+
+TEST_CASE("narrowed contact: tissue that was pulled far, and is let go, springs back past another tool") {
+  for (const bool lifted : {true, false}) {
+    CAPTURE(lifted);
+    const auto make = [](bool narrowed) {
+      Scene scene = scene_of("tensor_mass", narrowed);
+      scene.tools[0].cut_buttons = scene.tools[1].cut_buttons = 0;
+      scene.tools[0].grasp_buttons = 1;
+      scene.tools.push_back(scene.tools[0]);
+      scene.tools[0].shape.radius = 0.006;
+      scene.tools[2].grasp_buttons = 0;
+      scene.tools[2].shape.radius = 0.0005;
+      return Simulation(scene, soft_block(Vec3(0.06, kDepth, 0.04), {24, 6, 16}));
+    };
+    Simulation near = make(true), everywhere = make(false);
+    std::vector<ToolInput> inputs(3);
+    inputs[1].pose = ToolPose(Vec3(0, 0.3, 0));
+    double largest = 0, late = 0;
+    for (int k = 0; k < 40; ++k) {
+      const Vec3 held = Vec3(0, 0.0055, 0) + 0.0015 * std::clamp(k - 5, 0, 15) * Vec3(-1, 0.5, 0);
+      const bool holds = k > 2 && k < 30;
+      inputs[0].buttons = holds || lifted ? 1 : 0;
+      inputs[0].pose = ToolPose(held);
+      if (lifted && !holds) inputs[0].pose.reset();
+      inputs[2].pose = ToolPose(Vec3(0.002, k < 25 ? 0.02 : 0.0002, 0.001));
+      const auto felt = near.step(inputs, kStep), right = everywhere.step(inputs, kStep);
+      CAPTURE(k);
+      for (const std::size_t i : {0, 2}) {
+        CAPTURE(i, felt[i].force.transpose(), right[i].force.transpose());
+        REQUIRE((felt[i].force - right[i].force).norm() <= 1e-9 * (1e-3 + right[i].force.norm()));
+      }
+      largest = std::max(largest, right[0].force.norm());
+      if (k >= 30) late = std::max(late, right[2].force.norm());
+    }
+    CHECK(largest > 0.05);
+    CHECK(late > 1e-3);
+    CHECK(near.state_hash() == everywhere.state_hash());
+  }
 }
 
 TEST_CASE("contact that looks around the tools alone within a step finds what contact everywhere does") {
