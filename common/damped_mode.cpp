@@ -9,7 +9,7 @@ namespace {
 /// e^(-g t) cosh(r t) and e^(-g t) sinh(r t) / r with r^2 = g^2 - w^2 of either sign.
 std::pair<double, double> decay(double w, double g, double time) noexcept {
   const double square = g * g - w * w, r = std::sqrt(std::abs(square));
-  if (r * time < 1e-6) return {std::exp(-g * time), time * std::exp(-g * time)};
+  if (std::abs(r * time) < 1e-6) return {std::exp(-g * time), time * std::exp(-g * time)};
   if (square < 0)
     return {std::exp(-g * time) * std::cos(r * time), std::exp(-g * time) * std::sin(r * time) / r};
   const double slow = std::exp((r - g) * time), quick = std::exp(-(r + g) * time);

@@ -95,7 +95,8 @@ struct ToolState {
   static constexpr MessageType kType = MessageType::kToolState;
   /// Bits of `flags`: what this tick saw, and which parts of the answer it asks for.
   static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2, kClutched = 4, kWantsHere = 8,
-                                 kWantsAhead = 16, kWantsSurface = 32, kAsksPages = 64, kWantsErrors = 128;
+                                 kWantsAhead = 16, kWantsSurface = 32, kAsksPages = 64, kWantsErrors = 128,
+                                 kInPause = 256;
   static constexpr std::uint32_t kNoPage = 0xffffffff;
   std::uint8_t tool = 0;
   std::uint64_t tick = 0;           ///< haptic tick, from 1

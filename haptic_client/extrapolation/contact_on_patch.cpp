@@ -52,9 +52,10 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p,
   if ((memory != nullptr) != (memory_ != nullptr)) lift();  // its patch was taken for another frame
   memory_ = memory;
   const double longest = kLongestIncrement * surface.tool.radius;
-  if (version_ != surface.model->generation() || (p - state_.place).norm() > kMostIncrements * longest)
-    lift();
-  if (!surface.model->has_shape() || !p.allFinite()) {
+  const bool too_far = state_.placed && (p - state_.place).norm() > kMostIncrements * longest;
+  if (version_ != surface.model->generation() || too_far) lift();
+  // With friction, the path is lost.
+  if (!surface.model->has_shape() || !p.allFinite() || (too_far && surface.tool.friction > 0)) {
     lift();
     return {};
   }

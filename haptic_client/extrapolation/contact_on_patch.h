@@ -26,12 +26,11 @@ class ContactOnPatch {
   ContactOnPatch() : ContactOnPatch(Accuracy{}) {}
 
   /// Goes to `p` (m) and gives the force on the tool there (N); nothing where the model does not know all
-  /// that may be touched on the path, the contact does not settle, or the motion is too long for one tick:
-  /// then it stands nowhere. In contact it solves anew where the tool has gone 3 % of how deep it presses, at
-  /// most 1 % of its radius (`Accuracy`; with friction a quarter of that), and follows the tangent in
-  /// between.
-  /// `memory`: of a tissue that swings, whose modes turn and bend the patch, too; the frame goes with where
-  /// that stands.
+  /// that may be touched on the path, the contact does not settle, or, with friction, the motion is too long
+  /// for one tick: then it stands nowhere. Without friction it enters anew after such a motion. In contact it
+  /// solves anew where the tool has gone 3 % of how deep it presses, at most 1 % of its radius (`Accuracy`;
+  /// with friction a quarter of that), and follows the tangent in between. `memory`: of a tissue that swings,
+  /// whose modes turn and bend the patch, too; the frame goes with where that stands.
   std::optional<Vec3> go(const Surface& surface, const Vec3& p, const ModalMemory* memory = nullptr) noexcept;
   /// The force at `p`; then it stands where it stood, on a patch around that.
   std::optional<Vec3> probe(const Surface& surface, const Vec3& p,

@@ -138,9 +138,11 @@ class Extrapolator {
   virtual void surface_cut() noexcept { restart(); }
   /// Force (N, world) with the tool at `p` at time `t` >= that of the newest sample. Zero before the first
   /// sample. |p| and |f| up to 1e30 give a finite answer; times are from 0 to 2^62 ns.
-  /// Called in the order of time: a law may go along with the tool.
+  /// Called tick by tick: a law may go along with the tool. `t` itself runs back where samples stay out
+  /// (`begin_tick` has the time of the tick).
   virtual Vec3 force(const Vec3& p, Time t) noexcept = 0;
-  /// `force` follows for a tick at `now`; its own time may stand still where that of the samples does.
+  /// `force` follows for a tick at `now`; the time of `force` stands still, or runs back, where samples stay
+  /// out.
   virtual void begin_tick(Time) noexcept {}
   /// What it uses beyond the triplet. A law that uses something knows a free surface from one that pulls.
   virtual Wants wants() const noexcept { return {}; }

@@ -8,7 +8,7 @@ namespace palpate::client {
 /// No extrapolation, but the line between samples, two periods late; Picinbono and Lombardo (1999) name it
 /// and turn it down for its delay. With samples four or more deep,
 ///   F = the line through the samples at the time t - 2 T,  T = t_n - t_(n-1),
-/// and the nearest sample where that lies outside them (so it is smooth for latencies up to 2 T). Before four
+/// and the nearest sample where that lies outside them (so it is smooth for latencies up to T). Before four
 /// samples: F_n. About 8 ns.
 class InterpolateWithDelay : public Extrapolator {
  public:

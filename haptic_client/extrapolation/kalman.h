@@ -5,7 +5,7 @@ namespace palpate::client {
 
 /// A Kalman filter on the force, which Picinbono and Lombardo (1999) name and turn down: force and its rate
 /// as state, the rate driven by white noise of q = 100 N^2/s^3, samples with noise of r = (1 mN)^2
-/// (Bar-Shalom et al. 2001, section 6.3.2, discretised white noise acceleration);
+/// (Bar-Shalom et al. 2001, section 6.2.2, discretised continuous white noise acceleration);
 ///   F = f + (t - t_n) df/dt.
 /// The samples of a simulation hardly have noise, so it comes out as linear in time, as the authors guessed.
 /// It is not exact at a sample, by about a millinewton. About 4 ns.

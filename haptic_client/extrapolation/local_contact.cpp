@@ -49,6 +49,7 @@ void LocalContact::update(const Sample& sample) noexcept {
   if (!local) local = contact_.probe(*newest_.surface, p_rest, memory());
   known_ = local && believable(*local, sample.f);
   if (!known_) {
+    contact_.lift();  // perhaps on a wrong side: it enters anew, where it is by then
     felt_.forget();  // the path is lost, and with it what sticks: it is no measure of what would be from here
     memory_.restart();
     return;
@@ -88,7 +89,7 @@ void LocalContact::learn_factor(const Vec3& right, const Vec3& local) noexcept {
 /// is the law of the tissue. Which of both the first touches are is not known yet: little of each counts.
 void LocalContact::compare_swinging(const Vec3& local) noexcept {
   local_size_ = 0;
-  across_.setZero();
+  left_over_.setZero();
   if (newest_.f.norm() <= kFirm * largest_) return;
   const double before = kappa_;
   learn_factor(newest_.f, local);
@@ -97,10 +98,10 @@ void LocalContact::compare_swinging(const Vec3& local) noexcept {
 
 void LocalContact::compare(const Vec3& local) noexcept {
   local_size_ = local.norm();
-  across_.setZero();
+  left_over_.setZero();
   if (!(local_size_ > 0) || newest_.f.isZero(0)) return;
   learn_factor(newest_.f, local);
-  across_ = newest_.f - kappa_ * local;
+  left_over_ = newest_.f - kappa_ * local;
 }
 
 /// The tool is free, but was expected to touch by now: the server has said what it would feel.
@@ -136,7 +137,7 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
   }
   if (known_) {
     felt_last_ = kappa_ * *local;
-    if (local_size_ > 0) felt_last_ += std::min(kMostCorrection, local->norm() / local_size_) * across_;
+    if (local_size_ > 0) felt_last_ += std::min(kMostCorrection, local->norm() / local_size_) * left_over_;
   }
   if (swings()) memory_.press(felt_last_, contact_.loads());
   return known_ ? felt_last_ : without_.force(p, t);

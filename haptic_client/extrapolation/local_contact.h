@@ -8,13 +8,14 @@ namespace palpate::client {
 
 /// Solves the contact of the tool with the surface near it here and now, at every tick, with the server's own
 /// narrow phase and solver on the compliance of the tissue over a sample. Where F_loc, the force of that
-/// small problem, differs from the server's, it is corrected: of F_n = kappa F_loc(P_n') + r, r across
-/// F_loc(P_n'),
+/// small problem, differs from the server's, it is corrected: of F_n = kappa F_loc(P_n') + r, with r what is
+/// left over, mostly across F_loc(P_n') (at a light touch, which tells little of kappa, along it, too),
 ///   F(P) = kappa F_loc(P') + c r,   c = min(3, |F_loc(P')| / |F_loc(P_n')|),   P' = P - s_n - s(t)
 /// with s_n how far the organ is from rest and s how far it has moved since (`OrganMotion`). So a tissue that
 /// is stiffer or softer than its model by a factor is met exactly, and what is missing fades with the
-/// contact; where a sample is free, kappa is that of the place ahead, if the tool touches there, else it
-/// stays as it was. Of a tissue that swings the slow modes are stepped here, and set right by each sample
+/// contact; where a sample is free, kappa is that of the place ahead, if the tool touches there (and without
+/// friction or slow modes), else it stays as it was. Of a tissue that swings the slow modes are stepped here,
+/// and set right by each sample
 /// (`ModalMemory`), with what of them and of all the rest has relaxed; there kappa is learned where the tool
 /// presses firmly alone, and r is 0: what a light touch lacks is the inertia of all that is quicker, and soon
 /// gone. Where the model is not known around the tool (yet), a sample brings none, or F_loc(P_n') is not even
@@ -69,7 +70,7 @@ class LocalContact : public Extrapolator {
   Time now_{};                      // of the tick: the force felt then is remembered
   double local_size_ = 0;           // |F_loc(P_n')|, N
   double kappa_ = 1, largest_ = 0;  // -, N: of all samples
-  Vec3 across_ = Vec3::Zero();      // r, N
+  Vec3 left_over_ = Vec3::Zero();   // r, N
   Vec3 felt_last_ = Vec3::Zero();   // N, at the last tick that it solved
   TickMemory<Felt> felt_;
   bool known_ = false;      // whether the model says what is felt, since the newest sample

@@ -14,7 +14,7 @@ namespace palpate::client {
 /// (`SeriesStep::creep`): of each vertex that was pressed lately, stepped here under the loads of the contact
 /// here, and set right by each sample that tells of the vertex: what it was then goes on to now under the
 /// loads that were felt since. Of those that were pressed least the last are forgotten when there are too
-/// many. Haptic thread; only the constructor allocates, 0.8 MB.
+/// many. Haptic thread; only the constructor allocates, 0.6 MB.
 class RelaxingLoads {
  public:
   static constexpr std::size_t kMost = 32;  ///< vertices

@@ -4,7 +4,8 @@
 namespace palpate::client {
 
 /// Two tangents of the server, at P_n and at the place P^ where it expected the tool in the middle of the
-/// sample's use (P^ = P_n + V_n (latency + T / 2), at most 2 mm away), blended along the way between them:
+/// sample's use (P^ = P_n + (V_n - v_s) (latency + T / 2), v_s of the organ there, at most 2 mm away),
+/// blended along the way between them:
 ///   D = P^ - P_n,  s = clamp((P - P_n) . D / (|D|^2 + (10 um)^2), 0, 1),  w = s^2 (3 - 2 s),
 ///   F = (1 - w) T_n(P) + w T^(P),
 /// P as it stands on the organ of t_n (`OrganMotion`).

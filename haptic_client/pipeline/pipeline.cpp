@@ -81,8 +81,9 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
     sensed_.flags |= ToolState::kDeviceLost;
     return sensed_;
   }
-  if ((sensed_.flags & ToolState::kClutched) != 0 && !was_lost)  // the world moves with the hand
+  if ((sensed_.flags & ToolState::kClutched) != 0 && placed_)  // the world moves with the hand
     workspace_.offset_W += sensed_.p_W - workspace_.to_world(reading.p_D);
+  placed_ = true;
   const Vec3 p_W = workspace_.to_world(reading.p_D);
   if (was_lost) {
     sensed_.v_W.setZero();  // it may have gone anywhere meanwhile
@@ -114,6 +115,8 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
   if (arrived != nullptr) {
     paused_ = (arrived->flags & ForceSample::kPaused) != 0;
     heard_ns_ = tool.t_ns;
+  } else if ((tool.flags & ToolState::kInPause) != 0) {
+    paused_ = true;  // of a capture: what said so was not taken
   }
   if (arrived != nullptr && !paused_ && take(*arrived, tool.p_W, now)) {
     result.used = true;
@@ -122,6 +125,7 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
     if ((arrived->flags & ForceSample::kHasErrors) != 0) result.errors = arrived->errors;
   }
   result.tool.newest_sample = estimate_.newest().number;
+  if (paused_) result.tool.flags |= ToolState::kInPause;
   if (model_) ask_for_pages(result.tool, now);
   if (felt_.tick > 0) {
     const Vec3& surface_v = estimate_.newest().surface_v;
@@ -222,7 +226,7 @@ bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexc
   passivity_.sampled(newest.t, workspace_.motion_to_device(newest.p), workspace_.to_device(newest.f),
                      limiter_.max_force());
   const Time lead = now - estimate_.newest().t + estimate_.period() / 2;
-  lead_ += (std::min(lead, kOutage) - lead_) / kLeadFilter;
+  lead_ += (std::min(lead, kOutage) - lead_) / (stats_.samples == 0 ? 1 : kLeadFilter);
   ++stats_.samples;
   if (estimate_.period() > Time::zero()) {
     stats_.sample_path_m += (arrived.p_W - before).norm();

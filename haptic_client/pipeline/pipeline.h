@@ -125,6 +125,7 @@ class Pipeline {
   protocol::ToolState sensed_;  // tick 0: none yet
   protocol::ToolState felt_;    // tick 0: none yet
   bool rearm_asked_ = false, paused_ = false;
+  bool placed_ = false;        // the device has said once where it is
   std::int64_t heard_ns_ = 0;  // when a sample last came, of a pause, too
   PipelineStats stats_;
 };

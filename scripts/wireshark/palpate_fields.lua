@@ -81,6 +81,7 @@ return function()
     {"device_lost", "Device gave nothing usable"}, {"rearmed", "Re-armed at this tick"}, {"clutched", "Clutched"},
     {"wants_here", "Asks for \"here\""}, {"wants_ahead", "Asks for \"ahead\""}, {"wants_surface", "Asks for \"surface\""},
     {"asks_pages", "Asks for pages"}, {"wants_errors", "Asks for \"errors\""},
+    {"in_pause", "Heard of a pause"},
   })
   field("int64", "lead", "Lead (ns)")
   field("uint64", "pages_taken", "Pages taken")

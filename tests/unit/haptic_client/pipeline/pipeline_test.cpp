@@ -189,7 +189,10 @@ TEST_CASE(
     CHECK(held.tool.flags == protocol::ToolState::kClutched);
     CHECK(held.f_D == Vec3::Zero());
   }
-  const TickResult released = tick(0.051, 0);
+  // Lost for a tick, while the hand goes on.
+  pipeline.tick({.t = t += kTick, .buttons = 4, .valid = false}, nullptr);
+  CHECK(tick(0.06, 4).tool.p_W[0] == Approx(0.002));
+  const TickResult released = tick(0.061, 0);
   CHECK(released.tool.p_W[0] == Approx(0.004));
   CHECK(released.f_D[1] == Approx(2 * 0.002));  // the first tick of a soft start of one second
 }
@@ -264,11 +267,12 @@ TEST_CASE("what a tick tells the server is enough to feel the same force again, 
     if (tick == 3000) t += 700ms;  // an outage: the force fades, the damper brakes
     lost = tick >= 4000 && tick < 4010;
     if (tick == 4300) live.rearm();
-    const ForceSample sample = sample_at(tick, t - 20ms, random.vector(0.01), random.vector(2));
-    const bool fresh = tick % 16 == 0 && !(tick > 2900 && tick < 3000);
+    ForceSample sample = sample_at(tick, t - 20ms, random.vector(0.01), random.vector(2));
+    const bool fresh = tick % 16 == 0 && !(tick > 2900 && tick < 3000), pause = tick > 2000 && tick < 2200;
+    if (pause) sample.flags |= ForceSample::kPaused;
     const DeviceReading reading{.t = t, .p_D = random.vector(0.01), .buttons = 3, .valid = !lost};
     const TickResult felt = live.tick(reading, fresh ? &sample : nullptr);
-    CHECK(felt.used == fresh);
+    CHECK(felt.used == (fresh && !pause));
     const TickResult replayed = again.feel(felt.tool, felt.used ? &sample : nullptr);
     CHECK(replayed.f_D == felt.f_D);
     CHECK(replayed.tool.newest_sample == felt.tool.newest_sample);
