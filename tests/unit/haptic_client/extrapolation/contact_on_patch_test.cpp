@@ -67,6 +67,22 @@ TEST_CASE("contact on a patch: it enters as deep as that") {
   CHECK((*force)[1] > 0.5);
 }
 
+TEST_CASE("contact on a patch: after a jump it enters anew, but with friction only at the next call") {
+  const OnBlock block;
+  const Vec3 place = below(-0.9 * kRadius), far = place + Vec3(2 * 16 * 0.12 * kRadius, 0, 0);
+  for (const double friction : {0.0, 0.3}) {
+    CAPTURE(friction);
+    const Surface surface = block.under(kRadius, friction);
+    ContactOnPatch contact, fresh;
+    REQUIRE(contact.go(surface, place));
+    const auto there = contact.go(surface, far), right = fresh.go(surface, far);
+    REQUIRE(right);
+    CHECK(right->norm() > 0.01);
+    CHECK(there.has_value() == (friction == 0));
+    CHECK(contact.go(surface, far) == right);
+  }
+}
+
 TEST_CASE("contact on a patch: a tool tiny against its way returns without an answer") {
   const OnBlock block;
   for (const double radius : {1e-9, 1e-30, 1e-300, 5e-324, 0.0}) {
