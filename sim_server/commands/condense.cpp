@@ -142,6 +142,16 @@ struct OtherRanks {
   OtherRanks& operator=(const OtherRanks&) = delete;
 };
 
+/// All that a rank but 0 does. The others would wait for one that failed: it ends them, too.
+void serve_rank_0(const CondenseOptions& options, const MpiRanks& ranks) {
+  try {
+    options.iterative ? serve_hypre() : serve_mumps();
+  } catch (const std::exception& e) {
+    log::error("rank {}: {}; all ranks end, and nothing is written", ranks.rank(), e.what());
+    ranks.end_all(static_cast<int>(Error::Kind::kRun));
+  }
+}
+
 }  // namespace
 
 int condense(const CondenseOptions& options) {
@@ -149,10 +159,8 @@ int condense(const CondenseOptions& options) {
   if (ranks.rank() == 0) {
     const OtherRanks released_at_the_end(options.iterative ? end_hypre : end_mumps);
     condense_on_rank_0(options, ranks.count());
-  } else if (options.iterative) {
-    serve_hypre();
   } else {
-    serve_mumps();
+    serve_rank_0(options, ranks);
   }
   return 0;
 }

@@ -188,6 +188,8 @@ int record(const RecordOptions& options) {
   const Trajectory& motion = motions[options.tool - 1];
   const std::uint64_t ticks = ticks_of(motion, options, ticks_hz);
   check_record_files(options, scene);
+  const std::vector<Removal> removals =
+      options.remove ? read_removals(*options.remove) : std::vector<Removal>();
   WholeFile out(options.out, Contents::kCapture);
   protocol::CaptureWriter capture(out.path());
   say_what_is_lost(motion, options, ticks_hz);
@@ -197,7 +199,7 @@ int record(const RecordOptions& options) {
   Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr,
                         condensed ? &*condensed : nullptr);
   if (!options.resection) simulation.keep_no_log();
-  if (options.remove) simulation.remove_at(read_removals(*options.remove, simulation));
+  if (options.remove) remove_at(removals, *options.remove, simulation);
   auto studied = cache ? find_studied(*cache, scene) : std::nullopt;
   if (studied && studied_hz != options.rate_hz) studied->time_step = {};  // of other steps
   const ErrorOfForce errors(scene, simulation, studied);

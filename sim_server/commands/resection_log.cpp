@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -106,28 +107,37 @@ void write_removals(const std::filesystem::path& file, const Simulation& simulat
   whole.commit();
 }
 
-std::vector<Removal> read_removals(const std::filesystem::path& file, const Simulation& simulation) {
+std::vector<Removal> read_removals(const std::filesystem::path& file) {
   const std::vector<std::string> columns{"t_s", "tetrahedron"};
   const auto values = read_csv_columns(file, columns);
   std::vector<Removal> removals;
-  const auto tetrahedra = static_cast<double>(simulation.mesh().tetrahedra.size());
   for (std::size_t row = 0; row < values[0].size(); ++row) {
     const double t = values[0][row], number = values[1][row];
     if (row > 0 && t < removals.back().t)
       fail("{}: column t_s must not decrease, but data row {} has {:g} after {:g}", file.string(), row + 1, t,
            removals.back().t);
-    if (!(number >= 0 && number < tetrahedra && number == std::floor(number)))
-      fail("{}: data row {} names tetrahedron {:g}, and the mesh has 0 to {:g}; is it of another mesh?",
-           file.string(), row + 1, number, tetrahedra - 1);
-    if (simulation.resection()->left().removable(static_cast<int>(number)) == Removable::kNever)
-      fail(
-          "{}: data row {} names tetrahedron {:g}, which the scene's [cutting] does not let go; is it of "
-          "another "
-          "scene?",
-          file.string(), row + 1, number);
+    if (!(number >= 0 && number <= std::numeric_limits<int>::max() && number == std::floor(number)))
+      fail("{}: data row {} names tetrahedron {:g}, which no mesh has", file.string(), row + 1, number);
     removals.push_back({t, static_cast<int>(number)});
   }
   return removals;
+}
+
+void remove_at(const std::vector<Removal>& removals, const std::filesystem::path& file,
+               Simulation& simulation) {
+  const auto tetrahedra = static_cast<int>(simulation.mesh().tetrahedra.size());
+  for (std::size_t row = 0; row < removals.size(); ++row) {
+    const int number = removals[row].tetrahedron;
+    if (number >= tetrahedra)
+      fail("{}: data row {} names tetrahedron {}, and the mesh has 0 to {}; is it of another mesh?",
+           file.string(), row + 1, number, tetrahedra - 1);
+    if (simulation.resection()->left().removable(number) == Removable::kNever)
+      fail(
+          "{}: data row {} names tetrahedron {}, which the scene's [cutting] does not let go; is it of "
+          "another scene?",
+          file.string(), row + 1, number);
+  }
+  simulation.remove_at(removals);
 }
 
 Json resection_report(const Simulation& simulation) {

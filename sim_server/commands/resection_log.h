@@ -20,9 +20,11 @@ void require_no_blade(const char* option, const std::optional<std::filesystem::p
 void write_resection(const std::filesystem::path& file, const Simulation& simulation);
 
 /// The tetrahedra that went, as `--removals` writes and `--remove` reads them. Throws `Error`, of a file that
-/// names another mesh's (file and row).
+/// is none, or, where it is to be used, that names another mesh's (file and row).
 void write_removals(const std::filesystem::path& file, const Simulation& simulation);
-std::vector<Removal> read_removals(const std::filesystem::path& file, const Simulation& simulation);
+std::vector<Removal> read_removals(const std::filesystem::path& file);
+void remove_at(const std::vector<Removal>& removals, const std::filesystem::path& file,
+               Simulation& simulation);
 
 /// Where it ended, for a report; null: nothing can be cut.
 Json resection_report(const Simulation& simulation);

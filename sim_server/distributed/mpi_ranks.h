@@ -15,6 +15,8 @@ class MpiRanks {
 
   int rank() const { return rank_; }
   int count() const { return count_; }
+  /// Ends the processes of all ranks, this one too, at once; `mpirun` returns `exit_code`.
+  [[noreturn]] void end_all(int exit_code) const;
 
  private:
   int rank_ = 0, count_ = 1;

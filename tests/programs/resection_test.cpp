@@ -79,6 +79,28 @@ TEST_CASE("hepatic_resection.toml: a hot tip cuts along the plan, as the table s
   CHECK(b["force_N"] == a["force_N"]);
 }
 
+TEST_CASE(
+    "a list of removals that is none is told before anything is set up, one of another scene by its row") {
+  const TemporaryFolder folder;
+  const auto error_of = [&](const std::string& text) {
+    std::vector<std::string> arguments =
+        recording_of("liver_incision.toml", {"incision.toml"}, "1", (folder.path() / "a.pcap").string());
+    arguments.insert(arguments.end(), {"--remove", folder.write("list.csv", text).string()});
+    return output_of("sim_server", arguments, 2);
+  };
+  const std::string head = "t_s,tetrahedron\n";
+  for (const char* const rows : {"0,-1\n", "0,0.5\n", "1,7\n0,8\n"}) {
+    CAPTURE(rows);
+    const std::string said = error_of(head + rows);
+    CHECK(said.find("list.csv: ") != std::string::npos);
+    CHECK(said.find("reading the mesh") == std::string::npos);
+  }
+  CHECK(
+      error_of(head + "0,99999999\n").find("data row 1 names tetrahedron 99999999, and the mesh has 0 to ") !=
+      std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "a.pcap"));
+}
+
 TEST_CASE("liver_scalpel.toml: a blade parts a lobe, and another tool pulls it away") {
   const TemporaryFolder folder;
   const auto file = [&](const char* name) { return (folder.path() / name).string(); };
