@@ -74,9 +74,11 @@ TEST_CASE(
   CHECK(report["failed_steps"]["other"] == 0);
   CHECK(report["failed_steps"]["out_of_memory"] == 0);
   const std::vector<double> cut = last_row(bytes_of(file("cut.csv")), {"t_s", "tetrahedra", "hot_s"});
-  CHECK(cut[0] > 8);  // the second one was hot, too
+  // The second one was hot, too, for most of its eight seconds of fourteen, however slow the steps are here.
+  const double simulated = report["steps"].get<double>() / 30;
+  CHECK(cut[0] > 0.8 * simulated);
   CHECK(cut[1] > 20);
-  CHECK(cut[2] > 8);
+  CHECK(cut[2] > 0.55 * simulated);
   const Json felt = read_json(file("second.json"))["tools"][0];
   CHECK(felt["force"]["max_newton"].get<double>() <= 8);
   CHECK(felt["safety"]["not_finite"] == 0);
