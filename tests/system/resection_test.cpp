@@ -78,7 +78,7 @@ TEST_CASE(
   const double simulated = report["steps"].get<double>() / 30;
   CHECK(cut[0] > 0.8 * simulated);
   CHECK(cut[1] > 20);
-  CHECK(cut[2] > 0.55 * simulated);
+  CHECK(cut[2] > 0.6 * simulated);
   const Json felt = read_json(file("second.json"))["tools"][0];
   CHECK(felt["force"]["max_newton"].get<double>() <= 8);
   CHECK(felt["safety"]["not_finite"] == 0);
