@@ -4,6 +4,7 @@
 
 #ifdef PALPATE_WITH_TBB
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #endif
@@ -27,6 +28,16 @@ void parallel_blocks(std::size_t n, std::size_t block, const Work& work) {
   });
 #else
   for (std::size_t begin = 0; begin < n; begin += block) work(begin, std::min(n, begin + block));
+#endif
+}
+
+/// How many threads such a loop uses at most.
+inline std::size_t threads() {
+#ifdef PALPATE_WITH_TBB
+  using Control = oneapi::tbb::global_control;
+  return Control::active_value(Control::max_allowed_parallelism);
+#else
+  return 1;
 #endif
 }
 

@@ -21,11 +21,15 @@ void name_thread(const char* name) {
   pthread_setname_np(pthread_self(), name);
 }
 
-void make_background(const char* name) {
-  constexpr int kNice = 10;
+void make_ordinary(const char* name) {
   name_thread(name);
   const sched_param param{};
   pthread_setschedparam(pthread_self(), SCHED_OTHER, &param);
+}
+
+void make_background(const char* name) {
+  constexpr int kNice = 10;
+  make_ordinary(name);
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);  // of this thread alone, on Linux
 }
 

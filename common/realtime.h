@@ -16,6 +16,10 @@ void name_thread(const char* name);
 /// to change.
 std::string make_realtime(pthread_t thread, const char* name, int priority);
 
+/// Gives the calling thread, which the thread that started it may have given real-time priority, the ordinary
+/// one, and a name as above.
+void make_ordinary(const char* name);
+
 /// Lets the calling thread, which the thread that started it may have given real-time priority, work beside
 /// all others: no real time, and less of the processor where that is scarce. With a name as above.
 void make_background(const char* name);

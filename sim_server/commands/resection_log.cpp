@@ -163,6 +163,7 @@ Json resection_report(const Simulation& simulation) {
           {"growth",
            {{"times", resection->growth().times},
             {"tetrahedra", resection->growth().tetrahedra},
+            {"late_steps", resection->growth().late_steps},
             {"failures", resection->growth().failures},
             {"last_failure", resection->growth().last_failure}}},
           {"parted_m2", all.parted_area},
@@ -183,6 +184,8 @@ std::string resection_text(const Simulation& simulation) {
   std::string grown;
   if (growth.times > 0)
     grown = fmt::format("; what can be cut grew {} times, by {} tetrahedra", growth.times, growth.tetrahedra);
+  if (growth.late_steps > 0)
+    grown += fmt::format("; {} steps went on without what was due", growth.late_steps);
   if (growth.failures > 0)
     grown += fmt::format("; it could not grow {} times, the last time for: {}", growth.failures,
                          growth.last_failure);

@@ -62,7 +62,7 @@ void RunNews::tell_growth(const SimLoop::Growth& now) {
     growth_.tetrahedra = now.tetrahedra;
   }
   if (const std::size_t begun = now.begun; begun > growth_.begun) {
-    log::info("the cut has come near the end of what can be cut; in {:g} s it will go on beyond",
+    log::info("the cut has come near the end of what can be cut; in {:g} s it will go on beyond, or later",
               scene_.cutting->growth->after);
     growth_.begun = begun;
   }
@@ -71,6 +71,16 @@ void RunNews::tell_growth(const SimLoop::Growth& now) {
                  scene_.cutting->growth->where);
     growth_.failures = failures;
   }
+  const std::size_t late = now.late_steps;
+  const bool waits = growth_.times + growth_.failures < growth_.begun;
+  if (late > growth_.late_steps && waits && told_late_ < growth_.begun) {
+    log::warning(
+        "{}: after {:g} s the larger body is not made yet; until it is, the cut ends where it did "
+        "(a larger `after` says so beforehand)",
+        scene_.cutting->growth->where, scene_.cutting->growth->after);
+    told_late_ = growth_.begun;
+  }
+  growth_.late_steps = late;
 }
 
 }  // namespace palpate::sim

@@ -28,6 +28,7 @@ class RunNews {
   bool paused_ = false, at_end_ = false;
   std::vector<bool> held_, beyond_;
   Resection::Growth growth_;
+  std::size_t told_late_ = 0;  // of so many that began, the last one was told to be late
 };
 
 }  // namespace palpate::sim

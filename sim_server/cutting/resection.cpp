@@ -93,6 +93,7 @@ const Parted& Resection::part(const BladeSweep& blade, std::span<Vec3> were, std
 void Resection::grow(const DeformationModel::Growth& growth) {
   left_.allow(growth.allowed);
   growth_.begun += growth.begun ? 1 : 0;
+  growth_.late_steps += growth.late ? 1 : 0;
   if (growth.allowed.empty() && growth.failure.empty()) return;
   growth_.times += growth.failure.empty() ? 1 : 0;
   growth_.failures += growth.failure.empty() ? 0 : 1;

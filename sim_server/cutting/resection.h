@@ -75,6 +75,7 @@ class Resection {
   void grow(const DeformationModel::Growth& growth);
   struct Growth {
     std::size_t begun = 0;       ///< times
+    std::size_t late_steps = 0;  ///< that went on without, as the background was not there in time
     std::size_t times = 0;       ///< that more could be removed
     std::size_t tetrahedra = 0;  ///< that could in all of them
     std::size_t failures = 0;

@@ -13,9 +13,9 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostAddedMass = 1e-2;  // of the mass in motion, for its stiffest elements
-constexpr double kModesAsGrown = 0.2;    // of that of the elements: frequencies of a rest that grows smaller
-constexpr int kSubStepsPerLook = 8;      // at what contact looks at of the rest without pressing there
+constexpr double kAddedMass = 1e-2;    // of the mass in motion, for its stiffest elements
+constexpr double kModesAsGrown = 0.2;  // of that of the elements: frequencies of a rest that grows smaller
+constexpr int kSubStepsPerLook = 8;    // at what contact looks at of the rest without pressing there
 
 const RayleighDamping& rayleigh_of(const Scene& scene) {
   return scene.deformation.of<RayleighDamping>();
@@ -29,7 +29,9 @@ MassScaling scaling_for(const ModelInputs& inputs, const RegionInMotion* region)
   inputs.progress(name_of(Stage::kTensors), 0);
   std::vector<char> moves;
   if (region != nullptr) moves = region->vertices(inputs.mesh, Removable::kLater);
-  return scale_masses(inputs.mesh, *inputs.scene.material, kMostAddedMass, moves);
+  const auto* const added = inputs.scene.deformation.find<AddedMass>();
+  const double share = added == nullptr ? kAddedMass : added->share.value_or(kAddedMass);
+  return scale_masses(inputs.mesh, *inputs.scene.material, share, moves);
 }
 
 /// Elastic energy of an element whose corners are displaced by `u` (m), J.
@@ -308,7 +310,9 @@ std::span<const Vec3> CuttableMotion::nodes() const noexcept {
 DeformationModel::Removed CuttableMotion::lost_with(int tetrahedron, const CutMesh& left) const {
   const auto t = static_cast<std::size_t>(tetrahedron);
   const Tetrahedron& corners = left.mesh().tetrahedra[t];
-  const double mass = material_.density * six_volumes(left.mesh(), corners) / 6;
+  const std::vector<double>& factors = body_->tensors.mass_factors();
+  const double mass =
+      (factors.empty() ? 1 : factors[t]) * material_.density * six_volumes(left.mesh(), corners) / 6;
   std::array<Vec3, 4> x, u;
   Removed lost;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -374,10 +378,10 @@ void CuttableMotion::go_on_with_body() noexcept {
   go_free(moving_);
 }
 
-DeformationModel::Growth CuttableMotion::grow(const CutMesh& left) {
+DeformationModel::Growth CuttableMotion::grow(const CutMesh& left, bool waits) {
   if (!growth_) return {};
-  RegionGrowth::Step step = growth_->step(*body_, left);
-  if (!step.grown) return {step.begun, {}, std::move(step.failure)};
+  RegionGrowth::Step step = growth_->step(*body_, left, waits);
+  if (!step.grown) return {step.begun, step.late, {}, std::move(step.failure)};
   RegionGrowth::Grown& grown = *step.grown;
   end_contact();
   grown.body->reshape(grown.since.slid, grown.since.parting, left, material_, scaling_.frequency);
@@ -389,7 +393,7 @@ DeformationModel::Growth CuttableMotion::grow(const CutMesh& left) {
   go_on_with_body();
   for (const NodalLoad& load : loads_) body_->rest->watch({&load.vertex, 1});
   allowed_ = std::move(grown.allowed);
-  return {false, allowed_, {}};
+  return {.allowed = allowed_};
 }
 
 }  // namespace palpate::sim

@@ -46,7 +46,7 @@ class CuttableMotion : public DeformationModel {
   std::span<const Vec3> nodes() const noexcept override;
   Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
   void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) override;
-  Growth grow(const CutMesh& left) override;
+  Growth grow(const CutMesh& left, bool waits) override;
   const SlowModes* slow_modes() const noexcept override;
   void modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;

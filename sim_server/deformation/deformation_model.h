@@ -64,7 +64,8 @@ struct MemoryPart {
 /// A tissue. Every model answers the same questions (where would you go, how compliant are you, here are the
 /// loads: move), so that one contact solver serves them all. Vertices are those of the surface (`Surface`),
 /// positions in m in the world frame. One thread; explicit steps of a large body hand parts of them to others
-/// (oneTBB). Answers of the models that are computed beforehand neither allocate nor throw. One that solves
+/// (`PromptTeam`). Answers of the models that are computed beforehand neither throw nor, but for the first
+/// step of a large body, which starts threads, allocate. One that solves
 /// in each step (`Implicit`), and one of tissue that can be cut, allocates, may start threads and wait for
 /// them, and throws what those do (`std::bad_alloc`), which `Simulation::step` catches. A factor made in a
 /// step locks for as long as its order is found, and warns in the log where memory does not let it be as fine
@@ -177,13 +178,15 @@ class DeformationModel {
 
   /// How what can be removed grows.
   struct Growth {
-    bool begun = false;            ///< from now on the background is at it
-    std::span<const int> allowed;  ///< it has ended: these tetrahedra can be removed from now on
-    std::string failure;           ///< it has ended, and all stays as it is: why
+    bool begun = false;                 ///< from now on the background is at it
+    bool late = false;                  ///< its time has come, and the background is still at it
+    std::span<const int> allowed = {};  ///< it has ended: these tetrahedra can be removed from now on
+    std::string failure = {};           ///< it has ended, and all stays as it is: why
   };
-  /// Between two steps, before anything of the next is removed: what of this can be said now. Allocates where
-  /// it says anything, and may wait for the background.
-  virtual Growth grow([[maybe_unused]] const CutMesh& left) { return {}; }
+  /// Between two steps, before anything of the next is removed: what of this can be said now. `waits`: for
+  /// the background where its time has come, so that the same grows in the same step on every machine.
+  /// Allocates where it says anything.
+  virtual Growth grow([[maybe_unused]] const CutMesh& left, [[maybe_unused]] bool waits) { return {}; }
 
   /// What clients may know by now of a surface that can be cut, with its `slow_modes`; null: nothing, as it
   /// has been cut just now, or cannot be. Never changes once it is told, and may be read by any thread.

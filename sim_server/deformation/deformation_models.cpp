@@ -11,6 +11,7 @@
 #include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/hybrid.h"
 #include "sim_server/deformation/implicit.h"
+#include "sim_server/deformation/mass_scaling.h"
 #include "sim_server/deformation/quasi_static.h"
 #include "sim_server/deformation/reduced.h"
 #include "sim_server/deformation/rigid.h"
@@ -56,7 +57,7 @@ constexpr std::array kModels{
          .summary = "linear elastic equilibrium by pre-computed compliance",
          .materials = Materials::kLinear,
          .condenses = true}),
-    row_of<TensorMass, RayleighDamping, ContactInstants, ClientModes, ComplianceTolerance>(
+    row_of<TensorMass, RayleighDamping, ContactInstants, AddedMass, ClientModes, ComplianceTolerance>(
         {.name = "tensor_mass",
          .summary = "linear elastic motion, explicit, by a tensor per vertex and edge",
          .materials = Materials::kPlain,
@@ -83,7 +84,7 @@ constexpr std::array kModels{
                                     .summary = "no deformation; the organ hangs on a spring that hardens",
                                     .moves = true}),
     // Those that need [cutting] are the last.
-    row_of<Hybrid, RayleighDamping, ContactInstants, HybridSettings, ClientModes>(
+    row_of<Hybrid, RayleighDamping, ContactInstants, AddedMass, HybridSettings, ClientModes>(
         {.name = "hybrid",
          .summary = "linear elastic: what can be cut in motion as tensor_mass, the rest condensed to its "
                     "slowest modes",

@@ -14,18 +14,9 @@ constexpr int kMostProducts = 1000;
 constexpr double kSettled = 1e-6;      // growth of the Rayleigh quotient
 constexpr double kMostSubSteps = 2e4;  // no step of so many is in time
 
-/// `work(part, begin, end)` for the vertices of each part of a product, on as many cores.
-template <class Work>
-void for_parts(const ElasticTensors& tensors, const Work& work) {
-  parallel_blocks(tensors.parts(), 1, [&](std::size_t p, std::size_t) {
-    const auto [begin, end] = tensors.rows_of_part(p);
-    work(p, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
-  });
-}
-
-void multiply(const ElasticTensors& tensors, const double* x, double* y, ElasticTensors::Ahead& ahead) {
-  parallel_blocks(tensors.parts(), 1,
-                  [&](std::size_t p, std::size_t) { tensors.multiply_part(p, x, y, ahead); });
+/// How many threads share a product: at most as many as it has parts.
+int threads_for(const ElasticTensors& tensors, int most) {
+  return std::min(most > 0 ? most : static_cast<int>(threads()), static_cast<int>(tensors.parts()));
 }
 }  // namespace
 
@@ -68,8 +59,12 @@ double count_sub_steps(const Scene& scene, double longest) {
   return steps;
 }
 
-ExplicitMotion::ExplicitMotion(const ElasticTensors& tensors, const RayleighDamping& damping, int columns)
-    : tensors_(tensors), damping_(damping), columns_(columns) {
+ExplicitMotion::ExplicitMotion(const ElasticTensors& tensors, const RayleighDamping& damping, int columns,
+                               int most_threads)
+    : tensors_(tensors),
+      damping_(damping),
+      columns_(columns),
+      team_(columns == 1 ? threads_for(tensors, most_threads) - 1 : 0) {
   if (columns == 1) ahead_ = tensors.room_ahead();
   for (auto* const all : {&state.u, &state.v, &state.f})
     all->assign(3 * tensors.masses().size() * columns, 0);
@@ -97,10 +92,25 @@ void ExplicitMotion::kick(int place, double h, const Vec3& dv) noexcept {
   Eigen::Map<Vec3>(bent_.data() + apart) += (h + damping_.stiffness) * dv;
 }
 
+/// `work(part, begin, end)` for the vertices of each part of a product, on as many cores.
+template <class Work>
+void ExplicitMotion::for_parts(const Work& work) noexcept {
+  team_.run(static_cast<std::uint32_t>(tensors_.parts()), [&](std::uint32_t p) {
+    const auto [begin, end] = tensors_.rows_of_part(p);
+    work(p, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+  });
+}
+
+void ExplicitMotion::multiply() noexcept {
+  for_parts([&](std::size_t p, std::size_t, std::size_t) {
+    tensors_.multiply_part(p, bent_.data(), resistance_.data(), ahead_);
+  });
+}
+
 void ExplicitMotion::sub_step(double h, const std::vector<double>& force) noexcept {
   if (columns_ == 1) {
-    multiply(tensors_, bent_.data(), resistance_.data(), ahead_);
-    for_parts(tensors_, [&](std::size_t p, std::size_t begin, std::size_t end) {
+    multiply();
+    for_parts([&](std::size_t p, std::size_t begin, std::size_t end) {
       tensors_.gather_part(p, resistance_.data(), ahead_);
       advance<1>(begin, end, h, force.data());
     });
@@ -140,15 +150,15 @@ void ExplicitMotion::bend(std::size_t begin, std::size_t end) noexcept {
 }
 
 void ExplicitMotion::run(double h) noexcept {
-  for_parts(tensors_, [&](std::size_t, std::size_t begin, std::size_t end) { bend(begin, end); });
+  for_parts([&](std::size_t, std::size_t begin, std::size_t end) { bend(begin, end); });
   sub_step(h, state.f);
 }
 
 void ExplicitMotion::run_free(State& before, double h) noexcept {
   std::swap(before, state);
-  multiply(tensors_, bent_.data(), resistance_.data(), ahead_);
+  multiply();
   const double keep = 1 - h * damping_.mass;
-  for_parts(tensors_, [&](std::size_t p, std::size_t begin, std::size_t end) {
+  for_parts([&](std::size_t p, std::size_t begin, std::size_t end) {
     tensors_.gather_part(p, resistance_.data(), ahead_);
     for (std::size_t vertex = begin; vertex < end; ++vertex) {
       const double kick = h / tensors_.masses()[vertex];
@@ -166,13 +176,13 @@ void ExplicitMotion::run_free(State& before, double h) noexcept {
 void ExplicitMotion::run(int steps, double h, const std::vector<double>& force) noexcept {
   std::vector<double>& f = state.f;
   const std::size_t numbers = 3 * static_cast<std::size_t>(columns_);  // of a vertex
-  for_parts(tensors_, [&](std::size_t, std::size_t begin, std::size_t end) {
+  for_parts([&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t k = numbers * begin; k < numbers * end; ++k) f[k] = 0.5 * (f[k] + force[k]);
     bend(begin, end);
   });
   sub_step(h, f);
   for (int i = 1; i < steps; ++i) sub_step(h, force);
-  for_parts(tensors_, [&](std::size_t, std::size_t begin, std::size_t end) {
+  for_parts([&](std::size_t, std::size_t begin, std::size_t end) {
     std::copy_n(force.data() + numbers * begin, numbers * (end - begin), f.data() + numbers * begin);
   });
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "common/prompt_team.h"
 #include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/elasticity/tensors.h"
 #include "sim_server/scene/scene.h"
@@ -23,11 +24,14 @@ double count_sub_steps(const Scene& scene, double longest);
 /// lumped masses M:
 ///   v += h (M^-1 (f - K (u + stiffness v)) - mass v),   u += h v.
 /// Several motions side by side: (n x 3 x columns), those of one number together. One motion of a large body
-/// goes on by all cores, with the same bits whatever their number. Only the constructor allocates.
+/// goes on by all cores, with the same bits whatever their number. Only the constructor allocates, and the
+/// first sub-step of a large body, which starts the threads of the other cores (`PromptTeam`).
 class ExplicitMotion {
  public:
-  /// At rest. `columns`: 1 or `ElasticTensors::kWide`. `tensors` must outlive it.
-  ExplicitMotion(const ElasticTensors& tensors, const RayleighDamping& damping, int columns = 1);
+  /// At rest. `columns`: 1 or `ElasticTensors::kWide`. `tensors` must outlive it. `most_threads`: of one
+  /// motion, go on by so many at most; 0: by as many as there are cores.
+  ExplicitMotion(const ElasticTensors& tensors, const RayleighDamping& damping, int columns = 1,
+                 int most_threads = 0);
 
   /// Displacements, m; velocities, m/s, half a sub-step before them; the forces held until now, N.
   struct State {
@@ -61,6 +65,9 @@ class ExplicitMotion {
   std::size_t bytes() const { return (3 * state.u.size() + 2 * bent_.size()) * sizeof(double); }
 
  private:
+  template <class Work>
+  void for_parts(const Work& work) noexcept;
+  void multiply() noexcept;
   void sub_step(double h, const std::vector<double>& force) noexcept;
   template <int kColumns>
   void advance(std::size_t begin, std::size_t end, double h, const double* force) noexcept;
@@ -76,6 +83,7 @@ class ExplicitMotion {
 
   std::vector<double> bent_, resistance_;  // u + stiffness v, m; K times that, N
   ElasticTensors::Ahead ahead_;            // of that product, of one motion
+  PromptTeam team_;
 };
 
 }  // namespace palpate::sim

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <fmt/core.h>
 #include <numeric>
 
 #include "sim_server/elasticity/element.h"
@@ -34,6 +35,16 @@ double squared_frequency_in(const TetMesh& mesh, std::size_t tetrahedron, const 
 }
 
 }  // namespace
+
+AddedMass AddedMass::read(const Config& config) {
+  AddedMass read;
+  if (config.says("added_mass")) read.share = config.number("added_mass", {0, 0.2, "of the mass in motion"});
+  return read;
+}
+
+std::string AddedMass::to_text() const {
+  return share ? fmt::format("added_mass = {:g}\n", *share) : "";
+}
 
 double mass_factor_of(const TetMesh& mesh, std::size_t tetrahedron, const Material& material,
                       double frequency) {

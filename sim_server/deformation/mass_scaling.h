@@ -1,11 +1,26 @@
 #pragma once
+#include <array>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "common/config.h"
 #include "sim_server/elasticity/material.h"
 #include "sim_server/mesh/tet_mesh.h"
 
 namespace palpate::sim {
+
+/// How much mass the stiffest elements may get, of a body that can be cut. The more, the fewer sub-steps, and
+/// the later the tissue answers there.
+struct AddedMass {
+  std::optional<double> share{};  ///< `added_mass`, of the mass in motion, [0, 0.2]; absent: 0.01
+
+  static constexpr std::array<std::string_view, 1> kKeys{"added_mass"};
+  static AddedMass read(const Config& config);
+  std::string to_text() const;
+};
 
 /// More mass for the stiffest elements of a body in explicit motion, so that a few slivers do not shorten its
 /// sub-steps (selective mass scaling: Olovsson, Simonsson and Unosson 2005, Int. J. Numer. Meth. Engng

@@ -1,6 +1,7 @@
 #include "sim_server/deformation/region_growth.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -181,9 +182,13 @@ RegionGrowth::Step RegionGrowth::end() {
   return step;
 }
 
-RegionGrowth::Step RegionGrowth::step(const CuttableBody& now, const CutMesh& left) {
+RegionGrowth::Step RegionGrowth::step(const CuttableBody& now, const CutMesh& left, bool waits) {
   ++step_;
-  if (work_.valid()) return step_ >= due_ ? end() : Step{};
+  if (work_.valid()) {
+    if (step_ < due_) return {};
+    const bool made = waits || work_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    return made ? end() : Step{.late = true};
+  }
   if (seeds_.empty() || step_ < not_before_) return {};
   std::vector<int> allowed = near_seeds(left);
   if (allowed.empty()) {

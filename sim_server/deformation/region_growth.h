@@ -11,9 +11,10 @@ namespace palpate::sim {
 /// What can be cut of a body, and with it what is in motion, follows the cut ([cutting.growth]). Where a cut
 /// comes within half of `reach` of the end of what can be cut, the body that has all within `reach` of there
 /// in motion, too, is made in the background, while the one before goes on. It takes over in the step that
-/// comes `after` seconds later, at any speed of the machine: that step waits for it. So the same tool makes
-/// the same bits, unless memory ends: then what can be cut stays as it is, and the same is tried again after
-/// that time, doubled at each failure in a row. Owned by the thread that steps. Destroying it waits for the
+/// comes `after` seconds later, at any speed of the machine: a step that `waits` waits for it then, so that
+/// the same tool makes the same bits; one that does not goes on without, and it takes over in the first that
+/// finds it made. Where memory ends, what can be cut stays as it is, and the same is tried again after that
+/// time, doubled at each failure in a row. Owned by the thread that steps. Destroying it waits for the
 /// background.
 class RegionGrowth {
  public:
@@ -39,12 +40,13 @@ class RegionGrowth {
     Cuts since;                           ///< it was begun
   };
   struct Step {
-    bool begun = false;          ///< the background begins
-    std::optional<Grown> grown;  ///< it has ended, and this takes over
-    std::string failure;         ///< it has ended, or could not begin: what can be cut stays as it is; why
+    bool begun = false;               ///< the background begins
+    bool late = false;                ///< its time has come, and it is still at it
+    std::optional<Grown> grown = {};  ///< it has ended, and this takes over
+    std::string failure = {};  ///< it has ended, or could not begin: what can be cut stays as it is; why
   };
-  /// A step begins. `now`: the body that is in use. Waits for the background where its time has come.
-  Step step(const CuttableBody& now, const CutMesh& left);
+  /// A step begins. `now`: the body that is in use. `waits`: for the background where its time has come.
+  Step step(const CuttableBody& now, const CutMesh& left, bool waits);
 
   std::size_t bytes() const;
 

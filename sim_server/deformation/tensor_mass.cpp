@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/core.h>
 
+#include "common/error.h"
 #include "sim_server/deformation/cuttable_motion.h"
 #include "sim_server/deformation/linear_statics.h"
 #include "sim_server/scene/held_motion.h"
@@ -68,6 +69,10 @@ TensorMass::TensorMass(const ModelInputs& inputs)
 
 std::unique_ptr<DeformationModel> TensorMass::make(const ModelInputs& inputs) {
   if (inputs.scene.cutting) return std::make_unique<CuttableMotion>(inputs);
+  const auto* const added = inputs.scene.deformation.find<AddedMass>();
+  if (added != nullptr && added->share)
+    fail("{}: `added_mass`: only tissue that can be cut gets more mass; remove it, or add [cutting]",
+         inputs.scene.deformation.where);
   return std::make_unique<TensorMass>(inputs);
 }
 

@@ -43,8 +43,9 @@ int told_bodies(const Scene& scene);
 /// nearest (`ToldMotion`). After a cut all of it in the background, on one core: the factor and the modes of
 /// what is left, once it was left alone for a tenth of a second; then the compliance, and that anew as the
 /// tool goes on. What it made is in use from a step on that was fixed when it began, at any speed of the
-/// machine: that step waits for it. A cut ends what is told at once. So the same tools make the same bits,
-/// unless memory ends. Owned by the thread that steps. Destroying it waits for the background.
+/// machine: a step that `waits` waits for it then; else in the first that finds it made. A cut ends what is
+/// told at once. So the same tools make the same bits, unless memory ends. Owned by the thread that steps.
+/// Destroying it waits for the background.
 class ToldNearby {
  public:
   static constexpr std::size_t kShape = 1500, kCompliant = 250;  ///< a tool: 5 MB of compliance

@@ -148,6 +148,7 @@ void SimLoop::note_cuts() noexcept {
   const Resection::Growth& now = simulation_.resection()->growth();
   growth.begun.store(now.begun, std::memory_order_relaxed);
   growth.failures.store(now.failures, std::memory_order_relaxed);
+  growth.late_steps.store(now.late_steps, std::memory_order_relaxed);
   growth.tetrahedra.store(now.tetrahedra, std::memory_order_relaxed);
   growth.times.store(now.times, std::memory_order_release);
   if (simulation_.resection()->totals().time_at_end > 0) cut_to_end.store(true, std::memory_order_relaxed);

@@ -146,8 +146,8 @@ class Simulation {
   /// Another number whenever clients are to be told another surface, or none any more (`ToldSurface`). Of a
   /// tissue that is never cut, it stays 0.
   std::uint32_t told_version() const { return told_version_; }
-  /// From now on no step waits for a background that makes what clients are told: it is told when it is
-  /// there, and that, but nothing else, depends on the machine.
+  /// From now on no step waits for a background: what clients are told, and more that can be cut, comes when
+  /// it is there. So what is felt depends on the machine, by when that was.
   void hurry() { hurries_ = true; }
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
   /// What a tool puts on the surface by now.
@@ -243,6 +243,7 @@ class Simulation {
     std::vector<HotTip> tips = {};
     std::vector<DeformationModel::ToldTool> told_near = {};
     std::shared_ptr<const ToldSurface> told = {};  // to clients
+    std::uint32_t touchable_version = 0;           // of the resection: whose surface the tools touch
     std::vector<std::optional<Vec3>> hot_at = {};  // of tools hot in the step before, where that began
     std::vector<ResectionRow> log = {};
     bool logs = true;

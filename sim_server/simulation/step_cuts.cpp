@@ -54,11 +54,10 @@ std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs
 
 /// Before the tissue goes on.
 void Simulation::cut(std::span<const ToolInput> inputs, double dt) {
-  const DeformationModel::Growth growth = tissue_.model->grow(cut_->resection.left());
+  const DeformationModel::Growth growth = tissue_.model->grow(cut_->resection.left(), !hurries_);
   cut_->resection.grow(growth);
   if (!growth.allowed.empty()) tissue_.note_same_place();
   cut_->resection.begin_step();
-  const std::uint32_t before = cut_->resection.version();
   const std::span<const int> removed = remove_tissue(inputs, dt);
   if (!removed.empty()) {
     for (const int tetrahedron : cut_->resection.asked_for()) cut_->removed.push_back({time_, tetrahedron});
@@ -66,7 +65,7 @@ void Simulation::cut(std::span<const ToolInput> inputs, double dt) {
     tissue_.note_same_place();  // of what is shown now, too
   }
   if (!cut_->planned) part_tissue(inputs);
-  if (cut_->resection.version() != before) change_surface();
+  if (cut_->resection.version() != cut_->touchable_version) change_surface();
   tell_near(inputs);
 }
 
@@ -179,6 +178,7 @@ bool Simulation::feels_blade(std::size_t tool) const {
   return cut_ && cut_->blades[tool] && !cut_->blades[tool]->force.isZero(0);
 }
 
+/// The tools touch the surface of now. Where this throws, the next step begins it again.
 void Simulation::change_surface() {
   const CutMesh& left = cut_->resection.left();
   const auto on_surface = [&left](int vertex) { return left.on_surface(vertex); };
@@ -186,6 +186,7 @@ void Simulation::change_surface() {
   auto touchable = touchable_by(cut_->tools, surface_, *mesh_);
   for (std::size_t i = 0; i < tools_.size(); ++i)
     tools_[i].change_surface(rest_, surface_, std::move(touchable[i]), on_surface);
+  cut_->touchable_version = cut_->resection.version();
 }
 
 /// What a step with tools that cut came to.

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "common/error.h"
+#include "protocol/udp_socket.h"
 #include "sim_server/viewer/viewer.h"
 
 namespace palpate::sim {

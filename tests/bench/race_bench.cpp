@@ -14,7 +14,6 @@
 #include <optional>
 
 #include "common/clock.h"
-#include "common/parallel.h"
 #include "sim_server/deformation/explicit_motion.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/solvers/dynamics.h"
@@ -79,27 +78,19 @@ void run_explicit(benchmark::State& state, const Racer& racer, bool all_cores) {
   const ElasticTensors tensors(body.mesh, tissue(ElasticLaw::kLinear), body.fixed);
   const RayleighDamping damping{0.1, 0};
   const double h = 0.9 * longest_sub_step(highest_frequency(tensors), damping);
-  ExplicitMotion motion(tensors, damping);
+  ExplicitMotion motion(tensors, damping, 1, all_cores ? 0 : 1);
   std::vector<double> force = motion.state.f;
   const std::vector<Vec3> pull = body.pull();
   for (std::size_t v = 0; v < pull.size(); ++v) {
     if (tensors.places()[v] >= 0) Eigen::Map<Vec3>(force.data() + 3 * tensors.places()[v]) = pull[v];
   }
-  Time begin{};
   int calls = 0;
-  const auto race = [&] {
-    begin = now();
-    time_calls(state, 10, [&] {
-      ++calls;
-      motion.run(1, h, force);
-      return motion.state.u[force.size() / 2];
-    });
-  };
-  if (all_cores) {
-    race();
-  } else {
-    in_one_thread(race);
-  }
+  const Time begin = now();
+  time_calls(state, 10, [&] {
+    ++calls;
+    motion.run(1, h, force);
+    return motion.state.u[force.size() / 2];
+  });
   compare(state, 1e3 * to_seconds(now() - begin) / calls, racer.explicit_ms);
 }
 

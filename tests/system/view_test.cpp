@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <fmt/core.h>
 
 #include "tests/support/catch.h"
 #include "tests/support/paths.h"

@@ -2,6 +2,7 @@
 #ifdef PALPATE_WITH_VIEWER
 #include <algorithm>
 #include <csignal>
+#include <fmt/core.h>
 #include <thread>
 
 #include "tests/support/catch.h"

@@ -89,6 +89,15 @@ nlohmann::json state_of(emulation::Falcon& falcon) {
   return nlohmann::json::parse(falcon.state(0));
 }
 
+/// As a process leaves a Falcon that dies while it pushes.
+void leave_pushing(emulation::Falcon& falcon) {
+  test::EmulatedPort dead(falcon);
+  dead.open(Time::zero());
+  FalconMachine::normal_mode(dead);
+  dead.write(encode_falcon({.torque = {500, -600, 700}}));
+  REQUIRE(state_of(falcon)["dac"] != nlohmann::json({0, 0, 0}));
+}
+
 /// A homed Falcon under force.
 template <class Port>
 struct Pushing {
@@ -114,13 +123,7 @@ struct Pushing {
 
 TEST_CASE("a Falcon that another program holds does not keep the dead client's waiting for its zero") {
   emulation::Falcon falcon({.loaded = true, .homed = true});
-  {
-    test::EmulatedPort dead(falcon);
-    dead.open(Time::zero());
-    FalconMachine::normal_mode(dead);
-    dead.write(encode_falcon({.torque = {500, -600, 700}}));
-  }
-  REQUIRE(state_of(falcon)["dac"] != nlohmann::json({0, 0, 0}));
+  leave_pushing(falcon);
   int tries = 0, tries_before = -1;
   std::vector<std::unique_ptr<UsbTransport>> ports;
   ports.push_back(std::make_unique<HeldPort>(tries));
@@ -131,6 +134,25 @@ TEST_CASE("a Falcon that another program holds does not keep the dead client's w
   CHECK(state_of(falcon)["dac"] == nlohmann::json({0, 0, 0}));
   CHECK(tries_before == 1);
   CHECK(tries > 50);  // the other was waited for
+}
+
+TEST_CASE("a Falcon that comes back while another has had its zero gets one, too") {
+  emulation::Falcon first({.loaded = true, .homed = true}), second({.loaded = true, .homed = true});
+  leave_pushing(first);
+  leave_pushing(second);
+  int looks = 0;
+  const Silenced silenced = silence_falcons({}, [&](UsbPorts& ports) {
+    ++looks;
+    if (looks == 1) ports.push_back(std::make_unique<test::EmulatedPort>(first));
+    if (looks == 4) {
+      CHECK(ports.empty());
+      CHECK(state_of(first)["dac"] == nlohmann::json({0, 0, 0}));
+      ports.push_back(std::make_unique<test::EmulatedPort>(second));
+    }
+  });
+  CHECK(silenced.falcons == 2);
+  CHECK(silenced.held == 0);
+  CHECK(state_of(second)["dac"] == nlohmann::json({0, 0, 0}));
 }
 
 TEST_CASE("a Falcon that is let go of gets its zero, also when its last force is held up for a second") {

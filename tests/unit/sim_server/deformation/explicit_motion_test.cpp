@@ -4,9 +4,6 @@
 
 #include <algorithm>
 #include <numbers>
-#ifdef PALPATE_WITH_TBB
-#include <oneapi/tbb/global_control.h>
-#endif
 
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/allocation_guard.h"
@@ -94,7 +91,7 @@ TEST_CASE("ExplicitMotion: a force that is added to the last sub-step did what i
   constexpr int kPlace = 5;
   constexpr double kStep = 1e-4;  // s
   const Vec3 force(0.02, -0.05, 0.01);
-  ExplicitMotion within(tissue.tensors, {3, 2e-4}), added = within;
+  ExplicitMotion within(tissue.tensors, {3, 2e-4}), added(tissue.tensors, {3, 2e-4});
   for (ExplicitMotion* const motion : {&within, &added}) {
     start_in(*motion, tissue.dense.modes.col(2));
     for (int i = 0; i < 5; ++i) motion->run(kStep);
@@ -278,15 +275,14 @@ TEST_CASE("explicit motion: sub-steps do not allocate") {
   CHECK(allocations == 0);
 }
 
-#ifdef PALPATE_WITH_TBB
-TEST_CASE("ExplicitMotion: a large body moves the same, to the last bit, by one thread, two and four") {
+TEST_CASE("ExplicitMotion: a large body moves the same, to the last bit, by one thread, two and four",
+          "[threads]") {
   const TetMesh mesh = test::soft_block(Vec3(0.04, 0.04, 0.04), {24, 24, 24});
   const ElasticTensors tensors(mesh, kSoft, {0, 1, 2});
   REQUIRE(tensors.room_ahead().size() > 1);
   std::vector<ExplicitMotion::State> ends;
-  for (const std::size_t threads : {1, 2, 4}) {
-    const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
-    ExplicitMotion motion(tensors, {3, 2e-4});
+  for (const int threads : {1, 2, 4}) {
+    ExplicitMotion motion(tensors, {3, 2e-4}, 1, threads);
     std::minstd_rand random(7);
     for (double& x : motion.state.u) x = 1e-3 * static_cast<double>(random()) / std::minstd_rand::max();
     ExplicitMotion::State before = motion.state;
@@ -302,4 +298,3 @@ TEST_CASE("ExplicitMotion: a large body moves the same, to the last bit, by one 
   }
   CHECK(std::ranges::count(ends[0].v, 0.0) == 0);
 }
-#endif

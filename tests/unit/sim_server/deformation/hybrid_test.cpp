@@ -298,6 +298,36 @@ TEST_CASE(
   CHECK(first->state_hash() == second->state_hash());
 }
 
+TEST_CASE("hybrid: who is in a hurry goes on until more can be cut, and then as if it had been due then") {
+  // One is due after one step, and goes on until the background is there, on whatever machine; another waits
+  // for what is due in that very step.
+  const auto step = [](Simulation& simulation, int i) {
+    press(simulation, Vec3(std::min(0.02, 0.0002 * i), 0.001 - std::min(0.0024, 1e-5 * i), 0.0005), true);
+    return simulation.resection()->growth();
+  };
+  Scene scene = growing_scene(kStep);
+  scene.cutting->growth->reach = 0.03;
+  Simulation hurried(scene, block());
+  hurried.hurry();
+  int begun = -1, grown = -1;
+  std::size_t late = 0;
+  for (int i = 0; grown < 0 && i < 100'000; ++i) {
+    const Resection::Growth now = step(hurried, i);
+    if (begun < 0 && now.begun > 0) begun = i;
+    if (now.times > 0) grown = i;
+    late = now.late_steps;
+  }
+  REQUIRE(begun >= 0);
+  REQUIRE(grown > begun);
+  CHECK(late == static_cast<std::size_t>(grown - begun - 1));
+  scene.cutting->growth->after = (grown - begun) * kStep;
+  Simulation waits(scene, block());
+  for (int i = 0; i <= grown; ++i) step(waits, i);
+  CHECK(waits.resection()->growth().times == 1);
+  CHECK(waits.resection()->growth().late_steps == 0);
+  CHECK(waits.state_hash() == hurried.state_hash());
+}
+
 TEST_CASE("hybrid: what is planned to be removed, but cannot be cut yet, waits until it can") {
   Simulation cut(growing_scene(0.5), block());
   for (int i = 0; i < 150; ++i) press(cut, Vec3(std::min(0.012, 0.0002 * i), 0.001 - 1e-5 * i, 0.0005), true);

@@ -103,6 +103,8 @@ TEST_CASE("[deformation]: values out of range, and names that are none") {
            Wrong{"[deformation]", "integrator = \"bdf3\"", "integrator", "backward_euler, bdf2"},
            Wrong{"[deformation]", "rayleigh_mass = -1", "rayleigh_mass", "between 0 and 10000 (1/s)"},
            Wrong{"[deformation]", "rayleigh_stiffness = 1.1", "rayleigh_stiffness", "between 0 and 1 (s)"},
+           Wrong{"[deformation]", "added_mass = 0.3", "added_mass", "between 0 and 0.2", "tensor_mass"},
+           Wrong{"[deformation]", "added_mass = 0.1", "added_mass", "tensor_mass, hybrid", "implicit"},
            Wrong{"[deformation]", "stiffness = 0", "stiffness", "between 0.001 and 1000000 (N/m)", "rigid"},
            Wrong{"[deformation]", "stiffness = 2e6", "stiffness", "between 0.001 and 1000000", "rigid"},
            Wrong{"[deformation]", "spring_stiffness = [1, 0, 1]", "spring_stiffness", "between 0.001",

@@ -1,4 +1,6 @@
 // Scenes that ship.
+#include <fmt/core.h>
+
 #include "sim_server/commands/explain.h"
 #include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
