@@ -70,6 +70,7 @@ TEST_CASE("what a scene sets of its model is written as it was read, each key") 
                                                        {"rayleigh_mass", "7"},
                                                        {"rayleigh_stiffness", "0.00035"},
                                                        {"instants", "3"},
+                                                       {"added_mass", "0.07"},
                                                        {"modes", "17"},
                                                        {"client_modes", "11"},
                                                        {"layers", "2"},
