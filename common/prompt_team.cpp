@@ -27,6 +27,7 @@ void pause() noexcept {
 /// Looks until it is `met`, for so long; whether it is.
 template <class Condition>
 bool look_until(const Condition& met, Time longest) noexcept {
+  if (met()) return true;
   const Time end = now() + longest;
   do {
     for (int look = 0; look < kLooks; ++look) {

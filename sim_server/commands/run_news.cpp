@@ -62,7 +62,7 @@ void RunNews::tell_growth(const SimLoop::Growth& now) {
     growth_.tetrahedra = now.tetrahedra;
   }
   if (const std::size_t begun = now.begun; begun > growth_.begun) {
-    log::info("the cut has come near the end of what can be cut; in {:g} s it will go on beyond, or later",
+    log::info("the cut has come near the end of what can be cut; in {:g} s at the earliest it goes on beyond",
               scene_.cutting->growth->after);
     growth_.begun = begun;
   }

@@ -42,7 +42,7 @@ std::vector<double> last_row(const std::string& csv, const std::vector<std::stri
 TEST_CASE(
     "a liver is cut over a link that loses a tenth, by a client that is killed and another that goes on "
     "cutting",
-    "[large]") {
+    "[in_time]") {
   const TemporaryFolder folder;
   const auto file = [&](const char* name) { return (folder.path() / name).string(); };
   Process server("sim_server", {"run", kConfigs + "scenes/liver_incision.toml", "--listen", "127.0.0.1:0",

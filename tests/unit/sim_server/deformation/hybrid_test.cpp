@@ -298,7 +298,8 @@ TEST_CASE(
   CHECK(first->state_hash() == second->state_hash());
 }
 
-TEST_CASE("hybrid: who is in a hurry goes on until more can be cut, and then as if it had been due then") {
+TEST_CASE("hybrid: who is in a hurry goes on until more can be cut, and then as if it had been due then",
+          "[threads]") {
   // One is due after one step, and goes on until the background is there, on whatever machine; another waits
   // for what is due in that very step.
   const auto step = [](Simulation& simulation, int i) {

@@ -356,7 +356,8 @@ TEST_CASE("a surface that can be cut: compliance follows the tool within one mod
   CHECK(both < first);
 }
 
-TEST_CASE("a surface that can be cut: who is in a hurry waits for nothing, and is told it later") {
+TEST_CASE("a surface that can be cut: who is in a hurry waits for nothing, and is told it later",
+          "[threads]") {
   const TetMesh mesh = deep_block();
   Told told{TetMesh(mesh)};
   told.simulation.hurry();
