@@ -26,10 +26,18 @@ class PromptTeam {
   /// first time, or goes on without those that cannot be had; otherwise neither allocates nor locks.
   template <class Work>
   void run(std::uint32_t parts, const Work& work) noexcept {
-    begin({&work, [](const void* what, std::uint32_t part) { (*static_cast<const Work*>(what))(part); }},
-          parts);
+    begin(parts, work);
     finish();
   }
+  /// The same in two halves, between which this thread does something else: helpers begin, and `finish` does
+  /// what they have not begun, and waits for the rest. `work` must stay until then, and so must what it
+  /// reads.
+  template <class Work>
+  void begin(std::uint32_t parts, const Work& work) noexcept {
+    begin({&work, [](const void* what, std::uint32_t part) { (*static_cast<const Work*>(what))(part); }},
+          parts);
+  }
+  void finish() noexcept;
   static constexpr std::uint32_t kMostParts = 0xffff;
 
  private:
@@ -38,7 +46,6 @@ class PromptTeam {
     void (*call)(const void* work, std::uint32_t part) = nullptr;
   };
   void begin(const Job& job, std::uint32_t parts) noexcept;
-  void finish() noexcept;
   void start_helpers() noexcept;
   void help() noexcept;
   bool do_one(bool from_the_front) noexcept;

@@ -116,10 +116,13 @@ Vec3 ContactSolver::direction(int contact, int row) const {
   return row == 0 ? contacts_[contact].normal : Vec3(frames_[contact].col(row));
 }
 
-double ContactSolver::contact_compliance(const ContactPatch& patch, int nodes) noexcept {
+double ContactSolver::contact_compliance(double mean) noexcept {
   constexpr double kMost = 1e-9, kShare = 1e-6;  // m/N; of a node's
-  const auto of_nodes = patch.compliance.diagonal().head(3 * nodes);
-  return std::min(kMost, kShare * (of_nodes.mean() + patch.tool_compliance));
+  return std::min(kMost, kShare * mean);
+}
+
+double ContactSolver::contact_compliance(const ContactPatch& patch, int nodes) noexcept {
+  return contact_compliance(patch.compliance.diagonal().head(3 * nodes).mean() + patch.tool_compliance);
 }
 
 /// How far the tip went over the surface at a contact in this increment.

@@ -22,6 +22,11 @@ class ComplianceSource {
   virtual void begin(ContactPatch& patch) const noexcept = 0;
   /// Fills columns 3 node to 3 node + 2.
   virtual void fill(int node, ContactPatch& patch) const noexcept = 0;
+  /// Whether each of these vertices gives way by itself alone, under a rigid tool; then how, m/N, into
+  /// `each`, of as many.
+  virtual bool each_alone(std::span<const int> /*vertices*/, std::span<Mat3> /*each*/) const noexcept {
+    return false;
+  }
 };
 
 /// The piece of surface near a tool, with all that is needed to solve its contact: the server takes it out of
@@ -130,6 +135,8 @@ class ContactSolver {
   /// node along an axis (and of the tool), at most 1e-9, ten thousand times stiffer than a liver's contact.
   /// Across the normal a tenth of it, as there it is a creep, by that much per N and increment.
   static double contact_compliance(const ContactPatch& patch, int nodes) noexcept;
+  /// The same of nodes that give way by that much on the mean, with the tool, m/N.
+  static double contact_compliance(double mean) noexcept;
 
  private:
   int rows_of_contact() const { return friction_ > 0 ? 3 : 1; }

@@ -8,9 +8,11 @@ the same each way, lose 0 to 30 % (each on its own, or in bursts of 8 datagrams 
 delay by 0 to 200 ms (round trip), scatter by up to 30 ms, and hold a tenth back by 40 ms;
 from 9 s on they only delay. Each row has: ms from the start to the Welcome, and from the
 first sample to the first tick of the chosen law itself; samples used; their age; the error of
-what was felt at a tick against the force that the organ then computed for that tick (percent
-of its root mean square), from 3 to 9 s, and healed, from 11 s on; the largest and the steepest
-force. For another organ: build/release/bin/link_study --scene SCENE CLIENT DIR (six links).
+what was felt against the force that the organ has for the place of the tool then, every seventh
+tick, so that all ages of a sample count (percent of its root mean square), from 3 to 9 s, and
+healed, from 11 s on; the largest and the steepest force. An organ that moves by itself has no
+force between its steps: of it (--scene) the ticks count for which it computed one. For another
+organ: build/release/bin/link_study --scene SCENE CLIENT DIR (six links).
 
 Writes summary.json into --out. The same bytes each time.
 

@@ -24,6 +24,7 @@ Bvh::Bvh(std::span<const Vec3> rest, std::span<const Triangle> triangles)
   std::iota(triangles_.begin(), triangles_.end(), 0);
   if (!triangles.empty())
     build(centres_of(rest, triangles), triangles, 0, static_cast<int>(triangles.size()));
+  find_groups_of_vertices(rest.size());
   refit(rest);
 }
 
@@ -55,6 +56,20 @@ void Bvh::build(std::span<const Vec3> centres, std::span<const Triangle> triangl
     build(centres, triangles, middle, end);
   }
   nodes_[node].end = static_cast<int>(nodes_.size());
+}
+
+void Bvh::find_groups_of_vertices(std::size_t vertices) {
+  first_group_.assign(vertices + 1, 0);
+  for (const int vertex : vertices_) ++first_group_[static_cast<std::size_t>(vertex) + 1];
+  std::partial_sum(first_group_.begin(), first_group_.end(), first_group_.begin());
+  groups_.resize(vertices_.size());
+  std::vector<int> next(first_group_.begin(), first_group_.end() - 1);
+  for (std::size_t node = 0; node < nodes_.size(); ++node) {
+    for (int k = nodes_[node].vertex; k < nodes_[node].vertex_end; ++k)
+      groups_[static_cast<std::size_t>(next[static_cast<std::size_t>(vertices_[k])]++)] =
+          static_cast<int>(node);
+  }
+  outdated_.assign(nodes_.size(), 0);
 }
 
 void Bvh::find_groups(std::size_t triangles) {
@@ -105,21 +120,41 @@ void Bvh::change(std::span<const Vec3> rest, std::span<const Triangle> before,
   }
 }
 
-void Bvh::refit(std::span<const Vec3> positions) noexcept {
-  for (std::size_t i = nodes_.size(); i-- > 0;) {
-    Node& node = nodes_[i];
-    if (is_group(node)) {
-      Vec3 min = positions[vertices_[node.vertex]], max = min;
-      for (int k = node.vertex + 1; k < node.vertex_end; ++k) {
-        min = min.cwiseMin(positions[vertices_[k]]);
-        max = max.cwiseMax(positions[vertices_[k]]);
-      }
-      node.box = Eigen::AlignedBox3d(min.array() - kRounding, max.array() + kRounding);
-    } else {
-      const Node& first = nodes_[i + 1];
-      node.box = first.box.merged(nodes_[first.end].box);
-    }
+/// Where those below it are fitted.
+void Bvh::fit(Node& node, std::span<const Vec3> positions) noexcept {
+  if (!is_group(node)) {
+    const Node& first = *(&node + 1);
+    node.box = first.box.merged(nodes_[first.end].box);
+    return;
   }
+  Vec3 min = positions[vertices_[node.vertex]], max = min;
+  for (int k = node.vertex + 1; k < node.vertex_end; ++k) {
+    min = min.cwiseMin(positions[vertices_[k]]);
+    max = max.cwiseMax(positions[vertices_[k]]);
+  }
+  node.box = Eigen::AlignedBox3d(min.array() - kRounding, max.array() + kRounding);
+}
+
+void Bvh::refit(std::span<const Vec3> positions) noexcept {
+  for (std::size_t i = nodes_.size(); i-- > 0;) fit(nodes_[i], positions);
+}
+
+void Bvh::refit(std::span<const Vec3> positions, std::span<const int> moved) noexcept {
+  constexpr std::size_t kFew = 4;  // times as many vertices as that: else all are fitted as soon
+  if (kFew * moved.size() > first_group_.size()) return refit(positions);
+  for (const int vertex : moved) {
+    const auto v = static_cast<std::size_t>(vertex);
+    for (int k = first_group_[v]; k < first_group_[v + 1]; ++k) outdated_[groups_[k]] = 1;
+  }
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    if (!is_group(nodes_[i])) {
+      char &first = outdated_[i + 1], &second = outdated_[nodes_[i + 1].end];
+      outdated_[i] = first | second;
+      first = second = 0;
+    }
+    if (outdated_[i] != 0) fit(nodes_[i], positions);
+  }
+  if (!outdated_.empty()) outdated_.front() = 0;
 }
 
 std::span<const int> Bvh::near(const Eigen::AlignedBox3d& box) noexcept {

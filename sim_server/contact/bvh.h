@@ -25,6 +25,9 @@ class Bvh {
   /// To the vertices where they are now. Reads each about once: O(n), but a fraction of a pass over the
   /// triangles.
   void refit(std::span<const Vec3> positions) noexcept;
+  /// The same where, since the last time, none but these vertices may have moved. O(those), and one look at
+  /// each box.
+  void refit(std::span<const Vec3> positions, std::span<const int> moved) noexcept;
 
   /// All triangles whose own box meets `box`, and some neighbours; ascending. Valid until the next call.
   std::span<const int> near(const Eigen::AlignedBox3d& box) noexcept;
@@ -43,12 +46,16 @@ class Bvh {
     int vertex = 0, vertex_end = 0;  // in vertices_, of a group
   };
   bool is_group(const Node& node) const { return node.vertex < node.vertex_end; }
+  void fit(Node& node, std::span<const Vec3> positions) noexcept;
   void find_groups(std::size_t triangles);
+  void find_groups_of_vertices(std::size_t vertices);
   void take_out(int triangle);
   void build(std::span<const Vec3> centres, std::span<const Triangle> triangles, int begin, int end);
 
   std::vector<Node> nodes_;
   std::vector<int> triangles_, vertices_;  // of the groups, one after the other
+  std::vector<int> first_group_, groups_;  // that each vertex is in, from first_group_[v] to [v + 1]
+  std::vector<char> outdated_;             // of nodes, in `refit`
   std::vector<int> near_;
   // Since a change: triangles in no group; of each its group, or -1, and its place in triangles_.
   std::vector<int> loose_, group_of_, place_of_;

@@ -90,9 +90,15 @@ void ContactFinder::note_openings() {
 void ContactFinder::change_surface(std::span<const Vec3> rest, std::vector<Triangle> closed,
                                    std::vector<Triangle> touchable) {
   bvh_.change(rest, triangles_, touchable);
+  of_gather_ = false;
   closed_ = std::move(closed);
   triangles_ = std::move(touchable);
   note_openings();
+}
+
+void ContactFinder::fit(std::span<const Vec3> positions) const noexcept {
+  bvh_.refit(positions);
+  of_gather_ = false;
 }
 
 int ContactFinder::slot_of(int vertex) noexcept {
@@ -147,8 +153,10 @@ void ContactFinder::add_some(std::span<const Vec3> positions, const Vec3& p, con
 }
 
 void ContactFinder::gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p,
-                           const Vec3& q, double reach, ContactPatch& patch) noexcept {
-  bvh_.refit(positions);
+                           const Vec3& q, double reach, ContactPatch& patch,
+                           std::span<const int> moved) noexcept {
+  of_gather_ && !moved.empty() ? bvh_.refit(positions, moved) : bvh_.refit(positions);
+  of_gather_ = true;
   double more = reach;  // of which there is no room for all
   while (!try_gather(positions, p, q, reach, patch)) {
     more = reach;
@@ -181,7 +189,7 @@ ContactFinder::Foot ContactFinder::closest_on(int triangle, std::span<const Vec3
 }
 
 ContactFinder::Foot ContactFinder::foot(std::span<const Vec3> positions, const Vec3& p) const noexcept {
-  bvh_.refit(positions);
+  fit(positions);
   const int i = bvh_.nearest(box_around(p, p, 0), [&](int k) {
     return (p - closest_on(k, positions, p).of(positions)).squaredNorm();
   });
@@ -189,7 +197,7 @@ ContactFinder::Foot ContactFinder::foot(std::span<const Vec3> positions, const V
 }
 
 Vec3 ContactFinder::entry(std::span<const Vec3> positions, const Vec3& p) const noexcept {
-  bvh_.refit(positions);
+  fit(positions);
   const int i = bvh_.nearest(box_around(p, p, 0), [&](int k) {
     return opens_[k] ? (p - closest_on(k, positions, p).of(positions)).squaredNorm()
                      : std::numeric_limits<double>::max();
@@ -203,7 +211,7 @@ NearestOnSegment ContactFinder::nearest(std::span<const Vec3> positions, const V
     const Triangle& t = triangles_[i];
     return nearest_on_segment(p, q, positions[t[0]], positions[t[1]], positions[t[2]]);
   };
-  bvh_.refit(positions);
+  fit(positions);
   const int i = bvh_.nearest(box_around(p, q, 0), [&](int k) {
     const double distance = of(k).distance;
     return distance * distance;
@@ -218,7 +226,7 @@ int ContactFinder::nearest_vertex(std::span<const Vec3> positions, const Vec3& p
   const auto corner = [&](int i) {
     return *std::min_element(triangles_[i].begin(), triangles_[i].end(), closer);
   };
-  bvh_.refit(positions);
+  fit(positions);
   const int i =
       bvh_.nearest(box_around(p, p, 0), [&](int k) { return (positions[corner(k)] - p).squaredNorm(); });
   return i < 0 ? -1 : corner(i);

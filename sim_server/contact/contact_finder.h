@@ -31,10 +31,10 @@ class ContactFinder {
 
   /// Puts the triangles of `positions` within `reach` of the axis from `p` to `q` (the same: a point) into
   /// the patch, with their `free` positions, and lists the surface vertex of each patch node in `vertices()`.
-  /// Where there are more than fit, the nearest stay. O(vertices), to fit the boxes; a few triangles are
-  /// looked at.
+  /// Where there are more than fit, the nearest stay. `moved`: since the last `gather`, none but these may
+  /// have moved; none: any may. O(those, or all vertices), to fit the boxes; a few triangles are looked at.
   void gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p, const Vec3& q,
-              double reach, ContactPatch& patch) noexcept;
+              double reach, ContactPatch& patch, std::span<const int> moved = {}) noexcept;
   std::span<const int> vertices() const { return vertices_; }
 
   /// Whether `p` lies inside the closed surface: its winding number, which counts the sheets that the ray
@@ -74,11 +74,13 @@ class ContactFinder {
   Foot closest_on(int triangle, std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
   void note_openings();
+  void fit(std::span<const Vec3> positions) const noexcept;
 
   std::vector<Triangle> closed_, triangles_;
   std::vector<int> held_;
   std::vector<char> opens_;  // of triangles_: whether a tool can come in there
   mutable Bvh bvh_;  // of triangles_; fitted anew for each question, as the surface is another each time
+  mutable bool of_gather_ = false;  // it is still as the last `gather` fitted it
   std::vector<int> vertices_, slot_of_vertex_;
   int max_nodes_ = 0, max_triangles_ = 0;
 };

@@ -1,6 +1,7 @@
 #include "sim_server/contact/grip.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "common/error.h"
@@ -39,6 +40,7 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
   }
   misfit_.resize(3 * static_cast<Eigen::Index>(max_nodes_));
   spread_.resize(3 * static_cast<Eigen::Index>(max_nodes_), 3);
+  stiffness_.resize(max_nodes_);
   if (!tool.grasp_place) return;
   close(*tool.grasp_place, rest);
   if (!holds()) {
@@ -118,6 +120,43 @@ bool Grip::factor(const ToolTissue& tissue) {
   return factored_;
 }
 
+/// Of now: how stiff each vertex is, where that is by itself, or the factor of all.
+bool Grip::take_compliance(const ToolTissue& tissue) {
+  const auto each = std::span(stiffness_).first(vertices_.size());
+  const ComplianceSource* const source = tissue.model().compliance_source();
+  alone_ = source != nullptr && source->each_alone(vertices_, each);
+  if (!alone_) return factor(tissue);
+  double sum = 0;
+  for (const Mat3& compliance : each) sum += compliance.trace();
+  patch_.tool_compliance = 0;
+  contact_compliance_ = ContactSolver::contact_compliance(sum / (3 * static_cast<double>(each.size())));
+  for (Mat3& one : each) one = (one + contact_compliance_ * Mat3::Identity()).inverse().eval();
+  return true;
+}
+
+/// From what is missing (m) to the loads that bring it, N.
+void Grip::solve(Eigen::Ref<Eigen::VectorXd> misfit) const noexcept {
+  for (std::size_t i = 0; alone_ && i < vertices_.size(); ++i) {
+    auto one = misfit.segment<3>(3 * static_cast<Eigen::Index>(i));
+    one = (stiffness_[i] * one).eval();
+  }
+  if (alone_) return;
+  const auto lower = factor_.triangularView<Eigen::Lower>();
+  lower.solveInPlace(misfit);
+  lower.adjoint().solveInPlace(misfit);
+}
+
+Mat3 Grip::tangent() noexcept {
+  const std::size_t held = vertices_.size();
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t i = 0; alone_ && i < held; ++i) sum -= stiffness_[i];
+  if (alone_) return sum;
+  auto spread = spread_.topRows(3 * static_cast<Eigen::Index>(held));  // L^-1 E
+  for (Eigen::Index i = 0; i < spread.rows(); i += 3) spread.middleRows<3>(i).setIdentity();
+  factor_.triangularView<Eigen::Lower>().solveInPlace(spread);
+  return -spread.transpose() * spread;
+}
+
 Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
   const std::size_t held = vertices_.size();
   const auto size = 3 * static_cast<Eigen::Index>(held);
@@ -126,26 +165,20 @@ Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
   for (bool still = false; !still; ++pull.rounds) {
     tissue.press();
     still = misfit(p_W, tissue, own) <= kFits * reach_;
-    pull.converged = factor(tissue) && (still || pull.rounds < kMaxRounds);
+    pull.converged = take_compliance(tissue) && (still || pull.rounds < kMaxRounds);
     if (still || !pull.converged) break;
     auto change = misfit_.head(size);
-    const auto lower = factor_.triangularView<Eigen::Lower>();
-    lower.solveInPlace(change);
-    lower.adjoint().solveInPlace(change);
+    solve(change);
     for (std::size_t i = 0; i < held; ++i)
       own[i].force += change.segment<3>(3 * static_cast<Eigen::Index>(i));
   }
   for (const NodalLoad& load : own) pull.force -= load.force;
-  if (!pull.converged) return pull;
-  auto spread = spread_.topRows(size);  // L^-1 E
-  for (Eigen::Index i = 0; i < size; i += 3) spread.middleRows<3>(i).setIdentity();
-  factor_.triangularView<Eigen::Lower>().solveInPlace(spread);
-  pull.tangent.noalias() = -spread.transpose() * spread;
+  if (pull.converged) pull.tangent = tangent();
   return pull;
 }
 
 std::size_t Grip::bytes() const {
-  return patch_.compliance.bytes() + compliance_.bytes() + factor_.bytes();
+  return patch_.compliance.bytes() + compliance_.bytes() + factor_.bytes() + stiffness_.size() * sizeof(Mat3);
 }
 
 }  // namespace palpate::sim

@@ -36,6 +36,7 @@ class Grip {
   /// Jaws without a button stay closed.
   void open() noexcept;
   bool holds() const { return !vertices_.empty(); }
+  std::span<const int> vertices() const { return vertices_; }
 
   /// What the tool feels, N, and how that changes, N/m; `vertices` 0: it holds nothing.
   struct Pull {
@@ -51,7 +52,10 @@ class Grip {
 
  private:
   double misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const NodalLoad> own);
+  bool take_compliance(const ToolTissue& tissue);
   bool factor(const ToolTissue& tissue);
+  void solve(Eigen::Ref<Eigen::VectorXd> misfit) const noexcept;
+  Mat3 tangent() noexcept;
 
   std::uint16_t buttons_;
   double reach_;  // m from the tool centre
@@ -62,6 +66,8 @@ class Grip {
   ContactPatch patch_;
   BoundedMatrix compliance_, factor_;  // (3m x 3m) of the vertices when last factored, m/N; and its factor
   bool factored_ = false;
+  bool alone_ = false;             // each of them gives way by itself
+  std::vector<Mat3> stiffness_;    // of each then, N/m
   double contact_compliance_ = 0;  // m/N, in series with each vertex
   Eigen::VectorXd misfit_;         // (3m), m
   Eigen::Matrix<double, Eigen::Dynamic, 3> spread_;

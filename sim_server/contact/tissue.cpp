@@ -6,22 +6,36 @@
 namespace palpate::sim {
 namespace {
 
+// Of the tool radius: a surface that moved less did not move; what was half a radius away when contact was
+// solved comes to matter when it moved farther.
+constexpr double kStill = 1e-8, kFar = 0.25;
+
+double move_of(std::span<const Vec3> from, std::span<const Vec3> to, std::size_t vertex) noexcept {
+  return (to[vertex] - from[vertex]).cwiseAbs().maxCoeff();
+}
+
 double largest_move(std::span<const Vec3> from, std::span<const Vec3> to) noexcept {
   double largest = 0;
-  for (std::size_t i = 0; i < from.size(); ++i)
-    largest = std::max(largest, (to[i] - from[i]).cwiseAbs().maxCoeff());
+  for (std::size_t v = 0; v < from.size(); ++v) largest = std::max(largest, move_of(from, to, v));
+  return largest;
+}
+
+double largest_move(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const int> of) noexcept {
+  double largest = 0;
+  for (const int v : of) largest = std::max(largest, move_of(from, to, static_cast<std::size_t>(v)));
   return largest;
 }
 
 }  // namespace
 
-void Tissue::reserve(std::span<const int> most_loads, std::span<const double> still) {
+void Tissue::reserve(std::span<const int> most_loads, std::span<const double> radii) {
   const auto all = static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
   tools_.resize(most_loads.size());
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     tools_[i].loads.reserve(all);
     tools_[i].free = free;
-    tools_[i].still = still[i];
+    tools_[i].radius = radii[i];
+    tools_[i].met.reserve(static_cast<std::size_t>(most_loads[i]));
     if (tools_.size() > 1) tools_[i].pushed.assign(free.begin(), free.end());
     for (auto* const array :
          {&tools_[i].solved, &tools_[i].shift, &tools_[i].positions_here, &tools_[i].free_here})
@@ -74,16 +88,14 @@ bool Tissue::meet(std::size_t tool) {
   return moved;
 }
 
-/// What is free to this tool is pushed to `positions`, if that moves it. Returns whether it does.
+/// What is free to this tool is pushed to `positions`, if that moves it. Returns whether what matters to it
+/// moves.
 bool Tissue::push(ToolLoads& tool) {
   const bool was_pushed = tool.free.data() == tool.pushed.data();
   const bool some = was_pushed && moved_ != nullptr && tool.pushed_in + 1 >= motions_;
-  double most = some ? 0 : largest_move(tool.free, positions);
-  for (std::size_t k = 0; some && k < moved_->size(); ++k) {
-    const auto v = static_cast<std::size_t>((*moved_)[k]);
-    most = std::max(most, (positions[v] - tool.pushed[v]).cwiseAbs().maxCoeff());
-  }
-  const bool moved = most > tool.still;
+  const double most = some ? largest_move(tool.free, positions, *moved_) : largest_move(tool.free, positions);
+  const double met = tool.met_any ? most : largest_move(tool.free, positions, tool.met);
+  const bool moved = most > kStill * tool.radius;
   for (std::size_t k = 0; some && moved && k < moved_->size(); ++k) {
     const auto v = static_cast<std::size_t>((*moved_)[k]);
     tool.pushed[v] = positions[v];
@@ -91,7 +103,8 @@ bool Tissue::push(ToolLoads& tool) {
   if (!some && (moved || !was_pushed)) std::copy(positions.begin(), positions.end(), tool.pushed.begin());
   tool.free = tool.pushed;
   tool.pushed_in = motions_;
-  return moved;
+  tool.went += most;
+  return met > kStill * tool.radius || tool.went > kFar * tool.radius;
 }
 
 std::span<const Vec3> ToolTissue::free() const {
@@ -125,6 +138,18 @@ void Tissue::set_free(const FreeMotion& motion) noexcept {
 std::span<const int> Tissue::moved_since(const ToolLoads& tool) const noexcept {
   const bool of_one_motion = tool.solved_in + 1 >= motions_ && tool.carried.isZero(0);
   return of_one_motion && moved_ != nullptr ? std::span<const int>(*moved_) : std::span<const int>();
+}
+
+void Tissue::begin_step() noexcept {
+  for (ToolLoads& tool : tools_) tool.looked_in = 0;
+}
+
+std::span<const int> ToolTissue::moved_since_look() noexcept {
+  auto& mine = tissue_.tools_[tool_];
+  const bool known = tissue_.moved_ != nullptr && mine.left == 0 && mine.looked_in > 0 &&
+                     mine.looked_in + 1 >= tissue_.motions_;
+  mine.looked_in = mine.left == 0 ? tissue_.motions_ : 0;
+  return known ? std::span<const int>(*tissue_.moved_) : std::span<const int>();
 }
 
 void Tissue::note_same_place() noexcept {
@@ -178,6 +203,15 @@ void ToolTissue::mark_solved() noexcept {
   mine.left = 0;
   mine.carried.setZero();
   mine.solved_in = tissue_.motions_;
+  mine.met_any = true;
+  mine.went = 0;
+}
+
+void ToolTissue::mark_solved(std::span<const int> met) noexcept {
+  mark_solved();
+  auto& mine = tissue_.tools_[tool_];
+  mine.met_any = met.size() > mine.met.capacity();
+  if (!mine.met_any) mine.met.assign(met.begin(), met.end());
 }
 
 void ToolTissue::set_loads(std::span<const NodalLoad> loads) {

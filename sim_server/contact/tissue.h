@@ -25,12 +25,15 @@ class Tissue {
   /// It has gone on, or its linearisation has.
   void set_free(const FreeMotion& motion) noexcept;
 
+  /// A step begins: any vertex may have moved since a tool last looked for contact.
+  void begin_step() noexcept;
+
   /// Its model goes on as another: no vertex has moved in that.
   void note_same_place() noexcept;
 
-  /// Set-up: makes room for tools that load so many vertices each, and for which a surface that moved less
-  /// than `still` (m) has not moved; the surface at rest is `free`.
-  void reserve(std::span<const int> most_loads, std::span<const double> still);
+  /// Set-up: makes room for tools of these radii (m) that load so many vertices each; the surface at rest is
+  /// `free`.
+  void reserve(std::span<const int> most_loads, std::span<const double> radii);
 
   /// As the tool meets it now. Two `apply` of the model; none while the others load nothing.
   ToolTissue met_by(std::size_t tool);
@@ -56,13 +59,17 @@ class Tissue {
     std::span<const Vec3> free;    // the tissue's, or `pushed`
     std::vector<Vec3> pushed;      // free under the loads of the other tools; empty where there are none
     std::uint64_t pushed_in = 0;   // the motion in which that was
-    double still = 0;              // m
+    double radius = 0;             // m
+    std::vector<int> met;          // vertices that mattered when its contact was last solved
+    bool met_any = true;           // any may have
+    double went = 0;               // how far others have pushed any since then, in all, m
     std::vector<Vec3> solved;      // positions when its contact was last solved
     Vec3 carried = Vec3::Zero();   // how far it and the organ have gone since, m
     std::vector<Vec3> shift;       // how far the surface has gone since then besides, m
     double left = 0;               // the share of `shift` that is still to come
     bool shift_of_moved = false;   // it is told of what `moved_` says alone
     std::uint64_t solved_in = 0;   // the motion in which that was
+    std::uint64_t looked_in = 0;   // that in which it last looked for contact, at `positions`; 0: elsewhere
     std::vector<Vec3> positions_here, free_here;  // of the surface, at that
     std::span<const NodalLoad> own() const { return std::span(loads).subspan(others); }
   };
@@ -82,12 +89,15 @@ class ToolTissue {
  public:
   const DeformationModel& model() const { return *tissue_.model; }
   std::span<const Vec3> free() const;
-  /// Whether that has moved, compared with the last time this tool met it.
+  /// Whether that has moved, compared with the last time this tool met it: the vertices that mattered to its
+  /// contact by more than rounding, or others so far that they may matter by now.
   bool moved() const { return moved_; }
   std::span<const Vec3> positions() const;
   std::span<const Vec3> before() const { return tissue_.before; }
 
   std::span<const NodalLoad> loads() const { return tissue_.loads_of(tool_); }
+  /// The vertices that may have moved since this tool last looked for contact, which it does now; none: any.
+  std::span<const int> moved_since_look() noexcept;
   /// Replaces the loads of this tool; the tissue follows at `press`.
   void set_loads(std::span<const NodalLoad> loads);
   /// The loads of this tool on `vertices`, to be changed in place: what is there where they are on these by
@@ -105,7 +115,10 @@ class ToolTissue {
   /// Puts the surface where that share of this motion is still to come, from 1 to 0. Of its answers,
   /// `positions` and `free` are there.
   void set_share_left(double left);
-  /// The contact of this tool is solved with the surface as it is.
+  /// The contact of this tool is solved with the surface as it is, of which these vertices matter to it, at
+  /// most as many as it loads.
+  void mark_solved(std::span<const int> met) noexcept;
+  /// The same where any may.
   void mark_solved() noexcept;
   /// It goes free of this tool, if that loaded it.
   void release();

@@ -90,7 +90,7 @@ void ToolContact::solve_grasp(const ToolPose& pose, ToolTissue tissue) {
   now_.place = pose;
   now_.tip_offset.setZero();
   const Grip::Pull pull = grip_->pull(pose.p_W, tissue);
-  tissue.mark_solved();
+  tissue.mark_solved(grip_->vertices());
   if (!pull.force.allFinite()) return reject(tissue);
   now_.grasp_tangent = pull.tangent;
   now_.force = {.force = pull.force,
@@ -213,7 +213,7 @@ void ToolContact::settle(ToolTissue tissue) {
 }
 
 void ToolContact::set_force(const ContactForce& contact, int iterations, ToolTissue tissue) {
-  tissue.mark_solved();
+  now_.arrived ? tissue.mark_solved(finder_.vertices()) : tissue.mark_solved();
   if (!contact.force.allFinite()) return reject(tissue);
   now_.force = {.force = contact.force,
                 .torque = contact.torque,
@@ -323,7 +323,8 @@ void ToolContact::take_compliance(const DeformationModel& model) {
 ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   const ToolPose tip(now_.place.p_W + now_.tip_offset, now_.place.q_W);
   const double reach = kGather * tool_.radius;
-  finder_.gather(tissue.positions(), tissue.free(), tip.p_W, far_end(tool_, tip), reach, patch_);
+  finder_.gather(tissue.positions(), tissue.free(), tip.p_W, far_end(tool_, tip), reach, patch_,
+                 tissue.moved_since_look());
   if (patch_.triangles.empty()) {
     release(tissue);
     return {};

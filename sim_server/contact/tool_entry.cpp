@@ -17,6 +17,8 @@ constexpr double kMaxPlaces = 64;  // on the axis of a tool that appears: whethe
 bool ToolContact::escaped(const ToolPose& pose, const ToolTissue& tissue) const noexcept {
   if (now_.force.contacts == 0 || touchable().empty()) return false;
   const Vec3 &p = pose.p_W, far = far_end(tool_, pose);
+  // Mostly what it pressed most is near enough, and nothing else need be looked at.
+  if (now_.side >= 0 && (tissue.free()[now_.side] - p).norm() <= farthest_drag_) return false;
   const double distance = tool_.is_sphere() ? (finder_.nearest(tissue.free(), p) - p).norm()
                                             : finder_.nearest(tissue.free(), p, far).distance;
   return distance > farthest_drag_ && !finder_.inside(tissue.free(), p);

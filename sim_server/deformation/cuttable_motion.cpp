@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "sim_server/deformation/contact_instants.h"
 #include "sim_server/deformation/linear_statics.h"
 #include "sim_server/deformation/surface_compliance.h"
-#include "sim_server/elasticity/element.h"
 #include "sim_server/mesh/cut_mesh.h"
 
 namespace palpate::sim {
@@ -32,16 +30,6 @@ MassScaling scaling_for(const ModelInputs& inputs, const RegionInMotion* region)
   const auto* const added = inputs.scene.deformation.find<AddedMass>();
   const double share = added == nullptr ? kAddedMass : added->share.value_or(kAddedMass);
   return scale_masses(inputs.mesh, *inputs.scene.material, share, moves);
-}
-
-/// Elastic energy of an element whose corners are displaced by `u` (m), J.
-double linear_energy(const LinearTetrahedron& element, const std::array<Vec3, 4>& u,
-                     const Material& material) {
-  Mat3 F = Mat3::Identity();
-  for (std::size_t i = 0; i < 4; ++i) F += u[i] * element.gradient[i].transpose();
-  const Moduli moduli = LinearLaw::moduli(material);
-  const LinearLaw law(moduli, F);
-  return element.volume * (law.shape_energy() + 0.5 * moduli.lambda * law.dilation() * law.dilation());
 }
 
 }  // namespace
@@ -103,18 +91,6 @@ void CuttableMotion::look_at_body() {
                       held_stiffness_);
 }
 
-/// Those of these tetrahedra that are on the surface by now.
-void CuttableMotion::show_corners(std::span<const int> tetrahedra, const CutMesh& left) {
-  for (const int t : tetrahedra) {
-    for (const int corner : left.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
-      const int vertex = left.number_of(corner);
-      if (vertex < 0 || !left.on_surface(vertex) || shown_[static_cast<std::size_t>(vertex)] != 0) continue;
-      shown_[static_cast<std::size_t>(vertex)] = 1;
-      if (body_->first[static_cast<std::size_t>(vertex)] >= 0) exposed_.push_back(vertex);
-    }
-  }
-}
-
 /// `modes` of the rest add at most so much, of squares; rad/s.
 void CuttableMotion::choose_sub_step(const ModelInputs& inputs, double modes) {
   const double longest = longest_sub_step(std::hypot(scaling_.frequency, modes), rayleigh_of(inputs.scene));
@@ -131,6 +107,7 @@ void CuttableMotion::narrow(std::span<const Neighbourhood> places,
     const int first = body_->first[static_cast<std::size_t>(vertex)];
     fastest = std::max(fastest, Eigen::Map<const Vec3>(body_->motion.state.v.data() + first).squaredNorm());
   }
+  instant_ = 0;  // also after a step that threw
   near_.look_in(places, triangles, body_->first, free_, kFaster * std::sqrt(fastest) * sub_step_ * instants_);
   for (const NodalLoad& load : loads_) {
     if (body_->first[static_cast<std::size_t>(load.vertex)] >= 0) near_.add(load.vertex);
@@ -156,6 +133,7 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
     if (body_->rest) follow();
     take_sub_step();
     const bool ends = instant_ + 1 == instants_;
+    if (!ends) body_->motion.begin_next();  // while contact is solved
     update_free(ends ? moving_ : looked_at());
     if (body_->rest) carry_rest();
     instant_ = (instant_ + 1) % instants_;
@@ -236,7 +214,6 @@ void CuttableMotion::note_moved() noexcept {
 void CuttableMotion::update_free(std::span<const int> vertices) noexcept {
   for (const int vertex : vertices) {
     const auto v = static_cast<std::size_t>(vertex);
-
     free_[v] = rest_place(static_cast<int>(v)) +
                Eigen::Map<const Vec3>(body_->motion.state.u.data() + body_->first[v]);
   }
@@ -304,96 +281,6 @@ std::span<const Vec3> CuttableMotion::nodes() const noexcept {
     if (body_->first[vertex] >= 0) nodes_[static_cast<std::size_t>(node_[vertex])] = positions_[vertex];
   }
   return nodes_;
-}
-
-/// Of a tetrahedron, with its corners that are condensed where they are at rest.
-DeformationModel::Removed CuttableMotion::lost_with(int tetrahedron, const CutMesh& left) const {
-  const auto t = static_cast<std::size_t>(tetrahedron);
-  const Tetrahedron& corners = left.mesh().tetrahedra[t];
-  const std::vector<double>& factors = body_->tensors.mass_factors();
-  const double mass =
-      (factors.empty() ? 1 : factors[t]) * material_.density * six_volumes(left.mesh(), corners) / 6;
-  std::array<Vec3, 4> x, u;
-  Removed lost;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto vertex = static_cast<std::size_t>(corners[i]);
-    x[i] = rest_places_[vertex];
-    u[i].setZero();
-    const int place = body_->tensors.places()[vertex];
-    if (place < 0) continue;
-    u[i] = Eigen::Map<const Vec3>(body_->motion.state.u.data() + 3 * place);
-    const Vec3 v = Eigen::Map<const Vec3>(body_->motion.state.v.data() + 3 * place);
-    lost.kinetic += mass / 8 * v.squaredNorm();
-    lost.momentum += mass / 4 * v;
-  }
-  const double stiffness = left.mesh().stiffness.empty() ? 1 : left.mesh().stiffness[t];
-  lost.elastic = stiffness * linear_energy(LinearTetrahedron(x), u, material_);
-  return lost;
-}
-
-/// What the contact of the last sub-step did is done by the tissue that bore it.
-void CuttableMotion::end_contact() noexcept {
-  if (!ended_) end_sub_step();
-  ended_ = true;
-}
-
-DeformationModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra, const CutMesh& left) {
-  end_contact();
-  changed_ = true;
-  if (told_) told_->forget();
-  if (body_->rest) body_->rest->look_at(body_->motion.state.u, body_->motion.state.v);
-  Removed gone;
-  const auto add = [&gone](const Removed& lost) {
-    gone.elastic += lost.elastic;
-    gone.kinetic += lost.kinetic;
-    gone.momentum += lost.momentum;
-  };
-  for (const int t : tetrahedra) add(lost_with(t, left));
-  add(body_->remove(tetrahedra, left, material_));
-  show_corners(tetrahedra, left);
-  if (growth_) growth_->note_removed(tetrahedra);
-  std::erase_if(loads_, [&](const NodalLoad& load) { return !left.on_surface(load.vertex); });
-  return gone;
-}
-
-void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) {
-  end_contact();
-  if (told_) told_->forget();
-  body_->part(slides, parting, left, material_, scaling_.frequency);
-  if (growth_) growth_->note_parted(slides, parting);
-  const auto stand_anew = [&](int vertex) {
-    rest_places_[static_cast<std::size_t>(vertex)] = left.mesh().vertices[static_cast<std::size_t>(vertex)];
-  };
-  for (const Slide& slide : slides) stand_anew(slide.vertex);
-  for (const Split& split : parting.splits) stand_anew(split.copy);
-  show_corners(parting.tetrahedra, left);
-  for (const Split& split : parting.splits) shown_[static_cast<std::size_t>(left.number_of(split.copy))] = 1;
-  look_at_body();
-  go_on_with_body();
-}
-
-/// What is in motion is where the body says.
-void CuttableMotion::go_on_with_body() noexcept {
-  update_free(moving_);
-  go_free(moving_);
-}
-
-DeformationModel::Growth CuttableMotion::grow(const CutMesh& left, bool waits) {
-  if (!growth_) return {};
-  RegionGrowth::Step step = growth_->step(*body_, left, waits);
-  if (!step.grown) return {step.begun, step.late, {}, std::move(step.failure)};
-  RegionGrowth::Grown& grown = *step.grown;
-  end_contact();
-  grown.body->reshape(grown.since.slid, grown.since.parting, left, material_, scaling_.frequency);
-  grown.body->remove(grown.since.removed, left, material_);
-  (*grown.hand_over)(*body_, loads_);
-  force_.reserve(grown.body->motion.state.f.size());  // from here on nothing throws
-  std::swap(body_, grown.body);
-  look_at_body();
-  go_on_with_body();
-  for (const NodalLoad& load : loads_) body_->rest->watch({&load.vertex, 1});
-  allowed_ = std::move(grown.allowed);
-  return {.allowed = allowed_};
 }
 
 }  // namespace palpate::sim

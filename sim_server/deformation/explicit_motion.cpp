@@ -66,6 +66,7 @@ ExplicitMotion::ExplicitMotion(const ElasticTensors& tensors, const RayleighDamp
       columns_(columns),
       team_(columns == 1 ? threads_for(tensors, most_threads) - 1 : 0) {
   if (columns == 1) ahead_ = tensors.room_ahead();
+  if (columns == 1 && tensors.parts() > 1) kicks_.reserve(tensors.masses().size());
   for (auto* const all : {&state.u, &state.v, &state.f})
     all->assign(3 * tensors.masses().size() * columns, 0);
   for (auto* const all : {&bent_, &resistance_}) all->assign(apart() * tensors.masses().size(), 0);
@@ -89,7 +90,24 @@ void ExplicitMotion::kick(int place, double h, const Vec3& dv) noexcept {
                        apart = std::ptrdiff_t{ElasticTensors::kApart} * place;
   Eigen::Map<Vec3>(state.v.data() + first) += dv;
   Eigen::Map<Vec3>(state.u.data() + first) += h * dv;
-  Eigen::Map<Vec3>(bent_.data() + apart) += (h + damping_.stiffness) * dv;
+  const Vec3 way = (h + damping_.stiffness) * dv;
+  if (begun_ && kicks_.size() == kicks_.capacity()) drop_next();
+  if (begun_)
+    kicks_.push_back({place, way});
+  else
+    Eigen::Map<Vec3>(bent_.data() + apart) += way;
+}
+
+void ExplicitMotion::begin_next() noexcept {
+  if (tensors_.parts() == 1 || columns_ != 1 || begun_) return;
+  begun_ = true;
+  team_.begin(static_cast<std::uint32_t>(tensors_.parts()), multiply_part_);
+}
+
+void ExplicitMotion::drop_next() noexcept {
+  if (!begun_) return;
+  multiply();
+  for (std::size_t p = 0; p < tensors_.parts(); ++p) tensors_.gather_part(p, resistance_.data(), ahead_);
 }
 
 /// `work(part, begin, end)` for the vertices of each part of a product, on as many cores.
@@ -101,10 +119,20 @@ void ExplicitMotion::for_parts(const Work& work) noexcept {
   });
 }
 
+void ExplicitMotion::MultiplyPart::operator()(std::uint32_t part) const noexcept {
+  of.tensors_.multiply_part(part, of.bent_.data(), of.resistance_.data(), of.ahead_);
+}
+
+/// Where it was begun, by now it also is of what kicks did.
 void ExplicitMotion::multiply() noexcept {
-  for_parts([&](std::size_t p, std::size_t, std::size_t) {
-    tensors_.multiply_part(p, bent_.data(), resistance_.data(), ahead_);
-  });
+  if (!begun_) return team_.run(static_cast<std::uint32_t>(tensors_.parts()), multiply_part_);
+  team_.finish();
+  begun_ = false;
+  for (const Kick& kick : kicks_) {
+    tensors_.add_product(kick.place, kick.way, resistance_.data());
+    Eigen::Map<Vec3>(bent_.data() + std::ptrdiff_t{ElasticTensors::kApart} * kick.place) += kick.way;
+  }
+  kicks_.clear();
 }
 
 void ExplicitMotion::sub_step(double h, const std::vector<double>& force) noexcept {
@@ -150,11 +178,13 @@ void ExplicitMotion::bend(std::size_t begin, std::size_t end) noexcept {
 }
 
 void ExplicitMotion::run(double h) noexcept {
+  drop_next();
   for_parts([&](std::size_t, std::size_t begin, std::size_t end) { bend(begin, end); });
   sub_step(h, state.f);
 }
 
 void ExplicitMotion::run_free(State& before, double h) noexcept {
+  drop_next();
   std::swap(before, state);
   multiply();
   const double keep = 1 - h * damping_.mass;
@@ -174,6 +204,7 @@ void ExplicitMotion::run_free(State& before, double h) noexcept {
 }
 
 void ExplicitMotion::run(int steps, double h, const std::vector<double>& force) noexcept {
+  drop_next();
   std::vector<double>& f = state.f;
   const std::size_t numbers = 3 * static_cast<std::size_t>(columns_);  // of a vertex
   for_parts([&](std::size_t, std::size_t begin, std::size_t end) {

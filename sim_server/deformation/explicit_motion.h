@@ -50,6 +50,12 @@ class ExplicitMotion {
   /// Changes the velocity of a vertex by `dv` (m/s), as if that had been so over the last sub-step, of `h`
   /// (s). Of one motion.
   void kick(int place, double h, const Vec3& dv) noexcept;
+  /// The next sub-step may begin, by other cores: nothing will change the motion before it but kicks, to
+  /// whose vertices its product is then put right. Only a large body does begin, whatever the number of
+  /// threads.
+  void begin_next() noexcept;
+  /// What was begun of it is dropped: the motion, or its tensors, may be changed in any way.
+  void drop_next() noexcept;
   /// Goes on by one sub-step without forces, and leaves where it was in `before`, a state of this size.
   /// Nothing but `add_to_last` may have changed `state` since it was at rest or the last sub-step ended. Of
   /// one motion.
@@ -58,13 +64,26 @@ class ExplicitMotion {
   /// else yet. Of one motion.
   void add_to_last(int place, double h, const Vec3& force) noexcept;
 
-  /// The tensors have one more vertex, the last one: it is where this one is, as fast. Of one motion.
-  /// Allocates.
+  /// The tensors have one more vertex, the last one: it is where this one is, as fast. Nothing is begun. Of
+  /// one motion. Allocates.
   void append_copy_of(int place);
 
-  std::size_t bytes() const { return (3 * state.u.size() + 2 * bent_.size()) * sizeof(double); }
+  std::size_t bytes() const {
+    return (3 * state.u.size() + 2 * bent_.size()) * sizeof(double) + kicks_.capacity() * sizeof(Kick);
+  }
 
  private:
+  /// How far a kick takes what the product that was begun is of, m.
+  struct Kick {
+    int place;
+    Vec3 way;
+  };
+  /// The product, of one part.
+  struct MultiplyPart {
+    ExplicitMotion& of;
+    void operator()(std::uint32_t part) const noexcept;
+  };
+
   template <class Work>
   void for_parts(const Work& work) noexcept;
   void multiply() noexcept;
@@ -83,7 +102,10 @@ class ExplicitMotion {
 
   std::vector<double> bent_, resistance_;  // u + stiffness v, m; K times that, N
   ElasticTensors::Ahead ahead_;            // of that product, of one motion
-  PromptTeam team_;
+  MultiplyPart multiply_part_{*this};
+  bool begun_ = false;       // the product of the next sub-step, of where the last one led
+  std::vector<Kick> kicks_;  // since then
+  PromptTeam team_;          // ends first: helpers use the others
 };
 
 }  // namespace palpate::sim

@@ -1,5 +1,7 @@
 #include "sim_server/deformation/lumped_compliance.h"
 
+#include <algorithm>
+
 namespace palpate::sim {
 
 LumpedCompliance::LumpedCompliance(const ElasticTensors& tensors, std::span<const int> first,
@@ -33,6 +35,13 @@ void LumpedCompliance::fill(int node, ContactPatch& patch) const noexcept {
   for (int i = 0; i < patch.nodes(); ++i)
     patch.compliance.block<3, 3>(3 * i, 3 * node) =
         block(patch.vertices[static_cast<std::size_t>(i)], vertex);
+}
+
+bool LumpedCompliance::each_alone(std::span<const int> vertices, std::span<Mat3> each) const noexcept {
+  const auto in_rest = [&](int vertex) { return rest_->has(vertex); };
+  if (rest_ != nullptr && std::ranges::any_of(vertices, in_rest)) return false;
+  std::ranges::transform(vertices, each.begin(), [&](int vertex) { return own(vertex); });
+  return true;
 }
 
 void LumpedCompliance::fill(std::span<const int> vertices, ContactPatch& patch) const noexcept {

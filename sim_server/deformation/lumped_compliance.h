@@ -20,6 +20,7 @@ class LumpedCompliance final : public ComplianceSource {
 
   void begin(ContactPatch& patch) const noexcept override;
   void fill(int node, ContactPatch& patch) const noexcept override;
+  bool each_alone(std::span<const int> vertices, std::span<Mat3> each) const noexcept override;
   /// As `DeformationModel::compliance`.
   void fill(std::span<const int> vertices, ContactPatch& patch) const noexcept;
   /// Moves `positions` (surface vertices, m), those of loads at `free`, by what `loads` do; `all` as in

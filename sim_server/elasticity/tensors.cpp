@@ -10,7 +10,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr std::size_t kEdgesPerPart = 20'000;  // at least: of less, waking a core takes as long
+// Of fewer edges, a helper takes as long as it saves; parts are so small that who is early does more of them.
+constexpr std::size_t kEdgesOfMany = 40'000, kEdgesPerPart = 5'000, kMostParts = 16;
 
 /// A place on the curve that visits the cells of a grid octant by octant (Morton 1966): the bits of the three
 /// cell numbers in turn. `x`: in units of the box of all, 0 to 1.
@@ -86,6 +87,7 @@ void ElasticTensors::part(const Parting& parting, std::span<const int> reshaped,
     note(left.mesh().tetrahedra[static_cast<std::size_t>(t)]);
   }
   for (const int t : reshaped) note(left.mesh().tetrahedra[static_cast<std::size_t>(t)]);
+  if (!parting.splits.empty()) find_later_edges();
   sum_anew(touched, around, left, material);
 }
 
@@ -184,10 +186,12 @@ void ElasticTensors::find_edges(const TetMesh& mesh) {
   share_out();
 }
 
-/// About as many edges for each of two, four, eight ... parts, so that as many cores end together.
+/// About as many edges for each part, and two, four, eight ... parts, so that as many cores end together.
 void ElasticTensors::share_out() {
   const std::size_t edges = neighbour_.size(),
-                    count = std::max<std::size_t>(1, std::bit_floor(edges / kEdgesPerPart));
+                    count = edges < kEdgesOfMany
+                                ? 1
+                                : std::min(std::bit_floor(edges / kEdgesPerPart), kMostParts);
   for (std::size_t p = 0; p < count; ++p) {
     const auto first = std::ranges::lower_bound(first_edge_, static_cast<int>(edges * p / count));
     parts_.push_back({static_cast<int>(first - first_edge_.begin()), {}});
@@ -197,6 +201,21 @@ void ElasticTensors::share_out() {
       if (neighbour_[e] < parts_[p].begin) parts_[p].reaches.push_back(neighbour_[e]);
     }
     sort_each_once(parts_[p].reaches);
+  }
+  find_later_edges();
+}
+
+/// Ascending, as edges are.
+void ElasticTensors::find_later_edges() {
+  if (parts_.size() == 1) return;
+  first_later_.assign(mass_.size() + 1, 0);
+  for (const int before : neighbour_) ++first_later_[before + 1];
+  for (std::size_t i = 1; i < first_later_.size(); ++i) first_later_[i] += first_later_[i - 1];
+  later_edges_.resize(neighbour_.size());
+  std::vector<int> next(first_later_.begin(), first_later_.end() - 1);
+  for (int row = 0; row < vertices(); ++row) {
+    for (int e = first_edge_[row]; e < first_edge_[row + 1]; ++e)
+      later_edges_[next[neighbour_[e]]++] = {row, e};
   }
 }
 
@@ -261,6 +280,19 @@ void ElasticTensors::gather_part(std::size_t p, double* y, Ahead& ahead) const n
   }
 }
 
+void ElasticTensors::add_product(int place, const Vec3& x, double* y) const noexcept {
+  using Block = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+  const auto row = [y](int i) { return Eigen::Map<Vec3>(y + std::ptrdiff_t{kApart} * i); };
+  const auto edge = [this](int e) { return Block(edge_tensors_.data() + 9 * std::ptrdiff_t{e}); };
+  const double* const k = vertex_tensors_.data() + 6 * std::ptrdiff_t{place};
+  row(place) += Vec3(k[0] * x[0] + k[1] * x[1] + k[2] * x[2], k[1] * x[0] + k[3] * x[1] + k[4] * x[2],
+                     k[2] * x[0] + k[4] * x[1] + k[5] * x[2]);
+  for (int e = first_edge_[place]; e < first_edge_[place + 1]; ++e)
+    row(neighbour_[e]).noalias() += edge(e).transpose() * x;
+  for (int l = first_later_[place]; l < first_later_[place + 1]; ++l)
+    row(later_edges_[l].row).noalias() += edge(later_edges_[l].edge) * x;
+}
+
 ElasticTensors::Ahead ElasticTensors::room_ahead() const {
   Ahead ahead;
   for (const Part& part : parts_) ahead.emplace_back(kApart * static_cast<std::size_t>(part.begin), 0);
@@ -273,7 +305,8 @@ void ElasticTensors::multiply_wide(const double* x, double* y) const noexcept {
 }
 
 std::size_t ElasticTensors::bytes() const {
-  return (first_edge_.size() + neighbour_.size()) * sizeof(int) +
+  return (first_edge_.size() + neighbour_.size() + first_later_.size()) * sizeof(int) +
+         later_edges_.size() * sizeof(LaterEdge) +
          (vertex_tensors_.size() + edge_tensors_.size()) * sizeof(double);
 }
 

@@ -22,9 +22,10 @@ inline Mat3 stiffness_per_volume(const Moduli& moduli, const Vec3& gi, const Vec
 /// and used for both of its ends. Of a tetrahedron of volume V whose shape functions have gradients g (their
 /// equation 12): K_ij = V `stiffness_per_volume`, K_ji = K_ij^T.
 /// Vertices are numbered along a space-filling curve, so that what meets lies close together in memory: 76
-/// bytes an edge and 52 a vertex, about 100 a tetrahedron. A product takes 0.20 to 0.27 of the time of
-/// Eigen's with the same sparse matrix by rows, 0.33 to 0.37 of that with its lower triangle, and for eight
-/// vectors 0.24 to 0.34 of that by rows (`scripts/bench --quick '^tensors'`, 3 to 105 thousand tetrahedra).
+/// bytes an edge and 52 a vertex, about 100 a tetrahedron; 8 and 4 more in parts. A product takes 0.20 to
+/// 0.27 of the time of Eigen's with the same sparse matrix by rows, 0.33 to 0.37 of that with its lower
+/// triangle, and for eight vectors 0.24 to 0.34 of that by rows (`scripts/bench --quick '^tensors'`, 3 to 105
+/// thousand tetrahedra).
 class ElasticTensors {
  public:
   /// O(m log m). Summed in tetrahedron order, so the same mesh gives the same bits. `mass_factors`: of the
@@ -65,14 +66,17 @@ class ElasticTensors {
   Ahead room_ahead() const;
   /// y = K x: forces (n x 3, N) of displacements (n x 3, m), n = `vertices()`.
   void multiply(const double* x, double* y) const noexcept;
-  /// The same of vectors of n x `kApart`, in parts of 20 thousand edges or more, which the tensors alone
-  /// decide, on as many cores: first `multiply_part` of each, then `gather_part` of each, after which the
-  /// rows of that part are done. The same bits whatever the number of threads. Who uses a part's rows on the
-  /// core that made them keeps them in its cache.
+  /// The same of vectors of n x `kApart`, of 40 thousand edges or more in 8 or 16 parts, which the tensors
+  /// alone decide, on as many cores: first `multiply_part` of each, then `gather_part` of each, after which
+  /// the rows of that part are done. The same bits whatever the number of threads. Who uses a part's rows on
+  /// the core that made them keeps them in its cache.
   std::size_t parts() const { return parts_.size(); }
   std::pair<int, int> rows_of_part(std::size_t p) const { return {parts_[p].begin, end_of_part(p)}; }
   void multiply_part(std::size_t p, const double* x, double* y, Ahead& ahead) const noexcept;
   void gather_part(std::size_t p, double* y, Ahead& ahead) const noexcept;
+  /// y += K x, of an x that is 0 but at this place; y of n x `kApart`. For tensors of more than one part.
+  /// O(edges there).
+  void add_product(int place, const Vec3& x, double* y) const noexcept;
   /// The same for eight vectors side by side (n x 3 x 8, those of one number together), at about half of
   /// the time for each: tensors are read once.
   void multiply_wide(const double* x, double* y) const noexcept;
@@ -99,6 +103,7 @@ class ElasticTensors {
   void sum_anew(Touched& touched, std::vector<int>& around, const CutMesh& left, const Material& material);
   void append(int vertex, const CutMesh& left);
   void share_out();
+  void find_later_edges();
   /// Rows that one thread does of a product.
   struct Part {
     int begin;
@@ -114,6 +119,12 @@ class ElasticTensors {
   // Of vertex i, those to neighbours before it: from first_edge_[i] to first_edge_[i + 1].
   std::vector<int> first_edge_, neighbour_;
   std::vector<double> edge_tensors_;  // row by row
+  // Of more than one part: of vertex i, the edges to neighbours after it, from first_later_[i] to [i + 1].
+  struct LaterEdge {
+    int row, edge;
+  };
+  std::vector<int> first_later_;
+  std::vector<LaterEdge> later_edges_;
   std::vector<Part> parts_;
 };
 

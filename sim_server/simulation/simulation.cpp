@@ -22,7 +22,6 @@ namespace {
 
 constexpr std::size_t kApart = 2;     // instants: how far apart those are that tell where a tool goes on to
 constexpr double kLongestLead = 0.5;  // of the tool radius: how far ahead of itself a tool is believed to be
-constexpr double kStill = 1e-8;       // of the tool radius: a surface that moved less did not move
 constexpr int kFeltParts =
     4;  // of the instants of a step, the last of so many parts: what is felt of chatter
 constexpr double kAnywhere = 1e150;  // m
@@ -65,12 +64,12 @@ std::vector<ToolContact> make_tools(const Scene& scene, std::span<const Vec3> re
 /// The tissue gets room for what these tools load. Returns how many loads all of them have at most.
 std::size_t make_room_for_loads(const std::vector<ToolContact>& tools, Tissue& tissue) {
   std::vector<int> most_loads;
-  std::vector<double> still;
+  std::vector<double> radii;
   for (const ToolContact& tool : tools) {
     most_loads.push_back(tool.max_nodes());
-    still.push_back(kStill * tool.radius());
+    radii.push_back(tool.radius());
   }
-  tissue.reserve(most_loads, still);
+  tissue.reserve(most_loads, radii);
   if (std::any_of(tools.begin(), tools.end(), [](const ToolContact& tool) { return tool.has_friction(); }))
     tissue.before.assign(tissue.positions.begin(), tissue.positions.end());
   return static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
@@ -210,6 +209,7 @@ void Simulation::hold_answers(std::span<const ToolInput> inputs) noexcept {
 void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
   std::fill(mean_.begin(), mean_.end(), Vec3::Zero());
   std::fill(late_mean_.begin(), late_mean_.end(), Vec3::Zero());
+  tissue_.begin_step();
   if (cut_) cut(inputs, dt);
   for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].press(inputs[i].buttons);
   if (instants_ > 1) narrow_to_tools(inputs);

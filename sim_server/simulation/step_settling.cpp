@@ -73,8 +73,8 @@ bool Simulation::looks_everywhere(std::size_t tool, const ToolInput& input) cons
 
 /// A ball on its way looks around that alone.
 void Simulation::narrow_to_tools(std::span<const ToolInput> inputs) {
-  constexpr double kAround =
-      4;  // tool radii about its way: beyond what it touches, holds, or is taken back to
+  // Tool radii about its way: beyond what it touches, or is taken back to; what it holds is loaded anyway.
+  constexpr double kAround = 4, kAroundHeld = kNear;
   places_.clear();
   bool everywhere = std::exchange(let_go_, false);
   for (std::size_t i = 0; i < tools_.size(); ++i) everywhere = looks_everywhere(i, inputs[i]) || everywhere;
@@ -86,7 +86,8 @@ void Simulation::narrow_to_tools(std::span<const ToolInput> inputs) {
     for (const PathPoint& point : inputs[i].path)
       farthest = std::max(farthest, (point.pose.p_W - middle).norm());
     farthest = std::max(farthest, (tools_[i].place() - middle).norm());
-    places_.push_back({middle, farthest + kAround * tools_[i].radius()});
+    const double around = tools_[i].holds() ? kAroundHeld : kAround;
+    places_.push_back({middle, farthest + around * tools_[i].radius()});
   }
   tissue_.model->narrow(places_, surface_.triangles);
 }

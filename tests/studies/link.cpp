@@ -12,9 +12,11 @@
 #include "common/text.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/session/client_config.h"
+#include "sim_server/deformation/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/served_tools.h"
 #include "sim_server/serving/surface_pager.h"
+#include "sim_server/serving/tool_path.h"
 #include "tests/support/linked_pair.h"
 
 namespace palpate::studies {
@@ -25,6 +27,7 @@ constexpr double kGone = 5;                                            // s
 const std::filesystem::path kScene = PALPATE_SOURCE_DIR "/configs/scenes/liver_paper.toml",
                             kClient = PALPATE_SOURCE_DIR "/configs/clients/liver_paper.toml";
 constexpr double kHaptic = 1000, kServed = 30;  // Hz
+constexpr std::size_t kTicksPerLook = 7;        // at the right force: by and by at all phases of a step
 
 /// One link, the same each way. Shares; s, of the round trip.
 struct Conditions {
@@ -53,7 +56,10 @@ class Bench {
       : config_(client::read_client_config(client)),
         simulation_(sim::read_scene(scene)),
         tools_(simulation_),
-        pager_(simulation_, 0) {}
+        pager_(simulation_, 0) {
+    const sim::Scene right = sim::read_scene(scene);
+    if (!sim::model_of(right.deformation).moves) right_.emplace(right);
+  }
 
   std::unique_ptr<client::Device> hand() const { return client::row_of(config_.device).make(config_.device); }
   client::Pipeline pipeline() const {
@@ -78,6 +84,12 @@ class Bench {
         .page = [this](std::uint32_t number, protocol::SurfacePage& out) { return pager_.page(number, out); },
         .surface_version = pager_.state().version};
   }
+  /// The force, N, that an organ which follows the tool at once has for it there: what should be felt.
+  /// Nothing of one that moves by itself.
+  std::optional<Vec3> right_at(const protocol::ToolState& tool) {
+    if (!right_) return {};
+    return right_->step(sim::pose_of(tool), kTicksPerLook / kHaptic).force;
+  }
   /// The ticks that the organ answered since the last call, and the force there, N: what should be felt.
   std::vector<std::pair<std::uint64_t, Vec3>> take_answered() { return std::exchange(answered_, {}); }
 
@@ -88,6 +100,7 @@ class Bench {
   sim::SurfacePager pager_;
   sim::SessionInput input_;
   std::vector<std::pair<std::uint64_t, Vec3>> answered_;
+  std::optional<sim::Simulation> right_;
 };
 
 /// Of the felt force against the right one where the hand is, relative to the RMS of the right one.
@@ -131,14 +144,20 @@ Json run(Bench& bench, const Conditions& c, int seed) {
                          .seed = static_cast<std::uint64_t>(seed),
                          .faults_end = kFaultsEnd});
   std::vector<Vec3> felt{Vec3::Zero()};  // by tick
+  std::vector<std::pair<std::uint64_t, Vec3>> rights;
   double most = 0, steepest = 0;
   while (pair.seconds() < kEnd) {
-    felt.push_back(pair.tick().f_D);
+    const client::TickResult tick = pair.tick();
+    if (felt.size() % kTicksPerLook == 0) {
+      if (const auto right = bench.right_at(tick.tool)) rights.emplace_back(felt.size(), *right);
+    }
+    felt.push_back(tick.f_D);
     most = std::max(most, felt.back().norm());
     steepest = std::max(steepest, kHaptic * (felt.back() - *(felt.end() - 2)).norm());
   }
   Errors bad, healed;
-  for (const auto& [tick, right] : bench.take_answered()) {
+  if (rights.empty()) rights = bench.take_answered();
+  for (const auto& [tick, right] : rights) {
     const double t = static_cast<double>(tick) / kHaptic;
     if (t > kBegin && t <= kFaultsEnd) bad.add(felt[tick], right);
     if (t > kHealed) healed.add(felt[tick], right);

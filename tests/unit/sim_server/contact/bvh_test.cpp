@@ -31,6 +31,15 @@ struct Skin {
     for (std::size_t i = 0; i < rest.size(); ++i)
       now[i] = turn * (rest[i] + push * std::exp(-(rest[i] - at).norm() / 0.02));
   }
+  /// Some of it, each its own way: which.
+  std::vector<int> deform_some(test::Random& random) {
+    std::vector<int> moved;
+    for (int k = 0; k < 25; ++k) {
+      moved.push_back(static_cast<int>(random.bits() % rest.size()));
+      now[static_cast<std::size_t>(moved.back())] += random.vector(0.03);
+    }
+    return moved;
+  }
   Vec3 place(test::Random& random) const {
     const Vec3 share = random.vector(0.75);
     return box.center() + share.cwiseProduct(box.sizes());
@@ -65,8 +74,8 @@ double distance_of(const Skin& skin, const Vec3& p, const Vec3& q, const Triangl
 
 /// The triangles of the patch as they are numbered on the surface.
 std::vector<Triangle> gathered(ContactFinder& finder, const Skin& skin, const Vec3& p, const Vec3& q,
-                               double reach, ContactPatch& patch) {
-  finder.gather(skin.now, skin.rest, p, q, reach, patch);
+                               double reach, ContactPatch& patch, std::span<const int> moved = {}) {
+  finder.gather(skin.now, skin.rest, p, q, reach, patch, moved);
   std::vector<Triangle> triangles;
   for (const auto& t : patch.triangles)
     triangles.push_back({finder.vertices()[t[0]], finder.vertices()[t[1]], finder.vertices()[t[2]]});
@@ -92,13 +101,16 @@ void check_gather(Skin skin, double reach, double length) {
   patch.reserve(finder.max_nodes(), finder.max_triangles());
   std::size_t found = 0;
   for (int i = 0; i < 60; ++i) {
+    std::vector<int> moved;  // since the last time
     if (i % 3 == 0) skin.deform(random);
+    if (i % 3 > 0) moved = skin.deform_some(random);
+    if (i % 6 == 2) finder.nearest_vertex(skin.rest, skin.place(random));  // of another surface
     const Vec3 p = skin.place(random), q = length == 0 ? p : p + length * random.vector(1).normalized();
     std::vector<Triangle> expected;
     for (const Triangle& t : skin.surface.triangles) {
       if (distance_of(skin, p, q, t) <= reach) expected.push_back(t);
     }
-    CHECK(gathered(finder, skin, p, q, reach, patch) == expected);
+    CHECK(gathered(finder, skin, p, q, reach, patch, moved) == expected);
     const auto vertices = finder.vertices();
     CHECK(std::vector<int>(vertices.begin(), vertices.end()) == in_order(expected));
     found += expected.size();

@@ -3,6 +3,8 @@
 #include "sim_server/deformation/explicit_motion.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numbers>
 
 #include "sim_server/mesh/shapes.h"
@@ -297,4 +299,47 @@ TEST_CASE("ExplicitMotion: a large body moves the same, to the last bit, by one 
     CHECK(end.v == ends[0].v);
   }
   CHECK(std::ranges::count(ends[0].v, 0.0) == 0);
+}
+
+TEST_CASE("ExplicitMotion: a sub-step that begins before the last kicks ends as one that begins after them",
+          "[threads]") {
+  const TetMesh mesh = test::soft_block(Vec3(0.04, 0.04, 0.04), {24, 24, 24});
+  const ElasticTensors tensors(mesh, kSoft, {0, 1, 2});
+  REQUIRE(tensors.parts() > 1);
+  constexpr double kStep = 1e-4;  // s
+  const int vertices = tensors.vertices();
+  // Rounds of kicks: of some vertices, of one twice, of more than there is room for, and of none.
+  const auto kick_round = [&](ExplicitMotion& motion, int round) {
+    const int kicks = std::array{40, 2, vertices + 20, 0}[static_cast<std::size_t>(round % 4)];
+    for (int k = 0; k < kicks; ++k) {
+      const int place = kicks == 2 ? vertices / 2 : (k * 37 + 11 * round) % vertices;
+      motion.kick(place, kStep, Vec3(0.01 * std::cos(k), 0.02, -0.01 * round));
+    }
+  };
+  const auto moved = [&](int threads, bool begins, bool drops) {
+    ExplicitMotion motion(tensors, {3, 2e-4}, 1, threads);
+    motion.run(kStep);
+    for (int round = 0; round < 12; ++round) {
+      if (begins) motion.begin_next();
+      kick_round(motion, round);
+      if (drops) motion.drop_next();
+      round == 9 ? motion.run(kStep) : motion.run_on(kStep);
+    }
+    return motion.state;
+  };
+  const ExplicitMotion::State after = moved(1, false, false), begun = moved(1, true, false);
+  const auto off = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return (as_vector(a) - as_vector(b)).norm() / as_vector(b).norm();
+  };
+  CHECK(as_vector(after.u).norm() > 0);
+  CHECK(off(begun.u, after.u) < 1e-12);
+  CHECK(off(begun.v, after.v) < 1e-12);
+  for (const int threads : {1, 2, 4}) {
+    CHECK(moved(threads, true, false).v == begun.v);
+    CHECK(moved(threads, true, true).v == after.v);
+  }
+  for (int end = 0; end < 20; ++end) {  // while helpers are at it
+    ExplicitMotion motion(tensors, {3, 2e-4}, 1, 2);
+    motion.begin_next();
+  }
 }

@@ -250,7 +250,7 @@ TEST_CASE("a product of tensors in parts is that in one, also where vertices hav
   }
   ElasticTensors tensors(body.mesh, material, standing);
   ElasticTensors::Ahead ahead = tensors.room_ahead();
-  REQUIRE(ahead.size() == 4);
+  REQUIRE(ahead.size() == 16);
   std::minstd_rand random(5);
   const auto check_same = [&] {
     std::vector<double> x(3 * tensors.masses().size()), in_one(x.size()), apart, in_parts;
@@ -267,6 +267,18 @@ TEST_CASE("a product of tensors in parts is that in one, also where vertices hav
       double off = 0;
       for (std::size_t i = 0; i < x.size(); ++i)
         off = std::max(off, std::abs(in_parts[i / 3 * 4 + i % 3] - in_one[i]));
+      CHECK(off < 1e-13 * size);
+    }
+    // One vertex of it alone, also one that is the copy of another.
+    for (const std::size_t place : {std::size_t{0}, x.size() / 7, x.size() / 3 - 1}) {
+      std::vector<double> alone(x.size(), 0), sum(apart.size(), 0);
+      const Vec3 at(x[3 * place], x[3 * place + 1], x[3 * place + 2]);
+      Eigen::Map<Vec3>(alone.data() + 3 * place) = at;
+      tensors.multiply(alone.data(), in_one.data());
+      tensors.add_product(static_cast<int>(place), at, sum.data());
+      double off = 0;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        off = std::max(off, std::abs(sum[i / 3 * 4 + i % 3] - in_one[i]));
       CHECK(off < 1e-13 * size);
     }
   };
