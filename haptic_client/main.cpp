@@ -96,7 +96,7 @@ CLI::App* add_replay(CLI::App& app, std::string& file, Overrides& overrides, cli
   command->add_option("--method", overrides.method, "How to extrapolate the force, see below");
   command->add_option("--rate", options.rate_hz,
                       "Ticks per second, 1 to 20000 (default, or within 2 %: the capture's own ticks)");
-  command->add_option("--out", options.out, "CSV to write, a row a tick");
+  command->add_option("--out", options.out, "CSV to write, a row a tick; with --live, of the last minute");
   command->add_option("--session", options.session, "Which session, where the capture has several");
   command->add_option("--report", options.report, "Write figures to this JSON file");
   auto* to_server = command->add_flag(
