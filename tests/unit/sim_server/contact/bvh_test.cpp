@@ -100,7 +100,7 @@ void check_gather(Skin skin, double reach, double length) {
   ContactPatch patch;
   patch.reserve(finder.max_nodes(), finder.max_triangles());
   std::size_t found = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 240; ++i) {
     std::vector<int> moved;  // since the last time
     if (i % 3 == 0) skin.deform(random);
     if (i % 3 > 0) moved = skin.deform_some(random);
