@@ -11,8 +11,11 @@ first sample to the first tick of the chosen law itself; samples used; their age
 what was felt against the force that the organ has for the place of the tool then, every seventh
 tick, so that all ages of a sample count (percent of its root mean square), from 3 to 9 s, and
 healed, from 11 s on; the largest and the steepest force. An organ that moves by itself has no
-force between its steps: of it (--scene) the ticks count for which it computed one. For another
-organ: build/release/bin/link_study --scene SCENE CLIENT DIR (six links).
+force between its steps: of it (--scene) the ticks count for which it computed one. Errors are
+those of link and extrapolation alone, and next to nothing where the law has the whole compliance
+of a linear organ; what its mesh and its law of the tissue cost is in none of them, and many times
+that (`sim_server study SCENE`). For another organ: build/release/bin/link_study --scene SCENE
+CLIENT DIR (six links).
 
 Writes summary.json into --out. The same bytes each time.
 

@@ -6,8 +6,8 @@
 namespace palpate::sim {
 namespace {
 
-// Of the tool radius: a surface that moved less did not move; what was half a radius away when contact was
-// solved comes to matter when it moved farther.
+// Of the tool radius: a surface that moved less did not move; and what was not near when contact was solved,
+// so half a radius from touching, does not touch before others have pushed it by more than that.
 constexpr double kStill = 1e-8, kFar = 0.25;
 
 double move_of(std::span<const Vec3> from, std::span<const Vec3> to, std::size_t vertex) noexcept {

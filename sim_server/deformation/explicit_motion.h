@@ -50,9 +50,9 @@ class ExplicitMotion {
   /// Changes the velocity of a vertex by `dv` (m/s), as if that had been so over the last sub-step, of `h`
   /// (s). Of one motion.
   void kick(int place, double h, const Vec3& dv) noexcept;
-  /// The next sub-step may begin, by other cores: nothing will change the motion before it but kicks, to
-  /// whose vertices its product is then put right. Only a large body does begin, whatever the number of
-  /// threads.
+  /// Other cores begin the product K (u + stiffness v) of the next sub-step: until that, nothing but kicks
+  /// changes the motion, and what these add to the product is added after it. Of large bodies alone, with the
+  /// same bits whatever the number of threads.
   void begin_next() noexcept;
   /// What was begun of it is dropped: the motion, or its tensors, may be changed in any way.
   void drop_next() noexcept;

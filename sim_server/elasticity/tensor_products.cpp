@@ -7,8 +7,8 @@ namespace palpate::sim {
 namespace {
 
 constexpr int kEight = 8;
-constexpr int kFetchAhead =
-    288;  // numbers, of 32 edges: tensors are read once, in order, and do not fit near
+// Numbers, of 32 edges: tensors are read once, in order, and are more than the nearest cache holds.
+constexpr int kFetchAhead = 288;
 
 /// Four numbers side by side, of which three are used.
 using Four [[gnu::vector_size(32)]] = double;
