@@ -42,7 +42,7 @@ struct Condensing {
   std::shared_ptr<const PcgCosts> of_solves{};
 
   MakeFactor maker() {
-    return [this](const SparseMatrix& lower, std::span<const int> kept,
+    return [this](const SparseMatrix& lower, std::span<const int> kept, FactorUse use,
                   const std::string& where) -> std::unique_ptr<FactoredMatrix> {
       const auto tell = [](const std::string& line) { log::info("{}", line); };
       if (iterative) {
@@ -50,7 +50,7 @@ struct Condensing {
         of_solves = pcg->costs();
         return pcg;
       }
-      auto factor = std::make_unique<MumpsFactor>(lower, kept, where, tell);
+      auto factor = std::make_unique<MumpsFactor>(lower, kept, use, where, tell);
       of_factor = factor->costs();
       return factor;
     };

@@ -126,14 +126,18 @@ LinearStatics::LinearStatics(const ModelInputs& inputs)
       stiffness(stiffness_of(solid, dofs)),
       inputs_(inputs) {}
 
-const FactoredMatrix& LinearStatics::factor() const {
-  if (factor_) return *factor_;
+const FactoredMatrix& LinearStatics::factor(FactorUse use) const {
+  if (factor_ && (use == FactorUse::kInverse || factor_use_ == FactorUse::kInverseAndSolve)) return *factor_;
+  factor_.reset();
   inputs_.progress(name_of(Stage::kFactor), 0);
   const std::string& where = inputs_.scene.source;
   if (inputs_.condensed == nullptr) {
     factor_ = std::make_unique<SparseCholesky>(stiffness.lower(), where);
+    factor_use_ = FactorUse::kInverseAndSolve;
   } else if (inputs_.condensed->makes()) {
-    factor_ = inputs_.condensed->factor(stiffness.lower(), rows_of(compliant_vertices(inputs_).order), where);
+    factor_ =
+        inputs_.condensed->factor(stiffness.lower(), rows_of(compliant_vertices(inputs_).order), use, where);
+    factor_use_ = use;
   } else {
     fail("--condensed: {} needs a factor of its stiffness besides, as its supports move; leave it out",
          where);
@@ -193,12 +197,12 @@ VibrationModes LinearStatics::modes(int count, const std::string& where,
 void LinearStatics::fill(SurfaceCompliance& compliance) const {
   const std::vector<int> rows = rows_of(compliance.vertices());
   const KeptMatrices kept(inputs_);
-  if (!kept.any()) return compliance.compute(factor(), rows, inputs_.progress);
+  if (!kept.any()) return compliance.compute(factor(FactorUse::kInverse), rows, inputs_.progress);
   const Digest key = key_of_compliance(stiffness.lower(), rows, compliance, kept);
   const std::string what = fmt::format("compliance of {} nodes", compliance.vertices().size());
   if (auto found = kept.find(key, what); found && compliance.take(std::move(*found), kept.name())) return;
   const Time begin = now();
-  compliance.compute(factor(), rows, inputs_.progress);
+  compliance.compute(factor(FactorUse::kInverse), rows, inputs_.progress);
   const EntryHeader header{.key = key,
                            .seconds = to_seconds(now() - begin),
                            .what = what + ", " + inputs_.scene.mesh_file.filename().string()};

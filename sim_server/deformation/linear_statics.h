@@ -19,8 +19,9 @@ struct LinearStatics {
 
   /// Tells the progress of `inputs`.
   explicit LinearStatics(const ModelInputs& inputs);
-  /// Of K; made when first asked for. Throws `Error` where K is singular.
-  const FactoredMatrix& factor() const;
+  /// Of K; made when first asked for, and once more where the first need not solve and this one has to.
+  /// Throws `Error` where K is singular.
+  const FactoredMatrix& factor(FactorUse use = FactorUse::kInverseAndSolve) const;
   /// What moves the surface where some [[fixed]] has a motion.
   std::optional<MovingSupports> supports(Following following) const;
   /// Of each unknown, kg, lumped.
@@ -39,6 +40,7 @@ struct LinearStatics {
 
   const ModelInputs& inputs_;
   mutable std::unique_ptr<FactoredMatrix> factor_;
+  mutable FactorUse factor_use_ = FactorUse::kInverseAndSolve;
 };
 
 }  // namespace palpate::sim

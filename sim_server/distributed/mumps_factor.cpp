@@ -102,9 +102,9 @@ void end_mumps() {
   send_word(kReturn);
 }
 
-MumpsFactor::MumpsFactor(const SparseMatrix& lower, std::span<const int> kept, const std::string& where,
-                         const std::function<void(const std::string&)>& tell)
-    : mumps_(std::make_unique<Instance>()) {
+MumpsFactor::MumpsFactor(const SparseMatrix& lower, std::span<const int> kept, FactorUse use,
+                         const std::string& where, const std::function<void(const std::string&)>& tell)
+    : mumps_(std::make_unique<Instance>()), use_(use) {
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);  // a rank a core
   for (const int unknown : kept) kept_.push_back(unknown + 1);
   costs_.unknowns = lower.rows();
@@ -153,7 +153,8 @@ void MumpsFactor::analyse(const SparseMatrix& lower, const std::string& where) {
   mumps.listvar_schur = kept_.data();
   control(mumps, 7) = 5;  // order by METIS
   control(mumps, 14) = kMoreRoom;
-  control(mumps, 19) = 1;  // the Schur complement on rank 0
+  control(mumps, 19) = 1;                                    // the Schur complement on rank 0
+  control(mumps, 31) = use_ == FactorUse::kInverse ? 1 : 0;  // columns are dropped once S has what they give
   mumps_->run(kAnalyse);
   require("analysis", where);
   costs_.flops = mumps.rinfog[0];
@@ -229,6 +230,7 @@ void MumpsFactor::require(const char* stage, const std::string& where) const {
 /// Forward elimination of all that is not kept, S, and back.
 Eigen::MatrixXd MumpsFactor::solve(const Eigen::MatrixXd& b) const {
   if (schur_.rows() == b.rows()) return solve_all(b);
+  if (use_ == FactorUse::kInverse) throw std::logic_error("a factor that was to give an inverse alone");
   DMUMPS_STRUC_C& mumps = mumps_->data;
   Eigen::MatrixXd x = b, reduced(schur_.rows(), std::min(kAtOnce, b.cols()));
   mumps.lrhs = mumps.n;

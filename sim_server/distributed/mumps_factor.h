@@ -18,15 +18,16 @@ struct MumpsCosts {
 /// A Cholesky factor L L^T = A spread over all ranks of MPI, by MUMPS (Amestoy, Duff, L'Excellent and Koster
 /// 2001, SIAM J. Matrix Anal. Appl. 23:15). The unknowns of which `inverse_block` is asked are eliminated
 /// last: MUMPS leaves their Schur complement S = A_kk - A_ki A_ii^-1 A_ik on rank 0, and the block of A^-1
-/// is S^-1, so that nothing is solved for it. On rank 0, while the others are in `serve_mumps`. The numbers
+/// is S^-1, so that nothing is solved for it, and of a factor that need not solve only what the elimination
+/// still takes is held: half of the memory. On rank 0, while the others are in `serve_mumps`. The numbers
 /// depend on the number of ranks in their last digits, and for more than one on the order in which messages
 /// come.
 class MumpsFactor final : public FactoredMatrix {
  public:
-  /// Throws `Error`, beginning with `where`, where A is not positive definite, or memory ends on some rank:
-  /// told from the analysis, before it is taken. Memory on rank 0: A once more with its indices, S, and room
-  /// for S^-1.
-  MumpsFactor(const SparseMatrix& lower, std::span<const int> kept, const std::string& where,
+  /// `solve` needs `use` to be `kInverseAndSolve`. Throws `Error`, beginning with `where`, where A is not
+  /// positive definite, or memory ends on some rank: told from the analysis, before it is taken. Memory on
+  /// rank 0: A once more with its indices, S, and room for S^-1.
+  MumpsFactor(const SparseMatrix& lower, std::span<const int> kept, FactorUse use, const std::string& where,
               const std::function<void(const std::string&)>& tell);
   ~MumpsFactor() override;
   MumpsFactor(MumpsFactor&&) = delete;
@@ -49,6 +50,7 @@ class MumpsFactor final : public FactoredMatrix {
   void require(const char* stage, const std::string& where) const;
 
   std::unique_ptr<Instance> mumps_;
+  FactorUse use_;
   std::vector<int> rows_, columns_;  // of the entries of A's lower triangle, counted from 1
   std::vector<double> values_;
   std::vector<int> kept_;  // of S, counted from 1

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fmt/core.h>
+#include <utility>
 
 #include "common/error.h"
 #include "sim_server/elasticity/inversion.h"
@@ -80,8 +81,10 @@ void Dynamics::start_step(double h) {
   iterations_ = 0;
   ended_by_budget_ = false;
   spent_ms_ = costs_.evaluation / 2;  // the turns of the nodes
+  since_factor_ms_ = 0;
   quasi_newton_.restart();
   trial_residual_ = 0;
+  trusted_.resize(0);
   iterated_ = false;
   at_predictor_ = true;
   motion_.begin_step(h);
@@ -98,6 +101,7 @@ void Dynamics::factor() {
   spent_ms_ += made * costs_.factor;
   factored_at_.assign(motion_.position().begin(), motion_.position().end());
   from_background_ = cut_since_factored_ = false;
+  since_factor_ms_ = 0;
   count_new_factor();
 }
 
@@ -178,6 +182,24 @@ Residual Dynamics::evaluate(std::span<const Vec3> external) {
   return residual;
 }
 
+/// By `d` (m) from the trial point without a line search.
+void Dynamics::trust(const Eigen::VectorXd& d) {
+  trusted_from_.assign(motion_.position().begin(), motion_.position().end());
+  trusted_ = d;
+  motion_.move_by(d);
+}
+
+/// The residual where the last move led. One that was trusted, and led to where it would not have been, is
+/// searched along instead.
+Residual Dynamics::evaluate_move(std::span<const Vec3> external) {
+  Residual residual = evaluate(external);
+  const Eigen::VectorXd d = std::exchange(trusted_, {});
+  if (is_linear() || d.size() == 0 || residual.relative <= kTrusted) return residual;
+  motion_.move_to(trusted_from_);
+  search_along(d, motion_.residual(external), external);
+  return evaluate(external);
+}
+
 double Dynamics::iterate(std::span<const Vec3> external, double tolerance) {
   iterated_ = false;  // where this throws
   const double left = newton_iteration(external, tolerance);
@@ -194,27 +216,32 @@ double Dynamics::newton_iteration(std::span<const Vec3> external, double toleran
     factor();
     policy_.replaced();
   }
-  const Residual residual = evaluate(external);
+  const Residual residual = evaluate_move(external);
   if (!std::isfinite(residual.relative)) {
     go_back();
     return 0;
   }
   if (residual.relative <= tolerance) return residual.relative;
   using Decision = FactorPolicy::Decision;
-  const Decision decision = policy_.decide(residual, previous, other_c, affords(costs_.factor));
+  // A factor beside one of the background takes twice as long, and brings no columns.
+  const double price = (background_ ? 2 : 1) * costs_.factor;
+  const Decision decision =
+      policy_.decide(residual, previous, other_c, affords(costs_.factor), since_factor_ms_ >= price);
   if (decision == Decision::kStop) return 0;
   if (decision == Decision::kRefactorChecked) {
     matrix_.check_precision();
     spent_ms_ += costs_.solve;
   }
   if (decision != Decision::kKeep) factor();
+  const double before = spent_ms();
   const Eigen::VectorXd d = search_direction(residual, external);
   if (cautious_ || residual.relative > kTrusted) {
     search_along(d, residual, external);
   } else {
-    motion_.move_by(d);
+    trust(d);
     trial_residual_ = residual.relative;
   }
+  since_factor_ms_ += spent_ms() - before;
   return residual.relative;
 }
 
@@ -296,6 +323,7 @@ void Dynamics::limit_predictor(std::span<const Vec3> external) {
 
 void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> external) {
   if (!d.allFinite()) return;
+  trusted_.resize(0);
   if (is_linear()) return motion_.move_by(d);
   double squared = 0;
   for (std::size_t i = 0; i < motion_.last_external().size(); ++i)

@@ -102,7 +102,10 @@ class Dynamics {
   const FreeDofs& dofs() const { return motion_.dofs(); }
   /// The external forces change before the next `iterate`: that its residual is no smaller is not the fault
   /// of a stale factor.
-  void loads_changed() { policy_.loads_changed(); }
+  void loads_changed() {
+    policy_.loads_changed();
+    trusted_.resize(0);
+  }
   /// Moves the trial point by the increment `d` (m, by unknowns) that a linearisation foretells of these
   /// external forces (nodes, N); by less where the forces there would throw the body back.
   void apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> external);
@@ -137,6 +140,8 @@ class Dynamics {
   int evaluations() const { return motion_.evaluations() - evaluations_before_; }
   Eigen::VectorXd solve_turned(const Eigen::VectorXd& b);
   Residual evaluate(std::span<const Vec3> external);
+  Residual evaluate_move(std::span<const Vec3> external);
+  void trust(const Eigen::VectorXd& d);
   void go_back();
   void go_on_with(std::span<const NodeMass> masses);
   void factor();
@@ -156,6 +161,7 @@ class Dynamics {
   StepCosts costs_;
   double budget_ms_;              // 0: none
   double spent_ms_ = 0;           // in this step, but for evaluations
+  double since_factor_ms_ = 0;    // of search directions and line searches, in this step
   int evaluations_before_ = 0;    // this step
   int iterations_ = 0;            // in this step
   bool ended_by_budget_ = false;  // this step has
@@ -169,10 +175,12 @@ class Dynamics {
   std::vector<Vec3> factored_at_;  // m, where A was factored last, but in the background
   std::vector<int> requested_columns_;
   double relative_residual_ = 0;  // that the last iteration found
-  bool iterated_ = false;         // in this step, to an end
-  double trial_residual_ = 0;     // relative, at the last trial step of this step; 1: none was accepted
-  bool at_predictor_ = false;     // no iteration of this step has been
-  bool cautious_ = false;         // a step ended far from balance, and the body has not come to rest since
+  Eigen::VectorXd trusted_;       // m, the last move, if it was without a line search; else empty
+  std::vector<Vec3> trusted_from_;
+  bool iterated_ = false;      // in this step, to an end
+  double trial_residual_ = 0;  // relative, at the last trial step of this step; 1: none was accepted
+  bool at_predictor_ = false;  // no iteration of this step has been
+  bool cautious_ = false;      // a step ended far from balance, and the body has not come to rest since
 };
 
 }  // namespace palpate::sim

@@ -23,11 +23,15 @@ bool FactorPolicy::begin_step(int steps_before, bool cautious) {
 }
 
 FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double previous, bool just_factored,
-                                            bool may_factor) {
+                                            bool may_factor, bool as_dear) {
   const double force = residual.relative * residual.force_scale;
   // Learnt under large forces, it is a large residual under small ones.
   if (force <= kSameRounding * rounding_ && is_rounding(residual, kSameRounding)) return Decision::kStop;
   const State before = state_;
+  if (before == State::kWorn && as_dear && may_factor) {
+    state_ = State::kFresh;
+    return Decision::kRefactorChecked;
+  }
   if (!comparable_ || !(residual.relative > kSlow * previous)) {
     comparable_ = true;
     if (before != State::kWorn) state_ = just_factored ? State::kFresh : State::kStale;

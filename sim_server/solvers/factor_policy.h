@@ -17,8 +17,11 @@ namespace palpate::sim {
 /// | kWorn     | one that a slow iteration has been with | kKeep, kWorn             | kKeep, kWorn      |
 ///
 /// On demand a step makes three factors at most; after that a slow iteration makes kWorn of the last. With a
-/// factor that is kWorn, search directions are found by conjugate gradients which it preconditions. A body
-/// that was far from balance (`cautious`) gets all factors that it asks for. An iteration that is not slow
+/// factor that is kWorn, search directions are found by conjugate gradients which it preconditions. Where
+/// these have cost as much as another factor would (`as_dear`), there is another, whoever makes factors: so
+/// iterations never cost more than twice what they would with the better choice (Karlin, Manasse, Rudolph
+/// and Sleator 1988, Algorithmica 3:79). A body that was far from balance (`cautious`) gets all factors that
+/// it asks for. An iteration that is not slow
 /// leaves kWorn as it is, and makes kFresh of a factor made for it and kStale of any other. A new factor
 /// (`replaced`) begins as kStale. On demand, and of the quasi-Newton method, which learns in each step, a
 /// factor that is kWorn is kStale again when the next step begins.
@@ -52,8 +55,10 @@ class FactorPolicy {
   void replaced() { state_ = State::kStale; }
   /// For an iteration that finds `residual`, where the one before it found the relative residual `previous`.
   /// `just_factored`: A has been factored for it, after `replaced`. `may_factor`: the step has the time for
-  /// one more factor; where it has not, the one that there is becomes kWorn.
-  Decision decide(const Residual& residual, double previous, bool just_factored, bool may_factor = true);
+  /// one more factor; where it has not, the one that there is becomes kWorn. `as_dear`: iterations since the
+  /// last factor of this step, or its begin, have cost as much as another.
+  Decision decide(const Residual& residual, double previous, bool just_factored, bool may_factor = true,
+                  bool as_dear = false);
 
   State state() const { return state_; }
   /// Whether the search direction is to be found by conjugate gradients that the factor preconditions.

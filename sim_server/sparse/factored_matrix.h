@@ -38,9 +38,12 @@ class FactoredMatrix {
   virtual std::size_t bytes() const { return 0; }
 };
 
+/// What a factor will be asked: of one that need not solve, less has to be held.
+enum class FactorUse { kInverse, kInverseAndSolve };
+
 /// Factors the matrix whose lower triangle is given. `kept`: the unknowns of which `inverse_block` will be
 /// asked. Throws `Error`, beginning with `where`, as `SparseCholesky`.
 using MakeFactor = std::function<std::unique_ptr<FactoredMatrix>(
-    const SparseMatrix& lower, std::span<const int> kept, const std::string& where)>;
+    const SparseMatrix& lower, std::span<const int> kept, FactorUse use, const std::string& where)>;
 
 }  // namespace palpate::sim

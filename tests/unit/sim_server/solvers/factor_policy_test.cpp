@@ -66,6 +66,22 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("factor policy: conjugate gradients that cost as much as a factor are followed by one") {
+  for (const bool background : {false, true}) {
+    FactorPolicy policy({.background = background});
+    policy.begin_step(1);
+    policy.decide({{}, 1, 0.5}, 1, false, true, true);
+    CHECK(policy.decide({{}, 1, 0.4}, 0.5, false, false, true) == Decision::kKeep);  // no time for one
+    CHECK(policy.uses_conjugate_gradients());
+    CHECK(policy.decide({{}, 1, 0.1}, 0.4, false, false, true) == Decision::kKeep);
+    CHECK(policy.decide({{}, 1, 0.01}, 0.1, false) == Decision::kKeep);  // they cost less
+    CHECK(policy.uses_conjugate_gradients());
+    CHECK(policy.decide({{}, 1, 0.001}, 0.01, false, true, true) == Decision::kRefactorChecked);
+    CHECK(policy.state() == State::kFresh);
+    CHECK(policy.decide({{}, 1, 1e-5}, 0.001, false, true, true) == Decision::kKeep);  // by the factor alone
+  }
+}
+
 TEST_CASE("factor policy: a body that was far from balance gets every factor that it asks for") {
   for (const bool cautious : {false, true}) {
     Iterations iterate{FactorPolicy({})};

@@ -221,7 +221,7 @@ TEST_CASE("Newton matrix: bordered, the one from before vertices became two solv
   }
 }
 
-TEST_CASE("dynamics: in the step after nodes became two no factor is made, and it converges as any",
+TEST_CASE("dynamics: in the step after nodes became two the factor goes on, and it converges as any",
           "[threads]") {
   using Solver = DynamicsSettings::Solver;
   const PartedBar bar;
@@ -250,7 +250,8 @@ TEST_CASE("dynamics: in the step after nodes became two no factor is made, and i
     const int after = step();
     CAPTURE(static_cast<int>(solver), ordinary, after);
     CHECK(after <= ordinary + 5);
-    if (solver != Solver::kDirect) CHECK(dynamics.factors() == factors + 1);  // the same, with a border
+    // The same, with a border, and one where conjugate gradients have cost as much: of a bar they soon have.
+    if (solver != Solver::kDirect) CHECK(dynamics.factors() <= factors + 2);
   }
 }
 
