@@ -45,7 +45,7 @@ inline std::vector<std::string> client_arguments(const std::string& server,
 
 /// Runs a program to its end, checks its exit code and returns what it said.
 inline std::string output_of(const std::string& program, const std::vector<std::string>& arguments,
-                             int expected_code, double seconds = 20) {
+                             int expected_code, double seconds = 60) {
   Process process(program, arguments);
   const int code = process.wait(seconds);
   CAPTURE(program, arguments, process.output());
