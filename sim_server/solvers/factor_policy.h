@@ -18,11 +18,11 @@ namespace palpate::sim {
 ///
 /// On demand a step makes three factors at most; after that a slow iteration makes kWorn of the last. With a
 /// factor that is kWorn, search directions are found by conjugate gradients which it preconditions. Where
-/// these have cost as much as another factor would (`as_dear`), there is another, whoever makes factors: so
-/// iterations never cost more than twice what they would with the better choice (Karlin, Manasse, Rudolph
-/// and Sleator 1988, Algorithmica 3:79). A body that was far from balance (`cautious`) gets all factors that
-/// it asks for. An iteration that is not slow
-/// leaves kWorn as it is, and makes kFresh of a factor made for it and kStale of any other. A new factor
+/// these have cost as much as another factor would (`as_dear`), there is another, in the background or not:
+/// to rent until that has cost what buying does costs at most twice the better of the two (Karlin, Manasse,
+/// Rudolph and Sleator 1988, Algorithmica 3:79). A body that was far from balance (`cautious`) gets all
+/// factors that it asks for. An iteration that is not slow leaves kWorn as it is, and makes kFresh of a
+/// factor made for it and kStale of any other. A new factor
 /// (`replaced`) begins as kStale. On demand, and of the quasi-Newton method, which learns in each step, a
 /// factor that is kWorn is kStale again when the next step begins.
 ///
