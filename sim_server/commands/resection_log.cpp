@@ -131,7 +131,7 @@ void remove_at(const std::vector<Removal>& removals, const std::filesystem::path
     if (number >= tetrahedra)
       fail("{}: data row {} names tetrahedron {}, and the mesh has 0 to {}; is it of another mesh?",
            file.string(), row + 1, number, tetrahedra - 1);
-    if (simulation.resection()->left().removable(number) == Removable::kNever)
+    if (!simulation.resection()->left().is_removable(number))
       fail(
           "{}: data row {} names tetrahedron {}, which the scene's [cutting] does not let go; is it of "
           "another scene?",
@@ -160,12 +160,6 @@ Json resection_report(const Simulation& simulation) {
           {"elastic_J", all.elastic},
           {"kinetic_J", all.kinetic},
           {"momentum_Ns", {all.momentum.x(), all.momentum.y(), all.momentum.z()}},
-          {"growth",
-           {{"times", resection->growth().times},
-            {"tetrahedra", resection->growth().tetrahedra},
-            {"late_steps", resection->growth().late_steps},
-            {"failures", resection->growth().failures},
-            {"last_failure", resection->growth().last_failure}}},
           {"parted_m2", all.parted_area},
           {"mean_parted_distance_m", known(away.mean_parted)},
           {"vertices_slid", all.slides},
@@ -180,22 +174,13 @@ std::string resection_text(const Simulation& simulation) {
   const Resection* const resection = simulation.resection();
   if (resection == nullptr) return {};
   const ResectionTotals& all = resection->totals();
-  const Resection::Growth& growth = resection->growth();
-  std::string grown;
-  if (growth.times > 0)
-    grown = fmt::format("; what can be cut grew {} times, by {} tetrahedra", growth.times, growth.tetrahedra);
-  if (growth.late_steps > 0)
-    grown += fmt::format("; {} steps went on without what was due", growth.late_steps);
-  if (growth.failures > 0)
-    grown += fmt::format("; it could not grow {} times, the last time for: {}", growth.failures,
-                         growth.last_failure);
   const bool planned = resection->has_plan();
   return fmt::format(
       "removed {} of {} tetrahedra, {:.2f} ml, {:.2f} ml of them {} loose pieces; cut {:.1f} cm2{}; "
-      "{} pieces lie loose{}{}{}",
+      "{} pieces lie loose{}{}",
       all.tetrahedra, all.tetrahedra + resection->left().count(), 1e6 * all.volume, 1e6 * all.dropped_volume,
       all.dropped_pieces, 1e4 * all.cut_area, away(planned, all.farthest, "at most"), all.loose_pieces,
-      heat_text(all, planned), parted_text(all, planned), grown);
+      heat_text(all, planned), parted_text(all, planned));
 }
 
 }  // namespace palpate::sim

@@ -12,7 +12,6 @@ void RunNews::tell(const NetLink& link, const SimLoop& loop, bool paused) {
   tell_holders(link, paused);
   tell_beyond(loop);
   tell_end(loop);
-  if (scene_.cutting && scene_.cutting->growth) tell_growth(loop.growth);
 }
 
 /// Says that a page has paused, or let go on.
@@ -44,43 +43,12 @@ void RunNews::tell_beyond(const SimLoop& loop) {
   }
 }
 
-/// Says, once, that a hot tip is at tissue that cannot be cut.
+/// Says, once, that a hot tip or a blade is at tissue that cannot be cut.
 void RunNews::tell_end(const SimLoop& loop) {
   if (at_end_ || !loop.cut_to_end) return;
-  log::warning("{}: a hot tip is at tissue that cannot be cut; {}", scene_.cutting->where,
-               scene_.cutting->growth
-                   ? "[cutting.growth] lets a cut go on that comes near its end slowly enough"
-                   : "a larger region or `within`, or [cutting.growth], would let the cut go on");
+  log::warning("{}: a tool cuts at tissue that cannot be cut; a larger region or `within` lets the cut go on",
+               scene_.cutting->where);
   at_end_ = true;
-}
-
-/// Says how what can be cut grows.
-void RunNews::tell_growth(const SimLoop::Growth& now) {
-  if (const std::size_t times = now.times; times > growth_.times) {
-    log::info("{} more tetrahedra can be cut", now.tetrahedra - growth_.tetrahedra);
-    growth_.times = times;
-    growth_.tetrahedra = now.tetrahedra;
-  }
-  if (const std::size_t begun = now.begun; begun > growth_.begun) {
-    log::info("the cut has come near the end of what can be cut; in {:g} s at the earliest it goes on beyond",
-              scene_.cutting->growth->after);
-    growth_.begun = begun;
-  }
-  if (const std::size_t failures = now.failures; failures > growth_.failures) {
-    log::warning("{}: what can be cut stays as it is; the report at the end says why",
-                 scene_.cutting->growth->where);
-    growth_.failures = failures;
-  }
-  const std::size_t late = now.late_steps;
-  const bool waits = growth_.times + growth_.failures < growth_.begun;
-  if (late > growth_.late_steps && waits && told_late_ < growth_.begun) {
-    log::warning(
-        "{}: after {:g} s the larger body is not made yet; until it is, the cut ends where it did "
-        "(a larger `after` says so beforehand)",
-        scene_.cutting->growth->where, scene_.cutting->growth->after);
-    told_late_ = growth_.begun;
-  }
-  growth_.late_steps = late;
 }
 
 }  // namespace palpate::sim

@@ -8,8 +8,8 @@
 namespace palpate::sim {
 
 /// What a run says while it goes on, once each: who takes tools and leaves them, that a page has paused, that
-/// a tool left its reach, that a cut came to the end of what can be cut, and how that grows. Of the thread
-/// that watches the run.
+/// a tool left its reach, and that a cut came to the end of what can be cut. Of the thread that watches the
+/// run.
 class RunNews {
  public:
   /// Of a scene, which outlives this.
@@ -22,13 +22,10 @@ class RunNews {
   void tell_holders(const NetLink& link, bool paused);
   void tell_beyond(const SimLoop& loop);
   void tell_end(const SimLoop& loop);
-  void tell_growth(const SimLoop::Growth& now);
 
   const Scene& scene_;
   bool paused_ = false, at_end_ = false;
   std::vector<bool> held_, beyond_;
-  Resection::Growth growth_;
-  std::size_t told_late_ = 0;  // of so many that began, the last one was told to be late
 };
 
 }  // namespace palpate::sim

@@ -20,9 +20,10 @@ std::span<const int> Resection::advance(std::span<const HotTip> tips, std::span<
   removed_.clear();
   asked_for_ = 0;
   if (tips.empty()) return removed_;
+  const double at_end = cautery_.time_at_end();
   const std::vector<int> gone = cautery_.heat(tips, left_, surface, positions, dt);
   totals_.heat = cautery_.spent();
-  totals_.time_at_end = cautery_.time_at_end();
+  totals_.time_at_end += cautery_.time_at_end() - at_end;
   totals_.hot_time += dt;
   return remove(gone, surface);
 }
@@ -88,17 +89,6 @@ const Parted& Resection::part(const BladeSweep& blade, std::span<Vec3> were, std
   totals_.ran_out = totals_.ran_out || parted_.parting.ran_out;
   judge(pieces_.parted(left_, parted_.parting.tetrahedra), surface);
   return parted_;
-}
-
-void Resection::grow(const DeformationModel::Growth& growth) {
-  left_.allow(growth.allowed);
-  growth_.begun += growth.begun ? 1 : 0;
-  growth_.late_steps += growth.late ? 1 : 0;
-  if (growth.allowed.empty() && growth.failure.empty()) return;
-  growth_.times += growth.failure.empty() ? 1 : 0;
-  growth_.failures += growth.failure.empty() ? 0 : 1;
-  growth_.tetrahedra += growth.allowed.size();
-  if (!growth.failure.empty()) growth_.last_failure = growth.failure;
 }
 
 void Resection::take_out(std::span<const int> tetrahedra, Surface& surface) {

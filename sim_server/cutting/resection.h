@@ -24,7 +24,7 @@ struct ResectionTotals {
   std::uint64_t slides = 0, splits = 0;       ///< of vertices, by blades
   bool ran_out = false;                       ///< of vertices: a blade has parted less than it went through
   double hot_time = 0, contact_time = 0;      ///< s with a tip hot; and that touched
-  double time_at_end = 0;                     ///< s, of each tip: hot, at tissue that cannot be removed
+  double time_at_end = 0;  ///< s, of each tool: cuts, at tissue that cannot be removed or parted
 
   /// Of what blades parted, from the plan, m; 0 where nothing is.
   double mean_parted_distance() const { return parted_area > 0 ? parted_distance_sum / parted_area : 0; }
@@ -71,18 +71,6 @@ class Resection {
   /// The way over which a blade does the work of what it parts, m.
   double blade_size() const { return scalpel_->size(); }
 
-  /// What can be removed grows, as the model says.
-  void grow(const DeformationModel::Growth& growth);
-  struct Growth {
-    std::size_t begun = 0;       ///< times
-    std::size_t late_steps = 0;  ///< that went on without, as the background was not there in time
-    std::size_t times = 0;       ///< that more could be removed
-    std::size_t tetrahedra = 0;  ///< that could in all of them
-    std::size_t failures = 0;
-    std::string last_failure = {};  ///< why
-  };
-  const Growth& growth() const { return growth_; }
-
   const CutMesh& left() const { return left_; }
   /// In how many steps it was cut so far: of which surface the triangles are.
   std::uint32_t version() const { return version_; }
@@ -111,7 +99,6 @@ class Resection {
   std::uint32_t version_ = 0;
   bool changed_ = false;  // in this step
   ResectionTotals totals_;
-  Growth growth_;
 };
 
 }  // namespace palpate::sim

@@ -28,6 +28,15 @@ Vec3 centre_at(const CutMesh& mesh, std::span<const Vec3> positions, int tetrahe
   return 0.25 * sum;
 }
 
+/// The centre of the tetrahedron of face 4 t + k, mirrored at the centre of that face: stands for the centre
+/// of a neighbour whose vertices are not all known.
+Vec3 mirrored(const CutMesh& mesh, std::span<const Vec3> positions, int face) {
+  const Tetrahedron& corners = mesh.mesh().tetrahedra[static_cast<std::size_t>(face / 4)];
+  const Vec3 centre = centre_at(mesh, positions, face / 4),
+             apex = at(mesh, positions, corners[static_cast<std::size_t>(face % 4)]);
+  return 2.0 / 3 * (4 * centre - apex) - centre;
+}
+
 /// Whether the line from `p` to `q` meets the triangle, on its border too.
 bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
@@ -180,23 +189,24 @@ void Scalpel::slide_onto(const Plane& plane, std::span<const int> near, std::spa
   } while (slides.size() > before);
 }
 
-/// Between centres of which the blade or its trail went through the line, in the tissue as it is now: where
-/// the blade was, that has since moved on.
-std::vector<int> Scalpel::faces_between(const BladeSweep& blade, std::span<const int> near,
-                                        std::span<const Vec3> were, std::span<const Vec3> are,
-                                        const CutMesh& mesh) const {
-  std::vector<int> faces;
+/// Finds the faces between centres whose line the blade or its trail crossed, in the tissue as it is now:
+/// where the blade was, that has since moved on. Those next to tissue that cannot be cut stay.
+void Scalpel::find_faces(const BladeSweep& blade, std::span<const int> near, std::span<const Vec3> were,
+                         std::span<const Vec3> are, const CutMesh& mesh, Stroke& stroke) const {
   for (const int t : near) {
     const Vec3 p = centre_at(mesh, are, t), p_was = centre_at(mesh, were, t);
     for (int face = 4 * t; face < 4 * t + 4; ++face) {
-      if (!mesh.can_part(face) || mesh.across(face) < face) continue;
+      const bool parts = mesh.can_part(face);
+      if (mesh.across(face) < 0 || (parts && mesh.across(face) < face)) continue;
       const int other = mesh.across(face) / 4;
-      const Vec3 q = centre_at(mesh, are, other);
-      const Vec3 shift = 0.5 * (p - p_was + q - centre_at(mesh, were, other)) + kBehind * blade.trail;
-      if (goes_through({blade.was[0] + shift, blade.was[1] + shift}, blade.is, p, q)) faces.push_back(face);
+      const Vec3 q = parts ? centre_at(mesh, are, other) : mirrored(mesh, are, face),
+                 q_was = parts ? centre_at(mesh, were, other) : mirrored(mesh, were, face);
+      const Vec3 shift = 0.5 * (p - p_was + q - q_was) + kBehind * blade.trail;
+      if (!goes_through({blade.was[0] + shift, blade.was[1] + shift}, blade.is, p, q)) continue;
+      if (parts) stroke.faces.push_back(face);
+      stroke.at_end |= !parts;
     }
   }
-  return faces;
 }
 
 Stroke Scalpel::cut(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are, CutMesh& mesh) {
@@ -216,7 +226,7 @@ Stroke Scalpel::cut(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec
     plane.back = course.dot(plane.ahead);
     slide_onto(plane, near, were, are, mesh, stroke.slides);
   }
-  stroke.faces = faces_between(blade, near, were, are, mesh);
+  find_faces(blade, near, were, are, mesh, stroke);
   return stroke;
 }
 

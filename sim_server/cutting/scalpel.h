@@ -27,6 +27,7 @@ struct Stroke {
   Vec3 trail = Vec3::Zero();                         ///< from where it is now, m
   std::vector<DeformationModel::Slide> slides = {};  ///< in order; done
   std::vector<int> faces = {};                       ///< to be parted then, 4 t + k, each once
+  bool at_end = false;                               ///< the blade went into tissue that cannot be cut
 };
 
 /// What a blade parts of a mesh of tetrahedra: the faces between those whose centres come to lie on two sides
@@ -71,9 +72,8 @@ class Scalpel {
   bool slide(const Crossing& crossing, CutMesh& mesh) const;
   void slide_onto(const Plane& plane, std::span<const int> near, std::span<Vec3> were, std::span<Vec3> are,
                   CutMesh& mesh, std::vector<DeformationModel::Slide>& slides);
-  std::vector<int> faces_between(const BladeSweep& blade, std::span<const int> near,
-                                 std::span<const Vec3> were, std::span<const Vec3> are,
-                                 const CutMesh& mesh) const;
+  void find_faces(const BladeSweep& blade, std::span<const int> near, std::span<const Vec3> were,
+                  std::span<const Vec3> are, const CutMesh& mesh, Stroke& stroke) const;
 
   double edge_ = 0, longest_ = 0, height_ = 0;  // m: of edges the mean and the longest; of heights the mean
   std::vector<char> slid_;                      // of mesh vertices

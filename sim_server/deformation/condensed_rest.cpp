@@ -145,43 +145,6 @@ void CondensedRest::stand_still(const std::vector<double>& x, std::span<const No
   }
 }
 
-CondensedRest::Swing CondensedRest::swing() const {
-  Swing all;
-  for (const Part& part : all_) {
-    all.p.push_back(part.p);
-    all.v.push_back(part.p_v);
-  }
-  return all;
-}
-
-void CondensedRest::set_swing(const Swing& swing) {
-  for (std::size_t p = 0; p < all_.size(); ++p) {
-    all_[p].p = swing.p[p];
-    all_[p].p_v = swing.v[p];
-  }
-}
-
-std::vector<CondensedRest::Overlap> CondensedRest::overlap_with(const CondensedRest& before) const {
-  std::vector<Overlap> overlaps;
-  for (const Part& part : all_) {
-    const auto of_before = static_cast<std::size_t>(before.part_of(part.inner.front()));
-    const Part& was = before.all_[of_before];
-    Eigen::MatrixXd shapes(was.squares.size(), part.all_shapes.cols());  // of `before`, at these vertices
-    for (std::size_t i = 0; shapes.rows() > 0 && i < part.inner.size(); ++i) {
-      const auto at = std::ranges::lower_bound(was.inner, part.inner[i]) - was.inner.begin();
-      shapes.middleCols<3>(3 * static_cast<Eigen::Index>(i)) = was.all_shapes.middleCols<3>(3 * at);
-    }
-    overlaps.push_back({of_before, part.all_shapes * part.masses.asDiagonal() * shapes.transpose()});
-  }
-  return overlaps;
-}
-
-Vec3 CondensedRest::shape_at(int mesh_vertex, const std::vector<Eigen::VectorXd>& amplitudes) const {
-  const auto p = static_cast<std::size_t>(part_of(mesh_vertex));
-  const auto at = std::ranges::lower_bound(all_[p].inner, mesh_vertex) - all_[p].inner.begin();
-  return moved_by(all_[p].all_shapes, 3 * at, amplitudes[p]);
-}
-
 std::vector<CondensedRest::BorderMass> CondensedRest::border_masses() const {
   std::vector<BorderMass> masses;
   for (const Part& part : all_) {

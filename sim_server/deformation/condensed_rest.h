@@ -35,8 +35,6 @@ class CondensedRest {
   /// The modes that swing.
   struct Modes {
     int most = 0;  ///< and no more than one for eight unknowns of a part, so that contact stays compliant
-    double highest = std::numeric_limits<double>::infinity();  ///< rad/s: none above it
-    bool keeps_shapes = false;  ///< of all of r, for a rest that takes over from this one (`overlap_with`)
   };
   /// `places`: of each mesh vertex its place in the motion, or -1: it is fixed, or condensed. Factors K_rr,
   /// on all cores. Throws `Error` where some part of it is held by less than three vertices that are not in
@@ -81,22 +79,6 @@ class CondensedRest {
   /// The border stands at `x` (3 x places), these loads are held, and the modes are where they balance:
   /// `follow` says what r does on it then, but for loads. O(b^2).
   void stand_still(const std::vector<double>& x, std::span<const NodalLoad> loads) noexcept;
-  /// Amplitudes of the modes of each part, m sqrt(kg), and their rates.
-  struct Swing {
-    std::vector<Eigen::VectorXd> p, v;
-  };
-  Swing swing() const;
-  void set_swing(const Swing& swing);
-  /// Of a part of this rest with the modes of `before`, of which it is a part: phi^T M phi_before.
-  struct Overlap {
-    std::size_t part_of_before;
-    Eigen::MatrixXd matrix;
-  };
-  /// One for each part. Both keep shapes.
-  std::vector<Overlap> overlap_with(const CondensedRest& before) const;
-  /// How a mesh vertex of r moves in `amplitudes` (of `Swing`) alone, m. Of a rest that keeps shapes.
-  Vec3 shape_at(int mesh_vertex, const std::vector<Eigen::VectorXd>& amplitudes) const;
-
   /// Mass of r that belongs to the border: first number in the motion, kg.
   struct BorderMass {
     int first;
@@ -124,9 +106,6 @@ class CondensedRest {
     Eigen::MatrixXd shapes;           // phi_s^T
     Eigen::VectorXd p, p_v, p_bent;   // amplitudes, their rates, p + stiffness p_v
     Eigen::VectorXd at, bent, force;  // u_b, u_b + stiffness v_b, B times that
-    std::vector<int> inner;           // mesh vertices, ascending; these three where shapes are kept
-    Eigen::VectorXd masses;           // of their unknowns, kg
-    Eigen::MatrixXd all_shapes;       // phi^T at them
     bool gone = false;
   };
   void find_parts(const TetMesh& mesh, std::span<const int> held);
@@ -134,7 +113,6 @@ class CondensedRest {
   static void condense(const ModelInputs& inputs, const LinearStatics& statics, const std::vector<int>& rows,
                        const SparseMatrix& coupling, Part& part);
   static void take_modes_out(Part& part);
-  void keep_shapes(const LinearStatics& statics, const Eigen::MatrixXd& shapes, int part);
 
   std::vector<Part> all_;
   std::vector<int> part_of_;     // of mesh vertices

@@ -126,7 +126,7 @@ struct ModesOfPart {
 /// Of modes of all parts together those of one. Where parts swing alike, a mode may be of several: what each
 /// part does in it is a mode of that, too.
 ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& statics,
-                          const std::vector<int>& part_of, int part, double highest) {
+                          const std::vector<int>& part_of, int part) {
   constexpr double kShare = 1e-3;  // of a mode: less of it is rounding
   const Eigen::VectorXd masses = statics.masses();
   Eigen::VectorXd mine = Eigen::VectorXd::Zero(masses.size());
@@ -138,7 +138,6 @@ ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& static
   const auto most = static_cast<Eigen::Index>(mine.sum()) / kUnknownsPerMode;
   Eigen::Index count = 0;
   for (Eigen::Index k = 0; k < all.frequencies.size() && count < most; ++k) {
-    if (all.frequencies[k] > highest) break;
     Eigen::VectorXd shape = all.shapes.col(k).cwiseProduct(mine);
     for (Eigen::Index j = 0; j < count; ++j)
       shape -= own.shapes.col(j).dot(masses.cwiseProduct(shape)) * own.shapes.col(j);
@@ -224,7 +223,7 @@ CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& 
       rows.push_back(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
     sort_unique(rows);
     const SparseMatrix coupling = coupling_of(inputs, nodes[p], rows, part_of_);
-    const ModesOfPart own = modes_of_part(found, statics, part_of_, static_cast<int>(p), modes.highest);
+    const ModesOfPart own = modes_of_part(found, statics, part_of_, static_cast<int>(p));
     part.squares = own.squares;
     part.driven = -rows_of(own.shapes, statics, rows).transpose() * coupling;
     std::vector<int> surface;
@@ -233,7 +232,6 @@ CondensedRest::CondensedRest(const ModelInputs& inputs, const std::vector<int>& 
     part.shapes = rows_of(own.shapes, statics, surface).transpose();
     part.border_mass = shared_mass(inputs.mesh, nodes[p],
                                    mass_beside_modes(statics, rows, coupling, part.driven, part.squares));
-    if (modes.keeps_shapes) keep_shapes(statics, own.shapes, static_cast<int>(p));
     condense(inputs, statics, rows, coupling, part);
     take_modes_out(part);
   }
@@ -310,19 +308,6 @@ void CondensedRest::condense(const ModelInputs& inputs, const LinearStatics& sta
     for (std::size_t j = 0; j < at.size(); ++j)
       part.compliance.block<3, 3>(row, 3 * static_cast<Eigen::Index>(j)) = inverse.block<3, 3>(at[i], at[j]);
   }
-}
-
-void CondensedRest::keep_shapes(const LinearStatics& statics, const Eigen::MatrixXd& shapes, int part) {
-  Part& of_part = all_[static_cast<std::size_t>(part)];
-  for (int v = 0; v < static_cast<int>(part_of_.size()); ++v) {
-    if (part_of(v) == part) of_part.inner.push_back(v);
-  }
-  of_part.all_shapes = rows_of(shapes, statics, of_part.inner).transpose();
-  const Eigen::VectorXd masses = statics.masses();
-  of_part.masses.resize(of_part.all_shapes.cols());
-  for (std::size_t i = 0; i < of_part.inner.size(); ++i)
-    of_part.masses.segment<3>(3 * static_cast<Eigen::Index>(i)) =
-        masses.segment<3>(statics.dofs.first[static_cast<std::size_t>(of_part.inner[i])]);
 }
 
 /// What modes do by themselves is no answer at once.

@@ -1,4 +1,4 @@
-// How tissue in motion is cut, and grows: parts of CuttableMotion.
+// How tissue in motion is cut: parts of CuttableMotion.
 #include "sim_server/deformation/cuttable_motion.h"
 #include "sim_server/elasticity/element.h"
 #include "sim_server/mesh/cut_mesh.h"
@@ -76,7 +76,6 @@ DeformationModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra
   for (const int t : tetrahedra) add(lost_with(t, left));
   add(body_->remove(tetrahedra, left, material_));
   show_corners(tetrahedra, left);
-  if (growth_) growth_->note_removed(tetrahedra);
   std::erase_if(loads_, [&](const NodalLoad& load) { return !left.on_surface(load.vertex); });
   return gone;
 }
@@ -85,7 +84,6 @@ void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting,
   end_contact();
   if (told_) told_->forget();
   body_->part(slides, parting, left, material_, scaling_.frequency);
-  if (growth_) growth_->note_parted(slides, parting);
   const auto stand_anew = [&](int vertex) {
     rest_places_[static_cast<std::size_t>(vertex)] = left.mesh().vertices[static_cast<std::size_t>(vertex)];
   };
@@ -101,24 +99,6 @@ void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting,
 void CuttableMotion::go_on_with_body() noexcept {
   update_free(moving_);
   go_free(moving_);
-}
-
-DeformationModel::Growth CuttableMotion::grow(const CutMesh& left, bool waits) {
-  if (!growth_) return {};
-  RegionGrowth::Step step = growth_->step(*body_, left, waits);
-  if (!step.grown) return {step.begun, step.late, {}, std::move(step.failure)};
-  RegionGrowth::Grown& grown = *step.grown;
-  end_contact();
-  grown.body->reshape(grown.since.slid, grown.since.parting, left, material_, scaling_.frequency);
-  grown.body->remove(grown.since.removed, left, material_);
-  (*grown.hand_over)(*body_, loads_);
-  force_.reserve(grown.body->motion.state.f.size());  // from here on nothing throws
-  std::swap(body_, grown.body);
-  look_at_body();
-  go_on_with_body();
-  for (const NodalLoad& load : loads_) body_->rest->watch({&load.vertex, 1});
-  allowed_ = std::move(grown.allowed);
-  return {.allowed = allowed_};
 }
 
 }  // namespace palpate::sim

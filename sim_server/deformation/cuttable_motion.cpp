@@ -12,7 +12,6 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kAddedMass = 1e-2;    // of the mass in motion, for its stiffest elements
-constexpr double kModesAsGrown = 0.2;  // of that of the elements: frequencies of a rest that grows smaller
 constexpr int kSubStepsPerLook = 8;    // at what contact looks at of the rest without pressing there
 
 const RayleighDamping& rayleigh_of(const Scene& scene) {
@@ -26,7 +25,7 @@ MassScaling scaling_for(const ModelInputs& inputs, const RegionInMotion* region)
   require_no_loose_part(inputs);
   inputs.progress(name_of(Stage::kTensors), 0);
   std::vector<char> moves;
-  if (region != nullptr) moves = region->vertices(inputs.mesh, Removable::kLater);
+  if (region != nullptr) moves = region->vertices(inputs.mesh);
   const auto* const added = inputs.scene.deformation.find<AddedMass>();
   const double share = added == nullptr ? kAddedMass : added->share.value_or(kAddedMass);
   return scale_masses(inputs.mesh, *inputs.scene.material, share, moves);
@@ -47,19 +46,13 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
       node_(inputs.surface.vertices),
       rest_places_(inputs.mesh.vertices),
       nodes_(rest_places_) {
-  const bool grows = region != nullptr && inputs.scene.cutting->growth;
   const std::vector<char> moves =
-      region != nullptr ? region->vertices(inputs.mesh, Removable::kNow) : std::vector<char>();
-  const CondensedRest::Modes modes{.most = region != nullptr ? region->rest_modes : 0, .keeps_shapes = grows};
+      region != nullptr ? region->vertices(inputs.mesh) : std::vector<char>();
+  const CondensedRest::Modes modes{.most = region != nullptr ? region->rest_modes : 0};
   body_ =
       std::make_unique<CuttableBody>(inputs, scaling_.factors, region != nullptr ? &moves : nullptr, modes);
-  double highest = body_->rest ? body_->rest->highest_frequency() : 0;
-  if (grows) {
-    highest = std::max(highest, kModesAsGrown * scaling_.frequency);
-    growth_.emplace(inputs, *region, highest);
-  }
   if (told_bodies(inputs.scene) > 0) told_.emplace(inputs, body_->tensors);
-  choose_sub_step(inputs, highest);
+  choose_sub_step(inputs, body_->rest ? body_->rest->highest_frequency() : 0);
   for (const int vertex : node_) free_.push_back(rest_places_[static_cast<std::size_t>(vertex)]);
   positions_ = free_;
   loads_.reserve(kMaxTools * node_.size());

@@ -5,7 +5,8 @@
 #include "sim_server/deformation/lumped_compliance.h"
 #include "sim_server/deformation/mass_scaling.h"
 #include "sim_server/deformation/near_tools.h"
-#include "sim_server/deformation/region_growth.h"
+#include "sim_server/deformation/cuttable_body.h"
+#include "sim_server/deformation/region_in_motion.h"
 #include "sim_server/deformation/told_nearby.h"
 
 namespace palpate::sim {
@@ -28,8 +29,7 @@ class CuttableMotion : public DeformationModel {
  public:
   /// All of the body in motion. Throws `Error` where nothing holds it, or the scene names no rate.
   explicit CuttableMotion(const ModelInputs& inputs);
-  /// A region of it in motion; the rest is condensed. Grows where the scene has [cutting.growth]. Throws
-  /// `Error` as `CondensedRest`, too.
+  /// A region of it in motion; the rest is condensed. Throws `Error` as `CondensedRest`, too.
   CuttableMotion(const ModelInputs& inputs, const RegionInMotion& region);
 
   int instants() const noexcept override { return instants_; }
@@ -46,7 +46,6 @@ class CuttableMotion : public DeformationModel {
   std::span<const Vec3> nodes() const noexcept override;
   Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
   void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) override;
-  Growth grow(const CutMesh& left, bool waits) override;
   const SlowModes* slow_modes() const noexcept override;
   void modal_state(Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> v) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
@@ -90,9 +89,7 @@ class CuttableMotion : public DeformationModel {
   double held_stiffness_;  // N/m
   MassScaling scaling_;
   std::unique_ptr<CuttableBody> body_;  // its motion free of the loads of this sub-step
-  std::optional<RegionGrowth> growth_;
   std::optional<ToldNearby> told_;  // to clients
-  std::vector<int> allowed_;        // of `grow`
   std::vector<double> force_;       // of the rest on the border, N
   int instants_ = 1, instant_ = 0;  // of a step; how many of this one are done
   double sub_step_ = 0;             // s

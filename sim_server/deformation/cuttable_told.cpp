@@ -52,7 +52,6 @@ std::vector<MemoryPart> CuttableMotion::memory() const {
                         (moving_.capacity() + exposed_.capacity() + pressed_.capacity()) * sizeof(int) +
                         shown_.size() + loads_.capacity() * sizeof(NodalLoad) +
                         (body_->first.size() + node_.size()) * sizeof(int)}};
-  if (growth_) parts.push_back({"growth", growth_->bytes()});
   if (told_)
     parts.push_back({"surface told to clients", told_->bytes(),
                      fmt::format("near their tools, {:.2g} s after the last cut{}{}", told_->delay(),

@@ -176,18 +176,6 @@ class DeformationModel {
   virtual void part([[maybe_unused]] std::span<const Slide> slides, [[maybe_unused]] const Parting& parting,
                     [[maybe_unused]] const CutMesh& left) {}
 
-  /// How what can be removed grows.
-  struct Growth {
-    bool begun = false;                 ///< from now on the background is at it
-    bool late = false;                  ///< its time has come, and the background is still at it
-    std::span<const int> allowed = {};  ///< it has ended: these tetrahedra can be removed from now on
-    std::string failure = {};           ///< it has ended, and all stays as it is: why
-  };
-  /// Between two steps, before anything of the next is removed: what of this can be said now. `waits`: for
-  /// the background where its time has come, so that the same grows in the same step on every machine.
-  /// Allocates where it says anything.
-  virtual Growth grow([[maybe_unused]] const CutMesh& left, [[maybe_unused]] bool waits) { return {}; }
-
   /// What clients may know by now of a surface that can be cut, with its `slow_modes`; null: nothing, as it
   /// has been cut just now, or cannot be. Never changes once it is told, and may be read by any thread.
   virtual std::shared_ptr<const ToldSurface> told() const noexcept { return {}; }

@@ -16,10 +16,8 @@ std::vector<char> vertices_of(const TetMesh& mesh, const std::vector<char>& chos
 
 }  // namespace
 
-std::vector<char> RegionInMotion::vertices(const TetMesh& mesh, Removable until) const {
-  std::vector<char> chosen;
-  for (const Removable when : removable)
-    chosen.push_back(when == Removable::kNow || (when == Removable::kLater && until == Removable::kLater));
+std::vector<char> RegionInMotion::vertices(const TetMesh& mesh) const {
+  std::vector<char> chosen = removable;
   std::vector<char> moves = vertices_of(mesh, chosen);
   for (int layer = 0; layer < layers; ++layer) {
     for (std::size_t t = 0; t < chosen.size(); ++t) {

@@ -19,10 +19,10 @@ Triangle ascending(Triangle t) {
 
 /// The vertices of a surface with those of what may be removed, ascending.
 std::vector<int> all_vertices(const Surface& surface, const TetMesh& mesh,
-                              std::span<const Removable> removable) {
+                              std::span<const char> removable) {
   std::vector<int> all = surface.vertices;
   for (std::size_t t = 0; t < removable.size(); ++t) {
-    if (removable[t] != Removable::kNever)
+    if (removable[t] != 0)
       all.insert(all.end(), mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
   }
   std::sort(all.begin(), all.end());
@@ -38,7 +38,7 @@ int CutMesh::facing(int other, int tetrahedron) const {
   return 4 * other + static_cast<int>(std::ranges::find(back, tetrahedron) - back.begin());
 }
 
-CutMesh::CutMesh(const TetMesh& mesh, std::vector<Removable> removable, Surface& surface)
+CutMesh::CutMesh(const TetMesh& mesh, std::vector<char> removable, Surface& surface)
     : mesh_(&mesh),
       neighbours_(face_neighbours(mesh)),
       left_(mesh.tetrahedra.size(), 1),
@@ -80,10 +80,6 @@ CutMesh::CutMesh(const TetMesh& mesh, std::vector<Removable> removable, Surface&
       ++uses_[static_cast<std::size_t>(triangle[i])];
     }
   }
-}
-
-void CutMesh::allow(std::span<const int> tetrahedra) {
-  for (const int t : tetrahedra) removable_[static_cast<std::size_t>(t)] = Removable::kNow;
 }
 
 std::span<const int> CutMesh::around(int vertex) const {

@@ -12,13 +12,6 @@
 
 namespace palpate::sim {
 
-/// Whether a tetrahedron may be removed.
-enum class Removable : char {
-  kNever,
-  kLater,  ///< once it was allowed
-  kNow,
-};
-
 /// A vertex that became two, as the tetrahedra around it hang together by faces no more: some of them have
 /// `copy` as a corner now.
 struct Split {
@@ -43,13 +36,13 @@ struct Parting {
 class CutMesh {
  public:
   /// Gives `surface`, the boundary of `mesh`, the vertices of the tetrahedra that may ever be removed, in
-  /// whose numbers its triangles are from then on. `removable`: of each tetrahedron. The mesh outlives this.
+  /// whose numbers its triangles are from then on. `removable`: 1 for each tetrahedron that may be removed, else 0. The mesh outlives this.
   /// O(m log m).
-  CutMesh(const TetMesh& mesh, std::vector<Removable> removable, Surface& surface);
+  CutMesh(const TetMesh& mesh, std::vector<char> removable, Surface& surface);
   /// A mesh whose faces can be parted, too. It gets a spare vertex for each of those that may be removed,
   /// after all others, which `surface` then has, too. `held`: vertices that stay one and where they are,
   /// ascending.
-  CutMesh(TetMesh& mesh, std::vector<Removable> removable, Surface& surface, std::span<const int> held);
+  CutMesh(TetMesh& mesh, std::vector<char> removable, Surface& surface, std::span<const int> held);
 
   /// The same of a copy of its mesh, which outlives that: for another thread, to be read alone.
   CutMesh of_copy(const TetMesh& mesh) const {
@@ -61,10 +54,7 @@ class CutMesh {
 
   const TetMesh& mesh() const { return *mesh_; }
   bool is_left(int tetrahedron) const { return left_[static_cast<std::size_t>(tetrahedron)] != 0; }
-  Removable removable(int tetrahedron) const { return removable_[static_cast<std::size_t>(tetrahedron)]; }
-  bool is_removable(int tetrahedron) const { return removable(tetrahedron) == Removable::kNow; }
-  /// From now on these may be removed, of which that was said for later.
-  void allow(std::span<const int> tetrahedra);
+  bool is_removable(int tetrahedron) const { return removable_[static_cast<std::size_t>(tetrahedron)] != 0; }
   std::size_t count() const { return count_; }  ///< of what is left
   /// All tetrahedra around a mesh vertex, left or not, ascending.
   std::span<const int> around(int vertex) const;
@@ -124,7 +114,7 @@ class CutMesh {
   int next_spare_ = 0, spares_end_ = 0;
   std::vector<std::array<int, 4>> neighbours_;  // of each tetrahedron, at first, but for faces parted since
   std::vector<char> left_;                      // of tetrahedra
-  std::vector<Removable> removable_;
+  std::vector<char> removable_;
   std::vector<char> inner_;  // of faces, 4 t + k: inside at first
   std::size_t count_;
   double cut_area_ = 0;                                  // m^2

@@ -6,7 +6,7 @@
 
 namespace palpate::sim {
 
-CutMesh::CutMesh(TetMesh& mesh, std::vector<Removable> removable, Surface& surface, std::span<const int> held)
+CutMesh::CutMesh(TetMesh& mesh, std::vector<char> removable, Surface& surface, std::span<const int> held)
     : CutMesh(mesh, std::move(removable), surface) {
   parted_ = &mesh;
   add_spares(held, surface);
@@ -16,7 +16,7 @@ CutMesh::CutMesh(TetMesh& mesh, std::vector<Removable> removable, Surface& surfa
 void CutMesh::add_spares(std::span<const int> held, Surface& surface) {
   std::vector<char> may_split(mesh_->vertices.size());
   for (std::size_t t = 0; t < removable_.size(); ++t) {
-    if (removable_[t] == Removable::kNever) continue;
+    if (removable_[t] == 0) continue;
     for (const int v : mesh_->tetrahedra[t]) may_split[static_cast<std::size_t>(v)] = 1;
   }
   next_spare_ = static_cast<int>(mesh_->vertices.size());

@@ -21,22 +21,14 @@ std::vector<char> in_region(const Region& region, const TetMesh& mesh) {
 
 }  // namespace
 
-std::vector<Removable> removable_tetrahedra(const Cutting& cutting, const TetMesh& mesh) {
-  const std::size_t count = mesh.tetrahedra.size();
-  const std::vector<char> all(count, 1);
-  const std::vector<char> now = cutting.region ? in_region(*cutting.region, mesh) : all;
-  std::vector<char> later(count, 0);
-  if (cutting.growth) later = cutting.growth->region ? in_region(*cutting.growth->region, mesh) : all;
-  const auto is_near = [&](const Tetrahedron& t) {
-    return !cutting.plan || !cutting.plan->within ||
-           std::abs(cutting.plan->distance(centre_of(mesh, t))) <= *cutting.plan->within;
-  };
-  std::vector<Removable> removable;
-  for (std::size_t t = 0; t < count; ++t) {
-    const bool can = now[t] != 0 && is_near(mesh.tetrahedra[t]);
-    removable.push_back(can ? Removable::kNow : later[t] != 0 ? Removable::kLater : Removable::kNever);
+std::vector<char> removable_tetrahedra(const Cutting& cutting, const TetMesh& mesh) {
+  std::vector<char> removable(mesh.tetrahedra.size(), 1);
+  if (cutting.region) removable = in_region(*cutting.region, mesh);
+  for (std::size_t t = 0; t < removable.size() && cutting.plan && cutting.plan->within; ++t) {
+    if (!(std::abs(cutting.plan->distance(centre_of(mesh, mesh.tetrahedra[t]))) <= *cutting.plan->within))
+      removable[t] = 0;
   }
-  if (std::ranges::count(removable, Removable::kNow) == 0)
+  if (std::ranges::count(removable, 1) == 0)
     fail("{}: no tetrahedron of the mesh lies in what can be cut; make the region, or `within`, larger",
          cutting.where);
   return removable;

@@ -18,15 +18,6 @@ struct CutPlan {
   double distance(const Vec3& x) const { return (x - point).dot(normal); }
 };
 
-/// `[cutting.growth]`: what can be cut follows the cut.
-struct CutGrowth {
-  double reach =
-      0.02;  ///< m, [1e-4, 1]: around the end of what can be cut, where a cut comes within half of it
-  double after = 10;               ///< s, [0.1, 3600]: so long after that
-  std::optional<Region> region{};  ///< what can be cut in the end; none: all
-  std::string where{};             ///< "FILE:LINE" of this section
-};
-
 /// `[cutting]`: tools with `cut_buttons` remove tissue by heat, or part it by their `blade`, while one of
 /// these is pressed.
 struct Cutting {
@@ -40,13 +31,11 @@ struct Cutting {
   double smallest_piece = 1e-6;
   std::optional<Region> region{};  ///< what can be cut; none: all, or what `plan` says
   std::optional<CutPlan> plan{};
-  std::optional<CutGrowth> growth{};
   std::string where{};  ///< "FILE:LINE" of this section
 };
 
-/// Of each tetrahedron, whether it can be cut: those whose centre is in the box or ball and near enough to
-/// the plan, or of a surface tag those with a vertex on that; later, what `growth` says so of. Throws `Error`
-/// where none can be now.
-std::vector<Removable> removable_tetrahedra(const Cutting& cutting, const TetMesh& mesh);
+/// Returns 1 for each tetrahedron that can be cut, else 0: those whose centre is in the box or ball and near
+/// enough to the plan, or of a surface tag those with a vertex on that. Throws `Error` where none can.
+std::vector<char> removable_tetrahedra(const Cutting& cutting, const TetMesh& mesh);
 
 }  // namespace palpate::sim

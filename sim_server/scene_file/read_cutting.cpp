@@ -21,16 +21,6 @@ bool names_region(const Config& config) {
   return config.has("box") || config.has("center") || config.has("radius") || config.has("surface_tag");
 }
 
-CutGrowth read_growth(const Config& config) {
-  CutGrowth growth;
-  growth.where = config.where();
-  growth.reach = config.number("reach", {1e-4, 1, "m"}, growth.reach);
-  growth.after = config.number("after", {0.1, 3600, "s"}, growth.after);
-  if (names_region(config)) growth.region = read_region(config, "[cutting.growth]");
-  config.reject_unknown();
-  return growth;
-}
-
 }  // namespace
 
 Cutting read_cutting(const Config& config) {
@@ -43,7 +33,6 @@ Cutting read_cutting(const Config& config) {
   cutting.smallest_piece = config.number("smallest_piece", {0, 1, "m^3"}, cutting.smallest_piece);
   if (names_region(config)) cutting.region = read_region(config, "[cutting]");
   if (const auto plan = config.table("plan")) cutting.plan = read_plan(*plan);
-  if (const auto growth = config.table("growth")) cutting.growth = read_growth(*growth);
   config.reject_unknown();
   return cutting;
 }

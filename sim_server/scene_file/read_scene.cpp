@@ -114,9 +114,6 @@ void require_cutting(const Scene& scene) {
   if (!row.cuts)
     fail("{}: tissue of model \"{}\" cannot be cut; {} can", scene.cutting->where, row.name,
          models_that([](const DeformationModelRow& m) { return m.cuts; }));
-  if (scene.cutting->growth && !row.needs_cutting)
-    fail("{}: model \"{}\" moves all of the body, of which [cutting] says what can be cut; remove this",
-         scene.cutting->growth->where, row.name);
   if (scene.material && scene.material->element != ElementKind::kLinear)
     fail("{}: tissue of element \"{}\" cannot be cut; take \"p1\"", scene.material_where,
          name_of(scene.material->element));

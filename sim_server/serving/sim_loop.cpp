@@ -145,12 +145,6 @@ void SimLoop::look_how_near(Time now) noexcept {
 
 void SimLoop::note_cuts() noexcept {
   if (simulation_.resection() == nullptr) return;
-  const Resection::Growth& now = simulation_.resection()->growth();
-  growth.begun.store(now.begun, std::memory_order_relaxed);
-  growth.failures.store(now.failures, std::memory_order_relaxed);
-  growth.late_steps.store(now.late_steps, std::memory_order_relaxed);
-  growth.tetrahedra.store(now.tetrahedra, std::memory_order_relaxed);
-  growth.times.store(now.times, std::memory_order_release);
   if (simulation_.resection()->totals().time_at_end > 0) cut_to_end.store(true, std::memory_order_relaxed);
 }
 

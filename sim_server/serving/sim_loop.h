@@ -103,11 +103,6 @@ class SimLoop {
   std::atomic<std::uint64_t> steps_done{0};
   std::atomic<double> newest_newton{0};
   std::array<std::atomic<bool>, kMaxTools> went_beyond{};  ///< of each tool, whether it ever was beyond
-  /// How what can be cut grows ([cutting.growth]): how often the background began, could, and could not;
-  /// how many tetrahedra it let go in all; and how many steps went on without what was due.
-  struct Growth {
-    std::atomic<std::uint64_t> begun{0}, times{0}, failures{0}, tetrahedra{0}, late_steps{0};
-  } growth{};
   std::atomic<bool> cut_to_end{false};  ///< whether a hot tip ever was at tissue that cannot be cut
 
  private:

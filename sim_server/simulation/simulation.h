@@ -146,8 +146,7 @@ class Simulation {
   /// Another number whenever clients are to be told another surface, or none any more (`ToldSurface`). Of a
   /// tissue that is never cut, it stays 0.
   std::uint32_t told_version() const { return told_version_; }
-  /// From now on no step waits for a background: what clients are told, and more that can be cut, comes when
-  /// it is there. So what is felt depends on the machine, by when that was.
+  /// From now on no step waits for a background: what clients are told comes when it is there. So what is felt depends on the machine, by when that was.
   void hurry() { hurries_ = true; }
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
   /// What a tool puts on the surface by now.
@@ -181,8 +180,8 @@ class Simulation {
   std::span<const Removal> removals() const {
     return cut_ ? std::span<const Removal>(cut_->removed) : std::span<const Removal>();
   }
-  /// From now on this is removed, each in the first step that begins at its time or later (s, ascending) and
-  /// in which it can be ([cutting.growth]), and nothing by heat: so another rate can be held against the one
+  /// From now on this is removed, each in the first step that begins at its time or later (s, ascending), and
+  /// nothing by heat: so another rate can be held against the one
   /// at which they went. Of an organ that can be cut.
   void remove_at(std::vector<Removal> removals);
   const StepFailures& failures() const { return failures_; }
@@ -194,8 +193,8 @@ class Simulation {
   void advance(std::span<const ToolInput> inputs, double dt);
   void cut(std::span<const ToolInput> inputs, double dt);
   std::span<const int> remove_tissue(std::span<const ToolInput> inputs, double dt);
-  void part_tissue(std::span<const ToolInput> inputs);
-  void part_by(std::size_t tool);
+  void part_tissue(std::span<const ToolInput> inputs, double dt);
+  void part_by(std::size_t tool, double dt);
   void tell_near(std::span<const ToolInput> inputs);
   void make_room_for_modes();
   void count_gone(const DeformationModel::Removed& gone);
@@ -250,7 +249,6 @@ class Simulation {
     std::vector<Removal> removed = {};
     std::optional<std::vector<Removal>> planned = {};  // to be removed, instead of by heat
     std::size_t done = 0;                              // of these
-    std::vector<int> waiting = {};                     // and what of these can be removed later only
   };
 
   std::unique_ptr<TetMesh> mesh_;  // what can be cut knows it by its place

@@ -37,15 +37,13 @@ std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs
     }
     return cut.resection.advance(cut.tips, tissue_.positions, dt, surface_);
   }
-  std::vector<int> due = std::exchange(cut.waiting, {});
+  std::vector<int> due;
   for (; cut.done < cut.planned->size() && (*cut.planned)[cut.done].t <= time_ + kRounding; ++cut.done) {
     due.push_back((*cut.planned)[cut.done].tetrahedron);
   }
   std::erase_if(due, [&](int tetrahedron) {
     const CutMesh& left = cut.resection.left();
-    if (!left.is_left(tetrahedron)) return true;
-    if (left.removable(tetrahedron) == Removable::kLater) cut.waiting.push_back(tetrahedron);
-    return !left.is_removable(tetrahedron);
+    return !left.is_left(tetrahedron) || !left.is_removable(tetrahedron);
   });
   std::ranges::sort(due);
   due.erase(std::unique(due.begin(), due.end()), due.end());
@@ -54,9 +52,6 @@ std::span<const int> Simulation::remove_tissue(std::span<const ToolInput> inputs
 
 /// Before the tissue goes on.
 void Simulation::cut(std::span<const ToolInput> inputs, double dt) {
-  const DeformationModel::Growth growth = tissue_.model->grow(cut_->resection.left(), !hurries_);
-  cut_->resection.grow(growth);
-  if (!growth.allowed.empty()) tissue_.note_same_place();
   cut_->resection.begin_step();
   const std::span<const int> removed = remove_tissue(inputs, dt);
   if (!removed.empty()) {
@@ -64,7 +59,7 @@ void Simulation::cut(std::span<const ToolInput> inputs, double dt) {
     count_gone(tissue_.model->remove(removed, cut_->resection.left()));
     tissue_.note_same_place();  // of what is shown now, too
   }
-  if (!cut_->planned) part_tissue(inputs);
+  if (!cut_->planned) part_tissue(inputs, dt);
   if (cut_->resection.version() != cut_->touchable_version) change_surface();
   tell_near(inputs);
 }
@@ -93,7 +88,7 @@ void Simulation::count_gone(const DeformationModel::Removed& gone) {
 }
 
 /// Along the way of the blades in the step before.
-void Simulation::part_tissue(std::span<const ToolInput> inputs) {
+void Simulation::part_tissue(std::span<const ToolInput> inputs, double dt) {
   Cut& cut = *cut_;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     std::optional<Blade>& blade = cut.blades[i];
@@ -105,7 +100,7 @@ void Simulation::part_tissue(std::span<const ToolInput> inputs) {
     const ToolPose& pose = tools_[i].pose();
     blade->is = {pose.p_W, pose.p_W + pose.q_W * *cut.tools[i].blade};
     if (blade->was) {
-      part_by(i);
+      part_by(i, dt);
       if (!cuts) blade->was.reset();  // that was the way before it was let go
     } else if (cuts) {
       blade->trail.setZero();
@@ -115,7 +110,7 @@ void Simulation::part_tissue(std::span<const ToolInput> inputs) {
   }
 }
 
-void Simulation::part_by(std::size_t tool) {
+void Simulation::part_by(std::size_t tool, double dt) {
   Blade& blade = *cut_->blades[tool];
   Resection& resection = cut_->resection;
   std::vector<Vec3> are(tissue_.positions.begin(), tissue_.positions.end());
@@ -128,6 +123,7 @@ void Simulation::part_by(std::size_t tool) {
   resection.keep(std::move(touched));
   const Parted& parted = resection.part({*blade.was, blade.is, blade.trail}, blade.were, are, surface_);
   if (!parted.stroke.moved) return;
+  if (parted.stroke.at_end) resection.totals().time_at_end += dt;
   blade.was = blade.is;
   blade.trail = parted.stroke.trail;
   blade.were = std::move(are);

@@ -181,24 +181,26 @@ TEST_CASE("hybrid: what a blade has parted bears a tool at rest as a body that w
   check_bears_as_never_whole(finely_stepped(std::move(scene)));
 }
 
-TEST_CASE("hybrid: what can be cut grows where a blade parts it, and bears a tool as if never whole",
-          "[threads]") {
-  Scene scene = finely_stepped(blade_scene("hybrid"));
-  scene.tools[0].blade = Vec3(0, -0.008, 0);
-  scene.cutting->region =
-      Region{.box = Box{Vec3(-1, -0.012, -0.012), Vec3(-0.01, 1, 0.012)}, .where = "test"};
-  scene.cutting->growth = CutGrowth{.reach = 0.008, .after = 0.5, .where = "test"};
-  const auto cut = parted_along_x(scene), again = parted_along_x(scene);
-  CHECK(cut->resection()->growth().times > 0);
-  CHECK(cut->resection()->growth().failures == 0);
-  CHECK(cut->flagged().to_text().empty());
-  CHECK(cut->state_hash() == again->state_hash());
-  double farthest = -1;  // m, of copies
-  const int copies = cut->resection()->left().spares().first;
-  for (int v = copies - static_cast<int>(cut->resection()->totals().splits); v < copies; ++v)
-    farthest = std::max(farthest, cut->mesh().vertices[static_cast<std::size_t>(v)].x());
-  CHECK(farthest > -0.008);
-  check_bears_as_never_whole(*cut);
+TEST_CASE("a blade stops at the end of what can be cut, and says so") {
+  for (const char* const model : {"tensor_mass", "hybrid"}) {
+    CAPTURE(model);
+    Scene whole = finely_stepped(blade_scene(model));
+    whole.tools[0].blade = Vec3(0, -0.008, 0);
+    whole.cutting->region =
+        Region{.box = Box{Vec3(-1, -0.012, -0.012), Vec3(0.01, 1, 0.012)}, .where = "test"};
+    Scene ends = whole;
+    ends.cutting->region->box->high.x() = -0.01;
+    // Both blades go from x = -22 mm by 20 mm: the first stays 12 mm away from the end, the second passes it.
+    const auto inside = parted_along_x(whole), beyond = parted_along_x(ends);
+    CHECK(inside->resection()->totals().time_at_end == 0);
+    CHECK(beyond->resection()->totals().time_at_end > 0);
+    CHECK(beyond->resection()->totals().splits > 0);
+    const CutMesh& left = beyond->resection()->left();
+    for (int v = left.spares().first - static_cast<int>(beyond->resection()->totals().splits);
+         v < left.spares().first; ++v)
+      CHECK(beyond->mesh().vertices[static_cast<std::size_t>(v)].x() < -0.008);  // within a cell of the end
+    check_bears_as_never_whole(*beyond);
+  }
 }
 
 TEST_CASE("the area that a blade has parted is that of its way within the body") {

@@ -40,7 +40,7 @@ TEST_CASE("tensors after removals have the bits of a fresh assembly of what is l
   }
   ElasticTensors tensors(mesh, material, fixed);
   Surface surface = boundary_surface(mesh);
-  CutMesh cut(mesh, std::vector<Removable>(mesh.tetrahedra.size(), Removable::kNow), surface);
+  CutMesh cut(mesh, std::vector<char>(mesh.tetrahedra.size(), 1), surface);
   std::minstd_rand random(3);
   std::vector<int> order(mesh.tetrahedra.size());
   std::iota(order.begin(), order.end(), 0);

@@ -24,7 +24,7 @@ struct Cut {
   }
   TetMesh mesh;
   Surface surface = boundary_surface(mesh);
-  CutMesh cut{mesh, std::vector<Removable>(mesh.tetrahedra.size(), Removable::kNow), surface, {}};
+  CutMesh cut{mesh, std::vector<char>(mesh.tetrahedra.size(), 1), surface, {}};
   std::vector<Vec3> places;
   Scalpel scalpel{cut};
   PieceFinder finder{cut, {}};

@@ -18,7 +18,7 @@ struct Cutting {
   explicit Cutting(TetMesh made) : mesh(std::move(made)) {}
   TetMesh mesh;
   Surface surface = boundary_surface(mesh);
-  CutMesh cut{mesh, std::vector<Removable>(mesh.tetrahedra.size(), Removable::kNow), surface};
+  CutMesh cut{mesh, std::vector<char>(mesh.tetrahedra.size(), 1), surface};
 };
 
 /// Pieces of what is left that hang together by faces, by a flood from each tetrahedron: the tetrahedra.
@@ -71,19 +71,19 @@ TEST_CASE("only what may be removed gives the surface its vertices") {
   TetMesh mesh = test::corner_block(Vec3(4, 4, 4), {4, 4, 4});
   Surface surface = boundary_surface(mesh);
   const std::size_t outside = surface.vertices.size();
-  std::vector<Removable> removable(mesh.tetrahedra.size(), Removable::kNever);
+  std::vector<char> removable(mesh.tetrahedra.size(), 0);
   const CutMesh nothing(mesh, removable, surface);
   CHECK(surface.vertices.size() == outside);
   std::vector<char> is_corner(mesh.vertices.size(), 0);  // of what may go: one half
   for (const int v : surface.vertices) is_corner[static_cast<std::size_t>(v)] = 1;
   for (std::size_t t = 0; t < mesh.tetrahedra.size() / 2; ++t) {
-    removable[t] = Removable::kNow;
+    removable[t] = 1;
     for (const int v : mesh.tetrahedra[t]) is_corner[static_cast<std::size_t>(v)] = 1;
   }
   const CutMesh half(mesh, removable, surface);
   CHECK(surface.vertices.size() == static_cast<std::size_t>(std::ranges::count(is_corner, 1)));
   CHECK(surface.vertices.size() < mesh.vertices.size());
-  removable.assign(removable.size(), Removable::kNow);
+  removable.assign(removable.size(), 1);
   const CutMesh all(mesh, removable, surface);
   CHECK(surface.vertices.size() == mesh.vertices.size());
   CHECK(open_edges(by_mesh_vertices(surface)) == 0);
@@ -186,13 +186,13 @@ TEST_CASE("a held piece stays, however small it is beside a loose one") {
 TEST_CASE("a piece goes whole with tissue that could not be cut, and leaves no surface behind") {
   const TetMesh mesh = test::corner_block(Vec3(8, 3, 3), {8, 3, 3});
   Surface surface = boundary_surface(mesh);
-  std::vector<Removable> removable;
+  std::vector<char> removable;
   std::vector<int> slit;
   for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) {
     double x = 0;
     for (const int v : mesh.tetrahedra[t]) x += mesh.vertices[v].x() / 4;
-    removable.push_back(x > 1 && x < 2 ? Removable::kNow : Removable::kNever);
-    if (removable.back() == Removable::kNow) slit.push_back(t);
+    removable.push_back(x > 1 && x < 2 ? 1 : 0);
+    if (removable.back() == 1) slit.push_back(t);
   }
   CutMesh cut(mesh, removable, surface);
   PieceFinder finder(cut, std::vector<int>{0});

@@ -22,7 +22,7 @@ struct Body {
   TetMesh mesh;
   std::vector<int> held;
   Surface surface = boundary_surface(mesh);
-  CutMesh cut{mesh, std::vector<Removable>(mesh.tetrahedra.size(), Removable::kNow), surface, held};
+  CutMesh cut{mesh, std::vector<char>(mesh.tetrahedra.size(), 1), surface, held};
 
   std::vector<int> inner_faces() const {
     std::vector<int> faces;
@@ -164,9 +164,9 @@ TEST_CASE("parted faces are surface on both sides, and vertices are as many as t
 TEST_CASE("a vertex that is held, or beside what cannot be cut, stays one") {
   TetMesh mesh = deep_block({4, 2, 4});
   Surface surface = boundary_surface(mesh);
-  std::vector<Removable> removable;
+  std::vector<char> removable;
   for (const Tetrahedron& t : mesh.tetrahedra)
-    removable.push_back(centre_of(mesh, t).z() > 0 ? Removable::kNow : Removable::kNever);
+    removable.push_back(centre_of(mesh, t).z() > 0 ? 1 : 0);
   std::vector<int> held;
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
     if (mesh.vertices[v].y() < -0.019) held.push_back(v);

@@ -126,8 +126,7 @@ TEST_CASE("[cutting]: values out of range, and a scene in which nothing could be
   const std::string power = cuts + "power = 0", energy = cuts + "energy = 1", spot = cuts + "spot = 0",
                     piece = cuts + "smallest_piece = -1", wrong_key = cuts + "watts = 5",
                     normal = plan + "normal = [0, 0, 0]", within = plan + "normal = [1, 0, 0]\nwithin = 0",
-                    growth = cuts + "[cutting.growth]", reach = growth + "\nreach = 0",
-                    after = growth + "\nafter = 0", tough = cuts + "toughness = -1",
+                    tough = cuts + "toughness = -1", growth = cuts + "[cutting.growth]",
                     alone = cuts.substr(0, cuts.size() - 1);
   for (const Wrong& wrong : {
            Wrong{"[[tool]]", "cut_buttons = 0", "cut_buttons", "between 1 and 65535"},
@@ -145,9 +144,7 @@ TEST_CASE("[cutting]: values out of range, and a scene in which nothing could be
            Wrong{"[[tool]]", tough.c_str(), "toughness", "(J/m^2)"},
            Wrong{"[[tool]]", "cut_buttons = 1\nblade = [0, 0, 0]", "blade", "0.1 mm away at least"},
            Wrong{"[[tool]]", "blade = [0, -0.01, 0]", "blade", "give this [[tool]] `cut_buttons`"},
-           Wrong{"[[tool]]", reach.c_str(), "reach", "between 0.0001 and 1 (m)", "hybrid"},
-           Wrong{"[[tool]]", after.c_str(), "after", "between 0.1 and 3600 (s)", "hybrid"},
-           Wrong{"[[tool]]", growth.c_str(), "moves all of the body", "remove this", "tensor_mass"},
+           Wrong{"[[tool]]", growth.c_str(), "growth", "unknown key"},
        })
     check_refused(wrong);
 }
