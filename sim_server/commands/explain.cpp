@@ -89,14 +89,11 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
     return fmt::format("{} vertices, {} triangles", surface.vertices.size(), surface.triangles.size());
   if (part == "resection") {
     const CutMesh& left = simulation.resection()->left();
-    std::array<std::size_t, 3> count{};
-    for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t)
-      ++count[static_cast<std::size_t>(left.removable(t))];
-    const auto [never, later, now] = count;
+    std::size_t removable = 0;
+    for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) removable += left.is_removable(t);
     const auto [spare, end] = left.spares();
-    return fmt::format("{} of {} tetrahedra can be removed{}; their vertices count to the surface{}", now,
+    return fmt::format("{} of {} tetrahedra can be removed; their vertices count to the surface{}", removable,
                        mesh.tetrahedra.size(),
-                       later > 0 ? fmt::format(", {} more as the cut comes near", later) : "",
                        end > spare ? fmt::format(", with {} more that a blade may need", end - spare) : "");
   }
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));

@@ -9,7 +9,6 @@
 #include "common/log.h"
 #include "common/progress.h"
 #include "common/report.h"
-#include "sim_server/commands/budget_report.h"
 #include "sim_server/commands/resection_log.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/virtual_session.h"
@@ -151,7 +150,6 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
           {"late", stats.late},
           {"flagged", stats.flagged},
           {"flagged_by", simulation.flagged().to_json()},
-          {"budget", budget_report(simulation)},
           {"max_newton", stats.max_newton},
           {"resection", resection_report(simulation)},
           {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
@@ -172,8 +170,6 @@ void print_recording(const RecordOptions& options, const VirtualSessionStats& st
   if (options.real_time)
     fmt::print("            {} of the deadlines of {:g} Hz passed over, as steps took too long\n", stats.late,
                options.rate_hz);
-  if (const std::string ended = budget_text(simulation); !ended.empty())
-    fmt::print("            {}\n", ended);
   if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);
 }
 

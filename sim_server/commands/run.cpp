@@ -16,7 +16,6 @@
 #include "protocol/key_file.h"
 #include "protocol/link_report.h"
 #include "protocol/recording_report.h"
-#include "sim_server/commands/budget_report.h"
 #include "sim_server/commands/gallery.h"
 #include "sim_server/commands/live_view.h"
 #include "sim_server/commands/page_news.h"
@@ -123,7 +122,6 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["late"] = stats.late;
   report["flagged"] = stats.flagged;
   report["flagged_by"] = simulation.flagged().to_json();
-  report["budget"] = budget_report(simulation);
   report["max_newton"] = stats.max_newton();
   report["tools"] = tools_report(stats, link, scene, errors);
   int sessions = 0;
@@ -171,8 +169,6 @@ void print_summary(const Json& report, const Simulation& simulation) {
       report["max_newton"].get<double>());
   if (const std::string why = simulation.flagged().to_text(); !why.empty())
     fmt::print("            steps with a flagged force: {}\n", why);
-  if (const std::string ended = budget_text(simulation); !ended.empty())
-    fmt::print("            {}\n", ended);
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
     const Json& missed = report["tools"][i]["missed_by_m"];
     if (missed.is_null()) continue;

@@ -86,7 +86,6 @@ struct Stepping {
     const DeformationModelRow* row = settings.model.empty() ? nullptr : &model_of(settings);
     if (row != nullptr && row->takes<ImplicitSettings>()) {
       dynamics = dynamics_settings(settings);
-      dynamics.budget_ms = 0;  // nobody waits for it
       tolerance = settings.of<ImplicitSettings>().tolerance;
       if (!dynamics.second_order) name = "backward Euler";
     } else if (row != nullptr && row->takes<RayleighDamping>()) {

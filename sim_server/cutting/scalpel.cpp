@@ -28,15 +28,6 @@ Vec3 centre_at(const CutMesh& mesh, std::span<const Vec3> positions, int tetrahe
   return 0.25 * sum;
 }
 
-/// The centre of the tetrahedron of face 4 t + k, mirrored at the centre of that face: stands for the centre
-/// of a neighbour whose vertices are not all known.
-Vec3 mirrored(const CutMesh& mesh, std::span<const Vec3> positions, int face) {
-  const Tetrahedron& corners = mesh.mesh().tetrahedra[static_cast<std::size_t>(face / 4)];
-  const Vec3 centre = centre_at(mesh, positions, face / 4),
-             apex = at(mesh, positions, corners[static_cast<std::size_t>(face % 4)]);
-  return 2.0 / 3 * (4 * centre - apex) - centre;
-}
-
 /// Whether the line from `p` to `q` meets the triangle, on its border too.
 bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
@@ -68,6 +59,13 @@ std::pair<double, double> shape_around(const CutMesh& mesh, int vertex) {
     height = std::min(height, six > 0 ? shortest_height(mesh.mesh(), corners) : 0);
   }
   return {volume, height};
+}
+
+Triangle corners_of(const CutMesh& mesh, int face) {
+  const Tetrahedron& t = mesh.mesh().tetrahedra[static_cast<std::size_t>(face / 4)];
+  const Triangle& corner = kOutwardFaces[static_cast<std::size_t>(face % 4)];
+  return {t[static_cast<std::size_t>(corner[0])], t[static_cast<std::size_t>(corner[1])],
+          t[static_cast<std::size_t>(corner[2])]};
 }
 
 /// Whether an edge of what is left is one of the surface.
@@ -190,21 +188,28 @@ void Scalpel::slide_onto(const Plane& plane, std::span<const int> near, std::spa
 }
 
 /// Finds the faces between centres whose line the blade or its trail crossed, in the tissue as it is now:
-/// where the blade was, that has since moved on. Those next to tissue that cannot be cut stay.
+/// where the blade was, that has since moved on. Faces next to tissue that cannot be cut stay; the blade is
+/// at the end where it crossed an edge of one.
 void Scalpel::find_faces(const BladeSweep& blade, std::span<const int> near, std::span<const Vec3> were,
                          std::span<const Vec3> are, const CutMesh& mesh, Stroke& stroke) const {
+  const auto crosses = [&](const Vec3& shift, const Vec3& p, const Vec3& q) {
+    const Vec3 moved = shift + kBehind * blade.trail;
+    return goes_through({blade.was[0] + moved, blade.was[1] + moved}, blade.is, p, q);
+  };
   for (const int t : near) {
     const Vec3 p = centre_at(mesh, are, t), p_was = centre_at(mesh, were, t);
     for (int face = 4 * t; face < 4 * t + 4; ++face) {
-      const bool parts = mesh.can_part(face);
-      if (mesh.across(face) < 0 || (parts && mesh.across(face) < face)) continue;
+      if (mesh.across(face) < 0) continue;
+      if (!mesh.can_part(face)) {
+        const Triangle corners = corners_of(mesh, face);
+        for (std::size_t k = 0; k < 3; ++k)
+          stroke.at_end |= crosses(p - p_was, at(mesh, are, corners[k]), at(mesh, are, corners[(k + 1) % 3]));
+        continue;
+      }
+      if (mesh.across(face) < face) continue;
       const int other = mesh.across(face) / 4;
-      const Vec3 q = parts ? centre_at(mesh, are, other) : mirrored(mesh, are, face),
-                 q_was = parts ? centre_at(mesh, were, other) : mirrored(mesh, were, face);
-      const Vec3 shift = 0.5 * (p - p_was + q - q_was) + kBehind * blade.trail;
-      if (!goes_through({blade.was[0] + shift, blade.was[1] + shift}, blade.is, p, q)) continue;
-      if (parts) stroke.faces.push_back(face);
-      stroke.at_end |= !parts;
+      const Vec3 q = centre_at(mesh, are, other);
+      if (crosses(0.5 * (p - p_was + q - centre_at(mesh, were, other)), p, q)) stroke.faces.push_back(face);
     }
   }
 }

@@ -176,9 +176,9 @@ std::size_t CondensedRest::border() const {
 std::size_t CondensedRest::bytes() const {
   std::size_t numbers = 0;
   for (const Part& part : all_)
-    numbers += static_cast<std::size_t>(part.following.size() + part.carrying.size() +
-                                        part.compliance.size() + part.driven.size() + part.shapes.size() +
-                                        3 * part.at.size() + part.all_shapes.size() + part.masses.size());
+    numbers +=
+        static_cast<std::size_t>(part.following.size() + part.carrying.size() + part.compliance.size() +
+                                 part.driven.size() + part.shapes.size() + 3 * part.at.size());
   return numbers * sizeof(double) + (part_of_.size() + 3 * part_.size() + 2 * vertices_.size()) * sizeof(int);
 }
 

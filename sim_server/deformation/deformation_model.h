@@ -116,14 +116,6 @@ class DeformationModel {
   /// lets it do.
   virtual bool inside_out() const noexcept { return false; }
 
-  /// Steps that ended because their budget did, before they had converged.
-  struct BudgetUse {
-    std::uint64_t steps = 0;
-    double largest_residual = 0;  ///< relative, that one of these left
-  };
-  /// So far, of models that have one.
-  virtual BudgetUse budget_use() const noexcept { return {}; }
-
   /// How much farther (m/N, symmetric) the surface that bears these loads, as one piece, gives way to a force
   /// that is held for `seconds` than to one held to the end of the step, which is what `compliance` tells. 0
   /// where that is all the same, or not known.

@@ -61,8 +61,6 @@ const Material& material_of(const ModelInputs& inputs) {
   const Scene& scene = inputs.scene;
   if (!scene.material) fail("{}: model \"implicit\" needs a [material] section", scene.source);
   step_period(scene);  // before any work
-  if (scene.material->is_linear() && !scene.cutting && scene.deformation.of<ImplicitSettings>().budget_ms > 0)
-    fail("{}: budget_ms bounds iterations, and law \"linear\" takes one; leave it out", scene.source);
   if (held_by_vertices(scene)) require_no_loose_part(inputs);
   inputs.progress(name_of(Stage::kStiffness), 0);
   return *scene.material;
@@ -152,7 +150,6 @@ FreeMotion Implicit::free_motion(double dt) {
     if (static_cast<double>(columns_.size()) * sizeof(double) > kMostColumnBytes) clear_columns();
     if (!triangles_.empty()) request_columns();
     dynamics_.start_step(period_);
-    columns_ms_ = 0;  // of the step before
     if (supports_) {
       supports_->advance(period_);
       scene_loads_.put_held(supports_->time(), dynamics_.mutable_position());
@@ -198,24 +195,12 @@ std::optional<FreeMotion> Implicit::relinearise() {
   const int most = dynamics_.relative_residual() > kBalanced ? kMoreIterations * max_newton_ : max_newton_;
   if (is_linear() || ++iterations_ > most) return {};
   apply_new_loads();
-  dynamics_.charge(std::exchange(columns_ms_, 0));
   if (iterations_ == max_newton_ + 1) dynamics_.replace_background_factor();
-  if (!dynamics_.affords_iteration()) {
-    end_by_budget();
-    return {};
-  }
   if (!relinearised_) dynamics_.loads_changed();
   relinearised_ = true;
   if (dynamics_.iterate(external_forces(), tolerance_) <= tolerance_) return {};
   update_surface();
   return motion();
-}
-
-void Implicit::end_by_budget() {
-  dynamics_.end_by_budget(external_forces());
-  if (dynamics_.relative_residual() <= tolerance_) return;
-  ++budget_use_.steps;
-  budget_use_.largest_residual = std::max(budget_use_.largest_residual, dynamics_.relative_residual());
 }
 
 bool Implicit::balanced() const noexcept {
@@ -287,7 +272,6 @@ void Implicit::find_columns(std::span<const int> vertices) const {
   }
   if (missing.empty()) return;
   keep_columns(dynamics_.matrix().columns(missing, column_tolerance_));
-  columns_ms_ += dynamics_.costs().columns(static_cast<int>(missing.size()));
 }
 
 void Implicit::keep_columns(const Eigen::MatrixXd& columns) const {
@@ -340,7 +324,7 @@ std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) {
 std::vector<MemoryPart> Implicit::memory() const {
   std::vector<MemoryPart> parts{
       {"elements", solid_.bytes() + dynamics_.scratch_bytes()},
-      {"motion", dynamics_.bytes(), dynamics_.budget_text()},
+      {"motion", dynamics_.bytes()},
       {"compliance", static_cast<std::size_t>(columns_.size()) * sizeof(double)},
       {"positions", (rest_.size() + free_.size() + positions_.size() + external_.size()) * sizeof(Vec3) +
                         (node_.size() + dof_.size() + slot_.size()) * sizeof(int)}};

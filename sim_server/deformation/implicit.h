@@ -23,14 +23,13 @@ struct ImplicitSettings {
   int refresh_steps = 8;    ///< from one factor of the background to the next, [1, 1000]
   int max_newton = 5;       ///< iterations of Newton's method in a step that balances, [1, 100]
   double tolerance = 1e-5;  ///< the relative residual that they may leave, [1e-12, 0.1]
-  double budget_ms = 0;     ///< that a step may cost by `StepCosts`, [0.01, 1e5]; 0: whatever it takes
 
   /// Norm of the residual that columns of compliance may leave of three unit forces: less matters little, as
   /// each iteration looks at the true forces again.
   double column_tolerance() const { return std::min(1e-3, 100 * tolerance); }
 
-  static constexpr std::array<std::string_view, 6> kKeys{"integrator", "solver",    "refresh_steps",
-                                                         "max_newton", "tolerance", "budget_ms"};
+  static constexpr std::array<std::string_view, 5> kKeys{"integrator", "solver", "refresh_steps",
+                                                         "max_newton", "tolerance"};
   static ImplicitSettings read(const Config& config);
   std::string to_text() const;
 };
@@ -45,9 +44,8 @@ DynamicsSettings dynamics_settings(const DeformationSettings& settings);
 /// there, and answers the contact solver from that: compliance W = J A^-1 J^T, dt^2 of the mass-like matrix
 /// in it, which is also that over the sample interval, as loads are held over the step. Then it iterates
 /// again from where contact led, until Newton's method has converged with contact inside its loop, at most
-/// `max_newton` times, and no longer than the budget of the step lasts, where the scene has one
-/// (`budget_use`). Where more than 1 % of the forces are left unbalanced then, it goes on for as many
-/// iterations again; a body whose factors come from the background gets one of where it is, for that. The
+/// `max_newton` times. Where more than 1 % of the forces are unbalanced then, it iterates as many times
+/// again; a body whose factors come from the background gets one of its own position for that. The
 /// factor of A is kept over steps as long as it serves (where the body rests, none is older than its shape),
 /// or made in the background and exchanged every `refresh_steps`: that takes more iterations, but they
 /// converge to the balance of the true forces. Columns of W are solved for as they are asked for, and kept
@@ -72,12 +70,10 @@ class Implicit : public DeformationModel {
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) override;
   std::optional<FreeMotion> relinearise() override;
-  /// Whether the last iteration found, or the budget left, a relative residual of at most 1 %, and no element
-  /// inverted for good
+  /// True if the last iteration found a relative residual of at most 1 %, and no element is inverted for good
   /// (`Dynamics::inside_out`).
   bool balanced() const noexcept override;
   bool inside_out() const noexcept override { return !is_linear() && dynamics_.inside_out(); }
-  BudgetUse budget_use() const noexcept override { return budget_use_; }
   std::span<const Vec3> nodes() const noexcept override { return dynamics_.position(); }
   Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
   void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) override;
@@ -85,7 +81,6 @@ class Implicit : public DeformationModel {
 
  private:
   void begin(const ModelInputs& inputs);
-  void end_by_budget();
   void apply_new_loads();
   void end_step_in_hand();
   std::vector<Dynamics::NodeMass> masses_of(const std::set<int>& nodes, const CutMesh& left) const;
@@ -132,8 +127,6 @@ class Implicit : public DeformationModel {
   mutable std::vector<int> slot_;                         // per surface vertex: of its columns, or -1
   mutable std::vector<std::uint8_t> asked_;  // per surface vertex: for its columns, of this factor
   mutable int slots_ = 0;
-  mutable double columns_ms_ = 0;  // of columns that are not yet charged to the budget
-  BudgetUse budget_use_;
   mutable Eigen::MatrixXd columns_;  // of A^-1, three a slot, m/N
 };
 

@@ -17,7 +17,6 @@ struct NamedSolver {
 };
 constexpr std::array kSolvers{
     NamedSolver{"direct", DynamicsSettings::Solver::kDirect},
-    NamedSolver{"pcg", DynamicsSettings::Solver::kConjugateGradients},
     NamedSolver{"quasi_newton", DynamicsSettings::Solver::kQuasiNewton},
 };
 
@@ -35,25 +34,20 @@ ImplicitSettings ImplicitSettings::read(const Config& config) {
   settings.refresh_steps =
       static_cast<int>(config.integer("refresh_steps", {1, 1000, "steps"}, settings.refresh_steps));
   if (settings.solver == DynamicsSettings::Solver::kDirect && config.says("refresh_steps"))
-    fail("{}: solver \"direct\" factors where it has to; refresh_steps is for pcg and quasi_newton",
+    fail("{}: solver \"direct\" factors where it has to; refresh_steps is for quasi_newton",
          config.where("refresh_steps"));
   settings.max_newton =
       static_cast<int>(config.integer("max_newton", {1, 100, "per step"}, settings.max_newton));
   settings.tolerance = config.number("tolerance", {1e-12, 0.1, "of the forces"}, settings.tolerance);
-  if (config.says("budget_ms"))
-    settings.budget_ms = config.number("budget_ms", {0.01, 1e5, "ms"}, settings.budget_ms);
   return settings;
 }
 
 std::string ImplicitSettings::to_text() const {
   std::string text;
   if (second_order) text += "integrator = \"bdf2\"\n";
-  if (solver != DynamicsSettings::Solver::kDirect) {
-    const auto row =
-        std::ranges::find_if(kSolvers, [this](const NamedSolver& s) { return s.value == solver; });
-    text += fmt::format("solver = \"{}\"\nrefresh_steps = {}\n", row->name, refresh_steps);
-  }
-  if (budget_ms > 0) text += fmt::format("budget_ms = {:g}\n", budget_ms);
+  const auto row = std::ranges::find_if(kSolvers, [this](const NamedSolver& s) { return s.value == solver; });
+  text += fmt::format("solver = \"{}\"\n", row->name);
+  if (solver != DynamicsSettings::Solver::kDirect) text += fmt::format("refresh_steps = {}\n", refresh_steps);
   return text + fmt::format("tolerance = {:g}\nmax_newton = {}\n", tolerance, max_newton);
 }
 
@@ -65,8 +59,7 @@ DynamicsSettings dynamics_settings(const DeformationSettings& settings) {
           .second_order = steps.second_order,
           .solver = steps.solver,
           .refresh_steps = steps.refresh_steps,
-          .tolerance = steps.column_tolerance(),
-          .budget_ms = steps.budget_ms / instants_of(settings, 1)};
+          .tolerance = steps.column_tolerance()};
 }
 
 }  // namespace palpate::sim

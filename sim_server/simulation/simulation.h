@@ -146,7 +146,8 @@ class Simulation {
   /// Another number whenever clients are to be told another surface, or none any more (`ToldSurface`). Of a
   /// tissue that is never cut, it stays 0.
   std::uint32_t told_version() const { return told_version_; }
-  /// From now on no step waits for a background: what clients are told comes when it is there. So what is felt depends on the machine, by when that was.
+  /// From now on no step waits for a background: what clients are told comes when it is there. So what is
+  /// felt depends on the machine, by when that was.
   void hurry() { hurries_ = true; }
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
   /// What a tool puts on the surface by now.
@@ -186,8 +187,6 @@ class Simulation {
   void remove_at(std::vector<Removal> removals);
   const StepFailures& failures() const { return failures_; }
   const FlaggedSteps& flagged() const { return flagged_; }
-  /// Steps that ended because their budget did.
-  DeformationModel::BudgetUse budget_use() const { return tissue_.model->budget_use(); }
 
  private:
   void advance(std::span<const ToolInput> inputs, double dt);

@@ -17,11 +17,10 @@ namespace {
 constexpr double kNegligibleDisplacement = 1e-9, kElsewhere = 1e-4, kNudge = 1e-7;
 // Relative residuals. Where the last trial step of a step leaves more than the first, velocities mean
 // nothing, and the step ends at rest: each step from there lowers the energy, however far Newton's method is
-// from balance. A step that ends by its budget does so where more than the second is left: to stop where it
-// is less costs the force more. Where no more than the third is left, and loads change by no more, the
-// linearisation is trusted without a line search. A body whose step began with no more than the fourth has
-// come to rest. A step with a bordered factor that ended with more than the fifth is the last with it.
-constexpr double kAdrift = 0.1, kAdriftByBudget = 0.5, kTrusted = 0.1, kAtRest = 1e-6, kBadlyServed = 0.01;
+// from balance. Where no more than the second is left, and loads change by no more, the linearisation is
+// trusted without a line search. A body whose step began with no more than the third has come to rest. A step
+// with a bordered factor that ended with more than the fourth is the last with it.
+constexpr double kAdrift = 0.1, kTrusted = 0.1, kAtRest = 1e-6, kBadlyServed = 0.01;
 
 double largest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
   double squared = 0;
@@ -35,20 +34,7 @@ bool one_factor_serves(const Solid& solid, const DynamicsSettings& settings) {
 }
 
 bool factors_in_background(const Solid& solid, const DynamicsSettings& settings) {
-  return settings.solver != DynamicsSettings::Solver::kDirect && !one_factor_serves(solid, settings);
-}
-
-void require_budget(const StepCosts& costs, double budget_ms, bool background, const std::string& where) {
-  if (budget_ms == 0 || budget_ms >= costs.least(background)) return;
-  fail(
-      "{}: the least implicit step of this mesh costs {:.1f} ms ({}), and budget_ms leaves {:g} ms for "
-      "each; take more{}, or a coarser mesh",
-      where, costs.least(background), costs.to_text(), budget_ms,
-      background ? "" : ", solver = \"quasi_newton\", which makes its factors in the background");
-}
-
-bool learns(const Solid& solid, const DynamicsSettings& settings) {
-  return factors_in_background(solid, settings) && settings.solver == DynamicsSettings::Solver::kQuasiNewton;
+  return settings.solver == DynamicsSettings::Solver::kQuasiNewton && !one_factor_serves(solid, settings);
 }
 
 }  // namespace
@@ -57,19 +43,14 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
                    const std::string& where)
     : solid_(solid),
       linear_(one_factor_serves(solid, settings)),
-      learns_(learns(solid, settings)),
       motion_(solid, std::move(held), settings),
       matrix_(solid, motion_.dofs(), settings, where),
-      costs_(solid, matrix_),
-      budget_ms_(settings.budget_ms),
       size_(diagonal_of(solid.rest())),
       policy_({.background = factors_in_background(solid, settings),
-               .forgives = learns_,
                .refresh_steps = settings.refresh_steps,
                .negligible_force = kNegligibleDisplacement * size_ * matrix_.mean_diagonal()}) {
   motion_.set_negligible_force(kNegligibleDisplacement * size_ * matrix_.mean_diagonal());
   if (factors_in_background(solid, settings)) background_.emplace(solid, motion_.dofs(), settings, where);
-  require_budget(costs_, budget_ms_, background_.has_value() || linear_, where);
 }
 
 void Dynamics::set_state(std::vector<Vec3> x, std::span<const Vec3> v) {
@@ -77,11 +58,6 @@ void Dynamics::set_state(std::vector<Vec3> x, std::span<const Vec3> v) {
 }
 
 void Dynamics::start_step(double h) {
-  evaluations_before_ = motion_.evaluations();
-  iterations_ = 0;
-  ended_by_budget_ = false;
-  spent_ms_ = costs_.evaluation / 2;  // the turns of the nodes
-  since_factor_ms_ = 0;
   quasi_newton_.restart();
   trial_residual_ = 0;
   trusted_.resize(0);
@@ -90,29 +66,26 @@ void Dynamics::start_step(double h) {
   motion_.begin_step(h);
   if (policy_.begin_step(motion_.time().steps(), cautious_)) exchange_factors();
   matrix_.turn_to(solid_, motion_.position());
-  charge(2 * costs_.columns(matrix_.make_border(solid_, motion_.masses())));
+  matrix_.make_border(solid_, motion_.masses());
   const bool serves_badly = matrix_.is_bordered() && relative_residual_ > kBadlyServed;
-  if ((matrix_.border_misfits() || serves_badly) && affords(costs_.factor)) matrix_.expire();
+  if (matrix_.border_misfits() || serves_badly) matrix_.expire();
 }
 
 void Dynamics::factor() {
-  const int made = matrix_.build(solid_, motion_.position(), motion_.masses(), motion_.viscosity(),
-                                 motion_.time().c(), motion_.scratch());
-  spent_ms_ += made * costs_.factor;
+  matrix_.build(solid_, motion_.position(), motion_.masses(), motion_.viscosity(), motion_.time().c(),
+                motion_.scratch());
   factored_at_.assign(motion_.position().begin(), motion_.position().end());
   from_background_ = cut_since_factored_ = false;
-  since_factor_ms_ = 0;
   count_new_factor();
 }
 
 void Dynamics::count_new_factor() {
-  costs_ = StepCosts(solid_, matrix_);  // its precision may be another
   quasi_newton_.clear();
   ++factors_;
 }
 
 void Dynamics::refactor_if_moved() {
-  if (background_ || !affords(costs_.factor)) return;
+  if (background_) return;
   if (!cut_since_factored_ && largest_distance(motion_.position(), factored_at_) <= kElsewhere * size_)
     return;
   factor();
@@ -120,7 +93,7 @@ void Dynamics::refactor_if_moved() {
 }
 
 void Dynamics::replace_background_factor() {
-  if (!background_ || !affords(costs_.factor)) return;
+  if (!background_) return;
   factor();
   policy_.replaced();
 }
@@ -208,7 +181,6 @@ double Dynamics::iterate(std::span<const Vec3> external, double tolerance) {
 }
 
 double Dynamics::newton_iteration(std::span<const Vec3> external, double tolerance) {
-  ++iterations_;
   const double previous = relative_residual_;
   if (at_predictor_) limit_predictor(external);
   const bool other_c = matrix_.c() != motion_.time().c();
@@ -223,17 +195,10 @@ double Dynamics::newton_iteration(std::span<const Vec3> external, double toleran
   }
   if (residual.relative <= tolerance) return residual.relative;
   using Decision = FactorPolicy::Decision;
-  // A factor beside one of the background takes twice as long, and brings no columns.
-  const double price = (background_ ? 2 : 1) * costs_.factor;
-  const Decision decision =
-      policy_.decide(residual, previous, other_c, affords(costs_.factor), since_factor_ms_ >= price);
+  const Decision decision = policy_.decide(residual, previous, other_c);
   if (decision == Decision::kStop) return 0;
-  if (decision == Decision::kRefactorChecked) {
-    matrix_.check_precision();
-    spent_ms_ += costs_.solve;
-  }
+  if (decision == Decision::kRefactorChecked) matrix_.check_precision();
   if (decision != Decision::kKeep) factor();
-  const double before = spent_ms();
   const Eigen::VectorXd d = search_direction(residual, external);
   if (cautious_ || residual.relative > kTrusted) {
     search_along(d, residual, external);
@@ -241,14 +206,7 @@ double Dynamics::newton_iteration(std::span<const Vec3> external, double toleran
     trust(d);
     trial_residual_ = residual.relative;
   }
-  since_factor_ms_ += spent_ms() - before;
   return residual.relative;
-}
-
-void Dynamics::end_by_budget(std::span<const Vec3> external) {
-  ended_by_budget_ = true;
-  trial_residual_ = evaluate(external).relative;
-  if (!std::isfinite(relative_residual_)) go_back();
 }
 
 /// A trial point beyond all numbers.
@@ -265,7 +223,8 @@ int Dynamics::solve(std::span<const Vec3> external, int max_iterations, double t
 
 /// Where A could not be factored, a little along the residual.
 Eigen::VectorXd Dynamics::search_direction(const Residual& residual, std::span<const Vec3> external) {
-  if (learns_) quasi_newton_.add_point(motion_.unknowns(), -residual.force + motion_.by_unknowns(external));
+  if (background_)
+    quasi_newton_.add_point(motion_.unknowns(), -residual.force + motion_.by_unknowns(external));
   Eigen::VectorXd d = policy_.uses_conjugate_gradients() ? inexact_direction(residual, external)
                                                          : solve_turned(residual.force);
   if (!d.allFinite()) d = residual.force / matrix_.largest_diagonal();
@@ -274,12 +233,9 @@ Eigen::VectorXd Dynamics::search_direction(const Residual& residual, std::span<c
 
 /// By the factor, and what the quasi-Newton method has learned.
 Eigen::VectorXd Dynamics::solve_turned(const Eigen::VectorXd& b) {
-  spent_ms_ += costs_.solve;
   return quasi_newton_.direction(matrix_, b);
 }
 
-/// By as many conjugate gradients as the budget has room for, one at least. In the first iteration of a step
-/// they leave room for a second, and for columns, as contact is met between the two.
 Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<const Vec3> external) {
   const std::vector<Vec3> here(motion_.position().begin(), motion_.position().end());
   const auto times = [&](const Eigen::VectorXd& v) {
@@ -289,12 +245,7 @@ Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<
     });
   };
   const auto precondition = [&](const Eigen::VectorXd& v) { return solve_turned(v); };
-  ConjugateGradientSettings settings;
-  const double reserve =
-      2 * costs_.evaluation + (iterations_ == 1 ? costs_.iteration() + costs_.columns(1) : 0);
-  while (settings.max_iterations > 1 && !affords(settings.max_iterations * costs_.iteration() + reserve))
-    --settings.max_iterations;
-  Eigen::VectorXd d = conjugate_gradients(residual.force, times, precondition, settings);
+  Eigen::VectorXd d = conjugate_gradients(residual.force, times, precondition);
   motion_.move_to(here);
   return d;
 }
@@ -336,19 +287,13 @@ void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> e
 
 /// A step that an exception ended stands at its predictor, where no force has been at work.
 void Dynamics::finish_step() {
-  const bool adrift = !iterated_ || trial_residual_ > (ended_by_budget_ ? kAdriftByBudget : kAdrift);
+  const bool adrift = !iterated_ || trial_residual_ > kAdrift;
   cautious_ = adrift || (cautious_ && relative_residual_ > kAtRest);
   motion_.end_step(adrift);
 }
 
 bool Dynamics::inside_out() const {
   return may_stay_inverted(solid_.material()) && any_inverted(solid_, motion_.position());
-}
-
-std::string Dynamics::budget_text() const {
-  if (budget_ms_ == 0) return {};
-  return fmt::format("an implicit step (one an instant) may cost {:g} ms of the reference machine: {}",
-                     budget_ms_, costs_.to_text());
 }
 
 std::size_t Dynamics::bytes() const {

@@ -4,30 +4,25 @@
 #include "sim_server/solvers/equations_of_motion.h"
 #include "sim_server/solvers/factor_policy.h"
 #include "sim_server/solvers/quasi_newton.h"
-#include "sim_server/solvers/step_costs.h"
 
 namespace palpate::sim {
 
 /// Implicit dynamics of a body: at the end of each step of length h
 ///   M a + alpha M v + beta df/dt + f(x) = f_ext   (`EquationsOfMotion`; backward Euler or BDF2),
 /// by Newton's method on A = (1 + beta c) K + (c^2 + alpha c) M (`NewtonMatrix`), where `FactorPolicy` says
-/// which factor of A serves. Its search directions come in one of three ways:
+/// which factor of A serves. Its search directions come in one of two ways:
 /// - from the sparse Cholesky factor of A, where a stale one serves as long as iterations with it are not
 ///   slow; where three new ones in a step have not been enough, by conjugate gradients that the last of them
 ///   preconditions;
-/// - with a factor that is made in the background, of where the body was `refresh_steps` to twice as many
-///   steps before (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159), as it is, and where that is
-///   slow, by conjugate gradients that it preconditions (`conjugate_gradients`, `jacobian_times`), so that
-///   no matrix is assembled in a step;
-/// - with the same factor by a quasi-Newton method (`QuasiNewton`), which takes fewer evaluations and solves,
-///   and by conjugate gradients only in a step in which that is slow.
-/// All balance the same forces. Where a step has a budget (`DynamicsSettings::budget_ms`), none of these
-/// begins what that has no room for, by what it costs on a reference machine (`StepCosts`), so that the same
-/// is left undone on every machine. Steps allocate; one thread, which uses all cores for the elements.
+/// - from a factor that is made in the background, of where the body was `refresh_steps` to twice as many
+///   steps before (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159), by a quasi-Newton method
+///   (`QuasiNewton`), and by conjugate gradients that the factor preconditions only in a step in which that
+///   is slow (`conjugate_gradients`, `jacobian_times`), so that no matrix is assembled in a step.
+/// Both balance the same forces. Steps allocate; one thread, which uses all cores for the elements.
 class Dynamics {
  public:
-  /// At rest. Throws `Error`, beginning with `where`, when the held nodes do not hold the body, or the budget
-  /// is too small for a step. The body must outlive this.
+  /// At rest. Throws `Error`, beginning with `where`, when the held nodes do not hold the body. The body must
+  /// outlive this.
   Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,
            const std::string& where);
 
@@ -42,8 +37,7 @@ class Dynamics {
   double iterate(std::span<const Vec3> external, double tolerance = 0);
   /// At most `max_iterations` of them, until the relative residual is at most `tolerance`. Returns how many.
   int solve(std::span<const Vec3> external, int max_iterations, double tolerance);
-  /// Norm of the residual that the last `iterate` or `end_by_budget` found, as a share of the forces that
-  /// act.
+  /// Norm of the residual that the last `iterate` found, as a share of the forces that act.
   double relative_residual() const { return relative_residual_; }
   /// Whether an element that is no sliver is inverted, of a law that can have a second rest there: St. Venant
   /// and Kirchhoff's, and the corotational one where nu is near one half. O(elements), a fraction of an
@@ -52,19 +46,8 @@ class Dynamics {
   /// Factors A at the trial point, where the factor is of a place elsewhere and none comes from the
   /// background.
   void refactor_if_moved();
-  /// Factors at the trial point, in place of what the background made elsewhere, if the budget has room.
+  /// Factors at the trial point, in place of a factor that the background made elsewhere.
   void replace_background_factor();
-  /// Whether the budget of the step has room for another iteration, and for a look at what that leaves.
-  bool affords_iteration() const { return affords(costs_.iteration() + costs_.evaluation); }
-  /// The step ends, as its budget does: evaluates the residual at the trial point, for `relative_residual`.
-  void end_by_budget(std::span<const Vec3> external);
-  /// What this step has cost so far, by `StepCosts`, ms.
-  double spent_ms() const { return spent_ms_ + evaluations() * costs_.evaluation; }
-  /// What `matrix` was asked for besides, ms by `costs`.
-  void charge(double ms) { spent_ms_ += ms; }
-  const StepCosts& costs() const { return costs_; }
-  /// What a step may cost, and what its parts do, in words; empty: there is no budget.
-  std::string budget_text() const;
   /// The trial point is the end of the step.
   void finish_step();
 
@@ -87,7 +70,7 @@ class Dynamics {
   void copy(int node, int copy) { motion_.slide(copy, node, 1); }
   /// Between two steps, after these: tetrahedra have other corners, or corners elsewhere (`Solid::reshape`),
   /// these nodes became two, and with them these nodes' masses have changed. The factor is stale from now on,
-  /// but where the border that it gets does not fit: then the next step factors anew, if its budget lets it.
+  /// but where the border that it gets does not fit: then the next step factors anew.
   /// Of a body with `DynamicsSettings::cut`. An evaluation.
   void part(std::span<const Split> splits, std::span<const NodeMass> masses);
 
@@ -135,9 +118,6 @@ class Dynamics {
  private:
   /// Whether one iteration with one factor solves a step, and all later ones.
   bool is_linear() const { return linear_; }
-  bool affords(double ms) const { return budget_ms_ == 0 || spent_ms() + ms <= budget_ms_; }
-  /// In this step.
-  int evaluations() const { return motion_.evaluations() - evaluations_before_; }
   Eigen::VectorXd solve_turned(const Eigen::VectorXd& b);
   Residual evaluate(std::span<const Vec3> external);
   Residual evaluate_move(std::span<const Vec3> external);
@@ -155,17 +135,9 @@ class Dynamics {
 
   const Solid& solid_;
   bool linear_;
-  bool learns_;  // by the quasi-Newton method
   EquationsOfMotion motion_;
   NewtonMatrix matrix_;
-  StepCosts costs_;
-  double budget_ms_;              // 0: none
-  double spent_ms_ = 0;           // in this step, but for evaluations
-  double since_factor_ms_ = 0;    // of search directions and line searches, in this step
-  int evaluations_before_ = 0;    // this step
-  int iterations_ = 0;            // in this step
-  bool ended_by_budget_ = false;  // this step has
-  double size_;                   // of the body, m
+  double size_;  // of the body, m
   FactorPolicy policy_;
   std::optional<BackgroundMatrix> background_;
   QuasiNewton quasi_newton_;

@@ -7,21 +7,16 @@ struct DynamicsSettings {
   double rayleigh_mass = 0;       ///< alpha, 1/s, [0, 1e4]
   double rayleigh_stiffness = 0;  ///< beta, s, [0, 10]
   bool second_order = false;      ///< BDF2 instead of backward Euler
-  /// How A x = b is solved: by its own factor, or with one of the background, a new one every
-  /// `refresh_steps`.
-  enum class Solver {
-    kDirect,
-    kConjugateGradients,  ///< preconditioned by that factor
-    kQuasiNewton,         ///< which corrects it
-  };
+  /// How A x = b is solved: by a factor of the step's own, or by a factor made in the background, a new one
+  /// every `refresh_steps`, that a quasi-Newton method corrects.
+  enum class Solver { kDirect, kQuasiNewton };
   Solver solver = Solver::kDirect;
   int refresh_steps = 8;  ///< [1, 1000]
   /// Norm of the residual that columns of compliance made in the background may leave of three unit forces.
   /// They are of where the body was some steps before.
   double tolerance = 0;
-  double budget_ms = 0;  ///< that a step may cost, by `StepCosts`; 0: whatever it takes
-  bool cut = false;      ///< tetrahedra may be removed (`Dynamics::remove`): no factor serves for ever
-  bool flies = false;    ///< nothing need hold the body: it has mass
+  bool cut = false;    ///< tetrahedra may be removed (`Dynamics::remove`): no factor serves for ever
+  bool flies = false;  ///< nothing need hold the body: it has mass
 };
 
 }  // namespace palpate::sim

@@ -58,7 +58,6 @@ void EquationsOfMotion::update_internal() {
   if (internal_is_current_) return;
   solid_.forces(x_, internal_, viscosity(), scratch_);
   internal_is_current_ = true;
-  ++evaluations_;
 }
 
 Vec3 EquationsOfMotion::inertia(std::size_t i) const {

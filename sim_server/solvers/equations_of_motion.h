@@ -85,8 +85,6 @@ class EquationsOfMotion {
   Solid::Scratch& scratch() { return scratch_; }
   /// Without the scratch.
   std::size_t bytes() const;
-  /// How often the forces of the elements have been evaluated so far.
-  int evaluations() const { return evaluations_; }
   std::size_t scratch_bytes() const { return scratch_.bytes(); }
 
  private:
@@ -104,9 +102,8 @@ class EquationsOfMotion {
   PronySeries prony_;
   double negligible_force_ = 0, force_scale_ = 0;  // N
   std::vector<Vec3> x_, internal_, external_;      // trial point; f there; of the last residual
-  int evaluations_ = 0;
-  bool internal_is_current_ = false;  // `internal_` is of the trial point
-  bool start_is_current_ = false;     // the internal forces of `time_` are of where it was
+  bool internal_is_current_ = false;               // `internal_` is of the trial point
+  bool start_is_current_ = false;                  // the internal forces of `time_` are of where it was
 };
 
 }  // namespace palpate::sim

@@ -15,23 +15,18 @@ bool FactorPolicy::begin_step(int steps_before, bool cautious) {
   comparable_ = false;
   demanded_ = 0;
   cautious_ = cautious;
-  if ((settings_.forgives || !settings_.background) && state_ == State::kWorn) state_ = State::kStale;
+  if (state_ == State::kWorn) state_ = State::kStale;
   const bool due = settings_.background && steps_before % settings_.refresh_steps == 0;
   if (!due || steps_before == exchanged_) return false;
   exchanged_ = steps_before;
   return true;
 }
 
-FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double previous, bool just_factored,
-                                            bool may_factor, bool as_dear) {
+FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double previous, bool just_factored) {
   const double force = residual.relative * residual.force_scale;
   // Learnt under large forces, it is a large residual under small ones.
   if (force <= kSameRounding * rounding_ && is_rounding(residual, kSameRounding)) return Decision::kStop;
   const State before = state_;
-  if (before == State::kWorn && as_dear && may_factor) {
-    state_ = State::kFresh;
-    return Decision::kRefactorChecked;
-  }
   if (!comparable_ || !(residual.relative > kSlow * previous)) {
     comparable_ = true;
     if (before != State::kWorn) state_ = just_factored ? State::kFresh : State::kStale;
@@ -41,7 +36,7 @@ FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double pre
     rounding_ = force;
     return Decision::kStop;
   }
-  const bool another = may_factor && (cautious_ || demanded_ < kMostFactors);
+  const bool another = cautious_ || demanded_ < kMostFactors;
   if (settings_.background || before == State::kWorn || !another) {
     state_ = State::kWorn;
     return Decision::kKeep;

@@ -17,14 +17,10 @@ namespace palpate::sim {
 /// | kWorn     | one that a slow iteration has been with | kKeep, kWorn             | kKeep, kWorn      |
 ///
 /// On demand a step makes three factors at most; after that a slow iteration makes kWorn of the last. With a
-/// factor that is kWorn, search directions are found by conjugate gradients which it preconditions. Where
-/// these have cost as much as another factor would (`as_dear`), there is another, in the background or not:
-/// to rent until that has cost what buying does costs at most twice the better of the two (Karlin, Manasse,
-/// Rudolph and Sleator 1988, Algorithmica 3:79). A body that was far from balance (`cautious`) gets all
-/// factors that it asks for. An iteration that is not slow leaves kWorn as it is, and makes kFresh of a
-/// factor made for it and kStale of any other. A new factor
-/// (`replaced`) begins as kStale. On demand, and of the quasi-Newton method, which learns in each step, a
-/// factor that is kWorn is kStale again when the next step begins.
+/// factor that is kWorn, search directions are found by conjugate gradients which it preconditions. A body
+/// that was far from balance (`cautious`) gets all factors that it asks for. An iteration that is not slow
+/// leaves kWorn as it is, and makes kFresh of a factor made for it and kStale of any other. A new factor
+/// (`replaced`) begins as kStale, and a kWorn one is kStale again when the next step begins.
 ///
 /// Rounding: where a slow iteration had a factor that is kFresh or kWorn and the residual is tiny, no factor
 /// lessens it. The iteration ends there (`kStop`), and so does from then on each that finds no more than
@@ -40,7 +36,6 @@ class FactorPolicy {
   };
   struct Settings {
     bool background = false;      ///< factors come from the background, none is made on demand
-    bool forgives = false;        ///< a factor of the background that is worn is tried again in the next step
     int refresh_steps = 8;        ///< between two factors of the background, >= 1
     double negligible_force = 0;  ///< N: of a residual of 1e-3 of it nothing is expected
   };
@@ -54,11 +49,8 @@ class FactorPolicy {
   /// There is another factor, for another reason than a `Decision`.
   void replaced() { state_ = State::kStale; }
   /// For an iteration that finds `residual`, where the one before it found the relative residual `previous`.
-  /// `just_factored`: A has been factored for it, after `replaced`. `may_factor`: the step has the time for
-  /// one more factor; where it has not, the one that there is becomes kWorn. `as_dear`: iterations since the
-  /// last factor of this step, or its begin, have cost as much as another.
-  Decision decide(const Residual& residual, double previous, bool just_factored, bool may_factor = true,
-                  bool as_dear = false);
+  /// `just_factored`: A has been factored for it, after `replaced`.
+  Decision decide(const Residual& residual, double previous, bool just_factored);
 
   State state() const { return state_; }
   /// Whether the search direction is to be found by conjugate gradients that the factor preconditions.

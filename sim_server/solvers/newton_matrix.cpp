@@ -39,8 +39,8 @@ NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const Dynam
       mean_diagonal_(matrix_.lower().diagonal().mean()),
       factor_(matrix_.lower(), where, precision_for(solid.material(), settings.cut)) {}
 
-int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
-                        const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
+void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
+                         const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
   c_ = 0;  // until all of this is done
   turns_.clear();
   const bool parted = !copies_.empty();
@@ -61,7 +61,6 @@ int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<c
   border_is_made_ = true;
   border_misfits_ = false;
   bool definite = factor_.refactor(matrix_.lower());
-  int factors = 1;
   // A quarter of what was enough last time, then ever more (Waechter and Biegler 2006, algorithm IC).
   double added = 0;
   const double first = std::clamp(more_inertia_ / 4, c * c, 1e5 * c * c);
@@ -69,12 +68,10 @@ int NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<c
     matrix_.add_to_diagonal(masses, more - added);
     inertia_ += more - added;
     added = more_inertia_ = more;
-    ++factors;
     definite = factor_.refactor(matrix_.lower());
   }
   definite_ = definite;
   c_ = c;
-  return factors;
 }
 
 Mat3 NewtonMatrix::to_rest(int i, int j, const Mat3& block) const {

@@ -22,9 +22,9 @@ class NewtonMatrix {
                const std::string& where);
 
   /// A of the solid at `x` (nodes, m) with these masses (nodes, kg), factored. Where A is not positive
-  /// definite, as of a body about to buckle, with more inertia. Returns how many factors that took.
-  int build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
-            const Viscosity& viscosity, double c, Solid::Scratch& scratch);
+  /// definite, as of a body about to buckle, with more inertia.
+  void build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
+             const Viscosity& viscosity, double c, Solid::Scratch& scratch);
   /// The stiffness of a tetrahedron, N/m: of each pair of its corners (i, j <= i), by rows.
   using Blocks = std::array<Mat3, 10>;
   /// A tetrahedron gets another shape, or other corners. These were its blocks, at rest in the frames of its

@@ -38,7 +38,6 @@ bool takes(const DeformationModelRow& row, ElementKind element) {
 /// The scene as `model` can do it: by the linear law where it knows no other.
 Scene with_model(Scene scene, const DeformationModelRow& row) {
   scene.deformation.model = row.name;
-  if (row.takes<ImplicitSettings>()) scene.deformation.of<ImplicitSettings>().budget_ms = 0;  // converged
   if (row.materials == Materials::kAny) return scene;
   scene.material->law = ElasticLaw::kLinear;
   scene.material->relaxations.clear();
@@ -141,7 +140,6 @@ class Planner {
       auto& steps = other.deformation.of<ImplicitSettings>();
       steps.tolerance = tolerance;
       steps.max_newton = 100;
-      steps.budget_ms = 0;
       add("tolerance", other, 0);
     }
   }

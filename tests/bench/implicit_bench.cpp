@@ -145,7 +145,6 @@ void add_set_up(const std::string& name, Case (*make)()) {
 void add_implicit_rows() {
   add_case("liver_6k/direct", &liver_case);
   add_case("block_22k/quasi_newton", [] { return block_case(20, 30, 16); });
-  add_case("block_22k/pcg", [] { return block_case(20, 30, 16, Solver::kConjugateGradients); });
   add_case("block_98k/quasi_newton", [] { return block_case(33, 10, 64); });
   add_set_up("block_98k", [] { return block_case(33, 10, 64); });
 }

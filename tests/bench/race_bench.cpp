@@ -180,7 +180,6 @@ void run_static(benchmark::State& state, const Racer& racer) {
 
 void add_race_rows() {
   constexpr std::array kSolvers{std::pair{"direct", Solver::kDirect},
-                                std::pair{"pcg", Solver::kConjugateGradients},
                                 std::pair{"quasi_newton", Solver::kQuasiNewton}};
   for (const Racer& racer : kRacers) {
     const std::string name = racer.name;

@@ -122,7 +122,7 @@ TEST_CASE("implicit: with a factor of the background the force is that of a fact
       double most = 0;
       for (const Vec3& force : exact) most = std::max(most, force.norm());
       REQUIRE(most > 0.4);
-      for (const Solver solver : {Solver::kConjugateGradients, Solver::kQuasiNewton}) {
+      for (const Solver solver : {Solver::kQuasiNewton}) {
         if (friction > 0) scene.deformation = usual;
         scene.deformation.of<ImplicitSettings>().solver = solver;
         scene.deformation.of<ImplicitSettings>().refresh_steps = 4;
