@@ -14,7 +14,7 @@
 #include "sim_server/commands/solve.h"
 #include "sim_server/commands/study.h"
 #include "sim_server/commands/view.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 
 namespace {
 

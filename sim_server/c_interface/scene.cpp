@@ -35,7 +35,7 @@ void require_array(Struct* array, std::size_t count, const char* name) {
 struct palpate_scene {
   explicit palpate_scene(const char* file)
       : simulation(sim::read_scene(file)), served(simulation), inputs(simulation.tools()) {
-    simulation.keep_no_log();
+    simulation.set_cut_options({.keeps_log = false});
   }
 
   void step(const palpate_tool_state* tools, Time dt, palpate_force_sample* samples);

@@ -6,7 +6,7 @@
 #include "common/error.h"
 #include "common/log.h"
 #include "common/memory_budget.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 
 namespace palpate::sim {
 namespace {

@@ -10,11 +10,11 @@
 #include "common/progress.h"
 #include "common/text.h"
 #include "protocol/recorder.h"
-#include "sim_server/deformation/compliance_tolerance.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
+#include "sim_server/scene/touchable.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/setup_times.h"
-#include "sim_server/simulation/touchable.h"
+#include "sim_server/statics/compliance_tolerance.h"
 
 namespace palpate::sim {
 namespace {

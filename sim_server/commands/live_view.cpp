@@ -52,7 +52,7 @@ LiveView::LiveView(const ViewerAddress& address, std::string token, SceneFacts f
     : simulation_(simulation),
       facts_(std::move(facts)),
       token_(std::move(token)),
-      feed_(facts_.organ.rest, facts_.fields.empty() ? std::span<const Vec3>() : simulation.model().nodes()),
+      feed_(facts_.organ.rest, facts_.fields.empty() ? std::span<const Vec3>() : simulation.nodes()),
       viewer_(address, token_, facts_, feed_),
       began_(began) {}
 
@@ -98,7 +98,7 @@ void LiveView::turned(const LoopTurn& turn) noexcept {
   feed_.pictures.publish();
   if (wants && time - field_shown_ >= kFieldEach) {
     field_shown_ = time;
-    std::ranges::copy(simulation_.model().nodes(), feed_.nodes.back().begin());
+    std::ranges::copy(simulation_.nodes(), feed_.nodes.back().begin());
     feed_.nodes.publish();
   }
   viewer_.ring();

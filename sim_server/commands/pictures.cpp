@@ -91,8 +91,7 @@ SceneFacts facts_of(const Scene& scene, const Simulation& simulation) {
                    .tools = {},
                    .organ = shape_of(scene, simulation)};
   // Of an organ that is cut, the body that is coloured would have to be cut, too.
-  if (!simulation.model().nodes().empty() && scene.material && !scene.cutting)
-    facts.fields = {"strain_energy"};
+  if (!simulation.nodes().empty() && scene.material && !scene.cutting) facts.fields = {"strain_energy"};
   for (const ToolSettings& tool : scene.tools) {
     facts.tools.push_back(tool.shape);
     facts.blades = facts.blades || tool.blade;

@@ -194,8 +194,10 @@ int record(const RecordOptions& options) {
   const auto condensed = open_condensed(options.cache, scene);
   Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr,
                         condensed ? &*condensed : nullptr);
-  if (!options.resection) simulation.keep_no_log();
-  if (options.remove) remove_at(removals, *options.remove, simulation);
+  if (options.remove) require_removable(removals, *options.remove, simulation);
+  CutOptions cut{.keeps_log = options.resection.has_value(), .waits_for_background = !options.real_time};
+  if (options.remove) cut.planned = removals;
+  simulation.set_cut_options(std::move(cut));
   auto studied = cache ? find_studied(*cache, scene) : std::nullopt;
   if (studied && studied_hz != options.rate_hz) studied->time_step = {};  // of other steps
   const ErrorOfForce errors(scene, simulation, studied);

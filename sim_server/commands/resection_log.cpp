@@ -89,7 +89,8 @@ void write_resection(const std::filesystem::path& file, const Simulation& simula
   WholeFile whole(file, Contents::kTable);
   std::ofstream out(whole.path());
   out << kColumns;
-  for (const ResectionRow& row : simulation.resection_log())
+  const TissueCut* const cut = simulation.cut();
+  for (const ResectionRow& row : cut ? cut->log() : std::span<const ResectionRow>())
     out << row_text(row, simulation.resection()->has_plan());
   out.close();
   if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
@@ -100,7 +101,8 @@ void write_removals(const std::filesystem::path& file, const Simulation& simulat
   WholeFile whole(file, Contents::kTable);
   std::ofstream out(whole.path());
   out << "t_s,tetrahedron\n";
-  for (const Removal& removal : simulation.removals())
+  const TissueCut* const cut = simulation.cut();
+  for (const Removal& removal : cut ? cut->removals() : std::span<const Removal>())
     out << fmt::format("{:.9f},{}\n", removal.t, removal.tetrahedron);
   out.close();
   if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
@@ -123,8 +125,8 @@ std::vector<Removal> read_removals(const std::filesystem::path& file) {
   return removals;
 }
 
-void remove_at(const std::vector<Removal>& removals, const std::filesystem::path& file,
-               Simulation& simulation) {
+void require_removable(std::span<const Removal> removals, const std::filesystem::path& file,
+                       const Simulation& simulation) {
   const auto tetrahedra = static_cast<int>(simulation.mesh().tetrahedra.size());
   for (std::size_t row = 0; row < removals.size(); ++row) {
     const int number = removals[row].tetrahedron;
@@ -137,7 +139,6 @@ void remove_at(const std::vector<Removal>& removals, const std::filesystem::path
           "another scene?",
           file.string(), row + 1, number);
   }
-  simulation.remove_at(removals);
 }
 
 Json resection_report(const Simulation& simulation) {

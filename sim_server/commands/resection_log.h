@@ -23,8 +23,10 @@ void write_resection(const std::filesystem::path& file, const Simulation& simula
 /// is none, or, where it is to be used, that names another mesh's (file and row).
 void write_removals(const std::filesystem::path& file, const Simulation& simulation);
 std::vector<Removal> read_removals(const std::filesystem::path& file);
-void remove_at(const std::vector<Removal>& removals, const std::filesystem::path& file,
-               Simulation& simulation);
+
+/// Checks that a simulation may remove these. Throws `Error`, naming the file and row, where it may not.
+void require_removable(std::span<const Removal> removals, const std::filesystem::path& file,
+                       const Simulation& simulation);
 
 /// Where it ended, for a report; null: nothing can be cut.
 Json resection_report(const Simulation& simulation);

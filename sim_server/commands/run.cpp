@@ -22,7 +22,7 @@
 #include "sim_server/commands/pictures.h"
 #include "sim_server/commands/resection_log.h"
 #include "sim_server/commands/run_news.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/net_link.h"
 #include "sim_server/simulation/setup_times.h"
@@ -323,7 +323,7 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   const auto condensed = open_condensed(options.cache, scene);
   Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr,
                         condensed ? &*condensed : nullptr);
-  if (!options.resection) simulation.keep_no_log();
+  simulation.set_cut_options({.keeps_log = options.resection.has_value(), .waits_for_background = false});
   warn_if_slow(scene);
   warn_if_out_of_reach(simulation, scene);
   auto studied = cache ? find_studied(*cache, scene) : std::nullopt;

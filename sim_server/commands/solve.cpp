@@ -11,17 +11,17 @@
 #include "common/report.h"
 #include "common/text.h"
 #include "sim_server/commands/solve_results.h"
-#include "sim_server/deformation/deformation_models.h"
-#include "sim_server/deformation/implicit.h"
-#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/vtu_output.h"
+#include "sim_server/models/deformation_models.h"
+#include "sim_server/models/implicit.h"
 #include "sim_server/scene/inclusions.h"
 #include "sim_server/scene/loads.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/set_up_memory.h"
 #include "sim_server/solvers/dynamics.h"
 #include "sim_server/solvers/equilibrium.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 
 namespace palpate::sim {
 namespace {

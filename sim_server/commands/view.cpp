@@ -193,7 +193,7 @@ int view_capture(const ViewOptions& options) {
     const auto condensed = open_condensed(options.cache, *scene);
     simulation.emplace(*scene, std::ref(progress), cache ? &*cache : nullptr,
                        condensed ? &*condensed : nullptr);
-    simulation->keep_no_log();
+    simulation->set_cut_options({.keeps_log = false});
     facts = facts_of(*scene, *simulation);
   } else {
     facts.title = options.capture.filename().string();

@@ -17,19 +17,19 @@ class Bvh {
   /// `rest`: surface vertices, m. O(n log^2 n).
   Bvh(std::span<const Vec3> rest, std::span<const Triangle> triangles);
 
-  /// Of the list `before`, from now on `now`, of the same vertices. Triangles that are not in their place any
-  /// more leave their boxes, and those that are new there are looked at one by one, until there are some
+  /// Replaces the triangles `before` by `now`, of the same vertices. Triangles that are not in their place
+  /// any more leave their boxes, and those that are new there are looked at one by one, until there are some
   /// hundred: then the tree is built anew. O(n) comparisons.
   void change(std::span<const Vec3> rest, std::span<const Triangle> before, std::span<const Triangle> now);
 
-  /// To the vertices where they are now. Reads each about once: O(n), but a fraction of a pass over the
-  /// triangles.
+  /// Refits the boxes to the present positions. Reads each about once: O(n), but a fraction of a pass over
+  /// the triangles.
   void refit(std::span<const Vec3> positions) noexcept;
-  /// The same where, since the last time, none but these vertices may have moved. O(those), and one look at
-  /// each box.
+  /// Refits where only these vertices may have moved since the last call. O(those), and one look at each box.
   void refit(std::span<const Vec3> positions, std::span<const int> moved) noexcept;
 
-  /// All triangles whose own box meets `box`, and some neighbours; ascending. Valid until the next call.
+  /// Returns the triangles whose own box overlaps `box`, and some neighbours, ascending. Valid until the next
+  /// call.
   std::span<const int> near(const Eigen::AlignedBox3d& box) noexcept;
 
   /// The triangle that `squared_distance` (of a triangle, m^2; at least that of its box) says is
@@ -38,7 +38,7 @@ class Bvh {
   int nearest(const Eigen::AlignedBox3d& to, SquaredDistance squared_distance) const noexcept;
 
  private:
-  /// Of the tree in depth-first order: its first child comes next, its second where the first one ends.
+  /// Node of the tree in depth-first order: its first child comes next, its second where the first one ends.
   struct Node {
     Eigen::AlignedBox3d box;
     int end;                         // of all below it

@@ -20,8 +20,8 @@ class ContactFinder {
                 double reach, double length = 0, std::span<const int> held = {}, double room = kUsualRoom);
   static constexpr double kUsualRoom = 1.5, kRoomOfCuts = 3;
 
-  /// From now on these are the triangles, of the same vertices. O(n), once in some hundred triangles that are
-  /// new O(n log^2 n).
+  /// Replaces the triangles, of the same vertices. O(n), once in some hundred triangles that are new O(n
+  /// log^2 n).
   void change_surface(std::span<const Vec3> rest, std::vector<Triangle> closed,
                       std::vector<Triangle> touchable);
 
@@ -37,7 +37,7 @@ class ContactFinder {
               double reach, ContactPatch& patch, std::span<const int> moved = {}) noexcept;
   std::span<const int> vertices() const { return vertices_; }
 
-  /// Whether `p` lies inside the closed surface: its winding number, which counts the sheets that the ray
+  /// True if `p` lies inside the closed surface: its winding number, which counts the sheets that the ray
   /// along x leaves, less those that it enters. O(triangles), of which a few are looked at.
   bool inside(std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
@@ -53,11 +53,11 @@ class ContactFinder {
   Vec3 nearest(std::span<const Vec3> positions, const Vec3& p) const noexcept {
     return foot(positions, p).of(positions);
   }
-  /// Where a tool that is inside, at `p`, is taken to have come in: the nearest place that is touchable but
-  /// for what is held, as there is something else on that side; of all that is touchable, if all is held.
+  /// Returns where a tool that is inside, at `p`, is taken to have entered: the nearest touchable point that
+  /// is not fixed, as something else lies behind a fixed surface; of all touchable points, if all are fixed.
   /// O(vertices).
   Vec3 entry(std::span<const Vec3> positions, const Vec3& p) const noexcept;
-  /// Where the axis from `p` to `q` and what is touchable come nearest to each other. O(vertices).
+  /// Returns the closest points of the axis from `p` to `q` and the touchable surface. O(vertices).
   NearestOnSegment nearest(std::span<const Vec3> positions, const Vec3& p, const Vec3& q) const noexcept;
   /// The corner of touchable triangles nearest to `p`; -1: there is none. O(vertices).
   int nearest_vertex(std::span<const Vec3> positions, const Vec3& p) const noexcept;

@@ -123,7 +123,7 @@ bool Grip::factor(const ToolTissue& tissue) {
 /// Of now: how stiff each vertex is, where that is by itself, or the factor of all.
 bool Grip::take_compliance(const ToolTissue& tissue) {
   const auto each = std::span(stiffness_).first(vertices_.size());
-  const ComplianceSource* const source = tissue.model().compliance_source();
+  const ComplianceSource* const source = tissue.traits().columns;
   alone_ = source != nullptr && source->each_alone(vertices_, each);
   if (!alone_) return factor(tissue);
   double sum = 0;

@@ -26,9 +26,9 @@ class Grip {
   void change_surface(std::span<const std::array<int, 3>> touchable,
                       const std::function<bool(int)>& on_surface);
 
-  /// What of the device's buttons is pressed.
+  /// Sets which of the device's buttons are pressed.
   void press(std::uint16_t buttons) noexcept { pressed_ = (buttons & buttons_) != 0; }
-  /// Whether the jaws are to be opened, or closed, now.
+  /// True if the jaws open, or close, at the next step.
   bool opens() const { return closed_ && buttons_ != 0 && !pressed_; }
   bool closes() const { return !closed_ && pressed_; }
   /// Around what is there of the surface with the tool centre at `p_W`; perhaps nothing.
@@ -38,14 +38,15 @@ class Grip {
   bool holds() const { return !vertices_.empty(); }
   std::span<const int> vertices() const { return vertices_; }
 
-  /// What the tool feels, N, and how that changes, N/m; `vertices` 0: it holds nothing.
+  /// Force on the tool, N, and its tangent, N/m; `vertices` 0: the jaws are empty.
   struct Pull {
     Vec3 force = Vec3::Zero();
     Mat3 tangent = Mat3::Zero();
     int vertices = 0, rounds = 0;
     bool converged = true;
   };
-  /// With the tool centre at `p_W`; the loads of the tool are replaced by those of what it holds.
+  /// Solves with the tool centre at `p_W`, and replaces the loads of the tool by those on the grasped
+  /// vertices.
   Pull pull(const Vec3& p_W, ToolTissue tissue);
 
   std::size_t bytes() const;

@@ -59,6 +59,29 @@ void Tissue::lift(std::size_t tool) noexcept {
   mine.left = 0;
 }
 
+Tissue::State Tissue::save() const {
+  State state{before, tools_, moved_ != nullptr, motions_};
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    const bool is_pushed = tools_[i].free.data() == tools_[i].pushed.data();
+    state.tools[i].free = is_pushed ? std::span<const Vec3>(state.tools[i].pushed) : std::span<const Vec3>();
+  }
+  return state;
+}
+
+void Tissue::restore(const State& state, const FreeMotion& motion) {
+  free = motion.positions;
+  velocities = motion.velocities;
+  carried = motion.carried;
+  positions = motion.loaded.empty() ? motion.positions : motion.loaded;
+  before = state.before;
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    tools_[i] = state.tools[i];
+    tools_[i].free = state.tools[i].free.empty() ? free : std::span<const Vec3>(tools_[i].pushed);
+  }
+  moved_ = state.knows_moved ? motion.moved : nullptr;
+  motions_ = state.motions;
+}
+
 ToolTissue Tissue::met_by(std::size_t tool) {
   return {*this, tool, meet(tool)};
 }

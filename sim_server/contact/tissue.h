@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sim_server/deformation/deformation_model.h"
+#include "sim_server/tissue/deformation_model.h"
 
 namespace palpate::sim {
 
@@ -16,13 +16,14 @@ class ToolTissue;
 class Tissue {
  public:
   std::unique_ptr<DeformationModel> model;
+  ModelTraits traits;                ///< of the model
   std::span<const Vec3> free;        ///< in this step, without any contact
   std::span<const Vec3> velocities;  ///< of that, m/s; empty: it rests
   std::span<const Vec3> carried;     ///< as its supports alone have moved it; empty: they rest
   std::span<const Vec3> positions;   ///< now, under the loads of all tools
   std::vector<Vec3> before;          ///< at the end of the last step; empty where no tool has friction
 
-  /// It has gone on, or its linearisation has.
+  /// Takes over the free shape of a new instant or linearisation.
   void set_free(const FreeMotion& motion) noexcept;
 
   /// A step begins: any vertex may have moved since a tool last looked for contact.
@@ -35,11 +36,12 @@ class Tissue {
   /// `free`.
   void reserve(std::span<const int> most_loads, std::span<const double> radii);
 
-  /// As the tool meets it now. Two `apply` of the model; none while the others load nothing.
+  /// Returns the tissue as this tool meets it now. Two `apply` of the model; none while the others load
+  /// nothing.
   ToolTissue met_by(std::size_t tool);
   /// The loads that this tool puts on it by now.
   std::span<const NodalLoad> loads_of(std::size_t tool) const noexcept { return tools_[tool].own(); }
-  /// What is kept for this tool alone.
+  /// Returns the memory that this tool alone takes, bytes.
   std::size_t bytes_of(std::size_t tool) const { return tools_[tool].pushed.size() * sizeof(Vec3); }
   /// A tool that is lifted has no loads, and knows of no other's.
   void lift(std::size_t tool) noexcept;
@@ -50,6 +52,12 @@ class Tissue {
   /// `positions`, under the loads of now, or where no tool has any.
   void press(std::size_t tool) { positions = model->apply(tools_[tool].loads); }
   void press_by_none() { positions = model->apply({}); }
+
+  /// State of the tissue beside its model.
+  struct State;
+  State save() const;
+  /// Takes over a state, of a model that was restored with it and is at `motion`.
+  void restore(const State& state, const FreeMotion& motion);
 
  private:
   friend class ToolTissue;
@@ -83,14 +91,22 @@ class Tissue {
   std::uint64_t motions_ = 1;                // so far
 };
 
+struct Tissue::State {
+  std::vector<Vec3> before;
+  std::vector<ToolLoads> tools;
+  bool knows_moved = false;
+  std::uint64_t motions = 1;
+};
+
 /// The tissue as one tool meets it: free of that tool, under the loads that the others put on it when this
 /// was made (`Tissue::met_by`), which are held.
 class ToolTissue {
  public:
   const DeformationModel& model() const { return *tissue_.model; }
+  const ModelTraits& traits() const { return tissue_.traits; }
   std::span<const Vec3> free() const;
-  /// Whether that has moved, compared with the last time this tool met it: the vertices that mattered to its
-  /// contact by more than rounding, or others so far that they may matter by now.
+  /// True if that has moved since this tool last met it: the vertices that mattered to its contact by more
+  /// than rounding, or others so far that they may matter by now.
   bool moved() const { return moved_; }
   std::span<const Vec3> positions() const;
   std::span<const Vec3> before() const { return tissue_.before; }
@@ -108,9 +124,9 @@ class ToolTissue {
   /// The tissue goes where all loads press it.
   void press();
 
-  /// How far (m) the surface has gone since the contact of this tool was last solved, where it may have come
-  /// within `reach` (m) of the tool's axis from `p` to `q`, in all: what a step of a tissue in motion, a new
-  /// linearisation or other tools did. The tool has not met that yet: let it come in parts. O(vertices).
+  /// Returns how far (m) the surface has moved since the contact of this tool was last solved, where it may
+  /// have come within `reach` (m) of the tool's axis from `p` to `q`: by a step of a tissue in motion, a new
+  /// linearisation or other tools. Contact then meets that motion in parts. O(vertices).
   double surface_motion(const Vec3& p, const Vec3& q, double reach);
   /// Puts the surface where that share of this motion is still to come, from 1 to 0. Of its answers,
   /// `positions` and `free` are there.
@@ -118,9 +134,9 @@ class ToolTissue {
   /// The contact of this tool is solved with the surface as it is, of which these vertices matter to it, at
   /// most as many as it loads.
   void mark_solved(std::span<const int> met) noexcept;
-  /// The same where any may.
+  /// Marks contact as solved, where any vertex may matter.
   void mark_solved() noexcept;
-  /// It goes free of this tool, if that loaded it.
+  /// Removes the loads of this tool, if it has any.
   void release();
 
  private:

@@ -113,7 +113,7 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
   const ToolPose from = now_.place;
   const double surface = anew ? 0 : surface_motion(tissue);
   const double increments = std::max(increments_to(pose), increments_for(motion.norm(), surface));
-  const bool anywhere = tissue.model().compliance_is_constant();
+  const bool anywhere = tissue.traits().constant_compliance;
   const double increment = motion.norm() / increments / tool_.radius;
   ContactForce contact;
   int iterations = 0;
@@ -204,7 +204,7 @@ void ToolContact::settle(ToolTissue tissue) {
   tissue.set_share_left(0);
   if (i <= increments) contact.converged = false;
   const bool may_be_inside =
-      now_.force.contacts > 0 && (contact.contacts == 0 || !tissue.model().compliance_is_constant());
+      now_.force.contacts > 0 && (contact.contacts == 0 || !tissue.traits().constant_compliance);
   if (may_be_inside && recover_from_inside(tissue)) {
     now_.arrived = false;
     contact = {};
@@ -229,12 +229,13 @@ void ToolContact::differentiate(ToolTissue tissue) noexcept {
   predictor_.changes.clear();
   predictor_.from = now_.place.p_W;
   solver_.for_load_changes([&](int node, const Mat3& change) {
-    if (!holds() && tissue.model().compliance_is_constant())
+    if (!holds() && tissue.traits().constant_compliance)
       predictor_.changes.push_back({filled_[node], change});
   });
-  if (foreseen_ == 0) return;
+  if (foreseen_ == 0 || tissue.traits().later == nullptr) return;
   // Tissue that gives way by so much more by then stands behind the contact like a spring in a row with it.
-  const Mat3 &k = now_.force.tangent, yields = tissue.model().later_compliance(tissue.loads(), foreseen_);
+  const Mat3 &k = now_.force.tangent,
+             yields = tissue.traits().later->later_compliance(tissue.loads(), foreseen_);
   const Mat3 later = k * (Mat3::Identity() - yields * k).inverse();
   if (later.allFinite()) now_.force.tangent = later;
 }
@@ -311,10 +312,10 @@ void ToolContact::start_increment(bool first, const ToolTissue& tissue) {
 }
 
 /// Of the vertices in `filled_`: column by column where that is possible, as most are never needed.
-void ToolContact::take_compliance(const DeformationModel& model) {
+void ToolContact::take_compliance(const ToolTissue& tissue) {
   patch_.compliance.shape(3 * patch_.nodes(), 3 * patch_.nodes());
-  patch_.source = model.compliance_source();
-  if (patch_.source == nullptr) return model.compliance(filled_, patch_);
+  patch_.source = tissue.traits().columns;
+  if (patch_.source == nullptr) return tissue.model().compliance(filled_, patch_);
   patch_.vertices = filled_;
   patch_.filled.assign(filled_.size(), 0);
   patch_.source->begin(patch_);
@@ -330,9 +331,9 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
     return {};
   }
   const std::span<const int> vertices = finder_.vertices();
-  if (!tissue.model().compliance_is_constant() || !std::ranges::equal(vertices, filled_)) {
+  if (!tissue.traits().constant_compliance || !std::ranges::equal(vertices, filled_)) {
     filled_.assign(vertices.begin(), vertices.end());
-    take_compliance(tissue.model());
+    take_compliance(tissue);
   }
   const int m = patch_.nodes();
   auto u = displacement_.head(3 * (m + 1));

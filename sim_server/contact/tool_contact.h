@@ -7,7 +7,7 @@
 
 namespace palpate::sim {
 
-/// What a tool feels after one step.
+/// Force on a tool after one step.
 struct ToolForce {
   Vec3 force = Vec3::Zero();   ///< N, world, on the tool at its tip: what the device renders
   Vec3 torque = Vec3::Zero();  ///< N m, world, on the tool about its tip; 0 for a shaft that pivots
@@ -31,14 +31,14 @@ struct SurfacePlane {
   double gap = 0;                ///< how far the tip can go against the normal, m; 0 where the tool touches
 };
 
-/// How the path of a tool from one pose to the next departs from a straight line: how much farther it would
-/// have come at the velocity that it had at the beginning, and at the end, m.
+/// Departure of a tool's path between two poses from a straight line: how much further it would have come at
+/// its velocity at the beginning, and at the end, m.
 struct Bend {
   Vec3 begin = Vec3::Zero(), end = Vec3::Zero();
 };
 
-/// One tool and its contact with the tissue: where it is, what it feels, how it loads the surface. Only
-/// set-up allocates; what the model throws passes through. One thread.
+/// Tool and its contact with the tissue: its pose, its force, its loads on the surface. Only set-up
+/// allocates; what the model throws passes through. One thread.
 class ToolContact {
  public:
   /// `rest`: surface vertices at rest; `held`: those of them that are held to something, ascending.
@@ -46,13 +46,19 @@ class ToolContact {
   ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, const Surface& surface,
               std::vector<Triangle> touchable, std::span<const int> held, bool cut = false);
 
+  /// Takes over the state of a copy of this tool, saved before.
+  void restore_from(const ToolContact& saved) {
+    *this = saved;
+    filled_.clear();  // the patch refers to these vertices, and to the compliance of the model
+  }
+
   /// Tissue has been removed: these are the triangles now, of the same vertices, of which those that are not
   /// `on_surface` hang on nothing. Allocates.
   void change_surface(std::span<const Vec3> rest, const Surface& surface, std::vector<Triangle> touchable,
                       const std::function<bool(int)>& on_surface);
 
-  /// What of the device's buttons is pressed, also while the tool is lifted: the next `advance_to` grasps, or
-  /// lets go.
+  /// Sets which of the device's buttons are pressed, also while the tool is lifted: the next `advance_to`
+  /// grasps, or releases.
   void press(std::uint16_t buttons) noexcept {
     if (grip_) grip_->press(buttons);
   }
@@ -67,8 +73,8 @@ class ToolContact {
     if (now_.placed) now_.place.p_W += motion;
     predictor_.from += motion;
   }
-  /// Of velocities of the surface vertices (m/s; none: it rests), that where the tool touches, with these
-  /// loads (the mean by force), or else at the point nearest to `p_W`.
+  /// Returns the velocity of the surface where the tool touches, by these loads (the mean by force), or else
+  /// at the point nearest to `p_W`. `velocities`: of the surface vertices, m/s; empty: it rests.
   Vec3 surface_velocity(const Vec3& p_W, const Tissue& tissue, std::span<const Vec3> velocities,
                         std::span<const NodalLoad> loads) const noexcept;
   /// Solves its last increment again, on the surface as it is free by now.
@@ -77,8 +83,8 @@ class ToolContact {
   /// there, bit by bit.
   void keep(std::span<const NodalLoad> loads);
   void restore(ToolTissue tissue);
-  /// What it would feel at `p_W` (m), turned as it is; then it stands where it stood, and nothing has
-  /// changed, bit by bit.
+  /// Returns the force that the tool would have at `p_W` (m), with its present orientation. Leaves no trace,
+  /// bit by bit.
   ToolForce probe(const Vec3& p_W, ToolTissue tissue);
   /// The surface nearest to a tool, all of it, with its tip at `p_W` outside the tissue, as it is now.
   /// O(vertices).
@@ -91,18 +97,17 @@ class ToolContact {
   void lift() noexcept;
   /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.
   void differentiate(ToolTissue tissue) noexcept;
-  /// From now on tangents are those of a tool that holds its new place for so long (s); 0: to the end of the
-  /// step.
+  /// Sets how long (s) a tool holds its new place in tangents; 0: to the end of the step.
   void foresee(double seconds) noexcept { foreseen_ = seconds; }
   /// Says that `force` is not settled.
   void flag() noexcept { now_.force.flagged = true; }
 
   bool placed() const { return now_.placed; }
-  /// Whether it has tissue in its jaws.
+  /// True if it has tissue in its jaws.
   bool holds() const { return grip_ && grip_->holds(); }
-  /// Whether it lets go at the next `advance_to`.
+  /// True if it releases tissue at the next `advance_to`.
   bool opens() const { return grip_ && grip_->opens(); }
-  /// Whether this step has used up its contact linearisations.
+  /// True if this step has used up its contact linearisations.
   bool exhausted() const;
   const ToolForce& force() const { return now_.force; }
   const Vec3& place() const { return now_.place.p_W; }
@@ -129,7 +134,7 @@ class ToolContact {
   double increments_for(double motion, double surface) const noexcept;
   double increments_to(const ToolPose& pose) const noexcept;
   Vec3 path_offset(double share, const Vec3& motion) const noexcept;
-  void take_compliance(const DeformationModel& model);
+  void take_compliance(const ToolTissue& tissue);
   ContactForce solve_contact(ToolTissue tissue);
   void predict(Eigen::Ref<Eigen::VectorXd> u) noexcept;
   void release(ToolTissue tissue);
@@ -152,7 +157,7 @@ class ToolContact {
   std::vector<Vec3> surface_was_, nodes_were_;
   ToolPose tip_was_;
   Bend bend_;
-  /// Where it stands and what it feels.
+  /// Pose and force of the tool.
   struct State {
     ToolPose place;                  // of the last step
     Vec3 tip_offset = Vec3::Zero();  // where the tip is, minus `place`

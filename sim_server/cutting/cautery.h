@@ -26,9 +26,9 @@ class Cautery {
   /// that, ascending. O(triangles) where there is a tip.
   std::vector<int> heat(std::span<const HotTip> tips, const CutMesh& mesh, const Surface& surface,
                         std::span<const Vec3> positions, double dt);
-  /// So far, J: into tissue, whether that is gone or still there.
+  /// Returns the heat put into tissue so far, J, whether that remains or not.
   double spent() const { return spent_; }
-  /// So far, s: in which a tip was as near to tissue that cannot be removed.
+  /// Returns the time so far, s, in which a tip was at tissue that cannot be removed.
   double time_at_end() const { return time_at_end_; }
   std::size_t bytes() const { return 2 * taken_.size() * sizeof(double); }
 

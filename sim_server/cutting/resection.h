@@ -3,12 +3,12 @@
 
 #include "sim_server/cutting/cautery.h"
 #include "sim_server/cutting/scalpel.h"
-#include "sim_server/deformation/deformation_model.h"
 #include "sim_server/mesh/pieces.h"
+#include "sim_server/tissue/deformation_model.h"
 
 namespace palpate::sim {
 
-/// What a resection has done so far. Volumes and areas are those at rest.
+/// Totals of a resection so far. Volumes and areas are those at rest.
 struct ResectionTotals {
   std::uint64_t tetrahedra = 0;               ///< gone, with those of pieces
   double volume = 0;                          ///< of these, m^3
@@ -26,23 +26,23 @@ struct ResectionTotals {
   double hot_time = 0, contact_time = 0;      ///< s with a tip hot; and that touched
   double time_at_end = 0;  ///< s, of each tool: cuts, at tissue that cannot be removed or parted
 
-  /// Of what blades parted, from the plan, m; 0 where nothing is.
+  /// Returns the mean distance of parted faces from the plan, m; 0 where nothing is parted.
   double mean_parted_distance() const { return parted_area > 0 ? parted_distance_sum / parted_area : 0; }
-  /// Of what heat removed, from the plan, m; 0 where nothing is gone.
+  /// Returns the mean distance of tissue removed by heat from the plan, m; 0 where none is removed.
   double mean_distance() const {
     const double cut = volume - dropped_volume;
     return cut > 0 ? distance_sum / cut : 0;
   }
 };
 
-/// What a blade parted.
+/// Faces and area that a blade parted.
 struct Parted {
   Stroke stroke;
   Parting parting;
   double area = 0;  ///< m^2, one side
 };
 
-/// What of an organ is left while it is cut. One thread; allocates.
+/// Remaining tissue of an organ that is cut. One thread; allocates.
 class Resection {
  public:
   /// Gives `surface` the vertices of all that can be cut (`CutMesh`). `held`: mesh vertices that are fixed,
@@ -50,7 +50,7 @@ class Resection {
   /// `parts`: by blades, too; the mesh then gets spare vertices, as `CutMesh` says.
   Resection(const Cutting& cutting, TetMesh& mesh, std::span<const int> held, Surface& surface, bool parts);
 
-  /// What follows is of one more step.
+  /// Starts a new step.
   void begin_step() { changed_ = false; }
   /// `dt` (s) of these hot tips, on the surface at `positions`. What is gone then, in the order in which it
   /// went: what heat removed, then pieces that it cut off. Changes `surface`.
@@ -59,27 +59,28 @@ class Resection {
   /// Removes these that are left, and what they cut off, as if by heat.
   std::span<const int> remove(std::span<const int> tetrahedra, Surface& surface);
 
-  /// Of what the last of these removed, what was asked for: without the pieces that it cut off.
+  /// Returns the tetrahedra that the last removal was asked to remove, without the pieces that it cut off.
   std::span<const int> asked_for() const { return std::span(removed_).first(asked_for_); }
 
-  /// What a blade that `was` there and `is` here parts, of one that `parts`, as `Scalpel::cut`. The pieces
-  /// that it cut off and that go are `removed` then.
+  /// Parts tissue along the path of a blade, as `Scalpel::cut`, of a resection that `parts`. The pieces that
+  /// it cut off and that go are `removed` then.
   const Parted& part(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are, Surface& surface);
   std::span<const int> removed() const { return removed_; }
-  /// These mesh vertices, and no others that have not slid yet, do not slide onto the way of a blade.
+  /// Sets the mesh vertices that do not slide onto the path of a blade, beside those that have slid.
   void keep(std::vector<int> vertices) { scalpel_->keep(std::move(vertices)); }
   /// The way over which a blade does the work of what it parts, m.
   double blade_size() const { return scalpel_->size(); }
 
   const CutMesh& left() const { return left_; }
-  /// In how many steps it was cut so far: of which surface the triangles are.
+  /// Returns the number of steps with a cut so far, which identifies the surface.
   std::uint32_t version() const { return version_; }
   bool has_plan() const { return plan_.has_value(); }
   const ResectionTotals& totals() const { return totals_; }
-  /// For what only the owner knows.
+  /// Returns the totals, for entries that only the owner knows.
   ResectionTotals& totals() { return totals_; }
   std::size_t bytes() const;
-  /// The same beforehand, of a mesh with so many vertices, tetrahedra and outer faces of which all can go.
+  /// Returns an estimate of `bytes`, for a mesh with so many vertices, tetrahedra and outer faces that can
+  /// all be removed.
   static double estimated_bytes(double vertices, double tetrahedra, double faces);
 
  private:

@@ -170,7 +170,7 @@ bool Scalpel::slide(const Crossing& crossing, CutMesh& mesh) const {
 
 /// Those that can, whether others have slid before or not.
 void Scalpel::slide_onto(const Plane& plane, std::span<const int> near, std::span<Vec3> were,
-                         std::span<Vec3> are, CutMesh& mesh, std::vector<DeformationModel::Slide>& slides) {
+                         std::span<Vec3> are, CutMesh& mesh, std::vector<CuttableModel::Slide>& slides) {
   std::size_t before = 0;
   do {
     before = slides.size();

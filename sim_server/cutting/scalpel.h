@@ -4,57 +4,58 @@
 #include <utility>
 #include <vector>
 
-#include "sim_server/deformation/deformation_model.h"
 #include "sim_server/mesh/cut_mesh.h"
+#include "sim_server/tissue/deformation_model.h"
 
 namespace palpate::sim {
 
 /// The sharp edge of a blade (m, world): from one end to the other.
 using BladeEdge = std::array<Vec3, 2>;
 
-/// How a blade went through tissue.
+/// Path of a blade through tissue.
 struct BladeSweep {
   BladeEdge was, is;
-  /// From where it was to the end of its trail, which follows it as something dragged on a string (a
-  /// tractrix), so that tissue that trembles under a blade does not turn its way about. m; 0 where it begins.
+  /// Vector from its former place to the end of its trail, m; 0 at the start. The trail follows the blade as
+  /// if dragged on a string (a tractrix), so that tissue that trembles does not turn its path.
   Vec3 trail = Vec3::Zero();
 };
 
-/// What a blade did to tissue.
+/// Effect of a blade on tissue.
 struct Stroke {
-  bool moved = false;                                ///< far enough to be looked at
-  Vec3 motion = Vec3::Zero();                        ///< of the blade through the tissue around it, m
-  Vec3 trail = Vec3::Zero();                         ///< from where it is now, m
-  std::vector<DeformationModel::Slide> slides = {};  ///< in order; done
-  std::vector<int> faces = {};                       ///< to be parted then, 4 t + k, each once
-  bool at_end = false;                               ///< the blade went into tissue that cannot be cut
+  bool moved = false;                             ///< far enough to be looked at
+  Vec3 motion = Vec3::Zero();                     ///< of the blade through the tissue around it, m
+  Vec3 trail = Vec3::Zero();                      ///< from where it is now, m
+  std::vector<CuttableModel::Slide> slides = {};  ///< in order; done
+  std::vector<int> faces = {};                    ///< to be parted then, 4 t + k, each once
+  bool at_end = false;                            ///< the blade went into tissue that cannot be cut
 };
 
-/// What a blade parts of a mesh of tetrahedra: the faces between those whose centres come to lie on two sides
-/// of where it went. First the vertices next to its way slide onto it along the edges that cross it, a little
-/// ahead of it, so that the cut is smooth (Nienhuys and van der Stappen 2001, who also part faces and slide
-/// vertices; which faces these are is found here by the line between the two centres, so that all of the way
-/// is parted, whatever could slide). A vertex slides once, by at most half of the edge, on the surface along
-/// that; it does not where an element would get too flat, or the body another volume. One thread; allocates.
+/// Finds the faces that a blade parts in a mesh of tetrahedra: those between tetrahedra whose centres lie on
+/// two sides of its path. First the vertices next to its way slide onto it along the edges that cross it, a
+/// little ahead of it, so that the cut is smooth (Nienhuys and van der Stappen 2001, who also part faces and
+/// slide vertices; which faces these are is found here by the line between the two centres, so that all of
+/// the way is parted, whatever could slide). A vertex slides once, by at most half of the edge, on the
+/// surface along that; it does not where an element would get too flat, or the body another volume. One
+/// thread; allocates.
 class Scalpel {
  public:
   /// O(tetrahedra).
   explicit Scalpel(const CutMesh& mesh);
 
-  /// These mesh vertices do not slide in the next `cut`s, in place of those that were said before.
+  /// Sets the mesh vertices that do not slide in the next `cut`s.
   void keep(std::vector<int> vertices) { kept_ = std::move(vertices); }
   /// The mean edge of what can be cut, at rest, m.
   double size() const { return edge_; }
 
-  /// What a blade on this way has to part. `were`, `are`: the surface vertices when it was where it was, and
-  /// now, m. Slides vertices of the mesh, and of both. Nothing where it has hardly moved: it is to be asked
-  /// again, from where it was. O(tetrahedra).
+  /// Returns the effect of a blade on this path. `were`, `are`: the surface vertices when it was where it
+  /// was, and now, m. Slides vertices of the mesh, and of both. Nothing where it has hardly moved: it is to
+  /// be asked again, from where it was. O(tetrahedra).
   Stroke cut(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are, CutMesh& mesh);
 
   std::size_t bytes() const { return slid_.size(); }
 
  private:
-  /// Where the blade goes through the tissue, about there.
+  /// Plane of the blade's path, near its edge.
   struct Plane {
     Vec3 origin, along, ahead, normal;  // of its edge: one end; to the other; where it goes; unit
     double length, back;                // of the edge; that it has come, m
@@ -71,7 +72,7 @@ class Scalpel {
   bool may_slide(const Crossing& crossing, const CutMesh& mesh) const;
   bool slide(const Crossing& crossing, CutMesh& mesh) const;
   void slide_onto(const Plane& plane, std::span<const int> near, std::span<Vec3> were, std::span<Vec3> are,
-                  CutMesh& mesh, std::vector<DeformationModel::Slide>& slides);
+                  CutMesh& mesh, std::vector<CuttableModel::Slide>& slides);
   void find_faces(const BladeSweep& blade, std::span<const int> near, std::span<const Vec3> were,
                   std::span<const Vec3> are, const CutMesh& mesh, Stroke& stroke) const;
 

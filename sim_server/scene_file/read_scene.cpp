@@ -6,7 +6,7 @@
 #include "common/config.h"
 #include "common/error.h"
 #include "common/log.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/scene_file/read_cutting.h"
 #include "sim_server/scene_file/read_inclusions.h"
 #include "sim_server/scene_file/read_parts.h"

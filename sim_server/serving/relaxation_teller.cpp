@@ -18,7 +18,7 @@ constexpr std::size_t kReal = 4;  // bytes
 RelaxationTeller::RelaxationTeller(const SlowModes& modes, std::span<const int> vertices)
     : modes_(modes), terms_(modes.relaxations.size()), vertices_(vertices.begin(), vertices.end()) {}
 
-void RelaxationTeller::tell(const SlowModes::State& state, protocol::ForceSample& sample) noexcept {
+void RelaxationTeller::tell(const ModalMotion& state, protocol::ForceSample& sample) noexcept {
   sample.flags |= protocol::ForceSample::kHasRelaxed;
   RelaxedState& told = sample.relaxed = {.terms = static_cast<std::uint8_t>(terms_)};
   for (std::size_t j = 0; j < terms_; ++j) {
@@ -36,8 +36,7 @@ void RelaxationTeller::tell(const SlowModes::State& state, protocol::ForceSample
   tell_vertices(state, room - told.count * terms_ * kReal, told);
 }
 
-void RelaxationTeller::tell_modes(const SlowModes::State& state, std::size_t room,
-                                  RelaxedState& told) noexcept {
+void RelaxationTeller::tell_modes(const ModalMotion& state, std::size_t room, RelaxedState& told) noexcept {
   const auto modes = static_cast<std::size_t>(state.z.rows());
   if (next_mode_ >= modes) next_mode_ = 0;
   const std::size_t most = std::min(room / kReal, RelaxedState::kMostAmplitudes) / terms_,
@@ -51,7 +50,7 @@ void RelaxationTeller::tell_modes(const SlowModes::State& state, std::size_t roo
 }
 
 /// Once around at most, on from the last one that was told.
-void RelaxationTeller::tell_vertices(const SlowModes::State& state, std::size_t room,
+void RelaxationTeller::tell_vertices(const ModalMotion& state, std::size_t room,
                                      RelaxedState& told) noexcept {
   const auto psi = [&](std::size_t number, std::size_t term) -> const Vec3& {
     return state.psi[static_cast<std::size_t>(vertices_[number]) * terms_ + term];

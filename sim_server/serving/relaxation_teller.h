@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "protocol/messages.h"
-#include "sim_server/deformation/slow_modes.h"
+#include "sim_server/client_model/slow_modes.h"
 
 namespace palpate::sim {
 
@@ -16,11 +16,11 @@ class RelaxationTeller {
   RelaxationTeller(const SlowModes& modes, std::span<const int> vertices);
 
   /// Appends the next part to a sample that has all others, as long as a datagram has room for it.
-  void tell(const SlowModes::State& state, protocol::ForceSample& sample) noexcept;
+  void tell(const ModalMotion& state, protocol::ForceSample& sample) noexcept;
 
  private:
-  void tell_modes(const SlowModes::State& state, std::size_t room, protocol::RelaxedState& told) noexcept;
-  void tell_vertices(const SlowModes::State& state, std::size_t room, protocol::RelaxedState& told) noexcept;
+  void tell_modes(const ModalMotion& state, std::size_t room, protocol::RelaxedState& told) noexcept;
+  void tell_vertices(const ModalMotion& state, std::size_t room, protocol::RelaxedState& told) noexcept;
 
   const SlowModes& modes_;
   std::size_t terms_;

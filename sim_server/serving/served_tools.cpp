@@ -20,7 +20,7 @@ protocol::Linearisation on_the_wire(const Linearised& l) noexcept {
           .gap = l.plane.gap};
 }
 
-protocol::ModalState on_the_wire(const SlowModes::State& modes) noexcept {
+protocol::ModalState on_the_wire(const ModalMotion& modes) noexcept {
   protocol::ModalState told{.count = static_cast<std::uint8_t>(modes.q.size())};
   for (Eigen::Index k = 0; k < modes.q.size(); ++k) {
     told.q[static_cast<std::size_t>(k)] = static_cast<float>(modes.q[k]);
@@ -96,8 +96,8 @@ ServedTools::ServedTools(Simulation& simulation, const ErrorOfForce* errors)
       inputs_(simulation.tools()),
       outcomes_(simulation.tools()) {
   make_pagers();
-  if (simulation.told_modes() != nullptr && !simulation.told_modes()->relaxations.empty())
-    relaxation_.emplace(*simulation.told_modes(), pagers_.back()->vertices());
+  if (simulation.published_modes() != nullptr && !simulation.published_modes()->relaxations.empty())
+    relaxation_.emplace(*simulation.published_modes(), pagers_.back()->vertices());
 }
 
 /// One that there is no memory for tells nothing.
@@ -111,8 +111,8 @@ void ServedTools::make_pagers() {
 
 /// Where the simulation tells another surface from this step on, or none. Without memory for it, none.
 void ServedTools::follow_surface() noexcept {
-  if (simulation_.told_version() == told_version_) return;
-  told_version_ = simulation_.told_version();
+  if (simulation_.published_version() == told_version_) return;
+  told_version_ = simulation_.published_version();
   try {
     make_pagers();
   } catch (const std::bad_alloc&) {

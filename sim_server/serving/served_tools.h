@@ -43,9 +43,10 @@ class ServedTools {
   /// this session yet: no force where the tool is.
   std::optional<protocol::ForceSample> paused(std::size_t tool, const SessionInput& input) noexcept;
 
-  /// The surface that samples of a tool name by now. Another one only where `told_version` is another number.
+  /// The surface that samples of a tool name by now. Another one only where `published_version` is another
+  /// number.
   const std::shared_ptr<SurfacePager>& pager(std::size_t tool) const { return pagers_[tool]; }
-  std::uint32_t told_version() const { return told_version_; }
+  std::uint32_t published_version() const { return told_version_; }
 
  private:
   struct Holder {

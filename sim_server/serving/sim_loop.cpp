@@ -30,13 +30,12 @@ SimLoop::SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes
       inputs_(simulation.tools()),
       errors_(errors),
       observer_(observer) {
-  simulation.hurry();
   stats_.tools.resize(simulation.tools());
   pass_surfaces_on();
 }
 
 void SimLoop::pass_surfaces_on() {
-  passed_on_ = served_.told_version();
+  passed_on_ = served_.published_version();
   for (std::size_t i = 0; i < inputs_.size(); ++i) mailboxes_.tools[i].pager.write(served_.pager(i));
 }
 
@@ -106,7 +105,7 @@ LoopTurn SimLoop::step(double dt, bool paused) noexcept {
   const Time start = now();
   const auto outcomes = served_.step(inputs_, dt);
   if (outcomes.empty()) return {};
-  if (served_.told_version() != passed_on_) pass_surfaces_on();
+  if (served_.published_version() != passed_on_) pass_surfaces_on();
   const Time took = now() - start;
   count(outcomes, start, took);
   bool answered = false;

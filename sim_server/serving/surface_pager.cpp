@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "common/hash.h"
-#include "sim_server/deformation/told_nearby.h"
+#include "sim_server/client_model/published_surface.h"
 
 namespace palpate::sim {
 using protocol::SurfacePage;
@@ -37,12 +37,12 @@ void cluster(std::span<int> vertices, const std::vector<Vec3>& rest) {
 
 SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
     : simulation_(simulation),
-      nearby_(simulation.model().told()),
-      told_(simulation.told_modes()),
+      nearby_(simulation.published_surface()),
+      told_(simulation.published_modes()),
       tool_(static_cast<std::uint8_t>(tool)) {
   find_surface();
   if (!simulation.tool(tool).shape().is_sphere()) return;  // the only shape that clients know
-  const bool constant = told_ != nullptr || simulation.model().compliance_is_constant();
+  const bool constant = told_ != nullptr || simulation.traits().constant_compliance;
   if (!constant || vertices_.size() > protocol::kMostSurfaceVertices) return;
   put_in_order();
   patch_.reserve(2 * kCluster, 0);
@@ -142,7 +142,7 @@ void SurfacePager::take_compliance(std::span<const int> vertices) noexcept {
   if (told_ == nullptr) return simulation_.model().compliance(vertices, patch_);
   patch_.tool_compliance = 0;
   if (nearby_) return nearby_->motion.residual_compliance(vertices, patch_);
-  simulation_.model().residual_compliance(vertices, patch_);
+  simulation_.traits().client->residual_compliance(vertices, patch_);
 }
 
 void SurfacePager::fill_spectrum(SurfacePage& out) const noexcept {

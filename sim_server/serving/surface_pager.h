@@ -5,7 +5,7 @@
 namespace palpate::sim {
 
 /// The surface that one tool can touch, in pages (protocol/surface_pages.h) for clients that solve contact
-/// themselves; of one that can be cut, what `Simulation::told_version` tells of it. Reads only what a
+/// themselves; of one that can be cut, what `Simulation::published_version` tells of it. Reads only what a
 /// simulation never changes once the pager is made, so that a thread may answer requests from a pager of its
 /// own while another steps. Must not outlive the simulation.
 class SurfacePager {
@@ -43,8 +43,8 @@ class SurfacePager {
   std::span<const int> members(std::size_t cluster) const noexcept;
 
   const Simulation& simulation_;
-  std::shared_ptr<const ToldSurface> nearby_;  // of a surface that can be cut
-  const SlowModes* told_;                      // null: none are told
+  std::shared_ptr<const PublishedSurface> nearby_;  // of a surface that can be cut
+  const SlowModes* told_;                           // null: none are told
   std::uint8_t tool_;
   std::vector<int> vertices_;        // surface vertex of each vertex of the model
   std::vector<Vec3> rest_;           // of these, m

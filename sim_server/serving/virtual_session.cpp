@@ -45,9 +45,7 @@ VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajector
       capture_(capture),
       server_(link.rate_hz, {tool_radius}),
       session_(session_number(motions[link.tool], link)),
-      near_(served_.pager(link.tool)->state().vertices) {
-  if (link.clock != nullptr) simulation.hurry();
-}
+      near_(served_.pager(link.tool)->state().vertices) {}
 
 Time VirtualSession::time_of(std::uint64_t k) const {
   return from_seconds(static_cast<double>(k) / link_.ticks_hz);

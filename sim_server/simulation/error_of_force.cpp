@@ -1,6 +1,6 @@
 #include "sim_server/simulation/error_of_force.h"
 
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 
 namespace palpate::sim {
 namespace {

@@ -5,8 +5,8 @@
 
 namespace palpate::sim {
 
-/// What mesh and time step cost the force on each tool of a scene. Measured where a study of the scene is
-/// known. Else the mesh's share is estimated in each step from how fine it is where the tool presses
+/// Errors of the force on each tool by mesh and time step. Measured where a study of the scene is known. Else
+/// the mesh's share is estimated in each step from how fine it is where the tool presses
 /// (`estimated_mesh_error`); that of the time step is unknown, but where the force follows from the poses of
 /// the step alone, so that no step is too long. One thread.
 class ErrorOfForce {
@@ -16,7 +16,7 @@ class ErrorOfForce {
   ErrorOfForce(const Scene& scene, const Simulation& simulation,
                const std::optional<DiscretisationErrors>& studied = {});
 
-  /// In a step in which a tool loads the surface so. O(loads); does not allocate.
+  /// Returns the errors of a step in which a tool loads the surface so. O(loads); does not allocate.
   DiscretisationErrors of_step(std::size_t tool, std::span<const NodalLoad> loads) const noexcept;
   /// Adds a step, which is then part of `elements_per_radius` and `of_all_steps`.
   void add_step(std::size_t tool, std::span<const NodalLoad> loads) noexcept { tools_[tool].mesh.add(loads); }
@@ -28,7 +28,7 @@ class ErrorOfForce {
   std::optional<double> elements_per_radius(std::size_t tool) const noexcept {
     return tools_[tool].mesh.elements_per_radius();
   }
-  /// Of all steps so far in which a tool pressed.
+  /// Returns the errors over all steps so far in which a tool was in contact.
   DiscretisationErrors of_all_steps(std::size_t tool) const noexcept;
 
  private:

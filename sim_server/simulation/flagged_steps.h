@@ -14,7 +14,7 @@ struct FlaggedSteps {
   std::uint64_t not_balanced = 0;  ///< the model found no equilibrium under the loads
   std::uint64_t tools = 0;         ///< the contacts of several tools did not settle together
   std::uint64_t contact = 0;       ///< that of one tool did not, or it cannot be told where it touches
-  /// Those since `before`.
+  /// Returns the steps since `before`.
   FlaggedSteps operator-(const FlaggedSteps& before) const {
     return {threw - before.threw,           ran_away - before.ran_away,
             inside_out - before.inside_out, not_balanced - before.not_balanced,
@@ -22,7 +22,7 @@ struct FlaggedSteps {
   }
   /// "3 not balanced, 1 contact not settled", with what helps; empty: none.
   std::string to_text() const;
-  /// Of reports: {"threw": ...}.
+  /// Returns the counts for reports: {"threw": ...}.
   Json to_json() const;
 };
 

@@ -3,25 +3,25 @@
 #include <span>
 #include <vector>
 
-#include "sim_server/deformation/deformation_model.h"
 #include "sim_server/elasticity/material.h"
 #include "sim_server/mesh/surface.h"
+#include "sim_server/tissue/deformation_model.h"
 
 namespace palpate::sim {
 
-/// How fine the mesh is where a tool presses on it, in elements to a radius of the tool: its radius over the
-/// mean edge of the elements at each loaded vertex, at rest, weighted by its load. One thread.
+/// Resolution of the mesh where a tool presses on it, in elements to a radius of the tool: its radius over
+/// the mean edge of the elements at each loaded vertex, at rest, weighted by its load. One thread.
 class MeshResolution {
  public:
   /// `rest`: vertices of the surface, m; `radius` of the tool, m. O(vertices).
   MeshResolution(const Surface& surface, std::span<const Vec3> rest, double radius);
-  /// Of an organ that is cut, `surface` also has vertices that are inside of `mesh` at first: there, by all
-  /// edges of the tetrahedra around.
+  /// Measures all edges of the tetrahedra around a vertex that is inside `mesh` at first, as `surface` has
+  /// them for an organ that is cut.
   MeshResolution(const Surface& surface, std::span<const Vec3> rest, double radius, const TetMesh& mesh);
 
   /// Mean over what the tool loads in one step; nothing where it loads nothing. O(loads); does not allocate.
   std::optional<double> of(std::span<const NodalLoad> loads) const noexcept;
-  /// Where the mesh is finest of what a tool can touch; nothing where it can touch nothing. O(triangles).
+  /// Returns the finest resolution that a tool can touch; nothing where it can touch nothing. O(triangles).
   std::optional<double> finest(std::span<const Triangle> touchable) const;
   /// Adds what the tool loads in one step. O(loads); does not allocate.
   void add(std::span<const NodalLoad> loads) noexcept;
@@ -39,10 +39,10 @@ class MeshResolution {
   Sums all_;
 };
 
-/// What a mesh of so many elements to a radius of the tool costs the force, % of its root mean square: from a
-/// table measured on a liver under a sphere (simulation/README.md), interpolated in logarithms, held at its
-/// ends. A guess for another shape; `sim_server study` measures that. Nothing for elements that are not in
-/// the table.
+/// Returns the error of the force (% of its root mean square) by a mesh of so many elements to a radius of
+/// the tool: from a table measured on a liver under a sphere (simulation/README.md), interpolated in
+/// logarithms, held at its ends. A guess for another shape; `sim_server study` measures that. Nothing for
+/// elements that are not in the table.
 std::optional<double> estimated_mesh_error(ElementKind element, double elements_per_radius) noexcept;
 
 }  // namespace palpate::sim

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 
 namespace palpate::sim {
 

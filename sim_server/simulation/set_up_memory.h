@@ -1,9 +1,9 @@
 #pragma once
 /// Refuses a scene that the memory of the machine will not hold, before anything is allocated.
 #include "common/memory_budget.h"
-#include "sim_server/deformation/estimated_memory.h"
 #include "sim_server/scene/scene.h"
 #include "sim_server/scene_file/read_scene.h"
+#include "sim_server/tissue/estimated_memory.h"
 
 namespace palpate::sim {
 

@@ -4,11 +4,11 @@
 
 #include "common/clock.h"
 #include "common/report.h"
-#include "sim_server/deformation/model_inputs.h"
+#include "sim_server/tissue/model_inputs.h"
 
 namespace palpate::sim {
 
-/// How long each stage of a set-up took: a `Progress` (pass it by `std::ref`) that hands every call on and
+/// Duration of each stage of a set-up: a `Progress` (pass it by `std::ref`) that hands every call on and
 /// counts the time from one call to the next for the stage that the first of them named. One thread.
 class SetupTimes {
  public:
@@ -21,11 +21,12 @@ class SetupTimes {
     std::string name;
     Time took;
   };
-  /// In the order of their beginnings; the newest is complete once the next, or its own end, was told.
+  /// Returns the stages in the order of their start; the newest is complete once the next one, or its own
+  /// end, was reported.
   const std::vector<Stage>& stages() const { return stages_; }
   /// Time spent in the stage called `what`; zero if there was none.
   Time of(std::string_view what) const;
-  /// All stages together.
+  /// Returns the duration of all stages together.
   Time total() const;
   /// {stage: milliseconds}.
   Json to_json() const;

@@ -8,22 +8,21 @@
 #include "common/error.h"
 #include "common/hash.h"
 #include "common/text.h"
-#include "sim_server/deformation/deformation_models.h"
 #include "sim_server/elasticity/solid.h"
 #include "sim_server/mesh/bounding_box.h"
 #include "sim_server/mesh/gmsh_io.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/scene/held_motion.h"
 #include "sim_server/scene/inclusions.h"
+#include "sim_server/scene/touchable.h"
 #include "sim_server/simulation/set_up_memory.h"
-#include "sim_server/simulation/touchable.h"
 
 namespace palpate::sim {
 namespace {
 
 constexpr std::size_t kApart = 2;     // instants: how far apart those are that tell where a tool goes on to
 constexpr double kLongestLead = 0.5;  // of the tool radius: how far ahead of itself a tool is believed to be
-constexpr int kFeltParts =
-    4;  // of the instants of a step, the last of so many parts: what is felt of chatter
+constexpr int kLateParts = 4;  // of a step: over the last of so many parts chattering forces are averaged
 constexpr double kAnywhere = 1e150;  // m
 constexpr double kRunAway = 3;       // of the organ's size: farther from rest no tissue goes
 
@@ -75,7 +74,7 @@ std::size_t make_room_for_loads(const std::vector<ToolContact>& tools, Tissue& t
   return static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
 }
 
-/// A force of an organ that is no more: half of it a step.
+/// Halves the last force each step once the solution is lost.
 void fade(ToolForce& force) noexcept {
   force.force *= 0.5;
   force.torque *= 0.5;
@@ -90,8 +89,8 @@ void carry_before(Tissue& tissue, double dt) noexcept {
   for (std::size_t v = 0; v < tissue.before.size(); ++v) tissue.before[v] += dt * tissue.velocities[v];
 }
 
-/// `read_mesh_of`, told to `progress`.
-TetMesh read_mesh_told(const Scene& scene, const Progress& progress) {
+/// Reads the mesh and reports that to `progress`.
+TetMesh read_mesh_with(const Scene& scene, const Progress& progress) {
   progress(name_of(Stage::kMesh), 0);
   return read_mesh_of(scene);
 }
@@ -108,74 +107,93 @@ std::string contact_stage(std::size_t tool, std::size_t tools) {
 
 Simulation::Simulation(const Scene& scene, const Progress& progress, const SetupCache* cache,
                        const Condensed* condensed)
-    : Simulation(scene, read_mesh_told(scene, progress), progress, cache, condensed) {}
+    : Simulation(scene, read_mesh_with(scene, progress), progress, cache, condensed) {}
 
 Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progress, const SetupCache* cache,
-                       const Condensed* condensed)
-    : mesh_(std::make_unique<TetMesh>(std::move(mesh))) {
-  put_inclusions(scene, *mesh_);
+                       const Condensed* condensed) {
+  organ_.mesh = std::make_unique<TetMesh>(std::move(mesh));
+  put_inclusions(scene, *organ_.mesh);
   progress(name_of(Stage::kSurface), 0);
-  if (scene.material) *mesh_ = with_nodes(std::move(*mesh_), scene.material->element);
-  surface_ = boundary_surface(*mesh_);
-  const std::vector<int> fixed = fixed_vertices(scene, *mesh_);
-  std::vector<int> standing = fixed;
+  if (scene.material) *organ_.mesh = with_nodes(std::move(*organ_.mesh), scene.material->element);
+  organ_.surface = boundary_surface(*organ_.mesh);
+  const std::vector<int> fixed = fixed_vertices(scene, *organ_.mesh);
+  std::vector<int> at_rest = fixed;
   if (scene.cutting) {
-    const bool parts = scene.blade() != nullptr;
-    cut_.emplace(Cut{Resection(*scene.cutting, *mesh_, fixed, surface_, parts), scene.tools,
-                     scene.cutting->toughness});
-    cut_->blades.resize(scene.tools.size());
-    const auto [spare, end] = cut_->resection.left().spares();
-    for (int v = spare; v < end; ++v) standing.push_back(v);
+    cut_.emplace(scene, *organ_.mesh, fixed, organ_.surface);
+    const auto [spare, end] = cut_->resection().left().spares();
+    for (int v = spare; v < end; ++v) at_rest.push_back(v);
   }
-  for (const int vertex : surface_.vertices) rest_.push_back(mesh_->vertices[vertex]);
-  auto touchable = some_touchable(scene, surface_, *mesh_);
+  for (const int vertex : organ_.surface.vertices) organ_.rest.push_back(organ_.mesh->vertices[vertex]);
+  auto touchable = some_touchable(scene, organ_.surface, *organ_.mesh);
   const std::vector<int> reachable = vertices_of(touchable);
-  require_memory_for(scene, Purpose::kServe, count_parts(*mesh_, surface_));
+  require_memory_for(scene, Purpose::kServe, count_parts(*organ_.mesh, organ_.surface));
   const DeformationModelRow& row = model_of(scene.deformation);
-  const bool stays = row.deforms() && !fixed.empty() && !supports_move(scene);
-  if (stays) farthest_ = kRunAway * diagonal_of(rest_);
-  tissue_.model =
-      row.make({scene, *mesh_, surface_, standing, reachable, progress, free_memory(), cache, condensed});
-  instants_ = tissue_.model->instants();
+  if (row.deforms() && !fixed.empty() && !supports_move(scene))
+    organ_.farthest = kRunAway * diagonal_of(organ_.rest);
+  tissue_.model = row.make(
+      {scene, *organ_.mesh, organ_.surface, at_rest, reachable, progress, free_memory(), cache, condensed});
+  tissue_.traits = tissue_.model->traits();
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;
   tissue_.velocities = motion.velocities;
-  const std::vector<int> held = on_surface(fixed, surface_);
-  tools_ = make_tools(scene, tissue_.free, surface_, std::move(touchable), held, progress);
+  const std::vector<int> held = on_surface(fixed, organ_.surface);
+  tools_ = make_tools(scene, tissue_.free, organ_.surface, std::move(touchable), held, progress);
   const std::size_t all_loads = make_room_for_loads(tools_, tissue_);
-  if (tools_.size() > 1) coupling_.emplace(tools_.size(), rest_.size(), all_loads);
+  if (tools_.size() > 1) coupling_.emplace(tools_.size(), organ_.rest.size(), all_loads);
+  tracks_.resize(tools_.size());
+  for (Track& track : tracks_) track.recent.reserve(2 * kApart + 1);
   make_room_for_modes();
-  came_from_.resize(tools_.size());
-  lately_.resize(tools_.size());
   places_.reserve(tools_.size());
-  for (auto& were : lately_) were.reserve(2 * kApart + 1);
-  for (auto* zeros : {&mean_, &late_mean_, &velocities_, &surface_motion_})
-    zeros->resize(tools_.size(), Vec3::Zero());
   inputs_.resize(tools_.size());
   answers_.resize(tools_.size());
 }
 
 void Simulation::make_room_for_modes() {
-  const SlowModes* const told = told_modes();
-  if (told == nullptr) return;
-  modes_.q = modes_.v = Eigen::VectorXd::Zero(told->told);
-  modes_.z.setZero(told->told, static_cast<Eigen::Index>(told->relaxations.size()));
-  modes_.psi.assign(rest_.size() * told->relaxations.size(), Vec3::Zero());
-  if (tools_.size() > 1) modal_loads_.assign(tools_.size(), modes_.q);
+  const SlowModes* const modes = published_modes();
+  if (modes == nullptr) return;
+  ModalMotion& room = published_.modes;
+  room.q = room.v = Eigen::VectorXd::Zero(modes->told);
+  room.z.setZero(modes->told, static_cast<Eigen::Index>(modes->relaxations.size()));
+  room.psi.assign(organ_.rest.size() * modes->relaxations.size(), Vec3::Zero());
+  for (Track& track : tracks_) track.modal_loads = room.q;
   pair_.reserve(2, 0);
   pair_.free.resize(2);
+}
+
+const SlowModes* Simulation::published_modes() const noexcept {
+  const SlowModes* const modes = tissue_.traits.client ? tissue_.traits.client->modes() : nullptr;
+  const bool published =
+      modes != nullptr && modes->told > 0 && (tools_.size() == 1 || modes->relaxations.empty());
+  return published ? modes : nullptr;
+}
+
+std::shared_ptr<const PublishedSurface> Simulation::published_surface() const noexcept {
+  return cut_ ? cut_->published() : nullptr;
+}
+
+void Simulation::set_cut_options(CutOptions options) {
+  if (cut_) cut_->set_options(std::move(options));
+}
+
+bool Simulation::balanced() const noexcept {
+  const NonlinearModel* const nonlinear = tissue_.traits.nonlinear;
+  return nonlinear == nullptr || nonlinear->balance() == NonlinearModel::Balance::kBalanced;
+}
+
+std::span<const Vec3> Simulation::nodes() const noexcept {
+  return tissue_.traits.interior ? tissue_.traits.interior->nodes() : std::span<const Vec3>();
 }
 
 std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, double dt) noexcept {
   assert(inputs.size() == tools_.size());
   try {
     advance(inputs, dt);
-    failed_ = false;
+    status_.failed = false;
   } catch (const std::bad_alloc&) {
-    ++failures_.out_of_memory;
+    ++counts_.failures.out_of_memory;
     hold_answers(inputs);
   } catch (...) {
-    ++failures_.other;
+    ++counts_.failures.other;
     hold_answers(inputs);
   }
   count_flagged();
@@ -184,12 +202,16 @@ std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, 
 
 void Simulation::count_flagged() noexcept {
   if (std::ranges::none_of(answers_, &ToolAnswer::flagged)) return;
-  std::uint64_t& reason = failed_                       ? flagged_.threw
-                          : lost_                       ? flagged_.ran_away
-                          : tissue_.model->inside_out() ? flagged_.inside_out
-                          : !tissue_.model->balanced()  ? flagged_.not_balanced
-                          : !tools_settled_             ? flagged_.tools
-                                                        : flagged_.contact;
+  using Balance = NonlinearModel::Balance;
+  const NonlinearModel* const nonlinear = tissue_.traits.nonlinear;
+  const Balance balance = nonlinear ? nonlinear->balance() : Balance::kBalanced;
+  FlaggedSteps& flagged = counts_.flagged;
+  std::uint64_t& reason = status_.failed                    ? flagged.threw
+                          : status_.ran_away                ? flagged.ran_away
+                          : balance == Balance::kInsideOut  ? flagged.inside_out
+                          : balance == Balance::kUnbalanced ? flagged.not_balanced
+                          : !status_.tools_settled          ? flagged.tools
+                                                            : flagged.contact;
   ++reason;
 }
 
@@ -197,55 +219,62 @@ void Simulation::count_flagged() noexcept {
 void Simulation::hold_answers(std::span<const ToolInput> inputs) noexcept {
   for (std::size_t i = 0; i < answers_.size(); ++i) {
     ToolForce held = inputs[i].pose ? answers_[i] : ToolForce{};
-    if (failed_) fade(held);
+    if (status_.failed) fade(held);
     held.tangent.setZero();
     held.flagged = inputs[i].pose.has_value();
     answers_[i] = {};
     static_cast<ToolForce&>(answers_[i]) = held;
   }
-  failed_ = true;
+  status_.failed = true;
 }
 
 void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
-  std::fill(mean_.begin(), mean_.end(), Vec3::Zero());
-  std::fill(late_mean_.begin(), late_mean_.end(), Vec3::Zero());
-  tissue_.begin_step();
-  if (cut_) cut(inputs, dt);
-  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].press(inputs[i].buttons);
-  if (instants_ > 1) narrow_to_tools(inputs);
-  for (int instant = 1; instant <= instants_; ++instant) advance_to_instant(inputs, instant, dt / instants_);
-  for (std::size_t i = 0; i < tools_.size(); ++i) came_from_[i] = inputs[i].pose;
-  lost_ = ran_away();
-  for (std::size_t i = 0; i < tools_.size(); ++i) {
-    const ToolForce before = answers_[i];
-    answers_[i] = {};
-    static_cast<ToolForce&>(answers_[i]) = before;
-    if (lost_ && tools_[i].placed()) {  // what was felt before fades
-      fade(answers_[i]);
-      continue;
-    }
-    if (instants_ > 1)
-      tools_[i].foresee(std::max(dt, inputs[i].wants.ahead ? inputs[i].wants.ahead->seconds : 0));
-    const bool tells_tangents = tissue_.model->knows_later_compliance();
-    if (inputs[i].wants.tangent && tells_tangents) tools_[i].differentiate(tissue_.met_by(i));
-    static_cast<ToolForce&>(answers_[i]) = tools_[i].force();
-    if (!tells_tangents) answers_[i].force = late_mean_[i];
-    answers_[i].mean_force = mean_[i];
-    if (cut_) resist_blade(i, dt, answers_[i]);
+  for (Track& track : tracks_) {
+    track.mean.setZero();
+    track.late_mean.setZero();
   }
-  if (cut_) note_cut(inputs, dt);
-  time_ += dt;
+  tissue_.begin_step();
+  if (cut_ && cut_->begin_step(inputs, status_.time, dt, cut_organ())) {
+    ++published_.version;
+    make_room_for_modes();
+  }
+  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].press(inputs[i].buttons);
+  if (tissue_.traits.cuttable != nullptr && instants() > 1) restrict_contact(inputs);
+  for (int instant = 1; instant <= instants(); ++instant)
+    advance_to_instant(inputs, instant, dt / instants());
+  for (std::size_t i = 0; i < tools_.size(); ++i) tracks_[i].from = inputs[i].pose;
+  status_.ran_away = ran_away();
+  for (std::size_t i = 0; i < tools_.size(); ++i) answer(i, inputs[i], dt);
+  if (cut_) cut_->end_step(inputs, status_.time, dt, tools_, answers_);
+  status_.time += dt;
   couple(inputs);
   for (std::size_t i = 0; i < tools_.size(); ++i) add_wanted(i, inputs[i]);
+}
+
+/// Sets the force on a tool.
+void Simulation::answer(std::size_t tool, const ToolInput& input, double dt) {
+  ToolContact& contact = tools_[tool];
+  ToolAnswer& answer = answers_[tool];
+  const ToolForce before = answer;
+  answer = {};
+  static_cast<ToolForce&>(answer) = before;
+  if (status_.ran_away && contact.placed()) return fade(answer);
+  if (instants() > 1) contact.foresee(std::max(dt, input.wants.ahead ? input.wants.ahead->seconds : 0));
+  const bool publishes_tangents = tissue_.traits.publishes_tangents;
+  if (input.wants.tangent && publishes_tangents) contact.differentiate(tissue_.met_by(tool));
+  static_cast<ToolForce&>(answer) = contact.force();
+  if (!publishes_tangents) answer.force = tracks_[tool].late_mean;
+  answer.mean_force = tracks_[tool].mean;
+  if (cut_) cut_->resist(tool, contact, dt, answer);
 }
 
 /// Where contact is solved at an instant of a step: where the tool is then, or, where the model's force
 /// leads, will be at the next; after the last, going on along the parabola through where it was lately.
 PathPoint Simulation::contact_point(std::size_t tool, const ToolInput& input, int instant) const {
-  if (!tissue_.model->force_leads()) return at_instant(tool, input, instant);
-  if (instant < instants_) return at_instant(tool, input, instant + 1);
+  if (!tissue_.traits.leading_force) return at_instant(tool, input, instant);
+  if (instant < instants()) return at_instant(tool, input, instant + 1);
   PathPoint point = at_instant(tool, input, instant);
-  const std::vector<ToolPose>& were = lately_[tool];  // the newest first: this one
+  const std::vector<ToolPose>& were = tracks_[tool].recent;  // the newest first: this one
   const std::size_t apart = std::min<std::size_t>(kApart, (were.size() - 1) / 2);
   if (apart == 0) return point;
   const Vec3 &now = were[0].p_W, &before = were[apart].p_W, &first = were[2 * apart].p_W;
@@ -259,20 +288,20 @@ PathPoint Simulation::contact_point(std::size_t tool, const ToolInput& input, in
   return point;
 }
 
-void Simulation::remember(std::size_t tool, const ToolPose& pose) {
-  std::vector<ToolPose>& were = lately_[tool];
+void Simulation::add_recent(std::size_t tool, const ToolPose& pose) {
+  std::vector<ToolPose>& were = tracks_[tool].recent;
   if (were.size() > 2 * kApart) were.pop_back();
   were.insert(were.begin(), pose);
 }
 
 /// Where a tool is at an instant of a step, from 1 to the last.
 PathPoint Simulation::at_instant(std::size_t tool, const ToolInput& input, int instant) const {
-  const bool told = input.path.size() + 1 == static_cast<std::size_t>(instants_);
-  if (instant == instants_) return {*input.pose, told ? input.bend : Bend{}};
+  const bool told = input.path.size() + 1 == static_cast<std::size_t>(instants());
+  if (instant == instants()) return {*input.pose, told ? input.bend : Bend{}};
   if (told) return input.path[static_cast<std::size_t>(instant) - 1];
-  if (!came_from_[tool]) return {*input.pose};  // it appears there
-  const double share = static_cast<double>(instant) / instants_;
-  const ToolPose &from = *came_from_[tool], &to = *input.pose;
+  if (!tracks_[tool].from) return {*input.pose};  // it appears there
+  const double share = static_cast<double>(instant) / instants();
+  const ToolPose &from = *tracks_[tool].from, &to = *input.pose;
   return {ToolPose((1 - share) * from.p_W + share * to.p_W, from.q_W.slerp(share, to.q_W))};
 }
 
@@ -285,19 +314,19 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
   }
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!inputs[i].pose) continue;
-    if (tissue_.model->force_leads()) remember(i, at_instant(i, inputs[i], instant).pose);
+    if (tissue_.traits.leading_force) add_recent(i, at_instant(i, inputs[i], instant).pose);
     const PathPoint point = contact_point(i, inputs[i], instant);
     tools_[i].advance_to(point.pose, point.bend, tissue_.met_by(i));
   }
-  tools_settled_ = true;
+  status_.tools_settled = true;
   solve_contacts();
-  if (!tools_settled_) restore_touching();
+  if (!status_.tools_settled) restore_touching();
   if (!tissue_.before.empty())
     std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
-  const int felt = (instants_ + kFeltParts - 1) / kFeltParts;
+  const int late = (instants() + kLateParts - 1) / kLateParts;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    mean_[i] += tools_[i].force().force / instants_;
-    if (instant > instants_ - felt) late_mean_[i] += tools_[i].force().force / felt;
+    tracks_[i].mean += tools_[i].force().force / instants();
+    if (instant > instants() - late) tracks_[i].late_mean += tools_[i].force().force / late;
   }
 }
 
@@ -306,7 +335,9 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
 void Simulation::solve_contacts() {
   settle();
   bool found = true;
-  while (const auto motion = tissue_.model->relinearise()) {
+  NonlinearModel* const nonlinear = tissue_.traits.nonlinear;
+  if (nonlinear == nullptr) return;
+  while (const auto motion = nonlinear->relinearise()) {
     tissue_.set_free(*motion);
     found = found && std::ranges::none_of(tools_, &ToolContact::exhausted);
     if (!found) continue;
@@ -315,23 +346,24 @@ void Simulation::solve_contacts() {
     }
     settle();
   }
-  if (!found || !tissue_.model->balanced()) flag_contacts();
+  if (!found || !balanced()) flag_contacts();
 }
 
 /// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.
 bool Simulation::ran_away() const noexcept {
-  const bool loose = cut_ && cut_->resection.totals().loose_pieces > 0;  // these may go anywhere
-  const double most = loose ? kAnywhere * kAnywhere : farthest_ * farthest_;
+  const bool loose = cut_ && cut_->resection().totals().loose_pieces > 0;  // these may go anywhere
+  const double most = loose ? kAnywhere * kAnywhere : organ_.farthest * organ_.farthest;
   const auto is_near = [&](std::size_t v) {  // false of what is not a number, too
-    return (tissue_.positions[v] - rest_[v]).squaredNorm() <= most;
+    return (tissue_.positions[v] - organ_.rest[v]).squaredNorm() <= most;
   };
   bool near = true;
   if (!cut_) {
-    for (std::size_t v = 0; v < rest_.size(); ++v) near &= is_near(v);
+    for (std::size_t v = 0; v < organ_.rest.size(); ++v) near &= is_near(v);
     return !near;
   }
-  const CutMesh& left = cut_->resection.left();
-  for (std::size_t v = 0; v < rest_.size(); ++v) near &= !left.on_surface(static_cast<int>(v)) || is_near(v);
+  const CutMesh& left = cut_->resection().left();
+  for (std::size_t v = 0; v < organ_.rest.size(); ++v)
+    near &= !left.on_surface(static_cast<int>(v)) || is_near(v);
   return !near;
 }
 
@@ -341,20 +373,20 @@ bool Simulation::ran_away() const noexcept {
 void Simulation::move_organ(double dt) {
   const bool moves = !tissue_.velocities.empty();
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
-    surface_motion_[i] =
+    tracks_[i].surface_motion =
         0.5 * dt *
         tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.velocities, tissue_.loads_of(i));
   carry_before(tissue_, 0.5 * dt);
   tissue_.set_free(tissue_.model->free_motion(dt));
   carry_before(tissue_, 0.5 * dt);
   for (std::size_t i = 0; moves && i < tools_.size(); ++i)
-    surface_motion_[i] +=
+    tracks_[i].surface_motion +=
         0.5 * dt *
         tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.velocities, tissue_.loads_of(i));
   bool pressed = false;
   for (std::size_t i = 0; moves && i < tools_.size(); ++i) {
-    tools_[i].carry(surface_motion_[i]);
-    tissue_.carry(i, surface_motion_[i]);
+    tools_[i].carry(tracks_[i].surface_motion);
+    tissue_.carry(i, tracks_[i].surface_motion);
     if (!tools_[i].placed()) continue;
     tissue_.press(i);
     pressed = true;
@@ -369,14 +401,13 @@ ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
 
 std::vector<MemoryPart> Simulation::memory() const {
   std::vector<MemoryPart> parts = tissue_.model->memory();
-  parts.push_back({"mesh", mesh_->vertices.size() * sizeof(Vec3) +
-                               mesh_->tetrahedra.size() * sizeof(Tetrahedron) +
-                               mesh_->mid_edges.size() * sizeof(mesh_->mid_edges[0]) +
-                               mesh_->stiffness.size() * sizeof(double)});
-  parts.push_back(
-      {"surface", surface_.vertices.size() * sizeof(int) + surface_.triangles.size() * sizeof(Triangle)});
-  if (cut_)
-    parts.push_back({"resection", cut_->resection.bytes() + cut_->log.capacity() * sizeof(ResectionRow)});
+  parts.push_back({"mesh", organ_.mesh->vertices.size() * sizeof(Vec3) +
+                               organ_.mesh->tetrahedra.size() * sizeof(Tetrahedron) +
+                               organ_.mesh->mid_edges.size() * sizeof(organ_.mesh->mid_edges[0]) +
+                               organ_.mesh->stiffness.size() * sizeof(double)});
+  parts.push_back({"surface", organ_.surface.vertices.size() * sizeof(int) +
+                                  organ_.surface.triangles.size() * sizeof(Triangle)});
+  if (cut_) parts.push_back({"resection", cut_->bytes()});
   const std::size_t coupling_bytes = coupling_ ? coupling_->bytes() / tools_.size() : 0;  // of each
   for (std::size_t i = 0; i < tools_.size(); ++i)
     parts.push_back(
@@ -388,7 +419,7 @@ std::uint64_t Simulation::state_hash() const noexcept {
   Fnv1a hash;
   hash.add(tissue_.positions.data(), tissue_.positions.size_bytes());
   for (const ToolForce& answer : answers_) hash.add(answer.force);
-  if (cut_) hash.add(surface_.triangles.data(), surface_.triangles.size() * sizeof(Triangle));
+  if (cut_) hash.add(organ_.surface.triangles.data(), organ_.surface.triangles.size() * sizeof(Triangle));
   return hash.value();
 }
 

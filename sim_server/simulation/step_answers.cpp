@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 
-#include "sim_server/deformation/told_nearby.h"
+#include "sim_server/client_model/published_surface.h"
 #include "sim_server/simulation/simulation.h"
 
 namespace palpate::sim {
@@ -17,26 +17,27 @@ constexpr double kFarthestAhead = 2e-3;  // m; without a bound, fast tools fare 
 
 /// How the tools move the surface under each other, if any of them is to be told.
 void Simulation::couple(std::span<const ToolInput> inputs) {
-  coupled_ = coupling_ && tissue_.model->knows_later_compliance() &&
-             std::ranges::any_of(inputs, [](const ToolInput& input) {
-               return input.pose && (input.wants.here || input.wants.ahead);
-             });
-  if (!coupled_) return;
+  status_.coupled = coupling_ && tissue_.traits.publishes_tangents &&
+                    std::ranges::any_of(inputs, [](const ToolInput& input) {
+                      return input.pose && (input.wants.here || input.wants.ahead);
+                    });
+  if (!status_.coupled) return;
+  std::array<Vec3, kMaxTools> velocities;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     tools_[i].differentiate(tissue_.met_by(i));
     const bool known = inputs[i].pose && inputs[i].v_W.norm() <= kFastestTool;
-    velocities_[i] = known ? inputs[i].v_W : Vec3::Zero();
+    velocities[i] = known ? inputs[i].v_W : Vec3(Vec3::Zero());
   }
-  coupling_->update(tissue_, tools_, velocities_);
+  coupling_->update(tissue_, tools_, std::span(velocities).first(tools_.size()));
 }
 
 /// At `there`, with the places of the other tools held, not their loads: they give way, and the surface comes
 /// along. The tangent is symmetric, as on the wire.
 Linearised Simulation::linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there,
-                                         const ToolForce* felt) {
-  if (!coupled_) return linearise(tool, there, felt);
+                                         const ToolForce* known) {
+  if (!status_.coupled) return linearise(tool, there, known);
   const Mat3& relative = coupling_->relative_motion(tool);
-  Linearised l = linearise(tool, p_W + relative * (there - p_W), felt);
+  Linearised l = linearise(tool, p_W + relative * (there - p_W), known);
   const Mat3 k = l.tangent * relative;
   l.tangent = 0.5 * (k + k.transpose());
   return l;
@@ -49,19 +50,19 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   const Vec3& p_W = input.pose->p_W;
   ToolWants wants = input.wants;
   // Nor of the tissue alone where a blade is felt, too.
-  if (!tissue_.model->knows_later_compliance() || feels_blade(tool)) {
+  if (!tissue_.traits.publishes_tangents || (cut_ && cut_->resists(tool))) {
     wants.here = false;
     wants.ahead.reset();
   }
   if (wants.here || wants.ahead) {
     answer.surface_v_W =
         tools_[tool].surface_velocity(p_W, tissue_, tissue_.velocities, tissue_.loads_of(tool));
-    if (coupled_ && coupling_->moved_by_others(tool)) answer.others = coupling_->others(tool);
+    if (status_.coupled && coupling_->moved_by_others(tool)) answer.others = coupling_->others(tool);
   }
   if (wants.here) answer.here = linearise_coupled(tool, p_W, p_W, &answer);
   // Where contact is solved several times a step, the tool would be there within one of them: a jump that
   // tissue with inertia answers otherwise than the motion that is expected. Then the tangent must do.
-  if (wants.ahead && instants_ == 1) {
+  if (wants.ahead && instants() == 1) {
     const Vec3 v_W = answer.others ? Vec3(answer.surface_v_W + answer.others->v_W) : answer.surface_v_W;
     const Vec3 motion = wants.ahead->seconds * (wants.ahead->v_W - v_W);  // on the organ as it stands
     Vec3 there = p_W + std::min(1.0, kFarthestAhead / motion.norm()) * motion;
@@ -69,31 +70,29 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
     answer.ahead = {there, linearise_coupled(tool, p_W, there, nullptr)};
   }
   if (!wants.surface_shift || tools_[tool].holds()) return;  // what is grasped is no matter of contact
-  if (cut_ && !(cut_->told && cut_->told->covers(p_W))) return;
+  if (cut_ && !(cut_->published() && cut_->published()->covers(p_W))) return;
   answer.surface_shift_W = surface_shift(tool, p_W);
-  if (told_modes() != nullptr) tell_modes(tool);
+  if (published_modes() != nullptr) publish_modes(tool);
 }
 
-void Simulation::tell_modes(std::size_t tool) {
-  tissue_.model->modal_state(modes_.q, modes_.v);
-  if (!modes_.psi.empty()) tissue_.model->relaxed_state(modes_.z, modes_.psi);
-  answers_[tool].modes = &modes_;
-  if (modal_loads_.empty()) return;
-  const SlowModes& told = *told_modes();
-  Eigen::VectorXd& driven = modal_loads_[tool];
+void Simulation::publish_modes(std::size_t tool) {
+  tissue_.traits.client->read_modes(published_.modes);
+  answers_[tool].modes = &published_.modes;
+  if (tools_.size() == 1) return;
+  Eigen::VectorXd& driven = tracks_[tool].modal_loads;
   driven.setZero();
   for (std::size_t other = 0; other < tools_.size(); ++other) {
     if (other == tool) continue;
-    told.add_drive(tissue_.loads_of(other), driven);
+    published_modes()->add_drive(tissue_.loads_of(other), driven);
   }
   answers_[tool].modal_loads = &driven;
 }
 
-Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* felt) {
+Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* known) {
   ToolContact& contact = tools_[tool];
   if (!contact.placed()) return {};
   const ToolTissue tissue = tissue_.met_by(tool);
-  const ToolForce there = felt != nullptr ? *felt : contact.probe(p_W, tissue);
+  const ToolForce there = known != nullptr ? *known : contact.probe(p_W, tissue);
   if (there.contacts > 0) {
     const double size = there.force.norm();
     return {there.force, there.tangent, {size > 0 ? Vec3(there.force / size) : Vec3(Vec3::Zero()), 0}};
@@ -115,9 +114,9 @@ Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) {
   const ToolTissue tissue = tissue_.met_by(tool);
   const int vertex = tools_[tool].nearest_vertex(p_W, tissue_);
   if (vertex < 0) return Vec3::Zero();  // all that it could touch has been cut away
-  if (told_modes() == nullptr) return tissue.free()[vertex] - rest_[vertex];
+  if (published_modes() == nullptr) return tissue.free()[vertex] - organ_.rest[vertex];
   const Vec3 carried =
-      tissue_.carried.empty() ? Vec3(Vec3::Zero()) : Vec3(tissue_.carried[vertex] - rest_[vertex]);
+      tissue_.carried.empty() ? Vec3(Vec3::Zero()) : Vec3(tissue_.carried[vertex] - organ_.rest[vertex]);
   return carried + residual_shift(tool, vertex);
 }
 
@@ -127,7 +126,7 @@ Vec3 Simulation::residual_shift(std::size_t tool, int vertex) {
   for (std::size_t other = 0; other < tools_.size(); ++other) {
     if (other == tool) continue;
     for (const NodalLoad& load : tissue_.loads_of(other)) {
-      tissue_.model->residual_compliance(std::array{vertex, load.vertex}, pair_);
+      tissue_.traits.client->residual_compliance(std::array{vertex, load.vertex}, pair_);
       shift += pair_.compliance.block<3, 3>(0, 3) * load.force;
     }
   }

@@ -26,7 +26,7 @@ void Simulation::settle() {
     const ToolTissue tissue = tissue_.met_by(i);
     if (!tissue.moved()) continue;
     if (tool.exhausted() || turn >= kMaxSweeps * tools_.size()) {
-      tools_settled_ = false;
+      status_.tools_settled = false;
       flag_contacts();
       return;
     }
@@ -65,23 +65,24 @@ void Simulation::restore_touching() {
 /// Whether contact is to be looked for everywhere: what is longer than a ball may touch anywhere along
 /// itself, what appears is put outside first, wherever that is, and tissue that is let go springs back, as
 /// far as it was pulled.
-bool Simulation::looks_everywhere(std::size_t tool, const ToolInput& input) const noexcept {
+bool Simulation::searches_everywhere(std::size_t tool, const ToolInput& input) const noexcept {
   if (!input.pose) return !tissue_.loads_of(tool).empty();
   const ToolContact& contact = tools_[tool];
-  return !contact.shape().is_sphere() || !contact.placed() || !came_from_[tool] || contact.opens();
+  return !contact.shape().is_sphere() || !contact.placed() || !tracks_[tool].from || contact.opens();
 }
 
 /// A ball on its way looks around that alone.
-void Simulation::narrow_to_tools(std::span<const ToolInput> inputs) {
+void Simulation::restrict_contact(std::span<const ToolInput> inputs) {
   // Tool radii about its way: beyond what it touches, or is taken back to; what it holds is loaded anyway.
   constexpr double kAround = 4, kAroundHeld = kNear;
   places_.clear();
-  bool everywhere = std::exchange(let_go_, false);
-  for (std::size_t i = 0; i < tools_.size(); ++i) everywhere = looks_everywhere(i, inputs[i]) || everywhere;
+  bool everywhere = std::exchange(status_.released, false);
+  for (std::size_t i = 0; i < tools_.size(); ++i)
+    everywhere = searches_everywhere(i, inputs[i]) || everywhere;
   for (std::size_t i = 0; i < tools_.size() && !everywhere; ++i) {
     if (!inputs[i].pose) continue;
     const Vec3& to = inputs[i].pose->p_W;
-    const Vec3 middle = 0.5 * (came_from_[i]->p_W + to);
+    const Vec3 middle = 0.5 * (tracks_[i].from->p_W + to);
     double farthest = (to - middle).norm();
     for (const PathPoint& point : inputs[i].path)
       farthest = std::max(farthest, (point.pose.p_W - middle).norm());
@@ -89,14 +90,14 @@ void Simulation::narrow_to_tools(std::span<const ToolInput> inputs) {
     const double around = tools_[i].holds() ? kAroundHeld : kAround;
     places_.push_back({middle, farthest + around * tools_[i].radius()});
   }
-  tissue_.model->narrow(places_, surface_.triangles);
+  tissue_.traits.cuttable->restrict_contact(places_, organ_.surface.triangles);
 }
 
 void Simulation::lift_tool(std::size_t tool) noexcept {
   answers_[tool] = {};
-  came_from_[tool].reset();
-  lately_[tool].clear();
-  let_go_ = let_go_ || !tissue_.loads_of(tool).empty();
+  tracks_[tool].from.reset();
+  tracks_[tool].recent.clear();
+  status_.released = status_.released || !tissue_.loads_of(tool).empty();
   try {
     if (!tissue_.loads_of(tool).empty()) tissue_.met_by(tool).release();
   } catch (const std::exception&) {

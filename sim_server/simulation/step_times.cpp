@@ -6,7 +6,7 @@
 
 #include "common/clock.h"
 #include "common/error.h"
-#include "sim_server/simulation/touchable.h"
+#include "sim_server/scene/touchable.h"
 
 namespace palpate::sim {
 namespace {

@@ -4,7 +4,7 @@
 
 namespace palpate::sim {
 
-/// Where a tool presses: its centre (m, world), and the outward normal of the surface at rest there.
+/// Place at which a tool presses: its centre (m, world), and the outward normal of the surface at rest there.
 struct Press {
   Vec3 place, normal;
 };

@@ -3,35 +3,29 @@
 #include <vector>
 
 #include "common/contact/tool.h"
-#include "sim_server/contact/tool_contact.h"
+#include "sim_server/contact/tool_step.h"
 
 namespace palpate::sim {
 
-/// How the other tools move the surface near one, to first order.
-struct OtherTools {
-  Vec3 v_W = Vec3::Zero();         ///< m/s, with the force of this tool held
-  Mat3 compliance = Mat3::Zero();  ///< m/N: for each N more that this tool presses the tissue with
-};
-
-/// How tools on one organ move its surface under each other. Tool k, at velocity v_k, with the surface under
-/// it going by w_k, presses the tissue with a force that changes at r_k = -K_k (v_k - w_k), K_k its tangent
-/// with the loads of the others held; it is spread over the vertices it loads as its force is (Saint-Venant:
-/// farther away only the sum matters). G_ik is how far that carries the surface under tool i. With o all
-/// tools but i,
+/// Motion of the surface under each tool that the other tools on one organ cause. Tool k, at velocity v_k,
+/// with the surface under it going by w_k, presses the tissue with a force that changes at r_k = -K_k (v_k -
+/// w_k), K_k its tangent with the loads of the others held; it is spread over the vertices it loads as its
+/// force is (Saint-Venant: farther away only the sum matters). G_ik is how far that carries the surface under
+/// tool i. With o all tools but i,
 ///   w_i = G_io r_o,   r_o = -K_o (v_o - G_oo r_o - G_oi r_i),
 /// so that w_i = u_i + M_i r_i. The tangent with the places of the others held, not their loads, is
 /// K_i (I - M_i K_i)^-1. Exact where each grasps one vertex of linear tissue. Tools so close that this has no
 /// meaning (|M_i K_i| above 0.9) are told of no other. Only set-up allocates. One thread.
 class ToolCoupling {
  public:
-  /// For so many tools, so many vertices of the surface, and loads of all tools at most.
+  /// Makes room for so many tools, vertices of the surface, and loads of all tools at most.
   ToolCoupling(std::size_t tools, std::size_t vertices, std::size_t most_loads);
 
   /// After a step, with the velocities of the tips (m/s, world). The tangents are there. Three `apply` of the
   /// model for each tool that presses, and two.
   void update(Tissue& tissue, std::span<const ToolContact> tools, std::span<const Vec3> velocities);
 
-  /// Whether others move the surface under the tool: else u_i and M_i are 0.
+  /// True if others move the surface under the tool; else u_i and M_i are 0.
   bool moved_by_others(std::size_t tool) const noexcept {
     return !others_[tool].compliance.isZero(0) || !others_[tool].v_W.isZero(0);
   }

@@ -41,7 +41,7 @@ bool factors_in_background(const Solid& solid, const DynamicsSettings& settings)
 
 Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,
                    const std::string& where)
-    : solid_(solid),
+    : solid_(&solid),
       linear_(one_factor_serves(solid, settings)),
       motion_(solid, std::move(held), settings),
       matrix_(solid, motion_.dofs(), settings, where),
@@ -65,14 +65,14 @@ void Dynamics::start_step(double h) {
   at_predictor_ = true;
   motion_.begin_step(h);
   if (policy_.begin_step(motion_.time().steps(), cautious_)) exchange_factors();
-  matrix_.turn_to(solid_, motion_.position());
-  matrix_.make_border(solid_, motion_.masses());
+  matrix_.turn_to(*solid_, motion_.position());
+  matrix_.make_border(*solid_, motion_.masses());
   const bool serves_badly = matrix_.is_bordered() && relative_residual_ > kBadlyServed;
   if (matrix_.border_misfits() || serves_badly) matrix_.expire();
 }
 
 void Dynamics::factor() {
-  matrix_.build(solid_, motion_.position(), motion_.masses(), motion_.viscosity(), motion_.time().c(),
+  matrix_.build(*solid_, motion_.position(), motion_.masses(), motion_.viscosity(), motion_.time().c(),
                 motion_.scratch());
   factored_at_.assign(motion_.position().begin(), motion_.position().end());
   from_background_ = cut_since_factored_ = false;
@@ -119,9 +119,9 @@ void Dynamics::note_shapes(std::span<const int> tetrahedra) {
   for (const int t : tetrahedra) {
     NewtonMatrix::Blocks blocks;
     auto* block = blocks.data();
-    solid_.stiffness_of(static_cast<std::size_t>(t), motion_.position(), motion_.viscosity(),
-                        motion_.scratch(),
-                        [&](int i, int j, const Mat3& k) { *block++ = matrix_.to_rest(i, j, k); });
+    solid_->stiffness_of(static_cast<std::size_t>(t), motion_.position(), motion_.viscosity(),
+                         motion_.scratch(),
+                         [&](int i, int j, const Mat3& k) { *block++ = matrix_.to_rest(i, j, k); });
     matrix_.note_shape(t, blocks);
     if (background_) background_->note_shape(t, blocks);
   }
@@ -293,7 +293,7 @@ void Dynamics::finish_step() {
 }
 
 bool Dynamics::inside_out() const {
-  return may_stay_inverted(solid_.material()) && any_inverted(solid_, motion_.position());
+  return may_stay_inverted(solid_->material()) && any_inverted(*solid_, motion_.position());
 }
 
 std::size_t Dynamics::bytes() const {

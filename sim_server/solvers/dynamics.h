@@ -18,30 +18,37 @@ namespace palpate::sim {
 ///   steps before (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159), by a quasi-Newton method
 ///   (`QuasiNewton`), and by conjugate gradients that the factor preconditions only in a step in which that
 ///   is slow (`conjugate_gradients`, `jacobian_times`), so that no matrix is assembled in a step.
-/// Both balance the same forces. Steps allocate; one thread, which uses all cores for the elements.
+/// Both balance the same forces. A value (`wait`). Steps allocate; one thread, which uses all cores for the
+/// elements.
 class Dynamics {
  public:
-  /// At rest. Throws `Error`, beginning with `where`, when the held nodes do not hold the body. The body must
-  /// outlive this.
+  /// Starts at rest. Throws `Error`, beginning with `where`, when the held nodes do not hold the body. The
+  /// body must outlive this.
   Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,
            const std::string& where);
 
-  /// At `x` (nodes, m) before the first step; at rest, or at these velocities (nodes, m/s).
+  /// Waits for background work, so that this can be copied. A copy is the state of the motion as a value, of
+  /// the same body; assigning it back continues from there, byte for byte.
+  void wait() const {
+    if (background_) background_->wait();
+  }
+  /// Sets the positions `x` (nodes, m) before the first step, at rest, or at these velocities (nodes, m/s).
   void set_state(std::vector<Vec3> x, std::span<const Vec3> v = {});
   /// Begins a step of `h` (s > 0); the trial point is where the velocity leads.
   void start_step(double h);
-  /// One iteration of Newton's method under these external forces (nodes, N): evaluates the residual at the
+  /// Iterates Newton's method once under these external forces (nodes, N): evaluates the residual at the
   /// trial point and, unless its relative norm is at most `tolerance`, moves the trial point. Returns the
   /// relative residual that it found; 0 where that is rounding, and where the trial point lies beyond all
   /// numbers, which puts it back to the start of the step (`relative_residual` is 1 then).
   double iterate(std::span<const Vec3> external, double tolerance = 0);
-  /// At most `max_iterations` of them, until the relative residual is at most `tolerance`. Returns how many.
+  /// Iterates at most `max_iterations` times, until the relative residual is at most `tolerance`. Returns how
+  /// many times.
   int solve(std::span<const Vec3> external, int max_iterations, double tolerance);
   /// Norm of the residual that the last `iterate` found, as a share of the forces that act.
   double relative_residual() const { return relative_residual_; }
-  /// Whether an element that is no sliver is inverted, of a law that can have a second rest there: St. Venant
-  /// and Kirchhoff's, and the corotational one where nu is near one half. O(elements), a fraction of an
-  /// evaluation.
+  /// True if an element that is no sliver is inverted, under a law that can have a second equilibrium there:
+  /// St. Venant and Kirchhoff's, and the corotational one where nu is near one half. O(elements), a fraction
+  /// of an evaluation.
   bool inside_out() const;
   /// Factors A at the trial point, where the factor is of a place elsewhere and none comes from the
   /// background.
@@ -76,11 +83,11 @@ class Dynamics {
 
   /// The trial point (nodes, m).
   std::span<const Vec3> position() const { return motion_.position(); }
-  /// To place nodes of the trial point.
+  /// Returns the trial point, to prescribe nodes of it.
   std::span<Vec3> mutable_position() { return motion_.mutable_position(); }
-  /// At the end of the last step (nodes, m/s).
+  /// Returns the velocities at the end of the last step (nodes, m/s).
   std::span<const Vec3> velocity() const { return motion_.time().velocity(); }
-  /// Of a node that ends the step in hand at `x` (m), m/s.
+  /// Returns the velocity (m/s) of a node that ends the step in hand at `x` (m).
   Vec3 velocity_at(std::size_t node, const Vec3& x) const { return motion_.time().velocity_at(node, x); }
   const FreeDofs& dofs() const { return motion_.dofs(); }
   /// The external forces change before the next `iterate`: that its residual is no smaller is not the fault
@@ -95,28 +102,28 @@ class Dynamics {
 
   /// The matrix A and its factor; stale where it was made in the background.
   const NewtonMatrix& matrix() const { return matrix_; }
-  /// How often that has changed: what its `solve` gave stands while this does.
+  /// Returns how often the factor has changed: results of its `solve` hold while this number does.
   int factors() const { return factors_; }
   /// The factor begun next in the background comes with the columns of A^-1 from these unknowns on.
   void request_columns(std::vector<int> first) { requested_columns_ = std::move(first); }
   /// The columns that came with the factor in use; none where it is not of the background.
   const Columns& background_columns() const;
 
-  /// At the end of the last step, J.
+  /// Returns the kinetic energy at the end of the last step, J.
   double kinetic_energy() const { return motion_.kinetic_energy(); }
-  /// All with which each node withstands what acts on it (nodes, N), at the end of the last step: elastic
-  /// and viscous forces, damping and inertia. Nodes that are held bear the rest of what acts on them.
+  /// Writes the resistance of each node (nodes, N) at the end of the last step: elastic and viscous forces,
+  /// damping and inertia. Nodes that are held bear the rest of what acts on them.
   void resistance(std::span<Vec3> f) const { motion_.resistance(f); }
-  /// Of the elastic and viscous ones alone.
+  /// Writes the elastic and viscous forces alone (nodes, N).
   void internal_forces(std::span<Vec3> f) const { motion_.internal_forces(f); }
-  /// Of the last step. Valid until the next begins.
+  /// Returns the viscosity of the last step, valid until the next one starts.
   Viscosity viscosity() const { return motion_.viscosity(); }
   std::size_t bytes() const;
-  /// What the body's elements need besides while it moves.
+  /// Returns the scratch memory of the elements, bytes.
   std::size_t scratch_bytes() const { return motion_.scratch_bytes(); }
 
  private:
-  /// Whether one iteration with one factor solves a step, and all later ones.
+  /// True if one iteration with one factor solves each step.
   bool is_linear() const { return linear_; }
   Eigen::VectorXd solve_turned(const Eigen::VectorXd& b);
   Residual evaluate(std::span<const Vec3> external);
@@ -133,7 +140,7 @@ class Dynamics {
   void search_along(const Eigen::VectorXd& d, const Residual& residual, std::span<const Vec3> external);
   void limit_predictor(std::span<const Vec3> external);
 
-  const Solid& solid_;
+  const Solid* solid_;
   bool linear_;
   EquationsOfMotion motion_;
   NewtonMatrix matrix_;

@@ -7,7 +7,7 @@ namespace palpate::sim {
 
 EquationsOfMotion::EquationsOfMotion(const Solid& solid, std::vector<HeldAxes> held,
                                      const DynamicsSettings& settings)
-    : solid_(solid),
+    : solid_(&solid),
       scratch_(solid),
       alpha_(settings.rayleigh_mass),
       beta_(settings.rayleigh_stiffness),
@@ -44,9 +44,9 @@ void EquationsOfMotion::end_step(bool stop) {
 
 /// Second Piola-Kirchhoff stress of what is elastic, at each point; Cauchy stress of the linear law, Pa.
 std::vector<Mat3> EquationsOfMotion::elastic_stress() {
-  std::vector<Solid::State> states(solid_.points());
-  solid_.evaluate(x_, states, {}, scratch_);
-  const bool linear = solid_.material().law == ElasticLaw::kLinear;
+  std::vector<Solid::State> states(solid_->points());
+  solid_->evaluate(x_, states, {}, scratch_);
+  const bool linear = solid_->material().law == ElasticLaw::kLinear;
   std::vector<Mat3> stress;
   stress.reserve(states.size());
   for (const Solid::State& state : states)
@@ -56,7 +56,7 @@ std::vector<Mat3> EquationsOfMotion::elastic_stress() {
 
 void EquationsOfMotion::update_internal() {
   if (internal_is_current_) return;
-  solid_.forces(x_, internal_, viscosity(), scratch_);
+  solid_->forces(x_, internal_, viscosity(), scratch_);
   internal_is_current_ = true;
 }
 
@@ -137,7 +137,7 @@ Eigen::VectorXd EquationsOfMotion::by_unknowns(std::span<const Vec3> forces) con
 }
 
 void EquationsOfMotion::internal_forces(std::span<Vec3> f) const {
-  solid_.forces(x_, f, viscosity());
+  solid_->forces(x_, f, viscosity());
 }
 
 void EquationsOfMotion::resistance(std::span<Vec3> f) const {

@@ -8,7 +8,7 @@
 
 namespace palpate::sim {
 
-/// What has to balance at the end of each step of a body in motion,
+/// Balance of forces at the end of each step of a body in motion,
 ///   r(x) = f_ext - M (a + alpha v) - beta df/dt - f(x) = 0,
 /// and the trial point x (nodes, m) at which a solver evaluates it: f are the internal forces of the body
 /// with its viscosity (`PronySeries`), M is its lumped mass, v, a and df/dt follow from x by `TimeStepping`,
@@ -16,14 +16,14 @@ namespace palpate::sim {
 /// which uses all cores for the elements.
 class EquationsOfMotion {
  public:
-  /// At rest. The body must outlive this.
+  /// Starts at rest. The body must outlive this.
   EquationsOfMotion(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings);
 
   /// A force so small (N, > 0) that it counts as none beside the forces that act. Set before the first
   /// residual.
   void set_negligible_force(double force) { negligible_force_ = force; }
-  /// At `x` (nodes, m), as if it had always been there; at the velocities `v` (nodes, m/s), or those of
-  /// before.
+  /// Restarts at `x` (nodes, m), as if it had always been there, at the velocities `v` (nodes, m/s), or the
+  /// present ones.
   void restart(std::vector<Vec3> x, std::span<const Vec3> v);
   /// Begins a step of `h` (s > 0), with free nodes at the predictor x_n + h v_n.
   void begin_step(double h);
@@ -32,18 +32,18 @@ class EquationsOfMotion {
 
   /// r(x) at the trial point under these external forces (nodes, N).
   Residual residual(std::span<const Vec3> external);
-  /// Of the last residual: its external forces (nodes, N) and its scale (N).
+  /// Returns the external forces (nodes, N) and the scale (N) of the last residual.
   std::span<const Vec3> last_external() const { return external_; }
   double last_force_scale() const { return force_scale_; }
 
   std::span<const Vec3> position() const { return x_; }
-  /// To place the trial point, or nodes of it that are held.
+  /// Returns the trial point, to prescribe it or nodes of it.
   std::span<Vec3> mutable_position();
-  /// To `x` (nodes, m).
+  /// Moves to `x` (nodes, m).
   void move_to(std::span<const Vec3> x);
-  /// To `x` (nodes, m) and from there by the increment `d` (m, by unknowns).
+  /// Moves to `x` (nodes, m) plus the increment `d` (m, by unknowns).
   void move_to(std::span<const Vec3> x, const Eigen::VectorXd& d);
-  /// By the increment `d` (m, by unknowns).
+  /// Moves by the increment `d` (m, by unknowns).
   void move_by(const Eigen::VectorXd& d);
   /// Free nodes back to where the step begins. Returns the predictor's increment h v_n (m, by unknowns).
   Eigen::VectorXd move_to_start();
@@ -54,9 +54,9 @@ class EquationsOfMotion {
 
   /// Elastic and viscous forces at the trial point (nodes, N).
   void internal_forces(std::span<Vec3> f) const;
-  /// The same with damping and inertia: all with which a node withstands what acts on it (nodes, N).
+  /// Writes these forces with damping and inertia: the resistance of each node (nodes, N).
   void resistance(std::span<Vec3> f) const;
-  /// At the end of the last step, J.
+  /// Returns the kinetic energy at the end of the last step, J.
   double kinetic_energy() const;
 
   /// Lumped, kg.
@@ -93,7 +93,7 @@ class EquationsOfMotion {
   /// M (a + alpha v) of node i at the trial point, N.
   Vec3 inertia(std::size_t i) const;
 
-  const Solid& solid_;
+  const Solid* solid_;
   Solid::Scratch scratch_;
   double alpha_, beta_;  // 1/s, s
   FreeDofs dofs_;

@@ -7,7 +7,7 @@
 
 namespace palpate::sim {
 
-/// What acts on a body at rest.
+/// Loads on a body at rest.
 struct StaticLoad {
   /// Forces on the nodes (N) of a body at `x` (nodes, m); they may follow it.
   std::function<void(std::span<const Vec3> x, std::span<Vec3> f)> forces = {};
@@ -18,7 +18,7 @@ struct StaticLoad {
   std::vector<Vec3> start = {};
 };
 
-/// How well an equilibrium is to be found.
+/// Settings of the search for an equilibrium.
 struct EquilibriumSettings {
   double tolerance = 1e-10;  ///< relative residual at which an increment ends
   double rounding = 1e-7;    ///< the same, where one more iteration does not lessen it
@@ -26,7 +26,7 @@ struct EquilibriumSettings {
   int max_halvings = 12;     ///< of the load, where Newton's method fails
 };
 
-/// Where a body came to rest.
+/// Equilibrium of a body.
 struct Equilibrium {
   std::vector<Vec3> x;                 ///< (nodes) m
   int increments = 0, iterations = 0;  ///< of the load; Newton steps in all

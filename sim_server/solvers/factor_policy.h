@@ -48,12 +48,12 @@ class FactorPolicy {
   void loads_changed() { comparable_ = false; }
   /// There is another factor, for another reason than a `Decision`.
   void replaced() { state_ = State::kStale; }
-  /// For an iteration that finds `residual`, where the one before it found the relative residual `previous`.
-  /// `just_factored`: A has been factored for it, after `replaced`.
+  /// Decides for an iteration that finds `residual`, where the one before it found the relative residual
+  /// `previous`. `just_factored`: A has been factored for it, after `replaced`.
   Decision decide(const Residual& residual, double previous, bool just_factored);
 
   State state() const { return state_; }
-  /// Whether the search direction is to be found by conjugate gradients that the factor preconditions.
+  /// True if the search direction is found by conjugate gradients that the factor preconditions.
   bool uses_conjugate_gradients() const { return state_ == State::kWorn; }
 
  private:

@@ -4,7 +4,7 @@
 
 namespace palpate::sim {
 
-/// What is left of the forces that should balance, r(x), at some x. By unknowns.
+/// Residual r(x) of the forces that should balance, by unknowns.
 struct Residual {
   Eigen::VectorXd force;   ///< N
   double force_scale = 1;  ///< norm of all forces that act, N, > 0
@@ -16,7 +16,7 @@ using ResidualAlong = std::function<Residual(double s)>;
 /// A v for the vectors v (by unknowns) of a solver.
 using LinearMap = std::function<Eigen::VectorXd(const Eigen::VectorXd& v)>;
 
-/// Where a line search ended.
+/// Outcome of a line search.
 struct TrialStep {
   double length = 0;    ///< s, (0, 1]; 0: no trial step was accepted
   double relative = 1;  ///< relative residual there; 1: no trial step was accepted

@@ -211,61 +211,75 @@ Eigen::MatrixXd NewtonMatrix::columns(std::span<const int> first, double enough)
   return found;
 }
 
+BackgroundMatrix::Work::Work(const Solid& body, const FreeDofs& dofs, const DynamicsSettings& settings,
+                             const std::string& where)
+    : solid(&body),
+      own(settings.cut ? std::make_optional(body) : std::nullopt),
+      scratch(body),
+      matrix(body, dofs, settings, where) {}
+
 BackgroundMatrix::BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
                                    const std::string& where)
-    : solid_(solid),
-      own_(settings.cut ? std::make_optional(solid) : std::nullopt),
-      scratch_(solid),
-      matrix_(solid, dofs, settings, where),
-      tolerance_(settings.tolerance),
-      bytes_(scratch_.bytes() + matrix_.bytes() + (own_ ? own_->bytes() : 0)) {}
+    : tolerance_(settings.tolerance),
+      work_(std::make_shared<Work>(solid, dofs, settings, where)),
+      bytes_(work_->scratch.bytes() + work_->matrix.bytes() + (work_->own ? work_->own->bytes() : 0)) {}
+
+/// Returns the work to be changed: a copy of its own where another value shares it.
+BackgroundMatrix::Work& BackgroundMatrix::own_work() {
+  if (work_.use_count() > 1) work_ = std::make_shared<Work>(*work_);
+  return *work_;
+}
 
 void BackgroundMatrix::part(std::span<const Split> splits) {
   outdated_ = true;
-  if (!begun()) return matrix_.part(splits);
+  if (!begun()) return own_work().matrix.part(splits);
   splits_.insert(splits_.end(), splits.begin(), splits.end());
 }
 
 void BackgroundMatrix::begin(std::span<const Vec3> x, std::span<const double> masses,
                              const Viscosity& viscosity, double c, std::vector<int> first) {
-  x_.assign(x.begin(), x.end());
-  masses_.assign(masses.begin(), masses.end());
+  Work& work = own_work();
+  work.x.assign(x.begin(), x.end());
+  work.masses.assign(masses.begin(), masses.end());
   if (std::exchange(outdated_, false)) {
-    own_ = solid_;
+    work.own = *work.solid;
     removed_.clear();
   }
-  for (const int t : removed_) own_->remove(static_cast<std::size_t>(t));
+  for (const int t : removed_) work.own->remove(static_cast<std::size_t>(t));
   removed_.clear();
-  memory_.assign(viscosity.memory.begin(), viscosity.memory.end());
-  made_.first = std::move(first);
-  work_ = std::async(std::launch::async, [this, scale = viscosity.scale, c] {
-    make_background("palpate-factor");
-    in_one_thread([&] {
-      matrix_.build(body(), x_, masses_, {scale, memory_}, c, scratch_);
-      made_.values = matrix_.columns(made_.first, tolerance_);
-    });
+  work.memory.assign(viscosity.memory.begin(), viscosity.memory.end());
+  work.made.first = std::move(first);
+  job_.start("palpate-factor", [&work, scale = viscosity.scale, c, tolerance = tolerance_] {
+    const Solid& body = work.own ? *work.own : *work.solid;
+    work.matrix.build(body, work.x, work.masses, {scale, work.memory}, c, work.scratch);
+    work.made.values = work.matrix.columns(work.made.first, tolerance);
+    return work.matrix.is_definite();
   });
 }
 
 bool BackgroundMatrix::exchange(NewtonMatrix& matrix) {
+  bool definite = false;
   try {
-    work_.get();
+    definite = *job_.take();
   } catch (...) {
     catch_up();
     throw;
   }
-  if (!splits_.empty()) made_ = {};  // columns as if none had become two
+  if (!splits_.empty()) own_work().made = {};  // columns as if none had become two
   catch_up();
-  if (!matrix_.is_definite()) return false;
-  std::swap(matrix_, matrix);
-  std::swap(made_, given_);
+  if (!definite) return false;
+  Work& work = own_work();
+  std::swap(work.matrix, matrix);
+  std::swap(work.made, given_);
   return true;
 }
 
-/// With what happened to the body since it was begun.
+/// Applies what happened to the body since the work began.
 void BackgroundMatrix::catch_up() {
-  for (const auto& [tetrahedron, blocks] : shapes_) matrix_.note_shape(tetrahedron, blocks);
-  matrix_.part(splits_);
+  if (!shapes_.empty() || !splits_.empty()) {
+    for (const auto& [tetrahedron, blocks] : shapes_) own_work().matrix.note_shape(tetrahedron, blocks);
+    own_work().matrix.part(splits_);
+  }
   shapes_.clear();
   splits_.clear();
 }

@@ -1,10 +1,11 @@
 #pragma once
 #include <Eigen/Cholesky>
 #include <array>
-#include <future>
 #include <map>
+#include <memory>
 #include <optional>
 
+#include "common/background_job.h"
 #include "sim_server/elasticity/solid.h"
 #include "sim_server/mesh/cut_mesh.h"
 #include "sim_server/solvers/dynamics_settings.h"
@@ -32,7 +33,7 @@ class NewtonMatrix {
   void note_shape(int tetrahedron, const Blocks& blocks) { shapes_.try_emplace(tetrahedron, blocks); }
   /// A block of rows of node i and columns of j, N/m, as if neither had turned, by the last `turn_to`.
   Mat3 to_rest(int i, int j, const Mat3& block) const;
-  /// These nodes became two, none of which is held; all tetrahedra around them have been noted. Until the
+  /// Splits these nodes in two, none of which is held; all tetrahedra around them have been noted. Until the
   /// next `build`, which takes the new pattern, A is bordered by the ways of the copies from their nodes
   /// (augmented matrices: Yeung, Crouch and Pothen 2016, ACM Trans. Graph. 35:18): the factor, of the body as
   /// if each pair still were one, serves on.
@@ -40,16 +41,16 @@ class NewtonMatrix {
   /// Makes the border of A since the last `part`, of the solid as it is now. Returns how many copies it took;
   /// 0: nothing was to be done. O(nodes + noted tetrahedra), and of as many nodes two times `columns`.
   int make_border(const Solid& solid, std::span<const double> masses);
-  /// Whether the last `build` came to a factor: no inertia was enough for a body that is turned inside out.
+  /// True if the last `build` came to a factor: no inertia was enough for a body that is turned inside out.
   bool is_definite() const { return definite_; }
-  /// Whether nodes have become two since the last `build`.
+  /// True if nodes have been split since the last `build`.
   bool is_bordered() const { return !copies_.empty(); }
-  /// Whether the factor is of a body of so different a shape that the border made last does not fit it.
+  /// True if the factor is of a body of so different a shape that the last border does not fit it.
   bool border_misfits() const { return border_misfits_; }
   /// The factor is not to be used any more.
   void expire() { c_ = 0; }
-  /// To be called where iterations with the factor of the last `build` converge slowly: should that be for
-  /// want of digits, the next is made in double precision. Costs a solve.
+  /// Checks whether the factor of the last `build` lacks digits, where iterations with it converge slowly;
+  /// the next is then made in double precision. Costs a solve.
   void check_precision();
   /// A^-1 b of the factor, and of the border, for columns b over the unknowns.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
@@ -66,9 +67,9 @@ class NewtonMatrix {
 
   /// c of the last `build`, 1/s; 0 before the first, and since `expire`.
   double c() const { return c_; }
-  /// Of K at rest, N/m.
+  /// Returns the mean diagonal entry of K at rest, N/m.
   double mean_diagonal() const { return mean_diagonal_; }
-  /// Of the A or K that is factored, N/m.
+  /// Returns the largest diagonal entry of the factored A or K, N/m.
   double largest_diagonal() const { return matrix_.lower().diagonal().maxCoeff(); }
   const SparseCholesky& factor() const { return factor_; }
   std::size_t bytes() const {
@@ -77,7 +78,7 @@ class NewtonMatrix {
   }
 
  private:
-  /// Of two nodes that were one when A was built.
+  /// Pair of nodes that were one when A was built.
   struct Copy {
     int node, copy;
   };
@@ -112,9 +113,10 @@ struct Columns {
   Eigen::MatrixXd values;  ///< (unknowns x 3n), m/N
 };
 
-/// A second `NewtonMatrix` that a thread of its own makes ready while steps go on with the first
+/// A second `NewtonMatrix` that a background thread makes ready while steps go on with the first
 /// (Courtecuisse et al. 2010, Prog. Biophys. Mol. Biol. 103:159). The thread reads the body, which must
-/// outlive this, and its own copy of all that changes: where tetrahedra may be removed, also of the body.
+/// outlive this, and its own copy of all that changes: where tetrahedra may be removed, also of the body. A
+/// value: a copy shares the matrix until either of the two changes it.
 class BackgroundMatrix {
  public:
   BackgroundMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
@@ -123,46 +125,54 @@ class BackgroundMatrix {
   /// have been exchanged.
   void begin(std::span<const Vec3> x, std::span<const double> masses, const Viscosity& viscosity, double c,
              std::vector<int> first);
-  /// From the next `begin` on the body is without these tetrahedra.
+  /// Removes these tetrahedra from the body of the next `begin`.
   void remove(std::span<const int> tetrahedra) {
     removed_.insert(removed_.end(), tetrahedra.begin(), tetrahedra.end());
   }
-  /// As `NewtonMatrix`, of what was begun.
+  /// Notes a shape as `NewtonMatrix` does, for the matrix that has begun.
   void note_shape(int tetrahedron, const NewtonMatrix::Blocks& blocks) {
     begun() ? static_cast<void>(shapes_.try_emplace(tetrahedron, blocks))
-            : matrix_.note_shape(tetrahedron, blocks);
+            : own_work().matrix.note_shape(tetrahedron, blocks);
   }
   /// Tetrahedra of the solid have other shapes, and these nodes became two: what was begun will be bordered
   /// (`NewtonMatrix::part`), and the next `begin` is of the solid as it is then.
   void part(std::span<const Split> splits);
-  bool begun() const { return work_.valid(); }
+  bool begun() const { return job_.has_started(); }
+  /// Waits for the thread, so that this can be copied.
+  void wait() const { job_.wait(); }
   /// Waits for it, and exchanges it for `matrix`, unless it is not definite. Returns whether it did. Throws
   /// what the thread threw: the next one can be begun all the same.
   bool exchange(NewtonMatrix& matrix);
-  /// What came with the one given last. Valid until the next exchange.
+  /// Returns the columns that came with the last exchange. Valid until the next exchange.
   const Columns& columns() const { return given_; }
   /// Known beforehand: asked for while the thread works, too.
   std::size_t bytes() const { return bytes_; }
 
  private:
-  const Solid& body() const { return own_ ? *own_ : solid_; }
+  /// Data of the thread, which owns it between `begin` and `exchange`.
+  struct Work {
+    Work(const Solid& body, const FreeDofs& dofs, const DynamicsSettings& settings, const std::string& where);
+    const Solid* solid;
+    std::optional<Solid> own;  // of a body that may be cut
+    Solid::Scratch scratch;
+    NewtonMatrix matrix;
+    std::vector<Vec3> x;
+    std::vector<double> masses;
+    std::vector<Mat3> memory;
+    Columns made = {};
+  };
+  Work& own_work();
   void catch_up();
 
-  const Solid& solid_;
-  std::optional<Solid> own_;                    // of a body that may be cut
-  std::vector<int> removed_;                    // since that was brought up to date
+  std::vector<int> removed_;                    // since the body of the work was brought up to date
   bool outdated_ = false;                       // it was parted since
   std::map<int, NewtonMatrix::Blocks> shapes_;  // since what has begun
   std::vector<Split> splits_;                   // the same
-  std::vector<double> masses_;
-  Solid::Scratch scratch_;
-  NewtonMatrix matrix_;
   double tolerance_;
+  std::shared_ptr<Work> work_;
   std::size_t bytes_;
-  std::vector<Vec3> x_;
-  std::vector<Mat3> memory_;
-  Columns made_, given_;
-  std::future<void> work_;  // last: ends before what it works on
+  Columns given_;
+  BackgroundJob<bool> job_;  // last: ends before what it works on
 };
 
 }  // namespace palpate::sim

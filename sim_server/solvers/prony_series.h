@@ -16,7 +16,7 @@ namespace palpate::sim {
 /// point. It begins without any stress. After construction nothing allocates.
 class PronySeries {
  public:
-  /// Of a body of so many quadrature points. Without terms it does nothing, and holds nothing.
+  /// Makes room for so many quadrature points. Without terms it does nothing, and holds nothing.
   PronySeries(std::span<const Relaxation> terms, std::size_t points);
 
   bool empty() const { return terms_.empty(); }
@@ -25,7 +25,8 @@ class PronySeries {
   /// Ends it at the elastic stresses `elastic` (points). A point whose stress is no number, as of an element
   /// that is flat, keeps what it has.
   void end(std::span<const Mat3> elastic);
-  /// Of the step begun last: S' = scale S0' + memory, whatever S0' will be. Valid until the next begins.
+  /// Returns the viscosity of the step begun last: S' = scale S0' + memory, whatever S0' will be. Valid until
+  /// the next begins.
   Viscosity viscosity() const { return {scale_, memory_}; }
   std::size_t bytes() const;
 

@@ -16,7 +16,7 @@ class QuasiNewton {
   void clear() { pairs_.clear(), last_x_.resize(0); }
   /// The next point is not compared with the last: forces have changed for other reasons between them.
   void restart() { last_x_.resize(0); }
-  /// At `x` (m) the body withstands with the forces `f` (N).
+  /// Adds a point: at `x` (m) the body resists with the forces `f` (N).
   void add_point(const Eigen::VectorXd& x, const Eigen::VectorXd& f);
   /// The increment (m) that is expected to balance `residual` (N).
   Eigen::VectorXd direction(const NewtonMatrix& matrix, const Eigen::VectorXd& residual) const;

@@ -18,10 +18,10 @@ namespace palpate::sim {
 /// array is by nodes. After construction nothing allocates but `restart`.
 class TimeStepping {
  public:
-  /// At rest at `x` (nodes, m), where no internal forces act.
+  /// Starts at rest at `x` (nodes, m), where no internal forces act.
   TimeStepping(std::span<const Vec3> x, bool second_order);
-  /// At `x` (nodes, m) with these internal forces (nodes, N), as if it had always been there; at the
-  /// velocities `v` (nodes, m/s), or where that is empty at those of before.
+  /// Restarts at `x` (nodes, m) with these internal forces (nodes, N), as if it had always been there, at the
+  /// velocities `v` (nodes, m/s), or the present ones where that is empty.
   void restart(std::span<const Vec3> x, std::span<const Vec3> v, std::span<const Vec3> internal);
   /// Begins a step of `h` (s > 0): sets c, x~, v~ and f~. May be called again before the step ends.
   void begin(double h);
@@ -47,7 +47,7 @@ class TimeStepping {
     earlier_f_ = f_;
   }
 
-  /// Of the step in hand, 1/s; 0 before the first.
+  /// Returns c of the step in hand, 1/s; 0 before the first.
   double c() const { return c_; }
   /// Length of the step in hand, s.
   double step_length() const { return h_; }
@@ -60,7 +60,7 @@ class TimeStepping {
   /// df/dt / c of node i that ends the step with the internal force `f` (N): f - f~, N.
   Vec3 change_of_force(std::size_t i, const Vec3& f) const { return f - predictor_f_[i]; }
 
-  /// At the end of the last step: m, m/s and N.
+  /// Positions (m), velocities (m/s) and internal forces (N) at the end of the last step.
   std::span<const Vec3> position() const { return x_; }
   std::span<const Vec3> velocity() const { return v_; }
   std::span<const Vec3> internal_force() const { return f_; }

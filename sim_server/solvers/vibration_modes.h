@@ -7,7 +7,7 @@
 
 namespace palpate::sim {
 
-/// How a body swings by itself.
+/// Modes of vibration of a body.
 struct VibrationModes {
   Eigen::VectorXd frequencies;  ///< (k) angular, rad/s, ascending
   Eigen::MatrixXd shapes;       ///< (unknowns x k), 1/sqrt(kg): of unit mass, phi^T M phi = 1
@@ -21,11 +21,11 @@ struct VibrationModes {
 VibrationModes vibration_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses, int count,
                                const std::string& where);
 
-/// The same from shapes of a body that was almost this one (unknowns x k), by iterations of
-/// that subspace (Bathe and Wilson 1972, Int. J. Numer. Methods Eng. 6:213) until none of its w^2 changes by
-/// more than 1e-3, 8 at most. Whatever is left over, M-orthonormal shapes that are followed as if they were
-/// modes. k solves at once for an iteration; Lanczos' method, which starts from one vector, has no use for
-/// the shapes. Nothing where these do not span k dimensions, as what some moved alone is cut away.
+/// Returns the modes from shapes of a body that was almost this one (unknowns x k), by iterations of that
+/// subspace (Bathe and Wilson 1972, Int. J. Numer. Methods Eng. 6:213) until none of its w^2 changes by more
+/// than 1e-3, 8 at most. Whatever is left over, M-orthonormal shapes that are followed as if they were modes.
+/// k solves at once for an iteration; Lanczos' method, which starts from one vector, has no use for the
+/// shapes. Nothing where these do not span k dimensions, as what some moved alone is cut away.
 std::optional<VibrationModes> refined_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses,
                                             Eigen::MatrixXd shapes);
 

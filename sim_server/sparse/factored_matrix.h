@@ -15,6 +15,8 @@ class FactoredMatrix {
  public:
   FactoredMatrix() = default;
   virtual ~FactoredMatrix() = default;
+  FactoredMatrix(const FactoredMatrix&) = default;
+  FactoredMatrix& operator=(const FactoredMatrix&) = default;
   FactoredMatrix(FactoredMatrix&&) = default;
   FactoredMatrix& operator=(FactoredMatrix&&) = default;
 

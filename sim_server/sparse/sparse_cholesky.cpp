@@ -18,35 +18,36 @@ namespace palpate::sim {
 
 #ifdef PALPATE_WITH_CHOLMOD
 struct SparseCholesky::Factor {
-  Factor(const SparseMatrix& lower, Precision wanted) : pattern(lower), precision(wanted) {}
+  Factor(const SparseMatrix& lower, Precision wanted)
+      : pattern(std::make_shared<const SupernodalPattern>(lower)), precision(wanted) {}
 
-  SupernodalPattern pattern;
+  std::shared_ptr<const SupernodalPattern> pattern;
   Precision precision;
   std::optional<SupernodalFactor<double>> fine;  // one of the two
   std::optional<SupernodalFactor<float>> rough;
 
-  bool countable() const { return pattern.countable; }
+  bool countable() const { return pattern->countable; }
   std::size_t bytes() const {
     const std::size_t number = precision == Precision::kSingle ? sizeof(float) : sizeof(double);
-    return pattern.values() * number + pattern.bytes();
+    return pattern->values() * number + pattern->bytes();
   }
   /// What is taken besides while it is made.
   std::size_t work_bytes(const SparseMatrix&) const {
-    return (pattern.subtrees.size() + 1) * pattern.order.size() * sizeof(int);
+    return (pattern->subtrees.size() + 1) * pattern->order.size() * sizeof(int);
   }
 
-  double multiplications() const { return pattern.multiplications; }
+  double multiplications() const { return pattern->multiplications; }
   bool factorize(const SparseMatrix& lower) {
     if (precision == Precision::kDouble) {
-      if (!fine) fine.emplace(pattern);
+      if (!fine) fine.emplace(*pattern);
       return fine->factor(lower);
     }
-    if (!rough) rough.emplace(pattern);
+    if (!rough) rough.emplace(*pattern);
     return rough->factor(lower);
   }
 
   /// What double precision would take more than single.
-  std::size_t more_bytes() const { return pattern.values() * (sizeof(double) - sizeof(float)); }
+  std::size_t more_bytes() const { return pattern->values() * (sizeof(double) - sizeof(float)); }
   /// From here on in this precision.
   void take(Precision other) {
     rough.reset();
@@ -209,6 +210,14 @@ SparseCholesky::SparseCholesky(const SparseMatrix& lower, const std::string& whe
 }
 
 SparseCholesky::~SparseCholesky() = default;
+SparseCholesky::SparseCholesky(const SparseCholesky& other)
+    : FactoredMatrix(other),
+      factor_(std::make_unique<Factor>(*other.factor_)),
+      definite_(other.definite_),
+      double_was_no_help_(other.double_was_no_help_) {}
+SparseCholesky& SparseCholesky::operator=(const SparseCholesky& other) {
+  return *this = SparseCholesky(other);
+}
 SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 

@@ -27,6 +27,9 @@ class SparseCholesky final : public FactoredMatrix {
   SparseCholesky(const SparseMatrix& lower, const std::string& where,
                  Precision precision = Precision::kDouble, double free = free_memory());
   ~SparseCholesky() override;
+  /// Copies the numbers; the pattern is shared.
+  SparseCholesky(const SparseCholesky& other);
+  SparseCholesky& operator=(const SparseCholesky& other);
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
 

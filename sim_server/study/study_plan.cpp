@@ -7,10 +7,10 @@
 #include <fmt/core.h>
 
 #include "common/error.h"
-#include "sim_server/deformation/deformation_models.h"
-#include "sim_server/deformation/implicit.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/refinement.h"
+#include "sim_server/models/deformation_models.h"
+#include "sim_server/models/implicit.h"
 #include "sim_server/scene/inclusions.h"
 #include "sim_server/scene_file/read_parts.h"
 

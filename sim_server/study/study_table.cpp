@@ -6,8 +6,8 @@
 
 #include "common/report.h"
 #include "common/text.h"
-#include "sim_server/deformation/deformation_models.h"
-#include "sim_server/deformation/implicit.h"
+#include "sim_server/models/deformation_models.h"
+#include "sim_server/models/implicit.h"
 #include "sim_server/scene_file/read_parts.h"
 
 namespace palpate::sim {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/clock.h"
-#include "sim_server/deformation/implicit.h"
+#include "sim_server/models/implicit.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/liver.h"

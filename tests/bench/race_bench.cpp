@@ -14,7 +14,7 @@
 #include <optional>
 
 #include "common/clock.h"
-#include "sim_server/deformation/explicit_motion.h"
+#include "sim_server/explicit/explicit_motion.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/solvers/dynamics.h"
 #include "tests/bench/bench.h"

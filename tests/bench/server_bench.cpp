@@ -5,9 +5,9 @@
 #include <map>
 #include <numbers>
 
-#include "sim_server/deformation/compliance_tolerance.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/serving/virtual_session.h"
+#include "sim_server/statics/compliance_tolerance.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/liver.h"
 #include "tests/support/temporary_folder.h"

@@ -4,8 +4,8 @@
 // with the same matrix in the same order: all of it by rows, or its lower triangle.
 #include <map>
 
-#include "sim_server/deformation/explicit_motion.h"
 #include "sim_server/elasticity/solid.h"
+#include "sim_server/explicit/explicit_motion.h"
 #include "sim_server/mesh/shapes.h"
 #include "tests/bench/bench.h"
 

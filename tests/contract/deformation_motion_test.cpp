@@ -92,7 +92,7 @@ std::vector<NodalLoad> pull(const ModelBench& bench, double share) {
 }
 
 /// Up, held, down, nothing: of step i.
-double share_of(int i) {
+double fraction_of(int i) {
   return std::clamp(std::min(0.1 * i, 0.1 * (30 - i)), 0.0, 1.0);
 }
 
@@ -107,7 +107,7 @@ CONTRACT("what a body stores is never more than loads have put in, and a cycle o
   double work = 0, most = 0;
   std::vector<Vec3> before = bench.step({});
   for (int i = 0; i < 300; ++i) {
-    const std::vector<NodalLoad> loads = pull(bench, share_of(i));
+    const std::vector<NodalLoad> loads = pull(bench, fraction_of(i));
     const std::vector<Vec3> now = bench.step(loads);
     for (const NodalLoad& load : loads) work += load.force.dot(now[load.vertex] - before[load.vertex]);
     const double elastic = stores ? body.elastic(now) : 0;

@@ -12,7 +12,7 @@
 #include "common/text.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/session/client_config.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/served_tools.h"
 #include "sim_server/serving/surface_pager.h"

@@ -3,10 +3,10 @@
 #include <numbers>
 
 #include "haptic_client/evaluation/told_compliance.h"
-#include "sim_server/deformation/contact_instants.h"
-#include "sim_server/deformation/deformation_models.h"
-#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/mesh/shapes.h"
+#include "sim_server/models/deformation_models.h"
+#include "sim_server/tissue/contact_instants.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/random.h"
 
 namespace palpate::studies {

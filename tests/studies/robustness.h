@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "sim_server/deformation/deformation_models.h"
 #include "sim_server/elasticity/material.h"
 #include "sim_server/mesh/tet_mesh.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/simulation/simulation.h"
 
 namespace palpate::studies {

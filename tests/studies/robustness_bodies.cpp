@@ -2,7 +2,7 @@
 #include <fmt/core.h>
 
 #include "common/error.h"
-#include "sim_server/deformation/explicit_motion.h"
+#include "sim_server/explicit/explicit_motion.h"
 #include "sim_server/solvers/dynamics.h"
 #include "tests/studies/robustness.h"
 #include "tests/support/random.h"

@@ -66,7 +66,7 @@ class Watch {
       if (!force.flagged) run_.wildest = std::max(run_.wildest, newton);
       run_.ends_flagged = run_.ends_flagged || force.flagged;
     }
-    run_.ends_flagged = run_.ends_flagged || !simulation_.model().balanced();
+    run_.ends_flagged = run_.ends_flagged || !simulation_.balanced();
     run_.flagged += run_.ends_flagged ? 1 : 0;
     for (const Vec3& x : simulation_.positions()) run_.finite = run_.finite && x.allFinite();
   }

@@ -34,7 +34,7 @@ std::vector<std::vector<sim::PathPoint>> paths_to(const World& world, double t, 
 
 void see_step(const Simulation& simulation, std::span<const ToolInput> inputs,
               std::span<const ToolAnswer> answers, double t, Watched& watched) {
-  Felt felt{t, {}, {}, {}, !simulation.model().balanced()};
+  Felt felt{t, {}, {}, {}, !simulation.balanced()};
   for (std::size_t k = 0; k < answers.size(); ++k) {
     const ToolAnswer& answer = answers[k];
     felt.poses.push_back(inputs[k].pose.value_or(ToolPose{}));

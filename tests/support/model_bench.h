@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/elasticity/solid.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/model_cases.h"
 #include "tests/support/scenes.h"
 #include "tests/support/solids.h"
@@ -23,6 +23,7 @@ struct ModelBench {
   sim::Scene scene = scene_of({8e3, 0.4, 1000}, {Vec3(-1, -1, -1), Vec3(1, 1, 0)}, 0.005);
   std::vector<int> fixed, reachable;
   std::unique_ptr<sim::DeformationModel> model;
+  sim::ModelTraits traits;
 
   explicit ModelBench(const ModelCase& choice) : ModelBench(choice, Setting{}) {}
   ModelBench(const ModelCase& choice, const Setting& setting) {
@@ -45,20 +46,21 @@ struct ModelBench {
     fixed = sim::fixed_vertices(scene, mesh);
     for (int v = 0; v < size(); ++v) reachable.push_back(v);
     model = choice.row.make({scene, mesh, surface, fixed, reachable, [](std::string_view, double) {}});
+    traits = model->traits();
   }
   int size() const { return static_cast<int>(surface.vertices.size()); }
   const Vec3& rest(int v) const { return mesh.vertices[surface.vertices[v]]; }
 
   /// Where the next of the instants of a step leads under these loads, looked at again until all is said.
   std::span<const Vec3> instant(std::span<const sim::NodalLoad> loads) {
-    model->free_motion(1 / scene.rate_hz / model->instants());
+    model->free_motion(1 / scene.rate_hz / traits.instants);
     std::span<const Vec3> moved = model->apply(loads);
-    while (model->relinearise()) moved = model->apply(loads);
+    while (traits.nonlinear && traits.nonlinear->relinearise()) moved = model->apply(loads);
     return moved;
   }
   /// Where one step under these loads leads.
   std::vector<Vec3> step(std::span<const sim::NodalLoad> loads) {
-    for (int i = 1; i < model->instants(); ++i) instant(loads);
+    for (int i = 1; i < traits.instants; ++i) instant(loads);
     const std::span<const Vec3> moved = instant(loads);
     return {moved.begin(), moved.end()};
   }

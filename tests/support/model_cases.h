@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "sim_server/deformation/deformation_models.h"
-#include "sim_server/deformation/hybrid.h"
-#include "sim_server/deformation/implicit.h"
-#include "sim_server/deformation/reduced.h"
+#include "sim_server/models/deformation_models.h"
+#include "sim_server/models/hybrid.h"
+#include "sim_server/models/implicit.h"
+#include "sim_server/models/reduced.h"
 
 namespace palpate::test {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "sim_server/deformation/spring.h"
+#include "sim_server/models/spring.h"
 #include "sim_server/scene/scene.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "tests/support/paths.h"

@@ -1,10 +1,10 @@
 // A tool on tissue that swings, felt between samples, against the same simulation with contact solved at
 // every tick: both programs without sockets.
 #include "haptic_client/extrapolation/extrapolators.h"
-#include "sim_server/deformation/contact_instants.h"
-#include "sim_server/deformation/implicit.h"
-#include "sim_server/deformation/reduced.h"
-#include "sim_server/deformation/slow_modes.h"
+#include "sim_server/client_model/slow_modes.h"
+#include "sim_server/models/implicit.h"
+#include "sim_server/models/reduced.h"
+#include "sim_server/tissue/contact_instants.h"
 #include "tests/support/catch.h"
 #include "tests/support/listener.h"
 

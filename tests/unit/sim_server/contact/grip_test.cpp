@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
-#include "sim_server/deformation/rigid.h"
-#include "sim_server/deformation/spring.h"
 #include "sim_server/mesh/shapes.h"
+#include "sim_server/models/rigid.h"
+#include "sim_server/models/spring.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/served_tools.h"
 #include "tests/support/allocation_guard.h"

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "sim_server/contact/grip.h"
-#include "sim_server/deformation/cuttable_motion.h"
-#include "sim_server/deformation/model_inputs.h"
-#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/explicit/cuttable_motion.h"
+#include "sim_server/tissue/model_inputs.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/catch.h"
 #include "tests/support/soft_block.h"
 
@@ -41,6 +41,7 @@ struct Block {
     }
     const Progress progress = [](std::string_view, double) {};
     tissue.model = std::make_unique<CuttableMotion>(ModelInputs{scene, mesh, surface, fixed, free, progress});
+    tissue.traits = tissue.model->traits();
     tissue.free = tissue.positions = tissue.model->free_motion(0).positions;
     tissue.reserve(std::vector<int>{128, 128}, std::vector<double>{kRadius, kRadius});
   }

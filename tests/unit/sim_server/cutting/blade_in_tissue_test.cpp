@@ -5,10 +5,10 @@
 #include <memory>
 #include <random>
 
-#include "sim_server/deformation/contact_instants.h"
-#include "sim_server/deformation/implicit.h"
-#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/models/implicit.h"
 #include "sim_server/simulation/simulation.h"
+#include "sim_server/tissue/contact_instants.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/carved.h"
 #include "tests/support/catch.h"
 #include "tests/support/shaken_block.h"
@@ -218,7 +218,7 @@ TEST_CASE("a blade does the work of what it parts, against its way") {
   double work = 0;                 // J
   for (int i = 0; i <= 110; ++i) {
     slide_at(simulation, -0.022 + speed * i, true);
-    const Vec3 on_blade = simulation.resection_log().back().f_W - simulation.tool(0).force().force;
+    const Vec3 on_blade = simulation.cut()->log().back().f_W - simulation.tool(0).force().force;
     CHECK(on_blade.x() <= 0);
     CHECK(std::hypot(on_blade.y(), on_blade.z()) < 1e-9);
     work -= on_blade.x() * speed;
@@ -267,7 +267,7 @@ TEST_CASE("a blade is felt alike at every rate of steps") {
     double largest = 0;  // N
     for (int i = 0; i <= 2 * rate; ++i) {
       slide_at(simulation, -0.022 + 0.01 * i / rate, true, 1 / rate);
-      const Vec3 on_blade = simulation.resection_log().back().f_W - simulation.tool(0).force().force;
+      const Vec3 on_blade = simulation.cut()->log().back().f_W - simulation.tool(0).force().force;
       largest = std::max(largest, on_blade.norm());
     }
     return largest;
@@ -288,7 +288,7 @@ TEST_CASE("of a blade that is felt nobody is told a tangent, which would be of t
   int felt = 0;
   for (int i = 3; i < 20; ++i) {
     const bool told = here_at(i, true);
-    const Vec3 on_blade = simulation.resection_log().back().f_W - simulation.tool(0).force().force;
+    const Vec3 on_blade = simulation.cut()->log().back().f_W - simulation.tool(0).force().force;
     CHECK(told == on_blade.isZero(0));
     felt += told ? 0 : 1;
   }

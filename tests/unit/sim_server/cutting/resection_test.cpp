@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim_server/deformation/contact_instants.h"
-#include "sim_server/deformation/implicit.h"
-#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/elasticity/solid.h"
+#include "sim_server/models/implicit.h"
 #include "sim_server/simulation/simulation.h"
+#include "sim_server/tissue/contact_instants.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/catch.h"
 #include "tests/support/cut_bodies.h"
 #include "tests/support/soft_block.h"
@@ -89,7 +89,7 @@ TEST_CASE("the elastic energy that went is what the body lost") {
   Solid left(simulation.mesh(), *scene.material);
   double lost = 0;
   while (simulation.resection()->totals().tetrahedra == 0) {
-    const std::vector<Vec3> x(simulation.model().nodes().begin(), simulation.model().nodes().end());
+    const std::vector<Vec3> x(simulation.nodes().begin(), simulation.nodes().end());
     largest_force(simulation, 1, true);
     for (std::size_t t = 0; t < left.elements(); ++t) {
       if (!simulation.resection()->left().is_left(static_cast<int>(t))) left.remove(t);
@@ -118,7 +118,7 @@ TEST_CASE("the momentum that goes with a loose piece is what tools gave it, and 
     if (y > -0.005) mass += scene.material->density * six_volumes(simulation.mesh(), corners) / 6;
   }
   std::ranges::stable_sort(removals, {}, &Removal::t);
-  simulation.remove_at(removals);
+  simulation.set_cut_options({.planned = removals});
   std::vector<ToolInput> inputs(1);
   Vec3 given = Vec3::Zero();
   double work = 0;

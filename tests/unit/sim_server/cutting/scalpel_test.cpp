@@ -126,9 +126,9 @@ TEST_CASE("tissue that trembles under a blade is parted as tissue at rest is") {
       const Stroke stroke = body.scalpel.cut({was, is, body.trail}, were, are, body.cut);
       if (!stroke.moved) continue;
       const Parting parting = body.cut.part(stroke.faces, body.surface);
-      for (const DeformationModel::Slide& slide : stroke.slides) {
+      for (const CuttableModel::Slide& slide : stroke.slides) {
         Vec3& x = body.places[body.cut.number_of(slide.vertex)];
-        x += slide.share * (body.places[body.cut.number_of(slide.towards)] - x);
+        x += slide.fraction * (body.places[body.cut.number_of(slide.towards)] - x);
       }
       for (const Split& split : parting.splits) {
         body.places[body.cut.number_of(split.copy)] = body.places[body.cut.number_of(split.vertex)];

@@ -9,9 +9,9 @@
 
 #include "common/error.h"
 #include "common/trajectory.h"
+#include "sim_server/scene/touchable.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/simulation.h"
-#include "sim_server/simulation/touchable.h"
 #include "tests/support/catch.h"
 #include "tests/support/paths.h"
 #include "tests/support/random.h"

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
-#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/mesh/gmsh_io.h"
 #include "sim_server/mesh/mesh_faults.h"
 #include "sim_server/mesh/tet_mesh.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
 #include "tests/support/temporary_folder.h"

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
-#include "sim_server/deformation/deformation_models.h"
-#include "sim_server/deformation/rayleigh_damping.h"
-#include "sim_server/deformation/reduced.h"
+#include "sim_server/models/deformation_models.h"
+#include "sim_server/models/reduced.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/simulation/simulation.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/catch.h"
 #include "tests/support/column.h"
 #include "tests/support/temporary_folder.h"

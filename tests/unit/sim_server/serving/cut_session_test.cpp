@@ -5,10 +5,10 @@
 #include <fmt/core.h>
 #include <random>
 
-#include "sim_server/deformation/rayleigh_damping.h"
-#include "sim_server/deformation/slow_modes.h"
+#include "sim_server/client_model/slow_modes.h"
 #include "sim_server/serving/captured_steps.h"
 #include "sim_server/serving/virtual_session.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/catch.h"
 #include "tests/support/soft_block.h"
 #include "tests/support/temporary_folder.h"
@@ -67,8 +67,8 @@ TEST_CASE("a recorded resection, stepped again from its capture alone, gives the
     bool blade = false;
   };
   for (const auto& [model, blade] :
-       {Kind{"tensor_mass"}, Kind{"implicit"}, Kind{"hybrid"},
-        Kind{"tensor_mass", true}, Kind{"implicit", true}, Kind{"hybrid", true}}) {
+       {Kind{"tensor_mass"}, Kind{"implicit"}, Kind{"hybrid"}, Kind{"tensor_mass", true},
+        Kind{"implicit", true}, Kind{"hybrid", true}}) {
     CAPTURE(model, blade);
     const TemporaryFolder folder;
     Scene scene = cut_scene(model);
@@ -156,14 +156,14 @@ TEST_CASE(
   const Trajectory path = motion(folder);
   Simulation heated(cut_scene("tensor_mass"), deep_block()), listed(cut_scene("tensor_mass"), deep_block());
   const std::uint64_t hash = record(heated, path, folder.path() / "a.pcap");
-  const std::vector<Removal> removals(heated.removals().begin(), heated.removals().end());
+  const std::vector<Removal> removals(heated.cut()->removals().begin(), heated.cut()->removals().end());
   REQUIRE(removals.size() > 20);
-  listed.remove_at(removals);
+  listed.set_cut_options({.planned = removals});
   CHECK(record(listed, path, folder.path() / "b.pcap") == hash);
   Scene quick = cut_scene("tensor_mass");
   quick.rate_hz = 500;
   Simulation often(quick, deep_block());
-  often.remove_at(removals);
+  often.set_cut_options({.planned = removals});
   {
     protocol::CaptureWriter capture(folder.path() / "c.pcap");
     VirtualSession session(often, {&path, 1}, 0.003, {500, kTicks}, capture);
@@ -171,8 +171,8 @@ TEST_CASE(
   }
   CHECK(often.resection()->left().count() == heated.resection()->left().count());
   for (std::size_t i = 0; i < removals.size(); ++i) {
-    CHECK(often.removals()[i].tetrahedron == removals[i].tetrahedron);
-    CHECK(std::abs(often.removals()[i].t - removals[i].t) < 1 / 500.0 + 1e-9);
+    CHECK(often.cut()->removals()[i].tetrahedron == removals[i].tetrahedron);
+    CHECK(std::abs(often.cut()->removals()[i].t - removals[i].t) < 1 / 500.0 + 1e-9);
   }
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("samples tell of a surface until it is cut, in that step no more, and 
     if (centre.norm() < 0.004) removals.push_back({1.5, t});
   }
   REQUIRE(removals.size() > 0);
-  simulation.remove_at(removals);
+  simulation.set_cut_options({.planned = removals});
   {
     protocol::CaptureWriter capture(folder.path() / "a.pcap");
     VirtualSession session(simulation, {&path, 1}, 0.003,

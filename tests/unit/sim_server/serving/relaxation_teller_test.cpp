@@ -48,7 +48,7 @@ TEST_CASE(
       std::vector<int> vertices(kVertices);
       std::iota(vertices.rbegin(), vertices.rend(), 0);  // vertex i of the model is one of the surface
       RelaxationTeller teller(modes, vertices);
-      SlowModes::State state;
+      ModalMotion state;
       state.z = Eigen::MatrixXd::Random(count, terms);
       state.psi.assign(static_cast<std::size_t>(kVertices * terms), Vec3::Zero());
       std::set<int> of_note;
@@ -56,10 +56,10 @@ TEST_CASE(
         state.psi[static_cast<std::size_t>(v * terms + terms - 1)] = Vec3(0, -1 - v, 2);
         of_note.insert(kVertices - 1 - v);
       }
-      std::set<int> told_modes, told_vertices;
+      std::set<int> published_modes, told_vertices;
       const auto wanted = static_cast<std::size_t>(count);
       int samples = 0;
-      for (; told_modes.size() < wanted || told_vertices.size() < of_note.size(); ++samples) {
+      for (; published_modes.size() < wanted || told_vertices.size() < of_note.size(); ++samples) {
         REQUIRE(samples < 40);
         ForceSample sample = longest_sample(count);
         const test::AllocationGuard guard;
@@ -72,7 +72,7 @@ TEST_CASE(
         REQUIRE(protocol::decode(std::span(bytes).first(size), datagram) == protocol::Verdict::kAccepted);
         const protocol::RelaxedState& told = std::get<ForceSample>(datagram.message).relaxed;
         for (int k = 0; k < told.count; ++k) {
-          told_modes.insert(told.first + k);
+          published_modes.insert(told.first + k);
           CHECK(told.z[static_cast<std::size_t>(k * terms)] ==
                 static_cast<float>(state.z(told.first + k, 0)));
         }

@@ -1,7 +1,7 @@
 #include "sim_server/serving/served_tools.h"
 
-#include "sim_server/deformation/rigid.h"
 #include "sim_server/mesh/shapes.h"
+#include "sim_server/models/rigid.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 

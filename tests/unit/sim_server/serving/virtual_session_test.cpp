@@ -5,8 +5,8 @@
 #include <iterator>
 #include <set>
 
-#include "sim_server/deformation/rigid.h"
 #include "sim_server/mesh/shapes.h"
+#include "sim_server/models/rigid.h"
 #include "tests/support/catch.h"
 #include "tests/support/served_block.h"
 #include "tests/support/temporary_folder.h"

@@ -6,10 +6,10 @@
 #include <fstream>
 
 #include "common/error.h"
-#include "sim_server/deformation/compliance_tolerance.h"
-#include "sim_server/deformation/slow_modes.h"
+#include "sim_server/client_model/slow_modes.h"
 #include "sim_server/simulation/simulation.h"
 #include "sim_server/sparse/sparse_cholesky.h"
+#include "sim_server/statics/compliance_tolerance.h"
 #include "tests/support/catch.h"
 #include "tests/support/soft_block.h"
 #include "tests/support/temporary_folder.h"

@@ -3,9 +3,9 @@
 #include <complex>
 #include <numbers>
 
-#include "sim_server/deformation/contact_instants.h"
-#include "sim_server/deformation/rayleigh_damping.h"
 #include "sim_server/simulation/simulation.h"
+#include "sim_server/tissue/contact_instants.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/catch.h"
 #include "tests/support/one_free_vertex.h"
 

@@ -2,7 +2,7 @@
 #include <fmt/core.h>
 
 #include "sim_server/commands/explain.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "tests/support/catch.h"
 #include "tests/support/paths.h"

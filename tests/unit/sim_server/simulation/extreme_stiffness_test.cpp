@@ -1,6 +1,6 @@
 // Tissue as stiff as metal, and what holds it: forces that follow the material, and walls that are one wall.
-#include "sim_server/deformation/deformation_models.h"
-#include "sim_server/deformation/spring.h"
+#include "sim_server/models/deformation_models.h"
+#include "sim_server/models/spring.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"

@@ -1,10 +1,10 @@
 // Contact at several instants of a step, along the path that the tool took.
 #include <cmath>
 
-#include "sim_server/deformation/contact_instants.h"
-#include "sim_server/deformation/deformation_models.h"
-#include "sim_server/deformation/reduced.h"
+#include "sim_server/models/deformation_models.h"
+#include "sim_server/models/reduced.h"
 #include "sim_server/simulation/simulation.h"
+#include "sim_server/tissue/contact_instants.h"
 #include "tests/support/catch.h"
 #include "tests/support/served_block.h"
 

@@ -1,10 +1,10 @@
 // Within a step of many instants contact looks around the tools alone (`DeformationModel::narrow`).
 #include <algorithm>
 
-#include "sim_server/deformation/contact_instants.h"
-#include "sim_server/deformation/cuttable_motion.h"
-#include "sim_server/deformation/rayleigh_damping.h"
+#include "sim_server/explicit/cuttable_motion.h"
 #include "sim_server/simulation/simulation.h"
+#include "sim_server/tissue/contact_instants.h"
+#include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/catch.h"
 #include "tests/support/soft_block.h"
 
@@ -91,7 +91,7 @@ TEST_CASE(
   });
   const int vertex = static_cast<int>(top - surface.vertices.begin());
   const std::vector<Neighbourhood> far{{Vec3(0, 5, 0), 0.001}};
-  near.narrow(far, surface.triangles);
+  near.restrict_contact(far, surface.triangles);
   near.free_motion(near.sub_step());
   everywhere.free_motion(near.sub_step());
   for (int k = 0; k < 50; ++k) {

@@ -1,7 +1,7 @@
 // Presses that a hand makes, into soft tissue and by more than the tool's radius, are solved in every step.
 #include <nlohmann/json.hpp>
 
-#include "sim_server/deformation/implicit.h"
+#include "sim_server/models/implicit.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"

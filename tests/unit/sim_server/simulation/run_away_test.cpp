@@ -1,5 +1,5 @@
 // Bodies flung out of shape, and tools that come too fast: they come back, or say that they do not.
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/simulation/simulation.h"
 #include "sim_server/solvers/dynamics.h"
 #include "tests/support/catch.h"

@@ -1,7 +1,7 @@
 #include "sim_server/simulation/set_up_memory.h"
 
 #include "common/error.h"
-#include "sim_server/deformation/implicit.h"
+#include "sim_server/models/implicit.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"

@@ -1,7 +1,7 @@
 // A tool comes to stand on the side of the surface that it touched, whatever the solver went through, or its
 // answers are flagged: it is never found on another side.
-#include "sim_server/deformation/implicit.h"
-#include "sim_server/deformation/spring.h"
+#include "sim_server/models/implicit.h"
+#include "sim_server/models/spring.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
 #include "tests/support/soft_block.h"

@@ -1,0 +1,88 @@
+#include "sim_server/client_model/slow_modes.h"
+
+#include <algorithm>
+#include <fmt/core.h>
+
+#include "common/damped_mode.h"
+#include "common/error.h"
+
+namespace palpate::sim {
+
+int ClientModes::by_default() noexcept {
+#ifdef PALPATE_WITH_SPECTRA
+  return 40;
+#else
+  return 0;
+#endif
+}
+ClientModes ClientModes::read(const Config& config) {
+  ClientModes read;
+  read.modes = static_cast<int>(config.integer("client_modes", {0, kMostSlowModes, "modes"}, read.modes));
+#ifndef PALPATE_WITH_SPECTRA
+  if (read.modes > 0)
+    fail("{}: `client_modes` is not in this build; configure it with -DPALPATE_SPECTRA=ON",
+         config.where("client_modes"));
+#endif
+  return read;
+}
+
+std::string ClientModes::to_text() const {
+  return fmt::format("client_modes = {}\n", modes);
+}
+
+SlowModes::SlowModes(const VibrationModes& modes, std::span<const int> first, const RayleighDamping& rayleigh)
+    : frequencies(modes.frequencies),
+      damping(rayleigh.mass + rayleigh.stiffness * frequencies.array().square()),
+      shapes(Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(first.size()), frequencies.size())) {
+  const Eigen::Index most = std::min<Eigen::Index>(kMostSlowModes, frequencies.size());
+  while (told < most && frequencies[told] <= kQuickestSlowMode && damping[told] <= kHardestSlowDamping)
+    ++told;
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    if (first[v] >= 0)
+      shapes.middleRows<3>(3 * static_cast<Eigen::Index>(v)) = modes.shapes.middleRows<3>(first[v]);
+  }
+}
+
+void SlowModes::take_out(std::span<const int> vertices, const Eigen::VectorXd& yields,
+                         ContactPatch& patch) const noexcept {
+  const auto at = [&](std::size_t i, Eigen::Index k) { return shapes.col(k).segment<3>(3 * vertices[i]); };
+  for (std::size_t j = 0; j < vertices.size(); ++j) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      Mat3 taken = Mat3::Zero();
+      for (Eigen::Index k = 0; k < yields.size(); ++k) taken += yields[k] * at(i, k) * at(j, k).transpose();
+      patch.compliance.block<3, 3>(3 * static_cast<Eigen::Index>(i), 3 * static_cast<Eigen::Index>(j)) -=
+          taken;
+    }
+  }
+}
+
+void SlowModes::add_drive(std::span<const NodalLoad> loads,
+                          Eigen::Ref<Eigen::VectorXd> drive) const noexcept {
+  for (const NodalLoad& load : loads)
+    drive.noalias() +=
+        shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex)).leftCols(told).transpose() *
+        load.force;
+}
+
+Eigen::VectorXd SlowModes::told_at_rest() const {
+  Eigen::VectorXd yields = Eigen::VectorXd::Zero(frequencies.size());
+  yields.head(told) = frequencies.head(told).array().square().inverse();
+  return yields;
+}
+
+Mat3 SlowModes::give_way(std::span<const NodalLoad> loads, double seconds, double before,
+                         Eigen::Index end) const noexcept {
+  const Vec3 sum = sum_of(loads);
+  Mat3 yields = Mat3::Zero();
+  for (Eigen::Index k = 0; k < end; ++k) {
+    Vec3 moves = Vec3::Zero();
+    for (const NodalLoad& load : loads)
+      moves += fraction_of(load, sum) * shapes.col(k).segment<3>(3 * load.vertex);
+    const double more = ModeStep::over(seconds, frequencies[k], damping[k]).q_of_p -
+                        ModeStep::over(before, frequencies[k], damping[k]).q_of_p;
+    yields += more * moves * moves.transpose();
+  }
+  return yields;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,165 @@
+#include "sim_server/explicit/condensed_part.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_server/sparse/symmetric_product.h"
+
+namespace palpate::sim {
+namespace {
+
+/// What three columns from `first` on of a matrix with a row for each mode do with these amplitudes. Without
+/// modes it has no address.
+Vec3 moved_by(const Eigen::MatrixXd& modes, Eigen::Index first, const Eigen::VectorXd& amplitudes) noexcept {
+  if (amplitudes.size() == 0) return Vec3::Zero();
+  return modes.middleCols<3>(first).transpose() * amplitudes;
+}
+
+}  // namespace
+
+void CondensedPart::stand_at(const std::vector<double>& u) noexcept {
+  for (Part& part : all_) {
+    for (std::size_t b = 0; b < part.border.size(); ++b)
+      part.at.segment<3>(3 * static_cast<Eigen::Index>(b)) =
+          Eigen::Map<const Vec3>(u.data() + part.border[b]);
+  }
+}
+
+void CondensedPart::look_at(const std::vector<double>& u, const std::vector<double>& v) noexcept {
+  stand_at(u);
+  for (Part& part : all_) {
+    if (part.gone) continue;
+    for (std::size_t b = 0; b < part.border.size(); ++b) {
+      const auto row = 3 * static_cast<Eigen::Index>(b);
+      part.bent.segment<3>(row) =
+          part.at.segment<3>(row) + damping_.stiffness * Eigen::Map<const Vec3>(v.data() + part.border[b]);
+    }
+    part.p_bent = part.p + damping_.stiffness * part.p_v;
+    symmetric_product(part.following, part.bent, part.force);
+  }
+}
+
+void CondensedPart::follow(std::span<double> force) const noexcept {
+  for (const Part& part : all_) {
+    for (std::size_t b = 0; !part.gone && b < part.border.size(); ++b) {
+      const auto row = 3 * static_cast<Eigen::Index>(b);
+      Eigen::Map<Vec3>(force.data() + part.border[b]) +=
+          part.force.segment<3>(row) + moved_by(part.driven, row, part.p_bent);
+    }
+  }
+}
+
+void CondensedPart::advance(double h, std::span<const NodalLoad> loads) noexcept {
+  for (Part& part : all_) {
+    if (part.gone) continue;
+    part.p_v *= 1 - h * damping_.mass;
+    part.p_v.array() -= h * part.squares * part.p_bent.array();
+    part.p_v.noalias() += h * (part.driven * part.bent);
+  }
+  for (const NodalLoad& load : loads) {
+    if (!has(load.vertex)) continue;
+    const auto v = static_cast<std::size_t>(load.vertex);
+    Part& part = all_[static_cast<std::size_t>(part_[v])];
+    if (part.p.size() > 0) part.p_v.noalias() += h * (part.shapes.middleCols<3>(row_[v]) * load.force);
+  }
+  for (Part& part : all_) part.p += h * part.p_v;
+}
+
+Vec3 CondensedPart::carried(int vertex) const noexcept {
+  const auto v = static_cast<std::size_t>(vertex);
+  const Part& part = all_[static_cast<std::size_t>(part_[v])];
+  return part.carrying.middleCols<3>(row_[v]).transpose() * part.at + moved_by(part.shapes, row_[v], part.p);
+}
+
+Mat3 CondensedPart::compliance(int vertex, int other) const noexcept {
+  const auto v = static_cast<std::size_t>(vertex), w = static_cast<std::size_t>(other);
+  if (part_[v] != part_[w]) return Mat3::Zero();
+  return all_[static_cast<std::size_t>(part_[v])].compliance.block<3, 3>(row_[v], row_[w]);
+}
+
+void CondensedPart::watch(std::span<const int> vertices) noexcept {
+  for (const int vertex : vertices) {
+    if (!has(vertex)) continue;
+    int& seen = seen_[static_cast<std::size_t>(vertex)];
+    if (seen < step_ - 1) watched_.push_back(vertex);
+    seen = step_;
+  }
+}
+
+void CondensedPart::begin_step() noexcept {
+  ++step_;
+  std::erase_if(watched_, [&](int vertex) { return seen_[static_cast<std::size_t>(vertex)] < step_ - 1; });
+}
+
+void CondensedPart::press(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
+                          std::span<Vec3> positions) const noexcept {
+  const std::span<const int> pressed = all ? vertices() : watched();
+  for (const int vertex : pressed) {
+    const auto v = static_cast<std::size_t>(vertex);
+    positions[v] = free[v];
+    for (const NodalLoad& load : loads) {
+      if (has(load.vertex)) positions[v] += compliance(vertex, load.vertex) * load.force;
+    }
+  }
+}
+
+void CondensedPart::hand_down(const NodalLoad& load, std::span<double> force) const noexcept {
+  const auto v = static_cast<std::size_t>(load.vertex);
+  const Part& part = all_[static_cast<std::size_t>(part_[v])];
+  const auto columns = part.carrying.middleCols<3>(row_[v]);
+  for (std::size_t b = 0; b < part.border.size(); ++b)
+    Eigen::Map<Vec3>(force.data() + part.border[b]) +=
+        columns.middleRows<3>(3 * static_cast<Eigen::Index>(b)) * load.force;
+}
+
+CuttableModel::Removed CondensedPart::remove(int part) noexcept {
+  Part& goes = all_[static_cast<std::size_t>(part)];
+  if (goes.gone) return {};
+  goes.gone = true;
+  const double border = -0.5 * goes.at.dot(goes.following.selfadjointView<Eigen::Lower>() * goes.at);
+  const double modes =
+      0.5 * (goes.squares * goes.p.array().square()).sum() - goes.p.dot(goes.driven * goes.at);
+  const double kinetic = 0.5 * goes.p_v.squaredNorm();
+  goes.p.setZero();
+  goes.p_v.setZero();
+  return {.elastic = border + modes, .kinetic = kinetic};
+}
+
+std::vector<CondensedPart::BorderMass> CondensedPart::border_masses() const {
+  std::vector<BorderMass> masses;
+  for (const Part& part : all_) {
+    for (std::size_t b = 0; b < part.border.size(); ++b)
+      masses.push_back({part.border[b], part.border_mass[b]});
+  }
+  return masses;
+}
+
+double CondensedPart::highest_frequency() const {
+  double square = 0;
+  for (const Part& part : all_)
+    square = std::max(square, part.squares.size() > 0 ? part.squares.maxCoeff() : 0);
+  return std::sqrt(square);
+}
+
+std::size_t CondensedPart::modes() const {
+  std::size_t count = 0;
+  for (const Part& part : all_) count += static_cast<std::size_t>(part.squares.size());
+  return count;
+}
+
+std::size_t CondensedPart::border() const {
+  std::size_t count = 0;
+  for (const Part& part : all_) count += part.border.size();
+  return count;
+}
+
+std::size_t CondensedPart::bytes() const {
+  std::size_t numbers = 0;
+  for (const Part& part : all_)
+    numbers +=
+        static_cast<std::size_t>(part.following.size() + part.carrying.size() + part.compliance.size() +
+                                 part.driven.size() + part.shapes.size() + 3 * part.at.size());
+  return numbers * sizeof(double) + (part_of_.size() + 3 * part_.size() + 2 * vertices_.size()) * sizeof(int);
+}
+
+}  // namespace palpate::sim

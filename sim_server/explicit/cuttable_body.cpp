@@ -1,0 +1,96 @@
+#include "sim_server/explicit/cuttable_body.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "sim_server/explicit/mass_scaling.h"
+
+namespace palpate::sim {
+namespace {
+
+/// Vertices that are fixed or not in motion, ascending.
+std::vector<int> standing(const ModelInputs& inputs, const std::vector<char>* moves) {
+  std::vector<int> still = inputs.fixed;
+  for (std::size_t v = 0; moves != nullptr && v < moves->size(); ++v) {
+    if ((*moves)[v] == 0) still.push_back(static_cast<int>(v));
+  }
+  std::sort(still.begin(), still.end());
+  still.erase(std::unique(still.begin(), still.end()), still.end());
+  return still;
+}
+
+}  // namespace
+
+CuttableBody::CuttableBody(const ModelInputs& inputs, const std::vector<double>& mass_factors,
+                           const std::vector<char>* moves, const CondensedPart::Modes& modes)
+    : tensors(inputs.mesh, *inputs.scene.material, standing(inputs, moves), mass_factors),
+      motion(tensors, inputs.scene.deformation.of<RayleighDamping>()) {
+  if (moves != nullptr) {
+    rest.emplace(inputs, tensors.places(), modes);
+    for (const auto& [number, kg] : rest->border_masses()) tensors.add_mass(number / 3, kg);
+  }
+  for (const int vertex : inputs.surface.vertices) {
+    const int place = tensors.places()[static_cast<std::size_t>(vertex)];
+    first.push_back(place < 0 ? -1 : 3 * place);
+  }
+}
+
+CuttableModel::Removed CuttableBody::remove(std::span<const int> tetrahedra, const CutMesh& left,
+                                            const Material& material) {
+  CuttableModel::Removed gone;
+  tensors.remove(tetrahedra, left, material);
+  const auto is_left = [&](int other) { return left.is_left(other); };
+  for (const int t : tetrahedra) {
+    for (const int v : left.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
+      if (rest && rest->part_of(v) >= 0) {
+        const CuttableModel::Removed part = rest->remove(rest->part_of(v));
+        gone.elastic += part.elastic;
+        gone.kinetic += part.kinetic;
+      }
+      const int place = tensors.places()[static_cast<std::size_t>(v)];
+      if (place >= 0 && std::ranges::none_of(left.around(v), is_left))  // else it would drift for ever
+        Eigen::Map<Vec3>(motion.state.v.data() + 3 * place).setZero();
+    }
+  }
+  return gone;
+}
+
+void CuttableBody::part(std::span<const CuttableModel::Slide> slides, const Parting& parting,
+                        const CutMesh& left, const Material& material, double frequency) {
+  std::vector<int> slid;
+  for (const CuttableModel::Slide& slide : slides) {
+    const int place = tensors.places()[static_cast<std::size_t>(slide.vertex)];
+    const int other = tensors.places()[static_cast<std::size_t>(slide.towards)];
+    for (std::vector<double>* const all : {&motion.state.u, &motion.state.v}) {
+      Eigen::Map<Vec3> own(all->data() + 3 * place);
+      Vec3 end = Vec3::Zero();  // of what stands
+      if (other >= 0) end = Eigen::Map<const Vec3>(all->data() + 3 * other);
+      own += slide.fraction * (end - own);
+    }
+    slid.push_back(slide.vertex);
+  }
+  reshape(slid, parting, left, material, frequency);
+}
+
+void CuttableBody::reshape(std::span<const int> slid, const Parting& parting, const CutMesh& left,
+                           const Material& material, double frequency) {
+  std::vector<int> reshaped;
+  const auto reshape_around = [&](int vertex) {
+    std::ranges::copy_if(left.around(vertex), std::back_inserter(reshaped),
+                         [&](int t) { return left.is_left(t); });
+  };
+  std::ranges::for_each(slid, reshape_around);
+  const auto first_of = [&](int vertex) -> int& {
+    return first[static_cast<std::size_t>(left.number_of(vertex))];
+  };
+  for (const Split& split : parting.splits) {
+    reshape_around(split.copy);
+    first_of(split.copy) = static_cast<int>(motion.state.u.size());
+    motion.append_copy_of(first_of(split.vertex) / 3);
+  }
+  for (const int t : reshaped)
+    tensors.set_mass_factor(t, mass_factor_of(left.mesh(), static_cast<std::size_t>(t), material, frequency));
+  tensors.part(parting, reshaped, left, material);
+}
+
+}  // namespace palpate::sim

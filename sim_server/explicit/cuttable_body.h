@@ -1,0 +1,41 @@
+#pragma once
+#include <optional>
+
+#include "sim_server/explicit/condensed_part.h"
+#include "sim_server/explicit/explicit_motion.h"
+
+namespace palpate::sim {
+
+/// A linear elastic body of which vertices are in motion by explicit steps, with a tensor per vertex and edge
+/// (`ElasticTensors`), and the rest, if any, is condensed: what it is, and where it is by now. It stays where
+/// it was made.
+struct CuttableBody {
+  /// `mass_factors`: of tetrahedra. `moves`: of each mesh vertex, not 0 where it is in motion; null: all are.
+  /// Throws `Error` as `CondensedPart`.
+  CuttableBody(const ModelInputs& inputs, const std::vector<double>& mass_factors,
+               const std::vector<char>* moves, const CondensedPart::Modes& modes);
+  CuttableBody(const CuttableBody&) = delete;
+  CuttableBody& operator=(const CuttableBody&) = delete;
+
+  ElasticTensors tensors;
+  std::optional<CondensedPart> rest;
+  ExplicitMotion motion;
+  std::vector<int> first;  ///< per surface vertex: its first number in `motion`, or -1
+
+  /// Removes these tetrahedra, and the condensed parts that have any of them. A vertex without any remaining
+  /// tetrahedron stops. O(removed). Returns energy and momentum of those parts.
+  CuttableModel::Removed remove(std::span<const int> tetrahedra, const CutMesh& left,
+                                const Material& material);
+
+  /// Slides and parts as `DeformationModel::part`. Where that makes an element so stiff that it would have a
+  /// higher frequency (rad/s) alone, its mass grows.
+  void part(std::span<const CuttableModel::Slide> slides, const Parting& parting, const CutMesh& left,
+            const Material& material, double frequency);
+
+  /// Since a body was made of a mesh, these vertices of that slid and faces were parted, in any order; `left`
+  /// is now. The copies are where what they are of is.
+  void reshape(std::span<const int> slid, const Parting& parting, const CutMesh& left,
+               const Material& material, double frequency);
+};
+
+}  // namespace palpate::sim

@@ -1,0 +1,315 @@
+#include "sim_server/explicit/cuttable_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_server/mesh/cut_mesh.h"
+#include "sim_server/statics/linear_statics.h"
+#include "sim_server/statics/surface_compliance.h"
+#include "sim_server/tissue/contact_instants.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kAddedMass = 1e-2;  // of the mass in motion, for its stiffest elements
+constexpr int kSubStepsPerLook = 8;  // at what contact looks at of the rest without pressing there
+
+const RayleighDamping& rayleigh_of(const Scene& scene) {
+  return scene.deformation.of<RayleighDamping>();
+}
+
+/// For all that may ever be in motion.
+MassScaling scaling_for(const ModelInputs& inputs, const RegionInMotion* region) {
+  step_period(inputs.scene);  // before any work
+  require_held_tissue(inputs);
+  require_no_loose_part(inputs);
+  inputs.progress(name_of(Stage::kTensors), 0);
+  std::vector<char> moves;
+  if (region != nullptr) moves = region->vertices(inputs.mesh);
+  const auto* const added = inputs.scene.deformation.find<AddedMass>();
+  const double share = added == nullptr ? kAddedMass : added->share.value_or(kAddedMass);
+  return scale_masses(inputs.mesh, *inputs.scene.material, share, moves);
+}
+
+}  // namespace
+
+CuttableMotion::CuttableMotion(const ModelInputs& inputs) : CuttableMotion(inputs, nullptr) {}
+
+CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion& region)
+    : CuttableMotion(inputs, &region) {}
+
+CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* region)
+    : material_(inputs.scene.material.value_or(Material{})),
+      held_stiffness_(held_stiffness(inputs.scene)),
+      scaling_(scaling_for(inputs, region)),
+      node_(inputs.surface.vertices),
+      nodes_(inputs.mesh.vertices) {
+  state_.near = NearTools(inputs.surface.vertices.size());
+  state_.rest_places = inputs.mesh.vertices;
+  const std::vector<char> moves = region != nullptr ? region->vertices(inputs.mesh) : std::vector<char>();
+  const CondensedPart::Modes modes{.most = region != nullptr ? region->rest_modes : 0};
+  body_ =
+      std::make_unique<CuttableBody>(inputs, scaling_.factors, region != nullptr ? &moves : nullptr, modes);
+  if (published_bodies(inputs.scene) > 0) publisher_.emplace(inputs, body_->tensors);
+  choose_sub_step(inputs, body_->rest ? body_->rest->highest_frequency() : 0);
+  for (const int vertex : node_) state_.free.push_back(state_.rest_places[static_cast<std::size_t>(vertex)]);
+  state_.positions = state_.free;
+  state_.loads.reserve(kMaxTools * node_.size());
+  unloaded_.reserve(state_.loads.capacity());
+  state_.pressed.reserve(state_.loads.capacity());
+  state_.moving.reserve(node_.size());
+  state_.exposed.reserve(node_.size());
+  state_.moved.reserve(4 * node_.size());
+  state_.shown.resize(node_.size());
+  for (const Triangle& triangle : inputs.surface.triangles) {
+    for (const int corner : triangle) state_.shown[static_cast<std::size_t>(corner)] = 1;
+  }
+  take_body();
+}
+
+/// Takes over another body than before.
+void CuttableMotion::take_body() {
+  state_.changed = true;
+  state_.near.look_everywhere();
+  state_.force.assign(body_->motion.state.f.size(), 0);
+  state_.moving.clear();
+  state_.exposed.clear();
+  for (std::size_t v = 0; v < node_.size(); ++v) {
+    if (body_->first[v] < 0) continue;
+    state_.moving.push_back(static_cast<int>(v));
+    if (state_.shown[v] != 0) state_.exposed.push_back(static_cast<int>(v));
+  }
+  make_compliance();
+}
+
+void CuttableMotion::make_compliance() {
+  compliance_.emplace(body_->tensors, body_->first, body_->rest ? &*body_->rest : nullptr, sub_step_,
+                      held_stiffness_);
+}
+
+ModelTraits CuttableMotion::traits() noexcept {
+  return {.instants = instants_,
+          .leading_force = true,
+          .publishes_tangents = false,
+          .columns = &*compliance_,
+          .cuttable = this,
+          .client = publisher_ ? this : nullptr,
+          .interior = body_->rest ? nullptr : this,
+          .state = this};
+}
+
+std::any CuttableMotion::save() {
+  Saved saved{state_, body_->tensors, body_->rest, body_->motion.save(), body_->first, {}};
+  if (publisher_) saved.publisher = publisher_->save();
+  return saved;
+}
+
+FreeMotion CuttableMotion::restore(const std::any& state) {
+  const auto& saved = std::any_cast<const Saved&>(state);
+  body_->motion.restore(saved.motion);
+  body_->tensors = saved.tensors;
+  if (saved.condensed) *body_->rest = *saved.condensed;
+  body_->first = saved.first;
+  state_ = saved.state;
+  if (publisher_) publisher_->restore(*saved.publisher);
+  make_compliance();
+  return {.positions = state_.free, .loaded = state_.positions, .moved = &state_.moved};
+}
+
+/// `modes` of the rest add at most so much, of squares; rad/s.
+void CuttableMotion::choose_sub_step(const ModelInputs& inputs, double modes) {
+  const double longest = longest_sub_step(std::hypot(scaling_.frequency, modes), rayleigh_of(inputs.scene));
+  instants_ = std::max(instants_of(inputs.scene.deformation, 1),
+                       static_cast<int>(count_sub_steps(inputs.scene, longest)));
+  sub_step_ = step_period(inputs.scene) / instants_;
+}
+
+void CuttableMotion::restrict_contact(std::span<const Neighbourhood> places,
+                                      std::span<const Triangle> triangles) noexcept {
+  constexpr double kFaster = 2;  // than anything on the surface is by now
+  double fastest = 0;            // squared
+  for (const int vertex : state_.exposed) {
+    const int first = body_->first[static_cast<std::size_t>(vertex)];
+    fastest = std::max(fastest, Eigen::Map<const Vec3>(body_->motion.state.v.data() + first).squaredNorm());
+  }
+  state_.instant = 0;  // also after a step that threw
+  state_.near.look_in(places, triangles, body_->first, state_.free,
+                      kFaster * std::sqrt(fastest) * sub_step_ * instants_);
+  for (const NodalLoad& load : state_.loads) {
+    if (body_->first[static_cast<std::size_t>(load.vertex)] >= 0) state_.near.add(load.vertex);
+  }
+  // None at all would mean that any may have moved.
+  if (state_.near.vertices().empty() && !state_.exposed.empty()) state_.near.add(state_.exposed.front());
+}
+
+/// Contact begins to load a vertex in motion that it did not look at: that is told from here on.
+void CuttableMotion::look_at(int vertex) noexcept {
+  const bool told =
+      !state_.near.narrowed() || state_.instant == 0 || body_->first[static_cast<std::size_t>(vertex)] < 0;
+  if (told || !state_.near.add(vertex)) return;
+  update_free({&vertex, 1});
+  go_free({&vertex, 1});
+  state_.moved.push_back(vertex);
+}
+
+FreeMotion CuttableMotion::free_motion(double dt) noexcept {
+  if (dt > 0) {
+    if (!state_.ended) end_sub_step();
+    state_.ended = false;
+    if (body_->rest && publisher_ && publisher_->surface() != nullptr)
+      publisher_->surface()->motion.go_on(sub_step_, state_.loads);
+    if (body_->rest) follow();
+    take_sub_step();
+    const bool ends = state_.instant + 1 == instants_;
+    if (!ends) body_->motion.begin_next();  // while contact is solved
+    update_free(ends ? state_.moving : looked_at());
+    if (body_->rest) carry_rest();
+    state_.instant = (state_.instant + 1) % instants_;
+    go_free(ends ? state_.moving : looked_at());
+    note_moved();
+    press();
+  }
+  return {.positions = state_.free, .loaded = state_.positions, .moved = &state_.moved};
+}
+
+/// What the rest does on the border where both are by now.
+void CuttableMotion::follow() noexcept {
+  body_->rest->look_at(body_->motion.state.u, body_->motion.state.v);
+  std::fill(state_.force.begin(), state_.force.end(), 0);
+  body_->rest->follow(state_.force);
+}
+
+/// The rest goes to where the border takes it at the end of the sub-step, if loads on that stay as they are:
+/// what is loaded, and, seldomer, what else contact looks at; all of it where a step ends.
+void CuttableMotion::carry_rest() noexcept {
+  const auto at = [&](const NodalLoad& load) {
+    return Eigen::Map<Vec3>(body_->motion.state.u.data() +
+                            body_->first[static_cast<std::size_t>(load.vertex)]);
+  };
+  const auto moves = [&](const NodalLoad& load) {
+    return body_->first[static_cast<std::size_t>(load.vertex)] >= 0;
+  };
+  unloaded_.clear();
+  for (const NodalLoad& load : state_.loads) {
+    if (moves(load)) unloaded_.push_back(at(load));
+  }
+  for (const NodalLoad& load : state_.loads) {
+    if (moves(load)) at(load) += sub_step_ * kick_of(load);
+  }
+  body_->rest->stand_at(body_->motion.state.u);
+  auto before = unloaded_.begin();
+  for (const NodalLoad& load : state_.loads) {
+    if (moves(load)) at(load) = *before++;
+  }
+  const auto carry = [&](int vertex) {
+    state_.free[static_cast<std::size_t>(vertex)] = rest_place(vertex) + body_->rest->carried(vertex);
+  };
+  if (state_.instant == 0) body_->rest->begin_step();
+  const bool ends = state_.instant + 1 == instants_;
+  if (ends || state_.instant % kSubStepsPerLook == 0)
+    std::ranges::for_each(ends ? body_->rest->vertices() : body_->rest->watched(), carry);
+  for (const NodalLoad& load : state_.loads) {
+    if (body_->rest->has(load.vertex)) carry(load.vertex);
+  }
+}
+
+/// Loads on the rest are handed down to the border, which takes them as forces of all of the sub-step.
+void CuttableMotion::take_sub_step() noexcept {
+  if (body_->rest) {
+    std::copy(state_.force.begin(), state_.force.end(), body_->motion.state.f.begin());
+    for (const NodalLoad& load : state_.loads) {
+      if (body_->rest->has(load.vertex)) body_->rest->hand_down(load, body_->motion.state.f);
+    }
+    body_->rest->advance(sub_step_, state_.loads);
+  }
+  state_.changed ? body_->motion.run(sub_step_) : body_->motion.run_on(sub_step_);
+  state_.changed = false;
+}
+
+/// What is shown of what is in motion, and what contact looks at of the rest: where a step ends, all of that.
+void CuttableMotion::note_moved() noexcept {
+  const std::vector<int>& seen = state_.instant == 0 ? state_.exposed : looked_at();
+  state_.moved.assign(seen.begin(), seen.end());
+  if (body_->rest) {
+    const auto rest = state_.instant == 0 ? body_->rest->vertices() : body_->rest->watched();
+    state_.moved.insert(state_.moved.end(), rest.begin(), rest.end());
+  }
+  state_.watched = body_->rest ? body_->rest->watched().size() : 0;
+  state_.moved_freely = state_.moved.size();
+}
+
+/// Where these, in motion, go free of loads.
+void CuttableMotion::update_free(std::span<const int> vertices) noexcept {
+  for (const int vertex : vertices) {
+    const auto v = static_cast<std::size_t>(vertex);
+    state_.free[v] = rest_place(static_cast<int>(v)) +
+                     Eigen::Map<const Vec3>(body_->motion.state.u.data() + body_->first[v]);
+  }
+}
+
+/// What a load on a vertex in motion does over the sub-step adds to what all else did.
+void CuttableMotion::end_sub_step() noexcept {
+  for (const NodalLoad& load : state_.loads) {
+    const int first = body_->first[static_cast<std::size_t>(load.vertex)];
+    if (first < 0) continue;
+    body_->motion.kick(first / 3, sub_step_, kick_of(load));
+  }
+}
+
+void CuttableMotion::go_free(std::span<const int> vertices) noexcept {
+  for (const int vertex : vertices)
+    state_.positions[static_cast<std::size_t>(vertex)] = state_.free[static_cast<std::size_t>(vertex)];
+}
+
+/// What is not in motion moves where it is pressed, and where it was; so does what contact begins to look at.
+void CuttableMotion::note_pressed() noexcept {
+  for (; body_->rest && state_.watched < body_->rest->watched().size(); ++state_.watched)
+    state_.moved.push_back(body_->rest->watched()[state_.watched]);
+  for (const int vertex : state_.pressed) {
+    const auto pressed = std::span(state_.moved).subspan(state_.moved_freely);
+    if (body_->first[static_cast<std::size_t>(vertex)] < 0 &&
+        std::ranges::find(pressed, vertex) == pressed.end())
+      state_.moved.push_back(vertex);
+  }
+}
+
+/// All else is where it is free.
+void CuttableMotion::press() noexcept {
+  note_pressed();
+  go_free(state_.pressed);
+  state_.pressed.clear();
+  for (const NodalLoad& load : state_.loads) state_.pressed.push_back(load.vertex);
+  note_pressed();
+  compliance_->move(state_.loads, state_.instant == 0, state_.free, state_.positions);
+}
+
+void CuttableMotion::compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
+  compliance_->fill(vertices, patch);
+}
+
+std::span<const Vec3> CuttableMotion::apply(std::span<const NodalLoad> loads) noexcept {
+  state_.loads.assign(loads.begin(), loads.end());
+  for (const NodalLoad& load : state_.loads) {
+    if (body_->rest) body_->rest->watch({&load.vertex, 1});
+    look_at(load.vertex);
+  }
+  press();
+  return state_.positions;
+}
+
+std::span<const Vec3> CuttableMotion::nodes() const noexcept {
+  if (body_->rest) return {};
+  for (std::size_t node = 0; node < nodes_.size(); ++node) {
+    const int place = body_->tensors.places()[node];
+    if (place >= 0)
+      nodes_[node] =
+          state_.rest_places[node] + Eigen::Map<const Vec3>(body_->motion.state.u.data() + 3 * place);
+  }
+  for (std::size_t k = 0; !state_.ended && k < state_.loads.size(); ++k) {
+    const auto vertex = static_cast<std::size_t>(state_.loads[k].vertex);
+    if (body_->first[vertex] >= 0) nodes_[static_cast<std::size_t>(node_[vertex])] = state_.positions[vertex];
+  }
+  return nodes_;
+}
+
+}  // namespace palpate::sim
