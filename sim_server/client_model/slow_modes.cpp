@@ -8,21 +8,9 @@
 
 namespace palpate::sim {
 
-int ClientModes::by_default() noexcept {
-#ifdef PALPATE_WITH_SPECTRA
-  return 40;
-#else
-  return 0;
-#endif
-}
 ClientModes ClientModes::read(const Config& config) {
   ClientModes read;
   read.modes = static_cast<int>(config.integer("client_modes", {0, kMostSlowModes, "modes"}, read.modes));
-#ifndef PALPATE_WITH_SPECTRA
-  if (read.modes > 0)
-    fail("{}: `client_modes` is not in this build; configure it with -DPALPATE_SPECTRA=ON",
-         config.where("client_modes"));
-#endif
   return read;
 }
 

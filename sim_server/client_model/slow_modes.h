@@ -17,8 +17,8 @@ namespace palpate::sim {
 
 /// Setting of models that need no modes themselves.
 struct ClientModes {
-  static int by_default() noexcept;  ///< 40; 0 in a build without Spectra, which finds none
-  int modes = by_default();          ///< `client_modes`, that clients are told of, [0, kMostSlowModes]
+  static constexpr int kDefault = 40;
+  int modes = kDefault;  ///< `client_modes`, that clients are told of, [0, kMostSlowModes]
 
   static constexpr std::array<std::string_view, 1> kKeys{"client_modes"};
   static ClientModes read(const Config& config);

@@ -72,14 +72,12 @@ constexpr std::array kModels{
          .moves = true,
          .flies = true,
          .cuts = true}),
-#ifdef PALPATE_WITH_SPECTRA
     row_of<Reduced, RayleighDamping, ReducedSettings, ContactInstants, ComplianceTolerance>(
         {.name = "reduced",
          .summary = "linear elastic: the slowest modes swing, the rest follows at once",
          .materials = Materials::kLinear,
          .moves = true,
          .condenses = true}),
-#endif
     row_of<Spring, SpringSettings>({.name = "spring",
                                     .summary = "no deformation; the organ hangs on a spring that hardens",
                                     .moves = true}),
@@ -121,11 +119,6 @@ std::span<const DeformationModelRow> models_without_cutting() {
 }
 
 const DeformationModelRow& model_of(const DeformationSettings& settings) {
-#ifndef PALPATE_WITH_SPECTRA
-  if (settings.model == "reduced")
-    fail("{}: model \"reduced\" is not in this build; configure it with -DPALPATE_SPECTRA=ON",
-         settings.where);
-#endif
   return find_row(kModels, settings.model, "deformation model", settings.where);
 }
 

@@ -6,8 +6,6 @@
 #include <iterator>
 #include <xxhash.h>
 
-#include "common/hash.h"
-
 namespace palpate::sim {
 namespace {
 
@@ -31,7 +29,6 @@ Digest program() {
 
 }  // namespace
 
-#ifdef PALPATE_WITH_XXHASH
 class ContentHash {
  public:
   ContentHash() { XXH3_128bits_reset(state_); }
@@ -47,16 +44,6 @@ class ContentHash {
  private:
   XXH3_state_t* state_ = XXH3_createState();
 };
-#else
-class ContentHash {
- public:
-  void add(const void* data, std::size_t size) { hash_.add(data, size); }
-  Digest digest() const { return {hash_.value(), 0}; }
-
- private:
-  Fnv1a hash_;
-};
-#endif
 
 struct Fingerprint::State {
   ContentHash hash;

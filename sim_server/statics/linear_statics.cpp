@@ -95,7 +95,6 @@ Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows,
   return fingerprint.digest();
 }
 
-#ifdef PALPATE_WITH_SPECTRA
 /// Of all that modes of vibration follow from.
 Digest key_of_modes(const SparseMatrix& k, const Eigen::VectorXd& masses, int count,
                     const KeptMatrices& kept) {
@@ -109,7 +108,6 @@ Digest key_of_modes(const SparseMatrix& k, const Eigen::VectorXd& masses, int co
   fingerprint.add(std::span<const int>(&count, 1));
   return fingerprint.digest();
 }
-#endif
 
 }  // namespace
 
@@ -164,13 +162,7 @@ std::optional<MovingSupports> LinearStatics::supports(Following following) const
 }
 
 VibrationModes LinearStatics::modes(int count, const std::string& where,
-                                    [[maybe_unused]] const Eigen::VectorXd& weights) const {
-#ifndef PALPATE_WITH_SPECTRA
-  fail(
-      "{}: this build finds none of the {} modes of vibration asked for; configure it with "
-      "-DPALPATE_SPECTRA=ON",
-      where, count);
-#else
+                                    const Eigen::VectorXd& weights) const {
   const auto find = [&] {
     const FactoredMatrix& of_stiffness = factor();
     inputs_.progress(name_of(Stage::kModes), 0);
@@ -191,7 +183,6 @@ VibrationModes LinearStatics::modes(int count, const std::string& where,
   const std::string what = fmt::format("{} modes, {}", count, inputs_.scene.mesh_file.filename().string());
   kept.keep({.key = key, .seconds = to_seconds(now() - begin), .what = what}, matrix);
   return found;
-#endif
 }
 
 void LinearStatics::fill(SurfaceCompliance& compliance) const {

@@ -158,18 +158,14 @@ TEST_CASE("condense: what is felt is as without it, by 1, 2 and 4 ranks") {
   check_same_for_any_ranks("quasi_static");
 }
 
-#ifdef PALPATE_WITH_SPECTRA
 TEST_CASE("condense: so it is of tissue that swings") {
   check_same_for_any_ranks("reduced");
 }
-#endif
 
 TEST_CASE("condense: so it is by conjugate gradients, without a factor") {
   const std::string small = "reach = [[0.0, 0.03, 0.03], [0.006, 0.06, 0.06]]\n";
   check_same_for_any_ranks("quasi_static", small, {"--iterative"});
-#ifdef PALPATE_WITH_SPECTRA
   check_same_for_any_ranks("reduced", small, {"--iterative"});
-#endif
 }
 
 TEST_CASE("condense: so it is of a plate whose nodes are all reached, and its mirror image is another body") {

@@ -45,11 +45,9 @@ TEST_CASE("left out: a minimal scene has these parts in memory, and no other") {
       {"quasi_static", {"positions", "compliance"}, 24.8e6},
       {"tensor_mass", {"positions", "tensors", "motion", "compliance"}, 26e6, kUntold},
       {"implicit", {"positions", "elements", "motion", "compliance"}, 17e6, kUntold},
-#ifdef PALPATE_WITH_SPECTRA
       {"tensor_mass", {"positions", "tensors", "motion", "compliance", kTold}, 51e6},
       {"implicit", {"positions", "elements", "motion", "compliance", kTold}, 42e6},
       {"reduced", {"positions", "compliance", "modes"}, 25.5e6},
-#endif
   };
   const TemporaryFolder folder;
   for (const auto& [model, own, most, keys] : rows) {

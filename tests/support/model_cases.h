@@ -13,11 +13,7 @@
 
 namespace palpate::test {
 
-#ifdef PALPATE_WITH_SPECTRA
 constexpr int kRestModes = 8;
-#else
-constexpr int kRestModes = 0;  // such a build finds none
-#endif
 
 /// A row of the registry, with what a scene asks of it.
 struct ModelCase {

@@ -8,8 +8,6 @@
 #include "tests/support/catch.h"
 #include "tests/support/listener.h"
 
-#ifdef PALPATE_WITH_SPECTRA  // without it no modes are found
-
 using namespace palpate;
 using namespace palpate::test;
 using namespace std::chrono_literals;
@@ -226,5 +224,3 @@ TEST_CASE("swinging tissue: after a silence of the server nothing of the old mot
   }
   for (; listener.t < 5s;) CHECK(listener.tick(presses(listener.t + kTick)).norm() < 2 * largest);
 }
-
-#endif

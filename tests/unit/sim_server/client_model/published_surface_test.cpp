@@ -1,5 +1,4 @@
 // What clients are told of a surface that can be cut.
-#ifdef PALPATE_WITH_SPECTRA  // without it no modes are found
 #include "sim_server/client_model/published_surface.h"
 
 #include <algorithm>
@@ -365,5 +364,3 @@ TEST_CASE("a surface that can be cut: who is in a hurry waits for nothing, and i
   for (int k = 0; k < 2000 && !told_by_now(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   CHECK(told_by_now());
 }
-
-#endif

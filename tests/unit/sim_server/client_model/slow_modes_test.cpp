@@ -11,8 +11,6 @@
 #include "tests/support/catch.h"
 #include "tests/support/served_block.h"
 
-#ifdef PALPATE_WITH_SPECTRA  // without it no modes are found
-
 using namespace palpate;
 using namespace palpate::sim;
 using namespace palpate::test;
@@ -295,5 +293,3 @@ TEST_CASE(
   CHECK(simulation.published_modes() == nullptr);
   CHECK(SurfacePager(simulation, 0).pages().modes == 0);
 }
-
-#endif

@@ -135,7 +135,6 @@ TEST_CASE("hybrid: undamped, it keeps its energy") {
   CHECK(late > 0.5 * early);
 }
 
-#ifdef PALPATE_WITH_SPECTRA
 TEST_CASE("hybrid: with modes of the rest it moves as the whole body in motion does, with none not") {
   const TetMesh mesh = block();
   const Surface surface = boundary_surface(mesh);
@@ -180,7 +179,6 @@ TEST_CASE("hybrid: with modes of the rest it moves as the whole body in motion d
   CHECK(some < 0.2 * none);
   CHECK(all < 0.05);
 }
-#endif
 
 TEST_CASE("hybrid: undamped, a tool that presses on the rest beside its border brings no energy in") {
   for (const double x : {0.0105, 0.016}) {

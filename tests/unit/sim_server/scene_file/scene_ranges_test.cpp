@@ -111,10 +111,8 @@ TEST_CASE("[deformation]: values out of range, and names that are none") {
            Wrong{"[deformation]", "hardening_length = 0", "hardening_length", "between 0.0001 and 10 (m)",
                  "spring"},
            Wrong{"[deformation]", "model = \"jelly\"", "deformation model", "quasi_static"},
-#ifdef PALPATE_WITH_SPECTRA
            Wrong{"[deformation]", "modes = 0", "modes", "between 1 and 1000 (modes)", "reduced"},
            Wrong{"[deformation]", "modes = 1001", "modes", "between 1 and 1000", "reduced"},
-#endif
        })
     check_refused(wrong);
 }
@@ -233,9 +231,7 @@ TEST_CASE("[deformation]: a key of other models says whose it is") {
            Wrong{"[deformation]", "refresh_steps = 4", "factors where it has to", "for quasi_newton"},
            Wrong{"[deformation]", "rayleigh_mass = 1", "`[deformation] rayleigh_mass`",
                  "known to: tensor_mass, implicit", "quasi_static"},
-#ifdef PALPATE_WITH_SPECTRA
            Wrong{"[deformation]", "modes = 20", "`[deformation] modes`", "known to: ", "implicit"},
-#endif
            Wrong{"[deformation]", "stiffness = 800", "`[deformation] stiffness`", "known to: rigid",
                  "quasi_static"},
            Wrong{"[deformation]", "spring_stiffness = [1, 1, 1]", "`[deformation] spring_stiffness`",

@@ -176,7 +176,6 @@ TEST_CASE(
   }
 }
 
-#ifdef PALPATE_WITH_SPECTRA
 TEST_CASE("samples tell of a surface until it is cut, in that step no more, and of another one afterwards") {
   const TemporaryFolder folder;
   const std::string rows = "t_s,x_m,y_m,z_m\n0,0,0.0025,0\n3,0.004,0.002,0.0005\n";
@@ -212,6 +211,5 @@ TEST_CASE("samples tell of a surface until it is cut, in that step no more, and 
   CHECK(std::ranges::count(after, after.front()) == std::ssize(after));
   CHECK(after.front() != before.front());
 }
-#endif
 
 #endif

@@ -76,7 +76,6 @@ TEST_CASE("condensed: a set-up that takes all of it feels as one that computed i
   check_taken_as_made("quasi_static", 1, 1e-4);  // in tiles of low rank
 }
 
-#ifdef PALPATE_WITH_SPECTRA
 TEST_CASE("condensed: so does one with modes of vibration") {
   check_taken_as_made("reduced", 2);
 }
@@ -91,7 +90,6 @@ TEST_CASE("condensed: modes that were asked for are not another number of them, 
   scene.material->density *= 1.0001;
   check_refused(scene, test::deep_block(kCells), taking, "modes");
 }
-#endif
 
 TEST_CASE("condensed: what was made of another mesh, material, support or reach is refused") {
   const test::TemporaryFolder folder;

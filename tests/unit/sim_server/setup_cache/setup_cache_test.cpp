@@ -165,11 +165,7 @@ TEST_CASE(
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path());
   const std::string scenes = test::source_dir() + "/configs/scenes/";
-#ifdef PALPATE_WITH_SPECTRA
   const std::vector<const char*> names{"liver_paper", "liver_reduced", "liver_tensor_mass", "liver_implicit"};
-#else
-  const std::vector<const char*> names{"liver_paper"};  // nothing of the others is kept without modes
-#endif
   for (const char* name : names) {
     DYNAMIC_SECTION(name) {
       const Scene scene = read_scene(scenes + name + ".toml");

@@ -57,11 +57,9 @@ TEST_CASE("a scene beyond the machine is refused with the estimate, before anyth
   Scene weighed = scene_with("implicit");
   weighed.loads.push_back({.kind = Load::Kind::kGravity, .vector = {0, -9.81, 0}});
   CHECK_FALSE(refusal(weighed, Purpose::kServe, 3.305e6).empty());
-#ifdef PALPATE_WITH_SPECTRA
   // Vectors of modes: 3 1000 8 (3 40 + 20) bytes, 3.36 MB.
   CHECK(refusal(scene_with("reduced"), Purpose::kServe, (1.699 + 3.36) * 1e6).empty());
   CHECK_FALSE(refusal(scene_with("reduced"), Purpose::kServe, (1.697 + 3.36) * 1e6).empty());
-#endif
   CHECK(refusal(still, Purpose::kSolve, 2.503e6).empty());  // the matrix twice
   CHECK_FALSE(refusal(still, Purpose::kSolve, 2.501e6).empty());
   CHECK(refusal(scene_with("implicit", ElementKind::kQuadratic), Purpose::kServe, 1e6)

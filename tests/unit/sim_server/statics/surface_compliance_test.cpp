@@ -124,11 +124,7 @@ std::vector<NodalLoad> loads_on(const Plate& plate) {
 
 TEST_CASE(
     "in tiles of low rank every model with such a compliance gives way, and moves, as with a dense one") {
-#ifdef PALPATE_WITH_SPECTRA
   const std::string model = GENERATE("quasi_static", "tensor_mass", "reduced");
-#else
-  const std::string model = GENERATE("quasi_static", "tensor_mass");
-#endif
   CAPTURE(model);
   constexpr double kTolerance = 1e-4;
   const Plate plate(model, 0);
