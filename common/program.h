@@ -1,20 +1,60 @@
 #pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
 #include <optional>
-
-namespace CLI {
-class App;
-}
+#include <string>
+#include <variant>
+#include <vector>
 
 namespace palpate {
 
-/// What both programs do around their own work: name the log, hold back Ctrl-C, and turn an `Error` that
-/// escapes `body` into one line on stderr and its exit code. Call from `main` and return the result.
-int run_program(const char* name, int argc, char** argv, int (*body)(int argc, char** argv));
+/// Where the value of an option goes. What it holds before is the default. A `bool` needs no value: it
+/// becomes true, or false where the name begins with "!".
+using OptionValue = std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::filesystem::path*,
+                                 std::optional<int>*, std::optional<double>*, std::optional<std::string>*,
+                                 std::optional<std::filesystem::path>*, std::vector<std::string>*,
+                                 std::vector<std::filesystem::path>*>;
 
-/// Parses the command line, after adding `--version`. Returns the exit code if the program should end now: 0
-/// after
-/// --help or --version, 2 after a wrong use, said in one line.
-std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv);
+/// Bounds of a number, both allowed.
+struct Bounds {
+  double least = 0, most = 0;
+};
+
+/// What holds of few options.
+struct OptionRules {
+  bool required = false;
+  bool shows_default = false;      ///< in --help
+  bool one_at_a_time = false;      ///< of a list: the option is given once for each value
+  std::optional<Bounds> within{};  ///< of a number
+  std::string needs{};             ///< another option of the same command, declared before
+  std::string value_name{};        ///< in --help, in place of the type
+};
+
+/// An option "--name" of a command, or its argument "NAME".
+struct Option {
+  std::string name, help;
+  OptionValue value;
+  OptionRules rules{};
+};
+
+/// A program, or one of its subcommands: its own options and what it does, or subcommands of which one must
+/// be given.
+struct Command {
+  std::string name, summary, footer{};
+  std::vector<Option> options{};
+  std::function<int()> run{};  ///< returns the exit code; owns what the options point to
+  std::vector<Command> commands{};
+};
+
+/// One list after another.
+std::vector<Option> joined(std::initializer_list<std::vector<Option>> lists);
+
+/// Runs the program that `describe` makes, from the command line: names the log, holds back Ctrl-C, answers
+/// --help and --version, says a wrong use in one line (exit code 2), runs the command asked for, and turns an
+/// `Error` that escapes into one line on stderr and its exit code. Call from `main` and return the result.
+int run_program(const char* name, int argc, char** argv, Command (*describe)());
 
 /// Throws `Error` unless `value` lies in [least, most].
 void require_within(double value, double least, double most, const char* option, const char* unit);

@@ -46,4 +46,8 @@ void fail_unknown_name(std::string_view name, std::string_view what, std::string
   fail("{}: unknown {} \"{}\"{}", where, what, name, also);
 }
 
+std::string help_row(std::string_view name, std::string_view summary) {
+  return fmt::format("  {:<24}{}\n", name, summary);
+}
+
 }  // namespace palpate

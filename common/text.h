@@ -21,8 +21,22 @@ template <class Table>
 const auto& find_row(const Table& table, std::string_view name, std::string_view what,
                      std::string_view where);
 
+/// "  NAME   what it is", a line for each row of a registry table with a `name` and a `summary`, for help
+/// texts.
+template <class Table>
+std::string help_rows(const Table& table);
+
 [[noreturn]] void fail_unknown_name(std::string_view name, std::string_view what, std::string_view where,
                                     std::span<const std::string> known);
+
+std::string help_row(std::string_view name, std::string_view summary);
+
+template <class Table>
+std::string help_rows(const Table& table) {
+  std::string text;
+  for (const auto& row : table) text += help_row(row.name, row.summary);
+  return text;
+}
 
 template <class Table>
 const auto& find_row(const Table& table, std::string_view name, std::string_view what,

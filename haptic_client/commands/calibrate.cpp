@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <memory>
 #include <numbers>
 #include <thread>
 #include <unistd.h>
@@ -16,6 +17,8 @@
 #include "common/realtime.h"
 #include "common/text.h"
 #include "haptic_client/calibration/calibration.h"
+#include "haptic_client/commands/overrides.h"
+#include "haptic_client/device/devices.h"
 #include "haptic_client/session/guardian.h"
 #include "haptic_client/session/haptic_loop.h"
 
@@ -201,6 +204,36 @@ int calibrate(ClientConfig config, double mass) {
   if (calibration.trouble() != Trouble::kNone) explain(calibration, config, mass, device->status());
   print_result(calibration);
   return 0;
+}
+
+Command calibrate_command() {
+  struct Asked {
+    std::string device;
+    Overrides overrides;
+    double mass = 0;
+  };
+  const auto asked = std::make_shared<Asked>();
+  return {
+      .name = "calibrate",
+      .summary = "Find the torque constant of a Falcon with a known weight hung on its grip; no server",
+      .footer =
+          "It says what to do: home the device, let go of the grip, hang the weight on it, wait. It "
+          "takes a minute\n"
+          "and ends with the line for [falcon] of the client file, which it does not change.\n"
+          "Example: haptic_client calibrate falcon --mass 0.1 --falcon-firmware PATH",
+      .options =
+          {{"DEVICE",
+            "falcon, or falcon:PORT; stands upright on a table",
+            &asked->device,
+            {.required = true}},
+           {"--mass", "Of the weight, kg, 0.05 to 0.5; 0.1 does for most", &asked->mass, {.required = true}},
+           {"--client", "Client file: firmware and limits (default: all defaults)", &asked->overrides.file},
+           firmware_option(asked->overrides)},
+      .run = [asked] {
+        ClientConfig config = read_config(asked->overrides);
+        choose_device(config.device, asked->device, "DEVICE");
+        return calibrate(config, asked->mass);
+      }};
 }
 
 }  // namespace palpate::client

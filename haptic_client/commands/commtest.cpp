@@ -1,6 +1,7 @@
 #include "haptic_client/commands/commtest.h"
 
 #include <fmt/core.h>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/clock.h"
@@ -9,6 +10,8 @@
 #include "common/realtime.h"
 #include "haptic_client/commands/commtest_verdict.h"
 #include "haptic_client/commands/link_causes.h"
+#include "haptic_client/commands/overrides.h"
+#include "haptic_client/device/devices.h"
 #include "haptic_client/session/held_tool.h"
 #include "haptic_client/session/link_probe.h"
 #include "haptic_client/session/server_access.h"
@@ -179,6 +182,57 @@ int test_device(const ClientConfig& config, const CommtestOptions& options) {
   print_causes(report["what_to_look_at"]);
   if (options.json) write_json(*options.json, report);
   return usable > 0 ? 0 : 1;
+}
+
+namespace {
+
+struct TestRequest {
+  std::string server, device;
+  Overrides overrides;
+  CommtestOptions options;
+};
+
+/// Tests the device, or where none is named the link to the server. Both go over what the client file says.
+int run_commtest(const TestRequest& asked) {
+  require_within(asked.options.seconds, 1, 86400, "--seconds", "s");
+  require_within(asked.options.wait, 0.1, 3600, "--wait", "s");
+  Overrides overrides = asked.overrides;
+  overrides.server = asked.server;
+  ClientConfig config = read_config(overrides);
+  if (!asked.server.empty()) config.server_where = "ADDR:PORT";
+  if (asked.device.empty()) return test_link(config, asked.options);
+  choose_device(config.device, asked.device, "--usb");
+  if (overrides.file.empty()) config.rate_hz = row_of(config.device).limits(config.device).usual_rate_hz;
+  return test_device(config, asked.options);
+}
+
+}  // namespace
+
+Command commtest_command() {
+  const auto asked = std::make_shared<TestRequest>();
+  Overrides& overrides = asked->overrides;
+  CommtestOptions& options = asked->options;
+  return {.name = "commtest",
+          .summary = "Is the link to a server good enough? Or, with --usb, the loop of a device",
+          .footer =
+              "A session as `run` would have it, by a simulated hand that holds a tool meanwhile, and "
+              "round trips beside it.\n"
+              "The verdict is that of the stability study: PASS, WARN, or FAIL (exit code 1).\n"
+              "Examples: haptic_client commtest 192.168.1.20:45130 --client configs/clients/liver.toml "
+              "--key palpate.key\n"
+              "          haptic_client commtest --usb falcon",
+          .options = {{"ADDR:PORT", "Of sim_server (default: that of the client file)", &asked->server},
+                      {"--usb", "Test this device instead, with zero force: falcon, or falcon:PORT",
+                       &asked->device},
+                      {"--client", "Client file: its motion, rate and law (default: all defaults)",
+                       &overrides.file},
+                      {"--method", "Extrapolation law that the verdict is of", &overrides.method},
+                      {"--key", "File of the key that the server has", &overrides.key},
+                      insecure_option(overrides),
+                      {"--seconds", "How long", &options.seconds, {.shows_default = true}},
+                      {"--wait", "For the server to answer, s", &options.wait, {.shows_default = true}},
+                      {"--json", "Write the same to this JSON file", &options.json}},
+          .run = [asked] { return run_commtest(*asked); }};
 }
 
 }  // namespace palpate::client

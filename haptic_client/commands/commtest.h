@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "common/program.h"
 #include "haptic_client/session/client_config.h"
 
 namespace palpate::client {
@@ -22,5 +23,8 @@ int test_link(const ClientConfig& config, const CommtestOptions& options);
 /// Tests the loop of a device in the same way: reads it and writes zero force at its rate. Throws `Error`.
 /// Returns 0, or 1 where nothing usable came.
 int test_device(const ClientConfig& config, const CommtestOptions& options);
+
+/// `haptic_client commtest`.
+Command commtest_command();
 
 }  // namespace palpate::client

@@ -61,4 +61,11 @@ int print_plugged_in() {
 #endif
 }
 
+Command devices_command() {
+  return {.name = "devices",
+          .summary = "List the devices that are plugged in, and whether they can be used",
+          .footer = "Example: haptic_client devices",
+          .run = print_plugged_in};
+}
+
 }  // namespace palpate::client

@@ -1,4 +1,5 @@
 #pragma once
+#include "common/program.h"
 
 namespace palpate::client {
 
@@ -6,5 +7,8 @@ namespace palpate::client {
 /// access; where access is missing, the udev rule that gives it. Throws `Error` when there is no USB. Returns
 /// the exit code: 1 where nothing is there.
 int print_plugged_in();
+
+/// `haptic_client devices`.
+Command devices_command();
 
 }  // namespace palpate::client

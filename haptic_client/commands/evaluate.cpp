@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/core.h>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
@@ -10,6 +11,7 @@
 #include "common/progress.h"
 #include "common/report.h"
 #include "common/text.h"
+#include "haptic_client/commands/overrides.h"
 #include "haptic_client/evaluation/captured_session.h"
 #include "haptic_client/evaluation/law_cost.h"
 #include "haptic_client/evaluation/scoring.h"
@@ -251,6 +253,39 @@ int evaluate(const EvaluateOptions& options) {
   write_json(options.out / "summary.json", rows);
   write_csv(options.out / "summary.csv", csv_of(rows));
   return 0;
+}
+
+Command evaluate_command() {
+  const auto options = std::make_shared<EvaluateOptions>();
+  return {
+      .name = "evaluate",
+      .summary = "Score every law on captures, against the true force",
+      .footer = list_of_laws() +
+                "Example: haptic_client evaluate liver.pcap --truth truth.pcap --out out/evaluation",
+      .options =
+          {{"CAPTURE", "Captures, best of sim_server record", &options->captures, {.required = true}},
+           {"--truth",
+            "Capture of the same motion at 200 samples a second or more: `sim_server record ... --rate 2000 "
+            "--plain` (default: the force between the samples)",
+            &options->truth},
+           {"--out", "Folder for summary.json and summary.csv", &options->out, {.required = true}},
+           {"--method", "Laws (default: all)", &options->methods, {.one_at_a_time = true}},
+           {"--world", "Name for the first column (default: the capture's)", &options->world},
+           {"--blend-ms", "Time constant of the blended rows (default 10 ms)", &options->blend_ms},
+           {"--keep",
+            "Laws get one force sample of so many: 4 makes 20 Hz of 80 Hz, and the reference the line "
+            "between "
+            "those that are left, as in the paper (default 1)",
+            &options->keep,
+            {.within = Bounds{1, 1000}}},
+           {"--compliance",
+            "Laws see a surface model so many times as compliant as it was sent (default 1)",
+            &options->compliance,
+            {.within = Bounds{0.01, 100}}}},
+      .run = [options] {
+        require_within(options->blend_ms, 0.1, 100, "--blend-ms", "ms");
+        return evaluate(*options);
+      }};
 }
 
 }  // namespace palpate::client

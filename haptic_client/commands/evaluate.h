@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/program.h"
+
 namespace palpate::client {
 
 /// What `haptic_client evaluate` was asked for.
@@ -23,5 +25,8 @@ struct EvaluateOptions {
 /// ticks against the truth: a row each in `summary.json` and `summary.csv`. The same input gives the same
 /// bytes but for the timing columns. Throws `Error`. Returns the exit code.
 int evaluate(const EvaluateOptions& options);
+
+/// `haptic_client evaluate`.
+Command evaluate_command();
 
 }  // namespace palpate::client

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
 #include "common/log.h"
 #include "common/progress.h"
 #include "common/text.h"
+#include "haptic_client/commands/overrides.h"
 #include "haptic_client/evaluation/resampler.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/session/client_report.h"
@@ -173,6 +175,53 @@ int replay(const ClientConfig& config, const ReplayOptions& options) {
   print_report(report);
   if (options.report) write_json(*options.report, report);
   return 0;
+}
+
+Command replay_command() {
+  struct Asked {
+    Overrides overrides;
+    ReplayOptions options;
+    bool live = false;
+  };
+  const auto asked = std::make_shared<Asked>();
+  Overrides& overrides = asked->overrides;
+  ReplayOptions& options = asked->options;
+  return {
+      .name = "replay",
+      .summary =
+          "Run a captured session again: offline, the same forces bit by bit; or --live, its tool "
+          "against a server",
+      .footer = list_of_laws() +
+                "Examples: haptic_client replay --live liver.pcap --to 192.168.1.20:45130 --key "
+                "palpate.key\n"
+                "          haptic_client replay liver.pcap --method constant --out forces.csv",
+      .options = {{"CAPTURE",
+                   "pcap or pcapng: of --record, sim_server record, tcpdump ...",
+                   &options.capture,
+                   {.required = true}},
+                  {"--client",
+                   "Client file of the session: workspace, limits and laws to score (default: all defaults)",
+                   &overrides.file},
+                  {"--method", "How to extrapolate the force, see below", &overrides.method},
+                  {"--rate", "Ticks per second, 1 to 20000 (default, or within 2 %: the capture's own ticks)",
+                   &options.rate_hz},
+                  {"--out", "CSV to write, a row a tick; with --live, of the last minute", &options.out},
+                  {"--session", "Which session, where the capture has several", &options.session},
+                  {"--report", "Write figures to this JSON file", &options.report},
+                  {"--live", "Play the captured tool to a live server, in real time; nothing is moved",
+                   &asked->live},
+                  {"--to",
+                   "ADDR:PORT of that server (default 127.0.0.1:45130)",
+                   &overrides.server,
+                   {.needs = "--live"}},
+                  {"--key", "File of the key that the server has", &overrides.key, {.needs = "--live"}},
+                  insecure_option(overrides, "--live")},
+      .run = [asked] {
+        const std::optional<double>& rate_hz = asked->options.rate_hz;
+        if (rate_hz) require_within(*rate_hz, 1, 20000, "--rate", "Hz");
+        if (asked->live && rate_hz) fail("--rate: a live replay has the capture's own rate");
+        return (asked->live ? replay_live : replay)(read_config(asked->overrides), asked->options);
+      }};
 }
 
 }  // namespace palpate::client

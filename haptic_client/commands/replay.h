@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "common/program.h"
 #include "haptic_client/evaluation/captured_session.h"
 #include "haptic_client/session/client_config.h"
 
@@ -39,5 +40,8 @@ double nominal_rate(double captured_hz, double asked_hz);
 /// Runs the ticks of a captured session through law, watchdog and limiter again, offline: the same forces,
 /// bit by bit, whenever it is done. Throws `Error`. Returns the exit code.
 int replay(const ClientConfig& config, const ReplayOptions& options);
+
+/// `haptic_client replay`.
+Command replay_command();
 
 }  // namespace palpate::client

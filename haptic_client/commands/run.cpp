@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <list>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <set>
@@ -15,6 +16,9 @@
 #include "common/interrupt.h"
 #include "common/log.h"
 #include "common/realtime.h"
+#include "common/text.h"
+#include "haptic_client/commands/overrides.h"
+#include "haptic_client/device/devices.h"
 #include "haptic_client/session/client_report.h"
 #include "haptic_client/session/guardian.h"
 #include "haptic_client/session/held_tool.h"
@@ -178,6 +182,75 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
     if (never_there(configs[i], report["tools"][i])) fail_at_run_time("{}", no_device_text(device));
   }
   return 0;
+}
+
+namespace {
+
+struct RunRequest {
+  std::vector<std::string> files, devices;
+  Overrides overrides;
+  ClientOptions options;
+};
+
+/// A configuration for each tool: of each file, with the device of the same place on the command line; where
+/// there are more devices than files, the last file serves the rest.
+std::vector<ClientConfig> read_configs(const RunRequest& asked) {
+  const std::size_t tools = std::max({asked.files.size(), asked.devices.size(), std::size_t{1}});
+  if (!asked.devices.empty() && asked.devices.size() < tools)
+    fail("{} client files, but {} --device; give one for each, or none", asked.files.size(),
+         asked.devices.size());
+  std::vector<ClientConfig> configs;
+  for (std::size_t i = 0; i < tools; ++i) {
+    Overrides overrides = asked.overrides;
+    if (!asked.files.empty()) overrides.file = asked.files[std::min(i, asked.files.size() - 1)];
+    configs.push_back(read_config(overrides));
+    if (!asked.devices.empty()) choose_device(configs.back().device, asked.devices[i], "--device");
+    const DeviceSettings& device = configs.back().device;
+    if (overrides.file.empty() && !overrides.rate_hz)
+      configs.back().rate_hz = row_of(device).limits(device).usual_rate_hz;
+  }
+  return configs;
+}
+
+}  // namespace
+
+Command run_command() {
+  const auto asked = std::make_shared<RunRequest>();
+  Overrides& overrides = asked->overrides;
+  ClientOptions& options = asked->options;
+  return {
+      .name = "run",
+      .summary = "Connect to a server and run the haptic loop until Ctrl-C",
+      .footer =
+          list_of_laws() + "Devices:\n" + help_rows(devices()) +
+          "Examples: haptic_client run configs/clients/liver.toml --method constant --report report.json\n"
+          "          haptic_client run left.toml right.toml          two devices, each with a tool of its "
+          "own",
+      .options =
+          {{"CLIENT", "Client file (TOML), one for each tool; without one, a hand that holds still",
+            &asked->files},
+           {"--server", "ADDR:PORT of sim_server (default 127.0.0.1:45130)", &overrides.server},
+           {"--key", "File of the key that the server has; see `sim_server keygen`", &overrides.key},
+           insecure_option(overrides),
+           {"--device", "Device, see below; once for each tool", &asked->devices, {.one_at_a_time = true}},
+           firmware_option(overrides),
+           {"--method", "How to extrapolate the force, see below", &overrides.method},
+           {"--rate",
+            "Haptic ticks per second, 100 to 4000 (default 500; 1000 for a Falcon)",
+            &overrides.rate_hz,
+            {.within = Bounds{kMinRate, kMaxRate}}},
+           {"--seconds", "Stop after so many seconds", &options.seconds},
+           {"--report", "Write figures of the run to this JSON file", &options.report},
+           {"--trace", "Write the last minute, a row a tick, to this CSV file", &options.trace},
+           {"--record", "Write every datagram to this capture (pcap)", &options.record},
+           {"--record-mb",
+            "Go on in a new file at this size (F-2.pcap, ...); ten are kept",
+            &options.record_mb,
+            {.within = Bounds{0.01, 1e6}}}},
+      .run = [asked] {
+        if (asked->options.seconds) require_at_least(*asked->options.seconds, 1e-3, "--seconds", "s");
+        return run_client(read_configs(*asked), asked->options);
+      }};
 }
 
 }  // namespace palpate::client

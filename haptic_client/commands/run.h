@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/program.h"
 #include "haptic_client/session/client_config.h"
 
 namespace palpate::client {
@@ -19,5 +20,8 @@ struct ClientOptions {
 /// One tool for each of `configs` (at least one): connects, runs the haptic loops until Ctrl-C or `seconds`,
 /// reports. Throws `Error`. Returns the exit code.
 int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& options);
+
+/// `haptic_client run`.
+Command run_command();
 
 }  // namespace palpate::client

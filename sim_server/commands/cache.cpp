@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <fmt/core.h>
+#include <memory>
 
 #include "common/error.h"
 #include "common/log.h"
@@ -60,6 +61,44 @@ int clear_cache(const CacheOptions& options) {
   const auto [count, bytes] = cache.clear();
   fmt::print("{}: {} files removed, {}\n", cache.folder().string(), count, bytes_text(bytes));
   return 0;
+}
+
+std::vector<Option> cache_option(CacheOptions& options) {
+  return {{"--cache",
+           "Folder that keeps what set-ups computed (default: $XDG_CACHE_HOME/palpate, or ~/.cache/palpate)",
+           &options.folder}};
+}
+
+std::vector<Option> cache_or_none(CacheOptions& options, const std::string& needs) {
+  std::vector<Option> both = cache_option(options);
+  both.push_back({"--no-cache", "Compute everything anew, and keep nothing", &options.none});
+  for (Option& option : both) option.rules.needs = needs;
+  return both;
+}
+
+std::vector<Option> cache_options(CacheOptions& options, const std::string& needs) {
+  return joined({cache_or_none(options, needs),
+                 {{"--condensed",
+                   "Folder that `sim_server condense` made of this scene: set up from it",
+                   &options.condensed,
+                   {.needs = needs}}}});
+}
+
+Command cache_command() {
+  const auto options = std::make_shared<CacheOptions>();
+  return {.name = "cache",
+          .summary = "What set-ups have computed, kept on disk",
+          .footer = "Examples: sim_server cache list\n          sim_server cache clear",
+          .commands = {{.name = "list",
+                        .summary = "What is kept, how large it is, and what it saves",
+                        .footer = "Example: sim_server cache list",
+                        .options = cache_option(*options),
+                        .run = [options] { return list_cache(*options); }},
+                       {.name = "clear",
+                        .summary = "Remove all of it; the next set-ups compute it again",
+                        .footer = "Example: sim_server cache clear",
+                        .options = cache_option(*options),
+                        .run = [options] { return clear_cache(*options); }}}};
 }
 
 }  // namespace palpate::sim

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "common/program.h"
 #include "sim_server/scene/scene.h"
 #include "sim_server/setup_cache/condensed.h"
 #include "sim_server/setup_cache/setup_cache.h"
@@ -26,5 +27,16 @@ std::optional<Condensed> open_condensed(const CacheOptions& options, const Scene
 int list_cache(const CacheOptions& options);
 /// Removes them all, and says how much. Returns the exit code.
 int clear_cache(const CacheOptions& options);
+
+/// `--cache`.
+std::vector<Option> cache_option(CacheOptions& options);
+/// `--cache`, `--no-cache` and `--condensed`, where they are no use without the option `needs`, if one is
+/// named.
+std::vector<Option> cache_options(CacheOptions& options, const std::string& needs = {});
+/// `--cache` and `--no-cache`.
+std::vector<Option> cache_or_none(CacheOptions& options, const std::string& needs = {});
+
+/// `sim_server cache`.
+Command cache_command();
 
 }  // namespace palpate::sim

@@ -2,6 +2,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "common/program.h"
+
 namespace palpate::sim {
 
 struct CondenseOptions {
@@ -14,5 +16,8 @@ struct CondenseOptions {
 /// `out`, from which `run`, `record` and `view` take it (`--condensed`). What is there already stays.
 /// Returns the exit code. Throws `Error`; in a build without MPI, always.
 int condense(const CondenseOptions& options);
+
+/// `sim_server condense`.
+Command condense_command();
 
 }  // namespace palpate::sim

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/program.h"
 #include "common/report.h"
 #include "sim_server/commands/cache.h"
 #include "sim_server/simulation/simulation.h"
@@ -65,5 +66,11 @@ Json to_json(const Explanation& explanation);
 
 /// Explains a scene on stdout, and in a file if asked. Throws `Error`. Returns the exit code.
 int run_explain(const ExplainOptions& options);
+
+/// `sim_server explain`.
+Command explain_command();
+
+/// Every model and what it is, for the help of commands that take a scene.
+std::string list_of_models();
 
 }  // namespace palpate::sim

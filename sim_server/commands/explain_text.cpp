@@ -2,10 +2,12 @@
 #include <cmath>
 #include <fmt/core.h>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/text.h"
 #include "sim_server/commands/explain.h"
+#include "sim_server/deformation/deformation_models.h"
 
 namespace palpate::sim {
 namespace {
@@ -202,6 +204,37 @@ Json to_json(const Explanation& explanation) {
           {"bytes_per_tetrahedron",
            static_cast<double>(total_bytes(explanation)) / static_cast<double>(explanation.tetrahedra)},
           {"state_hash", fmt::format("{:016x}", explanation.state_hash)}};
+}
+
+std::string list_of_models() {
+  return "Models ([deformation] model):\n" + help_rows(deformation_models());
+}
+
+Command explain_command() {
+  const auto options = std::make_shared<ExplainOptions>();
+  return {
+      .name = "explain",
+      .summary = "What a scene builds, what it leaves out, and what that saves",
+      .footer = list_of_models() +
+                "Examples:\n"
+                "  sim_server explain configs/scenes/liver.toml --json explain.json\n"
+                "  sim_server explain configs/scenes/liver.toml --why compliance",
+      .options = joined(
+          {{{"SCENE", "Scene file (TOML)", &options->scene, {.required = true}},
+            {"--json", "Write the same to this JSON file", &options->json}},
+           cache_options(options->cache),
+           {{"--why",
+             "Only this part, built or left out: which line of the scene says so, and what it costs or saves",
+             &options->why,
+             {.value_name = "PART"}},
+            {"--steps",
+             "How many steps to time, free of the organ and in contact each",
+             &options->steps,
+             {.shows_default = true}}}}),
+      .run = [options] {
+        require_within(options->steps, 1, 100000, "--steps", "steps");
+        return run_explain(*options);
+      }};
 }
 
 }  // namespace palpate::sim

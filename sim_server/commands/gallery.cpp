@@ -77,4 +77,11 @@ int list_scenes() {
   return 0;
 }
 
+Command scenes_command() {
+  return {.name = "scenes",
+          .summary = "The scenes that come with Palpate, and what each shows",
+          .footer = "Example: sim_server scenes",
+          .run = list_scenes};
+}
+
 }  // namespace palpate::sim

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "common/program.h"
+
 namespace palpate::sim {
 
 /// A scene that comes with Palpate, and says in its head what it needs ("# Needs: ...").
@@ -19,5 +21,8 @@ std::vector<GalleryScene> find_gallery();
 
 /// `sim_server scenes`: prints them. Throws `Error` where there are none. Returns the exit code.
 int list_scenes();
+
+/// `sim_server scenes`.
+Command scenes_command();
 
 }  // namespace palpate::sim

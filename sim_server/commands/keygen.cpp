@@ -1,6 +1,7 @@
 #include "sim_server/commands/keygen.h"
 
 #include <fmt/core.h>
+#include <memory>
 
 #include "protocol/key_file.h"
 
@@ -18,6 +19,22 @@ int make_key(const std::filesystem::path& file, bool add) {
             "delete the lines of old keys."
           : "`sim_server keygen --add` changes it later.");
   return 0;
+}
+
+Command keygen_command() {
+  struct Asked {
+    std::string file;
+    bool add = false;
+  };
+  const auto asked = std::make_shared<Asked>();
+  return {.name = "keygen",
+          .summary = "Make a key, so that only who has it can push the motors",
+          .footer =
+              "Without a key, both programs talk on this machine only.\n"
+              "Example: sim_server keygen palpate.key",
+          .options = {{"FILE", "Key file to make, for both programs", &asked->file, {.required = true}},
+                      {"--add", "Put a new key behind those in FILE, to change keys", &asked->add}},
+          .run = [asked] { return make_key(asked->file, asked->add); }};
 }
 
 }  // namespace palpate::sim

@@ -16,4 +16,13 @@ protocol::ServerSessions sessions_for(const ListenOptions& options, double rate_
           options.key ? protocol::read_keys(*options.key) : std::vector<protocol::Key>{}};
 }
 
+std::vector<Option> listen_options(ListenOptions& options, const std::string& insecure) {
+  return {{"--listen",
+           "ADDR:PORT to listen on (UDP); 0.0.0.0:45130 for other machines",
+           &options.address,
+           {.shows_default = true}},
+          {"--key", "File of keys; clients need one of them, see `sim_server keygen`", &options.key},
+          {"--insecure", insecure, &options.insecure}};
+}
+
 }  // namespace palpate::sim

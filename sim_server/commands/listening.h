@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/program.h"
 #include "protocol/session.h"
 #include "protocol/udp_socket.h"
 
@@ -22,5 +23,9 @@ protocol::UdpSocket open_socket(const ListenOptions& options);
 /// Sessions with the keys asked for, and cookies of this run. Throws `Error` for a key file that is wrong.
 protocol::ServerSessions sessions_for(const ListenOptions& options, double rate_hz,
                                       std::vector<double> tool_radii);
+
+/// `--listen`, `--key` and `--insecure`, of which the help says `insecure`.
+std::vector<Option> listen_options(ListenOptions& options,
+                                   const std::string& insecure = "Serve other machines without a key");
 
 }  // namespace palpate::sim

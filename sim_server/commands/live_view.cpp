@@ -118,4 +118,11 @@ void LiveView::note(const LoopTurn& turn) noexcept {
   if (!turn.outcomes.empty()) newest_.step_ms = 1e3 * to_seconds(turn.took);
 }
 
+Option viewer_option(std::string& address) {
+  return {"--viewer",
+          "[ADDR:]PORT to serve the live page on (HTTP), or off; without ADDR on this machine alone",
+          &address,
+          {.shows_default = true}};
+}
+
 }  // namespace palpate::sim

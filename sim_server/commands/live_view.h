@@ -2,6 +2,7 @@
 #include <optional>
 #include <string>
 
+#include "common/program.h"
 #include "sim_server/commands/listening.h"
 #include "sim_server/serving/sim_loop.h"
 #include "sim_server/viewer/viewer.h"
@@ -50,5 +51,8 @@ class LiveView final : public LoopObserver {
   bool wanted_field_ = false;
   Picture newest_;  // without positions
 };
+
+/// `--viewer`.
+Option viewer_option(std::string& address);
 
 }  // namespace palpate::sim

@@ -1,6 +1,7 @@
 #include "sim_server/commands/mesh_info.h"
 
 #include <fmt/core.h>
+#include <memory>
 #include <numbers>
 
 #include "common/log.h"
@@ -57,6 +58,21 @@ int print_mesh_info(const std::string& file) {
   std::fflush(stdout);  // before the error
   require_usable(faults, file);
   return 0;
+}
+
+Command mesh_command() {
+  const auto file = std::make_shared<std::string>();
+  return {
+      .name = "mesh",
+      .summary = "Look at meshes",
+      .footer = "Example: sim_server mesh info configs/meshes/liver.msh",
+      .commands = {{.name = "info",
+                    .summary = "What is wrong with a Gmsh file (MSH 2.2 or 4.1), and its size and quality",
+                    .footer = "Lists every fault: what is mended on loading, and what has to be changed "
+                              "first (then exit code 2).\n"
+                              "Example: sim_server mesh info configs/meshes/liver.msh",
+                    .options = {{"FILE", "Mesh file, metres", file.get(), {.required = true}}},
+                    .run = [file] { return print_mesh_info(*file); }}}};
 }
 
 }  // namespace palpate::sim

@@ -1,6 +1,7 @@
 #include "sim_server/commands/record.h"
 
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/clock.h"
@@ -9,6 +10,7 @@
 #include "common/log.h"
 #include "common/progress.h"
 #include "common/report.h"
+#include "sim_server/commands/explain.h"
 #include "sim_server/commands/resection_log.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/virtual_session.h"
@@ -220,6 +222,67 @@ int record(const RecordOptions& options) {
   if (options.report)
     write_json(*options.report, make_report(options, session, ticks_hz, capture, simulation, virtual_s));
   return 0;
+}
+
+Command record_command() {
+  const auto options = std::make_shared<RecordOptions>();
+  return {.name = "record",
+          .summary = "Run a scene along a motion in virtual time, into a capture",
+          .footer =
+              list_of_models() +
+              "Examples:\n"
+              "  sim_server record configs/scenes/liver.toml --trajectory configs/clients/liver.toml --rate "
+              "33.3 --delay-ms 35 --out liver.pcap\n"
+              "  sim_server record configs/scenes/liver.toml --trajectory configs/clients/liver.toml --rate "
+              "2000 --out truth.pcap",
+          .options = joined(
+              {{{"SCENE", "Scene file (TOML)", &options->scene, {.required = true}},
+                {"--trajectory",
+                 "Motion of a tool: a CSV (t_s, x_m, y_m, z_m), or a client file with a [trajectory]; once "
+                 "for each "
+                 "tool of the scene, in their order, those without one stay lifted",
+                 &options->trajectories,
+                 {.required = true, .one_at_a_time = true}},
+                {"--tool",
+                 "Which tool's session the capture holds, from 1",
+                 &options->tool,
+                 {.shows_default = true, .within = Bounds{1, 8}}},
+                {"--rate",
+                 "Steps a second, 1 to 20000 Hz; 2000 is the truth",
+                 &options->rate_hz,
+                 {.required = true}},
+                {"--out", "Capture to write (pcap)", &options->out, {.required = true}},
+                {"--delay-ms",
+                 "From reading the tool to having its force in the client, ms, 0 to 10000",
+                 &options->delay_ms,
+                 {.shows_default = true}},
+                {"--ticks", "Tool states a second, at least --rate (default: 500, or --rate if that is more)",
+                 &options->ticks_hz},
+                {"--seconds", "Virtual time (default: the motion once)", &options->seconds},
+                {"!--plain", "Forces only: no tangents and surfaces, which some laws use (smaller)",
+                 &options->parts},
+                {"--real-time",
+                 "Step at the pace of the clock: a sample is as late as this machine makes it, as with `run` "
+                 "(not "
+                 "the same bytes twice)",
+                 &options->real_time},
+                {"--report", "Write figures of the recording to this JSON file", &options->report},
+                resection_option(options->resection),
+                {"--removals", "Of a scene with [cutting]: write when each tetrahedron went to this CSV",
+                 &options->removals},
+                {"--remove",
+                 "Remove what this CSV lists (t_s, tetrahedron), as --removals writes it, instead of by "
+                 "heat: the "
+                 "same cut at another --rate",
+                 &options->remove}},
+               cache_options(options->cache)}),
+          .run = [options] {
+            require_within(options->rate_hz, 1, 20000, "--rate", "Hz");
+            require_within(options->delay_ms, 0, 10000, "--delay-ms", "ms");
+            if (options->ticks_hz) require_within(*options->ticks_hz, 1, 20000, "--ticks", "Hz");
+            if (options->seconds) require_within(*options->seconds, 1e-3, 1e5, "--seconds", "s");
+            return record(*options);
+          }};
 }
 
 }  // namespace palpate::sim

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/program.h"
 #include "sim_server/commands/cache.h"
 
 namespace palpate::sim {
@@ -31,5 +32,8 @@ struct RecordOptions {
 /// `delay` after that tool state was read, in `real_time` that much after its step is done. The same
 /// arguments give the same bytes, but in `real_time`. Throws `Error`. Returns the exit code.
 int record(const RecordOptions& options);
+
+/// `sim_server record`.
+Command record_command();
 
 }  // namespace palpate::sim

@@ -1,6 +1,7 @@
 #include "sim_server/commands/replay.h"
 
 #include <fmt/core.h>
+#include <memory>
 #include <thread>
 
 #include "common/clock.h"
@@ -55,6 +56,27 @@ int serve_replay(const ReplayOptions& options) {
   net.join();
   fmt::print("sim_server: played {} of {} forces\n", player.played.load(), forces.samples.size());
   return 0;
+}
+
+Command replay_command() {
+  const auto options = std::make_shared<ReplayOptions>();
+  return {
+      .name = "replay",
+      .summary = "Play the forces of a capture to a live client and its device",
+      .footer =
+          "The forces come in their own time, wherever the tool is now; they carry no tangents. The "
+          "client's limits\n"
+          "hold as ever, and its passivity takes energy out that a force without a wall may bring "
+          "in.\n"
+          "Example: sim_server replay --serve F.pcap",
+      .options = joined(
+          {{{"--serve", "pcap or pcapng with a session of Palpate", &options->capture, {.required = true}}},
+           listen_options(options->listen),
+           {{"--seconds", "Stop after so many seconds (default: when all was played)", &options->seconds}}}),
+      .run = [options] {
+        if (options->seconds) require_at_least(*options->seconds, 1e-3, "--seconds", "s");
+        return serve_replay(*options);
+      }};
 }
 
 }  // namespace palpate::sim

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "common/program.h"
 #include "sim_server/commands/listening.h"
 
 namespace palpate::sim {
@@ -16,5 +17,8 @@ struct ReplayOptions {
 
 /// Plays the forces of a captured session to a live client and its device. Throws `Error`. Returns 0.
 int serve_replay(const ReplayOptions& options);
+
+/// `sim_server replay`.
+Command replay_command();
 
 }  // namespace palpate::sim

@@ -184,4 +184,9 @@ std::string resection_text(const Simulation& simulation) {
       heat_text(all, planned), parted_text(all, planned));
 }
 
+Option resection_option(std::optional<std::filesystem::path>& file) {
+  return {"--resection", "Of a scene with [cutting]: write what was removed, step by step, to this CSV",
+          &file};
+}
+
 }  // namespace palpate::sim

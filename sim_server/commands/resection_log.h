@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "common/program.h"
 #include "common/report.h"
 #include "sim_server/simulation/simulation.h"
 
@@ -32,5 +33,8 @@ void require_removable(std::span<const Removal> removals, const std::filesystem:
 Json resection_report(const Simulation& simulation);
 /// The same in one line; empty.
 std::string resection_text(const Simulation& simulation);
+
+/// `--resection`.
+Option resection_option(std::optional<std::filesystem::path>& file);
 
 }  // namespace palpate::sim

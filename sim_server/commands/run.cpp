@@ -1,5 +1,6 @@
 #include "sim_server/commands/run.h"
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <unistd.h>
@@ -16,6 +17,7 @@
 #include "protocol/key_file.h"
 #include "protocol/link_report.h"
 #include "protocol/recording_report.h"
+#include "sim_server/commands/explain.h"
 #include "sim_server/commands/gallery.h"
 #include "sim_server/commands/live_view.h"
 #include "sim_server/commands/page_news.h"
@@ -379,6 +381,34 @@ int run_server(const ServerOptions& options) {
       scene = *std::exchange(before, std::nullopt);
     }
   }
+}
+
+Command run_command() {
+  const auto options = std::make_shared<ServerOptions>();
+  return {
+      .name = "run",
+      .summary = "Serve a scene until Ctrl-C",
+      .footer = list_of_models() +
+                "Examples: sim_server run configs/scenes/liver.toml --report server.json\n"
+                "          sim_server run configs/scenes/liver.toml --viewer 8080\n"
+                "          sim_server run configs/scenes/liver.toml --listen 0.0.0.0:45130 --key palpate.key",
+      .options =
+          joined({{{"SCENE", "Scene file (TOML)", &options->scene, {.required = true}}},
+                  listen_options(options->listen, "Serve other machines without a key, or the page in clear"),
+                  {{"--seconds", "Stop after so many seconds", &options->seconds},
+                   {"--report", "Write figures of the run to this JSON file", &options->report},
+                   {"--record", "Write every datagram to this capture (pcap)", &options->record},
+                   {"--record-mb",
+                    "Go on in a new file at this size (F-2.pcap, ...); ten are kept",
+                    &options->record_mb,
+                    {.within = Bounds{0.01, 1e6}, .needs = "--record"}},
+                   resection_option(options->resection),
+                   viewer_option(options->viewer)},
+                  cache_options(options->cache)}),
+      .run = [options] {
+        if (options->seconds) require_at_least(*options->seconds, 1e-3, "--seconds", "s");
+        return run_server(*options);
+      }};
 }
 
 }  // namespace palpate::sim

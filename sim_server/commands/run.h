@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "common/program.h"
 #include "sim_server/commands/cache.h"
 #include "sim_server/commands/listening.h"
 
@@ -23,5 +24,8 @@ struct ServerOptions {
 
 /// Builds the scene, serves it until Ctrl-C, writes the report. Throws `Error`. Returns the exit code.
 int run_server(const ServerOptions& options);
+
+/// `sim_server run`.
+Command run_command();
 
 }  // namespace palpate::sim

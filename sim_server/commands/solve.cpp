@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/core.h>
+#include <memory>
 
 #include "common/clock.h"
 #include "common/error.h"
@@ -223,6 +224,40 @@ int solve(const SolveOptions& options) {
   write_outcome(options.out, solid, outcome);
   print_outcome(scene.source, solid, loads, held_regions(scene, mesh), outcome, probes);
   return 0;
+}
+
+Command solve_command() {
+  const auto options = std::make_shared<SolveOptions>();
+  return {
+      .name = "solve",
+      .summary = "Solve a scene without a tool: loads, supports, one material",
+      .footer =
+          "Examples:\n"
+          "  sim_server solve configs/scenes/liver_weight.toml --out liver.vtu --probe 0.1,0.03,0.02\n"
+          "  sim_server solve configs/scenes/liver_weight.toml --seconds 2 --out end.vtu --series "
+          "motion.pvd",
+      .options =
+          {{"SCENE",
+            "Scene file (TOML) with [mesh], [material], [[fixed]], [[load]]",
+            &options->scene,
+            {.required = true}},
+           {"--out", "Deformed mesh to write, for ParaView (.vtu)", &options->out, {.required = true}},
+           {"--probe", "Place in the body at rest, m: prints its displacement; repeatable", &options->probes},
+           {"--seconds",
+            "Move for so long from rest, all loads there at once (default: the static equilibrium)",
+            &options->seconds},
+           {"--step", "Step of the motion, s", &options->step, {.shows_default = true, .needs = "--seconds"}},
+           {"--series", "Also write the motion for ParaView: a .pvd and its frames", &options->series},
+           {"--frames",
+            "How many frames about",
+            &options->frames,
+            {.shows_default = true, .needs = "--series"}}},
+      .run = [options] {
+        if (options->seconds) require_within(*options->seconds, 1e-6, 1e6, "--seconds", "s");
+        require_within(options->step, 1e-6, 1e3, "--step", "s");
+        require_within(options->frames, 1, 100000, "--frames", "files");
+        return solve(*options);
+      }};
 }
 
 }  // namespace palpate::sim

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "common/program.h"
+
 namespace palpate::sim {
 
 /// What `sim_server solve` was asked for.
@@ -20,5 +22,8 @@ struct SolveOptions {
 /// von Mises stress Pa, strain energy density J/m3, volume over that at rest) and prints what an engineer
 /// compares: energy, reactions, probes to 9 digits. Throws `Error`. Returns the exit code.
 int solve(const SolveOptions& options);
+
+/// `sim_server solve`.
+Command solve_command();
 
 }  // namespace palpate::sim

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/core.h>
 #include <fstream>
+#include <memory>
 
 #include "common/clock.h"
 #include "common/error.h"
@@ -13,6 +14,7 @@
 #include "common/memory_budget.h"
 #include "common/progress.h"
 #include "common/report.h"
+#include "sim_server/commands/explain.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/study/studied_errors.h"
 #include "sim_server/study/study_errors.h"
@@ -217,6 +219,46 @@ int study(const StudyOptions& options, const CacheOptions& cache) {
     fmt::print("Only tool 1 of {} is moved and compared; the others are away.\n", scene.tools.size());
   if (options.budget_ms) fmt::print("{}", advice(result, *options.budget_ms, scene));
   return 0;
+}
+
+Command study_command() {
+  struct Asked {
+    StudyOptions study;
+    CacheOptions cache;
+  };
+  const auto asked = std::make_shared<Asked>();
+  StudyOptions& options = asked->study;
+  return {
+      .name = "study",
+      .summary =
+          "Error against run time: models, elements, meshes, steps and tolerances around a scene's own",
+      .footer = list_of_models() +
+                "Example: sim_server study configs/scenes/liver.toml --out out/liver --budget-ms 33",
+      .options = joined(
+          {{{"SCENE", "Scene file (TOML)", &options.scene, {.required = true}},
+            {"--out",
+             "Folder for rows.csv, timing.csv, along.csv, reference.csv, summary.json; an interrupted study "
+             "goes on",
+             &options.out,
+             {.required = true}},
+            {"--mesh", "Another mesh of the same organ, coarser or finer; repeatable", &options.meshes},
+            {"--trajectory",
+             "Motion of the tool: a CSV (t_s, x_m, y_m, z_m) (default: pressed, slid to and fro, lifted, 2 "
+             "s)",
+             &options.trajectory},
+            {"--budget-ms", "End with the case that is felt best at so many ms a step, as TOML",
+             &options.budget_ms},
+            {"--latency-ms",
+             "Of the link, from the end of a step to its force in the client, ms",
+             &options.latency_ms,
+             {.shows_default = true}},
+            {"--quick", "Fewer steps, no finer meshes, a coarser reference: a minute", &options.quick}},
+           cache_or_none(asked->cache)}),
+      .run = [asked] {
+        if (asked->study.budget_ms) require_within(*asked->study.budget_ms, 1e-3, 1e6, "--budget-ms", "ms");
+        require_within(asked->study.latency_ms, 0, 1000, "--latency-ms", "ms");
+        return study(asked->study, asked->cache);
+      }};
 }
 
 }  // namespace palpate::sim

@@ -1,4 +1,5 @@
 #pragma once
+#include "common/program.h"
 #include "sim_server/commands/cache.h"
 #include "sim_server/study/study_plan.h"
 
@@ -12,5 +13,8 @@ namespace palpate::sim {
 /// of later sessions. Prints a table and, with a budget, what to choose. Throws `Error`. Returns the exit
 /// code.
 int study(const StudyOptions& options, const CacheOptions& cache);
+
+/// `sim_server study`.
+Command study_command();
 
 }  // namespace palpate::sim

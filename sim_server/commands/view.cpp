@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/core.h>
 #include <limits>
+#include <memory>
 #include <set>
 #include <thread>
 
@@ -14,6 +15,7 @@
 #include "common/realtime.h"
 #include "protocol/session.h"
 #include "protocol/udp_socket.h"
+#include "sim_server/commands/live_view.h"
 #include "sim_server/commands/pictures.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/captured_forces.h"
@@ -219,6 +221,24 @@ int view_capture(const ViewOptions& options) {
   }
   viewer.stop();
   return 0;
+}
+
+Command view_command() {
+  const auto options = std::make_shared<ViewOptions>();
+  return {.name = "view",
+          .summary = "Open a capture in the live page, to play and search it",
+          .footer = "Example: sim_server view F.pcap --scene configs/scenes/liver.toml",
+          .options = joined(
+              {{{"F.pcap", "pcap or pcapng with a session of Palpate", &options->capture, {.required = true}},
+                {"--scene", "Scene file of that session: steps it again, so that the organ moves, too",
+                 &options->scene},
+                viewer_option(options->viewer),
+                {"--seconds", "Stop after so many seconds (default: at Ctrl-C)", &options->seconds}},
+               cache_options(options->cache, "--scene")}),
+          .run = [options] {
+            if (options->seconds) require_at_least(*options->seconds, 1e-3, "--seconds", "s");
+            return view_capture(*options);
+          }};
 }
 
 }  // namespace palpate::sim

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "common/program.h"
 #include "sim_server/commands/cache.h"
 
 namespace palpate::sim {
@@ -18,5 +19,8 @@ struct ViewOptions {
 /// Makes of a capture what a page would have got, and serves that until Ctrl-C. Throws `Error`. Returns the
 /// exit code.
 int view_capture(const ViewOptions& options);
+
+/// `sim_server view`.
+Command view_command();
 
 }  // namespace palpate::sim

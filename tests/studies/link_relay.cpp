@@ -1,7 +1,6 @@
 // A bad network between two programs of ours, in real time: clients talk to this one, it talks to the server,
 // and what it does to the datagrams between is drawn from a seed (protocol/link_simulator.h). Behind
 // scripts/two_machines.
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <map>
 #include <memory>
@@ -110,34 +109,10 @@ class Relay {
   std::map<Endpoint, std::unique_ptr<Path>> paths_;
 };
 
-int run(int argc, char** argv) {
-  CLI::App app{"Passes the datagrams of a client and a server on, over a network as bad as asked for."};
-  Options o;
-  app.add_option("--listen", o.listen, "ADDR:PORT where the client believes the server")->required();
-  app.add_option("--server", o.server, "ADDR:PORT of the server")->required();
-  app.add_option("--seed", o.seed, "Of all that is drawn")->capture_default_str();
-  const CLI::Range percent(0, 100), ms(0, 10000);
-  app.add_option("--delay", o.delay_ms, "One way, ms")->check(ms)->capture_default_str();
-  app.add_option("--jitter", o.jitter_ms, "More, even from 0 to this, ms")->check(ms)->capture_default_str();
-  app.add_option("--loss", o.loss, "Lost, each on its own, %")->check(percent)->capture_default_str();
-  app.add_option("--burst", o.burst, "With which a burst of losses begins, %")
-      ->check(percent)
-      ->capture_default_str();
-  app.add_option("--burst-length", o.burst_length, "Of a burst on average, datagrams")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_option("--duplicates", o.duplicates, "Arrive twice, %")->check(percent)->capture_default_str();
-  app.add_option("--reordered", o.reordered, "Held back, %")->check(percent)->capture_default_str();
-  app.add_option("--reorder-delay", o.reorder_ms, "By so much, ms")->check(ms)->capture_default_str();
-  app.add_option("--mbit", o.mbit, "Rate of the line, Mbit/s; 0: any")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
-  app.footer(
-      "Example: link_relay --listen 127.0.0.3:45130 --server 127.0.0.2:45130 --delay 20 --jitter 5 --loss 2");
-  if (const auto ended = parse_arguments(app, argc, argv)) return *ended;
-  Relay relay(o);
+int pass_on(const Options& options) {
+  Relay relay(options);
   std::jthread net([&] { relay.run(); });
-  fmt::print("link_relay: from {} to {}\n", o.listen, o.server);
+  fmt::print("link_relay: from {} to {}\n", options.listen, options.server);
   std::fflush(stdout);
   while (!wait_for_interrupt(std::chrono::milliseconds(200))) {
   }
@@ -147,8 +122,39 @@ int run(int argc, char** argv) {
   return 0;
 }
 
+Command link_relay() {
+  const auto o = std::make_shared<Options>();
+  const OptionRules percent{.shows_default = true, .within = Bounds{0, 100}},
+      ms{.shows_default = true, .within = Bounds{0, 10000}};
+  return {.name = "link_relay",
+          .summary = "Passes the datagrams of a client and a server on, over a network as bad as asked for.",
+          .footer =
+              "Example: link_relay --listen 127.0.0.3:45130 --server 127.0.0.2:45130 --delay 20 --jitter 5 "
+              "--loss 2",
+          .options =
+              {{"--listen", "ADDR:PORT where the client believes the server", &o->listen, {.required = true}},
+               {"--server", "ADDR:PORT of the server", &o->server, {.required = true}},
+               {"--seed", "Of all that is drawn", &o->seed, {.shows_default = true}},
+               {"--delay", "One way, ms", &o->delay_ms, ms},
+               {"--jitter", "More, even from 0 to this, ms", &o->jitter_ms, ms},
+               {"--loss", "Lost, each on its own, %", &o->loss, percent},
+               {"--burst", "With which a burst of losses begins, %", &o->burst, percent},
+               {"--burst-length",
+                "Of a burst on average, datagrams",
+                &o->burst_length,
+                {.shows_default = true, .within = Bounds{1, 1000}}},
+               {"--duplicates", "Arrive twice, %", &o->duplicates, percent},
+               {"--reordered", "Held back, %", &o->reordered, percent},
+               {"--reorder-delay", "By so much, ms", &o->reorder_ms, ms},
+               {"--mbit",
+                "Rate of the line, Mbit/s; 0: any",
+                &o->mbit,
+                {.shows_default = true, .within = Bounds{0, 100000}}}},
+          .run = [o] { return pass_on(*o); }};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  return palpate::run_program("link_relay", argc, argv, &run);
+  return palpate::run_program("link_relay", argc, argv, &link_relay);
 }
