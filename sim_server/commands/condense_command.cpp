@@ -1,7 +1,7 @@
 #include <memory>
 
 #include "sim_server/commands/condense.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 
 namespace palpate::sim {
 

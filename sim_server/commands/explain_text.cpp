@@ -7,7 +7,7 @@
 
 #include "common/text.h"
 #include "sim_server/commands/explain.h"
-#include "sim_server/deformation/deformation_models.h"
+#include "sim_server/models/deformation_models.h"
 
 namespace palpate::sim {
 namespace {
