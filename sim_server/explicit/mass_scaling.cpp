@@ -1,29 +1,30 @@
 #include "sim_server/explicit/mass_scaling.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <fmt/core.h>
 #include <numeric>
-#include <utility>
 
 #include "sim_server/elasticity/element.h"
 #include "sim_server/elasticity/tensors.h"
-#include "sim_server/sparse/dense_spectra.h"
 
 namespace palpate::sim {
 namespace {
 
 /// The square of the highest angular frequency of a tetrahedron alone, (rad/s)^2.
 double squared_frequency(const LinearTetrahedron& element, const Material& material) {
+  using Matrix12 = Eigen::Matrix<double, 12, 12>;
   const Moduli moduli = LinearLaw::moduli(material);
-  Eigen::MatrixXd k(12, 12);  // per volume
+  Matrix12 k;  // per volume
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t b = 0; b < 4; ++b) {
       k.block<3, 3>(3 * static_cast<Eigen::Index>(a), 3 * static_cast<Eigen::Index>(b)) =
           stiffness_per_volume(moduli, element.gradient[a], element.gradient[b]);
     }
   }
-  return largest_eigenvalue(std::move(k)) / (material.density / 4);
+  const Eigen::SelfAdjointEigenSolver<Matrix12> solver(k, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[11] / (material.density / 4);
 }
 
 double squared_frequency_in(const TetMesh& mesh, std::size_t tetrahedron, const Material& material) {

@@ -1,8 +1,7 @@
 #include "sim_server/low_rank/low_rank_factors.h"
 
+#include <Eigen/SVD>
 #include <cmath>
-
-#include "sim_server/sparse/dense_spectra.h"
 
 namespace palpate::sim {
 namespace {
@@ -40,13 +39,12 @@ std::optional<LowRankFactors> low_rank_factors(Eigen::MatrixXd matrix, double to
     squares = matrix.colwise().squaredNorm();
   }
   if (rank == 0) return LowRankFactors{Eigen::MatrixXf(0, n), Eigen::MatrixXf(0, m)};
-  const auto svd = thin_svd(shares.topRows(rank));
-  if (!svd) return {};
-  const Eigen::Index count = needed(svd->singular_values, std::sqrt(1 - kOfColumns * kOfColumns) * tolerance);
-  const Eigen::VectorXd roots = svd->singular_values.head(count).cwiseSqrt();
-  const Eigen::MatrixXd left = basis.leftCols(rank) * svd->left.leftCols(count) * roots.asDiagonal(),
-                        right = roots.asDiagonal() * svd->right_transpose.topRows(count);
-  return LowRankFactors{left.transpose().cast<float>(), right.cast<float>()};
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(shares.topRows(rank), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::Index count = needed(svd.singularValues(), std::sqrt(1 - kOfColumns * kOfColumns) * tolerance);
+  const Eigen::VectorXd roots = svd.singularValues().head(count).cwiseSqrt();
+  const Eigen::MatrixXd left = basis.leftCols(rank) * svd.matrixU().leftCols(count) * roots.asDiagonal(),
+                        right = svd.matrixV().leftCols(count) * roots.asDiagonal();
+  return LowRankFactors{left.transpose().cast<float>(), right.transpose().cast<float>()};
 }
 
 }  // namespace palpate::sim

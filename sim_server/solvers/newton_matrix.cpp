@@ -1,11 +1,11 @@
 #include "sim_server/solvers/newton_matrix.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
 #include "common/parallel.h"
 #include "common/realtime.h"
-#include "sim_server/sparse/dense_spectra.h"
 
 namespace palpate::sim {
 namespace {
@@ -145,13 +145,10 @@ void NewtonMatrix::use_border() {
   schur_.compute(schur);
   border_misfits_ = schur_.info() != Eigen::Success;
   if (!border_misfits_) return;
-  const double scale = std::max(corner_.diagonal().mean(), mean_diagonal_), least = kLeastOfBorder * scale;
-  const auto modes = symmetric_spectrum(schur);
-  if (!modes) {
-    schur_.compute(scale * Eigen::MatrixXd::Identity(schur.rows(), schur.cols()));
-    return;
-  }
-  schur_.compute(modes->vectors * modes->values.cwiseMax(least).asDiagonal() * modes->vectors.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(schur);
+  const double least = kLeastOfBorder * std::max(corner_.diagonal().mean(), mean_diagonal_);
+  schur_.compute(modes.eigenvectors() * modes.eigenvalues().cwiseMax(least).asDiagonal() *
+                 modes.eigenvectors().transpose());
 }
 
 Eigen::MatrixXd NewtonMatrix::solve(const Eigen::MatrixXd& b) const {

@@ -1,5 +1,7 @@
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
 #include "sim_server/solvers/vibration_modes.h"
-#include "sim_server/sparse/dense_spectra.h"
 
 namespace palpate::sim {
 
@@ -13,11 +15,14 @@ std::optional<VibrationModes> refined_modes(const FactoredMatrix& stiffness, con
     const Eigen::MatrixXd next = stiffness.solve(forces);
     const Eigen::MatrixXd of_stiffness = next.transpose() * forces,
                           of_masses = next.transpose() * masses.asDiagonal() * next;
-    const auto small = symmetric_spectrum(0.5 * (of_stiffness + of_stiffness.transpose()), of_masses);
-    if (!small || !(small->values.array() > 0).all()) return {};
-    shapes.noalias() = next * small->vectors;
-    const double change = ((small->values - squares).array() / small->values.array()).abs().maxCoeff();
-    squares = small->values;
+    if (of_masses.llt().info() != Eigen::Success) return {};  // the eigen-solver does not look
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> small(
+        0.5 * (of_stiffness + of_stiffness.transpose()), of_masses);
+    if (small.info() != Eigen::Success || !(small.eigenvalues().array() > 0).all()) return {};
+    shapes.noalias() = next * small.eigenvectors();
+    const double change =
+        ((small.eigenvalues() - squares).array() / small.eigenvalues().array()).abs().maxCoeff();
+    squares = small.eigenvalues();
     if (change < kSettled) break;
   }
   return VibrationModes{squares.cwiseSqrt(), std::move(shapes)};

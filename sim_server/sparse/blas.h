@@ -19,12 +19,6 @@ PALPATE_BLAS(double, d)
 PALPATE_BLAS(float, s)
 #undef PALPATE_BLAS
 // NOLINTEND(bugprone-macro-parentheses)
-void dgesdd_(const char*, const int*, const int*, double*, const int*, double*, double*, const int*, double*,
-             const int*, double*, const int*, int*, int*);
-void dsyevd_(const char*, const char*, const int*, double*, const int*, double*, double*, const int*, int*,
-             const int*, int*);
-void dsygvd_(const int*, const char*, const char*, const int*, double*, const int*, double*, const int*,
-             double*, double*, const int*, int*, const int*, int*);
 // Present in every OpenBLAS, absent from other BLAS libraries: hence weak.
 void openblas_set_num_threads(int threads) __attribute__((weak));
 }
