@@ -53,7 +53,8 @@ double count_sub_steps(const Scene& scene, double longest) {
   if (steps > kMostSubSteps) {
     fail(
         "{}: a step at {:g} Hz would take {:g} sub-steps of {:.2g} s, and {:g} are the most; model \"{}\" is "
-        "for soft tissue: take \"implicit\", a larger `rate_hz` or a smaller `rayleigh_stiffness`",
+        "for soft tissue: take a model of implicit steps, a larger `rate_hz` or a smaller "
+        "`rayleigh_stiffness`",
         scene.source, scene.rate_hz, steps, longest, kMostSubSteps, scene.deformation.model);
   }
   return steps;
