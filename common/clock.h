@@ -11,7 +11,8 @@ Time now() noexcept;
 /// allocation, some 200 ns.
 Time thread_time() noexcept;
 
-/// Where the monotonic clock began on the calendar: add it to `now()` for nanoseconds since 1970 (UTC).
+/// Returns the offset from the monotonic clock to the calendar: add it to `now()` for nanoseconds since 1970
+/// (UTC).
 Time monotonic_epoch() noexcept;
 
 /// Sleeps until the absolute monotonic time `deadline`; returns at once when it has passed. Any thread.

@@ -17,9 +17,9 @@ struct Range {
   const char* unit = "";
 };
 
-/// One table of a TOML file, read strictly: every getter checks type and range and remembers the key it was
-/// asked for, and `reject_unknown` then refuses whatever the file says beyond that. All errors are `Error`s
-/// that name file, line, key, what was expected and the nearest valid name. Set-up only.
+/// Table of a TOML file, read strictly. Every getter checks type and range and marks its key as used.
+/// `reject_unknown` then refuses every unused key in the file. All errors are `Error`s that name file, line,
+/// key, the expected value and the nearest valid name. Set-up only.
 class Config {
  public:
   static Config read(const std::filesystem::path& file);
@@ -28,7 +28,7 @@ class Config {
   std::string where(const std::string& key = {}) const;
 
   bool has(const std::string& key) const;
-  /// The same of a key that does not belong here: without asking for it.
+  /// True if the table has this key, which does not belong there; does not mark the key as used.
   bool says(const std::string& key) const;
   double number(const std::string& key, const Range& range, std::optional<double> otherwise = {}) const;
   long integer(const std::string& key, const Range& range, std::optional<long> otherwise = {}) const;

@@ -13,7 +13,7 @@ namespace palpate {
 std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& file,
                                                   std::span<const std::string> columns);
 
-/// Whether the file's header names this column. Throws `Error` where there is no such file.
+/// True if the file's header names this column. Throws `Error` where there is no such file.
 bool has_csv_column(const std::filesystem::path& file, const std::string& column);
 
 }  // namespace palpate

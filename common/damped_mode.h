@@ -6,11 +6,11 @@ namespace palpate {
 /// so (rad/s), as the client meets the contact force a tick late; 80 Hz, where its ticks come at 500 Hz.
 constexpr int kMostSlowModes = 75;
 constexpr double kQuickestSlowMode = 500;
-/// Nor any more strongly damped (1/s): it hardly moves within a tick.
+/// Largest damping of a published slow mode (1/s); a more strongly damped one hardly moves within a tick.
 constexpr double kHardestSlowDamping = 1000;
 
-/// One mode of a damped linear motion, q'' + d q' + w^2 q = p, over a time under a force p that is held: of
-/// q, q' and p at its beginning to q and q' at its end. Exact, whatever the time and the damping.
+/// Step of one mode of a damped linear motion, q'' + d q' + w^2 q = p, over a time under a constant force p.
+/// Maps q, q' and p at its start to q and q' at its end. Exact, whatever the time and the damping.
 struct ModeStep {
   double q_of_q = 1, q_of_v = 0, v_of_q = 0, v_of_v = 1, q_of_p = 0, v_of_p = 0;
 

@@ -3,7 +3,7 @@
 
 namespace palpate {
 
-/// Where a figure for an error comes from. On the wire; the numbers never change.
+/// Source of a figure for an error. On the wire; the numbers never change.
 enum class ErrorSource : std::uint8_t {
   kUnknown = 0,    ///< nobody knows how large it is
   kEstimated = 1,  ///< by a table, from what is known in each step
@@ -19,7 +19,7 @@ struct DiscretisationError {
   bool known() const noexcept { return source != ErrorSource::kUnknown; }
 };
 
-/// What computing a tissue on a mesh, and in steps of time, costs the force on a tool.
+/// Errors of the force on a tool by the mesh of a tissue, and by its time step.
 struct DiscretisationErrors {
   DiscretisationError mesh{}, time_step{};
 };

@@ -11,7 +11,7 @@ void block_interrupts();
 /// Waits up to `timeout` for Ctrl-C, SIGTERM, SIGHUP or SIGQUIT; true when one came. Main thread.
 bool wait_for_interrupt(Time timeout);
 
-/// Whether SIGUSR1 (the request to re-arm a latched force) came since the last call. Main thread.
+/// Returns true if SIGUSR1 (the request to re-arm a latched force) came since the last call. Main thread.
 bool take_rearm_request();
 
 }  // namespace palpate

@@ -3,15 +3,15 @@
 #include <string_view>
 #include <utility>
 
-/// One line a message on stderr. Never from a running loop: loops count, `main` tells.
+/// Messages on stderr, one a line. Never from a running loop: loops count, `main` prints.
 namespace palpate::log {
 
 /// Names the program in front of every line ("sim_server: ..."). Call once in `main`.
 void start(std::string_view program);
 
-/// From here on debug lines are written, too.
+/// Writes debug lines, too, from this call on.
 void tell_more();
-/// Whether they are.
+/// True if debug lines are written.
 bool tells_more();
 
 void write_debug(std::string_view line);

@@ -31,7 +31,7 @@ void parallel_blocks(std::size_t n, std::size_t block, const Work& work) {
 #endif
 }
 
-/// How many threads such a loop uses at most.
+/// Returns how many threads such a loop uses at most.
 inline std::size_t threads() {
 #ifdef PALPATE_WITH_TBB
   using Control = oneapi::tbb::global_control;

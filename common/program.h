@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-/// Where the value of an option goes. What it holds before is the default. A `bool` needs no value: it
+/// Destination of the value of an option, which holds the default at first. A `bool` needs no value: it
 /// becomes true, or false where the name begins with "!".
 using OptionValue = std::variant<bool*, int*, std::uint64_t*, double*, std::string*, std::filesystem::path*,
                                  std::optional<int>*, std::optional<double>*, std::optional<std::string>*,
@@ -22,7 +22,7 @@ struct Bounds {
   double least = 0, most = 0;
 };
 
-/// What holds of few options.
+/// Rules that few options have.
 struct OptionRules {
   bool required = false;
   bool shows_default = false;      ///< in --help
@@ -48,7 +48,7 @@ struct Command {
   std::vector<Command> commands{};
 };
 
-/// One list after another.
+/// Returns the lists joined in order.
 std::vector<Option> joined(std::initializer_list<std::vector<Option>> lists);
 
 /// Runs the program that `describe` makes, from the command line: names the log, holds back Ctrl-C, answers

@@ -6,8 +6,8 @@
 
 namespace palpate {
 
-/// How much longer work takes of which `share` (0 to 1) took `elapsed`, if it goes on so: ", about 50 s
-/// left". Empty within the first 2 s, and where nothing is done yet.
+/// Returns the remaining time of work of which the fraction `share` (0 to 1) took `elapsed`, at a constant
+/// rate: ", about 50 s left". Empty within the first 2 s, and for `share` 0 or 1.
 std::string time_left(double share, Time elapsed);
 
 /// Tells on stderr how long work goes on: on a terminal one running line with a percentage, elsewhere one

@@ -12,7 +12,8 @@ namespace palpate {
 /// has real-time priority: it sleeps, too, where a part takes 0.2 ms longer than its own.
 class PromptTeam {
  public:
-  /// So many threads besides the one that asks (>= 0), which start with the first work of more than one part.
+  /// Sets the number of threads beside the caller's (>= 0), which start with the first work of more than one
+  /// part.
   explicit PromptTeam(int helpers) : most_helpers_(helpers) {}
   /// Ends them.
   ~PromptTeam();
@@ -29,9 +30,9 @@ class PromptTeam {
     begin(parts, work);
     finish();
   }
-  /// The same in two halves, between which this thread does something else: helpers begin, and `finish` does
-  /// what they have not begun, and waits for the rest. `work` must stay until then, and so must what it
-  /// reads.
+  /// Starts the work of `run` and returns, so that this thread can do something else. Helpers take parts, and
+  /// `finish` does the parts that they have not started, and waits for the rest. `work` must stay until then,
+  /// and so must what it reads.
   template <class Work>
   void begin(std::uint32_t parts, const Work& work) noexcept {
     begin({&work, [](const void* what, std::uint32_t part) { (*static_cast<const Work*>(what))(part); }},

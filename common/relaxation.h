@@ -17,8 +17,8 @@ struct Relaxation {
 /// Terms of a series that a server tells and a client steps.
 constexpr int kMostRelaxations = 4;
 
-/// What follows something else late, r' = (x - r) / time, over a step of length h in which x goes evenly:
-/// exact (Taylor, Pister and Goudreau 1970, Int. J. Numer. Meth. Engng 2:45).
+/// Step of length h of a delayed variable r, r' = (x - r) / time, in which x changes linearly: exact (Taylor,
+/// Pister and Goudreau 1970, Int. J. Numer. Meth. Engng 2:45).
 struct RelaxationStep {
   double fade = 1;   ///< exp(-h / time)
   double gamma = 1;  ///< (1 - fade) time / h

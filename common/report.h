@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 /// (1e3 for microseconds, 1e6 for milliseconds).
 Json quantiles(const Histogram& histogram, double unit_ns);
 
-/// What a program of ours writes into a file.
+/// Kind of content of a file that a program writes.
 enum class Contents { kReport, kTable, kCapture, kShapes };
 
 /// A file that appears whole, or when it is worth a name, or not at all: what is written goes to `path()`

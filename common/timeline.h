@@ -6,9 +6,9 @@
 
 namespace palpate {
 
-/// What happened when, coarsely, in flat memory: up to `kCells` cells of equal width side by side. When a
-/// session outgrows them, neighbours merge and the width doubles. `Cell` adds up by `operator+=`. No
-/// allocation; one thread.
+/// Coarse time line in fixed memory: up to `kCells` cells of equal width side by side. When a session
+/// outgrows them, neighbours merge and the width doubles. `Cell` adds up by `operator+=`. No allocation; one
+/// thread.
 template <class Cell, std::size_t kCells = 64>
 class Timeline {
  public:
@@ -23,7 +23,7 @@ class Timeline {
 
   std::size_t size() const noexcept { return size_; }
   const Cell& operator[](std::size_t i) const noexcept { return cells_[i]; }
-  /// Of one cell; from one second on.
+  /// Returns the width of one cell, at least one second.
   Time width() const noexcept { return width_; }
 
  private:

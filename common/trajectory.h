@@ -13,11 +13,12 @@ class Config;
 
 namespace palpate {
 
-/// Where to find a recorded motion, and how to read it.
+/// File of a recorded motion, and how to read it.
 struct TrajectorySettings {
   std::filesystem::path file;
   std::array<std::string, 4> columns{"t_s", "x_m", "y_m", "z_m"};  ///< time (s) and position
-  /// Of the device's buttons that are pressed from each row on, [0, 65535]; a file without it presses none.
+  /// Name of the column of the device's buttons that are down from each row on, [0, 65535]; without it none
+  /// is down.
   static constexpr const char* kButtons = "buttons";
   double scale = 1;              ///< metres per unit of the position columns
   Vec3 offset = Vec3::Zero();    ///< added after scaling, m
@@ -35,7 +36,7 @@ class Trajectory {
   /// Reads a CSV. Throws `Error` for a bad row (file and line), times that do not increase (file and row), or
   /// a motion that is to repeat and ends elsewhere than it began.
   explicit Trajectory(const TrajectorySettings& settings);
-  /// From rows, times increasing; for tests and for a hand that holds still (one row).
+  /// Takes rows, times increasing; for tests and for a hand that does not move (one row).
   Trajectory(std::vector<double> t_s, std::vector<Vec3> p, bool repeats = false);
 
   /// Position at `t` seconds after the start. O(log rows), no allocation.

@@ -6,14 +6,14 @@
 
 namespace palpate {
 
-/// What `LatestValue` is made of, for values that are filled in place, as they own memory: one slot being
-/// written, one being read, one in between. Neither side ever waits, locks or allocates. Each slot keeps what
-/// it held before, so a writer that sets only a part of it must know that another turn set the rest.
+/// Building block of `LatestValue`, for values that are filled in place, as they own memory: one slot being
+/// written, one being read, one in between. Neither side ever waits, locks or allocates. Each slot holds its
+/// earlier content, so a writer that sets only a part of it must know that another turn set the rest.
 template <class T>
 class TripleBuffer {
  public:
   TripleBuffer() = default;
-  /// All three slots begin as copies of this.
+  /// Starts all three slots as copies of this.
   explicit TripleBuffer(const T& first) : slots_{first, first, first} {}
 
   /// Writer thread only: the slot to fill; `publish` hands it over, in the place of one that nobody read.

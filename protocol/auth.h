@@ -27,15 +27,15 @@ Key direction_key(const Key& shared, Direction direction, const Nonce& client, c
 /// size with it. Without a key: nothing, and `size`. A microsecond a kilobyte; no allocation.
 std::size_t seal(std::span<std::byte> out, std::size_t size, const Key& key) noexcept;
 
-/// Whether the tag of a datagram that `decode` accepted is that of `key`, compared in constant time; without
-/// a key: yes.
+/// True if the tag of a datagram that `decode` accepted is that of `key`, compared in constant time; without
+/// a key always true.
 bool authentic(std::span<const std::byte> datagram, const Key& key) noexcept;
 
-/// What the address of a live page ends in, so that only who has it may do more than look, derived from a
-/// key; the server gives the key of one run (`direction_key` with a random nonce).
+/// Returns the token that ends the address of a live page, derived from a key. Only its owner may do more
+/// than watch. The server passes the key of one run (`direction_key` with a random nonce).
 std::array<std::uint8_t, 16> page_token(const Key& key) noexcept;
 
-/// Whether two texts are the same, in a time that does not tell where they differ.
+/// True if two texts are equal; the time does not depend on where they differ.
 bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept;
 
 /// Cookies that a server hands out, so that only who receives at an address can say Hello from it, and the

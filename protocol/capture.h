@@ -80,7 +80,7 @@ class CaptureReader {
   const Skipped& skipped() const noexcept { return skipped_; }
   std::uint64_t packets() const noexcept { return packets_; }  ///< of any kind, so far
 
-  /// How much of the file was read, 0 to 1; 0 for a pipe until it ends.
+  /// Returns the fraction of the file that was read, 0 to 1; 0 for a pipe until it ends.
   double share() const noexcept;
 
  private:

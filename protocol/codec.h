@@ -13,7 +13,7 @@ constexpr std::size_t kTagBytes = 16;       ///< room behind the payload for an 
 constexpr std::size_t kMaxDatagram = 1200;  ///< fits every path that carries IPv6
 constexpr std::size_t kHelloPayload = 256;  ///< Hello is padded to this, more than any answer to it
 
-/// What stands in front of every message.
+/// Header of every message.
 struct Header {
   std::uint64_t session = 0;   ///< drawn by the server; 0 before there is one
   std::uint64_t sequence = 0;  ///< of this datagram from this sender in this session, from 1
@@ -47,9 +47,9 @@ struct Datagram {
   std::span<const std::byte> bytes{};  ///< what it was read from; valid as long as those
 };
 
-/// Whether it is within the bounds of the protocol; one without terms is none.
+/// True if it is within the bounds of the protocol. A state without terms is an absent one, and valid.
 bool valid(const RelaxedState& m) noexcept;
-/// Whether these are loads on modes of any organ.
+/// True if these are loads on modes of any organ.
 bool valid(const ModalLoads& m) noexcept;
 
 /// Writes one datagram and returns its size, at most `kMaxDatagram`. `out` must hold that many bytes. No

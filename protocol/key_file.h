@@ -14,7 +14,7 @@ std::vector<Key> read_keys(const std::filesystem::path& file);
 /// Throws `Error` where the file is there already (or, with `add`, is not).
 Key add_new_key(const std::filesystem::path& file, bool add);
 
-/// Whether datagrams to or from this address stay on this machine.
+/// True if datagrams to or from this address stay on this machine.
 bool is_loopback(const Endpoint& endpoint) noexcept;
 
 /// Refuses to talk over a network without a key, unless somebody asked for that: throws `Error`, which begins

@@ -10,7 +10,7 @@
 
 namespace palpate::protocol {
 
-/// What a frame begins with, by its number in a capture (https://www.tcpdump.org/linktypes.html).
+/// First header of a frame, by its number in a capture (https://www.tcpdump.org/linktypes.html).
 enum class LinkType : int {
   kNull = 0,      ///< BSD loopback: the address family in the order of bytes of the capturing machine
   kEthernet = 1,  ///< up to `kMaxVlanTags` VLAN tags
@@ -30,7 +30,7 @@ constexpr std::string_view kLinkTypesRead =
 /// True for the link types above.
 bool supported(LinkType link) noexcept;
 
-/// What a frame turned out to be.
+/// Kind of a frame, as parsed.
 enum class FrameVerdict : std::uint8_t {
   kDatagram,      ///< a UDP datagram, perhaps cut
   kOtherTraffic,  ///< not IP, or not UDP

@@ -10,9 +10,9 @@
 
 namespace palpate::protocol {
 
-/// What one direction of a link does to datagrams. Shares are from 0 to 1, of the datagrams sent; s, bytes.
+/// Conditions of one direction of a link. Fractions are from 0 to 1, of the datagrams sent; s, bytes.
 struct LinkConditions {
-  /// From `from` on, every datagram takes `delay` (s).
+  /// Delay (s) of every datagram from time `from` on.
   struct DelayStep {
     Time from{};
     double delay = 0;
@@ -43,10 +43,10 @@ struct LinkCounts {
   std::uint64_t duplicated = 0, reordered = 0, corrupted = 0, delivered = 0;
 };
 
-/// One direction of a bad network, in virtual time: datagrams go in and come out as its conditions say. Pure:
-/// no clock, no socket; the same seed and calls give the same on every machine. Each datagram draws the same
-/// number of random numbers whatever the conditions, so that a change of one leaves the rest as it was. For
-/// tests and studies; allocates. One thread.
+/// Simulator of one direction of a bad network, in virtual time: datagrams enter and leave as its conditions
+/// say. Pure: no clock, no socket; equal seeds and calls return equal results on every machine. Each datagram
+/// draws an equal number of random numbers whatever the conditions, so that a change of one leaves the rest
+/// as it was. For tests and studies; allocates. One thread.
 class LinkSimulator {
  public:
   LinkSimulator(LinkConditions conditions, std::uint64_t seed)

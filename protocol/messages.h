@@ -1,6 +1,6 @@
 #pragma once
-/// What travels. Byte layout and meaning: protocol/README.md. Each message lists its fields once, in wire
-/// order; writer and reader both walk that list.
+/// Messages of the protocol. Byte layout and meaning: protocol/README.md. Each message lists its fields once,
+/// in wire order; writer and reader both walk that list.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -35,7 +35,7 @@ enum class RefuseReason : std::uint8_t {
 
 /// Drawn at random, once; on the wire 16 bytes.
 using Nonce = std::array<std::uint64_t, 2>;
-/// What a server says to an address, to hear it back from there; on the wire 16 bytes.
+/// Number that a server sends to an address and expects back from there; on the wire 16 bytes.
 using Cookie = std::array<std::uint64_t, 2>;
 
 struct Hello {
@@ -148,11 +148,11 @@ struct SurfaceState {
   }
 };
 
-/// How the other tools on the organ move the surface near this one, to first order.
+/// Motion of the surface near this tool by the other tools on the organ, to first order.
 struct OtherTools {
   Vec3 v_W = Vec3::Zero();  ///< at that velocity, with the force of this tool held, m/s
-  /// And by so much for each N more that this tool presses the tissue with, as they give way: m/N, symmetric,
-  /// in the order of `tangent`.
+  /// Compliance of the other tools: additional motion for each N more of this tool's load on the tissue, m/N,
+  /// symmetric, in the order of `tangent`.
   std::array<double, 6> compliance = {};
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
@@ -160,10 +160,10 @@ struct OtherTools {
   }
 };
 
-/// Where the slow modes of a tissue that swings stand; how its surface moves in them: `SurfacePage`s.
+/// State of the slow modes of a body in motion; their shapes on its surface: `SurfacePage`s.
 struct ModalState {
   std::uint8_t count = 0;  ///< of modes, at most `kMostSlowModes`
-  /// Of the first `count`: amplitude, m sqrt(kg), and its rate, m sqrt(kg)/s.
+  /// Amplitudes of the first `count` modes, m sqrt(kg), and their rates, m sqrt(kg)/s.
   std::array<float, kMostSlowModes> q = {}, v = {};
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
@@ -172,10 +172,10 @@ struct ModalState {
   }
 };
 
-/// How hard the other tools on the organ drive the slow modes of a tissue that swings.
+/// Loads of the other tools on the slow modes of a body in motion.
 struct ModalLoads {
-  /// Of so many modes, on so many of the slowest there is room for loads, beside all other parts but
-  /// "relaxed" (75: 10; up to 53: on all).
+  /// Returns how many of `modes`, the slowest first, have room for loads, beside all other parts but
+  /// "relaxed" (75: 10; up to 53: all).
   static constexpr std::size_t room(std::size_t modes) { return std::min(modes, 160 - 2 * modes); }
   std::uint8_t count = 0;  ///< of modes, the slowest first; on the others, nothing is told
   std::array<float, kMostSlowModes> load = {};  ///< of the first `count`, N/sqrt(kg)
@@ -186,18 +186,18 @@ struct ModalLoads {
   }
 };
 
-/// What a tissue that swings and relaxes remembers besides its `ModalState`: a part of it with each sample,
-/// the next part with the next, as all of it would not go into a datagram.
+/// Viscous memory of a body that moves and relaxes, in addition to its `ModalState`. Each sample contains one
+/// part of it and the next sample the next part, as all of it would not fit into a datagram.
 struct RelaxedState {
   static constexpr std::size_t kMostAmplitudes = 75, kMostForces = 16;  ///< in one sample
   /// The Prony series, at most `kMostRelaxations` terms: share of the stress at once, and time, s.
   std::uint8_t terms = 0;
   std::array<float, kMostRelaxations> share = {}, time = {};
-  /// Of `count` modes from `first` on: what follows q late in each term, m sqrt(kg); terms of a mode in a
-  /// row.
+  /// Delayed amplitudes of `count` modes from `first` on: z follows q late in each term, m sqrt(kg); terms of
+  /// a mode in a row.
   std::uint8_t first = 0, count = 0;
   std::array<float, kMostAmplitudes> z = {};
-  /// Of vertices of the surface: what their force is remembered as in each term, N.
+  /// Viscous memory of vertices of the surface: their delayed force in each term, N.
   struct Vertex {
     std::uint16_t number = 0;
     std::array<float, 3 * kMostRelaxations> psi = {};
@@ -225,10 +225,10 @@ struct ForceSample {
   static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8, kHasSurface = 16,
                                  kHasErrors = 32, kHasOthers = 64, kHasModes = 128, kHasMean = 256,
                                  kHasRelaxed = 512;
-  /// And two that ask: for `Telemetry`; and that the client let go of the force, as the simulation is paused
-  /// and this sample is the last one again.
+  /// Requests to the client: to send `Telemetry`; to release the force, as the simulation is paused and this
+  /// sample repeats the last one.
   static constexpr std::uint32_t kWantsTelemetry = 1024, kPaused = 2048;
-  /// And more parts.
+  /// Flags of more parts.
   static constexpr std::uint32_t kHasModalLoads = 4096, kHasCuts = 8192;
   /// The tip was hot, or the blade cut: what it touches may give way at any time.
   static constexpr std::uint32_t kCutting = 16384;
@@ -292,8 +292,9 @@ struct SurfacePage {
   }
 };
 
-/// What only the client knows, for a page that shows it: the newest ticks, and how it fares. Sent about 30
-/// times a second while the newest sample says `kWantsTelemetry`. It changes nothing.
+/// State that only the client knows, for a page that shows it: the newest ticks, and the quality of the
+/// session. Sent about 30 times a second while the newest sample has the flag `kWantsTelemetry`. It changes
+/// nothing.
 struct Telemetry {
   static constexpr MessageType kType = MessageType::kTelemetry;
   static constexpr std::size_t kMostTicks = 24, kMostLaws = 8, kNameBytes = 32;
@@ -312,8 +313,8 @@ struct Telemetry {
   std::uint32_t longest_period_ns = 0;  ///< and longest
   std::uint64_t ticks = 0, missed = 0;  ///< of the session
   float passivity_gain = 1;             ///< [0, 1]
-  /// Of the session: how often the force was faded; ticks in which the limiter cut it (force, slew), or
-  /// passivity damped it.
+  /// Counts of the session: how often the force was faded; ticks in which the limiter cut it (force, slew),
+  /// or passivity damped it.
   std::uint32_t faded = 0, clamped = 0, slewed = 0, damped = 0;
   Name device = {};
   Name felt_law = {};  ///< the law that is felt; behind a colon, which one stands in
@@ -337,7 +338,8 @@ struct Telemetry {
   }
 };
 
-/// Where the mouse of a page wants a tool to be, for a client whose device is that mouse; others ignore it.
+/// Tool position that the mouse of a page requests, for a client whose device is that mouse; others ignore
+/// it.
 struct Pointer {
   static constexpr MessageType kType = MessageType::kPointer;
   std::uint8_t tool = 0;

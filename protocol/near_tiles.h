@@ -18,19 +18,20 @@ class NearTiles {
   static constexpr std::size_t kKept = 8192;
   static_assert(kMostClusters * (kMostClusters + 1) / 2 <= kKept);
 
-  /// For surfaces of at most so many vertices.
+  /// Allocates for surfaces of at most this number of vertices.
   explicit NearTiles(std::size_t most_vertices);
 
   /// Takes the surface at rest, m.
   void take(std::span<const Vec3> rest) noexcept;
 
-  /// How far around a tool of that radius (m) and speed (m/s) tiles matter, m: as far as it presses the
-  /// tissue, and as far as it gets while a page is on its way.
+  /// Returns the distance (m) up to which tiles matter around a tool of that radius (m) and speed (m/s). It
+  /// covers the extent of its load on the tissue, and its motion while a page is on its way.
   static double reach(double radius, double speed) noexcept { return 3 * radius + 0.2 * speed; }
 
   /// Looks around `p` (m, at rest).
   void look(const Vec3& p) noexcept;
-  /// How far `p` is from the ball around the nearest cluster, m; below 0: within. Infinite without a surface.
+  /// Returns the distance of `p` from the ball around the nearest cluster, m; below 0: within. Infinite
+  /// without a surface.
   double distance() const noexcept;
   /// Calls `work(a, b)` for pairs of clusters that lie within `reach` of one place, those nearest to `p`
   /// first, until it says false.

@@ -32,15 +32,15 @@ class Recorder {
   /// only; copies it, never waits. Bytes beyond the longest datagram of ours are not kept.
   void note(Time t, const Endpoint& from, const Endpoint& to, std::span<const std::byte> bytes) noexcept;
 
-  /// As above, one that belongs to no session (refused, doubled, a stranger's Hello or its answer): a few a
-  /// second are kept, so that nobody can fill the disk.
+  /// Notes a datagram that belongs to no session (refused, doubled, a stranger's Hello or its answer). A few
+  /// a second are stored, so that nobody can fill the disk.
   void note_refused(Time t, const Endpoint& from, const Endpoint& to,
                     std::span<const std::byte> bytes) noexcept;
 
   /// Writes until asked to stop, then writes what is left. In a thread of its own.
   void run(const std::stop_token& stop) noexcept;
 
-  /// Whether the disk still takes it; for a watching thread.
+  /// True if the disk no longer takes the recording; for a watching thread.
   std::atomic<bool> failed{false};
 
   struct Stats {
@@ -50,7 +50,7 @@ class Recorder {
     std::uint64_t dropped = 0;  ///< noted, but not in the file
     std::uint64_t refused = 0;  ///< of `note_refused`: not noted, as there were too many
   };
-  /// What a recording takes while it runs.
+  /// Returns the memory of a recording while it runs, bytes.
   static constexpr std::size_t memory_bytes() { return kRoom * sizeof(Packet); }
 
   /// When `run` has returned.
@@ -69,7 +69,7 @@ class Recorder {
   void write_all() noexcept;
   void name_it(const Packet& packet) noexcept;
 
-  /// One file of the recording.
+  /// File of the recording.
   struct Part {
     explicit Part(const std::filesystem::path& path) : file(path, Contents::kCapture), capture(file.path()) {}
     WholeFile file;

@@ -4,7 +4,7 @@
 
 namespace palpate::protocol {
 
-/// What became of a recording, for the report of a run that has ended.
+/// Writes the outcome of a recording, for the report of a run that has ended.
 Json recording_report(const Recorder& recorder);
 
 /// Tells once when the disk stops taking a recording. Watching thread.

@@ -19,7 +19,7 @@ class Stray {
     in_a_row_ = 0;
     return true;
   }
-  /// One came that is where it should be.
+  /// Ends the row, as a number in the expected range came.
   void end_row() noexcept { in_a_row_ = 0; }
 
   static constexpr int kEnough = 4;
@@ -69,7 +69,7 @@ class ReplayWindow {
     ++stats.received;
     return true;
   }
-  /// Whether the last one taken is the highest.
+  /// True if the last number taken is the highest.
   bool in_order() const noexcept { return in_order_; }
   /// The sender has gone on so far unseen: the next number is `sequence`.
   void begin_at(std::uint64_t sequence) noexcept { highest_ = sequence - 1; }

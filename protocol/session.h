@@ -39,7 +39,7 @@ class ClientSession {
   std::size_t write(const Message& message, std::span<std::byte> out) noexcept;
 
   bool welcomed() const noexcept { return current_.session != 0; }
-  /// Of the session; another one after a server has begun anew. 0: none yet.
+  /// Returns the number of the session; it changes after a restart of the server. 0: none yet.
   std::uint64_t number() const noexcept { return current_.session; }
   const Welcome& welcome() const noexcept { return welcome_; }
   /// Why the server last said no, until it says yes.
@@ -97,7 +97,7 @@ class ServerSessions {
     ReplayWindow window{kFarthestState};
     NewestOnly ticks{};
   };
-  /// What came of a datagram: an answer to send back, a tool state newer than all before, or telemetry.
+  /// Outcome of a datagram: an answer to send back, a tool state newer than all before, or telemetry.
   struct Outcome {
     std::optional<std::pair<Header, Message>> answer{};
     Key key{};  ///< of the answer

@@ -1,5 +1,5 @@
 #pragma once
-/// How the model of a surface is cut into pages (`SurfacePage`), each one datagram. Both ends count alike.
+/// Layout of the pages (`SurfacePage`) of a surface model, each one datagram. Client and server count alike.
 ///
 /// The model: rest positions of n vertices (m, world), triangles (corners: vertex numbers, outward), and the
 /// static compliance of the vertices to each other, 3 x 3 blocks C(i, j) = dx_i / df_j (m/N), symmetric. Of a

@@ -10,7 +10,7 @@ class TokenBucket {
  public:
   TokenBucket(double per_second, double most) : per_second_(per_second), most_(most), left_(most) {}
 
-  /// Whether one more may pass at `now`; times never go back.
+  /// Takes one token; true if one more may pass at `now`. Times never decrease.
   bool take(Time now) noexcept {
     left_ = std::min(most_, left_ + per_second_ * to_seconds(now - last_));
     last_ = now;

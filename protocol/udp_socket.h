@@ -32,8 +32,8 @@ class UdpSocket {
   /// Binds to `local` (port 0: any). Throws `Error` (run time) naming the address when it is taken or not
   /// ours.
   explicit UdpSocket(const Endpoint& local);
-  /// The same, served by the loop of `other`, which outlives this: `on_datagram` is called in the thread that
-  /// runs that one. Before `other` runs, or in its thread.
+  /// Binds to `local`, served by the loop of `other`, which outlives this: `on_datagram` is called in the
+  /// thread that runs that loop. Call it before `other` runs, or in its thread.
   UdpSocket(const Endpoint& local, UdpSocket& other,
             std::function<void(std::span<const std::byte>, const Endpoint&)> on_datagram);
   ~UdpSocket();
@@ -45,9 +45,10 @@ class UdpSocket {
   /// where it is bound to all of them. Asks the routing table; sends nothing.
   Endpoint local_towards(const Endpoint& peer) const;
 
-  /// Of the datagram that `on_datagram` is being called with: when the kernel had it. Thread of `run`.
+  /// Returns when the kernel had the datagram that `on_datagram` is being called with. Thread of `run`.
   Time arrived() const noexcept;
-  /// And to which of our addresses it was sent, where the socket is bound to all of them; else port 0.
+  /// Returns the address of this machine to which that datagram was sent, where the socket is bound to all of
+  /// them; else port 0.
   const Endpoint& asked() const noexcept;
 
   /// Serves until `stop`. One thread.

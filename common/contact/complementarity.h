@@ -20,7 +20,7 @@ class ComplementaritySolver {
  public:
   /// `capacity`: the largest problem `solve` will be given.
   explicit ComplementaritySolver(int capacity);
-  /// From now on its work is counted there, and it gives up where that is spent; must outlive it.
+  /// Counts its work in `work` from this call on, and stops where that is spent; `work` must outlive it.
   void count_work(WorkBudget& work) noexcept { work_ = &work; }
 
   /// Writes lambda (n), which holds a guess: the exchanges begin with those in contact that have a force in

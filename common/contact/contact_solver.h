@@ -22,8 +22,8 @@ class ComplianceSource {
   virtual void begin(ContactPatch& patch) const noexcept = 0;
   /// Fills columns 3 node to 3 node + 2.
   virtual void fill(int node, ContactPatch& patch) const noexcept = 0;
-  /// Whether each of these vertices gives way by itself alone, under a rigid tool; then how, m/N, into
-  /// `each`, of as many.
+  /// Returns true if each of these vertices yields by itself alone, under a rigid tool; then writes its
+  /// compliance, m/N, into `each`, of equal size.
   virtual bool each_alone(std::span<const int> /*vertices*/, std::span<Mat3> /*each*/) const noexcept {
     return false;
   }
@@ -59,9 +59,9 @@ struct ContactForce {
       true;  ///< false: the answer is finite, the geometry still moved by more than the tolerance
 };
 
-/// Where an increment began; slip is measured from there, and there is no other memory of friction: a node
-/// without contact carries none. What `solve` found is the start of the next increment: nodes at `free` + u,
-/// the tip at the pose + u_tip. So a path is a chain of solves, on the server and wherever it is replayed.
+/// Start of an increment. Slip is measured from it, and there is no other memory of friction: a node without
+/// contact carries none. The result of `solve` is the start of the next increment: nodes at `free` + u, the
+/// tip at the pose + u_tip. So a path is a chain of solves, on the server and wherever it is replayed.
 struct IncrementStart {
   std::span<const Vec3> nodes;  ///< (m) the patch nodes, m, world; more do no harm
   Vec3 tip = Vec3::Zero();      ///< the tool's tip, m, world
@@ -87,7 +87,7 @@ class ContactSolver {
   /// per pair of contacts.
   ContactSolver(int max_nodes, int max_triangles, bool friction = false);
 
-  /// How hard to try.
+  /// Limits and tolerances of a solve.
   struct Effort {
     int max_iterations = 200;
     double tolerance = 1e-11;  ///< of the tool radius: what still moves at the end
@@ -104,7 +104,7 @@ class ContactSolver {
                      const Effort& effort = kUsualEffort) noexcept;
   static const Effort kUsualEffort;
 
-  /// What the last solve took, multiplications, roughly.
+  /// Returns the work of the last solve, multiplications, roughly.
   double work() const noexcept { return work_.used(); }
 
   /// Nodal forces on the patch nodes (3m, N) of the last solve; the tissue feels minus what the tool feels.
@@ -117,9 +117,9 @@ class ContactSolver {
   /// it is not defined.
   Mat3 tangent(const ContactPatch& patch) noexcept;
 
-  /// How the forces on the patch nodes follow the tool, to first order (N/m): calls `visit` with a node and a
-  /// `Mat3` for each. Of the last `tangent`, before another `solve`; none with friction, or without a
-  /// tangent.
+  /// Visits the change of the forces on the patch nodes with the tool position, to first order (N/m). Calls
+  /// `visit` with a node and a `Mat3` for each. Of the last `tangent`, before another `solve`; no calls with
+  /// friction, or without a tangent.
   template <class Visit>
   void for_load_changes(const Visit& visit) const {
     if (!has_load_change_) return;
@@ -127,7 +127,7 @@ class ContactSolver {
       visit(nodes_[i], Mat3(load_change_.middleRows<3>(3 * static_cast<Eigen::Index>(i))));
   }
 
-  /// What its matrices hold, bytes.
+  /// Returns the memory of its matrices, bytes.
   std::size_t bytes() const;
 
   /// Compliance in series with every contact of a patch of so many nodes, m/N: it keeps the Delassus operator
@@ -135,7 +135,7 @@ class ContactSolver {
   /// node along an axis (and of the tool), at most 1e-9, ten thousand times stiffer than a liver's contact.
   /// Across the normal a tenth of it, as there it is a creep, by that much per N and increment.
   static double contact_compliance(const ContactPatch& patch, int nodes) noexcept;
-  /// The same of nodes that give way by that much on the mean, with the tool, m/N.
+  /// Returns that compliance for nodes of this mean compliance with the tool, m/N.
   static double contact_compliance(double mean) noexcept;
 
  private:

@@ -21,7 +21,7 @@ class CoulombSolver {
  public:
   /// `capacity`: the most contacts `solve` will be given.
   explicit CoulombSolver(int capacity);
-  /// From now on its work is counted there, and it gives up where that is spent; must outlive it.
+  /// Counts its work in `work` from this call on, and stops where that is spent; `work` must outlive it.
   void count_work(WorkBudget& work) noexcept { work_ = &work; }
 
   /// `z` (3n): where to start, overwritten by the solution, which obeys the conditions to 1e-12 of the
@@ -30,9 +30,10 @@ class CoulombSolver {
   bool solve(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix, const Eigen::Ref<const Eigen::VectorXd>& g,
              double mu, Eigen::Ref<Eigen::VectorXd> z) noexcept;
 
-  /// How a solution z, with its slack w (both 3n), follows when w changes by `change` (3n x 3, at fixed z):
-  /// `change` is overwritten by that of z. Implicit function theorem on the contacts as they are: those that
-  /// touch stay, what sticks sticks, what slips slips and turns with its slip. False where that is singular.
+  /// Differentiates a solution z, with its slack w (both 3n): `change` (3n x 3) is the change of w at fixed
+  /// z, overwritten by that of z. Implicit function theorem on the present contacts: contacts that are closed
+  /// stay closed, those that stick stick, those that slip slip and turn with their slip. Returns false where
+  /// that is singular.
   bool differentiate(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
                      const Eigen::Ref<const Eigen::VectorXd>& z, const Eigen::Ref<const Eigen::VectorXd>& w,
                      double mu, Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
@@ -42,7 +43,7 @@ class CoulombSolver {
  private:
   using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
-  /// What a contact does, by the augmented force z - rho w.
+  /// State of a contact, by the augmented force z - rho w.
   struct Status {
     enum { kOpen, kSticks, kSlips } is = kOpen;
     Eigen::Vector2d direction = Eigen::Vector2d::Zero();  // of beta, where it slips

@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// One place where the tool could touch: a face, an edge or a vertex, and the point of the tool's axis
-/// closest to it.
+/// Possible contact with the tool: a face, an edge or a vertex, and the point of the tool's axis closest to
+/// it.
 struct Contact {
   std::array<int, 3> node;       ///< patch nodes of the feature, ascending; unused entries -1
   std::array<double, 3> weight;  ///< how much of the contact point each node carries; sum 1

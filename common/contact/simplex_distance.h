@@ -22,11 +22,11 @@ struct ClosestPair {
   double on_first, on_second;
 };
 
-/// By clamping (Ericson 2005, section 5.1.9). Where the segments are parallel, the middle of what faces the
-/// other: there alone it is not continuous.
+/// Computes by clamping (Ericson 2005, section 5.1.9). For parallel segments, takes the middle of the parts
+/// that face each other; only there it is not continuous.
 ClosestPair closest_pair(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) noexcept;
 
-/// Where a segment (p, q) comes nearest to a triangle.
+/// Closest points of a segment (p, q) and a triangle.
 struct NearestOnSegment {
   double distance;    ///< m; 0 where they cross
   double on_segment;  ///< share of its length from p
@@ -53,11 +53,12 @@ using SimplexHessian = Eigen::Matrix<double, 12, 12>;
 /// First derivative of the weights b (rows) of the closest point of that hull, in the same order.
 using WeightGradient = Eigen::Matrix<double, 3, 12>;
 
-/// With q = sum b_i x_i the closest point of the hull, d = |p - q| > 0 and n = (p - q) / d, the first
-/// derivatives are d_p = n and d_xi = -b_i n (b is optimal, so its variation drops out). The second come from
-/// eliminating b from |p - sum b_i x_i|: H = phi_yy - phi_yb phi_bb^-1 phi_by. All lengths in one unit; H in
-/// 1/length. b itself moves by -phi_bb^-1 phi_by, which `weights` gets where it is asked for. With `sliding`
-/// that point takes the place of p, which it follows; then m <= 2. About 1 us.
+/// Computes first and second derivatives of the distance of p from an affine hull. For q = sum b_i x_i the
+/// closest point of the hull, d = |p - q| > 0 and n = (p - q) / d, the first derivatives are d_p = n and d_xi
+/// = -b_i n (b is optimal, so its variation drops out). The second come from eliminating b from |p - sum b_i
+/// x_i|: H = phi_yy - phi_yb phi_bb^-1 phi_by. All lengths in one unit; H in 1/length. b itself moves by
+/// -phi_bb^-1 phi_by, which `weights` gets where it is asked for. With `sliding` that point takes the place
+/// of p, which it follows; then m <= 2. About 1 us.
 SimplexHessian distance_hessian(std::span<const Vec3> x, std::span<const double> weight, const Vec3& normal,
                                 double distance, WeightGradient* weights = nullptr,
                                 const SlidingPoint* sliding = nullptr) noexcept;

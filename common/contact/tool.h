@@ -33,12 +33,12 @@ struct Tool {
   bool is_sphere() const { return length == 0 && !trocar; }
 };
 
-/// Where a tool is.
+/// Pose of a tool.
 struct ToolPose {
   Vec3 p_W = Vec3::Zero();      ///< its tip, m
   Quat q_W = Quat::Identity();  ///< its orientation, unit; matters to capsules
   ToolPose() = default;
-  /// From a place, any expression of one; turned by nothing unless said.
+  /// Takes a position (m), any expression of one; without rotation by default.
   template <class Place>
   ToolPose(const Eigen::MatrixBase<Place>& p, const Quat& q = Quat::Identity()) : p_W(p), q_W(q) {}
 };

@@ -3,8 +3,8 @@
 
 namespace palpate {
 
-/// How much work an iteration may still do, in multiplications, roughly: so that a haptic tick ends in time,
-/// whatever problem it is given. The same on every machine, unlike a clock.
+/// Work that an iteration may do in a call, in multiplications, roughly. It makes a haptic tick end in time,
+/// whatever problem it is given. Equal on every machine, unlike a clock.
 class WorkBudget {
  public:
   /// Allows so much from now on.

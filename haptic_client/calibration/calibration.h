@@ -8,7 +8,7 @@
 
 namespace palpate::client {
 
-/// What a calibration does now; in this order.
+/// Stages of a calibration, in this order.
 enum class CalibrationStage : std::uint8_t {
   kHome,       ///< the device has no position yet
   kCentre,     ///< brings the grip to the middle, waits until it rests
@@ -33,7 +33,7 @@ enum class CalibrationTrouble : std::uint8_t {
   kOscillates    ///< the limiter switched the force off
 };
 
-/// What a calibration tells while it runs.
+/// State of a running calibration, for its display.
 struct CalibrationProgress {
   CalibrationStage stage = CalibrationStage::kHome;
   bool held = false;     ///< a hand is on the grip
@@ -62,7 +62,7 @@ class Calibration {
 
   explicit Calibration(const Settings& settings);
 
-  /// One tick: the force (N, device frame) to write.
+  /// Advances by one tick and returns the force (N, device frame) to write.
   Vec3 tick(const DeviceReading& reading) noexcept;
 
   CalibrationProgress progress() const noexcept;

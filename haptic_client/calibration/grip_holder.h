@@ -20,7 +20,7 @@ class GripHolder {
 
   /// The grip has stayed within 1 mm of its goal for a second.
   bool at_rest() const noexcept { return rest_ >= 1; }
-  /// All the force there is has been asked for, for three seconds.
+  /// True if the full force of the device was requested for three seconds.
   bool saturated() const noexcept { return saturated_ >= 3; }
 
  private:

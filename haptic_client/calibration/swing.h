@@ -3,18 +3,17 @@
 
 namespace palpate::client {
 
-/// One slow motion of the grip, 4 mm up, 8 mm down and back in two seconds, and the force it took. The
-/// joints' friction holds against the way up as much as against the way down, and what speeds the grip up
-/// brakes it later: the mean over a whole swing is the weight alone. A hand that holds the grip shows as a
-/// spring.
+/// Motion of the grip in a weighing, 4 mm up, 8 mm down and back in two seconds, and the force it took. Joint
+/// friction opposes the way up as much as the way down, and inertia cancels over a period. So the mean over a
+/// full swing is the weight alone. A hand that holds the grip shows as a spring.
 class Swing {
  public:
   static constexpr double kPeriod = 2;  ///< s
 
-  /// Where to be at `t` (s, any) from where the grip rests: m, along y.
+  /// Returns the goal at `t` (s, any) relative to the rest position of the grip: m, along y.
   static double offset(double t) noexcept;
 
-  /// What was done for `dt` seconds.
+  /// Adds `dt` seconds with the grip at `p_D` (m) under the force `f_D` (N), device frame.
   void add(const Vec3& p_D, const Vec3& f_D, double dt) noexcept;
   bool complete() const noexcept { return time_ >= kPeriod; }
 

@@ -8,10 +8,10 @@ namespace palpate::client {
 /// Weighs what the grip carries by repeated swings, until the last three agree.
 class Weighing {
  public:
-  /// What was done for `dt` seconds: swing by swing. The first does not count, nor the one
-  /// in which a hand lets go.
+  /// Adds `dt` seconds with the grip at `p_D` (m) under the force `f_D` (N), swing by swing. The first swing
+  /// does not count, nor the one in which a hand releases the grip.
   void add(const Vec3& p_D, const Vec3& f_D, double dt) noexcept;
-  /// Where to be now, from where the grip rests: m, along y.
+  /// Returns the present goal relative to the rest position of the grip: m, along y.
   double offset() const noexcept { return Swing::offset(time_); }
 
   /// Three swings in a row agree within 0.05 N or 3 %.

@@ -3,9 +3,9 @@
 
 namespace palpate::client {
 
-/// What is plugged in and known to us, a line each, on stdout: bus-port path, model, how to ask for it,
-/// access; where access is missing, the udev rule that gives it. Throws `Error` when there is no USB. Returns
-/// the exit code: 1 where nothing is there.
+/// Prints the known devices that are plugged in on stdout, a line each: bus-port path, model, how to select
+/// it, access. Where access is missing, prints the udev rule that grants it. Throws `Error` when there is no
+/// USB. Returns the exit code: 1 where no device is found.
 int print_plugged_in();
 
 /// `haptic_client devices`.

@@ -9,7 +9,7 @@
 
 namespace palpate::client {
 
-/// What `haptic_client evaluate` was asked for.
+/// Options of `haptic_client evaluate`.
 struct EvaluateOptions {
   std::vector<std::filesystem::path> captures;
   std::optional<std::filesystem::path> truth;  ///< absent: the force between the samples (`BetweenSamples`)

@@ -6,13 +6,13 @@
 
 namespace palpate::client {
 
-/// What about this machine and its way to `local` (its own address on that way) may make a link or a loop
-/// worse than it needs to be, each as one sentence that says what to change: the processor's governor, no
-/// real-time priority, locked memory, a wireless interface, a second interface in the same network. Asks the
-/// system only.
+/// Returns what about this machine and its way to `local` (its own address on that way) may make a link or a
+/// loop worse than necessary. Each is one sentence that says what to change: the processor's governor, no
+/// real-time priority, locked memory, a wireless interface, a second interface in the same network. Queries
+/// the system only.
 std::vector<std::string> link_causes(const protocol::Endpoint& local);
 
-/// The same of the machine alone.
+/// Returns those causes that concern the machine alone.
 std::vector<std::string> machine_causes();
 
 }  // namespace palpate::client

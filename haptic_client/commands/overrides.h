@@ -8,7 +8,7 @@
 
 namespace palpate::client {
 
-/// What the command line says goes over what the client file says.
+/// Settings of the command line, which replace those of the client file.
 struct Overrides {
   std::string file;  ///< of the client; empty: all defaults
   std::string server, method, firmware, key;

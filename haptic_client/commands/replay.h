@@ -8,8 +8,8 @@
 
 namespace palpate::client {
 
-/// What `haptic_client replay` was asked for, beyond the configuration (whose method, workspace, limits and
-/// laws to score count here; its server and device do not).
+/// Options of `haptic_client replay`, beyond the configuration. Of that, method, workspace, limits and laws
+/// to score count; its server and device do not.
 struct ReplayOptions {
   std::filesystem::path capture;
   std::optional<double> rate_hz;  ///< ticks a second; absent, or within 2 % of the capture's: its own ticks
@@ -23,7 +23,7 @@ struct ReplayOptions {
 /// `Error`. Returns the exit code.
 int replay_live(const ClientConfig& config, const ReplayOptions& options);
 
-/// What a capture holds, and which of its sessions is meant.
+/// Contents of a capture, and which of its sessions is selected.
 struct ChosenSession {
   CaptureSurvey found;
   std::size_t index = 0;

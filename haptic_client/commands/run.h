@@ -8,7 +8,7 @@
 
 namespace palpate::client {
 
-/// What `haptic_client run` was asked for, beyond the configuration.
+/// Options of `haptic_client run`, beyond the configuration.
 struct ClientOptions {
   std::optional<double> seconds;  ///< stop after so long in contact with the server; absent: at Ctrl-C
   std::optional<std::filesystem::path> report;  ///< JSON written at the end
@@ -17,8 +17,8 @@ struct ClientOptions {
   std::optional<double> record_mb;              ///< size at which a recording goes on in a new file
 };
 
-/// One tool for each of `configs` (at least one): connects, runs the haptic loops until Ctrl-C or `seconds`,
-/// reports. Throws `Error`. Returns the exit code.
+/// Runs one tool for each of `configs` (at least one): connects, runs the haptic loops until Ctrl-C or
+/// `seconds`, reports. Throws `Error`. Returns the exit code.
 int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& options);
 
 /// `haptic_client run`.

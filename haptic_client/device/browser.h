@@ -11,7 +11,7 @@ namespace palpate::client {
 /// 60 times a second; between, the arm goes there evenly. Without a mouse the hand stays where it is.
 class Browser : public Device {
  public:
-  /// At rest at `start` (m, device frame).
+  /// Starts at rest at `start` (m, device frame).
   Browser(const OperatorSettings& settings, const Vec3& start)
       : hand_(settings, start), aim_(start), arm_(start) {}
 

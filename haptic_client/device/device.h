@@ -4,7 +4,7 @@
 
 namespace palpate::client {
 
-/// One reading of a device.
+/// Reading of a device.
 struct DeviceReading {
   Time t{};                   ///< when it was read, this machine's monotonic clock
   Vec3 p_D = Vec3::Zero();    ///< position of the handle, m, device frame
@@ -12,7 +12,7 @@ struct DeviceReading {
   bool valid = true;          ///< false: nothing known (unplugged, not homed): no force may follow
 };
 
-/// What a device can take; known from its settings, before (and without) opening it.
+/// Limits of a device; known from its settings, before (and without) opening it.
 struct DeviceLimits {
   double max_force = 8;                              ///< N
   Time min_period = std::chrono::microseconds(250);  ///< shortest loop period it serves
@@ -27,8 +27,8 @@ class Device {
   virtual DeviceReading read(Time now) noexcept = 0;
   /// Sets the force on the hand (N, device frame) until the next call.
   virtual void write(const Vec3& f_D) noexcept = 0;
-  /// Where the mouse of a page wants the handle to be (m, device frame), and its buttons; only a device that
-  /// is that mouse cares.
+  /// Sets the position of the handle (m, device frame) that the mouse of a page requests, and its buttons.
+  /// Only a device that is that mouse uses it.
   virtual void aim(const Vec3& p_D, std::uint16_t buttons) noexcept {
     (void)p_D;
     (void)buttons;
@@ -42,7 +42,8 @@ class Device {
   }
   /// Writes so far whose force its motors could not give whole. The haptic thread, or once it has ended.
   virtual std::uint64_t cut_by_motors() const noexcept { return 0; }
-  /// What the user should know or do, a static text; empty where there is nothing to say. Any thread.
+  /// Returns what the user should know or do, a static text; empty where there is nothing to report. Any
+  /// thread.
   virtual const char* status() const noexcept { return ""; }
 };
 

@@ -27,7 +27,7 @@ struct DeviceSettings {
 /// Takes "NAME" or "NAME:PORT". Throws `Error` for a name that is none.
 void choose_device(DeviceSettings& settings, const std::string& text, const std::string& where);
 
-/// One row per device: a new one is one file and one row.
+/// Row of a device: a new device is one file and one row.
 struct DeviceRow {
   std::string_view name;
   std::string_view summary;
@@ -40,7 +40,8 @@ struct DeviceRow {
   std::vector<std::string> (*ports)() = nullptr;
 };
 std::span<const DeviceRow> devices();
-/// Whether such a device is plugged in now, at its port where it names one; true of those without a port.
+/// True if such a device is plugged in now, at its port where it names one; always true for devices without a
+/// port.
 bool is_plugged_in(const DeviceSettings& settings);
 /// "FILE:LINE: no falcon came; ...", with what can be done instead.
 std::string no_device_text(const DeviceSettings& settings);

@@ -27,7 +27,7 @@ inline constexpr std::array kFalconIds{UsbId{0x0403, 0xcb48}};
 
 using UsbPorts = std::vector<std::unique_ptr<UsbTransport>>;
 
-/// How many Falcons had their zero, and how many were not free, or did not take it.
+/// Number of Falcons whose force was set to zero, and of those that were not free or did not accept it.
 struct Silenced {
   int falcons = 0, held = 0;
 };

@@ -9,7 +9,7 @@
 
 namespace palpate::client {
 
-/// Where a Falcon is on its way from the plug to the hand.
+/// Phase of a Falcon on its way from the plug to the hand.
 enum class FalconPhase : std::uint8_t {
   kClosed,     ///< not there, or not ours
   kProbe,      ///< open: does firmware answer?
@@ -45,7 +45,7 @@ class FalconMachine {
   void note_at_rest() noexcept { may_push_ = false; }
   /// The newest status of a ready device, if it came in the last 50 ms.
   std::optional<FalconStatus> status(Time now) const noexcept;
-  /// What to tell the user, a static text. Any thread.
+  /// Returns the message for the user, a static text. Any thread.
   const char* message() const noexcept { return message_; }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-/// What travels between host and Novint Falcon: 16 bytes each way, nibbles as letters, behind an FTDI UART
-/// bridge. Byte layout: libnifalcon's firmware interface.
+/// Packets between host and Novint Falcon: 16 bytes each way, nibbles as letters, behind an FTDI UART bridge.
+/// Byte layout: libnifalcon's firmware interface.
 #include <array>
 #include <cstddef>
 #include <cstdint>

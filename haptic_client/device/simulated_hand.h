@@ -16,23 +16,23 @@ struct OperatorSettings {
 /// A mass that an arm, a spring and a damper, pulls to where it wants to be, and motors push.
 class SimulatedHand {
  public:
-  /// At rest at `p` (m).
+  /// Starts at rest at `p` (m).
   SimulatedHand(const OperatorSettings& settings, const Vec3& p) : settings_(settings), p_(p) {}
 
-  /// One sub-step of `dt` (s), semi-implicit Euler, with the arm's aim at its end (m) and that aim's
-  /// velocity.
+  /// Advances by one substep of `dt` (s), semi-implicit Euler, with the arm's aim at its end (m) and that
+  /// aim's velocity.
   void advance(const Vec3& aim, const Vec3& aim_v, double dt) noexcept {
     const Vec3 arm = settings_.hand_stiffness * (aim - p_) + settings_.hand_damping * (aim_v - v_);
     v_ += dt / settings_.mass * (arm + force_ - settings_.device_damping * v_);
     p_ += dt * v_;
   }
-  /// Of the motors, N, until the next call.
+  /// Sets the force of the motors, N, until the next call.
   void push(const Vec3& force) noexcept { force_ = force; }
   const Vec3& place() const noexcept { return p_; }
 
   static constexpr double kSubStep = 0.25e-3;  ///< s, at most
-  /// Whether sub-steps of that follow it, with some room: semi-implicit Euler of a spring k and a damper c on
-  /// m is stable where h^2 k / m + 2 h c / m < 4.
+  /// True if substeps of that hand are stable, with a margin. Semi-implicit Euler of a spring k and a damper
+  /// c on m is stable where h^2 k / m + 2 h c / m < 4.
   static bool is_stable(const OperatorSettings& hand) noexcept {
     constexpr double kMost = 3;
     return kSubStep * (kSubStep * hand.hand_stiffness + 2 * (hand.hand_damping + hand.device_damping)) <

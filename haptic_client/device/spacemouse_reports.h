@@ -1,5 +1,5 @@
 #pragma once
-/// What a 3Dconnexion 6-DoF mouse says (HID input reports), and what its deflection means.
+/// HID input reports of a 3Dconnexion 6-DoF mouse, and the meaning of its deflection.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,7 +18,7 @@ const char* spacemouse_name(const UsbId& id) noexcept;
 constexpr int kSpaceMouseFull = 350;     ///< raw units of full deflection; more is cut
 constexpr int kSpaceMouseDeadBand = 10;  ///< raw units: less is no deflection
 
-/// What was said last.
+/// Newest state of the mouse.
 struct SpaceMouseState {
   Vec3 push_D = Vec3::Zero();  ///< each in [-1, 1]: right, up, towards the user; see `spacemouse_response`
   std::uint16_t buttons = 0;   ///< the first 16, a bit each

@@ -46,14 +46,14 @@ UsbPath path_of(libusb_device* device);
 /// A session of libusb, to be ended with `libusb_exit`. Throws `Error` when there is no USB at all.
 libusb_context* begin_usb();
 
-/// What libusb's error means to the person at the device; empty for a device that is gone.
+/// Returns what libusb's error means to the person at the device; empty for a device that was unplugged.
 const char* in_words(int error);
 
 /// Calls `use` for each device of these kinds, in the order of their paths. Nothing is opened.
 void for_each_usb(libusb_context* context, std::span<const UsbId> ids,
                   const std::function<void(libusb_device*, const UsbId&)>& use);
 
-/// Where packets go.
+/// Endpoint of a USB transfer.
 struct UsbEndpoint {
   std::uint8_t address = 0;  ///< 0: there is none
   std::uint8_t type = 0;     ///< libusb_endpoint_transfer_type

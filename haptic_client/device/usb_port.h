@@ -24,7 +24,8 @@ class UsbPort : public UsbTransport {
   std::size_t read(std::span<std::byte> out) noexcept override;
   State state() const noexcept override;
   const char* trouble() const noexcept override;
-  /// Where the device is that `open` got, as in `UsbDevice`; empty while it is closed. The haptic thread.
+  /// Returns the path of the device that `open` claimed, as in `UsbDevice`; empty while it is closed. Haptic
+  /// thread.
   const char* path() const noexcept;
 
  private:

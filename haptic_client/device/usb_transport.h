@@ -7,7 +7,7 @@
 
 namespace palpate::client {
 
-/// What a kind of device calls itself.
+/// Vendor and product number of a kind of device.
 struct UsbId {
   std::uint16_t vendor = 0, product = 0;
   bool operator==(const UsbId&) const = default;
@@ -23,7 +23,7 @@ struct UsbRequest {
   std::span<const std::byte> data = {};  ///< at most 64 bytes
 };
 
-/// One interface of a device on a USB bus, as a driver needs it: nothing waits. One thread (the haptic one).
+/// Interface of a device on a USB bus, as a driver needs it: no call waits. One thread (the haptic one).
 class UsbTransport {
  public:
   virtual ~UsbTransport() = default;
@@ -35,11 +35,11 @@ class UsbTransport {
   virtual void control(const UsbRequest& request) noexcept = 0;
   /// Bytes to the OUT endpoint, at most 64; false when there is none, or too many are on the way.
   virtual bool write(std::span<const std::byte> bytes) noexcept = 0;
-  /// One packet of the IN endpoint as it came from the wire, in order; returns its size, 0: no packet. Bytes
-  /// beyond `out.size()` are lost (no device has more than 512).
+  /// Reads one packet of the IN endpoint as it came from the wire, in order; returns its size, 0: no packet.
+  /// Bytes beyond `out.size()` are lost (no device has more than 512).
   virtual std::size_t read(std::span<std::byte> out) noexcept = 0;
 
-  /// How a transport is.
+  /// State of a transport.
   enum class State : std::uint8_t { kClosed, kIdle, kBusy, kLost };
   /// kBusy: requests or bytes are on the way; kLost: unplugged, or a transfer failed.
   virtual State state() const noexcept = 0;

@@ -6,7 +6,7 @@
 
 namespace palpate::client {
 
-/// What the force between two samples is taken from, the least first.
+/// Kind of reference for the force between two samples, the least accurate first.
 enum class ReferenceKind { kLine, kHermite, kContact };
 inline constexpr std::size_t kReferenceKinds = 3;
 std::string_view name_of(ReferenceKind kind) noexcept;

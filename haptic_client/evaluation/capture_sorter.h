@@ -9,7 +9,7 @@
 
 namespace palpate::client {
 
-/// How far out of order the datagrams of a capture may stand.
+/// Largest distance, in datagrams, by which a datagram of a capture may be out of order.
 constexpr std::size_t kShuffled = 64;
 /// Times of a client's clock that make sense: from 0 to 73 years.
 constexpr bool sensible(Time t) {
@@ -28,13 +28,13 @@ struct CapturedDirection {
   std::uint64_t lost() const { return stats.lost; }
 };
 
-/// One session of a run, as the capturing machine saw it.
+/// Session of a run, as the capturing machine saw it.
 struct CapturedLink {
   std::uint64_t session = 0;
   CapturedDirection up{}, down{};
 };
 
-/// One run of a client, through all its sessions (a server that was started again gives a new one).
+/// Run of a client, through all its sessions. A server that was restarted starts a new session.
 struct CapturedRun {
   protocol::Endpoint client;
   std::vector<CapturedLink> links{};

@@ -11,7 +11,7 @@
 
 namespace palpate::client {
 
-/// What a first reading of a capture found.
+/// Result of a first reading of a capture.
 struct CaptureSurvey {
   std::vector<CapturedRun> runs;
   std::uint64_t packets = 0, ours = 0, refused = 0, left_out = 0, other = 0;
@@ -24,7 +24,7 @@ using ReadingProgress = std::function<void(double share)>;
 /// with the file, memory does not.
 CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& progress);
 
-/// One tick as the client had it.
+/// Tick as the client had it.
 struct CapturedTick {
   protocol::ToolState state;
   std::optional<protocol::ForceSample> arrived;  ///< the sample this tick was the first to use
@@ -40,7 +40,7 @@ class CapturedSession {
   /// False at the end.
   bool next(CapturedTick& out);
 
-  /// What is not there, so that the replay cannot be exact.
+  /// Data that are missing, so that the replay cannot be exact.
   struct Missing {
     std::uint64_t ticks = 0;      ///< numbers skipped
     std::uint64_t samples = 0;    ///< used by a tick, but not in the file

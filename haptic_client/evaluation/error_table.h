@@ -7,9 +7,8 @@
 
 namespace palpate::client {
 
-/// How far a law was off, over a run. Percentages. e = F - F_ref, at every tick where the reference or the
-/// law pushes; "peak" is the largest |F_ref| of the run. Where the reference never pushed, NaN, null in
-/// reports.
+/// Error of a law over a run, in percent. e = F - F_ref, at every tick where the reference or the law pushes;
+/// "peak" is the largest |F_ref| of the run. Where the reference never pushed, NaN, null in reports.
 struct ErrorMetrics {
   double mean_percent = 0;       ///< mean |e| / RMS of |F_ref| in contact
   double p99_percent = 0;        ///< 99th percentile of |e| / peak
@@ -24,7 +23,7 @@ struct ErrorMetrics {
   double paper_mean_percent = 0, paper_max_percent = 0, paper_max_force_percent = 0;
 };
 
-/// By their names, for reports.
+/// Writes the metrics by their names, for reports.
 Json to_json(const ErrorMetrics& metrics);
 
 /// A reference force, prepared once for all laws.
@@ -43,7 +42,7 @@ class ErrorTable {
   /// `rate_hz`: ticks per second, for the 30 Hz high-pass (Butterworth, second order).
   explicit ErrorTable(double rate_hz);
 
-  /// One tick: the law gave `force` where `reference` was right.
+  /// Adds one tick in which the law returned `force` and `reference` was right.
   void add(const Vec3& force, const Reference& reference) noexcept;
   /// A sample arrived and moved the force by `size` (N).
   void add_jump(double size) noexcept { jump_ = std::max(jump_, size); }

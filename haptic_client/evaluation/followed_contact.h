@@ -15,7 +15,8 @@ class FollowedContact {
  public:
   explicit FollowedContact(double rate_hz);
   void take(const Sample& sample) noexcept;
-  /// With the tool at `p` (m, world) at `t`, as far as the model knows it; in the order of time.
+  /// Advances to the tool position `p` (m, world) at `t`, as far as the model is known, and returns the
+  /// contact there. Calls must be in the order of time.
   std::optional<PathTick::Contact> go(const Vec3& p, Time t) noexcept;
 
  private:

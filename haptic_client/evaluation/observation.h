@@ -8,14 +8,14 @@
 
 namespace palpate::client {
 
-/// One tick as it was, with what the scored laws gave.
+/// Record of one tick, with the forces of the scored laws.
 struct TickRecord {
   TickResult result;
   std::array<Vec3, kMaxLaws> laws;     ///< N, world
   std::optional<Vec3> reference = {};  ///< what they were held against, N, world; known some samples later
 };
 
-/// One stretch of a session.
+/// Cell of the time line of a session.
 struct SessionCell {
   ErrorSums errors;
   double ticks = 0, missed = 0, tick_ns_sum = 0, tick_ns_max = 0;
@@ -24,15 +24,15 @@ struct SessionCell {
 };
 using SessionTimeline = Timeline<SessionCell>;
 
-/// What is written down about the ticks of a session, live or replayed: scores, a coarse time line, the last
-/// ticks. Memory is taken at the beginning and stays. Haptic thread, after the force was written.
+/// Records of the ticks of a session, live or replayed: scores, a coarse time line, the last ticks. Allocates
+/// at construction only. Haptic thread, after the force was written.
 class Observation {
  public:
   /// `laws`, `where`: see `Scoring`. `keep`: how many of the last ticks to keep (0: none; 3.2 kB each).
   Observation(const std::vector<std::string>& laws, double rate_hz, const std::string& where,
               std::size_t keep, double blend = 0, const Truth* truth = nullptr);
 
-  /// One tick gave `result`; it took `took`, and `missed` deadlines were given up before it.
+  /// Adds one tick with its `result`; it took `took`, and `missed` deadlines were skipped before it.
   void tick(const TickResult& result, Time took, std::uint64_t missed) noexcept;
 
   const Scoring& scoring() const noexcept { return scoring_; }

@@ -35,19 +35,20 @@ class Scoring {
   Scoring(const std::vector<std::string>& laws, double rate_hz, const std::string& where, double blend = 0,
           const Truth* truth = nullptr);
 
-  /// With a truth: holds the force between samples against it, too. Before the first tick.
+  /// Compares the force between samples with the truth, too, where there is one. Call it before the first
+  /// tick.
   void judge_between_samples();
 
-  /// One tick with the tool at `p_W` (m) at `t`; `taken`: the sample that the pipeline took in this tick, or
-  /// null. What gets scored is added to `sums`.
+  /// Scores one tick with the tool at `p_W` (m) at `t`; `taken`: the sample that the pipeline took in this
+  /// tick, or null. Scored ticks are added to `sums`.
   void tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums) noexcept;
 
-  /// What the laws use beyond the triplet.
+  /// Returns the data that the laws use beyond the triplet.
   Wants wants() const noexcept;
   const std::vector<std::string>& names() const noexcept { return names_; }
   ErrorMetrics metrics(std::size_t law) const noexcept;
-  /// How many ticks between samples had which force there, and what most had; without a truth they were
-  /// scored against it.
+  /// Returns how many ticks between samples had this reference force, and which kind most had; without a
+  /// truth they were scored against it.
   std::uint64_t between(ReferenceKind kind) const noexcept {
     return between_[static_cast<std::size_t>(kind)];
   }
@@ -64,7 +65,7 @@ class Scoring {
   const StandIns& stand_ins(std::size_t law) const noexcept { return stand_ins_[law]; }
   std::uint64_t ticks() const noexcept { return ticks_; }    ///< since the first sample
   std::uint64_t scored() const noexcept { return scored_; }  ///< ticks
-  /// What the laws give at the newest tick, N, world.
+  /// Returns the forces of the laws at the newest tick, N, world.
   const std::array<Vec3, kMaxLaws>& forces() const noexcept { return force_; }
 
   /// A tick, counted from 0, and the force that the laws were held against there, N, world.
@@ -72,7 +73,7 @@ class Scoring {
     std::uint64_t number = 0;
     Vec3 reference;
   };
-  /// What the last `tick` scored: of ticks before it.
+  /// Returns the ticks that the last `tick` scored; they are earlier ones.
   std::span<const ScoredTick> newly_scored() const noexcept { return newly_scored_; }
   /// After how many others a tick is scored at most, or never.
   static std::size_t longest_wait(double rate_hz);

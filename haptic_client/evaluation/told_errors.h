@@ -5,8 +5,7 @@
 
 namespace palpate::client {
 
-/// What the server told of one error, as a mean over samples. The source is that of most of the weight that
-/// is known.
+/// Mean over samples of one published error. The source is that of most of the known weight.
 class ToldError {
  public:
   void add(const DiscretisationError& error, double weight) noexcept;
@@ -18,7 +17,8 @@ class ToldError {
   std::array<double, 4> weights_{};  // by source
 };
 
-/// The same of mesh and time step, each sample by the size of its force. Haptic thread; does not allocate.
+/// Means of the published errors of mesh and time step, each sample weighted by the size of its force. Haptic
+/// thread; does not allocate.
 class ToldErrors {
  public:
   /// `newton`: size of the force, N.

@@ -8,15 +8,15 @@
 
 namespace palpate::client {
 
-/// Of several laws that run side by side, the one whose recent predictions were best. What a law gave at the
-/// tick that a sample answers, from the samples of then, is its prediction of that sample: so the delay
-/// counts, as it does for the hand. Each law has the mean size of its errors, over about the last 32
-/// samples with contact; one that was better by a fifth takes over (follow the leader, with hysteresis), and
-/// `ForceEstimate` blends it in. Of equals, and before the first sample, the last one. A tick costs what all
-/// of them cost together.
-/// While the tool cuts, and for eight samples from any cut on, tissue may be gone that no sample has told of
-/// yet, and what is left is softer than all laws expect: none may give more than the largest of the last
-/// eight samples (while it cuts, 3 % more), and from a cut on any law that was better takes over.
+/// Law that follows the best recent predictions of several laws that run side by side. The prediction of a
+/// sample is what a law returned at the tick that the sample answers, from the samples known then. So the
+/// delay counts, as it does for the hand. Each law has the mean size of its errors, over about the last 32
+/// samples with contact. A law that was better by a fifth takes over (follow the leader, with hysteresis),
+/// and `ForceEstimate` blends it in. Among equals, and before the first sample, the last law is used. A tick
+/// costs the sum of all laws. While the tool cuts, and for eight samples after any cut, tissue may be removed
+/// that no sample accounts for yet. The remaining tissue is then softer than all laws expect. So no law may
+/// exceed the largest force of the last eight samples (while it cuts, 3 % more). After a cut any law that was
+/// better takes over.
 class BestRecent : public Extrapolator {
  public:
   struct Law {

@@ -13,8 +13,8 @@ namespace palpate::client {
 /// matrices of a solver without friction (3.6) and one with it (10.4), the patch's compliance (0.7).
 class ContactOnPatch {
  public:
-  /// How far from a solved place the force follows its tangent, and how well a place is solved: shares of how
-  /// deep the tool presses, and at most of its radius.
+  /// Tolerances of contact: how far from a solved place the force follows its tangent, and how well a place
+  /// is solved. Both are fractions of the indentation, and at most of the tool radius.
   struct Accuracy {
     double near = 0.03, most_near = 0.01, tolerance = 0.002, most_tolerance = 1e-3;
   };
@@ -35,19 +35,20 @@ class ContactOnPatch {
   /// The force at `p`; then it stands where it stood, on a patch around that.
   std::optional<Vec3> probe(const Surface& surface, const Vec3& p,
                             const ModalMemory* memory = nullptr) noexcept;
-  /// It stands nowhere.
+  /// Lifts the tool: it has no place until the next call of `go`.
   void lift() noexcept;
   /// Its frame has been moved by `motion` (m): the same place is called another, so much farther.
   void rename(const Vec3& motion) noexcept {
     state_.place += motion;
     center_ += motion;
   }
-  /// What the last call took.
+  /// Returns the work of the last call, multiplications.
   double work() const noexcept { return kMostWork - work_left_; }
-  /// What the surface carries there; and how often contact has been solved, by which that may have changed.
+  /// Returns the loads on the surface there, and how often contact has been solved; each solve may change the
+  /// loads.
   std::span<const SurfaceLoad> loads() const noexcept { return loads_; }
   std::uint64_t solves() const noexcept { return solves_; }
-  /// How the force changed with the place around the last one, N/m.
+  /// Returns how the force changed with the place around the last one, N/m.
   const Mat3& tangent() const noexcept { return state_.tangent; }
 
  private:

@@ -26,13 +26,13 @@ struct Linearised {
   double gap = 0;              ///< between surface and tool, m; 0 in contact
 };
 
-/// What is known of the surface near the tool.
+/// Model and state of the surface near the tool.
 struct Surface {
   const SurfaceModel* model = nullptr;  ///< never null; learns between samples
   Vec3 shift = Vec3::Zero();            ///< from rest to where it is, free of the tool, m
   Tool tool;
   double tool_compliance = 0;  ///< m/N
-  /// Where the slow modes of a tissue that swings stand: the model is then that of all the rest of it.
+  /// State of the slow modes of a body in motion; the surface model then covers the remaining compliance.
   struct Modes {
     int count = 0;                               ///< 0: it does not swing, or nobody told
     std::array<float, kMostSlowModes> q{}, v{};  ///< m sqrt(kg), m sqrt(kg)/s
@@ -41,14 +41,14 @@ struct Surface {
   protocol::ModalLoads modal_loads = {};  ///< how hard other tools drive the modes, N/sqrt(kg)
 };
 
-/// How the other tools on the organ move the surface near this one, to first order.
+/// Motion of the surface near this tool by the other tools on the organ, to first order.
 struct OtherTools {
   Vec3 v = Vec3::Zero();           ///< m/s, world, with the force of this tool held
   Mat3 compliance = Mat3::Zero();  ///< m/N, symmetric: for each N more that this tool presses the tissue with
 };
 
-/// What the simulation says: the triplet (t_n, P_n, F_n) of Picinbono and Lombardo (1999), and what a law
-/// asked for beyond it.
+/// Sample of the simulation: the triplet (t_n, P_n, F_n) of Picinbono and Lombardo (1999), and what a law
+/// requested beyond it.
 struct Sample {
   std::uint64_t number = 0;              ///< of the sample, from 1
   Time t{};                              ///< when the tool was at `p`, client clock
@@ -63,7 +63,7 @@ struct Sample {
   bool cutting = false;                   ///< by this tool: what it touches may give way at any time
 };
 
-/// Whether a law may look at the sample at all: its vectors are finite.
+/// True if a law may use the sample at all: its vectors are finite.
 inline bool usable(const Sample& sample) noexcept {
   return sample.p.allFinite() && sample.f.allFinite();
 }
@@ -81,8 +81,8 @@ inline Vec3 without_pull(const Vec3& f, const Vec3& felt) noexcept {
   return along + share * (f - along);
 }
 
-/// Whether a law may look at this part of a sample: it is within the bounds of the protocol, what a server
-/// can mean in SI units.
+/// True if a law may use this part of a sample: it is within the bounds of the protocol, what a server can
+/// mean in SI units.
 inline bool usable(const Linearised& l) noexcept {
   const auto bounded = [](const auto& m) { return (m.array().abs() <= 1e9).all(); };
   return bounded(l.p) && bounded(l.f) && bounded(l.k) && bounded(l.normal) && l.gap >= 0 && l.gap <= 1e9;
@@ -144,15 +144,16 @@ class Extrapolator {
   /// `force` follows for a tick at `now`; the time of `force` stands still, or runs back, where samples stay
   /// out.
   virtual void begin_tick(Time) noexcept {}
-  /// What it uses beyond the triplet. A law that uses something knows a free surface from one that pulls.
+  /// Returns what the law uses beyond the triplet. A law that uses any of it distinguishes a free surface
+  /// from one that pulls.
   virtual Wants wants() const noexcept { return {}; }
-  /// Whether a simpler law stands in for it, because the newest sample lacks what it uses.
+  /// True if a simpler law replaces it, because the newest sample lacks what it uses.
   virtual bool stepped_down() const noexcept { return false; }
   /// The name of that law, a row of `extrapolators()`; empty: it is at work itself.
   virtual std::string_view stand_in() const noexcept { return {}; }
 };
 
-/// How many ticks each simpler law stood in for one.
+/// Counts the ticks in which each simpler law replaced another one.
 class StandIns {
  public:
   struct Row {

@@ -7,7 +7,7 @@
 
 namespace palpate::client {
 
-/// One row per law: a new one is one file and one row, and passes tests/contract unchanged.
+/// Row of a law: a new law is one file and one row, and passes tests/contract unchanged.
 struct ExtrapolatorRow {
   std::string_view name;
   std::string_view summary;

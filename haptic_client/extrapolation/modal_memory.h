@@ -11,24 +11,24 @@
 
 namespace palpate::client {
 
-/// What a tissue that swings remembers: its slow modes (protocol/surface_pages.h), stepped here between two
-/// samples under the force that the tool puts on it. Each sample tells where they stood at its time; what
-/// they are off by here, compared with what was so at that tick, goes on by itself from then to now, as the
-/// motion is linear. How hard other tools drive them goes on along the line through the two newest samples.
-/// Of a tissue that relaxes, what its modes and all the rest of it remember is stepped, too
-/// (`RelaxingLoads`), and what a sample tells of the past is taken on to now likewise. Haptic
-/// thread; only the constructor allocates, 5.1 MB. A tick takes about 0.5 us of 40
-/// modes; a sample that is 36 ms old 10 us with all of `LocalContact`, of 80 ms 20, of 200 ms 45, at 500
-/// ticks a second (ns_per_arrival of `haptic_client evaluate`): it sets right all ticks since.
+/// State of a body in motion on the client: its slow modes (protocol/surface_pages.h), stepped between two
+/// samples under the force of the tool. Each sample contains the modal state at its time. Its difference from
+/// the state at that tick is advanced from then to now by itself, as the motion is linear. The loads of other
+/// tools on the modes are extrapolated along the line through the two newest samples. For tissue that
+/// relaxes, the viscous memory of its modes and of the residual compliance is stepped, too (`RelaxingLoads`),
+/// and corrected likewise. Haptic thread; only the constructor allocates, 5.1 MB. A tick takes about 0.5 us
+/// with 40 modes. A sample, with all of `LocalContact`, takes 10 us at an age of 36 ms, 20 us at 80 ms, 45 us
+/// at 200 ms. These are for 500 ticks a second (ns_per_arrival of `haptic_client evaluate`): a sample
+/// corrects all ticks since.
 class ModalMemory {
  public:
-  /// How a point of the surface moves in the modes, 1/sqrt(kg).
+  /// Mode shapes at a point of the surface, 1/sqrt(kg).
   using Shapes = std::array<Vec3, kMostSlowModes>;
 
   ModalMemory();
 
-  /// Where the modes stood at `t`, under the force `f` (N) on the tool. False where the surface is not known
-  /// well enough, or these are no amplitudes of any organ: then it knows nothing any more.
+  /// Takes the modal state at `t`, under the force `f` (N) on the tool. Returns false where the surface is
+  /// not known well enough, or where these are no amplitudes of any organ: the state is then unknown.
   bool take(const Surface& surface, Time t, const Vec3& f) noexcept;
   /// Forgets all.
   void restart() noexcept;
@@ -46,17 +46,19 @@ class ModalMemory {
   /// The force on the tool at that tick, N, and the loads that it is about; remembers the tick.
   void press(const Vec3& f, std::span<const SurfaceLoad> loads = {}) noexcept;
 
-  /// How far the modes, and what has crept, have moved the surface where it stands, m: at the tick of
-  /// `advance`, or at the sample of `take`, whichever came last.
+  /// Returns the displacement (m) of the surface under the tool by the modes and by creep. It is that at the
+  /// tick of `advance`, or at the sample of `take`, whichever came last.
   Vec3 displacement() const noexcept { return at(present_) + crept_; }
-  /// How far of that has crept, and the loads that would hold all of it there, N, on the compliance.
+  /// Returns the part of it that is creep, and the loads (N) that would hold all of it on the compliance.
   const Vec3& crept() const noexcept { return crept_; }
   std::span<const SurfaceLoad> creeping() const noexcept { return loads_.creeping(); }
-  /// How far a vertex has crept, m.
+  /// Returns the creep of a vertex, m.
   Vec3 creep(const SurfaceModel& model, int vertex) const noexcept { return loads_.creep(model, vertex); }
-  /// How much farther than foreseen the sample of `take` told it to be then, m; 0 where nothing was.
+  /// Returns the difference (m) of the displacement in the sample of `take` from the predicted one at that
+  /// time; 0 where nothing was predicted.
   Vec3 drift() const noexcept { return drift_; }
-  /// And how much farther a vertex of these shapes, m.
+  /// Returns the displacement (m) of a vertex with these shapes relative to the surface under the tool, by
+  /// the present modes.
   Vec3 warp(const Shapes& shapes) const noexcept {
     Vec3 sum = Vec3::Zero();
     for (std::size_t k = 0; k < system_.count; ++k) sum += present_[k] * (shapes[k] - foot_[k]);
@@ -91,7 +93,7 @@ class ModalMemory {
   Vec3 foot_at_ = Vec3::Zero();  // m, of `stand_near`
   ModalState state_, told_;      // at `time_`; of the newest sample
   ModalNumbers force_{};         // of the tool, held from the last tick on, N/sqrt(kg)
-  /// How hard other tools drive the modes: along a line from the sample at `t` on.
+  /// Load of other tools on the modes: a line in time from the sample at `t` on.
   struct Trend {
     Time t{};
     ModalNumbers load{}, rate{};  // N/sqrt(kg), and a second

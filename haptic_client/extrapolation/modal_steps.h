@@ -10,14 +10,15 @@ namespace palpate::client {
 /// A number for each slow mode.
 using ModalNumbers = std::array<double, kMostSlowModes>;
 
-/// Where slow modes stand: amplitudes, their rates, and what follows the amplitudes late in each term of the
-/// series by which the tissue relaxes.
+/// Modal state: amplitudes, their rates, and the delayed amplitudes in each term of the series by which the
+/// tissue relaxes.
 struct ModalState {
   ModalNumbers q{}, v{};                           // m sqrt(kg), m sqrt(kg)/s
   std::array<ModalNumbers, kMostRelaxations> z{};  // m sqrt(kg)
 };
 
-/// Of which modes: q_k'' + d_k q_k' + w_k^2 (q_k - sum_j share_j z_kj) = p_k, z_kj' = (q_k - z_kj) / time_j.
+/// Equations of the modes: q_k'' + d_k q_k' + w_k^2 (q_k - sum_j share_j z_kj) = p_k, z_kj' = (q_k - z_kj) /
+/// time_j.
 struct ModalSystem {
   std::size_t count = 0, terms = 0;
   ModalNumbers w{}, damping{};  // rad/s, 1/s
@@ -26,8 +27,8 @@ struct ModalSystem {
   std::span<const Relaxation> relaxations() const noexcept { return std::span(series).first(terms); }
 };
 
-/// All modes over one length of time, under forces p that are held: exact without relaxation, with it of the
-/// second order in length / time. No allocation.
+/// Step of all modes over one length of time, under constant forces p: exact without relaxation, second order
+/// in length / time with it. No allocation.
 class ModalSteps {
  public:
   /// `h`: s >= 0.
@@ -41,7 +42,7 @@ class ModalSteps {
   std::array<double, kMostRelaxations> half_{};  // how much of the way z goes in half of the step
 };
 
-/// Where the modes are after `time` (s >= 0) without any force.
+/// Returns the modal state after `time` (s >= 0) without any force.
 ModalState free_motion(ModalState state, double time, const ModalSystem& system) noexcept;
 
 }  // namespace palpate::client

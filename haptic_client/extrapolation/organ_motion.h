@@ -3,7 +3,7 @@
 
 namespace palpate::client {
 
-/// How the organ under the tool moves by itself, to second order in time: since the newest sample, by
+/// Rigid motion of the organ under the tool, to second order in time: since the newest sample, by
 ///   s(t) = v_n (t - t_n) + a (t - t_n)^2 / 2,   a = (v_n - v_(n-1)) / (t_n - t_(n-1)),
 /// v the velocity of its surface that samples tell. Of a smooth motion with jerk j, off by at most
 /// max |j| ((t - t_n)^3 / 6 + (t_n - t_(n-1)) (t - t_n)^2 / 4). An organ at rest stays where it is, bit by

@@ -13,7 +13,7 @@ class PageSlots {
  public:
   static constexpr std::uint16_t kNone = 0xffff;
 
-  /// For so many slots, below 65535.
+  /// Allocates for this number of slots, below 65535.
   explicit PageSlots(std::size_t slots) : rows_(std::bit_ceil(2 * slots)), mask_(rows_.size() - 1) {}
 
   /// `kNone`: the page is not kept.
@@ -40,7 +40,7 @@ class PageSlots {
   };
   std::size_t home_of(std::uint32_t page) const noexcept { return (page * 2654435769U >> 8) & mask_; }
   std::size_t next(std::size_t i) const noexcept { return (i + 1) & mask_; }
-  /// Where it is, or would come.
+  /// Returns the row of the page, or the row where it would be inserted.
   std::size_t place_of(std::uint32_t page) const noexcept {
     std::size_t i = home_of(page);
     while (rows_[i].page != 0 && rows_[i].page != page) i = next(i);

@@ -10,11 +10,11 @@
 
 namespace palpate::client {
 
-/// What the compliance of a tissue that relaxes remembers of the forces that were on its surface
-/// (`SeriesStep::creep`): of each vertex that was pressed lately, stepped here under the loads of the contact
-/// here, and set right by each sample that tells of the vertex: what it was then goes on to now under the
-/// loads that were felt since. Of those that were pressed least the last are forgotten when there are too
-/// many. Haptic thread; only the constructor allocates, 0.6 MB.
+/// Viscous memory of the surface compliance of a tissue that relaxes (`SeriesStep::creep`). For each vertex
+/// loaded lately, the client steps the memory under the loads of its contact. Each sample that covers the
+/// vertex corrects it: the sampled memory is advanced to now under the loads rendered since. When there are
+/// too many vertices, the unloaded one with the smallest memory is dropped. Haptic thread; only the
+/// constructor allocates, 0.6 MB.
 class RelaxingLoads {
  public:
   static constexpr std::size_t kMost = 32;  ///< vertices
@@ -28,12 +28,12 @@ class RelaxingLoads {
   void advance(Time t) noexcept;
   /// The surface bears these loads from the time of `advance` on, times `share`.
   void press(const SurfaceModel& model, std::span<const SurfaceLoad> loads, double share) noexcept;
-  /// What the server says of some vertices at `t`.
+  /// Takes the memory of some vertices at `t` as the server published it.
   void take(const SurfaceModel& model, const protocol::RelaxedState& told, Time t) noexcept;
 
   /// The loads that would hold the surface where it has crept to, N.
   std::span<const SurfaceLoad> creeping() const noexcept { return creeping_; }
-  /// How far that is at a vertex, m; what the model does not know counts as nothing.
+  /// Returns that creep of a vertex, m; vertices that the model does not know count as 0.
   Vec3 creep(const SurfaceModel& model, int vertex) const noexcept;
 
  private:

@@ -16,10 +16,10 @@ struct SurfaceLoad {
   Vec3 force;  ///< N
 };
 
-/// What is known here of the surface that the tool can touch: its shape at rest and how compliant it is, as
-/// it comes in pages from the server (protocol/surface_pages.h); of a tissue that swings, also its slow
-/// modes. Knows which pages it lacks, the nearest first; it keeps those near the tool, and forgets the
-/// oldest. Nothing but the constructor allocates, 11 MB whatever the size of the surface. Haptic thread.
+/// Model of the surface that the tool can reach, as known to the client. It holds its shape at rest and its
+/// compliance, as they come in pages from the server (protocol/surface_pages.h), and the slow modes of a body
+/// in motion. It finds the missing pages, the nearest first; it stores those near the tool, and drops the
+/// oldest. Only the constructor allocates, 11 MB whatever the size of the surface. Haptic thread.
 class SurfaceModel {
  public:
   static constexpr std::size_t kMostVertices = protocol::kMostSurfaceVertices;  ///< of a model that it takes
@@ -27,7 +27,8 @@ class SurfaceModel {
 
   SurfaceModel();
 
-  /// What the server has; another version forgets all. Call it with every sample that tells.
+  /// Takes the state of the model on the server; another version clears all pages. Call it with every sample
+  /// that has one.
   void announce(const protocol::SurfaceState& state, std::uint32_t modes = 0) noexcept;
   /// A page came, or that it will be known later; one of another version changes nothing.
   void take(const protocol::SurfacePage& page) noexcept;
@@ -38,17 +39,17 @@ class SurfaceModel {
   /// all are. About 15 us where the tool has come to something new, else nothing.
   bool choose_missing(const Vec3& p, double reach, Time now, std::span<std::uint32_t> pages,
                       Time patience = std::chrono::milliseconds(200)) noexcept;
-  /// For how long at `now` a page has been asked for, to a millisecond; nothing where it was not, or that is
-  /// forgotten.
+  /// Returns the time at `now` since a page was requested, to a millisecond; nothing where it was not
+  /// requested, was requested more than once, or where that request was dropped.
   std::optional<Time> waited_for(std::uint32_t page, Time now) const noexcept;
-  /// How many pages were asked for once more, as no answer had come.
+  /// Returns how many pages were requested once more, as no answer had come.
   std::uint64_t asked_again() const noexcept { return asked_again_; }
 
   /// Version 0: none is known.
   std::uint32_t version() const noexcept { return version_; }
   /// Another number for each model that was announced, also if it is the same again.
   std::uint64_t generation() const noexcept { return generation_; }
-  /// Whether it knows the shape of the whole surface.
+  /// True if the shape of the surface is complete.
   bool has_shape() const noexcept { return version_ != 0 && shape_missing_ == 0; }
   std::span<const Vec3> rest() const noexcept { return rest_; }
   std::span<const std::array<int, 3>> triangles() const noexcept { return triangles_; }
@@ -62,7 +63,7 @@ class SurfaceModel {
   /// Adds `weight` times how a vertex moves in each mode (1/sqrt(kg)) to `shapes`; false where that is not
   /// known, then to some of them.
   bool add_shapes(int vertex, double weight, std::span<Vec3> shapes) const noexcept;
-  /// How vertex i moves per force on vertex j, m/N; nothing where that is not known.
+  /// Returns the displacement of vertex i per force on vertex j, m/N; nothing where that is not known.
   std::optional<Mat3> compliance(int i, int j) const noexcept;
 
  private:

@@ -6,8 +6,8 @@
 
 namespace palpate::client {
 
-/// What was so at the last ticks, to be held against a sample that comes later: a quarter of a second at 4
-/// kHz. Only the constructor allocates.
+/// Ring of the last ticks, to compare with a sample that comes later: a quarter of a second at 4 kHz. Only
+/// the constructor allocates.
 template <class Entry>
 class TickMemory {
  public:

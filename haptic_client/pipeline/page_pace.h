@@ -7,22 +7,22 @@
 
 namespace palpate::client {
 
-/// How many pages of the surface to ask for, so that they do not fill the queue of a slow link, in which
-/// samples would wait behind them: each 100 ms the rate grows by half while pages come almost as quickly as
-/// the quickest, and is halved where one waited 30 ms longer or was lost (as LEDBAT, RFC 6817, takes queueing
-/// delay for the signal of congestion; the quickest of the last 10 to 20 s, as RFC 6817 has it for a way that
-/// becomes another one). Pure; haptic thread.
+/// Rate limit of page requests, so that pages do not fill the queue of a slow link and delay samples. Each
+/// 100 ms the rate grows by half while pages arrive almost as fast as the fastest one. It is halved where a
+/// page waited 30 ms longer or was lost. LEDBAT (RFC 6817) takes queueing delay for the signal of congestion
+/// likewise. The fastest is that of the last 10 to 20 s, as RFC 6817 has it for a changed route. Pure; haptic
+/// thread.
 class PagePace {
  public:
   static constexpr double kSlowest = 20, kFastest = 1000;  ///< pages a second
 
-  /// How many may be asked for now.
+  /// Returns how many pages may be requested now.
   std::size_t allowed(Time now) noexcept;
   void asked(std::size_t pages) noexcept { tokens_ -= static_cast<double>(pages); }
   /// A page came `took` after it was asked for, once: which of several asks was answered nobody knows (Karn
   /// and Partridge 1987).
   void came(Time took) noexcept;
-  /// So many pages are asked for once more.
+  /// Counts pages that are requested once more.
   void lost(std::uint64_t pages) noexcept { lost_ += pages; }
 
   /// After how long a page that did not come is lost: 200 ms, or more where the way is longer; twice as long

@@ -15,11 +15,11 @@
 
 namespace palpate::client {
 
-/// What of a message a law may see. `model`: of the surface, told by the message which one the server has;
-/// may be null.
+/// Returns the part of a message that a law may use. `model`: of the surface, updated to the version that the
+/// message announces; may be null.
 Sample sample_of(const protocol::ForceSample& message, SurfaceModel* model = nullptr) noexcept;
 
-/// What one tick gives.
+/// Result of one tick.
 struct TickResult {
   Vec3 f_D = Vec3::Zero();   ///< to the device, N
   protocol::ToolState tool;  ///< to the server
@@ -67,7 +67,7 @@ class Pipeline {
   /// Asks the server for these parts of a sample, too: laws in the shadow use them. Before the first tick.
   void ask_for(const Wants& wants);
 
-  /// One tick. `arrived`: the newest sample, if one came since the last tick, else null; `pages` of the
+  /// Runs one tick. `arrived`: the newest sample, if one came since the last tick, else null; `pages` of the
   /// surface that came since.
   TickResult tick(const DeviceReading& reading, const protocol::ForceSample* arrived,
                   std::span<const protocol::SurfacePage> pages = {}) noexcept {

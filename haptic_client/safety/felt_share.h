@@ -11,7 +11,7 @@ class FeltShare {
   static constexpr double kWeakFor = 0.5;  ///< s
   static constexpr double kLeast = 0.2;    ///< N: a smaller force is not watched
 
-  /// In a tick of `dt` (s) the law gave `law_D` (N) and `written_D` (N) was written.
+  /// Adds a tick of `dt` (s) in which the law returned `law_D` (N) and the device got `written_D` (N).
   void tick(const Vec3& law_D, const Vec3& written_D, double dt) noexcept {
     const double law = law_D.stableNorm();
     const bool weak = law > kLeast && written_D.dot(law_D / law) < kHalf * law;
@@ -21,7 +21,7 @@ class FeltShare {
   /// The force is meant to be less: it was switched off, or fades.
   void restart() noexcept { weak_s_ = 0; }
 
-  /// Whether less than half of the force has been felt for half a second.
+  /// True if less than half of the force has been rendered for half a second.
   bool weak() const noexcept { return weak_s_ >= kWeakFor; }
   /// Over the session, s.
   double total_s() const noexcept { return total_s_; }

@@ -5,7 +5,7 @@
 
 namespace palpate::client {
 
-/// What the last stage before the motors did: ticks; for the faults, how often they switched the force off.
+/// Counts of the last stage before the motors: ticks; for the faults, how often they switched the force off.
 struct LimiterCounts {
   std::uint64_t clamped = 0;  ///< magnitude cut to the limit
   std::uint64_t slewed = 0;   ///< change per tick cut to the limit

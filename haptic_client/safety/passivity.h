@@ -7,7 +7,7 @@
 
 namespace palpate::client {
 
-/// What the passivity observer saw and its controller did.
+/// Counts of the passivity observer and its controller.
 struct PassivityCounts {
   std::uint64_t damped = 0;    ///< ticks with injected damping
   std::uint64_t softened = 0;  ///< ticks with a gain below 1
@@ -51,7 +51,7 @@ class Passivity {
   /// Nothing is compared across here: the force was off, or fades, or the samples before are too long ago.
   void restart() noexcept;
 
-  /// What may be done this tick: `gain` (0, 1] on the law's force, and `damping` (N s/m).
+  /// Limits of this tick: `gain` (0, 1] on the law's force, and `damping` (N s/m).
   struct Ruling {
     double gain = 1, damping = 0;
   };
@@ -62,7 +62,7 @@ class Passivity {
     damper_ = damper_D;
   }
 
-  /// On the law's force, (0, 1].
+  /// Returns the gain on the law's force, (0, 1].
   double gain() const noexcept { return gain_; }
   /// Energy owed, J.
   double debt() const noexcept { return debt_; }

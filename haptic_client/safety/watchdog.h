@@ -17,7 +17,7 @@ class Watchdog {
   static constexpr double kFade = 0.1;       ///< s, from full force to none
   static constexpr double kSoftStart = 1.0;  ///< s, from none to full force
 
-  /// What may be done this tick.
+  /// Limits of this tick.
   struct Ruling {
     double gain = 0;      ///< [0, 1], to multiply the force with
     bool damper = false;  ///< brake while fading
@@ -26,13 +26,13 @@ class Watchdog {
   /// `age`: of the newest sample, none if there is none yet. `dt` (s): since the last tick.
   Ruling rule(std::optional<Time> age, double dt) noexcept;
 
-  /// Of the last ruling.
+  /// Returns the gain of the last ruling.
   double gain() const noexcept { return gain_; }
 
   /// Force from none again, over a soft start.
   void restart() noexcept { gain_ = 0; }
 
-  /// How often the force was faded.
+  /// Returns how often the force was faded.
   std::uint64_t ramped() const noexcept { return ramped_; }
 
  private:

@@ -11,7 +11,7 @@
 
 namespace palpate::client {
 
-/// What a client file asks for; every key has a default.
+/// Settings of a client file; every key has a default.
 struct ClientConfig {
   std::string server = "127.0.0.1:45130", server_where = "default";
   std::optional<std::filesystem::path> key;  ///< file of the key that the server has, too
@@ -31,7 +31,7 @@ struct ClientConfig {
 
   /// The laws to score, each once.
   std::vector<std::string> scored_laws() const;
-  /// What the limiter may let through: as asked for, or what the device can take if that is less.
+  /// Returns the settings of the limiter: as configured, or the limit of the device if that is less.
   Limiter::Settings device_limits() const;
 };
 

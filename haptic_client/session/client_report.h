@@ -10,11 +10,11 @@ namespace palpate::client {
 /// Why a force is latched off, in words.
 const char* name_of(Fault fault);
 
-/// What a session, live or replayed, says about one tool; keys in session/REPORT.md. Measures what a
-/// tick of each scored law costs, which takes a few milliseconds.
+/// Writes the report of a session, live or replayed, about one tool; keys in session/REPORT.md. Measures the
+/// cost of a tick of each scored law, which takes a few milliseconds.
 Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Observation& observation);
 
-/// What only a live loop has.
+/// Writes the part of the report that only a live loop has.
 Json loop_report(double rate_hz, const HapticLoopStats& stats);
 
 /// Counters of the link, what it carried, and how old its samples were when they came.

@@ -21,10 +21,10 @@ class Guardian {
   /// started and any device opened. Throws `Error` when the system gives no process.
   explicit Guardian(std::span<const ClientConfig> configs);
   ~Guardian() { dismiss(); }
-  /// All loops have ended. The guardian goes, and touches only devices that were left pushing (`Heartbeat`),
-  /// as it does as soon as one is.
+  /// Ends the guardian, once all loops have ended. It acts only on devices that have a force on their motors
+  /// (`Heartbeat`), as it does as soon as one has.
   void dismiss();
-  /// For the haptic loop of the device `i` of `configs`. Null: nothing is guarded.
+  /// Returns the heartbeat for the haptic loop of the device `i` of `configs`; null: nothing is guarded.
   Heartbeat* heartbeat(std::size_t i) const { return beats_ == nullptr ? nullptr : beats_ + i; }
   Guardian(const Guardian&) = delete;
   Guardian& operator=(const Guardian&) = delete;

@@ -26,7 +26,7 @@ struct HapticMailboxes {
 
 constexpr int kHapticPriority = 80;  ///< of the haptic thread (SCHED_FIFO), where the system grants it
 
-/// What the loop measured; read it when the loop has ended.
+/// Measurements of the loop; read them when the loop has ended.
 struct HapticLoopStats {
   std::uint64_t ticks = 0, missed = 0;
   std::uint64_t unsent = 0;  ///< poses the network thread had no room for
@@ -47,13 +47,13 @@ class HapticLoop {
 
   const HapticLoopStats& stats() const { return stats_; }
 
-  /// For a watching thread.
+  /// State for a watching thread.
   std::atomic<double> newest_newton{0};
   std::atomic<std::int64_t> newest_age_ns{-1};  ///< -1: no sample yet
   std::atomic<std::uint64_t> ticks{0}, missed{0};
   std::atomic<Fault> fault{Fault::kNone};
-  /// Whether less than half of the law's force has been felt for half a second; of that tick, the law's force
-  /// (N) and the gain of passivity.
+  /// True if less than half of the law's force has been rendered for half a second. The next two are the
+  /// law's force (N) and the gain of passivity in the newest tick.
   std::atomic<bool> weak{false};
   std::atomic<double> law_newton{0}, gain{1};
   std::atomic<bool> paused{false};  ///< the simulation is

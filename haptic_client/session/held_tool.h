@@ -42,8 +42,8 @@ class HeldTool {
   void stop();
   void rearm() { loop_.rearm = true; }
 
-  /// To be called ten times a second. Tells, once each: the loss and the return of the server, a latched
-  /// fault, a force of which most is not felt, what the device wants.
+  /// Prints messages, once each: the loss and the return of the server, a latched fault, a force that is
+  /// mostly not rendered, the requests of the device. Call it ten times a second.
   void look();
   /// Force, age and ticks, for a line of progress.
   std::string progress() const;

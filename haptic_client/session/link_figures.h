@@ -5,7 +5,8 @@
 
 namespace palpate::client {
 
-/// What a session needs of its link, and gets. Written by the network thread; read when that has ended.
+/// Figures of the link that a session needs, and gets. Written by the network thread; read when that has
+/// ended.
 struct LinkFigures {
   Histogram age_ns;  ///< of each sample when it arrived: since its tool position was read
   std::uint64_t samples = 0, pages = 0;

@@ -23,11 +23,12 @@ class NetLink {
   /// Read when `run` has returned.
   const protocol::LinkStats& stats() const { return stats_; }
   const LinkFigures& figures() const { return figures_; }
-  /// For a watching thread.
+  /// Watcher of the link, for a watching thread.
   protocol::LinkWatcher watcher;
   const protocol::ClientSession& session() const { return session_; }
 
-  /// For a watching thread: whether a server ever let us in, and why the last one did not (0: no answer).
+  /// True if a server ever admitted this client. The next one is the reason of the last server that did not
+  /// (0: no answer). For a watching thread.
   std::atomic<bool> welcomed{false};
   std::atomic<int> refused{0};
   /// The version of the protocol that the server speaks, if that is not ours.

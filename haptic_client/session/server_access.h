@@ -6,7 +6,7 @@
 
 namespace palpate::client {
 
-/// How long a server usually has for its first Welcome.
+/// Usual time limit of a server for its first Welcome.
 constexpr Time kWelcomePatience = std::chrono::seconds(5);
 
 /// The server that is asked for; one on another machine only with a key, or where somebody insists. Throws

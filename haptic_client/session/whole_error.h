@@ -8,7 +8,7 @@ namespace palpate::client {
 /// null where nobody knows. Of extrapolation, what the row of `method` scored.
 Json whole_error_report(const std::string& method, const Observation& observation);
 
-/// The same as a table, for people, on stdout; nothing before the first sample of a force.
+/// Prints that report as a table, for people, on stdout; nothing before the first sample of a force.
 void print_whole_error(const Json& tool);
 
 }  // namespace palpate::client

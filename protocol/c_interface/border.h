@@ -1,5 +1,5 @@
 #pragma once
-/// What every function of the C interface does around its work: nothing that is thrown leaves it.
+/// Frame of every function of the C interface: it lets no exception out.
 #include <algorithm>
 #include <cstring>
 #include <new>
@@ -37,8 +37,8 @@ int guarded(char* error, std::size_t size, Body&& body) noexcept {
   return PALPATE_FAILED;
 }
 
-/// Whether a struct of the caller is there and has the fields of this release; it may have more, of a later
-/// one. Should fields be appended, this is to allow the size without them, too.
+/// True if the caller passed a struct with the fields of this release; it may have more, of a later one. When
+/// fields are appended, this has to allow the size without them, too.
 template <class Struct>
 bool is_whole(const Struct* s) noexcept {
   constexpr std::uint32_t kLargest = 1 << 16;  // beyond, nobody set it

@@ -6,7 +6,7 @@
 
 namespace palpate::c_interface {
 
-/// The same message in the other language; `struct_size` is the caller's affair. No allocation.
+/// Writes that message as the struct of the other language; the caller sets `struct_size`. No allocation.
 void write_tool_state(const protocol::ToolState& from, palpate_tool_state& to) noexcept;
 void write_force_sample(const protocol::ForceSample& from, palpate_force_sample& to) noexcept;
 

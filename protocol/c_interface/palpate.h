@@ -49,7 +49,7 @@ enum {
   PALPATE_HAS_VELOCITY = 1 << 16  ///< `velocity` is known; without, it is taken from the positions
 };
 
-/// Where a tool is: told to a session (frame D) or a scene (frame W), or read from a capture (W).
+/// State of a tool: sent to a session (frame D) or a scene (frame W), or read from a capture (W).
 typedef struct palpate_tool_state {
   uint32_t struct_size;
   uint32_t flags;
@@ -99,13 +99,13 @@ typedef struct palpate_scene palpate_scene;
 /// Reads a scene file and sets it up. Keeps nothing on disk. `*scene` is NULL unless it returns PALPATE_OK.
 PALPATE_API int palpate_scene_open(const char* file, palpate_scene** scene, char* error, size_t error_size);
 
-/// How many tools the scene has, 1 to 8; 0 of NULL. Any thread.
+/// Returns the number of tools of the scene, 1 to 8; 0 of NULL. Any thread.
 PALPATE_API size_t palpate_scene_tools(const palpate_scene* scene);
 
-/// One step of `dt` s, 0 to 3600, rounded to whole ns: no clock, the same arguments give the same bytes.
-/// `tools` and `samples`: one for each tool of the scene, in its order; lift a tool with PALPATE_LOST. A
-/// value that is not finite, or beyond 1e9, is wrong input, and nothing happens. Uses both cores of large
-/// models. Allocates with the model `implicit`, and with any model of tissue that can be cut.
+/// Steps by `dt` s, 0 to 3600, rounded to an integer number of ns, without a clock: equal arguments return
+/// equal bytes. `tools` and `samples`: one for each tool of the scene, in its order; lift a tool with
+/// PALPATE_LOST. A value that is not finite, or beyond 1e9, is wrong input, and nothing happens. Uses both
+/// cores of large models. Allocates with the model `implicit`, and with any model of tissue that can be cut.
 PALPATE_API int palpate_scene_step(palpate_scene* scene, const palpate_tool_state* tools, size_t count,
                                    double dt, palpate_force_sample* samples, char* error, size_t error_size);
 
@@ -126,16 +126,16 @@ typedef struct palpate_session_options {
   double max_force;         ///< N, above 0: lowers [limits] force; 0: does not
 } palpate_session_options;
 
-/// What `state` says.
+/// Values of `state`.
 enum {
   PALPATE_WAITING = 0,  ///< no sample yet
   PALPATE_LIVE = 1,     ///< the newest sample is not older than 300 ms
-  /// It is, as while a page pauses the simulation; the force fades to none, and comes back by itself over 1
-  /// s.
+  /// Newest sample older than 300 ms, as while a page pauses the simulation. The force fades to none, and
+  /// rises again by itself over 1 s.
   PALPATE_SILENT = 2
 };
 
-/// What `fault` says: why the force is latched off, until palpate_session_rearm.
+/// Values of `fault`: why the force is latched off, until palpate_session_rearm.
 enum {
   PALPATE_NO_FAULT = 0,
   PALPATE_NOT_FINITE = 1,  ///< some stage made a NaN or an infinity
@@ -166,12 +166,12 @@ typedef struct palpate_felt {
 PALPATE_API int palpate_session_open(const palpate_session_options* options, palpate_session** session,
                                      char* error, size_t error_size);
 
-/// One turn of the haptic loop, 100 to 4000 times a second, evenly: sends `tool`, returns the force on it by
-/// the chosen law, through the whole safety ladder (README.md of Palpate, "The safety ladder"). Read the
-/// device right before it, as the age of the force counts from here. A pose that is not finite, beyond 1e9 m
-/// or turned by no unit quaternion counts as PALPATE_LOST: no force at once, and again over 1 s.
-/// Where it does not return PALPATE_OK, write zero force to the motors. Haptic thread.
-/// Nobody watches your loop: should it stop, your device keeps its last force unless its driver ends it.
+/// Runs one tick of the haptic loop, 100 to 4000 times a second, evenly. Sends `tool`, and returns the force
+/// on it by the chosen law, through the complete safety ladder (README.md of Palpate, "The safety ladder").
+/// Read the device right before it, as the age of the force counts from this call. A pose that is not finite,
+/// beyond 1e9 m or turned by no unit quaternion counts as PALPATE_LOST: no force at once, and again over 1 s.
+/// Where it does not return PALPATE_OK, write zero force to the motors. Haptic thread. No watchdog guards the
+/// loop of the caller: should it stop, the device holds its last force unless its driver ends it.
 PALPATE_API int palpate_session_tick(palpate_session* session, const palpate_tool_state* tool,
                                      palpate_felt* felt);
 
@@ -185,10 +185,10 @@ PALPATE_API void palpate_session_close(palpate_session* session);
 
 typedef struct palpate_capture palpate_capture;
 
-/// What `type` says; others are in Palpate's protocol/README.md.
+/// Values of `type`; others are in Palpate's protocol/README.md.
 enum { PALPATE_END = 0, PALPATE_TOOL_STATE = 6, PALPATE_FORCE_SAMPLE = 7, PALPATE_NOT_OURS = 255 };
 
-/// What `direction` says.
+/// Values of `direction`.
 enum { PALPATE_UNKNOWN = 0, PALPATE_TO_SERVER = 1, PALPATE_TO_CLIENT = 2 };
 
 typedef struct palpate_datagram {

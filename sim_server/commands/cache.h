@@ -19,8 +19,8 @@ struct CacheOptions {
 /// Nothing with `--no-cache`, or where no folder is known.
 std::optional<SetupCache> open_cache(const CacheOptions& options);
 
-/// What a session of `scene` takes its set-up from, with `--condensed`. Throws `Error` where that is no
-/// folder, or a scene of this model is not condensed.
+/// Returns the folder from which a session of `scene` takes its set-up, with `--condensed`. Throws `Error`
+/// where that is no folder, or a scene of this model is not condensed.
 std::optional<Condensed> open_condensed(const CacheOptions& options, const Scene& scene);
 
 /// Prints the entries, the one used last first. Returns the exit code.

@@ -12,7 +12,7 @@
 
 namespace palpate::sim {
 
-/// What `sim_server explain` was asked for.
+/// Options of `sim_server explain`.
 struct ExplainOptions {
   std::filesystem::path scene;
   std::optional<std::filesystem::path> json;
@@ -39,7 +39,7 @@ struct LeftOut {
   std::string note{};                ///< measured, computed, or why neither
 };
 
-/// What a scene pays for on this machine.
+/// Parts and costs of a scene on this machine.
 struct Explanation {
   Scene scene;
   std::vector<BuiltPart> built;

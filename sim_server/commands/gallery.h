@@ -15,8 +15,8 @@ struct GalleryScene {
   std::filesystem::path file;
 };
 
-/// By name. They stand in share/palpate/scenes beside the folder of this program, where it is installed, else
-/// in configs/scenes above it; none where neither is there.
+/// Finds the gallery scenes, by name. They are in share/palpate/scenes beside the folder of this program,
+/// where it is installed, else in configs/scenes above it; none where neither is there.
 std::vector<GalleryScene> find_gallery();
 
 /// `sim_server scenes`: prints them. Throws `Error` where there are none. Returns the exit code.

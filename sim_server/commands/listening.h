@@ -10,7 +10,7 @@
 
 namespace palpate::sim {
 
-/// Where a server listens, and to whom.
+/// Address of a server, and the clients that it admits.
 struct ListenOptions {
   std::string address = "127.0.0.1:45130";
   std::optional<std::filesystem::path> key;  ///< file of the keys of which clients must have one

@@ -9,14 +9,15 @@
 
 namespace palpate::sim {
 
-/// Where the page is, and what its address ends in for who may do more than look.
+/// Address of the page, and the token that ends it for those who may do more than watch.
 struct ViewRequest {
   ViewerAddress address;
   std::string token;
 };
 
-/// What `--viewer` asks for; nothing of "off". Throws `Error` where that address cannot be had, or where it
-/// is not this machine's own and `--insecure` was not said: the token would be sent in clear.
+/// Returns the page settings that `--viewer` requests; nothing for "off". Throws `Error` where that address
+/// cannot be had. Also throws where it is not this machine's own and `--insecure` is not set: the token would
+/// be sent in clear.
 std::optional<ViewRequest> view_request(const std::string& viewer, const ListenOptions& listen);
 
 /// The live page of a session: copies what a page is shown out of the simulation's thread, while a page is

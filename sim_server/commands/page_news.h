@@ -5,8 +5,8 @@
 
 namespace palpate::sim {
 
-/// What joins the page's thread to the network thread: peers and the telemetry of clients into `feed`, where
-/// a mouse points out of it. `began`: time 0 of what is shown. All references outlive what this returns.
+/// Connects the page's thread to the network thread: peers and the telemetry of clients into `feed`, the
+/// position of a mouse out of it. `began`: time 0 of the page. All references outlive the result.
 ViewerFeed::Hooks page_hooks(ViewerFeed& feed, std::size_t tools, PageMailboxes& mailboxes, Doorbell& bell,
                              Time began);
 

@@ -6,12 +6,13 @@
 
 namespace palpate::sim {
 
-/// What the page is told of a scene before anything moves.
+/// Returns the facts of a scene that the page gets before anything moves.
 SceneFacts facts_of(const Scene& scene, const Simulation& simulation);
 
-/// What colours the surface of such a body by the energy inside: J/m3 of each of its vertices, the mean of
-/// the tetrahedra around it by their volume. Made when it is first asked, in that thread, and computed there
-/// alone: some 0.2 us a tetrahedron and quadrature point. All references outlive what this returns.
+/// Returns the function that colours the surface of such a body by strain energy. Its values are J/m3 of each
+/// surface vertex, the mean of the tetrahedra around it by their volume. Its data are made at its first call,
+/// in that thread, and computed there alone: some 0.2 us a tetrahedron and quadrature point. All references
+/// outlive the result.
 std::function<void(std::span<const Vec3>, std::vector<float>&)> strain_energy_of(
     const Scene& scene, const Simulation& simulation);
 

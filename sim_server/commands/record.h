@@ -8,7 +8,7 @@
 
 namespace palpate::sim {
 
-/// What `sim_server record` was asked for.
+/// Options of `sim_server record`.
 struct RecordOptions {
   std::filesystem::path scene, out;
   std::vector<std::filesystem::path> trajectories;  ///< of the tools of the scene, in order

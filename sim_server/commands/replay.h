@@ -8,7 +8,7 @@
 
 namespace palpate::sim {
 
-/// What `sim_server replay` was asked for.
+/// Options of `sim_server replay`.
 struct ReplayOptions {
   std::filesystem::path capture;
   ListenOptions listen;

@@ -29,9 +29,9 @@ std::vector<Removal> read_removals(const std::filesystem::path& file);
 void require_removable(std::span<const Removal> removals, const std::filesystem::path& file,
                        const Simulation& simulation);
 
-/// Where it ended, for a report; null: nothing can be cut.
+/// Writes the final state of the resection, for a report; null: nothing can be cut.
 Json resection_report(const Simulation& simulation);
-/// The same in one line; empty.
+/// Returns that state in one line; empty: nothing can be cut.
 std::string resection_text(const Simulation& simulation);
 
 /// `--resection`.

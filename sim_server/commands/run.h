@@ -9,7 +9,7 @@
 
 namespace palpate::sim {
 
-/// What `sim_server run` was asked for.
+/// Options of `sim_server run`.
 struct ServerOptions {
   std::filesystem::path scene;
   ListenOptions listen;

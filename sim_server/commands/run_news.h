@@ -7,14 +7,13 @@
 
 namespace palpate::sim {
 
-/// What a run says while it goes on, once each: who takes tools and leaves them, that a page has paused, that
-/// a tool left its reach, and that a cut came to the end of what can be cut. Of the thread that watches the
-/// run.
+/// Messages of a run, once each. They report who takes and returns tools, a pause by a page, a tool beyond
+/// its reach, and a cut without further removable tissue. Used by the thread that watches the run.
 class RunNews {
  public:
-  /// Of a scene, which outlives this.
+  /// Reports on a scene, which outlives this.
   explicit RunNews(const Scene& scene);
-  /// What is new since the last call.
+  /// Prints what is new since the last call.
   void tell(const NetLink& link, const SimLoop& loop, bool paused);
 
  private:

@@ -8,7 +8,7 @@
 
 namespace palpate::sim {
 
-/// What `sim_server solve` was asked for.
+/// Options of `sim_server solve`.
 struct SolveOptions {
   std::filesystem::path scene, out;
   std::vector<std::string> probes;              ///< "x,y,z", m, in the body at rest

@@ -1,5 +1,5 @@
 #pragma once
-/// What `sim_server solve` tells of a solution.
+/// Results that `sim_server solve` writes of a solution.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -29,7 +29,7 @@ struct Probe {
 /// the `corners`, which come first among the nodes.
 Probe find_probe(const std::string& text, const Solid& solid, int corners);
 
-/// What a [[fixed]] or a [[load]] with `displacement` holds, along each axis, and no later one does.
+/// Nodes and axes that a [[fixed]] or a [[load]] with `displacement` holds, and no later one does.
 struct HeldRegion {
   std::string name;                               ///< with "FILE:LINE"
   std::vector<std::pair<int, HeldAxes>> nodes{};  ///< each with the axes along which this holds it

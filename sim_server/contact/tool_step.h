@@ -41,7 +41,7 @@ struct PathPoint {
   Bend bend = {};  ///< used by friction alone
 };
 
-/// One tool in one step.
+/// Input of one tool in a step.
 struct ToolInput {
   std::optional<ToolPose> pose = {};  ///< of its tip now; none: the tool is lifted
   std::uint16_t buttons = 0;          ///< of its device, pressed now: some tools grasp or cut by them
@@ -74,7 +74,7 @@ struct ToolAnswer : ToolForce {
   std::optional<Vec3> surface_shift_W = {};
   /// The published modes at the end of the step; null without `surface_shift_W`, or where there are none.
   const ModalMotion* modes = nullptr;
-  /// With them: the loads of the other tools on each mode, N/sqrt(kg); null: there are none.
+  /// Loads, with `modes`, of the other tools on each mode, N/sqrt(kg); null: there are none.
   const Eigen::VectorXd* modal_loads = nullptr;
   bool cutting = false;  ///< its tip is hot, or its blade cuts: tissue that it touches may yield at any time
 };

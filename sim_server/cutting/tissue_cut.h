@@ -16,7 +16,7 @@ struct Removal {
   int tetrahedron = 0;
 };
 
-/// One step of a resection, for those who judge it.
+/// Row of the log of a resection: one step.
 struct ResectionRow {
   double t = 0;  ///< s of all steps before it
   std::size_t tool = 0;
@@ -35,7 +35,7 @@ struct CutOrgan {
   std::span<ToolContact> tools;
 };
 
-/// How a run cuts, beyond its scene.
+/// Options of a run that cuts, beyond its scene.
 struct CutOptions {
   bool keeps_log = true;  ///< false: only the last row, for a run of days
   /// True: a step waits for background work, so that the same is published in the same step on every machine.
@@ -50,8 +50,8 @@ struct CutOptions {
 /// off. A value, but for what `Resection` shares with its mesh. One thread; allocates.
 class TissueCut {
  public:
-  /// Of a scene with [cutting]. Gives `surface` the vertices of all that can be cut. `held`: mesh vertices
-  /// that are fixed, ascending. The mesh outlives this. Throws `Error` as `removable_tetrahedra`.
+  /// Prepares a scene with [cutting]. Gives `surface` the vertices of all that can be cut. `held`: mesh
+  /// vertices that are fixed, ascending. The mesh outlives this. Throws `Error` as `removable_tetrahedra`.
   TissueCut(const Scene& scene, TetMesh& mesh, std::span<const int> held, Surface& surface);
 
   void set_options(CutOptions options);
@@ -71,9 +71,9 @@ class TissueCut {
   const Resection& resection() const { return resection_; }
   /// Surface published to clients near the tools; null: none now.
   const std::shared_ptr<const PublishedSurface>& published() const { return published_; }
-  /// One row for each step with a tip that was hot.
+  /// Rows of the steps with a tip that was hot.
   std::span<const ResectionRow> log() const { return log_; }
-  /// All tetrahedra that heat has removed, in order, without the pieces that this cut off.
+  /// Tetrahedra that heat has removed, in order, without the pieces that this cut off.
   std::span<const Removal> removals() const { return removed_; }
   std::size_t bytes() const { return resection_.bytes() + log_.capacity() * sizeof(ResectionRow); }
 

@@ -7,7 +7,7 @@
 
 namespace palpate::sim {
 
-/// What a `HyprePcg` took so far.
+/// Cost of a `HyprePcg` so far.
 struct PcgCosts {
   Eigen::Index unknowns = 0, entries = 0;  ///< of the matrix
   double setup_s = 0, solve_s = 0;
@@ -31,10 +31,10 @@ class HyprePcg final : public FactoredMatrix {
   HyprePcg(HyprePcg&&) = delete;
   HyprePcg& operator=(HyprePcg&&) = delete;
 
-  /// To a residual of 1e-11 of each right-hand side. Throws `Error` where that is not reached: the matrix is
-  /// not positive definite then.
+  /// Solves to a residual of 1e-11 of each right-hand side. Throws `Error` where that is not reached: the
+  /// matrix is not positive definite then.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const override;
-  /// By one solve for each of `unknowns`; made equal to its transpose.
+  /// Computes the block by one solve for each of `unknowns`; made equal to its transpose.
   void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
                      const std::function<void(double)>& progress) const override;
 
@@ -51,7 +51,7 @@ class HyprePcg final : public FactoredMatrix {
   std::shared_ptr<PcgCosts> costs_ = std::make_shared<PcgCosts>();
 };
 
-/// What all ranks but 0 do: they take part in whatever rank 0 has hypre do, until it calls `end_hypre`.
+/// Serves hypre on all ranks but 0: they take part in every call of rank 0, until it calls `end_hypre`.
 void serve_hypre();
 /// Lets the other ranks return from `serve_hypre`. Rank 0.
 void end_hypre();

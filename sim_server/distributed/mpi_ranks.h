@@ -33,7 +33,8 @@ struct RankMemory {
   double free = 0;   ///< of its machine
   int machine = 0;   ///< the lowest rank on the same one
 };
-/// Those of all ranks, on rank 0; empty on the others. All ranks have to call it, each with its own bytes.
+/// Gathers the memory of all ranks on rank 0; empty on the others. All ranks have to call it, each with its
+/// own bytes.
 std::vector<RankMemory> gather_memory(double bytes);
 
 /// "rank 2 and 3 others on its machine would take 8.1 GB, and 6.0 GB are free", or empty where all fits.

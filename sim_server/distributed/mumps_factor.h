@@ -7,7 +7,7 @@
 
 namespace palpate::sim {
 
-/// What a `MumpsFactor` took.
+/// Cost of a `MumpsFactor`.
 struct MumpsCosts {
   Eigen::Index unknowns = 0, kept = 0;
   double analysis_s = 0, factor_s = 0, schur_s = 0;
@@ -58,7 +58,7 @@ class MumpsFactor final : public FactoredMatrix {
   MumpsCosts costs_;
 };
 
-/// What all ranks but 0 do: they take part in whatever rank 0 has MUMPS do, until it calls `end_mumps`.
+/// Serves MUMPS on all ranks but 0: they take part in every call of rank 0, until it calls `end_mumps`.
 void serve_mumps();
 /// Lets the other ranks return from `serve_mumps`. Rank 0.
 void end_mumps();

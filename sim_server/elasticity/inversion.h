@@ -3,12 +3,12 @@
 
 namespace palpate::sim {
 
-/// Whether a tetrahedron of `solid` is inside out (by its corners) at positions `x` (nodes, m) that is no
-/// sliver: flat ones turn over under little, and are not felt when they do. O(elements), a fraction of
+/// True if a tetrahedron of `solid` that is no sliver is inside out (by its corners) at positions `x` (nodes,
+/// m). Flat tetrahedra turn over under small loads, without effect on the force. O(elements), a fraction of
 /// `Solid::forces`.
 bool any_inverted(const Solid& solid, std::span<const Vec3> x);
 
-/// Whether tissue of this material can have a second rest inside out: St. Venant and Kirchhoff's, and
+/// True if tissue of this material can have a second equilibrium inside out: St. Venant and Kirchhoff's, and
 /// corotational tissue where nu is near one half.
 bool may_stay_inverted(const Material& material);
 

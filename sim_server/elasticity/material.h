@@ -10,7 +10,7 @@ namespace palpate::sim {
 /// Which energy a deformation costs: see `laws.h`.
 enum class ElasticLaw { kLinear, kCorotational, kStVenantKirchhoff, kNeoHookean };
 
-/// How displacement and volume vary inside a tetrahedron: see `solid.h`.
+/// Interpolation of displacement and volume inside a tetrahedron: see `solid.h`.
 enum class ElementKind { kLinear, kNodalPressure, kQuadratic };
 
 /// Fibres along one direction everywhere, which stiffen the tissue along it.
@@ -35,9 +35,9 @@ struct Material {
   }
   /// Linear law, any element, with fibres or without: stress goes with strain, and that is all.
   bool is_linear() const { return law == ElasticLaw::kLinear && relaxations.empty(); }
-  /// Whether linear elements are much too stiff for it, as it hardly changes its volume (Hughes 2000, The
-  /// Finite Element Method, section 4.4): a thick sphere under pressure by half at nu 0.499, ten times at
-  /// 0.4999.
+  /// True if linear elements are much too stiff for it, as it hardly changes its volume (Hughes 2000, The
+  /// Finite Element Method, section 4.4). A thick sphere under pressure is too stiff by half at nu 0.499, ten
+  /// times at 0.4999.
   bool locks() const { return element == ElementKind::kLinear && poisson_ratio >= 0.49; }
   /// First Lame parameter, Pa.
   double lame_lambda() const {

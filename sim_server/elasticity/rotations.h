@@ -11,7 +11,7 @@ namespace palpate::sim {
 /// Eigen's JacobiSVD, about a fifth of that of its closed form of eigenvalues, which knows no F that is
 /// turned inside out (`scripts/bench rotations`).
 void nearest_rotations(std::span<const Mat3> F, std::span<Mat3> R) noexcept;
-/// The same for one, at the cost of four.
+/// Returns the nearest rotation of one matrix, at the cost of four.
 Mat3 nearest_rotation(const Mat3& F) noexcept;
 
 }  // namespace palpate::sim

@@ -13,9 +13,9 @@ namespace palpate::sim {
 /// The mesh with the nodes of such elements among its vertices: quadratic ones have them on edges too.
 TetMesh with_nodes(TetMesh mesh, ElementKind element);
 
-/// What viscosity adds to the stress at each quadrature point: the stress of now counts `scale` times, and
-/// `memory` (second Piola-Kirchhoff; Cauchy of the linear law; Pa) is what the strains before have not yet
-/// lost.
+/// Viscous part of the stress at each quadrature point. The present stress counts `scale` times. `memory`
+/// (second Piola-Kirchhoff; Cauchy of the linear law; Pa) is the stress of earlier strains that has not
+/// relaxed yet.
 struct Viscosity {
   double scale = 1;
   std::span<const Mat3> memory = {};  ///< (points), or empty: none
@@ -59,14 +59,14 @@ class Solid {
   void add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Viscosity& viscosity = {}) const;
   /// A block of it: the derivative of the force on node i by the place of node j, N/m.
   using TakeBlock = std::function<void(int i, int j, const Mat3& block)>;
-  /// Those of one tetrahedron, each pair of its nodes once. Not of averaged dilation.
+  /// Visits the blocks of one tetrahedron, each pair of its nodes once. Not of averaged dilation.
   void stiffness_of(std::size_t e, std::span<const Vec3> x, const Viscosity& viscosity, Scratch& scratch,
                     const TakeBlock& take) const;
   /// A matrix with room for it.
   StiffnessMatrix stiffness_matrix(const FreeDofs& dofs) const;
   /// Adds the forces (nodes, N) of a force per volume (N/m^3), as the shape functions say.
   void add_body_forces(const Vec3& per_volume, std::span<Vec3> f) const;
-  /// How each node has turned at positions `x` (nodes, m): the rotation nearest to the mean of the
+  /// Computes the rotation of each node at positions `x` (nodes, m): the rotation nearest to the mean of the
   /// deformation gradients around it, by volume. O(elements); allocates.
   void node_rotations(std::span<const Vec3> x, std::span<Mat3> rotations) const;
   /// Lumped mass of each node, kg: a quarter of a tetrahedron for each vertex; of ten nodes 1/36 for a corner
@@ -75,8 +75,8 @@ class Solid {
 
   /// Tetrahedron e is no more: from now on it has no volume, and resists nothing. Not of averaged dilation.
   void remove(std::size_t e);
-  /// These tetrahedra have the corners that `mesh` says, where it says: others than before, of as many nodes,
-  /// or elsewhere at rest. Of linear elements.
+  /// Updates these tetrahedra to their corners in `mesh`, and to their rest positions there: other corners
+  /// than before, of equal number, or moved ones. Of linear elements.
   void reshape(const TetMesh& mesh, std::span<const int> tetrahedra);
   bool is_removed(std::size_t e) const { return weight_[e * static_cast<std::size_t>(points_)] == 0; }
   /// Elastic energy of one tetrahedron, J.
@@ -92,7 +92,8 @@ class Solid {
   std::size_t points() const { return weight_.size(); }
   int points_per_element() const { return points_; }
   double volume_of(std::size_t point) const { return weight_[point] / stiffness_of(point); }
-  /// Of the tissue there, as a multiple of the material: all stresses and energies of it are.
+  /// Returns the stiffness factor of the tissue at this point, as a multiple of the material: all stresses
+  /// and energies scale with it.
   double stiffness_of(std::size_t point) const {
     return stiffness_.empty() ? 1 : stiffness_[point / static_cast<std::size_t>(points_)];
   }
@@ -142,8 +143,7 @@ class Solid {
   std::vector<double> nodal_volume_;
 };
 
-/// What `Solid` writes to while it works: made once for a body and a thread, it spares each call the
-/// allocation.
+/// Work memory of `Solid`: made once for a body and a thread, it saves each call the allocation.
 class Solid::Scratch {
  public:
   explicit Scratch(const Solid& solid);

@@ -16,7 +16,7 @@ constexpr std::size_t blocks_of(int corners) {
   return static_cast<std::size_t>(corners * (corners + 1) / 2);
 }
 
-/// One tetrahedron with all it takes to work on it.
+/// Tetrahedron with its nodes, quadrature points and weights.
 struct Solid::Element {
   Element(const Solid& solid, std::size_t e)
       : nodes(solid.element_nodes_.data() + e * static_cast<std::size_t>(solid.corners_)),
@@ -28,7 +28,7 @@ struct Solid::Element {
   const Vec3* gradients(int q) const {
     return solid_.gradient_.data() + point(q) * static_cast<std::size_t>(solid_.corners_);
   }
-  /// At each of its points, at positions `x` of the nodes.
+  /// Computes the deformation gradient F at each of its points, at positions `x` of the nodes (m).
   void deform(std::span<const Vec3> x, Mat3* F) const {
     if (solid_.corners_ == 4) {
       deform_nodes<4>(x, F);
@@ -36,7 +36,7 @@ struct Solid::Element {
       deform_nodes<10>(x, F);
     }
   }
-  /// What the stress before adds to the first Piola-Kirchhoff stress.
+  /// Returns the part of the first Piola-Kirchhoff stress (Pa) by the stress before.
   Mat3 remembered(const Mat3& F, const Mat3& memory) const { return linear_ ? memory : Mat3(F * memory); }
 
   const int* nodes;

@@ -10,16 +10,16 @@ struct TensorsInPlace {
   const double *vertex, *edge;
 };
 
-/// How many numbers apart the vertices of a vector are that is read and written whole: three of its, one of
-/// none.
+/// Stride of the vertices of a vector that is read and written at full width: three numbers of the vertex,
+/// one unused.
 constexpr int kNumbersApart = 4;
 
 /// y = K x (n x 3, m and N), rows `begin` to `end`: what they add to rows before `begin` is added to those of
 /// `ahead`, which may be null where `begin` is 0. One thread; O(edges). Any processor gives the same bits.
 void product_of_rows(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
                      double* ahead) noexcept;
-/// The same of vectors (n x `kNumbersApart`) of which the fourth number of each vertex is of no use, and any:
-/// the same bits in nine tenths of the time, as each vertex is one load and one store.
+/// Computes that product for vectors (n x `kNumbersApart`) of which the fourth number of each vertex is
+/// unused, of any value. Same bits in nine tenths of the time, as each vertex is one load and one store.
 void product_of_rows_apart(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
                            double* ahead) noexcept;
 

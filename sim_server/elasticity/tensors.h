@@ -45,31 +45,31 @@ class ElasticTensors {
   void part(const Parting& parting, std::span<const int> reshaped, const CutMesh& left,
             const Material& material);
 
-  /// From now on a tetrahedron has this factor of its mass, once it is summed anew.
+  /// Sets the mass factor of a tetrahedron, from its next summation on.
   void set_mass_factor(int tetrahedron, double factor) {
     if (mass_factors_.empty()) return;
     mass_factors_[static_cast<std::size_t>(tetrahedron)] = factor;
   }
 
-  /// Of the mass of each tetrahedron; empty: all 1.
+  /// Returns the mass factor of each tetrahedron; empty: all 1.
   const std::vector<double>& mass_factors() const { return mass_factors_; }
 
-  /// From now on this vertex has so much (kg, >= 0) besides what its tetrahedra give.
+  /// Adds a mass (kg, >= 0) to the vertex at this place, beyond the mass of its tetrahedra.
   void add_mass(int place, double kg);
 
-  /// How many vectors `multiply_wide` takes at once.
+  /// Number of vectors that `multiply_wide` takes at once.
   static constexpr int kWide = 8;
-  /// How many numbers apart vertices are in the vectors of a product in parts; the last of each is of no use.
+  /// Stride of the vertices in the vectors of a product in parts; the last number of each is unused.
   static constexpr int kApart = kNumbersApart;
-  /// What parts of a product add to rows of parts before them: for each part, and 0 between two products.
+  /// Sums that parts of a product add to rows of earlier parts: for each part, and 0 between two products.
   using Ahead = std::vector<std::vector<double>>;
   Ahead room_ahead() const;
   /// y = K x: forces (n x 3, N) of displacements (n x 3, m), n = `vertices()`.
   void multiply(const double* x, double* y) const noexcept;
-  /// The same of vectors of n x `kApart`, of 40 thousand edges or more in 8 or 16 parts, which the tensors
-  /// alone decide, on as many cores: first `multiply_part` of each, then `gather_part` of each, after which
-  /// the rows of that part are done. The same bits whatever the number of threads. Who uses a part's rows on
-  /// the core that made them keeps them in its cache.
+  /// Multiplies vectors of n x `kApart`, of 40 thousand edges or more in 8 or 16 parts, on as many cores. The
+  /// tensors alone decide the number of parts. Call `multiply_part` of each, then `gather_part` of each,
+  /// after which the rows of that part are done. Returns equal bits whatever the number of threads. A caller
+  /// that uses a part's rows on the core that made them has them in its cache.
   std::size_t parts() const { return parts_.size(); }
   std::pair<int, int> rows_of_part(std::size_t p) const { return {parts_[p].begin, end_of_part(p)}; }
   void multiply_part(std::size_t p, const double* x, double* y, Ahead& ahead) const noexcept;
@@ -77,18 +77,18 @@ class ElasticTensors {
   /// y += K x, of an x that is 0 but at this place; y of n x `kApart`. For tensors of more than one part.
   /// O(edges there).
   void add_product(int place, const Vec3& x, double* y) const noexcept;
-  /// The same for eight vectors side by side (n x 3 x 8, those of one number together), at about half of
-  /// the time for each: tensors are read once.
+  /// Multiplies eight vectors side by side (n x 3 x 8, with the eight entries of a component together), at
+  /// about half of the time for each: tensors are read once.
   void multiply_wide(const double* x, double* y) const noexcept;
 
-  /// Of each mesh vertex: its place among the free ones, or -1.
+  /// Returns the place of each mesh vertex among the free ones, or -1.
   const std::vector<int>& places() const { return place_; }
   /// Lumped mass of each free vertex: a quarter of that of each tetrahedron around it, and what was added,
   /// kg.
   const std::vector<double>& masses() const { return mass_; }
   int vertices() const { return static_cast<int>(mass_.size()); }
   int edges() const { return static_cast<int>(neighbour_.size()); }
-  /// Of the tensors and where they belong: what a product reads, but for the vectors.
+  /// Returns the memory of the tensors and their indices: what a product reads, but for the vectors.
   std::size_t bytes() const;
 
  private:

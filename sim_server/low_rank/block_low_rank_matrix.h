@@ -47,14 +47,14 @@ class BlockLowRankMatrix {
   /// Largest rank of a pair of tiles that is a product.
   Eigen::Index largest_rank() const;
 
-  /// All but what was added, in one matrix, for a file.
+  /// Returns the matrix without what was added, in one matrix, for a file.
   Eigen::MatrixXd packed() const;
   /// Takes what `packed` made of a matrix with the same tiles. False, and nothing is changed, where it is
   /// none.
   bool unpack(const Eigen::Ref<const Eigen::MatrixXd>& packed);
 
  private:
-  /// Of two tiles, rows of the first and columns of the second.
+  /// Block of two tiles, rows of the first and columns of the second.
   struct Pair {
     bool product = false;
     Eigen::MatrixXf left;   // product: (rank x 3 points of the first), else the block itself

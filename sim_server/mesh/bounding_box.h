@@ -13,7 +13,7 @@ inline Eigen::AlignedBox3d bounding_box(std::span<const Vec3> places) noexcept {
   return box;
 }
 
-/// From corner to corner of that box, m: how large a body is.
+/// Returns the diagonal of that box, m: the size of a body.
 inline double diagonal_of(std::span<const Vec3> places) noexcept {
   return bounding_box(places).diagonal().norm();
 }

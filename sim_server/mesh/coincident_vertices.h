@@ -10,7 +10,7 @@ namespace palpate::sim {
 /// one place.
 constexpr double kSamePlace = 1e-9;
 
-/// What became of vertices that share a place with one before them.
+/// Outcome for vertices at the position of an earlier vertex.
 struct Coincidence {
   std::size_t vertices = 0;  ///< how many
   std::string example;       ///< the first, or the one that is in the way

@@ -14,15 +14,16 @@ std::vector<int> body_of_vertices(const TetMesh& mesh);
 /// The number of tetrahedra of each body, largest first.
 std::vector<int> body_sizes(const TetMesh& mesh);
 
-/// Where a closed surface is not one sheet: edges on more than two triangles, and vertices whose triangles
-/// make more than one fan around them (sheets that meet along an edge are counted there, not at its ends).
+/// Places where a closed surface is not one sheet: edges on more than two triangles, and vertices whose
+/// triangles make more than one fan around them. Sheets that join along an edge are counted there, not at its
+/// ends.
 struct NonManifold {
   std::size_t edges = 0, vertices = 0;
   std::array<int, 2> edge{-1, -1};  ///< the first, by vertices
   int vertex = -1;                  ///< the first
 };
 
-/// Of a closed surface: every edge on two triangles at least. O(k log k).
+/// Finds such places of a closed surface: every edge on two triangles at least. O(k log k).
 NonManifold non_manifold(const std::vector<Triangle>& triangles);
 
 }  // namespace palpate::sim

@@ -11,7 +11,7 @@
 
 namespace palpate::sim {
 
-/// What the user can do with a file that Gmsh reads and this program does not.
+/// Returns what the user can do with a file that Gmsh reads and this program does not.
 inline std::string gmsh_command(const std::string& file) {
   return fmt::format("convert it: `gmsh \"{}\" -save -format msh41 -o OUT.msh`", file);
 }
@@ -26,7 +26,7 @@ class Cursor {
  public:
   Cursor(std::string file, std::string_view bytes) : file_(std::move(file)), bytes_(bytes) {}
 
-  /// From here on numbers are bytes, in this machine's order; what `number` reads takes 8 of them if `wide`.
+  /// Reads numbers as bytes from this call on, in this machine's order; `number` reads 8 of them if `wide`.
   void set_binary(bool wide) {
     binary_ = true;
     wide_ = wide;

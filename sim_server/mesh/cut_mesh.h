@@ -18,7 +18,7 @@ struct Split {
   int vertex, copy;
 };
 
-/// What the parting of faces changed of a mesh.
+/// Changes of a mesh by the separation of faces.
 struct Parting {
   std::vector<int> tetrahedra;  ///< on both sides of the faces, ascending
   std::vector<Split> splits;    ///< in order
@@ -27,24 +27,25 @@ struct Parting {
   bool ran_out = false;  ///< of vertices: some stayed one that should be two
 };
 
-/// What is left of a mesh while tetrahedra are removed, and its surface. A removal looks at the tetrahedron
-/// and at the four across its faces: O(1), whatever the size of the mesh. Faces between two that are left
-/// become surface when one of them goes, outward from the other; those on the surface go with their
+/// Remaining mesh while tetrahedra are removed, and its surface. A removal visits the tetrahedron and its
+/// four face neighbours: O(1), whatever the size of the mesh. Faces between two remaining tetrahedra become
+/// surface when one of them is removed, outward from the other; faces on the surface vanish with their
 /// tetrahedron. So the surface stays closed: each edge is on an even number of triangles, of opposite turns.
-/// Where what is left meets in an edge or a vertex only, the surface is not one sheet there, and the tissue
-/// is joined by a hinge or a ball joint, as in the mesh that is left. One thread.
+/// Where the remaining mesh is joined in an edge or a vertex only, the surface is not one sheet. The tissue
+/// is joined by a hinge or a ball joint there, as in that mesh. One thread.
 class CutMesh {
  public:
   /// Gives `surface`, the boundary of `mesh`, the vertices of the tetrahedra that may ever be removed, in
-  /// whose numbers its triangles are from then on. `removable`: 1 for each tetrahedron that may be removed, else 0. The mesh outlives this.
-  /// O(m log m).
+  /// whose numbers its triangles are from then on. `removable`: 1 for each tetrahedron that may be removed,
+  /// else 0. The mesh outlives this. O(m log m).
   CutMesh(const TetMesh& mesh, std::vector<char> removable, Surface& surface);
   /// A mesh whose faces can be parted, too. It gets a spare vertex for each of those that may be removed,
   /// after all others, which `surface` then has, too. `held`: vertices that stay one and where they are,
   /// ascending.
   CutMesh(TetMesh& mesh, std::vector<char> removable, Surface& surface, std::span<const int> held);
 
-  /// The same of a copy of its mesh, which outlives that: for another thread, to be read alone.
+  /// Returns a copy that refers to `mesh`, a copy of its mesh, which outlives the result: for another thread,
+  /// read-only.
   CutMesh of_copy(const TetMesh& mesh) const {
     CutMesh same = *this;
     same.mesh_ = &mesh;
@@ -56,19 +57,19 @@ class CutMesh {
   bool is_left(int tetrahedron) const { return left_[static_cast<std::size_t>(tetrahedron)] != 0; }
   bool is_removable(int tetrahedron) const { return removable_[static_cast<std::size_t>(tetrahedron)] != 0; }
   std::size_t count() const { return count_; }  ///< of what is left
-  /// All tetrahedra around a mesh vertex, left or not, ascending.
+  /// Returns all tetrahedra around a mesh vertex, removed ones too, ascending.
   std::span<const int> around(int vertex) const;
   /// Across each face of a tetrahedron, that opposite to its corner k: another that is left, or -1.
   std::array<int, 4> neighbours(int tetrahedron) const;
-  /// Of the surface triangle in place `slot`: whose face it is.
+  /// Returns the tetrahedron of the surface triangle in place `slot`.
   int tetrahedron_of(std::size_t slot) const { return faces_[slot] / 4; }
-  /// Of the surface that was inside at first, at rest, m^2.
+  /// Returns the area of the surface that was inside at first, at rest, m^2.
   double cut_area() const { return cut_area_; }
-  /// Of a mesh vertex, that on the surface; -1 where it can never be there.
+  /// Returns the surface vertex of a mesh vertex; -1 where it can never be on the surface.
   int number_of(int vertex) const { return number_[static_cast<std::size_t>(vertex)]; }
   /// Vertices that are of no tetrahedron yet, ascending.
   std::pair<int, int> spares() const { return {next_spare_, spares_end_}; }
-  /// Whether any triangle has this surface vertex as a corner.
+  /// True if any triangle has this surface vertex as a corner.
   bool on_surface(int vertex) const { return uses_[static_cast<std::size_t>(vertex)] > 0; }
 
   /// Removes these that are left: some that may be, or a whole piece that hangs on nothing else. The places
@@ -77,15 +78,16 @@ class CutMesh {
 
   double area_of(int face) const;       ///< of face 4 t + k, at rest, m^2
   Vec3 centre_of_face(int face) const;  ///< m
-  /// Whether face 4 t + k is surface, of a tetrahedron that is left.
+  /// True if face 4 t + k of a remaining tetrahedron is surface.
   bool is_surface(int face) const { return slot_[static_cast<std::size_t>(face)] >= 0; }
-  /// Of face 4 t + k, that of the other tetrahedron that has it; -1: it is surface.
+  /// Returns, of face 4 t + k, the number of that face in the other tetrahedron; -1: it is surface.
   int across(int face) const;
-  /// Whether both tetrahedra of a face can be removed.
+  /// True if both tetrahedra of a face can be removed.
   bool can_part(int face) const;
-  /// Whether this vertex can become two, or be moved: all around it can be removed, and it is not held.
+  /// True if this vertex can become two, or be moved: all tetrahedra around it can be removed, and it is not
+  /// fixed.
   bool is_free(int vertex) const;
-  /// Whether it is a corner of a face that was inside at first, and is surface now.
+  /// True if it is a corner of a face that was inside at first, and is surface now.
   bool on_cut(int vertex) const;
   /// Parts these faces, 4 t + k, that `can_part`: both sides become surface. Where the tetrahedra around a
   /// vertex that `is_free` hang together by faces no more, all but the most that do get a vertex of their

@@ -15,7 +15,7 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// Whether they were two sets before.
+  /// Joins the sets of i and j; returns true if they were two sets before.
   bool join(int i, int j) {
     const int a = of(i), b = of(j);
     parent_[a] = b;

@@ -24,8 +24,8 @@ struct CheckedMesh {
 /// file is long enough for it. Holds the file in memory; O(size log size).
 CheckedMesh check_mesh(const std::filesystem::path& file, double scale = 1);
 
-/// The same for a mesh that is to be used: also throws what `require_usable` does; logs one line where it was
-/// mended.
+/// Reads a mesh as `check_mesh` does, for use: also throws what `require_usable` does; logs one line where it
+/// was mended.
 TetMesh read_mesh(const std::filesystem::path& file, double scale = 1);
 
 }  // namespace palpate::sim

@@ -12,15 +12,15 @@ namespace palpate::sim {
 /// Tetrahedra that hang together by whole faces, and are held by too little.
 struct LoosePart {
   std::size_t tetrahedra = 0;
-  /// By what it is held: nothing, one place (it can turn about it), or places in one line (a hinge).
+  /// Support of the part: nothing, one place (it can turn about it), or places in one line (a hinge).
   enum class Hold { kNone, kPlace, kLine };
   Hold hold = Hold::kNone;
   Vec3 place = Vec3::Zero();  ///< the first of them, m; of a part that nothing holds: one of its vertices
 };
 
-/// Those of `mesh` that are loose when `held` (vertices) are fixed, largest first. A part is held by fixed
-/// vertices, and by those that it shares with a part that is itself held, where three of them are not in one
-/// line; parts that meet in an edge or a vertex only are joined by a hinge. O(m log m).
+/// Finds the parts of `mesh` that are loose when `held` (vertices) are fixed, largest first. A part is held
+/// by fixed vertices, and by its common vertices with a held part, where three of them are not in one line.
+/// Parts joined in an edge or a vertex only have a hinge between them. O(m log m).
 std::vector<LoosePart> loose_parts(const TetMesh& mesh, std::span<const int> held);
 
 /// Takes the tetrahedra of such parts out of `mesh`; its vertices stay. O(m log m).
@@ -35,9 +35,9 @@ struct Hinge {
   std::vector<int> vertices;              ///< which both have, ascending
 };
 
-/// Where parts of one body (tetrahedra that hang together by whole faces, and what shares three vertices with
-/// them that are not in one line) meet in an edge, a vertex, or several in one line only. O(m log m) where
-/// parts are few.
+/// Finds the places where parts of one body are joined in an edge, a vertex, or several in one line only.
+/// Parts are tetrahedra that hang together by faces, and others with three common vertices not in one line.
+/// O(m log m) where parts are few.
 std::vector<Hinge> hinges(const TetMesh& mesh);
 
 }  // namespace palpate::sim

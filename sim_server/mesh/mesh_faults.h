@@ -1,5 +1,5 @@
 #pragma once
-/// What can be wrong with somebody's mesh, all of it at once, and what is done about it.
+/// Faults of a user's mesh, reported all at once, and their repair.
 #include <string>
 #include <vector>
 
@@ -7,10 +7,10 @@
 
 namespace palpate::sim {
 
-/// Whether a fault was mended, does no harm, or has to be dealt with by whoever made the mesh.
+/// Outcome of a fault: mended, harmless, or to be corrected by the author of the mesh.
 enum class Cure { kMended, kAccepted, kRefused };
 
-/// All faults of one kind.
+/// Faults of one kind.
 struct MeshFault {
   Cure cure;
   std::size_t count;

@@ -21,17 +21,19 @@ class PieceFinder {
   /// `held`: vertices that are fixed, ascending. O(m).
   PieceFinder(const CutMesh& mesh, std::span<const int> held);
 
-  /// What the removal of these tetrahedra, just now, has cut off: of each body that hung together before, all
-  /// pieces but one. That one is held, where any is, and else the largest; but it is told, too, where the
-  /// body was held until now and the last that held it is gone. Searches from the neighbours of what was
-  /// removed, in turns, until all of them have met but those of pieces that are at an end: O(what is cut off)
-  /// and a search of some tetrahedra around where nothing is; of a body that nothing holds O(that).
+  /// Returns the pieces that the removal of these tetrahedra, just now, has cut off. Of each body that hung
+  /// together before, they are all pieces but one. That one is a held piece, where any is held, and else the
+  /// largest. It is returned, too, where the body was held until now and its last support was removed.
+  /// Searches from the neighbours of the removed tetrahedra, in turns, until all searches have merged but
+  /// those that exhausted their piece. Cost O(pieces cut off), and a search of some tetrahedra around where
+  /// nothing is cut off; of a body without supports O(that).
   std::vector<Piece> cut_off(const CutMesh& mesh, std::span<const int> removed);
-  /// The same of faces that were parted, just now, between these tetrahedra, which are left.
+  /// Returns the pieces that were cut off by the separation of faces, just now, between these remaining
+  /// tetrahedra.
   std::vector<Piece> parted(const CutMesh& mesh, std::span<const int> tetrahedra);
 
  private:
-  /// What one search has reached, in order; from `next` on, what it has not looked around yet.
+  /// Tetrahedra that one search has reached, in order; those from `next` on have unvisited neighbours.
   struct Front {
     std::vector<int> reached;
     std::size_t next = 0;

@@ -38,8 +38,8 @@ struct OuterFaces {
   std::vector<OverlappingFace> overlaps;  ///< none in a solid
 };
 
-/// Of a `mesh` that is positively oriented, indices in range. The order depends on the mesh alone. O(m log
-/// m).
+/// Finds the outer faces of a `mesh` that is positively oriented, indices in range. The order depends on the
+/// mesh alone. O(m log m).
 OuterFaces outer_faces(const TetMesh& mesh);
 
 /// The faces of exactly one tetrahedron of `mesh` (as `outer_faces` needs it). Throws `Error` where faces

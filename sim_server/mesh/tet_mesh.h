@@ -69,7 +69,7 @@ double smallest_dihedral(const TetMesh& mesh, const Tetrahedron& t);
 /// The shortest distance from a corner of `t` to the face across from it, m.
 double shortest_height(const TetMesh& mesh, const Tetrahedron& t);
 
-/// What `sim_server mesh info` prints of a mesh that is in order.
+/// Figures that `sim_server mesh info` prints of a valid mesh.
 struct MeshInfo {
   int vertices = 0, edges = 0, tetrahedra = 0, boundary_vertices = 0, boundary_triangles = 0;
   double volume = 0;                            ///< m^3

@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene says of tissue that is cut.
+/// Settings of a scene for tissue that is cut.
 #include <optional>
 #include <string>
 #include <vector>

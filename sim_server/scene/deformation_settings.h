@@ -21,7 +21,7 @@ class DeformationSettings {
     if (!part.has_value()) part.emplace<Part>();
     return *std::any_cast<Part>(&part);
   }
-  /// The same; the defaults where there are none.
+  /// Returns the settings of type `Part`; the defaults where there are none.
   template <class Part>
   const Part& of() const {
     static const Part defaults{};

@@ -8,7 +8,7 @@
 
 namespace palpate::sim {
 
-/// One `[[fixed.motion]]` and the nodes it moves.
+/// Motion of one `[[fixed.motion]]` and the nodes it moves.
 struct HeldMotion {
   SupportMotion motion;
   /// Each and its displacement per displacement of the support, no unit, along the axes on which it is held.
@@ -21,11 +21,11 @@ double angle_at(const SupportMotion& motion, double t);
 /// amplitude x sin of that, m.
 double displacement_at(const SupportMotion& motion, double t);
 
-/// Whether any [[fixed]] of the scene has a motion.
+/// True if any [[fixed]] of the scene has a motion.
 bool supports_move(const Scene& scene);
 
-/// All motions of a scene, region by region. `held`: (vertices) of `mesh`. A corner in several [[fixed]]
-/// belongs to the first; a vertex in the middle of an edge that is held goes by the mean of its ends.
+/// Returns all motions of a scene, region by region. `held`: (vertices) of `mesh`. A corner in several
+/// [[fixed]] belongs to the first; a held vertex in the middle of an edge moves by the mean of its ends.
 std::vector<HeldMotion> held_motions(const Scene& scene, const TetMesh& mesh, std::span<const HeldAxes> held);
 
 }  // namespace palpate::sim

@@ -9,7 +9,7 @@
 
 namespace palpate::sim {
 
-/// What the [[load]] and [[fixed]] sections of a scene do to a body.
+/// Loads and supports on a body by the [[load]] and [[fixed]] sections of a scene.
 class Loads {
  public:
   /// Throws `Error` for a region that holds nothing, or a load on vertices that are all fixed.

@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene is: what its file asks for, section by section. An absent section means: not built.
+/// Scene as read from its file, section by section. An absent section means: not built.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -56,7 +56,7 @@ struct Load {
   double pressure = 0;       ///< Pa, against the outward normal
 };
 
-/// One `[[tool]]`.
+/// Settings of one `[[tool]]`.
 struct ToolSettings {
   Tool shape;
   std::optional<Reach> reach;  ///< absent: the whole organ
@@ -83,7 +83,8 @@ struct Scene {
   std::filesystem::path mesh_file;
   std::string mesh_where;  ///< "FILE:LINE" of `[mesh] file`
   double mesh_scale = 1;   ///< metres per unit of the mesh file, [1e-6, 1e3]
-  /// How often each tetrahedron of the file is `refined`, into eight; and `halved` for a half. 0, 0.5, ... 2.
+  /// Number of times that each tetrahedron of the file is `refined`, into eight; and `halved` for a half. 0,
+  /// 0.5, ... 2.
   double mesh_refinements = 0;
   std::vector<FixedRegion> fixed;
   std::vector<Load> loads{};
@@ -102,7 +103,7 @@ struct Scene {
     const auto found = std::ranges::find_if(tools, [](const auto& tool) { return tool.blade.has_value(); });
     return found == tools.end() ? nullptr : &*found;
   }
-  /// Whether nothing holds the body anywhere.
+  /// True if nothing holds the body anywhere.
   bool flies() const {
     const auto displaces = [](const Load& load) { return load.kind == Load::Kind::kDisplacement; };
     return fixed.empty() && std::none_of(loads.begin(), loads.end(), displaces);

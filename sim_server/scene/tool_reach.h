@@ -1,6 +1,6 @@
 #pragma once
-/// How far a tool gets: by `reach`, a box; by `[tool.workspace]`, what its device can do; or by
-/// `[tool.cone]`, where an instrument turns about its trocar. What lies beyond is not built.
+/// Reach of a tool: by `reach`, a box; by `[tool.workspace]`, the reach of its device; or by `[tool.cone]`,
+/// where an instrument turns about its trocar. Nothing is built beyond it.
 #include <variant>
 
 #include "sim_server/scene/regions.h"
@@ -16,16 +16,16 @@ struct Cone {
   double around = 0;  ///< m: what is no farther from it counts as inside
 };
 
-/// Where a tool's surface can get to.
+/// Region that a tool's surface can reach.
 using Reach = std::variant<Box, Cone>;
 
 /// Wider by `by` (m) on all sides.
 Reach widened(const Reach& reach, double by);
 
-/// Whether a triangle comes within reach; where that is not plain, true.
+/// Returns true if a triangle comes within reach, and where that is uncertain.
 bool may_meet(const Reach& reach, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
-/// Whether a tip at p is beyond what its workspace or cone said, by more than was added to them.
+/// True if a tip at p is beyond its workspace or cone, by more than the margin that was added.
 bool beyond(const Reach& reach, const Vec3& p_W) noexcept;
 
 }  // namespace palpate::sim

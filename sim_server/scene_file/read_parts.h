@@ -20,10 +20,10 @@ Load read_load(const Config& config);
 /// `[material]`.
 Material read_material(const Config& config);
 
-/// As `law` and `element` of `[material]` say it.
+/// Returns the name in `law` and `element` of `[material]`.
 std::string_view name_of(ElasticLaw law);
 std::string_view name_of(ElementKind element);
-/// All that can be said there, in the order in which they are told.
+/// Returns all allowed values of these keys, in their order in messages.
 std::vector<ElasticLaw> elastic_laws();
 std::vector<ElementKind> element_kinds();
 

@@ -3,7 +3,7 @@
 
 namespace palpate::sim {
 
-/// What a scene is read for: to be served, or to be solved without a tool, which needs neither [deformation]
+/// Purpose of reading a scene: to serve it, or to solve it without a tool, which needs neither [deformation]
 /// nor [[tool]].
 enum class Purpose { kServe, kSolve };
 

@@ -7,7 +7,7 @@
 
 namespace palpate::sim {
 
-/// What a server answered in a captured session, and to which tool state.
+/// Answer of a server in a captured session, with its tool state.
 struct CapturedAnswer {
   Time t{};                   ///< when it was captured, from the first of them
   protocol::ToolState state;  ///< as captured; where the capture lacks it, the place of the answer alone

@@ -19,7 +19,7 @@ class ForcePlayer {
   /// Plays until asked to stop; a new session begins at the first sample. Its own thread.
   void run(const std::stop_token& stop) noexcept;
 
-  /// For a watching thread: samples played in the session that is or was, and whether it came to the end.
+  /// Samples played in the present or last session, and whether it came to the end. For a watching thread.
   std::atomic<std::uint64_t> played{0};
   std::atomic<bool> ended{false};
 

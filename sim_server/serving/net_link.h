@@ -23,10 +23,11 @@ class NetLink {
   /// Read when `run` has returned.
   const protocol::LinkStats& stats() const { return stats_; }
 
-  /// For a watching thread.
+  /// Watcher of the link, for a watching thread.
   protocol::LinkWatcher watcher;
 
-  /// For a watching thread: whether somebody holds each tool, and how many sessions held it so far.
+  /// Sessions of a tool: whether somebody holds it, and how many sessions held it so far. For a watching
+  /// thread.
   struct ToolSessions {
     std::atomic<bool> held{false};
     std::atomic<int> so_far{0};

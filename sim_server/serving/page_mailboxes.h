@@ -24,7 +24,8 @@ struct ToolPageMailboxes {
   LatestValue<PeerCounts> peer;                 // network -> page, twenty times a second
 };
 
-/// Where pages are served. The bell of `SimMailboxes` is to be rung when a pointer waits.
+/// Mailboxes between the network thread and the page thread, where pages are served. Ring the bell of
+/// `SimMailboxes` when a pointer waits.
 struct PageMailboxes {
   std::array<ToolPageMailboxes, kMaxTools> tools;
   std::atomic<bool> wants_telemetry{false};  // while a page is open

@@ -14,7 +14,8 @@ namespace palpate::sim {
 struct SessionInput {
   std::uint64_t session = 0;
   protocol::ToolState state;
-  /// It came since the last step; an old pose deserves no new answer, as the client must see its age.
+  /// True if the state came since the last step. An old pose gets no new answer, as the client must see its
+  /// age.
   bool fresh = false;
   ToolPath path{};  ///< that led there; of use where contact is solved several times a step
 };
@@ -27,15 +28,15 @@ class ServedTools {
   /// `errors`: of the force, for answers that are to tell them; null: none does. Both outlive this.
   explicit ServedTools(Simulation& simulation, const ErrorOfForce* errors = nullptr);
 
-  /// What came of a step for one tool. `answer`: to a fresh pose only; the caller knows `step_ns`.
+  /// Outcome of a step for one tool. `answer`: to a fresh pose only; the caller knows `step_ns`.
   struct Outcome {
     ToolForce force;
     std::optional<protocol::ForceSample> answer;
   };
 
-  /// One step of `dt` (s), with an input for each tool. A tool that nobody holds, or whose device is lost, is
-  /// lifted; the others feel nothing of that but the tissue. The outcomes, one for each tool, stay valid
-  /// until the next step; there are none, and nothing happens, while nobody holds any tool.
+  /// Steps by `dt` (s), with an input for each tool. A tool that nobody holds, or whose device is lost, is
+  /// lifted; this affects the others only through the tissue. Returns an outcome for each tool, valid until
+  /// the next step. While nobody holds any tool, returns none and does nothing.
   std::span<const Outcome> step(std::span<const SessionInput> inputs, double dt) noexcept;
 
   /// While the simulation is paused: the last sample of this tool once more, with the next number, so that

@@ -34,13 +34,13 @@ struct SimMailboxes {
   Doorbell bell;
 };
 
-/// One stretch of a session.
+/// Cell of the time line of a session.
 struct StepCell {
   double steps = 0, step_ns_sum = 0, step_ns_max = 0, late = 0;
   StepCell& operator+=(const StepCell& other) noexcept;
 };
 
-/// What one tool did.
+/// Counts of one tool.
 struct ToolStats {
   std::uint64_t contact_steps = 0;
   std::uint64_t beyond_steps = 0;  ///< with its tip beyond its workspace or cone, where nothing is built
@@ -48,7 +48,7 @@ struct ToolStats {
   std::optional<double> nearest_m{};  ///< before it first touched, looked at ten times a second
 };
 
-/// What the loop measured; read it when the loop has ended.
+/// Measurements of the loop; read them when the loop has ended.
 struct SimLoopStats {
   Timeline<StepCell> timeline;
   Histogram step_ns, contact_step_ns;  ///< all steps, and those with a tool in contact
@@ -60,7 +60,7 @@ struct SimLoopStats {
   double max_newton() const noexcept;
 };
 
-/// One turn of the loop, as somebody who looks on sees it.
+/// State of one turn of the loop, for an observer.
 struct LoopTurn {
   std::span<const SessionInput> inputs;            ///< of each tool
   std::span<const ServedTools::Outcome> outcomes;  ///< of each tool; empty: no step was made
@@ -80,7 +80,7 @@ class LoopObserver {
     bool step = true, paused = false;
   };
   virtual Leave may_step() noexcept = 0;
-  /// At the end of each turn, when the forces are out.
+  /// Called at the end of each turn, when the forces are sent.
   virtual void turned(const LoopTurn& turn) noexcept = 0;
 };
 

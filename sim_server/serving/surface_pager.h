@@ -24,7 +24,7 @@ class SurfacePager {
 
   /// Which vertex of the surface each vertex of the model is.
   std::span<const int> vertices() const { return vertices_; }
-  /// Where its vertices are at rest, in their order, m.
+  /// Returns the rest positions of its vertices, in their order, m.
   std::span<const Vec3> rest() const { return rest_; }
 
   /// Fills in a page of `state().version`, or says in its number that it is not known yet; false when it has

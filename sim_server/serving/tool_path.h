@@ -11,8 +11,8 @@ namespace palpate::sim {
 /// The pose in a tool state; an orientation that is none is taken for no turn.
 ToolPose pose_of(const protocol::ToolState& state) noexcept;
 
-/// Where a tool was lately, from the tool states that its client sends each tick, by the client's clock. No
-/// allocation; copied whole between threads, 6 kB.
+/// Recent path of a tool, from the tool states that its client sends each tick, by the client's clock. No
+/// allocation; copied between threads as one value, 6 kB.
 class ToolPath {
  public:
   /// The newest state; one that is not later than those before changes nothing, but where it is earlier by
@@ -25,8 +25,8 @@ class ToolPath {
     ToolPose pose;
     Vec3 v_W = Vec3::Zero();  // m/s
   };
-  /// At a time from the oldest state that is known to the newest, straight between two of them; nothing at
-  /// other times.
+  /// Returns the point at a time from the oldest known state to the newest, linear between two of them;
+  /// nothing at other times.
   std::optional<Point> at(std::int64_t t_ns) const noexcept;
 
  private:

@@ -16,11 +16,11 @@ class StepClock {
   virtual ~StepClock() = default;
   /// A step begins at `t` of virtual time.
   virtual void begin(Time t) = 0;
-  /// It is done: what it took.
+  /// Ends the step and returns the time that it took.
   virtual Time took() = 0;
 };
 
-/// How a session in virtual time runs. Hz and s.
+/// Settings of a session in virtual time. Hz and s.
 struct VirtualLink {
   double rate_hz, ticks_hz;
   Time delay{};          ///< from reading the tool to having its force in the client

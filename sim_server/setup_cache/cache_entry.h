@@ -10,7 +10,7 @@
 
 namespace palpate::sim {
 
-/// What the header of an entry says.
+/// Header of an entry.
 struct EntryHeader {
   Digest key{};
   std::uint64_t rows = 0, cols = 0;
@@ -43,8 +43,8 @@ std::string note_of_saved(const MappedMatrix& kept, std::string_view source = "t
 void write_entry(const std::filesystem::path& file, const EntryHeader& header,
                  const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
-/// Whether a file is called KEY.setup (32 digits), as no other program calls its own: a folder may be
-/// anybody's.
+/// True if a file is called KEY.setup (32 digits), as no other program calls its own: the folder may belong
+/// to anybody.
 bool is_entry_name(std::string_view name);
 
 /// Removes what writers that were interrupted left in a folder, if it has not changed for so long; how many

@@ -4,19 +4,19 @@
 
 namespace palpate::sim {
 
-/// What `sim_server condense` computes of a scene, in a folder: matrices that take the set-up of a large body
-/// long, as files of the set-up cache, but under keys that any build on any processor finds again
-/// (`Fingerprint::For::kAnyBuild`). Set-up only; one thread.
+/// Matrices that `sim_server condense` computes of a scene, in a folder. They take most of the set-up time of
+/// a large body. They are stored as files of the set-up cache, but under keys that any build on any processor
+/// finds again (`Fingerprint::For::kAnyBuild`). Set-up only; one thread.
 class Condensed {
  public:
-  /// To take from: nothing is made. Throws `Error` where there is no such folder.
+  /// Opens a folder for reading; makes nothing. Throws `Error` where there is no such folder.
   explicit Condensed(std::filesystem::path folder);
-  /// To make what is not in the folder, with factors by `make_factor`. Throws `Error` where nothing can be
-  /// kept there.
+  /// Opens a folder, to make what is not in it, with factors by `make_factor`. Throws `Error` where nothing
+  /// can be stored there.
   Condensed(std::filesystem::path folder, MakeFactor make_factor);
 
   bool makes() const { return static_cast<bool>(make_factor_); }
-  /// Where it makes. Throws what `make_factor` throws.
+  /// Returns a factor by `make_factor`, if `makes()`. Throws what `make_factor` throws.
   std::unique_ptr<FactoredMatrix> factor(const SparseMatrix& lower, std::span<const int> kept, FactorUse use,
                                          const std::string& where) const {
     return make_factor_(lower, kept, use, where);

@@ -13,14 +13,14 @@ using Digest = std::array<std::uint64_t, 2>;
 /// 32 hexadecimal digits.
 std::string to_text(const Digest& digest);
 
-/// Of some bytes.
+/// Returns the digest of some bytes.
 Digest digest_of(std::span<const std::byte> bytes);
 
 /// A hash of all that a result follows from.
 class Fingerprint {
  public:
-  /// For whom results are. `kThisBuild` begins with the program's own bytes and the processor's name and
-  /// features: another build, or another processor, rounds otherwise.
+  /// Scope in which results are valid. The key for `kThisBuild` starts with the program's own bytes and the
+  /// processor's name and features: another build, or another processor, rounds otherwise.
   enum class For { kThisBuild, kAnyBuild };
   explicit Fingerprint(For whom = For::kThisBuild);
   ~Fingerprint();

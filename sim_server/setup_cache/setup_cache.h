@@ -6,7 +6,7 @@
 
 namespace palpate::sim {
 
-/// What set-ups computed, in a folder. Several programs may use one at once. Set-up only; one thread.
+/// Cache of set-up results in a folder. Several programs may use one at once. Set-up only; one thread.
 class SetupCache {
  public:
   /// The folder is made when something is kept. `most_bytes`: beyond, the entries not used for longest go.

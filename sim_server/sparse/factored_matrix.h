@@ -30,17 +30,17 @@ class FactoredMatrix {
   /// Rows of one group of unknowns, (its unknowns x m): those columns are there that belong to the groups
   /// `with`, of which `group` is one.
   using TakeRows = std::function<void(int group, std::span<const int> with, const Eigen::MatrixXd& rows)>;
-  /// The same block without holding all of it: `unknowns` are in groups, of which each one `begins` where it
-  /// is told, the last of these being m. Calls `take` once for each group, from several threads at once, so
-  /// that each pair of groups is there once; what one call gets does not depend on the number of threads.
-  /// Here by `inverse_block`: throws `Error` where there is no memory for all of the block.
+  /// Computes that block without holding all of it. `unknowns` are in groups that start at `begins`, whose
+  /// last entry is m. Calls `take` once for each group, from several threads at once, so that each pair of
+  /// groups comes once. The arguments of one call do not depend on the number of threads. This default uses
+  /// `inverse_block`: throws `Error` where there is no memory for all of the block.
   virtual void inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
                             const std::function<void(double)>& progress) const;
-  /// Of the factor that this process holds.
+  /// Returns the memory of the factor that this process holds, bytes.
   virtual std::size_t bytes() const { return 0; }
 };
 
-/// What a factor will be asked: of one that need not solve, less has to be held.
+/// Use of a factor; one that need not solve takes less memory.
 enum class FactorUse { kInverse, kInverseAndSolve };
 
 /// Factors the matrix whose lower triangle is given. `kept`: the unknowns of which `inverse_block` will be

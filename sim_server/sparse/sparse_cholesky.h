@@ -14,10 +14,11 @@ namespace palpate::sim {
 /// is the one file that knows which. Set-up and background threads only.
 class SparseCholesky final : public FactoredMatrix {
  public:
-  /// Of the numbers of the factor. Single takes half the memory and time, and serves where what is solved for
-  /// is looked at again: answers are right to some 1e-6 of their size times the condition of the matrix.
-  /// Where the first matrix leaves more than a thousandth of a load, or a later one is positive definite only
-  /// in double precision, double is taken instead, for good, as far as memory is free.
+  /// Precision of the numbers of the factor. Single takes half the memory and time, and serves where the
+  /// solution is corrected by its residual. Its answers are right to some 1e-6 of their size times the
+  /// condition of the matrix. Double is taken instead, for good, as far as memory is free, in two cases. In
+  /// the first matrix, more than a thousandth of a load remains; or a later matrix is positive definite only
+  /// in double precision.
   enum class Precision { kDouble, kSingle };
 
   /// Factors the matrix whose lower triangle is given, in 3 x 3 blocks as `StiffnessMatrix` has them. Throws
@@ -41,20 +42,20 @@ class SparseCholesky final : public FactoredMatrix {
   /// The next `refactor` is of a matrix of this pattern; until then there is no factor.
   void take_pattern(const SparseMatrix& lower);
 
-  /// Of the matrix factored last: where the factor leaves more than a thousandth of a load, it is of no use,
-  /// and the next is in double precision. Cost of a solve.
+  /// Checks the factor of the matrix factored last. Where more than a thousandth of a load remains, the
+  /// factor is of no use, and the next is in double precision. Cost of a solve.
   void check_precision(const SparseMatrix& lower);
 
   /// Several threads may ask at once.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const override;
 
-  /// On all cores, the same bytes on any number of them. Any `unknowns`.
+  /// Computes the block on all cores, with the same bytes on any number of them. Any `unknowns`.
   void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
                      const std::function<void(double)>& progress) const override;
   void inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
                     const std::function<void(double)>& progress) const override;
 
-  /// Of the factor that there is.
+  /// Returns the precision of the present factor.
   Precision precision() const;
   std::size_t bytes() const override;
   /// That one factorisation takes, counted from the pattern.

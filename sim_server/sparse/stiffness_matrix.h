@@ -23,7 +23,7 @@ struct FreeDofs {
   std::vector<HeldAxes> held;  ///< (n nodes)
   int count = 0;               ///< number of unknowns
 
-  /// Of nodes of which some are fixed.
+  /// Numbers the unknowns of nodes of which some are fixed.
   FreeDofs(int nodes, const std::vector<int>& fixed);
   explicit FreeDofs(std::vector<HeldAxes> held_axes);
 
@@ -52,7 +52,7 @@ class StiffnessMatrix {
   void add(int i, int j, const Mat3& block) noexcept;
   /// Threads may add at once, each what is of a share of its own.
   static constexpr std::size_t kShares = 4;
-  /// Whether the block that `add` would change is of this share.
+  /// True if the block that `add` would change belongs to the group `share` of blocks.
   bool is_of_share(std::size_t share, int i, int j) const noexcept {
     return static_cast<std::size_t>(std::min(block_[i], block_[j])) % kShares == share;
   }

@@ -35,8 +35,8 @@ class SupernodalFactor {
   /// above it in the tree, and by symmetry rows before it are not computed.
   void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
                      const std::function<void(double)>& progress) const;
-  /// As `FactoredMatrix::inverse_rows`: groups are taken in the order of elimination too. Memory: on each
-  /// core the rows of a group, and 96 columns of all n.
+  /// Computes the rows as `FactoredMatrix::inverse_rows`, with groups in the order of elimination. Memory: on
+  /// each core the rows of a group, and 96 columns of all n.
   void inverse_rows(std::span<const int> unknowns, std::span<const int> begins,
                     const FactoredMatrix::TakeRows& take, const std::function<void(double)>& progress) const;
 

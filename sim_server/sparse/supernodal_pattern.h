@@ -7,10 +7,10 @@
 
 namespace palpate::sim {
 
-/// What a sparse Cholesky factor L of a matrix has for a pattern, before any number: the order in which
-/// unknowns are eliminated, and supernodes, which are neighbouring columns of L kept as one dense block (Ng
-/// and Peyton 1993, SIAM J. Sci. Comput. 14:1034). CHOLMOD's analysis finds both (Chen et al. 2008, ACM
-/// Trans. Math. Softw. 35:22). Set-up only.
+/// Pattern of a sparse Cholesky factor L of a matrix, before any number: the order of elimination and the
+/// supernodes. Supernodes are neighbouring columns of L stored as one dense block (Ng and Peyton 1993, SIAM
+/// J. Sci. Comput. 14:1034). CHOLMOD's analysis finds both (Chen et al. 2008, ACM Trans. Math. Softw. 35:22).
+/// Set-up only.
 struct SupernodalPattern {
   /// Rows `from` to `to` of a supernode are columns of another, which takes its update from there down.
   struct Update {
@@ -21,14 +21,14 @@ struct SupernodalPattern {
     int begin, end;
   };
 
-  /// Of a matrix whose lower triangle is given in 3 x 3 blocks (`StiffnessMatrix`): the order is that of the
-  /// graph of its nodes, by METIS, or by AMD where CHOLMOD has none. `countable` is false, and the rest
-  /// empty, where L has more than 2^31 entries. Throws `std::bad_alloc`.
+  /// Analyses a matrix whose lower triangle is in 3 x 3 blocks (`StiffnessMatrix`). The order is that of the
+  /// graph of its nodes, by METIS, or by AMD where CHOLMOD has none. `countable` is false, and the other
+  /// members are empty, where L has more than 2^31 entries. Throws `std::bad_alloc`.
   explicit SupernodalPattern(const SparseMatrix& lower);
 
   int supernodes() const { return static_cast<int>(first.size()) - 1; }
   int columns(int s) const { return first[s + 1] - first[s]; }
-  /// Those of L's rows that a supernode has: its own columns, then others below.
+  /// Returns the rows of L that a supernode has: its own columns, then others below.
   std::span<const int> rows_of(int s) const {
     return std::span(rows).subspan(rows_begin[s], rows_begin[s + 1] - rows_begin[s]);
   }

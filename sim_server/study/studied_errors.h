@@ -13,7 +13,7 @@ namespace palpate::sim {
 void keep_studied(const SetupCache& cache, const Scene& scene, const DiscretisationErrors& errors,
                   double seconds);
 
-/// What a study of this scene measured; nothing where there was none.
+/// Returns the errors that a study of this scene measured; nothing where there was none.
 std::optional<DiscretisationErrors> find_studied(const SetupCache& cache, const Scene& scene);
 
 }  // namespace palpate::sim

@@ -3,16 +3,16 @@
 
 namespace palpate::sim {
 
-/// How far a case is from the reference, %.
+/// Error of a case against the reference, %.
 struct StudyErrors {
   /// Mean of |F - F_ref| over the steps in which either touches, of the root mean square of F_ref there.
   double force = 0;
   double worst_force = 0;  ///< the largest |F - F_ref| of a step, of the same
   /// Root mean square over all sites and steps of |u - u_ref|, of that of u_ref.
   double surface = 0;
-  /// As `force`, of what a client renders at 1 kHz: each step begins with the tool's place then, takes its
-  /// whole `dt`, and its force comes `latency` later, with the tangent by which the client goes on: F + K
-  /// (x(t) - x of the step).
+  /// Error of the force that a client renders at 1 kHz, measured as `force`. Each step starts with the tool's
+  /// place then, takes its full `dt`, and its force comes `latency` later. The client extrapolates with its
+  /// tangent: F + K (x(t) - x of the step).
   double felt = 0;
   std::vector<double> along;  ///< (steps) |F - F_ref|, of the same root mean square
 };

@@ -3,7 +3,7 @@
 
 namespace palpate::sim {
 
-/// What `sim_server study` was asked for.
+/// Options of `sim_server study`.
 struct StudyOptions {
   std::filesystem::path scene, out;
   std::vector<std::filesystem::path> meshes;        ///< of the same organ, coarser or finer
@@ -13,7 +13,7 @@ struct StudyOptions {
   bool quick = false;
 };
 
-/// One way to compute the scene.
+/// Case of a study: one way to compute the scene.
 struct StudyCase {
   std::string axis;  ///< along which it differs from the scene: "scene", "model", "element", "mesh", ...
   Scene scene;       ///< its own mesh file; fixed regions as `surface_tag`s that refinement keeps
@@ -25,7 +25,7 @@ struct StudyCase {
   std::string name() const;
 };
 
-/// All of a study: the scene's own setting, one axis at a time around it, and what they are held against.
+/// Plan of a study: the scene's own setting, one axis at a time around it, and the reference for all.
 struct StudyPlan {
   std::vector<StudyCase> cases;
   StudyCase reference;  ///< same law, a short step, on the finest mesh or element that is affordable

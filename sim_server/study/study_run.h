@@ -5,7 +5,7 @@
 
 namespace palpate::sim {
 
-/// What one case gave along the motion; N, N/m, m, s. Step k ends at time (k + 1) / rate of its scene.
+/// Results of one case along the motion; N, N/m, m, s. Step k ends at time (k + 1) / rate of its scene.
 struct Trace {
   double dt = 0;
   std::vector<Vec3> places, forces;  ///< (steps) of the tool, on the tool
@@ -30,8 +30,8 @@ Trace run_case(const StudyCase& one, const Trajectory& motion, double seconds, s
 /// The box of a motion, larger by `margin` (m) on all sides.
 Box around(const Trajectory& motion, double margin);
 
-/// Where displacement is compared: at most 1500 surface vertices of the scene's own mesh in a box, at rest,
-/// m.
+/// Returns the sites where displacement is compared: at most 1500 surface vertices of the scene's own mesh in
+/// a box, at rest, m.
 std::vector<Vec3> compared_sites(const StudyCase& one, const Box& box);
 
 /// Writes a trace so that it reads back bit by bit. Throws `Error`.

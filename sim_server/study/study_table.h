@@ -16,7 +16,7 @@ struct StudyRow {
   bool on_front = false;  ///< no other row has a smaller error of the force at no more time a step
 };
 
-/// What a study found.
+/// Result of a study.
 struct StudyResult {
   StudyErrors own;  ///< of the check against the reference, which bounds the reference's own
   std::vector<StudyRow> rows;
@@ -29,9 +29,9 @@ struct StudyResult {
 void mark_front(std::vector<StudyRow>& rows);
 /// A table for a terminal, best front first.
 std::string to_text(const StudyResult& result);
-/// One sentence, and TOML to paste into the scene: of the cases on meshes that are files, of those that
-/// take no more than `budget_ms` a step (median), and no longer than their own step in time, the one
-/// that is felt with the smallest error. `asked`: the scene itself.
+/// Returns advice: one sentence, and TOML to paste into the scene. It names the case with the smallest error
+/// of the rendered force, among the cases on meshes that are files. Their median time a step must exceed
+/// neither `budget_ms` nor their own time step. `asked`: the scene itself.
 std::string advice(const StudyResult& result, double budget_ms, const Scene& asked);
 /// rows.csv, timing.csv, along.csv, reference.csv (tool and force, step by step) and summary.json. Throws
 /// `Error`.

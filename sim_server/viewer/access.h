@@ -10,7 +10,7 @@
 
 namespace palpate::sim {
 
-/// Where the page is served.
+/// Address of the page.
 struct ViewerAddress {
   protocol::Endpoint endpoint;
   std::string typed{};  ///< the host, as somebody typed it
@@ -20,12 +20,12 @@ struct ViewerAddress {
 /// that begins with "--viewer".
 std::optional<ViewerAddress> read_viewer_address(const std::string& text);
 
-/// Whether a page asked for the server by a name that is its own: an IP address, "localhost", this machine's
-/// name, or the one that was typed. Somebody else's name that leads here (DNS rebinding) is none. `host`: the
-/// header Host, with or without a port.
+/// True if a page requested the server by a name that is its own: an IP address, "localhost", this machine's
+/// name, or the one that was typed. A foreign name that resolves to this machine (DNS rebinding) is none.
+/// `host`: the header Host, with or without a port.
 bool host_is_ours(std::string_view host, std::string_view typed);
 
-/// Whether the page that opens a WebSocket came from the same place as this: `origin` is http(s)://`host`.
+/// True if the page that opens a WebSocket came from this server: `origin` is http(s)://`host`.
 bool same_origin(std::string_view origin, std::string_view host);
 
 using PageToken = std::array<std::uint8_t, 16>;

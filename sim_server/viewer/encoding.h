@@ -8,7 +8,7 @@ namespace palpate::sim {
 
 using Bytes = std::vector<std::byte>;
 
-/// Where positions of 16 bits a coordinate lie: min + size q / 65535, m.
+/// Box of positions of 16 bits a coordinate: min + size q / 65535, m.
 struct ViewBox {
   std::array<float, 3> min{}, size{};
 };
@@ -28,8 +28,8 @@ struct SurfaceStamp {
   std::uint32_t version = 0, step = 0;
   double t = 0;  ///< s
 };
-/// What moved: the vertices of `now` (3 n) that are elsewhere in `had`, which follows. `whole`: all of them;
-/// also where that is shorter.
+/// Writes the moved vertices: those of `now` (3 n) that differ from `had`, and updates `had`. `whole`: writes
+/// all of them; also where `had` is shorter.
 void write_surface(const SurfaceStamp& stamp, std::span<const std::uint16_t> now,
                    std::span<std::uint16_t> had, bool whole, Bytes& out);
 

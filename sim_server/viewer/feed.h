@@ -23,7 +23,7 @@ class ViewerFeed {
   TripleBuffer<Picture> pictures;
   /// (k) of the mesh, m: the same way, while `wants_field`.
   TripleBuffer<std::vector<Vec3>> nodes;
-  /// What the page's thread fills in itself, of each tool, in `hooks.news`.
+  /// Data that the page's thread fills in itself, of each tool, in `hooks.news`.
   std::array<SeenPeer, kMaxTools> peers{};
   std::array<SeenClient, kMaxTools> clients{};
   std::array<std::uint64_t, kMaxTools> client_news{};  ///< how many came so far
@@ -32,11 +32,11 @@ class ViewerFeed {
   struct Hooks {
     std::function<void(Time now)> news;
     std::function<void(const PagePointer&)> point;
-    /// What the surface is coloured by, J/m3 of each of its vertices, where the nodes are so.
+    /// Computes the colour values of the surface, J/m3 of each of its vertices, for these node positions (m).
     std::function<void(std::span<const Vec3> nodes, std::vector<float>& values)> field;
   } hooks;
 
-  /// What pages want; written by the page's thread. Any thread may read.
+  /// Requests of pages; written by the page's thread. Any thread may read.
   std::atomic<int> pages{0};             ///< how many are open: with none, nobody needs to fill anything in
   std::atomic<bool> wants_field{false};  ///< one of them colours the organ by what is inside
   std::atomic<bool> paused{false};       ///< no steps but those of `steps`

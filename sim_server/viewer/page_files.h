@@ -10,7 +10,7 @@ struct PageFile {
   std::span<const char> bytes;
 };
 
-/// What is served at this path; null: nothing.
+/// Returns the file that is served at this path; null: nothing.
 const PageFile* page_file(std::string_view path);
 
 }  // namespace palpate::sim

@@ -1,5 +1,5 @@
 #pragma once
-/// What one page has got, and what it is due. No clock, no socket: time is an argument.
+/// State of one page: the data it has, and the data it is due. No clock, no socket: time is an argument.
 #include <optional>
 
 #include "common/time.h"
@@ -10,7 +10,7 @@
 
 namespace palpate::sim {
 
-/// What there is to show: the newest of everything, the same for all pages. Filled by the page's thread.
+/// Newest data of everything to show, equal for all pages. Filled by the page's thread.
 struct Showing {
   const SceneFacts* scene = nullptr;
   bool live = true;  ///< false: nothing but the scene is sent, the rest stands in `/session`
@@ -39,9 +39,9 @@ class PageLink {
  public:
   explicit PageLink(Time opened) : opened_(opened), messages_(kMessagesPerSecond, kMessagesPerSecond) {}
 
-  /// Whether one more message from the page may come.
+  /// Takes one token; true if one more message from the page may come.
   bool may_say(Time now) noexcept { return messages_.take(now); }
-  /// Whether it should have said hello by now.
+  /// True if the page has sent no hello within `kHelloWithin`.
   bool too_quiet(Time now) const noexcept { return !greeted_ && now - opened_ > kHelloWithin; }
 
   void greet(bool may_control) noexcept { greeted_ = true, may_control_ = may_control; }
@@ -49,9 +49,9 @@ class PageLink {
   bool may_control() const noexcept { return may_control_; }
   void want_field(bool wants) noexcept { wants_field_ = wants; }
   bool wants_field() const noexcept { return wants_field_; }
-  /// It drew the surface of this step, so those before are no longer on their way.
+  /// Marks the surface of this step as drawn by the page, so earlier ones are no longer on their way.
   void shown(std::uint32_t step) noexcept;
-  /// It moved a tool, or pressed its buttons.
+  /// Takes the pointer of the page: it moved a tool, or pushed its buttons.
   void pointed(const PagePointer& pointer);
   /// The tools whose buttons it holds down, where it left them, with these up: of a page that is gone.
   std::vector<PagePointer> released() const;

@@ -1,5 +1,5 @@
 #pragma once
-/// What a page says, read with suspicion. No clock, no socket.
+/// Messages from a page, parsed without trust. No clock, no socket.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +15,8 @@ struct PageHello {
 struct PageWant {
   std::string field;  ///< empty: none
 };
-/// It drew the surface of this step: of pages that say so, none has more than a few on their way.
+/// Message that the page drew the surface of this step. Pages that send it never have more than a few
+/// surfaces on their way.
 struct PageShown {
   std::uint32_t step = 0;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// What a page is shown, as small structs: nothing here knows how a session is served.
+/// Data that a page shows, as small structs, independent of how a session is served.
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -21,7 +21,7 @@ struct OrganShape {
   static constexpr std::uint8_t kFixed = 1, kInReach = 2;
 };
 
-/// What a page is told of the scene before anything moves.
+/// Facts of the scene that the page gets before anything moves.
 struct SceneFacts {
   std::string title, file, model;
   double rate_hz = 0;
@@ -40,7 +40,7 @@ struct SeenLoad {
   std::array<float, 3> force{};
 };
 
-/// One tool after a step. World frame, m, N.
+/// State of one tool after a step. World frame, m, N.
 struct SeenTool {
   static constexpr std::size_t kMostLoads = 64;
   bool held = false, contact = false, flagged = false;
@@ -48,7 +48,7 @@ struct SeenTool {
   Vec3 f_W = Vec3::Zero();
   std::size_t load_count = 0;  ///< of `loads`, at most `kMostLoads`: the rest is not shown
   std::array<SeenLoad, kMostLoads> loads{};
-  /// Of its newest force sample; number 0: none yet.
+  /// Newest force sample of the tool; number 0: none yet.
   struct Sample {
     std::uint64_t number = 0;
     double t = 0;  ///< s, as `Picture::t`
@@ -58,8 +58,8 @@ struct SeenTool {
   DiscretisationErrors errors{};  ///< of that force, where its client asks for them
 };
 
-/// What a resection has come to. m^3, m^2, m. Distances are from the plan: of what heat removed, and of what
-/// a blade parted; NaN where there is none.
+/// Results of a resection. m^3, m^2, m. Distances are from the plan: of tissue removed by heat, and of faces
+/// separated by a blade; NaN where there is none.
 struct SeenResection {
   std::uint64_t tetrahedra = 0;  ///< gone
   double volume = 0, cut_area = 0;
@@ -76,7 +76,8 @@ struct Picture {
   double step_ms = 0;            ///< how long the newest took
   std::uint64_t late = 0;        ///< deadlines passed over
   std::vector<float> positions;  ///< (3 n), m, world
-  /// In how many steps so far tissue has been removed; and the triangles since, where it is more than 0.
+  /// Number of steps so far in which tissue has been removed; and the triangles since, where it is more than
+  /// 0.
   std::uint32_t cuts = 0;
   std::vector<Triangle> triangles{};
   std::optional<SeenResection> resection{};  ///< of an organ that can be cut
@@ -90,7 +91,7 @@ struct SeenPeer {
   double loss_percent = 0, rate_hz = 0;
 };
 
-/// Where the mouse of a page wants a tool. `number` grows with each.
+/// Tool position that the mouse of a page requests. `number` grows with each.
 struct PagePointer {
   std::uint8_t tool = 0;
   Vec3 p_W = Vec3::Zero();  ///< m
@@ -98,7 +99,7 @@ struct PagePointer {
   std::uint64_t number = 0;
 };
 
-/// What only the client of a tool knows, about ten times a second while a page is open.
+/// State that only the client of a tool knows, about ten times a second while a page is open.
 struct SeenClient {
   static constexpr std::size_t kMostLaws = 16, kMostInterventions = 16, kMostStates = 8;
   using Name = std::array<char, 32>;  ///< ended by 0

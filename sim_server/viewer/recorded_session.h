@@ -3,14 +3,15 @@
 
 namespace palpate::sim {
 
-/// What a page would have got of a session, as records one after the other (MESSAGES.md, "Sessions in a
-/// file"), so that it can be played and searched. Time is the session's own. Holds all of it in memory.
+/// Records that a page would have got of a session, one after the other (MESSAGES.md, "Sessions in a file"),
+/// so that it can be played and searched. Time is the session's own. Holds all of it in memory.
 class RecordedSession {
  public:
   /// `scene` outlives this.
   explicit RecordedSession(const SceneFacts& scene);
 
-  /// To be filled, whole but for its positions where the organ did not move, before `add`.
+  /// Returns the picture to fill before `add`: completely, but for its positions where the organ did not
+  /// move.
   Picture& picture() noexcept { return picture_; }
   /// Adds what a page gets of it at `t` >= those before; at least `PageLink::kSurfaceEach` apart it gets all.
   /// False where the session would be longer than `kLongest`, and nothing is added.

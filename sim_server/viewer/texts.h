@@ -11,7 +11,7 @@ namespace palpate::sim {
 /// `may_control`: this page has the token.
 std::string scene_text(const SceneFacts& scene, bool may_control);
 
-/// How fast a session goes, as measured over the last second; no number: not known yet.
+/// Speed of a session, as measured over the last second; NaN: not known yet.
 struct MeasuredRates {
   double steps_hz = std::numeric_limits<double>::quiet_NaN();
   double real_time_factor = std::numeric_limits<double>::quiet_NaN();  ///< s of tissue a second

@@ -26,7 +26,7 @@ class Viewer {
          const Bytes* session = nullptr);
   ~Viewer();
 
-  /// With the port that the system chose.
+  /// Returns the address, with the port that the system chose.
   const protocol::Endpoint& endpoint() const;
 
   /// Serves until `stop`. One thread.
