@@ -18,12 +18,10 @@ Triangle ascending(Triangle t) {
 }
 
 /// The vertices of a surface with those of what may be removed, ascending.
-std::vector<int> all_vertices(const Surface& surface, const TetMesh& mesh,
-                              std::span<const char> removable) {
+std::vector<int> all_vertices(const Surface& surface, const TetMesh& mesh, std::span<const char> removable) {
   std::vector<int> all = surface.vertices;
   for (std::size_t t = 0; t < removable.size(); ++t) {
-    if (removable[t] != 0)
-      all.insert(all.end(), mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
+    if (removable[t] != 0) all.insert(all.end(), mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
   }
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());

@@ -165,8 +165,7 @@ TEST_CASE("a vertex that is held, or beside what cannot be cut, stays one") {
   TetMesh mesh = deep_block({4, 2, 4});
   Surface surface = boundary_surface(mesh);
   std::vector<char> removable;
-  for (const Tetrahedron& t : mesh.tetrahedra)
-    removable.push_back(centre_of(mesh, t).z() > 0 ? 1 : 0);
+  for (const Tetrahedron& t : mesh.tetrahedra) removable.push_back(centre_of(mesh, t).z() > 0 ? 1 : 0);
   std::vector<int> held;
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
     if (mesh.vertices[v].y() < -0.019) held.push_back(v);
