@@ -35,8 +35,7 @@ struct KeyBench {
 }  // namespace
 
 #ifdef PALPATE_WITH_CAPTURE
-TEST_CASE("keys: with the same key a session is as ever, and every datagram of the capture has a tag of it",
-          "[in_time]") {
+TEST_CASE("keys: with the same key a session is as ever, and every datagram of the capture has a tag of it") {
   const KeyBench bench;
   const std::string capture = (bench.folder.path() / "F.pcap").string();
   Server server(bench.with_key());
@@ -62,7 +61,8 @@ TEST_CASE("keys: with the same key a session is as ever, and every datagram of t
 }
 #endif
 
-TEST_CASE("keys: another key, none, or one where the server has none: exit 1, and what to look at") {
+TEST_CASE("keys: another key, none, or one where the server has none: exit 1, and what to look at",
+          "[beside]") {
   const KeyBench bench, other;
   Server keyed(bench.with_key());
   for (const auto& more : {std::vector<std::string>{"--key", other.key}, std::vector<std::string>{}})
@@ -144,8 +144,7 @@ std::size_t state(std::uint64_t k, std::span<std::byte> out) {
 }  // namespace
 
 TEST_CASE(
-    "keys: an established session keeps its rate under floods, and a client that joins under one gets in",
-    "[in_time]") {
+    "keys: an established session keeps its rate under floods, and a client that joins under one gets in") {
   const KeyBench bench;
   for (const bool keyed : {false, true}) {
     const auto more = [&](std::vector<std::string> all) { return keyed ? bench.with_key(all) : all; };
@@ -176,8 +175,7 @@ TEST_CASE(
 }
 #endif
 
-TEST_CASE("commtest: a good link on loopback passes, nobody there is exit 1, wrong use is exit 2",
-          "[in_time]") {
+TEST_CASE("commtest: a good link on loopback passes, nobody there is exit 1, wrong use is exit 2") {
   const TemporaryFolder folder;
   const std::string json = (folder.path() / "link.json").string();
   Server server;
@@ -233,8 +231,7 @@ TEST_CASE(
   CHECK(std::get<Refuse>(answers[0].message).reason == RefuseReason::kVersion);
 }
 
-TEST_CASE("pages: what one ask names several times is sent once, and asks without end get a budget of them",
-          "[in_time]") {
+TEST_CASE("pages: what one ask names several times is sent once, and asks without end get a budget of them") {
   Server server;
   UdpSocket socket(resolve("127.0.0.1:0", "test"));
   const Endpoint to = resolve(server.address, "test");
