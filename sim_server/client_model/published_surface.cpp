@@ -13,8 +13,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kCalm = 0.1;  // s without a cut before it is worth beginning
-// s that the background may take: some 1.5 times what one core of the reference machine of `StepCosts`
-// needs.
+// Time that the background may take, s: some 1.5 times what one core of a Zen 3 needs.
 constexpr double kLeast = 0.1, kBodyOfTetrahedron = 5e-5, kSurfaceOfTetrahedron = 1.1e-5;
 // Of the radius of a ball around a tool: so far from its middle the next one is begun; and so far from it a
 // tool may be expected before another shape is told.

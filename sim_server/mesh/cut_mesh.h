@@ -31,8 +31,8 @@ struct Parting {
 /// four face neighbours: O(1), whatever the size of the mesh. Faces between two remaining tetrahedra become
 /// surface when one of them is removed, outward from the other; faces on the surface vanish with their
 /// tetrahedron. So the surface stays closed: each edge is on an even number of triangles, of opposite turns.
-/// Where the remaining mesh is joined in an edge or a vertex only, the surface is not one sheet. The tissue
-/// is joined by a hinge or a ball joint there, as in that mesh. One thread.
+/// The surface is not one sheet at an edge or a vertex that alone joins two parts of the remaining mesh; it
+/// is a hinge or a ball joint of the tissue, as in that mesh. One thread.
 class CutMesh {
  public:
   /// Gives `surface`, the boundary of `mesh`, the vertices of the tetrahedra that may ever be removed, in
