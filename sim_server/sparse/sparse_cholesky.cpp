@@ -7,16 +7,10 @@
 
 #include "common/error.h"
 #include "common/log.h"
-
-#ifdef PALPATE_WITH_CHOLMOD
 #include "sim_server/sparse/supernodal_factor.h"
-#else
-#include <Eigen/SparseCholesky>
-#endif
 
 namespace palpate::sim {
 
-#ifdef PALPATE_WITH_CHOLMOD
 struct SparseCholesky::Factor {
   Factor(const SparseMatrix& lower, Precision wanted)
       : pattern(std::make_shared<const SupernodalPattern>(lower)), precision(wanted) {}
@@ -69,73 +63,6 @@ struct SparseCholesky::Factor {
     fine->inverse_rows(unknowns, begins, take, progress);
   }
 };
-#else
-/// Always in double precision.
-struct SparseCholesky::Factor {
-  Factor(const SparseMatrix& lower, Precision) { llt.analyzePattern(lower); }
-
-  struct Llt : Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower> {
-    std::size_t bytes() const {
-      const auto columns = static_cast<std::size_t>(m_matrix.outerSize());
-      return static_cast<std::size_t>(m_matrix.outerIndexPtr()[columns]) * (sizeof(double) + sizeof(int)) +
-             3 * columns * sizeof(int);
-    }
-    double multiplications() const {
-      double sum = 0;
-      for (Eigen::Index j = 0; j < m_matrix.outerSize(); ++j) {
-        const double rows = m_matrix.outerIndexPtr()[j + 1] - m_matrix.outerIndexPtr()[j];
-        sum += rows * rows / 2;
-      }
-      return sum;
-    }
-  };
-  Llt llt;
-  Precision precision = Precision::kDouble;
-
-  bool countable() const { return true; }
-  std::size_t bytes() const { return llt.bytes(); }
-  std::size_t work_bytes(const SparseMatrix& lower) const {
-    return static_cast<std::size_t>(lower.nonZeros()) * (sizeof(double) + sizeof(int));  // a copy
-  }
-  std::size_t more_bytes() const { return 0; }
-  double multiplications() const { return llt.multiplications(); }
-  void take(Precision) {}
-  bool factorize(const SparseMatrix& lower) {
-    llt.factorize(lower);
-    return llt.info() == Eigen::Success;
-  }
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return llt.solve(b); }
-  void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
-                     const std::function<void(double)>& progress) const {
-    Eigen::VectorXd load = Eigen::VectorXd::Zero(llt.rows());
-    for (std::size_t j = 0; j < unknowns.size(); ++j) {
-      progress(static_cast<double>(j) / static_cast<double>(unknowns.size()));
-      load[unknowns[j]] = 1;
-      const Eigen::VectorXd moved = llt.solve(load);
-      load[unknowns[j]] = 0;
-      for (std::size_t i = j; i < unknowns.size(); ++i)
-        block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = moved[unknowns[i]];
-    }
-    block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
-  }
-  void inverse_rows(std::span<const int> unknowns, std::span<const int> begins, const TakeRows& take,
-                    const std::function<void(double)>& progress) const {
-    std::vector<int> groups(begins.size() - 1);
-    std::iota(groups.begin(), groups.end(), 0);
-    for (const int group : groups) {
-      progress(static_cast<double>(group) / static_cast<double>(groups.size()));
-      const int count = begins[group + 1] - begins[group];
-      Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(llt.rows(), count);
-      for (int k = 0; k < count; ++k) loads(unknowns[begins[group] + k], k) = 1;
-      const Eigen::MatrixXd moved = llt.solve(loads);
-      Eigen::MatrixXd rows(count, static_cast<Eigen::Index>(unknowns.size()));
-      for (std::size_t k = 0; k < unknowns.size(); ++k)
-        rows.col(static_cast<Eigen::Index>(k)) = moved.row(unknowns[k]).transpose();
-      take(group, std::span(groups).subspan(static_cast<std::size_t>(group)), rows);
-    }
-  }
-};
-#endif
 
 namespace {
 
@@ -276,14 +203,6 @@ std::size_t SparseCholesky::bytes() const {
 
 double SparseCholesky::multiplications() const {
   return factor_->multiplications();
-}
-
-const char* SparseCholesky::library() {
-#ifdef PALPATE_WITH_CHOLMOD
-  return "CHOLMOD";
-#else
-  return "Eigen";
-#endif
 }
 
 }  // namespace palpate::sim

@@ -9,9 +9,8 @@
 
 namespace palpate::sim {
 
-/// Sparse Cholesky factorisation of a symmetric positive definite matrix: by order and pattern of CHOLMOD,
-/// with our own numbers on all cores (`SupernodalFactor`), or, built with PALPATE_CHOLMOD=OFF, by Eigen. This
-/// is the one file that knows which. Set-up and background threads only.
+/// Sparse Cholesky factorisation of a symmetric positive definite matrix: a pattern (`SupernodalPattern`) and
+/// numbers on all cores (`SupernodalFactor`). Set-up and background threads only.
 class SparseCholesky final : public FactoredMatrix {
  public:
   /// Precision of the numbers of the factor. Single takes half the memory and time, and serves where the
@@ -60,9 +59,6 @@ class SparseCholesky final : public FactoredMatrix {
   std::size_t bytes() const override;
   /// That one factorisation takes, counted from the pattern.
   double multiplications() const;
-
-  /// The library behind it, for reports.
-  static const char* library();
 
  private:
   struct Factor;

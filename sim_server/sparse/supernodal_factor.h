@@ -12,10 +12,8 @@ namespace palpate::sim {
 /// time, in `float`. Left-looking over dense blocks by BLAS (one thread a call): subtrees of the pattern on
 /// all cores, then the supernodes above them by bands of rows on all cores. Bands do not depend on the number
 /// of threads, nor do the bytes of L.
-/// On one core it takes 0.75 of the time of CHOLMOD's own factor for 2 000 unknowns and 1.15 times as long
-/// for 26 000; in `float`, which CHOLMOD 3 does not have, 0.5 and 0.7 (`scripts/bench cholesky`). It stands
-/// in for CHOLMOD's for these halves, for blocks of the inverse that cost no whole solves, and for bytes that
-/// do not depend on the number of threads; the analysis is CHOLMOD's.
+/// `scripts/bench cholesky` compares it with CHOLMOD's factor, which is GPL, has no `float` before version 5
+/// and no blocks of the inverse, and whose bytes depend on the number of threads.
 template <class Scalar>
 class SupernodalFactor {
  public:

@@ -1,97 +1,18 @@
 #include "sim_server/sparse/supernodal_pattern.h"
 
 #include <algorithm>
-#include <mutex>
-#include <new>
+#include <limits>
 #include <numeric>
-#include <suitesparse/cholmod.h>
+
+#include "sim_server/sparse/fill_reducing_order.h"
+#include "sim_server/sparse/supernodes.h"
 
 namespace palpate::sim {
 namespace {
 
+constexpr int kAxes = 3;  // unknowns of a node
 // A subtree with more than this share of all work is cut.
 constexpr double kLargestShare = 0.06;
-
-/// A matrix of the same pattern as another, one entry for each 3 x 3 block: CHOLMOD's lists.
-struct NodeGraph {
-  std::vector<int> outer{0}, inner;
-
-  explicit NodeGraph(const SparseMatrix& lower) {
-    for (Eigen::Index column = 0; column < lower.cols(); column += 3) {
-      const int* const outer_of = lower.outerIndexPtr() + column;
-      for (int k = outer_of[0]; k < outer_of[1]; k += 3) inner.push_back(lower.innerIndexPtr()[k] / 3);
-      outer.push_back(static_cast<int>(inner.size()));
-    }
-  }
-};
-
-/// CHOLMOD's view of the lower triangle of a pattern.
-cholmod_sparse view(std::span<const int> outer, std::span<const int> inner) {
-  cholmod_sparse a{};
-  a.nrow = a.ncol = outer.size() - 1;
-  a.nzmax = inner.size();
-  a.p = const_cast<int*>(outer.data());  // it only reads
-  a.i = const_cast<int*>(inner.data());
-  a.stype = -1;
-  a.itype = CHOLMOD_INT;
-  a.xtype = CHOLMOD_PATTERN;
-  a.dtype = CHOLMOD_DOUBLE;
-  a.sorted = a.packed = 1;
-  return a;
-}
-
-/// CHOLMOD with its settings.
-struct Cholmod {
-  cholmod_common common;
-
-  Cholmod() {
-    cholmod_start(&common);
-    common.print = 0;  // errors are ours to word
-    // Merge more columns than by default, twice as many zeros: fewer, larger products are quicker.
-    for (auto& columns : common.nrelax) columns *= 2;
-    common.zrelax[1] *= 2;
-    common.zrelax[2] *= 2;
-  }
-  ~Cholmod() { cholmod_finish(&common); }
-
-  /// The order of three unknowns a node. On all of 14 meshes of 343 to 20 402 nodes METIS gave the factor of
-  /// fewer multiplications, by 6 to 57 %; AMD serves where CHOLMOD was built without it. METIS seeds the
-  /// sequence of random numbers that all threads share: two at a time would each find another order in each
-  /// run.
-  std::vector<int> order_of(const NodeGraph& graph) {
-    static std::mutex one_at_a_time;
-    const std::scoped_lock lock(one_at_a_time);
-    common.supernodal = CHOLMOD_SIMPLICIAL;
-    common.nmethods = 1;
-    cholmod_sparse nodes = view(graph.outer, graph.inner);
-    cholmod_factor* ordered = nullptr;
-    for (const int ordering : {CHOLMOD_METIS, CHOLMOD_AMD}) {
-      common.method[0].ordering = ordering;
-      if (ordered == nullptr) ordered = cholmod_analyze(&nodes, &common);
-    }
-    std::vector<int> order;
-    for (std::size_t k = 0; ordered != nullptr && k < nodes.ncol; ++k) {
-      for (int axis = 0; axis < 3; ++axis) order.push_back(3 * static_cast<int*>(ordered->Perm)[k] + axis);
-    }
-    cholmod_free_factor(&ordered, &common);
-    return order;
-  }
-
-  cholmod_factor* analyze(const SparseMatrix& lower, std::vector<int>& order) {
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_GIVEN;
-    cholmod_sparse all = view({lower.outerIndexPtr(), static_cast<std::size_t>(lower.cols()) + 1},
-                              {lower.innerIndexPtr(), static_cast<std::size_t>(lower.nonZeros())});
-    return cholmod_analyze_p(&all, order.data(), nullptr, 0, &common);
-  }
-};
-
-template <class To>
-std::vector<To> copied(const void* from, std::size_t count) {
-  const int* const values = static_cast<const int*>(from);
-  return std::vector<To>(values, values + count);
-}
 
 }  // namespace
 
@@ -101,20 +22,22 @@ SupernodalPattern::SupernodalPattern(const SparseMatrix& lower) {
     rows_begin = values_begin = updates_begin = {0};
     return;
   }
-  Cholmod cholmod;
-  std::vector<int> nodal = cholmod.order_of(NodeGraph(lower));
-  cholmod_factor* found = nodal.empty() ? nullptr : cholmod.analyze(lower, nodal);
-  if (found == nullptr) {
-    if (cholmod.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-    countable = false;
-    return;
-  }
-  order = copied<int>(found->Perm, found->n);
-  first = copied<int>(found->super, found->nsuper + 1);
-  rows = copied<int>(found->s, found->ssize);
-  rows_begin = copied<std::size_t>(found->pi, found->nsuper + 1);
-  values_begin = copied<std::size_t>(found->px, found->nsuper + 1);
-  cholmod_free_factor(&found, &cholmod.common);
+  const MatrixGraph graph = MatrixGraph::of_blocks(lower);
+  const Supernodes nodal = find_supernodes(graph, fill_reducing_order(graph), kAxes);
+  const auto expand = [](std::span<const int> from, std::vector<int>& to) {
+    for (const int v : from) {
+      for (int axis = 0; axis < kAxes; ++axis) to.push_back(kAxes * v + axis);
+    }
+  };
+  expand(nodal.order, order);
+  expand(nodal.rows, rows);
+  for (const int c : nodal.first) first.push_back(kAxes * c);
+  for (const std::size_t begin : nodal.rows_begin) rows_begin.push_back(kAxes * begin);
+  values_begin = {0};
+  for (int s = 0; s < supernodes(); ++s)
+    values_begin.push_back(values_begin.back() + static_cast<std::size_t>(columns(s)) * rows_of(s).size());
+  countable = values() <= std::numeric_limits<int>::max();
+  if (!countable) return;
   find_updates();
   find_places(lower);
   cut_subtrees();

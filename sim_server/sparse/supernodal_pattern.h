@@ -9,8 +9,7 @@ namespace palpate::sim {
 
 /// Pattern of a sparse Cholesky factor L of a matrix, before any number: the order of elimination and the
 /// supernodes. Supernodes are neighbouring columns of L stored as one dense block (Ng and Peyton 1993, SIAM
-/// J. Sci. Comput. 14:1034). CHOLMOD's analysis finds both (Chen et al. 2008, ACM Trans. Math. Softw. 35:22).
-/// Set-up only.
+/// J. Sci. Comput. 14:1034). Set-up only.
 struct SupernodalPattern {
   /// Rows `from` to `to` of a supernode are columns of another, which takes its update from there down.
   struct Update {
@@ -21,9 +20,9 @@ struct SupernodalPattern {
     int begin, end;
   };
 
-  /// Analyses a matrix whose lower triangle is in 3 x 3 blocks (`StiffnessMatrix`). The order is that of the
-  /// graph of its nodes, by METIS, or by AMD where CHOLMOD has none. `countable` is false, and the other
-  /// members are empty, where L has more than 2^31 entries. Throws `std::bad_alloc`.
+  /// Analyses a matrix whose lower triangle is in 3 x 3 blocks (`StiffnessMatrix`), by the graph of its
+  /// nodes, as the three columns of a node have one structure. `countable` is false, and places are not
+  /// found, where L has more than 2^31 entries. Throws `std::bad_alloc`.
   explicit SupernodalPattern(const SparseMatrix& lower);
 
   int supernodes() const { return static_cast<int>(first.size()) - 1; }

@@ -2,10 +2,13 @@
 // precision, and CHOLMOD's own supernodal one, as Eigen calls it. The patterns are found before, untimed.
 // Factors have all cores, ours by oneTBB over supernodes, CHOLMOD's by OpenBLAS inside each product, which
 // costs more than it gains where products are small: hence CHOLMOD's on one core, too.
-#include <Eigen/CholmodSupport>
 #include <cmath>
 #include <map>
 #include <thread>
+
+#ifdef PALPATE_WITH_CHOLMOD
+#include <Eigen/CholmodSupport>
+#endif
 
 #include "common/clock.h"
 #include "sim_server/elasticity/solid.h"
@@ -25,7 +28,6 @@ namespace {
 constexpr std::array kCells{8, 20};  // along each edge of the block; six tetrahedra each
 constexpr int kLoads = 48;           // columns at once, as set-up has them
 using Precision = SparseCholesky::Precision;
-using Cholmod = Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower>;
 
 /// What BLAS may take. CHOLMOD's loops of OpenMP ask for four threads, however many cores there are, which
 /// makes it several times slower on two: they are to take no more than are idle.
@@ -59,6 +61,7 @@ Eigen::MatrixXd loads(Eigen::Index n, int columns) {
       n, columns, [](Eigen::Index i, Eigen::Index j) { return std::sin(static_cast<double>(i + 17 * j)); });
 }
 
+#ifdef PALPATE_WITH_CHOLMOD
 /// As `SparseCholesky` has it.
 class CholmodFactor {
  public:
@@ -70,8 +73,9 @@ class CholmodFactor {
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return llt_.solve(b); }
 
  private:
-  Cholmod llt_;
+  Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> llt_;
 };
+#endif
 
 /// The clock on the wall, as all cores work.
 template <class Work>
@@ -124,9 +128,11 @@ void add_cholesky_rows() {
     };
     add_factor(name, "ours", cells, 1, ours(Precision::kDouble));
     add_factor(name, "ours_single", cells, 1, ours(Precision::kSingle));
+#ifdef PALPATE_WITH_CHOLMOD
     const auto cholmod = [](const SparseMatrix& matrix) { return CholmodFactor(matrix); };
     add_factor(name, "cholmod", cells, std::thread::hardware_concurrency(), cholmod);
     add_factor(name, "cholmod_on_1_core", cells, 1, cholmod);
+#endif
   }
 }
 

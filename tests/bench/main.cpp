@@ -23,9 +23,7 @@ int main(int argc, char** argv) {
     add_kernel_rows();
     add_telemetry_rows();
     add_race_rows();
-#ifdef PALPATE_WITH_CHOLMOD
     add_cholesky_rows();
-#endif
 #ifdef PALPATE_WITH_VIEWER
     add_viewer_rows();
 #endif

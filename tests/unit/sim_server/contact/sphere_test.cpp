@@ -68,8 +68,7 @@ TEST_CASE("Sneddon's force goes over into Hertz' for small contacts") {
 
 TEST_CASE(
     "sphere on a graded block: within 5 % of Sneddon's force at six elements per contact radius, and "
-    "converging",
-    "[large]") {
+    "converging") {
   const double coarse = force_error(2), middle = force_error(4), fine = force_error(6);
   CAPTURE(coarse, middle, fine);
   CHECK(std::abs(fine) < 0.05);
@@ -79,8 +78,7 @@ TEST_CASE(
 
 TEST_CASE(
     "sphere on a graded block of quadratic elements, pressed on corners and mid-edges: within 3 % at two "
-    "elements per contact radius",
-    "[large]") {
+    "elements per contact radius") {
   // On corners alone it would be 15 to 18 % too soft, at any number of elements.
   const double coarse = force_error(1, ElementKind::kQuadratic),
                fine = force_error(2, ElementKind::kQuadratic);

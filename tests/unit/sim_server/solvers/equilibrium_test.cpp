@@ -219,8 +219,7 @@ double kappa(double a, double nu, ElementKind element, int under, int beyond, in
 }
 }  // namespace
 
-TEST_CASE("equilibrium: flat punch on a bonded layer (Hayes 1972), from above, in more than first order",
-          "[large]") {
+TEST_CASE("equilibrium: flat punch on a bonded layer (Hayes 1972), from above, in more than first order") {
   struct Row {
     double a, nu, kappa, power;
     int under, beyond, deep;  // half of them first
@@ -240,8 +239,8 @@ TEST_CASE("equilibrium: flat punch on a bonded layer (Hayes 1972), from above, i
   }
 }
 
-TEST_CASE("equilibrium: nearly incompressible, the bonded layer does not lock but with plain linear elements",
-          "[large]") {
+TEST_CASE(
+    "equilibrium: nearly incompressible, the bonded layer does not lock but with plain linear elements") {
   // Hayes 1972, towards nu = 1/2.
   constexpr double kWide = 1.684, kNarrow = 1.126;
   CHECK(kappa(0.4, 0.499, ElementKind::kQuadratic, 6, 8, 8, 1.5) == Approx(kWide).epsilon(0.03));
