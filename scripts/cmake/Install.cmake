@@ -27,7 +27,7 @@ install(FILES configs/README.md DESTINATION share/palpate COMPONENT server)
 install(DIRECTORY configs/clients configs/trajectories configs/udev DESTINATION share/palpate COMPONENT client)
 
 foreach(component server client dev)
-  install(FILES LICENSE DESTINATION share/doc/palpate-${component} RENAME copyright COMPONENT ${component})
+  install(FILES ${packaging}/copyright DESTINATION share/doc/palpate-${component} COMPONENT ${component})
 endforeach()
 
 # A page for each program, from what it says of itself with --help, by Python, as it is installed: a build does without.
