@@ -9,7 +9,6 @@
 #include "common/memory_budget.h"
 #include "common/progress.h"
 #include "common/report.h"
-#include "sim_server/distributed/hypre_pcg.h"
 #include "sim_server/distributed/mumps_factor.h"
 #include "sim_server/models/deformation_models.h"
 #include "sim_server/scene/held_motion.h"
@@ -35,27 +34,16 @@ double sum_of(const std::vector<RankMemory>& ranks) {
   return bytes;
 }
 
-/// What the factor, or solving without one, cost; nothing where all was there already.
-struct Condensing {
-  bool iterative;
-  std::optional<MumpsCosts> of_factor{};
-  std::shared_ptr<const PcgCosts> of_solves{};
-
-  MakeFactor maker() {
-    return [this](const SparseMatrix& lower, std::span<const int> kept, FactorUse use,
-                  const std::string& where) -> std::unique_ptr<FactoredMatrix> {
-      const auto tell = [](const std::string& line) { log::info("{}", line); };
-      if (iterative) {
-        auto pcg = std::make_unique<HyprePcg>(lower, where, tell);
-        of_solves = pcg->costs();
-        return pcg;
-      }
-      auto factor = std::make_unique<MumpsFactor>(lower, kept, use, where, tell);
-      of_factor = factor->costs();
-      return factor;
-    };
-  }
-};
+/// Makes factors by MUMPS, and writes down in `costs` what the last one took.
+MakeFactor mumps_maker(std::optional<MumpsCosts>& costs) {
+  return [&costs](const SparseMatrix& lower, std::span<const int> kept, FactorUse use,
+                  const std::string& where) {
+    const auto tell = [](const std::string& line) { log::info("{}", line); };
+    auto factor = std::make_unique<MumpsFactor>(lower, kept, use, where, tell);
+    costs = factor->costs();
+    return factor;
+  };
+}
 
 Json to_json(const std::vector<RankMemory>& ranks) {
   Json mb = Json::array();
@@ -64,32 +52,20 @@ Json to_json(const std::vector<RankMemory>& ranks) {
 }
 
 Json report_of(const CondenseOptions& options, const Simulation& simulation, const SetupTimes& times,
-               const Condensing& condensing, int ranks) {
+               const std::optional<MumpsCosts>& made, int ranks) {
   Json report{{"scene", options.scene.string()},
               {"folder", options.out.string()},
               {"ranks", ranks},
               {"tetrahedra", simulation.mesh().tetrahedra.size()},
               {"stages_ms", times.to_json()}};
-  if (condensing.of_factor) {
-    const MumpsCosts& costs = *condensing.of_factor;
+  if (made) {
+    const MumpsCosts& costs = *made;
     report["factor"] = {{"unknowns", costs.unknowns},      {"kept", costs.kept},
                         {"gflop", 1e-9 * costs.flops},     {"analysis_s", costs.analysis_s},
                         {"factor_s", costs.factor_s},      {"schur_s", costs.schur_s},
                         {"rank_mb", to_json(costs.memory)}};
-  } else if (condensing.of_solves) {
-    const PcgCosts& costs = *condensing.of_solves;
-    report["iterative"] = {{"unknowns", costs.unknowns},      {"entries", costs.entries},
-                           {"setup_s", costs.setup_s},        {"systems", costs.systems},
-                           {"solve_s", costs.solve_s},        {"iterations", costs.iterations},
-                           {"rank_mb", to_json(costs.memory)}};
   }
   return report;
-}
-
-void print_memory(const char* of_what, const std::vector<RankMemory>& ranks) {
-  std::string each;
-  for (const RankMemory& rank : ranks) each += (each.empty() ? "" : ", ") + bytes_text(rank.bytes);
-  fmt::print("  {} memory, by rank: {}; {} in all\n", of_what, each, bytes_text(sum_of(ranks)));
 }
 
 void print_costs(const MumpsCosts& costs) {
@@ -98,22 +74,17 @@ void print_costs(const MumpsCosts& costs) {
       "{:.2f} s\n",
       costs.analysis_s, costs.factor_s, costs.flops > 0 ? 1e-9 * costs.flops / costs.factor_s : 0.0,
       costs.schur_s);
-  print_memory("its", costs.memory);
-}
-
-void print_costs(const PcgCosts& costs) {
-  fmt::print(
-      "  conjugate gradients: multigrid {:.2f} s, {} right-hand sides {:.2f} s, of {:.0f} iterations each\n",
-      costs.setup_s, costs.systems, costs.solve_s, static_cast<double>(costs.iterations) / costs.systems);
-  print_memory("all", costs.memory);
+  std::string each;
+  for (const RankMemory& rank : costs.memory) each += (each.empty() ? "" : ", ") + bytes_text(rank.bytes);
+  fmt::print("  its memory, by rank: {}; {} in all\n", each, bytes_text(sum_of(costs.memory)));
 }
 
 void condense_on_rank_0(const CondenseOptions& options, int ranks) {
   const Scene scene = read_scene(options.scene);
   require_condensable(scene);
   if (options.report) check_writable(*options.report, Contents::kReport);
-  Condensing condensing{options.iterative};
-  const Condensed condensed(options.out, condensing.maker());
+  std::optional<MumpsCosts> made;  // nothing where all was kept already
+  const Condensed condensed(options.out, mumps_maker(made));
   SetupTimes times{ProgressLine("what was complete is kept, and the next start goes on from there")};
   const Time begin = now();
   const Simulation simulation(scene, std::ref(times), nullptr, &condensed);
@@ -126,26 +97,24 @@ void condense_on_rank_0(const CondenseOptions& options, int ranks) {
     if (!part.detail.empty())
       fmt::print("  {}: {}, {}\n", part.name, bytes_text(static_cast<double>(part.bytes)), part.detail);
   }
-  if (condensing.of_factor) print_costs(*condensing.of_factor);
-  if (condensing.of_solves) print_costs(*condensing.of_solves);
+  if (made) print_costs(*made);
   fmt::print("  to feel it: sim_server run {} --condensed {}\n", options.scene.string(),
              options.out.string());
-  if (options.report) write_json(*options.report, report_of(options, simulation, times, condensing, ranks));
+  if (options.report) write_json(*options.report, report_of(options, simulation, times, made, ranks));
 }
 
 /// Lets the other ranks go, whatever happens on this one.
 struct OtherRanks {
-  void (*end)();
-  explicit OtherRanks(void (*how)()) : end(how) {}
-  ~OtherRanks() { end(); }
+  OtherRanks() = default;
+  ~OtherRanks() { end_mumps(); }
   OtherRanks(const OtherRanks&) = delete;
   OtherRanks& operator=(const OtherRanks&) = delete;
 };
 
 /// All that a rank but 0 does. The others would wait for one that failed: it ends them, too.
-void serve_rank_0(const CondenseOptions& options, const MpiRanks& ranks) {
+void serve_rank_0(const MpiRanks& ranks) {
   try {
-    options.iterative ? serve_hypre() : serve_mumps();
+    serve_mumps();
   } catch (const std::exception& e) {
     log::error("rank {}: {}; all ranks end, and nothing is written", ranks.rank(), e.what());
     ranks.end_all(static_cast<int>(Error::Kind::kRun));
@@ -157,10 +126,10 @@ void serve_rank_0(const CondenseOptions& options, const MpiRanks& ranks) {
 int condense(const CondenseOptions& options) {
   const MpiRanks ranks;
   if (ranks.rank() == 0) {
-    const OtherRanks released_at_the_end(options.iterative ? end_hypre : end_mumps);
+    const OtherRanks released_at_the_end;
     condense_on_rank_0(options, ranks.count());
   } else {
-    serve_rank_0(options, ranks);
+    serve_rank_0(ranks);
   }
   return 0;
 }

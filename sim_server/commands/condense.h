@@ -8,7 +8,6 @@ namespace palpate::sim {
 
 struct CondenseOptions {
   std::filesystem::path scene, out;
-  bool iterative = false;  ///< conjugate gradients in place of a factor
   std::optional<std::filesystem::path> report;
 };
 

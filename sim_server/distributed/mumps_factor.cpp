@@ -162,10 +162,8 @@ void MumpsFactor::analyse(const SparseMatrix& lower, const std::string& where) {
   need.front().bytes += 2 * sizeof(double) * std::pow(static_cast<double>(kept_.size()), 2);  // S, S^-1
   const std::string shortage = shortage_of(need);
   if (!shortage.empty())
-    fail(
-        "{}: {}, for the Cholesky factor of {} unknowns; take more machines, `--iterative`, or a coarser "
-        "mesh",
-        where, shortage, lower.rows());
+    fail("{}: {}, for the Cholesky factor of {} unknowns; take more machines, or a coarser mesh", where,
+         shortage, lower.rows());
 }
 
 void MumpsFactor::factor(const std::string& where) {

@@ -35,11 +35,8 @@ std::vector<std::string> arguments_of(int ranks, const std::string& scene, const
           folder};
 }
 
-std::string condense(int ranks, const std::string& scene, const std::string& folder, int expected_code = 0,
-                     const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = arguments_of(ranks, scene, folder);
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return output_of(PALPATE_MPIRUN, arguments, expected_code, 100);
+std::string condense(int ranks, const std::string& scene, const std::string& folder, int expected_code = 0) {
+  return output_of(PALPATE_MPIRUN, arguments_of(ranks, scene, folder), expected_code, 100);
 }
 
 /// The scene of the paper's liver with another model and other lines put into its tool.
@@ -71,16 +68,15 @@ std::vector<Vec3> forces_of(const Scene& scene, const Condensed* condensed) {
   return forces;
 }
 
-void check_same_for_any_ranks(const std::string& model, const std::string& of_tool = "",
-                              const std::vector<std::string>& more = {}) {
+void check_same_for_any_ranks(const std::string& model) {
   const TemporaryFolder folder;
-  const std::string file = scene_with(folder, model, of_tool);
+  const std::string file = scene_with(folder, model);
   const Scene scene = read_scene(file);
   const std::vector<Vec3> expected = forces_of(scene, nullptr);
   for (const int ranks : {1, 2, 4}) {
     CAPTURE(ranks);
     const std::string out = (folder.path() / std::to_string(ranks)).string();
-    CHECK_THAT(condense(ranks, file, out, 0, more), Contains("condensed into"));
+    CHECK_THAT(condense(ranks, file, out), Contains("condensed into"));
     const Condensed condensed(out);
     const std::vector<Vec3> felt = forces_of(scene, &condensed);
     double largest = 0;
@@ -160,12 +156,6 @@ TEST_CASE("condense: what is felt is as without it, by 1, 2 and 4 ranks") {
 
 TEST_CASE("condense: so it is of tissue that swings") {
   check_same_for_any_ranks("reduced");
-}
-
-TEST_CASE("condense: so it is by conjugate gradients, without a factor") {
-  const std::string small = "reach = [[0.0, 0.03, 0.03], [0.006, 0.06, 0.06]]\n";
-  check_same_for_any_ranks("quasi_static", small, {"--iterative"});
-  check_same_for_any_ranks("reduced", small, {"--iterative"});
 }
 
 TEST_CASE("condense: so it is of a plate whose nodes are all reached, and its mirror image is another body") {
