@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::size_t kPage = 4096;  // of the header: the matrix begins where a page does
 constexpr std::array<char, 16> kMagic{"palpate set-up\n"};
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 48;  // of a matrix: its bytes can be counted
-constexpr std::string_view kPartEnding = ".part";
+constexpr std::string_view kEnding = ".setup", kPartEnding = ".part";
 constexpr std::size_t kRandom = 7;  // of ".XXXXXX"
 
 /// KEY.setup.XXXXXX.part
@@ -36,17 +36,19 @@ struct Header {
   std::uint64_t rows, cols;
   double seconds;
   std::array<char, 208> what;  // ends in zeros
-  Digest matrix;               // checksum
-  Digest header;               // of all before
+  Digest checksum;             // of all before, and of the matrix
 };
 static_assert(sizeof(Header) <= kPage && std::is_trivially_copyable_v<Header>);
 
-Digest checksum_of(const Header& header) {
-  return digest_of(std::as_bytes(std::span(&header, 1)).first(offsetof(Header, header)));
+Digest checksum_of(const Header& header, const double* matrix) {
+  Fingerprint all(Fingerprint::For::kAnyBuild);
+  all.add(std::as_bytes(std::span(&header, 1)).first(offsetof(Header, checksum)));
+  all.add(std::span(matrix, header.rows * header.cols));
+  return all.digest();
 }
 
-std::size_t matrix_bytes(std::uint64_t rows, std::uint64_t cols) {
-  return static_cast<std::size_t>(rows * cols) * sizeof(double);
+std::size_t file_bytes(const Header& header) {
+  return kPage + static_cast<std::size_t>(header.rows * header.cols) * sizeof(double);
 }
 
 /// Closes itself.
@@ -77,42 +79,34 @@ void write_whole(const File& file, const std::filesystem::path& name, const Head
   std::array<char, kPage> page{};
   std::memcpy(page.data(), &header, sizeof(header));
   write_all(file, page.data(), page.size(), name);
-  write_all(file, matrix.data(), matrix_bytes(header.rows, header.cols), name);
+  write_all(file, matrix.data(), file_bytes(header) - kPage, name);
   if (::fsync(file.handle) != 0) fail("{}: cannot be written: {}", name.string(), std::strerror(errno));
 }
 
-/// Where its own words are right: magic, version, checksum, and sizes that a matrix can have.
-bool is_sound(const Header& header) {
-  return header.magic == kMagic && header.version == kVersion && checksum_of(header) == header.header &&
-         header.rows <= kMostNumbers &&
-         header.cols <= kMostNumbers / std::max<std::uint64_t>(header.rows, 1) && header.what.back() == '\0';
+/// The header of a file, if magic, version and sizes are those of an entry.
+std::optional<Header> header_of(const File& file) {
+  Header header{};
+  struct stat status {};
+  if (::fstat(file.handle, &status) != 0 || ::read(file.handle, &header, sizeof(header)) != sizeof(header) ||
+      header.magic != kMagic || header.version != kVersion || header.what.back() != '\0' ||
+      header.rows > kMostNumbers || header.cols > kMostNumbers / std::max<std::uint64_t>(header.rows, 1) ||
+      static_cast<std::size_t>(status.st_size) != file_bytes(header))
+    return {};
+  return header;
 }
 
-EntryHeader told(const Header& header) {
+EntryHeader contents(const Header& header) {
   return {header.key, header.rows, header.cols, header.seconds, header.what.data()};
 }
 
 }  // namespace
 
-MappedMatrix::MappedMatrix(void* begin, std::size_t bytes, const EntryHeader& header)
-    : begin_(begin), bytes_(bytes), header_(header) {}
-
-MappedMatrix::~MappedMatrix() {
-  if (begin_ != nullptr) ::munmap(begin_, bytes_);
-}
-
-MappedMatrix::MappedMatrix(MappedMatrix&& other) noexcept
-    : begin_(std::exchange(other.begin_, nullptr)), bytes_(other.bytes_), header_(std::move(other.header_)) {}
-
-MappedMatrix& MappedMatrix::operator=(MappedMatrix&& other) noexcept {
-  std::swap(begin_, other.begin_);
-  std::swap(bytes_, other.bytes_);
-  std::swap(header_, other.header_);
-  return *this;
+void MappedMatrix::Unmap::operator()(void* begin) const noexcept {
+  ::munmap(begin, bytes);
 }
 
 Eigen::Map<Eigen::MatrixXd> MappedMatrix::matrix() const {
-  void* const first = static_cast<char*>(begin_) + kPage;
+  void* const first = static_cast<char*>(begin_.get()) + kPage;
   return {static_cast<double*>(first), static_cast<Eigen::Index>(header_.rows),
           static_cast<Eigen::Index>(header_.cols)};
 }
@@ -121,8 +115,14 @@ std::string note_of_saved(const MappedMatrix& kept, std::string_view source) {
   return fmt::format("from {}, which saved {:.1f} s", source, kept.header().seconds);
 }
 
-void write_entry(const std::filesystem::path& file, const EntryHeader& header,
+std::filesystem::path entry_file(const std::filesystem::path& folder, const Digest& key) {
+  return folder / (to_text(key) + std::string(kEnding));
+}
+
+void write_entry(const std::filesystem::path& folder, const EntryHeader& header,
                  const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  remove_parts(folder, std::chrono::hours(1));
+  const std::filesystem::path file = entry_file(folder, header.key);
   if (matrix.outerStride() != matrix.rows()) fail("{}: the matrix is not in one piece", file.string());
   Header raw{};
   raw.magic = kMagic;
@@ -132,8 +132,7 @@ void write_entry(const std::filesystem::path& file, const EntryHeader& header,
   raw.cols = static_cast<std::uint64_t>(matrix.cols());
   raw.seconds = header.seconds;
   std::copy_n(header.what.begin(), std::min(header.what.size(), raw.what.size() - 1), raw.what.begin());
-  raw.matrix = digest_of(std::as_bytes(std::span(matrix.data(), static_cast<std::size_t>(matrix.size()))));
-  raw.header = checksum_of(raw);
+  raw.checksum = checksum_of(raw, matrix.data());
   std::string part = fmt::format("{}.XXXXXX{}", file.string(), kPartEnding);
   const File written(::mkostemps(part.data(), static_cast<int>(kPartEnding.size()), O_CLOEXEC));
   try {
@@ -148,7 +147,6 @@ void write_entry(const std::filesystem::path& file, const EntryHeader& header,
 }
 
 bool is_entry_name(std::string_view name) {
-  constexpr std::string_view kEnding = ".setup";
   constexpr std::size_t kDigits = 32;  // of a key
   return name.size() == kDigits + kEnding.size() && name.ends_with(kEnding) &&
          name.substr(0, kDigits).find_first_not_of("0123456789abcdef") == std::string_view::npos;
@@ -172,31 +170,23 @@ int remove_parts(const std::filesystem::path& folder, std::chrono::seconds older
 MappedMatrix map_entry(const std::filesystem::path& name, const Digest& key) {
   const File file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.handle < 0) fail_at_run_time("{}: cannot be read: {}", name.string(), std::strerror(errno));
-  struct stat status {};
-  Header header{};
-  if (::fstat(file.handle, &status) != 0 || ::read(file.handle, &header, sizeof(header)) != sizeof(header))
-    fail("{}: is cut off", name.string());
-  if (!is_sound(header)) fail("{}: its header is spoilt, or of another version", name.string());
-  if (header.key != key) fail("{}: is the entry of another scene under this name", name.string());
-  const std::size_t bytes = kPage + matrix_bytes(header.rows, header.cols);
-  if (static_cast<std::size_t>(status.st_size) != bytes) fail("{}: is cut off", name.string());
+  const std::optional<Header> header = header_of(file);
+  if (!header) fail("{}: is no entry of this version, or cut off", name.string());
+  if (header->key != key) fail("{}: is the entry of another scene under this name", name.string());
+  const std::size_t bytes = file_bytes(*header);
   void* const begin =
       ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_POPULATE, file.handle, 0);
   if (begin == MAP_FAILED) fail_at_run_time("{}: cannot be mapped: {}", name.string(), std::strerror(errno));
-  MappedMatrix mapped(begin, bytes, told(header));
-  const auto matrix = mapped.matrix();
-  if (digest_of(std::as_bytes(std::span(matrix.data(), static_cast<std::size_t>(matrix.size())))) !=
-      header.matrix)
-    fail("{}: its numbers are spoilt", name.string());
+  MappedMatrix mapped(begin, bytes, contents(*header));
+  if (checksum_of(*header, mapped.matrix().data()) != header->checksum)
+    fail("{}: is spoilt: its checksum is another", name.string());
   return mapped;
 }
 
 std::optional<EntryHeader> read_header(const std::filesystem::path& name) {
   const File file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
-  Header header{};
-  if (file.handle < 0 || ::read(file.handle, &header, sizeof(header)) != sizeof(header) || !is_sound(header))
-    return {};
-  return told(header);
+  const std::optional<Header> header = header_of(file);
+  return header ? std::optional(contents(*header)) : std::nullopt;
 }
 
 }  // namespace palpate::sim

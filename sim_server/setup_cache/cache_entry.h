@@ -2,9 +2,11 @@
 #include <Eigen/Core>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "sim_server/setup_cache/fingerprint.h"
 
@@ -21,26 +23,31 @@ struct EntryHeader {
 /// A matrix in a file, mapped copy-on-write: what is written to it stays in this process. Movable.
 class MappedMatrix {
  public:
-  MappedMatrix(void* begin, std::size_t bytes, const EntryHeader& header);
-  ~MappedMatrix();
-  MappedMatrix(MappedMatrix&& other) noexcept;
-  MappedMatrix& operator=(MappedMatrix&& other) noexcept;
+  MappedMatrix(void* begin, std::size_t bytes, EntryHeader header)
+      : begin_(begin, Unmap{bytes}), header_(std::move(header)) {}
 
   Eigen::Map<Eigen::MatrixXd> matrix() const;
   const EntryHeader& header() const { return header_; }
 
  private:
-  void* begin_;
-  std::size_t bytes_;
+  struct Unmap {
+    std::size_t bytes;
+    void operator()(void* begin) const noexcept;
+  };
+
+  std::unique_ptr<void, Unmap> begin_;
   EntryHeader header_;
 };
 
 /// "from the set-up cache, which saved 3.2 s"; `source`: where it came from.
 std::string note_of_saved(const MappedMatrix& kept, std::string_view source = "the set-up cache");
 
+/// File of an entry: FOLDER/KEY.setup.
+std::filesystem::path entry_file(const std::filesystem::path& folder, const Digest& key);
+
 /// Writes an entry under another name, which no other writer has, syncs and renames it: whole or not at all.
-/// Throws `Error`.
-void write_entry(const std::filesystem::path& file, const EntryHeader& header,
+/// Removes what writers that were interrupted an hour ago left in the folder. Throws `Error`.
+void write_entry(const std::filesystem::path& folder, const EntryHeader& header,
                  const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
 /// True if a file is called KEY.setup (32 digits), as no other program calls its own: the folder may belong
@@ -49,14 +56,14 @@ bool is_entry_name(std::string_view name);
 
 /// Removes what writers that were interrupted left in a folder, if it has not changed for so long; how many
 /// files that were.
-int remove_parts(const std::filesystem::path& folder, std::chrono::seconds older = std::chrono::hours(1));
+int remove_parts(const std::filesystem::path& folder, std::chrono::seconds older);
 
 /// Maps the entry with this key. Throws `Error` with what is wrong with it, of kind `kRun` where that is not
-/// the file itself, but that it cannot be opened or mapped: nothing of it is trusted before its size and both
-/// checksums agree. O(bytes).
+/// the file itself, but that it cannot be opened or mapped: nothing of it is trusted before its size and its
+/// checksum agree. O(bytes).
 MappedMatrix map_entry(const std::filesystem::path& file, const Digest& key);
 
-/// The header alone; nothing where there is none that is sound.
+/// The header alone, without its checksum; nothing where it is of another kind, version or size of file.
 std::optional<EntryHeader> read_header(const std::filesystem::path& file);
 
 }  // namespace palpate::sim

@@ -21,13 +21,9 @@ Condensed::Condensed(std::filesystem::path folder, MakeFactor make_factor)
   if (failed) fail("--out: cannot keep anything in \"{}\": {}", folder_.string(), failed.message());
 }
 
-std::filesystem::path Condensed::file_of(const Digest& key) const {
-  return folder_ / (to_text(key) + ".setup");
-}
-
 std::optional<MappedMatrix> Condensed::find(const Digest& key, const std::string& what,
                                             const std::string& scene) const {
-  const std::filesystem::path file = file_of(key);
+  const std::filesystem::path file = entry_file(folder_, key);
   std::error_code failed;
   if (std::filesystem::exists(file, failed)) {
     try {
@@ -45,8 +41,7 @@ std::optional<MappedMatrix> Condensed::find(const Digest& key, const std::string
 }
 
 void Condensed::keep(const EntryHeader& header, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const {
-  remove_parts(folder_);
-  write_entry(file_of(header.key), header, matrix);
+  write_entry(folder_, header, matrix);
 }
 
 }  // namespace palpate::sim

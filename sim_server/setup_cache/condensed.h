@@ -32,8 +32,6 @@ class Condensed {
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  std::filesystem::path file_of(const Digest& key) const;
-
   std::filesystem::path folder_;
   MakeFactor make_factor_;
 };

@@ -20,46 +20,27 @@ std::string processor() {
   return said;
 }
 
-/// Of the running program's file; of no bytes where it cannot be read.
+/// Digest of the running program's file; of no bytes where it cannot be read.
 Digest program() {
   std::ifstream file("/proc/self/exe", std::ios::binary);
   const std::string bytes(std::istreambuf_iterator<char>(file), {});
-  return digest_of(std::as_bytes(std::span(bytes)));
+  Fingerprint fingerprint(Fingerprint::For::kAnyBuild);
+  fingerprint.add(std::span<const char>(bytes));
+  return fingerprint.digest();
 }
 
 }  // namespace
 
-class ContentHash {
- public:
-  ContentHash() { XXH3_128bits_reset(state_); }
-  ~ContentHash() { XXH3_freeState(state_); }
-  ContentHash(const ContentHash&) = delete;
-  ContentHash& operator=(const ContentHash&) = delete;
-  void add(const void* data, std::size_t size) { XXH3_128bits_update(state_, data, size); }
-  Digest digest() const {
-    const XXH128_hash_t hash = XXH3_128bits_digest(state_);
-    return {hash.high64, hash.low64};
-  }
-
- private:
-  XXH3_state_t* state_ = XXH3_createState();
-};
-
 struct Fingerprint::State {
-  ContentHash hash;
+  XXH3_state_t hash;
 };
 
 std::string to_text(const Digest& digest) {
   return fmt::format("{:016x}{:016x}", digest[0], digest[1]);
 }
 
-Digest digest_of(std::span<const std::byte> bytes) {
-  ContentHash hash;
-  hash.add(bytes.data(), bytes.size());
-  return hash.digest();
-}
-
 Fingerprint::Fingerprint(For whom) : state_(std::make_unique<State>()) {
+  XXH3_128bits_reset(&state_->hash);
   if (whom == For::kAnyBuild) return;
   static const Digest self = program();
   static const std::string cpu = processor();
@@ -71,12 +52,13 @@ Fingerprint::~Fingerprint() = default;
 
 void Fingerprint::add_bytes(std::span<const std::byte> bytes) {
   const std::uint64_t size = bytes.size();  // so that two spans are not one
-  state_->hash.add(&size, sizeof(size));
-  state_->hash.add(bytes.data(), bytes.size());
+  XXH3_128bits_update(&state_->hash, &size, sizeof(size));
+  XXH3_128bits_update(&state_->hash, bytes.data(), bytes.size());
 }
 
 Digest Fingerprint::digest() const {
-  return state_->hash.digest();
+  const XXH128_hash_t hash = XXH3_128bits_digest(&state_->hash);
+  return {hash.high64, hash.low64};
 }
 
 }  // namespace palpate::sim

@@ -7,16 +7,13 @@
 
 namespace palpate::sim {
 
-/// 128 bits of XXH3 (Collet), or 64 of FNV-1a where that is not built in.
+/// 128 bits of XXH3 (Collet): of keys, of file names and of checksums.
 using Digest = std::array<std::uint64_t, 2>;
 
 /// 32 hexadecimal digits.
 std::string to_text(const Digest& digest);
 
-/// Returns the digest of some bytes.
-Digest digest_of(std::span<const std::byte> bytes);
-
-/// A hash of all that a result follows from.
+/// Hash of several spans of values, one after another: of all that a result follows from, or of a file.
 class Fingerprint {
  public:
   /// Scope in which results are valid. The key for `kThisBuild` starts with the program's own bytes and the

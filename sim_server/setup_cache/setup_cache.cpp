@@ -12,8 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kEnding = ".setup";
-
 /// The entries of a folder; none where it cannot be read.
 std::vector<fs::path> entries_in(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -37,12 +35,8 @@ std::optional<fs::path> SetupCache::usual_folder() {
   return {};
 }
 
-fs::path SetupCache::file_of(const Digest& key) const {
-  return folder_ / (to_text(key) + kEnding);
-}
-
 std::optional<MappedMatrix> SetupCache::find(const Digest& key) const {
-  const fs::path file = file_of(key);
+  const fs::path file = entry_file(folder_, key);
   std::error_code failed;
   if (!fs::exists(file, failed)) return {};
   try {
@@ -61,8 +55,7 @@ void SetupCache::keep(const EntryHeader& header, const Eigen::Ref<const Eigen::M
   try {
     if (static_cast<double>(matrix.size()) * sizeof(double) > most_bytes_) return;
     fs::create_directories(folder_);
-    remove_parts(folder_);
-    write_entry(file_of(header.key), header, matrix);
+    write_entry(folder_, header, matrix);
     make_room(header.key);
   } catch (const std::exception& error) {
     log::warning("set-up cache: nothing kept: {}; --cache names another folder, --no-cache none",
@@ -76,7 +69,7 @@ void SetupCache::make_room(const Digest& newest) const {
   int count = 0;
   for (const Entry& entry : list()) {
     kept += entry.bytes;
-    if (kept <= most_bytes_ || entry.file == file_of(newest)) continue;
+    if (kept <= most_bytes_ || entry.file == entry_file(folder_, newest)) continue;
     std::error_code failed;
     if (!fs::remove(entry.file, failed)) continue;
     kept -= entry.bytes;

@@ -33,7 +33,6 @@ class SetupCache {
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  std::filesystem::path file_of(const Digest& key) const;
   void make_room(const Digest& newest) const;
 
   std::filesystem::path folder_;
