@@ -296,9 +296,9 @@ void Simulation::add_recent(std::size_t tool, const ToolPose& pose) {
 
 /// Where a tool is at an instant of a step, from 1 to the last.
 PathPoint Simulation::at_instant(std::size_t tool, const ToolInput& input, int instant) const {
-  const bool told = input.path.size() + 1 == static_cast<std::size_t>(instants());
-  if (instant == instants()) return {*input.pose, told ? input.bend : Bend{}};
-  if (told) return input.path[static_cast<std::size_t>(instant) - 1];
+  const bool last = input.path.size() + 1 == static_cast<std::size_t>(instants());
+  if (instant == instants()) return {*input.pose, last ? input.bend : Bend{}};
+  if (last) return input.path[static_cast<std::size_t>(instant) - 1];
   if (!tracks_[tool].from) return {*input.pose};  // it appears there
   const double share = static_cast<double>(instant) / instants();
   const ToolPose &from = *tracks_[tool].from, &to = *input.pose;

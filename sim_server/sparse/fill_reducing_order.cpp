@@ -4,6 +4,8 @@
 #include <metis.h>
 #include <mutex>
 #include <new>
+#include <numeric>
+#include <stdexcept>
 #include <suitesparse/amd.h>
 
 namespace palpate::sim {
@@ -36,14 +38,19 @@ std::vector<int> minimum_degree(const MatrixGraph& graph) {
   const auto status =
       amd_l_order(graph.vertices(), begin.data(), neighbours.data(), order.data(), nullptr, nullptr);
   if (status == AMD_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (status == AMD_INVALID) throw std::invalid_argument("the graph of a matrix is not sound");
   return {order.begin(), order.end()};
 }
 
 }  // namespace
 
 Elimination fill_reducing_order(const MatrixGraph& graph) {
+  if (graph.neighbours.empty()) {  // both libraries refuse a graph without edges
+    std::vector<int> order(static_cast<std::size_t>(graph.vertices()));
+    std::iota(order.begin(), order.end(), 0);
+    return Elimination(graph, order);
+  }
   Elimination by_degree(graph, minimum_degree(graph));
-  if (graph.neighbours.empty()) return by_degree;  // METIS wants edges
   const std::vector<int> dissected = nested_dissection(graph);
   if (dissected.empty()) return by_degree;
   Elimination by_dissection(graph, dissected);

@@ -113,3 +113,13 @@ TEST_CASE("an order is the same on each thread and each time", "[threads]") {
   }
   for (const std::vector<int>& order : orders) CHECK(order == alone);
 }
+
+TEST_CASE("supernodes: a graph without edges is ordered, each vertex once") {
+  MatrixGraph graph;
+  graph.begin = {0, 0, 0};  // two nodes, as of two tetrahedra on one held face
+  const Elimination elimination = fill_reducing_order(graph);
+  std::vector<int> order = elimination.order;
+  std::ranges::sort(order);
+  CHECK(order == std::vector{0, 1});
+  CHECK(elimination.counts == std::vector{1, 1});
+}
