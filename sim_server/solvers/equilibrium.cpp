@@ -15,8 +15,6 @@ constexpr double kArmijo = 1e-4, kShortestStep = 1e-4;
 constexpr double kSupportNudge = 1e-7;
 // Share of the size of the body: a force that moves a node by less counts as none.
 constexpr double kRestsWithin = 1e-7;
-// Relative residual to which a linear law is solved, whose steps of refinement cost little.
-constexpr double kSharp = 1e-12;
 constexpr double kFirstShift = 0.05, kLastShift = 1e3;  // of the stiffness at rest
 
 class Newton {
@@ -43,12 +41,11 @@ class Newton {
     share_ = to;
     if (load_.start.empty() && !move_supports(x, to - from)) return false;
     double before = std::numeric_limits<double>::infinity();
-    const double enough = is_linear() ? std::min(kSharp, settings_.tolerance) : settings_.tolerance;
     for (int i = 0; i <= settings_.max_newton; ++i) {
       const Eigen::VectorXd residual = residual_at(x);
       if (!std::isfinite(relative_residual_)) return false;
-      const bool stuck = relative_residual_ > 0.5 * before && relative_residual_ <= settings_.rounding;
-      if (relative_residual_ <= enough || stuck) return true;
+      const bool stuck = relative_residual_ >= before && relative_residual_ <= settings_.rounding;
+      if (relative_residual_ <= settings_.tolerance || stuck) return true;
       before = relative_residual_;
       ++iterations_;
       if (!step(x, residual)) return relative_residual_ <= settings_.rounding;

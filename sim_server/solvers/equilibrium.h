@@ -20,7 +20,7 @@ struct StaticLoad {
 
 /// Settings of the search for an equilibrium.
 struct EquilibriumSettings {
-  double tolerance = 1e-10;  ///< relative residual at which an increment ends
+  double tolerance = 1e-12;  ///< relative residual at which an increment ends
   double rounding = 1e-7;    ///< the same, where one more iteration does not lessen it
   int max_newton = 60;       ///< per increment
   int max_halvings = 12;     ///< of the load, where Newton's method fails
