@@ -15,7 +15,7 @@ std::vector<int> parents_of_columns(const MatrixGraph& graph);
 /// Children ascend. `parent`: larger than the vertex, or -1. Linear.
 std::vector<int> postorder(std::span<const int> parent);
 
-/// The same forest with vertex order[k] as number k.
+/// Parents of the same forest with vertex order[k] as number k.
 std::vector<int> renumbered_parents(std::span<const int> parent, std::span<const int> order);
 
 /// Entries in each column of the Cholesky factor, diagonal included, of a matrix whose columns are in a
@@ -25,11 +25,11 @@ std::vector<int> column_counts(const MatrixGraph& graph, std::span<const int> pa
 
 /// Elimination of the vertices of a graph in a postorder of the elimination tree.
 struct Elimination {
-  /// In a postorder of the tree that `given` has, which leaves the fill as it is. `given`: the vertex at each
-  /// place.
+  /// Takes a postorder of the elimination tree of `given`, which leaves the fill as it is. `given`: the
+  /// vertex at each place.
   Elimination(const MatrixGraph& graph, std::span<const int> given);
 
-  /// Of a Cholesky factorisation of scalars in this order: sum of the squared column counts.
+  /// Returns the work of a scalar Cholesky factorisation in this order: the sum of the squared column counts.
   double multiplications() const;
 
   std::vector<int> order;   ///< vertex at each place
