@@ -15,10 +15,10 @@ struct Config::Node {
   std::shared_ptr<const toml::table> root;
   const toml::table* table;
   std::string file, name;  // name: "[material]" or "" at the top
-  std::set<std::string> asked;
+  std::set<std::string> requested;
 
   const toml::node* find(const std::string& key) {
-    asked.insert(key);
+    requested.insert(key);
     return table->get(key);
   }
   std::string at(const toml::node& node) const {
@@ -42,7 +42,7 @@ struct Config::Node {
   [[noreturn]] void missing(const std::string& key) const {
     const int slip = std::min(3, static_cast<int>(key.size()) / 3);  // letters
     for (const auto& [other, node] : *table) {
-      if (!asked.contains(std::string(other.str())) && edit_distance(key, other.str()) <= slip)
+      if (!requested.contains(std::string(other.str())) && edit_distance(key, other.str()) <= slip)
         fail("{}: unknown key `{}`; did you mean \"{}\"?", at(node), full(std::string(other.str())), key);
     }
     fail("{}: missing key `{}`", at(*table), full(key));
@@ -198,10 +198,10 @@ std::vector<Config> Config::tables(const std::string& key) const {
 }
 
 void Config::reject_unknown() const {
-  const std::vector<std::string> known(node_->asked.begin(), node_->asked.end());
+  const std::vector<std::string> known(node_->requested.begin(), node_->requested.end());
   for (const auto& [key, value] : *node_->table) {
     const std::string name(key.str());
-    if (node_->asked.contains(name)) continue;
+    if (node_->requested.contains(name)) continue;
     fail("{}: unknown key `{}`{}", node_->at(value), node_->full(name), suggestion(name, known));
   }
 }

@@ -41,7 +41,7 @@ std::vector<std::size_t> find_columns(const std::vector<std::string>& header,
                                       std::span<const std::string> columns, const std::string& where) {
   std::vector<std::size_t> indices;
   for (const std::string& column : columns) {
-    const auto found = std::find(header.begin(), header.end(), column);
+    const auto found = std::ranges::find(header, column);
     if (found == header.end()) fail("{}: no column \"{}\"{}", where, column, suggestion(column, header));
     indices.push_back(static_cast<std::size_t>(found - header.begin()));
   }
@@ -73,7 +73,7 @@ bool has_csv_column(const std::filesystem::path& file, const std::string& column
   int number = 0;
   if (!next_line(in, number, line)) return false;
   const std::vector<std::string> header = split(line);
-  return std::find(header.begin(), header.end(), column) != header.end();
+  return std::ranges::find(header, column) != header.end();
 }
 
 std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& file,

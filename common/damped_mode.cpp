@@ -12,8 +12,8 @@ std::pair<double, double> decay(double w, double g, double time) noexcept {
   if (std::abs(r * time) < 1e-6) return {std::exp(-g * time), time * std::exp(-g * time)};
   if (square < 0)
     return {std::exp(-g * time) * std::cos(r * time), std::exp(-g * time) * std::sin(r * time) / r};
-  const double slow = std::exp((r - g) * time), quick = std::exp(-(r + g) * time);
-  return {0.5 * (slow + quick), 0.5 * (slow - quick) / r};
+  const double slow = std::exp((r - g) * time), fast = std::exp(-(r + g) * time);
+  return {0.5 * (slow + fast), 0.5 * (slow - fast) / r};
 }
 
 }  // namespace

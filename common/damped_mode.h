@@ -4,10 +4,10 @@ namespace palpate {
 
 /// The slow modes of a tissue that a server tells and a client steps: so many at most, and none quicker than
 /// so (rad/s), as the client meets the contact force a tick late; 80 Hz, where its ticks come at 500 Hz.
-constexpr int kMostSlowModes = 75;
-constexpr double kQuickestSlowMode = 500;
+constexpr int kMaxPublishedModes = 75;
+constexpr double kFastestPublishedMode = 500;
 /// Largest damping of a published slow mode (1/s); a more strongly damped one hardly moves within a tick.
-constexpr double kHardestSlowDamping = 1000;
+constexpr double kMaxPublishedDamping = 1000;
 
 /// Step of one mode of a damped linear motion, q'' + d q' + w^2 q = p, over a time under a constant force p.
 /// Maps q, q' and p at its start to q and q' at its end. Exact, whatever the time and the damping.

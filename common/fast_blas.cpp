@@ -42,7 +42,7 @@ bool is_under_valgrind() {
 
 }  // namespace
 
-void begin_with_fast_blas(char** argv) noexcept {
+void start_with_fast_blas(char** argv) noexcept {
   const char* const kernels = kernels_of_processor();
   if (kernels == nullptr || std::getenv(kVariable) != nullptr || is_under_valgrind() || !has_old_kernels())
     return;

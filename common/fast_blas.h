@@ -8,6 +8,6 @@ namespace palpate {
 /// take three times as long. It reads which kernels to take, OPENBLAS_CORETYPE, only when a program is
 /// loaded. Does nothing where the user has set that, without OpenBLAS, and under valgrind, which would lose
 /// the program. Call it first in `main`, with its `argv`.
-void begin_with_fast_blas(char** argv) noexcept;
+void start_with_fast_blas(char** argv) noexcept;
 
 }  // namespace palpate

@@ -27,7 +27,7 @@ void start(std::string_view program) {
   logger() = named(program);
 }
 
-void tell_more() {
+void report_more() {
   logger()->set_level(spdlog::level::debug);
 }
 

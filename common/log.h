@@ -10,7 +10,7 @@ namespace palpate::log {
 void start(std::string_view program);
 
 /// Writes debug lines, too, from this call on.
-void tell_more();
+void report_more();
 /// True if debug lines are written.
 bool tells_more();
 

@@ -36,7 +36,7 @@ std::optional<double> number_after(const std::filesystem::path& file, std::strin
 }
 
 /// What the limit of one control group leaves.
-double left_in_group(const std::filesystem::path& folder) {
+double remaining_in_group(const std::filesystem::path& folder) {
   const auto most = number_in(folder / "memory.max"), now = number_in(folder / "memory.current");
   if (!most || !now) return std::numeric_limits<double>::infinity();
   return std::max(0.0, *most - *now + number_after(folder / "memory.stat", "inactive_file").value_or(0));
@@ -52,7 +52,7 @@ std::string own_group(const std::filesystem::path& file) {
 }
 
 /// What `ulimit -v` leaves of addresses, with room for what libraries take as they are first used.
-double left_of_addresses(const std::filesystem::path& root) {
+double remaining_of_addresses(const std::filesystem::path& root) {
   constexpr double kLibraries = 3e8;
   rlimit limit{};
   const auto pages = number_in(root / "proc/self/statm");
@@ -74,12 +74,12 @@ double resident_memory() {
 double free_memory(const std::filesystem::path& root) {
   const auto kilobytes = number_after(root / "proc/meminfo", "MemAvailable:");
   double free = kilobytes ? 1024 * *kilobytes : std::numeric_limits<double>::infinity();
-  free = std::min(free, left_of_addresses(root));
+  free = std::min(free, remaining_of_addresses(root));
   const std::filesystem::path groups = root / "sys/fs/cgroup";
   // Each group is within the limits of those above it.
   for (std::filesystem::path group = own_group(root / "proc/self/cgroup").substr(1);;
        group = group.parent_path()) {
-    free = std::min(free, left_in_group(groups / group));
+    free = std::min(free, remaining_in_group(groups / group));
     if (group.empty()) return free;
   }
 }
@@ -92,7 +92,7 @@ std::string bytes_text(double bytes) {
 void require_memory(double bytes, double free, std::string_view where, std::string_view what,
                     std::string_view remedy) {
   if (bytes <= free) return;
-  const char* const limit = left_of_addresses("/") <= free ? " below the limit of `ulimit -v`" : "";
+  const char* const limit = remaining_of_addresses("/") <= free ? " below the limit of `ulimit -v`" : "";
   fail("{}: {} would take {}, and {} are free{}; {}", where, what, bytes_text(bytes), bytes_text(free), limit,
        remedy);
 }

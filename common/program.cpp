@@ -35,13 +35,13 @@ struct Adder {
   }
 };
 
-bool is_whole(const OptionValue& value) {
+bool is_complete(const OptionValue& value) {
   return std::holds_alternative<int*>(value) || std::holds_alternative<std::uint64_t*>(value) ||
          std::holds_alternative<std::optional<int>*>(value);
 }
 
 CLI::Range range_of(const Bounds& bounds, const OptionValue& value) {
-  if (is_whole(value)) return {static_cast<int>(bounds.least), static_cast<int>(bounds.most)};
+  if (is_complete(value)) return {static_cast<int>(bounds.least), static_cast<int>(bounds.most)};
   return {bounds.least, bounds.most};
 }
 
@@ -67,7 +67,7 @@ void declare(CLI::App& app, const Command& command) {
 /// should end now: 0 after --help or --version, 2 after a wrong use, said in one line.
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
-  app.add_flag_callback("--debug", log::tell_more,
+  app.add_flag_callback("--debug", log::report_more,
                         "Before the subcommand: tell more, as what the link did in each second");
   try {
     app.parse(argc, argv);

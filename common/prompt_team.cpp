@@ -7,7 +7,7 @@ namespace palpate {
 namespace {
 
 constexpr Time kAwake = std::chrono::microseconds(200);  // before a thread sleeps
-constexpr int kLooks = 64;                               // between two looks at the time
+constexpr int kPollsPerClock = 64;                       // between two looks at the time
 
 /// The parts of a job that nobody has begun yet, in one word.
 struct Open {
@@ -24,14 +24,14 @@ void pause() noexcept {
 #endif
 }
 
-/// Looks until it is `met`, for so long; whether it is.
+/// Looks until it is `condition`, for so long; whether it is.
 template <class Condition>
-bool look_until(const Condition& met, Time longest) noexcept {
-  if (met()) return true;
+bool poll_until(const Condition& condition, Time longest) noexcept {
+  if (condition()) return true;
   const Time end = now() + longest;
   do {
-    for (int look = 0; look < kLooks; ++look) {
-      if (met()) return true;
+    for (int poll = 0; poll < kPollsPerClock; ++poll) {
+      if (condition()) return true;
       pause();
     }
   } while (now() < end);
@@ -73,10 +73,10 @@ void PromptTeam::begin(const Job& job, std::uint32_t parts) noexcept {
 void PromptTeam::finish() noexcept {
   while (do_one(true)) {
   }
-  const auto left = [this] { return undone_.load(std::memory_order_acquire); };
-  if (look_until([&] { return left() == 0; }, kAwake)) return;
+  const auto undone = [this] { return undone_.load(std::memory_order_acquire); };
+  if (poll_until([&] { return undone() == 0; }, kAwake)) return;
   // Whoever has the last part is held up: perhaps by this very thread.
-  for (std::uint32_t parts = left(); parts > 0; parts = left())
+  for (std::uint32_t parts = undone(); parts > 0; parts = undone())
     undone_.wait(parts, std::memory_order_acquire);
 }
 
@@ -97,7 +97,7 @@ bool PromptTeam::do_one(bool from_the_front) noexcept {
 /// For a job of another number than the `last`, or the end.
 void PromptTeam::wait_for_work(std::uint32_t last) noexcept {
   const auto came = [&] { return number_.load(std::memory_order_acquire) != last; };
-  if (!look_until(came, kAwake)) number_.wait(last, std::memory_order_acquire);
+  if (!poll_until(came, kAwake)) number_.wait(last, std::memory_order_acquire);
 }
 
 void PromptTeam::help() noexcept {

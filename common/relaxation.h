@@ -9,8 +9,8 @@ namespace palpate {
 
 /// A share of all stress that fades when the strain is held: one term of a Prony series.
 struct Relaxation {
-  double share;  ///< of the stress at once, (0, 1); all shares together below 1
-  double time;   ///< to 1/e, s, [1e-4, 1e6]
+  double fraction;  ///< of the stress at once, (0, 1); all shares together below 1
+  double time;      ///< to 1/e, s, [1e-4, 1e6]
   bool operator==(const Relaxation&) const = default;
 };
 
@@ -37,7 +37,7 @@ struct RelaxationStep {
 
 /// A series over a step: of stress, and of what stress leads to.
 struct SeriesStep {
-  std::array<double, kMostRelaxations> share{};
+  std::array<double, kMostRelaxations> fraction{};
   std::array<RelaxationStep, kMostRelaxations> step{};
   int count = 0;
 
@@ -47,24 +47,24 @@ struct SeriesStep {
     for (const Relaxation& term : terms) {
       if (series.count == kMostRelaxations) break;
       const auto j = static_cast<std::size_t>(series.count++);
-      series.share[j] = term.share;
+      series.fraction[j] = term.fraction;
       series.step[j] = RelaxationStep::over(h, term.time);
     }
     return series;
   }
 
-  /// A force f on a tissue that relaxes moves it as far as phi = f + sum_j share_j psi_j moves one that does
-  /// not, psi_j' = (phi - psi_j) / time_j. Takes `psi` (N) over a step in which phi goes evenly, and f
+  /// A force f on a tissue that relaxes moves it as far as phi = f + sum_j fraction_j psi_j moves one that
+  /// does not, psi_j' = (phi - psi_j) / time_j. Takes `psi` (N) over a step in which phi goes evenly, and f
   /// (N) from `from` to `to`.
   void creep(std::span<Vec3, kMostRelaxations> psi, const Vec3& from, const Vec3& to) const noexcept {
     const auto terms = static_cast<std::size_t>(count);
     Vec3 phi = from, end = to;
-    for (std::size_t j = 0; j < terms; ++j) phi += share[j] * psi[j];
+    for (std::size_t j = 0; j < terms; ++j) phi += fraction[j] * psi[j];
     double stays = 1;
     for (std::size_t j = 0; j < terms; ++j) {
       const RelaxationStep& s = step[j];
-      stays -= share[j] * (1 - s.gamma);
-      end += share[j] * (s.gamma * phi - s.fade * (phi - psi[j]));
+      stays -= fraction[j] * (1 - s.gamma);
+      end += fraction[j] * (s.gamma * phi - s.fade * (phi - psi[j]));
     }
     end /= stays;
     for (std::size_t j = 0; j < terms; ++j) psi[j] = step[j].followed<Vec3>(psi[j], phi, end);

@@ -69,7 +69,7 @@ void refuse_another_kind(const fs::path& file, const fs::path& target, Contents 
 
 }  // namespace
 
-WholeFile::WholeFile(const fs::path& file, Contents contents)
+AtomicFile::AtomicFile(const fs::path& file, Contents contents)
     : file_(written_directly(file) ? file : without_links(file)), part_(file_) {
   const bool direct = written_directly(file);
   refuse_another_kind(file, file_, contents);
@@ -80,12 +80,12 @@ WholeFile::WholeFile(const fs::path& file, Contents contents)
   if (!usable) fail("{}: cannot be written; name a file in a folder that exists and is yours", file.string());
 }
 
-WholeFile::~WholeFile() {
+AtomicFile::~AtomicFile() {
   std::error_code ignored;
   if (part_ != file_) fs::remove(part_, ignored);
 }
 
-void WholeFile::commit() {
+void AtomicFile::commit() {
   std::error_code failed;
   if (part_ != file_) fs::rename(part_, file_, failed);
   if (failed) fail_at_run_time("{}: could not be written ({})", file_.string(), failed.message());
@@ -102,27 +102,27 @@ void require_distinct(const std::vector<NamedFile>& files) {
 }
 
 void check_writable(const fs::path& file, Contents contents) {
-  const WholeFile probe(file, contents);
+  const AtomicFile probe(file, contents);
 }
 
 namespace {
 
-void write_whole(const fs::path& file, const std::string& text, Contents contents) {
-  WholeFile whole(file, contents);
-  std::ofstream out(whole.path(), std::ios::binary);
+void write_atomically(const fs::path& file, const std::string& text, Contents contents) {
+  AtomicFile writer(file, contents);
+  std::ofstream out(writer.path(), std::ios::binary);
   out << text << std::flush;
   if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
-  whole.commit();
+  writer.commit();
 }
 
 }  // namespace
 
 void write_csv(const fs::path& file, const std::string& text) {
-  write_whole(file, text, Contents::kTable);
+  write_atomically(file, text, Contents::kTable);
 }
 
 void write_json(const fs::path& file, const Json& json) {
-  write_whole(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", Contents::kReport);
+  write_atomically(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", Contents::kReport);
 }
 
 namespace {

@@ -22,15 +22,15 @@ enum class Contents { kReport, kTable, kCapture, kShapes };
 /// beside it; `commit` gives it its name; going out of scope without that removes it. A link stays a link:
 /// what it points to is replaced. What is no regular file (a device, a pipe, /dev/stdout) is written
 /// directly.
-class WholeFile {
+class AtomicFile {
  public:
   /// Throws `Error` (input) if it cannot be written, or would take the place of a file whose name says that
   /// it is something else, as a mesh. Does not open what is written directly: a pipe is opened once, by
   /// whoever writes.
-  explicit WholeFile(const std::filesystem::path& file, Contents contents);
-  ~WholeFile();
-  WholeFile(const WholeFile&) = delete;
-  WholeFile& operator=(const WholeFile&) = delete;
+  explicit AtomicFile(const std::filesystem::path& file, Contents contents);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
 
   const std::filesystem::path& path() const { return part_; }
   /// Throws `Error` (run time).

@@ -14,9 +14,9 @@ class Timeline {
  public:
   /// The cell for time `t`. The first call sets the beginning; what lies before it goes to the first cell.
   Cell& at(Time t) noexcept {
-    if (size_ == 0) begin_ = t;
-    while (t - begin_ >= static_cast<Time::rep>(kCells) * width_) merge();
-    const std::size_t i = t <= begin_ ? 0 : static_cast<std::size_t>((t - begin_) / width_);
+    if (size_ == 0) start_ = t;
+    while (t - start_ >= static_cast<Time::rep>(kCells) * width_) merge();
+    const std::size_t i = t <= start_ ? 0 : static_cast<std::size_t>((t - start_) / width_);
     if (i >= size_) size_ = i + 1;
     return cells_[i];
   }
@@ -39,7 +39,7 @@ class Timeline {
 
   std::array<Cell, kCells> cells_{};
   std::size_t size_ = 0;
-  Time begin_{}, width_ = std::chrono::seconds(1);
+  Time start_{}, width_ = std::chrono::seconds(1);
 };
 
 }  // namespace palpate

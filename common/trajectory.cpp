@@ -9,17 +9,17 @@
 
 namespace palpate {
 namespace {
-constexpr double kClosed = 1e-3;         // m: how near the start a motion that repeats must end
-constexpr double kFarthestOffset = 1e3;  // m
+constexpr double kClosed = 1e-3;    // m: how near the start a motion that repeats must end
+constexpr double kMaxOffset = 1e3;  // m
 }  // namespace
 
 TrajectorySettings read_trajectory_settings(const Config& section) {
   TrajectorySettings trajectory;
   trajectory.file = section.file("file");
   const auto names = section.texts("columns", 4, {trajectory.columns.begin(), trajectory.columns.end()});
-  std::copy(names.begin(), names.end(), trajectory.columns.begin());
+  std::ranges::copy(names, trajectory.columns.begin());
   trajectory.scale = section.number("scale", {1e-9, 1e9, "m per unit"}, trajectory.scale);
-  trajectory.offset = section.vector("offset", {-kFarthestOffset, kFarthestOffset, "m"}, trajectory.offset);
+  trajectory.offset = section.vector("offset", {-kMaxOffset, kMaxOffset, "m"}, trajectory.offset);
   trajectory.repeat = section.flag("repeat", trajectory.repeat);
   section.reject_unknown();
   return trajectory;
@@ -66,18 +66,18 @@ double Trajectory::time_in_rows(double t) const noexcept {
 
 std::uint16_t Trajectory::buttons_at(double t) const noexcept {
   if (buttons_.empty()) return 0;
-  const auto after = std::upper_bound(t_.begin(), t_.end(), time_in_rows(t));
+  const auto after = std::ranges::upper_bound(t_, time_in_rows(t));
   return buttons_[static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - t_.begin(), 1) - 1)];
 }
 
 Vec3 Trajectory::at(double t) const noexcept {
   const double time = time_in_rows(t);
-  const auto after = std::upper_bound(t_.begin(), t_.end(), time);
+  const auto after = std::ranges::upper_bound(t_, time);
   if (after == t_.begin()) return p_.front();
   if (after == t_.end()) return p_.back();
   const auto i = static_cast<std::size_t>(after - t_.begin());
-  const double share = (time - t_[i - 1]) / (t_[i] - t_[i - 1]);
-  return p_[i - 1] + share * (p_[i] - p_[i - 1]);
+  const double fraction = (time - t_[i - 1]) / (t_[i] - t_[i - 1]);
+  return p_[i - 1] + fraction * (p_[i] - p_[i - 1]);
 }
 
 }  // namespace palpate

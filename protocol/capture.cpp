@@ -72,8 +72,8 @@ CaptureWriter::~CaptureWriter() {
 bool CaptureWriter::write(Time since_1970, const Endpoint& from, const Endpoint& to,
                           std::span<const std::byte> payload, std::size_t length) noexcept {
   if (failed_) return false;
-  const auto kept = payload.first(std::min(payload.size(), kSnapLength - kMaxFrameHeaders));
-  const std::size_t size = build_frame(from, to, kept, length, file_->frame);
+  const auto stored = payload.first(std::min(payload.size(), kSnapLength - kMaxFrameHeaders));
+  const std::size_t size = build_frame(from, to, stored, length, file_->frame);
   if (size == 0) {
     flush();  // what came before is good
     return give_up();
@@ -83,7 +83,7 @@ bool CaptureWriter::write(Time since_1970, const Endpoint& from, const Endpoint&
   header.ts.tv_sec = ns / kSecond;
   header.ts.tv_usec = ns % kSecond;  // nanoseconds in a file of that precision
   header.caplen = static_cast<bpf_u_int32>(size);
-  header.len = static_cast<bpf_u_int32>(size - kept.size() + length);
+  header.len = static_cast<bpf_u_int32>(size - stored.size() + length);
   pcap_dump(reinterpret_cast<u_char*>(file_->dumper.get()), &header,
             reinterpret_cast<const u_char*>(file_->frame.data()));
   ++written_.packets;
@@ -240,7 +240,7 @@ void CaptureReader::end(int reason) noexcept {
   }
 }
 
-double CaptureReader::share() const noexcept {
+double CaptureReader::fraction() const noexcept {
   if (ended_) return 1;
   const off_t at = ftello(pcap_file(file_->pcap.get()));
   if (file_->size == 0 || at < 0) return 0;

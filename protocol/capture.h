@@ -81,7 +81,7 @@ class CaptureReader {
   std::uint64_t packets() const noexcept { return packets_; }  ///< of any kind, so far
 
   /// Returns the fraction of the file that was read, 0 to 1; 0 for a pipe until it ends.
-  double share() const noexcept;
+  double fraction() const noexcept;
 
  private:
   struct File;

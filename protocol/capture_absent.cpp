@@ -37,7 +37,7 @@ CaptureReader::~CaptureReader() = default;
 bool CaptureReader::next(CapturedDatagram&) noexcept {
   return false;
 }
-double CaptureReader::share() const noexcept {
+double CaptureReader::fraction() const noexcept {
   return 0;
 }
 

@@ -47,8 +47,7 @@ bool valid(const ToolState& m) noexcept {
          is_time(m.t_ns) && m.lead_ns >= 0 && m.lead_ns <= kMaxLead;
 }
 bool valid(const Linearisation& m) noexcept {
-  const bool tangent =
-      std::all_of(m.tangent.begin(), m.tangent.end(), [](double k) { return std::abs(k) <= kMaxMagnitude; });
+  const bool tangent = std::ranges::all_of(m.tangent, [](double k) { return std::abs(k) <= kMaxMagnitude; });
   const double size = m.normal_W.squaredNorm();
   return tangent && (size == 0 || std::abs(size - 1) < 1e-6) && m.gap >= 0 && m.gap <= kMaxMagnitude;
 }
@@ -63,37 +62,35 @@ bool valid(const DiscretisationError& m) noexcept {
   return m.source <= ErrorSource::kNone && m.percent >= 0 && m.percent <= kMaxPercent;
 }
 bool valid(const OtherTools& m) noexcept {
-  return small(m.v_W) &&
-         std::all_of(m.compliance.begin(), m.compliance.end(), [](double c) { return std::abs(c) <= 1e6; });
+  return small(m.v_W) && std::ranges::all_of(m.compliance, [](double c) { return std::abs(c) <= 1e6; });
 }
 bool valid(const ModalState& m) noexcept {
   const auto bounded = [](float x) { return std::abs(x) <= kMaxAmplitude; };
-  return m.count <= kMostSlowModes && std::all_of(m.q.begin(), m.q.end(), bounded) &&
-         std::all_of(m.v.begin(), m.v.end(), bounded);
+  return m.count <= kMaxPublishedModes && std::ranges::all_of(m.q, bounded) &&
+         std::ranges::all_of(m.v, bounded);
 }
 bool valid(const ForceSample& m) noexcept {
   return m.tool < kMaxTools && m.number > 0 && is_time(m.tool_t_ns) && small(m.p_W) && small(m.f_W) &&
-         small(m.torque_W) && small(m.surface_v_W) && valid(m.here) && small(m.ahead_p_W) &&
+         small(m.torque_W) && small(m.surface_v_W) && valid(m.at_tool) && small(m.ahead_p_W) &&
          small(m.ahead_f_W) && valid(m.ahead) && valid(m.surface) && valid(m.errors.mesh) &&
          valid(m.errors.time_step) && valid(m.others) && valid(m.modes) && small(m.mean_f_W) &&
          valid(m.relaxed) && valid(m.modal_loads);
 }
 bool valid(const SurfacePage& m) noexcept {
   return m.tool < kMaxTools && m.page != ToolState::kNoPage &&
-         std::all_of(m.values.begin(), m.values.end(), [](float x) { return std::abs(x) <= 1e9f; });
+         std::ranges::all_of(m.values, [](float x) { return std::abs(x) <= 1e9f; });
 }
 
 bool valid(const Telemetry& m) noexcept {
   const auto ascii = [](const Telemetry::Name& name) {
-    return std::all_of(name.begin(), name.end(),
-                       [](std::uint8_t c) { return c == 0 || (c >= 32 && c < 127); });
+    return std::ranges::all_of(name, [](std::uint8_t c) { return c == 0 || (c >= 32 && c < 127); });
   };
   const auto force = [](float f) { return std::abs(f) <= 1e9F; };
   return m.tool < kMaxTools && small(m.p_W) && small(m.f_W) && m.passivity_gain >= 0 &&
-         m.passivity_gain <= 1 && ascii(m.device) && ascii(m.felt_law) && ascii(m.name) &&
+         m.passivity_gain <= 1 && ascii(m.device) && ascii(m.rendered_law) && ascii(m.name) &&
          m.named < Telemetry::kMostLaws && m.error_percent <= kMaxPercent && m.laws <= Telemetry::kMostLaws &&
-         m.count <= Telemetry::kMostTicks && std::all_of(m.felt.begin(), m.felt.end(), force) &&
-         std::all_of(m.by_law.begin(), m.by_law.end(), force);
+         m.count <= Telemetry::kMostTicks && std::ranges::all_of(m.rendered, force) &&
+         std::ranges::all_of(m.by_law, force);
 }
 bool valid(const Pointer& m) noexcept {
   return m.tool < kMaxTools && m.number > 0 && small(m.p_W);
@@ -142,25 +139,24 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
 }  // namespace
 
 bool valid(const ModalLoads& m) noexcept {
-  return m.count <= kMostSlowModes &&
-         std::all_of(m.load.begin(), m.load.end(), [](float x) { return std::abs(x) <= kMaxAmplitude; });
+  return m.count <= kMaxPublishedModes &&
+         std::ranges::all_of(m.load, [](float x) { return std::abs(x) <= kMaxAmplitude; });
 }
 
 bool valid(const RelaxedState& m) noexcept {
   const auto bounded = [](float x) { return std::abs(x) <= kMaxAmplitude; };
   if (m.terms > kMostRelaxations || m.count * m.terms > RelaxedState::kMostAmplitudes ||
-      m.first + m.count > kMostSlowModes || m.vertices * m.terms > RelaxedState::kMostForces ||
+      m.first + m.count > kMaxPublishedModes || m.vertices * m.terms > RelaxedState::kMostForces ||
       m.vertices > RelaxedState::kMostForces)
     return false;
-  float shares = 0;
+  float fractions = 0;
   for (std::size_t j = 0; j < m.terms; ++j) {
-    shares += m.share[j];
-    if (!(m.share[j] >= 0 && m.time[j] > 0 && m.time[j] <= kMaxRelaxation)) return false;
+    fractions += m.fraction[j];
+    if (!(m.fraction[j] >= 0 && m.time[j] > 0 && m.time[j] <= kMaxRelaxation)) return false;
   }
-  return shares < 1 && std::all_of(m.z.begin(), m.z.end(), bounded) &&
-         std::all_of(m.vertex.begin(), m.vertex.end(), [&](const RelaxedState::Vertex& v) {
-           return std::all_of(v.psi.begin(), v.psi.end(), bounded);
-         });
+  return fractions < 1 && std::ranges::all_of(m.z, bounded) &&
+         std::ranges::all_of(
+             m.vertex, [&](const RelaxedState::Vertex& v) { return std::ranges::all_of(v.psi, bounded); });
 }
 
 std::size_t encode(const Header& header, const Message& message, std::span<std::byte> out) noexcept {

@@ -61,7 +61,7 @@ Key read_line(const std::string& line, const std::string& where) {
 }
 
 /// In one piece, and to the disk; else the file is removed.
-void write_whole(int descriptor, const std::string& text, const std::filesystem::path& file) {
+void write_atomically(int descriptor, const std::string& text, const std::filesystem::path& file) {
   const bool written = ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
                        ::fsync(descriptor) == 0;
   const int why = errno;
@@ -120,7 +120,7 @@ Key add_new_key(const std::filesystem::path& file, bool add) {
     fail("{}: is there already; --add puts a new key behind the old ones, or choose another name",
          file.string());
   if (descriptor < 0) fail_at_run_time("{}: cannot be written ({})", written, std::strerror(errno));
-  write_whole(descriptor, text + "\n", written);
+  write_atomically(descriptor, text + "\n", written);
   if (add && std::rename(written.c_str(), file.c_str()) != 0) {
     const int why = errno;
     ::unlink(written.c_str());

@@ -220,7 +220,7 @@ std::size_t build_frame(const Endpoint& from, const Endpoint& to, std::span<cons
   const std::size_t longest = kMaxLengthField - kUdpHeader - (from.v6 ? 0 : kIpv4Header);
   if (length > longest || payload.size() > length || out.size() < headers + payload.size()) return 0;
   std::fill_n(out.begin(), headers, std::byte{0});
-  std::copy(payload.begin(), payload.end(), out.begin() + static_cast<std::ptrdiff_t>(headers));
+  std::ranges::copy(payload, out.begin() + static_cast<std::ptrdiff_t>(headers));
   if (from.v6) {
     put_ipv6(from, to, kUdpHeader + length, out.first(ip));
   } else {

@@ -12,12 +12,12 @@ double LinkSimulator::draw() {
 void LinkSimulator::send(std::span<const std::byte> datagram, Time now) {
   ++counts_.sent;
   Draws draws{};
-  for (double* each : {&draws.loss, &draws.burst_begin, &draws.burst_end, &draws.duplicate, &draws.reorder,
+  for (double* each : {&draws.loss, &draws.burst_start, &draws.burst_end, &draws.duplicate, &draws.reorder,
                        &draws.corrupt, &draws.byte, &draws.value, &draws.jitter, &draws.second_jitter})
     *each = draw();
   if (!gets_through(draws, now)) return;
-  const std::optional<Time> left = leaves(datagram.size(), now);
-  if (!left) {
+  const std::optional<Time> leaving = leaves(datagram.size(), now);
+  if (!leaving) {
     ++counts_.dropped_by_queue;
     return;
   }
@@ -37,16 +37,16 @@ void LinkSimulator::send(std::span<const std::byte> datagram, Time now) {
   }
   if (draws.duplicate < conditions_.duplicates) {
     ++counts_.duplicated;
-    put(*left + from_seconds(delay + draws.second_jitter * conditions_.jitter), bytes);
+    put(*leaving + from_seconds(delay + draws.second_jitter * conditions_.jitter), bytes);
   }
-  put(*left + from_seconds(delay + draws.jitter * conditions_.jitter), std::move(bytes));
+  put(*leaving + from_seconds(delay + draws.jitter * conditions_.jitter), std::move(bytes));
 }
 
 bool LinkSimulator::gets_through(const Draws& draws, Time now) {
-  const bool burst = in_burst_ || draws.burst_begin < conditions_.burst_begin;
+  const bool burst = in_burst_ || draws.burst_start < conditions_.burst_start;
   in_burst_ = burst && draws.burst_end >= conditions_.burst_end;
-  const bool cut = std::any_of(conditions_.partitions.begin(), conditions_.partitions.end(),
-                               [&](const auto& p) { return now >= p.from && now < p.until; });
+  const bool cut = std::ranges::any_of(conditions_.partitions,
+                                       [&](const auto& p) { return now >= p.from && now < p.until; });
   const bool alone = draws.loss < conditions_.loss;
   std::uint64_t* const reason = cut     ? &counts_.partitioned
                                 : burst ? &counts_.lost_in_bursts
@@ -66,22 +66,22 @@ std::optional<Time> LinkSimulator::leaves(std::size_t bytes, Time now) {
 }
 
 void LinkSimulator::put(Time arrival, std::vector<std::byte> datagram) {
-  const auto behind = std::lower_bound(on_the_way_.begin(), on_the_way_.end(), arrival,
-                                       [](const OnTheWay& next, Time t) { return next.arrival > t; });
-  on_the_way_.insert(behind, {arrival, std::move(datagram)});
+  const auto behind = std::lower_bound(in_transit_.begin(), in_transit_.end(), arrival,
+                                       [](const InTransit& next, Time t) { return next.arrival > t; });
+  in_transit_.insert(behind, {arrival, std::move(datagram)});
 }
 
 std::optional<std::vector<std::byte>> LinkSimulator::receive(Time now) {
-  if (on_the_way_.empty() || on_the_way_.back().arrival > now) return {};
-  std::vector<std::byte> datagram = std::move(on_the_way_.back().datagram);
-  on_the_way_.pop_back();
+  if (in_transit_.empty() || in_transit_.back().arrival > now) return {};
+  std::vector<std::byte> datagram = std::move(in_transit_.back().datagram);
+  in_transit_.pop_back();
   ++counts_.delivered;
   return datagram;
 }
 
 std::optional<Time> LinkSimulator::next_arrival() const {
-  if (on_the_way_.empty()) return {};
-  return on_the_way_.back().arrival;
+  if (in_transit_.empty()) return {};
+  return in_transit_.back().arrival;
 }
 
 }  // namespace palpate::protocol

@@ -24,7 +24,7 @@ struct LinkConditions {
   double delay = 0;          ///< s
   double jitter = 0;         ///< s: more delay, even between 0 and this, drawn for each; so they may overtake
   double loss = 0;           ///< share lost, each on its own
-  double burst_begin = 0;    ///< share, outside bursts, with which a burst of losses begins (Gilbert 1960,
+  double burst_start = 0;    ///< share, outside bursts, with which a burst of losses begins (Gilbert 1960,
                              ///< Bell Syst. Tech. J. 39:1253)
   double burst_end = 1;      ///< share of those in a burst that are its last: 1 / (mean length)
   double duplicates = 0;     ///< share that arrives twice, each with its own jitter
@@ -62,12 +62,12 @@ class LinkSimulator {
   const LinkCounts& counts() const { return counts_; }
 
  private:
-  struct OnTheWay {
+  struct InTransit {
     Time arrival;
     std::vector<std::byte> datagram;
   };
   struct Draws {
-    double loss, burst_begin, burst_end, duplicate, reorder, corrupt, byte, value, jitter, second_jitter;
+    double loss, burst_start, burst_end, duplicate, reorder, corrupt, byte, value, jitter, second_jitter;
   };
   double draw();
   bool gets_through(const Draws& draws, Time now);
@@ -77,8 +77,8 @@ class LinkSimulator {
   LinkConditions conditions_;
   std::mt19937_64 random_;
   bool in_burst_ = false;
-  Time line_free_{};                  // when the last datagram in the queue has left
-  std::vector<OnTheWay> on_the_way_;  // by arrival, the next one last
+  Time line_free_{};                   // when the last datagram in the queue has left
+  std::vector<InTransit> in_transit_;  // by arrival, the next one last
   LinkCounts counts_;
 };
 

@@ -15,7 +15,7 @@ struct LinkStats {
   std::uint64_t reordered = 0;    ///< came after a later one
   std::uint64_t overtaken = 0;    ///< of these, values dropped, as a newer one was there
   std::uint64_t duplicated = 0;   ///< came again, or too late to tell; dropped
-  std::uint64_t wild = 0;         ///< sequence number, or that of the value, far from those before; dropped
+  std::uint64_t implausible = 0;  ///< sequence number, or that of the value, far from those before; dropped
   std::uint64_t began_anew = 0;   ///< times that the numbers of the sender went on elsewhere
   std::uint64_t rejected = 0;     ///< not decodable, not authentic, or of no session we know
   std::array<std::uint64_t, kVerdicts> rejected_by{};  ///< of those, by the reason

@@ -6,7 +6,7 @@
 
 namespace palpate::protocol {
 
-std::string told_since(const LinkStats& before, const LinkStats& now) {
+std::string published_since(const LinkStats& before, const LinkStats& now) {
   std::string text =
       fmt::format("{} sent, {} received", now.sent - before.sent, now.received - before.received);
   const auto add = [&](const char* what, std::uint64_t earlier, std::uint64_t later) {
@@ -18,7 +18,7 @@ std::string told_since(const LinkStats& before, const LinkStats& now) {
   add("reordered", before.reordered, now.reordered);
   add("overtaken", before.overtaken, now.overtaken);
   add("duplicated", before.duplicated, now.duplicated);
-  add("wild", before.wild, now.wild);
+  add("wild", before.implausible, now.implausible);
   add("times begun anew", before.began_anew, now.began_anew);
   for (std::size_t i = 0; i < now.rejected_by.size(); ++i)
     add(fmt::format("rejected ({})", name_of(static_cast<Verdict>(i))).c_str(), before.rejected_by[i],
@@ -26,12 +26,12 @@ std::string told_since(const LinkStats& before, const LinkStats& now) {
   return text;
 }
 
-void LinkWatcher::look(const std::string& name) {
-  if (++looks_ < kLooks) return;
-  looks_ = 0;
+void LinkWatcher::poll(const std::string& name) {
+  if (++polls_ < kPollsPerClock) return;
+  polls_ = 0;
   newest_.read(now_);
   if (!log::tells_more()) return;
-  log::debug("{}link, in the last second: {}", name, told_since(before_, now_));
+  log::debug("{}link, in the last second: {}", name, published_since(before_, now_));
   before_ = now_;
 }
 

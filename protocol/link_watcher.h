@@ -13,17 +13,17 @@ class LinkWatcher {
   /// Network thread; no allocation.
   void note(const LinkStats& stats) noexcept { newest_.write(stats); }
   /// A watching thread, ten times a second. `name` begins the line.
-  void look(const std::string& name);
+  void poll(const std::string& name);
 
  private:
-  static constexpr int kLooks = 10;
+  static constexpr int kPollsPerClock = 10;
   LatestValue<LinkStats> newest_;
   LinkStats before_, now_;  // of the watching thread
-  int looks_ = 0;
+  int polls_ = 0;
 };
 
 /// "30 sent, 1000 received, 2 lost": what was counted between two times; what did not happen is left out, but
 /// for the first two.
-std::string told_since(const LinkStats& before, const LinkStats& now);
+std::string published_since(const LinkStats& before, const LinkStats& now);
 
 }  // namespace palpate::protocol

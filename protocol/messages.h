@@ -94,9 +94,9 @@ struct Bye {
 struct ToolState {
   static constexpr MessageType kType = MessageType::kToolState;
   /// Bits of `flags`: what this tick saw, and which parts of the answer it asks for.
-  static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2, kClutched = 4, kWantsHere = 8,
-                                 kWantsAhead = 16, kWantsSurface = 32, kAsksPages = 64, kWantsErrors = 128,
-                                 kInPause = 256;
+  static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2, kClutched = 4, kRequestsTangent = 8,
+                                 kRequestsAhead = 16, kRequestsSurface = 32, kAsksPages = 64,
+                                 kRequestsErrors = 128, kInPause = 256;
   static constexpr std::uint32_t kNoPage = 0xffffffff;
   std::uint8_t tool = 0;
   std::uint64_t tick = 0;           ///< haptic tick, from 1
@@ -107,16 +107,16 @@ struct ToolState {
   std::array<double, 4> q_W = {1, 0, 0, 0};  ///< orientation, unit quaternion w, x, y, z
   std::uint16_t buttons = 0;                 ///< one bit each
   std::uint16_t flags = 0;
-  std::int64_t lead_ns = 0;       ///< with kWantsAhead: how much later the middle of the answer's use will be
-  std::uint64_t pages_taken = 0;  ///< kWantsSurface: pages that this tick and those before took
+  std::int64_t lead_ns = 0;  ///< with kRequestsAhead: how much later the middle of the answer's use will be
+  std::uint64_t pages_taken = 0;            ///< kRequestsSurface: pages that this tick and those before took
   std::uint32_t surface_version = 0;        ///< kAsksPages: of the model that is asked for, and
   std::array<std::uint32_t, 8> pages = {};  ///< which of its pages; kNoPage: none
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.tick), v(m.newest_sample), v(m.t_ns), v(m.p_W), v(m.v_W), v(m.q_W), v(m.buttons),
         v(m.flags);
-    if ((m.flags & kWantsAhead) != 0) v(m.lead_ns);
-    if ((m.flags & kWantsSurface) != 0) v(m.pages_taken);
+    if ((m.flags & kRequestsAhead) != 0) v(m.lead_ns);
+    if ((m.flags & kRequestsSurface) != 0) v(m.pages_taken);
     if ((m.flags & kAsksPages) != 0) v(m.surface_version), v(m.pages);
   }
 };
@@ -162,9 +162,9 @@ struct OtherTools {
 
 /// State of the slow modes of a body in motion; their shapes on its surface: `SurfacePage`s.
 struct ModalState {
-  std::uint8_t count = 0;  ///< of modes, at most `kMostSlowModes`
+  std::uint8_t count = 0;  ///< of modes, at most `kMaxPublishedModes`
   /// Amplitudes of the first `count` modes, m sqrt(kg), and their rates, m sqrt(kg)/s.
-  std::array<float, kMostSlowModes> q = {}, v = {};
+  std::array<float, kMaxPublishedModes> q = {}, v = {};
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.count);
@@ -178,7 +178,7 @@ struct ModalLoads {
   /// "relaxed" (75: 10; up to 53: all).
   static constexpr std::size_t room(std::size_t modes) { return std::min(modes, 160 - 2 * modes); }
   std::uint8_t count = 0;  ///< of modes, the slowest first; on the others, nothing is told
-  std::array<float, kMostSlowModes> load = {};  ///< of the first `count`, N/sqrt(kg)
+  std::array<float, kMaxPublishedModes> load = {};  ///< of the first `count`, N/sqrt(kg)
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.count);
@@ -192,7 +192,7 @@ struct RelaxedState {
   static constexpr std::size_t kMostAmplitudes = 75, kMostForces = 16;  ///< in one sample
   /// The Prony series, at most `kMostRelaxations` terms: share of the stress at once, and time, s.
   std::uint8_t terms = 0;
-  std::array<float, kMostRelaxations> share = {}, time = {};
+  std::array<float, kMostRelaxations> fraction = {}, time = {};
   /// Delayed amplitudes of `count` modes from `first` on: z follows q late in each term, m sqrt(kg); terms of
   /// a mode in a row.
   std::uint8_t first = 0, count = 0;
@@ -208,7 +208,7 @@ struct RelaxedState {
   static void fields(Self& m, Visitor&& v) {
     v(m.terms);
     const auto terms = std::min<std::size_t>(m.terms, kMostRelaxations);
-    for (std::size_t j = 0; j < terms; ++j) v(m.share[j]), v(m.time[j]);
+    for (std::size_t j = 0; j < terms; ++j) v(m.fraction[j]), v(m.time[j]);
     v(m.first), v(m.count);
     for (std::size_t i = 0; i < m.count * terms && i < m.z.size(); ++i) v(m.z[i]);
     v(m.vertices);
@@ -221,13 +221,13 @@ struct RelaxedState {
 
 struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
-  /// Bits of `flags`; from kHasHere on: which parts follow.
-  static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasHere = 4, kHasAhead = 8, kHasSurface = 16,
-                                 kHasErrors = 32, kHasOthers = 64, kHasModes = 128, kHasMean = 256,
-                                 kHasRelaxed = 512;
+  /// Bits of `flags`; from kHasTangent on: which parts follow.
+  static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasTangent = 4, kHasAhead = 8,
+                                 kHasSurface = 16, kHasErrors = 32, kHasOthers = 64, kHasModes = 128,
+                                 kHasMean = 256, kHasRelaxed = 512;
   /// Requests to the client: to send `Telemetry`; to release the force, as the simulation is paused and this
   /// sample repeats the last one.
-  static constexpr std::uint32_t kWantsTelemetry = 1024, kPaused = 2048;
+  static constexpr std::uint32_t kRequestsTelemetry = 1024, kPaused = 2048;
   /// Flags of more parts.
   static constexpr std::uint32_t kHasModalLoads = 4096, kHasCuts = 8192;
   /// The tip was hot, or the blade cut: what it touches may give way at any time.
@@ -242,8 +242,8 @@ struct ForceSample {
   Vec3 torque_W = Vec3::Zero();  ///< torque on the tool about its centre, N m
   std::int64_t step_ns = 0;      ///< time the server spent on the step
   std::uint32_t flags = 0;
-  Vec3 surface_v_W = Vec3::Zero();  ///< kHasHere: of the surface near the tool, by its supports alone, m/s
-  Linearisation here{};             ///< kHasHere: at p_W
+  Vec3 surface_v_W = Vec3::Zero();  ///< kHasTangent: of the surface near the tool, by its supports alone, m/s
+  Linearisation at_tool{};          ///< kHasTangent: at p_W
   Vec3 ahead_p_W = Vec3::Zero();    ///< kHasAhead: where the tool was expected `lead` later, m
   Vec3 ahead_f_W = Vec3::Zero();    ///< kHasAhead: the force there, N
   Linearisation ahead{};            ///< kHasAhead: at that place
@@ -261,7 +261,7 @@ struct ForceSample {
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
         v(m.flags);
-    if ((m.flags & kHasHere) != 0) v(m.surface_v_W), Linearisation::fields(m.here, v);
+    if ((m.flags & kHasTangent) != 0) v(m.surface_v_W), Linearisation::fields(m.at_tool, v);
     if ((m.flags & kHasAhead) != 0) v(m.ahead_p_W), v(m.ahead_f_W), Linearisation::fields(m.ahead, v);
     if ((m.flags & kHasSurface) != 0) SurfaceState::fields(m.surface, v);
     if ((m.flags & kHasErrors) != 0) {
@@ -293,8 +293,8 @@ struct SurfacePage {
 };
 
 /// State that only the client knows, for a page that shows it: the newest ticks, and the quality of the
-/// session. Sent about 30 times a second while the newest sample has the flag `kWantsTelemetry`. It changes
-/// nothing.
+/// session. Sent about 30 times a second while the newest sample has the flag `kRequestsTelemetry`. It
+/// changes nothing.
 struct Telemetry {
   static constexpr MessageType kType = MessageType::kTelemetry;
   static constexpr std::size_t kMostTicks = 24, kMostLaws = 8, kNameBytes = 32;
@@ -317,7 +317,7 @@ struct Telemetry {
   /// or passivity damped it.
   std::uint32_t faded = 0, clamped = 0, slewed = 0, damped = 0;
   Name device = {};
-  Name felt_law = {};  ///< the law that is felt; behind a colon, which one stands in
+  Name rendered_law = {};  ///< the law that is felt; behind a colon, which one stands in
   /// The law of column `named`, and its mean error so far, %, below 0: not known. Another one in each
   /// message.
   std::uint8_t named = 0;
@@ -325,15 +325,15 @@ struct Telemetry {
   float error_percent = -1;
   /// The ticks, the oldest first: the force felt, and by each law that runs beside, N. Sizes, not vectors.
   std::uint8_t laws = 0, count = 0;
-  std::array<float, kMostTicks> felt = {};
+  std::array<float, kMostTicks> rendered = {};
   std::array<float, kMostTicks* kMostLaws> by_law = {};  ///< `laws` of a tick in a row
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.flags), v(m.t_ns), v(m.dt_ns), v(m.p_W), v(m.f_W), v(m.age_ns), v(m.period_ns),
         v(m.longest_period_ns), v(m.ticks), v(m.missed), v(m.passivity_gain), v(m.faded), v(m.clamped),
-        v(m.slewed), v(m.damped), v(m.device), v(m.felt_law), v(m.named), v(m.name), v(m.error_percent),
+        v(m.slewed), v(m.damped), v(m.device), v(m.rendered_law), v(m.named), v(m.name), v(m.error_percent),
         v(m.laws), v(m.count);
-    for (std::size_t i = 0; i < m.count && i < kMostTicks; ++i) v(m.felt[i]);
+    for (std::size_t i = 0; i < m.count && i < kMostTicks; ++i) v(m.rendered[i]);
     for (std::size_t i = 0; i < m.count * m.laws && i < m.by_law.size(); ++i) v(m.by_law[i]);
   }
 };

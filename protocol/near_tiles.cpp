@@ -29,7 +29,7 @@ void NearTiles::take(std::span<const Vec3> rest) noexcept {
   }
 }
 
-void NearTiles::look(const Vec3& p) noexcept {
+void NearTiles::search(const Vec3& p) noexcept {
   near_.clear();
   for (std::uint32_t c = 0; c < center_.size(); ++c)
     near_.emplace_back((center_[c] - p).norm() - radius_[c], c);

@@ -15,8 +15,8 @@ class NearTiles {
   /// Clusters around the tool that are looked at: all pairs of them have room in a client.
   static constexpr std::size_t kMostClusters = 120;
   /// Tiles that a client keeps; then it forgets the oldest.
-  static constexpr std::size_t kKept = 8192;
-  static_assert(kMostClusters * (kMostClusters + 1) / 2 <= kKept);
+  static constexpr std::size_t kStored = 8192;
+  static_assert(kMostClusters * (kMostClusters + 1) / 2 <= kStored);
 
   /// Allocates for surfaces of at most this number of vertices.
   explicit NearTiles(std::size_t most_vertices);
@@ -29,7 +29,7 @@ class NearTiles {
   static double reach(double radius, double speed) noexcept { return 3 * radius + 0.2 * speed; }
 
   /// Looks around `p` (m, at rest).
-  void look(const Vec3& p) noexcept;
+  void search(const Vec3& p) noexcept;
   /// Returns the distance of `p` from the ball around the nearest cluster, m; below 0: within. Infinite
   /// without a surface.
   double distance() const noexcept;

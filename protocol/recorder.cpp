@@ -26,13 +26,14 @@ std::filesystem::path Recorder::path_of(std::uint64_t number) const {
       fmt::format("{}-{}{}", path_.stem().string(), number, path_.extension().string()));
 }
 
-void Recorder::begin_next() noexcept {
+void Recorder::start_next() noexcept {
   ended_ = written();
   part_.reset();
   try {
     part_.emplace(path_of(ended_.files + 1));
-    std::error_code gone;
-    if (ended_.files >= kKeptFiles) std::filesystem::remove(path_of(ended_.files + 1 - kKeptFiles), gone);
+    std::error_code expired;
+    if (ended_.files >= kStoredFiles)
+      std::filesystem::remove(path_of(ended_.files + 1 - kStoredFiles), expired);
   } catch (const std::exception&) {
     failed.store(true, std::memory_order_relaxed);
   }
@@ -47,8 +48,8 @@ void Recorder::note(Time t, const Endpoint& from, const Endpoint& to,
   packet->from = from;
   packet->to = to;
   packet->length = bytes.size();
-  packet->kept = std::min(bytes.size(), packet->bytes.size());
-  std::copy_n(bytes.begin(), packet->kept, packet->bytes.begin());
+  packet->stored = std::min(bytes.size(), packet->bytes.size());
+  std::copy_n(bytes.begin(), packet->stored, packet->bytes.begin());
   ring_.publish();
 }
 
@@ -72,10 +73,10 @@ void Recorder::run(const std::stop_token& stop) noexcept {
 void Recorder::write_all() noexcept {
   while (const Packet* const packet = ring_.front()) {
     if (part_) {
-      part_->capture.write(epoch_ + packet->t, packet->from, packet->to, {packet->bytes.data(), packet->kept},
-                           packet->length);
+      part_->capture.write(epoch_ + packet->t, packet->from, packet->to,
+                           {packet->bytes.data(), packet->stored}, packet->length);
       if (!part_->named) name_it(*packet);
-      if (most_bytes_ && part_->named && part_->capture.bytes() >= *most_bytes_) begin_next();
+      if (most_bytes_ && part_->named && part_->capture.bytes() >= *most_bytes_) start_next();
     }
     ring_.release();
   }
@@ -84,7 +85,7 @@ void Recorder::write_all() noexcept {
 
 void Recorder::name_it(const Packet& packet) noexcept {
   Datagram datagram;
-  if (decode({packet.bytes.data(), packet.kept}, datagram) != Verdict::kAccepted ||
+  if (decode({packet.bytes.data(), packet.stored}, datagram) != Verdict::kAccepted ||
       datagram.header.session == 0)
     return;
   part_->named = true;

@@ -56,13 +56,13 @@ class Recorder {
   /// When `run` has returned.
   Stats stats() const;
   const std::filesystem::path& file() const { return path_; }
-  static constexpr std::uint64_t kKeptFiles = 10;
+  static constexpr std::uint64_t kStoredFiles = 10;
 
  private:
   struct Packet {
     Time t;
     Endpoint from, to;
-    std::size_t length = 0, kept = 0;
+    std::size_t length = 0, stored = 0;
     std::array<std::byte, kMaxDatagram> bytes;
   };
   static constexpr std::size_t kRoom = 8192;  // datagrams
@@ -72,12 +72,12 @@ class Recorder {
   /// File of the recording.
   struct Part {
     explicit Part(const std::filesystem::path& path) : file(path, Contents::kCapture), capture(file.path()) {}
-    WholeFile file;
+    AtomicFile file;
     CaptureWriter capture;
     bool named = false;
   };
   std::filesystem::path path_of(std::uint64_t number) const;
-  void begin_next() noexcept;
+  void start_next() noexcept;
   Stats written() const;
 
   std::filesystem::path path_;

@@ -12,8 +12,8 @@ class Stray {
  public:
   /// A number that is far off came. True: it is the fourth of a row.
   bool is_new_beginning(std::uint64_t number) noexcept {
-    const bool goes_on = in_a_row_ > 0 && number > last_ && number - last_ <= kNear;
-    in_a_row_ = goes_on ? in_a_row_ + 1 : 1;
+    const bool continues = in_a_row_ > 0 && number > last_ && number - last_ <= kNear;
+    in_a_row_ = continues ? in_a_row_ + 1 : 1;
     last_ = number;
     if (in_a_row_ < kEnough) return false;
     in_a_row_ = 0;
@@ -34,21 +34,21 @@ class Stray {
 /// of RFC 4303, section 3.4.3). Pure; a few instructions.
 class ReplayWindow {
  public:
-  /// `farthest`: how far ahead a number is taken at once. One that is wild within that keeps the sender out
+  /// `furthest`: how far ahead a number is taken at once. One that is wild within that keeps the sender out
   /// until its own numbers get there: about a second of them.
-  explicit ReplayWindow(std::uint64_t farthest) : farthest_(farthest) {}
+  explicit ReplayWindow(std::uint64_t furthest) : furthest_(furthest) {}
 
   /// True if `sequence` (>= 1) was not seen before; counts it in `stats`. A duplicate, a number 64 or more
-  /// behind, or one farther ahead than `farthest`, is refused; the latter until the sender goes on from there
+  /// behind, or one farther ahead than `furthest`, is refused; the latter until the sender goes on from there
   /// (`Stray`). Sequence 0 is refused always.
   bool accept(std::uint64_t sequence, LinkStats& stats) noexcept {
     in_order_ = false;
     if (sequence == 0) return refuse(stats);
     const std::uint64_t ahead = sequence > highest_ ? sequence - highest_ : 0;
     if (ahead > 0) {
-      if (ahead > farthest_) {
+      if (ahead > furthest_) {
         if (!stray_.is_new_beginning(sequence)) {
-          ++stats.wild;
+          ++stats.implausible;
           return false;
         }
         ++stats.began_anew;
@@ -72,7 +72,7 @@ class ReplayWindow {
   /// True if the last number taken is the highest.
   bool in_order() const noexcept { return in_order_; }
   /// The sender has gone on so far unseen: the next number is `sequence`.
-  void begin_at(std::uint64_t sequence) noexcept { highest_ = sequence - 1; }
+  void start_at(std::uint64_t sequence) noexcept { highest_ = sequence - 1; }
 
  private:
   static bool refuse(LinkStats& stats) noexcept {
@@ -80,7 +80,7 @@ class ReplayWindow {
     return false;
   }
 
-  std::uint64_t farthest_, highest_ = 0, seen_ = 0;
+  std::uint64_t furthest_, highest_ = 0, seen_ = 0;
   Stray stray_;
   bool in_order_ = false;
 };
@@ -98,9 +98,9 @@ class NewestOnly {
       if (stats.values_lost > 0) --stats.values_lost;  // counted as lost when the newer one came
       return false;
     }
-    const bool newer = newest_ == 0 || (number > newest_ && number - newest_ <= kFarthest);
+    const bool newer = newest_ == 0 || (number > newest_ && number - newest_ <= kMaxDistance);
     if (!newer && !stray_.is_new_beginning(number)) {
-      ++stats.wild;
+      ++stats.implausible;
       return false;
     }
     if (newer) {
@@ -113,7 +113,7 @@ class NewestOnly {
   }
 
  private:
-  static constexpr std::uint64_t kFarthest = 1 << 16;
+  static constexpr std::uint64_t kMaxDistance = 1 << 16;
 
   std::uint64_t newest_ = 0, sequence_ = 0;
   Stray stray_;

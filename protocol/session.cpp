@@ -57,12 +57,12 @@ void ClientSession::welcomed_by(const Datagram& datagram, const Welcome& welcome
   // An older one, from a server that is gone; unless this one has been silent since.
   const bool another = datagram.header.session != current_.session;
   if (another && welcome.attempt <= welcomed_attempt_) return;
-  if (datagram.header.session == left_.session && heard_lately(now)) return;
+  if (datagram.header.session == departed_.session && heard_lately(now)) return;
   welcomed_attempt_ = std::max(welcomed_attempt_, welcome.attempt);
   last_heard_ = now;
   refused_.reset();
   if (another) {  // a new server, the first, or the one before
-    std::swap(current_, left_);
+    std::swap(current_, departed_);
     if (current_.session != datagram.header.session)
       current_ = {.session = datagram.header.session, .keys = keys_for(welcome.server)};
     welcome_ = welcome;
@@ -127,8 +127,7 @@ const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkSt
 }
 
 ServerSessions::Member* ServerSessions::holder(std::uint8_t tool) noexcept {
-  const auto found =
-      std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.tool == tool; });
+  const auto found = std::ranges::find_if(members_, [&](const Member& m) { return m.tool == tool; });
   return found == members_.end() ? nullptr : &*found;
 }
 
@@ -143,8 +142,8 @@ std::optional<std::uint8_t> ServerSessions::free_tool() noexcept {
 const Key* ServerSessions::key_of(const Datagram& datagram) const noexcept {
   static constexpr Key kNone{};
   if (keys_.empty()) return &kNone;
-  const auto found = std::find_if(keys_.begin(), keys_.end(),
-                                  [&](const Key& key) { return key.number == datagram.header.key; });
+  const auto found =
+      std::ranges::find_if(keys_, [&](const Key& key) { return key.number == datagram.header.key; });
   return found == keys_.end() ? nullptr : &*found;
 }
 
@@ -169,7 +168,7 @@ ServerSessions::Outcome ServerSessions::greet(const Datagram& datagram, const He
 /// A known client hears its Welcome again, and is not kept by that: only tool states keep a tool.
 ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Key& shared, const Endpoint& from,
                                               Time now, const Fresh& fresh) {
-  auto member = std::find_if(members_.begin(), members_.end(), [&](const Member& m) {
+  auto member = std::ranges::find_if(members_, [&](const Member& m) {
     return m.nonce == hello.nonce && m.key == shared.number && (m.endpoint == from || !keys_.empty());
   });
   if (member == members_.end()) {
@@ -201,7 +200,7 @@ ServerSessions::Outcome ServerSessions::unknown(const Datagram& datagram, LinkSt
 /// That number, or the next odd one that no member has: it alone tells members with a key apart.
 std::uint64_t ServerSessions::number_like(std::uint64_t session) const noexcept {
   const auto taken = [&](const Member& m) { return m.session == session; };
-  while (std::any_of(members_.begin(), members_.end(), taken)) session += 2;
+  while (std::ranges::any_of(members_, taken)) session += 2;
   return session;
 }
 
@@ -213,16 +212,16 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
                                                 const Fresh& fresh, LinkStats& stats) {
   if (const auto* hello = std::get_if<Hello>(&datagram.message))
     return greet(datagram, *hello, from, now, fresh, stats);
-  const auto found = std::find_if(members_.begin(), members_.end(), [&](const Member& m) {
+  const auto found = std::ranges::find_if(members_, [&](const Member& m) {
     return m.session == datagram.header.session && (m.endpoint == from || !keys_.empty());
   });
   if (found == members_.end()) return unknown(datagram, stats);
   if (!checked(datagram, found->keys.in, stats)) return {};
   if (std::holds_alternative<Bye>(datagram.message)) {
     if (!found->window.accept(datagram.header.sequence, stats)) return {};
-    left_ = *found;
+    departed_ = *found;
     members_.erase(found);
-    return {.left = &left_};
+    return {.departed = &departed_};
   }
   const auto* tool_state = std::get_if<ToolState>(&datagram.message);
   const auto* telemetry = std::get_if<Telemetry>(&datagram.message);
@@ -244,13 +243,13 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
 }
 
 std::vector<ServerSessions::Member> ServerSessions::expire(Time now) {
-  std::vector<Member> gone;
+  std::vector<Member> expired;
   std::erase_if(members_, [&](const Member& m) {
     const bool silent = now - m.last_heard >= kTimeout;
-    if (silent) gone.push_back(m);
+    if (silent) expired.push_back(m);
     return silent;
   });
-  return gone;
+  return expired;
 }
 
 }  // namespace palpate::protocol

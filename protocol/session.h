@@ -46,9 +46,9 @@ class ClientSession {
   std::optional<RefuseReason> refused() const noexcept { return refused_; }
 
   static constexpr Time kHelloPeriod = std::chrono::milliseconds(250);
-  static constexpr std::uint64_t kAnswered = 4;  ///< of the newest Hellos: an answer takes a second at most
-  static constexpr Time kSilence = kOutage;      ///< without a sample: ask again
-  static constexpr std::uint64_t kFarthestSample = 24;  ///< datagrams ahead: 0.8 s at 30 steps a second
+  static constexpr std::uint64_t kAnswered = 4;    ///< of the newest Hellos: an answer takes a second at most
+  static constexpr Time kSilence = kOutage;        ///< without a sample: ask again
+  static constexpr std::uint64_t kMaxSample = 24;  ///< datagrams ahead: 0.8 s at 30 steps a second
 
  private:
   bool heard_lately(Time now) const noexcept { return last_heard_ && now - *last_heard_ < kSilence; }
@@ -58,7 +58,7 @@ class ClientSession {
     std::uint64_t session = 0, sent = 0;
     SessionKeys keys{};
     NewestOnly samples{};
-    ReplayWindow window{kFarthestSample};
+    ReplayWindow window{kMaxSample};
   };
   SessionKeys keys_for(const Nonce& server) const noexcept;
   bool answers_lately(const Nonce& nonce, std::uint64_t attempt) const noexcept;
@@ -66,7 +66,7 @@ class ClientSession {
   void welcomed_by(const Datagram& datagram, const Welcome& welcome, Time now, LinkStats& stats) noexcept;
   void refused_by(const Datagram& datagram, const Refuse& refuse, LinkStats& stats) noexcept;
 
-  Numbered current_, left_;
+  Numbered current_, departed_;
   Nonce nonce_;
   Cookie cookie_{};
   std::uint64_t attempts_ = 0, welcomed_attempt_ = 0;  // Hellos said, and that which the session answers
@@ -85,7 +85,7 @@ class ClientSession {
 /// client's address changes.
 class ServerSessions {
  public:
-  static constexpr std::uint64_t kFarthestState = 100;  ///< datagrams ahead: 1 s of the slowest client
+  static constexpr std::uint64_t kMaxState = 100;  ///< datagrams ahead: 1 s of the slowest client
   struct Member {
     std::uint64_t session = 0, sent = 0;
     std::uint8_t key = 0;  ///< the number of the one that it joined with; 0: none
@@ -94,7 +94,7 @@ class ServerSessions {
     std::uint8_t tool = 0;
     Time last_heard{};  ///< a tool state, or its beginning
     SessionKeys keys{};
-    ReplayWindow window{kFarthestState};
+    ReplayWindow window{kMaxState};
     NewestOnly ticks{};
   };
   /// Outcome of a datagram: an answer to send back, a tool state newer than all before, or telemetry.
@@ -105,7 +105,7 @@ class ServerSessions {
     const ToolState* asking =
         nullptr;  ///< the same, or one that others overtook: the pages it asks for are wanted still
     const Telemetry* telemetry = nullptr;
-    const Member* left = nullptr;  ///< said Bye; valid until the next call
+    const Member* departed = nullptr;  ///< said Bye; valid until the next call
   };
 
   /// Random numbers for a session, should one begin; `session` not 0.
@@ -151,7 +151,7 @@ class ServerSessions {
   Cookies cookies_;
   std::vector<Key> keys_;
   std::vector<Member> members_;
-  Member left_;
+  Member departed_;
 };
 
 }  // namespace palpate::protocol

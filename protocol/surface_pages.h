@@ -34,7 +34,7 @@ struct SurfacePages {
   /// Added to the number of a page that is asked for before the server knows it: it will, ask again later.
   /// Its values are 0.
   static constexpr std::uint32_t kNotYet = 1U << 31U;
-  static_assert(3 * kMostSlowModes <= SurfacePage::kValues);
+  static_assert(3 * kMaxPublishedModes <= SurfacePage::kValues);
   std::uint32_t vertices = 0, triangles = 0, modes = 0;
 
   std::uint32_t clusters() const noexcept { return (vertices + kCluster - 1) / kCluster; }

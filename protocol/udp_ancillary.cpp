@@ -52,8 +52,8 @@ socklen_t fill(sockaddr_storage& out, const Endpoint& endpoint) noexcept {
 
 /// The kernel stamps by the calendar's clock.
 Time monotonic(const timespec& stamp) noexcept {
-  const Time t = Time{stamp.tv_sec * 1'000'000'000 + stamp.tv_nsec} - monotonic_epoch(), here = now();
-  return std::clamp(t, here - kLongestWait, here);
+  const Time t = Time{stamp.tv_sec * 1'000'000'000 + stamp.tv_nsec} - monotonic_epoch(), local = now();
+  return std::clamp(t, local - kLongestWait, local);
 }
 
 template <class T>
@@ -94,7 +94,7 @@ void put(msghdr& message, std::span<std::byte> control, int level, int type, con
 
 }  // namespace
 
-void ask_for_ancillary(int socket, bool v6) noexcept {
+void request_ancillary(int socket, bool v6) noexcept {
   const int on = 1;
   setsockopt(socket, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
   if (v6) {

@@ -18,7 +18,7 @@ struct ReceivedDatagram {
 
 /// Asks the kernel to tell of each datagram when it came and to which of our addresses (SO_TIMESTAMPNS,
 /// IP_PKTINFO or, `v6`, IPV6_RECVPKTINFO; Linux). What it does not grant, `receive` fills in as it can.
-void ask_for_ancillary(int socket, bool v6) noexcept;
+void request_ancillary(int socket, bool v6) noexcept;
 
 /// The next datagram that waits in a socket that does not block, into `buffer`; what is longer is cut. None
 /// where there is none, or where the system reports an earlier one that could not be delivered: `failed` then

@@ -26,7 +26,7 @@ Endpoint from_asio(const udp::endpoint& endpoint) {
     result.scope = static_cast<std::uint32_t>(endpoint.address().to_v6().scope_id());
   } else {
     const auto bytes = endpoint.address().to_v4().to_bytes();
-    std::copy(bytes.begin(), bytes.end(), result.address.begin());
+    std::ranges::copy(bytes, result.address.begin());
   }
   return result;
 }
@@ -63,8 +63,7 @@ Endpoint resolve(const std::string& text, const std::string& where) {
   const auto found = udp::resolver(context).resolve(host, "", failed);
   if (failed || found.empty())
     fail("{}: \"{}\": host \"{}\" is not known ({})", where, text, host, failed.message());
-  const auto v4 =
-      std::find_if(found.begin(), found.end(), [](const auto& e) { return e.endpoint().address().is_v4(); });
+  const auto v4 = std::ranges::find_if(found, [](const auto& e) { return e.endpoint().address().is_v4(); });
   Endpoint endpoint = from_asio(v4 != found.end() ? v4->endpoint() : found.begin()->endpoint());
   endpoint.port = static_cast<std::uint16_t>(port);
   return endpoint;
@@ -90,7 +89,7 @@ struct UdpSocket::Asio {
   const Handlers* handlers = nullptr;
   Handlers own_handlers;    // of a socket that another one's loop serves
   bool everywhere = false;  // bound to all addresses
-  Endpoint asked;
+  Endpoint requested;
   Time arrived{};
 
   void receive() {
@@ -103,7 +102,7 @@ struct UdpSocket::Asio {
         if (error == std::errc::operation_would_block) break;
         if (!datagram) continue;  // an earlier one could not be delivered
         arrived = datagram->at;
-        asked = everywhere ? datagram->to : Endpoint{};
+        requested = everywhere ? datagram->to : Endpoint{};
         handlers->on_datagram({buffer.data(), datagram->size}, datagram->from);
       }
       receive();
@@ -154,7 +153,7 @@ void UdpSocket::bind(const Endpoint& local) {
   if (failed) fail_at_run_time("cannot use UDP address {} ({})", to_string(local), failed.message());
   asio_->socket.non_blocking(true);
   expedite(asio_->socket, local.v6);
-  ask_for_ancillary(asio_->socket.native_handle(), local.v6);
+  request_ancillary(asio_->socket.native_handle(), local.v6);
   asio_->everywhere = local.address == Endpoint{}.address;
 }
 
@@ -198,8 +197,8 @@ std::error_code UdpSocket::send(std::span<const std::byte> datagram, const Endpo
   return failed && from.port != 0 ? protocol::send(socket, datagram, to, {}) : failed;
 }
 
-const Endpoint& UdpSocket::asked() const noexcept {
-  return asio_->asked;
+const Endpoint& UdpSocket::requested() const noexcept {
+  return asio_->requested;
 }
 
 Time UdpSocket::arrived() const noexcept {

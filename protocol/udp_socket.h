@@ -49,7 +49,7 @@ class UdpSocket {
   Time arrived() const noexcept;
   /// Returns the address of this machine to which that datagram was sent, where the socket is bound to all of
   /// them; else port 0.
-  const Endpoint& asked() const noexcept;
+  const Endpoint& requested() const noexcept;
 
   /// Serves until `stop`. One thread.
   void run(Doorbell& doorbell, Time timer_period, const Handlers& handlers);
@@ -58,7 +58,7 @@ class UdpSocket {
   void stop();
 
   /// Sends without waiting; says why where the system would not take it. `from`: which of our addresses, as
-  /// `asked` told; port 0, or an address that is ours no more: as the routes go. Thread of `run`, or when
+  /// `requested` told; port 0, or an address that is ours no more: as the routes go. Thread of `run`, or when
   /// none runs.
   std::error_code send(std::span<const std::byte> datagram, const Endpoint& to,
                        const Endpoint& from = {}) noexcept;

@@ -28,6 +28,6 @@ palpate::Command sim_server() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  palpate::begin_with_fast_blas(argv);
+  palpate::start_with_fast_blas(argv);
   return palpate::run_program("sim_server", argc, argv, &sim_server);
 }

@@ -90,7 +90,7 @@ bool ComplementaritySolver::add_one_by_one(const Eigen::Ref<const Eigen::MatrixX
                                            Eigen::Ref<Eigen::VectorXd> lambda) noexcept {
   const int n = static_cast<int>(gap.size());
   const double slack_noise = kNoise * gap.cwiseAbs().maxCoeff();
-  std::fill(active_.begin(), active_.end(), 0);
+  std::ranges::fill(active_, 0);
   auto feasible = feasible_.head(n);
   feasible.setZero();
   for (int round = 0; round < 3 * n; ++round) {
@@ -106,20 +106,20 @@ bool ComplementaritySolver::add_one_by_one(const Eigen::Ref<const Eigen::MatrixX
     // Walk towards the solution on this set; whatever would turn negative on the way leaves the set.
     while (true) {
       if (!solve_on_basis(g_matrix, gap, lambda)) return false;
-      double share = 1;
+      double fraction = 1;
       for (const int i : basis_) {
-        if (lambda[i] <= 0) share = std::min(share, feasible[i] / (feasible[i] - lambda[i]));
+        if (lambda[i] <= 0) fraction = std::min(fraction, feasible[i] / (feasible[i] - lambda[i]));
       }
-      if (!(share >= 0)) share = 0;  // 0 / 0: the newcomer itself would turn negative
-      feasible += share * (lambda - feasible);
-      bool left = false;
+      if (!(fraction >= 0)) fraction = 0;  // 0 / 0: the newcomer itself would turn negative
+      feasible += fraction * (lambda - feasible);
+      bool residual_ = false;
       for (const int i : basis_) {
         if (lambda[i] > 0 || feasible[i] > kNoise * feasible.maxCoeff()) continue;
         feasible[i] = 0;
         active_[static_cast<std::size_t>(i)] = 0;
-        left = true;
+        residual_ = true;
       }
-      if (!left) break;
+      if (!residual_) break;
     }
   }
   return false;

@@ -12,7 +12,7 @@ namespace {
 
 /// Second derivative of the gap of a contact whose corners are at `x`.
 SimplexHessian hessian_of(const Contact& c, bool pivots, std::span<const Vec3> x, WeightGradient* weights) {
-  const SlidingPoint sliding{c.axis, c.share, pivots};
+  const SlidingPoint sliding{c.axis, c.fraction, pivots};
   return distance_hessian(x, {c.weight.data(), x.size()}, c.normal, c.distance, weights,
                           c.part == Contact::kShaft ? &sliding : nullptr);
 }
@@ -112,11 +112,11 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
       lambda_[3 * contact] * turn - c.normal * ((force - lambda_[3 * contact] * c.normal).transpose() * turn);
   for (int j = 0; j <= c.size; ++j) {
     // M is symmetric.
-    const Mat3 share = j == c.size ? lever : Mat3(-c.weight[j] * Mat3::Identity());
+    const Mat3 fraction = j == c.size ? lever : Mat3(-c.weight[j] * Mat3::Identity());
     const int at = 3 * slot[j];
-    spread_.block<3, 3>(at, row) = share * frame;
+    spread_.block<3, 3>(at, row) = fraction * frame;
     jacobian_.block<2, 3>(row + 1, at) =
-        frame.rightCols<2>().transpose() * (share + slip.middleCols<3>(3 * j));
+        frame.rightCols<2>().transpose() * (fraction + slip.middleCols<3>(3 * j));
     for (int i = 0; i <= c.size; ++i) {
       Mat3 block = bend.middleCols<3>(3 * j);
       if (i == c.size) {

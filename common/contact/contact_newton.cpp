@@ -209,7 +209,7 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
     const int rows = rows_of_contact(), k = considered_[static_cast<std::size_t>(row / rows)];
     forces[rows * k + row % rows] = lambda[row];
   }
-  remember(forces);
+  store(forces);
   // Force at the new geometry, to first order: A z+ + S (u+ - u).
   auto moved = moved_.col(2).head(loaded);  // u+ - u of the loaded nodes
   moved = -response_.col(n).tail(loaded) - local.tail(loaded);

@@ -19,7 +19,7 @@ constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
 double along(const Contact& c, const Vec3& direction, int tip, const Eigen::Ref<const Eigen::VectorXd>& u) {
   Vec3 relative = u.segment<3>(3 * tip);
   for (int i = 0; i < c.size; ++i) relative -= c.weight[i] * u.segment<3>(3 * c.node[i]);
-  if (c.share == 1) return direction.dot(relative);
+  if (c.fraction == 1) return direction.dot(relative);
   return direction.dot(relative) + (c.at_tip(direction) - direction).dot(u.segment<3>(3 * tip));
 }
 
@@ -42,23 +42,23 @@ class PlainStep {
   /// `onward`: the solution lies on the side to which the last step went.
   double after(bool onward) noexcept {
     onward_run_ = onward ? onward_run_ + 1 : 0;
-    share_ = std::clamp(share_ * (onward ? 1.3 : 0.5), 0.1, onward_run_ > 6 ? 4.0 : 1.0);
-    return share_;
+    fraction_ = std::clamp(fraction_ * (onward ? 1.3 : 0.5), 0.1, onward_run_ > 6 ? 4.0 : 1.0);
+    return fraction_;
   }
 
  private:
-  double share_ = kFirstStep;
+  double fraction_ = kFirstStep;
   int onward_run_ = 0;
 };
 
 /// Whose turn it is: Newton's, but after each of its failures plain iteration's, ever longer.
 class NewtonTurns {
  public:
-  void miss() noexcept { plain_left_ = 2 << ++failures_; }
-  bool next() noexcept { return --plain_left_ < 0; }
+  void miss() noexcept { plain_remaining_ = 2 << ++failures_; }
+  bool next() noexcept { return --plain_remaining_ < 0; }
 
  private:
-  int failures_ = 0, plain_left_ = 0;
+  int failures_ = 0, plain_remaining_ = 0;
 };
 
 }  // namespace
@@ -106,7 +106,7 @@ ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
   deformed_.reserve(static_cast<std::size_t>(max_nodes));
   nodes_.reserve(static_cast<std::size_t>(max_nodes + 1));
   slack_.resize(rows);
-  felt_.reserve(static_cast<std::size_t>(max_triangles));
+  rendered_.reserve(static_cast<std::size_t>(max_triangles));
   if (!friction) return;
   frames_.reserve(static_cast<std::size_t>(max_triangles));
   was_.reserve(static_cast<std::size_t>(max_nodes));
@@ -117,8 +117,8 @@ Vec3 ContactSolver::direction(int contact, int row) const {
 }
 
 double ContactSolver::contact_compliance(double mean) noexcept {
-  constexpr double kMost = 1e-9, kShare = 1e-6;  // m/N; of a node's
-  return std::min(kMost, kShare * mean);
+  constexpr double kMost = 1e-9, kFraction = 1e-6;  // m/N; of a node's
+  return std::min(kMost, kFraction * mean);
 }
 
 double ContactSolver::contact_compliance(const ContactPatch& patch, int nodes) noexcept {
@@ -136,7 +136,7 @@ void ContactSolver::start_increment(const ContactPatch& patch, const Tool& tool,
                                     const IncrementStart& start) noexcept {
   friction_ = tool.friction;
   pivots_ = tool.trocar.has_value();
-  felt_.clear();  // whose nodes are those of another patch
+  rendered_.clear();  // whose nodes are those of another patch
   if (friction_ == 0) return;
   assert(spread_.size() > 0);  // it was made for friction
   was_.assign(start.nodes.begin(), start.nodes.begin() + patch.nodes());
@@ -254,28 +254,29 @@ bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
 
 /// Keeps the forces of this iteration, as what to start from in the next, whose contacts are not all the
 /// same.
-void ContactSolver::remember(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept {
-  felt_.clear();
+void ContactSolver::store(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept {
+  rendered_.clear();
   const int rows = rows_of_contact();
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
     if (!(force[rows * k] > 0)) continue;
-    const Vec3 felt = rows > 1 ? Vec3(frames_[k] * force.segment<3>(3 * k)) : force[k] * contacts_[k].normal;
-    felt_.push_back({contacts_[k].node, contacts_[k].part, felt});
+    const Vec3 rendered =
+        rows > 1 ? Vec3(frames_[k] * force.segment<3>(3 * k)) : force[k] * contacts_[k].normal;
+    rendered_.push_back({contacts_[k].node, contacts_[k].part, rendered});
   }
 }
 
 void ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
   force.setZero();
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
-    const auto same = [&](const Felt& felt) {
-      return felt.node == contacts_[k].node && felt.part == contacts_[k].part;
+    const auto same = [&](const Rendered& rendered) {
+      return rendered.node == contacts_[k].node && rendered.part == contacts_[k].part;
     };
-    const auto felt = std::find_if(felt_.begin(), felt_.end(), same);
-    if (felt == felt_.end()) continue;
+    const auto rendered = std::ranges::find_if(rendered_, same);
+    if (rendered == rendered_.end()) continue;
     if (friction_ > 0) {
-      force.segment<3>(3 * k) = frames_[k].transpose() * felt->force;
+      force.segment<3>(3 * k) = frames_[k].transpose() * rendered->force;
     } else {
-      force[k] = felt->force.norm();
+      force[k] = rendered->force.norm();
     }
   }
 }
@@ -285,7 +286,7 @@ void ContactSolver::solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen
   const auto n = static_cast<Eigen::Index>(contacts_.size()) * rows_of_contact();
   auto lambda = lambda_.head(n);
   solve_contacts(gap_.head(n), lambda);
-  remember(lambda);
+  store(lambda);
   auto load = node_force_.head(3 * patch.nodes());
   load.setZero();
   Vec3 tip_load = Vec3::Zero();

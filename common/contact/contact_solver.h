@@ -150,7 +150,7 @@ class ContactSolver {
                 Eigen::Ref<Eigen::VectorXd> next) const noexcept;
   bool solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                       Eigen::Ref<Eigen::VectorXd> force) noexcept;
-  void remember(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept;
+  void store(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept;
   void recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept;
   void solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) noexcept;
   void collect_result(int nodes, ContactForce& result) noexcept;
@@ -185,12 +185,12 @@ class ContactSolver {
   CoulombSolver coulomb_;
   std::vector<Contact> contacts_;
   std::vector<Mat3> frames_;  // with friction: normal and the two directions across it, as columns
-  struct Felt {
+  struct Rendered {
     std::array<int, 3> node;
     Contact::Part part;
     Vec3 force;
   };
-  std::vector<Felt> felt_;  // what touched in the iteration before
+  std::vector<Rendered> rendered_;  // what touched in the iteration before
   std::vector<Vec3> deformed_;
   BoundedMatrix response_;  // C~ A, then C~ of other loads, in the rows of the loaded nodes
   BoundedMatrix delassus_;  // and B C~ of other loads, to its right

@@ -104,7 +104,7 @@ void CoulombSolver::classify(const Vector& z, const Vector& w, double mu) noexce
     status.is = size <= mu * along ? Status::kSticks : Status::kSlips;
     if (status.is == Status::kSticks) continue;
     status.direction = across / size;
-    status.share = mu * std::clamp(z[3 * k], 0.0, along) / size;
+    status.fraction = mu * std::clamp(z[3 * k], 0.0, along) / size;
   }
 }
 
@@ -125,12 +125,12 @@ void CoulombSolver::assemble(const Matrix& g_matrix, double mu) noexcept {
     const Eigen::Vector2d normal(-status.direction[1], status.direction[0]);  // P = normal normal^T
     for (Eigen::Index c = 0; c < 3 * n; ++c) {
       auto rows = system_.block<2, 1>(3 * r + 1, c);
-      rows = (status.share * rho * normal.dot(rows)) * normal;
+      rows = (status.fraction * rho * normal.dot(rows)) * normal;
     }
     // Per length of slip, like the rows of G: the system keeps one scale.
     auto own = system_.block<2, 3>(3 * r + 1, 3 * r);
     own.col(0) -= mu * status.direction;
-    own.rightCols<2>() += Eigen::Matrix2d::Identity() - status.share * normal * normal.transpose();
+    own.rightCols<2>() += Eigen::Matrix2d::Identity() - status.fraction * normal * normal.transpose();
     system_.middleRows<2>(3 * r + 1) /= rho;
   }
 }
@@ -148,7 +148,7 @@ bool CoulombSolver::solve_closed(const Source& constant, Target&& z) noexcept {
     const Eigen::Vector2d normal(-status.direction[1], status.direction[0]);
     for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
       auto across = rhs.template block<2, 1>(3 * r + 1, c);
-      across = (status.share * normal.dot(across)) * normal;
+      across = (status.fraction * normal.dot(across)) * normal;
     }
   }
   z.setZero();
@@ -164,8 +164,8 @@ bool CoulombSolver::newton(const Matrix& g_matrix, const Vector& g, double mu,
   trial = z;
   for (int i = 0; i < kMaxNewton; ++i) {
     compute_slack(g_matrix, g, trial);
-    const double left = residual(g, mu, trial);
-    if (left <= 1) {
+    const double residual_ = residual(g, mu, trial);
+    if (residual_ <= 1) {
       z = trial;
       return true;
     }
@@ -182,7 +182,7 @@ bool CoulombSolver::newton(const Matrix& g_matrix, const Vector& g, double mu,
     int halvings = 0;
     for (; halvings < kHalvings; ++halvings) {
       compute_slack(g_matrix, g, trial);
-      if (residual(g, mu, trial) < kGain * left) break;
+      if (residual(g, mu, trial) < kGain * residual_) break;
       direction *= 0.5;
       trial = from + direction;
     }

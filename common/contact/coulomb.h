@@ -47,7 +47,7 @@ class CoulombSolver {
   struct Status {
     enum { kOpen, kSticks, kSlips } is = kOpen;
     Eigen::Vector2d direction = Eigen::Vector2d::Zero();  // of beta, where it slips
-    double share = 0;  // kappa = mu lambda / |beta - rho w_t|, [0, 1), where it slips
+    double fraction = 0;  // kappa = mu lambda / |beta - rho w_t|, [0, 1), where it slips
   };
   void scale(const Matrix& g_matrix) noexcept;
   void compute_slack(const Matrix& g_matrix, const Vector& g, const Vector& z) noexcept;

@@ -15,7 +15,7 @@ Contact contact_on(std::array<int, 3> corners, const std::array<double, 3>& weig
   Contact contact{{-1, -1, -1}, {0, 0, 0},    0, Contact::kTip, Vec3::Zero(), 0, 0,
                   Vec3::Zero(), Vec3::Zero(), 1};
   std::array<int, 3> order{0, 1, 2};
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return corners[a] < corners[b]; });
+  std::ranges::sort(order, [&](int a, int b) { return corners[a] < corners[b]; });
   for (const int c : order) {
     if (size < 3 && weight[c] == 0) continue;
     contact.node[contact.size] = corners[c];
@@ -33,7 +33,7 @@ struct Search {
   void add(Contact contact, Contact::Part part, const Vec3& on_axis, const Vec3& to_tool, double radius,
            const Vec3& face) noexcept {
     const auto same = [&](const Contact& other) { return other.node == contact.node && other.part == part; };
-    if (contacts.size() == contacts.capacity() || std::any_of(contacts.begin(), contacts.end(), same)) return;
+    if (contacts.size() == contacts.capacity() || std::ranges::any_of(contacts, same)) return;
     contact.part = part;
     contact.distance = to_tool.norm();
     contact.radius = radius;
@@ -65,7 +65,7 @@ struct Search {
       if (to_tool.norm() > radius + margin) continue;
       Contact contact = contact_on({from, to, -1}, {1 - t, t, 0}, 2);
       contact.axis = tool.trocar ? Vec3(tip - far) : Vec3((tip - far).normalized());
-      contact.share = tool.trocar ? s : 1;
+      contact.fraction = tool.trocar ? s : 1;
       add(contact, Contact::kShaft, on_axis, to_tool, radius, (b - a).cross(x[triangle[(i + 2) % 3]] - a));
     }
   }

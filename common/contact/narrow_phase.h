@@ -19,12 +19,13 @@ struct Contact {
   double radius;    ///< of the tool there, m
   Vec3 arm;         ///< from the tool's tip to the surface there, m
   Vec3 axis;        ///< of the shaft: from the pivot to the tip, or of unit length; else 0
-  double share;  ///< how much a sideways motion of the tip moves the tool there: below 1 on a pivoting shaft
+  double
+      fraction;  ///< how much a sideways motion of the tip moves the tool there: below 1 on a pivoting shaft
 
   /// A force f on the tool here, as the force at its tip that does the same work (Tool); and M^T f for M
   /// which takes a small motion of the tip to that of the tool here.
   Vec3 at_tip(const Vec3& f) const {
-    return share == 1 ? f : Vec3(share * f + (1 - share) * axis.dot(f) / axis.squaredNorm() * axis);
+    return fraction == 1 ? f : Vec3(fraction * f + (1 - fraction) * axis.dot(f) / axis.squaredNorm() * axis);
   }
 };
 

@@ -41,28 +41,28 @@ ClosestPoint closest_point(const Vec3& p, const Vec3& a, const Vec3& b, const Ve
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return edge(0, 2, d2 == d6 ? 0 : d2 / (d2 - d6));
   const double va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 >= d3 && d5 >= d6) {
-    const double whole = (d4 - d3) + (d5 - d6);
-    return edge(1, 2, whole == 0 ? 0 : (d4 - d3) / whole);
+    const double entire = (d4 - d3) + (d5 - d6);
+    return edge(1, 2, entire == 0 ? 0 : (d4 - d3) / entire);
   }
   const double sum = va + vb + vc;
   return {{va / sum, vb / sum, vc / sum}, 3};
 }
 
 ClosestPair closest_pair(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) noexcept {
-  const auto share = [](double part, double whole) {
-    return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0;
+  const auto fraction = [](double part, double entire) {
+    return entire > 0 ? std::clamp(part / entire, 0.0, 1.0) : 0.0;
   };
   const Vec3 first = q - p, second = b - a, r = p - a;
   const double f = first.squaredNorm(), e = second.squaredNorm(), mixed = first.dot(second);
   const double along_first = first.dot(r), along_second = second.dot(r), denominator = f * e - mixed * mixed;
   double s = 0;
   if (denominator > kParallel * f * e) {
-    s = share(mixed * along_second - along_first * e, denominator);
+    s = fraction(mixed * along_second - along_first * e, denominator);
   } else {
-    s = 0.5 * (share(-along_first, f) + share(mixed - along_first, f));
+    s = 0.5 * (fraction(-along_first, f) + fraction(mixed - along_first, f));
   }
-  const double t = share(mixed * s + along_second, e);
-  return {share(mixed * t - along_first, f), t};
+  const double t = fraction(mixed * s + along_second, e);
+  return {fraction(mixed * t - along_first, f), t};
 }
 
 NearestOnSegment nearest_on_segment(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
@@ -70,13 +70,13 @@ NearestOnSegment nearest_on_segment(const Vec3& p, const Vec3& q, const Vec3& a,
   const Vec3 normal = (b - a).cross(c - a);
   const double from = normal.dot(p - a), to = normal.dot(q - a);
   if (from * to < 0) {
-    const double share = from / (from - to);
-    const Vec3 x = p + share * (q - p);
-    if (closest_point(x, a, b, c).feature_size == 3) return {0, share, x};
+    const double fraction = from / (from - to);
+    const Vec3 x = p + fraction * (q - p);
+    if (closest_point(x, a, b, c).feature_size == 3) return {0, fraction, x};
   }
-  const auto of_end = [&](const Vec3& end, double share) -> NearestOnSegment {
+  const auto of_end = [&](const Vec3& end, double fraction) -> NearestOnSegment {
     const auto w = closest_point(end, a, b, c).weight;
-    return {(end - w[0] * a - w[1] * b - w[2] * c).norm(), share, w[0] * a + w[1] * b + w[2] * c};
+    return {(end - w[0] * a - w[1] * b - w[2] * c).norm(), fraction, w[0] * a + w[1] * b + w[2] * c};
   };
   const auto of_edge = [&](const Vec3& u, const Vec3& v) -> NearestOnSegment {
     const ClosestPair pair = closest_pair(p, q, u, v);
@@ -98,8 +98,8 @@ SimplexHessian distance_hessian(std::span<const Vec3> x, std::span<const double>
   const int m = static_cast<int>(x.size());
   const Mat3 across = (Mat3::Identity() - normal * normal.transpose()) / distance;
   // rho = sum_j a_j y_j = distance * normal, with y = (x_0 .. x_(m-1), p).
-  const double share = sliding != nullptr ? sliding->share : 1.0;
-  const auto a = [&](int j) { return j == m ? share : -weight[static_cast<std::size_t>(j)]; };
+  const double fraction = sliding != nullptr ? sliding->fraction : 1.0;
+  const auto a = [&](int j) { return j == m ? fraction : -weight[static_cast<std::size_t>(j)]; };
   SimplexHessian h = SimplexHessian::Zero();
   for (int j = 0; j <= m; ++j) {
     for (int l = 0; l <= m; ++l) h.block<3, 3>(3 * j, 3 * l) = a(j) * a(l) * across;

@@ -42,8 +42,8 @@ double segment_triangle_distance(const Vec3& p, const Vec3& q, const Vec3& a, co
 /// A point on a line that follows p: pivot + share (p - pivot) where it has a pivot, else p + any distance
 /// along the axis; the share, or the distance, is free, as the weights b are.
 struct SlidingPoint {
-  Vec3 axis;     ///< from the pivot to p, or along the axis
-  double share;  ///< 1 without a pivot
+  Vec3 axis;        ///< from the pivot to p, or along the axis
+  double fraction;  ///< 1 without a pivot
   bool pivots;
 };
 

@@ -13,7 +13,7 @@ struct palpate_capture {
   std::string file;
   protocol::CaptureReader reader;
   protocol::Endpoint server;  ///< of the newest message that shows who that is
-  bool knows_server = false, told_trouble = false;
+  bool knows_server = false, reported_trouble = false;
 
   std::uint32_t direction(const protocol::CapturedDatagram& packet, const protocol::Message& message);
 };
@@ -36,34 +36,34 @@ std::uint32_t palpate_capture::direction(const protocol::CapturedDatagram& packe
 namespace {
 
 /// Behind the last datagram; the first time, why it is the last, if that is a fault of the file.
-void end(palpate_capture& capture, palpate_datagram& told) {
-  told.type = PALPATE_END;
-  if (const std::string trouble = capture.reader.trouble(); !trouble.empty() && !capture.told_trouble) {
-    capture.told_trouble = true;
+void end(palpate_capture& capture, palpate_datagram& published) {
+  published.type = PALPATE_END;
+  if (const std::string trouble = capture.reader.trouble(); !trouble.empty() && !capture.reported_trouble) {
+    capture.reported_trouble = true;
     fail_at_run_time("{}: {}", capture.file, trouble);
   }
 }
 
-void next(palpate_capture& capture, palpate_datagram& told, palpate_tool_state* tool,
+void next(palpate_capture& capture, palpate_datagram& published, palpate_tool_state* tool,
           palpate_force_sample* sample) {
-  const std::uint32_t size = told.struct_size;
-  told = {};
-  told.struct_size = size;
+  const std::uint32_t size = published.struct_size;
+  published = {};
+  published.struct_size = size;
   protocol::CapturedDatagram packet;
-  if (!capture.reader.next(packet)) return end(capture, told);
-  told.bytes = static_cast<std::uint32_t>(packet.length);
-  told.time_ns = packet.t.count();
+  if (!capture.reader.next(packet)) return end(capture, published);
+  published.bytes = static_cast<std::uint32_t>(packet.length);
+  published.time_ns = packet.t.count();
   protocol::Datagram datagram;
   if (protocol::decode(packet.bytes, datagram) != protocol::Verdict::kAccepted) {
-    told.type = PALPATE_NOT_OURS;
+    published.type = PALPATE_NOT_OURS;
     return;
   }
-  told.type =
+  published.type =
       std::visit([](const auto& m) { return static_cast<std::uint32_t>(std::decay_t<decltype(m)>::kType); },
                  datagram.message);
-  told.direction = capture.direction(packet, datagram.message);
-  told.session = datagram.header.session;
-  told.sequence = datagram.header.sequence;
+  published.direction = capture.direction(packet, datagram.message);
+  published.session = datagram.header.session;
+  published.sequence = datagram.header.sequence;
   if (const auto* state = std::get_if<protocol::ToolState>(&datagram.message);
       state != nullptr && tool != nullptr)
     c_interface::write_tool_state(*state, *tool);
@@ -86,9 +86,9 @@ int palpate_capture_next(palpate_capture* capture, palpate_datagram* datagram, p
                          palpate_force_sample* sample, char* error, std::size_t error_size) {
   return c_interface::guarded(error, error_size, [&] {
     c_interface::require_handle(capture, "capture");
-    c_interface::require_whole(datagram, "datagram");
-    if (tool != nullptr) c_interface::require_whole(tool, "tool");
-    if (sample != nullptr) c_interface::require_whole(sample, "sample");
+    c_interface::require_complete(datagram, "datagram");
+    if (tool != nullptr) c_interface::require_complete(tool, "tool");
+    if (sample != nullptr) c_interface::require_complete(sample, "sample");
     next(*capture, *datagram, tool, sample);
   });
 }

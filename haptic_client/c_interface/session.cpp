@@ -16,16 +16,16 @@ using namespace palpate::client;
 
 namespace {
 
-constexpr Time kLook = std::chrono::milliseconds(10);  // for a Welcome
+constexpr Time kPollPeriod = std::chrono::milliseconds(10);  // for a Welcome
 
 static_assert(PALPATE_NOT_FINITE == static_cast<int>(Fault::kNotFinite) &&
               PALPATE_STORM == static_cast<int>(Fault::kStorm) &&
-              PALPATE_WILD == static_cast<int>(Fault::kWild));
+              PALPATE_WILD == static_cast<int>(Fault::kExcessive));
 
 /// The client file, with what the caller says over it.
 ClientConfig config_of(const palpate_session_options* options) {
   if (options == nullptr) return {};
-  c_interface::require_whole(options, "options");
+  c_interface::require_complete(options, "options");
   ClientConfig config;
   if (options->client_file != nullptr) config = read_client_config(options->client_file);
   if (options->server != nullptr) {
@@ -72,13 +72,13 @@ struct palpate_session {
 
   /// Throws when no server gives a tool in time.
   void connect();
-  void tick(const palpate_tool_state& told, palpate_felt& felt) noexcept;
+  void tick(const palpate_tool_state& published, palpate_felt& rendered) noexcept;
 
   std::atomic<bool> rearm{false};
 
  private:
-  protocol::ToolState sense(const palpate_tool_state& told) noexcept;
-  void tell(const TickResult& result, palpate_felt& felt) const noexcept;
+  protocol::ToolState sense(const palpate_tool_state& published) noexcept;
+  void report(const TickResult& result, palpate_felt& rendered) const noexcept;
 
   ClientConfig config_;
   Pipeline pipeline_;
@@ -96,7 +96,7 @@ palpate_session::palpate_session(const ClientConfig& config)
                 config.workspace, config.limits, config.passivity, config.blend),
       socket_(protocol::Endpoint{.v6 = server_of(config).v6}),
       link_(socket_, server_of(config), mailboxes_, key_of(config), nullptr) {
-  pipeline_.ask_for({.here = true});
+  pipeline_.set_request({.at_tool = true});
 }
 
 palpate_session::~palpate_session() {
@@ -114,57 +114,57 @@ void palpate_session::connect() {
       }
     });
   }
-  for (const Time start = now(); !link_.welcomed; sleep_until(now() + kLook)) {
+  for (const Time start = now(); !link_.welcomed; sleep_until(now() + kPollPeriod)) {
     if (now() - start > kWelcomePatience) fail_unanswered(link_, config_, "", kWelcomePatience);
   }
 }
 
 /// As the pipeline senses a device, but that a caller may know velocity and orientation.
-protocol::ToolState palpate_session::sense(const palpate_tool_state& told) noexcept {
+protocol::ToolState palpate_session::sense(const palpate_tool_state& published) noexcept {
   const Workspace& workspace = config_.workspace;
-  const auto state = c_interface::read_tool_state(told);
+  const auto state = c_interface::read_tool_state(published);
   const bool valid = state && (state->flags & protocol::ToolState::kDeviceLost) == 0;
-  DeviceReading reading{.t = now(), .buttons = static_cast<std::uint16_t>(told.buttons), .valid = valid};
+  DeviceReading reading{.t = now(), .buttons = static_cast<std::uint16_t>(published.buttons), .valid = valid};
   if (valid) reading.p_D = state->p_W;  // the caller's frame is that of the device
   protocol::ToolState tool = pipeline_.sense(reading);
   if (!valid) return tool;
   const bool clutched = (tool.flags & protocol::ToolState::kClutched) != 0;  // then the tool stays
-  if ((told.flags & PALPATE_HAS_VELOCITY) != 0 && !clutched)
+  if ((published.flags & PALPATE_HAS_VELOCITY) != 0 && !clutched)
     tool.v_W = workspace.scale * workspace.axes * state->v_W;
   const Quat turned = Quat(workspace.axes) * Quat(state->q_W[0], state->q_W[1], state->q_W[2], state->q_W[3]);
   tool.q_W = {turned.w(), turned.x(), turned.y(), turned.z()};
   return tool;
 }
 
-void palpate_session::tick(const palpate_tool_state& told, palpate_felt& felt) noexcept {
+void palpate_session::tick(const palpate_tool_state& published, palpate_felt& rendered) noexcept {
   if (rearm.exchange(false, std::memory_order_relaxed)) pipeline_.rearm();
-  const protocol::ToolState tool = sense(told);
+  const protocol::ToolState tool = sense(published);
   protocol::ForceSample sample;
   const bool fresh = mailboxes_.force.read(sample);
   std::size_t pages = 0;
   while (pages < pages_.size() && mailboxes_.pages.pop(pages_[pages])) ++pages;
-  const TickResult result = pipeline_.feel(tool, fresh ? &sample : nullptr, std::span(pages_).first(pages));
+  const TickResult result = pipeline_.render(tool, fresh ? &sample : nullptr, std::span(pages_).first(pages));
   if (result.used) newest_ = sample;
   mailboxes_.tool.push(result.tool);
   mailboxes_.bell.ring();
-  tell(result, felt);
+  report(result, rendered);
 }
 
-void palpate_session::tell(const TickResult& result, palpate_felt& felt) const noexcept {
+void palpate_session::report(const TickResult& result, palpate_felt& rendered) const noexcept {
   const Workspace& workspace = config_.workspace;
   const Time age{pipeline_.age_ns()};
   const bool known = age >= Time::zero();
-  felt.state = !known ? PALPATE_WAITING : age <= kOutage ? PALPATE_LIVE : PALPATE_SILENT;
-  felt.fault = static_cast<std::uint32_t>(pipeline_.limiter().fault());
-  felt.flags = newest_.flags & (PALPATE_IN_CONTACT | PALPATE_FLAGGED | PALPATE_HAS_TANGENT);
-  felt.tick = result.tool.tick;
-  felt.sample = newest_.number;
-  write(result.f_D, felt.force);
-  felt.law_newton = pipeline_.law_newton();
-  felt.gain = pipeline_.passivity().gain();
-  felt.age = known ? to_seconds(age) : -1;
-  write(workspace.axes.transpose() * newest_.here.normal_W, felt.normal);
-  felt.gap = newest_.here.gap / workspace.scale;
+  rendered.state = !known ? PALPATE_WAITING : age <= kOutage ? PALPATE_LIVE : PALPATE_SILENT;
+  rendered.fault = static_cast<std::uint32_t>(pipeline_.limiter().fault());
+  rendered.flags = newest_.flags & (PALPATE_IN_CONTACT | PALPATE_FLAGGED | PALPATE_HAS_TANGENT);
+  rendered.tick = result.tool.tick;
+  rendered.sample = newest_.number;
+  write(result.f_D, rendered.force);
+  rendered.law_newton = pipeline_.law_newton();
+  rendered.gain = pipeline_.passivity().gain();
+  rendered.age = known ? to_seconds(age) : -1;
+  write(workspace.axes.transpose() * newest_.at_tool.normal_W, rendered.normal);
+  rendered.gap = newest_.at_tool.gap / workspace.scale;
 }
 
 int palpate_session_open(const palpate_session_options* options, palpate_session** session, char* error,
@@ -178,10 +178,10 @@ int palpate_session_open(const palpate_session_options* options, palpate_session
   });
 }
 
-int palpate_session_tick(palpate_session* session, const palpate_tool_state* tool, palpate_felt* felt) {
-  if (session == nullptr || !c_interface::is_whole(tool) || !c_interface::is_whole(felt))
+int palpate_session_tick(palpate_session* session, const palpate_tool_state* tool, palpate_felt* rendered) {
+  if (session == nullptr || !c_interface::is_complete(tool) || !c_interface::is_complete(rendered))
     return PALPATE_WRONG_INPUT;
-  session->tick(*tool, *felt);
+  session->tick(*tool, *rendered);
   return PALPATE_OK;
 }
 

@@ -11,11 +11,11 @@ namespace {
 using Stage = CalibrationStage;
 using Trouble = CalibrationTrouble;
 
-constexpr double kLongestLoss = 1;    // s
-constexpr double kForceFilter = 0.3;  // s, while the weight is awaited
-constexpr double kLeastShare = 0.5;   // of m g, as assumed: a weight hangs there
-constexpr double kLetDown = 2;        // s
-constexpr double kToSpare = 1.25;     // of what is plausible, for what is measured
+constexpr double kLongestLoss = 1;      // s
+constexpr double kForceFilter = 0.3;    // s, while the weight is awaited
+constexpr double kLeastFraction = 0.5;  // of m g, as assumed: a weight hangs there
+constexpr double kLetDown = 2;          // s
+constexpr double kToSpare = 1.25;       // of what is plausible, for what is measured
 
 /// s, until a stage is given up.
 double patience_in(Stage stage) {
@@ -133,7 +133,7 @@ Vec3 Calibration::goal() const noexcept {
 }
 
 bool Calibration::weight_is_there() const noexcept {
-  return difference().norm() > kLeastShare * settings_.mass * kGravity;
+  return difference().norm() > kLeastFraction * settings_.mass * kGravity;
 }
 
 CalibrationProgress Calibration::progress() const noexcept {
@@ -161,8 +161,8 @@ double Calibration::tilt() const noexcept {
 
 double Calibration::largest_mass() const noexcept {
   constexpr double kSpare = 0.9;  // for the swing, and for what is not known
-  const double left = kSpare * settings_.limits.max_force - grip_.force()[1];
-  return std::max(left, 0.0) * settings_.assumed / kHighestTorqueConstant / kGravity;
+  const double spare = kSpare * settings_.limits.max_force - grip_.force()[1];
+  return std::max(spare, 0.0) * settings_.assumed / kHighestTorqueConstant / kGravity;
 }
 
 }  // namespace palpate::client

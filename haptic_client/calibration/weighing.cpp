@@ -4,7 +4,7 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kAgree = 0.05, kAgreeShare = 0.03;  // N; of the force
+constexpr double kAgree = 0.05, kAgreeFraction = 0.03;  // N; of the force
 }
 
 void Weighing::add(const Vec3& p_D, const Vec3& f_D, double dt) noexcept {
@@ -19,7 +19,7 @@ void Weighing::add(const Vec3& p_D, const Vec3& f_D, double dt) noexcept {
 }
 
 bool Weighing::done() const noexcept {
-  return swings_ >= forces_.size() && spread() <= std::max(kAgree, kAgreeShare * force().norm());
+  return swings_ >= forces_.size() && spread() <= std::max(kAgree, kAgreeFraction * force().norm());
 }
 
 double Weighing::spread() const noexcept {

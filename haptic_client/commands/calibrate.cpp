@@ -31,7 +31,7 @@ using Trouble = CalibrationTrouble;
 constexpr double kLeastMass = 0.05, kMostMass = 0.5;  // kg
 constexpr double kMostTilt = 10;                      // degrees
 constexpr int kPatience = 30;                         // looks of 100 ms
-constexpr int kLooks = 10, kAbsences = 5;             // looks between two at what is plugged in; of those
+constexpr int kPollsPerClock = 10, kAbsences = 5;     // looks between two at what is plugged in; of those
 
 /// Haptic thread: ticks until the calibration has ended or is asked to stop; writes zero force last.
 void run_loop(const std::stop_token& stop, Device& device, Calibration& calibration, Time period,
@@ -74,14 +74,14 @@ class Presence {
  public:
   explicit Presence(const DeviceSettings& settings) : settings_(settings) {}
   void look(const CalibrationProgress& progress) {
-    if (progress.stage != Stage::kHome || ++looks_ % kLooks != 0) return;
+    if (progress.stage != Stage::kHome || ++polls_ % kPollsPerClock != 0) return;
     absences_ = is_plugged_in(settings_) ? 0 : absences_ + 1;
     if (absences_ == kAbsences) fail_at_run_time("{}", no_device_text(settings_));
   }
 
  private:
   const DeviceSettings& settings_;
-  int looks_ = 0, absences_ = 0;
+  int polls_ = 0, absences_ = 0;
 };
 
 /// Talks to the user while the loop runs; true on Ctrl-C. Throws `Error` where there is no device.
@@ -207,33 +207,35 @@ int calibrate(ClientConfig config, double mass) {
 }
 
 Command calibrate_command() {
-  struct Asked {
+  struct Requested {
     std::string device;
     Overrides overrides;
     double mass = 0;
   };
-  const auto asked = std::make_shared<Asked>();
-  return {
-      .name = "calibrate",
-      .summary = "Find the torque constant of a Falcon with a known weight hung on its grip; no server",
-      .footer =
-          "It says what to do: home the device, let go of the grip, hang the weight on it, wait. It "
-          "takes a minute\n"
-          "and ends with the line for [falcon] of the client file, which it does not change.\n"
-          "Example: haptic_client calibrate falcon --mass 0.1 --falcon-firmware PATH",
-      .options =
-          {{"DEVICE",
-            "falcon, or falcon:PORT; stands upright on a table",
-            &asked->device,
-            {.required = true}},
-           {"--mass", "Of the weight, kg, 0.05 to 0.5; 0.1 does for most", &asked->mass, {.required = true}},
-           {"--client", "Client file: firmware and limits (default: all defaults)", &asked->overrides.file},
-           firmware_option(asked->overrides)},
-      .run = [asked] {
-        ClientConfig config = read_config(asked->overrides);
-        choose_device(config.device, asked->device, "DEVICE");
-        return calibrate(config, asked->mass);
-      }};
+  const auto requested = std::make_shared<Requested>();
+  return {.name = "calibrate",
+          .summary = "Find the torque constant of a Falcon with a known weight hung on its grip; no server",
+          .footer =
+              "It says what to do: home the device, let go of the grip, hang the weight on it, wait. It "
+              "takes a minute\n"
+              "and ends with the line for [falcon] of the client file, which it does not change.\n"
+              "Example: haptic_client calibrate falcon --mass 0.1 --falcon-firmware PATH",
+          .options = {{"DEVICE",
+                       "falcon, or falcon:PORT; stands upright on a table",
+                       &requested->device,
+                       {.required = true}},
+                      {"--mass",
+                       "Of the weight, kg, 0.05 to 0.5; 0.1 does for most",
+                       &requested->mass,
+                       {.required = true}},
+                      {"--client", "Client file: firmware and limits (default: all defaults)",
+                       &requested->overrides.file},
+                      firmware_option(requested->overrides)},
+          .run = [requested] {
+            ClientConfig config = read_config(requested->overrides);
+            choose_device(config.device, requested->device, "DEVICE");
+            return calibrate(config, requested->mass);
+          }};
 }
 
 }  // namespace palpate::client

@@ -41,8 +41,8 @@ Json probe_report(const LinkProbe::Figures& f) {
           {"reordered", f.reordered}};
 }
 
-double percent(double part, double whole) {
-  return whole > 0 ? 100 * part / whole : 0;
+double percent(double part, double entire) {
+  return entire > 0 ? 100 * part / entire : 0;
 }
 
 /// The law is the one that was at work, which need not be the one asked for.
@@ -107,8 +107,8 @@ ClientConfig with_simulated_hand(ClientConfig config) {
 
 }  // namespace
 
-int test_link(const ClientConfig& asked, const CommtestOptions& options) {
-  const ClientConfig config = with_simulated_hand(asked);
+int test_link(const ClientConfig& requested, const CommtestOptions& options) {
+  const ClientConfig config = with_simulated_hand(requested);
   if (options.json) check_writable(*options.json, Contents::kReport);
   HeldTool tool(config, {}, "", options.seconds);
   LinkProbe probe(server_of(config), key_of(config));
@@ -193,25 +193,25 @@ struct TestRequest {
 };
 
 /// Tests the device, or where none is named the link to the server. Both go over what the client file says.
-int run_commtest(const TestRequest& asked) {
-  require_within(asked.options.seconds, 1, 86400, "--seconds", "s");
-  require_within(asked.options.wait, 0.1, 3600, "--wait", "s");
-  Overrides overrides = asked.overrides;
-  overrides.server = asked.server;
+int run_commtest(const TestRequest& requested) {
+  require_within(requested.options.seconds, 1, 86400, "--seconds", "s");
+  require_within(requested.options.wait, 0.1, 3600, "--wait", "s");
+  Overrides overrides = requested.overrides;
+  overrides.server = requested.server;
   ClientConfig config = read_config(overrides);
-  if (!asked.server.empty()) config.server_where = "ADDR:PORT";
-  if (asked.device.empty()) return test_link(config, asked.options);
-  choose_device(config.device, asked.device, "--usb");
+  if (!requested.server.empty()) config.server_where = "ADDR:PORT";
+  if (requested.device.empty()) return test_link(config, requested.options);
+  choose_device(config.device, requested.device, "--usb");
   if (overrides.file.empty()) config.rate_hz = row_of(config.device).limits(config.device).usual_rate_hz;
-  return test_device(config, asked.options);
+  return test_device(config, requested.options);
 }
 
 }  // namespace
 
 Command commtest_command() {
-  const auto asked = std::make_shared<TestRequest>();
-  Overrides& overrides = asked->overrides;
-  CommtestOptions& options = asked->options;
+  const auto requested = std::make_shared<TestRequest>();
+  Overrides& overrides = requested->overrides;
+  CommtestOptions& options = requested->options;
   return {.name = "commtest",
           .summary = "Is the link to a server good enough? Or, with --usb, the loop of a device",
           .footer =
@@ -221,9 +221,9 @@ Command commtest_command() {
               "Examples: haptic_client commtest 192.168.1.20:45130 --client configs/clients/liver.toml "
               "--key palpate.key\n"
               "          haptic_client commtest --usb falcon",
-          .options = {{"ADDR:PORT", "Of sim_server (default: that of the client file)", &asked->server},
+          .options = {{"ADDR:PORT", "Of sim_server (default: that of the client file)", &requested->server},
                       {"--usb", "Test this device instead, with zero force: falcon, or falcon:PORT",
-                       &asked->device},
+                       &requested->device},
                       {"--client", "Client file: its motion, rate and law (default: all defaults)",
                        &overrides.file},
                       {"--method", "Extrapolation law that the verdict is of", &overrides.method},
@@ -232,7 +232,7 @@ Command commtest_command() {
                       {"--seconds", "How long", &options.seconds, {.shows_default = true}},
                       {"--wait", "For the server to answer, s", &options.wait, {.shows_default = true}},
                       {"--json", "Write the same to this JSON file", &options.json}},
-          .run = [asked] { return run_commtest(*asked); }};
+          .run = [requested] { return run_commtest(*requested); }};
 }
 
 }  // namespace palpate::client

@@ -49,25 +49,25 @@ void judge_stiffness(const TestedLink& link, Verdict& verdict) {
   const std::string law =
       fmt::format("with samples {:.1f} ms old (p99) \"{}\" is stable up to {:.0f} N/m on the study's walls",
                   link.age_p99_ms, link.law, *limit) +
-      (find_row(extrapolators(), link.law, "law", "commtest").make()->wants().surface
+      (find_row(extrapolators(), link.law, "law", "commtest").make()->request().surface
            ? " (no surface is told of these, so that a law without one stood in)"
            : "");
   if (link.stiffest_n_m == 0) {
     worsen(verdict, Grade::kWarn, law + "; nothing was touched, so how stiff the scene is is not known");
   } else {
-    const double share = link.stiffest_n_m / *limit;
+    const double fraction = link.stiffest_n_m / *limit;
     worsen(verdict,
-           share > 1     ? Grade::kFail
-           : share > 0.5 ? Grade::kWarn
-                         : Grade::kPass,
-           fmt::format("{}; the scene has {:.0f} N/m, {:.2g} of that", law, link.stiffest_n_m, share));
+           fraction > 1     ? Grade::kFail
+           : fraction > 0.5 ? Grade::kWarn
+                            : Grade::kPass,
+           fmt::format("{}; the scene has {:.0f} N/m, {:.2g} of that", law, link.stiffest_n_m, fraction));
   }
 }
 
 }  // namespace
 
 std::optional<double> stable_to(std::string_view law, double age_ms) {
-  const auto row = std::find_if(kRows.begin(), kRows.end(), [&](const Row& r) { return r.law == law; });
+  const auto row = std::ranges::find_if(kRows, [&](const Row& r) { return r.law == law; });
   if (row == kRows.end() || age_ms > kAges.back()) return {};
   double least = kDirect;
   for (std::size_t i = 0; i < kAges.size(); ++i) {

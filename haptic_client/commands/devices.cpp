@@ -13,7 +13,7 @@ namespace {
 
 #ifdef PALPATE_WITH_USB
 bool is_falcon(const UsbId& id) {
-  return std::find(kFalconIds.begin(), kFalconIds.end(), id) != kFalconIds.end();
+  return std::ranges::find(kFalconIds, id) != kFalconIds.end();
 }
 
 /// One for all products of this vendor that we know, as in configs/udev/70-palpate.rules.

@@ -50,15 +50,15 @@ double ticks_per_second(const CapturedRun& run) {
   return std::clamp(std::round(run.ticks_hz()), 1.0, 20000.0);
 }
 
-Wants wants_of(const std::string& law) {
-  return find_row(extrapolators(), law, "method", "--method").make()->wants();
+Request request_of(const std::string& law) {
+  return find_row(extrapolators(), law, "method", "--method").make()->request();
 }
 
 /// Of a sample without the parts that the law has no use for.
-double bytes_for(const Wants& wants, protocol::ForceSample sample) {
-  if (!wants.here) sample.flags &= ~protocol::ForceSample::kHasHere;
-  if (!wants.ahead) sample.flags &= ~protocol::ForceSample::kHasAhead;
-  if (!wants.surface)
+double bytes_for(const Request& request, protocol::ForceSample sample) {
+  if (!request.at_tool) sample.flags &= ~protocol::ForceSample::kHasTangent;
+  if (!request.ahead) sample.flags &= ~protocol::ForceSample::kHasAhead;
+  if (!request.surface)
     sample.flags &= ~(protocol::ForceSample::kHasSurface | protocol::ForceSample::kHasModes |
                       protocol::ForceSample::kHasRelaxed | protocol::ForceSample::kHasModalLoads);
   sample.flags &= ~protocol::ForceSample::kHasErrors;  // for reports, not for laws
@@ -67,10 +67,10 @@ double bytes_for(const Wants& wants, protocol::ForceSample sample) {
 }
 
 /// An evaluation of the longest run of a capture, before its first tick.
-Evaluation begin_evaluation(const CaptureSurvey& found, const std::vector<std::string>& laws,
+Evaluation start_evaluation(const CaptureSurvey& found, const std::vector<std::string>& laws,
                             const EvaluateOptions& options, const Truth* truth) {
-  const auto longest = std::max_element(found.runs.begin(), found.runs.end(),
-                                        [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
+  const auto longest =
+      std::ranges::max_element(found.runs, [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
   Evaluation e;
   e.bytes.resize(laws.size());
   e.run = static_cast<std::size_t>(longest - found.runs.begin());
@@ -97,7 +97,7 @@ void take_pages(const CapturedTick& tick, double compliance, KnownSurface& surfa
 
 /// The sample that arrived in a tick, as laws get it; its age, and its bytes for each law by what that wants,
 /// are added to those before.
-std::optional<Sample> take_sample(const CapturedTick& tick, const std::vector<Wants>& wants,
+std::optional<Sample> take_sample(const CapturedTick& tick, const std::vector<Request>& request,
                                   KnownSurface& surface, Evaluation& e) {
   if (!tick.arrived) return {};
   const protocol::SurfaceState& state = tick.arrived->surface;
@@ -105,7 +105,7 @@ std::optional<Sample> take_sample(const CapturedTick& tick, const std::vector<Wa
   const Sample sample = sample_of(*tick.arrived, &surface.model);
   ++e.samples;
   e.age += to_seconds(Time{tick.state.t_ns} - sample.t);
-  for (std::size_t i = 0; i < wants.size(); ++i) e.bytes[i] += bytes_for(wants[i], *tick.arrived);
+  for (std::size_t i = 0; i < request.size(); ++i) e.bytes[i] += bytes_for(request[i], *tick.arrived);
   return sample;
 }
 
@@ -124,18 +124,18 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   const CaptureSurvey found = survey(file, [](double) {});
   if (!found.trouble.empty())
     log::warning("{}: {}; what was read until then is evaluated", file.string(), found.trouble);
-  Evaluation e = begin_evaluation(found, laws, options, truth);
+  Evaluation e = start_evaluation(found, laws, options, truth);
   CapturedSession session(file, e.run);
   std::optional<protocol::ToolState> before;
   ErrorSums ignored;
   KnownSurface surface;
-  std::vector<Wants> wants;
-  for (const std::string& law : laws) wants.push_back(wants_of(law));
+  std::vector<Request> request;
+  for (const std::string& law : laws) request.push_back(request_of(law));
   for (CapturedTick tick; session.next(tick);) {
     const Time t{tick.state.t_ns};
     if (tick.arrived && (tick.arrived->number - 1) % options.keep != 0) tick.arrived.reset();
     take_pages(tick, options.compliance, surface, e);
-    const std::optional<Sample> sample = take_sample(tick, wants, surface, e);
+    const std::optional<Sample> sample = take_sample(tick, request, surface, e);
     for (auto* all : {&e.plain, &e.blended}) {
       for (Scoring& scoring : *all) scoring.tick(tick.state.p_W, t, sample ? &*sample : nullptr, ignored);
     }
@@ -144,7 +144,7 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
       e.seconds += to_seconds(t - Time{before->t_ns});
     }
     before = tick.state;
-    if (tick.state.tick % 4096 == 0) progress(file.filename().string(), session.share());
+    if (tick.state.tick % 4096 == 0) progress(file.filename().string(), session.fraction());
   }
   progress(file.filename().string(), 1);
   require_scored(e, file);
@@ -178,7 +178,7 @@ void add_rows(Json& rows, const std::string& world, const Evaluation& e, bool wi
                     {"blended", blended}};
         row.update(row_of(scoring, law, costs[number]));
         row["bytes_per_sample"] = e.bytes[number] / samples;
-        row["model_bytes"] = wants_of(scoring.names()[law]).surface ? e.model_bytes : 0;
+        row["model_bytes"] = request_of(scoring.names()[law]).surface ? e.model_bytes : 0;
         row["between"] = between;
         const auto beside_truth = [with_truth](double percent) {
           return with_truth ? Json(percent) : Json();
@@ -237,13 +237,13 @@ int evaluate(const EvaluateOptions& options) {
   ProgressLine progress;
   std::optional<Truth> truth;
   if (options.truth)
-    truth.emplace(*options.truth, [&](double share) { progress("reading the truth", share); });
+    truth.emplace(*options.truth, [&](double fraction) { progress("reading the truth", fraction); });
   Json rows = Json::array();
   for (const std::filesystem::path& capture : options.captures) {
     const Evaluation e = run(capture, laws, options, truth ? &*truth : nullptr, progress);
     std::vector<LawCost> costs;
     for (const std::string& law : laws)
-      costs.push_back(wants_of(law).surface ? cost_on(law, capture, e.run) : cost_of(law));
+      costs.push_back(request_of(law).surface ? cost_on(law, capture, e.run) : cost_of(law));
     const std::size_t begin = rows.size();
     add_rows(rows, options.world.empty() ? capture.stem().string() : options.world, e, truth.has_value(),
              costs);

@@ -82,8 +82,7 @@ std::vector<std::string> link_causes(const protocol::Endpoint& local) {
   const std::uint32_t own =
       std::uint32_t{a[0]} << 24 | std::uint32_t{a[1]} << 16 | std::uint32_t{a[2]} << 8 | a[3];
   const std::vector<Interface> all = interfaces();
-  const auto route =
-      std::find_if(all.begin(), all.end(), [&](const Interface& i) { return i.address == own; });
+  const auto route = std::ranges::find_if(all, [&](const Interface& i) { return i.address == own; });
   if (route == all.end()) return causes;
   if (is_wireless(route->name))
     causes.push_back(fmt::format("the route goes over {}, which is wireless: use a cable", route->name));

@@ -19,9 +19,9 @@
 namespace palpate::client {
 namespace {
 
-constexpr double kFastest = 20000;           // Hz
-constexpr double kSameRate = 0.02;           // of the rate
-constexpr std::uint64_t kLookAround = 4096;  // ticks between two looks at the progress line
+constexpr double kFastest = 20000;             // Hz
+constexpr double kSameRate = 0.02;             // of the rate
+constexpr std::uint64_t kSearchAround = 4096;  // ticks between two looks at the progress line
 
 std::string describe(const CapturedRun& run, std::size_t index) {
   return fmt::format("{}: client {}, {} ticks from {} ({:.0f} Hz), {} samples", index + 1,
@@ -31,8 +31,8 @@ std::string describe(const CapturedRun& run, std::size_t index) {
 /// The session asked for, or the longest; says which when there are several.
 std::size_t index_of(const CaptureSurvey& found, const ReplayOptions& options) {
   const auto count = static_cast<int>(found.runs.size());
-  const auto longest = std::max_element(found.runs.begin(), found.runs.end(),
-                                        [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
+  const auto longest =
+      std::ranges::max_element(found.runs, [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
   if (options.session && (*options.session < 1 || *options.session > count))
     fail("--session: {} has {} session{}, there is no number {}", options.capture.string(), count,
          count == 1 ? "" : "s", *options.session);
@@ -56,15 +56,15 @@ ChosenSession choose_session(const ReplayOptions& options) {
   if (options.out) check_writable(*options.out, Contents::kTable);
   ProgressLine progress;
   CaptureSurvey found =
-      survey(options.capture, [&](double share) { progress("reading the capture", share); });
+      survey(options.capture, [&](double fraction) { progress("reading the capture", fraction); });
   const std::size_t index = index_of(found, options);
   if (!found.trouble.empty()) log::warning("{}: {}", options.capture.string(), found.trouble);
   return {std::move(found), index};
 }
 
-double nominal_rate(double captured_hz, double asked_hz) {
-  const bool near = std::abs(captured_hz - asked_hz) <= kSameRate * asked_hz;
-  return std::clamp(near ? asked_hz : captured_hz, 1.0, kFastest);
+double nominal_rate(double captured_hz, double requested_hz) {
+  const bool near = std::abs(captured_hz - requested_hz) <= kSameRate * requested_hz;
+  return std::clamp(near ? requested_hz : captured_hz, 1.0, kFastest);
 }
 
 namespace {
@@ -89,12 +89,13 @@ std::uint64_t run_ticks(CapturedSession& session, std::optional<double> rate_hz,
   CapturedTick tick;
   std::uint64_t ticks = 0;
   while (source.next(tick)) {
-    const TickResult result = pipeline.feel(tick.state, tick.arrived ? &*tick.arrived : nullptr, tick.pages);
+    const TickResult result =
+        pipeline.render(tick.state, tick.arrived ? &*tick.arrived : nullptr, tick.pages);
     // What a tick is held against is known when the next samples have come.
     const TickRecord* const leaving = observation.leaving();
     if (trace != nullptr && leaving != nullptr) trace->add(*leaving);
     observation.tick(result, Time::zero(), 0);
-    if (++ticks % kLookAround == 0) progress("replaying", session.share());
+    if (++ticks % kSearchAround == 0) progress("replaying", session.fraction());
   }
   if (trace != nullptr) {
     for (const TickRecord& last : observation.record()) trace->add(last);
@@ -110,7 +111,7 @@ Json describe_capture(const CaptureSurvey& found, const CapturedRun& run, const 
           {"packets", found.packets},
           {"ours", found.ours},
           {"refused", found.refused},
-          {"left_out", found.left_out},
+          {"left_out", found.omitted},
           {"other_traffic", found.other},
           {"sessions", found.runs.size()},
           {"tool_states", run.ticks},
@@ -178,14 +179,14 @@ int replay(const ClientConfig& config, const ReplayOptions& options) {
 }
 
 Command replay_command() {
-  struct Asked {
+  struct Requested {
     Overrides overrides;
     ReplayOptions options;
     bool live = false;
   };
-  const auto asked = std::make_shared<Asked>();
-  Overrides& overrides = asked->overrides;
-  ReplayOptions& options = asked->options;
+  const auto requested = std::make_shared<Requested>();
+  Overrides& overrides = requested->overrides;
+  ReplayOptions& options = requested->options;
   return {
       .name = "replay",
       .summary =
@@ -209,18 +210,19 @@ Command replay_command() {
                   {"--session", "Which session, where the capture has several", &options.session},
                   {"--report", "Write figures to this JSON file", &options.report},
                   {"--live", "Play the captured tool to a live server, in real time; nothing is moved",
-                   &asked->live},
+                   &requested->live},
                   {"--to",
                    "ADDR:PORT of that server (default 127.0.0.1:45130)",
                    &overrides.server,
                    {.needs = "--live"}},
                   {"--key", "File of the key that the server has", &overrides.key, {.needs = "--live"}},
                   insecure_option(overrides, "--live")},
-      .run = [asked] {
-        const std::optional<double>& rate_hz = asked->options.rate_hz;
+      .run = [requested] {
+        const std::optional<double>& rate_hz = requested->options.rate_hz;
         if (rate_hz) require_within(*rate_hz, 1, 20000, "--rate", "Hz");
-        if (asked->live && rate_hz) fail("--rate: a live replay has the capture's own rate");
-        return (asked->live ? replay_live : replay)(read_config(asked->overrides), asked->options);
+        if (requested->live && rate_hz) fail("--rate: a live replay has the capture's own rate");
+        return (requested->live ? replay_live : replay)(read_config(requested->overrides),
+                                                        requested->options);
       }};
 }
 

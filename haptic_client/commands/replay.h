@@ -35,7 +35,7 @@ ChosenSession choose_session(const ReplayOptions& options);
 
 /// The rate that the client was asked for, if that of the capture (which may have missed ticks) is near it;
 /// in any case one that a loop can have. Hz.
-double nominal_rate(double captured_hz, double asked_hz);
+double nominal_rate(double captured_hz, double requested_hz);
 
 /// Runs the ticks of a captured session through law, watchdog and limiter again, offline: the same forces,
 /// bit by bit, whenever it is done. Throws `Error`. Returns the exit code.

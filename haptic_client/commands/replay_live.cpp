@@ -37,12 +37,12 @@ void play(HeldTool& tool, double seconds) {
 
 }  // namespace
 
-int replay_live(const ClientConfig& asked, const ReplayOptions& options) {
+int replay_live(const ClientConfig& requested, const ReplayOptions& options) {
   const ChosenSession chosen = choose_session(options);
   CapturedSession session(options.capture, chosen.index);
   auto hand = std::make_unique<CapturedHand>(session);
   const double seconds = hand->seconds();
-  const ClientConfig config = with_captured_hand(asked, chosen.run().ticks_hz());
+  const ClientConfig config = with_captured_hand(requested, chosen.run().ticks_hz());
   HeldTool tool(config, {.trace = options.out, .record = {}}, "", seconds, std::move(hand));
   if (!tool.connect()) return 0;
   fmt::print("haptic_client: playing {:.1f} s of {} at {:g} Hz; nothing is moved\n", seconds,

@@ -52,7 +52,7 @@ void check_together(const std::vector<ClientConfig>& configs) {
            config.server_where, config.server, configs.front().server);
     }
     if (configs.size() == 1 || device.name == "simulated") continue;
-    const bool several = std::count_if(configs.begin(), configs.end(), [&](const ClientConfig& other) {
+    const bool several = std::ranges::count_if(configs, [&](const ClientConfig& other) {
                            return other.device.name == device.name;
                          }) > 1;
     if (several && device.port.empty())
@@ -93,7 +93,7 @@ void check_files(const std::optional<Path>& report, const std::vector<ToolFiles>
 }
 
 /// A device may be plugged in later; but one that is looked for in the wrong place never will be.
-void tell_missing_ports(const std::vector<ClientConfig>& configs) {
+void report_missing_ports(const std::vector<ClientConfig>& configs) {
   for (const ClientConfig& config : configs) {
     const DeviceSettings& device = config.device;
     if (device.port.empty() || row_of(device).ports == nullptr) continue;
@@ -133,8 +133,8 @@ void watch(std::list<HeldTool>& tools, std::optional<double> seconds) {
       fmt::print("{}", terminal ? "  " : "\n");
       std::fflush(stdout);
     }
-    const double left = seconds ? *seconds - elapsed : 0.1;
-    if (wait_for_interrupt(from_seconds(std::min(left, 0.1)))) break;
+    const double remaining = seconds ? *seconds - elapsed : 0.1;
+    if (wait_for_interrupt(from_seconds(std::min(remaining, 0.1)))) break;
     if (take_rearm_request()) {
       for (HeldTool& tool : tools) tool.rearm();
     }
@@ -148,15 +148,14 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   check_together(configs);
   const std::vector<ToolFiles> files = files_of_tools(options, configs.size());
   check_files(options.report, files, configs);
-  tell_missing_ports(configs);
+  report_missing_ports(configs);
   Guardian guardian(configs);  // before any thread; goes after the tools
   std::list<HeldTool> tools;
   for (std::size_t i = 0; i < configs.size(); ++i)
     tools.emplace_back(configs[i], files[i], name_of_tool(configs[i], i + 1, configs.size()),
                        options.seconds);
   // One after the other, so that the first tool of the scene is the first one here.
-  const bool connected =
-      std::all_of(tools.begin(), tools.end(), [](HeldTool& tool) { return tool.connect(); });
+  const bool connected = std::ranges::all_of(tools, [](HeldTool& tool) { return tool.connect(); });
   if (connected) {
     std::size_t i = 0;
     for (HeldTool& tool : tools) tool.start(guardian.heartbeat(i++));
@@ -194,17 +193,17 @@ struct RunRequest {
 
 /// A configuration for each tool: of each file, with the device of the same place on the command line; where
 /// there are more devices than files, the last file serves the rest.
-std::vector<ClientConfig> read_configs(const RunRequest& asked) {
-  const std::size_t tools = std::max({asked.files.size(), asked.devices.size(), std::size_t{1}});
-  if (!asked.devices.empty() && asked.devices.size() < tools)
-    fail("{} client files, but {} --device; give one for each, or none", asked.files.size(),
-         asked.devices.size());
+std::vector<ClientConfig> read_configs(const RunRequest& requested) {
+  const std::size_t tools = std::max({requested.files.size(), requested.devices.size(), std::size_t{1}});
+  if (!requested.devices.empty() && requested.devices.size() < tools)
+    fail("{} client files, but {} --device; give one for each, or none", requested.files.size(),
+         requested.devices.size());
   std::vector<ClientConfig> configs;
   for (std::size_t i = 0; i < tools; ++i) {
-    Overrides overrides = asked.overrides;
-    if (!asked.files.empty()) overrides.file = asked.files[std::min(i, asked.files.size() - 1)];
+    Overrides overrides = requested.overrides;
+    if (!requested.files.empty()) overrides.file = requested.files[std::min(i, requested.files.size() - 1)];
     configs.push_back(read_config(overrides));
-    if (!asked.devices.empty()) choose_device(configs.back().device, asked.devices[i], "--device");
+    if (!requested.devices.empty()) choose_device(configs.back().device, requested.devices[i], "--device");
     const DeviceSettings& device = configs.back().device;
     if (overrides.file.empty() && !overrides.rate_hz)
       configs.back().rate_hz = row_of(device).limits(device).usual_rate_hz;
@@ -215,9 +214,9 @@ std::vector<ClientConfig> read_configs(const RunRequest& asked) {
 }  // namespace
 
 Command run_command() {
-  const auto asked = std::make_shared<RunRequest>();
-  Overrides& overrides = asked->overrides;
-  ClientOptions& options = asked->options;
+  const auto requested = std::make_shared<RunRequest>();
+  Overrides& overrides = requested->overrides;
+  ClientOptions& options = requested->options;
   return {
       .name = "run",
       .summary = "Connect to a server and run the haptic loop until Ctrl-C",
@@ -226,30 +225,32 @@ Command run_command() {
           "Examples: haptic_client run configs/clients/liver.toml --method constant --report report.json\n"
           "          haptic_client run left.toml right.toml          two devices, each with a tool of its "
           "own",
-      .options =
-          {{"CLIENT", "Client file (TOML), one for each tool; without one, a hand that holds still",
-            &asked->files},
-           {"--server", "ADDR:PORT of sim_server (default 127.0.0.1:45130)", &overrides.server},
-           {"--key", "File of the key that the server has; see `sim_server keygen`", &overrides.key},
-           insecure_option(overrides),
-           {"--device", "Device, see below; once for each tool", &asked->devices, {.one_at_a_time = true}},
-           firmware_option(overrides),
-           {"--method", "How to extrapolate the force, see below", &overrides.method},
-           {"--rate",
-            "Haptic ticks per second, 100 to 4000 (default 500; 1000 for a Falcon)",
-            &overrides.rate_hz,
-            {.within = Bounds{kMinRate, kMaxRate}}},
-           {"--seconds", "Stop after so many seconds", &options.seconds},
-           {"--report", "Write figures of the run to this JSON file", &options.report},
-           {"--trace", "Write the last minute, a row a tick, to this CSV file", &options.trace},
-           {"--record", "Write every datagram to this capture (pcap)", &options.record},
-           {"--record-mb",
-            "Go on in a new file at this size (F-2.pcap, ...); ten are kept",
-            &options.record_mb,
-            {.within = Bounds{0.01, 1e6}}}},
-      .run = [asked] {
-        if (asked->options.seconds) require_at_least(*asked->options.seconds, 1e-3, "--seconds", "s");
-        return run_client(read_configs(*asked), asked->options);
+      .options = {{"CLIENT", "Client file (TOML), one for each tool; without one, a hand that holds still",
+                   &requested->files},
+                  {"--server", "ADDR:PORT of sim_server (default 127.0.0.1:45130)", &overrides.server},
+                  {"--key", "File of the key that the server has; see `sim_server keygen`", &overrides.key},
+                  insecure_option(overrides),
+                  {"--device",
+                   "Device, see below; once for each tool",
+                   &requested->devices,
+                   {.one_at_a_time = true}},
+                  firmware_option(overrides),
+                  {"--method", "How to extrapolate the force, see below", &overrides.method},
+                  {"--rate",
+                   "Haptic ticks per second, 100 to 4000 (default 500; 1000 for a Falcon)",
+                   &overrides.rate_hz,
+                   {.within = Bounds{kMinRate, kMaxRate}}},
+                  {"--seconds", "Stop after so many seconds", &options.seconds},
+                  {"--report", "Write figures of the run to this JSON file", &options.report},
+                  {"--trace", "Write the last minute, a row a tick, to this CSV file", &options.trace},
+                  {"--record", "Write every datagram to this capture (pcap)", &options.record},
+                  {"--record-mb",
+                   "Go on in a new file at this size (F-2.pcap, ...); ten are kept",
+                   &options.record_mb,
+                   {.within = Bounds{0.01, 1e6}}}},
+      .run = [requested] {
+        if (requested->options.seconds) require_at_least(*requested->options.seconds, 1e-3, "--seconds", "s");
+        return run_client(read_configs(*requested), requested->options);
       }};
 }
 

@@ -25,7 +25,7 @@ void Browser::aim(const Vec3& p_D, std::uint16_t buttons) noexcept {
   aim_ = p_D;
   buttons_ = buttons;
   arm_v_ = (aim_ - arm_) / kBetween;
-  if (arm_v_.norm() > kQuickest) arm_v_ *= kQuickest / arm_v_.norm();
+  if (arm_v_.norm() > kFastest_) arm_v_ *= kFastest_ / arm_v_.norm();
 }
 
 }  // namespace palpate::client

@@ -22,7 +22,7 @@ class Browser : public Device {
 
  private:
   static constexpr double kBetween = 0.02;   // s in which the arm goes to where the mouse is
-  static constexpr double kQuickest = 0.25;  // m/s, of the arm: a mouse may jump, a hand does not
+  static constexpr double kFastest_ = 0.25;  // m/s, of the arm: a mouse may jump, a hand does not
 
   SimulatedHand hand_;
   Vec3 aim_, arm_, arm_v_ = Vec3::Zero();  // m, m, m/s

@@ -62,9 +62,9 @@ Silenced silence_falcons(UsbPorts ports, const std::function<void(UsbPorts&)>& a
     const bool last = now() >= end;  // begun after that, as a port that hangs may have taken all of it
     if (i > 0) sleep_until(now() + std::chrono::milliseconds(10));
     if (add_new && i % kTriesALook == 0) add_new(ports);
-    const Time looks = now() + i * std::chrono::seconds(1);  // it looks each time, not twice a second
+    const Time polls = now() + i * std::chrono::seconds(1);  // it looks each time, not twice a second
     silenced.falcons += static_cast<int>(std::erase_if(ports, [&](const std::unique_ptr<UsbTransport>& port) {
-      return port->open(looks) && send_zero(*port);
+      return port->open(polls) && send_zero(*port);
     }));
     if (last) break;
   }

@@ -82,9 +82,9 @@ std::optional<Mat3> jacobian(const Vec3& p_D) noexcept {
 std::optional<Vec3> grip_position(const Vec3& angles, const Vec3& guess) noexcept {
   constexpr int kMostSteps = 50, kMostHalvings = 30;
   Vec3 p = guess;
-  auto here = leg_angles(p);
-  for (int step = 0; step < kMostSteps && here; ++step) {
-    const Vec3 missing = angles - *here;
+  auto current = leg_angles(p);
+  for (int step = 0; step < kMostSteps && current; ++step) {
+    const Vec3 missing = angles - *current;
     if (missing.cwiseAbs().maxCoeff() <= kAgree) return p;
     const auto j = jacobian(p);
     if (!j) return {};
@@ -96,7 +96,7 @@ std::optional<Vec3> grip_position(const Vec3& angles, const Vec3& guess) noexcep
     };
     for (int half = 0; half < kMostHalvings && !nearer(); ++half) change *= 0.5;
     p += change;
-    here = leg_angles(p);
+    current = leg_angles(p);
   }
   return {};
 }

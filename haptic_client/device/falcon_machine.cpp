@@ -25,7 +25,7 @@ void ftdi(UsbTransport& port, std::uint8_t request, std::uint16_t value) {
 }
 
 constexpr Time kProbePeriod = 20ms, kBootPeriod = 60ms, kHandshakePatience = 300ms, kEchoPatience = 500ms;
-constexpr Time kLongestSilence = 1s, kFresh = 50ms, kLookAgain = 500ms, kLoadAgain = 2s;
+constexpr Time kLongestSilence = 1s, kFresh = 50ms, kSearchAgain = 500ms, kLoadAgain = 2s;
 constexpr int kProbes = 25, kBootTries = 100, kLoads = 5;
 constexpr const char* kHomeIt =
     "Falcon: pull the grip fully out, then push it fully in, to home it; if its light stays red, check that "
@@ -40,7 +40,7 @@ constexpr const char* kFading =
 constexpr const char* kMovesAgain = "the Falcon moves again: its force rises";
 constexpr double kFadeTime = 1;         // s, from all of the force to none and back
 constexpr int kPacketsATick = 64;       // more than the bus carries in a tick: a flood does not hold it up
-constexpr Time kStill = 3s;             // a hand that holds against a force is never so still
+constexpr Time kUnmoved = 3s;           // a hand that holds against a force is never so still
 constexpr std::int16_t kPushing = 200;  // DAC units: more than what friction holds
 
 }  // namespace
@@ -50,7 +50,7 @@ void FalconMachine::enter(FalconPhase phase, Time now) noexcept {
   entered_ = heard_ = now;
   gain_ = 1;
   ran_ = Time::zero();
-  asked_ = false;
+  requested_ = false;
   tries_ = 0;
   answered_ = 0;
   stream_.clear();
@@ -147,7 +147,7 @@ void FalconMachine::boot_mode(UsbTransport& port, Time now) noexcept {
 }
 
 void FalconMachine::probe(UsbTransport& port, Time now) noexcept {
-  if (!asked_) {  // what came before the first question is of another session
+  if (!requested_) {  // what came before the first question is of another session
     stream_.clear();
     status_.reset();
   }
@@ -156,7 +156,7 @@ void FalconMachine::probe(UsbTransport& port, Time now) noexcept {
     if (!status_->all_homed()) message_ = kHomeIt;
     return enter(FalconPhase::kUnhomed, now);
   }
-  if (asked_ && now - sent_ < kProbePeriod) return;
+  if (requested_ && now - sent_ < kProbePeriod) return;
   if (tries_ < kProbes) {
     if (send(port, encode_falcon({}), now)) ++tries_;
     return;
@@ -174,7 +174,7 @@ void FalconMachine::boot(UsbTransport& port, Time now) noexcept {
     ftdi(port, kBaud, kBaud140k);
     return enter(FalconPhase::kHandshake, now);
   }
-  if (asked_ && now - sent_ < kBootPeriod) return;
+  if (requested_ && now - sent_ < kBootPeriod) return;
   if (tries_ == kBootTries) return boot_mode(port, now);
   answered_ = 0;
   if (send(port, kAreYouThere, now)) ++tries_;
@@ -182,11 +182,11 @@ void FalconMachine::boot(UsbTransport& port, Time now) noexcept {
 
 void FalconMachine::handshake(UsbTransport& port, Time now) noexcept {
   const auto end = answer_.begin() + static_cast<std::ptrdiff_t>(answered_);
-  if (asked_ && std::find(answer_.begin(), end, kReadyForImage[0]) != end) {
+  if (requested_ && std::find(answer_.begin(), end, kReadyForImage[0]) != end) {
     uploaded_ = 0;
     return enter(FalconPhase::kUpload, now);
   }
-  if (!asked_) {
+  if (!requested_) {
     answered_ = 0;
     send(port, kReadyForImage, now);
   }
@@ -196,25 +196,25 @@ void FalconMachine::handshake(UsbTransport& port, Time now) noexcept {
 void FalconMachine::upload(UsbTransport& port, Time now) noexcept {
   const std::size_t size = std::min(kChunk, firmware_.size() - uploaded_);
   const Bytes chunk(firmware_.data() + uploaded_, size);
-  if (asked_ && answered_ >= size) {
+  if (requested_ && answered_ >= size) {
     if (answered_ > size || !std::equal(chunk.begin(), chunk.end(), answer_.begin()))
       return boot_mode(port, now);
     uploaded_ += size;
     answered_ = 0;
-    asked_ = false;
+    requested_ = false;
     if (uploaded_ == firmware_.size()) {
       normal_mode(port);
       return enter(FalconPhase::kProbe, now);
     }
     return upload(port, now);
   }
-  if (asked_ && now - sent_ > kEchoPatience) return boot_mode(port, now);
-  if (!asked_) send(port, chunk, now);
+  if (requested_ && now - sent_ > kEchoPatience) return boot_mode(port, now);
+  if (!requested_) send(port, chunk, now);
 }
 
 void FalconMachine::run(UsbTransport& port, Time now) noexcept {
   if (now - heard_ > kLongestSilence)
-    return give_up(port, now, kLookAgain, "the Falcon stopped answering; trying again");
+    return give_up(port, now, kSearchAgain, "the Falcon stopped answering; trying again");
   if (!status_) return;
   if (phase_ == FalconPhase::kUnhomed && status_->all_homed()) {
     message_ = "Falcon homed: ready";
@@ -233,7 +233,7 @@ void FalconMachine::watch_encoders(Time now) noexcept {
   const double dt = ran_ > Time::zero() ? to_seconds(now - ran_) : 0;
   ran_ = now;
   if (frozen_fade_ == Time::zero()) {
-    if (now - moved_ > kStill) message_ = kFrozen;
+    if (now - moved_ > kUnmoved) message_ = kFrozen;
     return;
   }
   const bool frozen = now - moved_ > frozen_fade_;
@@ -248,14 +248,14 @@ bool FalconMachine::command(UsbTransport& port, const std::array<std::int16_t, 3
   if (port.state() != UsbTransport::State::kIdle) return false;  // the last one is still on the way
   FalconCommand command{.green = ready, .red = !ready};
   if (ready) command.torque = torque;
-  pushes_ = std::any_of(command.torque.begin(), command.torque.end(),
-                        [](std::int16_t t) { return t >= kPushing || t <= -kPushing; });
+  pushes_ =
+      std::ranges::any_of(command.torque, [](std::int16_t t) { return t >= kPushing || t <= -kPushing; });
   for (std::int16_t& t : command.torque) t = static_cast<std::int16_t>(gain_ * t);
-  if (zero_goes_) may_push_ = false;  // it has left
+  if (zero_in_transit_) may_push_ = false;  // it has left
   const bool is_zero = command.torque == std::array<std::int16_t, 3>{};
   if (!is_zero) may_push_ = true;
   const bool went = port.write(encode_falcon(command));
-  zero_goes_ = is_zero && went;
+  zero_in_transit_ = is_zero && went;
   return went;
 }
 
@@ -270,12 +270,12 @@ void FalconMachine::lose(UsbTransport& port, Time now) noexcept {
   // One that is still there may still push: it is taken up again soon, the first time.
   const bool soon = why[0] != 0 && (lost_ == Time::zero() || now - lost_ > kLoadAgain);
   lost_ = now;
-  give_up(port, now, soon ? kProbePeriod : kLookAgain, why[0] != 0 ? why : kUnplugged);
+  give_up(port, now, soon ? kProbePeriod : kSearchAgain, why[0] != 0 ? why : kUnplugged);
 }
 
 void FalconMachine::give_up(UsbTransport& port, Time now, Time wait, const char* message) noexcept {
   port.close();
-  zero_goes_ = false;  // it may not have left
+  zero_in_transit_ = false;  // it may not have left
   message_ = message;
   enter(FalconPhase::kClosed, now);
   retry_at_ = now + wait;
@@ -284,7 +284,7 @@ void FalconMachine::give_up(UsbTransport& port, Time now, Time wait, const char*
 /// Once requests and bytes before it are through, so that nothing overtakes a change of the line.
 bool FalconMachine::send(UsbTransport& port, std::span<const std::byte> bytes, Time now) noexcept {
   if (port.state() != UsbTransport::State::kIdle || !port.write(bytes)) return false;
-  asked_ = true;
+  requested_ = true;
   sent_ = now;
   return true;
 }

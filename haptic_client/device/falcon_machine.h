@@ -70,13 +70,14 @@ class FalconMachine {
   FalconPhase phase_ = FalconPhase::kClosed;
   std::atomic<const char*> message_{"looking for a Falcon"};
   Time entered_{}, sent_{}, heard_{}, moved_{}, ran_{}, retry_at_{}, lost_{};
-  bool known_ = false;                         // it was there once
-  bool failing_ = false;                       // it refused its firmware, and was told so
-  bool pushes_ = false;                        // a torque that a hand feels
-  bool may_push_ = false, zero_goes_ = false;  // the newest command, of no torque, may still be on the way
-  bool asked_ = false;                         // something was sent in this phase and its answer is due
-  int tries_ = 0, loads_ = 0;                  // of the phase; of the image
-  std::size_t uploaded_ = 0;                   // bytes
+  bool known_ = false;    // it was there once
+  bool failing_ = false;  // it refused its firmware, and was told so
+  bool pushes_ = false;   // a torque that a hand feels
+  bool may_push_ = false,
+       zero_in_transit_ = false;  // the newest command, of no torque, may still be on the way
+  bool requested_ = false;        // something was sent in this phase and its answer is due
+  int tries_ = 0, loads_ = 0;     // of the phase; of the image
+  std::size_t uploaded_ = 0;      // bytes
   std::array<std::byte, 512> answer_{};
   std::size_t answered_ = 0;
   FalconStream stream_;

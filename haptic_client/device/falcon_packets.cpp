@@ -5,7 +5,7 @@
 namespace palpate::client {
 namespace {
 
-constexpr std::byte kBegin{'<'}, kEnd{'>'};
+constexpr std::byte kStart{'<'}, kEnd{'>'};
 constexpr int kLetter = 'A';
 constexpr std::size_t kNumbers = 3, kNibbles = 4,
                       kFlags = 1 + kNumbers * kNibbles;  // place of the byte of flags
@@ -21,7 +21,7 @@ int value_of(std::byte b) {
 
 std::array<std::byte, kFalconPacket> encode_falcon(const FalconCommand& command) noexcept {
   std::array<std::byte, kFalconPacket> packet{};
-  packet.front() = kBegin;
+  packet.front() = kStart;
   packet.back() = kEnd;
   for (std::size_t i = 0; i < kNumbers; ++i) {
     const int torque = std::clamp<int>(command.torque[i], -kFalconMaxTorque, kFalconMaxTorque);
@@ -35,7 +35,7 @@ std::array<std::byte, kFalconPacket> encode_falcon(const FalconCommand& command)
 }
 
 std::optional<FalconStatus> decode_falcon(std::span<const std::byte, kFalconPacket> packet) noexcept {
-  if (packet.front() != kBegin || packet.back() != kEnd) return {};
+  if (packet.front() != kStart || packet.back() != kEnd) return {};
   FalconStatus status;
   for (std::size_t i = 0; i < kNumbers; ++i) {
     unsigned bits = 0;
@@ -65,7 +65,7 @@ std::size_t strip_ftdi_status(std::span<const std::byte> transfer, std::span<std
 std::optional<FalconStatus> FalconStream::push_byte(std::byte byte) noexcept {
   packet_[size_++] = byte;
   for (;;) {
-    if (size_ == 0 || (packet_[0] == kBegin && size_ < kFalconPacket)) return {};
+    if (size_ == 0 || (packet_[0] == kStart && size_ < kFalconPacket)) return {};
     if (size_ == kFalconPacket) {
       if (const auto status = decode_falcon(packet_)) {
         size_ = 0;
@@ -74,7 +74,7 @@ std::optional<FalconStatus> FalconStream::push_byte(std::byte byte) noexcept {
     }
     // Not a packet from here: it may begin at the next `<` there is.
     const auto end = packet_.begin() + static_cast<std::ptrdiff_t>(size_);
-    const auto next = std::find(packet_.begin() + 1, end, kBegin);
+    const auto next = std::find(packet_.begin() + 1, end, kStart);
     rubbish_ += static_cast<std::uint64_t>(next - packet_.begin());
     size_ = static_cast<std::size_t>(std::copy(next, end, packet_.begin()) - packet_.begin());
   }

@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time kStandsStill = 100ms, kOpenAgain = 500ms;
+constexpr Time kIdle = 100ms, kOpenAgain = 500ms;
 constexpr std::uint8_t kHidToInterface = 0x21, kSetReport = 9;  // of HID
 constexpr std::size_t kMostReport = 64;                         // bytes
 
@@ -34,7 +34,7 @@ DeviceReading SpaceMouse::read(Time now) noexcept {
 
 /// What was told last held until now, but not longer than the silence that counts as standing still.
 void SpaceMouse::advance(Time now) noexcept {
-  const Time end = std::min(now, heard_ + kStandsStill);
+  const Time end = std::min(now, heard_ + kIdle);
   if (end > last_) {
     p_D_ += to_seconds(end - last_) * settings_.speed * state_.push_D;
     p_D_ = p_D_.cwiseMax(-settings_.reach).cwiseMin(settings_.reach);

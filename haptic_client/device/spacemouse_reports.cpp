@@ -39,7 +39,7 @@ constexpr std::array kModels{
 
 constexpr auto kIds = [] {
   std::array<UsbId, kModels.size()> ids{};
-  std::transform(kModels.begin(), kModels.end(), ids.begin(), [](const Model& model) { return model.id; });
+  std::ranges::transform(kModels, ids.begin(), [](const Model& model) { return model.id; });
   return ids;
 }();
 
@@ -58,15 +58,15 @@ std::span<const UsbId> spacemouse_ids() noexcept {
 }
 
 const char* spacemouse_name(const UsbId& id) noexcept {
-  const auto model = std::find_if(kModels.begin(), kModels.end(), [&](const Model& m) { return m.id == id; });
+  const auto model = std::ranges::find_if(kModels, [&](const Model& m) { return m.id == id; });
   return model == kModels.end() ? kUnnamed : model->name;
 }
 
 double spacemouse_response(int raw) noexcept {
   const int size = std::min(raw < 0 ? -raw : raw, kSpaceMouseFull) - kSpaceMouseDeadBand;
   if (size <= 0) return 0;
-  const double share = static_cast<double>(size) / (kSpaceMouseFull - kSpaceMouseDeadBand);
-  return raw < 0 ? -share * share : share * share;
+  const double fraction = static_cast<double>(size) / (kSpaceMouseFull - kSpaceMouseDeadBand);
+  return raw < 0 ? -fraction * fraction : fraction * fraction;
 }
 
 bool take_spacemouse_report(std::span<const std::byte> report, SpaceMouseState& state) noexcept {

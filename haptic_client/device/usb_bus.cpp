@@ -59,12 +59,12 @@ void for_each_usb(libusb_context* context, std::span<const UsbId> ids,
     libusb_device_descriptor descriptor{};
     if (libusb_get_device_descriptor(list[i], &descriptor) != 0) continue;
     const UsbId id{descriptor.idVendor, descriptor.idProduct};
-    if (std::find(ids.begin(), ids.end(), id) != ids.end()) use(list[i], id);
+    if (std::ranges::find(ids, id) != ids.end()) use(list[i], id);
   }
   if (list != nullptr) libusb_free_device_list(list, 1);
 }
 
-libusb_context* begin_usb() {
+libusb_context* start_usb() {
   libusb_context* context = nullptr;
   if (const int error = libusb_init(&context); error != 0)
     fail_at_run_time("USB cannot be used ({})", libusb_strerror(static_cast<libusb_error>(error)));
@@ -107,7 +107,7 @@ int try_to_use(libusb_device* device, bool hid) {
 }  // namespace
 
 std::vector<UsbDevice> find_usb(const UsbKind& kind) {
-  libusb_context* context = begin_usb();
+  libusb_context* context = start_usb();
   std::vector<UsbDevice> found;
   for_each_usb(context, kind.ids, [&](libusb_device* device, const UsbId& id) {
     const int error = try_to_use(device, kind.hid);
@@ -119,7 +119,7 @@ std::vector<UsbDevice> find_usb(const UsbKind& kind) {
 }
 
 std::vector<std::string> find_usb_ports(const UsbKind& kind) {
-  libusb_context* context = begin_usb();
+  libusb_context* context = start_usb();
   std::vector<std::string> ports;
   for_each_usb(context, kind.ids,
                [&](libusb_device* device, const UsbId&) { ports.emplace_back(path_of(device).data()); });

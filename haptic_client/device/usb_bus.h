@@ -44,7 +44,7 @@ using UsbPath = std::array<char, 32>;
 UsbPath path_of(libusb_device* device);
 
 /// A session of libusb, to be ended with `libusb_exit`. Throws `Error` when there is no USB at all.
-libusb_context* begin_usb();
+libusb_context* start_usb();
 
 /// Returns what libusb's error means to the person at the device; empty for a device that was unplugged.
 const char* in_words(int error);

@@ -7,17 +7,17 @@ namespace palpate::client {
 /// twice a second while one is there that cannot be used, or where the system does not tell of plugging.
 class UsbLookout {
  public:
-  /// `told`: the system tells when a device is plugged in.
-  explicit UsbLookout(bool told) : told_(told) {}
+  /// `published`: the system tells when a device is plugged in.
+  explicit UsbLookout(bool published) : published_(published) {}
   bool due(Time now) const noexcept { return now >= next_; }
   /// A device was plugged in, or ours was let go.
-  void look() noexcept { next_ = Time::min(); }
+  void poll() noexcept { next_ = Time::min(); }
   /// `absent`: there was none; else there was one, but it could not be used.
-  void failed(Time now, bool absent) noexcept { next_ = absent && told_ ? Time::max() : now + kAgain; }
+  void failed(Time now, bool absent) noexcept { next_ = absent && published_ ? Time::max() : now + kAgain; }
 
  private:
   static constexpr Time kAgain = std::chrono::milliseconds(500);
-  bool told_;
+  bool published_;
   Time next_ = Time::min();
 };
 

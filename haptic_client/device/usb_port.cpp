@@ -78,7 +78,7 @@ struct UsbPort::Libusb {
   static int on_hotplug(libusb_context*, libusb_device* device, libusb_hotplug_event event, void* owner) {
     auto& self = *static_cast<Libusb*>(owner);
     if (event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED) {
-      self.lookout.look();
+      self.lookout.poll();
     } else if (self.handle != nullptr && libusb_get_device(self.handle) == device) {
       self.lost = true;
       self.trouble = "";
@@ -150,16 +150,15 @@ struct UsbPort::Libusb {
   }
 
   bool sending() const {
-    return out.flying ||
-           std::any_of(requests.begin(), requests.end(), [](const auto& t) { return t.flying; });
+    return out.flying || std::ranges::any_of(requests, [](const auto& t) { return t.flying; });
   }
   bool flying() const {
-    return sending() || std::any_of(incoming.begin(), incoming.end(), [](const auto& t) { return t.flying; });
+    return sending() || std::ranges::any_of(incoming, [](const auto& t) { return t.flying; });
   }
 };
 
 UsbPort::UsbPort(UsbKind kind, std::string path) : usb_(new Libusb{.kind = kind, .wanted = std::move(path)}) {
-  usb_->context = begin_usb();
+  usb_->context = start_usb();
   usb_->listen();
 }
 
@@ -216,7 +215,7 @@ void UsbPort::close() noexcept {
   libusb_release_interface(u.handle, u.interface.number);
   libusb_close(u.handle);
   u.handle = nullptr;
-  u.lookout.look();
+  u.lookout.poll();
   u.path = {};
   u.lost = u.closing = false;
   while (u.received.front() != nullptr) u.received.release();
@@ -225,16 +224,14 @@ void UsbPort::close() noexcept {
 void UsbPort::control(const UsbRequest& request) noexcept {
   Libusb& u = *usb_;
   if (u.handle == nullptr || u.lost) return;
-  const auto free =
-      std::find_if(u.requests.begin(), u.requests.end(), [](const auto& t) { return !t.flying; });
+  const auto free = std::ranges::find_if(u.requests, [](const auto& t) { return !t.flying; });
   if (free == u.requests.end() || request.data.size() > kMostOut) return u.lose(kFailed);
   const bool to_interface = (request.type & kRecipient) == kToInterface;
   const auto index = to_interface ? static_cast<std::uint16_t>(u.interface.number) : request.index;
   unsigned char* const bytes = free->bytes.data();
   libusb_fill_control_setup(bytes, request.type, request.request, request.value, index,
                             static_cast<std::uint16_t>(request.data.size()));
-  std::copy(request.data.begin(), request.data.end(),
-            reinterpret_cast<std::byte*>(bytes + LIBUSB_CONTROL_SETUP_SIZE));
+  std::ranges::copy(request.data, reinterpret_cast<std::byte*>(bytes + LIBUSB_CONTROL_SETUP_SIZE));
   libusb_fill_control_transfer(free->libusb, u.handle, bytes, &Libusb::on_out, &*free, kTimeout);
   free->optional = request.optional;
   u.submit(*free);
@@ -244,7 +241,7 @@ bool UsbPort::write(std::span<const std::byte> bytes) noexcept {
   Libusb& u = *usb_;
   if (u.handle == nullptr || u.lost || u.out.flying) return false;
   if (u.interface.out.address == 0 || bytes.size() > kMostOut) return false;
-  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<std::byte*>(u.out.bytes.data()));
+  std::ranges::copy(bytes, reinterpret_cast<std::byte*>(u.out.bytes.data()));
   u.fill(u.out, u.interface.out, bytes.size(), &Libusb::on_out, kTimeout);
   return u.submit(u.out);
 }

@@ -6,7 +6,7 @@
 namespace palpate::client {
 namespace {
 
-constexpr double kNoWay = 1e-9;        // m: the tool rests
+constexpr double kNoPath = 1e-9;       // m: the tool rests
 constexpr double kLeastDepth = 1e-7;   // m: a plane that is met by less says nothing of how force grows
 constexpr double kMostPower = 3;       // of the depth
 constexpr double kMostCorrection = 3;  // as `LocalContact` corrects
@@ -21,7 +21,7 @@ double smooth(double s) {
 
 /// The slope of a sample, or nothing that can be used.
 const Linearised* slope(const Sample& sample) {
-  return sample.here && usable(*sample.here) ? &*sample.here : nullptr;
+  return sample.at_tool && usable(*sample.at_tool) ? &*sample.at_tool : nullptr;
 }
 
 }  // namespace
@@ -34,13 +34,13 @@ std::string_view name_of(ReferenceKind kind) noexcept {
 BetweenSamples::BetweenSamples(const Sample& before, const Sample& after) noexcept
     : before_(before), after_(after), end_(after.p - organ(after.t) - before.p), place_(before.p) {
   missed_ = after.f - before.f;
-  if (has_slopes()) missed_ -= 0.5 * (before.here->k + after.here->k) * end_;
+  if (has_slopes()) missed_ -= 0.5 * (before.at_tool->k + after.at_tool->k) * end_;
 }
 
 /// How far the organ has moved since t_n, m: as the velocities say, and to where it really came.
 Vec3 BetweenSamples::organ(Time t) const noexcept {
   if (slope(before_) == nullptr || slope(after_) == nullptr) return Vec3::Zero();
-  const double u = share(t), period = to_seconds(after_.t - before_.t);
+  const double u = fraction(t), period = to_seconds(after_.t - before_.t);
   const Vec3 &v = before_.surface_v, faster = after_.surface_v - v;
   const Vec3 moved = period * (u * v + 0.5 * u * u * faster);
   if (!before_.surface || !after_.surface) return moved;
@@ -70,40 +70,40 @@ Vec3 BetweenSamples::at(const PathTick& tick) noexcept {
   if (kind_ == ReferenceKind::kLine) return line(tick.t);
   const Vec3 f = kind_ == ReferenceKind::kContact
                      ? contact(tick)
-                     : hermite(x, length_ > kNoWay ? std::min(done_ / length_, 1.0) : share(tick.t));
+                     : hermite(x, length_ > kNoPath ? std::min(done_ / length_, 1.0) : fraction(tick.t));
   return f.allFinite() ? f : line(tick.t);
 }
 
 /// Whether both ends have slopes, and these lead from one to the other better than nothing does.
 bool BetweenSamples::has_slopes() const noexcept {
-  const Linearised *here = slope(before_), *there = slope(after_);
-  if (here == nullptr || there == nullptr) return false;
+  const Linearised *first = slope(before_), *there = slope(after_);
+  if (first == nullptr || there == nullptr) return false;
   const bool pushed = !before_.f.isZero(0), pushes = !after_.f.isZero(0);
   if (!pushed && !pushes) return true;
   if (pushed && pushes) {
     const double changed = (after_.f - before_.f).norm();
-    const Vec3 missed = after_.f - before_.f - 0.5 * (here->k + there->k) * end_;
-    return missed.norm() <= std::max({changed, (here->k * end_).norm(), (there->k * end_).norm()});
+    const Vec3 missed = after_.f - before_.f - 0.5 * (first->k + there->k) * end_;
+    return missed.norm() <= std::max({changed, (first->k * end_).norm(), (there->k * end_).norm()});
   }
-  const Linearised &free = pushed ? *there : *here, &touching = pushed ? *here : *there;
+  const Linearised &free = pushed ? *there : *first, &touching = pushed ? *first : *there;
   const double depth = -(free.gap + free.normal.dot(pushed ? Vec3(-end_) : end_));
   return depth > kLeastDepth && -touching.f.dot(touching.k * free.normal) > 0;
 }
 
-Vec3 BetweenSamples::hermite(const Vec3& x, double share) const noexcept {
+Vec3 BetweenSamples::hermite(const Vec3& x, double fraction) const noexcept {
   const bool pushed = !before_.f.isZero(0), pushes = !after_.f.isZero(0);
   if (!pushed && !pushes) return Vec3::Zero();
   if (!pushed || !pushes) return onset(x);
-  const Mat3 &k = before_.here->k, stiffer = after_.here->k - k;
+  const Mat3 &k = before_.at_tool->k, stiffer = after_.at_tool->k - k;
   const Vec3 d = x - before_.p;
-  return before_.f + k * d + share * (stiffer * (d - 0.5 * share * end_)) + smooth(share) * missed_;
+  return before_.f + k * d + fraction * (stiffer * (d - 0.5 * fraction * end_)) + smooth(fraction) * missed_;
 }
 
 /// The tool is free at one of the samples, and touches at the other.
 Vec3 BetweenSamples::onset(const Vec3& x) const noexcept {
   const bool leaves = !before_.f.isZero(0);
-  const Linearised &free = leaves ? *after_.here : *before_.here,
-                   &touching = leaves ? *before_.here : *after_.here;
+  const Linearised &free = leaves ? *after_.at_tool : *before_.at_tool,
+                   &touching = leaves ? *before_.at_tool : *after_.at_tool;
   const Vec3& f = leaves ? before_.f : after_.f;
   const Vec3 free_at = leaves ? Vec3(before_.p + end_) : before_.p,
              touching_at = leaves ? before_.p : Vec3(before_.p + end_);
@@ -164,7 +164,7 @@ Vec3 BetweenSamples::contact(const PathTick& tick) const noexcept {
   const auto& [before, after] = ends_;
   if (!before.pushes && !after.pushes) return f;
   if (!before.pushes || !after.pushes) return corrected(before.pushes ? before : after, f);
-  const double u = share(tick.t);
+  const double u = fraction(tick.t);
   return (1 - u) * corrected(before, f) + u * corrected(after, f);
 }
 

@@ -49,7 +49,7 @@ class BetweenSamples {
   /// The force at a tick, N; in the order of time.
   Vec3 at(const PathTick& tick) noexcept;
   ReferenceKind kind() const noexcept { return kind_; }
-  Vec3 line(Time t) const noexcept { return before_.f + share(t) * (after_.f - before_.f); }
+  Vec3 line(Time t) const noexcept { return before_.f + fraction(t) * (after_.f - before_.f); }
 
  private:
   struct End {
@@ -57,7 +57,9 @@ class BetweenSamples {
     Vec3 f, local, across;  // N: the server's, that of the model, and what is missing of it
     double kappa = 1, size = 0;
   };
-  double share(Time t) const noexcept { return to_seconds(t - before_.t) / to_seconds(after_.t - before_.t); }
+  double fraction(Time t) const noexcept {
+    return to_seconds(t - before_.t) / to_seconds(after_.t - before_.t);
+  }
   Vec3 organ(Time t) const noexcept;
   Vec3 on_organ(const PathTick& tick) const noexcept { return tick.p - organ(tick.t); }
   bool has_slopes() const noexcept;
@@ -66,7 +68,7 @@ class BetweenSamples {
   static Vec3 corrected(const End& end, const Vec3& local) noexcept;
   bool ends_agree(const PathTick& last) noexcept;
   Vec3 contact(const PathTick& tick) const noexcept;
-  Vec3 hermite(const Vec3& x, double share) const noexcept;
+  Vec3 hermite(const Vec3& x, double fraction) const noexcept;
   Vec3 onset(const Vec3& x) const noexcept;
 
   const Sample &before_, &after_;

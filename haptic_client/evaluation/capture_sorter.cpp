@@ -20,7 +20,7 @@ std::uint64_t sum(const std::vector<CapturedLink>& links, Count count) {
 }  // namespace
 
 bool CapturedDirection::accept(std::uint64_t sequence) {
-  if (!begun && sequence > 0) window.begin_at(sequence);  // a capture may begin in mid-session
+  if (!begun && sequence > 0) window.start_at(sequence);  // a capture may begin in mid-session
   begun = begun || sequence > 0;
   return window.accept(sequence, stats);
 }
@@ -64,7 +64,7 @@ std::optional<std::size_t> CaptureSorter::sort_state(const ToolState& state, con
                                                      const Endpoint& client) {
   const auto [run, link] = place_of(state, client, header.session);
   if (link == nullptr) {
-    ++left_out_;
+    ++omitted_;
     return {};
   }
   if (!link->up.accept(header.sequence)) return {};
@@ -91,7 +91,7 @@ std::optional<std::size_t> CaptureSorter::sort_sample(const Header& header, cons
   auto [run, link] = known(client, header.session);
   if (run == nullptr) run = newest_run(client);
   if (run == nullptr) {  // a capture that begins between a tool state and its answer
-    run = begin_run(client);
+    run = start_run(client);
     if (run == nullptr) return {};
     run->links.push_back({.session = header.session});
     link = &run->links.back();
@@ -106,7 +106,7 @@ CaptureSorter::Place CaptureSorter::place_of(const ToolState& state, const Endpo
                                              std::uint64_t session) {
   if (const Place place = known(client, session); place.run != nullptr) return place;
   CapturedRun* run = newest_run(client);
-  if (run == nullptr || state.tick + kShuffled < run->newest_tick) run = begin_run(client);
+  if (run == nullptr || state.tick + kShuffled < run->newest_tick) run = start_run(client);
   if (run == nullptr || run->links.size() == kMost) return {};
   run->links.push_back({.session = session});
   return {run, &run->links.back()};
@@ -128,7 +128,7 @@ CapturedRun* CaptureSorter::newest_run(const Endpoint& client) {
   return found == runs_.rend() ? nullptr : &*found;
 }
 
-CapturedRun* CaptureSorter::begin_run(const Endpoint& client) {
+CapturedRun* CaptureSorter::start_run(const Endpoint& client) {
   if (runs_.size() == kMost) return nullptr;
   runs_.push_back({.client = client});
   return &runs_.back();

@@ -58,9 +58,9 @@ class CaptureSorter {
   std::optional<std::size_t> sort(const protocol::CapturedDatagram& captured, protocol::Datagram& datagram);
 
   const std::vector<CapturedRun>& runs() const { return runs_; }
-  std::uint64_t ours() const { return ours_; }          ///< accepted datagrams of any kind
-  std::uint64_t refused() const { return refused_; }    ///< with our magic, but not acceptable
-  std::uint64_t left_out() const { return left_out_; }  ///< of too many runs or sessions
+  std::uint64_t ours() const { return ours_; }        ///< accepted datagrams of any kind
+  std::uint64_t refused() const { return refused_; }  ///< with our magic, but not acceptable
+  std::uint64_t omitted() const { return omitted_; }  ///< of too many runs or sessions
   std::optional<int> other_version() const { return other_version_; }
 
  private:
@@ -70,7 +70,7 @@ class CaptureSorter {
   };
   Place known(const protocol::Endpoint& client, std::uint64_t session);
   CapturedRun* newest_run(const protocol::Endpoint& client);
-  CapturedRun* begin_run(const protocol::Endpoint& client);
+  CapturedRun* start_run(const protocol::Endpoint& client);
   Place place_of(const protocol::ToolState& state, const protocol::Endpoint& client, std::uint64_t session);
   std::optional<std::size_t> sort_state(const protocol::ToolState& state, const protocol::Header& header,
                                         const protocol::Endpoint& client);
@@ -78,7 +78,7 @@ class CaptureSorter {
                                          bool is_sample);
 
   std::vector<CapturedRun> runs_;
-  std::uint64_t ours_ = 0, refused_ = 0, left_out_ = 0;
+  std::uint64_t ours_ = 0, refused_ = 0, omitted_ = 0;
   std::optional<int> other_version_;
 };
 

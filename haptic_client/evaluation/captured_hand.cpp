@@ -17,8 +17,8 @@ double CapturedHand::seconds() const {
 
 DeviceReading CapturedHand::read(Time now) noexcept {
   if (ticks_.empty()) return {.t = now, .valid = false};
-  if (begin_ == Time{}) begin_ = now;
-  const Time t = ticks_.front().t + (now - begin_);
+  if (start_ == Time{}) start_ = now;
+  const Time t = ticks_.front().t + (now - start_);
   while (at_ + 1 < ticks_.size() && ticks_[at_ + 1].t <= t) ++at_;
   const Tick& tick = ticks_[at_];
   DeviceReading reading{.t = now, .p_D = tick.p_W, .buttons = tick.buttons, .valid = !tick.lost};

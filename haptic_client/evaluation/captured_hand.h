@@ -28,7 +28,7 @@ class CapturedHand final : public Device {
   };
   std::vector<Tick> ticks_;
   std::size_t at_ = 0;  // the newest tick that has passed
-  Time begin_{};
+  Time start_{};
 };
 
 }  // namespace palpate::client

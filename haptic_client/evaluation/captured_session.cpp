@@ -8,7 +8,7 @@ namespace palpate::client {
 using namespace protocol;
 
 namespace {
-constexpr std::size_t kKeptSamples = 2048;
+constexpr std::size_t kStoredSamples = 2048;
 }
 
 CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& progress) {
@@ -18,15 +18,14 @@ CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& p
   Datagram datagram;
   for (std::uint64_t i = 0; reader.next(captured); ++i) {
     sorter.sort(captured, datagram);
-    if (i % 4096 == 0) progress(reader.share());
+    if (i % 4096 == 0) progress(reader.fraction());
   }
   progress(1);
   if (sorter.runs().empty() && sorter.other_version()) {
     fail("{}: its packets are of protocol version {}, this program knows version {}", file.string(),
          *sorter.other_version(), kProtocolVersion);
   }
-  const bool any = std::any_of(sorter.runs().begin(), sorter.runs().end(),
-                               [](const CapturedRun& run) { return run.ticks > 0; });
+  const bool any = std::ranges::any_of(sorter.runs(), [](const CapturedRun& run) { return run.ticks > 0; });
   if (!any) {
     fail(
         "{}: holds no tool states of Palpate, so there is nothing to replay ({} packets, {} of them ours); "
@@ -34,8 +33,8 @@ CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& p
         "it captured at the server's UDP port (45130, if you did not choose another)?",
         file.string(), reader.packets(), sorter.ours());
   }
-  return {sorter.runs(),    reader.packets(),  sorter.ours(),
-          sorter.refused(), sorter.left_out(), reader.packets() - sorter.ours() - sorter.refused(),
+  return {sorter.runs(),    reader.packets(), sorter.ours(),
+          sorter.refused(), sorter.omitted(), reader.packets() - sorter.ours() - sorter.refused(),
           reader.trouble()};
 }
 
@@ -55,12 +54,12 @@ void CapturedSession::fill() {
     if (sorter_.sort(captured, datagram) != run_) continue;
     if (const auto* sample = std::get_if<ForceSample>(&datagram.message)) {
       samples_.push_back({place_, *sample});
-      if (samples_.size() > kKeptSamples) samples_.pop_front();
+      if (samples_.size() > kStoredSamples) samples_.pop_front();
     } else if (const auto* page = std::get_if<SurfacePage>(&datagram.message)) {
       pages_.push_back(*page);
     } else if (const auto* state = std::get_if<ToolState>(&datagram.message)) {
-      const auto after = std::find_if(waiting_.begin(), waiting_.end(),
-                                      [&](const Numbered& n) { return n.state.tick < state->tick; });
+      const auto after =
+          std::ranges::find_if(waiting_, [&](const Numbered& n) { return n.state.tick < state->tick; });
       waiting_.insert(after, {place_, *state});
     }
   }

@@ -14,11 +14,11 @@ namespace palpate::client {
 /// Result of a first reading of a capture.
 struct CaptureSurvey {
   std::vector<CapturedRun> runs;
-  std::uint64_t packets = 0, ours = 0, refused = 0, left_out = 0, other = 0;
+  std::uint64_t packets = 0, ours = 0, refused = 0, omitted = 0, other = 0;
   std::string trouble;  ///< why the reading ended early; empty if it did not
 };
 
-using ReadingProgress = std::function<void(double share)>;
+using ReadingProgress = std::function<void(double fraction)>;
 
 /// Reads a capture through once. Throws `Error` when it cannot be read or holds nothing to replay. Time grows
 /// with the file, memory does not.
@@ -48,7 +48,7 @@ class CapturedSession {
     std::uint64_t backwards = 0;  ///< ticks left out: their time jumps out of the row, back or ahead
   };
   const Missing& missing() const { return missing_; }
-  double share() const { return reader_.share(); }
+  double fraction() const { return reader_.fraction(); }
 
  private:
   struct Numbered {

@@ -26,15 +26,15 @@ void FollowedContact::take(const Sample& sample) noexcept {
   motion_.update(known);
   if (!surface_ || surface_->tool.friction > 0 || surface_->modes.count > 0) {
     surface_.reset();
-    contact_->lift();
+    contact_->separate();
   }
 }
 
-std::optional<PathTick::Contact> FollowedContact::go(const Vec3& p, Time t) noexcept {
+std::optional<PathTick::Contact> FollowedContact::follow(const Vec3& p, Time t) noexcept {
   if (pause_ > 0) --pause_;
   if (!surface_ || pause_ > 0) return {};
   const Vec3 shift = surface_->shift + motion_.since_sample(t);
-  const auto force = contact_->go(*surface_, p - shift);
+  const auto force = contact_->move_to(*surface_, p - shift);
   if (!force) {
     pause_ = kPauseTicks;
     return {};

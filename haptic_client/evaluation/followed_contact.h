@@ -17,7 +17,7 @@ class FollowedContact {
   void take(const Sample& sample) noexcept;
   /// Advances to the tool position `p` (m, world) at `t`, as far as the model is known, and returns the
   /// contact there. Calls must be in the order of time.
-  std::optional<PathTick::Contact> go(const Vec3& p, Time t) noexcept;
+  std::optional<PathTick::Contact> follow(const Vec3& p, Time t) noexcept;
 
  private:
   std::unique_ptr<ContactOnPatch> contact_;

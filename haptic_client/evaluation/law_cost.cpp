@@ -23,7 +23,7 @@ Sample full_sample(std::uint64_t number, Time t) {
   Sample sample{.number = number, .t = t, .p = {depth, 0, 0}, .f = {0, 1e3 * depth, 0.1}};
   Linearised linear{.p = sample.p, .f = sample.f, .normal = {0, 1, 0}};
   linear.k << -100, 20, 0, 20, -800, 30, 0, 30, -90;
-  sample.here = linear;
+  sample.at_tool = linear;
   linear.p += Vec3(1e-3, 0, 0);
   sample.ahead = linear;
   return sample;
@@ -46,10 +46,10 @@ double thread_ns() {
   return static_cast<double>(thread_time().count());
 }
 
-double quantile(std::vector<double>& values, double share) {
+double quantile(std::vector<double>& values, double fraction) {
   if (values.empty()) return 0;
   const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+      values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -76,8 +76,8 @@ LawCost cost_on(const std::string& law, const std::filesystem::path& capture, st
     if (!tick.arrived && !force.isZero(0)) ticks.push_back(end - arrived);
   }
   const double clock = quantile(clocks, 0.5);
-  const auto cost = [&](std::vector<double>& times, double share) {
-    return std::max(0.0, quantile(times, share) - clock);
+  const auto cost = [&](std::vector<double>& times, double fraction) {
+    return std::max(0.0, quantile(times, fraction) - clock);
   };
   return {.tick_ns = cost(ticks, 0.5), .tick_p99_ns = cost(ticks, 0.99), .arrival_ns = cost(arrivals, 0.5)};
 }

@@ -33,7 +33,7 @@ void Observation::tick(const TickResult& result, Time took, std::uint64_t missed
     ++cell.samples;
     cell.step_ns_sum += step_ns;
     cell.step_ns_max = std::max(cell.step_ns_max, step_ns);
-    if (result.errors) told_errors_.add(*result.errors, result.sample.f.norm());
+    if (result.errors) published_errors_.add(*result.errors, result.sample.f.norm());
   }
   scoring_.tick(result.tool.p_W, t, result.used ? &result.sample : nullptr, cell.errors);
   if (ring_.empty()) return;

@@ -37,7 +37,7 @@ class Observation {
 
   const Scoring& scoring() const noexcept { return scoring_; }
   const SessionTimeline& timeline() const noexcept { return timeline_; }
-  const ToldErrors& told_errors() const noexcept { return told_errors_; }
+  const PublishedErrors& published_errors() const noexcept { return published_errors_; }
   /// The tick that goes with the next one, as there is no room for more; null: there is.
   const TickRecord* leaving() const noexcept;
   /// The kept ticks, oldest first.
@@ -46,7 +46,7 @@ class Observation {
  private:
   Scoring scoring_;
   SessionTimeline timeline_;
-  ToldErrors told_errors_;
+  PublishedErrors published_errors_;
   std::vector<TickRecord> ring_;
   std::uint64_t recorded_ = 0;
 };

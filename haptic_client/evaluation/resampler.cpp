@@ -34,7 +34,7 @@ bool Resampler::next(CapturedTick& out) {
   const protocol::ToolState& a = before_->state;
   if (!after_ && t.count() > a.t_ns) return false;
   const protocol::ToolState& b = after_ ? after_->state : a;
-  const double share =
+  const double fraction =
       after_ ? static_cast<double>(t.count() - a.t_ns) / static_cast<double>(b.t_ns - a.t_ns) : 0;
   out.state = a;
   // What lasts until the next tick, and what happened once.
@@ -43,8 +43,8 @@ bool Resampler::next(CapturedTick& out) {
       static_cast<std::uint16_t>(std::exchange(flags_, std::uint16_t{0}) | (a.flags & kLasting));
   out.state.tick = ++k_;
   out.state.t_ns = t.count();
-  out.state.p_W = a.p_W + share * (b.p_W - a.p_W);
-  out.state.v_W = a.v_W + share * (b.v_W - a.v_W);
+  out.state.p_W = a.p_W + fraction * (b.p_W - a.p_W);
+  out.state.v_W = a.v_W + fraction * (b.v_W - a.v_W);
   out.arrived = std::exchange(arrived_, std::nullopt);
   out.pages = std::exchange(pages_, {});
   return true;

@@ -30,7 +30,7 @@ Scoring::Scoring(const std::vector<std::string>& laws, double rate_hz, const std
     tables_.emplace_back(rate_hz);
     paper_.emplace_back(rate_hz);
   }
-  if (truth == nullptr && wants().surface) contact_ = std::make_unique<FollowedContact>(rate_hz);
+  if (truth == nullptr && request().surface) contact_ = std::make_unique<FollowedContact>(rate_hz);
   if (laws.empty()) return;
   pending_.resize(longest_wait(rate_hz));
   newly_scored_.reserve(pending_.size() + 1);
@@ -40,16 +40,16 @@ std::size_t Scoring::longest_wait(double rate_hz) {
   return static_cast<std::size_t>(kLongestWait * rate_hz) + 1;
 }
 
-Wants Scoring::wants() const noexcept {
-  Wants all;
-  for (const ForceEstimate& law : laws_) all |= law.wants();
+Request Scoring::request() const noexcept {
+  Request all;
+  for (const ForceEstimate& law : laws_) all |= law.request();
   return all;
 }
 
 void Scoring::judge_between_samples() {
   if (truth_ == nullptr || laws_.empty()) return;
   own_.emplace(rate_hz_);
-  if (wants().surface) contact_ = std::make_unique<FollowedContact>(rate_hz_);
+  if (request().surface) contact_ = std::make_unique<FollowedContact>(rate_hz_);
 }
 
 ErrorMetrics Scoring::metrics(std::size_t law) const noexcept {
@@ -62,7 +62,7 @@ ErrorMetrics Scoring::metrics(std::size_t law) const noexcept {
 }
 
 ReferenceKind Scoring::mostly_between() const noexcept {
-  const auto most = std::max_element(between_.begin(), between_.end());
+  const auto most = std::ranges::max_element(between_);
   return static_cast<ReferenceKind>(most - between_.begin());
 }
 
@@ -70,7 +70,7 @@ void Scoring::tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums
   if (laws_.empty()) return;
   newly_scored_.clear();
   PathTick path{t, p_W};
-  if (contact_) path.contact = contact_->go(p_W, t);
+  if (contact_) path.contact = contact_->follow(p_W, t);
   if (ticked_) {
     newest_.moved = p_W - place_;
     if (truth_ != nullptr) newest_.right = truth_->at(newest_.path.t);
@@ -81,7 +81,7 @@ void Scoring::tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums
   for (std::size_t i = 0; i < laws_.size(); ++i) force_[i] = laws_[i].force(p_W, t);
   ticked_ = laws_.front().newest().number > 0;
   ticks_ += ticked_ ? 1 : 0;
-  for (std::size_t i = 0; ticked_ && i < laws_.size(); ++i) stand_ins_[i].add(laws_[i].stand_in());
+  for (std::size_t i = 0; ticked_ && i < laws_.size(); ++i) substitutes_[i].add(laws_[i].substitute());
   newest_ = {path, Vec3::Zero(), force_, {}, number_++};
   place_ = p_W;
 }

@@ -44,7 +44,7 @@ class Scoring {
   void tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums) noexcept;
 
   /// Returns the data that the laws use beyond the triplet.
-  Wants wants() const noexcept;
+  Request request() const noexcept;
   const std::vector<std::string>& names() const noexcept { return names_; }
   ErrorMetrics metrics(std::size_t law) const noexcept;
   /// Returns how many ticks between samples had this reference force, and which kind most had; without a
@@ -62,7 +62,7 @@ class Scoring {
     return exchanged_ > 0 ? 100 * excess_[law] / (exchanged_ / 2) : std::numeric_limits<double>::quiet_NaN();
   }
   /// Which simpler laws stood in for it, in how many of `ticks()`.
-  const StandIns& stand_ins(std::size_t law) const noexcept { return stand_ins_[law]; }
+  const Substitutes& substitutes(std::size_t law) const noexcept { return substitutes_[law]; }
   std::uint64_t ticks() const noexcept { return ticks_; }    ///< since the first sample
   std::uint64_t scored() const noexcept { return scored_; }  ///< ticks
   /// Returns the forces of the laws at the newest tick, N, world.
@@ -101,7 +101,7 @@ class Scoring {
   std::optional<ErrorTable> own_;                         // of the force between samples, against the truth
   double rate_hz_;
   std::array<Vec3, kMaxLaws> force_;
-  std::array<StandIns, kMaxLaws> stand_ins_;
+  std::array<Substitutes, kMaxLaws> substitutes_;
   std::uint64_t ticks_ = 0;
   std::vector<Pending> pending_;  // a ring: ticks that wait for the sample after them
   std::size_t first_ = 0, waiting_ = 0;

@@ -4,21 +4,21 @@
 
 namespace palpate::client {
 
-void ToldError::add(const DiscretisationError& error, double weight) noexcept {
+void PublishedError::add(const DiscretisationError& error, double weight) noexcept {
   if (!error.known()) return;
   sum_ += weight * static_cast<double>(error.percent);
   weights_[static_cast<std::size_t>(error.source)] += weight;
 }
 
-DiscretisationError ToldError::mean() const noexcept {
+DiscretisationError PublishedError::mean() const noexcept {
   double all = 0;
   for (const double weight : weights_) all += weight;
   if (all == 0) return {};
-  const auto most = std::max_element(weights_.begin(), weights_.end()) - weights_.begin();
+  const auto most = std::ranges::max_element(weights_) - weights_.begin();
   return {static_cast<ErrorSource>(most), static_cast<float>(sum_ / all)};
 }
 
-void ToldErrors::add(const DiscretisationErrors& errors, double newton) noexcept {
+void PublishedErrors::add(const DiscretisationErrors& errors, double newton) noexcept {
   mesh_.add(errors.mesh, newton);
   time_step_.add(errors.time_step, newton);
 }

@@ -6,7 +6,7 @@
 namespace palpate::client {
 
 /// Mean over samples of one published error. The source is that of most of the known weight.
-class ToldError {
+class PublishedError {
  public:
   void add(const DiscretisationError& error, double weight) noexcept;
   /// Unknown while no sample told it.
@@ -19,14 +19,14 @@ class ToldError {
 
 /// Means of the published errors of mesh and time step, each sample weighted by the size of its force. Haptic
 /// thread; does not allocate.
-class ToldErrors {
+class PublishedErrors {
  public:
   /// `newton`: size of the force, N.
   void add(const DiscretisationErrors& errors, double newton) noexcept;
   DiscretisationErrors mean() const noexcept { return {mesh_.mean(), time_step_.mean()}; }
 
  private:
-  ToldError mesh_, time_step_;
+  PublishedError mesh_, time_step_;
 };
 
 }  // namespace palpate::client

@@ -10,10 +10,10 @@ namespace {
 constexpr double kSlowest = 200;  // Hz
 }
 
-Truth::Truth(const std::filesystem::path& file, const std::function<void(double share)>& progress) {
+Truth::Truth(const std::filesystem::path& file, const std::function<void(double fraction)>& progress) {
   const CaptureSurvey found = survey(file, progress);
-  const auto longest = std::max_element(found.runs.begin(), found.runs.end(),
-                                        [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
+  const auto longest =
+      std::ranges::max_element(found.runs, [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
   CapturedSession session(file, static_cast<std::size_t>(longest - found.runs.begin()));
   for (CapturedTick tick; session.next(tick);) {
     if (!tick.arrived) continue;
@@ -35,8 +35,8 @@ std::optional<Vec3> Truth::at(Time t) const noexcept {
   if (points_[hint_].t > t) hint_ = 0;
   while (hint_ + 2 < points_.size() && points_[hint_ + 1].t <= t) ++hint_;
   const Point &before = points_[hint_], &after = points_[hint_ + 1];
-  const double share = to_seconds(t - before.t) / to_seconds(after.t - before.t);
-  return before.f + share * (after.f - before.f);
+  const double fraction = to_seconds(t - before.t) / to_seconds(after.t - before.t);
+  return before.f + fraction * (after.f - before.f);
 }
 
 }  // namespace palpate::client

@@ -15,7 +15,7 @@ class Truth {
  public:
   /// Reads the longest session. Throws `Error` when the capture cannot be read or has less than 200 samples a
   /// second.
-  Truth(const std::filesystem::path& file, const std::function<void(double share)>& progress);
+  Truth(const std::filesystem::path& file, const std::function<void(double fraction)>& progress);
 
   /// Force (N, world) at `t` (client clock), on the line between the samples around it; none outside them.
   /// Times that grow are found at once.

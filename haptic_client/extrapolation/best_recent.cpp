@@ -12,8 +12,8 @@ constexpr double kLead = 1.03;   // of the largest force lately: what a law may 
 
 BestRecent::BestRecent(std::vector<Law> laws) : laws_(std::move(laws)), chosen_(laws_.size() - 1) {
   for (const Law& law : laws_) {
-    const Wants wants = law.law->wants();
-    sees_surface_.push_back(wants.here || wants.ahead || wants.surface ? 1 : 0);
+    const Request request = law.law->request();
+    sees_surface_.push_back(request.at_tool || request.ahead || request.surface ? 1 : 0);
   }
 }
 
@@ -60,9 +60,9 @@ void BestRecent::surface_cut() noexcept {
   for (Law& law : laws_) law.law->surface_cut();
 }
 
-void BestRecent::begin_tick(Time now) noexcept {
+void BestRecent::start_tick(Time now) noexcept {
   now_ = now;
-  for (Law& law : laws_) law.law->begin_tick(now);
+  for (Law& law : laws_) law.law->start_tick(now);
 }
 
 Vec3 BestRecent::force(const Vec3& p, Time t) noexcept {
@@ -80,14 +80,14 @@ Vec3 BestRecent::force(const Vec3& p, Time t) noexcept {
   return given[chosen_];
 }
 
-Wants BestRecent::wants() const noexcept {
-  Wants all;
-  for (const Law& law : laws_) all |= law.law->wants();
+Request BestRecent::request() const noexcept {
+  Request all;
+  for (const Law& law : laws_) all |= law.law->request();
   return all;
 }
 
-std::string_view BestRecent::stand_in() const noexcept {
-  const std::string_view inner = laws_[chosen_].law->stand_in();
+std::string_view BestRecent::substitute() const noexcept {
+  const std::string_view inner = laws_[chosen_].law->substitute();
   return inner.empty() ? laws_[chosen_].name : inner;
 }
 

@@ -31,11 +31,11 @@ class BestRecent : public Extrapolator {
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
   void surface_cut() noexcept override;
-  void begin_tick(Time now) noexcept override;
+  void start_tick(Time now) noexcept override;
   Vec3 force(const Vec3& p, Time t) noexcept override;
-  Wants wants() const noexcept override;
+  Request request() const noexcept override;
   bool stepped_down() const noexcept override { return laws_[chosen_].law->stepped_down(); }
-  std::string_view stand_in() const noexcept override;
+  std::string_view substitute() const noexcept override;
 
  private:
   using Forces = std::array<Vec3, kMost>;  // N, of the laws

@@ -33,33 +33,33 @@ ContactOnPatch::ContactOnPatch(const Accuracy& accuracy)
       u_before_(3 * (kMostNodes + 1)) {
   patch_.reserve(kMostNodes, kMostTriangles);
   vertices_.reserve(kMostNodes);
-  begin_.reserve(kMostNodes);
+  start_.reserve(kMostNodes);
   loads_.reserve(kMostNodes);
-  kept_loads_.reserve(kMostNodes);
+  stored_loads_.reserve(kMostNodes);
   shapes_.reserve(kMostNodes);
   far_creep_.reserve(kMostNodes);
 }
 
-void ContactOnPatch::lift() noexcept {
+void ContactOnPatch::separate() noexcept {
   ++solves_;
   state_ = {};
   motion_.setZero();
   loads_.clear();
 }
 
-std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p,
-                                       const ModalMemory* memory) noexcept {
-  if ((memory != nullptr) != (memory_ != nullptr)) lift();  // its patch was taken for another frame
+std::optional<Vec3> ContactOnPatch::move_to(const Surface& surface, const Vec3& p,
+                                            const ModalMemory* memory) noexcept {
+  if ((memory != nullptr) != (memory_ != nullptr)) separate();  // its patch was taken for another frame
   memory_ = memory;
   const double longest = kLongestIncrement * surface.tool.radius;
   const bool too_far = state_.placed && (p - state_.place).norm() > kMostIncrements * longest;
-  if (version_ != surface.model->generation() || too_far) lift();
+  if (version_ != surface.model->generation() || too_far) separate();
   // With friction, the path is lost.
   if (!surface.model->has_shape() || !p.allFinite() || (too_far && surface.tool.friction > 0)) {
-    lift();
+    separate();
     return {};
   }
-  work_left_ = kMostWork;
+  work_remaining_ = kMostWork;
   const double most = state_.placed ? kMostIncrements : kMostEntering;
   if (!state_.placed) enter(surface, p);
   if (const Vec3 motion = p - state_.place; state_.contacts > 0 && motion.norm() <= near(surface)) {
@@ -72,18 +72,18 @@ std::optional<Vec3> ContactOnPatch::go(const Surface& surface, const Vec3& p,
   for (double i = 1; found && i <= increments; ++i)
     found = increment(surface, i == increments ? p : Vec3(from + (i / increments) * motion));
   if (found) return state_.force;
-  lift();
+  separate();
   return {};
 }
 
 std::optional<Vec3> ContactOnPatch::probe(const Surface& surface, const Vec3& p,
                                           const ModalMemory* memory) noexcept {
-  const State kept = state_;
-  kept_loads_ = loads_;
-  auto force = go(surface, p, memory);
-  loads_ = kept_loads_;
-  state_ = kept;
-  if (state_.placed && !take_patch(surface, state_.place)) lift();
+  const State stored = state_;
+  stored_loads_ = loads_;
+  auto force = move_to(surface, p, memory);
+  loads_ = stored_loads_;
+  state_ = stored;
+  if (state_.placed && !take_patch(surface, state_.place)) separate();
   return force;
 }
 
@@ -99,7 +99,7 @@ ContactSolver::Effort ContactOnPatch::effort(const Surface& surface) const noexc
   return {.max_iterations = 30,
           .tolerance = std::min(accuracy_.tolerance * depth, accuracy_.most_tolerance),
           .expected = 1e-3,
-          .work = work_left_};
+          .work = work_remaining_};
 }
 
 bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
@@ -112,19 +112,19 @@ bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
   if (patch_.triangles.empty()) return true;
   patch_.tool_compliance = surface.tool_compliance;
   if (memory_ != nullptr) warp(*surface.model);
-  begin_.clear();
-  for (int i = 0; i < patch_.nodes(); ++i) begin_.push_back(patch_.free[i] + u_.segment<3>(3 * i));
+  start_.clear();
+  for (int i = 0; i < patch_.nodes(); ++i) start_.push_back(patch_.free[i] + u_.segment<3>(3 * i));
   ContactSolver& solving = solver(surface);
-  const bool foreseen = foresee(motion);
+  const bool predicted = predict_tangent(motion);
   const ContactForce contact =
-      solving.solve(patch_, surface.tool, p, displacement(), {begin_, tip}, effort(surface));
-  work_left_ -= solving.work();
+      solving.solve(patch_, surface.tool, p, displacement(), {start_, tip}, effort(surface));
+  work_remaining_ -= solving.work();
   if (!contact.converged) return false;
   note_loads(solving);
   state_.force = contact.force;
   state_.contacts = contact.contacts;
   state_.depth = displacement().cwiseAbs().maxCoeff();
-  if (foreseen && touched == state_.contacts) {
+  if (predicted && touched == state_.contacts) {
     learn_tangent(motion, before);
   } else if (state_.contacts > 0) {
     state_.tangent = solving.tangent(patch_);
@@ -134,13 +134,13 @@ bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
 
 /// Moves the surface on as it went in the last increment, by as much of that as `motion` repeats; false where
 /// there is none on this patch.
-bool ContactOnPatch::foresee(const Vec3& motion) noexcept {
+bool ContactOnPatch::predict_tangent(const Vec3& motion) noexcept {
   auto u = displacement();
   auto before = u_before_.head(u.size());
   const double last = motion_.squaredNorm();
-  const double share = last > 0 ? std::clamp(motion.dot(motion_) / last, 0.0, 1.5) : 0;
+  const double fraction = last > 0 ? std::clamp(motion.dot(motion_) / last, 0.0, 1.5) : 0;
   motion_ = motion;
-  before = (1 + share) * u - share * before;
+  before = (1 + fraction) * u - fraction * before;
   before.swap(u);  // in place: `before` is where the increment begins
   return last > 0;
 }
@@ -165,7 +165,7 @@ void ContactOnPatch::note_loads(const ContactSolver& solved) noexcept {
 
 /// How the nodes of the patch went in the last increment, so that the next patch knows; returns that of the
 /// tip.
-Vec3 ContactOnPatch::note_ways(std::size_t vertices) noexcept {
+Vec3 ContactOnPatch::note_directions(std::size_t vertices) noexcept {
   std::fill_n(went_.begin(), vertices, Vec3::Zero());
   if (motion_.isZero(0)) return Vec3::Zero();
   const auto went = [&](int slot) -> Vec3 {
@@ -180,7 +180,7 @@ bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept 
   if (version_ != surface.model->generation()) motion_.setZero();
   version_ = surface.model->generation();
   center_ = p;
-  const Vec3 tip_went = note_ways(surface.model->rest().size());
+  const Vec3 tip_went = note_directions(surface.model->rest().size());
   if (!displace_near(surface, p) || !take_triangles(surface, p) || !take_compliance(*surface.model) ||
       !take_shapes(*surface.model))
     return false;
@@ -191,8 +191,7 @@ bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept 
   }
   u_.segment<3>(3 * patch_.nodes()) = state_.tip_offset;
   u_before_.segment<3>(3 * patch_.nodes()) = state_.tip_offset - tip_went;
-  return std::all_of(loads_.begin(), loads_.end(),
-                     [&](const Load& load) { return slot_of_vertex_[load.vertex] >= 0; });
+  return std::ranges::all_of(loads_, [&](const Load& load) { return slot_of_vertex_[load.vertex] >= 0; });
 }
 
 /// Where the loads have moved what may be near the tool; nothing moves farther than what they press.
@@ -240,14 +239,14 @@ bool ContactOnPatch::take_triangles(const Surface& surface, const Vec3& p) noexc
   const auto rest = surface.model->rest();
   const double reach = (1 + kMargin) * surface.tool.radius;
   const Vec3 tip = p + state_.tip_offset;
-  const auto stands = [&](int vertex) -> Vec3 { return rest[vertex] + moved_[vertex] + crept_[vertex]; };
+  const auto is_placed = [&](int vertex) -> Vec3 { return rest[vertex] + moved_[vertex] + crept_[vertex]; };
   for (const int vertex : vertices_) slot_of_vertex_[vertex] = -1;
   vertices_.clear();
   patch_.triangles.clear();
   patch_.free.clear();
   for (const auto& t : surface.model->triangles()) {
     if (near_[t[0]] == 0 || near_[t[1]] == 0 || near_[t[2]] == 0) continue;
-    const Vec3 a = stands(t[0]), b = stands(t[1]), c = stands(t[2]);
+    const Vec3 a = is_placed(t[0]), b = is_placed(t[1]), c = is_placed(t[2]);
     const auto w = closest_point(tip, a, b, c).weight;
     if ((w[0] * a + w[1] * b + w[2] * c - tip).squaredNorm() > reach * reach) continue;
     if (patch_.triangles.size() == kMostTriangles || vertices_.size() + 3 > kMostNodes) return false;

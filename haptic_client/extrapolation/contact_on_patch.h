@@ -31,19 +31,20 @@ class ContactOnPatch {
   /// solves anew where the tool has gone 3 % of how deep it presses, at most 1 % of its radius (`Accuracy`;
   /// with friction a quarter of that), and follows the tangent in between. `memory`: of a tissue that swings,
   /// whose modes turn and bend the patch, too; the frame goes with where that stands.
-  std::optional<Vec3> go(const Surface& surface, const Vec3& p, const ModalMemory* memory = nullptr) noexcept;
+  std::optional<Vec3> move_to(const Surface& surface, const Vec3& p,
+                              const ModalMemory* memory = nullptr) noexcept;
   /// The force at `p`; then it stands where it stood, on a patch around that.
   std::optional<Vec3> probe(const Surface& surface, const Vec3& p,
                             const ModalMemory* memory = nullptr) noexcept;
-  /// Lifts the tool: it has no place until the next call of `go`.
-  void lift() noexcept;
+  /// Lifts the tool: it has no place until the next call of `move_to`.
+  void separate() noexcept;
   /// Its frame has been moved by `motion` (m): the same place is called another, so much farther.
   void rename(const Vec3& motion) noexcept {
     state_.place += motion;
     center_ += motion;
   }
   /// Returns the work of the last call, multiplications.
-  double work() const noexcept { return kMostWork - work_left_; }
+  double work() const noexcept { return kMostWork - work_remaining_; }
   /// Returns the loads on the surface there, and how often contact has been solved; each solve may change the
   /// loads.
   std::span<const SurfaceLoad> loads() const noexcept { return loads_; }
@@ -64,8 +65,8 @@ class ContactOnPatch {
   void warp(const SurfaceModel& model) noexcept;
   void find_far_creep(const SurfaceModel& model) noexcept;
   Vec3 creep_of(int node) const noexcept;
-  Vec3 note_ways(std::size_t vertices) noexcept;
-  bool foresee(const Vec3& motion) noexcept;
+  Vec3 note_directions(std::size_t vertices) noexcept;
+  bool predict_tangent(const Vec3& motion) noexcept;
   void learn_tangent(const Vec3& motion, const Vec3& force_before) noexcept;
   void note_loads(const ContactSolver& solved) noexcept;
   void enter(const Surface& surface, const Vec3& p) noexcept;
@@ -80,14 +81,14 @@ class ContactOnPatch {
   ContactPatch patch_;
   std::vector<int> vertices_;                // of the model, of each patch node
   std::vector<int> slot_of_vertex_;          // and back; -1: none
-  std::vector<Vec3> begin_;                  // where the patch nodes were when the increment began, m
+  std::vector<Vec3> start_;                  // where the patch nodes were when the increment began, m
   const ModalMemory* memory_ = nullptr;      // of this call
   std::vector<ModalMemory::Shapes> shapes_;  // of the patch nodes
   std::vector<Vec3> far_creep_;  // of the patch nodes, m: by loads beyond the patch that are not forgotten
   int far_creep_age_ = 0;        // in increments
-  std::vector<Load> loads_, kept_loads_;
+  std::vector<Load> loads_, stored_loads_;
   std::uint64_t solves_ = 0;
-  double work_left_ = 0;        // of this call
+  double work_remaining_ = 0;   // of this call
   std::vector<Vec3> moved_;     // displacement of vertices, m; where near_ says so
   std::vector<Vec3> crept_;     // besides, relative to where `memory_` stands, m; likewise
   std::vector<Vec3> went_;      // of vertices in the last increment, m; 0 where not known

@@ -34,8 +34,8 @@ struct Surface {
   double tool_compliance = 0;  ///< m/N
   /// State of the slow modes of a body in motion; the surface model then covers the remaining compliance.
   struct Modes {
-    int count = 0;                               ///< 0: it does not swing, or nobody told
-    std::array<float, kMostSlowModes> q{}, v{};  ///< m sqrt(kg), m sqrt(kg)/s
+    int count = 0;                                   ///< 0: it does not swing, or nobody told
+    std::array<float, kMaxPublishedModes> q{}, v{};  ///< m sqrt(kg), m sqrt(kg)/s
   } modes = {};
   protocol::RelaxedState relaxed = {};    ///< some of what it remembers besides; without terms: nothing
   protocol::ModalLoads modal_loads = {};  ///< how hard other tools drive the modes, N/sqrt(kg)
@@ -50,13 +50,13 @@ struct OtherTools {
 /// Sample of the simulation: the triplet (t_n, P_n, F_n) of Picinbono and Lombardo (1999), and what a law
 /// requested beyond it.
 struct Sample {
-  std::uint64_t number = 0;              ///< of the sample, from 1
-  Time t{};                              ///< when the tool was at `p`, client clock
-  Vec3 p = Vec3::Zero();                 ///< tool position, m, world
-  Vec3 f = Vec3::Zero();                 ///< force on the tool there, N, world
-  Vec3 surface_v = Vec3::Zero();         ///< of the organ there, by all that moves it, m/s, world
-  std::optional<Linearised> here = {};   ///< at `p`
-  std::optional<Linearised> ahead = {};  ///< where the tool was expected by now
+  std::uint64_t number = 0;                ///< of the sample, from 1
+  Time t{};                                ///< when the tool was at `p`, client clock
+  Vec3 p = Vec3::Zero();                   ///< tool position, m, world
+  Vec3 f = Vec3::Zero();                   ///< force on the tool there, N, world
+  Vec3 surface_v = Vec3::Zero();           ///< of the organ there, by all that moves it, m/s, world
+  std::optional<Linearised> at_tool = {};  ///< at `p`
+  std::optional<Linearised> ahead = {};    ///< where the tool was expected by now
   std::optional<Surface> surface = {};
   std::optional<OtherTools> others = {};  ///< what `surface_v` has of them, and more
   std::uint32_t cuts = 0;                 ///< in how many steps so far tissue has been removed
@@ -68,17 +68,17 @@ inline bool usable(const Sample& sample) noexcept {
   return sample.p.allFinite() && sample.f.allFinite();
 }
 
-/// A force `f` by a law that began from the force `felt`, without what of it would pull: there is none where
-/// the part of `f` along `felt` is gone or turned about. What lies across `felt`, as of friction, goes to
-/// nothing with that part, from a fifth of `felt` on, so that no force ends at once.
-inline Vec3 without_pull(const Vec3& f, const Vec3& felt) noexcept {
-  constexpr double kShare = 0.2;
-  const double size = felt.norm();
-  if (!(size > 0) || !(f.dot(felt) > 0)) return Vec3::Zero();
-  const double share = f.dot(felt) / (kShare * size * size);
-  if (!(share < 1)) return f;
-  const Vec3 along = f.dot(felt) / (size * size) * felt;
-  return along + share * (f - along);
+/// A force `f` by a law that began from the force `rendered`, without what of it would pull: there is none
+/// where the part of `f` along `rendered` is gone or turned about. What lies across `rendered`, as of
+/// friction, goes to nothing with that part, from a fifth of `rendered` on, so that no force ends at once.
+inline Vec3 without_pull(const Vec3& f, const Vec3& rendered) noexcept {
+  constexpr double kFraction = 0.2;
+  const double size = rendered.norm();
+  if (!(size > 0) || !(f.dot(rendered) > 0)) return Vec3::Zero();
+  const double fraction = f.dot(rendered) / (kFraction * size * size);
+  if (!(fraction < 1)) return f;
+  const Vec3 along = f.dot(rendered) / (size * size) * rendered;
+  return along + fraction * (f - along);
 }
 
 /// True if a law may use this part of a sample: it is within the bounds of the protocol, what a server can
@@ -104,7 +104,7 @@ inline bool usable(const OtherTools& o) noexcept {
 }
 /// The sample without those parts that are not.
 inline Sample with_usable_parts(Sample sample) noexcept {
-  if (sample.here && !usable(*sample.here)) sample.here.reset();
+  if (sample.at_tool && !usable(*sample.at_tool)) sample.at_tool.reset();
   if (sample.ahead && !usable(*sample.ahead)) sample.ahead.reset();
   if (sample.surface && !usable(*sample.surface)) sample.surface.reset();
   if (sample.others && !usable(*sample.others)) sample.others.reset();
@@ -112,10 +112,10 @@ inline Sample with_usable_parts(Sample sample) noexcept {
 }
 
 /// Parts of a sample that a law can use; `errors` are for reports.
-struct Wants {
-  bool here = false, ahead = false, surface = false, errors = false;
-  Wants& operator|=(const Wants& other) {
-    here = here || other.here;
+struct Request {
+  bool at_tool = false, ahead = false, surface = false, errors = false;
+  Request& operator|=(const Request& other) {
+    at_tool = at_tool || other.at_tool;
     ahead = ahead || other.ahead;
     surface = surface || other.surface;
     errors = errors || other.errors;
@@ -139,22 +139,22 @@ class Extrapolator {
   /// Force (N, world) with the tool at `p` at time `t` >= that of the newest sample. Zero before the first
   /// sample. |p| and |f| up to 1e30 give a finite answer; times are from 0 to 2^62 ns.
   /// Called tick by tick: a law may go along with the tool. `t` itself runs back where samples stay out
-  /// (`begin_tick` has the time of the tick).
+  /// (`start_tick` has the time of the tick).
   virtual Vec3 force(const Vec3& p, Time t) noexcept = 0;
   /// `force` follows for a tick at `now`; the time of `force` stands still, or runs back, where samples stay
   /// out.
-  virtual void begin_tick(Time) noexcept {}
+  virtual void start_tick(Time) noexcept {}
   /// Returns what the law uses beyond the triplet. A law that uses any of it distinguishes a free surface
   /// from one that pulls.
-  virtual Wants wants() const noexcept { return {}; }
+  virtual Request request() const noexcept { return {}; }
   /// True if a simpler law replaces it, because the newest sample lacks what it uses.
   virtual bool stepped_down() const noexcept { return false; }
   /// The name of that law, a row of `extrapolators()`; empty: it is at work itself.
-  virtual std::string_view stand_in() const noexcept { return {}; }
+  virtual std::string_view substitute() const noexcept { return {}; }
 };
 
 /// Counts the ticks in which each simpler law replaced another one.
-class StandIns {
+class Substitutes {
  public:
   struct Row {
     std::string_view law;

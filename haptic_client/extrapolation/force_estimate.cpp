@@ -38,8 +38,8 @@ Vec3 ForceEstimate::force(const Vec3& p, Time t) noexcept {
 /// leaves is free at once, comes into contact again as the law says, and no force pulls.
 Vec3 ForceEstimate::blended(const Vec3& f, Time t) noexcept {
   if (f.isZero(0)) offset_.setZero();
-  const double size = f.norm(), share = size < began_ ? size / began_ : 1;
-  const Vec3 sum = f + share * std::exp(-to_seconds(t - changed_) / blend_) * offset_;
+  const double size = f.norm(), fraction = size < began_ ? size / began_ : 1;
+  const Vec3 sum = f + fraction * std::exp(-to_seconds(t - changed_) / blend_) * offset_;
   const Vec3 push = f.stableNormalized();
   return sum - std::min(sum.dot(push), 0.0) * push;
 }
@@ -53,7 +53,7 @@ void ForceEstimate::blend_from(const Vec3& before, const Vec3& after, Time t) no
 
 Vec3 ForceEstimate::law_force(const Vec3& p, Time t) noexcept {
   if (newest_.f.isZero(0) && !sees_surface_) return Vec3::Zero();
-  law_->begin_tick(t);
+  law_->start_tick(t);
   return law_->force(p, law_time(t));
 }
 

@@ -18,7 +18,7 @@ class ForceEstimate {
   /// constant, s, 0 to 0.1); 0: at once.
   explicit ForceEstimate(std::unique_ptr<Extrapolator> law, double blend = 0)
       : law_(std::move(law)),
-        sees_surface_(law_->wants().here || law_->wants().ahead || law_->wants().surface),
+        sees_surface_(law_->request().at_tool || law_->request().ahead || law_->request().surface),
         blend_(blend) {}
 
   /// A sample is here at time `now`, with the tool at `p` (m). False, and nothing changes, unless it is
@@ -28,9 +28,9 @@ class ForceEstimate {
   /// Force (N, world) on a tool at `p` (m) at time `t` >= that of the newest sample.
   Vec3 force(const Vec3& p, Time t) noexcept;
 
-  Wants wants() const noexcept { return law_->wants(); }
+  Request request() const noexcept { return law_->request(); }
   bool stepped_down() const noexcept { return law_->stepped_down(); }
-  std::string_view stand_in() const noexcept { return law_->stand_in(); }
+  std::string_view substitute() const noexcept { return law_->substitute(); }
   /// Number 0: none yet.
   const Sample& newest() const noexcept { return newest_; }
   /// Between the two newest samples; 0 with less than two since the last outage.

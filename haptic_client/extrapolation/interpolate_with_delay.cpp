@@ -19,8 +19,8 @@ Vec3 InterpolateWithDelay::force(const Vec3&, Time t) noexcept {
   for (std::size_t i = 1; i < kDepth; ++i) {
     const Sample &after = samples_[i - 1], &before = samples_[i];
     if (then < before.t) continue;
-    const double share = to_seconds(then - before.t) / to_seconds(after.t - before.t);
-    return before.f + share * (after.f - before.f);
+    const double fraction = to_seconds(then - before.t) / to_seconds(after.t - before.t);
+    return before.f + fraction * (after.f - before.f);
   }
   return samples_[kDepth - 1].f;
 }

@@ -2,15 +2,15 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kProcess = 100;    // N^2/s^3
-constexpr double kMeasured = 1e-6;  // N^2
-constexpr double kAnyRate = 1e4;    // N^2/s^2: nothing is known of the rate at first
-constexpr double kWild = 1e15;      // N, N/s
+constexpr double kProcess = 100;     // N^2/s^3
+constexpr double kMeasured = 1e-6;   // N^2
+constexpr double kAnyRate = 1e4;     // N^2/s^2: nothing is known of the rate at first
+constexpr double kUnbounded = 1e15;  // N, N/s
 }  // namespace
 
 void Kalman::update(const Sample& sample) noexcept {
   if (!usable(sample) || (any_ && sample.t <= t_)) return;
-  if (!any_ || sample.f.cwiseAbs().maxCoeff() > kWild) {
+  if (!any_ || sample.f.cwiseAbs().maxCoeff() > kUnbounded) {
     *this = {};
     any_ = true;
     t_ = sample.t;
@@ -32,7 +32,8 @@ void Kalman::update(const Sample& sample) noexcept {
   p11_ -= k1 * p01_;
   p01_ *= 1 - k0;
   p00_ *= 1 - k0;
-  const bool sane = f_.allFinite() && rate_.cwiseAbs().maxCoeff() < kWild && p11_ >= 0 && p11_ < kWild;
+  const bool sane =
+      f_.allFinite() && rate_.cwiseAbs().maxCoeff() < kUnbounded && p11_ >= 0 && p11_ < kUnbounded;
   if (!sane) {
     *this = {};
     update(sample);

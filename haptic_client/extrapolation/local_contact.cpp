@@ -8,8 +8,8 @@ constexpr double kMostCorrection = 3;
 // Of the largest force: below it, F_loc says little of how wrong the model is.
 constexpr double kDoubt = 0.02;
 constexpr double kFirm = 0.7;  // of the largest force: a touch that tells of the factor where tissue swings
-constexpr double kShare = 0.25, kMostNews = 0.2;  // and how much of what it tells counts
-constexpr double kTangentReach = 1e-3;            // m: how far a tangent leads
+constexpr double kFraction = 0.25, kMaxChange = 0.2;  // and how much of what it tells counts
+constexpr double kTangentReach = 1e-3;                // m: how far a tangent leads
 // How far the model may be off at the sample, of the larger force and at all, to be believed elsewhere.
 constexpr double kBelievable = 0.5, kAlways = 0.1;  // -, N
 
@@ -28,7 +28,7 @@ void LocalContact::update(const Sample& sample) noexcept {
     newest_.surface_v -= newest_.others->v;
     newest_.others.reset();
   }
-  felt_last_ = newest_.f;
+  rendered_last_ = newest_.f;
   motion_.update(newest_);
   known_ = following_ = false;
   if (!swings()) {
@@ -36,12 +36,12 @@ void LocalContact::update(const Sample& sample) noexcept {
     swing_.setZero();
   }
   if (!newest_.surface || (swings() && !take_modes())) {
-    felt_.forget();
+    rendered_.forget();
     memory_.restart();
     return;
   }
   const Vec3 p_rest = at_rest(sample.p, sample.t);
-  auto local = remembered(sample.t, p_rest + swing_ - memory_.drift());
+  auto local = stored(sample.t, p_rest + swing_ - memory_.drift());
   if (!local && newest_.surface->tool.friction > 0) {  // nothing to compare yet
     following_ = true;
     return;
@@ -49,8 +49,9 @@ void LocalContact::update(const Sample& sample) noexcept {
   if (!local) local = contact_.probe(*newest_.surface, p_rest, memory());
   known_ = local && believable(*local, sample.f);
   if (!known_) {
-    contact_.lift();  // perhaps on a wrong side: it enters anew, where it is by then
-    felt_.forget();  // the path is lost, and with it what sticks: it is no measure of what would be from here
+    contact_.separate();  // perhaps on a wrong side: it enters anew, where it is by then
+    rendered_
+        .forget();  // the path is lost, and with it what sticks: it is no measure of what would be from here
     memory_.restart();
     return;
   }
@@ -63,18 +64,18 @@ void LocalContact::update(const Sample& sample) noexcept {
   if (free && newest_.surface->tool.friction == 0) compare_ahead();
 }
 
-void LocalContact::remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept {
-  if (Felt* const felt = felt_.add(t)) *felt = {p_rest, local, contact_.tangent()};
+void LocalContact::store(Time t, const Vec3& p_rest, const Vec3& local) noexcept {
+  if (Rendered* const rendered = rendered_.add(t)) *rendered = {p_rest, local, contact_.tangent()};
 }
 
 /// What was felt at the tick of time `t`, or the one before it; at `p_rest`, which is where the tool is
 /// thought to have been by now.
-std::optional<Vec3> LocalContact::remembered(Time t, const Vec3& p_rest) const noexcept {
-  const Felt* const felt = felt_.at(t);
-  if (felt == nullptr || (felt->p_rest - p_rest).norm() > kTangentReach) return {};
-  if (felt->force.isZero(0)) return felt->force;
-  const Vec3 force = felt->force + felt->tangent * (p_rest - felt->p_rest);
-  return force.dot(felt->force) > 0 ? force : Vec3(Vec3::Zero());
+std::optional<Vec3> LocalContact::stored(Time t, const Vec3& p_rest) const noexcept {
+  const Rendered* const rendered = rendered_.at(t);
+  if (rendered == nullptr || (rendered->p_rest - p_rest).norm() > kTangentReach) return {};
+  if (rendered->force.isZero(0)) return rendered->force;
+  const Vec3 force = rendered->force + rendered->tangent * (p_rest - rendered->p_rest);
+  return force.dot(rendered->force) > 0 ? force : Vec3(Vec3::Zero());
 }
 
 /// What the server says is `right` the model takes for `local`, somewhere.
@@ -89,19 +90,19 @@ void LocalContact::learn_factor(const Vec3& right, const Vec3& local) noexcept {
 /// is the law of the tissue. Which of both the first touches are is not known yet: little of each counts.
 void LocalContact::compare_swinging(const Vec3& local) noexcept {
   local_size_ = 0;
-  left_over_.setZero();
+  remainder_.setZero();
   if (newest_.f.norm() <= kFirm * largest_) return;
   const double before = kappa_;
   learn_factor(newest_.f, local);
-  kappa_ = before + kShare * std::clamp(kappa_ - before, -kMostNews, kMostNews);
+  kappa_ = before + kFraction * std::clamp(kappa_ - before, -kMaxChange, kMaxChange);
 }
 
 void LocalContact::compare(const Vec3& local) noexcept {
   local_size_ = local.norm();
-  left_over_.setZero();
+  remainder_.setZero();
   if (!(local_size_ > 0) || newest_.f.isZero(0)) return;
   learn_factor(newest_.f, local);
-  left_over_ = newest_.f - kappa_ * local;
+  remainder_ = newest_.f - kappa_ * local;
 }
 
 /// The tool is free, but was expected to touch by now: the server has said what it would feel.
@@ -114,8 +115,8 @@ void LocalContact::compare_ahead() noexcept {
 
 void LocalContact::restart() noexcept {
   without_.restart();
-  contact_.lift();
-  felt_.forget();
+  contact_.separate();
+  rendered_.forget();
   now_ = {};
   newest_ = {};
   motion_.restart();
@@ -131,16 +132,17 @@ Vec3 LocalContact::force(const Vec3& p, Time t) noexcept {
   const auto local = follow(p, t);
   if (!local) {
     known_ = following_ = false;  // until the next sample: no going back and forth
-    felt_.forget();
+    rendered_.forget();
     memory_.restart();
     return without_.force(p, t);
   }
   if (known_) {
-    felt_last_ = kappa_ * *local;
-    if (local_size_ > 0) felt_last_ += std::min(kMostCorrection, local->norm() / local_size_) * left_over_;
+    rendered_last_ = kappa_ * *local;
+    if (local_size_ > 0)
+      rendered_last_ += std::min(kMostCorrection, local->norm() / local_size_) * remainder_;
   }
-  if (swings()) memory_.press(felt_last_, contact_.loads());
-  return known_ ? felt_last_ : without_.force(p, t);
+  if (swings()) memory_.apply_loads(rendered_last_, contact_.loads());
+  return known_ ? rendered_last_ : without_.force(p, t);
 }
 
 /// F_loc at the tick, remembered; nothing where it is not known.
@@ -151,17 +153,17 @@ std::optional<Vec3> LocalContact::follow(const Vec3& p, Time t) noexcept {
     if (!memory_.known()) return {};
     swing_ = memory_.displacement();
   }
-  const Vec3 p_rest = at_rest(p, t) - moved_by_others(felt_last_);
-  const auto local = contact_.go(*newest_.surface, p_rest, memory());
+  const Vec3 p_rest = at_rest(p, t) - moved_by_others(rendered_last_);
+  const auto local = contact_.move_to(*newest_.surface, p_rest, memory());
   if (!local || (swings() && !find_footing(p_rest))) return {};
-  remember(now, p_rest + swing_, *local);
+  store(now, p_rest + swing_, *local);
   return local;
 }
 
 /// Where the newest sample says that the slow modes stand.
 bool LocalContact::take_modes() noexcept {
   const Surface& surface = *newest_.surface;
-  if (!memory_.stands() && !memory_.stand_near(*surface.model, newest_.p - surface.shift)) return false;
+  if (!memory_.is_placed() && !memory_.place_near(*surface.model, newest_.p - surface.shift)) return false;
   if (!memory_.take(surface, newest_.t, newest_.f)) return false;
   swing_ = memory_.displacement();
   bearing_ = kNoSolve;  // it may have begun anew
@@ -171,11 +173,11 @@ bool LocalContact::take_modes() noexcept {
 /// Where the slow modes hold and bear the surface that is near now, for the ticks to come.
 bool LocalContact::find_footing(const Vec3& p_rest) noexcept {
   const SurfaceModel& model = *newest_.surface->model;
-  if (!memory_.stand_near(model, p_rest)) return false;
+  if (!memory_.place_near(model, p_rest)) return false;
   contact_.rename(swing_ - memory_.displacement());  // 0 where it stands as before
   if (bearing_ == contact_.solves()) return true;
   bearing_ = contact_.solves();
-  return memory_.bear(model, contact_.loads());
+  return memory_.carry(model, contact_.loads());
 }
 
 /// Where `p` is when the organ is at rest.
@@ -183,11 +185,11 @@ Vec3 LocalContact::at_rest(const Vec3& p, Time t) const noexcept {
   return p - newest_.surface->shift - motion_.since_sample(t) - swing_;
 }
 
-/// How far the other tools give way to what this one pressed with, `felt` (N), at the last tick.
-Vec3 LocalContact::moved_by_others(const Vec3& felt) const noexcept {
+/// How far the other tools give way to what this one pressed with, `rendered` (N), at the last tick.
+Vec3 LocalContact::moved_by_others(const Vec3& rendered) const noexcept {
   if (!newest_.others) return Vec3::Zero();
-  const Vec3 way = newest_.others->compliance * (newest_.f - felt);
-  return way * std::min(1.0, kTangentReach / way.norm());
+  const Vec3 change = newest_.others->compliance * (newest_.f - rendered);
+  return change * std::min(1.0, kTangentReach / change.norm());
 }
 
 }  // namespace palpate::client

@@ -30,13 +30,13 @@ class LocalContact : public Extrapolator {
  public:
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
-  void begin_tick(Time now) noexcept override { now_ = now; }
+  void start_tick(Time now) noexcept override { now_ = now; }
   Vec3 force(const Vec3& p, Time t) noexcept override;
-  Wants wants() const noexcept override { return {.here = true, .ahead = true, .surface = true}; }
+  Request request() const noexcept override { return {.at_tool = true, .ahead = true, .surface = true}; }
   bool stepped_down() const noexcept override { return !known_; }
-  std::string_view stand_in() const noexcept override {
+  std::string_view substitute() const noexcept override {
     if (known_) return {};
-    return without_.stepped_down() ? without_.stand_in() : "two_tangents";
+    return without_.stepped_down() ? without_.substitute() : "two_tangents";
   }
 
  private:
@@ -44,18 +44,18 @@ class LocalContact : public Extrapolator {
   void compare_swinging(const Vec3& local) noexcept;
   void learn_factor(const Vec3& right, const Vec3& local) noexcept;
   void compare_ahead() noexcept;
-  void remember(Time t, const Vec3& p_rest, const Vec3& local) noexcept;
-  std::optional<Vec3> remembered(Time t, const Vec3& p_rest) const noexcept;
+  void store(Time t, const Vec3& p_rest, const Vec3& local) noexcept;
+  std::optional<Vec3> stored(Time t, const Vec3& p_rest) const noexcept;
   Vec3 at_rest(const Vec3& p, Time t) const noexcept;
   bool swings() const noexcept { return newest_.surface && newest_.surface->modes.count > 0; }
   const ModalMemory* memory() const noexcept { return swings() ? &memory_ : nullptr; }
   bool take_modes() noexcept;
   bool find_footing(const Vec3& p_rest) noexcept;
   std::optional<Vec3> follow(const Vec3& p, Time t) noexcept;
-  Vec3 moved_by_others(const Vec3& felt) const noexcept;
+  Vec3 moved_by_others(const Vec3& rendered) const noexcept;
 
   /// F_loc as it was felt.
-  struct Felt {
+  struct Rendered {
     Vec3 p_rest, force;  // m, where the slow modes stand at 0; N
     Mat3 tangent;        // N/m
   };
@@ -65,14 +65,14 @@ class LocalContact : public Extrapolator {
   Sample newest_;
   OrganMotion motion_;
   ModalMemory memory_;
-  Vec3 swing_ = Vec3::Zero();       // how far the slow modes have moved the surface here, m
-  std::uint64_t bearing_ = 0;       // the contact solve that `memory_` stands on
-  Time now_{};                      // of the tick: the force felt then is remembered
-  double local_size_ = 0;           // |F_loc(P_n')|, N
-  double kappa_ = 1, largest_ = 0;  // -, N: of all samples
-  Vec3 left_over_ = Vec3::Zero();   // r, N
-  Vec3 felt_last_ = Vec3::Zero();   // N, at the last tick that it solved
-  TickMemory<Felt> felt_;
+  Vec3 swing_ = Vec3::Zero();          // how far the slow modes have moved the surface here, m
+  std::uint64_t bearing_ = 0;          // the contact solve that `memory_` stands on
+  Time now_{};                         // of the tick: the force felt then is remembered
+  double local_size_ = 0;              // |F_loc(P_n')|, N
+  double kappa_ = 1, largest_ = 0;     // -, N: of all samples
+  Vec3 remainder_ = Vec3::Zero();      // r, N
+  Vec3 rendered_last_ = Vec3::Zero();  // N, at the last tick that it solved
+  TickMemory<Rendered> rendered_;
   bool known_ = false;      // whether the model says what is felt, since the newest sample
   bool following_ = false;  // or follows the path unfelt, as with friction nothing can be compared yet
 };

@@ -8,7 +8,7 @@
 namespace palpate::client {
 namespace {
 constexpr Time kStep = std::chrono::microseconds(500);   // what remains to a tick is by Taylor's series
-constexpr double kFarthestSwing = 0.2;                   // m: no organ swings so far
+constexpr double kMaxSwing = 0.2;                        // m: no organ swings so far
 constexpr double kSamePlace = 1e-3;                      // m
 constexpr Time kTrend = std::chrono::milliseconds(100);  // so long a trend is believed
 constexpr double kOther = 0.8;                           // of the larger load: a change by more is no trend
@@ -46,23 +46,23 @@ bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
   }
   model_ = surface.model;
   take_series(surface.relaxed);
-  if (!take_told(surface)) {
+  if (!take_published(surface)) {
     restart();
     return false;
   }
   drift_.setZero();
   ModalState* before = past_.at(t);
-  ModalState here;
+  ModalState current;
   if (known_ && t > tick_) {  // without delay, the sample of this very tick
     advance(t);
-    before = &(here = now(t));
+    before = &(current = now(t));
   }
-  present_ = told_.q;
+  present_ = published_.q;
   if (known_ && before != nullptr) {
     take_loads(surface.modal_loads, t);
     correct(*before, t);
     compared_ = t;
-    if (!(at(state_.q).norm() <= kFarthestSwing)) begin(t, f);
+    if (!(at(state_.q).norm() <= kMaxSwing)) begin(t, f);
   } else if (!known_ || t - compared_ > kOutage) {
     take_loads(surface.modal_loads, t);
     begin(t, f);
@@ -76,32 +76,32 @@ bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
 }
 
 /// Whether these are amplitudes of an organ.
-bool ModalMemory::take_told(const Surface& surface) noexcept {
+bool ModalMemory::take_published(const Surface& surface) noexcept {
   const protocol::RelaxedState& relaxed = surface.relaxed;
-  first_told_ = std::min<std::size_t>(relaxed.first, system_.count);
-  end_told_ = std::min<std::size_t>(relaxed.first + relaxed.count, system_.count);
+  first_published_ = std::min<std::size_t>(relaxed.first, system_.count);
+  end_published_ = std::min<std::size_t>(relaxed.first + relaxed.count, system_.count);
   for (std::size_t k = 0; k < system_.count; ++k) {
-    told_.q[k] = static_cast<double>(surface.modes.q[k]);
-    told_.v[k] = static_cast<double>(surface.modes.v[k]);
+    published_.q[k] = static_cast<double>(surface.modes.q[k]);
+    published_.v[k] = static_cast<double>(surface.modes.v[k]);
   }
-  bool slight = at(told_.q).norm() <= kFarthestSwing;
+  bool slight = at(published_.q).norm() <= kMaxSwing;
   for (std::size_t j = 0; j < system_.terms; ++j) {
-    told_.z[j] = told_.q;  // the best guess of those that another sample tells of
-    for (std::size_t k = first_told_; k < end_told_; ++k)
-      told_.z[j][k] = static_cast<double>(relaxed.z[(k - first_told_) * system_.terms + j]);
-    slight = slight && at(told_.z[j]).norm() <= kFarthestSwing;
+    published_.z[j] = published_.q;  // the best guess of those that another sample tells of
+    for (std::size_t k = first_published_; k < end_published_; ++k)
+      published_.z[j][k] = static_cast<double>(relaxed.z[(k - first_published_) * system_.terms + j]);
+    slight = slight && at(published_.z[j]).norm() <= kMaxSwing;
   }
   return slight;
 }
 
 /// The series that it relaxes by; with another, what was known of the old one is gone.
-void ModalMemory::take_series(const protocol::RelaxedState& told) noexcept {
+void ModalMemory::take_series(const protocol::RelaxedState& published) noexcept {
   std::array<Relaxation, kMostRelaxations> series{};
-  for (std::size_t j = 0; j < told.terms; ++j)
-    series[j] = {static_cast<double>(told.share[j]), static_cast<double>(told.time[j])};
-  if (told.terms == system_.terms && series == system_.series) return;
+  for (std::size_t j = 0; j < published.terms; ++j)
+    series[j] = {static_cast<double>(published.fraction[j]), static_cast<double>(published.time[j])};
+  if (published.terms == system_.terms && series == system_.series) return;
   known_ = false;
-  system_.terms = told.terms;
+  system_.terms = published.terms;
   system_.series = series;
   short_step_.prepare(to_seconds(kStep), system_);
   loads_.begin(time_, system_.relaxations());
@@ -114,20 +114,20 @@ double ModalMemory::Trend::at(std::size_t mode, Time now) const noexcept {
 
 /// Loads that would lead the surface farther than any organ goes count as none. What two samples differ by
 /// tells of the trend the less, the nearer they are.
-void ModalMemory::take_loads(const protocol::ModalLoads& told, Time t) noexcept {
-  driven_ = told.count > 0 || driven_;
+void ModalMemory::take_loads(const protocol::ModalLoads& published, Time t) noexcept {
+  driven_ = published.count > 0 || driven_;
   if (!driven_) return;
   others_before_ = others_;
   others_ = {.t = t};
   ModalNumbers led{};
-  const std::size_t count = std::min<std::size_t>(told.count, system_.count);
+  const std::size_t count = std::min<std::size_t>(published.count, system_.count);
   for (std::size_t k = 0; k < count; ++k) {
-    others_.load[k] = static_cast<double>(told.load[k]);
+    others_.load[k] = static_cast<double>(published.load[k]);
     led[k] = others_.load[k] / (system_.w[k] * system_.w[k]);
   }
-  if (!(at(led).norm() <= kFarthestSwing)) others_.load = {};
-  const double apart = to_seconds(t - others_before_.t);
-  if (!known_ || !(apart > 0 && apart < to_seconds(kTrend))) return;
+  if (!(at(led).norm() <= kMaxSwing)) others_.load = {};
+  const double interval = to_seconds(t - others_before_.t);
+  if (!known_ || !(interval > 0 && interval < to_seconds(kTrend))) return;
   double change = 0, size = 0;  // squared
   for (std::size_t k = 0; k < system_.count; ++k) {
     const double now = others_.load[k], was = others_before_.load[k];
@@ -135,21 +135,21 @@ void ModalMemory::take_loads(const protocol::ModalLoads& told, Time t) noexcept 
     size += std::max(now * now, was * was);
   }
   if (change > kOther * kOther * size) return;  // one of them has come, or gone
-  const double share = std::min(1.0, apart / to_seconds(kTrendBase));
+  const double fraction = std::min(1.0, interval / to_seconds(kTrendBase));
   for (std::size_t k = 0; k < system_.count; ++k) {
-    const double rate = (others_.load[k] - others_before_.load[k]) / apart;
-    others_.rate[k] = others_before_.rate[k] + share * (rate - others_before_.rate[k]);
+    const double rate = (others_.load[k] - others_before_.load[k]) / interval;
+    others_.rate[k] = others_before_.rate[k] + fraction * (rate - others_before_.rate[k]);
   }
 }
 
 void ModalMemory::creep_at_foot() noexcept {
   crept_ = system_.terms > 0 && standing_ && model_ != nullptr ? loads_.creep(*model_, foot_vertex_)
                                                                : Vec3(Vec3::Zero());
-  if (!(crept_.norm() <= kFarthestSwing)) restart();
+  if (!(crept_.norm() <= kMaxSwing)) restart();
 }
 
 void ModalMemory::begin(Time t, const Vec3& f) noexcept {
-  state_ = told_;
+  state_ = published_;
   time_ = tick_ = tick_before_ = compared_ = t;
   bearing_ = foot_;
   force_ = force_of(f);
@@ -157,7 +157,7 @@ void ModalMemory::begin(Time t, const Vec3& f) noexcept {
   if (system_.terms == 0) return;
   loads_.begin(t, system_.relaxations());
   const SurfaceLoad load{foot_vertex_, -f};
-  loads_.press(*model_, {&load, 1}, 1);
+  loads_.apply_loads(*model_, {&load, 1}, 1);
   crept_.setZero();
 }
 
@@ -165,19 +165,20 @@ void ModalMemory::begin(Time t, const Vec3& f) noexcept {
 /// tools are now thought to do otherwise than before. All ticks since are set right with it, so that a sample
 /// which tells of one of them does not count it again.
 void ModalMemory::correct(ModalState& before, Time t) noexcept {
-  drift_ = at(told_.q) - at(before.q);
+  drift_ = at(published_.q) - at(before.q);
   ModalState off;
   for (std::size_t k = 0; k < system_.count; ++k) {
-    off.q[k] = told_.q[k] - before.q[k];
-    off.v[k] = told_.v[k] - before.v[k];
+    off.q[k] = published_.q[k] - before.q[k];
+    off.v[k] = published_.v[k] - before.v[k];
   }
   for (std::size_t j = 0; j < system_.terms; ++j) {
-    for (std::size_t k = first_told_; k < end_told_; ++k) off.z[j][k] = told_.z[j][k] - before.z[j][k];
+    for (std::size_t k = first_published_; k < end_published_; ++k)
+      off.z[j][k] = published_.z[j][k] - before.z[j][k];
   }
   add(off, before);
   if (!driven_) add(free_motion(off, to_seconds(time_ - t), system_), state_);
   Time reached = t;
-  const auto news = [&] {
+  const auto publication = [&] {
     ModalNumbers force{};
     for (std::size_t k = 0; driven_ && k < system_.count; ++k)
       force[k] = others_.at(k, reached + kStep / 2) - others_before_.at(k, reached + kStep / 2);
@@ -187,14 +188,14 @@ void ModalMemory::correct(ModalState& before, Time t) noexcept {
   past_.for_each_since(t, [&](Time tick, ModalState& then) {
     for (; reached + kStep <= tick; reached += kStep) {
       if (!added && reached + kStep > time_) {
-        add(soon(off, news(), time_ - reached), state_);
+        add(soon(off, publication(), time_ - reached), state_);
         added = true;
       }
-      short_step_.advance(off, news());
+      short_step_.advance(off, publication());
     }
-    add(soon(off, news(), tick - reached), then);
+    add(soon(off, publication(), tick - reached), then);
   });
-  if (!added) add(soon(off, news(), time_ - reached), state_);
+  if (!added) add(soon(off, publication(), time_ - reached), state_);
 }
 
 void ModalMemory::add(const ModalState& more, ModalState& state) const noexcept {
@@ -207,7 +208,7 @@ void ModalMemory::add(const ModalState& more, ModalState& state) const noexcept 
   }
 }
 
-bool ModalMemory::bear(const SurfaceModel& model, std::span<const SurfaceLoad> loads) noexcept {
+bool ModalMemory::carry(const SurfaceModel& model, std::span<const SurfaceLoad> loads) noexcept {
   Vec3 sum = Vec3::Zero();
   for (const SurfaceLoad& load : loads) sum += load.force;
   const double size = sum.squaredNorm();
@@ -216,12 +217,12 @@ bool ModalMemory::bear(const SurfaceModel& model, std::span<const SurfaceLoad> l
     return standing_;
   }
   std::fill_n(bearing_.begin(), system_.count, Vec3::Zero());
-  return std::all_of(loads.begin(), loads.end(), [&](const SurfaceLoad& load) {
+  return std::ranges::all_of(loads, [&](const SurfaceLoad& load) {
     return model.add_shapes(load.vertex, load.force.dot(sum) / size, bearing_);
   });
 }
 
-bool ModalMemory::stand_near(const SurfaceModel& model, const Vec3& p_rest) noexcept {
+bool ModalMemory::place_near(const SurfaceModel& model, const Vec3& p_rest) noexcept {
   if (standing_ && foot_version_ == model.generation() && (p_rest - foot_at_).norm() < kSamePlace)
     return true;
   if (!model.has_shape()) return standing_ = false;
@@ -237,7 +238,7 @@ bool ModalMemory::stand_near(const SurfaceModel& model, const Vec3& p_rest) noex
   foot_at_ = p_rest;
   foot_version_ = model.generation();
   foot_vertex_ = nearest;
-  std::fill(foot_.begin(), foot_.end(), Vec3::Zero());
+  std::ranges::fill(foot_, Vec3::Zero());
   standing_ = nearest >= 0 && model.add_shapes(nearest, 1, foot_);
   creep_at_foot();
   return standing_;
@@ -288,7 +289,7 @@ ModalState ModalMemory::soon(ModalState state, const ModalNumbers& force, Time r
   const ModalNumbers from = state.q;
   for (std::size_t k = 0; k < system_.count; ++k) {
     double q = from[k];
-    for (std::size_t j = 0; j < system_.terms; ++j) q -= system_.series[j].share * state.z[j][k];
+    for (std::size_t j = 0; j < system_.terms; ++j) q -= system_.series[j].fraction * state.z[j][k];
     const double a = force[k] - system_.w[k] * system_.w[k] * q - system_.damping[k] * state.v[k];
     state.q[k] += h * (state.v[k] + 0.5 * h * a);
     state.v[k] += h * a;
@@ -301,7 +302,7 @@ ModalState ModalMemory::soon(ModalState state, const ModalNumbers& force, Time r
   return state;
 }
 
-void ModalMemory::press(const Vec3& f, std::span<const SurfaceLoad> loads) noexcept {
+void ModalMemory::apply_loads(const Vec3& f, std::span<const SurfaceLoad> loads) noexcept {
   // From the last tick to this one the force went from the last to this, not all at once: the mean counts.
   const ModalNumbers force = force_of(f);
   const double half = 0.5 * to_seconds(tick_ - tick_before_);
@@ -314,7 +315,7 @@ void ModalMemory::press(const Vec3& f, std::span<const SurfaceLoad> loads) noexc
   Vec3 sum = Vec3::Zero();
   for (const SurfaceLoad& load : loads) sum += load.force;
   const double size = sum.squaredNorm();
-  loads_.press(*model_, loads, size > 0 ? std::max(0.0, -f.dot(sum) / size) : 0);
+  loads_.apply_loads(*model_, loads, size > 0 ? std::max(0.0, -f.dot(sum) / size) : 0);
 }
 
 }  // namespace palpate::client

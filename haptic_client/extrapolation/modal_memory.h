@@ -23,7 +23,7 @@ namespace palpate::client {
 class ModalMemory {
  public:
   /// Mode shapes at a point of the surface, 1/sqrt(kg).
-  using Shapes = std::array<Vec3, kMostSlowModes>;
+  using Shapes = std::array<Vec3, kMaxPublishedModes>;
 
   ModalMemory();
 
@@ -33,18 +33,18 @@ class ModalMemory {
   /// Forgets all.
   void restart() noexcept;
   bool known() const noexcept { return known_; }
-  bool stands() const noexcept { return standing_; }
+  bool is_placed() const noexcept { return standing_; }
 
   /// Stands on the vertex nearest to `p_rest` (m, in the frame of the surface at rest). False where the model
   /// does not know the shapes there.
-  bool stand_near(const SurfaceModel& model, const Vec3& p_rest) noexcept;
+  bool place_near(const SurfaceModel& model, const Vec3& p_rest) noexcept;
   /// The force of the tool is borne by the surface as these loads are; none: where it stands.
-  bool bear(const SurfaceModel& model, std::span<const SurfaceLoad> loads) noexcept;
+  bool carry(const SurfaceModel& model, std::span<const SurfaceLoad> loads) noexcept;
 
   /// Goes on to the tick at `t`, under the force of the last.
   void advance(Time t) noexcept;
   /// The force on the tool at that tick, N, and the loads that it is about; remembers the tick.
-  void press(const Vec3& f, std::span<const SurfaceLoad> loads = {}) noexcept;
+  void apply_loads(const Vec3& f, std::span<const SurfaceLoad> loads = {}) noexcept;
 
   /// Returns the displacement (m) of the surface under the tool by the modes and by creep. It is that at the
   /// tick of `advance`, or at the sample of `take`, whichever came last.
@@ -67,9 +67,9 @@ class ModalMemory {
 
  private:
   bool take_spectrum(const Surface& surface) noexcept;
-  void take_series(const protocol::RelaxedState& told) noexcept;
-  void take_loads(const protocol::ModalLoads& told, Time t) noexcept;
-  bool take_told(const Surface& surface) noexcept;
+  void take_series(const protocol::RelaxedState& published) noexcept;
+  void take_loads(const protocol::ModalLoads& published, Time t) noexcept;
+  bool take_published(const Surface& surface) noexcept;
   Vec3 at(const ModalNumbers& q) const noexcept;
   ModalNumbers force_of(const Vec3& f) const noexcept;
   ModalNumbers all_forces(Time t) const noexcept;
@@ -84,15 +84,15 @@ class ModalMemory {
   std::uint64_t version_ = 0, foot_version_ = 0;  // of the surface model that spectrum and foot are of
   ModalSystem system_;
   ModalSteps short_step_;
-  std::size_t first_told_ = 0, end_told_ = 0;  // of the modes whose z the newest sample tells of
+  std::size_t first_published_ = 0, end_published_ = 0;  // of the modes whose z the newest sample tells of
   RelaxingLoads loads_;
   const SurfaceModel* model_ = nullptr;  // of the newest sample
   int foot_vertex_ = 0;
   Vec3 crept_ = Vec3::Zero();  // where it stands, m
   Shapes foot_{}, bearing_{};
-  Vec3 foot_at_ = Vec3::Zero();  // m, of `stand_near`
-  ModalState state_, told_;      // at `time_`; of the newest sample
-  ModalNumbers force_{};         // of the tool, held from the last tick on, N/sqrt(kg)
+  Vec3 foot_at_ = Vec3::Zero();   // m, of `place_near`
+  ModalState state_, published_;  // at `time_`; of the newest sample
+  ModalNumbers force_{};          // of the tool, held from the last tick on, N/sqrt(kg)
   /// Load of other tools on the modes: a line in time from the sample at `t` on.
   struct Trend {
     Time t{};

@@ -26,7 +26,7 @@ void ModalSteps::advance(ModalState& state, const ModalNumbers& p) const noexcep
   ModalNumbers from = q, pulled = p;
   for (std::size_t j = 0; j < terms; ++j) {  // by where z is in the middle of the step
     for (std::size_t k = 0; k < count_; ++k)
-      pulled[k] += w2_[k] * series_.share[j] * (z[j][k] + half_[j] * (q[k] - z[j][k]));
+      pulled[k] += w2_[k] * series_.fraction[j] * (z[j][k] + half_[j] * (q[k] - z[j][k]));
   }
   for (std::size_t k = 0; k < count_; ++k) {
     q[k] = q_of_q_[k] * from[k] + q_of_v_[k] * v[k] + q_of_p_[k] * pulled[k];

@@ -8,7 +8,7 @@
 namespace palpate::client {
 
 /// A number for each slow mode.
-using ModalNumbers = std::array<double, kMostSlowModes>;
+using ModalNumbers = std::array<double, kMaxPublishedModes>;
 
 /// Modal state: amplitudes, their rates, and the delayed amplitudes in each term of the series by which the
 /// tissue relaxes.
@@ -17,8 +17,8 @@ struct ModalState {
   std::array<ModalNumbers, kMostRelaxations> z{};  // m sqrt(kg)
 };
 
-/// Equations of the modes: q_k'' + d_k q_k' + w_k^2 (q_k - sum_j share_j z_kj) = p_k, z_kj' = (q_k - z_kj) /
-/// time_j.
+/// Equations of the modes: q_k'' + d_k q_k' + w_k^2 (q_k - sum_j fraction_j z_kj) = p_k, z_kj' = (q_k - z_kj)
+/// / time_j.
 struct ModalSystem {
   std::size_t count = 0, terms = 0;
   ModalNumbers w{}, damping{};  // rad/s, 1/s

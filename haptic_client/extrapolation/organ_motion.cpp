@@ -12,7 +12,7 @@ void OrganMotion::update(const Sample& sample) noexcept {
   const OrganMotion before = *this;
   restart();
   t_ = sample.t;
-  known_ = sample.here && sample.surface_v.norm() <= kFastest;
+  known_ = sample.at_tool && sample.surface_v.norm() <= kFastest;
   if (!known_) return;
   v_ = sample.surface_v;
   if (sample.others) others_ = sample.others->v;

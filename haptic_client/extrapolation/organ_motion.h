@@ -13,7 +13,7 @@ namespace palpate::client {
 class OrganMotion {
  public:
   static constexpr double kFastest = 10;  ///< m/s: what goes faster is no organ, and stands still
-  /// A sample later than the one before. Without `here` it says nothing of motion, and the organ rests.
+  /// A sample later than the one before. Without `at_tool` it says nothing of motion, and the organ rests.
   void update(const Sample& sample) noexcept;
   /// Forgets all samples.
   void restart() noexcept { *this = {}; }

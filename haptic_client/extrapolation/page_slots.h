@@ -31,7 +31,7 @@ class PageSlots {
     }
     rows_[gap] = {};
   }
-  void clear() noexcept { std::fill(rows_.begin(), rows_.end(), Row{}); }
+  void clear() noexcept { std::ranges::fill(rows_, Row{}); }
 
  private:
   struct Row {

@@ -16,7 +16,7 @@ double size_of(std::span<const Vec3> forces) noexcept {
 
 /// A vertex that moves in no mode is held.
 bool is_held(const SurfaceModel& model, int vertex) noexcept {
-  std::array<Vec3, kMostSlowModes> shapes;
+  std::array<Vec3, kMaxPublishedModes> shapes;
   shapes.fill(Vec3::Zero());
   return model.add_shapes(vertex, 1, shapes) && size_of(shapes) == 0;
 }
@@ -47,12 +47,12 @@ void RelaxingLoads::advance(Time t) noexcept {
   note_creeping();
 }
 
-void RelaxingLoads::press(const SurfaceModel& model, std::span<const SurfaceLoad> loads,
-                          double share) noexcept {
+void RelaxingLoads::apply_loads(const SurfaceModel& model, std::span<const SurfaceLoad> loads,
+                                double fraction) noexcept {
   if (terms_ == 0) return;
   for (Vertex& vertex : vertices_) vertex.load.setZero();
   for (const SurfaceLoad& load : loads) {
-    if (Vertex* const vertex = find_or_add(model, load.vertex)) vertex->load = share * load.force;
+    if (Vertex* const vertex = find_or_add(model, load.vertex)) vertex->load = fraction * load.force;
   }
   std::erase_if(vertices_,
                 [](const Vertex& v) { return v.load.isZero(0) && !v.held && size_of(v.psi) < kForgotten; });
@@ -68,19 +68,20 @@ void RelaxingLoads::press(const SurfaceModel& model, std::span<const SurfaceLoad
   }
 }
 
-void RelaxingLoads::take(const SurfaceModel& model, const protocol::RelaxedState& told, Time t) noexcept {
+void RelaxingLoads::take(const SurfaceModel& model, const protocol::RelaxedState& published,
+                         Time t) noexcept {
   std::array<Vertex*, kMost> known{};
   std::size_t count = 0;
-  for (std::size_t i = 0; i < told.vertices; ++i) {
-    if (told.vertex[i].number >= model.rest().size()) continue;
-    Vertex* const vertex = find_or_add(model, told.vertex[i].number);
+  for (std::size_t i = 0; i < published.vertices; ++i) {
+    if (published.vertex[i].number >= model.rest().size()) continue;
+    Vertex* const vertex = find_or_add(model, published.vertex[i].number);
     if (vertex == nullptr) continue;
     for (std::size_t j = 0; j < terms_; ++j)
-      vertex->psi[j] = Eigen::Map<const Eigen::Vector3f>(&told.vertex[i].psi[3 * j]).cast<double>();
+      vertex->psi[j] = Eigen::Map<const Eigen::Vector3f>(&published.vertex[i].psi[3 * j]).cast<double>();
   }
   // Only now, as a vertex that is added may take the place of another.
-  for (std::size_t i = 0; i < told.vertices; ++i) {
-    Vertex* const vertex = find(told.vertex[i].number);
+  for (std::size_t i = 0; i < published.vertices; ++i) {
+    Vertex* const vertex = find(published.vertex[i].number);
     if (vertex != nullptr && std::find(known.begin(), known.begin() + count, vertex) == known.begin() + count)
       known[count++] = vertex;
   }
@@ -94,7 +95,7 @@ void RelaxingLoads::replay(std::span<Vertex* const> vertices, Time t) noexcept {
   const Loads* const first = past_.at(t);
   for (std::size_t i = 0; i < vertices.size(); ++i)
     before[i] = first != nullptr ? first->on(vertices[i]->number) : vertices[i]->load;
-  const auto go = [&](Time to, const Loads* loads) {
+  const auto integrate = [&](Time to, const Loads* loads) {
     const SeriesStep step = over(to - t);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       const Vec3 load = loads != nullptr ? loads->on(vertices[i]->number) : vertices[i]->load;
@@ -103,8 +104,8 @@ void RelaxingLoads::replay(std::span<Vertex* const> vertices, Time t) noexcept {
     }
     t = to;
   };
-  past_.for_each_since(t, [&](Time to, const Loads& loads) { go(to, &loads); });
-  if (time_ > t) go(time_, nullptr);
+  past_.for_each_since(t, [&](Time to, const Loads& loads) { integrate(to, &loads); });
+  if (time_ > t) integrate(time_, nullptr);
 }
 
 Vec3 RelaxingLoads::Loads::on(int number) const noexcept {
@@ -141,7 +142,7 @@ void RelaxingLoads::note_creeping() noexcept {
   creeping_.clear();
   for (const Vertex& vertex : vertices_) {
     Vec3 sum = Vec3::Zero();
-    for (std::size_t j = 0; j < terms_; ++j) sum += series_[j].share * vertex.psi[j];
+    for (std::size_t j = 0; j < terms_; ++j) sum += series_[j].fraction * vertex.psi[j];
     if (!vertex.held && !sum.isZero(0)) creeping_.push_back({vertex.number, sum});
   }
 }

@@ -24,12 +24,12 @@ class RelaxingLoads {
 
   /// Nothing is remembered at `t`, of a tissue with this series; none: it does not relax.
   void begin(Time t, std::span<const Relaxation> series) noexcept;
-  /// Goes on to `t` under the loads of the last `press`.
+  /// Goes on to `t` under the loads of the last `apply_loads`.
   void advance(Time t) noexcept;
-  /// The surface bears these loads from the time of `advance` on, times `share`.
-  void press(const SurfaceModel& model, std::span<const SurfaceLoad> loads, double share) noexcept;
+  /// The surface bears these loads from the time of `advance` on, times `fraction`.
+  void apply_loads(const SurfaceModel& model, std::span<const SurfaceLoad> loads, double fraction) noexcept;
   /// Takes the memory of some vertices at `t` as the server published it.
-  void take(const SurfaceModel& model, const protocol::RelaxedState& told, Time t) noexcept;
+  void take(const SurfaceModel& model, const protocol::RelaxedState& published, Time t) noexcept;
 
   /// The loads that would hold the surface where it has crept to, N.
   std::span<const SurfaceLoad> creeping() const noexcept { return creeping_; }

@@ -11,20 +11,20 @@ using protocol::ToolState;
 namespace {
 
 constexpr SurfacePages kLargest{SurfaceModel::kMostVertices, 2 * SurfaceModel::kMostVertices};
-constexpr double kStillComplete = 2e-3;  // m
+constexpr double kComplete_ = 2e-3;  // m
 /// The clock of asking: it may run over, differences are right.
 std::uint32_t to_ms(Time t) {
   return static_cast<std::uint32_t>(t.count() / 1'000'000);
 }
-constexpr std::size_t kAsked = 4096;  // pages remembered; 200 are asked for in that time
+constexpr std::size_t kRequested = 4096;  // pages remembered; 200 are asked for in that time
 
 }  // namespace
 
 SurfaceModel::SurfaceModel()
-    : shape_known_(kLargest.first_tile()), tiles_(kRoom), asked_(kAsked), near_(kLargest.vertices) {
+    : shape_known_(kLargest.first_tile()), tiles_(kRoom), requested_(kRequested), near_(kLargest.vertices) {
   rest_.reserve(kLargest.vertices);
   triangles_.reserve(kLargest.triangles);
-  spectrum_.reserve(kMostSlowModes);
+  spectrum_.reserve(kMaxPublishedModes);
 }
 
 void SurfaceModel::announce(const protocol::SurfaceState& state, std::uint32_t modes) noexcept {
@@ -32,7 +32,7 @@ void SurfaceModel::announce(const protocol::SurfaceState& state, std::uint32_t m
   ++generation_;
   version_ = 0;
   if (state.vertices == 0 || state.vertices > kLargest.vertices || state.triangles > kLargest.triangles ||
-      modes > kMostSlowModes)
+      modes > kMaxPublishedModes)
     return;
   version_ = state.version;
   pages_ = {state.vertices, state.triangles, modes};
@@ -40,9 +40,9 @@ void SurfaceModel::announce(const protocol::SurfaceState& state, std::uint32_t m
   rest_.assign(state.vertices, Vec3::Zero());
   triangles_.assign(state.triangles, {});
   shape_missing_ = pages_.first_tile();
-  std::fill(shape_known_.begin(), shape_known_.end(), 0);
+  std::ranges::fill(shape_known_, 0);
   slots_.clear();
-  std::fill(asked_.begin(), asked_.end(), Asked{});
+  std::ranges::fill(requested_, Requested{});
   for (Tile& tile : tiles_) tile.page = 0;
   complete_at_.reset();
 }
@@ -50,12 +50,12 @@ void SurfaceModel::announce(const protocol::SurfaceState& state, std::uint32_t m
 void SurfaceModel::take(const SurfacePage& page) noexcept {
   if (version_ == 0 || page.version != version_) return;
   if ((page.page & SurfacePages::kNotYet) != 0) {
-    Asked& asked = asked_[(page.page & ~SurfacePages::kNotYet) % kAsked];
-    asked.not_yet = asked.page == (page.page & ~SurfacePages::kNotYet);
+    Requested& requested = requested_[(page.page & ~SurfacePages::kNotYet) % kRequested];
+    requested.not_yet = requested.page == (page.page & ~SurfacePages::kNotYet);
     return;
   }
   if (page.page >= pages_.count()) return;
-  if (Asked& asked = asked_[page.page % kAsked]; asked.page == page.page) asked = {};
+  if (Requested& requested = requested_[page.page % kRequested]; requested.page == page.page) requested = {};
   if (pages_.modes > 0 && page.page == pages_.spectrum()) {
     take_spectrum(page);
   } else if (page.page >= pages_.first_tile()) {
@@ -113,8 +113,8 @@ void SurfaceModel::take_spectrum(const SurfacePage& page) noexcept {
   for (std::size_t k = 0; k < pages_.modes; ++k) {
     const Mode mode{static_cast<double>(page.values[3 * k]), static_cast<double>(page.values[3 * k + 1])};
     // Else no such motion, or none that a client can follow.
-    const bool slow = mode.frequency > 0 && mode.frequency <= 1.001 * kQuickestSlowMode;
-    if (!slow || !(mode.damping >= 0 && mode.damping <= 1.001 * kHardestSlowDamping))
+    const bool slow = mode.frequency > 0 && mode.frequency <= 1.001 * kFastestPublishedMode;
+    if (!slow || !(mode.damping >= 0 && mode.damping <= 1.001 * kMaxPublishedDamping))
       return spectrum_.clear();
     spectrum_.push_back(mode);
   }
@@ -152,23 +152,24 @@ std::optional<Mat3> SurfaceModel::compliance(int i, int j) const noexcept {
 }
 
 /// Collects pages to ask for.
-class SurfaceModel::Wishes {
+class SurfaceModel::PageRequests {
  public:
-  Wishes(std::span<std::uint32_t> pages, std::vector<Asked>& asked, Time now, Time patience)
-      : pages_(pages), asked_(asked), now_ms_(to_ms(now) + 1), patience_ms_(to_ms(patience)) {
-    std::fill(pages.begin(), pages.end(), ToolState::kNoPage);
+  PageRequests(std::span<std::uint32_t> pages, std::vector<Requested>& requested, Time now, Time patience)
+      : pages_(pages), requested_(requested), now_ms_(to_ms(now) + 1), patience_ms_(to_ms(patience)) {
+    std::ranges::fill(pages, ToolState::kNoPage);
   }
   bool full() const { return count_ == pages_.size(); }
   bool any() const { return count_ > 0; }
   /// Whether this page, which is missing, has been asked for.
   void add(std::uint32_t page) {
     missing = true;
-    Asked& asked = asked_[page % kAsked];
-    const bool same = asked.page == page, waits = asked.ms != 0 && now_ms_ - asked.ms < patience_ms_;
-    if (full() || (waits && (same || !asked.not_yet))) return;  // two pages may share a record: in turn
-    const bool once_more = same && asked.ms != 0 && !asked.not_yet;
+    Requested& requested = requested_[page % kRequested];
+    const bool same = requested.page == page,
+               waits = requested.ms != 0 && now_ms_ - requested.ms < patience_ms_;
+    if (full() || (waits && (same || !requested.not_yet))) return;  // two pages may share a record: in turn
+    const bool once_more = same && requested.ms != 0 && !requested.not_yet;
     again += once_more ? 1 : 0;
-    asked = {page, now_ms_, false, once_more};
+    requested = {page, now_ms_, false, once_more};
     pages_[count_++] = page;
   }
   bool missing = false;     ///< something is, asked for or not
@@ -176,43 +177,43 @@ class SurfaceModel::Wishes {
 
  private:
   std::span<std::uint32_t> pages_;
-  std::vector<Asked>& asked_;
+  std::vector<Requested>& requested_;
   std::uint32_t now_ms_, patience_ms_;
   std::size_t count_ = 0;
 };
 
 bool SurfaceModel::choose_missing(const Vec3& p, double reach, Time now, std::span<std::uint32_t> pages,
                                   Time patience) noexcept {
-  Wishes wishes(pages, asked_, now, patience);
-  const bool any = choose(p, reach, wishes);
-  asked_again_ += wishes.again;
+  PageRequests requests(pages, requested_, now, patience);
+  const bool any = choose(p, reach, requests);
+  requested_again_ += requests.again;
   return any;
 }
 
-bool SurfaceModel::choose(const Vec3& p, double reach, Wishes& wishes) noexcept {
+bool SurfaceModel::choose(const Vec3& p, double reach, PageRequests& requests) noexcept {
   if (version_ == 0 || !p.allFinite()) return false;
   for (std::uint32_t page = 0; shape_missing_ > 0 && page < pages_.first_tile(); ++page) {
-    if (shape_known_[page] == 0) wishes.add(page);
+    if (shape_known_[page] == 0) requests.add(page);
   }
-  if (pages_.modes > 0 && spectrum_.empty()) wishes.add(pages_.spectrum());
-  if (wishes.missing) return wishes.any();
-  if (complete_at_ && (*complete_at_ - p).norm() < kStillComplete) return false;
-  near_.look(p);
+  if (pages_.modes > 0 && spectrum_.empty()) requests.add(pages_.spectrum());
+  if (requests.missing) return requests.any();
+  if (complete_at_ && (*complete_at_ - p).norm() < kComplete_) return false;
+  near_.search(p);
   near_.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
     pages_.for_clusters(a, b, [&](std::uint32_t page) {
-      if (slots_.find(page) == PageSlots::kNone) wishes.add(page);
+      if (slots_.find(page) == PageSlots::kNone) requests.add(page);
     });
-    return !wishes.full();
+    return !requests.full();
   });
-  if (!wishes.missing) complete_at_ = p;
-  return wishes.any();
+  if (!requests.missing) complete_at_ = p;
+  return requests.any();
 }
 
 std::optional<Time> SurfaceModel::waited_for(std::uint32_t page, Time now) const noexcept {
   page &= ~SurfacePages::kNotYet;
-  const Asked& asked = asked_[page % kAsked];
-  if (asked.page != page || asked.ms == 0 || asked.again) return {};
-  return std::chrono::milliseconds(to_ms(now) + 1 - asked.ms);
+  const Requested& requested = requested_[page % kRequested];
+  if (requested.page != page || requested.ms == 0 || requested.again) return {};
+  return std::chrono::milliseconds(to_ms(now) + 1 - requested.ms);
 }
 
 }  // namespace palpate::client

@@ -23,7 +23,7 @@ struct SurfaceLoad {
 class SurfaceModel {
  public:
   static constexpr std::size_t kMostVertices = protocol::kMostSurfaceVertices;  ///< of a model that it takes
-  static constexpr std::size_t kRoom = protocol::NearTiles::kKept;  ///< tiles and shapes, 900 bytes each
+  static constexpr std::size_t kRoom = protocol::NearTiles::kStored;  ///< tiles and shapes, 900 bytes each
 
   SurfaceModel();
 
@@ -43,7 +43,7 @@ class SurfaceModel {
   /// requested, was requested more than once, or where that request was dropped.
   std::optional<Time> waited_for(std::uint32_t page, Time now) const noexcept;
   /// Returns how many pages were requested once more, as no answer had come.
-  std::uint64_t asked_again() const noexcept { return asked_again_; }
+  std::uint64_t requested_again() const noexcept { return requested_again_; }
 
   /// Version 0: none is known.
   std::uint32_t version() const noexcept { return version_; }
@@ -71,7 +71,7 @@ class SurfaceModel {
     std::uint32_t page = 0;  // 0: empty; that page is one of the shape
     std::array<float, protocol::SurfacePage::kValues> values{};
   };
-  struct Asked {
+  struct Requested {
     std::uint32_t page = protocol::ToolState::kNoPage, ms = 0;
     bool not_yet = false;  // said the server
     bool again = false;    // asked for more than once
@@ -80,8 +80,8 @@ class SurfaceModel {
   void complete_shape() noexcept;
   void take_tile(const protocol::SurfacePage& page) noexcept;
   void take_spectrum(const protocol::SurfacePage& page) noexcept;
-  class Wishes;
-  bool choose(const Vec3& p, double reach, Wishes& wishes) noexcept;
+  class PageRequests;
+  bool choose(const Vec3& p, double reach, PageRequests& requests) noexcept;
 
   protocol::SurfacePages pages_;
   std::uint32_t version_ = 0, shape_missing_ = 0;
@@ -94,8 +94,9 @@ class SurfaceModel {
   PageSlots slots_{kRoom};  // of tiles
   std::vector<Tile> tiles_;
   std::size_t next_slot_ = 0;
-  std::vector<Asked> asked_;  // by page, several of which share a place: the last one that was asked for
-  std::uint64_t asked_again_ = 0;
+  std::vector<Requested>
+      requested_;  // by page, several of which share a place: the last one that was asked for
+  std::uint64_t requested_again_ = 0;
   protocol::NearTiles near_;
   std::optional<Vec3> complete_at_;  // a place for which nothing was missing
 };

@@ -4,7 +4,7 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kFarthestPlace = 1e3;  // m
+constexpr double kMaxPlace = 1e3;  // m
 }
 
 Mat3 restoring_part(const Mat3& k) noexcept {
@@ -19,7 +19,7 @@ Mat3 restoring_part(const Mat3& k) noexcept {
 
 Vec3 force_at(const Linearised& l, const Vec3& p) noexcept {
   const Vec3 x = p - l.p;
-  if (!(x.cwiseAbs().maxCoeff() < kFarthestPlace)) return l.f;
+  if (!(x.cwiseAbs().maxCoeff() < kMaxPlace)) return l.f;
   if (l.f.isZero(0)) {
     const double depth = l.gap + l.normal.dot(x);
     return depth < 0 ? Vec3(depth * (l.k * l.normal)) : Vec3(Vec3::Zero());
@@ -32,7 +32,7 @@ void Tangent::update(const Sample& sample) noexcept {
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = with_usable_parts(sample);
   motion_.update(newest_);
-  if (newest_.here) newest_.here->k = restoring_part(newest_.here->k);
+  if (newest_.at_tool) newest_.at_tool->k = restoring_part(newest_.at_tool->k);
 }
 
 void Tangent::restart() noexcept {
@@ -42,8 +42,8 @@ void Tangent::restart() noexcept {
 }
 
 Vec3 Tangent::force(const Vec3& p, Time t) noexcept {
-  if (!newest_.here) return learned_.force(p, t);
-  return force_at(*newest_.here, p - motion_.since_sample(t));
+  if (!newest_.at_tool) return learned_.force(p, t);
+  return force_at(*newest_.at_tool, p - motion_.since_sample(t));
 }
 
 }  // namespace palpate::client

@@ -23,9 +23,9 @@ class Tangent : public Extrapolator {
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
   Vec3 force(const Vec3& p, Time t) noexcept override;
-  Wants wants() const noexcept override { return {.here = true}; }
-  bool stepped_down() const noexcept override { return !newest_.here; }
-  std::string_view stand_in() const noexcept override { return newest_.here ? "" : "learned_stiffness"; }
+  Request request() const noexcept override { return {.at_tool = true}; }
+  bool stepped_down() const noexcept override { return !newest_.at_tool; }
+  std::string_view substitute() const noexcept override { return newest_.at_tool ? "" : "learned_stiffness"; }
 
  private:
   LearnedStiffness learned_;

@@ -4,7 +4,7 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kShortestWay = 10e-6;  // m
+constexpr double kShortestPath = 10e-6;  // m
 }
 
 void TwoTangents::update(const Sample& sample) noexcept {
@@ -22,14 +22,14 @@ void TwoTangents::restart() noexcept {
 }
 
 Vec3 TwoTangents::force(const Vec3& p, Time t) noexcept {
-  const Vec3 here = first_.force(p, t);
-  if (!newest_.ahead || !newest_.here) return here;
-  const Vec3 still = p - motion_.since_sample(t);  // where the organ stood at t_n
+  const Vec3 near = first_.force(p, t);
+  if (!newest_.ahead || !newest_.at_tool) return near;
+  const Vec3 relative = p - motion_.since_sample(t);  // where the organ stood at t_n
   const Vec3 d = newest_.ahead->p - newest_.p;
-  const double along = (still - newest_.p).dot(d) / (d.squaredNorm() + kShortestWay * kShortestWay);
-  if (!(along > 0)) return here;
+  const double along = (relative - newest_.p).dot(d) / (d.squaredNorm() + kShortestPath * kShortestPath);
+  if (!(along > 0)) return near;
   const double s = std::min(along, 1.0), w = s * s * (3 - 2 * s);
-  return (1 - w) * here + w * force_at(*newest_.ahead, still);
+  return (1 - w) * near + w * force_at(*newest_.ahead, relative);
 }
 
 }  // namespace palpate::client

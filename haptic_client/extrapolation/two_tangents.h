@@ -15,10 +15,10 @@ class TwoTangents : public Extrapolator {
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
   Vec3 force(const Vec3& p, Time t) noexcept override;
-  Wants wants() const noexcept override { return {.here = true, .ahead = true}; }
-  bool stepped_down() const noexcept override { return !newest_.here || !newest_.ahead; }
-  std::string_view stand_in() const noexcept override {
-    return newest_.here && !newest_.ahead ? "tangent" : first_.stand_in();
+  Request request() const noexcept override { return {.at_tool = true, .ahead = true}; }
+  bool stepped_down() const noexcept override { return !newest_.at_tool || !newest_.ahead; }
+  std::string_view substitute() const noexcept override {
+    return newest_.at_tool && !newest_.ahead ? "tangent" : first_.substitute();
   }
 
  private:

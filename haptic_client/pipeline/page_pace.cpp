@@ -22,7 +22,7 @@ std::size_t PagePace::allowed(Time now) noexcept {
     period_ = now;
   }
   if (now - window_ >= kWindow) {
-    quickest_before_ = std::exchange(quickest_, std::nullopt);
+    fastest_before_ = std::exchange(fastest_, std::nullopt);
     window_ = now;
   }
   tokens_ = std::min(tokens_ + rate_ * dt, kMostTokens);
@@ -31,20 +31,20 @@ std::size_t PagePace::allowed(Time now) noexcept {
 
 void PagePace::came(Time took) noexcept {
   ++came_;
-  quickest_ = std::min(quickest_.value_or(took), took);
+  fastest_ = std::min(fastest_.value_or(took), took);
   slowest_ = std::max(slowest_, took);
   backoff_ = {};
 }
 
-std::optional<Time> PagePace::quickest() const noexcept {
-  if (!quickest_ || !quickest_before_) return quickest_ ? quickest_ : quickest_before_;
-  return std::min(*quickest_, *quickest_before_);
+std::optional<Time> PagePace::fastest() const noexcept {
+  if (!fastest_ || !fastest_before_) return fastest_ ? fastest_ : fastest_before_;
+  return std::min(*fastest_, *fastest_before_);
 }
 
 void PagePace::adapt() noexcept {
   if (lost_ > 0) backoff_ = std::min(2 * patience(), kMostPatience);
-  const auto quickest = this->quickest();
-  const bool waits = quickest && slowest_ - *quickest > kWaits;
+  const auto fastest = this->fastest();
+  const bool waits = fastest && slowest_ - *fastest > kWaits;
   if (waits || lost_ > 0) {
     rate_ = std::max(kSlower * rate_, kSlowest);
   } else if (came_ > 0) {
@@ -55,7 +55,7 @@ void PagePace::adapt() noexcept {
 }
 
 Time PagePace::patience() const noexcept {
-  const Time usual = std::clamp(3 * quickest().value_or(Time{}), kLeastPatience, kMostPatience);
+  const Time usual = std::clamp(3 * fastest().value_or(Time{}), kLeastPatience, kMostPatience);
   return std::max(usual, backoff_);
 }
 

@@ -18,7 +18,7 @@ class PagePace {
 
   /// Returns how many pages may be requested now.
   std::size_t allowed(Time now) noexcept;
-  void asked(std::size_t pages) noexcept { tokens_ -= static_cast<double>(pages); }
+  void requested(std::size_t pages) noexcept { tokens_ -= static_cast<double>(pages); }
   /// A page came `took` after it was asked for, once: which of several asks was answered nobody knows (Karn
   /// and Partridge 1987).
   void came(Time took) noexcept;
@@ -32,13 +32,13 @@ class PagePace {
 
  private:
   void adapt() noexcept;
-  std::optional<Time> quickest() const noexcept;
+  std::optional<Time> fastest() const noexcept;
 
   double rate_ = 250, tokens_ = 8;
-  std::uint64_t came_ = 0, lost_ = 0;               // in this period
-  std::optional<Time> quickest_, quickest_before_;  // in this window of time, and in the one before
-  Time slowest_{};                                  // in this period
-  Time backoff_{};                                  // the least patience, since pages were lost
+  std::uint64_t came_ = 0, lost_ = 0;             // in this period
+  std::optional<Time> fastest_, fastest_before_;  // in this window of time, and in the one before
+  Time slowest_{};                                // in this period
+  Time backoff_{};                                // the least patience, since pages were lost
   Time last_{}, period_{}, window_{};
 };
 

@@ -10,10 +10,10 @@ using protocol::ToolState;
 
 namespace {
 
-constexpr double kVelocityFilter = 0.005;                  // s, time constant of the velocity estimate
-constexpr int kLeadFilter = 8;                             // samples
-constexpr Time kAskPeriod = std::chrono::milliseconds(8);  // a thousand pages a second at most
-constexpr double kDamperShare = 0.25;                      // of the largest force: all dampers together
+constexpr double kVelocityFilter = 0.005;                      // s, time constant of the velocity estimate
+constexpr int kLeadFilter = 8;                                 // samples
+constexpr Time kRequestPeriod = std::chrono::milliseconds(8);  // a thousand pages a second at most
+constexpr double kDamperFraction = 0.25;                       // of the largest force: all dampers together
 constexpr double kFadeDamping = 2;         // N s/m, in the device frame, while the force fades
 constexpr double kFadeDampingRise = 0.03;  // s, from none to all of it and back: no step of a fast hand
 
@@ -37,7 +37,7 @@ Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
   Sample sample{s.number, Time{s.tool_t_ns}, s.p_W, s.f_W, s.surface_v_W};
   if ((s.flags & ForceSample::kHasCuts) != 0) sample.cuts = s.cuts;
   sample.cutting = (s.flags & ForceSample::kCutting) != 0;
-  if ((s.flags & ForceSample::kHasHere) != 0) sample.here = linearised(s.p_W, s.f_W, s.here);
+  if ((s.flags & ForceSample::kHasTangent) != 0) sample.at_tool = linearised(s.p_W, s.f_W, s.at_tool);
   if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = linearised(s.ahead_p_W, s.ahead_f_W, s.ahead);
   if ((s.flags & ForceSample::kHasOthers) != 0) {
     sample.others = OtherTools{s.others.v_W, symmetric(s.others.compliance)};
@@ -57,9 +57,9 @@ Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
   return sample;
 }
 
-void Pipeline::ask_for(const Wants& wants) {
-  wants_ |= wants;
-  if (wants_.surface && !model_) model_ = std::make_unique<SurfaceModel>();
+void Pipeline::set_request(const Request& request) {
+  request_ |= request;
+  if (request_.surface && !model_) model_ = std::make_unique<SurfaceModel>();
 }
 
 ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
@@ -68,15 +68,15 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   ++sensed_.tick;
   sensed_.t_ns = reading.t.count();
   sensed_.buttons = reading.buttons;
-  sensed_.flags = rearm_asked_ ? ToolState::kRearmed : 0;
-  rearm_asked_ = false;
-  if (wants_.here) sensed_.flags |= ToolState::kWantsHere;
-  if (wants_.ahead) sensed_.flags |= ToolState::kWantsAhead;
-  if (wants_.surface) sensed_.flags |= ToolState::kWantsSurface;
-  if (wants_.errors) sensed_.flags |= ToolState::kWantsErrors;
-  sensed_.lead_ns = wants_.ahead ? lead_.count() : 0;
-  const bool let_go = paused_ && watchdog_.gain() == 0;
-  if (let_go || (reading.buttons & workspace_.clutch) != 0) sensed_.flags |= ToolState::kClutched;
+  sensed_.flags = rearm_requested_ ? ToolState::kRearmed : 0;
+  rearm_requested_ = false;
+  if (request_.at_tool) sensed_.flags |= ToolState::kRequestsTangent;
+  if (request_.ahead) sensed_.flags |= ToolState::kRequestsAhead;
+  if (request_.surface) sensed_.flags |= ToolState::kRequestsSurface;
+  if (request_.errors) sensed_.flags |= ToolState::kRequestsErrors;
+  sensed_.lead_ns = request_.ahead ? lead_.count() : 0;
+  const bool release = paused_ && watchdog_.gain() == 0;
+  if (release || (reading.buttons & workspace_.clutch) != 0) sensed_.flags |= ToolState::kClutched;
   if (!reading.valid || !reading.p_D.allFinite()) {
     sensed_.flags |= ToolState::kDeviceLost;
     return sensed_;
@@ -94,10 +94,10 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
   return sensed_;
 }
 
-TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
-                          std::span<const protocol::SurfacePage> pages) noexcept {
+TickResult Pipeline::render(const ToolState& tool, const ForceSample* arrived,
+                            std::span<const protocol::SurfacePage> pages) noexcept {
   const Time now{tool.t_ns};
-  const double dt = seconds_between(felt_, now);
+  const double dt = seconds_between(rendered_, now);
   if ((tool.flags & ToolState::kRearmed) != 0 && limiter_.fault() != Fault::kNone) {
     limiter_.rearm();
     watchdog_.restart();
@@ -126,40 +126,40 @@ TickResult Pipeline::feel(const ToolState& tool, const ForceSample* arrived,
   }
   result.tool.newest_sample = estimate_.newest().number;
   if (paused_) result.tool.flags |= ToolState::kInPause;
-  if (model_) ask_for_pages(result.tool, now);
-  if (felt_.tick > 0) {
+  if (model_) request_pages(result.tool, now);
+  if (rendered_.tick > 0) {
     const Vec3& surface_v = estimate_.newest().surface_v;
     const bool organ = surface_v.norm() <= OrganMotion::kFastest;
-    passivity_.moved(now, workspace_.motion_to_device(tool.p_W - felt_.p_W),
+    passivity_.moved(now, workspace_.motion_to_device(tool.p_W - rendered_.p_W),
                      workspace_.motion_to_device(organ ? surface_v : Vec3(Vec3::Zero())), dt);
   }
   result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
   if (result.tool.newest_sample > 0) {
-    if (stats_.told == 0) stats_.first_told = now;
+    if (stats_.published == 0) stats_.first_published = now;
     if (!estimate_.stepped_down() && stats_.first_itself == Time{}) stats_.first_itself = now;
-    ++stats_.told;
+    ++stats_.published;
     stats_.stepped_down += estimate_.stepped_down() ? 1 : 0;
-    stats_.stand_ins.add(estimate_.stand_in());
+    stats_.substitutes.add(estimate_.substitute());
   }
-  felt_ = tool;
+  rendered_ = tool;
   return result;
 }
 
-void Pipeline::ask_for_pages(ToolState& tool, Time now) noexcept {
+void Pipeline::request_pages(ToolState& tool, Time now) noexcept {
   tool.pages_taken = stats_.pages;
   tool.flags &= static_cast<std::uint16_t>(~ToolState::kAsksPages);
   const auto& surface = estimate_.newest().surface;
-  if (!surface || model_->version() == 0 || now - asked_ < kAskPeriod) return;
-  asked_ = now;
+  if (!surface || model_->version() == 0 || now - requested_ < kRequestPeriod) return;
+  requested_ = now;
   const Vec3 p_rest = tool.p_W - surface->shift;
   const double reach = protocol::NearTiles::reach(surface->tool.radius, tool.v_W.norm());
   const std::span<std::uint32_t> room(tool.pages);
-  std::fill(room.begin(), room.end(), ToolState::kNoPage);
+  std::ranges::fill(room, ToolState::kNoPage);
   const auto chosen = room.first(std::min(pace_.allowed(now), room.size()));
-  const std::uint64_t again = model_->asked_again();
+  const std::uint64_t again = model_->requested_again();
   if (chosen.empty() || !model_->choose_missing(p_rest, reach, now, chosen, pace_.patience())) return;
-  pace_.lost(model_->asked_again() - again);
-  pace_.asked(static_cast<std::size_t>(std::count_if(
+  pace_.lost(model_->requested_again() - again);
+  pace_.requested(static_cast<std::size_t>(std::count_if(
       chosen.begin(), chosen.end(), [](std::uint32_t page) { return page != ToolState::kNoPage; })));
   tool.flags |= ToolState::kAsksPages;
   tool.surface_version = model_->version();
@@ -171,7 +171,7 @@ Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept 
              clutched = (tool.flags & ToolState::kClutched) != 0, off = lost || clutched;
   stats_.lost += lost ? 1 : 0;
   stats_.clutched += clutched ? 1 : 0;
-  const Vec3 law_D = workspace_.to_device(f_W), felt_D = limiter_.clamp(law_D, dt);
+  const Vec3 law_D = workspace_.to_device(f_W), rendered_D = limiter_.clamp(law_D, dt);
   const Passivity::Ruling passive = passivity_.rule(dt);
   const Watchdog::Ruling watchdog = rule_by_age(tool, dt);
   if (off) watchdog_.restart();  // so that it comes back softly
@@ -179,16 +179,16 @@ Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept 
                step = kFadeDamping / kFadeDampingRise * std::clamp(dt, 0.0, kLongestTick);
   fade_damping_ += std::clamp(fade - fade_damping_, -step, step);
   const double damping = passive.damping + fade_damping_;
-  const Vec3 damper_D = limiter_.within(kDamperShare, -damping * workspace_.motion_to_device(tool.v_W));
+  const Vec3 damper_D = limiter_.within(kDamperFraction, -damping * workspace_.motion_to_device(tool.v_W));
   const Vec3 f_D =
-      off ? limiter_.drop() : limiter_.push(watchdog.gain * passive.gain * felt_D + damper_D, dt);
-  passivity_.wrote(felt_D, damper_D);
+      off ? limiter_.drop() : limiter_.push(watchdog.gain * passive.gain * rendered_D + damper_D, dt);
+  passivity_.wrote(rendered_D, damper_D);
   law_newton_ = law_D.stableNorm();
   if (off || watchdog.gain < 1) {
     passivity_.restart();
-    felt_share_.restart();
+    rendered_fraction_.restart();
   } else {
-    felt_share_.tick(law_D, f_D, dt);
+    rendered_fraction_.tick(law_D, f_D, dt);
   }
   stats_.max_newton = std::max(stats_.max_newton, f_D.norm());
   return f_D;
@@ -202,14 +202,14 @@ Watchdog::Ruling Pipeline::rule_by_age(const ToolState& tool, double dt) noexcep
 }
 
 std::int64_t Pipeline::age_ns() const noexcept {
-  if (paused_) return felt_.t_ns - heard_ns_;
-  return estimate_.newest().number == 0 ? -1 : felt_.t_ns - estimate_.newest().t.count();
+  if (paused_) return rendered_.t_ns - heard_ns_;
+  return estimate_.newest().number == 0 ? -1 : rendered_.t_ns - estimate_.newest().t.count();
 }
 
 void Pipeline::follow_path(const ToolState& tool, double dt) noexcept {
-  const bool known = ((tool.flags | felt_.flags) & ToolState::kDeviceLost) == 0;
+  const bool known = ((tool.flags | rendered_.flags) & ToolState::kDeviceLost) == 0;
   if (dt <= 0 || !known) return;
-  stats_.path_m += (tool.p_W - felt_.p_W).norm();
+  stats_.path_m += (tool.p_W - rendered_.p_W).norm();
   stats_.path_s += dt;
   stats_.max_speed = std::max(stats_.max_speed, tool.v_W.norm());
 }

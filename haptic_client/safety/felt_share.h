@@ -5,7 +5,7 @@ namespace palpate::client {
 
 /// Watches how much of the law's force is felt, so that somebody is told when the safety chain takes most of
 /// it for long. Pure; haptic thread only.
-class FeltShare {
+class RenderedFraction {
  public:
   static constexpr double kHalf = 0.5;     ///< of the law's force
   static constexpr double kWeakFor = 0.5;  ///< s

@@ -6,16 +6,16 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kStormWindow = 1;   // s
-constexpr double kStormShare = 0.5;  // of the window
-constexpr double kWild = 100;        // of the largest force
-constexpr double kWildTime = 0.5;    // s
+constexpr double kStormWindow = 1;      // s
+constexpr double kStormFraction = 0.5;  // of the window
+constexpr double kExcessive = 100;      // of the largest force
+constexpr double kExcessiveTime = 0.5;  // s
 }  // namespace
 
 Vec3 Limiter::clamp(const Vec3& f_D, double dt) noexcept {
-  const bool wild = f_D.stableNorm() > kWild * settings_.max_force;
-  wild_time_ = wild ? wild_time_ + std::clamp(dt, 0.0, kLongestTick) : 0;
-  if (wild_time_ > kWildTime) latch(Fault::kWild);
+  const bool implausible = f_D.stableNorm() > kExcessive * settings_.max_force;
+  excessive_time_ = implausible ? excessive_time_ + std::clamp(dt, 0.0, kLongestTick) : 0;
+  if (excessive_time_ > kExcessiveTime) latch(Fault::kExcessive);
   const Vec3 f = within(1, f_D);
   counts_.clamped += f != f_D ? 1 : 0;
   return f;
@@ -34,9 +34,9 @@ Vec3 Limiter::push(const Vec3& f_D, double dt) noexcept {
   return push_;
 }
 
-Vec3 Limiter::within(double share, const Vec3& f_D) const noexcept {
+Vec3 Limiter::within(double fraction, const Vec3& f_D) const noexcept {
   constexpr double kRounding = 1 - 1e-15;  // of the products below: never a bit beyond
-  const double size = f_D.stableNorm(), most = share * settings_.max_force;  // stable: no overflow
+  const double size = f_D.stableNorm(), most = fraction * settings_.max_force;  // stable: no overflow
   return size <= most ? f_D : Vec3(f_D * (kRounding * most / size));
 }
 
@@ -45,7 +45,7 @@ void Limiter::watch_for_storm(bool slewed, double dt) noexcept {
   window_ += counts;
   slewed_time_ += slewed ? counts : 0;
   if (window_ < kStormWindow) return;
-  if (slewed_time_ > kStormShare * window_) latch(Fault::kStorm);
+  if (slewed_time_ > kStormFraction * window_) latch(Fault::kStorm);
   window_ = slewed_time_ = 0;
 }
 
@@ -53,8 +53,10 @@ void Limiter::latch(Fault fault) noexcept {
   push_.setZero();
   if (fault_ != Fault::kNone) return;
   fault_ = fault;
-  ++(fault == Fault::kStorm ? counts_.storms : fault == Fault::kWild ? counts_.wild : counts_.not_finite);
-  wild_time_ = 0;
+  ++(fault == Fault::kStorm       ? counts_.storms
+     : fault == Fault::kExcessive ? counts_.implausible
+                                  : counts_.not_finite);
+  excessive_time_ = 0;
 }
 
 }  // namespace palpate::client

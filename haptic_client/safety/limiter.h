@@ -9,7 +9,7 @@ namespace palpate::client {
 struct LimiterCounts {
   std::uint64_t clamped = 0;  ///< magnitude cut to the limit
   std::uint64_t slewed = 0;   ///< change per tick cut to the limit
-  std::uint64_t not_finite = 0, storms = 0, wild = 0;
+  std::uint64_t not_finite = 0, storms = 0, implausible = 0;
 };
 
 /// Why the force is latched off.
@@ -17,7 +17,7 @@ enum class Fault : std::uint8_t {
   kNone,
   kNotFinite,  ///< some stage produced a NaN or an infinity
   kStorm,      ///< the slew limit cut for more than half of a second's time: something oscillates
-  kWild,       ///< more than 100 times the largest force was asked for, half a second long
+  kExcessive,  ///< more than 100 times the largest force was asked for, half a second long
 };
 
 /// The last stage before the motors; there is no way around it. The force that leaves is finite, its
@@ -39,7 +39,7 @@ class Limiter {
   /// `push`.
   Vec3 clamp(const Vec3& f_D, double dt) noexcept;
   /// `f_D` (N) cut to a share of the largest force, direction kept.
-  Vec3 within(double share, const Vec3& f_D) const noexcept;
+  Vec3 within(double fraction, const Vec3& f_D) const noexcept;
   /// `f_D`, the force wished for (N, device frame): clamped, then slewed. `dt` (s): since the last tick; more
   /// than `kLongestTick` counts as that, so that a stalled loop does not come back with a blow.
   Vec3 push(const Vec3& f_D, double dt) noexcept;
@@ -65,7 +65,7 @@ class Limiter {
   Vec3 push_ = Vec3::Zero();
   Fault fault_ = Fault::kNone;
   LimiterCounts counts_;
-  double window_ = 0, slewed_time_ = 0, wild_time_ = 0;  // s
+  double window_ = 0, slewed_time_ = 0, excessive_time_ = 0;  // s
 };
 
 }  // namespace palpate::client

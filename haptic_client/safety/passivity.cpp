@@ -6,12 +6,12 @@
 namespace palpate::client {
 namespace {
 constexpr double kForget = 0.3;          // s, in which a debt that nothing pays is forgotten
-constexpr double kShare = 0.1;           // of the energy stored: what the reference may be wrong by
+constexpr double kFraction = 0.1;        // of the energy stored: what the reference may be wrong by
 constexpr double kScaleMemory = 0.5;     // s
-constexpr double kTouch = 1e-3;          // N, below which a sample is free
+constexpr double kFree = 1e-3;           // N, below which a sample is free
 constexpr double kComplianceMemory = 1;  // s
 constexpr double kMassBound = 0.02;      // kg: damping times tick stays below, a fifth of a light handle
-constexpr double kWhole = 1.5;           // debts at which damping is at its bound
+constexpr double kFullDamping = 1.5;     // debts at which damping is at its bound
 constexpr double kSoften = 0.2;          // 1/s, by which the gain falls for each debt beyond the first
 constexpr double kFastest = 10;          // 1/s, at most
 constexpr double kRecover = 0.05;        // 1/s
@@ -46,22 +46,22 @@ void Passivity::learn_compliance(const Reference& next) noexcept {
 }
 
 double Passivity::stored(double force, double max_force) const noexcept {
-  const double compliance = std::max(moment_, 0.0) / square_, felt = std::min(force, max_force);
-  return compliance * felt * (force - felt / 2);
+  const double compliance = std::max(moment_, 0.0) / square_, rendered = std::min(force, max_force);
+  return compliance * rendered * (force - rendered / 2);
 }
 
 void Passivity::sampled(Time t, const Vec3& p_D, const Vec3& f_D, double max_force) noexcept {
   const Reference next{true, p_D, f_D, t};
   const double force = f_D.norm();
-  const bool touches = force > kTouch;
-  if (last_.known && touches && last_.f.norm() > kTouch) learn_compliance(next);
+  const bool touches = force > kFree;
+  if (last_.known && touches && last_.f.norm() > kFree) learn_compliance(next);
   last_ = next;
   const Tick* tick = tick_at(t);
   if (tick == nullptr) {
     excess_known_ = false;
     return;
   }
-  if (touches && !(square_ > kTouch * kTouch)) return;
+  if (touches && !(square_ > kFree * kFree)) return;
   const double energy = touches ? stored(force, max_force) : 0, excess = tick->work + energy;
   if (!std::isfinite(excess)) return restart();
   scale_ = std::max(scale_, energy);
@@ -83,10 +83,10 @@ void Passivity::restart() noexcept {
 
 Passivity::Ruling Passivity::rule(double dt) noexcept {
   if (!settings_.enabled) return {};
-  const double owed = std::max(debt_, 0.0) / (settings_.debt + kShare * scale_);
+  const double pending = std::max(debt_, 0.0) / (settings_.debt + kFraction * scale_);
   const double most = dt > 0 ? std::min(settings_.damping, kMassBound / dt) : 0;
-  if (owed > kWhole) {
-    gain_ *= std::exp(-std::min(kSoften * (owed - kWhole), kFastest) * dt);
+  if (pending > kFullDamping) {
+    gain_ *= std::exp(-std::min(kSoften * (pending - kFullDamping), kFastest) * dt);
     gain_ = std::max(gain_, kLeastGain);
   } else {
     gain_ = std::min(gain_ + kRecover * dt, 1.0);
@@ -94,7 +94,7 @@ Passivity::Ruling Passivity::rule(double dt) noexcept {
   counts_.softened += gain_ < 1 ? 1 : 0;
   counts_.least_gain = std::min(counts_.least_gain, gain_);
   const double rise = std::max(dt, 0.0) / kDampingRise;
-  const double wanted = std::clamp((owed - 1) / (kWhole - 1), 0.0, 1.0);
+  const double wanted = std::clamp((pending - 1) / (kFullDamping - 1), 0.0, 1.0);
   damping_ = std::clamp(wanted, damping_ - rise, damping_ + rise);
   counts_.damped += damping_ > 0 ? 1 : 0;
   return {gain_, most * damping_};

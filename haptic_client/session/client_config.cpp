@@ -81,10 +81,10 @@ void put_in_device_frame(TrajectorySettings& trajectory, const Workspace& worksp
 
 std::vector<std::string> ClientConfig::scored_laws() const {
   std::vector<std::string> laws,
-      asked = score.value_or(std::vector<std::string>{"constant", "linear_time", "linear_position"});
-  if (!score || !score->empty()) asked.push_back(method);
-  for (const std::string& law : asked) {
-    if (std::find(laws.begin(), laws.end(), law) == laws.end()) laws.push_back(law);
+      requested = score.value_or(std::vector<std::string>{"constant", "linear_time", "linear_position"});
+  if (!score || !score->empty()) requested.push_back(method);
+  for (const std::string& law : requested) {
+    if (std::ranges::find(laws, law) == laws.end()) laws.push_back(law);
   }
   return laws;
 }

@@ -19,9 +19,9 @@ double per(double sum, double count) {
   return count > 0 ? sum / count : 0;
 }
 
-Json stand_ins_report(const StandIns& stand_ins) {
+Json substitutes_report(const Substitutes& substitutes) {
   Json laws = Json::object();
-  for (const auto& [law, ticks] : stand_ins.rows()) {
+  for (const auto& [law, ticks] : substitutes.rows()) {
     if (ticks > 0) laws[std::string(law)] = ticks;
   }
   return laws;
@@ -29,23 +29,23 @@ Json stand_ins_report(const StandIns& stand_ins) {
 
 /// Which law was really at work where `law` was asked for: the one of most ticks, and each one's share of
 /// them, the largest first. Empty before the first sample.
-Json at_work_report(const std::string& law, const StandIns& stand_ins, std::uint64_t ticks) {
+Json at_work_report(const std::string& law, const Substitutes& substitutes, std::uint64_t ticks) {
   std::vector<std::pair<std::uint64_t, std::string>> laws{{ticks, law}};
-  for (const auto& [name, stood_in] : stand_ins.rows()) {
+  for (const auto& [name, stood_in] : substitutes.rows()) {
     if (stood_in == 0) continue;
     laws.front().first -= std::min(stood_in, laws.front().first);
     laws.emplace_back(stood_in, name);
   }
-  std::stable_sort(laws.begin(), laws.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::ranges::stable_sort(laws, [](const auto& a, const auto& b) { return a.first > b.first; });
   Json report = {{"law", ticks > 0 ? laws.front().second : ""}, {"laws", Json::object()}};
-  for (const auto& [felt, name] : laws) {
-    if (felt > 0) report["laws"][name] = per(static_cast<double>(felt), static_cast<double>(ticks));
+  for (const auto& [rendered, name] : laws) {
+    if (rendered > 0) report["laws"][name] = per(static_cast<double>(rendered), static_cast<double>(ticks));
   }
   return report;
 }
 
 bool knows_surface(const std::string& law) {
-  return find_row(extrapolators(), law, "law", "report").make()->wants().surface;
+  return find_row(extrapolators(), law, "law", "report").make()->request().surface;
 }
 
 Json methods_report(const Scoring& scoring) {
@@ -53,8 +53,8 @@ Json methods_report(const Scoring& scoring) {
   for (std::size_t i = 0; i < scoring.names().size(); ++i) {
     Json method = to_json(scoring.metrics(i));
     method["ticks"] = scoring.ticks();
-    method["at_work"] = at_work_report(scoring.names()[i], scoring.stand_ins(i), scoring.ticks());
-    method["stand_ins"] = stand_ins_report(scoring.stand_ins(i));
+    method["at_work"] = at_work_report(scoring.names()[i], scoring.substitutes(i), scoring.ticks());
+    method["stand_ins"] = substitutes_report(scoring.substitutes(i));
     // Of a law that knows the surface, only with one: `evaluate` measures it.
     method["ns_per_tick"] =
         knows_surface(scoring.names()[i]) ? Json() : Json(cost_of(scoring.names()[i]).tick_ns);
@@ -146,9 +146,9 @@ bool chooses(const std::string& law) {
 
 /// "two_tangents stood in for local_contact in 300 ticks, learned_stiffness in 2"; of a law that chooses,
 /// "best_recent was two_tangents in 300 ticks".
-std::string stand_ins_text(const Json& stand_ins, const std::string& law) {
+std::string substitutes_text(const Json& substitutes, const std::string& law) {
   std::string text;
-  for (const auto& [name, ticks] : stand_ins.items()) {
+  for (const auto& [name, ticks] : substitutes.items()) {
     if (!text.empty()) {
       text += fmt::format(", {} in {}", name, ticks.get<long>());
     } else if (chooses(law)) {
@@ -161,34 +161,34 @@ std::string stand_ins_text(const Json& stand_ins, const std::string& law) {
 }
 
 /// 99.75 of 99.7512 %, and never 100 of less than all.
-std::string percent_text(double share) {
-  return share < 1 ? fmt::format("{:.4g} %", std::min(100 * share, 99.99)) : "100 %";
+std::string percent_text(double fraction) {
+  return fraction < 1 ? fmt::format("{:.4g} %", std::min(100 * fraction, 99.99)) : "100 %";
 }
 
 /// The law that was really at work in most ticks of the row of another, in brackets.
 std::string row_name(const std::string& law, const Json& scores) {
   const auto at_work = scores["at_work"]["law"].get<std::string>();
   if (at_work.empty() || at_work == law) return law;
-  const double share = scores["at_work"]["laws"][at_work].get<double>();
-  return fmt::format("{} (as {} {})", law, at_work, percent_text(share));
+  const double fraction = scores["at_work"]["laws"][at_work].get<double>();
+  return fmt::format("{} (as {} {})", law, at_work, percent_text(fraction));
 }
 
 /// "two_tangents 99.75 %, local_contact 0.25 % (asked for: local_contact)".
-std::string felt_text(const Json& tool) {
+std::string rendered_text(const Json& tool) {
   const auto method = tool["method"].get<std::string>();
   std::string text;
-  for (const auto& [name, share] : tool["felt"]["laws"].items())
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, percent_text(share.get<double>()));
+  for (const auto& [name, fraction] : tool["felt"]["laws"].items())
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, percent_text(fraction.get<double>()));
   if (text.empty()) return fmt::format("nothing; asked for: {}", method);
   if (tool["felt"]["law"] == method) return text;
   if (chooses(method)) return fmt::format("{} ({})", text, method);
   return fmt::format("{} (asked for: {})", text, method);
 }
 
-void print_stand_ins(const Json& methods) {
+void print_substitutes(const Json& methods) {
   for (const auto& [name, scores] : methods.items()) {
     if (scores["stand_ins"].empty()) continue;
-    fmt::print("          {} of {}{}\n", stand_ins_text(scores["stand_ins"], name),
+    fmt::print("          {} of {}{}\n", substitutes_text(scores["stand_ins"], name),
                scores["ticks"].get<long>(),
                chooses(name) ? "" : ": what the samples brought was not enough for more");
   }
@@ -197,9 +197,9 @@ void print_stand_ins(const Json& methods) {
 /// "contact 98 %, hermite 2 %".
 std::string reference_text(const Json& reference) {
   std::string text;
-  for (const auto& [name, share] : reference["shares"].items()) {
-    if (share.get<double>() > 0)
-      text += fmt::format("{}{} {:.3g} %", text.empty() ? "" : ", ", name, 100 * share.get<double>());
+  for (const auto& [name, fraction] : reference["shares"].items()) {
+    if (fraction.get<double>() > 0)
+      text += fmt::format("{}{} {:.3g} %", text.empty() ? "" : ", ", name, 100 * fraction.get<double>());
   }
   return text.empty() ? "none yet" : text;
 }
@@ -214,7 +214,7 @@ void print_scores(const Json& tool) {
       motion["sample_rate_hz"].get<double>());
   if (std::isnan(methods.begin().value()["mean_percent"].get<double>())) {
     fmt::print("          nothing was touched, so that no law can be wrong\n");
-    return print_stand_ins(methods);
+    return print_substitutes(methods);
   }
   fmt::print("          {:46}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
              "paper: % of the force on the line", "");
@@ -227,7 +227,7 @@ void print_scores(const Json& tool) {
                number("paper_mean_percent"), number("paper_max_percent"), number("paper_max_force_percent"),
                m["ns_per_tick"].is_null() ? "-" : fmt::format("{:.1f}", number("ns_per_tick")));
   }
-  print_stand_ins(methods);
+  print_substitutes(methods);
 }
 
 void print_loop(const Json& loop) {
@@ -253,7 +253,7 @@ void print_tool(const Json& tool) {
   if (!force["stand_ins"].empty() || number(force, "surface_pages") > 0) {
     fmt::print("  law     {}; {:.0f} pages of the surface came\n",
                !force["stand_ins"].empty()
-                   ? stand_ins_text(force["stand_ins"], tool["method"].get<std::string>())
+                   ? substitutes_text(force["stand_ins"], tool["method"].get<std::string>())
                    : "itself in all ticks",
                number(force, "surface_pages"));
   }
@@ -295,7 +295,7 @@ const char* name_of(Fault fault) {
       return "none";
     case Fault::kNotFinite:
       return "a force was not finite";
-    case Fault::kWild:
+    case Fault::kExcessive:
       return "for half a second a force was asked for that no tissue makes, over 100 times the limit";
     case Fault::kStorm:
       return "the force oscillated against the slew limit";
@@ -307,17 +307,17 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
   const PipelineStats& stats = pipeline.stats();
   const LimiterCounts& limiter = pipeline.limiter().counts();
   const auto pairs = static_cast<double>(stats.sample_pairs);
-  Json felt = at_work_report(config.method, stats.stand_ins, stats.told);
-  felt.update(whole_error_report(config.method, observation));
+  Json rendered = at_work_report(config.method, stats.substitutes, stats.published);
+  rendered.update(error_budget_report(config.method, observation));
   return {{"device", config.device.name},
           {"port", config.device.port},
           {"method", config.method},
-          {"felt", felt},
+          {"felt", rendered},
           {"force",
            {{"samples", stats.samples},
             {"overtaken", stats.overtaken},
             {"stepped_down", stats.stepped_down},
-            {"stand_ins", stand_ins_report(stats.stand_ins)},
+            {"stand_ins", substitutes_report(stats.substitutes)},
             {"surface_pages", stats.pages},
             {"age_ms", quantiles(stats.age_ns, 1e6)},
             {"max_newton", stats.max_newton}}},
@@ -332,14 +332,14 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
             {"damped", pipeline.passivity().counts().damped},
             {"softened", pipeline.passivity().counts().softened},
             {"least_gain", pipeline.passivity().counts().least_gain},
-            {"weak_s", pipeline.felt_share().total_s()},
+            {"weak_s", pipeline.rendered_fraction().total_s()},
             {"largest_debt_mj", 1e3 * pipeline.passivity().counts().largest_debt_j},
             {"ramped", pipeline.watchdog().ramped()},
             {"lost", stats.lost},
             {"clutched", stats.clutched},
             {"not_finite", limiter.not_finite},
             {"storms", limiter.storms},
-            {"wild", limiter.wild}}},
+            {"wild", limiter.implausible}}},
           {"scored_ticks", observation.scoring().scored()},
           {"reference", reference_report(observation.scoring())},
           {"methods", methods_report(observation.scoring())},
@@ -368,11 +368,11 @@ Json link_report(const NetLink& link) {
 
 void print_report(const Json& report) {
   for (const Json& tool : report["tools"]) {
-    fmt::print("haptic_client: {}, felt: {}\n", tool["device"].get<std::string>(), felt_text(tool));
+    fmt::print("haptic_client: {}, felt: {}\n", tool["device"].get<std::string>(), rendered_text(tool));
     if (tool.contains("loop")) print_loop(tool["loop"]);
     print_tool(tool);
     print_scores(tool);
-    print_whole_error(tool);
+    print_error_budget(tool);
     print_drift(tool);
     if (tool.contains("link")) print_link(tool["link"]);
     if (tool.contains("recording")) {

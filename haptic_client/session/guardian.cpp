@@ -17,19 +17,19 @@
 namespace palpate::client {
 namespace {
 
-constexpr int kLook = 100;      // ms
-constexpr int kMostStill = 15;  // looks without a heartbeat, once there was one
+constexpr int kPollPeriod = 100;  // ms
+constexpr int kMaxIdle = 15;      // looks without a heartbeat, once there was one
 
 /// One loop, as it was seen last.
 struct SeenLoop {
   std::uint64_t ticks = 0;
-  int still = 0;  // looks
+  int idle = 0;  // looks
 
-  bool stands_still(const Heartbeat& beats) {
+  bool is_idle(const Heartbeat& beats) {
     const std::uint64_t now = beats.ticks;
-    still = now == ticks && now > 0 && now < Heartbeat::kLeftPushing ? still + 1 : 0;
+    idle = now == ticks && now > 0 && now < Heartbeat::kReleasedPushing ? idle + 1 : 0;
     ticks = now;
-    return still >= kMostStill;
+    return idle >= kMaxIdle;
   }
 };
 
@@ -51,19 +51,19 @@ class Guarded {
       : configs_(configs), beats_(beats), loops_(configs.size()), taken_(configs.size(), 0) {}
 
   /// Those whose loop is over, and has left them pushing: the client lives, and holds the others.
-  void take_left_pushing() {
+  void take_released_pushing() {
     for (std::size_t i = 0; i < configs_.size(); ++i) {
-      if (beats_[i].ticks == Heartbeat::kLeftPushing) take(i, "the device did not take its last zero");
+      if (beats_[i].ticks == Heartbeat::kReleasedPushing) take(i, "the device did not take its last zero");
     }
   }
   void take_all() {
     for (std::size_t i = 0; i < configs_.size(); ++i) take(i, "the client died");
   }
   /// Whether a loop stands still; to be asked at each look.
-  bool stands_still() {
-    bool still = false;
-    for (std::size_t i = 0; i < loops_.size(); ++i) still |= loops_[i].stands_still(beats_[i]);
-    return still;
+  bool is_idle() {
+    bool idle = false;
+    for (std::size_t i = 0; i < loops_.size(); ++i) idle |= loops_[i].is_idle(beats_[i]);
+    return idle;
   }
 
  private:
@@ -89,12 +89,12 @@ void guard(int pipe, pid_t client, Guarded guarded) {
   prctl(PR_SET_NAME, "palpate-guard");
   for (bool over = false; !over;) {
     pollfd end{pipe, POLLIN, 0};
-    over = poll(&end, 1, kLook) > 0;
-    guarded.take_left_pushing();  // also where it says goodbye, which it does after
+    over = poll(&end, 1, kPollPeriod) > 0;
+    guarded.take_released_pushing();  // also where it says goodbye, which it does after
     char byte;
     if (over) {
       if (read(pipe, &byte, 1) <= 0) guarded.take_all();
-    } else if (guarded.stands_still()) {
+    } else if (guarded.is_idle()) {
       log::error("the client stands still with a device in its hand; it is ended");
       kill(client, SIGKILL);
       guarded.take_all();
@@ -108,9 +108,8 @@ void guard(int pipe, pid_t client, Guarded guarded) {
 }  // namespace
 
 Guardian::Guardian(std::span<const ClientConfig> configs) {
-  const bool needed = std::any_of(configs.begin(), configs.end(), [](const ClientConfig& config) {
-    return row_of(config.device).make_safe != nullptr;
-  });
+  const bool needed = std::ranges::any_of(
+      configs, [](const ClientConfig& config) { return row_of(config.device).make_safe != nullptr; });
   if (!needed) return;
   void* const page = mmap(nullptr, configs.size() * sizeof *beats_, PROT_READ | PROT_WRITE,
                           MAP_SHARED | MAP_ANONYMOUS, -1, 0);

@@ -30,8 +30,8 @@ void HapticLoop::run(const std::stop_token& stop) noexcept {
     const Time took = now() - start;
     stats_.tick_ns.add(took.count());
     observation_.tick(result, took, late);
-    tell(result);
-    tell_page(result);
+    report(result);
+    publish_page(result);
     deadline += period_;
   }
   const bool at_rest = device_.stop();
@@ -45,7 +45,7 @@ TickResult HapticLoop::tick() noexcept {
   const DeviceReading reading = device_.read(now());
   protocol::ForceSample sample;
   const bool fresh = mailboxes_.force.read(sample);
-  if (fresh) telemetry_.want((sample.flags & protocol::ForceSample::kWantsTelemetry) != 0);
+  if (fresh) telemetry_.want((sample.flags & protocol::ForceSample::kRequestsTelemetry) != 0);
   std::size_t pages = 0;
   while (pages < pages_.size() && mailboxes_.pages.pop(pages_[pages])) ++pages;
   const TickResult result =
@@ -57,12 +57,13 @@ TickResult HapticLoop::tick() noexcept {
 }
 
 /// What a page is told is old by then if the network thread has no room for it.
-void HapticLoop::tell_page(const TickResult& result) noexcept {
-  const protocol::Telemetry* told = telemetry_.tick(result, pipeline_, observation_.scoring(), stats_.missed);
-  if (told != nullptr && mailboxes_.telemetry.push(*told)) mailboxes_.bell.ring();
+void HapticLoop::publish_page(const TickResult& result) noexcept {
+  const protocol::Telemetry* published =
+      telemetry_.tick(result, pipeline_, observation_.scoring(), stats_.missed);
+  if (published != nullptr && mailboxes_.telemetry.push(*published)) mailboxes_.bell.ring();
 }
 
-void HapticLoop::tell(const TickResult& result) noexcept {
+void HapticLoop::report(const TickResult& result) noexcept {
   ticks.store(stats_.ticks, std::memory_order_relaxed);
   missed.store(stats_.missed, std::memory_order_relaxed);
   newest_newton.store(result.f_D.norm(), std::memory_order_relaxed);
@@ -71,7 +72,7 @@ void HapticLoop::tell(const TickResult& result) noexcept {
   law_newton.store(pipeline_.law_newton(), std::memory_order_relaxed);
   gain.store(pipeline_.passivity().gain(), std::memory_order_relaxed);
   paused.store(pipeline_.paused(), std::memory_order_relaxed);
-  weak.store(pipeline_.felt_share().weak(), std::memory_order_relaxed);
+  weak.store(pipeline_.rendered_fraction().weak(), std::memory_order_relaxed);
   fault.store(pipeline_.limiter().fault(), std::memory_order_relaxed);
 }
 

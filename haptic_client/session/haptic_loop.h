@@ -62,8 +62,8 @@ class HapticLoop {
 
  private:
   TickResult tick() noexcept;
-  void tell(const TickResult& result) noexcept;
-  void tell_page(const TickResult& result) noexcept;
+  void report(const TickResult& result) noexcept;
+  void publish_page(const TickResult& result) noexcept;
 
   Device& device_;
   Pipeline& pipeline_;

@@ -7,11 +7,13 @@ namespace palpate::client {
 /// That a haptic loop goes on, for the guardian in another process: one for each loop, so that none hides
 /// another that hangs.
 struct Heartbeat {
-  static constexpr std::uint64_t kEnded = ~std::uint64_t{0}, kLeftPushing = kEnded - 1;
+  static constexpr std::uint64_t kEnded = ~std::uint64_t{0}, kReleasedPushing = kEnded - 1;
 
   void beat() noexcept { ticks.fetch_add(1, std::memory_order_relaxed); }
   /// The loop is over. `at_rest`: its device has had its zero; else the guardian is to take it over.
-  void end(bool at_rest) noexcept { ticks.store(at_rest ? kEnded : kLeftPushing, std::memory_order_relaxed); }
+  void end(bool at_rest) noexcept {
+    ticks.store(at_rest ? kEnded : kReleasedPushing, std::memory_order_relaxed);
+  }
 
   std::atomic<std::uint64_t> ticks{0};  ///< 0: not begun
 };

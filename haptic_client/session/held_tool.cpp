@@ -26,7 +26,7 @@ double rate_of(const ClientConfig& config) {
   return std::min(config.rate_hz, 1 / to_seconds(row_of(config.device).limits(config.device).min_period));
 }
 
-std::size_t kept_ticks(const ClientConfig& config, const ToolFiles& files, std::optional<double> seconds) {
+std::size_t stored_ticks(const ClientConfig& config, const ToolFiles& files, std::optional<double> seconds) {
   if (!files.trace) return 0;
   return static_cast<std::size_t>(std::min(seconds.value_or(kTraceSeconds) + 1, kTraceSeconds) *
                                   rate_of(config));
@@ -43,7 +43,7 @@ HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::stri
       pipeline_(find_row(extrapolators(), config.method, "method", config.method_where).make(),
                 config.workspace, config.device_limits(), config.passivity, config.blend),
       observation_(config.scored_laws(), rate_of(config), config.score_where,
-                   kept_ticks(config, files, seconds), config.blend),
+                   stored_ticks(config, files, seconds), config.blend),
       telemetry_(config.device.name, row_of(config.device).make_safe != nullptr, config.method,
                  rate_of(config)),
       loop_(*device_, pipeline_, mailboxes_, observation_, telemetry_, from_seconds(1 / rate_of(config))),
@@ -54,8 +54,8 @@ HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::stri
                              : nullptr),
       recording_(recorder_.get()),
       link_(socket_, server_, mailboxes_, key_of(config), recorder_.get()) {
-  pipeline_.ask_for(observation_.scoring().wants());
-  pipeline_.ask_for({.errors = true});
+  pipeline_.set_request(observation_.scoring().request());
+  pipeline_.set_request({.errors = true});
 }
 
 HeldTool::~HeldTool() {
@@ -110,12 +110,12 @@ void HeldTool::end_if_stuck() {
 }
 
 /// Whoever presses into a wall that gives way should know that the wall is not to blame.
-void HeldTool::tell_weakness() {
+void HeldTool::report_weakness() {
   const bool weak = loop_.weak;
   if (weak && !weak_) {
     const double gain = loop_.gain, law = loop_.law_newton;
     const std::string why =
-        gain < FeltShare::kHalf
+        gain < RenderedFraction::kHalf
             ? fmt::format(
                   "the wall is too stiff for this rate and latency, so it is felt at {:.0f} % of its "
                   "stiffness; a law with tangents, a faster loop or a softer organ help",
@@ -148,9 +148,9 @@ void HeldTool::look() {
                  name_of(fault), getpid());
   }
   fault_ = fault;
-  tell_weakness();
+  report_weakness();
   recording_.look();
-  link_.watcher.look(name_);
+  link_.watcher.poll(name_);
   if (const char* status = device_->status(); status != device_status_) {
     if (status[0] != 0) log::info("{}{}", name_, status);
     device_status_ = status;
@@ -170,8 +170,9 @@ Json HeldTool::report() const {
   tool["link"] = link_report(link_);
   tool["link"]["rate_hz"] = link_.session().welcome().rate_hz;
   const PipelineStats& stats = pipeline_.stats();
-  tool["link"]["first_itself_s"] =
-      stats.first_itself > Time{} ? Json(to_seconds(stats.first_itself - stats.first_told)) : Json(nullptr);
+  tool["link"]["first_itself_s"] = stats.first_itself > Time{}
+                                       ? Json(to_seconds(stats.first_itself - stats.first_published))
+                                       : Json(nullptr);
   tool["safety"]["cut_by_motors"] = device_->cut_by_motors();
   if (recorder_) tool["recording"] = protocol::recording_report(*recorder_);
   return tool;

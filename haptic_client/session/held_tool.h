@@ -55,7 +55,7 @@ class HeldTool {
 
  private:
   void end_if_stuck();
-  void tell_weakness();
+  void report_weakness();
 
   ClientConfig config_;
   ToolFiles files_;

@@ -10,7 +10,7 @@ namespace palpate::client {
 using protocol::Direction;
 
 namespace {
-constexpr Time kBetweenHellos = std::chrono::milliseconds(5), kOnTheWay = std::chrono::seconds(1);
+constexpr Time kBetweenHellos = std::chrono::milliseconds(5), kInTransit = std::chrono::seconds(1);
 }
 
 LinkProbe::LinkProbe(const protocol::Endpoint& server, const protocol::Key& key)
@@ -36,7 +36,7 @@ void LinkProbe::stop() {
   socket_.stop();
   thread_.join();
   // What the table still holds is lost, unless it is young.
-  const Time old = now() - kOnTheWay;
+  const Time old = now() - kInTransit;
   for (const Time said : said_) figures_.lost += said > Time{} && said < old ? 1 : 0;
 }
 
@@ -50,7 +50,7 @@ void LinkProbe::say_hello() {
     return;
   }
   ++figures_.sent;
-  Time& said = said_[attempt % kRemembered];
+  Time& said = said_[attempt % kStored];
   if (said > Time{}) ++figures_.lost;  // that of 5 s ago
   said = now();
 }
@@ -61,8 +61,8 @@ void LinkProbe::take(std::span<const std::byte> bytes, const protocol::Endpoint&
   if (from != server_ || protocol::decode(bytes, datagram) != protocol::Verdict::kAccepted) return;
   const auto* challenge = std::get_if<protocol::Challenge>(&datagram.message);
   if (challenge == nullptr || challenge->nonce != nonce_ || !authentic(bytes, down_)) return;
-  if (challenge->attempt > figures_.sent || figures_.sent - challenge->attempt >= kRemembered) return;
-  Time& said = said_[challenge->attempt % kRemembered];
+  if (challenge->attempt > figures_.sent || figures_.sent - challenge->attempt >= kStored) return;
+  Time& said = said_[challenge->attempt % kStored];
   if (said == Time{}) return;  // doubled
   const auto took = static_cast<double>((t - said).count());
   said = Time{};

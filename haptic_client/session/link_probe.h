@@ -32,7 +32,7 @@ class LinkProbe {
   const Figures& figures() const { return figures_; }
 
  private:
-  static constexpr std::size_t kRemembered = 1024;  // Hellos: 5 s
+  static constexpr std::size_t kStored = 1024;  // Hellos: 5 s
   void say_hello();
   void take(std::span<const std::byte> bytes, const protocol::Endpoint& from);
 
@@ -40,7 +40,7 @@ class LinkProbe {
   protocol::UdpSocket socket_;
   protocol::Nonce nonce_;
   protocol::Key up_, down_;
-  std::array<Time, kRemembered> said_{};  // when, by attempt; 0: answered
+  std::array<Time, kStored> said_{};  // when, by attempt; 0: answered
   std::uint64_t newest_answered_ = 0;
   double before_ns_ = 0;
   Figures figures_;

@@ -53,14 +53,14 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   }
   figures_.received(bytes.size(), socket_.arrived());
   if (message != nullptr) pass_on(*message, socket_.arrived());
-  if (std::exchange(session_number_, session_.number()) != session_.number()) let_go();
+  if (std::exchange(session_number_, session_.number()) != session_.number()) release();
   welcomed = session_.welcomed();
   refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
   greet();
 }
 
 /// Another session begins, perhaps with another scene: what a page pressed in the one before is up.
-void NetLink::let_go() {
+void NetLink::release() {
   if (pointer_.buttons == 0) return;
   pointer_.buttons = 0;
   mailboxes_.pointer.write(pointer_);

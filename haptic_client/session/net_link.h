@@ -42,7 +42,7 @@ class NetLink {
   void on_timer();
   void pass_on(const protocol::Message& message, Time t);
   void greet();
-  void let_go();
+  void release();
   void send(const protocol::Message& message);
 
   protocol::UdpSocket& socket_;

@@ -12,7 +12,7 @@ namespace {
 
 /// Appends to a name, as much as there is room for.
 void append(Telemetry::Name& name, std::string_view text) noexcept {
-  auto at = std::find(name.begin(), name.end(), std::uint8_t{0});
+  auto at = std::ranges::find(name, std::uint8_t{0});
   for (const char c : text) {
     if (at == name.end()) return;
     *at++ = static_cast<std::uint8_t>(c);
@@ -46,31 +46,31 @@ const Telemetry* TelemetryMaker::tick(const TickResult& result, const Pipeline& 
   const std::int64_t t = result.tool.t_ns;
   if (!wanted_ || !began_) {
     began_ = wanted_;
-    begin_at(t);
+    start_at(t);
     return nullptr;
   }
   longest_ns_ = std::max(longest_ns_, t - last_ns_);
   oldest_ns_ = std::max(oldest_ns_, pipeline.age_ns());
   last_ns_ = t;
-  const Vec3 felt_W = pipeline.workspace().force_to_world(result.f_D);
-  if (seen_++ % every_ == every_ - 1) add(felt_W, scoring);
+  const Vec3 rendered_W = pipeline.workspace().force_to_world(result.f_D);
+  if (seen_++ % every_ == every_ - 1) add(rendered_W, scoring);
   if (next_.count < ticks_) return nullptr;
-  next_.f_W = felt_W.allFinite() ? felt_W : Vec3::Zero();
+  next_.f_W = rendered_W.allFinite() ? rendered_W : Vec3::Zero();
   complete(result, pipeline, scoring, missed);
-  begin_at(t);
-  return &told_;
+  start_at(t);
+  return &published_;
 }
 
-void TelemetryMaker::begin_at(std::int64_t t_ns) noexcept {
-  begin_ns_ = last_ns_ = t_ns;
+void TelemetryMaker::start_at(std::int64_t t_ns) noexcept {
+  start_ns_ = last_ns_ = t_ns;
   longest_ns_ = oldest_ns_ = 0;
   seen_ = 0;
   next_.count = 0;
 }
 
-void TelemetryMaker::add(const Vec3& felt_W, const Scoring& scoring) noexcept {
+void TelemetryMaker::add(const Vec3& rendered_W, const Scoring& scoring) noexcept {
   const std::size_t laws = scoring.names().size();
-  next_.felt[next_.count] = newton(felt_W);
+  next_.rendered[next_.count] = newton(rendered_W);
   for (std::size_t i = 0; i < laws; ++i) next_.by_law[next_.count * laws + i] = newton(scoring.forces()[i]);
   ++next_.count;
 }
@@ -88,7 +88,7 @@ void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline
   next_.t_ns = result.tool.t_ns;
   next_.p_W = result.tool.p_W;
   next_.age_ns = oldest_ns_;
-  const std::int64_t spent = last_ns_ - begin_ns_;
+  const std::int64_t spent = last_ns_ - start_ns_;
   const auto periods = static_cast<std::int64_t>(seen_);
   next_.period_ns = in_32_bits(spent / periods);
   next_.dt_ns = in_32_bits(spent / periods * static_cast<std::int64_t>(every_));
@@ -100,10 +100,10 @@ void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline
   next_.clamped = in_32_bits(pipeline.limiter().counts().clamped);
   next_.slewed = in_32_bits(pipeline.limiter().counts().slewed);
   next_.damped = in_32_bits(pipeline.passivity().counts().damped);
-  next_.felt_law = {};
-  append(next_.felt_law, law_);
-  if (const std::string_view other = pipeline.stand_in(); !other.empty())
-    append(next_.felt_law, ": "), append(next_.felt_law, other);
+  next_.rendered_law = {};
+  append(next_.rendered_law, law_);
+  if (const std::string_view other = pipeline.substitute(); !other.empty())
+    append(next_.rendered_law, ": "), append(next_.rendered_law, other);
   next_.laws = static_cast<std::uint8_t>(scoring.names().size());
   next_.name = {};
   next_.error_percent = -1;
@@ -114,7 +114,7 @@ void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline
     const double error = scoring.metrics(named_).mean_percent;
     if (scoring.scored() > 0 && error >= 0) next_.error_percent = static_cast<float>(std::min(error, 1e6));
   }
-  told_ = next_;
+  published_ = next_;
 }
 
 }  // namespace palpate::client

@@ -23,8 +23,8 @@ class TelemetryMaker {
 
  private:
   static constexpr double kMessagesHz = 30;
-  void begin_at(std::int64_t t_ns) noexcept;
-  void add(const Vec3& felt_W, const Scoring& scoring) noexcept;
+  void start_at(std::int64_t t_ns) noexcept;
+  void add(const Vec3& rendered_W, const Scoring& scoring) noexcept;
   void complete(const TickResult& result, const Pipeline& pipeline, const Scoring& scoring,
                 std::uint64_t missed) noexcept;
 
@@ -32,10 +32,10 @@ class TelemetryMaker {
   std::uint64_t every_;  // ticks between two that are told
   std::size_t ticks_;    // told in a message
   bool wanted_ = false, began_ = false;
-  std::int64_t last_ns_ = 0, begin_ns_ = 0, longest_ns_ = 0, oldest_ns_ = 0;
+  std::int64_t last_ns_ = 0, start_ns_ = 0, longest_ns_ = 0, oldest_ns_ = 0;
   std::uint64_t seen_ = 0;  // ticks since the message before
   std::uint8_t named_ = 0;
-  protocol::Telemetry next_, told_;
+  protocol::Telemetry next_, published_;
 };
 
 }  // namespace palpate::client

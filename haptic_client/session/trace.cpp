@@ -12,12 +12,12 @@ constexpr std::size_t kFlushAt = 1 << 16;  // bytes
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws,
-                         const std::string& felt)
+                         const std::string& rendered)
     : name_(file),
       file_(file, Contents::kTable),
       out_(file_.path(), std::ios::binary),
       laws_(laws.size()),
-      felt_(static_cast<std::size_t>(std::ranges::find(laws, felt) - laws.begin())) {
+      rendered_(static_cast<std::size_t>(std::ranges::find(laws, rendered) - laws.begin())) {
   text_ =
       "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n,mesh_percent,motion_percent,"
       "reference_n,extrapolation_n";
@@ -59,7 +59,8 @@ void TraceWriter::add_extrapolation(const TickRecord& tick) {
   text_ += ',';
   if (tick.reference) fmt::format_to(out, "{}", tick.reference->norm());
   text_ += ',';
-  if (tick.reference && felt_ < laws_) fmt::format_to(out, "{}", (tick.laws[felt_] - *tick.reference).norm());
+  if (tick.reference && rendered_ < laws_)
+    fmt::format_to(out, "{}", (tick.laws[rendered_] - *tick.reference).norm());
 }
 
 void TraceWriter::flush() {

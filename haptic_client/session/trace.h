@@ -14,10 +14,10 @@ namespace palpate::client {
 /// so that reading them gives the same bits back: equal files mean equal forces. Not for a running loop.
 class TraceWriter {
  public:
-  /// `laws`: names of the scored laws, a column each. `felt`: the one of them whose error has a column; one
-  /// that is not scored has none to tell. Throws `Error`.
+  /// `laws`: names of the scored laws, a column each. `rendered`: the one of them whose error has a column;
+  /// one that is not scored has none to tell. Throws `Error`.
   TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws,
-              const std::string& felt);
+              const std::string& rendered);
   void add(const TickRecord& tick);
   /// The file appears. Throws `Error` when it could not be written.
   void finish();
@@ -28,10 +28,10 @@ class TraceWriter {
   void flush();
 
   std::filesystem::path name_;
-  WholeFile file_;
+  AtomicFile file_;
   std::ofstream out_;
   std::string text_;
-  std::size_t laws_, felt_;
+  std::size_t laws_, rendered_;
   std::optional<Time> start_;
 };
 

@@ -32,16 +32,16 @@ std::string how_of(const DiscretisationError& error) {
 
 }  // namespace
 
-Json whole_error_report(const std::string& method, const Observation& observation) {
-  const DiscretisationErrors told = observation.told_errors().mean();
+Json error_budget_report(const std::string& method, const Observation& observation) {
+  const DiscretisationErrors published = observation.published_errors().mean();
   const Scoring& scoring = observation.scoring();
-  Json report = {{"mesh_percent", percent_of(told.mesh)},
-                 {"motion_percent", percent_of(told.time_step)},
+  Json report = {{"mesh_percent", percent_of(published.mesh)},
+                 {"motion_percent", percent_of(published.time_step)},
                  {"extrapolation_percent", nullptr},
                  {"how",
-                  {{"mesh", told.mesh.source == ErrorSource::kNone ? "none: this tissue has no mesh"
-                                                                   : how_of(told.mesh)},
-                   {"motion", how_of(told.time_step)},
+                  {{"mesh", published.mesh.source == ErrorSource::kNone ? "none: this tissue has no mesh"
+                                                                        : how_of(published.mesh)},
+                   {"motion", how_of(published.time_step)},
                    {"extrapolation", "unknown: nothing was felt between two samples"}}}};
   const auto row = std::ranges::find(scoring.names(), method);
   if (row == scoring.names().end() || scoring.scored() == 0) return report;
@@ -55,14 +55,15 @@ Json whole_error_report(const std::string& method, const Observation& observatio
   return report;
 }
 
-void print_whole_error(const Json& tool) {
-  const Json& felt = tool["felt"];
-  if (felt["laws"].empty()) return;
+void print_error_budget(const Json& tool) {
+  const Json& rendered = tool["felt"];
+  if (rendered["laws"].empty()) return;
   fmt::print(
       "  error   of the force, % of its root mean square; the law of the tissue itself is not in it\n");
   const auto row = [&](const char* name, const char* percent, const char* how) {
-    const std::string number = felt[percent].is_null() ? "?" : two_figures(felt[percent].get<double>());
-    fmt::print("          {:<14}{:>7}   {}\n", name, number, felt["how"][how].get<std::string>());
+    const std::string number =
+        rendered[percent].is_null() ? "?" : two_figures(rendered[percent].get<double>());
+    fmt::print("          {:<14}{:>7}   {}\n", name, number, rendered["how"][how].get<std::string>());
   };
   row("mesh", "mesh_percent", "mesh");
   row("time step", "motion_percent", "motion");

@@ -4,11 +4,11 @@
 
 namespace palpate::client {
 
-/// `felt.mesh_percent`, `.motion_percent`, `.extrapolation_percent` and `.how` of a tool that felt `method`;
-/// null where nobody knows. Of extrapolation, what the row of `method` scored.
-Json whole_error_report(const std::string& method, const Observation& observation);
+/// `rendered.mesh_percent`, `.motion_percent`, `.extrapolation_percent` and `.how` of a tool that felt
+/// `method`; null where nobody knows. Of extrapolation, what the row of `method` scored.
+Json error_budget_report(const std::string& method, const Observation& observation);
 
 /// Prints that report as a table, for people, on stdout; nothing before the first sample of a force.
-void print_whole_error(const Json& tool);
+void print_error_budget(const Json& tool);
 
 }  // namespace palpate::client

@@ -10,7 +10,7 @@
 namespace palpate::c_interface {
 
 /// Puts `what` into the caller's text, cut to its room.
-inline void tell(const char* what, char* error, std::size_t size) noexcept {
+inline void report(const char* what, char* error, std::size_t size) noexcept {
   if (error == nullptr || size == 0) return;
   const std::size_t length = std::min(std::strlen(what), size - 1);
   std::memcpy(error, what, length);
@@ -20,19 +20,19 @@ inline void tell(const char* what, char* error, std::size_t size) noexcept {
 /// Runs `body`; what it throws becomes a code and a text.
 template <class Body>
 int guarded(char* error, std::size_t size, Body&& body) noexcept {
-  tell("", error, size);
+  report("", error, size);
   try {
     body();
     return PALPATE_OK;
   } catch (const Error& e) {
-    tell(e.what(), error, size);
+    report(e.what(), error, size);
     return e.exit_code();
   } catch (const std::bad_alloc&) {
-    tell("not enough memory", error, size);
+    report("not enough memory", error, size);
   } catch (const std::exception& e) {
-    tell(e.what(), error, size);
+    report(e.what(), error, size);
   } catch (...) {
-    tell("failed for a reason that has no name", error, size);
+    report("failed for a reason that has no name", error, size);
   }
   return PALPATE_FAILED;
 }
@@ -40,15 +40,15 @@ int guarded(char* error, std::size_t size, Body&& body) noexcept {
 /// True if the caller passed a struct with the fields of this release; it may have more, of a later one. When
 /// fields are appended, this has to allow the size without them, too.
 template <class Struct>
-bool is_whole(const Struct* s) noexcept {
+bool is_complete(const Struct* s) noexcept {
   constexpr std::uint32_t kLargest = 1 << 16;  // beyond, nobody set it
   return s != nullptr && s->struct_size >= sizeof(Struct) && s->struct_size <= kLargest;
 }
 
 /// Throws unless it is.
 template <class Struct>
-void require_whole(const Struct* s, const char* name) {
-  if (!is_whole(s)) fail("{}: NULL, or struct_size is not sizeof ({} bytes)", name, sizeof(Struct));
+void require_complete(const Struct* s, const char* name) {
+  if (!is_complete(s)) fail("{}: NULL, or struct_size is not sizeof ({} bytes)", name, sizeof(Struct));
 }
 
 template <class Handle>

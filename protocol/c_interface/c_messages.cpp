@@ -10,13 +10,14 @@ using protocol::ToolState;
 
 namespace {
 
-constexpr double kFarthest = 1e9;  // m, m/s: as in the protocol
-constexpr double kUnit = 1e-6;     // how far a quaternion's square may be from 1: as there
+constexpr double kMaxDistance = 1e9;  // m, m/s: as in the protocol
+constexpr double kUnit = 1e-6;        // how far a quaternion's square may be from 1: as there
 
 static_assert(PALPATE_LOST == ToolState::kDeviceLost && PALPATE_REARMED == ToolState::kRearmed &&
-              PALPATE_CLUTCHED == ToolState::kClutched && PALPATE_WANTS_TANGENT == ToolState::kWantsHere);
+              PALPATE_CLUTCHED == ToolState::kClutched &&
+              PALPATE_WANTS_TANGENT == ToolState::kRequestsTangent);
 static_assert(PALPATE_IN_CONTACT == ForceSample::kInContact && PALPATE_FLAGGED == ForceSample::kFlagged &&
-              PALPATE_HAS_TANGENT == ForceSample::kHasHere && PALPATE_HAS_MEAN == ForceSample::kHasMean);
+              PALPATE_HAS_TANGENT == ForceSample::kHasTangent && PALPATE_HAS_MEAN == ForceSample::kHasMean);
 static_assert(PALPATE_TOOL_STATE == static_cast<int>(ToolState::kType) &&
               PALPATE_FORCE_SAMPLE == static_cast<int>(ForceSample::kType));
 
@@ -25,7 +26,7 @@ void write(const Vec3& from, double (&to)[3]) noexcept {
 }
 
 bool carried(const double (&v)[3]) noexcept {
-  return std::all_of(v, v + 3, [](double x) { return std::abs(x) <= kFarthest; });
+  return std::all_of(v, v + 3, [](double x) { return std::abs(x) <= kMaxDistance; });
 }
 
 }  // namespace
@@ -37,7 +38,7 @@ void write_tool_state(const ToolState& from, palpate_tool_state& to) noexcept {
   to.tool = from.tool;
   write(from.p_W, to.position);
   write(from.v_W, to.velocity);
-  std::copy(from.q_W.begin(), from.q_W.end(), to.orientation);
+  std::ranges::copy(from.q_W, to.orientation);
   to.time_ns = from.t_ns;
   to.tick = from.tick;
   to.newest_sample = from.newest_sample;
@@ -53,11 +54,11 @@ void write_force_sample(const ForceSample& from, palpate_force_sample& to) noexc
   write(from.p_W, to.position);
   write(from.f_W, to.force);
   write(from.torque_W, to.torque);
-  write(from.here.normal_W, to.normal);
-  to.gap = from.here.gap;
-  const auto& k = from.here.tangent;
-  const double whole[9] = {k[0], k[1], k[2], k[1], k[3], k[4], k[2], k[4], k[5]};
-  std::copy(whole, whole + 9, to.tangent);
+  write(from.at_tool.normal_W, to.normal);
+  to.gap = from.at_tool.gap;
+  const auto& k = from.at_tool.tangent;
+  const double entire[9] = {k[0], k[1], k[2], k[1], k[3], k[4], k[2], k[4], k[5]};
+  std::copy(entire, entire + 9, to.tangent);
   write(from.surface_v_W, to.surface_velocity);
   write(from.mean_f_W, to.mean_force);
   to.step_ns = from.step_ns;

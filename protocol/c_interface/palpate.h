@@ -173,7 +173,7 @@ PALPATE_API int palpate_session_open(const palpate_session_options* options, pal
 /// Where it does not return PALPATE_OK, write zero force to the motors. Haptic thread. No watchdog guards the
 /// loop of the caller: should it stop, the device holds its last force unless its driver ends it.
 PALPATE_API int palpate_session_tick(palpate_session* session, const palpate_tool_state* tool,
-                                     palpate_felt* felt);
+                                     palpate_felt* rendered);
 
 /// Asks the next tick to clear a latched fault; the force rises again over 1 s. Any thread.
 PALPATE_API int palpate_session_rearm(palpate_session* session);

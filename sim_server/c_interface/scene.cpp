@@ -23,7 +23,7 @@ Struct& element(Struct* array, std::size_t i) {
 template <class Struct>
 void require_array(Struct* array, std::size_t count, const char* name) {
   for (std::size_t i = 0; i < count; ++i) {
-    c_interface::require_whole(i == 0 ? array : &element(array, i), name);
+    c_interface::require_complete(i == 0 ? array : &element(array, i), name);
     if (element(array, i).struct_size != array->struct_size)
       fail("{}: element {} has another struct_size than the first", name, i);
   }
@@ -47,12 +47,13 @@ struct palpate_scene {
   std::uint64_t steps = 0;
 
  private:
-  protocol::ToolState state_of(std::size_t i, const palpate_tool_state& told, Time then) const;
+  protocol::ToolState state_of(std::size_t i, const palpate_tool_state& published, Time then) const;
 };
 
 /// Of tool `i`, at the end of the step.
-protocol::ToolState palpate_scene::state_of(std::size_t i, const palpate_tool_state& told, Time then) const {
-  auto state = c_interface::read_tool_state(told);
+protocol::ToolState palpate_scene::state_of(std::size_t i, const palpate_tool_state& published,
+                                            Time then) const {
+  auto state = c_interface::read_tool_state(published);
   if (!state)
     fail("tools: the state of tool {} is not finite, beyond 1e9, or turned by no unit quaternion", i);
   const protocol::ToolState& before = inputs[i].state;
@@ -60,7 +61,7 @@ protocol::ToolState palpate_scene::state_of(std::size_t i, const palpate_tool_st
   state->tool = static_cast<std::uint8_t>(i);
   state->tick = steps + 1;
   state->t_ns = then.count();
-  if ((told.flags & PALPATE_HAS_VELOCITY) == 0 && was_there && then > now)
+  if ((published.flags & PALPATE_HAS_VELOCITY) == 0 && was_there && then > now)
     state->v_W = (state->p_W - before.p_W) / to_seconds(then - now);
   return *state;
 }

@@ -33,21 +33,22 @@ PublishedMotion::PublishedMotion(const ModelInputs& inputs, const LinearStatics&
                                  std::span<const double> masses)
     : modes_(found, surface_unknowns(inputs, statics), inputs.scene.deformation.of<RayleighDamping>()),
       residual_(inputs),
-      shapes_(Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(masses.size()), modes_.told)),
+      shapes_(Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(masses.size()), modes_.published)),
       masses_(Eigen::VectorXd::Zero(shapes_.rows())),
       weighted_(shapes_.rows()) {
   for (std::size_t node = 0; node < places.size(); ++node) {
     const int first = statics.dofs.first[node];
     if (places[node] < 0 || first < 0) continue;  // the rest; what the modes do not know
     const Eigen::Index row = 3 * places[node];
-    if (modes_.told > 0) shapes_.middleRows<3>(row) = found.shapes.middleRows<3>(first).leftCols(modes_.told);
+    if (modes_.published > 0)
+      shapes_.middleRows<3>(row) = found.shapes.middleRows<3>(first).leftCols(modes_.published);
     masses_.segment<3>(row).setConstant(masses[static_cast<std::size_t>(places[node])]);
   }
-  q_ = v_ = force_ = Eigen::VectorXd::Zero(modes_.told);
-  steps_.resize(static_cast<std::size_t>(modes_.told));
+  q_ = v_ = force_ = Eigen::VectorXd::Zero(modes_.published);
+  steps_.resize(static_cast<std::size_t>(modes_.published));
   modes_.relaxations = inputs.scene.material->relaxations;
   statics.fill(residual_);
-  residual_.add(modes_.shapes, -modes_.told_at_rest());
+  residual_.add(modes_.shapes, -modes_.published_at_rest());
 }
 
 void PublishedMotion::begin(std::span<const double> u, std::span<const double> v, std::span<const double> f,
@@ -59,8 +60,8 @@ void PublishedMotion::begin(std::span<const double> u, std::span<const double> v
   weighted_ = masses_.cwiseProduct(mapped(v));
   v_.noalias() = shapes_.transpose() * weighted_;
   force_.noalias() = shapes_.transpose() * mapped(f);
-  const auto w2 = modes_.frequencies.head(modes_.told).array().square();
-  const auto damping = modes_.damping.head(modes_.told).array();
+  const auto w2 = modes_.frequencies.head(modes_.published).array().square();
+  const auto damping = modes_.damping.head(modes_.published).array();
   v_.array() += late * (force_.array() - w2 * q_.array() - damping * v_.array());
 }
 
@@ -76,7 +77,7 @@ void PublishedMotion::advance(double time, std::span<const NodalLoad> loads, Eig
   modes_.add_drive(loads, force_);
   q = q_;
   v = v_;
-  for (Eigen::Index k = 0; k < modes_.told; ++k) {
+  for (Eigen::Index k = 0; k < modes_.published; ++k) {
     ModeStep& step = steps_[static_cast<std::size_t>(k)];
     if (time != stepped_) step = ModeStep::over(time, modes_.frequencies[k], modes_.damping[k]);
     step.advance(q[k], v[k], force_[k]);
@@ -92,16 +93,16 @@ void PublishedMotion::push(double time, std::span<const NodalLoad> loads, Eigen:
   v = v_ + time * force_;
 }
 
-void PublishedMotion::stand_as(const PublishedMotion& before) noexcept {
+void PublishedMotion::place_as(const PublishedMotion& before) noexcept {
   q_ = before.q_;
   v_ = before.v_;
 }
 
-void PublishedMotion::stand_under(std::span<const NodalLoad> loads) noexcept {
+void PublishedMotion::place_under(std::span<const NodalLoad> loads) noexcept {
   q_.setZero();
   v_.setZero();
   modes_.add_drive(loads, q_);
-  q_.array() /= modes_.frequencies.head(modes_.told).array().square();
+  q_.array() /= modes_.frequencies.head(modes_.published).array().square();
 }
 
 std::size_t PublishedMotion::bytes() const {
@@ -111,9 +112,10 @@ std::size_t PublishedMotion::bytes() const {
 }
 
 std::string PublishedMotion::detail() const {
-  return fmt::format("{} modes up to {:.3g} Hz, {}and the compliance of the rest: {}", modes_.told,
-                     modes_.told > 0 ? modes_.frequencies[modes_.told - 1] / (2 * std::numbers::pi) : 0.0,
-                     modes_.relaxations.empty() ? "" : "what has relaxed, ", residual_.detail());
+  return fmt::format(
+      "{} modes up to {:.3g} Hz, {}and the compliance of the rest: {}", modes_.published,
+      modes_.published > 0 ? modes_.frequencies[modes_.published - 1] / (2 * std::numbers::pi) : 0.0,
+      modes_.relaxations.empty() ? "" : "what has relaxed, ", residual_.detail());
 }
 
 }  // namespace palpate::sim

@@ -27,7 +27,7 @@ class PublishedMotion {
   PublishedMotion(const ModelInputs& inputs, const LinearStatics& statics, const VibrationModes& found,
                   std::span<const int> places, std::span<const double> masses);
 
-  const SlowModes& modes() const { return modes_; }
+  const PublishedModes& modes() const { return modes_; }
 
   /// Projects a state of the model: displacements u (m), velocities v (m/s) that are `late` (s) behind them,
   /// and forces f (N) held until then. O(unknowns x modes).
@@ -43,9 +43,9 @@ class PublishedMotion {
             Eigen::Ref<Eigen::VectorXd> v) noexcept;
   /// Advances the modes by `time` (s) under these loads, for a model without a state over all unknowns: from
   /// their own state, from that of `before`, or from equilibrium under the loads.
-  void go_on(double time, std::span<const NodalLoad> loads) noexcept { advance(time, loads, q_, v_); }
-  void stand_as(const PublishedMotion& before) noexcept;
-  void stand_under(std::span<const NodalLoad> loads) noexcept;
+  void continue_(double time, std::span<const NodalLoad> loads) noexcept { advance(time, loads, q_, v_); }
+  void place_as(const PublishedMotion& before) noexcept;
+  void place_under(std::span<const NodalLoad> loads) noexcept;
   const Eigen::VectorXd& amplitudes() const noexcept { return q_; }
   const Eigen::VectorXd& rates() const noexcept { return v_; }
   void set(const Eigen::VectorXd& amplitudes, const Eigen::VectorXd& rates) {
@@ -56,7 +56,7 @@ class PublishedMotion {
   /// Returns the compliance (m/N) of the surface that bears these loads, as one piece, to a force held for
   /// `seconds`. Modes faster than the published ones are in equilibrium then.
   Mat3 compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
-    return residual_.of_loads(loads) + modes_.give_way(loads, seconds, 0, modes_.told);
+    return residual_.of_loads(loads) + modes_.yield_(loads, seconds, 0, modes_.published);
   }
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {
     residual_.fill(vertices, patch);
@@ -66,7 +66,7 @@ class PublishedMotion {
   std::string detail() const;
 
  private:
-  SlowModes modes_;
+  PublishedModes modes_;
   SurfaceCompliance residual_;
   Eigen::MatrixXd shapes_;         // (unknowns of the model x told modes), 1/sqrt(kg)
   Eigen::VectorXd masses_;         // (unknowns) kg

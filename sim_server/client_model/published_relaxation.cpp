@@ -7,15 +7,15 @@ namespace {
 constexpr double kForgotten = 1e-9;  // N
 }
 
-PublishedRelaxation::PublishedRelaxation(const SlowModes& modes) : terms_(modes.relaxations) {
+PublishedRelaxation::PublishedRelaxation(const PublishedModes& modes) : terms_(modes.relaxations) {
   const auto vertices = static_cast<std::size_t>(modes.shapes.rows() / 3);
   for (Eigen::Index v = 0; v < modes.shapes.rows() / 3; ++v)
     held_.push_back(modes.shapes.middleRows<3>(3 * v).isZero(0));
   loads_.assign(vertices, Vec3::Zero());
-  memory_ = {Eigen::VectorXd::Zero(modes.told),
-             Eigen::MatrixXd::Zero(modes.told, static_cast<Eigen::Index>(terms_.size())), loads_,
+  memory_ = {Eigen::VectorXd::Zero(modes.published),
+             Eigen::MatrixXd::Zero(modes.published, static_cast<Eigen::Index>(terms_.size())), loads_,
              std::vector<Vec3>(vertices * terms_.size(), Vec3::Zero())};
-  foreseen_ = memory_;
+  predicted_ = memory_;
 }
 
 void PublishedRelaxation::advance(double h, const Eigen::VectorXd& q,
@@ -23,12 +23,13 @@ void PublishedRelaxation::advance(double h, const Eigen::VectorXd& q,
   step(h, q, loads, memory_);
 }
 
-void PublishedRelaxation::foresee(double h, const Eigen::VectorXd& q, std::span<const NodalLoad> loads,
-                                  Eigen::MatrixXd& z, std::vector<Vec3>& psi) noexcept {
-  foreseen_ = memory_;
-  step(h, q, loads, foreseen_);
-  z = foreseen_.z;
-  psi = foreseen_.psi;
+void PublishedRelaxation::predict_tangent(double h, const Eigen::VectorXd& q,
+                                          std::span<const NodalLoad> loads, Eigen::MatrixXd& z,
+                                          std::vector<Vec3>& psi) noexcept {
+  predicted_ = memory_;
+  step(h, q, loads, predicted_);
+  z = predicted_.z;
+  psi = predicted_.psi;
 }
 
 void PublishedRelaxation::step(double h, const Eigen::VectorXd& q, std::span<const NodalLoad> loads,
@@ -39,7 +40,7 @@ void PublishedRelaxation::step(double h, const Eigen::VectorXd& q, std::span<con
     for (Eigen::Index k = 0; k < z.size(); ++k) z[k] = series.step[j].followed(z[k], memory.q[k], q[k]);
   }
   memory.q = q;
-  std::fill(loads_.begin(), loads_.end(), Vec3::Zero());
+  std::ranges::fill(loads_, Vec3::Zero());
   for (const NodalLoad& load : loads) {
     if (held_[static_cast<std::size_t>(load.vertex)] == 0)
       loads_[static_cast<std::size_t>(load.vertex)] += load.force;
@@ -49,7 +50,7 @@ void PublishedRelaxation::step(double h, const Eigen::VectorXd& q, std::span<con
     const std::span<Vec3> of_vertex = std::span(memory.psi).subspan(v * terms_.size(), terms_.size());
     const auto rests = [](const Vec3& force) { return force.cwiseAbs().maxCoeff() < kForgotten; };
     const bool forgotten = rests(memory.f[v]) && rests(loads_[v]) && std::ranges::all_of(of_vertex, rests);
-    std::copy(of_vertex.begin(), of_vertex.end(), psi.begin());
+    std::ranges::copy(of_vertex, psi.begin());
     if (forgotten) {
       psi.fill(Vec3::Zero());
     } else {

@@ -12,13 +12,13 @@ namespace palpate::sim {
 class PublishedRelaxation {
  public:
   /// Nothing has been pressed yet. A surface vertex that moves in no mode is held, and does not creep.
-  explicit PublishedRelaxation(const SlowModes& modes);
+  explicit PublishedRelaxation(const PublishedModes& modes);
 
   /// A step of `h` (s > 0) has ended with the told modes at `q`, under these loads.
   void advance(double h, const Eigen::VectorXd& q, std::span<const NodalLoad> loads) noexcept;
   /// Writes the memory at the end of the step in hand, if that ends so.
-  void foresee(double h, const Eigen::VectorXd& q, std::span<const NodalLoad> loads, Eigen::MatrixXd& z,
-               std::vector<Vec3>& psi) noexcept;
+  void predict_tangent(double h, const Eigen::VectorXd& q, std::span<const NodalLoad> loads,
+                       Eigen::MatrixXd& z, std::vector<Vec3>& psi) noexcept;
   std::size_t bytes() const;
 
  private:
@@ -33,7 +33,7 @@ class PublishedRelaxation {
   std::vector<Relaxation> terms_;
   std::vector<char> held_;   // of surface vertices
   std::vector<Vec3> loads_;  // of surface vertices, N
-  Memory memory_, foreseen_;
+  Memory memory_, predicted_;
 };
 
 }  // namespace palpate::sim

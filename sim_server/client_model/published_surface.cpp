@@ -42,7 +42,7 @@ void add_nearest(const Vec3& place, const SurfacePublisher::Tissue& tissue, cons
                  std::size_t most, PublishedSurface::Part& part) {
   std::vector<std::pair<double, int>> near;  // m^2
   for (int v = 0; v < static_cast<int>(tissue.positions.size()); ++v) {
-    if (tissue.left.on_surface(v) && known(v))
+    if (tissue.remaining.on_surface(v) && known(v))
       near.emplace_back((tissue.positions[static_cast<std::size_t>(v)] - place).squaredNorm(), v);
   }
   PublishedSurface::Ball ball{place, std::numeric_limits<double>::infinity()};
@@ -65,15 +65,15 @@ int published_bodies(const Scene& scene) {
   return modes != nullptr && modes->modes > 0 ? 2 : 0;
 }
 
-bool PublishedSurface::Part::holds(const Vec3& place, double share) const noexcept {
-  return std::ranges::any_of(balls, [&](const Ball& ball) { return ball.holds(place, share); });
+bool PublishedSurface::Part::holds(const Vec3& place, double fraction) const noexcept {
+  return std::ranges::any_of(balls, [&](const Ball& ball) { return ball.holds(place, fraction); });
 }
 
 /// What is left, by itself: what both the modes and the compliance of any part of its surface follow from.
 struct SurfacePublisher::Body {
-  Body(const SurfacePublisher& owner, TetMesh&& left, const ElasticTensors& tensors, const Progress& tells,
-       const SetupCache* cache)
-      : mesh(std::move(left)),
+  Body(const SurfacePublisher& owner, TetMesh&& remaining, const ElasticTensors& tensors,
+       const Progress& tells, const SetupCache* cache)
+      : mesh(std::move(remaining)),
         places(tensors.places()),
         masses(tensors.masses()),
         owner_(owner),
@@ -160,9 +160,9 @@ SurfacePublisher::SurfacePublisher(const ModelInputs& inputs, const ElasticTenso
   body_steps_ = steps(kLeast + kBodyOfTetrahedron * tetrahedra);
   surface_steps_ = steps(kLeast + kSurfaceOfTetrahedron * tetrahedra);
   now_.last_cut = -calm_steps_;
-  auto whole = std::make_shared<Body>(*this, TetMesh(inputs.mesh), tensors, inputs.progress, inputs.cache);
-  whole->make(nullptr);
-  now_.body = std::move(whole);
+  auto entire = std::make_shared<Body>(*this, TetMesh(inputs.mesh), tensors, inputs.progress, inputs.cache);
+  entire->make(nullptr);
+  now_.body = std::move(entire);
 }
 
 void SurfacePublisher::forget() noexcept {
@@ -182,22 +182,22 @@ void SurfacePublisher::step(std::span<const Tool> tools, const Tissue& tissue, b
   if (is_due(waits)) end();
   if (now_.work.has_started() || tools.empty() || now_.step < now_.not_before) return;
   try {
-    begin_next(tools, tissue);
+    start_next(tools, tissue);
   } catch (const std::exception& error) {
     put_off(error);
   }
 }
 
 /// What is missing for these tools, if anything is.
-void SurfacePublisher::begin_next(std::span<const Tool> tools, const Tissue& tissue) {
+void SurfacePublisher::start_next(std::span<const Tool> tools, const Tissue& tissue) {
   if (now_.body == nullptr) {
-    if (now_.step - now_.last_cut > calm_steps_) begin_body(tissue);
+    if (now_.step - now_.last_cut > calm_steps_) start_body(tissue);
     return;
   }
   const auto ample = [this](const Tool& tool) {
     return now_.surface && now_.surface->compliant.holds(tool.p_W, kAmple);
   };
-  if (!std::ranges::all_of(tools, ample)) begin_surface(tools, tissue);
+  if (!std::ranges::all_of(tools, ample)) start_surface(tools, tissue);
 }
 
 /// `make` gives what is `Made` in the background; in use from so many steps on.
@@ -222,11 +222,11 @@ void SurfacePublisher::restore(const State& state) {
   if (now_.surface) now_.surface->motion.set(state.amplitudes, state.rates);
 }
 
-void SurfacePublisher::begin_body(const Tissue& tissue) {
-  TetMesh left = tissue.left.mesh();
-  keep_tetrahedra(left, [&](std::size_t t) { return tissue.left.is_left(static_cast<int>(t)); });
+void SurfacePublisher::start_body(const Tissue& tissue) {
+  TetMesh remaining = tissue.remaining.mesh();
+  keep_tetrahedra(remaining, [&](std::size_t t) { return tissue.remaining.remains(static_cast<int>(t)); });
   auto body = std::make_shared<Body>(
-      *this, std::move(left), tissue.tensors, [](std::string_view, double) {}, nullptr);
+      *this, std::move(remaining), tissue.tensors, [](std::string_view, double) {}, nullptr);
   begin(body_steps_, [body, before = now_.before] {
     body->make(before.get());
     return Made{body, nullptr};
@@ -236,12 +236,12 @@ void SurfacePublisher::begin_body(const Tissue& tissue) {
 /// Where it will have gone halfway through the use of what is begun now, within what is told now.
 Vec3 SurfacePublisher::expected_place(const Tool& tool) const {
   if (!now_.surface) return tool.p_W;
-  const Vec3 way = kLead * surface_steps_ * period_ * tool.v_W;
+  const Vec3 path = kLead * surface_steps_ * period_ * tool.v_W;
   const double most = now_.surface->shape.balls.front().radius;
-  return way.norm() <= most ? Vec3(tool.p_W + way) : Vec3(tool.p_W + most * way.normalized());
+  return path.norm() <= most ? Vec3(tool.p_W + path) : Vec3(tool.p_W + most * path.normalized());
 }
 
-void SurfacePublisher::begin_surface(std::span<const Tool> tools, const Tissue& tissue) {
+void SurfacePublisher::start_surface(std::span<const Tool> tools, const Tissue& tissue) {
   PublishedSurface::Part shape, compliant;
   const bool stays = now_.surface && std::ranges::all_of(tools, [this](const Tool& tool) {
                        return now_.surface->shape.holds(expected_place(tool), kStays);

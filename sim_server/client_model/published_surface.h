@@ -17,13 +17,13 @@ struct PublishedSurface {
   struct Ball {
     Vec3 centre;
     double radius;
-    bool holds(const Vec3& p, double share) const { return (p - centre).norm() <= share * radius; }
+    bool holds(const Vec3& p, double fraction) const { return (p - centre).norm() <= fraction * radius; }
   };
   struct Part {
     std::vector<int> vertices;  ///< of the surface, ascending
     std::vector<Ball> balls;    ///< one for each tool
     /// True if the place (m) is within this fraction of the radius of some ball.
-    bool holds(const Vec3& place, double share) const noexcept;
+    bool holds(const Vec3& place, double fraction) const noexcept;
   };
 
   PublishedMotion motion;
@@ -80,7 +80,7 @@ class SurfacePublisher {
   using Tool = ClientModel::Tool;
   /// The tissue as it is by now.
   struct Tissue {
-    const CutMesh& left;
+    const CutMesh& remaining;
     std::span<const Vec3> positions;  ///< of surface vertices, m
     const ElasticTensors& tensors;
   };
@@ -101,9 +101,9 @@ class SurfacePublisher {
   void restore(const State& state);
 
  private:
-  void begin_next(std::span<const Tool> tools, const Tissue& tissue);
-  void begin_body(const Tissue& tissue);
-  void begin_surface(std::span<const Tool> tools, const Tissue& tissue);
+  void start_next(std::span<const Tool> tools, const Tissue& tissue);
+  void start_body(const Tissue& tissue);
+  void start_surface(std::span<const Tool> tools, const Tissue& tissue);
   template <class Make>
   void begin(int steps, Make make);
   bool is_due(bool waits) const;

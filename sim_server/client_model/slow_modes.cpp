@@ -10,7 +10,7 @@ namespace palpate::sim {
 
 ClientModes ClientModes::read(const Config& config) {
   ClientModes read;
-  read.modes = static_cast<int>(config.integer("client_modes", {0, kMostSlowModes, "modes"}, read.modes));
+  read.modes = static_cast<int>(config.integer("client_modes", {0, kMaxPublishedModes, "modes"}, read.modes));
   return read;
 }
 
@@ -18,21 +18,23 @@ std::string ClientModes::to_text() const {
   return fmt::format("client_modes = {}\n", modes);
 }
 
-SlowModes::SlowModes(const VibrationModes& modes, std::span<const int> first, const RayleighDamping& rayleigh)
+PublishedModes::PublishedModes(const VibrationModes& modes, std::span<const int> first,
+                               const RayleighDamping& rayleigh)
     : frequencies(modes.frequencies),
       damping(rayleigh.mass + rayleigh.stiffness * frequencies.array().square()),
       shapes(Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(first.size()), frequencies.size())) {
-  const Eigen::Index most = std::min<Eigen::Index>(kMostSlowModes, frequencies.size());
-  while (told < most && frequencies[told] <= kQuickestSlowMode && damping[told] <= kHardestSlowDamping)
-    ++told;
+  const Eigen::Index most = std::min<Eigen::Index>(kMaxPublishedModes, frequencies.size());
+  while (published < most && frequencies[published] <= kFastestPublishedMode &&
+         damping[published] <= kMaxPublishedDamping)
+    ++published;
   for (std::size_t v = 0; v < first.size(); ++v) {
     if (first[v] >= 0)
       shapes.middleRows<3>(3 * static_cast<Eigen::Index>(v)) = modes.shapes.middleRows<3>(first[v]);
   }
 }
 
-void SlowModes::take_out(std::span<const int> vertices, const Eigen::VectorXd& yields,
-                         ContactPatch& patch) const noexcept {
+void PublishedModes::take_out(std::span<const int> vertices, const Eigen::VectorXd& yields,
+                              ContactPatch& patch) const noexcept {
   const auto at = [&](std::size_t i, Eigen::Index k) { return shapes.col(k).segment<3>(3 * vertices[i]); };
   for (std::size_t j = 0; j < vertices.size(); ++j) {
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -44,22 +46,22 @@ void SlowModes::take_out(std::span<const int> vertices, const Eigen::VectorXd& y
   }
 }
 
-void SlowModes::add_drive(std::span<const NodalLoad> loads,
-                          Eigen::Ref<Eigen::VectorXd> drive) const noexcept {
+void PublishedModes::add_drive(std::span<const NodalLoad> loads,
+                               Eigen::Ref<Eigen::VectorXd> drive) const noexcept {
   for (const NodalLoad& load : loads)
     drive.noalias() +=
-        shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex)).leftCols(told).transpose() *
+        shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex)).leftCols(published).transpose() *
         load.force;
 }
 
-Eigen::VectorXd SlowModes::told_at_rest() const {
+Eigen::VectorXd PublishedModes::published_at_rest() const {
   Eigen::VectorXd yields = Eigen::VectorXd::Zero(frequencies.size());
-  yields.head(told) = frequencies.head(told).array().square().inverse();
+  yields.head(published) = frequencies.head(published).array().square().inverse();
   return yields;
 }
 
-Mat3 SlowModes::give_way(std::span<const NodalLoad> loads, double seconds, double before,
-                         Eigen::Index end) const noexcept {
+Mat3 PublishedModes::yield_(std::span<const NodalLoad> loads, double seconds, double before,
+                            Eigen::Index end) const noexcept {
   const Vec3 sum = sum_of(loads);
   Mat3 yields = Mat3::Zero();
   for (Eigen::Index k = 0; k < end; ++k) {

@@ -18,7 +18,7 @@ namespace palpate::sim {
 /// Setting of models that need no modes themselves.
 struct ClientModes {
   static constexpr int kDefault = 40;
-  int modes = kDefault;  ///< `client_modes`, that clients are told of, [0, kMostSlowModes]
+  int modes = kDefault;  ///< `client_modes`, that clients are told of, [0, kMaxPublishedModes]
 
   static constexpr std::array<std::string_view, 1> kKeys{"client_modes"};
   static ClientModes read(const Config& config);
@@ -37,18 +37,18 @@ struct ModalMotion {
 /// What a client needs to know of a tissue that swings, besides how compliant all the rest of it is: a
 /// compliance alone, however fresh, has no memory. Of a tissue that relaxes, by the same series everywhere,
 /// what stands there is how stiff it is at once, and
-///   q_k'' + damping_k q_k' + w_k^2 (q_k - sum_j share_j z_kj) = shapes_k^T f,   z_kj' = (q_k - z_kj) /
+///   q_k'' + damping_k q_k' + w_k^2 (q_k - sum_j fraction_j z_kj) = shapes_k^T f,   z_kj' = (q_k - z_kj) /
 ///   time_j.
-struct SlowModes {
+struct PublishedModes {
   Eigen::VectorXd frequencies;  ///< (k) w, rad/s, ascending
   Eigen::VectorXd damping;      ///< (k) 1/s
   Eigen::MatrixXd shapes;       ///< (3 surface vertices x k), 1/sqrt(kg): of unit mass
   /// The first so many are those that a client can follow (`common/damped_mode.h`).
-  Eigen::Index told = 0;
+  Eigen::Index published = 0;
   std::vector<Relaxation> relaxations{};  ///< at most `kMostRelaxations`
 
   /// `modes`: over the unknowns; a surface vertex begins at `first` there, or -1: held.
-  SlowModes(const VibrationModes& modes, std::span<const int> first, const RayleighDamping& damping);
+  PublishedModes(const VibrationModes& modes, std::span<const int> first, const RayleighDamping& damping);
 
   /// Subtracts sum_k yields_k shapes_k shapes_k^T at these surface vertices from the compliance of `patch`,
   /// which is one in which mode k gives way by `yields` (m^2 kg/N). 9 k multiplications a pair of vertices;
@@ -58,11 +58,11 @@ struct SlowModes {
   /// Adds how hard these loads drive each of the told modes, N/sqrt(kg).
   void add_drive(std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> drive) const noexcept;
   /// Returns the static compliance of each published mode, 1 / w^2, and 0 for the others.
-  Eigen::VectorXd told_at_rest() const;
+  Eigen::VectorXd published_at_rest() const;
   /// Returns how much more (m/N) the first `end` modes yield to a force held for `seconds` than to one held
   /// for `before` (s), for the surface that bears these loads as one piece.
-  Mat3 give_way(std::span<const NodalLoad> loads, double seconds, double before,
-                Eigen::Index end) const noexcept;
+  Mat3 yield_(std::span<const NodalLoad> loads, double seconds, double before,
+              Eigen::Index end) const noexcept;
 
   std::size_t bytes() const {
     return static_cast<std::size_t>(shapes.size() + 2 * frequencies.size()) * sizeof(double);

@@ -36,10 +36,10 @@ double sum_of(const std::vector<RankMemory>& ranks) {
 
 /// Makes factors by MUMPS, and writes down in `costs` what the last one took.
 MakeFactor mumps_maker(std::optional<MumpsCosts>& costs) {
-  return [&costs](const SparseMatrix& lower, std::span<const int> kept, FactorUse use,
+  return [&costs](const SparseMatrix& lower, std::span<const int> stored, FactorUse use,
                   const std::string& where) {
     const auto tell = [](const std::string& line) { log::info("{}", line); };
-    auto factor = std::make_unique<MumpsFactor>(lower, kept, use, where, tell);
+    auto factor = std::make_unique<MumpsFactor>(lower, stored, use, where, tell);
     costs = factor->costs();
     return factor;
   };
@@ -60,7 +60,7 @@ Json report_of(const CondenseOptions& options, const Simulation& simulation, con
               {"stages_ms", times.to_json()}};
   if (made) {
     const MumpsCosts& costs = *made;
-    report["factor"] = {{"unknowns", costs.unknowns},      {"kept", costs.kept},
+    report["factor"] = {{"unknowns", costs.unknowns},      {"kept", costs.stored},
                         {"gflop", 1e-9 * costs.flops},     {"analysis_s", costs.analysis_s},
                         {"factor_s", costs.factor_s},      {"schur_s", costs.schur_s},
                         {"rank_mb", to_json(costs.memory)}};

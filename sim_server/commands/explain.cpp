@@ -42,9 +42,8 @@ Cost cost_of(const Simulation& simulation, const SetupTimes& times, const StepTi
 std::size_t loaded_nodes(const Scene& scene, const Simulation& simulation) {
   const std::vector<int> fixed = fixed_vertices(scene, simulation.mesh());
   const std::vector<int> all = reachable_vertices(simulation.surface(), simulation.mesh(), scene.tools);
-  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](int v) {
-    return !std::binary_search(fixed.begin(), fixed.end(), simulation.surface().vertices[v]);
-  }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      all, [&](int v) { return !std::ranges::binary_search(fixed, simulation.surface().vertices[v]); }));
 }
 
 /// By formula; what no elastic scene has is nothing.
@@ -88,10 +87,10 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
   if (part == "surface")
     return fmt::format("{} vertices, {} triangles", surface.vertices.size(), surface.triangles.size());
   if (part == "resection") {
-    const CutMesh& left = simulation.resection()->left();
+    const CutMesh& remaining = simulation.resection()->remaining();
     std::size_t removable = 0;
-    for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) removable += left.is_removable(t);
-    const auto [spare, end] = left.spares();
+    for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) removable += remaining.is_removable(t);
+    const auto [spare, end] = remaining.spares();
     return fmt::format("{} of {} tetrahedra can be removed; their vertices count to the surface{}", removable,
                        mesh.tetrahedra.size(),
                        end > spare ? fmt::format(", with {} more that a blade may need", end - spare) : "");
@@ -125,8 +124,7 @@ std::string part_of(const std::string& stage, std::size_t tools) {
 /// The row called `name`, new at the end if it is not there yet.
 BuiltPart& row_of(std::vector<BuiltPart>& rows, const std::string& name, const Scene& scene,
                   const Simulation& simulation) {
-  const auto found =
-      std::find_if(rows.begin(), rows.end(), [&](const BuiltPart& r) { return r.part == name; });
+  const auto found = std::ranges::find_if(rows, [&](const BuiltPart& r) { return r.part == name; });
   if (found != rows.end()) return *found;
   return rows.emplace_back(BuiltPart{name, detail_of(scene, simulation, name), where_of(scene, name)});
 }
@@ -164,13 +162,13 @@ struct Own {
   const SetupCache* cache;
   const Condensed* condensed;
   Simulation simulation;
-  Press press;
+  Press apply_loads;
   Cost cost;
   double compliance_ms = 0;  // of the set-up
 };
 
 /// What setting up a variant would take, ms: compliance goes with the nodes that can be loaded.
-double foreseen_ms(const Scene& variant, const Own& own) {
+double predicted_ms(const Scene& variant, const Own& own) {
   const auto nodes = [&](const Scene& scene) {
     return static_cast<double>(
         compliance_bytes(scene, own.simulation) > 0 ? loaded_nodes(scene, own.simulation) : 0);
@@ -180,14 +178,14 @@ double foreseen_ms(const Scene& variant, const Own& own) {
 }
 
 /// What `variant` costs more, built and stepped in the same way.
-LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
+Omitted compare(Omitted row, const Scene& variant, const Own& own) {
   const double compliance = compliance_bytes(variant, own.simulation);
   if (compliance > kMostVariant) {
     row.bytes = compliance - compliance_bytes(own.scene, own.simulation);
     row.note = "not built: too large (bytes: computed)";
     return row;
   }
-  if (foreseen_ms(variant, own) > kLongSetUp) {
+  if (predicted_ms(variant, own) > kLongSetUp) {
     row.note = "not measured: it would take long to set up";
     return row;
   }
@@ -195,11 +193,11 @@ LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
     SetupTimes times(own.progress);
     TetMesh mesh = own.simulation.mesh();
     const Resection* const resection = own.simulation.resection();
-    if (resection != nullptr && resection->left().spares().second > 0)  // it makes its own
-      mesh.vertices.resize(static_cast<std::size_t>(resection->left().spares().first));
+    if (resection != nullptr && resection->remaining().spares().second > 0)  // it makes its own
+      mesh.vertices.resize(static_cast<std::size_t>(resection->remaining().spares().first));
     Simulation simulation(variant, std::move(mesh), std::ref(times), own.cache, own.condensed);
     const Cost cost =
-        cost_of(simulation, times, time_steps(variant, simulation, own.press, own.steps, own.progress));
+        cost_of(simulation, times, time_steps(variant, simulation, own.apply_loads, own.steps, own.progress));
     row.bytes = cost.bytes - own.cost.bytes;
     row.setup_ms = cost.setup_ms - own.cost.setup_ms;
     row.step_ms = cost.step_ms - own.cost.step_ms;
@@ -211,21 +209,20 @@ LeftOut compare(LeftOut row, const Scene& variant, const Own& own) {
 }
 
 /// What no tool reaches; nothing where a tool reaches everything.
-std::optional<LeftOut> beyond_reach(const Own& own) {
+std::optional<Omitted> beyond_reach(const Own& own) {
   const auto& tools = own.scene.tools;
-  if (!std::all_of(tools.begin(), tools.end(), [](const ToolSettings& tool) { return tool.reach; }))
-    return {};
+  if (!std::ranges::all_of(tools, [](const ToolSettings& tool) { return tool.reach.has_value(); })) return {};
   Scene variant = own.scene;
   for (ToolSettings& tool : variant.tools) tool.reach.reset();
   return compare({.what = "the surface out of reach", .why = tools.front().reach_where}, variant, own);
 }
 
 /// The simplest model that deforms: at rest at every instant.
-LeftOut elasticity(const Own& own) {
+Omitted elasticity(const Own& own) {
   const auto rows = deformation_models();
   const auto model =
       std::ranges::find_if(rows, [](const DeformationModelRow& m) { return m.deforms() && !m.moves; });
-  LeftOut row{.what = fmt::format("elasticity ({})", model->name), .why = own.scene.deformation.where};
+  Omitted row{.what = fmt::format("elasticity ({})", model->name), .why = own.scene.deformation.where};
   if (!own.scene.material || own.scene.fixed.empty()) {
     row.why = own.scene.material
                   ? "no [[fixed]] section"
@@ -239,7 +236,7 @@ LeftOut elasticity(const Own& own) {
 }
 
 /// Of all tools; nothing where one has some.
-std::optional<LeftOut> friction(const Own& own) {
+std::optional<Omitted> friction(const Own& own) {
   Scene variant = own.scene;
   for (ToolSettings& tool : variant.tools) {
     if (tool.shape.friction > 0) return {};
@@ -250,19 +247,19 @@ std::optional<LeftOut> friction(const Own& own) {
 }
 
 /// The compliance of all free vertices, inside the organ and out of reach too.
-LeftOut whole_compliance(const Own& own) {
+Omitted total_compliance(const Own& own) {
   const TetMesh& mesh = own.simulation.mesh();
   const std::size_t free = mesh.vertices.size() - fixed_vertices(own.scene, mesh).size();
   const auto& settings = own.scene.deformation.of<ComplianceTolerance>();
-  const ComplianceTolerance as_kept{settings.of(loaded_nodes(own.scene, own.simulation))};
+  const ComplianceTolerance as_stored{settings.of(loaded_nodes(own.scene, own.simulation))};
   return {.what = "compliance of the other free vertices",
           .why = own.scene.deformation.where,
-          .bytes = as_kept.bytes(free) - compliance_bytes(own.scene, own.simulation),
+          .bytes = as_stored.bytes(free) - compliance_bytes(own.scene, own.simulation),
           .note = fmt::format("computed for all {} free vertices, less what is kept", free)};
 }
 
 /// Of a model at rest: what motion would hold.
-LeftOut motion(const Own& own) {
+Omitted motion(const Own& own) {
   const auto n = static_cast<double>(own.simulation.mesh().vertices.size());
   return {.what = "motion (mass, velocities)",
           .why = own.scene.deformation.where,
@@ -271,7 +268,7 @@ LeftOut motion(const Own& own) {
 }
 
 /// What is not cut keeps nothing of which tetrahedra meet, nor of the heat in them.
-LeftOut cutting(const Own& own) {
+Omitted cutting(const Own& own) {
   const auto vertices = static_cast<double>(own.simulation.mesh().corners()),
              tetrahedra = static_cast<double>(own.simulation.mesh().tetrahedra.size()),
              faces = static_cast<double>(own.simulation.surface().triangles.size()) /
@@ -283,16 +280,16 @@ LeftOut cutting(const Own& own) {
 }
 
 /// What a step saves as long as no client's law asks for dF/dp.
-LeftOut tangents(Own& own) {
+Omitted tangents(Own& own) {
   const StepTimes without =
-      time_steps(own.scene, own.simulation, own.press, own.steps, own.progress, {.tangent = false});
+      time_steps(own.scene, own.simulation, own.apply_loads, own.steps, own.progress, {.tangent = false});
   return {.what = "tangents",
           .why = "nobody, until a client's law subscribes",
           .step_ms = own.cost.step_ms - without.contact_ns.quantile(0.5) / 1e6,
           .note = "measured; the times below are with them"};
 }
 
-void add_unreached_tools(const Own& own, std::vector<LeftOut>& rows) {
+void add_unreached_tools(const Own& own, std::vector<Omitted>& rows) {
   for (std::size_t i = 0; i < own.scene.tools.size(); ++i) {
     const ToolSettings& tool = own.scene.tools[i];
     if (!tool.reach ||
@@ -304,13 +301,13 @@ void add_unreached_tools(const Own& own, std::vector<LeftOut>& rows) {
   }
 }
 
-std::vector<LeftOut> left_out(Own& own) {
-  std::vector<LeftOut> rows;
+std::vector<Omitted> omitted(Own& own) {
+  std::vector<Omitted> rows;
   const DeformationModelRow& model = model_of(own.scene.deformation);
   if (const auto row = beyond_reach(own)) rows.push_back(*row);
   if (const auto row = friction(own)) rows.push_back(*row);
   if (!model.deforms() && !model.moves) rows.push_back(elasticity(own));
-  if (model.keeps_compliance()) rows.push_back(whole_compliance(own));
+  if (model.keeps_compliance()) rows.push_back(total_compliance(own));
   if (!model.moves) rows.push_back(motion(own));
   if (model.unneeded && !keeps_factor(own.simulation))
     rows.push_back({.what = std::string(model.unneeded->what),
@@ -333,16 +330,16 @@ Explanation explain(const Scene& scene, const Progress& progress, int steps, con
   SetupTimes times(progress);
   Own own{scene, progress, steps, cache, condensed, Simulation(scene, std::ref(times), cache, condensed),
           {},    {}};
-  own.press = find_press(scene, own.simulation);
+  own.apply_loads = find_press(scene, own.simulation);
   Explanation explanation{.scene = scene,
                           .built = built_parts(scene, own.simulation, times),
-                          .left_out = {},
-                          .steps = time_steps(scene, own.simulation, own.press, steps, progress),
+                          .omitted = {},
+                          .steps = time_steps(scene, own.simulation, own.apply_loads, steps, progress),
                           .state_hash = own.simulation.state_hash(),
                           .tetrahedra = own.simulation.mesh().tetrahedra.size()};
   own.cost = cost_of(own.simulation, times, explanation.steps);
   own.compliance_ms = ms(times.of(name_of(Stage::kCompliance)));
-  explanation.left_out = left_out(own);
+  explanation.omitted = omitted(own);
   return explanation;
 }
 

@@ -30,7 +30,7 @@ struct BuiltPart {
 };
 
 /// Something a scene does not build, and what it would cost more: absent where that was not measured.
-struct LeftOut {
+struct Omitted {
   std::string what;
   std::string why;                   ///< "FILE:LINE", or the section that is not there
   std::optional<double> bytes{};     ///< of all parts together
@@ -43,7 +43,7 @@ struct LeftOut {
 struct Explanation {
   Scene scene;
   std::vector<BuiltPart> built;
-  std::vector<LeftOut> left_out;
+  std::vector<Omitted> omitted;
   StepTimes steps;
   std::uint64_t state_hash = 0;  ///< after the steps in contact
   std::size_t tetrahedra = 0;

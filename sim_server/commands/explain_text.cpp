@@ -92,9 +92,9 @@ std::string built_text(const Explanation& explanation) {
   return table(rows, 3, 4);
 }
 
-std::string left_out_text(const Explanation& explanation) {
+std::string omitted_text(const Explanation& explanation) {
   std::vector<Row> rows{{"left out", "why", "saves", "saves set-up", "saves a step", ""}};
-  for (const LeftOut& row : explanation.left_out) {
+  for (const Omitted& row : explanation.omitted) {
     rows.push_back({row.what, row.why, or_dash(row.bytes, bytes_text), or_dash(row.setup_ms, setup_text),
                     or_dash(row.step_ms, step_text), row.note});
   }
@@ -122,13 +122,13 @@ std::string steps_text(const Explanation& explanation) {
                         steps.contacts, wanted, steps.flagged, steps.why.empty() ? "" : ": ", steps.why);
   }
   const Scene& scene = explanation.scene;
-  const std::string asked =
+  const std::string requested =
       scene.rate_hz > 0 ? fmt::format("{:g} Hz", scene.rate_hz) : "a step per tool state";
   text += fmt::format(
       "\n  this machine in contact: {:.0f} Hz by the median step, {:.0f} Hz by all but 1 in 100; asked for: "
       "{} "
       "({})\n",
-      1e9 / steps.contact_ns.quantile(0.5), possible_rate_hz(steps), asked,
+      1e9 / steps.contact_ns.quantile(0.5), possible_rate_hz(steps), requested,
       scene.rate_where.empty() ? "default" : scene.rate_where);
   return text + fmt::format("  state hash after these steps: {:016x}\n", explanation.state_hash);
 }
@@ -146,7 +146,7 @@ Json steps_json(const Histogram& ns) {
 std::string to_text(const Explanation& explanation) {
   const Scene& scene = explanation.scene;
   return fmt::format("{}: \"{}\", model {}\n\n{}\n{}\n{}", scene.source, scene.title, scene.deformation.model,
-                     built_text(explanation), left_out_text(explanation), steps_text(explanation));
+                     built_text(explanation), omitted_text(explanation), steps_text(explanation));
 }
 
 std::string why_text(const Explanation& explanation, const std::string& part) {
@@ -158,7 +158,7 @@ std::string why_text(const Explanation& explanation, const std::string& part) {
                        line_at(row.where), bytes_text(static_cast<double>(row.bytes)),
                        setup_text(row.setup_ms));
   }
-  for (const LeftOut& row : explanation.left_out) {
+  for (const Omitted& row : explanation.omitted) {
     known.push_back(row.what);
     if (row.what != part) continue;
     return fmt::format("{} is left out\n  by {}\n  saves {}, set-up {}, a step {} ({})\n", part,
@@ -170,7 +170,7 @@ std::string why_text(const Explanation& explanation, const std::string& part) {
 
 Json to_json(const Explanation& explanation) {
   const Scene& scene = explanation.scene;
-  Json built = Json::array(), left_out = Json::array();
+  Json built = Json::array(), omitted = Json::array();
   for (const BuiltPart& p : explanation.built) {
     built.push_back({{"part", p.part},
                      {"detail", p.detail},
@@ -178,13 +178,13 @@ Json to_json(const Explanation& explanation) {
                      {"bytes", p.bytes},
                      {"setup_ms", p.setup_ms}});
   }
-  for (const LeftOut& row : explanation.left_out) {
-    left_out.push_back({{"what", row.what},
-                        {"why", row.why},
-                        {"bytes", row.bytes ? Json(std::llround(*row.bytes)) : Json()},
-                        {"setup_ms", value_or_null(row.setup_ms)},
-                        {"step_ms", value_or_null(row.step_ms)},
-                        {"note", row.note}});
+  for (const Omitted& row : explanation.omitted) {
+    omitted.push_back({{"what", row.what},
+                       {"why", row.why},
+                       {"bytes", row.bytes ? Json(std::llround(*row.bytes)) : Json()},
+                       {"setup_ms", value_or_null(row.setup_ms)},
+                       {"step_ms", value_or_null(row.step_ms)},
+                       {"note", row.note}});
   }
   Json contact = steps_json(explanation.steps.contact_ns);
   contact["touching"] = explanation.steps.contacts;
@@ -198,7 +198,7 @@ Json to_json(const Explanation& explanation) {
           {"bytes", total_bytes(explanation)},
           {"setup_ms", total_setup_ms(explanation)},
           {"built", built},
-          {"left_out", left_out},
+          {"left_out", omitted},
           {"free", steps_json(explanation.steps.free_ns)},
           {"contact", contact},
           {"bytes_per_tetrahedron",

@@ -22,19 +22,19 @@ int make_key(const std::filesystem::path& file, bool add) {
 }
 
 Command keygen_command() {
-  struct Asked {
+  struct Requested {
     std::string file;
     bool add = false;
   };
-  const auto asked = std::make_shared<Asked>();
+  const auto requested = std::make_shared<Requested>();
   return {.name = "keygen",
           .summary = "Make a key, so that only who has it can push the motors",
           .footer =
               "Without a key, both programs talk on this machine only.\n"
               "Example: sim_server keygen palpate.key",
-          .options = {{"FILE", "Key file to make, for both programs", &asked->file, {.required = true}},
-                      {"--add", "Put a new key behind those in FILE, to change keys", &asked->add}},
-          .run = [asked] { return make_key(asked->file, asked->add); }};
+          .options = {{"FILE", "Key file to make, for both programs", &requested->file, {.required = true}},
+                      {"--add", "Put a new key behind those in FILE, to change keys", &requested->add}},
+          .run = [requested] { return make_key(requested->file, requested->add); }};
 }
 
 }  // namespace palpate::sim

@@ -63,15 +63,17 @@ std::string LiveView::link() const {
 
 LoopObserver::Leave LiveView::may_step() noexcept {
   if (!feed_.paused.load(std::memory_order_relaxed)) return {};
-  int left = feed_.steps.load(std::memory_order_relaxed);
-  return {left > 0 && feed_.steps.compare_exchange_strong(left, left - 1, std::memory_order_relaxed), true};
+  int remaining = feed_.steps.load(std::memory_order_relaxed);
+  return {remaining > 0 &&
+              feed_.steps.compare_exchange_strong(remaining, remaining - 1, std::memory_order_relaxed),
+          true};
 }
 
 void LiveView::turned(const LoopTurn& turn) noexcept {
   if (!turn.outcomes.empty()) {
     ++newest_.step;
     newest_.simulated += turn.dt;
-    owed_ = true;
+    pending_ = true;
   }
   const int pages = feed_.pages.load(std::memory_order_relaxed);
   if (pages == 0) {
@@ -79,14 +81,14 @@ void LiveView::turned(const LoopTurn& turn) noexcept {
     return;
   }
   note(turn);
-  const bool wants = feed_.wants_field.load(std::memory_order_relaxed);
-  owed_ = owed_ || (wants && !wanted_field_);  // while paused, too
-  wanted_field_ = wants;
+  const bool request = feed_.requests_field.load(std::memory_order_relaxed);
+  pending_ = pending_ || (request && !wanted_field_);  // while paused, too
+  wanted_field_ = request;
   const Time time = now();
-  if ((!owed_ && pages == pages_) || time - shown_ < kPictureEach) return;
+  if ((!pending_ && pages == pages_) || time - shown_ < kPictureEach) return;
   pages_ = pages;
   shown_ = time;
-  owed_ = false;
+  pending_ = false;
   Picture& picture = feed_.pictures.back();
   picture.t = newest_.t;
   picture.step = newest_.step;
@@ -96,7 +98,7 @@ void LiveView::turned(const LoopTurn& turn) noexcept {
   picture.tools = newest_.tools;
   show_organ(simulation_, picture);
   feed_.pictures.publish();
-  if (wants && time - field_shown_ >= kFieldEach) {
+  if (request && time - field_shown_ >= kFieldEach) {
     field_shown_ = time;
     std::ranges::copy(simulation_.nodes(), feed_.nodes.back().begin());
     feed_.nodes.publish();
@@ -113,7 +115,7 @@ void LiveView::note(const LoopTurn& turn) noexcept {
     SeenTool& seen = newest_.tools[i];
     const bool was_held = seen.held;
     show_tool(input, turn.outcomes.empty() ? nullptr : &turn.outcomes[i], newest_.t, seen);
-    owed_ = owed_ || seen.held != was_held;
+    pending_ = pending_ || seen.held != was_held;
   }
   if (!turn.outcomes.empty()) newest_.step_ms = 1e3 * to_seconds(turn.took);
 }

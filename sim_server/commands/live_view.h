@@ -47,8 +47,8 @@ class LiveView final : public LoopObserver {
   ViewerFeed feed_;
   Viewer viewer_;
   Time began_, shown_{}, field_shown_{};
-  int pages_ = 0;      // when it last looked
-  bool owed_ = false;  // a picture of what was stepped
+  int pages_ = 0;         // when it last looked
+  bool pending_ = false;  // a picture of what was stepped
   bool wanted_field_ = false;
   Picture newest_;  // without positions
 };

@@ -15,24 +15,24 @@ constexpr Time kClientEach = std::chrono::milliseconds(90);  // texts of a clien
 constexpr double kForgets = 2e4;                             // ns a message: the two clocks drift apart
 constexpr double kOtherClock = 1e9;                          // ns: farther off it was set anew
 
-SeenClient::Name name_of(const protocol::Telemetry::Name& told) {
+SeenClient::Name name_of(const protocol::Telemetry::Name& published) {
   static_assert(std::tuple_size_v<SeenClient::Name> == protocol::Telemetry::kNameBytes);
   SeenClient::Name name{};
-  std::copy(told.begin(), told.end() - 1, name.begin());
+  std::copy(published.begin(), published.end() - 1, name.begin());
   return name;
 }
 
 /// What is known of the client of one tool, and of the link to it.
-class ToolNews {
+class ToolEvents {
  public:
-  ToolNews() { client_.errors_percent.fill(std::nanf("")); }
-  void take(const protocol::Telemetry& told, Time now, Time began, ViewerFeed& feed);
+  ToolEvents() { client_.errors_percent.fill(std::nanf("")); }
+  void take(const protocol::Telemetry& published, Time now, Time began, ViewerFeed& feed);
   void count(const PeerCounts& counts, Time now, SeenPeer& seen);
 
  private:
-  void note_interventions(const protocol::Telemetry& told);
+  void note_interventions(const protocol::Telemetry& published);
   void note_states(std::uint16_t flags);
-  void note_ticks(const protocol::Telemetry& told, double t, ViewerFeed& feed) const;
+  void note_ticks(const protocol::Telemetry& published, double t, ViewerFeed& feed) const;
 
   struct Mark {
     Time t;
@@ -44,48 +44,49 @@ class ToolNews {
   Time shown_{};
 };
 
-void ToolNews::take(const protocol::Telemetry& told, Time now, Time began, ViewerFeed& feed) {
-  const auto told_at = static_cast<double>(told.t_ns);  // any, off the wire
-  const double apart = static_cast<double>(now.count()) - told_at;
-  if (!clock_ || std::abs(apart - *clock_) > kOtherClock) clock_ = apart;
-  clock_ = std::min(*clock_ + kForgets, apart);
-  note_ticks(told, 1e-9 * (told_at + *clock_ - static_cast<double>(began.count())), feed);
-  client_.tool = told.tool;
-  client_.law = name_of(told.felt_law);
-  client_.laws = std::min<std::uint8_t>(told.laws, protocol::Telemetry::kMostLaws);
-  if (told.named < client_.laws) {
-    client_.law_names[told.named] = name_of(told.name);
-    client_.errors_percent[told.named] = told.error_percent < 0 ? std::nanf("") : told.error_percent;
+void ToolEvents::take(const protocol::Telemetry& published, Time now, Time began, ViewerFeed& feed) {
+  const auto published_at = static_cast<double>(published.t_ns);  // any, off the wire
+  const double interval = static_cast<double>(now.count()) - published_at;
+  if (!clock_ || std::abs(interval - *clock_) > kOtherClock) clock_ = interval;
+  clock_ = std::min(*clock_ + kForgets, interval);
+  note_ticks(published, 1e-9 * (published_at + *clock_ - static_cast<double>(began.count())), feed);
+  client_.tool = published.tool;
+  client_.law = name_of(published.rendered_law);
+  client_.laws = std::min<std::uint8_t>(published.laws, protocol::Telemetry::kMostLaws);
+  if (published.named < client_.laws) {
+    client_.law_names[published.named] = name_of(published.name);
+    client_.errors_percent[published.named] =
+        published.error_percent < 0 ? std::nanf("") : published.error_percent;
   }
-  client_.age_ms = 1e-6 * static_cast<double>(told.age_ns);
-  client_.period_ms = 1e-6 * told.period_ns;
-  client_.missed = told.missed;
-  client_.passivity_gain = static_cast<double>(told.passivity_gain);
-  client_.felt_W = told.f_W;
-  client_.p_W = told.p_W;
-  client_.device = name_of(told.device);
-  client_.has_motors = (told.flags & protocol::Telemetry::kHasMotors) != 0;
-  note_interventions(told);
-  note_states(told.flags);
+  client_.age_ms = 1e-6 * static_cast<double>(published.age_ns);
+  client_.period_ms = 1e-6 * published.period_ns;
+  client_.missed = published.missed;
+  client_.passivity_gain = static_cast<double>(published.passivity_gain);
+  client_.rendered_W = published.f_W;
+  client_.p_W = published.p_W;
+  client_.device = name_of(published.device);
+  client_.has_motors = (published.flags & protocol::Telemetry::kHasMotors) != 0;
+  note_interventions(published);
+  note_states(published.flags);
   if (now - shown_ < kClientEach) return;
   shown_ = now;
-  feed.clients[told.tool] = client_;
-  ++feed.client_news[told.tool];
+  feed.clients[published.tool] = client_;
+  ++feed.client_events[published.tool];
 }
 
-void ToolNews::note_interventions(const protocol::Telemetry& told) {
+void ToolEvents::note_interventions(const protocol::Telemetry& published) {
   using Name = SeenClient::Name;
   client_.interventions = 0;
-  for (const auto& [name, count] : {std::pair{Name{"faded"}, std::uint64_t{told.faded}},
-                                    {Name{"clamped"}, std::uint64_t{told.clamped}},
-                                    {Name{"slewed"}, std::uint64_t{told.slewed}},
-                                    {Name{"damped"}, std::uint64_t{told.damped}}}) {
+  for (const auto& [name, count] : {std::pair{Name{"faded"}, std::uint64_t{published.faded}},
+                                    {Name{"clamped"}, std::uint64_t{published.clamped}},
+                                    {Name{"slewed"}, std::uint64_t{published.slewed}},
+                                    {Name{"damped"}, std::uint64_t{published.damped}}}) {
     client_.intervention_names[client_.interventions] = name;
     client_.intervention_counts[client_.interventions++] = count;
   }
 }
 
-void ToolNews::note_states(std::uint16_t flags) {
+void ToolEvents::note_states(std::uint16_t flags) {
   using Name = SeenClient::Name;
   using protocol::Telemetry;
   client_.states = 0;
@@ -98,25 +99,25 @@ void ToolNews::note_states(std::uint16_t flags) {
   }
 }
 
-void ToolNews::note_ticks(const protocol::Telemetry& told, double t, ViewerFeed& feed) const {
-  const double dt = 1e-9 * told.dt_ns;
-  ClientTicks ticks{.tool = told.tool,
-                    .laws = std::min<std::uint8_t>(told.laws, protocol::Telemetry::kMostLaws),
-                    .count = std::min<std::uint32_t>(told.count, protocol::Telemetry::kMostTicks),
+void ToolEvents::note_ticks(const protocol::Telemetry& published, double t, ViewerFeed& feed) const {
+  const double dt = 1e-9 * published.dt_ns;
+  ClientTicks ticks{.tool = published.tool,
+                    .laws = std::min<std::uint8_t>(published.laws, protocol::Telemetry::kMostLaws),
+                    .count = std::min<std::uint32_t>(published.count, protocol::Telemetry::kMostTicks),
                     .t = 0,
                     .dt = static_cast<float>(dt)};
   if (ticks.count == 0) return;
   ticks.t = t - dt * (ticks.count - 1);
   for (std::size_t k = 0; k < ticks.count; ++k) {
-    ticks.felt[k] = told.felt[k];
-    std::copy_n(told.by_law.begin() + static_cast<std::ptrdiff_t>(k * ticks.laws), ticks.laws,
+    ticks.rendered[k] = published.rendered[k];
+    std::copy_n(published.by_law.begin() + static_cast<std::ptrdiff_t>(k * ticks.laws), ticks.laws,
                 ticks.by_law[k].begin());
   }
   feed.ticks.push_back(ticks);
 }
 
 /// Loss and rate over the last seconds; a session that began anew begins anew here.
-void ToolNews::count(const PeerCounts& counts, Time now, SeenPeer& seen) {
+void ToolEvents::count(const PeerCounts& counts, Time now, SeenPeer& seen) {
   if (!counts.held || (!marks_.empty() && counts.received < marks_.back().received)) marks_.clear();
   if (!counts.held) {
     seen = {};
@@ -140,17 +141,17 @@ void ToolNews::count(const PeerCounts& counts, Time now, SeenPeer& seen) {
 
 ViewerFeed::Hooks page_hooks(ViewerFeed& feed, std::size_t tools, PageMailboxes& mailboxes, Doorbell& bell,
                              Time began) {
-  auto news = std::make_shared<std::vector<ToolNews>>(tools);
+  auto events = std::make_shared<std::vector<ToolEvents>>(tools);
   auto pointers = std::make_shared<std::array<std::uint64_t, kMaxTools>>();
   ViewerFeed::Hooks hooks;
-  hooks.news = [&feed, &mailboxes, news, began](Time now) {
-    mailboxes.wants_telemetry = feed.pages > 0;
-    for (std::size_t i = 0; i < news->size(); ++i) {
+  hooks.events = [&feed, &mailboxes, events, began](Time now) {
+    mailboxes.requests_telemetry = feed.pages > 0;
+    for (std::size_t i = 0; i < events->size(); ++i) {
       ToolPageMailboxes& tool = mailboxes.tools[i];
-      protocol::Telemetry told;
-      while (tool.telemetry.pop(told)) (*news)[i].take(told, now, began, feed);
+      protocol::Telemetry published;
+      while (tool.telemetry.pop(published)) (*events)[i].take(published, now, began, feed);
       PeerCounts counts;
-      if (tool.peer.read(counts)) (*news)[i].count(counts, now, feed.peers[i]);
+      if (tool.peer.read(counts)) (*events)[i].count(counts, now, feed.peers[i]);
     }
   };
   // Pages count each for itself; a client wants numbers that rise.

@@ -134,9 +134,10 @@ SeenResection seen_of(const Resection& resection) noexcept {
                      .loose_pieces = all.loose_pieces};
   if (resection.has_plan() && all.tetrahedra > 0) {
     seen.mean_distance = all.mean_distance();
-    seen.farthest = all.farthest;
+    seen.furthest = all.furthest;
   }
-  if (resection.has_plan() && all.parted_area > 0) seen.mean_parted_distance = all.mean_parted_distance();
+  if (resection.has_plan() && all.separated_area > 0)
+    seen.mean_separated_distance = all.mean_separated_distance();
   return seen;
 }
 

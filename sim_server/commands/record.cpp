@@ -19,9 +19,9 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kUsualTicks = 500;         // Hz
-constexpr std::uint64_t kLookAround = 256;  // ticks between two looks at the progress line
-constexpr double kLongest = 1e5;            // s
+constexpr double kUsualTicks = 500;           // Hz
+constexpr std::uint64_t kSearchAround = 256;  // ticks between two looks at the progress line
+constexpr double kLongest = 1e5;              // s
 
 /// A CSV (t_s, x_m, y_m, z_m, world), or a client file whose [trajectory] says how to read one.
 Trajectory read_motion(const std::filesystem::path& file) {
@@ -53,7 +53,7 @@ std::optional<std::filesystem::path> file_of_motion(const std::filesystem::path&
   return section->file("file");
 }
 
-void require_files_apart(const RecordOptions& options, const Scene& scene) {
+void require_distinct_files(const RecordOptions& options, const Scene& scene) {
   for (const auto& trajectory : options.trajectories)
     require_distinct({{"SCENE", options.scene},
                       {scene.mesh_where, scene.mesh_file},
@@ -68,7 +68,7 @@ void require_files_apart(const RecordOptions& options, const Scene& scene) {
 
 /// That all files can be written, and mean something for this scene: said before anything is set up.
 void check_record_files(const RecordOptions& options, const Scene& scene) {
-  require_files_apart(options, scene);
+  require_distinct_files(options, scene);
   if (options.report) check_writable(*options.report, Contents::kReport);
   require_resection("--resection", options.resection, scene);
   require_resection("--removals", options.removals, scene);
@@ -119,7 +119,7 @@ void run_session(VirtualSession& session, std::uint64_t ticks, protocol::Capture
                  const RecordOptions& options, ProgressLine& progress) {
   for (std::uint64_t k = 0; k < ticks; ++k) {
     session.tick(k);
-    if (k % kLookAround != 0) continue;
+    if (k % kSearchAround != 0) continue;
     progress("recording", static_cast<double>(k) / static_cast<double>(ticks));
   }
   session.leave();
@@ -188,7 +188,7 @@ int record(const RecordOptions& options) {
   check_record_files(options, scene);
   const std::vector<Removal> removals =
       options.remove ? read_removals(*options.remove) : std::vector<Removal>();
-  WholeFile out(options.out, Contents::kCapture);
+  AtomicFile out(options.out, Contents::kCapture);
   protocol::CaptureWriter capture(out.path());
   say_what_is_lost(motion, options, ticks_hz);
   ProgressLine progress;

@@ -21,11 +21,11 @@ constexpr const char* kColumns =
 /// Distances from the plan of what was removed, and of what was parted; nothing where there is no plan, or
 /// none of it yet.
 struct FromPlan {
-  std::optional<double> mean, farthest, mean_parted;  // m
+  std::optional<double> mean, furthest, mean_separated;  // m
 
   FromPlan(const ResectionTotals& all, bool planned) {
-    if (planned && all.tetrahedra > 0) mean = all.mean_distance(), farthest = all.farthest;
-    if (planned && all.parted_area > 0) mean_parted = all.mean_parted_distance();
+    if (planned && all.tetrahedra > 0) mean = all.mean_distance(), furthest = all.furthest;
+    if (planned && all.separated_area > 0) mean_separated = all.mean_separated_distance();
   }
 };
 
@@ -42,8 +42,9 @@ std::string row_text(const ResectionRow& row, bool planned) {
       "{:.6g},{:.6g},{:.6g},{},{:.6g}\n",
       row.t, row.tool + 1, row.p_W.x(), row.p_W.y(), row.p_W.z(), row.f_W.norm(), row.contact ? 1 : 0,
       all.tetrahedra, 1e6 * all.volume, 1e6 * all.dropped_volume, all.dropped_pieces, all.loose_pieces,
-      1e4 * all.cut_area, cell_of(away.mean), cell_of(away.farthest), all.heat, all.elastic, all.kinetic,
-      all.hot_time, all.contact_time, 1e4 * all.parted_area, cell_of(away.mean_parted), all.time_at_end);
+      1e4 * all.cut_area, cell_of(away.mean), cell_of(away.furthest), all.heat, all.elastic, all.kinetic,
+      all.hot_time, all.contact_time, 1e4 * all.separated_area, cell_of(away.mean_separated),
+      all.time_at_end);
 }
 
 /// How far from the plan, where there is one.
@@ -59,10 +60,10 @@ std::string heat_text(const ResectionTotals& all, bool planned) {
                      away(planned && all.mean_distance() > 0, all.mean_distance(), "on average"), at_end);
 }
 
-std::string parted_text(const ResectionTotals& all, bool planned) {
+std::string separated_text(const ResectionTotals& all, bool planned) {
   if (all.slides == 0 && all.splits == 0) return {};
   return fmt::format("; a blade parted {:.1f} cm2{}: {} vertices became two, {} slid onto its way{}",
-                     1e4 * all.parted_area, away(planned, all.mean_parted_distance(), "on average"),
+                     1e4 * all.separated_area, away(planned, all.mean_separated_distance(), "on average"),
                      all.splits, all.slides,
                      all.ran_out ? "; it went through more, for which there were no vertices left" : "");
 }
@@ -86,27 +87,27 @@ void require_no_blade(const char* option, const std::optional<std::filesystem::p
 }
 
 void write_resection(const std::filesystem::path& file, const Simulation& simulation) {
-  WholeFile whole(file, Contents::kTable);
-  std::ofstream out(whole.path());
+  AtomicFile atomic_file(file, Contents::kTable);
+  std::ofstream out(atomic_file.path());
   out << kColumns;
   const TissueCut* const cut = simulation.cut();
   for (const ResectionRow& row : cut ? cut->log() : std::span<const ResectionRow>())
     out << row_text(row, simulation.resection()->has_plan());
   out.close();
   if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
-  whole.commit();
+  atomic_file.commit();
 }
 
 void write_removals(const std::filesystem::path& file, const Simulation& simulation) {
-  WholeFile whole(file, Contents::kTable);
-  std::ofstream out(whole.path());
+  AtomicFile atomic_file(file, Contents::kTable);
+  std::ofstream out(atomic_file.path());
   out << "t_s,tetrahedron\n";
   const TissueCut* const cut = simulation.cut();
   for (const Removal& removal : cut ? cut->removals() : std::span<const Removal>())
     out << fmt::format("{:.9f},{}\n", removal.t, removal.tetrahedron);
   out.close();
   if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
-  whole.commit();
+  atomic_file.commit();
 }
 
 std::vector<Removal> read_removals(const std::filesystem::path& file) {
@@ -133,7 +134,7 @@ void require_removable(std::span<const Removal> removals, const std::filesystem:
     if (number >= tetrahedra)
       fail("{}: data row {} names tetrahedron {}, and the mesh has 0 to {}; is it of another mesh?",
            file.string(), row + 1, number, tetrahedra - 1);
-    if (!simulation.resection()->left().is_removable(number))
+    if (!simulation.resection()->remaining().is_removable(number))
       fail(
           "{}: data row {} names tetrahedron {}, which the scene's [cutting] does not let go; is it of "
           "another scene?",
@@ -148,7 +149,7 @@ Json resection_report(const Simulation& simulation) {
   const FromPlan away(all, resection->has_plan());
   const auto known = [](const std::optional<double>& metres) { return metres ? Json(*metres) : Json(); };
   return {{"tetrahedra", all.tetrahedra},
-          {"tetrahedra_left", resection->left().count()},
+          {"tetrahedra_left", resection->remaining().count()},
           {"removed_m3", all.volume},
           {"dropped_m3", all.dropped_volume},
           {"pieces_dropped", all.dropped_pieces},
@@ -156,13 +157,13 @@ Json resection_report(const Simulation& simulation) {
           {"loose_m3", all.loose_volume},
           {"cut_area_m2", all.cut_area},
           {"mean_distance_m", known(away.mean)},
-          {"farthest_m", known(away.farthest)},
+          {"farthest_m", known(away.furthest)},
           {"heat_J", all.heat},
           {"elastic_J", all.elastic},
           {"kinetic_J", all.kinetic},
           {"momentum_Ns", {all.momentum.x(), all.momentum.y(), all.momentum.z()}},
-          {"parted_m2", all.parted_area},
-          {"mean_parted_distance_m", known(away.mean_parted)},
+          {"parted_m2", all.separated_area},
+          {"mean_parted_distance_m", known(away.mean_separated)},
           {"vertices_slid", all.slides},
           {"vertices_split", all.splits},
           {"ran_out_of_vertices", all.ran_out},
@@ -179,9 +180,10 @@ std::string resection_text(const Simulation& simulation) {
   return fmt::format(
       "removed {} of {} tetrahedra, {:.2f} ml, {:.2f} ml of them {} loose pieces; cut {:.1f} cm2{}; "
       "{} pieces lie loose{}{}",
-      all.tetrahedra, all.tetrahedra + resection->left().count(), 1e6 * all.volume, 1e6 * all.dropped_volume,
-      all.dropped_pieces, 1e4 * all.cut_area, away(planned, all.farthest, "at most"), all.loose_pieces,
-      heat_text(all, planned), parted_text(all, planned));
+      all.tetrahedra, all.tetrahedra + resection->remaining().count(), 1e6 * all.volume,
+      1e6 * all.dropped_volume, all.dropped_pieces, 1e4 * all.cut_area,
+      away(planned, all.furthest, "at most"), all.loose_pieces, heat_text(all, planned),
+      separated_text(all, planned));
 }
 
 Option resection_option(std::optional<std::filesystem::path>& file) {

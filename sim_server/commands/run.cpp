@@ -87,7 +87,7 @@ Json percent_of(const DiscretisationError& error) {
 }
 
 /// What mesh and time step cost the force of a tool that pressed on tissue.
-Json felt_report(const ErrorOfForce& errors, std::size_t tool) {
+Json rendered_report(const ErrorOfForce& errors, std::size_t tool) {
   const auto elements = errors.elements_per_radius(tool);
   if (!elements) return nullptr;
   const DiscretisationErrors all = errors.of_all_steps(tool);
@@ -106,7 +106,7 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
                      {"contact_steps", stats.tools[i].contact_steps},
                      {"beyond_steps", stats.tools[i].beyond_steps},
                      {"missed_by_m", missed_by(stats.tools[i])},
-                     {"felt", felt_report(errors, i)},
+                     {"felt", rendered_report(errors, i)},
                      {"sessions", link.tools[i].so_far.load()}});
   }
   return tools;
@@ -137,22 +137,22 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
 }
 
 /// "the mesh an unknown part of the force", "the mesh 3.5 % of the force (estimated)".
-std::string cost_text(const char* what, const Json& felt, const char* percent, const char* how) {
-  if (felt[percent].is_null()) return fmt::format("{} an unknown part of the force", what);
-  return fmt::format("{} {} % of the force ({})", what, two_figures(felt[percent].get<double>()),
-                     felt["how"][how].get<std::string>());
+std::string cost_text(const char* what, const Json& rendered, const char* percent, const char* how) {
+  if (rendered[percent].is_null()) return fmt::format("{} an unknown part of the force", what);
+  return fmt::format("{} {} % of the force ({})", what, two_figures(rendered[percent].get<double>()),
+                     rendered["how"][how].get<std::string>());
 }
 
 /// Of each tool that pressed on tissue.
 void print_errors(const Json& report) {
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
-    const Json& felt = report["tools"][i]["felt"];
-    if (felt.is_null()) continue;
+    const Json& rendered = report["tools"][i]["felt"];
+    if (rendered.is_null()) continue;
     fmt::print("            tool {}, {:.1f} elements to its radius where it pressed: {}, {}\n", i + 1,
-               felt["elements_per_radius"].get<double>(),
-               cost_text("the mesh costs", felt, "mesh_percent", "mesh"),
-               cost_text("the time step", felt, "motion_percent", "motion"));
-    const Json& how = felt["how"]["mesh"];
+               rendered["elements_per_radius"].get<double>(),
+               cost_text("the mesh costs", rendered, "mesh_percent", "mesh"),
+               cost_text("the time step", rendered, "motion_percent", "motion"));
+    const Json& how = rendered["how"]["mesh"];
     if (how != name_of(ErrorSource::kMeasured) && how != name_of(ErrorSource::kNone))
       fmt::print("            `sim_server study {} --out DIR` measures both for this scene\n",
                  report["scene"].get<std::string>());
@@ -203,15 +203,15 @@ std::optional<Scene> watch(NetLink& link, const SimLoop& loop, const Scene& scen
                            protocol::RecordingWatcher& recording, LiveView* view,
                            const std::vector<GalleryScene>& gallery, std::optional<double> seconds) {
   const Time start = now();
-  RunNews news(scene);
+  RunEvents events(scene);
   while (!wait_for_interrupt(std::chrono::milliseconds(100))) {
     if (seconds && to_seconds(now() - start) >= *seconds) return {};
     if (view != nullptr) {
       if (auto chosen = chosen_scene(view->feed(), gallery)) return chosen;
     }
     recording.look();
-    link.watcher.look("");
-    news.tell(link, loop, view != nullptr && view->feed().paused);
+    link.watcher.poll("");
+    events.tell(link, loop, view != nullptr && view->feed().paused);
   }
   return {};
 }
@@ -297,7 +297,7 @@ auto serve_until(SimLoop& loop, NetLink& link, protocol::Recorder* recorder, Liv
 }
 
 /// What came of a run: on the terminal, and in the files that were asked for.
-void tell_results(const ServerOptions& options, const Simulation& simulation, const Json& report) {
+void report_results(const ServerOptions& options, const Simulation& simulation, const Json& report) {
   print_summary(report, simulation);
   if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);
   if (options.resection) write_resection(*options.resection, simulation);
@@ -355,7 +355,7 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   recording.look();  // what was written at the end
   add_run(report, loop, link, simulation, scene, errors, now() - start);
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
-  tell_results(options, simulation, report);
+  report_results(options, simulation, report);
   return chosen;
 }
 

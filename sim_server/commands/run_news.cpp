@@ -4,24 +4,24 @@
 
 namespace palpate::sim {
 
-RunNews::RunNews(const Scene& scene)
+RunEvents::RunEvents(const Scene& scene)
     : scene_(scene), held_(scene.tools.size(), false), beyond_(scene.tools.size(), false) {}
 
-void RunNews::tell(const NetLink& link, const SimLoop& loop, bool paused) {
-  tell_paused(paused);
-  tell_holders(link, paused);
-  tell_beyond(loop);
-  tell_end(loop);
+void RunEvents::tell(const NetLink& link, const SimLoop& loop, bool paused) {
+  report_paused(paused);
+  report_holders(link, paused);
+  report_beyond(loop);
+  report_end(loop);
 }
 
 /// Says that a page has paused, or let go on.
-void RunNews::tell_paused(bool paused) {
+void RunEvents::report_paused(bool paused) {
   if (paused != paused_) log::info("{}", paused ? "paused by a page" : "goes on");
   paused_ = paused;
 }
 
 /// Says which tools were taken and left since the last look.
-void RunNews::tell_holders(const NetLink& link, bool paused) {
+void RunEvents::report_holders(const NetLink& link, bool paused) {
   for (std::size_t i = 0; i < held_.size(); ++i) {
     const bool held = link.tools[i].held;
     if (held == held_[i]) continue;
@@ -34,7 +34,7 @@ void RunNews::tell_holders(const NetLink& link, bool paused) {
 }
 
 /// Says, once for each tool, that it left what the scene says it stays in.
-void RunNews::tell_beyond(const SimLoop& loop) {
+void RunEvents::report_beyond(const SimLoop& loop) {
   for (std::size_t i = 0; i < beyond_.size(); ++i) {
     if (beyond_[i] || !loop.went_beyond[i]) continue;
     log::warning("{}: tool {} went beyond this, where nothing is built that it could feel; make it wider",
@@ -44,7 +44,7 @@ void RunNews::tell_beyond(const SimLoop& loop) {
 }
 
 /// Says, once, that a hot tip or a blade is at tissue that cannot be cut.
-void RunNews::tell_end(const SimLoop& loop) {
+void RunEvents::report_end(const SimLoop& loop) {
   if (at_end_ || !loop.cut_to_end) return;
   log::warning("{}: a tool cuts at tissue that cannot be cut; a larger region or `within` lets the cut go on",
                scene_.cutting->where);

@@ -9,18 +9,18 @@ namespace palpate::sim {
 
 /// Messages of a run, once each. They report who takes and returns tools, a pause by a page, a tool beyond
 /// its reach, and a cut without further removable tissue. Used by the thread that watches the run.
-class RunNews {
+class RunEvents {
  public:
   /// Reports on a scene, which outlives this.
-  explicit RunNews(const Scene& scene);
+  explicit RunEvents(const Scene& scene);
   /// Prints what is new since the last call.
   void tell(const NetLink& link, const SimLoop& loop, bool paused);
 
  private:
-  void tell_paused(bool paused);
-  void tell_holders(const NetLink& link, bool paused);
-  void tell_beyond(const SimLoop& loop);
-  void tell_end(const SimLoop& loop);
+  void report_paused(bool paused);
+  void report_holders(const NetLink& link, bool paused);
+  void report_beyond(const SimLoop& loop);
+  void report_end(const SimLoop& loop);
 
   const Scene& scene_;
   bool paused_ = false, at_end_ = false;

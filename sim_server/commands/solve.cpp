@@ -33,7 +33,7 @@ Outcome find_rest(const Scene& scene, const Solid& solid, const Loads& loads, Pr
                         loads.held(), loads.moved()};
   const Time begin = now();
   Equilibrium found =
-      find_equilibrium(solid, load, scene.source, [&](double share) { progress("loading", share); });
+      find_equilibrium(solid, load, scene.source, [&](double fraction) { progress("loading", fraction); });
   progress("loading", 1);
   fmt::print(
       "  static equilibrium     {} Newton steps in {} increments, residual {:.1e} of the forces at work, "
@@ -118,7 +118,7 @@ int step_to_balance(Dynamics& dynamics, const Loads& loads, double t, double h, 
   dynamics.start_step(h);
   loads.put_held(t, dynamics.mutable_position());
   for (int k = 1; k <= kMostNewton; ++k) {
-    std::fill(external.begin(), external.end(), Vec3::Zero());
+    std::ranges::fill(external, Vec3::Zero());
     loads.add_forces(dynamics.position(), external);
     if (dynamics.iterate(external, tolerance) > tolerance) continue;
     if (!(dynamics.relative_residual() <= std::max(tolerance, kRounding)))
@@ -148,14 +148,14 @@ Outcome move_for(const SolveOptions& options, const Scene& scene, const Solid& s
   if (options.series) series.add(0, solid, outcome_of(dynamics));
   for (int step = 1; step <= steps; ++step) {
     const Time begin = now();
-    const int looks = step_to_balance(dynamics, loads, step * h, h, stepping.tolerance, external);
-    if (looks == 0) {
+    const int polls = step_to_balance(dynamics, loads, step * h, h, stepping.tolerance, external);
+    if (polls == 0) {
       if (options.series) series.finish();  // what there is can be looked at
       fail_at_run_time("{}: no convergence at {:g} s; a smaller --step than {:g} s would help", scene.source,
                        step * h, h);
     }
     times.push_back(now() - begin);
-    newton += looks;
+    newton += polls;
     progress("moving", static_cast<double>(step) / steps);
     if (options.series && (step % every == 0 || step == steps))
       series.add(step * h, solid, outcome_of(dynamics));

@@ -181,15 +181,15 @@ void print_outcome(const std::string& where, const Solid& solid, const Loads& lo
                    const std::vector<HeldRegion>& regions, const Outcome& outcome,
                    const std::vector<Probe>& probes) {
   const std::vector<Vec3>& x = outcome.x;
-  std::size_t farthest = 0;
+  std::size_t furthest = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if ((x[i] - solid.rest()[i]).norm() > (x[farthest] - solid.rest()[farthest]).norm()) farthest = i;
+    if ((x[i] - solid.rest()[i]).norm() > (x[furthest] - solid.rest()[furthest]).norm()) furthest = i;
   }
-  const Vec3& from = solid.rest()[farthest];
+  const Vec3& from = solid.rest()[furthest];
   fmt::print("  elastic energy         {:.9g} J{}\n", solid.energy(x),
              outcome.memory.empty() ? "" : ", of the law at once: what has relaxed is not taken off");
   print_forces(loads, regions, outcome);
-  fmt::print("  largest displacement   {:.9g} m at {:.6g},{:.6g},{:.6g}\n", (x[farthest] - from).norm(),
+  fmt::print("  largest displacement   {:.9g} m at {:.6g},{:.6g},{:.6g}\n", (x[furthest] - from).norm(),
              from[0], from[1], from[2]);
   warn_of_inverted(where, solid, x);
   for (const Probe& probe : probes) {

@@ -62,7 +62,7 @@ class Runner {
     const StudyCase& own = plan.cases.front();
     const std::filesystem::path file = options.trajectory.value_or(folder_ / (own.name() + "-motion.csv"));
     if (!options.trajectory && !std::filesystem::exists(file))
-      run_apart(own.name(), [&] { write_motion(file, press_and_slide(own)); });
+      run_separately(own.name(), [&] { write_motion(file, press_and_slide(own)); });
     motion_.emplace(TrajectorySettings{.file = file});
     seconds_ = motion_->duration();
     if (seconds_ < 4 / own.scene.rate_hz)
@@ -74,14 +74,14 @@ class Runner {
     if (sites_.empty()) fail_untouched(options);
   }
 
-  Trace run(const StudyCase& one, double share) {
-    progress_(fmt::format("{}: {}", one.axis, one.name()), share);
+  Trace run(const StudyCase& one, double fraction) {
+    progress_(fmt::format("{}: {}", one.axis, one.name()), fraction);
     // The check may be a case under the same name, but for what its tool reaches.
     const std::filesystem::path file =
         folder_ / ((one.axis == "check" ? "check-" : "") + one.name() + ".trace");
     if (const std::optional<Trace> before = read_trace(file)) return *before;
     const double bytes =
-        run_apart(one.name(), [&] { write_trace(file, run_case(one, *motion_, seconds_, sites_)); });
+        run_separately(one.name(), [&] { write_trace(file, run_case(one, *motion_, seconds_, sites_)); });
     std::optional<Trace> trace = read_trace(file);
     if (!trace) fail_at_run_time("{}: its trace {} is not whole", one.name(), file.string());
     trace->peak_bytes = empty_ + bytes;
@@ -91,7 +91,7 @@ class Runner {
 
   /// The case with a tool that reaches what the motion touches, and no more, where the mesh is fine: the rest
   /// would be much, and for nothing.
-  StudyCase near_the_way(StudyCase one) const {
+  StudyCase near_the_path(StudyCase one) const {
     ToolSettings& tool = one.scene.tools.front();
     tool.reach = around(*motion_, kMargin * tool.shape.radius);
     return one;
@@ -188,10 +188,9 @@ int study(const StudyOptions& options, const CacheOptions& cache) {
   Runner runner(options, plan, empty);
   refine_references(plan, around(runner.motion(), kNear * scene.tools.front().shape.radius));
   const double latency = 1e-3 * options.latency_ms;
-  const Trace reference = runner.run(runner.near_the_way(plan.reference), 0),
-              check = runner.run(runner.near_the_way(plan.check), 0.1);
-  if (std::all_of(reference.forces.begin(), reference.forces.end(),
-                  [](const Vec3& f) { return f.isZero(0); }))
+  const Trace reference = runner.run(runner.near_the_path(plan.reference), 0),
+              check = runner.run(runner.near_the_path(plan.check), 0.1);
+  if (std::ranges::all_of(reference.forces, [](const Vec3& f) { return f.isZero(0); }))
     fail_untouched(options);
   StudyResult result{.own = errors_of(check, reference, runner.motion(), latency), .rows = {}};
   result.reference = plan.reference.name();
@@ -199,9 +198,9 @@ int study(const StudyOptions& options, const CacheOptions& cache) {
   result.truth = reference;
   for (std::size_t k = 0; k < plan.cases.size(); ++k) {
     const StudyCase& one = plan.cases[k];
-    const double share = 0.2 + 0.8 * static_cast<double>(k) / static_cast<double>(plan.cases.size());
+    const double fraction = 0.2 + 0.8 * static_cast<double>(k) / static_cast<double>(plan.cases.size());
     try {
-      const Trace trace = runner.run(one, share);
+      const Trace trace = runner.run(one, fraction);
       result.rows.push_back(row_of(scene, one, trace, errors_of(trace, reference, runner.motion(), latency)));
     } catch (const CaseFailed& error) {
       result.refused.emplace_back(one.name(), error.what());
@@ -222,12 +221,12 @@ int study(const StudyOptions& options, const CacheOptions& cache) {
 }
 
 Command study_command() {
-  struct Asked {
+  struct Requested {
     StudyOptions study;
     CacheOptions cache;
   };
-  const auto asked = std::make_shared<Asked>();
-  StudyOptions& options = asked->study;
+  const auto requested = std::make_shared<Requested>();
+  StudyOptions& options = requested->study;
   return {
       .name = "study",
       .summary =
@@ -253,11 +252,12 @@ Command study_command() {
              &options.latency_ms,
              {.shows_default = true}},
             {"--quick", "Fewer steps, no finer meshes, a coarser reference: a minute", &options.quick}},
-           cache_or_none(asked->cache)}),
-      .run = [asked] {
-        if (asked->study.budget_ms) require_within(*asked->study.budget_ms, 1e-3, 1e6, "--budget-ms", "ms");
-        require_within(asked->study.latency_ms, 0, 1000, "--latency-ms", "ms");
-        return study(asked->study, asked->cache);
+           cache_or_none(requested->cache)}),
+      .run = [requested] {
+        if (requested->study.budget_ms)
+          require_within(*requested->study.budget_ms, 1e-3, 1e6, "--budget-ms", "ms");
+        require_within(requested->study.latency_ms, 0, 1000, "--latency-ms", "ms");
+        return study(requested->study, requested->cache);
       }};
 }
 

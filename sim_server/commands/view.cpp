@@ -28,8 +28,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kLongestStep = 1;  // s between two answers; what was longer was a pause, or another session
-constexpr double kLooksAlike =
-    0.1;  // of the largest force: how far off a scene is that is not the captured one
+constexpr double kSimilar = 0.1;  // of the largest force: how far off a scene is that is not the captured one
 
 /// What a session shows of itself without a scene.
 void show_captured(const CapturedAnswer& answer, Picture& picture) {
@@ -72,7 +71,7 @@ class Rerun {
     if (state.tool < inputs_.size()) inputs_[state.tool].path.add(state);
   }
   /// The tool of this session is in no hand from the step on that the next answer begins.
-  void let_go(std::uint64_t session) { left_.insert(session); }
+  void release(std::uint64_t session) { departed_.insert(session); }
   /// For the step to come.
   void take(const CapturedAnswer& answer) {
     if (answer.sample.tool >= inputs_.size())
@@ -81,7 +80,7 @@ class Rerun {
     const double dt = seconds_between(input.state.t_ns, answer.state.t_ns);
     if (answer.begins_step) {
       dt_ = input.session == answer.session && dt > 0 && dt < kLongestStep ? dt : 0;
-      drop_who_left(answer.t);
+      drop_departed(answer.t);
     }
     input.session = answer.session;
     answered_[answer.sample.tool] = answer.t;
@@ -110,10 +109,10 @@ class Rerun {
 
  private:
   /// And clients that a server drops, as it has not heard of them for so long.
-  void drop_who_left(Time t) {
+  void drop_departed(Time t) {
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
       const bool silent = t - answered_[i] > protocol::ServerSessions::kTimeout;
-      if (silent || left_.contains(inputs_[i].session)) inputs_[i].session = 0;
+      if (silent || departed_.contains(inputs_[i].session)) inputs_[i].session = 0;
     }
   }
 
@@ -122,7 +121,7 @@ class Rerun {
   std::vector<SessionInput> inputs_;
   std::vector<Time> answered_;  // by tool: when last, in the capture
   std::vector<Vec3> captured_;
-  std::set<std::uint64_t> left_;  // sessions: an answer that was under way is of its own step alone
+  std::set<std::uint64_t> departed_;  // sessions: an answer that was under way is of its own step alone
   double dt_ = 0, off_ = 0, largest_ = 0;
 };
 
@@ -162,8 +161,8 @@ void make_session(const std::filesystem::path& capture, std::size_t answers, Rer
           ++session.picture().step;
         }
       },
-      [&](std::uint64_t left) {
-        if (rerun != nullptr) rerun->let_go(left);
+      [&](std::uint64_t departed) {
+        if (rerun != nullptr) rerun->release(departed);
       });
   finish();
   if (!all)
@@ -171,10 +170,10 @@ void make_session(const std::filesystem::path& capture, std::size_t answers, Rer
                  1e-6 * static_cast<double>(session.bytes().size()));
 }
 
-void tell_how_far_off(const Rerun& rerun, const std::filesystem::path& scene) {
+void report_how_far_off(const Rerun& rerun, const std::filesystem::path& scene) {
   log::info("{}: stepped again, its forces are within {:.3g} N of those captured, the largest {:.3g} N",
             scene.string(), rerun.off(), rerun.largest());
-  if (rerun.off() > kLooksAlike * rerun.largest())
+  if (rerun.off() > kSimilar * rerun.largest())
     log::warning("{}: that is far off; is it the scene of this capture?", scene.string());
 }
 
@@ -207,7 +206,7 @@ int view_capture(const ViewOptions& options) {
   RecordedSession session(facts);
   auto rerun = simulation ? std::make_unique<Rerun>(*simulation) : nullptr;
   make_session(options.capture, forces.samples.size(), rerun.get(), session);
-  if (rerun) tell_how_far_off(*rerun, *options.scene);
+  if (rerun) report_how_far_off(*rerun, *options.scene);
   ViewerFeed feed(facts.organ.rest);
   Viewer viewer(*address, "", facts, feed, &session.bytes());
   std::jthread serving([&] {

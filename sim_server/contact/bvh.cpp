@@ -168,7 +168,7 @@ std::span<const int> Bvh::near(const Eigen::AlignedBox3d& box) noexcept {
     last = std::copy(triangles_.begin() + node.triangle, triangles_.begin() + node.triangle_end, last);
     ++i;
   }
-  last = std::copy(loose_.begin(), loose_.end(), last);
+  last = std::ranges::copy(loose_, last).out;
   std::sort(near_.begin(), last);
   return {near_.begin(), last};
 }

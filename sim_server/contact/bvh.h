@@ -65,14 +65,14 @@ template <class SquaredDistance>
 int Bvh::nearest(const Eigen::AlignedBox3d& to, SquaredDistance squared_distance) const noexcept {
   double best = std::numeric_limits<double>::max();
   int nearest = -1;
-  const auto look_at = [&](int triangle) {
+  const auto observe = [&](int triangle) {
     const double distance = squared_distance(triangle);
     if (distance > best || (distance == best && triangle >= nearest)) return;
     best = distance;
     nearest = triangle;
   };
-  const auto look = [&](const Node& group) {
-    for (int k = group.triangle; k < group.triangle_end; ++k) look_at(triangles_[k]);
+  const auto search = [&](const Node& group) {
+    for (int k = group.triangle; k < group.triangle_end; ++k) observe(triangles_[k]);
   };
   const auto away = [&](int node) { return nodes_[node].box.squaredExteriorDistance(to); };
   const int end = static_cast<int>(nodes_.size());
@@ -82,14 +82,14 @@ int Bvh::nearest(const Eigen::AlignedBox3d& to, SquaredDistance squared_distance
     const int first = likely + 1, second = nodes_[first].end;
     likely = away(first) <= away(second) ? first : second;
   }
-  look(nodes_[likely]);
-  for (const int triangle : loose_) look_at(triangle);
+  search(nodes_[likely]);
+  for (const int triangle : loose_) observe(triangle);
   for (int i = 0; i < end;) {
     if (away(i) > best) {
       i = nodes_[i].end;
       continue;
     }
-    if (is_group(nodes_[i])) look(nodes_[i]);
+    if (is_group(nodes_[i])) search(nodes_[i]);
     ++i;
   }
   return nearest;

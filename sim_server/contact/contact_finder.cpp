@@ -121,8 +121,7 @@ bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, c
     if (!may_reach(a, b, c, p, q, reach) || !reaches(a, b, c, p, q, reach)) continue;
     Triangle local;
     for (int i = 0; i < 3; ++i) local[i] = slot_of(t[i]);
-    fits = static_cast<int>(patch.triangles.size()) < max_triangles_ &&
-           *std::min_element(local.begin(), local.end()) >= 0;
+    fits = static_cast<int>(patch.triangles.size()) < max_triangles_ && *std::ranges::min_element(local) >= 0;
     if (!fits) break;
     patch.triangles.push_back(local);
   }
@@ -147,7 +146,7 @@ void ContactFinder::add_some(std::span<const Vec3> positions, const Vec3& p, con
     if (!reaches(a, b, c, p, q, more) || reaches(a, b, c, p, q, reach)) continue;
     Triangle local;
     for (int i = 0; i < 3; ++i) local[i] = slot_of(t[i]);
-    if (*std::min_element(local.begin(), local.end()) >= 0) patch.triangles.push_back(local);
+    if (*std::ranges::min_element(local) >= 0) patch.triangles.push_back(local);
   }
   for (const int vertex : vertices_) slot_of_vertex_[vertex] = -1;
 }
@@ -223,9 +222,7 @@ int ContactFinder::nearest_vertex(std::span<const Vec3> positions, const Vec3& p
   const auto closer = [&](int a, int b) {
     return (positions[a] - p).squaredNorm() < (positions[b] - p).squaredNorm();
   };
-  const auto corner = [&](int i) {
-    return *std::min_element(triangles_[i].begin(), triangles_[i].end(), closer);
-  };
+  const auto corner = [&](int i) { return *std::ranges::min_element(triangles_[i], closer); };
   fit(positions);
   const int i =
       bvh_.nearest(box_around(p, p, 0), [&](int k) { return (positions[corner(k)] - p).squaredNorm(); });

@@ -17,7 +17,7 @@ constexpr int kMaxVertices = 128;
 std::vector<int> corners_of(std::span<const Triangle> triangles) {
   std::vector<int> all;
   for (const Triangle& t : triangles) all.insert(all.end(), t.begin(), t.end());
-  std::sort(all.begin(), all.end());
+  std::ranges::sort(all);
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
@@ -51,14 +51,14 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
 
 void Grip::change_surface(std::span<const Triangle> touchable, const std::function<bool(int)>& on_surface) {
   touchable_ = corners_of(touchable);
-  std::size_t kept = 0;
+  std::size_t stored = 0;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     if (!on_surface(vertices_[i])) continue;
-    vertices_[kept] = vertices_[i];
-    offsets_[kept++] = offsets_[i];
+    vertices_[stored] = vertices_[i];
+    offsets_[stored++] = offsets_[i];
   }
-  vertices_.resize(kept);
-  offsets_.resize(kept);
+  vertices_.resize(stored);
+  offsets_.resize(stored);
 }
 
 void Grip::close(const Vec3& p_W, std::span<const Vec3> positions) noexcept {
@@ -67,10 +67,10 @@ void Grip::close(const Vec3& p_W, std::span<const Vec3> positions) noexcept {
     const Vec3 offset = positions[vertex] - p_W;
     if (offset.norm() > reach_) continue;
     if (vertices_.size() == max_nodes_) {  // the nearest stay, in their order
-      const auto farthest = std::ranges::max_element(offsets_, {}, &Vec3::norm) - offsets_.begin();
-      if (!(offset.norm() < offsets_[static_cast<std::size_t>(farthest)].norm())) continue;
-      vertices_.erase(vertices_.begin() + farthest);
-      offsets_.erase(offsets_.begin() + farthest);
+      const auto furthest = std::ranges::max_element(offsets_, {}, &Vec3::norm) - offsets_.begin();
+      if (!(offset.norm() < offsets_[static_cast<std::size_t>(furthest)].norm())) continue;
+      vertices_.erase(vertices_.begin() + furthest);
+      offsets_.erase(offsets_.begin() + furthest);
     }
     vertices_.push_back(vertex);
     offsets_.push_back(offset);
@@ -162,11 +162,11 @@ Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
   const auto size = 3 * static_cast<Eigen::Index>(held);
   const std::span<NodalLoad> own = tissue.loads_on(vertices_);
   Pull pull{.vertices = static_cast<int>(held)};
-  for (bool still = false; !still; ++pull.rounds) {
-    tissue.press();
-    still = misfit(p_W, tissue, own) <= kFits * reach_;
-    pull.converged = take_compliance(tissue) && (still || pull.rounds < kMaxRounds);
-    if (still || !pull.converged) break;
+  for (bool settled = false; !settled; ++pull.rounds) {
+    tissue.apply_loads();
+    settled = misfit(p_W, tissue, own) <= kFits * reach_;
+    pull.converged = take_compliance(tissue) && (settled || pull.rounds < kMaxRounds);
+    if (settled || !pull.converged) break;
     auto change = misfit_.head(size);
     solve(change);
     for (std::size_t i = 0; i < held; ++i)

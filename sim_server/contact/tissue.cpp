@@ -8,7 +8,7 @@ namespace {
 
 // Of the tool radius: a surface that moved less did not move; and what was not near when contact was solved,
 // so half a radius from touching, does not touch before others have pushed it by more than that.
-constexpr double kStill = 1e-8, kFar = 0.25;
+constexpr double kUnmoved = 1e-8, kFar = 0.25;
 
 double move_of(std::span<const Vec3> from, std::span<const Vec3> to, std::size_t vertex) noexcept {
   return (to[vertex] - from[vertex]).cwiseAbs().maxCoeff();
@@ -35,28 +35,28 @@ void Tissue::reserve(std::span<const int> most_loads, std::span<const double> ra
     tools_[i].loads.reserve(all);
     tools_[i].free = free;
     tools_[i].radius = radii[i];
-    tools_[i].met.reserve(static_cast<std::size_t>(most_loads[i]));
+    tools_[i].touched.reserve(static_cast<std::size_t>(most_loads[i]));
     if (tools_.size() > 1) tools_[i].pushed.assign(free.begin(), free.end());
     for (auto* const array :
-         {&tools_[i].solved, &tools_[i].shift, &tools_[i].positions_here, &tools_[i].free_here})
+         {&tools_[i].solved, &tools_[i].shift, &tools_[i].positions_at, &tools_[i].free_at})
       array->assign(free.begin(), free.end());
   }
 }
 
 void Tissue::drop_loads(const std::function<bool(int)>& on_surface) {
-  const auto gone = [&](const NodalLoad& load) { return !on_surface(load.vertex); };
+  const auto removed = [&](const NodalLoad& load) { return !on_surface(load.vertex); };
   for (ToolLoads& tool : tools_) {
     tool.others -=
-        static_cast<std::size_t>(std::ranges::count_if(std::span(tool.loads).first(tool.others), gone));
-    std::erase_if(tool.loads, gone);
+        static_cast<std::size_t>(std::ranges::count_if(std::span(tool.loads).first(tool.others), removed));
+    std::erase_if(tool.loads, removed);
   }
 }
 
-void Tissue::lift(std::size_t tool) noexcept {
+void Tissue::separate(std::size_t tool) noexcept {
   ToolLoads& mine = tools_[tool];
   mine.loads.clear();
   mine.others = 0;
-  mine.left = 0;
+  mine.remaining = 0;
 }
 
 Tissue::State Tissue::save() const {
@@ -82,13 +82,13 @@ void Tissue::restore(const State& state, const FreeMotion& motion) {
   motions_ = state.motions;
 }
 
-ToolTissue Tissue::met_by(std::size_t tool) {
-  return {*this, tool, meet(tool)};
+ToolTissue Tissue::touched_by(std::size_t tool) {
+  return {*this, tool, touches(tool)};
 }
 
 /// Takes over the loads that the other tools put on the tissue by now. Returns whether that moved what is
 /// free to this tool.
-bool Tissue::meet(std::size_t tool) {
+bool Tissue::touches(std::size_t tool) {
   ToolLoads& mine = tools_[tool];
   const auto loaded = [&](const ToolLoads& other) { return &other != &mine && !other.own().empty(); };
   if (mine.others == 0 && std::ranges::none_of(tools_, loaded)) {
@@ -107,7 +107,7 @@ bool Tissue::meet(std::size_t tool) {
   std::rotate(loads.begin(), loads.begin() + static_cast<long>(own), loads.end());
   positions = model->apply(std::span(loads).first(mine.others));
   const bool moved = push(mine);
-  if (own > 0) press(tool);
+  if (own > 0) apply_loads(tool);
   return moved;
 }
 
@@ -117,35 +117,35 @@ bool Tissue::push(ToolLoads& tool) {
   const bool was_pushed = tool.free.data() == tool.pushed.data();
   const bool some = was_pushed && moved_ != nullptr && tool.pushed_in + 1 >= motions_;
   const double most = some ? largest_move(tool.free, positions, *moved_) : largest_move(tool.free, positions);
-  const double met = tool.met_any ? most : largest_move(tool.free, positions, tool.met);
-  const bool moved = most > kStill * tool.radius;
+  const double touched = tool.touched_any ? most : largest_move(tool.free, positions, tool.touched);
+  const bool moved = most > kUnmoved * tool.radius;
   for (std::size_t k = 0; some && moved && k < moved_->size(); ++k) {
     const auto v = static_cast<std::size_t>((*moved_)[k]);
     tool.pushed[v] = positions[v];
   }
-  if (!some && (moved || !was_pushed)) std::copy(positions.begin(), positions.end(), tool.pushed.begin());
+  if (!some && (moved || !was_pushed)) std::ranges::copy(positions, tool.pushed.begin());
   tool.free = tool.pushed;
   tool.pushed_in = motions_;
   tool.went += most;
-  return met > kStill * tool.radius || tool.went > kFar * tool.radius;
+  return touched > kUnmoved * tool.radius || tool.went > kFar * tool.radius;
 }
 
 std::span<const Vec3> ToolTissue::free() const {
   const auto& mine = tissue_.tools_[tool_];
-  return mine.left > 0 ? std::span<const Vec3>(mine.free_here) : mine.free;
+  return mine.remaining > 0 ? std::span<const Vec3>(mine.free_at) : mine.free;
 }
 
 std::span<const Vec3> ToolTissue::positions() const {
   const auto& mine = tissue_.tools_[tool_];
-  return mine.left > 0 ? std::span<const Vec3>(mine.positions_here) : tissue_.positions;
+  return mine.remaining > 0 ? std::span<const Vec3>(mine.positions_at) : tissue_.positions;
 }
 
-void ToolTissue::press() {
-  tissue_.press(tool_);
+void ToolTissue::apply_loads() {
+  tissue_.apply_loads(tool_);
   auto& mine = tissue_.tools_[tool_];
-  if (mine.left == 0) return;
+  if (mine.remaining == 0) return;
   for (std::size_t v = 0; v < mine.shift.size(); ++v)
-    mine.positions_here[v] = tissue_.positions[v] - mine.left * mine.shift[v];
+    mine.positions_at[v] = tissue_.positions[v] - mine.remaining * mine.shift[v];
 }
 
 void Tissue::set_free(const FreeMotion& motion) noexcept {
@@ -163,21 +163,21 @@ std::span<const int> Tissue::moved_since(const ToolLoads& tool) const noexcept {
   return of_one_motion && moved_ != nullptr ? std::span<const int>(*moved_) : std::span<const int>();
 }
 
-void Tissue::begin_step() noexcept {
+void Tissue::start_step() noexcept {
   for (ToolLoads& tool : tools_) tool.looked_in = 0;
 }
 
-std::span<const int> ToolTissue::moved_since_look() noexcept {
+std::span<const int> ToolTissue::moved_since_search() noexcept {
   auto& mine = tissue_.tools_[tool_];
-  const bool known = tissue_.moved_ != nullptr && mine.left == 0 && mine.looked_in > 0 &&
+  const bool known = tissue_.moved_ != nullptr && mine.remaining == 0 && mine.looked_in > 0 &&
                      mine.looked_in + 1 >= tissue_.motions_;
-  mine.looked_in = mine.left == 0 ? tissue_.motions_ : 0;
+  mine.looked_in = mine.remaining == 0 ? tissue_.motions_ : 0;
   return known ? std::span<const int>(*tissue_.moved_) : std::span<const int>();
 }
 
 void Tissue::note_same_place() noexcept {
-  for (ToolLoads& tool : tools_) std::copy(positions.begin(), positions.end(), tool.solved.begin());
-  if (!before.empty()) std::copy(positions.begin(), positions.end(), before.begin());
+  for (ToolLoads& tool : tools_) std::ranges::copy(positions, tool.solved.begin());
+  if (!before.empty()) std::ranges::copy(positions, before.begin());
 }
 
 void Tissue::note_shift(ToolLoads& tool, std::span<const Vec3> positions, std::size_t vertex) noexcept {
@@ -189,7 +189,7 @@ double ToolTissue::surface_motion(const Vec3& p, const Vec3& q, double reach) {
   const Vec3 axis = q - p;
   const double length2 = axis.squaredNorm();
   double most = 0;
-  const auto look_at = [&](std::size_t v) {
+  const auto observe = [&](std::size_t v) {
     Tissue::note_shift(mine, tissue_.positions, v);
     const double went = mine.shift[v].norm();
     if (went <= most) return;
@@ -199,21 +199,21 @@ double ToolTissue::surface_motion(const Vec3& p, const Vec3& q, double reach) {
   };
   const std::span<const int> moved = tissue_.moved_since(mine);
   mine.shift_of_moved = !moved.empty();
-  for (const int v : moved) look_at(static_cast<std::size_t>(v));
-  for (std::size_t v = 0; moved.empty() && v < mine.shift.size(); ++v) look_at(v);
+  for (const int v : moved) observe(static_cast<std::size_t>(v));
+  for (std::size_t v = 0; moved.empty() && v < mine.shift.size(); ++v) observe(v);
   return most;
 }
 
-void ToolTissue::set_share_left(double left) {
+void ToolTissue::set_remaining_fraction(double remaining) {
   auto& mine = tissue_.tools_[tool_];
-  mine.left = left;
-  if (left == 0) return;
+  mine.remaining = remaining;
+  if (remaining == 0) return;
   for (std::size_t v = 0; mine.shift_of_moved && v < mine.shift.size(); ++v)
     Tissue::note_shift(mine, tissue_.positions, v);
   mine.shift_of_moved = false;
   for (std::size_t v = 0; v < mine.shift.size(); ++v) {
-    mine.positions_here[v] = tissue_.positions[v] - left * mine.shift[v];
-    mine.free_here[v] = mine.free[v] - left * mine.shift[v];
+    mine.positions_at[v] = tissue_.positions[v] - remaining * mine.shift[v];
+    mine.free_at[v] = mine.free[v] - remaining * mine.shift[v];
   }
 }
 
@@ -222,19 +222,19 @@ void ToolTissue::mark_solved() noexcept {
   const std::span<const int> moved = tissue_.moved_since(mine);
   for (const int v : moved)
     mine.solved[static_cast<std::size_t>(v)] = tissue_.positions[static_cast<std::size_t>(v)];
-  if (moved.empty()) std::copy(tissue_.positions.begin(), tissue_.positions.end(), mine.solved.begin());
-  mine.left = 0;
+  if (moved.empty()) std::ranges::copy(tissue_.positions, mine.solved.begin());
+  mine.remaining = 0;
   mine.carried.setZero();
   mine.solved_in = tissue_.motions_;
-  mine.met_any = true;
+  mine.touched_any = true;
   mine.went = 0;
 }
 
-void ToolTissue::mark_solved(std::span<const int> met) noexcept {
+void ToolTissue::mark_solved(std::span<const int> touched) noexcept {
   mark_solved();
   auto& mine = tissue_.tools_[tool_];
-  mine.met_any = met.size() > mine.met.capacity();
-  if (!mine.met_any) mine.met.assign(met.begin(), met.end());
+  mine.touched_any = touched.size() > mine.touched.capacity();
+  if (!mine.touched_any) mine.touched.assign(touched.begin(), touched.end());
 }
 
 void ToolTissue::set_loads(std::span<const NodalLoad> loads) {
@@ -246,7 +246,7 @@ void ToolTissue::set_loads(std::span<const NodalLoad> loads) {
 void ToolTissue::release() {
   if (loads().empty()) return;
   drop_loads();
-  press();
+  apply_loads();
 }
 
 std::span<NodalLoad> ToolTissue::loads_on(std::span<const int> vertices) {

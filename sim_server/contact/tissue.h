@@ -27,7 +27,7 @@ class Tissue {
   void set_free(const FreeMotion& motion) noexcept;
 
   /// A step begins: any vertex may have moved since a tool last looked for contact.
-  void begin_step() noexcept;
+  void start_step() noexcept;
 
   /// Its model goes on as another: no vertex has moved in that.
   void note_same_place() noexcept;
@@ -38,19 +38,19 @@ class Tissue {
 
   /// Returns the tissue as this tool meets it now. Two `apply` of the model; none while the others load
   /// nothing.
-  ToolTissue met_by(std::size_t tool);
+  ToolTissue touched_by(std::size_t tool);
   /// The loads that this tool puts on it by now.
   std::span<const NodalLoad> loads_of(std::size_t tool) const noexcept { return tools_[tool].own(); }
   /// Returns the memory that this tool alone takes, bytes.
   std::size_t bytes_of(std::size_t tool) const { return tools_[tool].pushed.size() * sizeof(Vec3); }
   /// A tool that is lifted has no loads, and knows of no other's.
-  void lift(std::size_t tool) noexcept;
+  void separate(std::size_t tool) noexcept;
   /// The tool went along with the organ by `motion` (m): so did what it last met.
   void carry(std::size_t tool, const Vec3& motion) noexcept { tools_[tool].carried += motion; }
   /// Tissue has been removed: the loads on vertices that are not `on_surface` any more go with it.
   void drop_loads(const std::function<bool(int)>& on_surface);
   /// `positions`, under the loads of now, or where no tool has any.
-  void press(std::size_t tool) { positions = model->apply(tools_[tool].loads); }
+  void apply_loads(std::size_t tool) { positions = model->apply(tools_[tool].loads); }
   void press_by_none() { positions = model->apply({}); }
 
   /// State of the tissue beside its model.
@@ -68,20 +68,20 @@ class Tissue {
     std::vector<Vec3> pushed;      // free under the loads of the other tools; empty where there are none
     std::uint64_t pushed_in = 0;   // the motion in which that was
     double radius = 0;             // m
-    std::vector<int> met;          // vertices that mattered when its contact was last solved
-    bool met_any = true;           // any may have
+    std::vector<int> touched;      // vertices that mattered when its contact was last solved
+    bool touched_any = true;       // any may have
     double went = 0;               // how far others have pushed any since then, in all, m
     std::vector<Vec3> solved;      // positions when its contact was last solved
     Vec3 carried = Vec3::Zero();   // how far it and the organ have gone since, m
     std::vector<Vec3> shift;       // how far the surface has gone since then besides, m
-    double left = 0;               // the share of `shift` that is still to come
+    double remaining = 0;          // the share of `shift` that is still to come
     bool shift_of_moved = false;   // it is told of what `moved_` says alone
     std::uint64_t solved_in = 0;   // the motion in which that was
     std::uint64_t looked_in = 0;   // that in which it last looked for contact, at `positions`; 0: elsewhere
-    std::vector<Vec3> positions_here, free_here;  // of the surface, at that
+    std::vector<Vec3> positions_at, free_at;  // of the surface, at that
     std::span<const NodalLoad> own() const { return std::span(loads).subspan(others); }
   };
-  bool meet(std::size_t tool);
+  bool touches(std::size_t tool);
   bool push(ToolLoads& tool);
   std::span<const int> moved_since(const ToolLoads& tool) const noexcept;
   static void note_shift(ToolLoads& tool, std::span<const Vec3> positions, std::size_t vertex) noexcept;
@@ -99,7 +99,7 @@ struct Tissue::State {
 };
 
 /// The tissue as one tool meets it: free of that tool, under the loads that the others put on it when this
-/// was made (`Tissue::met_by`), which are held.
+/// was made (`Tissue::touched_by`), which are held.
 class ToolTissue {
  public:
   const DeformationModel& model() const { return *tissue_.model; }
@@ -113,8 +113,8 @@ class ToolTissue {
 
   std::span<const NodalLoad> loads() const { return tissue_.loads_of(tool_); }
   /// The vertices that may have moved since this tool last looked for contact, which it does now; none: any.
-  std::span<const int> moved_since_look() noexcept;
-  /// Replaces the loads of this tool; the tissue follows at `press`.
+  std::span<const int> moved_since_search() noexcept;
+  /// Replaces the loads of this tool; the tissue follows at `apply_loads`.
   void set_loads(std::span<const NodalLoad> loads);
   /// The loads of this tool on `vertices`, to be changed in place: what is there where they are on these by
   /// now, else zeros.
@@ -122,7 +122,7 @@ class ToolTissue {
   void add_load(const NodalLoad& load) { tissue_.tools_[tool_].loads.push_back(load); }
   void drop_loads() { set_loads({}); }
   /// The tissue goes where all loads press it.
-  void press();
+  void apply_loads();
 
   /// Returns how far (m) the surface has moved since the contact of this tool was last solved, where it may
   /// have come within `reach` (m) of the tool's axis from `p` to `q`: by a step of a tissue in motion, a new
@@ -130,10 +130,10 @@ class ToolTissue {
   double surface_motion(const Vec3& p, const Vec3& q, double reach);
   /// Puts the surface where that share of this motion is still to come, from 1 to 0. Of its answers,
   /// `positions` and `free` are there.
-  void set_share_left(double left);
+  void set_remaining_fraction(double remaining);
   /// The contact of this tool is solved with the surface as it is, of which these vertices matter to it, at
   /// most as many as it loads.
-  void mark_solved(std::span<const int> met) noexcept;
+  void mark_solved(std::span<const int> touched) noexcept;
   /// Marks contact as solved, where any vertex may matter.
   void mark_solved() noexcept;
   /// Removes the loads of this tool, if it has any.

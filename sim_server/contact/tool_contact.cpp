@@ -11,19 +11,19 @@ namespace {
 constexpr double kIncrement = 0.5;  // of the tool radius: how far the tool goes between two contact solves
 // With friction, which follows the path: shorter, as many as a step has time for.
 constexpr double kFrictionIncrement = 0.01, kFrictionIncrements = 16;
-constexpr double kFarthestJump = 0.1;  // of the tool radius: what the surface may move by at once
-constexpr double kGather = 1.5;        // of the tool radius: how far from the tip the patch extends
-constexpr double kRoomOfAxis = 2.0;    // the same, as room is made for a tool that lies along the surface
+constexpr double kMaxJump = 0.1;     // of the tool radius: what the surface may move by at once
+constexpr double kGather = 1.5;      // of the tool radius: how far from the tip the patch extends
+constexpr double kRoomOfAxis = 2.0;  // the same, as room is made for a tool that lies along the surface
 constexpr double kMaxIncrements = 256;
 // Of the tool radius: how far it presses on in one step, where the tissue is known only near its last shape.
-constexpr double kFarthestPress = 2.0;
+constexpr double kMaxPress = 2.0;
 // How far outside its free organ contact may go on: of the tool radius, and of the organ's size, whichever is
 // more. A thin organ that bends is soon outside itself.
-constexpr double kFarthestDrag = 3.0, kFarthestBend = 0.5;
+constexpr double kMaxDrag = 3.0, kMaxBend = 0.5;
 // Contact linearisations a step may use, on its path and to settle with other tools, before it answers from
 // where it got to.
 constexpr int kMaxIterations = 400, kMaxSettling = 400;
-constexpr double kFarthest = 1e3;  // m
+constexpr double kMaxDistance = 1e3;  // m
 
 /// How much of the tool's axis can be near the organ, m.
 double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
@@ -43,15 +43,15 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
               longest_axis(tool.shape, rest), held,
               cut ? ContactFinder::kRoomOfCuts : ContactFinder::kUsualRoom),
       solver_(finder_.max_nodes(), finder_.max_triangles(), tool.shape.friction > 0),
-      farthest_drag_(std::max(kFarthestDrag * tool.shape.radius, kFarthestBend * diagonal_of(rest))) {
+      max_drag_(std::max(kMaxDrag * tool.shape.radius, kMaxBend * diagonal_of(rest))) {
   if (tool.grasps()) grip_.emplace(tool, rest, touchable, finder_.max_nodes());
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   filled_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   displacement_.resize(3 * (finder_.max_nodes() + 1));
-  foretold_.resize(3 * finder_.max_nodes());
+  predicted_loads_.resize(3 * finder_.max_nodes());
   predictor_.changes.reserve(static_cast<std::size_t>(finder_.max_nodes()));
-  kept_predictor_.changes.reserve(static_cast<std::size_t>(finder_.max_nodes()));
-  kept_loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+  stored_predictor_.changes.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+  stored_loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   if (!has_friction()) return;
   surface_was_.assign(rest.begin(), rest.end());
   nodes_were_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
@@ -64,9 +64,9 @@ void ToolContact::change_surface(std::span<const Vec3> rest, const Surface& surf
   finder_.change_surface(rest, touchable.empty() ? touchable : surface.triangles, touchable);
   filled_.clear();
   predictor_.changes.clear();
-  kept_predictor_.changes.clear();
-  std::erase_if(kept_loads_, [&](const NodalLoad& load) { return !on_surface(load.vertex); });
-  for (State* const state : {&now_, &kept_}) {
+  stored_predictor_.changes.clear();
+  std::erase_if(stored_loads_, [&](const NodalLoad& load) { return !on_surface(load.vertex); });
+  for (State* const state : {&now_, &stored_}) {
     if (state->side >= 0 && !on_surface(state->side)) state->side = -1;
   }
 }
@@ -75,7 +75,7 @@ void ToolContact::advance_to(const ToolPose& pose, const Bend& path, ToolTissue 
   bend_ = path;
   if (grip_ && grip_->opens()) {
     release(tissue);
-    lift();
+    separate();
   }
   move_to(pose, tissue);
   bend_ = {};
@@ -101,7 +101,8 @@ void ToolContact::solve_grasp(const ToolPose& pose, ToolTissue tissue) {
 }
 
 void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
-  if (!pose.p_W.allFinite() || pose.p_W.cwiseAbs().maxCoeff() > kFarthest || !pose.q_W.coeffs().allFinite())
+  if (!pose.p_W.allFinite() || pose.p_W.cwiseAbs().maxCoeff() > kMaxDistance ||
+      !pose.q_W.coeffs().allFinite())
     return reject(tissue);
   if (holds()) return solve_grasp(pose, tissue);
   const bool lost = now_.placed && escaped(pose, tissue);
@@ -119,20 +120,20 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
   int iterations = 0;
   double pressed = 0;  // of the tool radius, in contact
   for (double i = 1; i <= increments && iterations < kMaxIterations; ++i) {
-    if (pressed > kFarthestPress && !anywhere) break;
+    if (pressed > kMaxPress && !anywhere) break;
     start_increment(i == 1, tissue);
-    const double share = i / increments;
-    if (surface > 0) tissue.set_share_left(1 - share);
+    const double fraction = i / increments;
+    if (surface > 0) tissue.set_remaining_fraction(1 - fraction);
     now_.place = i == increments ? pose
-                                 : ToolPose(from.p_W + share * motion + path_offset(share, motion),
-                                            from.q_W.slerp(share, pose.q_W));
+                                 : ToolPose(from.p_W + fraction * motion + path_offset(fraction, motion),
+                                            from.q_W.slerp(fraction, pose.q_W));
     const bool touched = pressed > 0 || now_.force.contacts > 0;
     contact = solve_contact(tissue);
     iterations += contact.iterations;
     if (contact.contacts > 0) pressed += increment;
     if (contact.contacts == 0 && touched && recover_from_inside(tissue)) break;
   }
-  tissue.set_share_left(0);
+  tissue.set_remaining_fraction(0);
   // Else the next step goes on from here.
   now_.arrived = now_.place.p_W == pose.p_W && now_.place.q_W.coeffs() == pose.q_W.coeffs();
   set_force(contact, iterations, tissue);
@@ -144,7 +145,7 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
 double ToolContact::surface_motion(ToolTissue tissue) const {
   const double surface =
       tissue.surface_motion(now_.place.p_W, far_end(tool_, now_.place), kGather * tool_.radius);
-  return surface > kFarthestJump * tool_.radius ? surface : 0;
+  return surface > kMaxJump * tool_.radius ? surface : 0;
 }
 
 /// Where the surface comes along by `surface` (m) while the tool goes by `motion` (m).
@@ -165,7 +166,7 @@ double ToolContact::increments_to(const ToolPose& pose) const noexcept {
 
 /// At a share of the path: how far the cubic through both poses and velocities is from the line (Hermite).
 /// Never farther than a quarter of it, or of a increment without friction, whatever the velocities.
-Vec3 ToolContact::path_offset(double share, const Vec3& motion) const noexcept {
+Vec3 ToolContact::path_offset(double fraction, const Vec3& motion) const noexcept {
   if (!has_friction()) return Vec3::Zero();
   const double most = std::min(motion.norm(), kIncrement * tool_.radius);
   const auto bounded = [most](const Vec3& bend) -> Vec3 {
@@ -173,7 +174,7 @@ Vec3 ToolContact::path_offset(double share, const Vec3& motion) const noexcept {
     if (!std::isfinite(size)) return Vec3::Zero();
     return size <= most ? bend : most / size * bend;
   };
-  return share * (1 - share) * ((1 - share) * bounded(bend_.begin) - share * bounded(bend_.end));
+  return fraction * (1 - fraction) * ((1 - fraction) * bounded(bend_.begin) - fraction * bounded(bend_.end));
 }
 
 Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue, std::span<const Vec3> velocities,
@@ -197,11 +198,11 @@ void ToolContact::settle(ToolTissue tissue) {
   int iterations = now_.force.iterations;
   double i = 1;
   for (; i <= increments && iterations < kMaxIterations + kMaxSettling; ++i) {
-    if (surface > 0) tissue.set_share_left(1 - i / increments);
+    if (surface > 0) tissue.set_remaining_fraction(1 - i / increments);
     contact = solve_contact(tissue);
     iterations += contact.iterations;
   }
-  tissue.set_share_left(0);
+  tissue.set_remaining_fraction(0);
   if (i <= increments) contact.converged = false;
   const bool may_be_inside =
       now_.force.contacts > 0 && (contact.contacts == 0 || !tissue.traits().constant_compliance);
@@ -220,7 +221,7 @@ void ToolContact::set_force(const ContactForce& contact, int iterations, ToolTis
                 .contacts = contact.contacts,
                 .iterations = iterations,
                 .flagged = !contact.converged || !now_.arrived};
-  if (!now_.force.flagged) remember_side(tissue);
+  if (!now_.force.flagged) store_side(tissue);
 }
 
 void ToolContact::differentiate(ToolTissue tissue) noexcept {
@@ -232,10 +233,10 @@ void ToolContact::differentiate(ToolTissue tissue) noexcept {
     if (!holds() && tissue.traits().constant_compliance)
       predictor_.changes.push_back({filled_[node], change});
   });
-  if (foreseen_ == 0 || tissue.traits().later == nullptr) return;
+  if (tangent_time_ == 0 || tissue.traits().later == nullptr) return;
   // Tissue that gives way by so much more by then stands behind the contact like a spring in a row with it.
   const Mat3 &k = now_.force.tangent,
-             yields = tissue.traits().later->later_compliance(tissue.loads(), foreseen_);
+             yields = tissue.traits().later->later_compliance(tissue.loads(), tangent_time_);
   const Mat3 later = k * (Mat3::Identity() - yields * k).inverse();
   if (later.allFinite()) now_.force.tangent = later;
 }
@@ -245,16 +246,16 @@ bool ToolContact::exhausted() const {
 }
 
 void ToolContact::keep(std::span<const NodalLoad> loads) {
-  kept_ = now_;
-  kept_predictor_ = predictor_;
-  kept_loads_.assign(loads.begin(), loads.end());
+  stored_ = now_;
+  stored_predictor_ = predictor_;
+  stored_loads_.assign(loads.begin(), loads.end());
 }
 
 void ToolContact::restore(ToolTissue tissue) {
-  now_ = kept_;
-  predictor_ = kept_predictor_;
-  tissue.set_loads(kept_loads_);
-  tissue.press();
+  now_ = stored_;
+  predictor_ = stored_predictor_;
+  tissue.set_loads(stored_loads_);
+  tissue.apply_loads();
   tissue.mark_solved();
 }
 
@@ -279,8 +280,8 @@ SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const n
   if (!(axis.distance > 0)) return {};
   const double radius = tool_.trocar ? tool_.trocar->shaft_radius : tool_.radius;
   // A tip that turns a shaft about its pivot has farther to go than the shaft.
-  const double share = tool_.trocar ? std::max(1 - axis.on_segment, kNearPivot) : 1;
-  const double gap = std::max(axis.distance - radius, 0.0) / share;
+  const double fraction = tool_.trocar ? std::max(1 - axis.on_segment, kNearPivot) : 1;
+  const double gap = std::max(axis.distance - radius, 0.0) / fraction;
   if (gap >= tip.gap) return tip;
   const Vec3 on_axis = p_W + axis.on_segment * (far - p_W);
   return {(on_axis - axis.on_triangle) / axis.distance, gap};
@@ -289,11 +290,11 @@ SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const n
 /// No answer: the tool is taken away, and enters afresh with the next step.
 void ToolContact::reject(ToolTissue tissue) {
   release(tissue);
-  lift();
+  separate();
   flag();
 }
 
-void ToolContact::lift() noexcept {
+void ToolContact::separate() noexcept {
   now_.tip_offset.setZero();
   now_.placed = false;
   now_.side = -1;
@@ -307,7 +308,7 @@ void ToolContact::start_increment(bool first, const ToolTissue& tissue) {
   tip_was_ = {now_.place.p_W + now_.tip_offset, now_.place.q_W};
   increment_from_ = tissue.before();
   if (first) return;
-  std::copy(tissue.positions().begin(), tissue.positions().end(), surface_was_.begin());
+  std::ranges::copy(tissue.positions(), surface_was_.begin());
   increment_from_ = surface_was_;
 }
 
@@ -325,7 +326,7 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   const ToolPose tip(now_.place.p_W + now_.tip_offset, now_.place.q_W);
   const double reach = kGather * tool_.radius;
   finder_.gather(tissue.positions(), tissue.free(), tip.p_W, far_end(tool_, tip), reach, patch_,
-                 tissue.moved_since_look());
+                 tissue.moved_since_search());
   if (patch_.triangles.empty()) {
     release(tissue);
     return {};
@@ -352,7 +353,7 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   for (int i = 0; i < m; ++i) {
     if (!forces.segment<3>(3 * i).isZero(0)) tissue.add_load({vertices[i], forces.segment<3>(3 * i)});
   }
-  tissue.press();
+  tissue.apply_loads();
   return contact;
 }
 
@@ -362,7 +363,7 @@ void ToolContact::predict(Eigen::Ref<Eigen::VectorXd> u) noexcept {
   const Vec3 motion = now_.place.p_W - predictor_.from;
   if (motion.isZero(0) || motion.norm() > kIncrement * tool_.radius) return predictor_.changes.clear();
   const Eigen::Index size = 3 * patch_.nodes();
-  auto moved = foretold_.head(size);
+  auto moved = predicted_loads_.head(size);
   moved.setZero();
   for (const Predictor::LoadChange& change : predictor_.changes) {
     const auto at = std::ranges::find(filled_, change.vertex);

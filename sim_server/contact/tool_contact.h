@@ -59,8 +59,8 @@ class ToolContact {
 
   /// Sets which of the device's buttons are pressed, also while the tool is lifted: the next `advance_to`
   /// grasps, or releases.
-  void press(std::uint16_t buttons) noexcept {
-    if (grip_) grip_->press(buttons);
+  void apply_loads(std::uint16_t buttons) noexcept {
+    if (grip_) grip_->apply_loads(buttons);
   }
   /// Goes to `pose` on a straight line (with friction: as `path` says), turning evenly, in increments on
   /// which no point of its axis goes farther than half its radius, so that a fast tool does not jump through
@@ -94,11 +94,11 @@ class ToolContact {
     return finder_.nearest_vertex(tissue.positions, p_W);
   }
   /// Away from the tissue, on which it has no load any more: no force.
-  void lift() noexcept;
+  void separate() noexcept;
   /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.
   void differentiate(ToolTissue tissue) noexcept;
   /// Sets how long (s) a tool holds its new place in tangents; 0: to the end of the step.
-  void foresee(double seconds) noexcept { foreseen_ = seconds; }
+  void predict_tangent(double seconds) noexcept { tangent_time_ = seconds; }
   /// Says that `force` is not settled.
   void flag() noexcept { now_.force.flagged = true; }
 
@@ -125,15 +125,15 @@ class ToolContact {
   void reject(ToolTissue tissue);
   bool escaped(const ToolPose& pose, const ToolTissue& tissue) const noexcept;
   void place_outside(const ToolPose& pose, ToolTissue tissue);
-  void remember_side(const ToolTissue& tissue) noexcept;
+  void store_side(const ToolTissue& tissue) noexcept;
   bool recover_from_inside(ToolTissue tissue);
   void start_increment(bool first, const ToolTissue& tissue);
-  Vec3 place_at_entry(const ToolPose& pose, const Vec3& inside, double share,
+  Vec3 place_at_entry(const ToolPose& pose, const Vec3& inside, double fraction,
                       const Vec3& entry) const noexcept;
   double surface_motion(ToolTissue tissue) const;
   double increments_for(double motion, double surface) const noexcept;
   double increments_to(const ToolPose& pose) const noexcept;
-  Vec3 path_offset(double share, const Vec3& motion) const noexcept;
+  Vec3 path_offset(double fraction, const Vec3& motion) const noexcept;
   void take_compliance(const ToolTissue& tissue);
   ContactForce solve_contact(ToolTissue tissue);
   void predict(Eigen::Ref<Eigen::VectorXd> u) noexcept;
@@ -147,8 +147,8 @@ class ToolContact {
   ContactFinder finder_;
   ContactSolver solver_;
   ContactPatch patch_;
-  double foreseen_ = 0;           // s
-  double farthest_drag_;          // m, outside its free organ
+  double tangent_time_ = 0;       // s
+  double max_drag_;               // m, outside its free organ
   std::vector<int> filled_;       // surface vertices whose compliance the patch holds
   std::optional<Grip> grip_;      // for a tool that grasps
   Eigen::VectorXd displacement_;  // of the patch nodes, then of the tip
@@ -168,8 +168,8 @@ class ToolContact {
     ToolForce force;
     Mat3 grasp_tangent = Mat3::Zero();  // N/m, to the end of the step
   };
-  State now_, kept_;
-  std::vector<NodalLoad> kept_loads_;
+  State now_, stored_;
+  std::vector<NodalLoad> stored_loads_;
   /// Foretells the loads at the next place, to first order: how those at the place that was differentiated
   /// last change with the tool's.
   struct Predictor {
@@ -180,8 +180,8 @@ class ToolContact {
     std::vector<LoadChange> changes;  // none: nothing is foretold
     Vec3 from = Vec3::Zero();         // m
   };
-  Predictor predictor_, kept_predictor_;
-  Eigen::VectorXd foretold_;  // of the patch nodes
+  Predictor predictor_, stored_predictor_;
+  Eigen::VectorXd predicted_loads_;  // of the patch nodes
 };
 
 }  // namespace palpate::sim

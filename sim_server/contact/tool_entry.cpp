@@ -18,10 +18,10 @@ bool ToolContact::escaped(const ToolPose& pose, const ToolTissue& tissue) const 
   if (now_.force.contacts == 0 || touchable().empty()) return false;
   const Vec3 &p = pose.p_W, far = far_end(tool_, pose);
   // Mostly what it pressed most is near enough, and nothing else need be looked at.
-  if (now_.side >= 0 && (tissue.free()[now_.side] - p).norm() <= farthest_drag_) return false;
+  if (now_.side >= 0 && (tissue.free()[now_.side] - p).norm() <= max_drag_) return false;
   const double distance = tool_.is_sphere() ? (finder_.nearest(tissue.free(), p) - p).norm()
                                             : finder_.nearest(tissue.free(), p, far).distance;
-  return distance > farthest_drag_ && !finder_.inside(tissue.free(), p);
+  return distance > max_drag_ && !finder_.inside(tissue.free(), p);
 }
 
 /// The tool appears at `pose`. If part of its axis is inside the organ, it is taken to have come in where it
@@ -36,14 +36,14 @@ void ToolContact::place_outside(const ToolPose& pose, ToolTissue tissue) {
   const bool touched = now_.side >= 0;
   double chosen = touched ? std::numeric_limits<double>::max() : -1;  // m
   for (double i = 0; i <= pieces; ++i) {
-    const double share = pieces > 0 ? i / pieces : 0;
-    const Vec3 x = pose.p_W + share * axis;
-    if ((tool_.trocar && 1 - share < kNearPivot) || !finder_.inside(tissue.positions(), x)) continue;
+    const double fraction = pieces > 0 ? i / pieces : 0;
+    const Vec3 x = pose.p_W + fraction * axis;
+    if ((tool_.trocar && 1 - fraction < kNearPivot) || !finder_.inside(tissue.positions(), x)) continue;
     const Vec3 entry = touched ? tissue.positions()[now_.side] : finder_.entry(tissue.positions(), x);
     const double distance = (entry - x).norm();
     if (touched ? distance >= chosen : distance <= chosen) continue;
     chosen = distance;
-    now_.place.p_W = place_at_entry(pose, x, share, entry);
+    now_.place.p_W = place_at_entry(pose, x, fraction, entry);
   }
 }
 
@@ -56,21 +56,21 @@ bool ToolContact::recover_from_inside(ToolTissue tissue) {
   if (!finder_.inside(tissue.positions(), there.p_W + now_.tip_offset)) return false;
   place_outside(there, tissue);
   const double back = (now_.place.p_W - there.p_W).norm();
-  if (back > farthest_drag_) now_.place = there;
+  if (back > max_drag_) now_.place = there;
   return back > 0;
 }
 
 /// Where the tip was when the place `inside` on the axis, at that share of it, stood before `entry`.
-Vec3 ToolContact::place_at_entry(const ToolPose& pose, const Vec3& inside, double share,
+Vec3 ToolContact::place_at_entry(const ToolPose& pose, const Vec3& inside, double fraction,
                                  const Vec3& entry) const noexcept {
   const Vec3 outward = (entry - inside).normalized();
   const Vec3 outside = entry + tool_.radius * (outward.allFinite() ? outward : Vec3(Vec3::UnitY()));
-  if (tool_.trocar && share > 0)
-    return tool_.trocar->pivot_W + (outside - tool_.trocar->pivot_W) / (1 - share);
+  if (tool_.trocar && fraction > 0)
+    return tool_.trocar->pivot_W + (outside - tool_.trocar->pivot_W) / (1 - fraction);
   return outside + (pose.p_W - inside);
 }
 
-void ToolContact::remember_side(const ToolTissue& tissue) noexcept {
+void ToolContact::store_side(const ToolTissue& tissue) noexcept {
   now_.side = -1;
   double most = 0;
   for (const NodalLoad& load : tissue.loads()) {

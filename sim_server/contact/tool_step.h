@@ -22,9 +22,9 @@ struct OtherTools {
 };
 
 /// Outputs of a step for one tool beyond its force. Nothing is computed that nobody asks for.
-struct ToolWants {
-  bool tangent = true;  ///< dF/dp of `ToolForce`
-  bool here = false;    ///< the linearisation at the tool's pose; with it goes `tangent`
+struct ToolRequest {
+  bool tangent = true;   ///< dF/dp of `ToolForce`
+  bool at_tool = false;  ///< the linearisation at the tool's pose; with it goes `tangent`
   /// Linearisation where the tool will be after `seconds` (>= 0) at `v_W` (m/s), relative to the moving
   /// organ, 2 mm away at most.
   struct Ahead {
@@ -50,7 +50,7 @@ struct ToolInput {
   /// Poses at the instants within the step before `pose` (`Simulation::instants` - 1), evenly in time.
   /// Of another length, such as empty: the tool went straight and evenly from its pose of the step before.
   std::span<const PathPoint> path = {};
-  ToolWants wants = {};
+  ToolRequest request = {};
 };
 
 /// Outputs of a step for one tool: the force on it, and what was asked beyond that, if its pose was known and
@@ -58,11 +58,11 @@ struct ToolInput {
 struct ToolAnswer : ToolForce {
   Vec3 mean_force = Vec3::Zero();  ///< N, over the step; equal to `force` where contact is solved once
   /// Velocity of the organ's surface by its supports where the tool touches, or else nearest to it, m/s,
-  /// world. Set with `here` and `ahead`; zero where all supports rest.
+  /// world. Set with `at_tool` and `ahead`; zero where all supports rest.
   Vec3 surface_v_W = Vec3::Zero();
-  /// Motion of that surface by the other tools. Set with `here` and `ahead`, of several tools.
+  /// Motion of that surface by the other tools. Set with `at_tool` and `ahead`, of several tools.
   std::optional<OtherTools> others = {};
-  std::optional<Linearised> here = {};
+  std::optional<Linearised> at_tool = {};
   struct Ahead {
     Vec3 p_W;  ///< m
     Linearised there;

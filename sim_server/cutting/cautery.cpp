@@ -45,7 +45,7 @@ Cautery::Touched Cautery::touched_by(const Vec3& p, double radius, const CutMesh
   return touched;
 }
 
-void Cautery::give(double joule, std::span<const Exposed> exposed, std::vector<int>& gone) {
+void Cautery::give(double joule, std::span<const Exposed> exposed, std::vector<int>& removed) {
   double all = 0;
   for (const Exposed& e : exposed) all += e.weight;
   if (!(all > 0)) return;
@@ -53,26 +53,26 @@ void Cautery::give(double joule, std::span<const Exposed> exposed, std::vector<i
   for (const Exposed& e : exposed) {
     double& taken = taken_[static_cast<std::size_t>(e.tetrahedron)];
     taken += joule * e.weight / all;
-    if (taken >= needed_[static_cast<std::size_t>(e.tetrahedron)]) gone.push_back(e.tetrahedron);
+    if (taken >= needed_[static_cast<std::size_t>(e.tetrahedron)]) removed.push_back(e.tetrahedron);
   }
 }
 
 std::vector<int> Cautery::heat(std::span<const HotTip> tips, const CutMesh& mesh, const Surface& surface,
                                std::span<const Vec3> positions, double dt) {
-  std::vector<int> gone;
+  std::vector<int> removed;
   for (const HotTip& tip : tips) {
     const Vec3 motion = tip.p_W - tip.from_W;
     const double parts = std::clamp(std::ceil(motion.norm() / (kPart * tip.radius)), 1.0, kMostParts);
     for (double k = 1; k <= parts; ++k) {
       const Touched touched =
           touched_by(tip.from_W + k / parts * motion, tip.radius, mesh, surface, positions);
-      give(power_ * dt / parts, touched.exposed, gone);
+      give(power_ * dt / parts, touched.exposed, removed);
       time_at_end_ += touched.end ? dt / parts : 0;
     }
   }
-  std::sort(gone.begin(), gone.end());
-  gone.erase(std::unique(gone.begin(), gone.end()), gone.end());
-  return gone;
+  std::ranges::sort(removed);
+  removed.erase(std::unique(removed.begin(), removed.end()), removed.end());
+  return removed;
 }
 
 }  // namespace palpate::sim

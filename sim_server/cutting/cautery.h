@@ -43,7 +43,7 @@ class Cautery {
   };
   Touched touched_by(const Vec3& p, double radius, const CutMesh& mesh, const Surface& surface,
                      std::span<const Vec3> positions) const;
-  void give(double joule, std::span<const Exposed> exposed, std::vector<int>& gone);
+  void give(double joule, std::span<const Exposed> exposed, std::vector<int>& removed);
 
   double power_, spot_;                 // W, m
   std::vector<double> taken_, needed_;  // of each tetrahedron, J

@@ -16,18 +16,20 @@ struct ResectionTotals {
   int dropped_pieces = 0, loose_pieces = 0;   ///< that went; that stay, held by nothing
   double loose_volume = 0;                    ///< of those that stay, when they came loose, m^3
   double cut_area = 0;                        ///< surface that was inside at first, m^2: both sides
-  double distance_sum = 0, farthest = 0;      ///< from the plan: m x m^3 of what is gone; m
+  double distance_sum = 0, furthest = 0;      ///< from the plan: m x m^3 of what is gone; m
   double heat = 0, elastic = 0, kinetic = 0;  ///< J: put in by tips; that went with the tissue
   Vec3 momentum = Vec3::Zero();               ///< N s, the same
-  double parted_area = 0;                     ///< by blades, m^2: one side
-  double parted_distance_sum = 0;             ///< of that from the plan, m x m^2
+  double separated_area = 0;                  ///< by blades, m^2: one side
+  double separated_distance_sum = 0;          ///< of that from the plan, m x m^2
   std::uint64_t slides = 0, splits = 0;       ///< of vertices, by blades
   bool ran_out = false;                       ///< of vertices: a blade has parted less than it went through
   double hot_time = 0, contact_time = 0;      ///< s with a tip hot; and that touched
   double time_at_end = 0;  ///< s, of each tool: cuts, at tissue that cannot be removed or parted
 
   /// Returns the mean distance of parted faces from the plan, m; 0 where nothing is parted.
-  double mean_parted_distance() const { return parted_area > 0 ? parted_distance_sum / parted_area : 0; }
+  double mean_separated_distance() const {
+    return separated_area > 0 ? separated_distance_sum / separated_area : 0;
+  }
   /// Returns the mean distance of tissue removed by heat from the plan, m; 0 where none is removed.
   double mean_distance() const {
     const double cut = volume - dropped_volume;
@@ -36,7 +38,7 @@ struct ResectionTotals {
 };
 
 /// Faces and area that a blade parted.
-struct Parted {
+struct Separated {
   Stroke stroke;
   Parting parting;
   double area = 0;  ///< m^2, one side
@@ -51,7 +53,7 @@ class Resection {
   Resection(const Cutting& cutting, TetMesh& mesh, std::span<const int> held, Surface& surface, bool parts);
 
   /// Starts a new step.
-  void begin_step() { changed_ = false; }
+  void start_step() { changed_ = false; }
   /// `dt` (s) of these hot tips, on the surface at `positions`. What is gone then, in the order in which it
   /// went: what heat removed, then pieces that it cut off. Changes `surface`.
   std::span<const int> advance(std::span<const HotTip> tips, std::span<const Vec3> positions, double dt,
@@ -60,18 +62,18 @@ class Resection {
   std::span<const int> remove(std::span<const int> tetrahedra, Surface& surface);
 
   /// Returns the tetrahedra that the last removal was asked to remove, without the pieces that it cut off.
-  std::span<const int> asked_for() const { return std::span(removed_).first(asked_for_); }
+  std::span<const int> requested() const { return std::span(removed_).first(requested_); }
 
   /// Parts tissue along the path of a blade, as `Scalpel::cut`, of a resection that `parts`. The pieces that
   /// it cut off and that go are `removed` then.
-  const Parted& part(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are, Surface& surface);
+  const Separated& part(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are, Surface& surface);
   std::span<const int> removed() const { return removed_; }
   /// Sets the mesh vertices that do not slide onto the path of a blade, beside those that have slid.
   void keep(std::vector<int> vertices) { scalpel_->keep(std::move(vertices)); }
   /// The way over which a blade does the work of what it parts, m.
   double blade_size() const { return scalpel_->size(); }
 
-  const CutMesh& left() const { return left_; }
+  const CutMesh& remaining() const { return remaining_; }
   /// Returns the number of steps with a cut so far, which identifies the surface.
   std::uint32_t version() const { return version_; }
   bool has_plan() const { return plan_.has_value(); }
@@ -90,13 +92,13 @@ class Resection {
 
   std::optional<CutPlan> plan_;
   double smallest_piece_;  // m^3
-  CutMesh left_;
+  CutMesh remaining_;
   PieceFinder pieces_;
   Cautery cautery_;
   std::optional<Scalpel> scalpel_;
-  Parted parted_;
+  Separated separated_;
   std::vector<int> removed_;
-  std::size_t asked_for_ = 0;
+  std::size_t requested_ = 0;
   std::uint32_t version_ = 0;
   bool changed_ = false;  // in this step
   ResectionTotals totals_;

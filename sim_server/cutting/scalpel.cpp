@@ -39,7 +39,7 @@ bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const V
          (a - c).cross(x - c).dot(normal) >= least;
 }
 
-bool goes_through(const BladeEdge& was, const BladeEdge& is, const Vec3& p, const Vec3& q) {
+bool passes_through(const BladeEdge& was, const BladeEdge& is, const Vec3& p, const Vec3& q) {
   return crosses(p, q, was[0], was[1], is[1]) || crosses(p, q, was[0], is[1], is[0]);
 }
 
@@ -52,7 +52,7 @@ Vec3 motion_of(const BladeEdge& was, const BladeEdge& is) {
 std::pair<double, double> shape_around(const CutMesh& mesh, int vertex) {
   double volume = 0, height = 1;
   for (const int t : mesh.around(vertex)) {
-    if (!mesh.is_left(t)) continue;
+    if (!mesh.remains(t)) continue;
     const Tetrahedron& corners = mesh.mesh().tetrahedra[static_cast<std::size_t>(t)];
     const double six = six_volumes(mesh.mesh(), corners);
     volume += six / 6;
@@ -72,7 +72,7 @@ Triangle corners_of(const CutMesh& mesh, int face) {
 bool is_on_surface(const CutMesh& mesh, int vertex, int towards) {
   return std::ranges::any_of(mesh.around(vertex), [&](int t) {
     const Tetrahedron& corners = mesh.mesh().tetrahedra[static_cast<std::size_t>(t)];
-    if (!mesh.is_left(t) || std::ranges::find(corners, towards) == corners.end()) return false;
+    if (!mesh.remains(t) || std::ranges::find(corners, towards) == corners.end()) return false;
     for (int k = 0; k < 4; ++k) {
       const int skipped = corners[static_cast<std::size_t>(k)];
       if (skipped != vertex && skipped != towards && mesh.is_surface(4 * t + k)) return true;
@@ -109,7 +109,7 @@ std::vector<int> Scalpel::around(const BladeEdge& was, const BladeEdge& is, std:
   const Vec3 high = was[0].cwiseMax(was[1]).cwiseMax(is[0].cwiseMax(is[1])).array() + 2 * longest_;
   std::vector<int> near;
   for (int t = 0; t < static_cast<int>(mesh.mesh().tetrahedra.size()); ++t) {
-    if (!mesh.is_left(t) || !mesh.is_removable(t)) continue;
+    if (!mesh.remains(t) || !mesh.is_removable(t)) continue;
     const Vec3 centre = centre_at(mesh, are, t);
     if ((centre.array() >= low.array()).all() && (centre.array() <= high.array()).all()) near.push_back(t);
   }
@@ -125,18 +125,18 @@ std::vector<Scalpel::Crossing> Scalpel::crossings(const Plane& plane, std::span<
     return along >= -kBeyond * edge_ && along <= plane.length + kBeyond * edge_ && ahead >= -plane.back &&
            ahead <= kAhead * edge_;
   };
-  const auto look_at = [&](int v, int w) {
+  const auto observe = [&](int v, int w) {
     const Vec3 &x = at(mesh, are, v), along = at(mesh, are, w) - x;
     const double from = plane.normal.dot(x - plane.origin), to = from + plane.normal.dot(along);
-    const double share = from / (from - to);
-    if (from * to < 0 && share <= kMostSlide && !stays(v) && meets(x + share * along))
-      found.push_back({v, w, share, share * along.norm()});
+    const double fraction = from / (from - to);
+    if (from * to < 0 && fraction <= kMostSlide && !stays(v) && meets(x + fraction * along))
+      found.push_back({v, w, fraction, fraction * along.norm()});
   };
   for (const int t : near) {
     const Tetrahedron& corners = mesh.mesh().tetrahedra[static_cast<std::size_t>(t)];
     for (const auto& [a, b] : kEdges) {
-      look_at(corners[static_cast<std::size_t>(a)], corners[static_cast<std::size_t>(b)]);
-      look_at(corners[static_cast<std::size_t>(b)], corners[static_cast<std::size_t>(a)]);
+      observe(corners[static_cast<std::size_t>(a)], corners[static_cast<std::size_t>(b)]);
+      observe(corners[static_cast<std::size_t>(b)], corners[static_cast<std::size_t>(a)]);
     }
   }
   std::ranges::sort(found, {}, [](const Crossing& c) { return std::tuple(c.far, c.vertex, c.towards); });
@@ -145,7 +145,7 @@ std::vector<Scalpel::Crossing> Scalpel::crossings(const Plane& plane, std::span<
 
 /// It has slid, or is not to.
 bool Scalpel::stays(int vertex) const {
-  return slid_[static_cast<std::size_t>(vertex)] != 0 || std::ranges::find(kept_, vertex) != kept_.end();
+  return slid_[static_cast<std::size_t>(vertex)] != 0 || std::ranges::find(stored_, vertex) != stored_.end();
 }
 
 /// Of a vertex that does not stay.
@@ -160,7 +160,7 @@ bool Scalpel::slide(const Crossing& crossing, CutMesh& mesh) const {
   const auto [volume, height] = shape_around(mesh, crossing.vertex);
   const Vec3 before = mesh.mesh().vertices[static_cast<std::size_t>(crossing.vertex)];
   const Vec3 end = mesh.mesh().vertices[static_cast<std::size_t>(crossing.towards)];
-  mesh.move_vertex(crossing.vertex, before + crossing.share * (end - before));
+  mesh.move_vertex(crossing.vertex, before + crossing.fraction * (end - before));
   const auto [volume_then, height_then] = shape_around(mesh, crossing.vertex);
   const bool good = height_then >= std::min(height, kLeastHeight * height_) &&
                     std::abs(volume_then - volume) <= kSameVolume * volume;
@@ -175,14 +175,14 @@ void Scalpel::slide_onto(const Plane& plane, std::span<const int> near, std::spa
   do {
     before = slides.size();
     for (const Crossing& crossing : crossings(plane, near, are, mesh)) {
-      const auto [v, w, share, far] = crossing;
+      const auto [v, w, fraction, far] = crossing;
       if (stays(v) || stays(w) || !may_slide(crossing, mesh) || !slide(crossing, mesh)) continue;
       for (const std::span<Vec3> positions : {were, are}) {
         Vec3& x = positions[static_cast<std::size_t>(mesh.number_of(v))];
-        x += share * (at(mesh, positions, w) - x);
+        x += fraction * (at(mesh, positions, w) - x);
       }
       slid_[static_cast<std::size_t>(v)] = 1;
-      slides.push_back({v, w, share});
+      slides.push_back({v, w, fraction});
     }
   } while (slides.size() > before);
 }
@@ -194,7 +194,7 @@ void Scalpel::find_faces(const BladeSweep& blade, std::span<const int> near, std
                          std::span<const Vec3> are, const CutMesh& mesh, Stroke& stroke) const {
   const auto crosses = [&](const Vec3& shift, const Vec3& p, const Vec3& q) {
     const Vec3 moved = shift + kBehind * blade.trail;
-    return goes_through({blade.was[0] + moved, blade.was[1] + moved}, blade.is, p, q);
+    return passes_through({blade.was[0] + moved, blade.was[1] + moved}, blade.is, p, q);
   };
   for (const int t : near) {
     const Vec3 p = centre_at(mesh, are, t), p_was = centre_at(mesh, were, t);

@@ -43,7 +43,7 @@ class Scalpel {
   explicit Scalpel(const CutMesh& mesh);
 
   /// Sets the mesh vertices that do not slide in the next `cut`s.
-  void keep(std::vector<int> vertices) { kept_ = std::move(vertices); }
+  void keep(std::vector<int> vertices) { stored_ = std::move(vertices); }
   /// The mean edge of what can be cut, at rest, m.
   double size() const { return edge_; }
 
@@ -62,7 +62,7 @@ class Scalpel {
   };
   struct Crossing {
     int vertex, towards;
-    double share, far;  // of the edge; m
+    double fraction, far;  // of the edge; m
   };
   std::vector<int> around(const BladeEdge& was, const BladeEdge& is, std::span<const Vec3> are,
                           const CutMesh& mesh) const;
@@ -78,7 +78,7 @@ class Scalpel {
 
   double edge_ = 0, longest_ = 0, height_ = 0;  // m: of edges the mean and the longest; of heights the mean
   std::vector<char> slid_;                      // of mesh vertices
-  std::vector<int> kept_;
+  std::vector<int> stored_;
 };
 
 }  // namespace palpate::sim

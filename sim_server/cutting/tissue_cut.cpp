@@ -50,21 +50,21 @@ std::span<const int> TissueCut::remove_planned(double time, CutOrgan& organ) {
   for (; done_ < planned.size() && planned[done_].t <= time + kRounding; ++done_)
     due.push_back(planned[done_].tetrahedron);
   std::erase_if(due, [&](int tetrahedron) {
-    const CutMesh& remaining = resection_.left();
-    return !remaining.is_left(tetrahedron) || !remaining.is_removable(tetrahedron);
+    const CutMesh& remaining = resection_.remaining();
+    return !remaining.remains(tetrahedron) || !remaining.is_removable(tetrahedron);
   });
   std::ranges::sort(due);
   due.erase(std::unique(due.begin(), due.end()), due.end());
   return resection_.remove(due, organ.surface);
 }
 
-bool TissueCut::begin_step(std::span<const ToolInput> inputs, double time, double dt, CutOrgan organ) {
-  resection_.begin_step();
+bool TissueCut::start_step(std::span<const ToolInput> inputs, double time, double dt, CutOrgan organ) {
+  resection_.start_step();
   const std::span<const int> removed =
       options_.planned ? remove_planned(time, organ) : remove_by_heat(inputs, dt, organ);
   if (!removed.empty()) {
-    for (const int tetrahedron : resection_.asked_for()) removed_.push_back({time, tetrahedron});
-    count(organ.tissue.traits.cuttable->remove(removed, resection_.left()));
+    for (const int tetrahedron : resection_.requested()) removed_.push_back({time, tetrahedron});
+    count(organ.tissue.traits.cuttable->remove(removed, resection_.remaining()));
     organ.tissue.note_same_place();  // of vertices that this exposed, too
   }
   if (!options_.planned) part_by_blades(inputs, dt, organ);
@@ -77,20 +77,20 @@ bool TissueCut::publish(std::span<const ToolInput> inputs, CutOrgan& organ) {
   if (organ.tissue.traits.client == nullptr) return false;
   asking_.clear();
   for (const ToolInput& input : inputs) {
-    if (input.wants.surface_shift && input.pose) asking_.push_back({input.pose->p_W, input.v_W});
+    if (input.request.surface_shift && input.pose) asking_.push_back({input.pose->p_W, input.v_W});
   }
   std::shared_ptr<const PublishedSurface> published =
-      organ.tissue.traits.client->publish(asking_, resection_.left(), options_.waits_for_background);
+      organ.tissue.traits.client->publish(asking_, resection_.remaining(), options_.waits_for_background);
   if (published == published_) return false;
   published_ = std::move(published);
   return true;
 }
 
-void TissueCut::count(const CuttableModel::Removed& gone) {
+void TissueCut::count(const CuttableModel::Removed& lost) {
   ResectionTotals& totals = resection_.totals();
-  totals.elastic += gone.elastic;
-  totals.kinetic += gone.kinetic;
-  totals.momentum += gone.momentum;
+  totals.elastic += lost.elastic;
+  totals.kinetic += lost.kinetic;
+  totals.momentum += lost.momentum;
 }
 
 /// Parts tissue along the path of the blades in the step before.
@@ -126,30 +126,31 @@ void TissueCut::part_by(std::size_t tool, double dt, CutOrgan& organ) {
       touched.push_back(organ.surface.vertices[static_cast<std::size_t>(load.vertex)]);
   }
   resection_.keep(std::move(touched));
-  const Parted& parted = resection_.part({*blade.was, blade.is, blade.trail}, blade.were, are, organ.surface);
-  if (!parted.stroke.moved) return;
-  if (parted.stroke.at_end) resection_.totals().time_at_end += dt;
+  const Separated& separated =
+      resection_.part({*blade.was, blade.is, blade.trail}, blade.were, are, organ.surface);
+  if (!separated.stroke.moved) return;
+  if (separated.stroke.at_end) resection_.totals().time_at_end += dt;
   blade.was = blade.is;
-  blade.trail = parted.stroke.trail;
+  blade.trail = separated.stroke.trail;
   blade.were = std::move(are);
-  blade.debt += toughness_ * parted.area;
-  follow_rest(parted, tool, organ);
-  if (parted.stroke.slides.empty() && parted.stroke.faces.empty()) return;
-  organ.tissue.traits.cuttable->part(parted.stroke.slides, parted.parting, resection_.left());
+  blade.debt += toughness_ * separated.area;
+  follow_rest(separated, tool, organ);
+  if (separated.stroke.slides.empty() && separated.stroke.faces.empty()) return;
+  organ.tissue.traits.cuttable->part(separated.stroke.slides, separated.parting, resection_.remaining());
   organ.tissue.note_same_place();
   if (!resection_.removed().empty())
-    count(organ.tissue.traits.cuttable->remove(resection_.removed(), resection_.left()));
+    count(organ.tissue.traits.cuttable->remove(resection_.removed(), resection_.remaining()));
 }
 
 /// Moves the rest places of vertices that slid or became two, and, of the other blades, their places at the
 /// last look.
-void TissueCut::follow_rest(const Parted& parted, std::size_t tool, CutOrgan& organ) {
-  const CutMesh& remaining = resection_.left();
+void TissueCut::follow_rest(const Separated& separated, std::size_t tool, CutOrgan& organ) {
+  const CutMesh& remaining = resection_.remaining();
   const auto number = [&](int vertex) { return static_cast<std::size_t>(remaining.number_of(vertex)); };
   const auto update_rest = [&](int vertex) {
     organ.rest[number(vertex)] = organ.mesh.vertices[static_cast<std::size_t>(vertex)];
   };
-  for (const auto& [vertex, towards, fraction] : parted.stroke.slides) {
+  for (const auto& [vertex, towards, fraction] : separated.stroke.slides) {
     update_rest(vertex);
     for (std::size_t i = 0; i < tools_.size(); ++i) {
       if (i == tool || !blades_[i] || !blades_[i]->was) continue;
@@ -157,7 +158,7 @@ void TissueCut::follow_rest(const Parted& parted, std::size_t tool, CutOrgan& or
       were[number(vertex)] += fraction * (were[number(towards)] - were[number(vertex)]);
     }
   }
-  for (const Split& split : parted.parting.splits) {
+  for (const Split& split : separated.parting.splits) {
     update_rest(split.copy);
     for (std::optional<Blade>& each : blades_) {
       if (each && each->was) each->were[number(split.copy)] = each->were[number(split.vertex)];
@@ -182,7 +183,7 @@ void TissueCut::resist(std::size_t tool, const ToolContact& contact, double dt, 
 
 /// Gives the tools the triangles of the surface as it is now.
 void TissueCut::change_surface(CutOrgan& organ) {
-  const CutMesh& remaining = resection_.left();
+  const CutMesh& remaining = resection_.remaining();
   const auto on_surface = [&remaining](int vertex) { return remaining.on_surface(vertex); };
   organ.tissue.drop_loads(on_surface);
   auto touchable = touchable_by(tools_, organ.surface, organ.mesh);

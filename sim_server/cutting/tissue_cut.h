@@ -58,7 +58,7 @@ class TissueCut {
 
   /// Cuts the organ at the beginning of a step of `dt` (s), which begins at `time` (s). Where this throws,
   /// the next step begins it again. Returns true where another surface is published from this step on.
-  bool begin_step(std::span<const ToolInput> inputs, double time, double dt, CutOrgan organ);
+  bool start_step(std::span<const ToolInput> inputs, double time, double dt, CutOrgan organ);
   /// Adds the resistance against a blade to the force on its tool, so that it does the work that it owes over
   /// the next `Resection::blade_size` or so.
   void resist(std::size_t tool, const ToolContact& contact, double dt, ToolAnswer& answer);
@@ -93,10 +93,10 @@ class TissueCut {
   std::span<const int> remove_planned(double time, CutOrgan& organ);
   void part_by_blades(std::span<const ToolInput> inputs, double dt, CutOrgan& organ);
   void part_by(std::size_t tool, double dt, CutOrgan& organ);
-  void follow_rest(const Parted& parted, std::size_t tool, CutOrgan& organ);
+  void follow_rest(const Separated& separated, std::size_t tool, CutOrgan& organ);
   void change_surface(CutOrgan& organ);
   bool publish(std::span<const ToolInput> inputs, CutOrgan& organ);
-  void count(const CuttableModel::Removed& gone);
+  void count(const CuttableModel::Removed& lost);
 
   Resection resection_;
   std::vector<ToolSettings> tools_;

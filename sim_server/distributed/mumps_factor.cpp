@@ -15,13 +15,13 @@ namespace {
 
 /// What MUMPS is to do, as its manual numbers it, and words of our own.
 enum Job {
-  kBegin = -1,
+  kInitialize = -1,
   kEnd = -2,
   kAnalyse = 1,
   kFactor = 2,
   kSolve = 3,
-  kTellNeed = 100,
-  kTellUsed,
+  kReportNeed = 100,
+  kReportUsed,
   kReturn
 };
 
@@ -44,9 +44,9 @@ int& control(DMUMPS_STRUC_C& mumps, int number) {
 
 /// One job on this rank.
 void take_part(DMUMPS_STRUC_C& mumps, int job) {
-  if (job == kTellNeed) {
+  if (job == kReportNeed) {
     gather_memory(kMega * mumps.info[14]);
-  } else if (job == kTellUsed) {
+  } else if (job == kReportUsed) {
     gather_memory(kMega * mumps.info[21]);
   } else {
     mumps.job = job;
@@ -59,7 +59,7 @@ void begin(DMUMPS_STRUC_C& mumps) {
   mumps = {};
   mumps.comm_fortran = kWorldOfMpi;
   mumps.sym = mumps.par = 1;
-  take_part(mumps, kBegin);
+  take_part(mumps, kInitialize);
   for (const int stream : {1, 2, 3}) control(mumps, stream) = -1;
   control(mumps, 4) = 0;
 }
@@ -70,7 +70,7 @@ struct MumpsFactor::Instance {
   DMUMPS_STRUC_C data{};
 
   Instance() {
-    send_word(kBegin);
+    send_word(kInitialize);
     begin(data);
   }
   ~Instance() { run(kEnd); }
@@ -83,14 +83,14 @@ struct MumpsFactor::Instance {
   }
   std::vector<RankMemory> memory(int which) {
     send_word(which);
-    return gather_memory(kMega * data.info[which == kTellNeed ? 14 : 21]);
+    return gather_memory(kMega * data.info[which == kReportNeed ? 14 : 21]);
   }
 };
 
 void serve_mumps() {
   DMUMPS_STRUC_C mumps{};
   for (int word = wait_for_word(); word != kReturn; word = wait_for_word()) {
-    if (word == kBegin) {
+    if (word == kInitialize) {
       begin(mumps);
     } else {
       take_part(mumps, word);
@@ -102,28 +102,28 @@ void end_mumps() {
   send_word(kReturn);
 }
 
-MumpsFactor::MumpsFactor(const SparseMatrix& lower, std::span<const int> kept, FactorUse use,
-                         const std::string& where, const std::function<void(const std::string&)>& tell)
+MumpsFactor::MumpsFactor(const SparseMatrix& lower, std::span<const int> stored, FactorUse use,
+                         const std::string& where, const std::function<void(const std::string&)>& report)
     : mumps_(std::make_unique<Instance>()), use_(use) {
   if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);  // a rank a core
-  for (const int unknown : kept) kept_.push_back(unknown + 1);
+  for (const int unknown : stored) stored_.push_back(unknown + 1);
   costs_.unknowns = lower.rows();
   const Time start = now();
-  if (kept_.size() == static_cast<std::size_t>(lower.rows())) {
+  if (stored_.size() == static_cast<std::size_t>(lower.rows())) {
     take_all(lower, where);
     costs_.schur_s = to_seconds(now() - start);
     return;
   }
   analyse(lower, where);
   const Time analysed = now();
-  tell(
+  report(
       fmt::format("{} unknowns, {} of them kept: {:.3g} Gflop, at most {:.3g} GB on a rank, {:.3g} GB in all",
-                  lower.rows(), kept.size(), 1e-9 * costs_.flops, 1e-3 * mumps_->data.infog[15],
+                  lower.rows(), stored.size(), 1e-9 * costs_.flops, 1e-3 * mumps_->data.infog[15],
                   1e-3 * mumps_->data.infog[16]));
   factor(where);
   const Time factored = now();
   take_schur(where);
-  costs_.kept = schur_.rows();
+  costs_.stored = schur_.rows();
   costs_.analysis_s = to_seconds(analysed - start);
   costs_.factor_s = to_seconds(factored - analysed);
   costs_.schur_s = to_seconds(now() - factored);
@@ -149,8 +149,8 @@ void MumpsFactor::analyse(const SparseMatrix& lower, const std::string& where) {
   mumps.irn = rows_.data();
   mumps.jcn = columns_.data();
   mumps.a = values_.data();
-  mumps.size_schur = static_cast<int>(kept_.size());
-  mumps.listvar_schur = kept_.data();
+  mumps.size_schur = static_cast<int>(stored_.size());
+  mumps.listvar_schur = stored_.data();
   control(mumps, 7) = 5;  // order by METIS
   control(mumps, 14) = kMoreRoom;
   control(mumps, 19) = 1;                                    // the Schur complement on rank 0
@@ -158,8 +158,8 @@ void MumpsFactor::analyse(const SparseMatrix& lower, const std::string& where) {
   mumps_->run(kAnalyse);
   require("analysis", where);
   costs_.flops = mumps.rinfog[0];
-  std::vector<RankMemory> need = mumps_->memory(kTellNeed);
-  need.front().bytes += 2 * sizeof(double) * std::pow(static_cast<double>(kept_.size()), 2);  // S, S^-1
+  std::vector<RankMemory> need = mumps_->memory(kReportNeed);
+  need.front().bytes += 2 * sizeof(double) * std::pow(static_cast<double>(stored_.size()), 2);  // S, S^-1
   const std::string shortage = shortage_of(need);
   if (!shortage.empty())
     fail("{}: {}, for the Cholesky factor of {} unknowns; take more machines, or a coarser mesh", where,
@@ -169,7 +169,7 @@ void MumpsFactor::analyse(const SparseMatrix& lower, const std::string& where) {
 void MumpsFactor::factor(const std::string& where) {
   constexpr int kTooSmall = -9, kAlsoTooSmall = -8, kMostRoom = 500;  // %
   DMUMPS_STRUC_C& mumps = mumps_->data;
-  const auto size = static_cast<Eigen::Index>(kept_.size());
+  const auto size = static_cast<Eigen::Index>(stored_.size());
   schur_.resize(size, size);
   mumps.schur = schur_.data();
   mumps_->run(kFactor);
@@ -178,17 +178,18 @@ void MumpsFactor::factor(const std::string& where) {
     mumps_->run(kFactor);
   }
   require("factorisation", where);
-  costs_.memory = mumps_->memory(kTellUsed);
+  costs_.memory = mumps_->memory(kReportUsed);
 }
 
 /// Where all is kept, S is A, and MUMPS, which would have nothing to do, is not asked.
 void MumpsFactor::take_all(const SparseMatrix& lower, const std::string& where) {
-  const auto size = static_cast<Eigen::Index>(kept_.size());
+  const auto size = static_cast<Eigen::Index>(stored_.size());
   require_memory(2.0 * sizeof(double) * static_cast<double>(size * size), free_memory(), where,
                  fmt::format("the dense stiffness matrix of {} unknowns, all of which are reached,", size),
                  "give [[tool]] a `reach` box around the part it touches");
-  std::vector<int> place(kept_.size());
-  for (int k = 0; k < static_cast<int>(kept_.size()); ++k) place[static_cast<std::size_t>(kept_[k] - 1)] = k;
+  std::vector<int> place(stored_.size());
+  for (int k = 0; k < static_cast<int>(stored_.size()); ++k)
+    place[static_cast<std::size_t>(stored_[k] - 1)] = k;
   schur_ = Eigen::MatrixXd::Zero(size, size);
   for (Eigen::Index column = 0; column < lower.outerSize(); ++column) {
     for (SparseMatrix::InnerIterator entry(lower, column); entry; ++entry) {
@@ -197,29 +198,29 @@ void MumpsFactor::take_all(const SparseMatrix& lower, const std::string& where) 
     }
   }
   take_schur(where);
-  costs_.kept = size;
-  costs_.memory = mumps_->memory(kTellUsed);
+  costs_.stored = size;
+  costs_.memory = mumps_->memory(kReportUsed);
 }
 
 /// MUMPS writes it by rows, of which only the lower triangle counts; that is the upper one by columns.
 void MumpsFactor::take_schur(const std::string& where) {
-  if (kept_.empty()) return;
+  if (stored_.empty()) return;
   schur_.triangularView<Eigen::StrictlyLower>() = schur_.transpose();
-  const int size = static_cast<int>(kept_.size());
+  const int size = static_cast<int>(stored_.size());
   int failed = 0;
   Blas<double>::potrf("L", &size, schur_.data(), &size, &failed);
   if (failed != 0) fail_as_singular(where);
 }
 
 void MumpsFactor::require(const char* stage, const std::string& where) const {
-  constexpr int kSingular = -10, kSingularPattern = -6, kNotDefinite = -40, kNoMemory = -13, kElsewhere = -1;
+  constexpr int kSingular = -10, kSingularPattern = -6, kNotDefinite = -40, kNoMemory = -13, kRemote = -1;
   const int error = mumps_->data.infog[0], detail = mumps_->data.infog[1];
   if (error >= 0) return;
   if (error == kSingular || error == kSingularPattern || error == kNotDefinite) fail_as_singular(where);
   if (error == kNoMemory)
     fail("{}: memory ended in the {} of the stiffness matrix; take more machines, or a coarser mesh", where,
          stage);
-  if (error == kElsewhere)
+  if (error == kRemote)
     fail_at_run_time("{}: the {} of the stiffness matrix failed on rank {}", where, stage, detail);
   fail_at_run_time("{}: the {} of the stiffness matrix failed: MUMPS says INFOG(1) = {}, INFOG(2) = {}",
                    where, stage, error, detail);
@@ -239,14 +240,14 @@ Eigen::MatrixXd MumpsFactor::solve(const Eigen::MatrixXd& b) const {
     mumps_->run(kSolve);
     require("solution", "condense");
   };
-  constexpr int kWhole = 0, kForward = 1, kBack = 2;
+  constexpr int kSolveAll = 0, kForward = 1, kBack = 2;
   const auto lower = schur_.triangularView<Eigen::Lower>();
   for (Eigen::Index first = 0; first < b.cols(); first += kAtOnce) {
     const Eigen::Index count = std::min(kAtOnce, b.cols() - first);
     mumps.nrhs = static_cast<int>(count);
     mumps.rhs = x.col(first).data();
     if (schur_.size() == 0) {
-      run_solve(kWhole);
+      run_solve(kSolveAll);
       continue;
     }
     run_solve(kForward);
@@ -259,21 +260,23 @@ Eigen::MatrixXd MumpsFactor::solve(const Eigen::MatrixXd& b) const {
 
 Eigen::MatrixXd MumpsFactor::solve_all(const Eigen::MatrixXd& b) const {
   Eigen::MatrixXd x(b.rows(), b.cols()), in_order = x;
-  for (Eigen::Index k = 0; k < b.rows(); ++k) in_order.row(k) = b.row(kept_[static_cast<std::size_t>(k)] - 1);
+  for (Eigen::Index k = 0; k < b.rows(); ++k)
+    in_order.row(k) = b.row(stored_[static_cast<std::size_t>(k)] - 1);
   const auto lower = schur_.triangularView<Eigen::Lower>();
   lower.solveInPlace(in_order);
   lower.transpose().solveInPlace(in_order);
-  for (Eigen::Index k = 0; k < b.rows(); ++k) x.row(kept_[static_cast<std::size_t>(k)] - 1) = in_order.row(k);
+  for (Eigen::Index k = 0; k < b.rows(); ++k)
+    x.row(stored_[static_cast<std::size_t>(k)] - 1) = in_order.row(k);
   return x;
 }
 
 void MumpsFactor::inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
                                 const std::function<void(double)>& progress) const {
-  const auto is_kept = [](int unknown, int kept) { return unknown + 1 == kept; };
-  if (!std::ranges::equal(unknowns, kept_, is_kept))
+  const auto is_stored = [](int unknown, int stored) { return unknown + 1 == stored; };
+  if (!std::ranges::equal(unknowns, stored_, is_stored))
     throw std::logic_error("of the inverse, only what was kept can be had");
   progress(0);
-  const int size = static_cast<int>(kept_.size());
+  const int size = static_cast<int>(stored_.size());
   block = schur_;
   int failed = 0;
   const int stride = static_cast<int>(block.outerStride());

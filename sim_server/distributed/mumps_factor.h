@@ -9,7 +9,7 @@ namespace palpate::sim {
 
 /// Cost of a `MumpsFactor`.
 struct MumpsCosts {
-  Eigen::Index unknowns = 0, kept = 0;
+  Eigen::Index unknowns = 0, stored = 0;
   double analysis_s = 0, factor_s = 0, schur_s = 0;
   double flops = 0;                  ///< of the factor
   std::vector<RankMemory> memory{};  ///< used by each rank for it
@@ -27,14 +27,14 @@ class MumpsFactor final : public FactoredMatrix {
   /// `solve` needs `use` to be `kInverseAndSolve`. Throws `Error`, beginning with `where`, where A is not
   /// positive definite, or memory ends on some rank: told from the analysis, before it is taken. Memory on
   /// rank 0: A once more with its indices, S, and room for S^-1.
-  MumpsFactor(const SparseMatrix& lower, std::span<const int> kept, FactorUse use, const std::string& where,
-              const std::function<void(const std::string&)>& tell);
+  MumpsFactor(const SparseMatrix& lower, std::span<const int> stored, FactorUse use, const std::string& where,
+              const std::function<void(const std::string&)>& report);
   ~MumpsFactor() override;
   MumpsFactor(MumpsFactor&&) = delete;
   MumpsFactor& operator=(MumpsFactor&&) = delete;
 
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const override;
-  /// `unknowns` must be `kept`.
+  /// `unknowns` must be `stored`.
   void inverse_block(std::span<const int> unknowns, Eigen::Ref<Eigen::MatrixXd> block,
                      const std::function<void(double)>& progress) const override;
 
@@ -53,8 +53,8 @@ class MumpsFactor final : public FactoredMatrix {
   FactorUse use_;
   std::vector<int> rows_, columns_;  // of the entries of A's lower triangle, counted from 1
   std::vector<double> values_;
-  std::vector<int> kept_;  // of S, counted from 1
-  Eigen::MatrixXd schur_;  // S, then its Cholesky factor
+  std::vector<int> stored_;  // of S, counted from 1
+  Eigen::MatrixXd schur_;    // S, then its Cholesky factor
   MumpsCosts costs_;
 };
 

@@ -100,11 +100,11 @@ PALPATE_INLINE void turn(Matrices<lanes>& R, const typename Lanes<lanes>::Mask& 
     R.cofactors(c);
     R.determinant(c, det);
     find_scale<lanes>(R, c, det, change, scale);
-    const Real kept = 0.5 * scale, added = 0.5 / (scale * det);
+    const Real stored = 0.5 * scale, added = 0.5 / (scale * det);
     const typename Lanes<lanes>::Mask turns = change > kTurned;
     Real sum = Real();
     for (std::size_t k = 0; k < 9; ++k) {
-      const Real next = kept * R.at[k] + added * c.at[k], step = next - R.at[k];
+      const Real next = stored * R.at[k] + added * c.at[k], step = next - R.at[k];
       sum += step * step;
       R.at[k] = turns ? next : R.at[k];
     }

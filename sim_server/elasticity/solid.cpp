@@ -115,9 +115,9 @@ std::vector<double> Solid::masses() const {
     double mass = 0;
     for (int q = 0; q < points_; ++q) mass += material_.density * volume_of(Element(*this, e).point(q));
     for (int i = 0; i < corners_; ++i) {
-      const double share = corners_ == 4 ? 0.25 : i < 4 ? 1.0 / 36 : 4.0 / 27;
+      const double fraction = corners_ == 4 ? 0.25 : i < 4 ? 1.0 / 36 : 4.0 / 27;
       masses[element_nodes_[e * static_cast<std::size_t>(corners_) + static_cast<std::size_t>(i)]] +=
-          share * mass;
+          fraction * mass;
     }
   }
   return masses;

@@ -37,7 +37,7 @@ struct Solid::Element {
     }
   }
   /// Returns the part of the first Piola-Kirchhoff stress (Pa) by the stress before.
-  Mat3 remembered(const Mat3& F, const Mat3& memory) const { return linear_ ? memory : Mat3(F * memory); }
+  Mat3 stored(const Mat3& F, const Mat3& memory) const { return linear_ ? memory : Mat3(F * memory); }
 
   const int* nodes;
 

@@ -84,7 +84,7 @@ void Solid::evaluate(std::span<const Vec3> x, std::span<State> at_points, const 
           }
           state.stress *= viscosity.scale;
           if (!viscosity.memory.empty())
-            state.stress += element.remembered(state.F, viscosity.memory[element.point(q)]);
+            state.stress += element.stored(state.F, viscosity.memory[element.point(q)]);
         }
         for (int i = 0; averages() && i < 4; ++i) {
           const double theta = scratch.nodal_dilation_[element.nodes[i]];
@@ -142,7 +142,7 @@ double Solid::energy(std::span<const Vec3> x, Scratch& scratch) const {
 void Solid::forces(std::span<const Vec3> x, std::span<Vec3> f, const Viscosity& viscosity,
                    Scratch& scratch) const {
   if (averages()) average_dilation(x, scratch);
-  std::fill(f.begin(), f.end(), Vec3::Zero());
+  std::ranges::fill(f, Vec3::Zero());
   const auto corners = static_cast<std::size_t>(corners_);
   for (std::size_t from = 0; from < elements(); from += kElementsOfBatch) {
     const std::size_t count = std::min(kElementsOfBatch, elements() - from);
@@ -172,7 +172,7 @@ void Solid::element_forces(const Element& element, const Mat3* F, const Mat3* R,
     Mat3 stress = law.shape_stress() + moduli.lambda * theta * law.dilation_gradient();
     if (material_.fibres) stress += fibre_law(F[q]).stress();
     stress *= viscosity.scale;
-    if (!viscosity.memory.empty()) stress += element.remembered(F[q], viscosity.memory[element.point(q)]);
+    if (!viscosity.memory.empty()) stress += element.stored(F[q], viscosity.memory[element.point(q)]);
     const Vec3* const g = element.gradients(q);
     for (int i = 0; i < corners_; ++i) f[i] += element.weight(q) * (stress * g[i]);
   }
@@ -194,15 +194,15 @@ void Solid::add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Vis
                           });
       });
     });
-    // Each share of the columns in the order of the elements, so that the sums are the same on any number of
+    // Each group of blocks in the order of the elements, so that the sums are the same on any number of
     // cores.
-    parallel_blocks(StiffnessMatrix::kShares, 1, [&](std::size_t share, std::size_t) {
+    parallel_blocks(StiffnessMatrix::kGroups, 1, [&](std::size_t group, std::size_t) {
       for (std::size_t e = 0; e < count; ++e) {
         const Mat3* block = scratch.blocks_.data() + e * blocks;
         const int* const nodes = element_nodes_.data() + (from + e) * corners;
         for (int i = 0; i < corners_; ++i) {
           for (int j = 0; j <= i; ++j, ++block) {
-            if (k.is_of_share(share, nodes[i], nodes[j])) k.add(nodes[i], nodes[j], *block);
+            if (k.is_of_group(group, nodes[i], nodes[j])) k.add(nodes[i], nodes[j], *block);
           }
         }
       }
@@ -300,7 +300,7 @@ void Solid::collect_terms(std::size_t a, std::span<const Vec3> along,
       const std::size_t at = 4 * static_cast<std::size_t>(around_[k]) + i;
       const int node = element_nodes_[at];
       const auto same = [node](const auto& term) { return term.first == node; };
-      const auto found = std::find_if(terms.begin(), terms.end(), same);
+      const auto found = std::ranges::find_if(terms, same);
       if (found == terms.end()) {
         terms.emplace_back(node, along[at]);
       } else {

@@ -22,10 +22,10 @@ template <class Numbers>
 template <int kStride>
 [[gnu::always_inline]] inline void add_to_vertex(const Four& more, double* __restrict to) {
   if constexpr (kStride == 4) {
-    Four whole;
-    load(to, whole);
-    whole += more;
-    std::memcpy(to, &whole, sizeof whole);
+    Four entire;
+    load(to, entire);
+    entire += more;
+    std::memcpy(to, &entire, sizeof entire);
   } else {
     Two two;  // as it was written: else the processor waits
     load(to, two);
@@ -50,7 +50,7 @@ template <int kStride>
     const double* const xi = x + std::ptrdiff_t{kStride} * i;
     const double a = xi[0], b = xi[1], d = xi[2];
     Four px{}, py{}, pz{};
-    const auto meet = [&](int other, double* __restrict to) __attribute__((always_inline)) {
+    const auto add_product = [&](int other, double* __restrict to) __attribute__((always_inline)) {
       const std::ptrdiff_t j = std::ptrdiff_t{kStride} * other;
       Four xj, along_x, along_y, along_z;
       load(x + j, xj);
@@ -66,8 +66,8 @@ template <int kStride>
     };
     int e = k.first_edge[i];
     const int last = k.first_edge[i + 1];
-    for (; e < last && k.neighbour[e] < begin; ++e) meet(k.neighbour[e], ahead);
-    for (; e < last; ++e) meet(k.neighbour[e], y);
+    for (; e < last && k.neighbour[e] < begin; ++e) add_product(k.neighbour[e], ahead);
+    for (; e < last; ++e) add_product(k.neighbour[e], y);
     double* yi = y + std::ptrdiff_t{kStride} * i;
     yi[0] = vertex[0] * a + vertex[1] * b + vertex[2] * d + (px[0] + px[1] + px[2]);
     yi[1] = vertex[1] * a + vertex[3] * b + vertex[4] * d + (py[0] + py[1] + py[2]);
@@ -148,9 +148,9 @@ void product_of_rows(int begin, int end, const TensorsInPlace& k, const double* 
   product_on_this_processor<3>(begin, end, k, x, y, ahead);
 }
 
-void product_of_rows_apart(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
-                           double* ahead) noexcept {
-  product_on_this_processor<kNumbersApart>(begin, end, k, x, y, ahead);
+void product_of_separate_rows(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
+                              double* ahead) noexcept {
+  product_on_this_processor<kNumbersPerVertex_>(begin, end, k, x, y, ahead);
 }
 
 void product_of_eight(int n, const TensorsInPlace& k, const double* x, double* y) noexcept {

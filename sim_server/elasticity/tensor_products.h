@@ -12,16 +12,16 @@ struct TensorsInPlace {
 
 /// Stride of the vertices of a vector that is read and written at full width: three numbers of the vertex,
 /// one unused.
-constexpr int kNumbersApart = 4;
+constexpr int kNumbersPerVertex_ = 4;
 
 /// y = K x (n x 3, m and N), rows `begin` to `end`: what they add to rows before `begin` is added to those of
 /// `ahead`, which may be null where `begin` is 0. One thread; O(edges). Any processor gives the same bits.
 void product_of_rows(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
                      double* ahead) noexcept;
-/// Computes that product for vectors (n x `kNumbersApart`) of which the fourth number of each vertex is
+/// Computes that product for vectors (n x `kNumbersPerVertex_`) of which the fourth number of each vertex is
 /// unused, of any value. Same bits in nine tenths of the time, as each vertex is one load and one store.
-void product_of_rows_apart(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
-                           double* ahead) noexcept;
+void product_of_separate_rows(int begin, int end, const TensorsInPlace& k, const double* x, double* y,
+                              double* ahead) noexcept;
 
 /// y = K x of all n rows for eight vectors side by side (n x 3 x 8). Otherwise the same.
 void product_of_eight(int n, const TensorsInPlace& k, const double* x, double* y) noexcept;

@@ -28,14 +28,14 @@ std::uint64_t on_the_curve(const Vec3& x) {
 }
 
 void sort_each_once(auto& list) {
-  std::sort(list.begin(), list.end());
+  std::ranges::sort(list);
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-void add_left_around(const Tetrahedron& corners, const CutMesh& left, std::vector<int>& around) {
+void add_remaining_around(const Tetrahedron& corners, const CutMesh& remaining, std::vector<int>& around) {
   for (const int v : corners) {
-    for (const int other : left.around(v)) {
-      if (left.is_left(other)) around.push_back(other);
+    for (const int other : remaining.around(v)) {
+      if (remaining.remains(other)) around.push_back(other);
     }
   }
 }
@@ -62,41 +62,42 @@ void ElasticTensors::note_touched(const Tetrahedron& corners, Touched& touched) 
   }
 }
 
-void ElasticTensors::remove(std::span<const int> removed, const CutMesh& left, const Material& material) {
+void ElasticTensors::remove(std::span<const int> removed, const CutMesh& remaining,
+                            const Material& material) {
   Touched touched;
   std::vector<int> around;
   for (const int t : removed) {
-    const Tetrahedron& corners = left.mesh().tetrahedra[static_cast<std::size_t>(t)];
+    const Tetrahedron& corners = remaining.mesh().tetrahedra[static_cast<std::size_t>(t)];
     note_touched(corners, touched);
-    add_left_around(corners, left, around);
+    add_remaining_around(corners, remaining, around);
   }
-  sum_anew(touched, around, left, material);
+  sum_anew(touched, around, remaining, material);
 }
 
-void ElasticTensors::part(const Parting& parting, std::span<const int> reshaped, const CutMesh& left,
+void ElasticTensors::part(const Parting& parting, std::span<const int> reshaped, const CutMesh& remaining,
                           const Material& material) {
-  for (const Split& split : parting.splits) append(split.copy, left);
+  for (const Split& split : parting.splits) append(split.copy, remaining);
   Touched touched;
   std::vector<int> around;
   const auto note = [&](const Tetrahedron& corners) {
     note_touched(corners, touched);
-    add_left_around(corners, left, around);
+    add_remaining_around(corners, remaining, around);
   };
   for (const auto& [t, before] : parting.changed) {
     note(before);
-    note(left.mesh().tetrahedra[static_cast<std::size_t>(t)]);
+    note(remaining.mesh().tetrahedra[static_cast<std::size_t>(t)]);
   }
-  for (const int t : reshaped) note(left.mesh().tetrahedra[static_cast<std::size_t>(t)]);
+  for (const int t : reshaped) note(remaining.mesh().tetrahedra[static_cast<std::size_t>(t)]);
   if (!parting.splits.empty()) find_later_edges();
-  sum_anew(touched, around, left, material);
+  sum_anew(touched, around, remaining, material);
 }
 
 /// A vertex that had no tetrahedron gets the last place, with an edge to each that is before it.
-void ElasticTensors::append(int vertex, const CutMesh& left) {
+void ElasticTensors::append(int vertex, const CutMesh& remaining) {
   const int place = place_[static_cast<std::size_t>(vertex)] = static_cast<int>(mass_.size());
   std::vector<int> before;
-  for (const int t : left.around(vertex)) {
-    for (const int other : left.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
+  for (const int t : remaining.around(vertex)) {
+    for (const int other : remaining.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
       const int at = place_[static_cast<std::size_t>(other)];
       if (at >= 0 && at < place) before.push_back(at);
     }
@@ -117,7 +118,7 @@ void ElasticTensors::append(int vertex, const CutMesh& left) {
 }
 
 /// Of what is `touched`, over the tetrahedra `around` it.
-void ElasticTensors::sum_anew(Touched& touched, std::vector<int>& around, const CutMesh& left,
+void ElasticTensors::sum_anew(Touched& touched, std::vector<int>& around, const CutMesh& remaining,
                               const Material& material) {
   sort_each_once(touched);
   sort_each_once(around);
@@ -132,7 +133,7 @@ void ElasticTensors::sum_anew(Touched& touched, std::vector<int>& around, const 
     mass_[i] = 0;
   }
   const auto is_touched = [&](int i, int j) { return std::ranges::binary_search(touched, std::pair(i, j)); };
-  for (const int t : around) add(left.mesh(), static_cast<std::size_t>(t), material, is_touched);
+  for (const int t : around) add(remaining.mesh(), static_cast<std::size_t>(t), material, is_touched);
   std::size_t k = 0;
   for (const auto& [i, j] : touched) {
     if (i != j) continue;
@@ -155,10 +156,10 @@ void ElasticTensors::number(const TetMesh& mesh, const std::vector<int>& fixed) 
   }
   std::vector<std::pair<std::uint64_t, int>> order;
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
-    if (!std::binary_search(fixed.begin(), fixed.end(), v))
+    if (!std::ranges::binary_search(fixed, v))
       order.emplace_back(on_the_curve((mesh.vertices[v] - low) / (high - low).maxCoeff()), v);
   }
-  std::sort(order.begin(), order.end());
+  std::ranges::sort(order);
   place_.assign(mesh.vertices.size(), -1);
   for (std::size_t i = 0; i < order.size(); ++i) place_[order[i].second] = static_cast<int>(i);
   mass_.assign(order.size(), 0);
@@ -175,7 +176,7 @@ void ElasticTensors::find_edges(const TetMesh& mesh) {
       }
     }
   }
-  std::sort(edges.begin(), edges.end());
+  std::ranges::sort(edges);
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   first_edge_.assign(mass_.size() + 1, 0);
   for (const auto& [after, before] : edges) {
@@ -183,11 +184,11 @@ void ElasticTensors::find_edges(const TetMesh& mesh) {
     neighbour_.push_back(before);
   }
   for (std::size_t i = 1; i < first_edge_.size(); ++i) first_edge_[i] += first_edge_[i - 1];
-  share_out();
+  distribute();
 }
 
 /// About as many edges for each part, and two, four, eight ... parts, so that as many cores end together.
-void ElasticTensors::share_out() {
+void ElasticTensors::distribute() {
   const std::size_t edges = neighbour_.size(),
                     count = edges < kEdgesOfMany
                                 ? 1
@@ -266,7 +267,7 @@ void ElasticTensors::multiply(const double* x, double* y) const noexcept {
 
 void ElasticTensors::multiply_part(std::size_t p, const double* x, double* y, Ahead& ahead) const noexcept {
   const TensorsInPlace k{first_edge_.data(), neighbour_.data(), vertex_tensors_.data(), edge_tensors_.data()};
-  product_of_rows_apart(parts_[p].begin, end_of_part(p), k, x, y, ahead[p].data());
+  product_of_separate_rows(parts_[p].begin, end_of_part(p), k, x, y, ahead[p].data());
 }
 
 void ElasticTensors::gather_part(std::size_t p, double* y, Ahead& ahead) const noexcept {
@@ -275,14 +276,15 @@ void ElasticTensors::gather_part(std::size_t p, double* y, Ahead& ahead) const n
     const std::vector<int>& reaches = parts_[after].reaches;
     double* const from = ahead[after].data();
     for (auto row = std::ranges::lower_bound(reaches, begin); row != reaches.end() && *row < end; ++row) {
-      for (int i = kApart * *row; i < kApart * *row + 3; ++i) y[i] += std::exchange(from[i], 0);
+      for (int i = kNumbersPerVertex * *row; i < kNumbersPerVertex * *row + 3; ++i)
+        y[i] += std::exchange(from[i], 0);
     }
   }
 }
 
 void ElasticTensors::add_product(int place, const Vec3& x, double* y) const noexcept {
   using Block = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-  const auto row = [y](int i) { return Eigen::Map<Vec3>(y + std::ptrdiff_t{kApart} * i); };
+  const auto row = [y](int i) { return Eigen::Map<Vec3>(y + std::ptrdiff_t{kNumbersPerVertex} * i); };
   const auto edge = [this](int e) { return Block(edge_tensors_.data() + 9 * std::ptrdiff_t{e}); };
   const double* const k = vertex_tensors_.data() + 6 * std::ptrdiff_t{place};
   row(place) += Vec3(k[0] * x[0] + k[1] * x[1] + k[2] * x[2], k[1] * x[0] + k[3] * x[1] + k[4] * x[2],
@@ -295,7 +297,8 @@ void ElasticTensors::add_product(int place, const Vec3& x, double* y) const noex
 
 ElasticTensors::Ahead ElasticTensors::room_ahead() const {
   Ahead ahead;
-  for (const Part& part : parts_) ahead.emplace_back(kApart * static_cast<std::size_t>(part.begin), 0);
+  for (const Part& part : parts_)
+    ahead.emplace_back(kNumbersPerVertex * static_cast<std::size_t>(part.begin), 0);
   return ahead;
 }
 

@@ -37,12 +37,12 @@ class ElasticTensors {
   /// over what is left around them, in the order of the constructor, so that they have the bits that a fresh
   /// assembly of what is left has. Where nothing is left they are 0, but for the mass, which stays as it was.
   /// O(removed), whatever the size of the mesh: some 20 us each.
-  void remove(std::span<const int> removed, const CutMesh& left, const Material& material);
+  void remove(std::span<const int> removed, const CutMesh& remaining, const Material& material);
 
   /// After faces have been parted: the copies of vertices have places after all others, with the edges that
   /// they have now, and what is around tetrahedra that have other corners, or whose shape at rest has changed
   /// (`reshaped`), is summed anew, as by `remove`. O(changed), but for room.
-  void part(const Parting& parting, std::span<const int> reshaped, const CutMesh& left,
+  void part(const Parting& parting, std::span<const int> reshaped, const CutMesh& remaining,
             const Material& material);
 
   /// Sets the mass factor of a tetrahedron, from its next summation on.
@@ -60,22 +60,22 @@ class ElasticTensors {
   /// Number of vectors that `multiply_wide` takes at once.
   static constexpr int kWide = 8;
   /// Stride of the vertices in the vectors of a product in parts; the last number of each is unused.
-  static constexpr int kApart = kNumbersApart;
+  static constexpr int kNumbersPerVertex = kNumbersPerVertex_;
   /// Sums that parts of a product add to rows of earlier parts: for each part, and 0 between two products.
   using Ahead = std::vector<std::vector<double>>;
   Ahead room_ahead() const;
   /// y = K x: forces (n x 3, N) of displacements (n x 3, m), n = `vertices()`.
   void multiply(const double* x, double* y) const noexcept;
-  /// Multiplies vectors of n x `kApart`, of 40 thousand edges or more in 8 or 16 parts, on as many cores. The
-  /// tensors alone decide the number of parts. Call `multiply_part` of each, then `gather_part` of each,
-  /// after which the rows of that part are done. Returns equal bits whatever the number of threads. A caller
-  /// that uses a part's rows on the core that made them has them in its cache.
+  /// Multiplies vectors of n x `kNumbersPerVertex`, of 40 thousand edges or more in 8 or 16 parts, on as many
+  /// cores. The tensors alone decide the number of parts. Call `multiply_part` of each, then `gather_part` of
+  /// each, after which the rows of that part are done. Returns equal bits whatever the number of threads. A
+  /// caller that uses a part's rows on the core that made them has them in its cache.
   std::size_t parts() const { return parts_.size(); }
   std::pair<int, int> rows_of_part(std::size_t p) const { return {parts_[p].begin, end_of_part(p)}; }
   void multiply_part(std::size_t p, const double* x, double* y, Ahead& ahead) const noexcept;
   void gather_part(std::size_t p, double* y, Ahead& ahead) const noexcept;
-  /// y += K x, of an x that is 0 but at this place; y of n x `kApart`. For tensors of more than one part.
-  /// O(edges there).
+  /// y += K x, of an x that is 0 but at this place; y of n x `kNumbersPerVertex`. For tensors of more than
+  /// one part. O(edges there).
   void add_product(int place, const Vec3& x, double* y) const noexcept;
   /// Multiplies eight vectors side by side (n x 3 x 8, with the eight entries of a component together), at
   /// about half of the time for each: tensors are read once.
@@ -100,9 +100,10 @@ class ElasticTensors {
   /// Places of the ends of edges, the later first; of a vertex twice the same.
   using Touched = std::vector<std::pair<int, int>>;
   void note_touched(const Tetrahedron& corners, Touched& touched) const;
-  void sum_anew(Touched& touched, std::vector<int>& around, const CutMesh& left, const Material& material);
-  void append(int vertex, const CutMesh& left);
-  void share_out();
+  void sum_anew(Touched& touched, std::vector<int>& around, const CutMesh& remaining,
+                const Material& material);
+  void append(int vertex, const CutMesh& remaining);
+  void distribute();
   void find_later_edges();
   /// Rows that one thread does of a product.
   struct Part {

@@ -17,7 +17,7 @@ Vec3 moved_by(const Eigen::MatrixXd& modes, Eigen::Index first, const Eigen::Vec
 
 }  // namespace
 
-void CondensedPart::stand_at(const std::vector<double>& u) noexcept {
+void CondensedPart::place_at(const std::vector<double>& u) noexcept {
   for (Part& part : all_) {
     for (std::size_t b = 0; b < part.border.size(); ++b)
       part.at.segment<3>(3 * static_cast<Eigen::Index>(b)) =
@@ -25,10 +25,10 @@ void CondensedPart::stand_at(const std::vector<double>& u) noexcept {
   }
 }
 
-void CondensedPart::look_at(const std::vector<double>& u, const std::vector<double>& v) noexcept {
-  stand_at(u);
+void CondensedPart::observe(const std::vector<double>& u, const std::vector<double>& v) noexcept {
+  place_at(u);
   for (Part& part : all_) {
-    if (part.gone) continue;
+    if (part.removed) continue;
     for (std::size_t b = 0; b < part.border.size(); ++b) {
       const auto row = 3 * static_cast<Eigen::Index>(b);
       part.bent.segment<3>(row) =
@@ -41,7 +41,7 @@ void CondensedPart::look_at(const std::vector<double>& u, const std::vector<doub
 
 void CondensedPart::follow(std::span<double> force) const noexcept {
   for (const Part& part : all_) {
-    for (std::size_t b = 0; !part.gone && b < part.border.size(); ++b) {
+    for (std::size_t b = 0; !part.removed && b < part.border.size(); ++b) {
       const auto row = 3 * static_cast<Eigen::Index>(b);
       Eigen::Map<Vec3>(force.data() + part.border[b]) +=
           part.force.segment<3>(row) + moved_by(part.driven, row, part.p_bent);
@@ -51,7 +51,7 @@ void CondensedPart::follow(std::span<double> force) const noexcept {
 
 void CondensedPart::advance(double h, std::span<const NodalLoad> loads) noexcept {
   for (Part& part : all_) {
-    if (part.gone) continue;
+    if (part.removed) continue;
     part.p_v *= 1 - h * damping_.mass;
     part.p_v.array() -= h * part.squares * part.p_bent.array();
     part.p_v.noalias() += h * (part.driven * part.bent);
@@ -86,15 +86,15 @@ void CondensedPart::watch(std::span<const int> vertices) noexcept {
   }
 }
 
-void CondensedPart::begin_step() noexcept {
+void CondensedPart::start_step() noexcept {
   ++step_;
   std::erase_if(watched_, [&](int vertex) { return seen_[static_cast<std::size_t>(vertex)] < step_ - 1; });
 }
 
-void CondensedPart::press(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
-                          std::span<Vec3> positions) const noexcept {
-  const std::span<const int> pressed = all ? vertices() : watched();
-  for (const int vertex : pressed) {
+void CondensedPart::apply_loads(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
+                                std::span<Vec3> positions) const noexcept {
+  const std::span<const int> loaded_vertices = all ? vertices() : watched();
+  for (const int vertex : loaded_vertices) {
     const auto v = static_cast<std::size_t>(vertex);
     positions[v] = free[v];
     for (const NodalLoad& load : loads) {
@@ -114,8 +114,8 @@ void CondensedPart::hand_down(const NodalLoad& load, std::span<double> force) co
 
 CuttableModel::Removed CondensedPart::remove(int part) noexcept {
   Part& goes = all_[static_cast<std::size_t>(part)];
-  if (goes.gone) return {};
-  goes.gone = true;
+  if (goes.removed) return {};
+  goes.removed = true;
   const double border = -0.5 * goes.at.dot(goes.following.selfadjointView<Eigen::Lower>() * goes.at);
   const double modes =
       0.5 * (goes.squares * goes.p.array().square()).sum() - goes.p.dot(goes.driven * goes.at);

@@ -42,9 +42,9 @@ class CondensedPart {
   CondensedPart(const ModelInputs& inputs, const std::vector<int>& places, const Modes& modes);
 
   /// Takes where the border is by now and how fast (m, m/s; 3 x places). O(b^2).
-  void look_at(const std::vector<double>& u, const std::vector<double>& v) noexcept;
+  void observe(const std::vector<double>& u, const std::vector<double>& v) noexcept;
   /// Takes the present displacement of the border, for `carried` alone. O(b).
-  void stand_at(const std::vector<double>& u) noexcept;
+  void place_at(const std::vector<double>& u) noexcept;
   /// Adds what r does on the border as looked at, but for loads on r, to `force` (3 x places).
   void follow(std::span<double> force) const noexcept;
   /// The modes go on by h (s) from what was looked at, under these loads.
@@ -60,13 +60,13 @@ class CondensedPart {
   /// Returns the watched vertices that are condensed and within reach.
   std::span<const int> watched() const { return watched_; }
   /// A step begins: what contact looked at neither in the last nor in the one before is not watched any more.
-  void begin_step() noexcept;
+  void start_step() noexcept;
   /// Returns the compliance between two of them: motion of one per force on the other, m/N.
   Mat3 compliance(int vertex, int other) const noexcept;
   /// Puts what is watched, or `all` of them, where `free` and W f_s say (surface vertices, m). Loads on
   /// others are passed over. O(loads x what is watched), or of all.
-  void press(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
-             std::span<Vec3> positions) const noexcept;
+  void apply_loads(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
+                   std::span<Vec3> positions) const noexcept;
   /// Adds T^T f_s of one load on one of them to `force` (3 x places).
   void hand_down(const NodalLoad& load, std::span<double> force) const noexcept;
 
@@ -103,7 +103,7 @@ class CondensedPart {
     Eigen::MatrixXd shapes;           // phi_s^T
     Eigen::VectorXd p, p_v, p_bent;   // amplitudes, their rates, p + stiffness p_v
     Eigen::VectorXd at, bent, force;  // u_b, u_b + stiffness v_b, B times that
-    bool gone = false;
+    bool removed = false;
   };
   void find_parts(const TetMesh& mesh, std::span<const int> held);
   void number_surface(const ModelInputs& inputs);

@@ -21,7 +21,7 @@ constexpr int kUnknownsPerMode = 8;  // at least
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
 void sort_unique(std::vector<int>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
+  std::ranges::sort(numbers);
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
@@ -127,7 +127,7 @@ struct ModesOfPart {
 /// part does in it is a mode of that, too.
 ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& statics,
                           const std::vector<int>& part_of, int part) {
-  constexpr double kShare = 1e-3;  // of a mode: less of it is rounding
+  constexpr double kFraction = 1e-3;  // of a mode: less of it is rounding
   const Eigen::VectorXd masses = statics.masses();
   Eigen::VectorXd mine = Eigen::VectorXd::Zero(masses.size());
   for (std::size_t v = 0; v < part_of.size(); ++v) {
@@ -142,7 +142,7 @@ ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& static
     for (Eigen::Index j = 0; j < count; ++j)
       shape -= own.shapes.col(j).dot(masses.cwiseProduct(shape)) * own.shapes.col(j);
     const double norm = std::sqrt(shape.dot(masses.cwiseProduct(shape)));
-    if (norm < kShare) continue;
+    if (norm < kFraction) continue;
     own.squares[count] = all.frequencies[k] * all.frequencies[k];
     own.shapes.col(count++) = shape / norm;
   }
@@ -170,18 +170,18 @@ double mass_beside_modes(const LinearStatics& statics, const std::vector<int>& r
 
 /// `mass` (kg) shared by the vertices of a border as the tetrahedra are that they share with the part.
 std::vector<double> shared_mass(const TetMesh& mesh, const PartNodes& part, double mass) {
-  std::vector<double> share(part.border.size(), 0);
+  std::vector<double> fraction(part.border.size(), 0);
   double all = 0;
   for (const std::size_t t : part.tetrahedra) {
     for (const int v : mesh.tetrahedra[t]) {
       if (!std::ranges::binary_search(part.border, v)) continue;
       const double volume = six_volumes(mesh, mesh.tetrahedra[t]);
-      share[static_cast<std::size_t>(place_in(part.border, v))] += volume;
+      fraction[static_cast<std::size_t>(place_in(part.border, v))] += volume;
       all += volume;
     }
   }
-  for (double& kg : share) kg *= mass / all;
-  return share;
+  for (double& kg : fraction) kg *= mass / all;
+  return fraction;
 }
 
 /// Of (unknowns x k) the rows of these mesh vertices, three each.
@@ -206,9 +206,9 @@ CondensedPart::CondensedPart(const ModelInputs& inputs, const std::vector<int>& 
   find_parts(inputs.mesh, held);
   if (all_.empty()) return;
   number_surface(inputs);
-  const ModelInputs still{inputs.scene,     inputs.mesh,     inputs.surface,    held,
-                          inputs.reachable, inputs.progress, inputs.free_bytes, inputs.cache};
-  const LinearStatics statics(still);
+  const ModelInputs fixed_inputs{inputs.scene,     inputs.mesh,     inputs.surface,    held,
+                                 inputs.reachable, inputs.progress, inputs.free_bytes, inputs.cache};
+  const LinearStatics statics(fixed_inputs);
   const std::vector<PartNodes> nodes = nodes_of_parts(inputs.mesh, places, part_of_);
   VibrationModes found;
   const int count = std::min(modes.most, statics.dofs.count / kUnknownsPerMode);
@@ -293,8 +293,8 @@ void CondensedPart::condense(const ModelInputs& inputs, const LinearStatics& sta
       unknowns.push_back(statics.dofs.first[static_cast<std::size_t>(v)] + axis);
   }
   Eigen::MatrixXd inverse(size, size);
-  statics.factor().inverse_block(unknowns, inverse,
-                                 [&](double share) { inputs.progress(name_of(Stage::kCondensed), share); });
+  statics.factor().inverse_block(
+      unknowns, inverse, [&](double fraction) { inputs.progress(name_of(Stage::kCondensed), fraction); });
   const Eigen::MatrixXd moved = inverse * coupling;  // where the border takes them, with the other sign
   part.following = coupling.transpose() * moved;
   part.carrying.resize(border, surface);

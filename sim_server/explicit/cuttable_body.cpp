@@ -10,13 +10,13 @@ namespace {
 
 /// Vertices that are fixed or not in motion, ascending.
 std::vector<int> standing(const ModelInputs& inputs, const std::vector<char>* moves) {
-  std::vector<int> still = inputs.fixed;
+  std::vector<int> motionless = inputs.fixed;
   for (std::size_t v = 0; moves != nullptr && v < moves->size(); ++v) {
-    if ((*moves)[v] == 0) still.push_back(static_cast<int>(v));
+    if ((*moves)[v] == 0) motionless.push_back(static_cast<int>(v));
   }
-  std::sort(still.begin(), still.end());
-  still.erase(std::unique(still.begin(), still.end()), still.end());
-  return still;
+  std::ranges::sort(motionless);
+  motionless.erase(std::unique(motionless.begin(), motionless.end()), motionless.end());
+  return motionless;
 }
 
 }  // namespace
@@ -35,28 +35,28 @@ CuttableBody::CuttableBody(const ModelInputs& inputs, const std::vector<double>&
   }
 }
 
-CuttableModel::Removed CuttableBody::remove(std::span<const int> tetrahedra, const CutMesh& left,
+CuttableModel::Removed CuttableBody::remove(std::span<const int> tetrahedra, const CutMesh& remaining,
                                             const Material& material) {
-  CuttableModel::Removed gone;
-  tensors.remove(tetrahedra, left, material);
-  const auto is_left = [&](int other) { return left.is_left(other); };
+  CuttableModel::Removed removed;
+  tensors.remove(tetrahedra, remaining, material);
+  const auto remains = [&](int other) { return remaining.remains(other); };
   for (const int t : tetrahedra) {
-    for (const int v : left.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
+    for (const int v : remaining.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
       if (rest && rest->part_of(v) >= 0) {
         const CuttableModel::Removed part = rest->remove(rest->part_of(v));
-        gone.elastic += part.elastic;
-        gone.kinetic += part.kinetic;
+        removed.elastic += part.elastic;
+        removed.kinetic += part.kinetic;
       }
       const int place = tensors.places()[static_cast<std::size_t>(v)];
-      if (place >= 0 && std::ranges::none_of(left.around(v), is_left))  // else it would drift for ever
+      if (place >= 0 && std::ranges::none_of(remaining.around(v), remains))  // else it would drift for ever
         Eigen::Map<Vec3>(motion.state.v.data() + 3 * place).setZero();
     }
   }
-  return gone;
+  return removed;
 }
 
 void CuttableBody::part(std::span<const CuttableModel::Slide> slides, const Parting& parting,
-                        const CutMesh& left, const Material& material, double frequency) {
+                        const CutMesh& remaining, const Material& material, double frequency) {
   std::vector<int> slid;
   for (const CuttableModel::Slide& slide : slides) {
     const int place = tensors.places()[static_cast<std::size_t>(slide.vertex)];
@@ -69,19 +69,19 @@ void CuttableBody::part(std::span<const CuttableModel::Slide> slides, const Part
     }
     slid.push_back(slide.vertex);
   }
-  reshape(slid, parting, left, material, frequency);
+  reshape(slid, parting, remaining, material, frequency);
 }
 
-void CuttableBody::reshape(std::span<const int> slid, const Parting& parting, const CutMesh& left,
+void CuttableBody::reshape(std::span<const int> slid, const Parting& parting, const CutMesh& remaining,
                            const Material& material, double frequency) {
   std::vector<int> reshaped;
   const auto reshape_around = [&](int vertex) {
-    std::ranges::copy_if(left.around(vertex), std::back_inserter(reshaped),
-                         [&](int t) { return left.is_left(t); });
+    std::ranges::copy_if(remaining.around(vertex), std::back_inserter(reshaped),
+                         [&](int t) { return remaining.remains(t); });
   };
   std::ranges::for_each(slid, reshape_around);
   const auto first_of = [&](int vertex) -> int& {
-    return first[static_cast<std::size_t>(left.number_of(vertex))];
+    return first[static_cast<std::size_t>(remaining.number_of(vertex))];
   };
   for (const Split& split : parting.splits) {
     reshape_around(split.copy);
@@ -89,8 +89,9 @@ void CuttableBody::reshape(std::span<const int> slid, const Parting& parting, co
     motion.append_copy_of(first_of(split.vertex) / 3);
   }
   for (const int t : reshaped)
-    tensors.set_mass_factor(t, mass_factor_of(left.mesh(), static_cast<std::size_t>(t), material, frequency));
-  tensors.part(parting, reshaped, left, material);
+    tensors.set_mass_factor(
+        t, mass_factor_of(remaining.mesh(), static_cast<std::size_t>(t), material, frequency));
+  tensors.part(parting, reshaped, remaining, material);
 }
 
 }  // namespace palpate::sim

@@ -24,17 +24,17 @@ struct CuttableBody {
 
   /// Removes these tetrahedra, and the condensed parts that have any of them. A vertex without any remaining
   /// tetrahedron stops. O(removed). Returns energy and momentum of those parts.
-  CuttableModel::Removed remove(std::span<const int> tetrahedra, const CutMesh& left,
+  CuttableModel::Removed remove(std::span<const int> tetrahedra, const CutMesh& remaining,
                                 const Material& material);
 
   /// Slides and parts as `DeformationModel::part`. Where that makes an element so stiff that it would have a
   /// higher frequency (rad/s) alone, its mass grows.
-  void part(std::span<const CuttableModel::Slide> slides, const Parting& parting, const CutMesh& left,
+  void part(std::span<const CuttableModel::Slide> slides, const Parting& parting, const CutMesh& remaining,
             const Material& material, double frequency);
 
-  /// Since a body was made of a mesh, these vertices of that slid and faces were parted, in any order; `left`
-  /// is now. The copies are where what they are of is.
-  void reshape(std::span<const int> slid, const Parting& parting, const CutMesh& left,
+  /// Since a body was made of a mesh, these vertices of that slid and faces were parted, in any order;
+  /// `remaining` is now. The copies are where what they are of is.
+  void reshape(std::span<const int> slid, const Parting& parting, const CutMesh& remaining,
                const Material& material, double frequency);
 };
 

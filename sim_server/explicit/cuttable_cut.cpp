@@ -19,11 +19,11 @@ double linear_energy(const LinearTetrahedron& element, const std::array<Vec3, 4>
 }  // namespace
 
 /// Those of these tetrahedra that are on the surface by now.
-void CuttableMotion::show_corners(std::span<const int> tetrahedra, const CutMesh& left) {
+void CuttableMotion::show_corners(std::span<const int> tetrahedra, const CutMesh& remaining) {
   for (const int t : tetrahedra) {
-    for (const int corner : left.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
-      const int vertex = left.number_of(corner);
-      if (vertex < 0 || !left.on_surface(vertex) || state_.shown[static_cast<std::size_t>(vertex)] != 0)
+    for (const int corner : remaining.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
+      const int vertex = remaining.number_of(corner);
+      if (vertex < 0 || !remaining.on_surface(vertex) || state_.shown[static_cast<std::size_t>(vertex)] != 0)
         continue;
       state_.shown[static_cast<std::size_t>(vertex)] = 1;
       if (body_->first[static_cast<std::size_t>(vertex)] >= 0) state_.exposed.push_back(vertex);
@@ -32,12 +32,12 @@ void CuttableMotion::show_corners(std::span<const int> tetrahedra, const CutMesh
 }
 
 /// Of a tetrahedron, with its corners that are condensed where they are at rest.
-CuttableModel::Removed CuttableMotion::lost_with(int tetrahedron, const CutMesh& left) const {
+CuttableModel::Removed CuttableMotion::lost_with(int tetrahedron, const CutMesh& remaining) const {
   const auto t = static_cast<std::size_t>(tetrahedron);
-  const Tetrahedron& corners = left.mesh().tetrahedra[t];
+  const Tetrahedron& corners = remaining.mesh().tetrahedra[t];
   const std::vector<double>& factors = body_->tensors.mass_factors();
   const double mass =
-      (factors.empty() ? 1 : factors[t]) * material_.density * six_volumes(left.mesh(), corners) / 6;
+      (factors.empty() ? 1 : factors[t]) * material_.density * six_volumes(remaining.mesh(), corners) / 6;
   std::array<Vec3, 4> x, u;
   Removed lost;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -51,7 +51,7 @@ CuttableModel::Removed CuttableMotion::lost_with(int tetrahedron, const CutMesh&
     lost.kinetic += mass / 8 * v.squaredNorm();
     lost.momentum += mass / 4 * v;
   }
-  const double stiffness = left.mesh().stiffness.empty() ? 1 : left.mesh().stiffness[t];
+  const double stiffness = remaining.mesh().stiffness.empty() ? 1 : remaining.mesh().stiffness[t];
   lost.elastic = stiffness * linear_energy(LinearTetrahedron(x), u, material_);
   return lost;
 }
@@ -63,45 +63,45 @@ void CuttableMotion::end_contact() noexcept {
   body_->motion.drop_next();
 }
 
-CuttableModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra, const CutMesh& left) {
+CuttableModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra, const CutMesh& remaining) {
   end_contact();
   state_.changed = true;
   if (publisher_) publisher_->forget();
-  if (body_->rest) body_->rest->look_at(body_->motion.state.u, body_->motion.state.v);
-  Removed gone;
-  const auto add = [&gone](const Removed& lost) {
-    gone.elastic += lost.elastic;
-    gone.kinetic += lost.kinetic;
-    gone.momentum += lost.momentum;
+  if (body_->rest) body_->rest->observe(body_->motion.state.u, body_->motion.state.v);
+  Removed removed;
+  const auto add = [&removed](const Removed& lost) {
+    removed.elastic += lost.elastic;
+    removed.kinetic += lost.kinetic;
+    removed.momentum += lost.momentum;
   };
-  for (const int t : tetrahedra) add(lost_with(t, left));
-  add(body_->remove(tetrahedra, left, material_));
-  show_corners(tetrahedra, left);
-  std::erase_if(state_.loads, [&](const NodalLoad& load) { return !left.on_surface(load.vertex); });
-  return gone;
+  for (const int t : tetrahedra) add(lost_with(t, remaining));
+  add(body_->remove(tetrahedra, remaining, material_));
+  show_corners(tetrahedra, remaining);
+  std::erase_if(state_.loads, [&](const NodalLoad& load) { return !remaining.on_surface(load.vertex); });
+  return removed;
 }
 
-void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) {
+void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting, const CutMesh& remaining) {
   end_contact();
   if (publisher_) publisher_->forget();
-  body_->part(slides, parting, left, material_, scaling_.frequency);
-  const auto stand_anew = [&](int vertex) {
+  body_->part(slides, parting, remaining, material_, scaling_.frequency);
+  const auto place_again = [&](int vertex) {
     state_.rest_places[static_cast<std::size_t>(vertex)] =
-        left.mesh().vertices[static_cast<std::size_t>(vertex)];
+        remaining.mesh().vertices[static_cast<std::size_t>(vertex)];
   };
-  for (const Slide& slide : slides) stand_anew(slide.vertex);
-  for (const Split& split : parting.splits) stand_anew(split.copy);
-  show_corners(parting.tetrahedra, left);
+  for (const Slide& slide : slides) place_again(slide.vertex);
+  for (const Split& split : parting.splits) place_again(split.copy);
+  show_corners(parting.tetrahedra, remaining);
   for (const Split& split : parting.splits)
-    state_.shown[static_cast<std::size_t>(left.number_of(split.copy))] = 1;
+    state_.shown[static_cast<std::size_t>(remaining.number_of(split.copy))] = 1;
   take_body();
-  go_on_with_body();
+  continue_with_body();
 }
 
 /// What is in motion is where the body says.
-void CuttableMotion::go_on_with_body() noexcept {
+void CuttableMotion::continue_with_body() noexcept {
   update_free(state_.moving);
-  go_free(state_.moving);
+  become_free(state_.moving);
 }
 
 }  // namespace palpate::sim

@@ -11,8 +11,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kAddedMass = 1e-2;  // of the mass in motion, for its stiffest elements
-constexpr int kSubStepsPerLook = 8;  // at what contact looks at of the rest without pressing there
+constexpr double kAddedMass = 1e-2;    // of the mass in motion, for its stiffest elements
+constexpr int kSubStepsPerSearch = 8;  // at what contact looks at of the rest without pressing there
 
 const RayleighDamping& rayleigh_of(const Scene& scene) {
   return scene.deformation.of<RayleighDamping>();
@@ -27,8 +27,8 @@ MassScaling scaling_for(const ModelInputs& inputs, const RegionInMotion* region)
   std::vector<char> moves;
   if (region != nullptr) moves = region->vertices(inputs.mesh);
   const auto* const added = inputs.scene.deformation.find<AddedMass>();
-  const double share = added == nullptr ? kAddedMass : added->share.value_or(kAddedMass);
-  return scale_masses(inputs.mesh, *inputs.scene.material, share, moves);
+  const double fraction = added == nullptr ? kAddedMass : added->fraction.value_or(kAddedMass);
+  return scale_masses(inputs.mesh, *inputs.scene.material, fraction, moves);
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
   state_.positions = state_.free;
   state_.loads.reserve(kMaxTools * node_.size());
   unloaded_.reserve(state_.loads.capacity());
-  state_.pressed.reserve(state_.loads.capacity());
+  state_.loaded_vertices.reserve(state_.loads.capacity());
   state_.moving.reserve(node_.size());
   state_.exposed.reserve(node_.size());
   state_.moved.reserve(4 * node_.size());
@@ -70,7 +70,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
 /// Takes over another body than before.
 void CuttableMotion::take_body() {
   state_.changed = true;
-  state_.near.look_everywhere();
+  state_.near.search_everywhere();
   state_.force.assign(body_->motion.state.f.size(), 0);
   state_.moving.clear();
   state_.exposed.clear();
@@ -133,8 +133,8 @@ void CuttableMotion::restrict_contact(std::span<const Neighbourhood> places,
     fastest = std::max(fastest, Eigen::Map<const Vec3>(body_->motion.state.v.data() + first).squaredNorm());
   }
   state_.instant = 0;  // also after a step that threw
-  state_.near.look_in(places, triangles, body_->first, state_.free,
-                      kFaster * std::sqrt(fastest) * sub_step_ * instants_);
+  state_.near.search_in(places, triangles, body_->first, state_.free,
+                        kFaster * std::sqrt(fastest) * sub_step_ * instants_);
   for (const NodalLoad& load : state_.loads) {
     if (body_->first[static_cast<std::size_t>(load.vertex)] >= 0) state_.near.add(load.vertex);
   }
@@ -143,12 +143,12 @@ void CuttableMotion::restrict_contact(std::span<const Neighbourhood> places,
 }
 
 /// Contact begins to load a vertex in motion that it did not look at: that is told from here on.
-void CuttableMotion::look_at(int vertex) noexcept {
-  const bool told =
+void CuttableMotion::observe(int vertex) noexcept {
+  const bool published =
       !state_.near.narrowed() || state_.instant == 0 || body_->first[static_cast<std::size_t>(vertex)] < 0;
-  if (told || !state_.near.add(vertex)) return;
+  if (published || !state_.near.add(vertex)) return;
   update_free({&vertex, 1});
-  go_free({&vertex, 1});
+  become_free({&vertex, 1});
   state_.moved.push_back(vertex);
 }
 
@@ -157,25 +157,25 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
     if (!state_.ended) end_sub_step();
     state_.ended = false;
     if (body_->rest && publisher_ && publisher_->surface() != nullptr)
-      publisher_->surface()->motion.go_on(sub_step_, state_.loads);
+      publisher_->surface()->motion.continue_(sub_step_, state_.loads);
     if (body_->rest) follow();
     take_sub_step();
     const bool ends = state_.instant + 1 == instants_;
-    if (!ends) body_->motion.begin_next();  // while contact is solved
+    if (!ends) body_->motion.start_next();  // while contact is solved
     update_free(ends ? state_.moving : looked_at());
     if (body_->rest) carry_rest();
     state_.instant = (state_.instant + 1) % instants_;
-    go_free(ends ? state_.moving : looked_at());
+    become_free(ends ? state_.moving : looked_at());
     note_moved();
-    press();
+    apply_loads();
   }
   return {.positions = state_.free, .loaded = state_.positions, .moved = &state_.moved};
 }
 
 /// What the rest does on the border where both are by now.
 void CuttableMotion::follow() noexcept {
-  body_->rest->look_at(body_->motion.state.u, body_->motion.state.v);
-  std::fill(state_.force.begin(), state_.force.end(), 0);
+  body_->rest->observe(body_->motion.state.u, body_->motion.state.v);
+  std::ranges::fill(state_.force, 0);
   body_->rest->follow(state_.force);
 }
 
@@ -194,9 +194,9 @@ void CuttableMotion::carry_rest() noexcept {
     if (moves(load)) unloaded_.push_back(at(load));
   }
   for (const NodalLoad& load : state_.loads) {
-    if (moves(load)) at(load) += sub_step_ * kick_of(load);
+    if (moves(load)) at(load) += sub_step_ * impulse_of(load);
   }
-  body_->rest->stand_at(body_->motion.state.u);
+  body_->rest->place_at(body_->motion.state.u);
   auto before = unloaded_.begin();
   for (const NodalLoad& load : state_.loads) {
     if (moves(load)) at(load) = *before++;
@@ -204,9 +204,9 @@ void CuttableMotion::carry_rest() noexcept {
   const auto carry = [&](int vertex) {
     state_.free[static_cast<std::size_t>(vertex)] = rest_place(vertex) + body_->rest->carried(vertex);
   };
-  if (state_.instant == 0) body_->rest->begin_step();
+  if (state_.instant == 0) body_->rest->start_step();
   const bool ends = state_.instant + 1 == instants_;
-  if (ends || state_.instant % kSubStepsPerLook == 0)
+  if (ends || state_.instant % kSubStepsPerSearch == 0)
     std::ranges::for_each(ends ? body_->rest->vertices() : body_->rest->watched(), carry);
   for (const NodalLoad& load : state_.loads) {
     if (body_->rest->has(load.vertex)) carry(load.vertex);
@@ -216,7 +216,7 @@ void CuttableMotion::carry_rest() noexcept {
 /// Loads on the rest are handed down to the border, which takes them as forces of all of the sub-step.
 void CuttableMotion::take_sub_step() noexcept {
   if (body_->rest) {
-    std::copy(state_.force.begin(), state_.force.end(), body_->motion.state.f.begin());
+    std::ranges::copy(state_.force, body_->motion.state.f.begin());
     for (const NodalLoad& load : state_.loads) {
       if (body_->rest->has(load.vertex)) body_->rest->hand_down(load, body_->motion.state.f);
     }
@@ -252,34 +252,34 @@ void CuttableMotion::end_sub_step() noexcept {
   for (const NodalLoad& load : state_.loads) {
     const int first = body_->first[static_cast<std::size_t>(load.vertex)];
     if (first < 0) continue;
-    body_->motion.kick(first / 3, sub_step_, kick_of(load));
+    body_->motion.add_impulse(first / 3, sub_step_, impulse_of(load));
   }
 }
 
-void CuttableMotion::go_free(std::span<const int> vertices) noexcept {
+void CuttableMotion::become_free(std::span<const int> vertices) noexcept {
   for (const int vertex : vertices)
     state_.positions[static_cast<std::size_t>(vertex)] = state_.free[static_cast<std::size_t>(vertex)];
 }
 
 /// What is not in motion moves where it is pressed, and where it was; so does what contact begins to look at.
-void CuttableMotion::note_pressed() noexcept {
+void CuttableMotion::note_loaded() noexcept {
   for (; body_->rest && state_.watched < body_->rest->watched().size(); ++state_.watched)
     state_.moved.push_back(body_->rest->watched()[state_.watched]);
-  for (const int vertex : state_.pressed) {
-    const auto pressed = std::span(state_.moved).subspan(state_.moved_freely);
+  for (const int vertex : state_.loaded_vertices) {
+    const auto loaded_vertices = std::span(state_.moved).subspan(state_.moved_freely);
     if (body_->first[static_cast<std::size_t>(vertex)] < 0 &&
-        std::ranges::find(pressed, vertex) == pressed.end())
+        std::ranges::find(loaded_vertices, vertex) == loaded_vertices.end())
       state_.moved.push_back(vertex);
   }
 }
 
 /// All else is where it is free.
-void CuttableMotion::press() noexcept {
-  note_pressed();
-  go_free(state_.pressed);
-  state_.pressed.clear();
-  for (const NodalLoad& load : state_.loads) state_.pressed.push_back(load.vertex);
-  note_pressed();
+void CuttableMotion::apply_loads() noexcept {
+  note_loaded();
+  become_free(state_.loaded_vertices);
+  state_.loaded_vertices.clear();
+  for (const NodalLoad& load : state_.loads) state_.loaded_vertices.push_back(load.vertex);
+  note_loaded();
   compliance_->move(state_.loads, state_.instant == 0, state_.free, state_.positions);
 }
 
@@ -291,9 +291,9 @@ std::span<const Vec3> CuttableMotion::apply(std::span<const NodalLoad> loads) no
   state_.loads.assign(loads.begin(), loads.end());
   for (const NodalLoad& load : state_.loads) {
     if (body_->rest) body_->rest->watch({&load.vertex, 1});
-    look_at(load.vertex);
+    observe(load.vertex);
   }
-  press();
+  apply_loads();
   return state_.positions;
 }
 

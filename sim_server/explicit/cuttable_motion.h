@@ -41,9 +41,9 @@ class CuttableMotion final : public DeformationModel,
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   std::span<const Vec3> nodes() const noexcept override;
-  Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
-  void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) override;
-  const SlowModes* modes() const noexcept override;
+  Removed remove(std::span<const int> tetrahedra, const CutMesh& remaining) override;
+  void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& remaining) override;
+  const PublishedModes* modes() const noexcept override;
   void read_modes(ModalMotion& state) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::shared_ptr<const PublishedSurface> publish(std::span<const Tool> tools, const CutMesh& remaining,
@@ -59,31 +59,31 @@ class CuttableMotion final : public DeformationModel,
   CuttableMotion(const ModelInputs& inputs, const RegionInMotion* region);
   void choose_sub_step(const ModelInputs& inputs, double modes);
   void take_body();
-  void show_corners(std::span<const int> tetrahedra, const CutMesh& left);
-  void go_on_with_body() noexcept;
+  void show_corners(std::span<const int> tetrahedra, const CutMesh& remaining);
+  void continue_with_body() noexcept;
   void end_contact() noexcept;
   void end_sub_step() noexcept;
   void take_sub_step() noexcept;
   void follow() noexcept;
   void note_moved() noexcept;
-  void look_at(int vertex) noexcept;
+  void observe(int vertex) noexcept;
   const std::vector<int>& looked_at() const noexcept {
     return state_.near.narrowed() ? state_.near.vertices() : state_.exposed;
   }
   void update_free(std::span<const int> vertices) noexcept;
   void carry_rest() noexcept;
   /// Returns the change of velocity (m/s) of a vertex in motion by a load over a sub-step.
-  Vec3 kick_of(const NodalLoad& load) const {
+  Vec3 impulse_of(const NodalLoad& load) const {
     const int place = body_->first[static_cast<std::size_t>(load.vertex)] / 3;
     return sub_step_ / body_->tensors.masses()[static_cast<std::size_t>(place)] * load.force;
   }
   const Vec3& rest_place(int vertex) const {
     return state_.rest_places[static_cast<std::size_t>(node_[static_cast<std::size_t>(vertex)])];
   }
-  void press() noexcept;
-  void note_pressed() noexcept;
-  void go_free(std::span<const int> vertices) noexcept;
-  Removed lost_with(int tetrahedron, const CutMesh& left) const;
+  void apply_loads() noexcept;
+  void note_loaded() noexcept;
+  void become_free(std::span<const int> vertices) noexcept;
+  Removed lost_with(int tetrahedron, const CutMesh& remaining) const;
 
   /// State beside the body and what is published.
   struct State {
@@ -95,7 +95,7 @@ class CuttableMotion final : public DeformationModel,
     std::vector<char> shown;            // of surface vertices: triangles have or had them as corners
     std::vector<int> moving, exposed;   // surface vertices in motion; those of them that are shown
     NearTools near;                     // of these, where contact is searched within a step
-    std::vector<int> pressed;           // vertices that are loaded, and not at their free positions
+    std::vector<int> loaded_vertices;   // vertices that are loaded, and not at their free positions
     std::vector<int> moved;             // in this sub-step; those that are pressed last
     std::size_t moved_freely = 0;       // so many of them are not pressed
     std::size_t watched = 0;            // so many watched vertices of the condensed part are among them

@@ -5,7 +5,7 @@
 
 namespace palpate::sim {
 
-const SlowModes* CuttableMotion::modes() const noexcept {
+const PublishedModes* CuttableMotion::modes() const noexcept {
   return publisher_->surface() != nullptr ? &publisher_->surface()->motion.modes() : nullptr;
 }
 
@@ -34,9 +34,9 @@ std::shared_ptr<const PublishedSurface> CuttableMotion::publish(std::span<const 
   PublishedSurface* const now = publisher_->surface();
   if (body_->rest && now != nullptr && now != before.get()) {
     if (before != nullptr)
-      now->motion.stand_as(before->motion);  // a cut would have ended that
+      now->motion.place_as(before->motion);  // a cut would have ended that
     else
-      now->motion.stand_under(state_.loads);
+      now->motion.place_under(state_.loads);
   }
   return publisher_->shared();
 }
@@ -51,7 +51,8 @@ std::vector<MemoryPart> CuttableMotion::memory() const {
       {"positions",
        (state_.free.size() + state_.positions.size() + 2 * nodes_.size() + unloaded_.capacity()) *
                sizeof(Vec3) +
-           (state_.moving.capacity() + state_.exposed.capacity() + state_.pressed.capacity()) * sizeof(int) +
+           (state_.moving.capacity() + state_.exposed.capacity() + state_.loaded_vertices.capacity()) *
+               sizeof(int) +
            state_.shown.size() + state_.loads.capacity() * sizeof(NodalLoad) +
            (body_->first.size() + node_.size()) * sizeof(int)}};
   if (publisher_)

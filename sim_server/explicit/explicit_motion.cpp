@@ -70,15 +70,17 @@ ExplicitMotion::ExplicitMotion(const ElasticTensors& tensors, const RayleighDamp
   if (columns == 1 && tensors.parts() > 1) kicks_.reserve(tensors.masses().size());
   for (auto* const all : {&state.u, &state.v, &state.f})
     all->assign(3 * tensors.masses().size() * columns, 0);
-  for (auto* const all : {&bent_, &resistance_}) all->assign(apart() * tensors.masses().size(), 0);
+  for (auto* const all : {&bent_, &resistance_})
+    all->assign(numbers_per_vertex() * tensors.masses().size(), 0);
 }
 
 void ExplicitMotion::append_copy_of(int place) {
-  const auto append = [place](std::vector<double>& all, int apart) {
-    for (int i = 0; i < apart; ++i) all.push_back(double{all[static_cast<std::size_t>(apart * place + i)]});
+  const auto append = [place](std::vector<double>& all, int numbers_per_vertex) {
+    for (int i = 0; i < numbers_per_vertex; ++i)
+      all.push_back(double{all[static_cast<std::size_t>(numbers_per_vertex * place + i)]});
   };
   for (auto* const all : {&state.u, &state.v, &state.f}) append(*all, 3);
-  for (auto* const all : {&bent_, &resistance_}) append(*all, ElasticTensors::kApart);
+  for (auto* const all : {&bent_, &resistance_}) append(*all, ElasticTensors::kNumbersPerVertex);
 }
 
 ExplicitMotion::Snapshot ExplicitMotion::save() {
@@ -98,23 +100,23 @@ void ExplicitMotion::restore(const Snapshot& saved) {
 
 void ExplicitMotion::add_to_last(int place, double h, const Vec3& force) noexcept {
   Eigen::Map<Vec3>(state.f.data() + std::ptrdiff_t{3} * place) += force;
-  kick(place, h, h / tensors_.masses()[static_cast<std::size_t>(place)] * force);
+  add_impulse(place, h, h / tensors_.masses()[static_cast<std::size_t>(place)] * force);
 }
 
-void ExplicitMotion::kick(int place, double h, const Vec3& dv) noexcept {
+void ExplicitMotion::add_impulse(int place, double h, const Vec3& dv) noexcept {
   const std::ptrdiff_t first = std::ptrdiff_t{3} * place,
-                       apart = std::ptrdiff_t{ElasticTensors::kApart} * place;
+                       numbers_per_vertex = std::ptrdiff_t{ElasticTensors::kNumbersPerVertex} * place;
   Eigen::Map<Vec3>(state.v.data() + first) += dv;
   Eigen::Map<Vec3>(state.u.data() + first) += h * dv;
-  const Vec3 way = (h + damping_.stiffness) * dv;
+  const Vec3 path = (h + damping_.stiffness) * dv;
   if (begun_ && kicks_.size() == kicks_.capacity()) drop_next();
   if (begun_)
-    kicks_.push_back({place, way});
+    kicks_.push_back({place, path});
   else
-    Eigen::Map<Vec3>(bent_.data() + apart) += way;
+    Eigen::Map<Vec3>(bent_.data() + numbers_per_vertex) += path;
 }
 
-void ExplicitMotion::begin_next() noexcept {
+void ExplicitMotion::start_next() noexcept {
   if (tensors_.parts() == 1 || columns_ != 1 || begun_) return;
   begun_ = true;
   team_.begin(static_cast<std::uint32_t>(tensors_.parts()), multiply_part_);
@@ -144,9 +146,9 @@ void ExplicitMotion::multiply() noexcept {
   if (!begun_) return team_.run(static_cast<std::uint32_t>(tensors_.parts()), multiply_part_);
   team_.finish();
   begun_ = false;
-  for (const auto& [place, way] : kicks_) {
-    tensors_.add_product(place, way, resistance_.data());
-    Eigen::Map<Vec3>(bent_.data() + std::ptrdiff_t{ElasticTensors::kApart} * place) += way;
+  for (const auto& [place, path] : kicks_) {
+    tensors_.add_product(place, path, resistance_.data());
+    Eigen::Map<Vec3>(bent_.data() + std::ptrdiff_t{ElasticTensors::kNumbersPerVertex} * place) += path;
   }
   kicks_.clear();
 }
@@ -170,21 +172,22 @@ void ExplicitMotion::advance(std::size_t begin, std::size_t end, double h,
   const double keep = 1 - h * damping_.mass, stiffness = damping_.stiffness;
   const double* __restrict masses = tensors_.masses().data(), * __restrict resistance = resistance_.data();
   double* __restrict u = state.u.data(), * __restrict v = state.v.data(), * __restrict bent = bent_.data();
-  constexpr std::size_t kNumbers = 3 * kColumns, kFar = kColumns == 1 ? ElasticTensors::kApart : kNumbers;
+  constexpr std::size_t kNumbers = 3 * kColumns,
+                        kFar = kColumns == 1 ? ElasticTensors::kNumbersPerVertex : kNumbers;
   for (std::size_t vertex = begin; vertex < end; ++vertex) {
-    const double kick = h / masses[vertex];
+    const double add_impulse = h / masses[vertex];
     for (std::size_t i = 0; i < kNumbers; ++i) {
-      const std::size_t k = kNumbers * vertex + i, apart = kFar * vertex + i;
-      v[k] = keep * v[k] + kick * (force[k] - resistance[apart]);
+      const std::size_t k = kNumbers * vertex + i, numbers_per_vertex = kFar * vertex + i;
+      v[k] = keep * v[k] + add_impulse * (force[k] - resistance[numbers_per_vertex]);
       u[k] += h * v[k];
-      bent[apart] = u[k] + stiffness * v[k];
+      bent[numbers_per_vertex] = u[k] + stiffness * v[k];
     }
   }
 }
 
 /// Of vertices `begin` to `end`: what the next product is of.
 void ExplicitMotion::bend(std::size_t begin, std::size_t end) noexcept {
-  const std::size_t numbers = 3 * static_cast<std::size_t>(columns_), far = apart();
+  const std::size_t numbers = 3 * static_cast<std::size_t>(columns_), far = numbers_per_vertex();
   for (std::size_t vertex = begin; vertex < end; ++vertex) {
     for (std::size_t i = 0; i < numbers; ++i) {
       const std::size_t k = numbers * vertex + i;
@@ -207,13 +210,14 @@ void ExplicitMotion::run_free(State& before, double h) noexcept {
   for_parts([&](std::size_t p, std::size_t begin, std::size_t end) {
     tensors_.gather_part(p, resistance_.data(), ahead_);
     for (std::size_t vertex = begin; vertex < end; ++vertex) {
-      const double kick = h / tensors_.masses()[vertex];
+      const double add_impulse = h / tensors_.masses()[vertex];
       for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t k = 3 * vertex + i, apart = ElasticTensors::kApart * vertex + i;
-        state.v[k] = keep * before.v[k] - kick * resistance_[apart];
+        const std::size_t k = 3 * vertex + i,
+                          numbers_per_vertex = ElasticTensors::kNumbersPerVertex * vertex + i;
+        state.v[k] = keep * before.v[k] - add_impulse * resistance_[numbers_per_vertex];
         state.u[k] = before.u[k] + h * state.v[k];
         state.f[k] = 0;
-        bent_[apart] = state.u[k] + damping_.stiffness * state.v[k];
+        bent_[numbers_per_vertex] = state.u[k] + damping_.stiffness * state.v[k];
       }
     }
   });

@@ -45,15 +45,15 @@ class ExplicitMotion {
   void run(int steps, double h, const std::vector<double>& force) noexcept;
   /// Advances by one sub-step under the forces of `state`, as if they had always acted.
   void run(double h) noexcept;
-  /// Advances by one sub-step where only `kick` has changed `state` since the last one.
+  /// Advances by one sub-step where only `add_impulse` has changed `state` since the last one.
   void run_on(double h) noexcept { sub_step(h, state.f); }
   /// Changes the velocity of a vertex by `dv` (m/s), as if that had been so over the last sub-step, of `h`
   /// (s). Of one motion.
-  void kick(int place, double h, const Vec3& dv) noexcept;
+  void add_impulse(int place, double h, const Vec3& dv) noexcept;
   /// Other cores begin the product K (u + stiffness v) of the next sub-step: until that, nothing but kicks
   /// changes the motion, and what these add to the product is added after it. Of large bodies alone, with the
   /// same bits whatever the number of threads.
-  void begin_next() noexcept;
+  void start_next() noexcept;
   /// Drops the product that has begun: the motion, or its tensors, may then be changed in any way.
   void drop_next() noexcept;
   /// Goes on by one sub-step without forces, and leaves where it was in `before`, a state of this size.
@@ -81,12 +81,12 @@ class ExplicitMotion {
   void append_copy_of(int place);
 
   std::size_t bytes() const {
-    return (3 * state.u.size() + 2 * bent_.size()) * sizeof(double) + kicks_.capacity() * sizeof(Kick);
+    return (3 * state.u.size() + 2 * bent_.size()) * sizeof(double) + kicks_.capacity() * sizeof(Impulse);
   }
 
  private:
   /// A place and how far a kick moves the vector whose product has begun there, m.
-  using Kick = std::pair<int, Vec3>;
+  using Impulse = std::pair<int, Vec3>;
   /// The product, of one part.
   struct MultiplyPart {
     ExplicitMotion& of;
@@ -104,17 +104,17 @@ class ExplicitMotion {
   RayleighDamping damping_;
   int columns_;
   /// Returns the stride between vertices in the two vectors below.
-  std::size_t apart() const {
-    return columns_ == 1 ? ElasticTensors::kApart : 3 * static_cast<std::size_t>(columns_);
+  std::size_t numbers_per_vertex() const {
+    return columns_ == 1 ? ElasticTensors::kNumbersPerVertex : 3 * static_cast<std::size_t>(columns_);
   }
   void bend(std::size_t begin, std::size_t end) noexcept;
 
   std::vector<double> bent_, resistance_;  // u + stiffness v, m; K times that, N
   ElasticTensors::Ahead ahead_;            // of that product, of one motion
   MultiplyPart multiply_part_{*this};
-  bool begun_ = false;       // the product of the next sub-step, of where the last one led
-  std::vector<Kick> kicks_;  // since then
-  PromptTeam team_;          // ends first: helpers use the others
+  bool begun_ = false;          // the product of the next sub-step, of where the last one led
+  std::vector<Impulse> kicks_;  // since then
+  PromptTeam team_;             // ends first: helpers use the others
 };
 
 }  // namespace palpate::sim

@@ -60,7 +60,7 @@ void LumpedCompliance::move(std::span<const NodalLoad> loads, bool all, std::spa
     if (rest_ == nullptr || !rest_->has(load.vertex))
       positions[static_cast<std::size_t>(load.vertex)] += own(load.vertex) * load.force;
   }
-  if (rest_ != nullptr) rest_->press(loads, all, free, positions);
+  if (rest_ != nullptr) rest_->apply_loads(loads, all, free, positions);
 }
 
 }  // namespace palpate::sim

@@ -24,7 +24,7 @@ class LumpedCompliance final : public ComplianceSource {
   /// Fills the compliance as `DeformationModel::compliance`.
   void fill(std::span<const int> vertices, ContactPatch& patch) const noexcept;
   /// Moves `positions` (surface vertices, m), those of loads at `free`, by what `loads` do; `all` as in
-  /// `CondensedPart::press`.
+  /// `CondensedPart::apply_loads`.
   void move(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
             std::span<Vec3> positions) const noexcept;
 

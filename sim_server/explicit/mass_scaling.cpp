@@ -38,12 +38,13 @@ double squared_frequency_in(const TetMesh& mesh, std::size_t tetrahedron, const 
 
 AddedMass AddedMass::read(const Config& config) {
   AddedMass read;
-  if (config.says("added_mass")) read.share = config.number("added_mass", {0, 0.2, "of the mass in motion"});
+  if (config.says("added_mass"))
+    read.fraction = config.number("added_mass", {0, 0.2, "of the mass in motion"});
   return read;
 }
 
 std::string AddedMass::to_text() const {
-  return share ? fmt::format("added_mass = {:g}\n", *share) : "";
+  return fraction ? fmt::format("added_mass = {:g}\n", *fraction) : "";
 }
 
 double mass_factor_of(const TetMesh& mesh, std::size_t tetrahedron, const Material& material,
@@ -51,7 +52,7 @@ double mass_factor_of(const TetMesh& mesh, std::size_t tetrahedron, const Materi
   return std::max(1.0, squared_frequency_in(mesh, tetrahedron, material) / (frequency * frequency));
 }
 
-MassScaling scale_masses(const TetMesh& mesh, const Material& material, double share,
+MassScaling scale_masses(const TetMesh& mesh, const Material& material, double fraction,
                          std::span<const char> moves) {
   const auto is_in_motion = [&](int v) { return moves.empty() || moves[static_cast<std::size_t>(v)] != 0; };
   std::vector<double> squares, masses;  // of each element: (rad/s)^2, kg
@@ -68,7 +69,7 @@ MassScaling scale_masses(const TetMesh& mesh, const Material& material, double s
   std::vector<std::size_t> order(squares.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return squares[a] > squares[b]; });
-  const double most = share * std::accumulate(masses.begin(), masses.end(), 0.0);
+  const double most = fraction * std::accumulate(masses.begin(), masses.end(), 0.0);
   MassScaling scaling{.factors = std::vector<double>(squares.size(), 1)};
   // With all above the square w of some element lowered to it, sum m_e (w_e / w - 1) is added.
   double weighted = 0, mass = 0, bound = squares[order.front()];

@@ -15,7 +15,7 @@ namespace palpate::sim {
 /// Mass added to the stiffest elements of a body that can be cut. The more, the fewer sub-steps, and the
 /// later the tissue answers there.
 struct AddedMass {
-  std::optional<double> share{};  ///< `added_mass`, of the mass in motion, [0, 0.2]; absent: 0.01
+  std::optional<double> fraction{};  ///< `added_mass`, of the mass in motion, [0, 0.2]; absent: 0.01
 
   static constexpr std::array<std::string_view, 1> kKeys{"added_mass"};
   static AddedMass read(const Config& config);
@@ -34,10 +34,10 @@ struct MassScaling {
   double added = 0;             ///< kg
 };
 
-/// Returns the lowest frequency that at most `share` of the body's mass, added, allows. `moves`: of each
+/// Returns the lowest frequency that at most `fraction` of the body's mass, added, allows. `moves`: of each
 /// vertex, not 0 where it is in motion; elements without any such do not count. Empty: all are. O(m log m),
 /// some 10 us an element.
-MassScaling scale_masses(const TetMesh& mesh, const Material& material, double share,
+MassScaling scale_masses(const TetMesh& mesh, const Material& material, double fraction,
                          std::span<const char> moves = {});
 
 /// The factor (>= 1) of its mass with which a tetrahedron alone has at most this frequency, rad/s.

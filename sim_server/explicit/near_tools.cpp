@@ -5,9 +5,9 @@
 
 namespace palpate::sim {
 
-void NearTools::look_in(std::span<const Neighbourhood> places, std::span<const Triangle> triangles,
-                        std::span<const int> in_motion, std::span<const Vec3> positions,
-                        double way) noexcept {
+void NearTools::search_in(std::span<const Neighbourhood> places, std::span<const Triangle> triangles,
+                          std::span<const int> in_motion, std::span<const Vec3> positions,
+                          double path) noexcept {
   for (const int vertex : vertices_) has_[static_cast<std::size_t>(vertex)] = 0;
   vertices_.clear();
   narrowed_ = !places.empty();
@@ -20,7 +20,7 @@ void NearTools::look_in(std::span<const Neighbourhood> places, std::span<const T
     const double longest =
         std::sqrt(std::max((corner(1) - corner(0)).squaredNorm(), (corner(2) - corner(0)).squaredNorm()));
     const auto is_in = [&](const Neighbourhood& place) {
-      return (corner(0) - place.middle).norm() <= place.radius + longest + way;
+      return (corner(0) - place.middle).norm() <= place.radius + longest + path;
     };
     if (std::ranges::none_of(places, is_in)) continue;
     for (const int vertex : triangle) {

@@ -17,12 +17,12 @@ class NearTools {
     vertices_.reserve(surface_vertices);
   }
 
-  void look_everywhere() noexcept { narrowed_ = false; }
+  void search_everywhere() noexcept { narrowed_ = false; }
   /// Restricts contact to these places (none: everywhere). Surface vertices are at `positions` (m) and go by
-  /// at most `way` (m) until the step ends; those of which `in_motion` is negative do not count.
+  /// at most `path` (m) until the step ends; those of which `in_motion` is negative do not count.
   /// O(triangles).
-  void look_in(std::span<const Neighbourhood> places, std::span<const Triangle> triangles,
-               std::span<const int> in_motion, std::span<const Vec3> positions, double way) noexcept;
+  void search_in(std::span<const Neighbourhood> places, std::span<const Triangle> triangles,
+                 std::span<const int> in_motion, std::span<const Vec3> positions, double path) noexcept;
   /// Contact looks at this vertex, too. Whether it did not before.
   bool add(int vertex) noexcept;
 

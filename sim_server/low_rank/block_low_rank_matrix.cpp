@@ -24,9 +24,10 @@ Eigen::Index packed_columns(std::size_t pairs, std::size_t floats) {
 }
 
 /// A rank as a file has it; nothing where it is none that a pair of this size can have.
-std::optional<Eigen::Index> rank_of(double told, Eigen::Index most) {
-  if (!(told >= 0) || told > static_cast<double>(most) || told != std::floor(told)) return {};
-  return static_cast<Eigen::Index>(told);
+std::optional<Eigen::Index> rank_of(double published, Eigen::Index most) {
+  if (!(published >= 0) || published > static_cast<double>(most) || published != std::floor(published))
+    return {};
+  return static_cast<Eigen::Index>(published);
 }
 
 }  // namespace
@@ -181,11 +182,11 @@ bool BlockLowRankMatrix::unpack(const Eigen::Ref<const Eigen::MatrixXd>& packed)
   std::size_t floats = 0;
   for (int second = 0; second < tiles(); ++second) {
     for (int first = 0; first <= second; ++first) {
-      const double told = packed.data()[index(first, second)];
+      const double published = packed.data()[index(first, second)];
       Pair& pair = pairs[index(first, second)];
-      pair.product = told != kDense;
+      pair.product = published != kDense;
       if (pair.product && first == second) return false;
-      const auto rank = pair.product ? rank_of(told, std::min(size(first), size(second))) : size(first);
+      const auto rank = pair.product ? rank_of(published, std::min(size(first), size(second))) : size(first);
       if (!rank) return false;
       pair.left.resize(*rank, pair.product ? size(first) : size(second));
       if (pair.product) pair.right.resize(*rank, size(second));

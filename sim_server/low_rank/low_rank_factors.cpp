@@ -9,13 +9,13 @@ namespace {
 constexpr double kOfColumns =
     0.5;  // of the tolerance, that the columns may leave; the singular values the rest
 
-/// As many singular values as leave out no more than `left_out` in Frobenius' norm.
-Eigen::Index needed(const Eigen::VectorXd& singular, double left_out) {
+/// As many singular values as leave out no more than `omitted` in Frobenius' norm.
+Eigen::Index needed(const Eigen::VectorXd& singular, double omitted) {
   Eigen::Index count = singular.size();
   double squares = 0;
   while (count > 0) {
     squares += singular[count - 1] * singular[count - 1];
-    if (squares > left_out * left_out) break;
+    if (squares > omitted * omitted) break;
     --count;
   }
   return count;
@@ -25,7 +25,7 @@ Eigen::Index needed(const Eigen::VectorXd& singular, double left_out) {
 
 std::optional<LowRankFactors> low_rank_factors(Eigen::MatrixXd matrix, double tolerance) {
   const Eigen::Index n = matrix.rows(), m = matrix.cols(), most = n * m / (n + m);
-  Eigen::MatrixXd basis(n, most), shares(most, m);  // matrix = basis shares + what is left of it
+  Eigen::MatrixXd basis(n, most), fractions(most, m);  // matrix = basis shares + what is left of it
   Eigen::VectorXd squares = matrix.colwise().squaredNorm();
   Eigen::Index rank = 0;
   const double may_leave = kOfColumns * tolerance;
@@ -34,12 +34,13 @@ std::optional<LowRankFactors> low_rank_factors(Eigen::MatrixXd matrix, double to
     Eigen::Index largest = 0;
     squares.maxCoeff(&largest);
     basis.col(rank) = matrix.col(largest).normalized();
-    shares.row(rank).noalias() = basis.col(rank).transpose() * matrix;
-    matrix.noalias() -= basis.col(rank) * shares.row(rank);
+    fractions.row(rank).noalias() = basis.col(rank).transpose() * matrix;
+    matrix.noalias() -= basis.col(rank) * fractions.row(rank);
     squares = matrix.colwise().squaredNorm();
   }
   if (rank == 0) return LowRankFactors{Eigen::MatrixXf(0, n), Eigen::MatrixXf(0, m)};
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(shares.topRows(rank), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(fractions.topRows(rank),
+                                           Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::Index count = needed(svd.singularValues(), std::sqrt(1 - kOfColumns * kOfColumns) * tolerance);
   const Eigen::VectorXd roots = svd.singularValues().head(count).cwiseSqrt();
   const Eigen::MatrixXd left = basis.leftCols(rank) * svd.matrixU().leftCols(count) * roots.asDiagonal(),

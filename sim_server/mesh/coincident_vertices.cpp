@@ -25,7 +25,7 @@ void rank(const std::vector<Vec3>& points, int axis, double tolerance,
           std::vector<std::array<int, 3>>& ranks) {
   std::vector<int> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return points[a][axis] < points[b][axis]; });
+  std::ranges::sort(order, [&](int a, int b) { return points[a][axis] < points[b][axis]; });
   int now = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i > 0 && points[order[i]][axis] - points[order[i - 1]][axis] > tolerance) ++now;
@@ -39,8 +39,7 @@ std::vector<int> first_in_place(const std::vector<Vec3>& points, double toleranc
   for (int axis = 0; axis < 3; ++axis) rank(points, axis, tolerance, ranks);
   std::vector<int> order(points.size()), first(points.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return std::tie(ranks[a], a) < std::tie(ranks[b], b); });
+  std::ranges::sort(order, [&](int a, int b) { return std::tie(ranks[a], a) < std::tie(ranks[b], b); });
   for (std::size_t i = 0; i < order.size(); ++i) {
     const bool same = i > 0 && ranks[order[i]] == ranks[order[i - 1]];
     first[order[i]] = same ? first[order[i - 1]] : order[i];
@@ -75,7 +74,7 @@ Obstacle within_a_body(const TetMesh& mesh, const std::vector<int>& first, doubl
   const std::vector<int> body = body_of_vertices(mesh);
   std::vector<std::array<int, 3>> at;  // place, body, vertex
   for (int v = 0; v < static_cast<int>(first.size()); ++v) at.push_back({first[v], body[v], v});
-  std::sort(at.begin(), at.end());
+  std::ranges::sort(at);
   const auto twice = std::adjacent_find(
       at.begin(), at.end(), [](const auto& a, const auto& b) { return a[0] == b[0] && a[1] == b[1]; });
   if (twice == at.end()) return {};
@@ -89,9 +88,9 @@ Obstacle within_a_body(const TetMesh& mesh, const std::vector<int>& first, doubl
 
 bool has_repeated(const TetMesh& mesh) {
   std::vector<Tetrahedron> sorted = mesh.tetrahedra;
-  for (Tetrahedron& t : sorted) std::sort(t.begin(), t.end());
-  std::sort(sorted.begin(), sorted.end());
-  return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+  for (Tetrahedron& t : sorted) std::ranges::sort(t);
+  std::ranges::sort(sorted);
+  return std::ranges::adjacent_find(sorted) != sorted.end();
 }
 
 /// What `merged` has that `mesh` had not.
@@ -127,13 +126,13 @@ void renumber(TetMesh& mesh, const std::vector<int>& number) {
 
 void keep_vertices(TetMesh& mesh, const std::vector<char>& keep) {
   std::vector<int> number(mesh.vertices.size(), -1);
-  std::size_t kept = 0;
+  std::size_t stored = 0;
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (keep[v] == 0) continue;
-    number[v] = static_cast<int>(kept);
-    mesh.vertices[kept++] = mesh.vertices[v];
+    number[v] = static_cast<int>(stored);
+    mesh.vertices[stored++] = mesh.vertices[v];
   }
-  mesh.vertices.resize(kept);
+  mesh.vertices.resize(stored);
   renumber(mesh, number);
 }
 

@@ -25,7 +25,7 @@ std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
       sides.push_back(a < b ? Side{a, b, at_a, at_b} : Side{b, a, at_b, at_a});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::ranges::sort(sides, [](const Side& a, const Side& b) {
     return std::tie(a.low, a.high, a.at_low) < std::tie(b.low, b.high, b.at_low);
   });
   return sides;
@@ -45,8 +45,8 @@ std::vector<int> body_sizes(const TetMesh& mesh) {
   const std::vector<int> body = body_of_vertices(mesh);
   std::vector<int> size(mesh.vertices.size(), 0);
   for (const Tetrahedron& t : mesh.tetrahedra) ++size[body[t[0]]];
-  std::sort(size.begin(), size.end(), std::greater<>());
-  size.erase(std::find(size.begin(), size.end(), 0), size.end());
+  std::ranges::sort(size, std::greater<>());
+  size.erase(std::ranges::find(size, 0), size.end());
   return size;
 }
 
@@ -68,7 +68,7 @@ NonManifold non_manifold(const std::vector<Triangle>& triangles) {
   std::vector<std::pair<int, int>> fan_at;  // vertex, fan
   for (int corner = 0; corner < static_cast<int>(3 * triangles.size()); ++corner)
     fan_at.emplace_back(triangles[corner / 3][corner % 3], fans.of(corner));
-  std::sort(fan_at.begin(), fan_at.end());
+  std::ranges::sort(fan_at);
   fan_at.erase(std::unique(fan_at.begin(), fan_at.end()), fan_at.end());
   int counted = -1;
   for (std::size_t i = 1; i < fan_at.size(); ++i) {

@@ -59,8 +59,8 @@ class Cursor {
     Number value{};
     const char* const last = bytes_.data() + bytes_.size();
     const auto [end, error] = std::from_chars(bytes_.data() + at_, last, value);
-    const bool whole = end == last || is_space(*end);
-    if (error != std::errc() || !whole) wrong("expected {}, found {}", what, found());
+    const bool entire = end == last || is_space(*end);
+    if (error != std::errc() || !entire) wrong("expected {}, found {}", what, found());
     at_ = static_cast<std::size_t>(end - bytes_.data());
     return value;
   }
@@ -68,8 +68,8 @@ class Cursor {
   template <class Number>
   Number bytes(const char* what) {
     token_ = at_;
-    if (left() < sizeof(Number)) {
-      wrong("expected {} ({} bytes), but {} bytes are left in the file", what, sizeof(Number), left());
+    if (remaining() < sizeof(Number)) {
+      wrong("expected {} ({} bytes), but {} bytes are left in the file", what, sizeof(Number), remaining());
     }
     Number value;
     std::memcpy(&value, bytes_.data() + at_, sizeof value);
@@ -82,7 +82,7 @@ class Cursor {
   std::size_t size(std::int64_t count, std::int64_t numbers, const char* what) const {
     const std::int64_t shortest = binary_ ? 4 : 2;  // bytes of a number; as text, a digit and a space
     // Indices into the mesh are int.
-    const auto most = std::min<std::int64_t>(static_cast<std::int64_t>(left()) / shortest / numbers,
+    const auto most = std::min<std::int64_t>(static_cast<std::int64_t>(remaining()) / shortest / numbers,
                                              std::numeric_limits<int>::max());
     if (count < 0 || count > most) {
       wrong("{} {} announced, but the rest of the file has room for at most {}", count, what, most);
@@ -93,7 +93,7 @@ class Cursor {
   /// Nothing but white space is left.
   bool at_end() {
     start_token();
-    return left() == 0;
+    return remaining() == 0;
   }
 
   /// The rest of the line, without its end.
@@ -134,7 +134,7 @@ class Cursor {
     const std::string end = "$End" + name;
     do {
       at_ = std::min(bytes_.find(end, at_), bytes_.size());
-      if (left() == 0) {
+      if (remaining() == 0) {
         token_ = start;
         wrong("section ${} has no {}: the file is cut short", name, end);
       }
@@ -150,7 +150,7 @@ class Cursor {
  private:
   static constexpr std::size_t kLongestName = 64;  // of a section
 
-  std::size_t left() const { return bytes_.size() - at_; }
+  std::size_t remaining() const { return bytes_.size() - at_; }
   void start_token() {
     while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;
     token_ = at_;

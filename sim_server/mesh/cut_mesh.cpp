@@ -13,7 +13,7 @@ Triangle corners_of_face(const TetMesh& mesh, int face) {
 }
 
 Triangle ascending(Triangle t) {
-  std::sort(t.begin(), t.end());
+  std::ranges::sort(t);
   return t;
 }
 
@@ -23,7 +23,7 @@ std::vector<int> all_vertices(const Surface& surface, const TetMesh& mesh, std::
   for (std::size_t t = 0; t < removable.size(); ++t) {
     if (removable[t] != 0) all.insert(all.end(), mesh.tetrahedra[t].begin(), mesh.tetrahedra[t].end());
   }
-  std::sort(all.begin(), all.end());
+  std::ranges::sort(all);
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
@@ -39,7 +39,7 @@ int CutMesh::facing(int other, int tetrahedron) const {
 CutMesh::CutMesh(const TetMesh& mesh, std::vector<char> removable, Surface& surface)
     : mesh_(&mesh),
       neighbours_(face_neighbours(mesh)),
-      left_(mesh.tetrahedra.size(), 1),
+      remaining_(mesh.tetrahedra.size(), 1),
       removable_(std::move(removable)),
       inner_(4 * mesh.tetrahedra.size()),
       count_(mesh.tetrahedra.size()),
@@ -89,7 +89,7 @@ std::span<const int> CutMesh::around(int vertex) const {
 std::array<int, 4> CutMesh::neighbours(int tetrahedron) const {
   std::array<int, 4> across = neighbours_[static_cast<std::size_t>(tetrahedron)];
   for (int& other : across) {
-    if (other >= 0 && !is_left(other)) other = -1;
+    if (other >= 0 && !remains(other)) other = -1;
   }
   return across;
 }
@@ -134,21 +134,21 @@ void CutMesh::drop_triangle(int face, Surface& surface) {
 }
 
 void CutMesh::remove(std::span<const int> tetrahedra, Surface& surface) {
-  for (const int t : tetrahedra) left_[static_cast<std::size_t>(t)] = 0;
+  for (const int t : tetrahedra) remaining_[static_cast<std::size_t>(t)] = 0;
   count_ -= tetrahedra.size();
   for (const int t : tetrahedra) {
     const std::array<int, 4>& across = neighbours_[static_cast<std::size_t>(t)];
     for (int k = 0; k < 4; ++k) {
       const int face = 4 * t + k, other = across[static_cast<std::size_t>(k)];
       if (slot_[static_cast<std::size_t>(face)] >= 0) drop_triangle(face, surface);
-      if (other < 0 || !is_left(other)) continue;
+      if (other < 0 || !remains(other)) continue;
       add_triangle(facing(other, t), surface);
     }
   }
 }
 
 std::size_t CutMesh::bytes() const {
-  return neighbours_.size() * sizeof(neighbours_[0]) + left_.size() + removable_.size() + inner_.size() +
+  return neighbours_.size() * sizeof(neighbours_[0]) + remaining_.size() + removable_.size() + inner_.size() +
          (around_.size() + around_first_.size() + around_end_.size() + number_.size() + faces_.size() +
           slot_.size() + uses_.size()) *
              sizeof(int);

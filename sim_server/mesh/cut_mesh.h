@@ -49,12 +49,12 @@ class CutMesh {
   CutMesh of_copy(const TetMesh& mesh) const {
     CutMesh same = *this;
     same.mesh_ = &mesh;
-    same.parted_ = nullptr;
+    same.separated_ = nullptr;
     return same;
   }
 
   const TetMesh& mesh() const { return *mesh_; }
-  bool is_left(int tetrahedron) const { return left_[static_cast<std::size_t>(tetrahedron)] != 0; }
+  bool remains(int tetrahedron) const { return remaining_[static_cast<std::size_t>(tetrahedron)] != 0; }
   bool is_removable(int tetrahedron) const { return removable_[static_cast<std::size_t>(tetrahedron)] != 0; }
   std::size_t count() const { return count_; }  ///< of what is left
   /// Returns all tetrahedra around a mesh vertex, removed ones too, ascending.
@@ -111,11 +111,11 @@ class CutMesh {
   double cut_area_around(int vertex) const;
 
   const TetMesh* mesh_;
-  TetMesh* parted_ = nullptr;  // the same, where its faces can be parted
-  std::vector<char> held_;     // of vertices, then
+  TetMesh* separated_ = nullptr;  // the same, where its faces can be parted
+  std::vector<char> held_;        // of vertices, then
   int next_spare_ = 0, spares_end_ = 0;
   std::vector<std::array<int, 4>> neighbours_;  // of each tetrahedron, at first, but for faces parted since
-  std::vector<char> left_;                      // of tetrahedra
+  std::vector<char> remaining_;                 // of tetrahedra
   std::vector<char> removable_;
   std::vector<char> inner_;  // of faces, 4 t + k: inside at first
   std::size_t count_;

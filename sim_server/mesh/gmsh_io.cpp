@@ -185,9 +185,9 @@ class MeshReader {
     for (std::size_t i = 0; i < node_numbers_.size(); ++i) {
       index_of_.emplace_back(node_numbers_[i], static_cast<int>(i));
     }
-    std::sort(index_of_.begin(), index_of_.end());
-    const auto twice = std::adjacent_find(index_of_.begin(), index_of_.end(),
-                                          [](const auto& a, const auto& b) { return a.first == b.first; });
+    std::ranges::sort(index_of_);
+    const auto twice = std::ranges::adjacent_find(
+        index_of_, [](const auto& a, const auto& b) { return a.first == b.first; });
     if (twice != index_of_.end()) cursor_.wrong("node {} is given twice", twice->first);
   }
 
@@ -268,7 +268,7 @@ class MeshReader {
 
   int node_index() {
     const std::int64_t number = cursor_.number("a node of an element");
-    const auto at = std::lower_bound(index_of_.begin(), index_of_.end(), std::pair(number, 0));
+    const auto at = std::ranges::lower_bound(index_of_, std::pair(number, 0));
     if (at == index_of_.end() || at->first != number) {
       cursor_.wrong("an element names node {}, which the file does not have", number);
     }

@@ -149,16 +149,16 @@ HeldParts held_parts(const TetMesh& mesh, std::span<const int> held) {
     std::ranges::sort(own);
     own.erase(std::unique(own.begin(), own.end()), own.end());
   }
-  std::vector<char> stands(mesh.vertices.size(), 0);
+  std::vector<char> is_placed(mesh.vertices.size(), 0);
   found.is_held.assign(vertices.size(), 0);
-  for (const int v : held) stands[v] = 1;
+  for (const int v : held) is_placed[v] = 1;
   for (bool changed = true; changed;) {
     changed = false;
     for (std::size_t p = 0; p < vertices.size(); ++p) {
       if (found.is_held[p] != 0) continue;
       std::vector<Vec3> places;
       for (const int v : vertices[p]) {
-        if (stands[v] != 0) places.push_back(mesh.vertices[v]);
+        if (is_placed[v] != 0) places.push_back(mesh.vertices[v]);
       }
       bool holds = false;
       found.each[p].hold = hold_of(places, holds);
@@ -166,7 +166,7 @@ HeldParts held_parts(const TetMesh& mesh, std::span<const int> held) {
       if (!holds) continue;
       found.is_held[p] = 1;
       changed = true;
-      for (const int v : vertices[p]) stands[v] = 1;
+      for (const int v : vertices[p]) is_placed[v] = 1;
     }
   }
   return found;

@@ -35,13 +35,13 @@ double longest_edge(const TetMesh& mesh, const Tetrahedron& t) {
 }
 
 bool is_finite(const TetMesh& mesh, const Tetrahedron& t) {
-  return std::all_of(t.begin(), t.end(), [&](int v) { return mesh.vertices[v].allFinite(); });
+  return std::ranges::all_of(t, [&](int v) { return mesh.vertices[v].allFinite(); });
 }
 
 /// The first vertex that stands twice in `t`, or -1.
 int named_twice(Tetrahedron t) {
-  std::sort(t.begin(), t.end());
-  const auto twice = std::adjacent_find(t.begin(), t.end());
+  std::ranges::sort(t);
+  const auto twice = std::ranges::adjacent_find(t);
   return twice == t.end() ? -1 : *twice;
 }
 
@@ -51,7 +51,7 @@ class Finds {
   explicit Finds(std::vector<MeshFault>& all) : all_(all) {}
   template <class Example>
   void add(Cure cure, const char* kind, const char* remedy, const Example& example, std::size_t count = 1) {
-    auto fault = std::find_if(all_.begin(), all_.end(), [&](const MeshFault& f) { return f.kind == kind; });
+    auto fault = std::ranges::find_if(all_, [&](const MeshFault& f) { return f.kind == kind; });
     if (fault == all_.end()) fault = all_.insert(fault, {cure, 0, kind, example(), remedy});
     fault->count += count;
   }
@@ -106,7 +106,7 @@ Tetrahedron turned_to_sorted(Tetrahedron t) {
 void drop_repeated(TetMesh& mesh, Finds& finds) {
   std::vector<std::pair<Tetrahedron, std::size_t>> sorted;
   for (const Tetrahedron& t : mesh.tetrahedra) sorted.emplace_back(turned_to_sorted(t), sorted.size());
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
   std::vector<char> is_copy(sorted.size(), 0);
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     if (sorted[i].first != sorted[i - 1].first) continue;
@@ -220,7 +220,7 @@ void find_slivers(const TetMesh& mesh, std::vector<MeshFault>& all) {
   std::vector<double> heights;
   for (const Tetrahedron& t : mesh.tetrahedra) heights.push_back(shortest_height(mesh, t));
   const double middle = middle_of(heights);
-  const double shortest = *std::min_element(heights.begin(), heights.end());
+  const double shortest = *std::ranges::min_element(heights);
   all.push_back(
       {Cure::kAccepted, count, "slivers",
        fmt::format(
@@ -261,7 +261,7 @@ void find_surface_faults(const TetMesh& mesh, Finds& finds) {
 }  // namespace
 
 bool MeshFaults::refused() const {
-  return std::any_of(found.begin(), found.end(), [](const MeshFault& f) { return f.cure == Cure::kRefused; });
+  return std::ranges::any_of(found, [](const MeshFault& f) { return f.cure == Cure::kRefused; });
 }
 
 MeshFaults mend(TetMesh& mesh) {
@@ -278,17 +278,17 @@ MeshFaults mend(TetMesh& mesh) {
   const bool finite = !faults.refused();
   TetMesh upright = mesh;
   find_unsound(mesh, finds, upright);
-  faults.surface_seen = std::all_of(faults.found.begin(), faults.found.end(), [](const MeshFault& f) {
+  faults.surface_seen = std::ranges::all_of(faults.found, [](const MeshFault& f) {
     return f.cure == Cure::kMended || f.kind == "inverted tetrahedra";
   });
   if (finite) {
-    const Coincidence met = merge_coincident(mesh, !faults.refused());
-    const bool merged = met.remedy.empty();
-    if (met.vertices > 0)
-      faults.found.push_back({merged ? Cure::kMended : Cure::kRefused, met.vertices,
-                              "vertices where there is one already", met.example,
-                              merged ? "merged" : met.remedy});
-    if (merged && met.vertices > 0) upright = mesh;
+    const Coincidence coincidence = merge_coincident(mesh, !faults.refused());
+    const bool merged = coincidence.remedy.empty();
+    if (coincidence.vertices > 0)
+      faults.found.push_back({merged ? Cure::kMended : Cure::kRefused, coincidence.vertices,
+                              "vertices where there is one already", coincidence.example,
+                              merged ? "merged" : coincidence.remedy});
+    if (merged && coincidence.vertices > 0) upright = mesh;
   }
   find_bodies(mesh, finds);
   if (faults.surface_seen) find_surface_faults(upright, finds);
@@ -298,9 +298,9 @@ MeshFaults mend(TetMesh& mesh) {
 
 void require_usable(const MeshFaults& faults, const std::string& source) {
   const auto refused = [](const MeshFault& f) { return f.cure == Cure::kRefused; };
-  const auto first = std::find_if(faults.found.begin(), faults.found.end(), refused);
+  const auto first = std::ranges::find_if(faults.found, refused);
   if (first == faults.found.end()) return;
-  const auto kinds = std::count_if(faults.found.begin(), faults.found.end(), refused);
+  const auto kinds = std::ranges::count_if(faults.found, refused);
   const bool each = first->count > 1 && first->kind != "bodies";
   fail("{}: {}{}; {}{}", source, first->example,
        each ? fmt::format(", the first of {} {}", first->count, first->kind) : "", first->remedy,

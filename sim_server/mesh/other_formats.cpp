@@ -18,7 +18,7 @@ constexpr std::array kFlatCells{1, 2, 3, 4, 5, 6, 7, 8, 9, 21, 22, 23, 28, 30, 3
 constexpr std::size_t kHeader = 4096;  // bytes: in which a VTK file says what it holds
 
 bool has_inside(int cell) {
-  return std::find(kFlatCells.begin(), kFlatCells.end(), cell) == kFlatCells.end();
+  return std::ranges::find(kFlatCells, cell) == kFlatCells.end();
 }
 
 /// The text behind `key` at the beginning of a line, or of all; nothing where there is no such line.
@@ -129,8 +129,8 @@ void fail_other_format(const std::filesystem::path& file, std::string_view bytes
     fail("{}: a Gmsh MSH 1 file; 2.2 and 4.1 are read; {}", path, gmsh_command(path));
   }
   std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".toml")
     fail("{}: a file of settings, not a mesh; a scene names its mesh in [mesh] file", path);
   const std::string kind = extension.empty() || extension == ".msh" ? "no known format" : extension + " file";

@@ -8,7 +8,7 @@ namespace palpate::sim {
 
 CutMesh::CutMesh(TetMesh& mesh, std::vector<char> removable, Surface& surface, std::span<const int> held)
     : CutMesh(mesh, std::move(removable), surface) {
-  parted_ = &mesh;
+  separated_ = &mesh;
   add_spares(held, surface);
 }
 
@@ -23,7 +23,7 @@ void CutMesh::add_spares(std::span<const int> held, Surface& surface) {
   for (std::size_t v = 0; v < may_split.size(); ++v) {
     if (may_split[v] == 0) continue;
     const auto spare = static_cast<int>(mesh_->vertices.size());
-    parted_->vertices.push_back(Vec3(mesh_->vertices[v]));
+    separated_->vertices.push_back(Vec3(mesh_->vertices[v]));
     number_.push_back(static_cast<int>(surface.vertices.size()));
     surface.vertices.push_back(spare);
   }
@@ -38,16 +38,16 @@ void CutMesh::add_spares(std::span<const int> held, Surface& surface) {
 
 int CutMesh::across(int face) const {
   const int other = neighbours_[static_cast<std::size_t>(face / 4)][static_cast<std::size_t>(face % 4)];
-  return other < 0 || !is_left(other) ? -1 : facing(other, face / 4);
+  return other < 0 || !remains(other) ? -1 : facing(other, face / 4);
 }
 
 bool CutMesh::can_part(int face) const {
   const int other = across(face);
-  return other >= 0 && is_left(face / 4) && is_removable(face / 4) && is_removable(other / 4);
+  return other >= 0 && remains(face / 4) && is_removable(face / 4) && is_removable(other / 4);
 }
 
 bool CutMesh::is_free(int vertex) const {
-  const auto fixed = [this](int t) { return is_left(t) && !is_removable(t); };
+  const auto fixed = [this](int t) { return remains(t) && !is_removable(t); };
   return held_[static_cast<std::size_t>(vertex)] == 0 && std::ranges::none_of(around(vertex), fixed);
 }
 
@@ -64,7 +64,7 @@ bool CutMesh::on_cut(int vertex) const {
 }
 
 Parting CutMesh::part(std::span<const int> faces, Surface& surface) {
-  assert(parted_ != nullptr);
+  assert(separated_ != nullptr);
   Parting parting;
   std::vector<int> corners;
   for (const int face : faces) {
@@ -96,7 +96,7 @@ Parting CutMesh::part(std::span<const int> faces, Surface& surface) {
 /// first ones.
 std::vector<std::vector<int>> CutMesh::fans_around(int vertex) const {
   std::vector<int> waiting;
-  std::ranges::copy_if(around(vertex), std::back_inserter(waiting), [this](int t) { return is_left(t); });
+  std::ranges::copy_if(around(vertex), std::back_inserter(waiting), [this](int t) { return remains(t); });
   std::ranges::sort(waiting);
   std::vector<std::vector<int>> fans;
   while (!waiting.empty()) {
@@ -136,14 +136,14 @@ void CutMesh::split(int vertex, Surface& surface, Parting& parting, Changed& cha
 /// These tetrahedra have the copy from now on.
 void CutMesh::give(const std::vector<int>& fan, const Split& split, Surface& surface, Changed& changed) {
   const auto v = static_cast<std::size_t>(split.vertex), copy = static_cast<std::size_t>(split.copy);
-  parted_->vertices[copy] = mesh_->vertices[v];
+  separated_->vertices[copy] = mesh_->vertices[v];
   const auto end = around_.begin() + around_end_[v];
   const auto moved = std::stable_partition(around_.begin() + around_first_[v], end,
                                            [&](int t) { return !std::ranges::binary_search(fan, t); });
   around_first_[copy] = static_cast<int>(moved - around_.begin());
   around_end_[copy] = std::exchange(around_end_[v], around_first_[copy]);
   for (const int t : fan) {
-    Tetrahedron& corners = parted_->tetrahedra[static_cast<std::size_t>(t)];
+    Tetrahedron& corners = separated_->tetrahedra[static_cast<std::size_t>(t)];
     changed.emplace(t, corners);
     std::ranges::replace(corners, split.vertex, split.copy);
     for (std::size_t k = 0; k < 4; ++k) {
@@ -169,7 +169,7 @@ double CutMesh::cut_area_around(int vertex) const {
 
 void CutMesh::move_vertex(int vertex, const Vec3& x) {
   cut_area_ -= cut_area_around(vertex);
-  parted_->vertices[static_cast<std::size_t>(vertex)] = x;
+  separated_->vertices[static_cast<std::size_t>(vertex)] = x;
   cut_area_ += cut_area_around(vertex);
 }
 

@@ -24,14 +24,14 @@ PieceFinder::PieceFinder(const CutMesh& mesh, std::span<const int> held)
       front_of_(mesh.mesh().tetrahedra.size(), -1) {
   for (const int v : held) held_[static_cast<std::size_t>(v)] = 1;
   for (int t = 0; t < static_cast<int>(body_of_.size()); ++t) {
-    if (body_of_[static_cast<std::size_t>(t)] >= 0 || !mesh.is_left(t)) continue;
+    if (body_of_[static_cast<std::size_t>(t)] >= 0 || !mesh.remains(t)) continue;
     Front all{.reached = {t}};
     const int number = front_of_[static_cast<std::size_t>(t)] = static_cast<int>(body_held_.size());
     while (all.next < all.reached.size()) grow(mesh, all, number);
     for (const int reached : all.reached) body_of_[static_cast<std::size_t>(reached)] = number;
     body_held_.push_back(piece_of(mesh, std::move(all.reached)).held ? 1 : 0);
   }
-  let_go_.assign(body_held_.size(), 0);
+  released_.assign(body_held_.size(), 0);
   front_of_.assign(front_of_.size(), -1);
 }
 
@@ -68,7 +68,7 @@ void PieceFinder::grow(const CutMesh& mesh, Front& front, int number) {
 
 Piece PieceFinder::piece_of(const CutMesh& mesh, std::vector<int> tetrahedra) const {
   Piece piece{.tetrahedra = std::move(tetrahedra)};
-  std::sort(piece.tetrahedra.begin(), piece.tetrahedra.end());
+  std::ranges::sort(piece.tetrahedra);
   for (const int t : piece.tetrahedra) {
     const Tetrahedron& corners = mesh.mesh().tetrahedra[static_cast<std::size_t>(t)];
     piece.volume += six_volumes(mesh.mesh(), corners) / 6;
@@ -79,7 +79,7 @@ Piece PieceFinder::piece_of(const CutMesh& mesh, std::vector<int> tetrahedra) co
 
 /// Grows all fronts in turns, and joins those that meet, until the ones that are not at an end are of one
 /// set. Returns that set, or -1 where all are at an end: each set is a piece then.
-int PieceFinder::grow_until_apart(const CutMesh& mesh, std::vector<Front>& fronts, DisjointSets& sets) {
+int PieceFinder::grow_until_separate(const CutMesh& mesh, std::vector<Front>& fronts, DisjointSets& sets) {
   std::vector<int> growing(fronts.size());
   std::iota(growing.begin(), growing.end(), 0);
   const auto of_one_set = [&] {
@@ -118,22 +118,22 @@ std::vector<Piece> PieceFinder::cut_off_by(const CutMesh& mesh, std::span<const 
 
 std::vector<Piece> PieceFinder::cut_off(const CutMesh& mesh, std::span<const int> removed) {
   for (const int t : removed) {
-    if (lets_go(mesh, t)) let_go_[static_cast<std::size_t>(body_of_[static_cast<std::size_t>(t)])] = 1;
+    if (releases(mesh, t)) released_[static_cast<std::size_t>(body_of_[static_cast<std::size_t>(t)])] = 1;
   }
   return cut_off_by(mesh, removed,
                     [&](std::span<const int> of_body) { return fronts_around(mesh, of_body); });
 }
 
 /// Whether a held vertex of this one, which is gone, is of nothing else of its body any more.
-bool PieceFinder::lets_go(const CutMesh& mesh, int removed) const {
+bool PieceFinder::releases(const CutMesh& mesh, int removed) const {
   const int body = body_of_[static_cast<std::size_t>(removed)];
-  const auto holds = [&](int t) { return mesh.is_left(t) && body_of_[static_cast<std::size_t>(t)] == body; };
+  const auto holds = [&](int t) { return mesh.remains(t) && body_of_[static_cast<std::size_t>(t)] == body; };
   return std::ranges::any_of(mesh.mesh().tetrahedra[static_cast<std::size_t>(removed)], [&](int v) {
     return held_[static_cast<std::size_t>(v)] != 0 && std::ranges::none_of(mesh.around(v), holds);
   });
 }
 
-std::vector<Piece> PieceFinder::parted(const CutMesh& mesh, std::span<const int> tetrahedra) {
+std::vector<Piece> PieceFinder::separated(const CutMesh& mesh, std::span<const int> tetrahedra) {
   return cut_off_by(mesh, tetrahedra, [&](std::span<const int> of_body) { return fronts_at(of_body); });
 }
 
@@ -143,39 +143,39 @@ void PieceFinder::name_bodies(std::vector<Piece>& pieces) {
     for (const int t : piece.tetrahedra)
       body_of_[static_cast<std::size_t>(t)] = static_cast<int>(body_held_.size());
     body_held_.push_back(piece.held ? 1 : 0);
-    let_go_.push_back(0);
+    released_.push_back(0);
   }
 }
 
 std::vector<Piece> PieceFinder::cut_off_body(const CutMesh& mesh, std::vector<Front> fronts, int body) {
   DisjointSets sets(fronts.size());
-  const int rest = grow_until_apart(mesh, fronts, sets);
-  std::map<int, Front> whole;  // of each set
+  const int rest = grow_until_separate(mesh, fronts, sets);
+  std::map<int, Front> entire;  // of each set
   for (int f = 0; f < static_cast<int>(fronts.size()); ++f) {
-    std::vector<int>& reached = whole[sets.of(f)].reached;
+    std::vector<int>& reached = entire[sets.of(f)].reached;
     reached.insert(reached.end(), fronts[static_cast<std::size_t>(f)].reached.begin(),
                    fronts[static_cast<std::size_t>(f)].reached.end());
   }
   std::vector<Piece> pieces;
-  for (const auto& [set, front] : whole) {
+  for (const auto& [set, front] : entire) {
     if (set != rest) pieces.push_back(piece_of(mesh, front.reached));
   }
   // What was not followed is what holds the body, unless something else is held, nothing is, or it was let
   // go of.
   char& body_held = body_held_[static_cast<std::size_t>(body)];
-  const bool let_go = std::exchange(let_go_[static_cast<std::size_t>(body)], 0) != 0 && body_held != 0;
-  const bool all_known = rest < 0 || body_held == 0 || let_go || std::ranges::any_of(pieces, &Piece::held);
+  const bool release = std::exchange(released_[static_cast<std::size_t>(body)], 0) != 0 && body_held != 0;
+  const bool all_known = rest < 0 || body_held == 0 || release || std::ranges::any_of(pieces, &Piece::held);
   if (rest >= 0 && all_known) {
-    Front& front = whole[rest];
+    Front& front = entire[rest];
     while (front.next < front.reached.size()) grow(mesh, front, rest);
     pieces.push_back(piece_of(mesh, front.reached));
   }
   if (all_known && !pieces.empty()) {
     const auto stays = piece_that_stays(pieces);
     body_held = stays->held ? 1 : 0;
-    if (stays->held || !let_go) pieces.erase(stays);
+    if (stays->held || !release) pieces.erase(stays);
   }
-  for (const auto& [set, front] : whole) {
+  for (const auto& [set, front] : entire) {
     for (const int t : front.reached) front_of_[static_cast<std::size_t>(t)] = -1;
   }
   return pieces;

@@ -30,7 +30,7 @@ class PieceFinder {
   std::vector<Piece> cut_off(const CutMesh& mesh, std::span<const int> removed);
   /// Returns the pieces that were cut off by the separation of faces, just now, between these remaining
   /// tetrahedra.
-  std::vector<Piece> parted(const CutMesh& mesh, std::span<const int> tetrahedra);
+  std::vector<Piece> separated(const CutMesh& mesh, std::span<const int> tetrahedra);
 
  private:
   /// Tetrahedra that one search has reached, in order; those from `next` on have unvisited neighbours.
@@ -46,15 +46,15 @@ class PieceFinder {
   std::vector<Front> fronts_around(const CutMesh& mesh, std::span<const int> removed);
   std::vector<Front> fronts_at(std::span<const int> tetrahedra);
   void grow(const CutMesh& mesh, Front& front, int number);
-  int grow_until_apart(const CutMesh& mesh, std::vector<Front>& fronts, DisjointSets& sets);
-  bool lets_go(const CutMesh& mesh, int removed) const;
+  int grow_until_separate(const CutMesh& mesh, std::vector<Front>& fronts, DisjointSets& sets);
+  bool releases(const CutMesh& mesh, int removed) const;
   Piece piece_of(const CutMesh& mesh, std::vector<int> tetrahedra) const;
 
   std::vector<char> held_;    // of vertices
   std::vector<int> body_of_;  // of tetrahedra: which hang together
   std::vector<char> body_held_;
-  std::vector<char> let_go_;   // of bodies: a held vertex is of nothing any more
-  std::vector<int> front_of_;  // of tetrahedra, during a search; -1: not reached
+  std::vector<char> released_;  // of bodies: a held vertex is of nothing any more
+  std::vector<int> front_of_;   // of tetrahedra, during a search; -1: not reached
 };
 
 }  // namespace palpate::sim

@@ -21,8 +21,8 @@ void cut_octahedron(const std::array<int, 6>& middle, TetMesh& mesh) {
   const auto length = [&](const std::array<int, 2>& d) {
     return (mesh.vertices[middle[d[0]]] - mesh.vertices[middle[d[1]]]).squaredNorm();
   };
-  const auto shortest = std::min_element(kDiagonals.begin(), kDiagonals.end(),
-                                         [&](const auto& a, const auto& b) { return length(a) < length(b); });
+  const auto shortest = std::ranges::min_element(
+      kDiagonals, [&](const auto& a, const auto& b) { return length(a) < length(b); });
   const std::size_t axis = static_cast<std::size_t>(shortest - kDiagonals.begin());
   const auto &side = kDiagonals[(axis + 1) % 3], &other = kDiagonals[(axis + 2) % 3];
   const std::array<int, 4> ring{side[0], other[0], side[1], other[1]};  // around the diagonal
@@ -82,8 +82,8 @@ std::vector<Edge> edges_to_cut(const TetMesh& mesh,
     if (too_large(t, std::sqrt(longest.back().first))) cut.insert(longest.back().second);
   }
   const auto is_cut = [&](const Tetrahedron& t) {
-    return std::any_of(kEdges.begin(), kEdges.end(),
-                       [&](const auto& e) { return cut.contains(edge_of(t[e[0]], t[e[1]])); });
+    return std::ranges::any_of(kEdges,
+                               [&](const auto& e) { return cut.contains(edge_of(t[e[0]], t[e[1]])); });
   };
   for (std::size_t before = 0; before != cut.size();) {
     before = cut.size();
@@ -91,7 +91,7 @@ std::vector<Edge> edges_to_cut(const TetMesh& mesh,
       if (is_cut(mesh.tetrahedra[t])) cut.insert(longest[t].second);
     }
   }
-  std::sort(longest.begin(), longest.end(), std::greater<>());
+  std::ranges::sort(longest, std::greater<>());
   longest.erase(std::unique(longest.begin(), longest.end()), longest.end());
   std::vector<Edge> edges;
   for (const auto& [length, edge] : longest) {
@@ -102,21 +102,20 @@ std::vector<Edge> edges_to_cut(const TetMesh& mesh,
 
 /// A triangle or tetrahedron in parts: halved at each of its edges that has a middle, in the order of these.
 template <std::size_t N>
-std::vector<std::array<int, N>> halves_of(const std::array<int, N>& whole,
+std::vector<std::array<int, N>> halves_of(const std::array<int, N>& entire,
                                           const std::map<Edge, int>& middle_of) {
   std::vector<std::pair<int, Edge>> cuts;
   for (std::size_t a = 0; a < N; ++a) {
     for (std::size_t b = a + 1; b < N; ++b) {
-      const auto found = middle_of.find(edge_of(whole[a], whole[b]));
+      const auto found = middle_of.find(edge_of(entire[a], entire[b]));
       if (found != middle_of.end()) cuts.emplace_back(found->second, found->first);
     }
   }
-  std::sort(cuts.begin(), cuts.end());
-  std::vector<std::array<int, N>> parts{whole};
+  std::ranges::sort(cuts);
+  std::vector<std::array<int, N>> parts{entire};
   for (const auto& [middle, ends] : cuts) {
     for (std::size_t k = 0, count = parts.size(); k < count; ++k) {
-      const auto first = std::find(parts[k].begin(), parts[k].end(), ends[0]),
-                 second = std::find(parts[k].begin(), parts[k].end(), ends[1]);
+      const auto first = std::ranges::find(parts[k], ends[0]), second = std::ranges::find(parts[k], ends[1]);
       if (first == parts[k].end() || second == parts[k].end()) continue;
       std::array<int, N> other = parts[k];
       other[static_cast<std::size_t>(first - parts[k].begin())] = middle;

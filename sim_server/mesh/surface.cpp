@@ -29,11 +29,11 @@ std::vector<Face> sorted_faces(const TetMesh& mesh) {
       const Triangle& corner = kOutwardFaces[static_cast<std::size_t>(k)];
       const Triangle outward{t[corner[0]], t[corner[1]], t[corner[2]]};
       Triangle sorted = outward;
-      std::sort(sorted.begin(), sorted.end());
+      std::ranges::sort(sorted);
       faces.push_back({sorted, outward, static_cast<int>(i), k});
     }
   }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+  std::ranges::sort(faces, [](const Face& a, const Face& b) {
     return std::tie(a.sorted, a.tetrahedron) < std::tie(b.sorted, b.tetrahedron);
   });
   return faces;
@@ -50,12 +50,11 @@ void number_vertices(Surface& surface) {
   for (const Triangle& triangle : surface.triangles) {
     vertices.insert(vertices.end(), triangle.begin(), triangle.end());
   }
-  std::sort(vertices.begin(), vertices.end());
+  std::ranges::sort(vertices);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   for (Triangle& triangle : surface.triangles) {
     for (int& vertex : triangle) {
-      vertex =
-          static_cast<int>(std::lower_bound(vertices.begin(), vertices.end(), vertex) - vertices.begin());
+      vertex = static_cast<int>(std::ranges::lower_bound(vertices, vertex) - vertices.begin());
     }
   }
 }

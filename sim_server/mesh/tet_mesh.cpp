@@ -22,7 +22,7 @@ double dihedral(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 std::array<double, 6> dihedrals(const TetMesh& mesh, const Tetrahedron& t) {
   const std::vector<Vec3>& x = mesh.vertices;
   std::array<double, 6> angles{};
-  std::transform(kDihedrals.begin(), kDihedrals.end(), angles.begin(), [&](const std::array<int, 4>& e) {
+  std::ranges::transform(kDihedrals, angles.begin(), [&](const std::array<int, 4>& e) {
     return dihedral(x[t[e[0]]], x[t[e[1]]], x[t[e[2]]], x[t[e[3]]]);
   });
   return angles;
@@ -41,7 +41,7 @@ std::vector<std::array<int, 2>> edges_of(const TetMesh& mesh) {
   for (const Tetrahedron& t : mesh.tetrahedra) {
     for (const auto& [i, j] : kEdges) edges.push_back({std::min(t[i], t[j]), std::max(t[i], t[j])});
   }
-  std::sort(edges.begin(), edges.end());
+  std::ranges::sort(edges);
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   edges.shrink_to_fit();
   return edges;
@@ -53,8 +53,8 @@ void describe_edges(const TetMesh& mesh, MeshInfo& info) {
   lengths.reserve(edges.size());
   for (const auto& [a, b] : edges) lengths.push_back((mesh.vertices[a] - mesh.vertices[b]).norm());
   info.edges = static_cast<int>(edges.size());
-  info.min_edge = *std::min_element(lengths.begin(), lengths.end());
-  info.max_edge = *std::max_element(lengths.begin(), lengths.end());
+  info.min_edge = *std::ranges::min_element(lengths);
+  info.max_edge = *std::ranges::max_element(lengths);
   info.median_edge = median(std::move(lengths));
 }
 
@@ -67,7 +67,7 @@ void describe_tetrahedra(const TetMesh& mesh, MeshInfo& info) {
     info.max_dihedral = std::max(info.max_dihedral, *most);
     info.volume += six_volumes(mesh, t) / 6;
   }
-  info.min_dihedral = *std::min_element(smallest.begin(), smallest.end());
+  info.min_dihedral = *std::ranges::min_element(smallest);
   info.median_min_dihedral = median(std::move(smallest));
 }
 
@@ -75,8 +75,7 @@ void describe_tetrahedra(const TetMesh& mesh, MeshInfo& info) {
 
 int TetMesh::middle(int a, int b) const {
   const std::array<int, 2> edge{std::min(a, b), std::max(a, b)};
-  return corners() +
-         static_cast<int>(std::lower_bound(mid_edges.begin(), mid_edges.end(), edge) - mid_edges.begin());
+  return corners() + static_cast<int>(std::ranges::lower_bound(mid_edges, edge) - mid_edges.begin());
 }
 
 void add_mid_edges(TetMesh& mesh) {
@@ -88,14 +87,14 @@ void add_mid_edges(TetMesh& mesh) {
 }
 
 void sort_tags(TetMesh& mesh) {
-  const auto put_in_order = [](auto& list, const auto& is_gone) {
-    std::erase_if(list, is_gone);
-    std::sort(list.begin(), list.end());
+  const auto put_in_order = [](auto& list, const auto& is_removed) {
+    std::erase_if(list, is_removed);
+    std::ranges::sort(list);
     list.erase(std::unique(list.begin(), list.end()), list.end());
   };
   for (auto& [name, vertices] : mesh.surface_tags) put_in_order(vertices, [](int v) { return v < 0; });
   for (auto& [name, triangles] : mesh.tagged_triangles) {
-    for (Triangle& t : triangles) std::sort(t.begin(), t.end());
+    for (Triangle& t : triangles) std::ranges::sort(t);
     put_in_order(triangles, [](const Triangle& t) { return t[0] < 0; });
   }
   std::erase_if(mesh.surface_tags, [](const auto& tag) { return tag.second.empty(); });
@@ -115,7 +114,7 @@ double six_volumes(const TetMesh& mesh, const Tetrahedron& t) {
 
 double smallest_dihedral(const TetMesh& mesh, const Tetrahedron& t) {
   const auto angles = dihedrals(mesh, t);
-  return *std::min_element(angles.begin(), angles.end());
+  return *std::ranges::min_element(angles);
 }
 
 double shortest_height(const TetMesh& mesh, const Tetrahedron& t) {
@@ -135,8 +134,7 @@ MeshInfo describe(const TetMesh& mesh) {
   info.vertices = mesh.corners();
   info.tetrahedra = static_cast<int>(mesh.tetrahedra.size());
   const auto& skin = surface.vertices;  // ascending: corners first
-  info.boundary_vertices =
-      static_cast<int>(std::lower_bound(skin.begin(), skin.end(), mesh.corners()) - skin.begin());
+  info.boundary_vertices = static_cast<int>(std::ranges::lower_bound(skin, mesh.corners()) - skin.begin());
   info.boundary_triangles = static_cast<int>(surface.triangles.size()) / surface.per_face;
   info.min = info.max = mesh.vertices.front();
   for (const Vec3& x : mesh.vertices) {

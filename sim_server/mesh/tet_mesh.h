@@ -43,15 +43,15 @@ void add_mid_edges(TetMesh& mesh);
 /// Leaves of `mesh` the tetrahedra t of which `keep(t)`, in their order, and all vertices. O(m).
 template <class Keep>
 void keep_tetrahedra(TetMesh& mesh, const Keep& keep) {
-  std::size_t kept = 0;
+  std::size_t stored = 0;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     if (!keep(t)) continue;
-    mesh.tetrahedra[kept] = mesh.tetrahedra[t];
-    if (!mesh.stiffness.empty()) mesh.stiffness[kept] = mesh.stiffness[t];
-    ++kept;
+    mesh.tetrahedra[stored] = mesh.tetrahedra[t];
+    if (!mesh.stiffness.empty()) mesh.stiffness[stored] = mesh.stiffness[t];
+    ++stored;
   }
-  mesh.tetrahedra.resize(kept);
-  if (!mesh.stiffness.empty()) mesh.stiffness.resize(kept);
+  mesh.tetrahedra.resize(stored);
+  if (!mesh.stiffness.empty()) mesh.stiffness.resize(stored);
 }
 
 /// Puts tagged vertices and triangles in order, each once, and drops those below 0.

@@ -39,13 +39,13 @@ class Appended {
   std::string bytes_;
 };
 
-void write_whole(const std::filesystem::path& file, const std::string& content) {
-  WholeFile whole(file, Contents::kShapes);
-  std::ofstream out(whole.path(), std::ios::binary);
+void write_atomically(const std::filesystem::path& file, const std::string& content) {
+  AtomicFile writer(file, Contents::kShapes);
+  std::ofstream out(writer.path(), std::ios::binary);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();
   if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
-  whole.commit();
+  writer.commit();
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ void write_vtu(const std::filesystem::path& file, std::span<const Vec3> points, 
           appended.add("Int32", "offsets", 1, std::span<const int>(ends)) +
           appended.add("UInt8", "types", 1, std::span<const std::uint8_t>(types)) +
           "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-  write_whole(file, text + appended.bytes() + "\n</AppendedData>\n</VTKFile>\n");
+  write_atomically(file, text + appended.bytes() + "\n</AppendedData>\n</VTKFile>\n");
 }
 
 namespace {
@@ -99,7 +99,7 @@ void write_pvd(const std::filesystem::path& file,
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
   for (const auto& [time, name] : at_times)
     text += fmt::format("<DataSet timestep=\"{:.9g}\" file=\"{}\"/>\n", time, in_xml(name.string()));
-  write_whole(file, text + "</Collection>\n</VTKFile>\n");
+  write_atomically(file, text + "</Collection>\n</VTKFile>\n");
 }
 
 }  // namespace palpate::sim

@@ -36,9 +36,10 @@ bool held_by_vertices(const Scene& scene) {
 /// Whether clients are told slow modes about rest: of a body that only tools move, or besides supports of
 /// which it is known how it follows them.
 bool tells_modes(const ModelInputs& inputs) {
-  const auto* const told = inputs.scene.deformation.find<ClientModes>();
-  return told != nullptr && told->modes > 0 && !inputs.scene.cutting && inputs.scene.loads.empty() &&
-         held_by_vertices(inputs.scene) && inputs.scene.material->relaxations.size() <= kMostRelaxations &&
+  const auto* const published = inputs.scene.deformation.find<ClientModes>();
+  return published != nullptr && published->modes > 0 && !inputs.scene.cutting &&
+         inputs.scene.loads.empty() && held_by_vertices(inputs.scene) &&
+         inputs.scene.material->relaxations.size() <= kMostRelaxations &&
          (!supports_move(inputs.scene) || inputs.scene.material->is_linear());
 }
 
@@ -92,7 +93,7 @@ Implicit::Implicit(const ModelInputs& inputs)
       node_(inputs.surface.vertices),
       external_(static_cast<std::size_t>(solid_.nodes())) {
   columns_.slot.assign(node_.size(), -1);
-  columns_.asked.resize(node_.size());
+  columns_.requested.resize(node_.size());
   begin(inputs);
   inputs.progress(name_of(Stage::kFactor), 0);
   std::vector<Vec3> rest;
@@ -142,7 +143,7 @@ FreeMotion Implicit::free_motion(double dt) {
     if (step_.in_step) {
       apply_new_loads();
       dynamics_.finish_step();
-      if (relaxation_) remember();
+      if (relaxation_) store();
     }
     step_.in_step = true;
     step_.relinearised = false;
@@ -255,13 +256,13 @@ void Implicit::update_surface() {
   for (const NodalLoad& load : linearised_loads_) {  // what holds the body is no part of its motion
     if (dof_[load.vertex] < 0) positions_[load.vertex] += held_compliance_ * load.force;
   }
-  std::copy(positions_.begin(), positions_.end(), free_.begin());
-  press(linearised_loads_, -1, free_);
+  std::ranges::copy(positions_, free_.begin());
+  apply_loads(linearised_loads_, -1, free_);
 }
 
 /// Of the scene and of the tools, at the trial point (nodes, N).
 std::span<const Vec3> Implicit::external_forces() {
-  std::fill(external_.begin(), external_.end(), Vec3::Zero());
+  std::ranges::fill(external_, Vec3::Zero());
   scene_loads_.add_forces(dynamics_.position(), external_);
   for (const NodalLoad& load : linearised_loads_) external_[node_[load.vertex]] += load.force;
   return external_;
@@ -270,9 +271,9 @@ std::span<const Vec3> Implicit::external_forces() {
 /// Has the next factor of the background come with the columns asked for since the last one, and with those
 /// around them, which a tool that slides will need.
 void Implicit::request_columns() {
-  std::vector<std::uint8_t> near = columns_.asked;
+  std::vector<std::uint8_t> near = columns_.requested;
   for (const Triangle& t : triangles_) {
-    if ((columns_.asked[t[0]] | columns_.asked[t[1]] | columns_.asked[t[2]]) != 0)
+    if ((columns_.requested[t[0]] | columns_.requested[t[1]] | columns_.requested[t[2]]) != 0)
       near[t[0]] = near[t[1]] = near[t[2]] = 1;
   }
   std::vector<int> first;
@@ -284,15 +285,15 @@ void Implicit::request_columns() {
 
 /// Frees the memory of all columns; those that are asked for again are solved for again.
 void Implicit::clear_columns() {
-  std::fill(columns_.slot.begin(), columns_.slot.end(), -1);
+  std::ranges::fill(columns_.slot, -1);
   columns_.slots = 0;
   columns_.values.resize(0, 0);
 }
 
 /// Drops the columns of the last factor for those that came with the new one, if any did.
 void Implicit::replace_columns() {
-  std::fill(columns_.slot.begin(), columns_.slot.end(), -1);
-  std::fill(columns_.asked.begin(), columns_.asked.end(), std::uint8_t{0});
+  std::ranges::fill(columns_.slot, -1);
+  std::ranges::fill(columns_.requested, std::uint8_t{0});
   columns_.slots = 0;
   const Columns& ready = dynamics_.background_columns();
   for (std::size_t k = 0; k < ready.first.size(); ++k)
@@ -303,7 +304,7 @@ void Implicit::replace_columns() {
 void Implicit::find_columns(std::span<const int> vertices) const {
   std::vector<int> missing;
   for (const int v : vertices) {
-    columns_.asked[v] = 1;
+    columns_.requested[v] = 1;
     if (dof_[v] < 0 || columns_.slot[v] >= 0) continue;
     columns_.slot[v] = columns_.slots + static_cast<int>(missing.size());
     missing.push_back(dof_[v]);
@@ -341,7 +342,7 @@ void Implicit::compliance(std::span<const int> vertices, ContactPatch& patch) co
 }
 
 /// Moves `positions` (surface vertices, m) by the displacement that loads cause, times `sign`.
-void Implicit::press(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const {
+void Implicit::apply_loads(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const {
   if (loads.empty()) return;
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(dynamics_.dofs().count);
   add_response(loads, sign, moved);
@@ -355,8 +356,8 @@ void Implicit::press(std::span<const NodalLoad> loads, double sign, std::span<Ve
 
 std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) {
   loads_.assign(loads.begin(), loads.end());
-  std::copy(free_.begin(), free_.end(), positions_.begin());
-  press(loads_, 1, positions_);
+  std::ranges::copy(free_, positions_.begin());
+  apply_loads(loads_, 1, positions_);
   return positions_;
 }
 

@@ -67,7 +67,7 @@ class Implicit final : public DeformationModel,
   FreeMotion free_motion(double dt) override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const override;
   Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
-  const SlowModes* modes() const noexcept override { return &published_->modes(); }
+  const PublishedModes* modes() const noexcept override { return &published_->modes(); }
   void read_modes(ModalMotion& state) override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) override;
@@ -75,8 +75,8 @@ class Implicit final : public DeformationModel,
   /// Unbalanced where the last iteration found a relative residual above 1 %.
   Balance balance() const noexcept override;
   std::span<const Vec3> nodes() const noexcept override { return dynamics_.position(); }
-  Removed remove(std::span<const int> tetrahedra, const CutMesh& left) override;
-  void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) override;
+  Removed remove(std::span<const int> tetrahedra, const CutMesh& remaining) override;
+  void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& remaining) override;
   ModelTraits traits() noexcept override;
   std::vector<MemoryPart> memory() const override;
   std::any save() override;
@@ -86,13 +86,13 @@ class Implicit final : public DeformationModel,
   void begin(const ModelInputs& inputs);
   void apply_new_loads();
   void end_step_in_hand();
-  std::vector<Dynamics::NodeMass> masses_of(const std::set<int>& nodes, const CutMesh& left) const;
+  std::vector<Dynamics::NodeMass> masses_of(const std::set<int>& nodes, const CutMesh& remaining) const;
   FreeMotion motion() const;
   struct Carried {
     std::vector<Vec3> positions, velocities;
   };
   Carried carried() const;
-  void remember();
+  void store();
   Eigen::VectorXd displacement(std::span<const Vec3> from) const;
   void update_surface();
   void request_columns();
@@ -101,15 +101,15 @@ class Implicit final : public DeformationModel,
   void find_columns(std::span<const int> vertices) const;
   void keep_columns(const Eigen::MatrixXd& columns) const;
   void add_response(std::span<const NodalLoad> loads, double sign, Eigen::VectorXd& moved) const;
-  void press(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const;
+  void apply_loads(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const;
   std::span<const Vec3> external_forces();
   /// True if one iteration solves each step, with the columns of one factor for good.
   bool is_linear() const { return solid_.material().law == ElasticLaw::kLinear && !may_be_cut_; }
 
   /// Columns of A^-1 of the factor in use, three for each of some surface vertices.
   struct SurfaceColumns {
-    std::vector<int> slot;            // per surface vertex: of its columns, or -1
-    std::vector<std::uint8_t> asked;  // per surface vertex: 1 where its columns were asked for
+    std::vector<int> slot;                // per surface vertex: of its columns, or -1
+    std::vector<std::uint8_t> requested;  // per surface vertex: 1 where its columns were asked for
     int slots = 0;
     Eigen::MatrixXd values;  // (unknowns x 3 slots or more) m/N
   };

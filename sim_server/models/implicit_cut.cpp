@@ -8,11 +8,12 @@ namespace palpate::sim {
 namespace {
 
 /// Lumped, of a node by what is left around it, kg; 0: nothing is.
-double mass_at(int node, const CutMesh& left, double density) {
+double mass_at(int node, const CutMesh& remaining, double density) {
   double mass = 0;
-  for (const int t : left.around(node)) {
-    if (left.is_left(t))
-      mass += density * six_volumes(left.mesh(), left.mesh().tetrahedra[static_cast<std::size_t>(t)]) / 24;
+  for (const int t : remaining.around(node)) {
+    if (remaining.remains(t))
+      mass += density *
+              six_volumes(remaining.mesh(), remaining.mesh().tetrahedra[static_cast<std::size_t>(t)]) / 24;
   }
   return mass;
 }
@@ -27,42 +28,43 @@ void Implicit::end_step_in_hand() {
   step_.in_step = false;
 }
 
-std::vector<Dynamics::NodeMass> Implicit::masses_of(const std::set<int>& nodes, const CutMesh& left) const {
+std::vector<Dynamics::NodeMass> Implicit::masses_of(const std::set<int>& nodes,
+                                                    const CutMesh& remaining) const {
   std::vector<Dynamics::NodeMass> masses;
-  for (const int node : nodes) masses.push_back({node, mass_at(node, left, solid_.material().density)});
+  for (const int node : nodes) masses.push_back({node, mass_at(node, remaining, solid_.material().density)});
   return masses;
 }
 
-CuttableModel::Removed Implicit::remove(std::span<const int> tetrahedra, const CutMesh& left) {
+CuttableModel::Removed Implicit::remove(std::span<const int> tetrahedra, const CutMesh& remaining) {
   end_step_in_hand();
-  Removed gone;
+  Removed removed;
   std::set<int> touched;
   for (const int t : tetrahedra) {
     const auto e = static_cast<std::size_t>(t);
-    const Tetrahedron& corners = left.mesh().tetrahedra[e];
-    const double mass = solid_.material().density * six_volumes(left.mesh(), corners) / 6;
-    gone.elastic += solid_.energy_of(e, dynamics_.position());
+    const Tetrahedron& corners = remaining.mesh().tetrahedra[e];
+    const double mass = solid_.material().density * six_volumes(remaining.mesh(), corners) / 6;
+    removed.elastic += solid_.energy_of(e, dynamics_.position());
     for (const int node : corners) {
       const Vec3& v = dynamics_.velocity()[static_cast<std::size_t>(node)];
-      gone.kinetic += mass / 8 * v.squaredNorm();
-      gone.momentum += mass / 4 * v;
+      removed.kinetic += mass / 8 * v.squaredNorm();
+      removed.momentum += mass / 4 * v;
       touched.insert(node);
     }
     solid_.remove(e);
   }
-  dynamics_.remove(tetrahedra, masses_of(touched, left));
-  const auto hangs_on_nothing = [&](const NodalLoad& load) { return !left.on_surface(load.vertex); };
+  dynamics_.remove(tetrahedra, masses_of(touched, remaining));
+  const auto hangs_on_nothing = [&](const NodalLoad& load) { return !remaining.on_surface(load.vertex); };
   std::erase_if(loads_, hangs_on_nothing);
   linearised_loads_ = loads_;
-  return gone;
+  return removed;
 }
 
-void Implicit::part(std::span<const Slide> slides, const Parting& parting, const CutMesh& left) {
+void Implicit::part(std::span<const Slide> slides, const Parting& parting, const CutMesh& remaining) {
   end_step_in_hand();
   std::set<int> moved, reshaped;
   const auto reshape_around = [&](int vertex) {
-    for (const int t : left.around(vertex)) {
-      if (left.is_left(t)) reshaped.insert(t);
+    for (const int t : remaining.around(vertex)) {
+      if (remaining.remains(t)) reshaped.insert(t);
     }
     moved.insert(vertex);
   };
@@ -75,16 +77,16 @@ void Implicit::part(std::span<const Slide> slides, const Parting& parting, const
     dynamics_.copy(vertex, copy);
     moved.insert(vertex);
   }
-  solid_.reshape(left.mesh(), tetrahedra);
+  solid_.reshape(remaining.mesh(), tetrahedra);
   for (const int node : moved) {
-    const auto v = static_cast<std::size_t>(left.number_of(node));
+    const auto v = static_cast<std::size_t>(remaining.number_of(node));
     positions_[v] = free_[v] = dynamics_.position()[static_cast<std::size_t>(node)];
   }
   for (const int t : reshaped) {
-    const Tetrahedron& corners = left.mesh().tetrahedra[static_cast<std::size_t>(t)];
+    const Tetrahedron& corners = remaining.mesh().tetrahedra[static_cast<std::size_t>(t)];
     moved.insert(corners.begin(), corners.end());
   }
-  dynamics_.part(parting.splits, masses_of(moved, left));
+  dynamics_.part(parting.splits, masses_of(moved, remaining));
 }
 
 }  // namespace palpate::sim

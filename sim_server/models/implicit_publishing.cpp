@@ -47,7 +47,7 @@ Eigen::VectorXd Implicit::displacement(std::span<const Vec3> from) const {
 }
 
 /// The step has ended where it stands, under the last loads.
-void Implicit::remember() {
+void Implicit::store() {
   relaxation_->advance(period_, published_->amplitudes(numbers(displacement(solid_.rest()))), loads_);
 }
 
@@ -65,8 +65,8 @@ void Implicit::read_modes(ModalMotion& state) {
   published_->begin(numbers(u), numbers(speed), numbers(none), 0);
   published_->advance(0, loads_, state.q, state.v);
   if (relaxation_)
-    relaxation_->foresee(period_, published_->amplitudes(numbers(displacement(solid_.rest()))), loads_,
-                         state.z, state.psi);
+    relaxation_->predict_tangent(period_, published_->amplitudes(numbers(displacement(solid_.rest()))),
+                                 loads_, state.z, state.psi);
 }
 
 void Implicit::residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {

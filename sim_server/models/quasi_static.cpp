@@ -40,7 +40,7 @@ std::span<const Vec3> QuasiStatic::apply(std::span<const NodalLoad> loads) noexc
   std::swap(answer_, before_);
   if (is_of(answer_)) return answer_.positions;
   const std::span<const Vec3> free = supports_ ? supports_->positions() : rest_;
-  std::copy(free.begin(), free.end(), answer_.positions.begin());
+  std::ranges::copy(free, answer_.positions.begin());
   compliance_.move(loads, answer_.positions);
   answer_.valid = loads.size() <= answer_.loads.capacity();
   if (answer_.valid) answer_.loads.assign(loads.begin(), loads.end());

@@ -27,8 +27,9 @@ double Reduced::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
 /// where that would be too many, one. In between contact chatters: what a held force leaves swinging, the
 /// next one has to answer.
 int Reduced::usual_instants(double period, double w) {
-  constexpr double kApart = 1.25e-3, kShort = 1, kMost = 100, kRounding = 1e-9;  // s; of 1 / w; both numbers
-  const double wanted = std::ceil(period / std::min(kApart, kShort / w) - kRounding);
+  constexpr double kStepTime = 1.25e-3, kShort = 1, kMost = 100,
+                   kRounding = 1e-9;  // s; of 1 / w; both numbers
+  const double wanted = std::ceil(period / std::min(kStepTime, kShort / w) - kRounding);
   return wanted <= kMost ? static_cast<int>(wanted) : 1;
 }
 
@@ -48,7 +49,7 @@ Reduced::Reduced(const ModelInputs& inputs) : period_(step_period(inputs.scene))
   instants_ = instants_of(settings, usual_instants(period_, modes_->frequencies[count - 1]));
   period_ /= instants_;
   Eigen::VectorXd beyond_statics(count);
-  beyond_residual_ = modes_->told_at_rest();
+  beyond_residual_ = modes_->published_at_rest();
   for (Eigen::Index k = 0; k < count; ++k) {
     const double w = modes_->frequencies[k];
     steps_.push_back(ModeStep::over(period_, w, modes_->damping[k]));
@@ -74,7 +75,7 @@ FreeMotion Reduced::free_motion(double dt) noexcept {
     if (supports_) supports_->advance(period_);
     for (std::size_t v = 0; v < rest_.size(); ++v)
       free_[v] = unloaded()[v] + moved_.segment<3>(3 * static_cast<Eigen::Index>(v));
-    press(loads_);
+    apply_loads(loads_);
   }
   return free_motion_now();
 }
@@ -119,7 +120,7 @@ void Reduced::compliance(std::span<const int> vertices, ContactPatch& patch) con
 }
 
 Mat3 Reduced::later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
-  return modes_->give_way(loads, seconds, period_, modes_->frequencies.size());
+  return modes_->yield_(loads, seconds, period_, modes_->frequencies.size());
 }
 
 void Reduced::read_modes(ModalMotion& state) noexcept {
@@ -140,12 +141,12 @@ std::span<const Vec3> Reduced::apply(std::span<const NodalLoad> loads) noexcept 
     p_.noalias() +=
         modes_->shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex)).transpose() * load.force;
   loads_.assign(loads.begin(), loads.end());
-  press(loads);
+  apply_loads(loads);
   return positions_;
 }
 
-void Reduced::press(std::span<const NodalLoad> loads) noexcept {
-  std::copy(free_.begin(), free_.end(), positions_.begin());
+void Reduced::apply_loads(std::span<const NodalLoad> loads) noexcept {
+  std::ranges::copy(free_, positions_.begin());
   compliance_.move(loads, positions_);
 }
 

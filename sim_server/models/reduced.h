@@ -45,7 +45,7 @@ class Reduced final : public DeformationModel,
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
-  const SlowModes* modes() const noexcept override { return &*modes_; }
+  const PublishedModes* modes() const noexcept override { return &*modes_; }
   void read_modes(ModalMotion& state) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   ModelTraits traits() noexcept override;
@@ -64,7 +64,7 @@ class Reduced final : public DeformationModel,
   FreeMotion free_motion_now() const;
   /// The surface as its supports move it.
   std::span<const Vec3> unloaded() const noexcept { return supports_ ? supports_->positions() : rest_; }
-  void press(std::span<const NodalLoad> loads) noexcept;
+  void apply_loads(std::span<const NodalLoad> loads) noexcept;
 
   int instants_ = 1;  // within a step of the scene
   double period_;     // s, from one to the next
@@ -72,7 +72,7 @@ class Reduced final : public DeformationModel,
   SurfaceCompliance compliance_;
   std::optional<MovingSupports> supports_;  // where some move
   std::vector<ModeStep> steps_;             // (modes)
-  std::optional<SlowModes> modes_;          // always there
+  std::optional<PublishedModes> modes_;     // always there
   std::string modes_note_;
   Eigen::VectorXd beyond_residual_;     // (modes) m^2 kg/N: what of `compliance_` is theirs
   Eigen::VectorXd q_, v_, p_, q_free_;  // (modes) m sqrt(kg), m sqrt(kg)/s, N/sqrt(kg)

@@ -49,7 +49,7 @@ Spring::Spring(const ModelInputs& inputs)
   if (settings.hardening_length) per_length2_ = 1 / (*settings.hardening_length * *settings.hardening_length);
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
   for (std::size_t v = 0; v < held_.size(); ++v)
-    held_[v] = std::binary_search(inputs.fixed.begin(), inputs.fixed.end(), inputs.surface.vertices[v]);
+    held_[v] = std::ranges::binary_search(inputs.fixed, inputs.surface.vertices[v]);
   state_.positions = rest_;
 }
 

@@ -43,12 +43,12 @@ TensorMass::TensorMass(const ModelInputs& inputs)
     : compliance_(inputs),
       tensors_(assemble(inputs)),
       motion_(tensors_, damping_of(inputs.scene)),
-      begin_(motion_.state),
-      force_(begin_.f),
+      start_(motion_.state),
+      force_(start_.f),
       mesh_rest_(inputs.mesh.vertices),
       nodes_(mesh_rest_) {
-  const auto* const told = inputs.scene.deformation.find<ClientModes>();
-  const bool tells = told != nullptr && told->modes > 0;
+  const auto* const published = inputs.scene.deformation.find<ClientModes>();
+  const bool tells = published != nullptr && published->modes > 0;
   if (tells || supports_move(inputs.scene)) {
     const LinearStatics statics(inputs);
     supports_ = statics.supports(Following::kSwinging);
@@ -70,7 +70,7 @@ TensorMass::TensorMass(const ModelInputs& inputs)
 std::unique_ptr<DeformationModel> TensorMass::make(const ModelInputs& inputs) {
   if (inputs.scene.cutting) return std::make_unique<CuttableMotion>(inputs);
   const auto* const added = inputs.scene.deformation.find<AddedMass>();
-  if (added != nullptr && added->share)
+  if (added != nullptr && added->fraction)
     fail("{}: `added_mass`: only tissue that can be cut gets more mass; remove it, or add [cutting]",
          inputs.scene.deformation.where);
   return std::make_unique<TensorMass>(inputs);
@@ -118,7 +118,7 @@ FreeMotion TensorMass::free_motion(double dt) noexcept {
     run_on();
     if (supports_) supports_->advance(sub_steps_ * sub_step_);
     update_free();
-    press(loads_);
+    apply_loads(loads_);
   }
   return free_motion_now();
 }
@@ -142,7 +142,7 @@ ModelTraits TensorMass::traits() noexcept {
 }
 
 std::any TensorMass::save() {
-  State state{motion_.save(), begin_, loads_, free_, positions_, {}};
+  State state{motion_.save(), start_, loads_, free_, positions_, {}};
   if (supports_) state.supports = supports_->state();
   return state;
 }
@@ -150,7 +150,7 @@ std::any TensorMass::save() {
 FreeMotion TensorMass::restore(const std::any& saved) {
   const auto& state = std::any_cast<const State&>(saved);
   motion_.restore(state.motion);
-  begin_ = state.begin;
+  start_ = state.begin;
   loads_.assign(state.loads.begin(), state.loads.end());
   free_ = state.free;
   positions_ = state.positions;
@@ -168,7 +168,7 @@ void TensorMass::run_period(ExplicitMotion& motion, const std::vector<double>& f
 /// Where the body goes free of loads: by itself, and by its supports.
 void TensorMass::update_free() noexcept {
   const std::span<const Vec3> from = supports_ ? supports_->positions() : rest_;
-  std::copy(from.begin(), from.end(), free_.begin());
+  std::ranges::copy(from, free_.begin());
   for (std::size_t v = 0; v < rest_.size(); ++v) {
     if (first_[v] >= 0) free_[v] += Eigen::Map<const Vec3>(motion_.state.u.data() + first_[v]);
   }
@@ -178,7 +178,7 @@ void TensorMass::update_free() noexcept {
 template <class Act>
 void TensorMass::for_loads(const Act& act) const {
   for (const NodalLoad& load : loads_) {
-    if (compliance_.gives_way(load.vertex)) act(first_[load.vertex], load.force);
+    if (compliance_.yields(load.vertex)) act(first_[load.vertex], load.force);
   }
 }
 
@@ -187,16 +187,16 @@ void TensorMass::for_loads(const Act& act) const {
 void TensorMass::run_on() noexcept {
   if (sub_steps_ == 1) {
     for_loads([&](int first, const Vec3& force) { motion_.add_to_last(first / 3, sub_step_, force); });
-    return motion_.run_free(begin_, sub_step_);
+    return motion_.run_free(start_, sub_step_);
   }
   if (!loads_.empty()) {
-    motion_.state = begin_;
+    motion_.state = start_;
     for_loads([&](int first, const Vec3& force) { Eigen::Map<Vec3>(force_.data() + first) += force; });
     run_period(motion_, force_);
-    std::fill(force_.begin(), force_.end(), 0);
+    std::ranges::fill(force_, 0);
     if (sub_steps_ <= kFew) calm_loaded();
   }
-  begin_ = motion_.state;
+  start_ = motion_.state;
   run_period(motion_, force_);
 }
 
@@ -208,14 +208,14 @@ void TensorMass::calm_loaded() noexcept {
       return Eigen::Map<Vec3>(numbers.data() + first);
     };
     const Vec3 along = force / newton;
-    const double mean = (at(motion_.state.u) - at(begin_.u)).dot(along) / (sub_steps_ * sub_step_),
+    const double mean = (at(motion_.state.u) - at(start_.u)).dot(along) / (sub_steps_ * sub_step_),
                  now = at(motion_.state.v).dot(along);
     if (std::abs(mean) < std::abs(now)) at(motion_.state.v) += (mean - now) * along;
   });
 }
 
-void TensorMass::press(std::span<const NodalLoad> loads) noexcept {
-  std::copy(free_.begin(), free_.end(), positions_.begin());
+void TensorMass::apply_loads(std::span<const NodalLoad> loads) noexcept {
+  std::ranges::copy(free_, positions_.begin());
   compliance_.move(loads, positions_);
 }
 
@@ -225,7 +225,7 @@ void TensorMass::compliance(std::span<const int> vertices, ContactPatch& patch) 
 
 std::span<const Vec3> TensorMass::apply(std::span<const NodalLoad> loads) noexcept {
   loads_.assign(loads.begin(), loads.end());
-  press(loads);
+  apply_loads(loads);
   return positions_;
 }
 
@@ -235,7 +235,7 @@ Mat3 TensorMass::later_compliance(std::span<const NodalLoad> loads, double secon
 }
 
 void TensorMass::read_modes(ModalMotion& state) noexcept {
-  published_->begin(begin_.u, begin_.v, begin_.f, 0.5 * sub_step_);
+  published_->begin(start_.u, start_.v, start_.f, 0.5 * sub_step_);
   const double time = sub_steps_ == 1 ? 0 : sub_steps_ * sub_step_;  // as the force that is rendered
   published_->advance(time, loads_, state.q, state.v);
 }
@@ -247,7 +247,7 @@ void TensorMass::residual_compliance(std::span<const int> vertices, ContactPatch
 std::span<const Vec3> TensorMass::nodes() const noexcept {
   for (std::size_t node = 0; node < nodes_.size(); ++node) {
     const int place = tensors_.places()[node];
-    if (place >= 0) nodes_[node] = mesh_rest_[node] + Eigen::Map<const Vec3>(begin_.u.data() + 3 * place);
+    if (place >= 0) nodes_[node] = mesh_rest_[node] + Eigen::Map<const Vec3>(start_.u.data() + 3 * place);
   }
   return nodes_;
 }

@@ -41,7 +41,7 @@ class TensorMass final : public DeformationModel,
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
   Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
-  const SlowModes* modes() const noexcept override { return &published_->modes(); }
+  const PublishedModes* modes() const noexcept override { return &published_->modes(); }
   void read_modes(ModalMotion& state) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   /// Returns the positions at the beginning of the period.
@@ -71,7 +71,7 @@ class TensorMass final : public DeformationModel,
   void run_on() noexcept;
   void calm_loaded() noexcept;
   void update_free() noexcept;
-  void press(std::span<const NodalLoad> loads) noexcept;
+  void apply_loads(std::span<const NodalLoad> loads) noexcept;
 
   SurfaceCompliance compliance_;
   ElasticTensors tensors_;
@@ -79,7 +79,7 @@ class TensorMass final : public DeformationModel,
   int sub_steps_ = 1;                         // from one to the next
   double sub_step_ = 0;                       // s
   ExplicitMotion motion_;                     // at the end of the period, free of loads
-  ExplicitMotion::State begin_;               // at its beginning
+  ExplicitMotion::State start_;               // at its beginning
   std::vector<double> force_;                 // over it, N
   std::vector<NodalLoad> loads_;              // over it
   std::optional<MovingSupports> supports_;    // where some move

@@ -34,8 +34,7 @@ double displacement_at(const SupportMotion& motion, double t) {
 }
 
 bool supports_move(const Scene& scene) {
-  return std::any_of(scene.fixed.begin(), scene.fixed.end(),
-                     [](const FixedRegion& region) { return region.moves(); });
+  return std::ranges::any_of(scene.fixed, [](const FixedRegion& region) { return region.moves(); });
 }
 
 std::vector<HeldMotion> held_motions(const Scene& scene, const TetMesh& mesh,
@@ -44,16 +43,18 @@ std::vector<HeldMotion> held_motions(const Scene& scene, const TetMesh& mesh,
   if (!supports_move(scene)) return all;
   const std::vector<int> region_of = region_of_corners(scene, mesh);
   for (std::size_t r = 0; r < scene.fixed.size(); ++r) {
-    const auto share = [&](std::size_t vertex) { return region_of[vertex] == static_cast<int>(r) ? 1.0 : 0; };
+    const auto fraction = [&](std::size_t vertex) {
+      return region_of[vertex] == static_cast<int>(r) ? 1.0 : 0;
+    };
     for (const SupportMotion& motion : scene.fixed[r].motions) {
       HeldMotion one{motion, {}, scene.fixed[r].where};
       const auto add = [&](std::size_t node, double part) {
         const Vec3 displacement = part * along_axes(motion.direction, scene.fixed[r].axes & held[node]);
         if (!displacement.isZero(0)) one.nodes.emplace_back(static_cast<int>(node), displacement);
       };
-      for (std::size_t v = 0; v < region_of.size(); ++v) add(v, share(v));
+      for (std::size_t v = 0; v < region_of.size(); ++v) add(v, fraction(v));
       for (std::size_t k = 0; k < mesh.mid_edges.size(); ++k)
-        add(region_of.size() + k, 0.5 * (share(mesh.mid_edges[k][0]) + share(mesh.mid_edges[k][1])));
+        add(region_of.size() + k, 0.5 * (fraction(mesh.mid_edges[k][0]) + fraction(mesh.mid_edges[k][1])));
       all.push_back(std::move(one));
     }
   }

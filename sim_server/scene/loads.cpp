@@ -12,7 +12,7 @@ Vec3 area_of(std::span<const Vec3> x, const std::array<int, 3>& corner) {
 }
 
 /// What becomes the copy of a vertex is of no tetrahedron at first, and those that are held stay one.
-void let_go_of_spares(const TetMesh& mesh, std::vector<HeldAxes>& held) {
+void release_spares(const TetMesh& mesh, std::vector<HeldAxes>& held) {
   std::vector<char> is_corner(held.size(), 0);
   for (const Tetrahedron& t : mesh.tetrahedra) {
     for (const int v : t) is_corner[static_cast<std::size_t>(v)] = 1;
@@ -39,7 +39,7 @@ Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, co
         for (int axis = 0; axis < 3; ++axis) axes |= load.vector[axis] != 0 ? 1 << axis : 0;
         return axes != 0 && (axes & ~held_[v]) == 0;
       };
-      if (std::all_of(vertices.begin(), vertices.end(), resists))
+      if (std::ranges::all_of(vertices, resists))
         fail("{}: every vertex in this region is held, so that the force would move nothing",
              load.region.where);
       for (const int v : vertices) dead_[v] += load.vector / static_cast<double>(vertices.size());
@@ -59,7 +59,7 @@ void Loads::hold(const Scene& scene, const TetMesh& mesh) {
   for (const FixedRegion& region : scene.fixed) {
     for (const int vertex : vertices_in(region, mesh)) held_[vertex] |= region.axes;
   }
-  if (scene.blade() != nullptr) let_go_of_spares(mesh, held_);
+  if (scene.blade() != nullptr) release_spares(mesh, held_);
   bool moves = false;
   for (const Load& load : scene.loads) {
     if (load.kind != Load::Kind::kDisplacement) continue;
@@ -109,18 +109,18 @@ std::vector<Loads::Face> Loads::faces_in(const Region& region, const TetMesh& me
                                                  : mesh.tagged_triangles.find(region.surface_tag);
   const auto is_in = [&](Triangle corners) {
     if (tagged == mesh.tagged_triangles.end())
-      return std::all_of(corners.begin(), corners.end(), [&](int corner) { return inside[corner] != 0; });
-    std::sort(corners.begin(), corners.end());
-    return std::binary_search(tagged->second.begin(), tagged->second.end(), corners);
+      return std::ranges::all_of(corners, [&](int corner) { return inside[corner] != 0; });
+    std::ranges::sort(corners);
+    return std::ranges::binary_search(tagged->second, corners);
   };
   std::vector<Face> faces;
   for (std::size_t i = 0; i < surface.triangles.size(); i += static_cast<std::size_t>(surface.per_face)) {
     const Triangle* const parts = &surface.triangles[i];
-    const bool whole = surface.per_face == 1;
+    const bool entire = surface.per_face == 1;
     Face face{};
     for (std::size_t c = 0; c < 3; ++c) {
-      face.corners[c] = surface.vertices[whole ? parts[0][c] : parts[c][0]];
-      face.pushed[c] = surface.vertices[whole ? parts[0][c] : parts[3][c]];
+      face.corners[c] = surface.vertices[entire ? parts[0][c] : parts[c][0]];
+      face.pushed[c] = surface.vertices[entire ? parts[0][c] : parts[3][c]];
     }
     if (is_in(face.corners)) faces.push_back(face);
   }

@@ -19,12 +19,12 @@ constexpr double kRefiningTakes = 8 * (16 + 4 * 32 + 8);
 TetMesh read_mesh_of(const Scene& scene) {
   TetMesh mesh = read_mesh(scene.mesh_file, scene.mesh_scale);
   if (const std::string odd = odd_size(mesh); !odd.empty()) log::warning("{}: {}", scene.mesh_where, odd);
-  for (double left = scene.mesh_refinements; left > 0; --left) {
+  for (double remaining = scene.mesh_refinements; remaining > 0; --remaining) {
     require_memory(kRefiningTakes * static_cast<double>(mesh.tetrahedra.size()), free_memory(),
                    scene.mesh_where,
                    fmt::format("cutting {} tetrahedra into smaller ones", mesh.tetrahedra.size()),
                    "take a smaller `refine` or a coarser mesh");
-    mesh = left < 1 ? halved(mesh) : refined(mesh);
+    mesh = remaining < 1 ? halved(mesh) : refined(mesh);
   }
   return mesh;
 }

@@ -106,7 +106,7 @@ struct Scene {
   /// True if nothing holds the body anywhere.
   bool flies() const {
     const auto displaces = [](const Load& load) { return load.kind == Load::Kind::kDisplacement; };
-    return fixed.empty() && std::none_of(loads.begin(), loads.end(), displaces);
+    return fixed.empty() && std::ranges::none_of(loads, displaces);
   }
 };
 

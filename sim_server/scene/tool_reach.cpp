@@ -56,7 +56,7 @@ Reach widened(const Reach& reach, double by) {
   return std::visit([by](const auto& part) { return Reach(widened(part, by)); }, reach);
 }
 
-bool may_meet(const Reach& reach, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+bool may_touch(const Reach& reach, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
   return std::visit([&](const auto& part) { return meets(part, a, b, c); }, reach);
 }
 

@@ -23,7 +23,7 @@ using Reach = std::variant<Box, Cone>;
 Reach widened(const Reach& reach, double by);
 
 /// Returns true if a triangle comes within reach, and where that is uncertain.
-bool may_meet(const Reach& reach, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
+bool may_touch(const Reach& reach, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
 /// True if a tip at p is beyond its workspace or cone, by more than the margin that was added.
 bool beyond(const Reach& reach, const Vec3& p_W) noexcept;

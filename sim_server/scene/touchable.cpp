@@ -14,7 +14,7 @@ std::vector<Triangle> touchable_triangles(const Surface& surface, const TetMesh&
   std::vector<Triangle> touchable;
   for (const Triangle& t : surface.triangles) {
     const auto corner = [&](int i) -> const Vec3& { return mesh.vertices[surface.vertices[t[i]]]; };
-    if (may_meet(*tool.reach, corner(0), corner(1), corner(2))) touchable.push_back(t);
+    if (may_touch(*tool.reach, corner(0), corner(1), corner(2))) touchable.push_back(t);
   }
   return touchable;
 }
@@ -33,7 +33,7 @@ std::vector<int> vertices_of(const std::vector<std::vector<Triangle>>& lists) {
   for (const auto& triangles : lists) {
     for (const Triangle& t : triangles) vertices.insert(vertices.end(), t.begin(), t.end());
   }
-  std::sort(vertices.begin(), vertices.end());
+  std::ranges::sort(vertices);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;
 }

@@ -30,7 +30,7 @@ constexpr std::array kElements{
 
 template <class Table, class Value>
 std::string_view name_in(const Table& table, Value value) {
-  return std::find_if(table.begin(), table.end(), [&](const auto& row) { return row.value == value; })->name;
+  return std::ranges::find_if(table, [&](const auto& row) { return row.value == value; })->name;
 }
 
 template <class Table>
@@ -52,15 +52,15 @@ Fibres read_fibres(const Config& config) {
 
 std::vector<Relaxation> read_relaxations(const Config& material) {
   std::vector<Relaxation> relaxations;
-  double shares = 0;
+  double fractions = 0;
   for (const Config& section : material.tables("relaxation")) {
     relaxations.push_back({section.number("share", {1e-6, 0.999999, "of the stress at once"}),
                            section.number("time", {1e-4, 1e6, "s"})});
     section.reject_unknown();
-    shares += relaxations.back().share;
-    if (shares > 0.999999)
+    fractions += relaxations.back().fraction;
+    if (fractions > 0.999999)
       fail("{}: the shares of all [[material.relaxation]] are {:g} together; less than 1 leaves some stress",
-           section.where("share"), shares);
+           section.where("share"), fractions);
   }
   return relaxations;
 }

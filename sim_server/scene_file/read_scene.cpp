@@ -209,19 +209,19 @@ ToolSettings read_tool(const Config& config) {
 
 /// The organ comes nearer by as much as its supports move, or are put elsewhere.
 void reach_what_moves(Scene& scene) {
-  double farthest = 0;
+  double furthest = 0;
   for (const FixedRegion& region : scene.fixed) {
     double own = 0;
     for (const SupportMotion& motion : region.motions) own += motion.amplitude;
-    farthest = std::max(farthest, own);
+    furthest = std::max(furthest, own);
   }
   double put = 0;  // by displacements, which hold besides
   for (const Load& load : scene.loads) {
     if (load.kind == Load::Kind::kDisplacement) put = std::max(put, load.vector.norm());
   }
-  farthest += put;
+  furthest += put;
   for (ToolSettings& tool : scene.tools) {
-    if (tool.reach && farthest > 0) tool.reach = widened(*tool.reach, farthest);
+    if (tool.reach && furthest > 0) tool.reach = widened(*tool.reach, furthest);
   }
 }
 

@@ -58,7 +58,7 @@ CapturedForces read_captured_forces(const std::filesystem::path& capture) {
   }
   if (const std::string trouble = reader.trouble(); !trouble.empty())
     log::warning("{}: {}", capture.string(), trouble);
-  const auto longest = std::max_element(sessions.begin(), sessions.end(), [](const auto& a, const auto& b) {
+  const auto longest = std::ranges::max_element(sessions, [](const auto& a, const auto& b) {
     return a.second.samples.size() < b.second.samples.size();
   });
   if (longest == sessions.end() || longest->second.samples.size() < 2)

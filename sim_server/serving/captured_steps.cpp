@@ -15,16 +15,16 @@ using namespace protocol;
 
 namespace {
 
-constexpr std::size_t kMostHeld = 100;     // sessions
-constexpr std::size_t kStatesKept = 4096;  // of each, the newest: an answer is to one of them
+constexpr std::size_t kMostHeld = 100;       // sessions
+constexpr std::size_t kStatesStored = 4096;  // of each, the newest: an answer is to one of them
 
 struct HeldSession {
-  std::vector<ToolState> states = std::vector<ToolState>(kStatesKept);  // by tick
+  std::vector<ToolState> states = std::vector<ToolState>(kStatesStored);  // by tick
   std::uint64_t newest_tick = 0, newest_sample = 0, newest_answered = 0;
 };
 
 ToolState state_of(const HeldSession& session, const ForceSample& sample) {
-  const ToolState& state = session.states[sample.tool_tick % kStatesKept];
+  const ToolState& state = session.states[sample.tool_tick % kStatesStored];
   if (state.tick == sample.tool_tick) return state;
   ToolState made{.tool = sample.tool, .tick = sample.tool_tick, .t_ns = sample.tool_t_ns};
   made.p_W = sample.p_W;
@@ -36,7 +36,7 @@ ToolState state_of(const HeldSession& session, const ForceSample& sample) {
 std::size_t read_captured_steps(const std::filesystem::path& capture,
                                 const std::function<void(const ToolState&)>& on_state,
                                 const std::function<void(const CapturedAnswer&)>& on_answer,
-                                const std::function<void(std::uint64_t session)>& on_left) {
+                                const std::function<void(std::uint64_t session)>& on_remaining) {
   CaptureReader reader(capture);
   std::map<std::uint64_t, HeldSession> sessions;
   std::array<bool, kMaxTools> answered{};  // in this step
@@ -52,7 +52,7 @@ std::size_t read_captured_steps(const std::filesystem::path& capture,
       HeldSession& session = sessions[number];
       if (state->tick <= session.newest_tick) continue;
       session.newest_tick = state->tick;
-      session.states[state->tick % kStatesKept] = *state;
+      session.states[state->tick % kStatesStored] = *state;
       on_state(*state);
     } else if (const auto* sample = std::get_if<ForceSample>(&datagram.message)) {
       HeldSession& session = sessions[number];
@@ -69,8 +69,8 @@ std::size_t read_captured_steps(const std::filesystem::path& capture,
       answered[sample->tool] = true;
       on_answer({captured.t - *first, state_of(session, *sample), *sample, number, begins});
       ++answers;
-    } else if (std::holds_alternative<Bye>(datagram.message) && on_left) {
-      on_left(number);
+    } else if (std::holds_alternative<Bye>(datagram.message) && on_remaining) {
+      on_remaining(number);
     }
   }
   if (const std::string trouble = reader.trouble(); !trouble.empty())

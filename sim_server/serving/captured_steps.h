@@ -23,6 +23,6 @@ struct CapturedAnswer {
 std::size_t read_captured_steps(const std::filesystem::path& capture,
                                 const std::function<void(const protocol::ToolState&)>& on_state,
                                 const std::function<void(const CapturedAnswer&)>& on_answer,
-                                const std::function<void(std::uint64_t session)>& on_left = {});
+                                const std::function<void(std::uint64_t session)>& on_remaining = {});
 
 }  // namespace palpate::sim

@@ -6,25 +6,25 @@ namespace palpate::sim {
 using protocol::ForceSample;
 
 namespace {
-constexpr Time kLook = std::chrono::milliseconds(1);
+constexpr Time kPollPeriod = std::chrono::milliseconds(1);
 }
 
 void ForcePlayer::run(const std::stop_token& stop) noexcept {
-  for (Time due = now(); !stop.stop_requested(); sleep_until(due += kLook)) look();
+  for (Time due = now(); !stop.stop_requested(); sleep_until(due += kPollPeriod)) poll();
 }
 
-void ForcePlayer::look() noexcept {
+void ForcePlayer::poll() noexcept {
   mailboxes_.tools[0].input.read(input_);
   if (input_.session != session_) {
     session_ = input_.session;
     if (session_ == 0) return;  // the client is gone
     next_ = 0;
-    begin_ = now();
+    start_ = now();
     played = 0;
     ended = false;
   }
   if (session_ == 0 || next_ == forces_.samples.size()) return;
-  const Time since = now() - begin_;
+  const Time since = now() - start_;
   const auto is_due = [&](std::size_t i) {
     return Time{forces_.samples[i].tool_t_ns - forces_.samples.front().tool_t_ns} <= since;
   };

@@ -24,14 +24,14 @@ class ForcePlayer {
   std::atomic<bool> ended{false};
 
  private:
-  void look() noexcept;
+  void poll() noexcept;
 
   const CapturedForces& forces_;
   SimMailboxes& mailboxes_;
   SessionInput input_;
   std::uint64_t session_ = 0;
   std::size_t next_ = 0;
-  Time begin_{};
+  Time start_{};
 };
 
 }  // namespace palpate::sim

@@ -48,28 +48,28 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   const Time t = now();
   Datagram datagram;
   if (const Verdict verdict = protocol::decode(bytes, datagram); verdict != Verdict::kAccepted) {
-    record(t, from, Way::kIn, bytes, false);
+    record(t, from, Direction::kIn, bytes, false);
     return refuse(verdict, bytes, from);
   }
   const std::size_t before = sessions_.members().size();
   const std::uint64_t received = stats_.received, lost = stats_.lost;
   const auto outcome = sessions_.receive(datagram, from, t, fresh_for(datagram), stats_);
   // Before any answer to it, as a reader of the capture expects.
-  record(t, from, Way::kIn, bytes, stats_.received > received && !is_to_a_stranger(outcome));
+  record(t, from, Direction::kIn, bytes, stats_.received > received && !is_to_a_stranger(outcome));
   // A new member stands at the end.
   if (sessions_.members().size() > before) {
     const std::uint8_t tool = sessions_.members().back().tool;
     ++tools[tool].so_far;
-    asked_[tool] = socket_.asked();
+    requested_[tool] = socket_.requested();
     peers_[tool] = {};
   }
   note_holders();
   answer(outcome, from);
-  if (outcome.left != nullptr) tool_is_free(outcome.left->tool);
+  if (outcome.departed != nullptr) tool_is_free(outcome.departed->tool);
   if (outcome.telemetry != nullptr && page_ != nullptr)
     page_->tools[outcome.telemetry->tool].telemetry.push(*outcome.telemetry);
   if (outcome.tool_state != nullptr) {
-    asked_[outcome.tool_state->tool] = socket_.asked();
+    requested_[outcome.tool_state->tool] = socket_.requested();
     pass_on(datagram.header.session, *outcome.tool_state);
   }
   if (outcome.asking != nullptr) send_pages(*outcome.asking, t);
@@ -81,10 +81,12 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
 }
 
 /// Into the recording, if there is one. `ours`: of a session; of all else there may be any number.
-void NetLink::record(Time t, const Endpoint& peer, Way way, std::span<const std::byte> bytes, bool ours) {
+void NetLink::record(Time t, const Endpoint& peer, Direction direction, std::span<const std::byte> bytes,
+                     bool ours) {
   if (recorder_ == nullptr) return;
   const Endpoint& own = own_towards(peer);
-  const Endpoint &from = way == Way::kIn ? peer : own, &to = way == Way::kIn ? own : peer;
+  const Endpoint &from = direction == Direction::kIn ? peer : own,
+                 &to = direction == Direction::kIn ? own : peer;
   if (ours) {
     recorder_->note(t, from, to, bytes);
   } else {
@@ -132,8 +134,8 @@ void NetLink::on_forces() {
     if (!mailboxes.force.read(output)) continue;
     auto* member = sessions_.holder(output.sample.tool);
     if (member == nullptr || member->session != output.session) continue;
-    if (page_ != nullptr && page_->wants_telemetry)
-      output.sample.flags |= protocol::ForceSample::kWantsTelemetry;
+    if (page_ != nullptr && page_->requests_telemetry)
+      output.sample.flags |= protocol::ForceSample::kRequestsTelemetry;
     send(*member, output.sample);
   }
   if (page_ != nullptr) send_pointers();
@@ -150,12 +152,12 @@ void NetLink::send_pointers() {
 
 void NetLink::on_timer() {
   watcher.note(stats_);
-  for (const auto& gone : sessions_.expire(now())) tool_is_free(gone.tool);
+  for (const auto& expired : sessions_.expire(now())) tool_is_free(expired.tool);
   note_holders();
-  if (page_ != nullptr) tell_peers();
+  if (page_ != nullptr) report_peers();
 }
 
-void NetLink::tell_peers() {
+void NetLink::report_peers() {
   for (std::size_t i = 0; i < kMaxTools; ++i) {
     const auto* const member = sessions_.holder(static_cast<std::uint8_t>(i));
     peers_[i] = member == nullptr ? PeerCounts{}
@@ -186,19 +188,19 @@ const Endpoint& NetLink::own_towards(const Endpoint& peer) {
 void NetLink::send(protocol::ServerSessions::Member& member, const protocol::Message& message) {
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   send({bytes.data(), protocol::ServerSessions::write(member, message, bytes)}, member.endpoint,
-       asked_[member.tool], true);
+       requested_[member.tool], true);
 }
 
 void NetLink::answer(const protocol::ServerSessions::Outcome& outcome, const Endpoint& to) {
   if (!outcome.answer) return;
   std::array<std::byte, protocol::kMaxDatagram> bytes;
   const std::size_t size = protocol::encode(outcome.answer->first, outcome.answer->second, bytes);
-  send({bytes.data(), protocol::seal(bytes, size, outcome.key)}, to, socket_.asked(),
+  send({bytes.data(), protocol::seal(bytes, size, outcome.key)}, to, socket_.requested(),
        !is_to_a_stranger(outcome));
 }
 
 void NetLink::send(std::span<const std::byte> bytes, const Endpoint& to, const Endpoint& from, bool ours) {
-  record(now(), to, Way::kOut, bytes, ours);
+  record(now(), to, Direction::kOut, bytes, ours);
   if (!socket_.send(bytes, to, from)) ++stats_.sent;
 }
 

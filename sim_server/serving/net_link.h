@@ -42,15 +42,16 @@ class NetLink {
   void pass_on(std::uint64_t session, const protocol::ToolState& state);
   void send_pages(const protocol::ToolState& state, Time t);
   void note_holders();
-  void tell_peers();
+  void report_peers();
   void on_timer();
   void tool_is_free(std::uint8_t tool);
   void send(protocol::ServerSessions::Member& member, const protocol::Message& message);
   void answer(const protocol::ServerSessions::Outcome& outcome, const protocol::Endpoint& to);
   void send(std::span<const std::byte> bytes, const protocol::Endpoint& to, const protocol::Endpoint& from,
             bool ours);
-  enum class Way { kIn, kOut };
-  void record(Time t, const protocol::Endpoint& peer, Way way, std::span<const std::byte> bytes, bool ours);
+  enum class Direction { kIn, kOut };
+  void record(Time t, const protocol::Endpoint& peer, Direction direction, std::span<const std::byte> bytes,
+              bool ours);
 
   const protocol::Endpoint& own_towards(const protocol::Endpoint& peer);
 
@@ -64,8 +65,9 @@ class NetLink {
   std::vector<protocol::TokenBucket> page_buckets_;                // of each tool
   std::array<std::shared_ptr<SurfacePager>, kMaxTools> pagers_{};  // of each tool, the newest; null: none
   protocol::LinkStats stats_;
-  std::array<protocol::Endpoint, kMaxTools> asked_;  // which of our addresses the client of each tool asks
-  std::array<PeerCounts, kMaxTools> peers_{};        // for pages
+  std::array<protocol::Endpoint, kMaxTools>
+      requested_;                              // which of our addresses the client of each tool asks
+  std::array<PeerCounts, kMaxTools> peers_{};  // for pages
 };
 
 }  // namespace palpate::sim

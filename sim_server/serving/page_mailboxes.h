@@ -28,7 +28,7 @@ struct ToolPageMailboxes {
 /// `SimMailboxes` when a pointer waits.
 struct PageMailboxes {
   std::array<ToolPageMailboxes, kMaxTools> tools;
-  std::atomic<bool> wants_telemetry{false};  // while a page is open
+  std::atomic<bool> requests_telemetry{false};  // while a page is open
 };
 
 }  // namespace palpate::sim

@@ -13,16 +13,17 @@ namespace palpate::sim {
 class RelaxationTeller {
  public:
   /// `vertices`: of the surface, of each vertex of the model that clients have (`SurfacePager::vertices`).
-  RelaxationTeller(const SlowModes& modes, std::span<const int> vertices);
+  RelaxationTeller(const PublishedModes& modes, std::span<const int> vertices);
 
   /// Appends the next part to a sample that has all others, as long as a datagram has room for it.
-  void tell(const ModalMotion& state, protocol::ForceSample& sample) noexcept;
+  void report(const ModalMotion& state, protocol::ForceSample& sample) noexcept;
 
  private:
-  void tell_modes(const ModalMotion& state, std::size_t room, protocol::RelaxedState& told) noexcept;
-  void tell_vertices(const ModalMotion& state, std::size_t room, protocol::RelaxedState& told) noexcept;
+  void publish_modes(const ModalMotion& state, std::size_t room, protocol::RelaxedState& published) noexcept;
+  void publish_vertices(const ModalMotion& state, std::size_t room,
+                        protocol::RelaxedState& published) noexcept;
 
-  const SlowModes& modes_;
+  const PublishedModes& modes_;
   std::size_t terms_;
   std::vector<int> vertices_;
   std::size_t next_mode_ = 0, next_vertex_ = 0;

@@ -21,28 +21,28 @@ protocol::Linearisation on_the_wire(const Linearised& l) noexcept {
 }
 
 protocol::ModalState on_the_wire(const ModalMotion& modes) noexcept {
-  protocol::ModalState told{.count = static_cast<std::uint8_t>(modes.q.size())};
+  protocol::ModalState published{.count = static_cast<std::uint8_t>(modes.q.size())};
   for (Eigen::Index k = 0; k < modes.q.size(); ++k) {
-    told.q[static_cast<std::size_t>(k)] = static_cast<float>(modes.q[k]);
-    told.v[static_cast<std::size_t>(k)] = static_cast<float>(modes.v[k]);
+    published.q[static_cast<std::size_t>(k)] = static_cast<float>(modes.q[k]);
+    published.v[static_cast<std::size_t>(k)] = static_cast<float>(modes.v[k]);
   }
-  return told;
+  return published;
 }
 
 protocol::ModalLoads on_the_wire(const Eigen::VectorXd& loads) noexcept {
   const auto modes = static_cast<std::size_t>(loads.size());
-  protocol::ModalLoads told{.count = static_cast<std::uint8_t>(protocol::ModalLoads::room(modes))};
-  for (std::size_t k = 0; k < told.count; ++k)
-    told.load[k] = static_cast<float>(loads[static_cast<Eigen::Index>(k)]);
-  return told;
+  protocol::ModalLoads published{.count = static_cast<std::uint8_t>(protocol::ModalLoads::room(modes))};
+  for (std::size_t k = 0; k < published.count; ++k)
+    published.load[k] = static_cast<float>(loads[static_cast<Eigen::Index>(k)]);
+  return published;
 }
 
 /// What the force is around the tool, now and ahead, and how the other tools move it.
-void tell_nearby(const ToolAnswer& answer, ForceSample& sample) noexcept {
-  if (answer.here) {
-    sample.flags |= ForceSample::kHasHere;
+void publish_nearby(const ToolAnswer& answer, ForceSample& sample) noexcept {
+  if (answer.at_tool) {
+    sample.flags |= ForceSample::kHasTangent;
     sample.surface_v_W = answer.surface_v_W;
-    sample.here = on_the_wire(*answer.here);
+    sample.at_tool = on_the_wire(*answer.at_tool);
   }
   if (answer.ahead) {
     sample.flags |= ForceSample::kHasAhead;
@@ -58,8 +58,8 @@ void tell_nearby(const ToolAnswer& answer, ForceSample& sample) noexcept {
 }
 
 /// Where the `surface` that the client knows is, and how it swings.
-void tell_surface(const ToolAnswer& answer, const protocol::SurfaceState& surface,
-                  ForceSample& sample) noexcept {
+void publish_surface(const ToolAnswer& answer, const protocol::SurfaceState& surface,
+                     ForceSample& sample) noexcept {
   if (!answer.surface_shift_W) return;
   sample.flags |= ForceSample::kHasSurface;
   sample.surface = surface;
@@ -111,8 +111,8 @@ void ServedTools::make_pagers() {
 
 /// Where the simulation tells another surface from this step on, or none. Without memory for it, none.
 void ServedTools::follow_surface() noexcept {
-  if (simulation_.published_version() == told_version_) return;
-  told_version_ = simulation_.published_version();
+  if (simulation_.published_version() == published_version_) return;
+  published_version_ = simulation_.published_version();
   try {
     make_pagers();
   } catch (const std::bad_alloc&) {
@@ -128,8 +128,7 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionI
     inputs_[i] = input_of(i, inputs[i]);
     holders_[i].before = inputs[i].state;
   }
-  if (std::all_of(holders_.begin(), holders_.end(), [](const Holder& h) { return h.session == 0; }))
-    return {};
+  if (std::ranges::all_of(holders_, [](const Holder& h) { return h.session == 0; })) return {};
   const std::span<const ToolAnswer> answers = simulation_.step(inputs_, dt);
   follow_surface();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -167,40 +166,41 @@ std::optional<ForceSample> ServedTools::paused(std::size_t tool, const SessionIn
 ToolInput ServedTools::input_of(std::size_t tool, const SessionInput& input) noexcept {
   const protocol::ToolState& state = input.state;
   const auto says = [&](std::uint16_t flag) { return (state.flags & flag) != 0; };
-  const auto wants = [&](std::uint16_t flag) { return input.session != 0 && input.fresh && says(flag); };
-  ToolInput told{.buttons = state.buttons, .v_W = state.v_W};
-  follow_path(tool, input, told);
+  const auto request = [&](std::uint16_t flag) { return input.session != 0 && input.fresh && says(flag); };
+  ToolInput published{.buttons = state.buttons, .v_W = state.v_W};
+  follow_path(tool, input, published);
   // The pose of a lost device is the last one known, or none: it touches nothing.
-  if (input.session != 0 && !says(protocol::ToolState::kDeviceLost)) told.pose = pose_of(state);
-  told.wants.here = wants(protocol::ToolState::kWantsHere);
-  told.wants.tangent = input.fresh && says(protocol::ToolState::kWantsHere);
-  if (wants(protocol::ToolState::kWantsAhead))
-    told.wants.ahead = ToolWants::Ahead{to_seconds(Time{state.lead_ns}), state.v_W};
+  if (input.session != 0 && !says(protocol::ToolState::kDeviceLost)) published.pose = pose_of(state);
+  published.request.at_tool = request(protocol::ToolState::kRequestsTangent);
+  published.request.tangent = input.fresh && says(protocol::ToolState::kRequestsTangent);
+  if (request(protocol::ToolState::kRequestsAhead))
+    published.request.ahead = ToolRequest::Ahead{to_seconds(Time{state.lead_ns}), state.v_W};
   // Of one that can be cut only where it is asked for, and of the shape of tool that clients know.
-  const bool told_later = simulation_.resection() != nullptr && simulation_.tool(tool).shape().is_sphere();
-  told.wants.surface_shift =
-      wants(protocol::ToolState::kWantsSurface) && (told_later || surfaces_[tool].version != 0);
-  return told;
+  const bool published_later =
+      simulation_.resection() != nullptr && simulation_.tool(tool).shape().is_sphere();
+  published.request.surface_shift =
+      request(protocol::ToolState::kRequestsSurface) && (published_later || surfaces_[tool].version != 0);
+  return published;
 }
 
 /// Where the tool was at the instants since the state that the step before answered.
-void ServedTools::follow_path(std::size_t tool, const SessionInput& input, ToolInput& told) noexcept {
+void ServedTools::follow_path(std::size_t tool, const SessionInput& input, ToolInput& published) noexcept {
   std::vector<PathPoint>& points = paths_[tool];
   const bool was_lost = (holders_[tool].before.flags & protocol::ToolState::kDeviceLost) != 0;
   ToolPath::Point from = point_of(holders_[tool].before);
   const ToolPath::Point to = point_of(input.state);
   const auto instants = static_cast<std::int64_t>(points.size()) + 1;
-  const double apart =
+  const double distance =
       static_cast<double>(to.t_ns) - static_cast<double>(from.t_ns);  // ns; any, off the wire
-  const std::int64_t begin = from.t_ns, took = apart > 0 && apart < 1e9 ? to.t_ns - begin : 0;
+  const std::int64_t begin = from.t_ns, took = distance > 0 && distance < 1e9 ? to.t_ns - begin : 0;
   for (std::int64_t k = 1; k < instants; ++k) {
     const auto now = took > 0 ? input.path.at(begin + took * k / instants) : std::nullopt;
     if (!now || was_lost) return;  // evenly and straight, or it appears
     points[static_cast<std::size_t>(k) - 1] = {now->pose, bend_between(from, *now)};
     from = *now;
   }
-  told.path = points;
-  told.bend = bend_between(from, to);
+  published.path = points;
+  published.bend = bend_between(from, to);
 }
 
 ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& state,
@@ -214,9 +214,9 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
                      .torque_W = answer.torque};
   if (answer.contacts > 0) sample.flags |= ForceSample::kInContact;
   if (answer.flagged) sample.flags |= ForceSample::kFlagged;
-  tell_nearby(answer, sample);
-  if (surfaces_[tool].version != 0) tell_surface(answer, surfaces_[tool], sample);
-  if (simulation_.instants() > 1 && answer.here) {
+  publish_nearby(answer, sample);
+  if (surfaces_[tool].version != 0) publish_surface(answer, surfaces_[tool], sample);
+  if (simulation_.instants() > 1 && answer.at_tool) {
     sample.flags |= ForceSample::kHasMean;
     sample.mean_f_W = answer.mean_force;
   }
@@ -225,11 +225,11 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
     sample.cuts = resection->version();
     if (answer.cutting) sample.flags |= ForceSample::kCutting;
   }
-  if (errors_ != nullptr && (state.flags & protocol::ToolState::kWantsErrors) != 0) {
+  if (errors_ != nullptr && (state.flags & protocol::ToolState::kRequestsErrors) != 0) {
     sample.flags |= ForceSample::kHasErrors;
     sample.errors = errors_->of_step(tool, simulation_.loads(tool));
   }
-  if (relaxation_ && (sample.flags & ForceSample::kHasModes) != 0) relaxation_->tell(*answer.modes, sample);
+  if (relaxation_ && (sample.flags & ForceSample::kHasModes) != 0) relaxation_->report(*answer.modes, sample);
   return sample;
 }
 

@@ -47,7 +47,7 @@ class ServedTools {
   /// The surface that samples of a tool name by now. Another one only where `published_version` is another
   /// number.
   const std::shared_ptr<SurfacePager>& pager(std::size_t tool) const { return pagers_[tool]; }
-  std::uint32_t published_version() const { return told_version_; }
+  std::uint32_t published_version() const { return published_version_; }
 
  private:
   struct Holder {
@@ -59,7 +59,7 @@ class ServedTools {
   void make_pagers();
   void follow_surface() noexcept;
   ToolInput input_of(std::size_t tool, const SessionInput& input) noexcept;
-  void follow_path(std::size_t tool, const SessionInput& input, ToolInput& told) noexcept;
+  void follow_path(std::size_t tool, const SessionInput& input, ToolInput& published) noexcept;
   protocol::ForceSample sample_of(std::size_t tool, const protocol::ToolState& state,
                                   const ToolAnswer& answer) noexcept;
 
@@ -67,7 +67,7 @@ class ServedTools {
   const ErrorOfForce* errors_;
   std::vector<std::shared_ptr<SurfacePager>> pagers_;  // of each tool
   std::vector<protocol::SurfaceState> surfaces_;       // of each tool; version 0: none
-  std::uint32_t told_version_ = 0;
+  std::uint32_t published_version_ = 0;
   std::optional<RelaxationTeller> relaxation_;  // where modes are told, of one tool, that relax
   std::vector<Holder> holders_;
   std::vector<std::vector<PathPoint>> paths_;  // within a step, of each tool

@@ -7,9 +7,9 @@
 
 namespace palpate::sim {
 namespace {
-constexpr Time kPollPeriod = std::chrono::microseconds(200);  // rate 0: how often to look for a new pose
-constexpr Time kTellPeriod = std::chrono::milliseconds(100);  // of a pause
-constexpr Time kLookPeriod = std::chrono::milliseconds(100);  // how near a tool is that has not touched yet
+constexpr Time kPosePollPeriod = std::chrono::microseconds(200);  // rate 0: how often to look for a new pose
+constexpr Time kPublishPeriod = std::chrono::milliseconds(100);   // of a pause
+constexpr Time kSearchPeriod = std::chrono::milliseconds(100);  // how near a tool is that has not touched yet
 }  // namespace
 
 StepCell& StepCell::operator+=(const StepCell& other) noexcept {
@@ -58,7 +58,7 @@ void SimLoop::run(const std::stop_token& stop) noexcept {
     done.inputs = inputs_;
     done.late = stats_.late;
     if (observer_ != nullptr) observer_->turned(done);
-    deadline += period_ > Time::zero() ? period_ : kPollPeriod;
+    deadline += period_ > Time::zero() ? period_ : kPosePollPeriod;
     if (const Time behind = now() - deadline; behind > Time::zero()) {
       if (period_ > Time::zero()) {
         const auto late = static_cast<std::uint64_t>(behind / period_ + 1);
@@ -84,21 +84,21 @@ bool SimLoop::read_inputs() noexcept {
 LoopTurn SimLoop::turn(double dt) noexcept {
   const LoopObserver::Leave leave = observer_ != nullptr ? observer_->may_step() : LoopObserver::Leave{};
   if (leave.step) return step(dt, leave.paused);
-  tell_paused();
+  report_paused();
   return {};
 }
 
-void SimLoop::tell_paused() noexcept {
-  if (now() < next_told_) return;
-  next_told_ = now() + kTellPeriod;
-  bool told = false;
+void SimLoop::report_paused() noexcept {
+  if (now() < next_published_) return;
+  next_published_ = now() + kPublishPeriod;
+  bool published = false;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     if (const auto sample = served_.paused(i, inputs_[i])) {
       mailboxes_.tools[i].force.write({inputs_[i].session, *sample});
-      told = true;
+      published = true;
     }
   }
-  if (told) mailboxes_.bell.ring();
+  if (published) mailboxes_.bell.ring();
 }
 
 LoopTurn SimLoop::step(double dt, bool paused) noexcept {
@@ -131,9 +131,9 @@ void SimLoop::count_beyond(std::size_t tool) noexcept {
 }
 
 /// For who never touches: how much was missing.
-void SimLoop::look_how_near(Time now) noexcept {
-  if (now < next_look_) return;
-  next_look_ = now + kLookPeriod;
+void SimLoop::measure_distance(Time now) noexcept {
+  if (now < next_search_) return;
+  next_search_ = now + kSearchPeriod;
   for (std::size_t i = 0; i < stats_.tools.size(); ++i) {
     ToolStats& tool = stats_.tools[i];
     if (tool.contact_steps > 0) continue;
@@ -163,7 +163,7 @@ void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, 
     flagged = flagged || force.flagged;
     largest = std::max(largest, newton);
   }
-  look_how_near(start + took);
+  measure_distance(start + took);
   note_cuts();
   stats_.step_ns.add(took.count());
   stats_.timeline.at(start) += {1, took_ns, took_ns, 0};

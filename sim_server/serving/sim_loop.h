@@ -109,9 +109,9 @@ class SimLoop {
   bool read_inputs() noexcept;
   LoopTurn turn(double dt) noexcept;
   LoopTurn step(double dt, bool paused) noexcept;
-  void tell_paused() noexcept;
+  void report_paused() noexcept;
   void count_beyond(std::size_t tool) noexcept;
-  void look_how_near(Time now) noexcept;
+  void measure_distance(Time now) noexcept;
   void note_cuts() noexcept;
   void pass_surfaces_on();
   void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
@@ -121,7 +121,7 @@ class SimLoop {
   std::uint32_t passed_on_ = 0;  // which surface that is told
   SimMailboxes& mailboxes_;
   std::span<const ToolSettings> tools_;
-  Time period_, next_look_{}, next_told_{};
+  Time period_, next_search_{}, next_published_{};
   std::vector<SessionInput> inputs_;
   ErrorOfForce& errors_;
   LoopObserver* observer_;

@@ -25,7 +25,7 @@ void cluster(std::span<int> vertices, const std::vector<Vec3>& rest) {
   }
   int axis = 0;
   (high - low).maxCoeff(&axis);
-  std::sort(vertices.begin(), vertices.end(), [&](int a, int b) {
+  std::ranges::sort(vertices, [&](int a, int b) {
     return rest[a][axis] != rest[b][axis] ? rest[a][axis] < rest[b][axis] : a < b;
   });
   const std::size_t half = clusters / 2 * kCluster;
@@ -38,11 +38,11 @@ void cluster(std::span<int> vertices, const std::vector<Vec3>& rest) {
 SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
     : simulation_(simulation),
       nearby_(simulation.published_surface()),
-      told_(simulation.published_modes()),
+      published_(simulation.published_modes()),
       tool_(static_cast<std::uint8_t>(tool)) {
   find_surface();
   if (!simulation.tool(tool).shape().is_sphere()) return;  // the only shape that clients know
-  const bool constant = told_ != nullptr || simulation.traits().constant_compliance;
+  const bool constant = published_ != nullptr || simulation.traits().constant_compliance;
   if (!constant || vertices_.size() > protocol::kMostSurfaceVertices) return;
   put_in_order();
   patch_.reserve(2 * kCluster, 0);
@@ -58,15 +58,15 @@ SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
 
 /// All that the tool can touch; of a surface that can be cut, what is told of it.
 void SurfacePager::find_surface() {
-  const auto is_told = [this](int v) {
+  const auto is_published = [this](int v) {
     return nearby_ == nullptr || std::ranges::binary_search(nearby_->shape.vertices, v);
   };
   for (const Triangle& t : simulation_.touchable(tool_)) {
-    if (!std::ranges::all_of(t, is_told)) continue;
+    if (!std::ranges::all_of(t, is_published)) continue;
     triangles_.push_back(t);
     vertices_.insert(vertices_.end(), t.begin(), t.end());
   }
-  std::sort(vertices_.begin(), vertices_.end());
+  std::ranges::sort(vertices_);
   vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
 }
 
@@ -94,11 +94,11 @@ std::uint32_t SurfacePager::hash() noexcept {
     take_compliance({&vertices_[i], 1});
     hash.add(Vec3(patch_.compliance.topLeftCorner<3, 1>()));
   }
-  if (told_ != nullptr) {
-    const auto bytes = static_cast<std::size_t>(told_->told) * sizeof(double);
-    hash.add(told_->frequencies.data(), bytes);
-    hash.add(told_->damping.data(), bytes);
-    for (const Relaxation& term : told_->relaxations) hash.add(&term, sizeof term);
+  if (published_ != nullptr) {
+    const auto bytes = static_cast<std::size_t>(published_->published) * sizeof(double);
+    hash.add(published_->frequencies.data(), bytes);
+    hash.add(published_->damping.data(), bytes);
+    for (const Relaxation& term : published_->relaxations) hash.add(&term, sizeof term);
   }
   return static_cast<std::uint32_t>(hash.value() ^ hash.value() >> 32) | 1;
 }
@@ -139,16 +139,16 @@ std::span<const int> SurfacePager::members(std::size_t cluster) const noexcept {
 
 /// Into `patch_`: that of the tissue, or of all but its slow modes.
 void SurfacePager::take_compliance(std::span<const int> vertices) noexcept {
-  if (told_ == nullptr) return simulation_.model().compliance(vertices, patch_);
+  if (published_ == nullptr) return simulation_.model().compliance(vertices, patch_);
   patch_.tool_compliance = 0;
   if (nearby_) return nearby_->motion.residual_compliance(vertices, patch_);
   simulation_.traits().client->residual_compliance(vertices, patch_);
 }
 
 void SurfacePager::fill_spectrum(SurfacePage& out) const noexcept {
-  for (Eigen::Index k = 0; k < told_->told; ++k) {
-    out.values[3 * static_cast<std::size_t>(k)] = static_cast<float>(told_->frequencies[k]);
-    out.values[3 * static_cast<std::size_t>(k) + 1] = static_cast<float>(told_->damping[k]);
+  for (Eigen::Index k = 0; k < published_->published; ++k) {
+    out.values[3 * static_cast<std::size_t>(k)] = static_cast<float>(published_->frequencies[k]);
+    out.values[3 * static_cast<std::size_t>(k) + 1] = static_cast<float>(published_->damping[k]);
   }
 }
 
@@ -156,12 +156,12 @@ void SurfacePager::fill_shapes(std::uint32_t number, SurfacePage& out) const noe
   const auto [cluster, group] = pages().cluster_and_group_of(number);
   const auto rows = members(cluster);
   const Eigen::Index first = group * SurfacePages::kModes,
-                     count = std::min<Eigen::Index>(SurfacePages::kModes, told_->told - first);
+                     count = std::min<Eigen::Index>(SurfacePages::kModes, published_->published - first);
   using Page = Eigen::Matrix<float, 3 * kCluster, SurfacePages::kModes, Eigen::RowMajor>;
   Eigen::Map<Page> page(out.values.data());
   for (std::size_t i = 0; i < rows.size(); ++i)
     page.block(3 * static_cast<Eigen::Index>(i), 0, 3, count) =
-        told_->shapes.block(3 * rows[i], first, 3, count).cast<float>();
+        published_->shapes.block(3 * rows[i], first, 3, count).cast<float>();
 }
 
 /// Whether the compliance there is known by now.
@@ -176,7 +176,7 @@ void SurfacePager::fill_tile(std::uint32_t number, SurfacePage& out) noexcept {
   const auto [a, b] = pages().clusters_of(number);
   const auto rows = members(a), columns = members(b);
   std::array<int, 2 * kCluster> both{};
-  std::copy(columns.begin(), columns.end(), std::copy(rows.begin(), rows.end(), both.begin()));
+  std::ranges::copy(columns, std::ranges::copy(rows, both.begin()).out);
   const std::size_t count = rows.size() + (a == b ? 0 : columns.size());
   take_compliance(std::span(both).first(count));
   const auto height = 3 * static_cast<Eigen::Index>(rows.size()),

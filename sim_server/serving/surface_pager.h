@@ -19,7 +19,7 @@ class SurfacePager {
   const protocol::SurfaceState& state() const { return state_; }
   protocol::SurfacePages pages() const {
     return {state_.vertices, state_.triangles,
-            told_ == nullptr ? 0 : static_cast<std::uint32_t>(told_->told)};
+            published_ == nullptr ? 0 : static_cast<std::uint32_t>(published_->published)};
   }
 
   /// Which vertex of the surface each vertex of the model is.
@@ -44,7 +44,7 @@ class SurfacePager {
 
   const Simulation& simulation_;
   std::shared_ptr<const PublishedSurface> nearby_;  // of a surface that can be cut
-  const SlowModes* told_;                           // null: none are told
+  const PublishedModes* published_;                 // null: none are told
   std::uint8_t tool_;
   std::vector<int> vertices_;        // surface vertex of each vertex of the model
   std::vector<Vec3> rest_;           // of these, m

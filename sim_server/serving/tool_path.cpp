@@ -27,7 +27,7 @@ void ToolPath::add(const protocol::ToolState& state) noexcept {
     written_ = 0;  // the clock of that one was wild
   }
   // The newest is always kept: it takes the place of one that stands too near to the one before.
-  if (written_ > 1 && ns_between(back(1).t_ns, back(0).t_ns) < kApart) --written_;
+  if (written_ > 1 && ns_between(back(1).t_ns, back(0).t_ns) < kSpacing) --written_;
   ring_[written_++ % kPoints] = {state.t_ns, pose_of(state), state.v_W};
 }
 
@@ -39,12 +39,12 @@ std::optional<ToolPath::Point> ToolPath::at(std::int64_t t_ns) const noexcept {
     if (before.t_ns > t_ns) continue;
     if (before.t_ns == t_ns) return before;
     const Point& after = back(i - 1);
-    const double share = static_cast<double>(ns_between(before.t_ns, t_ns)) /
-                         static_cast<double>(ns_between(before.t_ns, after.t_ns));
+    const double fraction = static_cast<double>(ns_between(before.t_ns, t_ns)) /
+                            static_cast<double>(ns_between(before.t_ns, after.t_ns));
     return Point{t_ns,
-                 {before.pose.p_W + share * (after.pose.p_W - before.pose.p_W),
-                  before.pose.q_W.slerp(share, after.pose.q_W)},
-                 before.v_W + share * (after.v_W - before.v_W)};
+                 {before.pose.p_W + fraction * (after.pose.p_W - before.pose.p_W),
+                  before.pose.q_W.slerp(fraction, after.pose.q_W)},
+                 before.v_W + fraction * (after.v_W - before.v_W)};
   }
   return {};
 }

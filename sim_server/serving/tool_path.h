@@ -16,8 +16,8 @@ ToolPose pose_of(const protocol::ToolState& state) noexcept;
 class ToolPath {
  public:
   /// The newest state; one that is not later than those before changes nothing, but where it is earlier by
-  /// more than a second all begins anew. States that follow each other by less than `kApart` are thinned, so
-  /// that the last 126 ms are known whatever the rate of the client.
+  /// more than a second all begins anew. States that follow each other by less than `kSpacing` are thinned,
+  /// so that the last 126 ms are known whatever the rate of the client.
   void add(const protocol::ToolState& state) noexcept;
 
   struct Point {
@@ -31,7 +31,7 @@ class ToolPath {
 
  private:
   static constexpr std::size_t kPoints = 64;
-  static constexpr std::uint64_t kApart = 2'000'000;  // ns
+  static constexpr std::uint64_t kSpacing = 2'000'000;  // ns
 
   const Point& back(std::size_t i) const noexcept { return ring_[(written_ - 1 - i) % kPoints]; }
 

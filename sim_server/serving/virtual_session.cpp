@@ -60,15 +60,15 @@ void VirtualSession::tick(std::uint64_t k) {
   newest_v_W_ = state.v_W;
   state.buttons = motions_[link_.tool].buttons_at(to_seconds(t));
   if (link_.parts) {
-    state.flags |=
-        ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface | ToolState::kWantsErrors;
+    state.flags |= ToolState::kRequestsTangent | ToolState::kRequestsAhead | ToolState::kRequestsSurface |
+                   ToolState::kRequestsErrors;
     state.pages_taken = pages_;
     state.lead_ns = (took_ + link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
   }
   note_paths(state);
   step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
   // What arrives in this very tick (no delay) is named by its tool state, though it stands behind it.
-  for (const OnTheWay& next : on_the_way_) {
+  for (const InTransit& next : in_transit_) {
     if (next.ready > t) break;
     newest_ = next.sample.number;
   }
@@ -125,8 +125,8 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
     stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
   const ServedTools::Outcome& outcome = outcomes[link_.tool];
   const Time done = link_.clock == nullptr ? answered_ : pass(begun, link_.clock->took());
-  on_the_way_.push_back({done + link_.delay, *outcome.answer});
-  on_the_way_.back().sample.tool = state.tool;
+  in_transit_.push_back({done + link_.delay, *outcome.answer});
+  in_transit_.back().sample.tool = state.tool;
 }
 
 /// Of all tools at the time of this one's state, with the paths that led there.
@@ -148,9 +148,9 @@ void VirtualSession::note_paths(const ToolState& state) {
 }
 
 void VirtualSession::deliver(Time t) {
-  while (!on_the_way_.empty() && on_the_way_.front().ready <= t) {
-    const OnTheWay next = on_the_way_.front();
-    on_the_way_.pop_front();
+  while (!in_transit_.empty() && in_transit_.front().ready <= t) {
+    const InTransit next = in_transit_.front();
+    in_transit_.pop_front();
     // Numbered only now: a Welcome in between does not overtake it.
     auto* const member = server_.holder(next.sample.tool);
     to_client({session_, ++member->sent}, next.sample, next.ready);
@@ -184,7 +184,7 @@ void VirtualSession::send_surface(const ForceSample& sample, Time t) {
   if (sample.surface.version != surface_) send_shape(t);
   const SurfacePages pages = pager.pages();
   const double reach = NearTiles::reach(sample.surface.tool_radius, newest_v_W_.norm());
-  near_.look(newest_p_W_ - sample.surface.shift_W);
+  near_.search(newest_p_W_ - sample.surface.shift_W);
   if (near_.distance() > reach && sample.f_W.isZero(0)) return;
   near_.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
     pages.for_clusters(a, b, [&](std::uint32_t page) { keep_page(page, pages.first_tile(), t); });
@@ -196,7 +196,7 @@ void VirtualSession::send_surface(const ForceSample& sample, Time t) {
 void VirtualSession::keep_page(std::uint32_t page, std::uint32_t first_tile, Time t) {
   const std::uint32_t tile = page - first_tile;
   if (has_[tile] != 0 || !send_page(page, t)) return;
-  if (sent_.size() == NearTiles::kKept) {
+  if (sent_.size() == NearTiles::kStored) {
     has_[sent_.front()] = 0;
     sent_.pop_front();
   }

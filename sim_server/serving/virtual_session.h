@@ -65,7 +65,7 @@ class VirtualSession {
   const VirtualSessionStats& stats() const { return stats_; }
 
  private:
-  struct OnTheWay {
+  struct InTransit {
     Time ready;
     protocol::ForceSample sample;
   };
@@ -94,7 +94,7 @@ class VirtualSession {
   std::uint64_t session_;
   protocol::ClientSession client_{protocol::Nonce{1}};
   protocol::LinkStats server_stats_, client_stats_;
-  std::deque<OnTheWay> on_the_way_;
+  std::deque<InTransit> in_transit_;
   std::uint32_t surface_ = 0;  // version of the one whose pages were sent
   protocol::NearTiles near_;
   std::deque<std::uint32_t> sent_;  // pages of tiles and shapes that the client still has, the oldest first

@@ -73,8 +73,8 @@ void write_all(const File& file, const void* data, std::size_t bytes, const std:
   }
 }
 
-void write_whole(const File& file, const std::filesystem::path& name, const Header& header,
-                 const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+void write_atomically(const File& file, const std::filesystem::path& name, const Header& header,
+                      const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
   if (file.handle < 0) fail("{}: cannot be made: {}", name.string(), std::strerror(errno));
   std::array<char, kPage> page{};
   std::memcpy(page.data(), &header, sizeof(header));
@@ -106,13 +106,13 @@ void MappedMatrix::Unmap::operator()(void* begin) const noexcept {
 }
 
 Eigen::Map<Eigen::MatrixXd> MappedMatrix::matrix() const {
-  void* const first = static_cast<char*>(begin_.get()) + kPage;
+  void* const first = static_cast<char*>(start_.get()) + kPage;
   return {static_cast<double*>(first), static_cast<Eigen::Index>(header_.rows),
           static_cast<Eigen::Index>(header_.cols)};
 }
 
-std::string note_of_saved(const MappedMatrix& kept, std::string_view source) {
-  return fmt::format("from {}, which saved {:.1f} s", source, kept.header().seconds);
+std::string note_of_saved(const MappedMatrix& stored, std::string_view source) {
+  return fmt::format("from {}, which saved {:.1f} s", source, stored.header().seconds);
 }
 
 std::filesystem::path entry_file(const std::filesystem::path& folder, const Digest& key) {
@@ -136,7 +136,7 @@ void write_entry(const std::filesystem::path& folder, const EntryHeader& header,
   std::string part = fmt::format("{}.XXXXXX{}", file.string(), kPartEnding);
   const File written(::mkostemps(part.data(), static_cast<int>(kPartEnding.size()), O_CLOEXEC));
   try {
-    write_whole(written, part, raw, matrix);
+    write_atomically(written, part, raw, matrix);
     if (::fchmod(written.handle, 0644) != 0) fail("{}: cannot be written: {}", part, std::strerror(errno));
     std::filesystem::rename(part, file);
   } catch (...) {

@@ -24,7 +24,7 @@ struct EntryHeader {
 class MappedMatrix {
  public:
   MappedMatrix(void* begin, std::size_t bytes, EntryHeader header)
-      : begin_(begin, Unmap{bytes}), header_(std::move(header)) {}
+      : start_(begin, Unmap{bytes}), header_(std::move(header)) {}
 
   Eigen::Map<Eigen::MatrixXd> matrix() const;
   const EntryHeader& header() const { return header_; }
@@ -35,12 +35,12 @@ class MappedMatrix {
     void operator()(void* begin) const noexcept;
   };
 
-  std::unique_ptr<void, Unmap> begin_;
+  std::unique_ptr<void, Unmap> start_;
   EntryHeader header_;
 };
 
 /// "from the set-up cache, which saved 3.2 s"; `source`: where it came from.
-std::string note_of_saved(const MappedMatrix& kept, std::string_view source = "the set-up cache");
+std::string note_of_saved(const MappedMatrix& stored, std::string_view source = "the set-up cache");
 
 /// File of an entry: FOLDER/KEY.setup.
 std::filesystem::path entry_file(const std::filesystem::path& folder, const Digest& key);

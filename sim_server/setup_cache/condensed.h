@@ -17,9 +17,9 @@ class Condensed {
 
   bool makes() const { return static_cast<bool>(make_factor_); }
   /// Returns a factor by `make_factor`, if `makes()`. Throws what `make_factor` throws.
-  std::unique_ptr<FactoredMatrix> factor(const SparseMatrix& lower, std::span<const int> kept, FactorUse use,
-                                         const std::string& where) const {
-    return make_factor_(lower, kept, use, where);
+  std::unique_ptr<FactoredMatrix> factor(const SparseMatrix& lower, std::span<const int> stored,
+                                         FactorUse use, const std::string& where) const {
+    return make_factor_(lower, stored, use, where);
   }
 
   /// The matrix kept under a key. Throws `Error`, with the file, where it is not sound; and where it is not

@@ -65,14 +65,14 @@ void SetupCache::keep(const EntryHeader& header, const Eigen::Ref<const Eigen::M
 
 /// The entries not used for longest go until what is left fits; the newest stays.
 void SetupCache::make_room(const Digest& newest) const {
-  double kept = 0, removed = 0;
+  double stored = 0, removed = 0;
   int count = 0;
   for (const Entry& entry : list()) {
-    kept += entry.bytes;
-    if (kept <= most_bytes_ || entry.file == entry_file(folder_, newest)) continue;
+    stored += entry.bytes;
+    if (stored <= most_bytes_ || entry.file == entry_file(folder_, newest)) continue;
     std::error_code failed;
     if (!fs::remove(entry.file, failed)) continue;
-    kept -= entry.bytes;
+    stored -= entry.bytes;
     removed += entry.bytes;
     ++count;
   }

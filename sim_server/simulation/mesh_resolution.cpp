@@ -22,9 +22,9 @@ double interpolated(std::span<const Row> table, double elements) noexcept {
   if (above == table.begin()) return table.front().percent;
   if (above == table.end()) return table.back().percent;
   const Row &a = *(above - 1), &b = *above;
-  const double share =
+  const double fraction =
       std::log(elements / a.elements_per_radius) / std::log(b.elements_per_radius / a.elements_per_radius);
-  return a.percent * std::pow(b.percent / a.percent, share);
+  return a.percent * std::pow(b.percent / a.percent, fraction);
 }
 
 }  // namespace

@@ -5,20 +5,19 @@
 
 namespace palpate::sim {
 
-SetupTimes::SetupTimes(Progress tell, Time (*clock)()) : tell_(std::move(tell)), clock_(clock) {}
+SetupTimes::SetupTimes(Progress report, Time (*clock)()) : report_(std::move(report)), clock_(clock) {}
 
-void SetupTimes::operator()(std::string_view what, double share) {
+void SetupTimes::operator()(std::string_view what, double fraction) {
   const Time t = clock_();
   if (!current_.empty()) stage(current_).took += t - last_;
   stage(what);
   current_ = what;
   last_ = t;
-  if (tell_) tell_(what, share);
+  if (report_) report_(what, fraction);
 }
 
 SetupTimes::Stage& SetupTimes::stage(std::string_view what) {
-  const auto found =
-      std::find_if(stages_.begin(), stages_.end(), [&](const Stage& s) { return s.name == what; });
+  const auto found = std::ranges::find_if(stages_, [&](const Stage& s) { return s.name == what; });
   if (found != stages_.end()) return *found;
   stages_.push_back({std::string(what), Time::zero()});
   return stages_.back();

@@ -12,10 +12,10 @@ namespace palpate::sim {
 /// counts the time from one call to the next for the stage that the first of them named. One thread.
 class SetupTimes {
  public:
-  /// `tell`: who else wants to know. `clock`: what to ask for the time; for tests.
-  explicit SetupTimes(Progress tell = {}, Time (*clock)() = &now);
+  /// `report`: who else wants to know. `clock`: what to ask for the time; for tests.
+  explicit SetupTimes(Progress report = {}, Time (*clock)() = &now);
 
-  void operator()(std::string_view what, double share);
+  void operator()(std::string_view what, double fraction);
 
   struct Stage {
     std::string name;
@@ -34,7 +34,7 @@ class SetupTimes {
  private:
   Stage& stage(std::string_view what);
 
-  Progress tell_;
+  Progress report_;
   Time (*clock_)();
   std::vector<Stage> stages_;
   std::string current_;  // stage; empty before the first

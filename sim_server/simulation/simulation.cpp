@@ -20,7 +20,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr std::size_t kApart = 2;     // instants: how far apart those are that tell where a tool goes on to
+constexpr std::size_t kSpacing = 2;   // instants: how far apart those are that tell where a tool goes on to
 constexpr double kLongestLead = 0.5;  // of the tool radius: how far ahead of itself a tool is believed to be
 constexpr int kLateParts = 4;  // of a step: over the last of so many parts chattering forces are averaged
 constexpr double kAnywhere = 1e150;  // m
@@ -39,7 +39,7 @@ std::vector<int> on_surface(std::span<const int> vertices, const Surface& surfac
 std::vector<std::vector<Triangle>> some_touchable(const Scene& scene, const Surface& surface,
                                                   const TetMesh& mesh) {
   auto touchable = touchable_by(scene.tools, surface, mesh);
-  if (std::all_of(touchable.begin(), touchable.end(), [](const auto& list) { return list.empty(); }))
+  if (std::ranges::all_of(touchable, [](const auto& list) { return list.empty(); }))
     fail("{}: no triangle of the surface lies within the tool's reach", scene.tools.front().reach_where);
   return touchable;
 }
@@ -69,7 +69,7 @@ std::size_t make_room_for_loads(const std::vector<ToolContact>& tools, Tissue& t
     radii.push_back(tool.radius());
   }
   tissue.reserve(most_loads, radii);
-  if (std::any_of(tools.begin(), tools.end(), [](const ToolContact& tool) { return tool.has_friction(); }))
+  if (std::ranges::any_of(tools, [](const ToolContact& tool) { return tool.has_friction(); }))
     tissue.before.assign(tissue.positions.begin(), tissue.positions.end());
   return static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
 }
@@ -120,7 +120,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   std::vector<int> at_rest = fixed;
   if (scene.cutting) {
     cut_.emplace(scene, *organ_.mesh, fixed, organ_.surface);
-    const auto [spare, end] = cut_->resection().left().spares();
+    const auto [spare, end] = cut_->resection().remaining().spares();
     for (int v = spare; v < end; ++v) at_rest.push_back(v);
   }
   for (const int vertex : organ_.surface.vertices) organ_.rest.push_back(organ_.mesh->vertices[vertex]);
@@ -129,7 +129,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   require_memory_for(scene, Purpose::kServe, count_parts(*organ_.mesh, organ_.surface));
   const DeformationModelRow& row = model_of(scene.deformation);
   if (row.deforms() && !fixed.empty() && !supports_move(scene))
-    organ_.farthest = kRunAway * diagonal_of(organ_.rest);
+    organ_.furthest = kRunAway * diagonal_of(organ_.rest);
   tissue_.model = row.make(
       {scene, *organ_.mesh, organ_.surface, at_rest, reachable, progress, free_memory(), cache, condensed});
   tissue_.traits = tissue_.model->traits();
@@ -141,7 +141,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   const std::size_t all_loads = make_room_for_loads(tools_, tissue_);
   if (tools_.size() > 1) coupling_.emplace(tools_.size(), organ_.rest.size(), all_loads);
   tracks_.resize(tools_.size());
-  for (Track& track : tracks_) track.recent.reserve(2 * kApart + 1);
+  for (Track& track : tracks_) track.recent.reserve(2 * kSpacing + 1);
   make_room_for_modes();
   places_.reserve(tools_.size());
   inputs_.resize(tools_.size());
@@ -149,21 +149,21 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
 }
 
 void Simulation::make_room_for_modes() {
-  const SlowModes* const modes = published_modes();
+  const PublishedModes* const modes = published_modes();
   if (modes == nullptr) return;
   ModalMotion& room = published_.modes;
-  room.q = room.v = Eigen::VectorXd::Zero(modes->told);
-  room.z.setZero(modes->told, static_cast<Eigen::Index>(modes->relaxations.size()));
+  room.q = room.v = Eigen::VectorXd::Zero(modes->published);
+  room.z.setZero(modes->published, static_cast<Eigen::Index>(modes->relaxations.size()));
   room.psi.assign(organ_.rest.size() * modes->relaxations.size(), Vec3::Zero());
   for (Track& track : tracks_) track.modal_loads = room.q;
   pair_.reserve(2, 0);
   pair_.free.resize(2);
 }
 
-const SlowModes* Simulation::published_modes() const noexcept {
-  const SlowModes* const modes = tissue_.traits.client ? tissue_.traits.client->modes() : nullptr;
+const PublishedModes* Simulation::published_modes() const noexcept {
+  const PublishedModes* const modes = tissue_.traits.client ? tissue_.traits.client->modes() : nullptr;
   const bool published =
-      modes != nullptr && modes->told > 0 && (tools_.size() == 1 || modes->relaxations.empty());
+      modes != nullptr && modes->published > 0 && (tools_.size() == 1 || modes->relaxations.empty());
   return published ? modes : nullptr;
 }
 
@@ -233,12 +233,12 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
     track.mean.setZero();
     track.late_mean.setZero();
   }
-  tissue_.begin_step();
-  if (cut_ && cut_->begin_step(inputs, status_.time, dt, cut_organ())) {
+  tissue_.start_step();
+  if (cut_ && cut_->start_step(inputs, status_.time, dt, cut_organ())) {
     ++published_.version;
     make_room_for_modes();
   }
-  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].press(inputs[i].buttons);
+  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].apply_loads(inputs[i].buttons);
   if (tissue_.traits.cuttable != nullptr && instants() > 1) restrict_contact(inputs);
   for (int instant = 1; instant <= instants(); ++instant)
     advance_to_instant(inputs, instant, dt / instants());
@@ -259,9 +259,10 @@ void Simulation::answer(std::size_t tool, const ToolInput& input, double dt) {
   answer = {};
   static_cast<ToolForce&>(answer) = before;
   if (status_.ran_away && contact.placed()) return fade(answer);
-  if (instants() > 1) contact.foresee(std::max(dt, input.wants.ahead ? input.wants.ahead->seconds : 0));
+  if (instants() > 1)
+    contact.predict_tangent(std::max(dt, input.request.ahead ? input.request.ahead->seconds : 0));
   const bool publishes_tangents = tissue_.traits.publishes_tangents;
-  if (input.wants.tangent && publishes_tangents) contact.differentiate(tissue_.met_by(tool));
+  if (input.request.tangent && publishes_tangents) contact.differentiate(tissue_.touched_by(tool));
   static_cast<ToolForce&>(answer) = contact.force();
   if (!publishes_tangents) answer.force = tracks_[tool].late_mean;
   answer.mean_force = tracks_[tool].mean;
@@ -275,10 +276,10 @@ PathPoint Simulation::contact_point(std::size_t tool, const ToolInput& input, in
   if (instant < instants()) return at_instant(tool, input, instant + 1);
   PathPoint point = at_instant(tool, input, instant);
   const std::vector<ToolPose>& were = tracks_[tool].recent;  // the newest first: this one
-  const std::size_t apart = std::min<std::size_t>(kApart, (were.size() - 1) / 2);
-  if (apart == 0) return point;
-  const Vec3 &now = were[0].p_W, &before = were[apart].p_W, &first = were[2 * apart].p_W;
-  const auto n = static_cast<double>(apart);
+  const std::size_t spacing = std::min<std::size_t>(kSpacing, (were.size() - 1) / 2);
+  if (spacing == 0) return point;
+  const Vec3 &now = were[0].p_W, &before = were[spacing].p_W, &first = were[2 * spacing].p_W;
+  const auto n = static_cast<double>(spacing);
   const Vec3 bend = (now - 2 * before + first) / (n * n), motion = (now - before) / n + (n + 1) / 2 * bend;
   if (motion.norm() <= kLongestLead * tools_[tool].radius()) point.pose.p_W += motion;
   const double turn =
@@ -290,7 +291,7 @@ PathPoint Simulation::contact_point(std::size_t tool, const ToolInput& input, in
 
 void Simulation::add_recent(std::size_t tool, const ToolPose& pose) {
   std::vector<ToolPose>& were = tracks_[tool].recent;
-  if (were.size() > 2 * kApart) were.pop_back();
+  if (were.size() > 2 * kSpacing) were.pop_back();
   were.insert(were.begin(), pose);
 }
 
@@ -300,9 +301,9 @@ PathPoint Simulation::at_instant(std::size_t tool, const ToolInput& input, int i
   if (instant == instants()) return {*input.pose, last ? input.bend : Bend{}};
   if (last) return input.path[static_cast<std::size_t>(instant) - 1];
   if (!tracks_[tool].from) return {*input.pose};  // it appears there
-  const double share = static_cast<double>(instant) / instants();
+  const double fraction = static_cast<double>(instant) / instants();
   const ToolPose &from = *tracks_[tool].from, &to = *input.pose;
-  return {ToolPose((1 - share) * from.p_W + share * to.p_W, from.q_W.slerp(share, to.q_W))};
+  return {ToolPose((1 - fraction) * from.p_W + fraction * to.p_W, from.q_W.slerp(fraction, to.q_W))};
 }
 
 /// The tissue goes on by `dt` (s), then contact is solved with the tools where they are by then.
@@ -316,13 +317,12 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
     if (!inputs[i].pose) continue;
     if (tissue_.traits.leading_force) add_recent(i, at_instant(i, inputs[i], instant).pose);
     const PathPoint point = contact_point(i, inputs[i], instant);
-    tools_[i].advance_to(point.pose, point.bend, tissue_.met_by(i));
+    tools_[i].advance_to(point.pose, point.bend, tissue_.touched_by(i));
   }
   status_.tools_settled = true;
   solve_contacts();
   if (!status_.tools_settled) restore_touching();
-  if (!tissue_.before.empty())
-    std::copy(tissue_.positions.begin(), tissue_.positions.end(), tissue_.before.begin());
+  if (!tissue_.before.empty()) std::ranges::copy(tissue_.positions, tissue_.before.begin());
   const int late = (instants() + kLateParts - 1) / kLateParts;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     tracks_[i].mean += tools_[i].force().force / instants();
@@ -342,7 +342,7 @@ void Simulation::solve_contacts() {
     found = found && std::ranges::none_of(tools_, &ToolContact::exhausted);
     if (!found) continue;
     for (std::size_t i = 0; i < tools_.size(); ++i) {
-      if (tools_[i].placed()) tools_[i].settle(tissue_.met_by(i));
+      if (tools_[i].placed()) tools_[i].settle(tissue_.touched_by(i));
     }
     settle();
   }
@@ -352,7 +352,7 @@ void Simulation::solve_contacts() {
 /// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.
 bool Simulation::ran_away() const noexcept {
   const bool loose = cut_ && cut_->resection().totals().loose_pieces > 0;  // these may go anywhere
-  const double most = loose ? kAnywhere * kAnywhere : organ_.farthest * organ_.farthest;
+  const double most = loose ? kAnywhere * kAnywhere : organ_.furthest * organ_.furthest;
   const auto is_near = [&](std::size_t v) {  // false of what is not a number, too
     return (tissue_.positions[v] - organ_.rest[v]).squaredNorm() <= most;
   };
@@ -361,9 +361,9 @@ bool Simulation::ran_away() const noexcept {
     for (std::size_t v = 0; v < organ_.rest.size(); ++v) near &= is_near(v);
     return !near;
   }
-  const CutMesh& left = cut_->resection().left();
+  const CutMesh& remaining = cut_->resection().remaining();
   for (std::size_t v = 0; v < organ_.rest.size(); ++v)
-    near &= !left.on_surface(static_cast<int>(v)) || is_near(v);
+    near &= !remaining.on_surface(static_cast<int>(v)) || is_near(v);
   return !near;
 }
 
@@ -388,7 +388,7 @@ void Simulation::move_organ(double dt) {
     tools_[i].carry(tracks_[i].surface_motion);
     tissue_.carry(i, tracks_[i].surface_motion);
     if (!tools_[i].placed()) continue;
-    tissue_.press(i);
+    tissue_.apply_loads(i);
     pressed = true;
   }
   if (moves && !pressed) tissue_.press_by_none();

@@ -69,7 +69,7 @@ class Simulation {
   int instants() const { return tissue_.traits.instants; }
   /// Modes that clients step between samples; null: none are published. A tissue that relaxes publishes them
   /// to one tool alone, as no sample tells its memory of the loads of others.
-  const SlowModes* published_modes() const noexcept;
+  const PublishedModes* published_modes() const noexcept;
   /// Number that changes whenever another surface, or none, is published. Stays 0 where nothing is cut.
   std::uint32_t published_version() const { return published_.version; }
   /// Surface published near the tools of tissue that can be cut; null: none now, or all of it for good.
@@ -112,7 +112,7 @@ class Simulation {
     std::unique_ptr<TetMesh> mesh;  // at one address: a cut refers to it
     Surface surface;
     std::vector<Vec3> rest;   // surface vertices, m
-    double farthest = 1e150;  // m from rest: beyond that a body that is held ran away
+    double furthest = 1e150;  // m from rest: beyond that a body that is held ran away
   };
   /// Path of one tool, and its forces within the step.
   struct Track {

@@ -8,10 +8,10 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kNearby = 2;            // of the tool radius: how far off a surface is told
-constexpr double kTouch = 0.04;          // of the tool radius: how deep to ask how stiff it is
-constexpr double kFastestTool = 10;      // m/s: faster is an encoder that jumped, which others do not feel
-constexpr double kFarthestAhead = 2e-3;  // m; without a bound, fast tools fare worse
+constexpr double kNearby = 2;         // of the tool radius: how far off a surface is told
+constexpr double kProbeDepth = 0.04;  // of the tool radius: how deep to ask how stiff it is
+constexpr double kFastestTool = 10;   // m/s: faster is an encoder that jumped, which others do not feel
+constexpr double kMaxAhead = 2e-3;    // m; without a bound, fast tools fare worse
 
 }  // namespace
 
@@ -19,12 +19,12 @@ constexpr double kFarthestAhead = 2e-3;  // m; without a bound, fast tools fare 
 void Simulation::couple(std::span<const ToolInput> inputs) {
   status_.coupled = coupling_ && tissue_.traits.publishes_tangents &&
                     std::ranges::any_of(inputs, [](const ToolInput& input) {
-                      return input.pose && (input.wants.here || input.wants.ahead);
+                      return input.pose && (input.request.at_tool || input.request.ahead);
                     });
   if (!status_.coupled) return;
   std::array<Vec3, kMaxTools> velocities;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    tools_[i].differentiate(tissue_.met_by(i));
+    tools_[i].differentiate(tissue_.touched_by(i));
     const bool known = inputs[i].pose && inputs[i].v_W.norm() <= kFastestTool;
     velocities[i] = known ? inputs[i].v_W : Vec3(Vec3::Zero());
   }
@@ -48,28 +48,28 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   ToolAnswer& answer = answers_[tool];
   if (!input.pose || answer.flagged) return;
   const Vec3& p_W = input.pose->p_W;
-  ToolWants wants = input.wants;
+  ToolRequest request = input.request;
   // Nor of the tissue alone where a blade is felt, too.
   if (!tissue_.traits.publishes_tangents || (cut_ && cut_->resists(tool))) {
-    wants.here = false;
-    wants.ahead.reset();
+    request.at_tool = false;
+    request.ahead.reset();
   }
-  if (wants.here || wants.ahead) {
+  if (request.at_tool || request.ahead) {
     answer.surface_v_W =
         tools_[tool].surface_velocity(p_W, tissue_, tissue_.velocities, tissue_.loads_of(tool));
     if (status_.coupled && coupling_->moved_by_others(tool)) answer.others = coupling_->others(tool);
   }
-  if (wants.here) answer.here = linearise_coupled(tool, p_W, p_W, &answer);
+  if (request.at_tool) answer.at_tool = linearise_coupled(tool, p_W, p_W, &answer);
   // Where contact is solved several times a step, the tool would be there within one of them: a jump that
   // tissue with inertia answers otherwise than the motion that is expected. Then the tangent must do.
-  if (wants.ahead && instants() == 1) {
+  if (request.ahead && instants() == 1) {
     const Vec3 v_W = answer.others ? Vec3(answer.surface_v_W + answer.others->v_W) : answer.surface_v_W;
-    const Vec3 motion = wants.ahead->seconds * (wants.ahead->v_W - v_W);  // on the organ as it stands
-    Vec3 there = p_W + std::min(1.0, kFarthestAhead / motion.norm()) * motion;
+    const Vec3 motion = request.ahead->seconds * (request.ahead->v_W - v_W);  // on the organ as it stands
+    Vec3 there = p_W + std::min(1.0, kMaxAhead / motion.norm()) * motion;
     if (!there.allFinite()) there = p_W;
     answer.ahead = {there, linearise_coupled(tool, p_W, there, nullptr)};
   }
-  if (!wants.surface_shift || tools_[tool].holds()) return;  // what is grasped is no matter of contact
+  if (!request.surface_shift || tools_[tool].holds()) return;  // what is grasped is no matter of contact
   if (cut_ && !(cut_->published() && cut_->published()->covers(p_W))) return;
   answer.surface_shift_W = surface_shift(tool, p_W);
   if (published_modes() != nullptr) publish_modes(tool);
@@ -91,7 +91,7 @@ void Simulation::publish_modes(std::size_t tool) {
 Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* known) {
   ToolContact& contact = tools_[tool];
   if (!contact.placed()) return {};
-  const ToolTissue tissue = tissue_.met_by(tool);
+  const ToolTissue tissue = tissue_.touched_by(tool);
   const ToolForce there = known != nullptr ? *known : contact.probe(p_W, tissue);
   if (there.contacts > 0) {
     const double size = there.force.norm();
@@ -100,7 +100,7 @@ Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolFo
   Linearised linearised{.plane = contact.nearest(p_W, tissue_)};
   if (linearised.plane.gap > kNearby * contact.radius()) return {};
   // A little beyond the first touch, so that it is known how stiff the surface is.
-  const double beyond = linearised.plane.gap + kTouch * contact.radius();
+  const double beyond = linearised.plane.gap + kProbeDepth * contact.radius();
   linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue).tangent;
   return linearised;
 }
@@ -111,7 +111,7 @@ std::optional<double> Simulation::gap(std::size_t tool) const noexcept {
 }
 
 Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) {
-  const ToolTissue tissue = tissue_.met_by(tool);
+  const ToolTissue tissue = tissue_.touched_by(tool);
   const int vertex = tools_[tool].nearest_vertex(p_W, tissue_);
   if (vertex < 0) return Vec3::Zero();  // all that it could touch has been cut away
   if (published_modes() == nullptr) return tissue.free()[vertex] - organ_.rest[vertex];

@@ -17,13 +17,13 @@ constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in eq
 /// together, which is convex): each in turn solves its own contact on the surface that the others have
 /// pushed, until it stands still for all of them.
 void Simulation::settle() {
-  std::size_t still = 1;  // tools in a row that need nothing; the last one has just been solved
-  for (std::size_t turn = 0; still < tools_.size(); ++turn) {
+  std::size_t unchanged = 1;  // tools in a row that need nothing; the last one has just been solved
+  for (std::size_t turn = 0; unchanged < tools_.size(); ++turn) {
     const std::size_t i = turn % tools_.size();
     ToolContact& tool = tools_[i];
-    ++still;
+    ++unchanged;
     if (!tool.placed()) continue;
-    const ToolTissue tissue = tissue_.met_by(i);
+    const ToolTissue tissue = tissue_.touched_by(i);
     if (!tissue.moved()) continue;
     if (tool.exhausted() || turn >= kMaxSweeps * tools_.size()) {
       status_.tools_settled = false;
@@ -31,7 +31,7 @@ void Simulation::settle() {
       return;
     }
     tool.settle(tissue);
-    still = 1;
+    unchanged = 1;
   }
 }
 
@@ -46,20 +46,20 @@ void Simulation::flag_contacts() noexcept {
 /// they felt there.
 void Simulation::restore_touching() {
   const auto touches = [](const ToolContact& tool) { return tool.force().contacts > 0; };
-  const auto still_pushed = [&](std::size_t i) {
+  const auto pushed_on = [&](std::size_t i) {
     const Vec3& p = tools_[i].place();
-    return tissue_.met_by(i).surface_motion(p, p, kNear * tools_[i].radius()) >
+    return tissue_.touched_by(i).surface_motion(p, p, kNear * tools_[i].radius()) >
            kUnsettled * tools_[i].radius();
   };
   bool pushed = false;
-  for (std::size_t i = 0; i < tools_.size(); ++i) pushed = (touches(tools_[i]) && still_pushed(i)) || pushed;
+  for (std::size_t i = 0; i < tools_.size(); ++i) pushed = (touches(tools_[i]) && pushed_on(i)) || pushed;
   if (!pushed || std::ranges::count_if(tools_, touches) < 2) return;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     const bool touched = touches(tools_[i]);
-    tools_[i].restore(tissue_.met_by(i));
+    tools_[i].restore(tissue_.touched_by(i));
     if (touched || touches(tools_[i])) tools_[i].flag();
   }
-  for (std::size_t i = 0; i < tools_.size(); ++i) tissue_.met_by(i).mark_solved();  // with all loads back
+  for (std::size_t i = 0; i < tools_.size(); ++i) tissue_.touched_by(i).mark_solved();  // with all loads back
 }
 
 /// Whether contact is to be looked for everywhere: what is longer than a ball may touch anywhere along
@@ -83,12 +83,12 @@ void Simulation::restrict_contact(std::span<const ToolInput> inputs) {
     if (!inputs[i].pose) continue;
     const Vec3& to = inputs[i].pose->p_W;
     const Vec3 middle = 0.5 * (tracks_[i].from->p_W + to);
-    double farthest = (to - middle).norm();
+    double furthest = (to - middle).norm();
     for (const PathPoint& point : inputs[i].path)
-      farthest = std::max(farthest, (point.pose.p_W - middle).norm());
-    farthest = std::max(farthest, (tools_[i].place() - middle).norm());
+      furthest = std::max(furthest, (point.pose.p_W - middle).norm());
+    furthest = std::max(furthest, (tools_[i].place() - middle).norm());
     const double around = tools_[i].holds() ? kAroundHeld : kAround;
-    places_.push_back({middle, farthest + around * tools_[i].radius()});
+    places_.push_back({middle, furthest + around * tools_[i].radius()});
   }
   tissue_.traits.cuttable->restrict_contact(places_, organ_.surface.triangles);
 }
@@ -99,12 +99,12 @@ void Simulation::lift_tool(std::size_t tool) noexcept {
   tracks_[tool].recent.clear();
   status_.released = status_.released || !tissue_.loads_of(tool).empty();
   try {
-    if (!tissue_.loads_of(tool).empty()) tissue_.met_by(tool).release();
+    if (!tissue_.loads_of(tool).empty()) tissue_.touched_by(tool).release();
   } catch (const std::exception&) {
     // Memory ended. Its loads are gone all the same: the next step goes on without them, or tells why not.
   }
-  tissue_.lift(tool);
-  tools_[tool].lift();
+  tissue_.separate(tool);
+  tools_[tool].separate();
 }
 
 }  // namespace palpate::sim

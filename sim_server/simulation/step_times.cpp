@@ -43,24 +43,25 @@ std::vector<int> candidates(const Scene& scene, const Simulation& simulation) {
                                             std::span(scene.tools).first(1)),
                    free;
   const std::vector<int> fixed = fixed_vertices(scene, simulation.mesh());
-  std::copy_if(all.begin(), all.end(), std::back_inserter(free), [&](int v) {
-    return !std::binary_search(fixed.begin(), fixed.end(), simulation.surface().vertices[v]);
+  std::ranges::copy_if(all, std::back_inserter(free), [&](int v) {
+    return !std::ranges::binary_search(fixed, simulation.surface().vertices[v]);
   });
   if (!free.empty()) all = free;
   Vec3 middle = Vec3::Zero();
   for (const int v : all) middle += at(simulation, v) / static_cast<double>(all.size());
-  std::stable_sort(all.begin(), all.end(), [&](int a, int b) {
+  std::ranges::stable_sort(all, [&](int a, int b) {
     return (at(simulation, a) - middle).squaredNorm() < (at(simulation, b) - middle).squaredNorm();
   });
   all.resize(std::min(all.size(), kTries));
   return all;
 }
 
-/// Comes from outside to `press`.
-ToolForce approach(const Scene& scene, Simulation& simulation, const Press& press) {
+/// Comes from outside to `apply_loads`.
+ToolForce approach(const Scene& scene, Simulation& simulation, const Press& apply_loads) {
   simulation.lift_tool();
-  simulation.step(press.place + 2 * scene.tools.front().shape.radius * press.normal, period_of(scene));
-  return simulation.step(press.place, period_of(scene));
+  simulation.step(apply_loads.place + 2 * scene.tools.front().shape.radius * apply_loads.normal,
+                  period_of(scene));
+  return simulation.step(apply_loads.place, period_of(scene));
 }
 
 ToolForce timed_step(Simulation& simulation, std::span<ToolInput> inputs, const Vec3& p_W, double dt,
@@ -79,11 +80,12 @@ Press find_press(const Scene& scene, Simulation& simulation) {
   std::vector<Press> unsettled;
   for (const int vertex : candidates(scene, simulation)) {
     const Vec3& normal = normals[vertex];
-    Press press{at(simulation, vertex) + (1 - kDepth) * scene.tools.front().shape.radius * normal, normal};
-    const ToolForce force = approach(scene, simulation, press);
+    Press apply_loads{at(simulation, vertex) + (1 - kDepth) * scene.tools.front().shape.radius * normal,
+                      normal};
+    const ToolForce force = approach(scene, simulation, apply_loads);
     simulation.lift_tool();
-    if (force.contacts > 0 && !force.flagged) return press;
-    unsettled.insert(force.contacts > 0 ? unsettled.begin() : unsettled.end(), press);
+    if (force.contacts > 0 && !force.flagged) return apply_loads;
+    unsettled.insert(force.contacts > 0 ? unsettled.begin() : unsettled.end(), apply_loads);
   }
   if (unsettled.empty())
     fail(
@@ -94,34 +96,34 @@ Press find_press(const Scene& scene, Simulation& simulation) {
   return unsettled.front();
 }
 
-StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& press, int steps,
-                     const Progress& progress, const ToolWants& wants) {
+StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& apply_loads, int steps,
+                     const Progress& progress, const ToolRequest& request) {
   const double radius = scene.tools.front().shape.radius, dt = period_of(scene);
   const auto slide = [&](int i) {
     return kSlide * radius * std::sin(2 * std::numbers::pi * i / kSlideSteps);
   };
-  Vec3 above = press.place;
+  Vec3 above = apply_loads.place;
   for (const Vec3& x : simulation.positions()) above[1] = std::max(above[1], x[1] + kClear * radius);
   std::vector<ToolInput> inputs(simulation.tools());
-  inputs.front().wants = wants;
+  inputs.front().request = request;
   StepTimes times;
-  const auto tell = [&](int done) { progress("timing steps", 0.5 * done / steps); };
-  tell(0);
+  const auto report = [&](int done) { progress("timing steps", 0.5 * done / steps); };
+  report(0);
   simulation.lift_tool();
   simulation.step(above, dt);
   for (int i = 1; i <= steps; ++i) {
     timed_step(simulation, inputs, above + slide(i) * Vec3::UnitX(), dt, times.free_ns);
-    tell(i);
+    report(i);
   }
-  const Vec3 tangent = press.normal.unitOrthogonal();
-  approach(scene, simulation, press);
+  const Vec3 tangent = apply_loads.normal.unitOrthogonal();
+  approach(scene, simulation, apply_loads);
   const FlaggedSteps before = simulation.flagged();
   for (int i = 1; i <= steps; ++i) {
     const ToolForce force =
-        timed_step(simulation, inputs, press.place + slide(i) * tangent, dt, times.contact_ns);
+        timed_step(simulation, inputs, apply_loads.place + slide(i) * tangent, dt, times.contact_ns);
     times.contacts += force.contacts > 0 ? 1 : 0;
     times.flagged += force.flagged ? 1 : 0;
-    tell(steps + i);
+    report(steps + i);
   }
   times.why = (simulation.flagged() - before).to_text();
   return times;

@@ -66,8 +66,8 @@ void ToolCoupling::load(const Tissue& tissue, std::size_t tools, std::size_t pre
     const std::span<const NodalLoad> own = tissue.loads_of(k);
     const double all = weight_of(own);
     for (const NodalLoad& load : own) {
-      const double share = all > 0 ? load.force.norm() / all : 1 / static_cast<double>(own.size());
-      loads_.push_back({load.vertex, k == pressed ? Vec3(load.force + share * force) : load.force});
+      const double fraction = all > 0 ? load.force.norm() / all : 1 / static_cast<double>(own.size());
+      loads_.push_back({load.vertex, k == pressed ? Vec3(load.force + fraction * force) : load.force});
     }
   }
 }
@@ -92,7 +92,7 @@ void ToolCoupling::find_compliance(Tissue& tissue, std::span<const ToolContact> 
       }
     }
   }
-  tissue.press(0);
+  tissue.apply_loads(0);
 }
 
 }  // namespace palpate::sim

@@ -14,7 +14,7 @@ namespace {
 // Shares of the size of the body. A force that moves a node by less than the first counts as none, so that a
 // body at rest is at rest; a factor of a place farther off than the second is of elsewhere; and so far nodes
 // are moved to find how forces change.
-constexpr double kNegligibleDisplacement = 1e-9, kElsewhere = 1e-4, kNudge = 1e-7;
+constexpr double kNegligibleDisplacement = 1e-9, kRemote = 1e-4, kOffset = 1e-7;
 // Relative residuals. Where the last trial step of a step leaves more than the first, velocities mean
 // nothing, and the step ends at rest: each step from there lowers the energy, however far Newton's method is
 // from balance. Where no more than the second is left, and loads change by no more, the linearisation is
@@ -63,8 +63,8 @@ void Dynamics::start_step(double h) {
   trusted_.resize(0);
   iterated_ = false;
   at_predictor_ = true;
-  motion_.begin_step(h);
-  if (policy_.begin_step(motion_.time().steps(), cautious_)) exchange_factors();
+  motion_.start_step(h);
+  if (policy_.start(motion_.time().steps(), damped_)) exchange_factors();
   matrix_.turn_to(*solid_, motion_.position());
   matrix_.make_border(*solid_, motion_.masses());
   const bool serves_badly = matrix_.is_bordered() && relative_residual_ > kBadlyServed;
@@ -86,8 +86,7 @@ void Dynamics::count_new_factor() {
 
 void Dynamics::refactor_if_moved() {
   if (background_) return;
-  if (!cut_since_factored_ && largest_distance(motion_.position(), factored_at_) <= kElsewhere * size_)
-    return;
+  if (!cut_since_factored_ && largest_distance(motion_.position(), factored_at_) <= kRemote * size_) return;
   factor();
   policy_.replaced();
 }
@@ -112,7 +111,7 @@ void Dynamics::exchange_factors() {
 
 void Dynamics::remove(std::span<const int> tetrahedra, std::span<const NodeMass> masses) {
   if (background_) background_->remove(tetrahedra);
-  go_on_with(masses);
+  continue_with(masses);
 }
 
 void Dynamics::note_shapes(std::span<const int> tetrahedra) {
@@ -130,13 +129,13 @@ void Dynamics::note_shapes(std::span<const int> tetrahedra) {
 void Dynamics::part(std::span<const Split> splits, std::span<const NodeMass> masses) {
   matrix_.part(splits);
   if (background_) background_->part(splits);
-  go_on_with(masses);
+  continue_with(masses);
   from_background_ = false;  // its columns are of nodes that were one
   count_new_factor();
 }
 
 /// Between two steps, with a body that has been cut.
-void Dynamics::go_on_with(std::span<const NodeMass> masses) {
+void Dynamics::continue_with(std::span<const NodeMass> masses) {
   for (const auto& [node, mass] : masses) mass > 0 ? motion_.set_mass(node, mass) : motion_.stop(node);
   motion_.forget_forces();
   cut_since_factored_ = true;
@@ -175,9 +174,9 @@ Residual Dynamics::evaluate_move(std::span<const Vec3> external) {
 
 double Dynamics::iterate(std::span<const Vec3> external, double tolerance) {
   iterated_ = false;  // where this throws
-  const double left = newton_iteration(external, tolerance);
+  const double balance = newton_iteration(external, tolerance);
   iterated_ = true;
-  return left;
+  return balance;
 }
 
 double Dynamics::newton_iteration(std::span<const Vec3> external, double tolerance) {
@@ -190,7 +189,7 @@ double Dynamics::newton_iteration(std::span<const Vec3> external, double toleran
   }
   const Residual residual = evaluate_move(external);
   if (!std::isfinite(residual.relative)) {
-    go_back();
+    return_();
     return 0;
   }
   if (residual.relative <= tolerance) return residual.relative;
@@ -200,7 +199,7 @@ double Dynamics::newton_iteration(std::span<const Vec3> external, double toleran
   if (decision == Decision::kRefactorChecked) matrix_.check_precision();
   if (decision != Decision::kKeep) factor();
   const Eigen::VectorXd d = search_direction(residual, external);
-  if (cautious_ || residual.relative > kTrusted) {
+  if (damped_ || residual.relative > kTrusted) {
     search_along(d, residual, external);
   } else {
     trust(d);
@@ -210,7 +209,7 @@ double Dynamics::newton_iteration(std::span<const Vec3> external, double toleran
 }
 
 /// A trial point beyond all numbers.
-void Dynamics::go_back() {
+void Dynamics::return_() {
   motion_.move_to(motion_.time().position());
   relative_residual_ = trial_residual_ = 1;
 }
@@ -237,16 +236,16 @@ Eigen::VectorXd Dynamics::solve_turned(const Eigen::VectorXd& b) {
 }
 
 Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<const Vec3> external) {
-  const std::vector<Vec3> here(motion_.position().begin(), motion_.position().end());
+  const std::vector<Vec3> start(motion_.position().begin(), motion_.position().end());
   const auto times = [&](const Eigen::VectorXd& v) {
-    return jacobian_times(v, residual.force, kNudge * size_, [&](double s) {
-      motion_.move_to(here, s * v);
+    return jacobian_times(v, residual.force, kOffset * size_, [&](double s) {
+      motion_.move_to(start, s * v);
       return motion_.residual(external);
     });
   };
   const auto precondition = [&](const Eigen::VectorXd& v) { return solve_turned(v); };
   Eigen::VectorXd d = conjugate_gradients(residual.force, times, precondition);
-  motion_.move_to(here);
+  motion_.move_to(start);
   return d;
 }
 
@@ -254,20 +253,20 @@ Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<
 void Dynamics::search_along(const Eigen::VectorXd& d, const Residual& residual,
                             std::span<const Vec3> external) {
   if (is_linear()) return motion_.move_by(d);
-  const std::vector<Vec3> here(motion_.position().begin(), motion_.position().end());
+  const std::vector<Vec3> start(motion_.position().begin(), motion_.position().end());
   const TrialStep trial = line_search(d, residual.force, [&](double s) {
-    motion_.move_to(here, s * d);
+    motion_.move_to(start, s * d);
     return motion_.residual(external);
   });
   trial_residual_ = trial.relative;
-  if (trial.length == 0) motion_.move_to(here);
+  if (trial.length == 0) motion_.move_to(start);
 }
 
 /// Since a step that ended far from balance, and until the body rests: the predictor only as far as forces
 /// would not turn the body back before it ends.
 void Dynamics::limit_predictor(std::span<const Vec3> external) {
   at_predictor_ = false;
-  if (is_linear() || !cautious_) return;
+  if (is_linear() || !damped_) return;
   const Eigen::VectorXd d = motion_.move_to_start();
   search_along(d, motion_.residual(external), external);
 }
@@ -279,7 +278,7 @@ void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> e
   double squared = 0;
   for (std::size_t i = 0; i < motion_.last_external().size(); ++i)
     squared += (external[i] - motion_.last_external()[i]).squaredNorm();
-  if (!cautious_ && relative_residual_ <= kTrusted &&
+  if (!damped_ && relative_residual_ <= kTrusted &&
       std::sqrt(squared) <= kTrusted * motion_.last_force_scale())
     return motion_.move_by(d);
   search_along(d, motion_.residual(external), external);
@@ -288,7 +287,7 @@ void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> e
 /// A step that an exception ended stands at its predictor, where no force has been at work.
 void Dynamics::finish_step() {
   const bool adrift = !iterated_ || trial_residual_ > kAdrift;
-  cautious_ = adrift || (cautious_ && relative_residual_ > kAtRest);
+  damped_ = adrift || (damped_ && relative_residual_ > kAtRest);
   motion_.end_step(adrift);
 }
 

@@ -72,7 +72,7 @@ class Dynamics {
   /// O(tetrahedra).
   void note_shapes(std::span<const int> tetrahedra);
   /// Between two steps: a node goes towards another by this share of the way, as fast as what is there.
-  void slide(int node, int towards, double share) { motion_.slide(node, towards, share); }
+  void slide(int node, int towards, double fraction) { motion_.slide(node, towards, fraction); }
   /// Between two steps: a node goes on from where another is, as fast.
   void copy(int node, int copy) { motion_.slide(copy, node, 1); }
   /// Between two steps, after these: tetrahedra have other corners, or corners elsewhere (`Solid::reshape`),
@@ -129,8 +129,8 @@ class Dynamics {
   Residual evaluate(std::span<const Vec3> external);
   Residual evaluate_move(std::span<const Vec3> external);
   void trust(const Eigen::VectorXd& d);
-  void go_back();
-  void go_on_with(std::span<const NodeMass> masses);
+  void return_();
+  void continue_with(std::span<const NodeMass> masses);
   void factor();
   void count_new_factor();
   void exchange_factors();
@@ -159,7 +159,7 @@ class Dynamics {
   bool iterated_ = false;      // in this step, to an end
   double trial_residual_ = 0;  // relative, at the last trial step of this step; 1: none was accepted
   bool at_predictor_ = false;  // no iteration of this step has been
-  bool cautious_ = false;      // a step ended far from balance, and the body has not come to rest since
+  bool damped_ = false;        // a step ended far from balance, and the body has not come to rest since
 };
 
 }  // namespace palpate::sim

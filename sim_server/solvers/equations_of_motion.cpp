@@ -25,7 +25,7 @@ void EquationsOfMotion::restart(std::vector<Vec3> x, std::span<const Vec3> v) {
   time_.restart(x_, v, internal_);
 }
 
-void EquationsOfMotion::begin_step(double h) {
+void EquationsOfMotion::start_step(double h) {
   internal_is_current_ = false;
   time_.begin(h);
   for (std::size_t i = 0; i < x_.size(); ++i) {

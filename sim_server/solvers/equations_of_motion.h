@@ -26,7 +26,7 @@ class EquationsOfMotion {
   /// present ones.
   void restart(std::vector<Vec3> x, std::span<const Vec3> v);
   /// Begins a step of `h` (s > 0), with free nodes at the predictor x_n + h v_n.
-  void begin_step(double h);
+  void start_step(double h);
   /// Ends it at the trial point; `stop`: at rest there.
   void end_step(bool stop);
 
@@ -67,10 +67,10 @@ class EquationsOfMotion {
   void set_mass(int node, double mass) { mass_[static_cast<std::size_t>(node)] = mass; }
   void stop(int node) { time_.stop(static_cast<std::size_t>(node)); }
   /// Between two steps: a node goes towards another by this share of the way, as fast as what is there.
-  void slide(int node, int towards, double share) {
+  void slide(int node, int towards, double fraction) {
     const auto i = static_cast<std::size_t>(node), j = static_cast<std::size_t>(towards);
-    time_.slide(i, j, share);
-    x_[i] = (1 - share) * x_[i] + share * x_[j];
+    time_.slide(i, j, fraction);
+    x_[i] = (1 - fraction) * x_[i] + fraction * x_[j];
     internal_is_current_ = start_is_current_ = false;
   }
   void forget_forces() {

@@ -12,7 +12,7 @@ namespace {
 // Line search: the sufficient decrease, and the shortest trial step.
 constexpr double kArmijo = 1e-4, kShortestStep = 1e-4;
 // Share of what the supports move by which they are nudged, to find how the residual changes.
-constexpr double kSupportNudge = 1e-7;
+constexpr double kSupportOffset = 1e-7;
 // Share of the size of the body: a force that moves a node by less counts as none.
 constexpr double kRestsWithin = 1e-7;
 constexpr double kFirstShift = 0.05, kLastShift = 1e3;  // of the stiffness at rest
@@ -38,7 +38,7 @@ class Newton {
 
   /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.
   bool advance(std::vector<Vec3>& x, double from, double to) {
-    share_ = to;
+    fraction_ = to;
     if (load_.start.empty() && !move_supports(x, to - from)) return false;
     double before = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= settings_.max_newton; ++i) {
@@ -62,13 +62,13 @@ class Newton {
   /// f_ext - f_int over the free displacements, N.
   Eigen::VectorXd residual_at(const std::vector<Vec3>& x) {
     solid_.forces(x, internal_, {}, scratch_);
-    std::fill(external_.begin(), external_.end(), Vec3::Zero());
+    std::ranges::fill(external_, Vec3::Zero());
     if (load_.forces) load_.forces(x, external_);
     Eigen::VectorXd residual(dofs_.count);
     double squares = negligible_force_ * negligible_force_;
     for (std::size_t i = 0; i < internal_.size(); ++i) {
-      squares += internal_[i].squaredNorm() + share_ * share_ * external_[i].squaredNorm();
-      if (dofs_.first[i] >= 0) residual.segment<3>(dofs_.first[i]) = share_ * external_[i] - internal_[i];
+      squares += internal_[i].squaredNorm() + fraction_ * fraction_ * external_[i].squaredNorm();
+      if (dofs_.first[i] >= 0) residual.segment<3>(dofs_.first[i]) = fraction_ * external_[i] - internal_[i];
     }
     dofs_.hold(residual);
     relative_residual_ = residual.norm() / std::sqrt(squares);
@@ -95,7 +95,7 @@ class Newton {
 
   double potential(const std::vector<Vec3>& x) {
     double work = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) work += share_ * external_[i].dot(x[i] - solid_.rest()[i]);
+    for (std::size_t i = 0; i < x.size(); ++i) work += fraction_ * external_[i].dot(x[i] - solid_.rest()[i]);
     return solid_.energy(x, scratch_) - work;
   }
 
@@ -128,7 +128,7 @@ class Newton {
 
   /// The supports move on by a share of all that they do, and the body with them as its tangent stiffness
   /// says; false: it says nothing, and nothing has moved.
-  bool move_supports(std::vector<Vec3>& x, double share) {
+  bool move_supports(std::vector<Vec3>& x, double fraction) {
     if (load_.moved.empty()) return true;
     const auto moved_by = [&](double part) {
       std::vector<Vec3> moved = x;
@@ -138,12 +138,12 @@ class Newton {
       }
       return moved;
     };
-    const std::vector<Vec3> ahead = moved_by(kSupportNudge * share);
+    const std::vector<Vec3> ahead = moved_by(kSupportOffset * fraction);
     const Eigen::VectorXd before = residual_at(x);
-    const Eigen::VectorXd pull = (residual_at(ahead) - before) / kSupportNudge;
+    const Eigen::VectorXd pull = (residual_at(ahead) - before) / kSupportOffset;
     if (!factor_at(x)) return false;
     const Eigen::VectorXd d = factor_->solve(pull).col(0);
-    x = moved_by(share);
+    x = moved_by(fraction);
     move_along(x, 1, d, x);
     return true;
   }
@@ -158,7 +158,7 @@ class Newton {
   std::vector<Vec3> internal_, external_;
   double mean_diagonal_ = 0;     // of the stiffness at rest, N/m
   double negligible_force_ = 0;  // N
-  double share_ = 0, relative_residual_ = 0;
+  double fraction_ = 0, relative_residual_ = 0;
   int iterations_ = 0;
 };
 

@@ -38,7 +38,7 @@ struct Equilibrium {
 /// much of the stiffness at rest is added as makes it so. Throws `Error`, beginning with `where`, when the
 /// fixed nodes do not hold the body or no equilibrium is found. Told about its increments.
 Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const std::string& where,
-                             const std::function<void(double share)>& progress = {},
+                             const std::function<void(double fraction)>& progress = {},
                              const EquilibriumSettings& settings = {});
 
 }  // namespace palpate::sim

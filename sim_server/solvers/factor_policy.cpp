@@ -3,19 +3,20 @@
 namespace palpate::sim {
 namespace {
 
-constexpr int kMostFactors = 3;     // on demand, in a step
-constexpr double kSlow = 0.3;       // share of the residual before: an iteration that leaves more is slow
+constexpr int kMostFactors = 3;  // on demand, in a step
+constexpr double kSlowConvergence =
+    0.3;                            // share of the residual before: an iteration that leaves more is slow
 constexpr double kRounding = 1e-6;  // relative residual that may be rounding
-constexpr double kNegligibleShare = 1e-3;  // of a negligible force: a residual that may be rounding
-constexpr double kSameRounding = 2;        // of a known rounding: a residual that is the same rounding
+constexpr double kNegligibleFraction = 1e-3;  // of a negligible force: a residual that may be rounding
+constexpr double kSameRounding = 2;           // of a known rounding: a residual that is the same rounding
 
 }  // namespace
 
-bool FactorPolicy::begin_step(int steps_before, bool cautious) {
+bool FactorPolicy::start(int steps_before, bool damped) {
   comparable_ = false;
   demanded_ = 0;
-  cautious_ = cautious;
-  if (state_ == State::kWorn) state_ = State::kStale;
+  damped_ = damped;
+  if (state_ == State::kOutdated) state_ = State::kStale;
   const bool due = settings_.background && steps_before % settings_.refresh_steps == 0;
   if (!due || steps_before == exchanged_) return false;
   exchanged_ = steps_before;
@@ -27,18 +28,18 @@ FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double pre
   // Learnt under large forces, it is a large residual under small ones.
   if (force <= kSameRounding * rounding_ && is_rounding(residual, kSameRounding)) return Decision::kStop;
   const State before = state_;
-  if (!comparable_ || !(residual.relative > kSlow * previous)) {
+  if (!comparable_ || !(residual.relative > kSlowConvergence * previous)) {
     comparable_ = true;
-    if (before != State::kWorn) state_ = just_factored ? State::kFresh : State::kStale;
+    if (before != State::kOutdated) state_ = just_factored ? State::kFresh : State::kStale;
     return Decision::kKeep;
   }
   if (before != State::kStale && is_rounding(residual)) {
     rounding_ = force;
     return Decision::kStop;
   }
-  const bool another = cautious_ || demanded_ < kMostFactors;
-  if (settings_.background || before == State::kWorn || !another) {
-    state_ = State::kWorn;
+  const bool another = damped_ || demanded_ < kMostFactors;
+  if (settings_.background || before == State::kOutdated || !another) {
+    state_ = State::kOutdated;
     return Decision::kKeep;
   }
   ++demanded_;
@@ -48,7 +49,7 @@ FactorPolicy::Decision FactorPolicy::decide(const Residual& residual, double pre
 
 bool FactorPolicy::is_rounding(const Residual& residual, double times) const {
   return residual.relative <= times * kRounding ||
-         residual.relative * residual.force_scale <= times * kNegligibleShare * settings_.negligible_force;
+         residual.relative * residual.force_scale <= times * kNegligibleFraction * settings_.negligible_force;
 }
 
 }  // namespace palpate::sim

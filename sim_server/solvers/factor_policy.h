@@ -12,22 +12,23 @@ namespace palpate::sim {
 ///
 /// | state     | the factor is                           | on demand                | in the background |
 /// |-----------|-----------------------------------------|--------------------------|-------------------|
-/// | kStale    | of elsewhere                            | kRefactor, kFresh        | kKeep, kWorn      |
-/// | kFresh    | made for the iteration before           | kRefactorChecked, kFresh | kKeep, kWorn      |
-/// | kWorn     | one that a slow iteration has been with | kKeep, kWorn             | kKeep, kWorn      |
+/// | kStale    | of elsewhere                            | kRefactor, kFresh        | kKeep, kOutdated  |
+/// | kFresh    | made for the iteration before           | kRefactorChecked, kFresh | kKeep, kOutdated  |
+/// | kOutdated | one that a slow iteration has been with | kKeep, kOutdated         | kKeep, kOutdated  |
 ///
-/// On demand a step makes three factors at most; after that a slow iteration makes kWorn of the last. With a
-/// factor that is kWorn, search directions are found by conjugate gradients which it preconditions. A body
-/// that was far from balance (`cautious`) gets all factors that it asks for. An iteration that is not slow
-/// leaves kWorn as it is, and makes kFresh of a factor made for it and kStale of any other. A new factor
-/// (`replaced`) begins as kStale, and a kWorn one is kStale again when the next step begins.
+/// On demand a step makes three factors at most; after that a slow iteration makes kOutdated of the last.
+/// With a factor that is kOutdated, search directions are found by conjugate gradients which it
+/// preconditions. A body that was far from balance (`damped`) gets all factors that it asks for. An iteration
+/// that is not slow leaves kOutdated as it is, and makes kFresh of a factor made for it and kStale of any
+/// other. A new factor (`replaced`) begins as kStale, and a kOutdated one is kStale again when the next step
+/// begins.
 ///
-/// Rounding: where a slow iteration had a factor that is kFresh or kWorn and the residual is tiny, no factor
-/// lessens it. The iteration ends there (`kStop`), and so does from then on each that finds no more than
-/// twice that force.
+/// Rounding: where a slow iteration had a factor that is kFresh or kOutdated and the residual is tiny, no
+/// factor lessens it. The iteration ends there (`kStop`), and so does from then on each that finds no more
+/// than twice that force.
 class FactorPolicy {
  public:
-  enum class State { kFresh, kStale, kWorn };
+  enum class State { kFresh, kStale, kOutdated };
   enum class Decision {
     kStop,             ///< the residual is rounding
     kKeep,             ///< go on with the factor that there is
@@ -42,8 +43,8 @@ class FactorPolicy {
   explicit FactorPolicy(const Settings& settings) : settings_(settings) {}
 
   /// A step begins, after so many others: whether it takes the factor that the background has made, and has
-  /// the next one begun. Once for each number of steps. `cautious`: one before ended far from balance.
-  bool begin_step(int steps_before, bool cautious = false);
+  /// the next one begun. Once for each number of steps. `damped`: one before ended far from balance.
+  bool start(int steps_before, bool damped = false);
   /// The next residual is of other loads: that it is no smaller says nothing of the factor.
   void loads_changed() { comparable_ = false; }
   /// There is another factor, for another reason than a `Decision`.
@@ -54,14 +55,14 @@ class FactorPolicy {
 
   State state() const { return state_; }
   /// True if the search direction is found by conjugate gradients that the factor preconditions.
-  bool uses_conjugate_gradients() const { return state_ == State::kWorn; }
+  bool uses_conjugate_gradients() const { return state_ == State::kOutdated; }
 
  private:
   bool is_rounding(const Residual& residual, double times = 1) const;
 
   Settings settings_;
   State state_ = State::kStale;
-  bool cautious_ = false;
+  bool damped_ = false;
   int demanded_ = 0;         // factors, in this step
   bool comparable_ = false;  // an iteration has been before, under the same loads
   double rounding_ = 0;      // residual that no factor lessens, N; 0: not known

@@ -37,9 +37,9 @@ Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& b, const LinearMap& t
   return x;
 }
 
-Eigen::VectorXd jacobian_times(const Eigen::VectorXd& d, const Eigen::VectorXd& force, double nudge,
+Eigen::VectorXd jacobian_times(const Eigen::VectorXd& d, const Eigen::VectorXd& force, double offset,
                                const ResidualAlong& residual_along) {
-  const double s = nudge / d.cwiseAbs().maxCoeff();
+  const double s = offset / d.cwiseAbs().maxCoeff();
   return (force - residual_along(s).force) / s;
 }
 

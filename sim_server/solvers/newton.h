@@ -50,8 +50,8 @@ Eigen::VectorXd conjugate_gradients(const Eigen::VectorXd& b, const LinearMap& t
 
 /// A d for the Jacobian A = -dr/dx at x, from a difference of residuals (Knoll and Keyes 2004, J. Comput.
 /// Phys. 193:357), so that no matrix is assembled: (r(x) - r(x + s d)) / s with an s by which no unknown
-/// moves more than `nudge` (m, > 0). `force` is r(x), N. One call of `residual_along`.
-Eigen::VectorXd jacobian_times(const Eigen::VectorXd& d, const Eigen::VectorXd& force, double nudge,
+/// moves more than `offset` (m, > 0). `force` is r(x), N. One call of `residual_along`.
+Eigen::VectorXd jacobian_times(const Eigen::VectorXd& d, const Eigen::VectorXd& force, double offset,
                                const ResidualAlong& residual_along);
 
 }  // namespace palpate::sim

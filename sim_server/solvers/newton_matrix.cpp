@@ -43,8 +43,8 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<
                          const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
   c_ = 0;  // until all of this is done
   turns_.clear();
-  const bool parted = !copies_.empty();
-  if (parted) matrix_ = solid.stiffness_matrix(*dofs_);
+  const bool separated = !copies_.empty();
+  if (separated) matrix_ = solid.stiffness_matrix(*dofs_);
   if (solid.material().law != ElasticLaw::kLinear) {
     built_turned_.resize(x.size());
     solid.node_rotations(x, built_turned_);
@@ -55,7 +55,7 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<
   inertia_ = c * c + alpha_ * c;
   matrix_.add_to_diagonal(masses, inertia_);
   matrix_.close_empty(mean_diagonal_);
-  if (parted) factor_.take_pattern(matrix_.lower());
+  if (separated) factor_.take_pattern(matrix_.lower());
   copies_.clear();
   shapes_.clear();
   border_is_made_ = true;
@@ -153,20 +153,20 @@ void NewtonMatrix::use_border() {
 
 Eigen::MatrixXd NewtonMatrix::solve(const Eigen::MatrixXd& b) const {
   if (copies_.empty()) return factor_.solve(b);
-  Eigen::MatrixXd loads = b, apart(border_.cols(), b.cols());
+  Eigen::MatrixXd loads = b, separate(border_.cols(), b.cols());
   for (std::size_t k = 0; k < copies_.size(); ++k) {
     const int node = first_of(copies_[k].node), copy = first_of(copies_[k].copy);
-    apart.middleRows<3>(static_cast<Eigen::Index>(3 * k)) = loads.middleRows<3>(copy);
+    separate.middleRows<3>(static_cast<Eigen::Index>(3 * k)) = loads.middleRows<3>(copy);
     loads.middleRows<3>(node) += loads.middleRows<3>(copy);
     loads.middleRows<3>(copy).setZero();
   }
   Eigen::MatrixXd x = factor_.solve(loads);
-  apart -= border_.transpose() * x;
-  schur_.solveInPlace(apart);
-  x -= response_ * apart;
+  separate -= border_.transpose() * x;
+  schur_.solveInPlace(separate);
+  x -= response_ * separate;
   for (std::size_t k = 0; k < copies_.size(); ++k) {
     x.middleRows<3>(first_of(copies_[k].copy)) =
-        x.middleRows<3>(first_of(copies_[k].node)) + apart.middleRows<3>(static_cast<Eigen::Index>(3 * k));
+        x.middleRows<3>(first_of(copies_[k].node)) + separate.middleRows<3>(static_cast<Eigen::Index>(3 * k));
   }
   return x;
 }

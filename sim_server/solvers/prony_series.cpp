@@ -15,13 +15,13 @@ PronySeries::PronySeries(std::span<const Relaxation> terms, std::size_t points)
 void PronySeries::begin(double h) {
   h_ = h;
   scale_ = 1;
-  std::fill(memory_.begin(), memory_.end(), Mat3::Zero());
+  std::ranges::fill(memory_, Mat3::Zero());
   for (std::size_t k = 0; k < terms_.size(); ++k) {
-    const double share = terms_[k].share;
+    const double fraction = terms_[k].fraction;
     const auto [fade, gamma] = RelaxationStep::over(h, terms_[k].time);
-    scale_ += share * (gamma - 1);
+    scale_ += fraction * (gamma - 1);
     for (std::size_t p = 0; p < memory_.size(); ++p)
-      memory_[p] += fade * stress_[k * memory_.size() + p] - share * gamma * elastic_[p];
+      memory_[p] += fade * stress_[k * memory_.size() + p] - fraction * gamma * elastic_[p];
   }
 }
 
@@ -31,7 +31,7 @@ void PronySeries::end(std::span<const Mat3> elastic) {
     for (std::size_t k = 0; k < terms_.size(); ++k) {
       Mat3& stress = stress_[k * elastic_.size() + p];
       const auto [fade, gamma] = RelaxationStep::over(h_, terms_[k].time);
-      stress = fade * stress + terms_[k].share * gamma * (elastic[p] - elastic_[p]);
+      stress = fade * stress + terms_[k].fraction * gamma * (elastic[p] - elastic_[p]);
     }
     elastic_[p] = elastic[p];
   }

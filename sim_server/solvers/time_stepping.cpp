@@ -39,7 +39,7 @@ void TimeStepping::begin(double h) {
 void TimeStepping::end(std::span<const Vec3> x, std::vector<Vec3>& internal, bool stop) {
   std::swap(earlier_f_, f_);
   std::swap(f_, internal);
-  if (stop) std::copy(f_.begin(), f_.end(), earlier_f_.begin());
+  if (stop) std::ranges::copy(f_, earlier_f_.begin());
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const Vec3 v = stop ? Vec3(Vec3::Zero()) : velocity_at(i, x[i]);
     earlier_x_[i] = stop ? x[i] : x_[i];

@@ -37,9 +37,9 @@ class TimeStepping {
   }
   /// Between two steps: a node goes towards another by this share of the way, and always was there, as fast
   /// as what was.
-  void slide(std::size_t i, std::size_t towards, double share) {
+  void slide(std::size_t i, std::size_t towards, double fraction) {
     for (std::vector<Vec3>* const of : {&x_, &v_, &earlier_x_, &earlier_v_})
-      (*of)[i] = (1 - share) * (*of)[i] + share * (*of)[towards];
+      (*of)[i] = (1 - fraction) * (*of)[i] + fraction * (*of)[towards];
   }
   /// The internal forces (nodes, N) always were these.
   void forget_forces(std::span<const Vec3> internal) {

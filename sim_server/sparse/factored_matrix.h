@@ -43,9 +43,9 @@ class FactoredMatrix {
 /// Use of a factor; one that need not solve takes less memory.
 enum class FactorUse { kInverse, kInverseAndSolve };
 
-/// Factors the matrix whose lower triangle is given. `kept`: the unknowns of which `inverse_block` will be
+/// Factors the matrix whose lower triangle is given. `stored`: the unknowns of which `inverse_block` will be
 /// asked. Throws `Error`, beginning with `where`, as `SparseCholesky`.
 using MakeFactor = std::function<std::unique_ptr<FactoredMatrix>(
-    const SparseMatrix& lower, std::span<const int> kept, FactorUse use, const std::string& where)>;
+    const SparseMatrix& lower, std::span<const int> stored, FactorUse use, const std::string& where)>;
 
 }  // namespace palpate::sim

@@ -74,8 +74,8 @@ template <class Factor>
 bool can_be_finer(const Factor& factor) {
   if (factor.precision == SparseCholesky::Precision::kDouble) return false;
   if (static_cast<double>(factor.more_bytes()) <= free_memory()) return true;
-  static std::atomic_flag told;
-  if (!told.test_and_set()) {
+  static std::atomic_flag published;
+  if (!published.test_and_set()) {
     log::warning(
         "a Cholesky factor would need {} more for double precision, which are not free: it stays in single",
         bytes_text(static_cast<double>(factor.more_bytes())));

@@ -36,7 +36,7 @@ StiffnessMatrix::StiffnessMatrix(const FreeDofs& dofs, std::span<const int> grou
                                  std::span<const int> first)
     : held_(dofs.held), matrix_(dofs.count, dofs.count) {
   for (const int dof : dofs.first) block_.push_back(dof < 0 ? -1 : dof / 3);
-  partly_held_ = std::any_of(held_.begin(), held_.end(), [](HeldAxes h) { return h != 0 && h != kAllAxes; });
+  partly_held_ = std::ranges::any_of(held_, [](HeldAxes h) { return h != 0 && h != kAllAxes; });
   const auto blocks = static_cast<std::size_t>(dofs.count / 3);
   std::vector<std::vector<int>> below(blocks);  // block rows of each block column, from the diagonal down
   for (std::size_t c = 0; c < blocks; ++c) below[c].push_back(static_cast<int>(c));
@@ -49,10 +49,10 @@ StiffnessMatrix::StiffnessMatrix(const FreeDofs& dofs, std::span<const int> grou
     }
   }
   for (auto& rows : below) {
-    std::sort(rows.begin(), rows.end());
+    std::ranges::sort(rows);
     rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
     rows_.insert(rows_.end(), rows.begin(), rows.end());
-    rows_begin_.push_back(static_cast<int>(rows_.size()));
+    rows_start_.push_back(static_cast<int>(rows_.size()));
   }
   matrix_.resizeNonZeros(9 * static_cast<Eigen::Index>(rows_.size()));
   int* const outer = matrix_.outerIndexPtr();
@@ -97,12 +97,12 @@ void StiffnessMatrix::add_to(int i, int j, const Mat3& block) noexcept {
   const bool turned = row < column;
   if (turned) std::swap(row, column);
   const std::span<const int> rows =
-      std::span(rows_).subspan(rows_begin_[column], rows_begin_[column + 1] - rows_begin_[column]);
+      std::span(rows_).subspan(rows_start_[column], rows_start_[column + 1] - rows_start_[column]);
   std::ptrdiff_t place = 0;  // counted, as there are few: a search would branch on each
   for (const int other : rows) place += other < row ? 1 : 0;
   assert(rows[place] == row);
   const std::ptrdiff_t length = 3 * static_cast<std::ptrdiff_t>(rows.size());
-  double* const value = matrix_.valuePtr() + 9 * static_cast<std::ptrdiff_t>(rows_begin_[column]) + 3 * place;
+  double* const value = matrix_.valuePtr() + 9 * static_cast<std::ptrdiff_t>(rows_start_[column]) + 3 * place;
   const Mat3 to_add = turned ? Mat3(block.transpose()) : block;
   for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(value + c * length) += to_add.col(c);
 }
@@ -131,7 +131,7 @@ Eigen::MatrixXd StiffnessMatrix::times(const Eigen::MatrixXd& x) const {
 
 std::size_t StiffnessMatrix::bytes() const {
   return static_cast<std::size_t>(matrix_.nonZeros()) * (sizeof(double) + sizeof(int)) +
-         (static_cast<std::size_t>(matrix_.cols()) + block_.size() + rows_.size() + rows_begin_.size()) *
+         (static_cast<std::size_t>(matrix_.cols()) + block_.size() + rows_.size() + rows_start_.size()) *
              sizeof(int);
 }
 

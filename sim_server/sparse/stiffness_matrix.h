@@ -50,11 +50,11 @@ class StiffnessMatrix {
   /// Adds the block of rows of node `i` and columns of node `j`; also stands for the one of j and i. Each
   /// pair once. Nothing where one is fixed. O(blocks in the column).
   void add(int i, int j, const Mat3& block) noexcept;
-  /// Threads may add at once, each what is of a share of its own.
-  static constexpr std::size_t kShares = 4;
-  /// True if the block that `add` would change belongs to the group `share` of blocks.
-  bool is_of_share(std::size_t share, int i, int j) const noexcept {
-    return static_cast<std::size_t>(std::min(block_[i], block_[j])) % kShares == share;
+  /// Threads may add at once, each the blocks of its own group.
+  static constexpr std::size_t kGroups = 4;
+  /// True if the block that `add` would change belongs to `group`.
+  bool is_of_group(std::size_t group, int i, int j) const noexcept {
+    return static_cast<std::size_t>(std::min(block_[i], block_[j])) % kGroups == group;
   }
   /// Adds `factor` per_node[i] to the diagonal entries of each free node i.
   void add_to_diagonal(std::span<const double> per_node, double factor) noexcept;
@@ -75,7 +75,7 @@ class StiffnessMatrix {
   bool partly_held_ = false;    // any along some axes only
   // Of block columns, one after another: the block rows from the diagonal down. Block k begins in column
   // c at entry 9 rows_begin_[c] + 3 (k - rows_begin_[c]).
-  std::vector<int> rows_, rows_begin_{0};
+  std::vector<int> rows_, rows_start_{0};
   SparseMatrix matrix_;
 };
 

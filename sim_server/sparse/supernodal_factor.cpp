@@ -28,7 +28,7 @@ SupernodalFactor<Scalar>::SupernodalFactor(const SupernodalPattern& pattern)
 
 template <class Scalar>
 bool SupernodalFactor<Scalar>::factor(const SparseMatrix& lower) {
-  std::fill(values_.begin(), values_.end(), Scalar(0));
+  std::ranges::fill(values_, Scalar(0));
   for (std::size_t k = 0; k < pattern_->place.size(); ++k) {
     if (pattern_->place[k] >= 0) values_[pattern_->place[k]] = static_cast<Scalar>(lower.valuePtr()[k]);
   }

@@ -47,8 +47,8 @@ class SupernodalFactor {
   void assemble(int s, int from, int to, const std::vector<int>& local);
   void forward(Matrix& x) const;
   void backward(Matrix& x) const;
-  Scalar* block(int s) { return values_.data() + pattern_->values_begin[s]; }
-  const Scalar* block(int s) const { return values_.data() + pattern_->values_begin[s]; }
+  Scalar* block(int s) { return values_.data() + pattern_->values_start[s]; }
+  const Scalar* block(int s) const { return values_.data() + pattern_->values_start[s]; }
 
   const SupernodalPattern* pattern_;
   std::vector<Scalar> values_;

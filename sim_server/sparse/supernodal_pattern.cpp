@@ -12,14 +12,14 @@ namespace {
 
 constexpr int kAxes = 3;  // unknowns of a node
 // A subtree with more than this share of all work is cut.
-constexpr double kLargestShare = 0.06;
+constexpr double kLargestFraction = 0.06;
 
 }  // namespace
 
 SupernodalPattern::SupernodalPattern(const SparseMatrix& lower) {
   if (lower.rows() == 0) {
     first = {0};
-    rows_begin = values_begin = updates_begin = {0};
+    rows_start = values_start = updates_start = {0};
     return;
   }
   const MatrixGraph graph = MatrixGraph::of_blocks(lower);
@@ -32,10 +32,10 @@ SupernodalPattern::SupernodalPattern(const SparseMatrix& lower) {
   expand(nodal.order, order);
   expand(nodal.rows, rows);
   for (const int c : nodal.first) first.push_back(kAxes * c);
-  for (const std::size_t begin : nodal.rows_begin) rows_begin.push_back(kAxes * begin);
-  values_begin = {0};
+  for (const std::size_t begin : nodal.rows_start) rows_start.push_back(kAxes * begin);
+  values_start = {0};
   for (int s = 0; s < supernodes(); ++s)
-    values_begin.push_back(values_begin.back() + static_cast<std::size_t>(columns(s)) * rows_of(s).size());
+    values_start.push_back(values_start.back() + static_cast<std::size_t>(columns(s)) * rows_of(s).size());
   countable = values() <= std::numeric_limits<int>::max();
   if (!countable) return;
   find_updates();
@@ -58,11 +58,11 @@ void SupernodalPattern::find_updates() {
       }
     }
   };
-  updates_begin.assign(static_cast<std::size_t>(supernodes()) + 1, 0);
-  each([&](int target, const Update&) { ++updates_begin[target + 1]; });
-  std::partial_sum(updates_begin.begin(), updates_begin.end(), updates_begin.begin());
-  updates.resize(updates_begin.back());
-  std::vector<std::size_t> next = updates_begin;
+  updates_start.assign(static_cast<std::size_t>(supernodes()) + 1, 0);
+  each([&](int target, const Update&) { ++updates_start[target + 1]; });
+  std::partial_sum(updates_start.begin(), updates_start.end(), updates_start.begin());
+  updates.resize(updates_start.back());
+  std::vector<std::size_t> next = updates_start;
   each([&](int target, const Update& update) { updates[next[target]++] = update; });
 }
 
@@ -94,7 +94,7 @@ void SupernodalPattern::find_places(const SparseMatrix& lower) {
     for (std::size_t i = 0; i < below.size(); ++i) local[below[i]] = static_cast<int>(i);
     for (int column = first[s]; column < first[s + 1]; ++column) {
       const auto top_of =
-          static_cast<int>(values_begin[s]) + (column - first[s]) * static_cast<int>(below.size());
+          static_cast<int>(values_start[s]) + (column - first[s]) * static_cast<int>(below.size());
       for (std::size_t k = begin[column]; k < begin[column + 1]; ++k)
         place[entries[k].entry] = top_of + local[entries[k].row];
     }
@@ -127,21 +127,21 @@ void SupernodalPattern::cut_subtrees() {
     begin[parent[s]] = std::min(begin[parent[s]], begin[s]);
   }
   for (int s = count - 1; s >= 0; --s) {
-    if (work[s] > kLargestShare * all) {
+    if (work[s] > kLargestFraction * all) {
       top.push_back(s);
-    } else if (parent[s] < 0 || work[parent[s]] > kLargestShare * all) {
+    } else if (parent[s] < 0 || work[parent[s]] > kLargestFraction * all) {
       subtrees.push_back({begin[s], s + 1});
     }
   }
-  std::reverse(top.begin(), top.end());
-  std::sort(subtrees.begin(), subtrees.end(), [&](const Subtree& a, const Subtree& b) {
+  std::ranges::reverse(top);
+  std::ranges::sort(subtrees, [&](const Subtree& a, const Subtree& b) {
     return std::pair(-work[a.end - 1], a.begin) < std::pair(-work[b.end - 1], b.begin);
   });
 }
 
 std::size_t SupernodalPattern::bytes() const {
   return (order.size() + first.size() + rows.size() + place.size() + top.size()) * sizeof(int) +
-         (rows_begin.size() + values_begin.size() + updates_begin.size()) * sizeof(std::size_t) +
+         (rows_start.size() + values_start.size() + updates_start.size()) * sizeof(std::size_t) +
          updates.size() * sizeof(Update) + subtrees.size() * sizeof(Subtree);
 }
 

@@ -29,22 +29,22 @@ struct SupernodalPattern {
   int columns(int s) const { return first[s + 1] - first[s]; }
   /// Returns the rows of L that a supernode has: its own columns, then others below.
   std::span<const int> rows_of(int s) const {
-    return std::span(rows).subspan(rows_begin[s], rows_begin[s + 1] - rows_begin[s]);
+    return std::span(rows).subspan(rows_start[s], rows_start[s + 1] - rows_start[s]);
   }
   std::span<const Update> updates_of(int s) const {
-    return std::span(updates).subspan(updates_begin[s], updates_begin[s + 1] - updates_begin[s]);
+    return std::span(updates).subspan(updates_start[s], updates_start[s + 1] - updates_start[s]);
   }
-  std::size_t values() const { return values_begin.back(); }  ///< entries of all blocks
+  std::size_t values() const { return values_start.back(); }  ///< entries of all blocks
   std::size_t bytes() const;
 
   bool countable = true;
   std::vector<int> order;                 ///< (n) the unknown eliminated at each place
   std::vector<int> first;                 ///< (supernodes + 1) first column
   std::vector<int> rows;                  ///< one list after another
-  std::vector<std::size_t> rows_begin;    ///< (supernodes + 1)
-  std::vector<std::size_t> values_begin;  ///< (supernodes + 1) of blocks (rows x columns), by columns
+  std::vector<std::size_t> rows_start;    ///< (supernodes + 1)
+  std::vector<std::size_t> values_start;  ///< (supernodes + 1) of blocks (rows x columns), by columns
   std::vector<Update> updates;            ///< ascending by source
-  std::vector<std::size_t> updates_begin;
+  std::vector<std::size_t> updates_start;
   std::vector<int> place;  ///< of each entry of the matrix among the values; -1: not of the lower triangle
   std::vector<Subtree> subtrees;  ///< as many of like work as keep a few cores busy
   std::vector<int> top;           ///< the supernodes above them, ascending

@@ -119,11 +119,11 @@ void find_rows(const MatrixGraph& graph, std::span<const int> parent, Supernodes
       for (const int vertex : graph.neighbours_of(result.order[c])) take(place[vertex]);
     }
     for (const int child : children[s]) {
-      for (std::size_t k = result.rows_begin[child]; k < result.rows_begin[child + 1]; ++k)
+      for (std::size_t k = result.rows_start[child]; k < result.rows_start[child + 1]; ++k)
         take(result.rows[k]);
     }
     std::sort(result.rows.begin() + own, result.rows.end());
-    result.rows_begin.push_back(result.rows.size());
+    result.rows_start.push_back(result.rows.size());
   }
 }
 

@@ -11,13 +11,13 @@ namespace palpate::sim {
 struct Supernodes {
   int count() const { return static_cast<int>(first.size()) - 1; }
   std::span<const int> rows_of(int s) const {
-    return std::span(rows).subspan(rows_begin[s], rows_begin[s + 1] - rows_begin[s]);
+    return std::span(rows).subspan(rows_start[s], rows_start[s + 1] - rows_start[s]);
   }
 
   std::vector<int> order;                  ///< vertex of the graph at each place
   std::vector<int> first{0};               ///< (count + 1) first column, a place
   std::vector<int> rows;                   ///< own columns, then rows below, ascending; list after list
-  std::vector<std::size_t> rows_begin{0};  ///< (count + 1)
+  std::vector<std::size_t> rows_start{0};  ///< (count + 1)
 };
 
 /// Supernodes of the factor, in another postorder of the same tree. Columns of one structure are a supernode

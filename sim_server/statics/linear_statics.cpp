@@ -30,9 +30,9 @@ std::span<const T> values(const T* first, Eigen::Index count) {
 
 /// Where a set-up finds what was computed before, and keeps what it computes: what was condensed, where there
 /// is that, else the cache, else nowhere.
-class KeptMatrices {
+class StoredMatrices {
  public:
-  explicit KeptMatrices(const ModelInputs& inputs) : inputs_(inputs) {}
+  explicit StoredMatrices(const ModelInputs& inputs) : inputs_(inputs) {}
 
   bool any() const { return inputs_.condensed != nullptr || inputs_.cache != nullptr; }
   bool of_any_build() const { return inputs_.condensed != nullptr; }
@@ -82,10 +82,10 @@ void add(const SparseMatrix& k, Fingerprint& fingerprint, bool of_any_build) {
 
 /// Of all that rows and columns of K^-1 follow from, and how they are kept.
 Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows,
-                         const SurfaceCompliance& compliance, const KeptMatrices& kept) {
+                         const SurfaceCompliance& compliance, const StoredMatrices& stored) {
   constexpr int kLayout = 1;  // of tiles in a file
-  Fingerprint fingerprint = kept.fingerprint();
-  add(k, fingerprint, kept.of_any_build());
+  Fingerprint fingerprint = stored.fingerprint();
+  add(k, fingerprint, stored.of_any_build());
   fingerprint.add(rows);
   if (const double tolerance = compliance.tolerance(); tolerance > 0) {
     fingerprint.add(std::span<const double>(&tolerance, 1));
@@ -97,10 +97,10 @@ Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows,
 
 /// Of all that modes of vibration follow from.
 Digest key_of_modes(const SparseMatrix& k, const Eigen::VectorXd& masses, int count,
-                    const KeptMatrices& kept) {
-  Fingerprint fingerprint = kept.fingerprint();
-  add(k, fingerprint, kept.of_any_build());
-  if (kept.of_any_build()) {
+                    const StoredMatrices& stored) {
+  Fingerprint fingerprint = stored.fingerprint();
+  add(k, fingerprint, stored.of_any_build());
+  if (stored.of_any_build()) {
     fingerprint.add(std::span<const char>(in_any_build(masses.sum()) + in_any_build(masses.squaredNorm())));
   } else {
     fingerprint.add(values(masses.data(), masses.size()));
@@ -168,40 +168,40 @@ VibrationModes LinearStatics::modes(int count, const std::string& where,
     inputs_.progress(name_of(Stage::kModes), 0);
     return vibration_modes(of_stiffness, weights, count, where);
   };
-  const KeptMatrices kept(inputs_);
-  if (!kept.any()) return find();
-  const Digest key = key_of_modes(stiffness.lower(), weights, count, kept);
-  if (const auto found = kept.find(key, fmt::format("{} modes of vibration", count))) {
+  const StoredMatrices stored(inputs_);
+  if (!stored.any()) return find();
+  const Digest key = key_of_modes(stiffness.lower(), weights, count, stored);
+  if (const auto found = stored.find(key, fmt::format("{} modes of vibration", count))) {
     const auto matrix = found->matrix();  // the frequencies above the shapes
     if (matrix.rows() == dofs.count + 1 && matrix.cols() == count)
-      return {matrix.row(0).transpose(), matrix.bottomRows(dofs.count), note_of_saved(*found, kept.name())};
+      return {matrix.row(0).transpose(), matrix.bottomRows(dofs.count), note_of_saved(*found, stored.name())};
   }
   const Time begin = now();
   VibrationModes found = find();
   Eigen::MatrixXd matrix(dofs.count + 1, count);
   matrix << found.frequencies.transpose(), found.shapes;
   const std::string what = fmt::format("{} modes, {}", count, inputs_.scene.mesh_file.filename().string());
-  kept.keep({.key = key, .seconds = to_seconds(now() - begin), .what = what}, matrix);
+  stored.keep({.key = key, .seconds = to_seconds(now() - begin), .what = what}, matrix);
   return found;
 }
 
 void LinearStatics::fill(SurfaceCompliance& compliance) const {
   const std::vector<int> rows = rows_of(compliance.vertices());
-  const KeptMatrices kept(inputs_);
-  if (!kept.any()) return compliance.compute(factor(FactorUse::kInverse), rows, inputs_.progress);
-  const Digest key = key_of_compliance(stiffness.lower(), rows, compliance, kept);
+  const StoredMatrices stored(inputs_);
+  if (!stored.any()) return compliance.compute(factor(FactorUse::kInverse), rows, inputs_.progress);
+  const Digest key = key_of_compliance(stiffness.lower(), rows, compliance, stored);
   const std::string what = fmt::format("compliance of {} nodes", compliance.vertices().size());
-  if (auto found = kept.find(key, what); found && compliance.take(std::move(*found), kept.name())) return;
+  if (auto found = stored.find(key, what); found && compliance.take(std::move(*found), stored.name())) return;
   const Time begin = now();
   compliance.compute(factor(FactorUse::kInverse), rows, inputs_.progress);
   const EntryHeader header{.key = key,
                            .seconds = to_seconds(now() - begin),
                            .what = what + ", " + inputs_.scene.mesh_file.filename().string()};
   try {
-    compliance.pass_to([&](const auto& matrix) { kept.keep(header, matrix); });
-    compliance.was_kept_in(kept.name());
+    compliance.pass_to([&](const auto& matrix) { stored.keep(header, matrix); });
+    compliance.was_stored_in(stored.name());
   } catch (const Error& error) {
-    if (kept.of_any_build()) throw;
+    if (stored.of_any_build()) throw;
     log::warning("set-up cache: nothing kept: {}", error.what());
   }
 }

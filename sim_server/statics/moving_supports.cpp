@@ -15,11 +15,11 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kMostSteps = 2000;
-constexpr double kSolved = 1e-12;  // relative residual, of the static answer
-constexpr double kWild = 1e4;      // of the static answer: farther swings nothing
+constexpr double kSolved = 1e-12;   // relative residual, of the static answer
+constexpr double kUnbounded = 1e4;  // of the static answer: farther swings nothing
 
 /// The stiffness at rest of all nodes, none held; the lower triangle.
-SparseMatrix whole_stiffness(const Solid& solid) {
+SparseMatrix total_stiffness(const Solid& solid) {
   StiffnessMatrix stiffness = solid.stiffness_matrix(FreeDofs(solid.nodes(), {}));
   solid.add_stiffness(solid.rest(), stiffness);
   return stiffness.lower();
@@ -64,7 +64,7 @@ bool swing(const Flexibility& flexibility, const Eigen::VectorXd& mass, Complex 
     along = residual + now / before * along;
     before = now;
   }
-  return residual.norm() <= enough && x.norm() <= kWild * statics;
+  return residual.norm() <= enough && x.norm() <= kUnbounded * statics;
 }
 
 SupportResponse response_of(const HeldMotion& held, const Eigen::VectorXcd& x, const FreeDofs& dofs) {
@@ -107,7 +107,7 @@ std::vector<SupportResponse> support_responses(const ModelInputs& inputs, const 
   if (motions.empty()) return responses;
   inputs.progress(name_of(Stage::kSupports), 0);
   const auto& damping = inputs.scene.deformation.of<RayleighDamping>();
-  const SparseMatrix stiffness = whole_stiffness(solid);
+  const SparseMatrix stiffness = total_stiffness(solid);
   const Eigen::VectorXd mass = masses_of(solid, dofs);
   for (const HeldMotion& held : motions) {
     Eigen::VectorXcd x = flexibility(pull_of(held, stiffness, dofs)).col(0).cast<Complex>();
@@ -124,10 +124,10 @@ std::vector<SupportResponse> support_responses(const ModelInputs& inputs, const 
 MovingSupports::MovingSupports(const ModelInputs& inputs, const std::vector<SupportResponse>& responses) {
   for (const int vertex : inputs.surface.vertices) rest_.push_back(inputs.mesh.vertices[vertex]);
   for (const SupportResponse& all : responses) {
-    SupportResponse& here = responses_.emplace_back(SupportResponse{all.motion, {}, {}});
+    SupportResponse& own = responses_.emplace_back(SupportResponse{all.motion, {}, {}});
     for (const int vertex : inputs.surface.vertices) {
-      here.along.push_back(all.along[vertex]);
-      here.ahead.push_back(all.ahead[vertex]);
+      own.along.push_back(all.along[vertex]);
+      own.ahead.push_back(all.ahead[vertex]);
     }
   }
   state_.positions = state_.velocities = rest_;
@@ -136,8 +136,8 @@ MovingSupports::MovingSupports(const ModelInputs& inputs, const std::vector<Supp
 
 FreeMotion MovingSupports::advance(double dt) noexcept {
   state_.time += dt;
-  std::copy(rest_.begin(), rest_.end(), state_.positions.begin());
-  std::fill(state_.velocities.begin(), state_.velocities.end(), Vec3::Zero());
+  std::ranges::copy(rest_, state_.positions.begin());
+  std::ranges::fill(state_.velocities, Vec3::Zero());
   for (const SupportResponse& response : responses_)
     response.add(state_.time, state_.positions, state_.velocities);
   return {state_.positions, state_.velocities};

@@ -34,8 +34,7 @@ void symmetrise(Eigen::Ref<Eigen::MatrixXd> m) {
 std::vector<int> free_vertices(const ModelInputs& inputs) {
   std::vector<int> free;
   for (const int vertex : inputs.reachable) {
-    if (!std::binary_search(inputs.fixed.begin(), inputs.fixed.end(), inputs.surface.vertices[vertex]))
-      free.push_back(vertex);
+    if (!std::ranges::binary_search(inputs.fixed, inputs.surface.vertices[vertex])) free.push_back(vertex);
   }
   return free;
 }
@@ -103,17 +102,17 @@ void SurfaceCompliance::allocate() {
   new (&compliance_) Eigen::Map<Eigen::MatrixXd>(computed_.data(), size(), size());
 }
 
-bool SurfaceCompliance::take(MappedMatrix&& kept, std::string_view source) {
-  const auto matrix = kept.matrix();
+bool SurfaceCompliance::take(MappedMatrix&& stored, std::string_view source) {
+  const auto matrix = stored.matrix();
   if (tiles_) {
     if (!tiles_->unpack(matrix)) return false;
-    note_ = note_of_saved(kept, source);
+    note_ = note_of_saved(stored, source);
     return true;
   }
   if (matrix.rows() != size() || matrix.cols() != size()) return false;
   new (&compliance_) Eigen::Map<Eigen::MatrixXd>(const_cast<double*>(matrix.data()), size(), size());
-  kept_ = std::move(kept);
-  note_ = note_of_saved(*kept_, source);
+  stored_ = std::move(stored);
+  note_ = note_of_saved(*stored_, source);
   return true;
 }
 
@@ -142,20 +141,20 @@ std::size_t SurfaceCompliance::bytes() const {
 void SurfaceCompliance::compute(const FactoredMatrix& inverse_of, std::span<const int> unknowns,
                                 const Progress& progress) {
   const double free = free_memory();
-  const auto tell = [&](double share) {
+  const auto report_step = [&](double fraction) {
     if (tiles_) require_room(static_cast<double>(tiles_->bytes()), free);
-    progress(name_of(Stage::kCompliance), share);
+    progress(name_of(Stage::kCompliance), fraction);
   };
   if (!tiles_) {
     allocate();
-    return inverse_of.inverse_block(unknowns, compliance_, tell);
+    return inverse_of.inverse_block(unknowns, compliance_, report_step);
   }
   std::vector<int> begins;
   for (const int node : rows_.begins) begins.push_back(3 * node);
   const auto take = [this](int tile, std::span<const int> with, const Eigen::MatrixXd& rows) {
     tiles_->take(tile, with, rows);
   };
-  inverse_of.inverse_rows(unknowns, begins, take, tell);
+  inverse_of.inverse_rows(unknowns, begins, take, report_step);
 }
 
 void SurfaceCompliance::compute(std::size_t at_once, const Respond& respond, const Progress& progress,
@@ -198,14 +197,14 @@ void SurfaceCompliance::compute_tiles(std::size_t at_once, std::size_t report, c
 }
 
 void SurfaceCompliance::add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd& weights) {
-  Eigen::MatrixXd here(size(), shapes.cols());
+  Eigen::MatrixXd own(size(), shapes.cols());
   for (std::size_t k = 0; k < vertices().size(); ++k)
-    here.middleRows<3>(3 * static_cast<Eigen::Index>(k)) = shapes.middleRows<3>(3 * vertices()[k]);
-  if (tiles_) return tiles_->add(here, weights);
-  const Eigen::MatrixXd weighted = weights.asDiagonal() * here.transpose();
-  parallel_blocks(static_cast<std::size_t>(here.rows()), kCache, [&](std::size_t begin, std::size_t end) {
+    own.middleRows<3>(3 * static_cast<Eigen::Index>(k)) = shapes.middleRows<3>(3 * vertices()[k]);
+  if (tiles_) return tiles_->add(own, weights);
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * own.transpose();
+  parallel_blocks(static_cast<std::size_t>(own.rows()), kCache, [&](std::size_t begin, std::size_t end) {
     const auto from = static_cast<Eigen::Index>(begin), count = static_cast<Eigen::Index>(end - begin);
-    compliance_.middleCols(from, count).noalias() += here * weighted.middleCols(from, count);
+    compliance_.middleCols(from, count).noalias() += own * weighted.middleCols(from, count);
   });
   symmetrise(compliance_);
 }

@@ -45,13 +45,13 @@ class SurfaceCompliance final : public ComplianceSource {
 
   /// Takes W from where it was kept, the `source` of which reports tell. False where it is not of this size:
   /// then nothing is changed.
-  bool take(MappedMatrix&& kept, std::string_view source);
+  bool take(MappedMatrix&& stored, std::string_view source);
   /// Passes W to `keep`, as `take` wants it: tiles as a copy. Throws `Error` where there is no room for that.
   void pass_to(const std::function<void(const Eigen::Ref<const Eigen::MatrixXd>&)>& keep) const;
   /// "1934 nodes, from the set-up cache, which saved 3.2 s".
   std::string detail() const;
   /// W has been put there.
-  void was_kept_in(std::string_view where) { note_ = "now in " + std::string(where); }
+  void was_stored_in(std::string_view where) { note_ = "now in " + std::string(where); }
 
   /// Adds sum_k weights_k s_k s_k^T, s_k: shape k over the rows. `shapes`: (3 surface vertices x k). Set-up,
   /// on all cores, once.
@@ -71,7 +71,7 @@ class SurfaceCompliance final : public ComplianceSource {
   void begin(ContactPatch& patch) const noexcept override;
   void fill(int node, ContactPatch& patch) const noexcept override;
   /// True if the tissue yields at a surface vertex: it is free, and a tool can reach it.
-  bool gives_way(int vertex) const noexcept { return row_[vertex] >= 0; }
+  bool yields(int vertex) const noexcept { return row_[vertex] >= 0; }
   /// Returns the compliance (m/N) of the surface that bears these loads, as one piece. O(loads^2).
   Mat3 of_loads(std::span<const NodalLoad> loads) const noexcept;
   /// Moves `positions` (surface vertices, m) by what `loads` do. O(r x loads); in tiles, O(r x rank x loaded
@@ -99,7 +99,7 @@ class SurfaceCompliance final : public ComplianceSource {
   std::vector<int> row_;  // per surface vertex
   // W: one of the three.
   Eigen::MatrixXd computed_;
-  std::optional<MappedMatrix> kept_;
+  std::optional<MappedMatrix> stored_;
   std::optional<BlockLowRankMatrix> tiles_;
   Eigen::Map<Eigen::MatrixXd> compliance_{nullptr, 0, 0};  // the dense one
   std::string note_;

@@ -34,10 +34,10 @@ void keep_studied(const SetupCache& cache, const Scene& scene, const Discretisat
 }
 
 std::optional<DiscretisationErrors> find_studied(const SetupCache& cache, const Scene& scene) {
-  const auto kept = cache.find(key_of_study(scene));
-  if (!kept || kept->matrix().rows() != 1 || kept->matrix().cols() != 2) return {};
+  const auto stored = cache.find(key_of_study(scene));
+  if (!stored || stored->matrix().rows() != 1 || stored->matrix().cols() != 2) return {};
   const auto measured = [&](int column) {
-    return DiscretisationError{ErrorSource::kMeasured, static_cast<float>(kept->matrix()(0, column))};
+    return DiscretisationError{ErrorSource::kMeasured, static_cast<float>(stored->matrix()(0, column))};
   };
   return DiscretisationErrors{measured(0), measured(1)};
 }

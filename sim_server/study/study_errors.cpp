@@ -6,8 +6,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kTick = 1e-3;   // s, of the client
-constexpr double kTouch = 1e-6;  // N
+constexpr double kTick = 1e-3;          // s, of the client
+constexpr double kContactForce = 1e-6;  // N
 
 /// The step of the reference that ends when step `k` of the trace does.
 std::size_t same_time(const Trace& trace, const Trace& reference, std::size_t k) {
@@ -21,7 +21,7 @@ struct RelativeError {
   int count = 0;
 
   void add(const Vec3& force, const Vec3& truth) {
-    if (std::max(force.norm(), truth.norm()) < kTouch) return;
+    if (std::max(force.norm(), truth.norm()) < kContactForce) return;
     sum += (force - truth).norm();
     squares += truth.squaredNorm();
     ++count;
@@ -35,11 +35,11 @@ Vec3 force_at(const Trace& reference, double t) {
   const double at = std::clamp(t / reference.dt - 1, 0.0, static_cast<double>(reference.forces.size() - 1));
   const auto before = static_cast<std::size_t>(at);
   const std::size_t after = std::min(before + 1, reference.forces.size() - 1);
-  const double share = at - static_cast<double>(before);
-  return (1 - share) * reference.forces[before] + share * reference.forces[after];
+  const double fraction = at - static_cast<double>(before);
+  return (1 - fraction) * reference.forces[before] + fraction * reference.forces[after];
 }
 
-double felt_error(const Trace& trace, const Trace& reference, const Trajectory& motion, double latency) {
+double rendered_error(const Trace& trace, const Trace& reference, const Trajectory& motion, double latency) {
   RelativeError error;
   const double end = reference.dt * static_cast<double>(reference.forces.size());
   for (int tick = 0; tick * kTick <= end; ++tick) {
@@ -72,7 +72,7 @@ StudyErrors errors_of(const Trace& trace, const Trace& reference, const Trajecto
   }
   StudyErrors errors{.force = force.percent(),
                      .surface = moved > 0 ? 100 * std::sqrt(off / moved) : 0,
-                     .felt = felt_error(trace, reference, motion, latency),
+                     .rendered = rendered_error(trace, reference, motion, latency),
                      .along = {}};
   for (std::size_t k = 0; k < trace.forces.size(); ++k) {
     const double away = (trace.forces[k] - reference.forces[same_time(trace, reference, k)]).norm();

@@ -13,7 +13,7 @@ struct StudyErrors {
   /// Error of the force that a client renders at 1 kHz, measured as `force`. Each step starts with the tool's
   /// place then, takes its full `dt`, and its force comes `latency` later. The client extrapolates with its
   /// tangent: F + K (x(t) - x of the step).
-  double felt = 0;
+  double rendered = 0;
   std::vector<double> along;  ///< (steps) |F - F_ref|, of the same root mean square
 };
 

@@ -209,7 +209,8 @@ TetMesh mesh_of(const StudyCase& one) {
   for (std::size_t k = 0; k < one.scene.fixed.size(); ++k)
     mesh.surface_tags[fixed_tag(k)] = vertices_in(one.scene.fixed[k], mesh);
   put_inclusions(one.scene, mesh);  // of all refinements those of the mesh
-  for (double left = one.refinements; left > 0; --left) mesh = left < 1 ? halved(mesh) : refined(mesh);
+  for (double remaining = one.refinements; remaining > 0; --remaining)
+    mesh = remaining < 1 ? halved(mesh) : refined(mesh);
   if (one.edge == 0) return mesh;
   const Eigen::AlignedBox3d near(one.near.min, one.near.max);
   return graded(mesh, [&](const Vec3& x) { return one.edge + kGrowth * near.exteriorDistance(x); });

@@ -16,29 +16,32 @@ namespace {
 
 constexpr double kDepth = 0.5, kSlide = 1.0;  // of the tool's radius
 constexpr double kClear = 0.3;                // of the tool's radius: above the surface, at both ends
-constexpr double kPress = 0.5, kWhole = 2.0;  // s
-constexpr double kRows = 1000;                // of the motion, Hz
+constexpr double kPress = 0.5, kCompleteSurface = 2.0;  // s
+constexpr double kRows = 1000;                          // of the motion, Hz
 constexpr std::size_t kMostSites = 1500;
 
-double eased(double share) {
-  return 0.5 - 0.5 * std::cos(std::numbers::pi * std::clamp(share, 0.0, 1.0));
+double eased(double fraction) {
+  return 0.5 - 0.5 * std::cos(std::numbers::pi * std::clamp(fraction, 0.0, 1.0));
 }
 
 }  // namespace
 
 Trajectory press_and_slide(const StudyCase& one) {
   Simulation simulation = simulation_of(one);
-  const Press press = find_press(one.scene, simulation);
+  const Press apply_loads = find_press(one.scene, simulation);
   const double radius = one.scene.tools.front().shape.radius;
-  const Vec3 touching = press.place + 0.4 * radius * press.normal, along = press.normal.unitOrthogonal();
+  const Vec3 touching = apply_loads.place + 0.4 * radius * apply_loads.normal,
+             along = apply_loads.normal.unitOrthogonal();
   std::vector<double> t;
   std::vector<Vec3> p;
-  for (int i = 0; i <= static_cast<int>(kWhole * kRows); ++i) {
-    const double now = i / kRows, down = eased(now / kPress) - eased((now - kWhole + kPress) / kPress);
-    const double slid = std::sin(2 * std::numbers::pi * eased((now - kPress) / (kWhole - 2 * kPress)));
+  for (int i = 0; i <= static_cast<int>(kCompleteSurface * kRows); ++i) {
+    const double now = i / kRows,
+                 down = eased(now / kPress) - eased((now - kCompleteSurface + kPress) / kPress);
+    const double slid =
+        std::sin(2 * std::numbers::pi * eased((now - kPress) / (kCompleteSurface - 2 * kPress)));
     t.push_back(now);
-    p.emplace_back(touching +
-                   radius * ((kClear - (kClear + kDepth) * down) * press.normal + kSlide * slid * along));
+    p.emplace_back(touching + radius * ((kClear - (kClear + kDepth) * down) * apply_loads.normal +
+                                        kSlide * slid * along));
   }
   return {std::move(t), std::move(p)};
 }
@@ -91,13 +94,13 @@ Trace run_case(const StudyCase& one, const Trajectory& motion, double seconds, s
   for (int k = 1; k <= steps; ++k) {
     const Vec3 place = motion.at(k * trace.dt);
     const Time start = now();
-    const ToolForce felt = simulation.step(place, trace.dt);
+    const ToolForce rendered = simulation.step(place, trace.dt);
     const Time took = now() - start;
-    if (felt.contacts > 0) ns.add(took.count());
-    trace.flagged += felt.flagged ? 1 : 0;
+    if (rendered.contacts > 0) ns.add(took.count());
+    trace.flagged += rendered.flagged ? 1 : 0;
     trace.places.push_back(place);
-    trace.forces.push_back(felt.force);
-    trace.tangents.push_back(felt.tangent);
+    trace.forces.push_back(rendered.force);
+    trace.tangents.push_back(rendered.tangent);
     followed.add(simulation.rest(), simulation.positions(), trace.moved);
   }
   trace.step_ms_p50 = ns.quantile(0.5) / 1e6;

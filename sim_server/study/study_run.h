@@ -47,6 +47,6 @@ struct CaseFailed : Error {
 /// Runs `work` in a process of its own, which has the machine's memory and threads to itself, and gives how
 /// much more than at its beginning was resident at most, bytes. Throws `CaseFailed`, with what an `Error`
 /// there said; an `Error` where it was interrupted. To be called before this process has threads.
-double run_apart(const std::string& name, const std::function<void()>& work);
+double run_separately(const std::string& name, const std::function<void()>& work);
 
 }  // namespace palpate::sim

@@ -40,7 +40,7 @@ Json facts_of(const StudyRow& row) {
   facts["force_error_percent"] = row.errors.force;
   facts["worst_force_error_percent"] = row.errors.worst_force;
   facts["surface_error_percent"] = row.errors.surface;
-  facts["felt_error_percent"] = row.errors.felt;
+  facts["felt_error_percent"] = row.errors.rendered;
   facts["flagged_steps"] = row.flagged;
   facts["state_hash"] = fmt::format("{:016x}", row.state_hash);
   return facts;
@@ -80,22 +80,22 @@ Json steps_of(const Trace& truth) {
 }
 
 /// What the case leaves out of the scene, as its model cannot.
-std::string without(const Scene& scene, const Scene& asked) {
+std::string without(const Scene& scene, const Scene& requested) {
   std::string text;
-  if (scene.loads.empty() && !asked.loads.empty()) text += "# and without: [[load]]\n";
-  if (scene.material->relaxations.empty() && !asked.material->relaxations.empty())
+  if (scene.loads.empty() && !requested.loads.empty()) text += "# and without: [[load]]\n";
+  if (scene.material->relaxations.empty() && !requested.material->relaxations.empty())
     text += "# and without: [[material.relaxation]]\n";
-  if (!scene.material->fibres && asked.material->fibres) text += "# and without: [material.fibres]\n";
+  if (!scene.material->fibres && requested.material->fibres) text += "# and without: [material.fibres]\n";
   return text;
 }
 
-/// To be pasted into the scene that was `asked` about.
-std::string settings_of(const StudyRow& row, const Scene& asked) {
+/// To be pasted into the scene that was `requested` about.
+std::string settings_of(const StudyRow& row, const Scene& requested) {
   const Scene& scene = row.one.scene;
   std::string text = fmt::format(
       "# {}: in the place of the same keys, [deformation] of all that stands there; the rest stays\n{}",
-      asked.source, without(scene, asked));
-  const std::filesystem::path folder = std::filesystem::path(asked.source).parent_path();
+      requested.source, without(scene, requested));
+  const std::filesystem::path folder = std::filesystem::path(requested.source).parent_path();
   text += fmt::format("rate_hz = {:g}\n[mesh]\nfile = \"{}\"", scene.rate_hz,
                       std::filesystem::proximate(scene.mesh_file, folder).generic_string());
   text += fmt::format("\n[material]\nlaw = \"{}\"\nelement = \"{}\"\n", name_of(scene.material->law),
@@ -107,13 +107,12 @@ std::string settings_of(const StudyRow& row, const Scene& asked) {
 
 void mark_front(std::vector<StudyRow>& rows) {
   for (StudyRow& row : rows) {
-    row.on_front =
-        row.flagged == 0 && row.touched && std::none_of(rows.begin(), rows.end(), [&](const StudyRow& other) {
-          const auto [error, time] = std::pair(other.errors.force, other.step_ms_p50);
-          const bool better = error < row.errors.force || time < row.step_ms_p50;
-          return other.flagged == 0 && other.touched && error <= row.errors.force &&
-                 time <= row.step_ms_p50 && better;
-        });
+    row.on_front = row.flagged == 0 && row.touched && std::ranges::none_of(rows, [&](const StudyRow& other) {
+                     const auto [error, time] = std::pair(other.errors.force, other.step_ms_p50);
+                     const bool better = error < row.errors.force || time < row.step_ms_p50;
+                     return other.flagged == 0 && other.touched && error <= row.errors.force &&
+                            time <= row.step_ms_p50 && better;
+                   });
   }
 }
 
@@ -127,7 +126,7 @@ std::string to_text(const StudyResult& result) {
     text += fmt::format(
         "{} {:<9} {:<58} {:>10} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>8.0f}{}\n",
         row.on_front ? '*' : ' ', row.one.axis, row.one.name(), row.tetrahedra, row.errors.force,
-        row.errors.worst_force, row.errors.surface, row.errors.felt, row.step_ms_p50, row.setup_ms / 1e3,
+        row.errors.worst_force, row.errors.surface, row.errors.rendered, row.step_ms_p50, row.setup_ms / 1e3,
         row.peak_bytes / 1e6,
         row.flagged > 0 ? fmt::format("  {} steps flagged", row.flagged)
         : !row.touched  ? "  never touched"
@@ -137,12 +136,12 @@ std::string to_text(const StudyResult& result) {
   return text + "* on the front: nothing settled has as small an error of the force in less time\n";
 }
 
-std::string advice(const StudyResult& result, double budget_ms, const Scene& asked) {
+std::string advice(const StudyResult& result, double budget_ms, const Scene& requested) {
   const StudyRow* best = nullptr;
   for (const StudyRow& row : result.rows) {
     if (row.one.refinements > 0 || row.flagged > 0 || !row.touched) continue;
     if (row.step_ms_p50 > std::min(budget_ms, dt_ms(row))) continue;
-    if (best == nullptr || row.errors.felt < best->errors.felt) best = &row;
+    if (best == nullptr || row.errors.rendered < best->errors.rendered) best = &row;
   }
   if (best == nullptr)
     return fmt::format("\nNo case takes {:g} ms a step or less; a coarser mesh (--mesh FILE) would.\n",
@@ -150,8 +149,8 @@ std::string advice(const StudyResult& result, double budget_ms, const Scene& ask
   return fmt::format(
       "\nWithin {:g} ms a step, {} is felt with the smallest error: {:.2g} %, at {:.2g} ms a step (99 "
       "of 100 within {:.2g}).\n\n{}",
-      budget_ms, best->one.name(), best->errors.felt, best->step_ms_p50, best->step_ms_p99,
-      settings_of(*best, asked));
+      budget_ms, best->one.name(), best->errors.rendered, best->step_ms_p50, best->step_ms_p99,
+      settings_of(*best, requested));
 }
 
 void write_study(const StudyOptions& options, const StudyResult& result) {
@@ -162,9 +161,9 @@ void write_study(const StudyOptions& options, const StudyResult& result) {
     timed.update(times_of(row));
     times.push_back(timed);
     for (const Json& line : along_of(row)) along.push_back(line);
-    Json whole = facts_of(row);
-    whole.update(times_of(row));
-    all.push_back(whole);
+    Json entire = facts_of(row);
+    entire.update(times_of(row));
+    all.push_back(entire);
   }
   Json refused = Json::array();
   for (const auto& [name, why] : result.refused) refused.push_back({{"case", name}, {"reason", why}});

@@ -31,8 +31,8 @@ void mark_front(std::vector<StudyRow>& rows);
 std::string to_text(const StudyResult& result);
 /// Returns advice: one sentence, and TOML to paste into the scene. It names the case with the smallest error
 /// of the rendered force, among the cases on meshes that are files. Their median time a step must exceed
-/// neither `budget_ms` nor their own time step. `asked`: the scene itself.
-std::string advice(const StudyResult& result, double budget_ms, const Scene& asked);
+/// neither `budget_ms` nor their own time step. `requested`: the scene itself.
+std::string advice(const StudyResult& result, double budget_ms, const Scene& requested);
 /// rows.csv, timing.csv, along.csv, reference.csv (tool and force, step by step) and summary.json. Throws
 /// `Error`.
 void write_study(const StudyOptions& options, const StudyResult& result);

@@ -73,14 +73,14 @@ void pass(File& file, T& trace) {
 }  // namespace
 
 void write_trace(const std::filesystem::path& path, const Trace& trace) {
-  WholeFile whole(path, Contents::kTable);
-  Writer writer{std::ofstream(whole.path(), std::ios::binary)};
+  AtomicFile atomic_file(path, Contents::kTable);
+  Writer writer{std::ofstream(atomic_file.path(), std::ios::binary)};
   writer.number(kMagic);
   pass(writer, trace);
   writer.number(kMagic);
   writer.file.close();
   if (!writer.file) fail_at_run_time("{}: cannot be written", path.string());
-  whole.commit();
+  atomic_file.commit();
 }
 
 std::optional<Trace> read_trace(const std::filesystem::path& path) {
@@ -99,7 +99,7 @@ std::optional<Trace> read_trace(const std::filesystem::path& path) {
 namespace {
 
 /// In the child: does `work`, and says what went wrong.
-[[noreturn]] void work_apart(int out, const std::function<void()>& work) {
+[[noreturn]] void separate_work(int out, const std::function<void()>& work) {
   sigset_t all;
   sigfillset(&all);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_DFL);
@@ -118,13 +118,13 @@ namespace {
 
 /// What the child says until it ends; nothing where Ctrl-C came first.
 std::optional<std::string> hear(int in) {
-  constexpr int kLook = 100;  // ms
+  constexpr int kPollPeriod = 100;  // ms
   std::string text(4096, '\0');
   std::size_t length = 0;
   pollfd waiting{in, POLLIN, 0};
   while (length < text.size()) {
     if (wait_for_interrupt(Time::zero())) return {};
-    if (poll(&waiting, 1, kLook) <= 0) continue;
+    if (poll(&waiting, 1, kPollPeriod) <= 0) continue;
     const ssize_t got = read(in, text.data() + length, text.size() - length);
     if (got <= 0) break;
     length += static_cast<std::size_t>(got);
@@ -135,7 +135,7 @@ std::optional<std::string> hear(int in) {
 
 }  // namespace
 
-double run_apart(const std::string& name, const std::function<void()>& work) {
+double run_separately(const std::string& name, const std::function<void()>& work) {
   malloc_trim(0);  // what is free here is not the child's
   const double inherited = resident_memory();
   int said[2];
@@ -144,7 +144,7 @@ double run_apart(const std::string& name, const std::function<void()>& work) {
   if (child < 0) fail_at_run_time("{}: no process: {}", name, std::strerror(errno));
   if (child == 0) {
     close(said[0]);
-    work_apart(said[1], work);
+    separate_work(said[1], work);
   }
   close(said[1]);
   const std::optional<std::string> text = hear(said[0]);

@@ -15,7 +15,7 @@ namespace palpate::sim {
 class CutMesh;
 struct Parting;
 struct PublishedSurface;
-struct SlowModes;
+struct PublishedModes;
 struct ModalMotion;
 
 /// A force on one vertex of the surface.
@@ -118,7 +118,7 @@ class ClientModel {
   virtual ~ClientModel() = default;
   /// Returns the published modes, or null: there are none now. They never change, except where the surface
   /// can be cut (`publish`).
-  virtual const SlowModes* modes() const noexcept = 0;
+  virtual const PublishedModes* modes() const noexcept = 0;
   /// Writes the amplitudes and rates of the published modes at the end of the last step, under the loads of
   /// `apply`, and, where `state` has room for it, the viscous memory of a tissue that relaxes.
   virtual void read_modes(ModalMotion& state) = 0;

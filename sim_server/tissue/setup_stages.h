@@ -9,7 +9,7 @@ namespace palpate::sim {
 
 /// Told about set-up work: what is being done, and which share of it (0 to 1). Called at the beginning of
 /// each stage at least; with 1 at the end of the last, so that stages cover the whole set-up (`SetupTimes`).
-using Progress = std::function<void(std::string_view what, double share)>;
+using Progress = std::function<void(std::string_view what, double fraction)>;
 
 /// Stages of a set-up, in no particular order. The contact of each tool is a further stage, named in
 /// `simulation.h`.

@@ -52,10 +52,10 @@ std::string machine_name() {
 
 std::optional<ViewerAddress> read_viewer_address(const std::string& text) {
   if (text == "off") return {};
-  const std::string whole = is_digits(text) ? "127.0.0.1:" + text : text;
+  const std::string complete = is_digits(text) ? "127.0.0.1:" + text : text;
   try {
-    ViewerAddress address{protocol::resolve(whole, "--viewer")};
-    address.typed = name_of_host(whole);
+    ViewerAddress address{protocol::resolve(complete, "--viewer")};
+    address.typed = name_of_host(complete);
     return address;
   } catch (const Error&) {
     fail("--viewer: \"{}\" is no address; expected PORT, ADDR:PORT or off, such as 8080 or 0.0.0.0:8080",

@@ -78,17 +78,17 @@ void write_topology(const OrganShape& organ, const ViewBox& box, std::uint32_t v
 }
 
 void write_surface(const SurfaceStamp& stamp, std::span<const std::uint16_t> now,
-                   std::span<std::uint16_t> had, bool whole, Bytes& out) {
+                   std::span<std::uint16_t> had, bool complete, Bytes& out) {
   const std::size_t n = now.size() / 3;
   std::size_t moved = 0;
   for (std::size_t v = 0; v < n; ++v) moved += same(now, had, v) ? 0 : 1;
   constexpr std::size_t kNumbered = sizeof(std::uint32_t) + 3 * sizeof(std::uint16_t);
-  whole = whole || kNumbered * moved >= now.size_bytes();
+  complete = complete || kNumbered * moved >= now.size_bytes();
   begin(out, kSurface);
   append(out, stamp.version), append(out, stamp.step), append(out, stamp.t);
-  append(out, static_cast<std::uint32_t>(whole ? n : moved));
-  append(out, static_cast<std::uint32_t>(whole ? 1 : 0));
-  if (whole) {
+  append(out, static_cast<std::uint32_t>(complete ? n : moved));
+  append(out, static_cast<std::uint32_t>(complete ? 1 : 0));
+  if (complete) {
     append_all(out, now);
   } else {
     for (std::size_t v = 0; v < n; ++v) {
@@ -98,21 +98,21 @@ void write_surface(const SurfaceStamp& stamp, std::span<const std::uint16_t> now
       if (!same(now, had, v)) append_all(out, now.subspan(3 * v, 3));
     }
   }
-  std::copy(now.begin(), now.end(), had.begin());
+  std::ranges::copy(now, had.begin());
 }
 
 void write_triangles(std::uint32_t version, std::span<const Triangle> now, std::vector<Triangle>& had,
-                     bool whole, Bytes& out) {
+                     bool complete, Bytes& out) {
   std::vector<std::uint32_t> places;
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (i >= had.size() || now[i] != had[i]) places.push_back(static_cast<std::uint32_t>(i));
   }
-  whole = whole || 4 * places.size() >= 3 * now.size();
+  complete = complete || 4 * places.size() >= 3 * now.size();
   begin(out, kTriangles);
   append(out, version), append(out, static_cast<std::uint32_t>(now.size()));
-  append(out, static_cast<std::uint32_t>(whole ? now.size() : places.size()));
-  append(out, static_cast<std::uint32_t>(whole ? 1 : 0));
-  if (whole) {
+  append(out, static_cast<std::uint32_t>(complete ? now.size() : places.size()));
+  append(out, static_cast<std::uint32_t>(complete ? 1 : 0));
+  if (complete) {
     append_all(out, now);
   } else {
     append_all<std::uint32_t>(out, places);
@@ -129,7 +129,7 @@ void write_sample(std::uint8_t tool, const SeenTool::Sample& sample, Bytes& out)
 void write_ticks(const ClientTicks& ticks, Bytes& out) {
   begin(out, kTicks, ticks.tool, ticks.laws);
   append(out, ticks.count), append(out, ticks.t), append(out, ticks.dt);
-  append_all(out, std::span(ticks.felt).first(ticks.count));
+  append_all(out, std::span(ticks.rendered).first(ticks.count));
   for (std::size_t k = 0; k < ticks.count; ++k) append_all(out, std::span(ticks.by_law[k]).first(ticks.laws));
 }
 

@@ -28,15 +28,15 @@ struct SurfaceStamp {
   std::uint32_t version = 0, step = 0;
   double t = 0;  ///< s
 };
-/// Writes the moved vertices: those of `now` (3 n) that differ from `had`, and updates `had`. `whole`: writes
-/// all of them; also where `had` is shorter.
+/// Writes the moved vertices: those of `now` (3 n) that differ from `had`, and updates `had`. `complete`:
+/// writes all of them; also where `had` is shorter.
 void write_surface(const SurfaceStamp& stamp, std::span<const std::uint16_t> now,
-                   std::span<std::uint16_t> had, bool whole, Bytes& out);
+                   std::span<std::uint16_t> had, bool complete, Bytes& out);
 
 /// The triangles of another version of the topology: those of `now` that `had`, which follows, has not got in
-/// the same place; `whole`: all of them, also where that is shorter.
+/// the same place; `complete`: all of them, also where that is shorter.
 void write_triangles(std::uint32_t version, std::span<const Triangle> now, std::vector<Triangle>& had,
-                     bool whole, Bytes& out);
+                     bool complete, Bytes& out);
 
 void write_sample(std::uint8_t tool, const SeenTool::Sample& sample, Bytes& out);
 void write_ticks(const ClientTicks& ticks, Bytes& out);

@@ -30,7 +30,7 @@ std::optional<PageLink::Kind> PageLink::next(const Showing& showing, Time now, B
   if (next_surface(showing, now, out) || next_sample(showing, out)) return Kind::kBinary;
   Kind kind = Kind::kBinary;
   if (next_of_client(showing, out, kind)) return kind;
-  if (wants_field_ && field_ != showing.fields && !showing.field.empty()) {
+  if (requests_field_ && field_ != showing.fields && !showing.field.empty()) {
     field_ = showing.fields;
     write_field(showing.version, showing.field, out);
     return Kind::kBinary;
@@ -46,44 +46,45 @@ std::optional<PageLink::Kind> PageLink::begin(const Showing& showing, Bytes& out
   }
   if (!showing.live || showing.positions.empty()) return {};
   if (version_ == 0) {
-    version_ = Showing::kWhole;
+    version_ = Showing::kCompleteSurface;
     surface_ = state_ = 0;
     has_.clear();
     write_topology(showing.scene->organ, showing.box, version_, out);
     return Kind::kBinary;
   }
-  if (version_ == showing.version && !whole_triangles_) return {};
-  if (version_ == Showing::kWhole) has_triangles_ = showing.scene->organ.triangles;
+  if (version_ == showing.version && !complete_triangles_) return {};
+  if (version_ == Showing::kCompleteSurface) has_triangles_ = showing.scene->organ.triangles;
   version_ = showing.version;
-  write_triangles(version_, showing.triangles, has_triangles_, std::exchange(whole_triangles_, false), out);
+  write_triangles(version_, showing.triangles, has_triangles_, std::exchange(complete_triangles_, false),
+                  out);
   return Kind::kBinary;
 }
 
 bool PageLink::next_surface(const Showing& showing, Time now, Bytes& out) {
   if (surface_ == showing.pictures || !may_follow(now - surface_at_) || showing.positions.empty())
     return false;
-  const bool whole = has_.empty();
-  if (whole) has_.resize(showing.positions.size());
+  const bool complete = has_.empty();
+  if (complete) has_.resize(showing.positions.size());
   const Picture& picture = *showing.picture;
   write_surface({showing.version, static_cast<std::uint32_t>(picture.step), picture.t}, showing.positions,
-                has_, whole, out);
+                has_, complete, out);
   surface_ = showing.pictures;
   surface_at_ = now;
   // The same step may be shown again, as when a page opens while paused: it is told of once.
   const auto step = static_cast<std::uint32_t>(picture.step);
-  if (tells_ && (on_the_way_.empty() || on_the_way_.back() != step)) on_the_way_.push_back(step);
+  if (tells_ && (in_transit_.empty() || in_transit_.back() != step)) in_transit_.push_back(step);
   return true;
 }
 
 /// Whether the next picture may be shown, so long after the last.
 bool PageLink::may_follow(Time after) const noexcept {
-  return after >= kSurfaceEach && on_the_way_.size() < kMostOnTheWay;
+  return after >= kSurfaceEach && in_transit_.size() < kMaxInTransit;
 }
 
 void PageLink::shown(std::uint32_t step) noexcept {
   tells_ = true;
-  const auto found = std::find(on_the_way_.rbegin(), on_the_way_.rend(), step);
-  on_the_way_.erase(on_the_way_.begin(), found.base());
+  const auto found = std::find(in_transit_.rbegin(), in_transit_.rend(), step);
+  in_transit_.erase(in_transit_.begin(), found.base());
 }
 
 void PageLink::pointed(const PagePointer& pointer) {
@@ -110,15 +111,15 @@ bool PageLink::next_sample(const Showing& showing, Bytes& out) {
 
 bool PageLink::next_of_client(const Showing& showing, Bytes& out, Kind& kind) {
   for (std::size_t i = 0; i < showing.clients.size(); ++i) {
-    if (showing.client_news[i] == clients_[i] || !showing.peers[i].held) continue;
-    clients_[i] = showing.client_news[i];
+    if (showing.client_events[i] == clients_[i] || !showing.peers[i].held) continue;
+    clients_[i] = showing.client_events[i];
     kind = put_text(client_text(showing.clients[i]), out);
     return true;
   }
   if (ticks_ == showing.ticks_so_far) return false;
   ticks_ = std::max(
-      ticks_, showing.ticks_so_far - std::min<std::uint64_t>(showing.ticks_so_far, Showing::kTicksKept));
-  write_ticks(showing.ticks[ticks_ % Showing::kTicksKept], out);
+      ticks_, showing.ticks_so_far - std::min<std::uint64_t>(showing.ticks_so_far, Showing::kTicksStored));
+  write_ticks(showing.ticks[ticks_ % Showing::kTicksStored], out);
   ++ticks_;
   kind = Kind::kBinary;
   return true;

@@ -15,19 +15,19 @@ struct Showing {
   const SceneFacts* scene = nullptr;
   bool live = true;  ///< false: nothing but the scene is sent, the rest stands in `/session`
   ViewBox box;
-  std::uint32_t version = kWhole;             ///< of the topology: which triangles it has
-  static constexpr std::uint32_t kWhole = 1;  ///< those of the scene, before anything was removed
-  std::span<const Triangle> triangles{};      ///< of any later one
+  std::uint32_t version = kCompleteSurface;             ///< of the topology: which triangles it has
+  static constexpr std::uint32_t kCompleteSurface = 1;  ///< those of the scene, before anything was removed
+  std::span<const Triangle> triangles{};                ///< of any later one
   const Picture* picture = nullptr;
   std::uint64_t pictures = 0;            ///< so far: another number is another picture
   std::vector<std::uint16_t> positions;  ///< (3 n) of `picture`
   std::vector<SeenPeer> peers;           ///< of each tool
   MeasuredRates rates;
   bool paused = false;
-  std::vector<SeenClient> clients;         ///< of each tool; `laws` 0: none
-  std::vector<std::uint64_t> client_news;  ///< of each tool: how many came so far
-  std::vector<ClientTicks> ticks;          ///< the newest, in a ring of
-  static constexpr std::size_t kTicksKept = 16;
+  std::vector<SeenClient> clients;           ///< of each tool; `laws` 0: none
+  std::vector<std::uint64_t> client_events;  ///< of each tool: how many came so far
+  std::vector<ClientTicks> ticks;            ///< the newest, in a ring of
+  static constexpr std::size_t kTicksStored = 16;
   std::uint64_t ticks_so_far = 0;
   std::vector<float> field;  ///< (n), J/m3; empty: not known
   std::uint64_t fields = 0;  ///< so far
@@ -47,8 +47,8 @@ class PageLink {
   void greet(bool may_control) noexcept { greeted_ = true, may_control_ = may_control; }
   bool greeted() const noexcept { return greeted_; }
   bool may_control() const noexcept { return may_control_; }
-  void want_field(bool wants) noexcept { wants_field_ = wants; }
-  bool wants_field() const noexcept { return wants_field_; }
+  void want_field(bool request) noexcept { requests_field_ = request; }
+  bool requests_field() const noexcept { return requests_field_; }
   /// Marks the surface of this step as drawn by the page, so earlier ones are no longer on their way.
   void shown(std::uint32_t step) noexcept;
   /// Takes the pointer of the page: it moved a tool, or pushed its buttons.
@@ -58,7 +58,7 @@ class PageLink {
   /// The next surface is a whole one, and so are the triangles before it, where some have been removed.
   void forget_surface() noexcept {
     has_.clear();
-    whole_triangles_ = version_ > Showing::kWhole;
+    complete_triangles_ = version_ > Showing::kCompleteSurface;
   }
   /// The newest reason is told.
   void refuse(std::string why) { refused_ = std::move(why); }
@@ -70,7 +70,7 @@ class PageLink {
   static constexpr double kMessagesPerSecond = 200;
   static constexpr Time kHelloWithin = std::chrono::seconds(5);
   static constexpr Time kStateEach = std::chrono::milliseconds(150);  ///< at least
-  static constexpr std::size_t kMostOnTheWay = 4;  ///< surfaces, of a page that tells what it drew
+  static constexpr std::size_t kMaxInTransit = 4;  ///< surfaces, of a page that tells what it drew
   static constexpr Time kSurfaceEach = std::chrono::milliseconds(15);  ///< at most
 
  private:
@@ -82,16 +82,16 @@ class PageLink {
 
   Time opened_, state_at_{}, surface_at_{};
   protocol::TokenBucket messages_;
-  bool greeted_ = false, may_control_ = false, wants_field_ = false, knows_scene_ = false;
+  bool greeted_ = false, may_control_ = false, requests_field_ = false, knows_scene_ = false;
   std::uint32_t version_ = 0;                                      // of the topology that it has; 0: none
   std::uint64_t surface_ = 0, state_ = 0, field_ = 0, ticks_ = 0;  // the newest that it has got
   std::vector<std::uint16_t> has_;                                 // (3 n)
   std::vector<Triangle> has_triangles_;                            // where the organ is cut
-  bool whole_triangles_ = false;                                   // to be sent again
+  bool complete_triangles_ = false;                                // to be sent again
   std::array<std::uint64_t, kMaxTools> samples_{}, clients_{};
   std::string refused_;
   bool tells_ = false;                     // what it drew
-  std::vector<std::uint32_t> on_the_way_;  // steps of surfaces, the oldest first
+  std::vector<std::uint32_t> in_transit_;  // steps of surfaces, the oldest first
   std::vector<PagePointer> pressed_;
 };
 

@@ -63,8 +63,8 @@ struct SeenTool {
 struct SeenResection {
   std::uint64_t tetrahedra = 0;  ///< gone
   double volume = 0, cut_area = 0;
-  double mean_distance = std::numeric_limits<double>::quiet_NaN(), farthest = mean_distance,
-         mean_parted_distance = mean_distance;
+  double mean_distance = std::numeric_limits<double>::quiet_NaN(), furthest = mean_distance,
+         mean_separated_distance = mean_distance;
   int loose_pieces = 0;
 };
 
@@ -112,8 +112,8 @@ struct SeenClient {
   std::array<Name, kMostStates> state_names{};  ///< what holds now: "fault", "clutched", ...
   double age_ms = 0, period_ms = 0, passivity_gain = 0;
   std::uint64_t missed = 0;
-  Vec3 felt_W = Vec3::Zero();  ///< N
-  Vec3 p_W = Vec3::Zero();     ///< m
+  Vec3 rendered_W = Vec3::Zero();  ///< N
+  Vec3 p_W = Vec3::Zero();         ///< m
   Name device{};
   bool has_motors = false;
 };
@@ -125,7 +125,7 @@ struct ClientTicks {
   std::uint32_t count = 0;
   double t = 0;  ///< s, of the first, as `Picture::t`
   float dt = 0;  ///< s
-  std::array<float, kMost> felt{};
+  std::array<float, kMost> rendered{};
   std::array<std::array<float, SeenClient::kMostLaws>, kMost> by_law{};
 };
 

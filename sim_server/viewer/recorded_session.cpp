@@ -17,10 +17,10 @@ bool RecordedSession::add(Time t) {
   feed_.pictures.publish();
   // A link's clock begins before all that it sends.
   const Time linked = t + PageLink::kStateEach;
-  maker_.look(linked);
-  if (t - whole_at_ >= kWholeEach) {
+  maker_.update(linked);
+  if (t - complete_at_ >= kCompleteEach) {
     link_.forget_surface();
-    whole_at_ = t;
+    complete_at_ = t;
   }
   while (const auto kind = link_.next(maker_.showing(), linked, message_)) put(*kind, t, message_);
   return true;

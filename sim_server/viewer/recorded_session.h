@@ -19,8 +19,8 @@ class RecordedSession {
 
   const Bytes& bytes() const { return bytes_; }
 
-  static constexpr std::size_t kLongest = std::size_t{1} << 30;       ///< bytes
-  static constexpr Time kWholeEach = std::chrono::milliseconds(900);  ///< a whole surface
+  static constexpr std::size_t kLongest = std::size_t{1} << 30;          ///< bytes
+  static constexpr Time kCompleteEach = std::chrono::milliseconds(900);  ///< a whole surface
 
  private:
   void put(PageLink::Kind kind, Time t, const Bytes& message);
@@ -29,7 +29,7 @@ class RecordedSession {
   ShowingMaker maker_;
   PageLink link_;
   Picture picture_;
-  Time whole_at_{};
+  Time complete_at_{};
   Bytes bytes_, message_;
 };
 

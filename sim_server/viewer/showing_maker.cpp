@@ -19,27 +19,27 @@ ShowingMaker::ShowingMaker(const SceneFacts& scene, ViewerFeed& feed, bool live)
   quantise(showing_.box, showing_.picture->positions, showing_.positions);
   showing_.peers.resize(tools);
   showing_.clients.resize(tools);
-  showing_.client_news.resize(tools);
-  showing_.ticks.resize(Showing::kTicksKept);
+  showing_.client_events.resize(tools);
+  showing_.ticks.resize(Showing::kTicksStored);
 }
 
-void ShowingMaker::look(Time now) {
+void ShowingMaker::update(Time now) {
   if (feed_.pictures.take()) {
     showing_.picture = &feed_.pictures.front();
     ++showing_.pictures;
     quantise(showing_.box, showing_.picture->positions, showing_.positions);
-    showing_.version = Showing::kWhole + showing_.picture->cuts;
+    showing_.version = Showing::kCompleteSurface + showing_.picture->cuts;
     showing_.triangles = showing_.picture->triangles;
     fresh_ = true;
   }
-  if (feed_.hooks.news) feed_.hooks.news(now);
+  if (feed_.hooks.events) feed_.hooks.events(now);
   for (std::size_t i = 0; i < showing_.peers.size(); ++i) {
     showing_.peers[i] = feed_.peers[i];
     showing_.clients[i] = feed_.clients[i];
-    showing_.client_news[i] = feed_.client_news[i];
+    showing_.client_events[i] = feed_.client_events[i];
   }
   for (; !feed_.ticks.empty(); feed_.ticks.pop_front())
-    showing_.ticks[showing_.ticks_so_far++ % Showing::kTicksKept] = feed_.ticks.front();
+    showing_.ticks[showing_.ticks_so_far++ % Showing::kTicksStored] = feed_.ticks.front();
   if (feed_.nodes.take() && feed_.hooks.field) {
     feed_.hooks.field(feed_.nodes.front(), showing_.field);
     ++showing_.fields;

@@ -13,7 +13,7 @@ class ShowingMaker {
   ShowingMaker(const SceneFacts& scene, ViewerFeed& feed, bool live);
 
   /// Looks for news; `now` is for the rates.
-  void look(Time now);
+  void update(Time now);
   const Showing& showing() const { return showing_; }
 
  private:

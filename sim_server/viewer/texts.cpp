@@ -106,8 +106,8 @@ Json resection_json(const std::optional<SeenResection>& resection) {
           {"volume", brief(resection->volume)},
           {"cut_area", brief(resection->cut_area)},
           {"mean_distance", number_or_null(resection->mean_distance)},
-          {"farthest", number_or_null(resection->farthest)},
-          {"mean_parted_distance", number_or_null(resection->mean_parted_distance)},
+          {"farthest", number_or_null(resection->furthest)},
+          {"mean_parted_distance", number_or_null(resection->mean_separated_distance)},
           {"loose_pieces", resection->loose_pieces}};
 }
 
@@ -151,7 +151,7 @@ std::string client_text(const SeenClient& client) {
                    {"passivity_gain", brief(client.passivity_gain)},
                    {"interventions", interventions},
                    {"states", states},
-                   {"felt", brief(client.felt_W)},
+                   {"felt", brief(client.rendered_W)},
                    {"p", brief(client.p_W)},
                    {"device", text_of(client.device)},
                    {"has_motors", client.has_motors}}}});

@@ -18,8 +18,8 @@ namespace palpate::sim {
 namespace {
 
 constexpr const char* kLive = "palpate-view-1";
-constexpr lws_usec_t kLookEach = 50'000;   // us: for who is quiet, for states while nothing steps
-constexpr std::size_t kChunk = 16384;      // of a file
+constexpr lws_usec_t kSearchEach = 50'000;  // us: for who is quiet, for states while nothing steps
+constexpr std::size_t kChunk = 16384;       // of a file
 constexpr int kUnsent = 32768;             // bytes waiting in the system, above which a page gets nothing new
 constexpr unsigned kMostConnections = 48;  // pages, and browsers that fetch files
 constexpr int kPatience = 10;              // s, with who fetches a file, or says nothing
@@ -41,7 +41,7 @@ std::string security_policy(const std::string& host) {
 /// What is left to be sent of a file.
 struct Fetch {
   const char* next;
-  std::size_t left;
+  std::size_t remaining;
 };
 
 }  // namespace
@@ -69,7 +69,7 @@ struct Viewer::Server {
   }
   static int on_event(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t size) noexcept;
   static void on_timer(lws_sorted_usec_list_t* entry) noexcept;
-  void look();
+  void update();
   int on_request(lws* wsi, Fetch& fetch);
   int send_head(lws* wsi, unsigned status, const PageFile& file, const std::string& host, bool head_only,
                 Fetch& fetch);
@@ -143,7 +143,7 @@ Viewer::Server::Server(const ViewerAddress& where, std::string token_, const Sce
   }
   address.endpoint.port = static_cast<std::uint16_t>(lws_get_vhost_listen_port(vhost));
   timer.server = this;
-  lws_sul_schedule(context, 0, &timer.entry, &on_timer, kLookEach);
+  lws_sul_schedule(context, 0, &timer.entry, &on_timer, kSearchEach);
 }
 
 int Viewer::Server::on_event(lws* wsi, lws_callback_reasons reason, void* user, void* in,
@@ -154,7 +154,7 @@ int Viewer::Server::on_event(lws* wsi, lws_callback_reasons reason, void* user, 
   Page** const page = static_cast<Page**>(user);
   switch (reason) {
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
-      if (live) server->look();
+      if (live) server->update();
       return 0;
     case LWS_CALLBACK_HTTP:
       return server->on_request(wsi, *static_cast<Fetch*>(user));
@@ -193,22 +193,22 @@ int Viewer::Server::on_event(lws* wsi, lws_callback_reasons reason, void* user, 
 void Viewer::Server::on_timer(lws_sorted_usec_list_t* entry) noexcept {
   Server* const server = reinterpret_cast<Timer*>(entry)->server;
   try {
-    server->look();
+    server->update();
   } catch (...) {  // no memory; perhaps next time
   }
-  lws_sul_schedule(server->context, 0, entry, &on_timer, kLookEach);
+  lws_sul_schedule(server->context, 0, entry, &on_timer, kSearchEach);
 }
 
-void Viewer::Server::look() {
+void Viewer::Server::update() {
   const Time time = now();
-  maker.look(time);
-  bool wants_field = false;
+  maker.update(time);
+  bool requests_field = false;
   for (Page& page : pages) {
-    wants_field = wants_field || page.link.wants_field();
+    requests_field = requests_field || page.link.requests_field();
     if (page.link.too_quiet(time)) end(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "no hello");
     if (page.link.greeted()) lws_callback_on_writable(page.wsi);
   }
-  feed.wants_field = wants_field;
+  feed.requests_field = requests_field;
 }
 
 int Viewer::Server::on_request(lws* wsi, Fetch& fetch) {
@@ -221,14 +221,15 @@ int Viewer::Server::on_request(lws* wsi, Fetch& fetch) {
   if (method != LWSHUMETH_GET && method != LWSHUMETH_HEAD)
     return send_head(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, none, "", true, fetch), -1;
   if (!host_is_ours(host, address.typed)) return send_head(wsi, HTTP_STATUS_FORBIDDEN, none, "", true, fetch);
-  const std::string_view asked(path, static_cast<std::size_t>(std::max(length, 0)));
+  const std::string_view requested(path, static_cast<std::size_t>(std::max(length, 0)));
   const bool head_only = method == LWSHUMETH_HEAD;
-  if (asked == "/session" && session != nullptr) {
-    const PageFile file{
-        asked, "application/octet-stream", {reinterpret_cast<const char*>(session->data()), session->size()}};
+  if (requested == "/session" && session != nullptr) {
+    const PageFile file{requested,
+                        "application/octet-stream",
+                        {reinterpret_cast<const char*>(session->data()), session->size()}};
     return send_head(wsi, HTTP_STATUS_OK, file, host, head_only, fetch);
   }
-  const PageFile* const file = page_file(asked);
+  const PageFile* const file = page_file(requested);
   if (file == nullptr) return send_head(wsi, HTTP_STATUS_NOT_FOUND, none, "", head_only, fetch);
   return send_head(wsi, HTTP_STATUS_OK, *file, host, head_only, fetch);
 }
@@ -257,14 +258,14 @@ int Viewer::Server::send_head(lws* wsi, unsigned status, const PageFile& file, c
 }
 
 int Viewer::Server::send_chunk(lws* wsi, Fetch& fetch) {
-  if (fetch.left == 0) return -1;
-  const std::size_t size = std::min(kChunk, fetch.left);
+  if (fetch.remaining == 0) return -1;
+  const std::size_t size = std::min(kChunk, fetch.remaining);
   buffer.resize(LWS_PRE + size);
   std::memcpy(buffer.data() + LWS_PRE, fetch.next, size);
-  fetch = {fetch.next + size, fetch.left - size};
-  const auto kind = fetch.left == 0 ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP;
+  fetch = {fetch.next + size, fetch.remaining - size};
+  const auto kind = fetch.remaining == 0 ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP;
   if (lws_write(wsi, reinterpret_cast<unsigned char*>(buffer.data()) + LWS_PRE, size, kind) < 0) return -1;
-  if (fetch.left == 0) return lws_http_transaction_completed(wsi) != 0 ? -1 : 0;
+  if (fetch.remaining == 0) return lws_http_transaction_completed(wsi) != 0 ? -1 : 0;
   lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, kPatience);
   lws_callback_on_writable(wsi);
   return 0;
@@ -334,7 +335,7 @@ void Viewer::Server::control(Page& page, const PageMessage& message) {
     if (!scene.pausable) return page.link.refuse("this session cannot be paused");
     feed.steps = 0;
     feed.paused = pause->paused;
-    look();
+    update();
   } else if (std::holds_alternative<PageStep>(message)) {
     if (!feed.paused) return page.link.refuse("single steps are made while paused");
     ++feed.steps;

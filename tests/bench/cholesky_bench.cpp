@@ -109,11 +109,11 @@ void add_factor(const std::string& name, std::string_view whose, int cells, unsi
       const Eigen::MatrixXd load = loads(matrix.rows(), columns);
       time_work(state, [&] { benchmark::DoNotOptimize(factor.solve(load).sum()); });
       const Eigen::MatrixXd answer = factor.solve(load);
-      const double left = (load - matrix.selfadjointView<Eigen::Lower>() * answer).norm() / load.norm();
+      const double remaining = (load - matrix.selfadjointView<Eigen::Lower>() * answer).norm() / load.norm();
       Fnv1a hash;
       hash.add(answer.data(), sizeof(double) * static_cast<std::size_t>(answer.size()));
       show(state, hash.value());
-      state.counters["error"] = 100 * left;
+      state.counters["error"] = 100 * remaining;
     })->UseManualTime();
   }
 }

@@ -28,7 +28,7 @@ class FakePort : public UsbTransport {
         place.torque[leg] = static_cast<std::int16_t>(-500 + 200 * std::sin(phi + static_cast<double>(leg)));
       const auto bytes = encode_falcon(place);
       auto& reply = replies_[static_cast<std::size_t>(k)];
-      std::copy(bytes.begin(), bytes.end(), reply.begin() + kFtdiStatus);
+      std::ranges::copy(bytes, reply.begin() + kFtdiStatus);
       reply[kFtdiStatus + 13] = std::byte{0x41 + 0x70};  // homed
     }
   }
@@ -44,7 +44,7 @@ class FakePort : public UsbTransport {
     if (due_ == 0) return 0;
     --due_;
     const auto& reply = replies_[next_++ % kTurn];
-    std::copy(reply.begin(), reply.end(), out.begin());
+    std::ranges::copy(reply, out.begin());
     return reply.size();
   }
   State state() const noexcept override { return State::kIdle; }

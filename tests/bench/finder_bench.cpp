@@ -22,7 +22,7 @@ struct Skin {
   explicit Skin(const TetMesh& mesh) : triangles(boundary_surface(mesh).triangles) {
     for (const int vertex : boundary_surface(mesh).vertices) rest.push_back(mesh.vertices[vertex]);
     const auto higher = [](const Vec3& a, const Vec3& b) { return a[1] - a.norm() < b[1] - b.norm(); };
-    place = *std::max_element(rest.begin(), rest.end(), higher);
+    place = *std::ranges::max_element(rest, higher);
     for (const Vec3& x : rest)
       now.push_back(x - kDepth * std::exp(-(x - place).norm() / kReach) * Vec3::UnitY());
     box = {place.array() - kReach, place.array() + kReach};

@@ -69,7 +69,7 @@ struct Run {
   double contacts = 0;  // mean
 };
 
-Run felt(const Case& on, const Scene& scene, int steps) {
+Run rendered(const Case& on, const Scene& scene, int steps) {
   Simulation simulation(scene, on.mesh);
   Run run;
   for (int i = 0; i < steps; ++i) {
@@ -86,7 +86,7 @@ double largest_error(const Case& on, const Run& run) {
   exact.deformation.of<sim::ImplicitSettings>().solver = Solver::kDirect;
   exact.deformation.of<sim::ImplicitSettings>().tolerance = 1e-8;
   exact.deformation.of<sim::ImplicitSettings>().max_newton = 60;
-  const Run truth = felt(on, exact, static_cast<int>(run.forces.size()));
+  const Run truth = rendered(on, exact, static_cast<int>(run.forces.size()));
   double error = 0, most = 0;
   for (std::size_t i = 0; i < run.forces.size(); ++i) {
     error = std::max(error, (run.forces[i] - truth.forces[i]).norm());
@@ -101,7 +101,7 @@ void add_case(const std::string& name, Case (*make)()) {
         const Case on = make();
         const int pressed = static_cast<int>(kPressed * on.scene.rate_hz);
         if (contacts == 0) {
-          const Run run = felt(on, on.scene, 2 * pressed);
+          const Run run = rendered(on, on.scene, 2 * pressed);
           contacts = run.contacts;
           for (const Vec3& force : run.forces) hash.add(force);
           error = largest_error(on, run);

@@ -185,9 +185,10 @@ void run_low_rank(benchmark::State& state, int n, bool ours) {
     all.row(0).array() += from;
     return all;
   };
-  const Eigen::Matrix3Xd here = points(0), there = points(2);
+  const Eigen::Matrix3Xd at_tool = points(0), there = points(2);
   Eigen::MatrixXd matrix(n, n);
-  for (int i = 0; i < n; ++i) matrix.col(i) = (here.colwise() - there.col(i)).colwise().norm().cwiseInverse();
+  for (int i = 0; i < n; ++i)
+    matrix.col(i) = (at_tool.colwise() - there.col(i)).colwise().norm().cwiseInverse();
   const double tolerance = 1e-4 * matrix.norm();
   LowRankFactors found;
   const auto work = [&] {

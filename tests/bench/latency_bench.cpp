@@ -29,7 +29,7 @@ struct Ball {
   std::size_t size = 0;
   Ball() {
     ForceSample sample{.number = 1};
-    sample.flags = ForceSample::kHasHere | ForceSample::kHasAhead | ForceSample::kHasErrors;
+    sample.flags = ForceSample::kHasTangent | ForceSample::kHasAhead | ForceSample::kHasErrors;
     size = seal(bytes, encode({1, 1}, sample, bytes), Key{.number = 1});
   }
   std::span<const std::byte> used() const { return {bytes.data(), size}; }
@@ -66,9 +66,9 @@ class PlainSocket {
 
 void run_plain(benchmark::State& state) {
   const Ball ball;
-  PlainSocket here, there;
-  here.talk_to(there);
-  there.talk_to(here);
+  PlainSocket at_tool, there;
+  at_tool.talk_to(there);
+  there.talk_to(at_tool);
   std::jthread echo([&] {
     std::array<std::byte, 2048> bytes;
     for (;;) {
@@ -81,12 +81,12 @@ void run_plain(benchmark::State& state) {
   for (auto _ : state) {
     const Time begin = now();
     for (int i = 0; i < kTrips; ++i) {
-      here.send(ball.used());
-      benchmark::DoNotOptimize(here.receive(bytes));
+      at_tool.send(ball.used());
+      benchmark::DoNotOptimize(at_tool.receive(bytes));
     }
     state.SetIterationTime(one_way(begin));
   }
-  here.send(ball.used().first(1));
+  at_tool.send(ball.used().first(1));
 }
 
 void run_ours(benchmark::State& state) {
@@ -102,16 +102,17 @@ void run_ours(benchmark::State& state) {
   });
   const Endpoint to = there.local();
   for (auto _ : state) {
-    UdpSocket here(any);
+    UdpSocket at_tool(any);
     Doorbell bell;
-    int left = kTrips;
+    int remaining = kTrips;
     const auto again = [&](auto, const Endpoint&) {
-      if (--left == 0) return here.stop();
-      here.send(ball.used(), to);
+      if (--remaining == 0) return at_tool.stop();
+      at_tool.send(ball.used(), to);
     };
     const Time begin = now();
-    here.send(ball.used(), to);
-    here.run(bell, std::chrono::seconds(1), {.on_datagram = again, .on_doorbell = [] {}, .on_timer = [] {}});
+    at_tool.send(ball.used(), to);
+    at_tool.run(bell, std::chrono::seconds(1),
+                {.on_datagram = again, .on_doorbell = [] {}, .on_timer = [] {}});
     state.SetIterationTime(one_way(begin));
   }
   there.stop();

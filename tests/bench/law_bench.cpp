@@ -37,21 +37,21 @@ void run_tick(benchmark::State& state, const ExtrapolatorRow& row) {
   Pipeline pipeline(row.make(), {}, {});
   time_calls(state, kFixed, [&] {
     hand.next();
-    return pipeline.feel(hand.tool(), hand.arrived()).f_D;
+    return pipeline.render(hand.tool(), hand.arrived()).f_D;
   });
   if (pipeline.limiter().fault() != Fault::kNone || pipeline.watchdog().ramped() > 0)
     state.SkipWithError("the hand left what the safety ladder allows");
 }
 
 /// A turn of ticks as the pipeline gave them, to be told again and again.
-class ToldTicks {
+class PublishedTicks {
  public:
-  ToldTicks() {
+  PublishedTicks() {
     Palpation hand;
     Pipeline pipeline(extrapolators().front().make(), {}, {});
     for (std::size_t i = 0; i < 2 * Palpation::kTurn; ++i) {
       hand.next();
-      const TickResult result = pipeline.feel(hand.tool(), hand.arrived());
+      const TickResult result = pipeline.render(hand.tool(), hand.arrived());
       if (i >= Palpation::kTurn) results_[i % Palpation::kTurn] = result;
     }
   }
@@ -70,20 +70,20 @@ class ToldTicks {
 };
 
 void run_observation(benchmark::State& state, std::size_t keep) {
-  ToldTicks ticks;
+  PublishedTicks ticks;
   const auto laws = ClientConfig{}.scored_laws();
   Observation observation(laws, Palpation::kRate, "bench", keep);
   time_calls(state, kFixed, [&] {
-    const TickResult& told = ticks.next();
-    observation.tick(told, Time{1000}, 0);
-    return observation.scoring().forces()[told.tool.tick % laws.size()];
+    const TickResult& published = ticks.next();
+    observation.tick(published, Time{1000}, 0);
+    return observation.scoring().forces()[published.tool.tick % laws.size()];
   });
 }
 
 /// No surface is told of this wall, so that a law that solves contact on one leaves its ticks to a simpler
 /// one.
 std::string name_of(const ExtrapolatorRow& row) {
-  return std::string(row.name) + (row.make()->wants().surface ? "_without_surface" : "");
+  return std::string(row.name) + (row.make()->request().surface ? "_without_surface" : "");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 int main(int argc, char** argv) {
   using namespace palpate;
   using namespace palpate::bench;
-  begin_with_fast_blas(argv);
+  start_with_fast_blas(argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   try {

@@ -85,7 +85,7 @@ void run_decode(benchmark::State& state) {
 /// A sample with two tangents, all the way with a key: encoded, sealed, found authentic, decoded.
 void run_sealed(benchmark::State& state) {
   ForceSample sample{.number = 1};
-  sample.flags = ForceSample::kHasHere | ForceSample::kHasAhead;
+  sample.flags = ForceSample::kHasTangent | ForceSample::kHasAhead;
   const Key key = direction_key({.number = 1}, Direction::kToClient, Nonce{1}, Nonce{2});
   Encoded out;
   Datagram datagram;

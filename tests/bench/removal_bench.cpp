@@ -42,7 +42,7 @@ struct Body {
   }
   void remove_next() {
     const auto removed = resection->remove({&order[next++], 1}, surface);
-    tensors->remove(removed, resection->left(), material);
+    tensors->remove(removed, resection->remaining(), material);
   }
 
   Material material{.young_modulus = 5e3, .poisson_ratio = 0.45};

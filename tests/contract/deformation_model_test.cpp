@@ -110,20 +110,20 @@ CONTRACT("the same scene elsewhere and turned gives the answers turned", ModelCa
   if (!exempt(choice, "turning")) place.rotate(Eigen::AngleAxisd(2.2, Vec3(1, -2, 0.5).normalized()));
   const Mat3 turn = place.linear();
   ModelBench::Setting setting = kDamped;
-  ModelBench here(choice, setting);
+  ModelBench at_tool(choice, setting);
   setting.place = place;
   ModelBench there(choice, setting);
-  REQUIRE(here.fixed == there.fixed);
+  REQUIRE(at_tool.fixed == there.fixed);
   for (int step = 0; step < 6 + held_until_fresh(choice); ++step) {
-    const std::vector<Vec3> a = here.step(two_loads(here)), b = there.step(two_loads(there, turn));
+    const std::vector<Vec3> a = at_tool.step(two_loads(at_tool)), b = there.step(two_loads(there, turn));
     double off = 0;
-    for (int v = 0; v < here.size(); ++v) off = std::max(off, (place * a[v] - b[v]).norm());
-    CHECK(off <= 1e-8 * here.largest_way(a) + 1e-15);
+    for (int v = 0; v < at_tool.size(); ++v) off = std::max(off, (place * a[v] - b[v]).norm());
+    CHECK(off <= 1e-8 * at_tool.largest_way(a) + 1e-15);
   }
   std::vector<int> free;  // how a held vertex gives way under a tool is nothing of physics
-  std::copy_if(here.reachable.begin(), here.reachable.end(), std::back_inserter(free),
-               [&](int v) { return here.rest(v)[2] > 0; });
-  const Eigen::MatrixXd c = here.compliance(free), d = there.compliance(free);
+  std::ranges::copy_if(at_tool.reachable, std::back_inserter(free),
+                       [&](int v) { return at_tool.rest(v)[2] > 0; });
+  const Eigen::MatrixXd c = at_tool.compliance(free), d = there.compliance(free);
   Eigen::MatrixXd turned = c;
   for (Eigen::Index i = 0; i < c.rows(); i += 3) {
     for (Eigen::Index j = 0; j < c.cols(); j += 3)

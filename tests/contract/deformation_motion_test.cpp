@@ -13,16 +13,16 @@ using namespace palpate::test;
 namespace {
 
 /// The share of stress that never fades.
-double left_of(const Material& material) {
-  double left = 1;
-  for (const Relaxation& term : material.relaxations) left -= term.share;
-  return left;
+double remaining_of(const Material& material) {
+  double remaining = 1;
+  for (const Relaxation& term : material.relaxations) remaining -= term.fraction;
+  return remaining;
 }
 /// A tissue that has relaxed.
 Material relaxed(Material material) {
-  const double left = left_of(material);
-  material.young_modulus *= left;
-  if (material.fibres) material.fibres->modulus *= left;
+  const double remaining = remaining_of(material);
+  material.young_modulus *= remaining;
+  if (material.fibres) material.fibres->modulus *= remaining;
   material.relaxations.clear();
   return material;
 }
@@ -33,7 +33,7 @@ struct Body {
   const ModelBench& bench;
   Solid solid{bench.mesh, relaxed(*bench.scene.material)};
   std::vector<double> mass = solid.masses();
-  double left = left_of(*bench.scene.material);
+  double remaining = remaining_of(*bench.scene.material);
 
   std::vector<Vec3> nodes(std::span<const Vec3> surface) const {
     std::vector<Vec3> x = bench.mesh.vertices;
@@ -81,14 +81,14 @@ struct Fading {
   double energy(const Body& body) const {
     double sum = 0;
     for (std::size_t k = 0; k < places.size(); ++k)
-      sum += bench.scene.material->relaxations[k].share * body.elastic(places[k]) / body.left;
+      sum += bench.scene.material->relaxations[k].fraction * body.elastic(places[k]) / body.remaining;
     return sum;
   }
 };
 
-std::vector<NodalLoad> pull(const ModelBench& bench, double share) {
-  return {{bench.size() - 1, share * Vec3(0.06, -0.03, 0.1)},
-          {bench.size() - 3, share * Vec3(0, 0.1, -0.05)}};
+std::vector<NodalLoad> pull(const ModelBench& bench, double fraction) {
+  return {{bench.size() - 1, fraction * Vec3(0.06, -0.03, 0.1)},
+          {bench.size() - 3, fraction * Vec3(0, 0.1, -0.05)}};
 }
 
 /// Up, held, down, nothing: of step i.
@@ -129,15 +129,15 @@ CONTRACT("let go, a body in motion never gains energy", ModelCase, choice,
            return c.row.takes<sim::RayleighDamping>() && !exempt(c, "energy in motion");
          })) {
   const bool each_step = !exempt(choice, "energy step by step"),
-             here = each_step && !exempt(choice, "energy in one place");
+             at_tool = each_step && !exempt(choice, "energy in one place");
   // So that explicit has one sub-step a period, and implicit damps little.
   const double rate = each_step ? 2000 : 20000;
   ModelBench bench(choice, {.thin = true, .rate_hz = rate, .rayleigh_mass = 0, .rayleigh_stiffness = 0});
   const Body body{bench};
   Fading fading(bench);
   std::vector<Vec3> before, now = bench.step({});
-  const auto step = [&](double share) {
-    before = std::exchange(now, bench.step(pull(bench, share)));
+  const auto step = [&](double fraction) {
+    before = std::exchange(now, bench.step(pull(bench, fraction)));
     fading.follow(before, now);
   };
   for (int i = 0; i < 0.01 * rate; ++i) step(1);
@@ -145,7 +145,7 @@ CONTRACT("let go, a body in motion never gains energy", ModelCase, choice,
   for (int i = 0; i < 0.2 * rate; ++i) {
     step(0);
     const double energy = body.kinetic(before, now, 1 / rate) + fading.energy(body) +
-                          (here ? body.elastic(now) : body.between(before, now));
+                          (at_tool ? body.elastic(now) : body.between(before, now));
     if (i == 1) first = last = energy;  // the force fades in the middle of the first explicit step
     if (i > 1) gained = std::max(gained, energy - (each_step ? last : first));
     last = energy;

@@ -15,16 +15,16 @@ using namespace palpate::client;
 namespace {
 
 /// What a server tells of a block, and its model, whole.
-struct Told {
-  Told() {
+struct Published {
+  Published() {
     const sim::Simulation simulation(test::block_scene(), test::block_mesh());
     model.announce(sim::SurfacePager(simulation, 0).state());
     for (const protocol::SurfacePage& page : test::all_pages(simulation)) model.take(page);
   }
   SurfaceModel model;
 };
-Told& told() {
-  static Told once;
+Published& published() {
+  static Published once;
   return once;
 }
 
@@ -42,7 +42,7 @@ void rest_and_leave(ForceEstimate& estimate, Part part) {
   for (Time t{1}; t < kAMinute + std::chrono::milliseconds(500); t += kPeriod / 3) {
     const Vec3 p = t < kAMinute ? kPressed : kAway;
     if (const auto sent = block.exchange(t, p, Vec3::Zero())) {
-      Sample sample = sample_of(*sent, &told().model);
+      Sample sample = sample_of(*sent, &published().model);
       part(sample);
       const std::size_t before_sample = guard.count();
       const bool taken = estimate.take(sample, p, t);
@@ -89,10 +89,11 @@ CONTRACT("every extrapolation law", ExtrapolatorRow, row, extrapolators()) {
   }
   SECTION("whatever it is given, the answer is finite") {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    const std::array wild{0.0, 1e-12, -0.001, 1e30, -1e30, kNan, std::numeric_limits<double>::infinity()};
+    const std::array implausible{
+        0.0, 1e-12, -0.001, 1e30, -1e30, kNan, std::numeric_limits<double>::infinity()};
     const std::array<std::int64_t, 5> times{0, 1, 33'000'000, 33'000'000, std::int64_t{1} << 61};
     test::Random random(12);
-    const auto any = [&] { return wild[static_cast<std::size_t>(random.between(0, 6.999))]; };
+    const auto any = [&] { return implausible[static_cast<std::size_t>(random.between(0, 6.999))]; };
     for (int n = 1; n <= 5000; ++n) {
       const Sample sample{static_cast<std::uint64_t>(n),
                           Time{times[static_cast<std::size_t>(random.between(0, 4.999))]},
@@ -106,11 +107,13 @@ CONTRACT("every extrapolation law", ExtrapolatorRow, row, extrapolators()) {
   }
   SECTION("whatever the parts of a sample hold, the answer is finite") {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    const std::array wild{0.0,    1e-300, 5e-324, 1e-12, 0.001, 0.005,
-                          -0.001, 1.0,    10.0,   1e6,   1e9,   -1e9,
-                          1e30,   -1e30,  1e300,  kNan,  -kNan, std::numeric_limits<double>::infinity()};
+    const std::array implausible{
+        0.0, 1e-300, 5e-324, 1e-12, 0.001, 0.005, -0.001, 1.0,   10.0,
+        1e6, 1e9,    -1e9,   1e30,  -1e30, 1e300, kNan,   -kNan, std::numeric_limits<double>::infinity()};
     test::Random random(13);
-    const auto any = [&] { return wild[static_cast<std::size_t>(random.between(0, wild.size() - 1e-3))]; };
+    const auto any = [&] {
+      return implausible[static_cast<std::size_t>(random.between(0, implausible.size() - 1e-3))];
+    };
     const auto near = [&] { return Vec3(kPressed + random.vector(0.001)); };
     // A wall, mostly, with some wild numbers in it; one in three is free.
     const auto any_linear = [&] {
@@ -135,9 +138,9 @@ CONTRACT("every extrapolation law", ExtrapolatorRow, row, extrapolators()) {
       const Time t = n * std::chrono::milliseconds(33);
       Sample sample{static_cast<std::uint64_t>(n), t, near(), random.vector(2)};
       if (n % 8 == 0) sample.surface_v[n % 3] = any();
-      if (n % 4 != 0) sample.here = any_linear();
+      if (n % 4 != 0) sample.at_tool = any_linear();
       if (n % 5 != 0) sample.ahead = any_linear();
-      if (n % 6 != 0) sample.surface = any_surface(n % 10 == 0 ? empty : told().model);
+      if (n % 6 != 0) sample.surface = any_surface(n % 10 == 0 ? empty : published().model);
       law->update(sample);
       CHECK(law->force(near(), t).allFinite());
       CHECK(law->force({any(), any(), any()}, t + Time{1'000'000}).allFinite());

@@ -68,7 +68,7 @@ ToolAnswer press(Simulation& simulation, int i) {
   const Vec3 p(-0.01 + 4e-4 * i, 0.0035 - 0.0004 * std::min(i, 10) + (i % 17 > 14 ? 0.01 : 0.0), 0.0005);
   return step(simulation, p,
               {.buttons = static_cast<std::uint16_t>(i >= 6 ? kHot : 0),
-               .wants = {.here = true, .surface_shift = true}},
+               .request = {.at_tool = true, .surface_shift = true}},
               kStep);
 }
 
@@ -78,7 +78,7 @@ std::vector<std::uint64_t> hashes(Simulation& simulation, int from, int to) {
     Fnv1a hash;
     const ToolAnswer answer = press(simulation, i);
     hash.add(answer.force);
-    if (answer.here) hash.add(answer.here->tangent.data(), sizeof(Mat3));
+    if (answer.at_tool) hash.add(answer.at_tool->tangent.data(), sizeof(Mat3));
     if (answer.surface_shift_W) hash.add(*answer.surface_shift_W);
     if (answer.modes != nullptr)
       hash.add(answer.modes->q.data(), static_cast<std::size_t>(answer.modes->q.size()) * sizeof(double));
@@ -121,10 +121,10 @@ TEST_CASE("two tools, with friction and a grasp: a saved state continues byte fo
       for (int i = from; i < to; ++i) {
         const double down = 0.006 - 3e-4 * std::min(i, 20);
         std::vector<ToolInput> inputs(2);
-        inputs[0] = {.pose = ToolPose(Vec3(-0.012 + 1e-4 * i, down, 0.0003)), .wants = {.here = true}};
+        inputs[0] = {.pose = ToolPose(Vec3(-0.012 + 1e-4 * i, down, 0.0003)), .request = {.at_tool = true}};
         inputs[1] = {.pose = ToolPose(Vec3(0.012, down + (i > 25 ? 0.002 : 0), -0.0004)),
                      .buttons = static_cast<std::uint16_t>(i > 18 ? 2 : 0),
-                     .wants = {.here = true}};
+                     .request = {.at_tool = true}};
         Fnv1a hash;
         for (const ToolAnswer& answer : simulation.step(inputs, kStep)) hash.add(answer.force);
         all.push_back(hash.value());

@@ -35,7 +35,7 @@ Scene scene_for(const ModelCase& choice, double friction = 0) {
 
 /// A tool goes down aslant in six periods, drags along in twelve more by less than a stride each, waits, and
 /// goes to `last`.
-struct Way {
+struct Direction {
   Vec3 last = Vec3::Zero();
   int held = 0;
   double friction = 0;
@@ -49,10 +49,11 @@ struct Way {
 };
 
 /// What the server answers to that in the end.
-protocol::ForceSample answer_to(const ModelCase& choice, const Way& way, ToolForce* felt = nullptr) {
+protocol::ForceSample answer_to(const ModelCase& choice, const Direction& way,
+                                ToolForce* rendered = nullptr) {
   Simulation simulation(scene_for(choice, way.friction), block_for(choice));
   ServedTools served(simulation);
-  std::vector<SessionInput> inputs{{7, {.flags = protocol::ToolState::kWantsHere}, true}};
+  std::vector<SessionInput> inputs{{7, {.flags = protocol::ToolState::kRequestsTangent}, true}};
   protocol::ToolState& state = inputs[0].state;
   for (int i = 0; i <= way.steps(); ++i) {
     ++state.tick;
@@ -60,14 +61,14 @@ protocol::ForceSample answer_to(const ModelCase& choice, const Way& way, ToolFor
     state.p_W = way.place(i);
     const ServedTools::Outcome& outcome = served.step(inputs, kPeriod).front();
     if (i < way.steps()) continue;
-    if (felt != nullptr) *felt = outcome.force;
+    if (rendered != nullptr) *rendered = outcome.force;
     return *outcome.answer;
   }
   return {};
 }
 
 /// The slope of that force over the last place, by differences of `step` (m).
-Mat3 slope_of(const ModelCase& choice, Way way, double step) {
+Mat3 slope_of(const ModelCase& choice, Direction way, double step) {
   const Vec3 place = way.last;
   Mat3 slope;
   for (int axis = 0; axis < 3; ++axis) {
@@ -80,7 +81,7 @@ Mat3 slope_of(const ModelCase& choice, Way way, double step) {
 }
 
 Mat3 tangent_of(const protocol::ForceSample& sample) {
-  const auto& t = sample.here.tangent;
+  const auto& t = sample.at_tool.tangent;
   return (Mat3() << t[0], t[1], t[2], t[1], t[3], t[4], t[2], t[4], t[5]).finished();
 }
 
@@ -89,10 +90,10 @@ Mat3 tangent_of(const protocol::ForceSample& sample) {
 CONTRACT("a model that knows no compliance of later tells clients no tangents, in contact and before it",
          ModelCase, choice, model_cases([](const ModelCase& c) { return !tells_tangents(c); })) {
   for (const Vec3& place : {Vec3(0.003, 0.0030, 0.0015), Vec3(0.003, 0.0052, 0.0015)}) {
-    ToolForce felt;
-    const protocol::ForceSample sample = answer_to(choice, {.last = place}, &felt);
-    CHECK((felt.contacts > 0) == (place.y() < 0.005));
-    CHECK((sample.flags & (protocol::ForceSample::kHasHere | protocol::ForceSample::kHasAhead)) == 0);
+    ToolForce rendered;
+    const protocol::ForceSample sample = answer_to(choice, {.last = place}, &rendered);
+    CHECK((rendered.contacts > 0) == (place.y() < 0.005));
+    CHECK((sample.flags & (protocol::ForceSample::kHasTangent | protocol::ForceSample::kHasAhead)) == 0);
   }
 }
 
@@ -100,11 +101,11 @@ CONTRACT(
     "the stiffness sent to the client is the slope of the server's own force over the sample "
     "interval",
     ModelCase, choice, model_cases(tells_tangents)) {
-  const Way way{.last = Vec3(0.0028, 0.0030, 0.0015), .held = held_until_fresh(choice)};
-  ToolForce felt;
-  const Mat3 sent = tangent_of(answer_to(choice, way, &felt));
-  REQUIRE(felt.contacts > 0);
-  REQUIRE_FALSE(felt.flagged);
+  const Direction way{.last = Vec3(0.0028, 0.0030, 0.0015), .held = held_until_fresh(choice)};
+  ToolForce rendered;
+  const Mat3 sent = tangent_of(answer_to(choice, way, &rendered));
+  REQUIRE(rendered.contacts > 0);
+  REQUIRE_FALSE(rendered.flagged);
   const Mat3 slope = slope_of(choice, way, 1e-6);
   CAPTURE(sent, slope, (sent - slope).norm() / slope.norm());
   CHECK((sent - slope).norm() < (exempt(choice, "slope in motion") ? 1e-2 : 1e-3) * slope.norm());
@@ -114,7 +115,7 @@ CONTRACT(
 // makes it, some steps before.
 CONTRACT("in motion too the stiffness sent is that slope, but for the age of its factor", ModelCase, choice,
          model_cases([](const ModelCase& c) { return exempt(c, "slope in motion"); })) {
-  const Way way{.last = Vec3(0.0028, 0.0030, 0.0015)};
+  const Direction way{.last = Vec3(0.0028, 0.0030, 0.0015)};
   const Mat3 sent = tangent_of(answer_to(choice, way)), slope = slope_of(choice, way, 1e-6);
   CAPTURE(sent, slope, (sent - slope).norm() / slope.norm());
   CHECK((sent - slope).norm() < (choice.solver == ModelCase::Solver::kDirect ? 0.06 : 0.15) * slope.norm());
@@ -127,12 +128,12 @@ CONTRACT("with friction the stiffness sent is that of a tool that sticks, or sli
   const Vec3 drag(2e-5, 5e-6, 0);
   for (const bool slides : {false, true}) {
     DYNAMIC_SECTION((slides ? "slides" : "sticks")) {
-      Way way{.held = std::max(1, held_until_fresh(choice)), .friction = 0.3, .drag = drag};
+      Direction way{.held = std::max(1, held_until_fresh(choice)), .friction = 0.3, .drag = drag};
       way.last = way.place(way.steps() - 1) + (slides ? drag : Vec3(-drag));
-      ToolForce felt;
-      const Mat3 sent = tangent_of(answer_to(choice, way, &felt));
-      REQUIRE(felt.contacts > 0);
-      REQUIRE_FALSE(felt.flagged);
+      ToolForce rendered;
+      const Mat3 sent = tangent_of(answer_to(choice, way, &rendered));
+      REQUIRE(rendered.contacts > 0);
+      REQUIRE_FALSE(rendered.flagged);
       const Mat3 slope = slope_of(choice, way, 1e-7), stores = 0.5 * (slope + slope.transpose());
       CAPTURE(sent, slope, (sent - stores).norm() / stores.norm());
       CHECK((sent - stores).norm() < (exempt(choice, "slope in motion") ? 1e-2 : 1e-3) * stores.norm());
@@ -148,9 +149,9 @@ CONTRACT("a tool that holds tissue where it rests feels nothing, and nothing mov
   scene.tools[0].grasp_place = place;
   Simulation simulation(scene, block_for(choice));
   for (int i = 0; i < 10; ++i) {
-    const ToolForce felt = simulation.step(place, kPeriod);
-    REQUIRE(felt.contacts > 0);
-    CHECK(felt.force.norm() < 1e-12);
+    const ToolForce rendered = simulation.step(place, kPeriod);
+    REQUIRE(rendered.contacts > 0);
+    CHECK(rendered.force.norm() < 1e-12);
   }
   CHECK(largest_difference(simulation.positions(), simulation.rest()) < 1e-15);
   CHECK(simulation.step(place + Vec3(0, 1e-4, 0), kPeriod).force[1] < -1e-3);

@@ -29,7 +29,7 @@ class Emulator {
   /// Waits until `state DEVICE` satisfies `condition`; false after `seconds` of the wall clock.
   template <class Condition>
   bool wait_for(const std::string& device, Condition condition, double seconds = 10) const {
-    for (int left = static_cast<int>(seconds * 200); left > 0; --left, nap()) {
+    for (int remaining = static_cast<int>(seconds * 200); remaining > 0; --remaining, nap()) {
       if (condition(state(device))) return true;
     }
     return false;

@@ -3,7 +3,7 @@
 namespace palpate::emulation {
 namespace {
 
-constexpr std::uint8_t kBegin = '<', kEnd = '>', kZero = 'A';
+constexpr std::uint8_t kInitialize = '<', kEnd = '>', kZero = 'A';
 
 std::optional<FalconPacket> decode(const std::deque<std::uint8_t>& bytes) {
   if (bytes[15] != kEnd || bytes[13] < kZero || bytes[14] < kZero) return std::nullopt;
@@ -22,7 +22,7 @@ std::optional<FalconPacket> decode(const std::deque<std::uint8_t>& bytes) {
 }  // namespace
 
 Bytes encode(const FalconPacket& packet) {
-  Bytes bytes{kBegin};
+  Bytes bytes{kInitialize};
   for (const std::int16_t number : packet.numbers) {
     const auto bits = static_cast<std::uint16_t>(number);
     for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(kZero + ((bits >> (4 * i)) & 15)));
@@ -35,7 +35,7 @@ Bytes encode(const FalconPacket& packet) {
 
 std::optional<FalconPacket> FalconPacketParser::next() {
   while (true) {
-    while (!buffer_.empty() && buffer_.front() != kBegin) {
+    while (!buffer_.empty() && buffer_.front() != kInitialize) {
       buffer_.pop_front();
       ++skipped_;
     }

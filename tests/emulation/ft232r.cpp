@@ -40,7 +40,7 @@ double baud_of_divisor(std::uint16_t divisor) {
 Bytes eeprom_of_falcon() {
   Bytes bytes(2 * kEepromWords, 0);
   const Bytes head{0x00, 0x00, 0x03, 0x04, 0x48, 0xcb, 0x00, 0x06, 0xa0, 45, 0x08, 0x00, 0x00, 0x02};
-  std::copy(head.begin(), head.end(), bytes.begin());
+  std::ranges::copy(head, bytes.begin());
   const std::size_t product = put_text(bytes, 0x0e, 0x18, "FTDI"),
                     serial = put_text(bytes, 0x10, product, "FALCON HAPTIC");
   put_text(bytes, 0x12, serial, "");
@@ -137,7 +137,7 @@ void Ft232r::put(const Bytes& bytes, double now) {
 }
 
 std::size_t Ft232r::ready_bytes(double now) const {
-  const auto late = std::find_if(fifo_.begin(), fifo_.end(), [now](const Byte& b) { return b.ready > now; });
+  const auto late = std::ranges::find_if(fifo_, [now](const Byte& b) { return b.ready > now; });
   return static_cast<std::size_t>(late - fifo_.begin());
 }
 

@@ -90,7 +90,7 @@ int SpaceMouse::write(std::uint8_t, const Bytes&, double) {
 }
 
 bool SpaceMouse::deflected() const {
-  return std::any_of(axes_.begin(), axes_.end(), [](int axis) { return axis != 0; });
+  return std::ranges::any_of(axes_, [](int axis) { return axis != 0; });
 }
 
 Bytes SpaceMouse::axes_report(std::uint8_t id, std::size_t first, std::size_t count) const {

@@ -37,7 +37,7 @@ void UsbBus::put(const std::string& name, std::uint8_t bus, std::unique_ptr<UsbD
 }
 
 bool UsbBus::has(const std::string& name) const {
-  return std::any_of(ports_.begin(), ports_.end(), [&](const auto& port) { return port->name == name; });
+  return std::ranges::any_of(ports_, [&](const auto& port) { return port->name == name; });
 }
 
 void UsbBus::closed(const Link& link) {

@@ -30,7 +30,7 @@ int listen_on(const std::string& path) {
 }
 
 bool contains(const std::vector<int>& all, int one) {
-  return std::find(all.begin(), all.end(), one) != all.end();
+  return std::ranges::find(all, one) != all.end();
 }
 
 }  // namespace

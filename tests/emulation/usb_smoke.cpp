@@ -131,7 +131,7 @@ void round_trips(const Context& context, int packets) {
     before = after;
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  std::sort(us.begin(), us.end());
+  std::ranges::sort(us);
   std::printf("p50_us %.2f\np99_us %.2f\nround_trips_per_second %.0f\n", us[us.size() / 2],
               us[us.size() * 99 / 100], static_cast<double>(us.size()) / took.count());
   checked(libusb_release_interface(device.usb, 0), "release");

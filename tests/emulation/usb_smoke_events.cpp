@@ -16,12 +16,12 @@ void LIBUSB_CALL on_transfer(libusb_transfer* transfer) {
 }
 
 struct Storm {
-  int left, running = 0;
+  int remaining, running = 0;
   static void LIBUSB_CALL on_end(libusb_transfer* transfer) {
     auto& storm = *static_cast<Storm*>(transfer->user_data);
     --storm.running;
-    if (transfer->status != LIBUSB_TRANSFER_COMPLETED || storm.left <= 0) return;
-    --storm.left;
+    if (transfer->status != LIBUSB_TRANSFER_COMPLETED || storm.remaining <= 0) return;
+    --storm.remaining;
     if (libusb_submit_transfer(transfer) == 0) ++storm.running;
   }
 };
@@ -87,7 +87,7 @@ void storm(const Context& context, int count) {
     storm.running += libusb_submit_transfer(transfers[i]) == 0 ? 1 : 0;
   }
   timeval second{1, 0};
-  while (storm.left > 0) libusb_handle_events_timeout(context.usb, &second);
+  while (storm.remaining > 0) libusb_handle_events_timeout(context.usb, &second);
   for (libusb_transfer* transfer : transfers) libusb_cancel_transfer(transfer);
   while (storm.running > 0) libusb_handle_events_timeout(context.usb, &second);
   for (libusb_transfer* transfer : transfers) libusb_free_transfer(transfer);

@@ -148,8 +148,7 @@ void UsbBus::submit(Link& link, const Frame& frame, double now) {
 }
 
 void UsbBus::discard(Link& link, std::uint64_t id) {
-  const auto found = std::find_if(link.waiting.begin(), link.waiting.end(),
-                                  [id](const Link::Waiting& w) { return w.id == id; });
+  const auto found = std::ranges::find_if(link.waiting, [id](const Link::Waiting& w) { return w.id == id; });
   if (found == link.waiting.end()) return;
   link.waiting.erase(found);
   link.complete(id, {-ENOENT, {}}, 0);

@@ -90,20 +90,20 @@ bool FrameReader::fill(int fd, bool wait) {
 }
 
 std::optional<Frame> FrameReader::next() {
-  const std::size_t size = bytes_.size() - begin_;
+  const std::size_t size = bytes_.size() - start_;
   Frame frame;
   if (broken_ || size < sizeof frame.header) return std::nullopt;
-  std::memcpy(&frame.header, bytes_.data() + begin_, sizeof frame.header);
+  std::memcpy(&frame.header, bytes_.data() + start_, sizeof frame.header);
   const auto kind = static_cast<std::uint8_t>(frame.header.kind);
   broken_ = frame.header.length > kLargestPayload || kind < static_cast<std::uint8_t>(Kind::kList) ||
             kind > static_cast<std::uint8_t>(Kind::kDetachAndClaim);
   if (broken_ || size < sizeof frame.header + frame.header.length) return std::nullopt;
-  const auto payload = bytes_.begin() + static_cast<std::ptrdiff_t>(begin_ + sizeof frame.header);
+  const auto payload = bytes_.begin() + static_cast<std::ptrdiff_t>(start_ + sizeof frame.header);
   frame.payload.assign(payload, payload + frame.header.length);
-  begin_ += sizeof frame.header + frame.header.length;
-  if (begin_ == bytes_.size()) {
+  start_ += sizeof frame.header + frame.header.length;
+  if (start_ == bytes_.size()) {
     bytes_.clear();
-    begin_ = 0;
+    start_ = 0;
   }
   return frame;
 }

@@ -82,7 +82,7 @@ class FrameReader {
 
  private:
   Bytes bytes_;
-  std::size_t begin_ = 0;  // of what is not yet cut
+  std::size_t start_ = 0;  // of what is not yet cut
   int descriptor_ = -1;
   bool broken_ = false;
 };

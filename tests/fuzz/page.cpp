@@ -44,7 +44,7 @@ struct Session {
       feed.pictures.publish();
     }
     time += std::chrono::milliseconds(10);
-    maker.look(time);
+    maker.update(time);
     int messages = 0;
     while (link.next(maker.showing(), time, out)) require(++messages < 20);
   }

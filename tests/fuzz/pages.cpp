@@ -42,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       sample->tool_t_ns = tool.t_ns - 1'000'000;
       tool.p_W = sample->p_W;
     }
-    const auto result = pipeline.feel(tool, sample, pages);
+    const auto result = pipeline.render(tool, sample, pages);
     if (!result.f_D.allFinite() || result.f_D.norm() > 8.001) std::abort();
   }
   return 0;

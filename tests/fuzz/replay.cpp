@@ -15,7 +15,7 @@ void replay(const std::string& file) {
     client::Pipeline pipeline(client::extrapolators()[run % client::extrapolators().size()].make(), {}, {});
     client::CapturedSession session(file, run);
     for (client::CapturedTick tick; session.next(tick);) {
-      const auto result = pipeline.feel(tick.state, tick.arrived ? &*tick.arrived : nullptr);
+      const auto result = pipeline.render(tick.state, tick.arrived ? &*tick.arrived : nullptr);
       if (!result.f_D.allFinite() || result.f_D.norm() > 8.001) std::abort();
     }
   }

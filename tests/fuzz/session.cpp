@@ -27,7 +27,7 @@ struct Pair {
     if (decode(bytes, datagram) != Verdict::kAccepted) return;
     ++fresh;
     const auto outcome = server.receive(datagram, from, now, {fresh, {fresh, 1}}, stats);
-    if (keyed && !ours && (outcome.tool_state != nullptr || outcome.left != nullptr)) std::abort();
+    if (keyed && !ours && (outcome.tool_state != nullptr || outcome.departed != nullptr)) std::abort();
     if (!outcome.answer || from != kClient) return;
     std::vector<std::byte> answer(kMaxDatagram);
     answer.resize(seal(answer, encode(outcome.answer->first, outcome.answer->second, answer), outcome.key));

@@ -78,11 +78,11 @@ void check_same_for_any_ranks(const std::string& model) {
     const std::string out = (folder.path() / std::to_string(ranks)).string();
     CHECK_THAT(condense(ranks, file, out), Contains("condensed into"));
     const Condensed condensed(out);
-    const std::vector<Vec3> felt = forces_of(scene, &condensed);
+    const std::vector<Vec3> rendered = forces_of(scene, &condensed);
     double largest = 0;
-    for (std::size_t i = 0; i < felt.size(); ++i) {
-      CHECK((felt[i] - expected[i]).norm() <= 1e-8 * expected[i].norm());
-      largest = std::max(largest, felt[i].norm());
+    for (std::size_t i = 0; i < rendered.size(); ++i) {
+      CHECK((rendered[i] - expected[i]).norm() <= 1e-8 * expected[i].norm());
+      largest = std::max(largest, rendered[i].norm());
     }
     CHECK(largest > 0.01);
   }
@@ -188,10 +188,10 @@ TEST_CASE("condense: `explain` tells of a body as it was condensed, and builds n
   const std::string reach = "reach = [[0.0, 0.03, 0.03], [0.006, 0.06, 0.06]]\n";
   const std::string file = scene_with(folder, "quasi_static", reach), out = (folder.path() / "out").string();
   condense(1, file, out);
-  const std::string told =
+  const std::string published =
       output_of("sim_server", {"explain", file, "--no-cache", "--condensed", out, "--steps", "3"}, 0);
-  CHECK_THAT(told, Contains("which saved"));                   // by the scene's own compliance
-  CHECK_THAT(told, Contains("cannot be built: --condensed"));  // the surface out of reach
+  CHECK_THAT(published, Contains("which saved"));                   // by the scene's own compliance
+  CHECK_THAT(published, Contains("cannot be built: --condensed"));  // the surface out of reach
   CHECK_THAT(output_of("sim_server", {"explain", kScenes + "liver_tensor_mass.toml", "--condensed", out}, 2),
              Contains("leave it out"));
 }

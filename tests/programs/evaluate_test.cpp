@@ -101,9 +101,9 @@ TEST_CASE(
               0);
     return read_json(study.folder.path() / "out" / "summary.json");
   };
-  const Json fast = scores("80", "1"), kept = scores("80", "4"), slow = scores("20", "1");
+  const Json fast = scores("80", "1"), stored = scores("80", "4"), slow = scores("20", "1");
   for (const char* law : {"constant", "linear_time", "linear_position"}) {
-    const Json& a = row(kept, law, false);
+    const Json& a = row(stored, law, false);
     const Json& b = row(slow, law, false);
     for (const char* key : {"paper_mean_percent", "paper_max_percent"}) {
       CAPTURE(law, key);
@@ -182,17 +182,19 @@ TEST_CASE(
     output_of("haptic_client", arguments, 0);
     return without_timings(read_json(study.folder.path() / out / "summary.json"));
   };
-  const Json told = evaluate("told", {}), same = evaluate("same", {"--compliance", "1"}),
+  const Json published = evaluate("told", {}), same = evaluate("same", {"--compliance", "1"}),
              stiffer = evaluate("stiffer", {"--compliance", "0.7"});
-  CHECK(same == told);
+  CHECK(same == published);
   for (const bool blended : {false, true}) {
     // The reference is solved on that model, too, but corrected at every sample; the line knows no model.
-    const Json &other = row(told, "two_tangents", blended), &same_law = row(stiffer, "two_tangents", blended);
+    const Json &other = row(published, "two_tangents", blended),
+               &same_law = row(stiffer, "two_tangents", blended);
     for (const char* key : {"paper_mean_percent", "paper_max_percent", "paper_max_force_percent"})
       CHECK(same_law[key] == other[key]);
     CHECK(same_law["mean_percent"].get<double>() ==
           Approx(other["mean_percent"].get<double>()).epsilon(1e-3));
-    const Json &right = row(told, "local_contact", blended), &wrong = row(stiffer, "local_contact", blended);
+    const Json &right = row(published, "local_contact", blended),
+               &wrong = row(stiffer, "local_contact", blended);
     CHECK(wrong["mean_percent"] != right["mean_percent"]);
     CHECK(wrong["model_bytes"] == right["model_bytes"]);
     CHECK(right["model_bytes"].get<double>() > 1e6);

@@ -47,7 +47,7 @@ TEST_CASE("explain of a file that is not there: one line, exit 2") {
   CHECK(process.wait() == 2);
   const std::string& said = process.output();
   CHECK(said.find("/nowhere/scene.toml: no such file") != std::string::npos);
-  CHECK(std::count(said.begin(), said.end(), '\n') == 1);
+  CHECK(std::ranges::count(said, '\n') == 1);
 }
 
 TEST_CASE("explain takes as many steps as it is asked for, and tells that it does") {

@@ -67,7 +67,7 @@ TEST_CASE("felt law: where it was itself, its share is told, and all shares make
   const Replayed r({});
   CHECK(r.tool["felt"]["law"] == "local_contact");
   double sum = 0;
-  for (const auto& [law, share] : r.tool["felt"]["laws"].items()) sum += share.get<double>();
+  for (const auto& [law, fraction] : r.tool["felt"]["laws"].items()) sum += fraction.get<double>();
   CHECK(sum == Approx(1));
   CHECK(r.tool["felt"]["laws"]["local_contact"].get<double>() > 0.9);
   CHECK_THAT(r.said, Catch::Contains("felt: local_contact ") && !Catch::Contains("asked for"));

@@ -21,7 +21,7 @@ std::set<std::string> parts_of(const Json& explanation) {
 /// And be it for set-up alone.
 bool was_built(const Json& explanation, const std::string& part) {
   const Json& rows = explanation["built"];
-  return std::any_of(rows.begin(), rows.end(), [&](const Json& row) { return row["part"] == part; });
+  return std::ranges::any_of(rows, [&](const Json& row) { return row["part"] == part; });
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ TEST_CASE("left out: a minimal scene has these parts in memory, and no other") {
     double most;  // bytes
     std::string keys = {};
   };
-  const std::string kTold = "motion told to clients", kUntold = "client_modes = 0\n";
+  const std::string kPublished = "motion told to clients", kUntold = "client_modes = 0\n";
   // Of 1387 vertices (1329 free), 621 on the surface (566 free), 6254 tetrahedra, 7907 edges: the mesh takes
   // 0.15 MB, the contact of one tool without friction 1.43 MB, compliance 72 x 566^2 = 23.1 MB, tensors 72 a
   // vertex and edge, motion 216 a vertex, 40 modes 3 x 8 x 40 of the surface's. Tissue in implicit motion:
@@ -45,8 +45,8 @@ TEST_CASE("left out: a minimal scene has these parts in memory, and no other") {
       {"quasi_static", {"positions", "compliance"}, 24.8e6},
       {"tensor_mass", {"positions", "tensors", "motion", "compliance"}, 26e6, kUntold},
       {"implicit", {"positions", "elements", "motion", "compliance"}, 17e6, kUntold},
-      {"tensor_mass", {"positions", "tensors", "motion", "compliance", kTold}, 51e6},
-      {"implicit", {"positions", "elements", "motion", "compliance", kTold}, 42e6},
+      {"tensor_mass", {"positions", "tensors", "motion", "compliance", kPublished}, 51e6},
+      {"implicit", {"positions", "elements", "motion", "compliance", kPublished}, 42e6},
       {"reduced", {"positions", "compliance", "modes"}, 25.5e6},
   };
   const TemporaryFolder folder;

@@ -17,9 +17,9 @@ std::string mesh_file(const TemporaryFolder& folder, const std::string& nodes, c
   const std::string file = (folder.path() / "mesh.msh").string();
   std::ofstream(file) << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
                       << "$Nodes\n"
-                      << std::count(nodes.begin(), nodes.end(), '\n') << '\n'
+                      << std::ranges::count(nodes, '\n') << '\n'
                       << nodes << "$EndNodes\n$Elements\n"
-                      << std::count(elements.begin(), elements.end(), '\n') << '\n'
+                      << std::ranges::count(elements, '\n') << '\n'
                       << elements << "$EndElements\n";
   return file;
 }

@@ -90,8 +90,8 @@ void write_stability_study(const TemporaryFolder& folder, bool quick) {
 TEST_CASE("goals.py: a whole study meets a goal or misses it, a quick one can do neither, and says so") {
   const TemporaryFolder folder;
   write_stability_study(folder, false);
-  const std::string whole = plotted("goals.py " + folder.path().string()).second;
-  CHECK_THAT(whole, Catch::Contains(">= 90    95        yes") && !Catch::Contains("quick"));
+  const std::string entire = plotted("goals.py " + folder.path().string()).second;
+  CHECK_THAT(entire, Catch::Contains(">= 90    95        yes") && !Catch::Contains("quick"));
   write_stability_study(folder, true);
   const std::string quick = plotted("goals.py " + folder.path().string()).second;
   CAPTURE(quick);
@@ -132,8 +132,8 @@ TEST_CASE("laws_animation.py: a small GIF of two laws, in as many pictures as fo
   CHECK(pictures >= 12);
   CHECK(pictures <= 14);
 
-  const auto [wrong, told] = plotted("laws_animation.py " + csv + " " + gif + " --laws late absent");
+  const auto [wrong, published] = plotted("laws_animation.py " + csv + " " + gif + " --laws late absent");
   CHECK(wrong == 2);
-  CHECK_THAT(told, Catch::Contains("--laws absent") && Catch::Contains("late, near, nearer"));
-  CHECK(std::count(told.begin(), told.end(), '\n') == 1);
+  CHECK_THAT(published, Catch::Contains("--laws absent") && Catch::Contains("late, near, nearer"));
+  CHECK(std::ranges::count(published, '\n') == 1);
 }

@@ -243,16 +243,16 @@ TEST_CASE("solve: each support bears what it holds, also where supports share ve
         "[[load]]\ntraction = [0, 50, 0]\nsurface_tag = \"top\"\n",
         {}, fmt::format("poisson_ratio = 0.3\nelement = \"{}\"", element));
     CAPTURE(element, bench.said);
-    const double whole = 50 * kArea;
+    const double entire = 50 * kArea;
     std::size_t at = bench.said.find("of [[fixed]]");
-    for (const double bears : {-whole, 0.0, 0.0}) {
+    for (const double bears : {-entire, 0.0, 0.0}) {
       REQUIRE(at != std::string::npos);
       Place force{};
       const std::string line = bench.said.substr(at, bench.said.find('\n', at) - at);
       const std::string numbers = line.substr(line.find(".toml:") + 6);
       REQUIRE(std::sscanf(numbers.c_str(), "%*d %lf %lf %lf", &force[0], &force[1], &force[2]) == 3);
-      CHECK(force[1] == Approx(bears).margin(1e-6 * whole));
-      CHECK(std::abs(force[0]) + std::abs(force[2]) < 1e-6 * whole);
+      CHECK(force[1] == Approx(bears).margin(1e-6 * entire));
+      CHECK(std::abs(force[0]) + std::abs(force[2]) < 1e-6 * entire);
       at = bench.said.find("of [[fixed]]", at + 1);
     }
   }

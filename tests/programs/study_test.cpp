@@ -48,8 +48,8 @@ TEST_CASE("study: rows are the same again from nothing, and at once from what wa
   CHECK(said.find("[deformation]\nmodel = \"") != std::string::npos);
   CHECK(said.find("scene.toml: in the place of the same keys, [deformation]") != std::string::npos);
   const std::string summary = bench.text_of("summary.json");
-  const auto whole = nlohmann::json::parse(summary);
-  for (const auto& row : whole["rows"]) {
+  const auto entire = nlohmann::json::parse(summary);
+  for (const auto& row : entire["rows"]) {
     CHECK(row["peak_bytes"].get<double>() > 1e6);
 #if !defined(PALPATE_SANITIZED)                     // they keep more
     CHECK(row["peak_bytes"].get<double>() < 60e6);  // a column of some hundred vertices, and the program

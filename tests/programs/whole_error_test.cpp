@@ -31,7 +31,7 @@ struct PressedColumn {
                 .string();
   }
   /// What the report of a client says of the force it felt.
-  Json felt() {
+  Json rendered() {
     const std::string capture = (folder.path() / "c.pcap").string(),
                       report = (folder.path() / "report.json").string();
     output_of("sim_server",
@@ -73,21 +73,21 @@ struct PressedColumn {
 
 TEST_CASE("whole error: estimated, then measured by a study, with the extrapolation beside it", "[large]") {
   PressedColumn pressed;
-  Json felt = pressed.felt();
+  Json rendered = pressed.rendered();
   // Edges of 0.1 m under a radius of 0.03 m: less than 0.4 elements, the end of the table of linear ones.
-  CHECK(felt["mesh_percent"] == 189);
-  CHECK(felt["motion_percent"] == 0);
-  CHECK(felt["extrapolation_percent"].get<double>() > 0);
-  CHECK(felt["extrapolation_percent"].get<double>() == Approx(pressed.error_in_trace()));
-  CHECK_THAT(felt["how"]["mesh"].get<std::string>(), Catch::StartsWith("estimated"));
-  CHECK_THAT(felt["how"]["motion"].get<std::string>(), Catch::StartsWith("none"));
+  CHECK(rendered["mesh_percent"] == 189);
+  CHECK(rendered["motion_percent"] == 0);
+  CHECK(rendered["extrapolation_percent"].get<double>() > 0);
+  CHECK(rendered["extrapolation_percent"].get<double>() == Approx(pressed.error_in_trace()));
+  CHECK_THAT(rendered["how"]["mesh"].get<std::string>(), Catch::StartsWith("estimated"));
+  CHECK_THAT(rendered["how"]["motion"].get<std::string>(), Catch::StartsWith("none"));
   CHECK_THAT(pressed.said, Catch::Contains("mesh              189   estimated"));
 
   const std::string out = (pressed.folder.path() / "out").string();
   output_of("sim_server", {"study", pressed.scene, "--out", out, "--quick", "--cache", pressed.cache}, 0,
             120);
-  felt = pressed.felt();
-  CHECK_THAT(felt["how"]["mesh"].get<std::string>(), Catch::StartsWith("measured by a study"));
+  rendered = pressed.rendered();
+  CHECK_THAT(rendered["how"]["mesh"].get<std::string>(), Catch::StartsWith("measured by a study"));
   // At rest no step is too long, so that all that the study finds of the scene comes from its mesh; told is
   // what the shortest steps found, which look at the motion most often.
   const Json summary = read_json(out + "/summary.json");
@@ -101,7 +101,7 @@ TEST_CASE("whole error: estimated, then measured by a study, with the extrapolat
   for (const Json& row : summary["rows"]) {
     if (alike(row, *own) && (shortest == nullptr || row["dt_ms"] < (*shortest)["dt_ms"])) shortest = &row;
   }
-  CHECK(felt["mesh_percent"] == Approx((*shortest)["force_error_percent"].get<double>()));
+  CHECK(rendered["mesh_percent"] == Approx((*shortest)["force_error_percent"].get<double>()));
   CHECK_THAT(output_of("sim_server", {"cache", "list", "--cache", pressed.cache}, 0),
              Catch::Contains("study of scene.toml"));
 }

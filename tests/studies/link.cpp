@@ -22,8 +22,8 @@
 namespace palpate::studies {
 namespace {
 
-constexpr double kBegin = 3, kFaultsEnd = 9, kHealed = 11, kEnd = 15;  // s
-constexpr double kGone = 5;                                            // s
+constexpr double kInitialize = 3, kFaultsEnd = 9, kHealed = 11, kEnd = 15;  // s
+constexpr double kRemoved = 5;                                              // s
 const std::filesystem::path kScene = PALPATE_SOURCE_DIR "/configs/scenes/liver_paper.toml",
                             kClient = PALPATE_SOURCE_DIR "/configs/clients/liver_paper.toml";
 constexpr double kHaptic = 1000, kServed = 30;  // Hz
@@ -34,7 +34,7 @@ struct Conditions {
   double loss = 0, delay = 0, jitter = 0;
   bool bursts = false;  ///< the losses come in bursts of 8 on the mean
   double reordered = 0;
-  double gone = 0;  ///< no network at all for so long, from `kGone` on
+  double removed = 0;  ///< no network at all for so long, from `kRemoved` on
 };
 
 protocol::LinkConditions one_way(const Conditions& c) {
@@ -44,7 +44,7 @@ protocol::LinkConditions one_way(const Conditions& c) {
     link.loss = c.loss;
   } else if (c.loss > 0) {
     link.burst_end = 1.0 / 8;
-    link.burst_begin = link.burst_end * c.loss / (1 - c.loss);  // so that the share in bursts is `loss`
+    link.burst_start = link.burst_end * c.loss / (1 - c.loss);  // so that the share in bursts is `loss`
   }
   return link;
 }
@@ -106,8 +106,8 @@ class Bench {
 /// Of the felt force against the right one where the hand is, relative to the RMS of the right one.
 class Errors {
  public:
-  void add(const Vec3& felt, const Vec3& right) {
-    errors_.push_back((felt - right).norm());
+  void add(const Vec3& rendered, const Vec3& right) {
+    errors_.push_back((rendered - right).norm());
     squares_ += right.squaredNorm();
   }
   Json percent() {
@@ -116,7 +116,9 @@ class Errors {
     double sum = 0;
     for (const double e : errors_) sum += e;
     const double count = static_cast<double>(errors_.size()), rms = std::sqrt(squares_ / count);
-    const auto at = [&](double share) { return errors_[static_cast<std::size_t>(share * (count - 1))]; };
+    const auto at = [&](double fraction) {
+      return errors_[static_cast<std::size_t>(fraction * (count - 1))];
+    };
     return {{"mean", 100 * sum / count / rms},
             {"p99", 100 * at(0.99) / rms},
             {"max", 100 * errors_.back() / rms}};
@@ -135,7 +137,7 @@ Json run(Bench& bench, const Conditions& c, int seed) {
   const auto hand = bench.hand();
   client::Pipeline pipeline = bench.pipeline();
   protocol::LinkConditions link = one_way(c);
-  if (c.gone > 0) link.partitions = {{from_seconds(1 + kGone), from_seconds(1 + kGone + c.gone)}};
+  if (c.removed > 0) link.partitions = {{from_seconds(1 + kRemoved), from_seconds(1 + kRemoved + c.removed)}};
   test::LinkedPair pair(*hand, pipeline, bench.served(),
                         {.haptic_hz = kHaptic,
                          .sim_hz = kServed,
@@ -143,43 +145,44 @@ Json run(Bench& bench, const Conditions& c, int seed) {
                          .down = link,
                          .seed = static_cast<std::uint64_t>(seed),
                          .faults_end = kFaultsEnd});
-  std::vector<Vec3> felt{Vec3::Zero()};  // by tick
+  std::vector<Vec3> rendered{Vec3::Zero()};  // by tick
   std::vector<std::pair<std::uint64_t, Vec3>> rights;
   double most = 0, steepest = 0;
   while (pair.seconds() < kEnd) {
     const client::TickResult tick = pair.tick();
-    if (felt.size() % kTicksPerLook == 0) {
-      if (const auto right = bench.right_at(tick.tool)) rights.emplace_back(felt.size(), *right);
+    if (rendered.size() % kTicksPerLook == 0) {
+      if (const auto right = bench.right_at(tick.tool)) rights.emplace_back(rendered.size(), *right);
     }
-    felt.push_back(tick.f_D);
-    most = std::max(most, felt.back().norm());
-    steepest = std::max(steepest, kHaptic * (felt.back() - *(felt.end() - 2)).norm());
+    rendered.push_back(tick.f_D);
+    most = std::max(most, rendered.back().norm());
+    steepest = std::max(steepest, kHaptic * (rendered.back() - *(rendered.end() - 2)).norm());
   }
   Errors bad, healed;
   if (rights.empty()) rights = bench.take_answered();
   for (const auto& [tick, right] : rights) {
     const double t = static_cast<double>(tick) / kHaptic;
-    if (t > kBegin && t <= kFaultsEnd) bad.add(felt[tick], right);
-    if (t > kHealed) healed.add(felt[tick], right);
+    if (t > kInitialize && t <= kFaultsEnd) bad.add(rendered[tick], right);
+    if (t > kHealed) healed.add(rendered[tick], right);
   }
   const client::PipelineStats& stats = pipeline.stats();
-  const bool itself = stats.told > stats.stepped_down;
-  return {{"loss_percent", 100 * c.loss},
-          {"bursts", c.bursts},
-          {"delay_ms", 1e3 * c.delay},
-          {"jitter_ms", 1e3 * c.jitter},
-          {"reordered_percent", 100 * c.reordered},
-          {"gone_ms", 1e3 * c.gone},
-          {"welcomed_ms", pair.first_welcome() ? Json(1e3 * *pair.first_welcome()) : Json(nullptr)},
-          {"law_itself_ms", itself ? milliseconds(stats.first_itself - stats.first_told) : Json(nullptr)},
-          {"samples", stats.samples},
-          {"age_ms_p50", 1e-6 * stats.age_ns.quantile(0.5)},
-          {"age_ms_p99", 1e-6 * stats.age_ns.quantile(0.99)},
-          {"error_percent", bad.percent()},
-          {"healed_error_percent", healed.percent()},
-          {"largest_newton", most},
-          {"steepest_newton_s", steepest},
-          {"fault", static_cast<int>(pipeline.limiter().fault())}};
+  const bool itself = stats.published > stats.stepped_down;
+  return {
+      {"loss_percent", 100 * c.loss},
+      {"bursts", c.bursts},
+      {"delay_ms", 1e3 * c.delay},
+      {"jitter_ms", 1e3 * c.jitter},
+      {"reordered_percent", 100 * c.reordered},
+      {"gone_ms", 1e3 * c.removed},
+      {"welcomed_ms", pair.first_welcome() ? Json(1e3 * *pair.first_welcome()) : Json(nullptr)},
+      {"law_itself_ms", itself ? milliseconds(stats.first_itself - stats.first_published) : Json(nullptr)},
+      {"samples", stats.samples},
+      {"age_ms_p50", 1e-6 * stats.age_ns.quantile(0.5)},
+      {"age_ms_p99", 1e-6 * stats.age_ns.quantile(0.99)},
+      {"error_percent", bad.percent()},
+      {"healed_error_percent", healed.percent()},
+      {"largest_newton", most},
+      {"steepest_newton_s", steepest},
+      {"fault", static_cast<int>(pipeline.limiter().fault())}};
 }
 
 std::vector<Conditions> all_conditions(bool quick) {
@@ -199,7 +202,7 @@ std::vector<Conditions> conditions_of_scene() {
           {.loss = 0.1, .delay = 0.035, .reordered = 0.1},
           {.loss = 0.1, .delay = 0.035, .jitter = 0.03, .reordered = 0.1},
           {.loss = 0.3, .delay = 0.035},
-          {.delay = 0.035, .gone = 0.5},
+          {.delay = 0.035, .removed = 0.5},
           {.loss = 0.1, .delay = 0.08, .reordered = 0.1}};
 }
 
@@ -243,7 +246,7 @@ Json night(int hours) {
   Json rows = Json::array();
   std::uint64_t ticks = 0;
   for (int hour = 0; hour < hours; ++hour) {
-    std::vector<Vec3> felt;  // of this hour, by tick
+    std::vector<Vec3> rendered;  // of this hour, by tick
     const std::uint64_t first = ticks;
     double most = 0, steepest = 0;
     const std::uint64_t samples = pipeline.stats().samples;
@@ -253,14 +256,14 @@ Json night(int hours) {
       for (int tick = 0; tick < static_cast<int>(kHaptic); ++tick) {
         const Vec3 f_D = pair.tick().f_D;
         most = std::max(most, f_D.norm());
-        if (!felt.empty()) steepest = std::max(steepest, kHaptic * (f_D - felt.back()).norm());
-        felt.push_back(f_D);
+        if (!rendered.empty()) steepest = std::max(steepest, kHaptic * (f_D - rendered.back()).norm());
+        rendered.push_back(f_D);
       }
     }
     Errors errors;
     for (const auto& [tick, right] : bench.take_answered())
-      if (tick > first && tick - first <= felt.size()) errors.add(felt[tick - first - 1], right);
-    ticks += felt.size();
+      if (tick > first && tick - first <= rendered.size()) errors.add(rendered[tick - first - 1], right);
+    ticks += rendered.size();
     rows.push_back({{"hour", hour + 1},
                     {"samples_a_second", static_cast<double>(pipeline.stats().samples - samples) / 3620},
                     {"error_percent", errors.percent()},

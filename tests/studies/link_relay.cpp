@@ -28,7 +28,7 @@ struct Options {
     return {.delay = 1e-3 * delay_ms,
             .jitter = 1e-3 * jitter_ms,
             .loss = 1e-2 * loss,
-            .burst_begin = 1e-2 * burst,
+            .burst_start = 1e-2 * burst,
             .burst_end = 1 / burst_length,
             .duplicates = 1e-2 * duplicates,
             .reordered = 1e-2 * reordered,

@@ -20,7 +20,7 @@ constexpr double kSoft = 50e3;                       // Pa, that of the first bl
 constexpr double kHeavy = 30 * 1060, kDamping = 10;  // kg/m3, 1/s: of tissue that swings
 constexpr double kServedHz = 30;                     // of tissue that swings
 constexpr double kSlide = 0.006, kSlideHz = 0.4;     // m, Hz
-constexpr double kFree = 0.5, kApproach = 0.5, kBegin = 1.2, kWatch = 2.0, kEnd = 5.0;  // s
+constexpr double kFree = 0.5, kApproach = 0.5, kInitialize = 1.2, kWatch = 2.0, kEnd = 5.0;  // s
 constexpr double kWindow = 0.1;              // s to either side: what moves slower than that is meant
 constexpr double kTimes = 3, kMore = 30e-6;  // of the direct motion; m
 constexpr double kSettled = 1.5,
@@ -66,8 +66,8 @@ double depth_of(sim::Simulation& block, double ratio) {
   double low = 1e-4, high = 0.9 * kRadius;
   while (high - low > 1e-7) {
     const double middle = 0.5 * (low + high);
-    const sim::ToolForce felt = block.step(pressed(middle), 1e-3);
-    (-felt.tangent(1, 1) > ratio * felt.force[1] ? low : high) = middle;
+    const sim::ToolForce rendered = block.step(pressed(middle), 1e-3);
+    (-rendered.tangent(1, 1) > ratio * rendered.force[1] ? low : high) = middle;
   }
   return low;
 }
@@ -78,8 +78,8 @@ Trajectory motion(const client::OperatorSettings& hand, double depth, double sta
   std::vector<double> t{0, start, start + kApproach};
   std::vector<Vec3> p{pressed(-0.005), pressed(-0.005), pressed(0)};
   p.back()[1] = y;
-  for (double s = 0; start + kBegin + s < kEnd + 0.1; s += 0.01) {
-    t.push_back(start + kBegin + s);
+  for (double s = 0; start + kInitialize + s < kEnd + 0.1; s += 0.01) {
+    t.push_back(start + kInitialize + s);
     p.emplace_back(p[1][0] + kSlide * std::sin(2 * std::numbers::pi * kSlideHz * s), y, p[1][2]);
   }
   return Trajectory(std::move(t), std::move(p));
@@ -146,14 +146,14 @@ struct PressAndSlide::Block {
           .front()
           .answer;  // tissue at rest has no memory: any time step does
     };
-    const protocol::SurfacePages whole = pager->pages();
-    const auto pages = [pager, path, whole, compliance](const protocol::ToolState& state) {
+    const protocol::SurfacePages entire = pager->pages();
+    const auto pages = [pager, path, entire, compliance](const protocol::ToolState& state) {
       path->add(state);
       std::vector<protocol::SurfacePage> found;
       if ((state.flags & protocol::ToolState::kAsksPages) == 0) return found;
       for (const std::uint32_t number : state.pages) {
         if (protocol::SurfacePage page; pager->page(number, page))
-          found.push_back(client::with_compliance(page, whole, compliance));
+          found.push_back(client::with_compliance(page, entire, compliance));
       }
       return found;
     };
@@ -211,12 +211,12 @@ Run PressAndSlide::run(const Cell& cell, double stiffness, int seed, bool compar
   std::vector<Vec3> path;
   double error2 = 0, force2 = 0;
   while (loop.seconds() < kEnd) {
-    const Vec3 felt = loop.tick().f_D;
+    const Vec3 rendered = loop.tick().f_D;
     path.push_back(hand.encoder.place());
     if (loop.seconds() > kSettled && thrown(path.back()[1], block.depth)) return {};
     if (!compare || block.swings || path.size() % kCompared != 0 || loop.seconds() < kWatch) continue;
     const Vec3 right = block.simulation->linearise(0, path.back(), nullptr).force;
-    error2 += (felt - right).squaredNorm();
+    error2 += (rendered - right).squaredNorm();
     force2 += right.squaredNorm();
   }
   const bool quiet = quick_motion(path) <= kTimes * direct + kMore;

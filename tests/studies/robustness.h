@@ -21,7 +21,7 @@ struct Column {
   bool any_law() const { return row->materials == sim::Materials::kAny; }
   bool linear() const { return elastic == sim::ElasticLaw::kLinear; }
   /// Nothing of it gives way: force = stiffness x depth, also of what is held.
-  bool stands() const { return !row->deforms() && !row->moves; }
+  bool is_placed() const { return !row->deforms() && !row->moves; }
   /// At rest at every instant: the force depends on the path, not on how long it took.
   bool at_rest() const { return !row->deforms() || !row->moves; }
 };
@@ -81,9 +81,9 @@ struct Trial {
   std::vector<Vec3> outward{Vec3::UnitY()};  // of each tool: the force on it never points against that
   double bound = kBound;                     // of the force, see there
   bool only_implicit_refers = false;         // only a model of any law bears what acts here
-  std::optional<double> felt_by_rigid = {};  // of stiffness x depth; else 1
-  std::optional<Range> felt = {};            // closed form, of all models whose held vertices are walls
-  double other_rest = 0.5;                   // of the force: a rest that is farther off is no neighbour
+  std::optional<double> rendered_by_rigid = {};  // of stiffness x depth; else 1
+  std::optional<Range> rendered = {};            // closed form, of all models whose held vertices are walls
+  double other_rest = 0.5;                       // of the force: a rest that is farther off is no neighbour
   bool path_matters = false;    // where it rests: a reference that was flagged on its way tells nothing
   bool no_rest_unbent = false;  // an organ that moves, but does not deform, has no place to rest: flagged
   bool must_refuse = false;     // of models that deform, nothing else is an answer
@@ -149,12 +149,12 @@ struct Run {
 void with_simulation(const SceneFile& file, const sim::TetMesh& mesh, const Column& column,
                      const std::function<void(const sim::Scene&, sim::Simulation&)>& use);
 
-/// The motion `share` of a step later.
-std::vector<Path> later(std::vector<Path> paths, double share, double rate_hz);
+/// The motion `fraction` of a step later.
+std::vector<Path> later(std::vector<Path> paths, double fraction, double rate_hz);
 
-/// Follows `paths`; then, where `lift`, as long again without tools. Throws `Error` where the program
+/// Follows `paths`; then, where `separate`, as long again without tools. Throws `Error` where the program
 /// refuses.
-Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool lift);
+Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool separate);
 
 /// What is held against the runs of a trial, one for each phase: the worst of them.
 Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& column);

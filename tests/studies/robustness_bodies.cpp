@@ -24,7 +24,7 @@ std::vector<HeldAxes> held_below(const Solid& solid) {
   return held;
 }
 
-double farthest(std::span<const Vec3> from, std::span<const Vec3> to) {
+double furthest(std::span<const Vec3> from, std::span<const Vec3> to) {
   double most = 0;
   for (std::size_t i = 0; i < from.size(); ++i) most = std::max(most, (to[i] - from[i]).norm());
   return most;
@@ -40,7 +40,7 @@ int inverted(const Solid& solid, std::span<const Vec3> x) {
 
 /// Lets go of a body whose free vertices `put` has put somewhere.
 template <class Put>
-Verdict let_go(const Column& column, bool quick, const Put& put) {
+Verdict release(const Column& column, bool quick, const Put& put) {
   if (!column.any_law())
     return {"not_applicable", "the state of this model is not free vertices", {}, {}, ""};
   const Solid solid(usual_block(), {.young_modulus = 1e4, .poisson_ratio = 0.45, .law = column.elastic});
@@ -59,9 +59,9 @@ Verdict let_go(const Column& column, bool quick, const Put& put) {
     dynamics.start_step(kStep);
     dynamics.solve(none, 5, 1e-5);
     dynamics.finish_step();
-    most = std::max(most, farthest(solid.rest(), dynamics.position()) / kSize);
+    most = std::max(most, furthest(solid.rest(), dynamics.position()) / kSize);
   }
-  const double off = farthest(solid.rest(), dynamics.position()) / kSize;
+  const double off = furthest(solid.rest(), dynamics.position()) / kSize;
   Verdict verdict{"stable", "", 100 * off, {}, "the shape at rest, in percent of the size"};
   if (!std::isfinite(off) || most > kFar) {
     return {
@@ -92,17 +92,17 @@ double energy_of(const ElasticTensors& tensors, const ExplicitMotion::State& sta
 }  // namespace
 
 Verdict run_scattered(const Case&, const Column& column, bool quick) {
-  return let_go(column, quick,
-                [](const Vec3& x, test::Random& random) -> Vec3 { return x + random.vector(kSize / 2); });
+  return release(column, quick,
+                 [](const Vec3& x, test::Random& random) -> Vec3 { return x + random.vector(kSize / 2); });
 }
 
 Verdict run_collapsed_to_point(const Case&, const Column& column, bool quick) {
-  return let_go(column, quick,
-                [](const Vec3&, test::Random& random) -> Vec3 { return random.vector(kNoise * kSize); });
+  return release(column, quick,
+                 [](const Vec3&, test::Random& random) -> Vec3 { return random.vector(kNoise * kSize); });
 }
 
 Verdict run_collapsed_to_plane(const Case&, const Column& column, bool quick) {
-  return let_go(column, quick, [](const Vec3& x, test::Random& random) -> Vec3 {
+  return release(column, quick, [](const Vec3& x, test::Random& random) -> Vec3 {
     return Vec3(x[0], 0, x[2]) + random.vector(kNoise * kSize);
   });
 }
@@ -159,9 +159,9 @@ Verdict run_undamped(const Case&, const Column& column, bool quick) {
   for (double& v : motion.state.v) v = random.between(-0.1, 0.1);
   const double h = 0.95 * longest_sub_step(highest_frequency(tensors), undamped);
   const std::vector<double> none(motion.state.u.size(), 0);
-  const int looks = 1000, between = quick ? 10 : 1000;
+  const int polls = 1000, between = quick ? 10 : 1000;
   double first = 0, least = 0, most = 0;
-  for (int i = 0; i < looks; ++i) {
+  for (int i = 0; i < polls; ++i) {
     motion.run(between - 1, h, none);
     const std::vector<double> before = motion.state.u;
     motion.run(1, h, none);
@@ -172,7 +172,7 @@ Verdict run_undamped(const Case&, const Column& column, bool quick) {
   }
   const double band = 100 * (most - least) / first;
   Verdict verdict{"stable",
-                  fmt::format("{} sub-steps", looks * between),
+                  fmt::format("{} sub-steps", polls * between),
                   band,
                   {},
                   "the energy of the first sub-steps, band of all"};

@@ -95,7 +95,7 @@ void rubbed(Trial& trial, double friction) {
   trial.paths[0].push_back({2, trial.paths[0].back().place + Vec3(0.004, 0, 0)});
   trial.path_matters = true;
   // In depths: one along the normal; across it what friction bears, and no more than it is drawn by.
-  trial.felt_by_rigid = std::hypot(1, std::min(friction, 0.004 / trial.depth));
+  trial.rendered_by_rigid = std::hypot(1, std::min(friction, 0.004 / trial.depth));
 }
 void slippery(Trial& trial) {
   rubbed(trial, 0);

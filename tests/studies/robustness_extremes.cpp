@@ -76,8 +76,8 @@ Change stroke_at(double speed) {
   };
 }
 
-/// From below, on what holds the block; `felt`: of 2000 N/m x depth.
-Change held_face(double radius, double depth, const Vec3& at, const Range& felt) {
+/// From below, on what holds the block; `rendered`: of 2000 N/m x depth.
+Change held_face(double radius, double depth, const Vec3& at, const Range& rendered) {
   return [=](Trial& trial) {
     trial.depth = depth;
     trial.outward = {-Vec3::UnitY()};
@@ -85,7 +85,7 @@ Change held_face(double radius, double depth, const Vec3& at, const Range& felt)
     const Vec3 end = at + Vec3(0, -0.015 - radius + depth, 0);
     trial.paths = {{{0, end - Vec3(0, 0.005, 0)}, {1, end}}};
     trial.seconds = 2;
-    trial.felt = Range{2000 * depth * felt.least, 2000 * depth * felt.most};
+    trial.rendered = Range{2000 * depth * rendered.least, 2000 * depth * rendered.most};
   };
 }
 

@@ -26,7 +26,7 @@ Verdict pulled(const Setting& setting, const Column& column, double radius, cons
                const Vectors& moved) {
   World world = block_of(setting);
   world.file.tools.clear();
-  std::vector<Way> ways;
+  std::vector<Direction> ways;
   std::vector<Gripped> grips;
   Vectors right;
   world.seconds = 0;
@@ -39,14 +39,14 @@ Verdict pulled(const Setting& setting, const Column& column, double radius, cons
   }
   world.hands = [ways](double t) {
     std::vector<ToolInput> inputs;
-    for (const Way& way : ways) inputs.push_back(at(way.at(t)));
+    for (const Direction& way : ways) inputs.push_back(at(way.at(t)));
     return inputs;
   };
   const bool deforms = column.row->deforms();
   if (deforms) right = reactions(world, column, grips);
   const Watched watched = watch(world, column);
   return compare(
-      watched, [](const Felt& felt) { return felt.force; }, at_the_end(world, right), kSame,
+      watched, [](const Rendered& rendered) { return rendered.force; }, at_the_end(world, right), kSame,
       deforms ? "the equilibrium of the body, its gripped vertices displaced, without contact"
               : "closed form: stiffness x displacement");
 }
@@ -68,7 +68,7 @@ Verdict grasp_let_go(const Setting& setting, const Column& column) {
   World world = block_of(setting);
   world.file.tools = {tool(0.01, "grasp_buttons = 1")};
   const double closed = 0.2;  // s
-  const Way way{{Vec3(0, 0.0095, 0), Vec3(0.001, 0.0125, 0), Vec3(0.002, 0.04, 0)}, setting.speed};
+  const Direction way{{Vec3(0, 0.0095, 0), Vec3(0.001, 0.0125, 0), Vec3(0.002, 0.04, 0)}, setting.speed};
   const double open = closed + std::max(0.003 / setting.speed, 1.1 / setting.rate_hz);
   world.seconds = closed + way.seconds() + kSwingsOut;
   world.hands = [=](double t) {
@@ -94,7 +94,8 @@ Verdict friction_sticks(const Setting& setting, const Column& column) {
   const Vec3 moved(1e-4, -2e-4, 0), in(0, kSmall - 2e-4, 0);
   World world = block_of(setting);
   world.file.tools = {tool(kSmall, "friction = 2")};
-  const Way down{{Vec3(0, 0.0005, 0), in}, 0.001}, along{{in, in + Vec3(moved[0], 0, 0)}, setting.speed};
+  const Direction down{{Vec3(0, 0.0005, 0), in}, 0.001},
+      along{{in, in + Vec3(moved[0], 0, 0)}, setting.speed};
   world.seconds = down.seconds() + along.seconds() + 2 * kSwingsOut;
   world.hands = [=](double t) {
     const double drawn = t - down.seconds() - kSwingsOut;
@@ -115,7 +116,8 @@ Verdict friction_slips(const Setting& setting, const Column& column) {
   World world = block_of(setting);
   world.file.tools = {tool(kLarge, fmt::format("friction = {}", setting.friction))};
   const Vec3 in(-0.006, kLarge - kDepth, 0.002);
-  const Way down{{in + Vec3(0, 0.001, 0), in}, 0.01}, along{{in, in + Vec3(0.012, 0, 0)}, setting.speed};
+  const Direction down{{in + Vec3(0, 0.001, 0), in}, 0.01},
+      along{{in, in + Vec3(0.012, 0, 0)}, setting.speed};
   const double begins = down.seconds() + kRest, ends = begins + along.seconds();
   world.seconds = ends + kRest;
   world.hands = [=](double t) {
@@ -130,10 +132,10 @@ Verdict friction_slips(const Setting& setting, const Column& column) {
                {},
                watched.max_newton,
                verdict.reference};
-  for (const Felt& felt : watched.steps) {
-    const Vec3& f = felt.force.front();
-    const bool slips = felt.t > (begins + ends) / 2 && felt.t <= ends;
-    if (felt.flagged || felt.t < begins || f.norm() < 1e-9) continue;
+  for (const Rendered& rendered : watched.steps) {
+    const Vec3& f = rendered.force.front();
+    const bool slips = rendered.t > (begins + ends) / 2 && rendered.t <= ends;
+    if (rendered.flagged || rendered.t < begins || f.norm() < 1e-9) continue;
     const double angle = std::atan2(std::hypot(f[0], f[2]), f[1]);
     if (slips)
       verdict.error_percent =
@@ -142,7 +144,7 @@ Verdict friction_slips(const Setting& setting, const Column& column) {
     verdict.outcome = "wrong";
     verdict.reason =
         fmt::format("at {:.3f} s across {:.3g} of what is along the normal, where {:.3g} to {:.3g} are right",
-                    felt.t, std::tan(angle), slips ? std::tan(cone - lean) : 0, std::tan(cone + lean));
+                    rendered.t, std::tan(angle), slips ? std::tan(cone - lean) : 0, std::tan(cone + lean));
     return verdict;
   }
   return verdict;
@@ -175,8 +177,8 @@ std::vector<Vec3> around(const Vec3& above, const Vec3& in) {
 
 Verdict work_of_friction(const Setting& setting, const Column& column) {
   World world = block_of(setting);
-  const Way way{around(Vec3(-0.001, 0.006, -0.002), Vec3(-0.001, kToolRadius - setting.depth, -0.002)),
-                setting.speed};
+  const Direction way{around(Vec3(-0.001, 0.006, -0.002), Vec3(-0.001, kToolRadius - setting.depth, -0.002)),
+                      setting.speed};
   world.seconds = way.seconds();
   world.file.tools = {tool(kToolRadius, fmt::format("friction = {}", setting.friction))};
   world.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t))}; };
@@ -185,8 +187,8 @@ Verdict work_of_friction(const Setting& setting, const Column& column) {
 
 Verdict work_of_capsule(const Setting& setting, const Column& column) {
   World world = block_of(setting);
-  const Way way{around(Vec3(-0.001, 0.006, -0.006), Vec3(-0.001, kToolRadius - setting.depth, -0.006)),
-                setting.speed};
+  const Direction way{around(Vec3(-0.001, 0.006, -0.006), Vec3(-0.001, kToolRadius - setting.depth, -0.006)),
+                      setting.speed};
   world.seconds = way.seconds();
   world.file.tools = {tool(kToolRadius, "shape = \"capsule\"\nlength = 0.012")};
   world.hands = [way](double t) {
@@ -200,8 +202,8 @@ Verdict work_of_capsule(const Setting& setting, const Column& column) {
 
 Verdict work_of_trocar(const Setting& setting, const Column& column) {
   World world = block_of(setting);
-  const Way way{around(Vec3(-0.001, 0.008, -0.01), Vec3(-0.001, kToolRadius - setting.depth, -0.01)),
-                setting.speed};
+  const Direction way{around(Vec3(-0.001, 0.008, -0.01), Vec3(-0.001, kToolRadius - setting.depth, -0.01)),
+                      setting.speed};
   world.seconds = way.seconds();
   world.file.tools = {
       tool(kToolRadius, "shape = \"trocar\"\npivot = [0.001, 0.012, 0.05]\nshaft_radius = 0.003")};
@@ -212,7 +214,7 @@ Verdict work_of_trocar(const Setting& setting, const Column& column) {
 Verdict work_of_grip(const Setting& setting, const Column& column) {
   World world = block_of(setting);
   const Vec3 place(0, 0.01, 0);
-  const Way way{around(place, place + Vec3(0, 0.003, 0)), setting.speed};
+  const Direction way{around(place, place + Vec3(0, 0.003, 0)), setting.speed};
   world.seconds = way.seconds();
   world.file.tools = {jaws(0.01, place)};
   world.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t))}; };

@@ -51,7 +51,7 @@ std::optional<Verdict> inapplicable(const Column& column) {
 /// A capsule that rubs, pressed and drawn.
 World pressed(const Setting& setting, double seconds) {
   World world = block_of(setting);
-  const Way way = press_and_draw(setting, Vec3(0.002, 0, 0));
+  const Direction way = press_and_draw(setting, Vec3(0.002, 0, 0));
   world.seconds = seconds;
   world.file.tools = {
       tool(kToolRadius, fmt::format("shape = \"capsule\"\nlength = 0.008\nfriction = {}", setting.friction))};

@@ -20,7 +20,7 @@ using namespace palpate::sim;
 constexpr const char* kMesh = "body.msh";
 
 Vec3 place_at(const Path& path, double t) {
-  const auto next = std::find_if(path.begin(), path.end(), [t](const Waypoint& w) { return w.t > t; });
+  const auto next = std::ranges::find_if(path, [t](const Waypoint& w) { return w.t > t; });
   if (next == path.end()) return path.back().place;
   if (next == path.begin()) return path.front().place;
   const Waypoint& from = *std::prev(next);
@@ -34,18 +34,18 @@ class Watch {
     began_.assign(simulation.positions().begin(), simulation.positions().end());
   }
 
-  Run follow(const std::vector<Path>& paths, double seconds, bool lift) {
+  Run follow(const std::vector<Path>& paths, double seconds, bool separate) {
     const int steps = static_cast<int>(std::lround(seconds / dt_));
     std::vector<ToolInput> inputs(paths.size());
     for (const Path& path : paths) run_.arrived = std::max(run_.arrived, path.back().t);
     for (int i = 1; i <= steps && run_.finite; ++i) {
       for (std::size_t k = 0; k < paths.size(); ++k) inputs[k].pose = place_at(paths[k], i * dt_);
       see(simulation_.step(inputs, dt_));
-      run_.held.push_back({i * dt_, felt_, run_.ends_flagged});
+      run_.held.push_back({i * dt_, rendered_, run_.ends_flagged});
     }
-    run_.last = felt_;
+    run_.last = rendered_;
     run_.pressed_flagged = run_.ends_flagged;
-    if (!lift) return run_;
+    if (!separate) return run_;
     for (ToolInput& input : inputs) input.pose.reset();
     for (int i = 0; i < steps && run_.finite; ++i) see(simulation_.step(inputs, dt_));
     for (std::size_t v = 0; v < began_.size(); ++v)
@@ -57,9 +57,9 @@ class Watch {
   void see(std::span<const ToolAnswer> forces) {
     ++run_.steps;
     run_.ends_flagged = false;
-    felt_.clear();
+    rendered_.clear();
     for (const ToolForce& force : forces) {
-      felt_.push_back(force.force);
+      rendered_.push_back(force.force);
       const double newton = force.force.norm();
       run_.finite = run_.finite && std::isfinite(newton) && force.tangent.allFinite();
       run_.max_newton = std::max(run_.max_newton, newton);
@@ -73,7 +73,7 @@ class Watch {
 
   Simulation& simulation_;
   double dt_;
-  std::vector<Vec3> began_, felt_;
+  std::vector<Vec3> began_, rendered_;
   Run run_;
 };
 
@@ -132,9 +132,9 @@ std::string tool(double radius, const std::string& more) {
   return fmt::format("radius = {}\n{}", radius, more);
 }
 
-std::vector<Path> later(std::vector<Path> paths, double share, double rate_hz) {
+std::vector<Path> later(std::vector<Path> paths, double fraction, double rate_hz) {
   for (Path& path : paths) {
-    for (Waypoint& waypoint : path) waypoint.t += share / rate_hz;
+    for (Waypoint& waypoint : path) waypoint.t += fraction / rate_hz;
   }
   return paths;
 }
@@ -157,10 +157,10 @@ void with_simulation(const SceneFile& file, const TetMesh& body, const Column& c
   }
 }
 
-Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool lift) {
+Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool separate) {
   Run run;
   with_simulation(trial.file, trial.mesh, column, [&](const Scene& scene, Simulation& simulation) {
-    run = Watch(simulation, trial.file.rate_hz).follow(paths, trial.seconds, lift);
+    run = Watch(simulation, trial.file.rate_hz).follow(paths, trial.seconds, separate);
     run.locks = column.row->deforms() && scene.material && scene.material->locks();
   });
   return run;
@@ -178,8 +178,8 @@ Verdict run_trial(const Case& row, const Column& column, bool quick) {
   try {
     std::vector<Run> runs;
     for (int phase = 0; phase < trial.phases; ++phase) {
-      const double share = static_cast<double>(phase) / trial.phases;
-      runs.push_back(follow(trial, column, later(trial.paths, share, trial.file.rate_hz), phase == 0));
+      const double fraction = static_cast<double>(phase) / trial.phases;
+      runs.push_back(follow(trial, column, later(trial.paths, fraction, trial.file.rate_hz), phase == 0));
       runs.back().phase = phase;
     }
     return judge(runs, trial, column);

@@ -14,7 +14,7 @@ using namespace palpate::sim;
 constexpr double kAbsurd = 10;        // of the largest force expected, unflagged on the way: wrong
 constexpr double kReturned = 0.05;    // of the depth: how far from rest a surface may be that was let go
 constexpr double kSmallest = 1e-9;    // N: less is no force
-constexpr double kTellWhy = 0.01;     // an error of a force that nothing flagged: more is looked into
+constexpr double kReportWhy = 0.01;   // an error of a force that nothing flagged: more is looked into
 constexpr double kSamePlace = 1e-3;   // of the force: two runs that ended in one place
 constexpr double kAside = 0.0005;     // m
 constexpr int kSlower = 8;            // a multiple of all `Trial::phases`
@@ -95,8 +95,8 @@ Expected forces_of(const Run& run, const Trial& trial) {
 
 Expected expected_of(const Trial& trial, const Column& column) {
   const std::size_t tools = trial.paths.size();
-  if (trial.felt && !column.stands())
-    return closed_form("closed form: the stiffness of held vertices x depth", tools, *trial.felt);
+  if (trial.rendered && !column.is_placed())
+    return closed_form("closed form: the stiffness of held vertices x depth", tools, *trial.rendered);
   if (trial.no_rest_unbent && !column.row->deforms() && column.row->moves) {
     Expected none = closed_form("none: there is no place to rest", tools, {0, 1e300});
     none.settled = false;
@@ -104,7 +104,7 @@ Expected expected_of(const Trial& trial, const Column& column) {
     return none;
   }
   if (!column.row->deforms()) {
-    const double newton = trial.felt_by_rigid.value_or(1) * 800 * trial.depth;
+    const double newton = trial.rendered_by_rigid.value_or(1) * 800 * trial.depth;
     return closed_form("closed form: stiffness x depth", tools, {newton, newton});
   }
   const Truth truth = truth_of(trial, column);
@@ -215,14 +215,14 @@ Verdict judge_one(const Run& run, const Trial& trial, const Column& column, cons
   if (!run.finite)
     return {"exploded", "a force, tangent or position that is not finite", {}, {}, expected.what};
   if (expected.settled) verdict.error_percent = 100 * error_of(run.last, expected);
-  std::optional<Expected> elsewhere;
+  std::optional<Expected> remote;
   const double error = verdict.error_percent.value_or(0) / 100;
-  const double tell_why = trial.bound == kBound ? kTellWhy : trial.bound;
-  if (!run.pressed_flagged && error > tell_why && error < trial.other_rest && column.row->deforms() &&
-      !trial.felt)
-    elsewhere = another_rest(run, trial, column);
-  if (elsewhere) elsewhere->most = expected.most;
-  const std::string wrong = wrong_of(run, trial, elsewhere.value_or(expected));
+  const double report_why = trial.bound == kBound ? kReportWhy : trial.bound;
+  if (!run.pressed_flagged && error > report_why && error < trial.other_rest && column.row->deforms() &&
+      !trial.rendered)
+    remote = another_rest(run, trial, column);
+  if (remote) remote->most = expected.most;
+  const std::string wrong = wrong_of(run, trial, remote.value_or(expected));
   if (!wrong.empty() && run.locks) {
     verdict.outcome = "flagged";
     verdict.reason = "warned at the start that its elements lock, with those to take instead: " + wrong;
@@ -235,13 +235,13 @@ Verdict judge_one(const Run& run, const Trial& trial, const Column& column, cons
         fmt::format("{} of {} steps flagged, answered with what was found so far; {}", run.flagged, run.steps,
                     run.pressed_flagged ? "the force at the end, too" : "the force at the end was not");
   }
-  if (elsewhere) verdict.reason += (verdict.reason.empty() ? "" : "; ") + elsewhere->what;
+  if (remote) verdict.reason += (verdict.reason.empty() ? "" : "; ") + remote->what;
   return verdict;
 }
 
 int rank(const Verdict& verdict) {
   const std::vector<std::string> worse{"stable", "flagged", "wrong", "exploded"};
-  return static_cast<int>(std::find(worse.begin(), worse.end(), verdict.outcome) - worse.begin());
+  return static_cast<int>(std::ranges::find(worse, verdict.outcome) - worse.begin());
 }
 
 }  // namespace

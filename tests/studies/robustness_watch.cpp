@@ -34,22 +34,22 @@ std::vector<std::vector<sim::PathPoint>> paths_to(const World& world, double t, 
 
 void see_step(const Simulation& simulation, std::span<const ToolInput> inputs,
               std::span<const ToolAnswer> answers, double t, Watched& watched) {
-  Felt felt{t, {}, {}, {}, !simulation.balanced()};
+  Rendered rendered{t, {}, {}, {}, !simulation.balanced()};
   for (std::size_t k = 0; k < answers.size(); ++k) {
     const ToolAnswer& answer = answers[k];
-    felt.poses.push_back(inputs[k].pose.value_or(ToolPose{}));
-    felt.force.push_back(answer.force);
-    felt.torque.push_back(answer.torque);
-    felt.flagged = felt.flagged || answer.flagged;
+    rendered.poses.push_back(inputs[k].pose.value_or(ToolPose{}));
+    rendered.force.push_back(answer.force);
+    rendered.torque.push_back(answer.torque);
+    rendered.flagged = rendered.flagged || answer.flagged;
     watched.finite =
         watched.finite && answer.force.allFinite() && answer.torque.allFinite() && answer.tangent.allFinite();
   }
   for (const Vec3& x : simulation.positions()) watched.finite = watched.finite && x.allFinite();
-  for (const Vec3& force : felt.force) {
-    if (!felt.flagged) watched.max_newton = std::max(watched.max_newton, force.norm());
+  for (const Vec3& force : rendered.force) {
+    if (!rendered.flagged) watched.max_newton = std::max(watched.max_newton, force.norm());
   }
-  watched.flagged += felt.flagged ? 1 : 0;
-  watched.steps.push_back(std::move(felt));
+  watched.flagged += rendered.flagged ? 1 : 0;
+  watched.steps.push_back(std::move(rendered));
 }
 
 constexpr double kEdge = 0.005;  // m, of the mesh
@@ -68,24 +68,24 @@ World block_of(const Setting& setting) {
   return world;
 }
 
-double Way::seconds() const {
+double Direction::seconds() const {
   double length = 0;
   for (std::size_t i = 1; i < places.size(); ++i) length += (places[i] - places[i - 1]).norm();
   return length / speed;
 }
 
-Vec3 Way::at(double t) const {
-  double left = t * speed;
+Vec3 Direction::at(double t) const {
+  double remaining = t * speed;
   for (std::size_t i = 1; i < places.size(); ++i) {
     const Vec3 piece = places[i] - places[i - 1];
-    if (left <= piece.norm()) return places[i - 1] + left / piece.norm() * piece;
-    left -= piece.norm();
+    if (remaining <= piece.norm()) return places[i - 1] + remaining / piece.norm() * piece;
+    remaining -= piece.norm();
   }
   return places.back();
 }
 
 /// Down from 2 mm above the block, then along.
-Way press_and_draw(const Setting& setting, const Vec3& along) {
+Direction press_and_draw(const Setting& setting, const Vec3& along) {
   const Vec3 above(0.001, kToolRadius + 0.002, 0.002), in(0.001, kToolRadius - setting.depth, 0.002);
   return {{above, in, in + along}, setting.speed};
 }
@@ -112,18 +112,19 @@ Watched watch(const World& world, const Column& column) {
   return watched;
 }
 
-Vectors force_of(const Felt& felt) {
-  return {felt.force.front()};
+Vectors force_of(const Rendered& rendered) {
+  return {rendered.force.front()};
 }
 
-Vectors force_and_torque_of(const Felt& felt) {
-  return {felt.force.front(), felt.torque.front()};
+Vectors force_and_torque_of(const Rendered& rendered) {
+  return {rendered.force.front(), rendered.torque.front()};
 }
 
-Expected as_in(Watched other, Told told, double from) {
-  return [other = std::move(other), told = std::move(told), from](std::size_t i) -> std::optional<Vectors> {
+Expected as_in(Watched other, Published published, double from) {
+  return [other = std::move(other), published = std::move(published),
+          from](std::size_t i) -> std::optional<Vectors> {
     if (i >= other.steps.size() || other.steps[i].flagged || other.steps[i].t < from) return {};
-    return told(other.steps[i]);
+    return published(other.steps[i]);
   };
 }
 
@@ -135,7 +136,7 @@ Expected at_the_end(const World& world, Vectors right, double seconds) {
   };
 }
 
-Verdict compare(const Watched& watched, const Told& told, const Expected& expected, double bound,
+Verdict compare(const Watched& watched, const Published& published, const Expected& expected, double bound,
                 const std::string& reference) {
   Verdict verdict{"stable", "", {}, watched.max_newton, reference};
   if (!watched.finite)
@@ -145,7 +146,7 @@ Verdict compare(const Watched& watched, const Told& told, const Expected& expect
   for (std::size_t i = 0; i < watched.steps.size(); ++i) {
     const std::optional<Vectors> right = expected(i);
     if (!right) continue;
-    const Vectors found = told(watched.steps[i]);
+    const Vectors found = published(watched.steps[i]);
     off.resize(right->size(), Vec3::Zero());
     scale.resize(right->size(), Vec3(Vec3::Constant(kNothing)));
     worst.resize(right->size(), 0);
@@ -174,7 +175,7 @@ Verdict compare(const Watched& watched, const Told& told, const Expected& expect
 }
 
 Vectors reactions(const World& world, const Column& column, const std::vector<Gripped>& grips) {
-  Vectors felt(grips.size(), Vec3::Zero());
+  Vectors rendered(grips.size(), Vec3::Zero());
   with_simulation(world.file, world.mesh, column, [&](const Scene& scene, Simulation& simulation) {
     const Solid solid(simulation.mesh(), *scene.material);
     StaticLoad load{.held = std::vector<HeldAxes>(solid.rest().size(), 0),
@@ -192,15 +193,15 @@ Vectors reactions(const World& world, const Column& column, const std::vector<Gr
     const Equilibrium rest = find_equilibrium(solid, load, "study");
     std::vector<Vec3> force(solid.rest().size());
     solid.forces(rest.x, force);
-    for (const auto& [node, k] : gripped) felt[k] -= force[node];
+    for (const auto& [node, k] : gripped) rendered[k] -= force[node];
   });
-  return felt;
+  return rendered;
 }
 
 Work work_of(const Watched& watched) {
   Work work;
   for (std::size_t i = 1; i < watched.steps.size(); ++i) {
-    const Felt &from = watched.steps[i - 1], &to = watched.steps[i];
+    const Rendered &from = watched.steps[i - 1], &to = watched.steps[i];
     for (std::size_t k = 0; k < to.poses.size(); ++k) {
       const Eigen::AngleAxisd turn(to.poses[k].q_W * from.poses[k].q_W.conjugate());
       const double done = 0.5 * (from.force[k] + to.force[k]).dot(to.poses[k].p_W - from.poses[k].p_W) +

@@ -16,7 +16,7 @@ struct World {
 };
 
 /// What the tools felt in one step.
-struct Felt {
+struct Rendered {
   double t;  // s
   std::vector<ToolPose> poses;
   std::vector<Vec3> force, torque;  // of each tool, N, N m
@@ -25,7 +25,7 @@ struct Felt {
 
 /// All of it.
 struct Watched {
-  std::vector<Felt> steps;
+  std::vector<Rendered> steps;
   int flagged = 0;
   bool finite = true;
   double max_newton = 0;  // of steps that were not flagged
@@ -38,21 +38,21 @@ using Vectors = std::vector<Vec3>;
 /// What should be felt at a step, or nothing, where there is nothing to tell of it.
 using Expected = std::function<std::optional<Vectors>(std::size_t step)>;
 /// What of a step is told.
-using Told = std::function<Vectors(const Felt&)>;
+using Published = std::function<Vectors(const Rendered&)>;
 
 /// The force on the first tool; with its torque.
-Vectors force_of(const Felt& felt);
-Vectors force_and_torque_of(const Felt& felt);
+Vectors force_of(const Rendered& rendered);
+Vectors force_and_torque_of(const Rendered& rendered);
 
 /// The steps of another world from `from` (s) on, but those it flagged.
-Expected as_in(Watched other, Told told, double from = 0);
+Expected as_in(Watched other, Published published, double from = 0);
 
 /// In the last `seconds` of that world.
 Expected at_the_end(const World& world, Vectors right, double seconds = 0.5 * kRest);
 
 /// The worst of all steps that were not flagged, each vector as a share of the largest that was expected of
 /// its kind: more than `bound` is wrong.
-Verdict compare(const Watched& watched, const Told& told, const Expected& expected, double bound,
+Verdict compare(const Watched& watched, const Published& published, const Expected& expected, double bound,
                 const std::string& reference);
 
 /// Free surface vertices around a place, all moved alike.
@@ -83,7 +83,7 @@ struct Setting {
 World block_of(const Setting& setting);
 
 /// Straight from place to place at an even speed (m/s).
-struct Way {
+struct Direction {
   std::vector<Vec3> places;
   double speed;
 
@@ -92,7 +92,7 @@ struct Way {
 };
 constexpr double kToolRadius = 0.004;  // m, of most tools
 /// Down from 2 mm above the block, then along.
-Way press_and_draw(const Setting& setting, const Vec3& along);
+Direction press_and_draw(const Setting& setting, const Vec3& along);
 /// One tool there, or lifted.
 sim::ToolInput at(const Vec3& p, const Quat& q = Quat::Identity());
 

@@ -24,16 +24,16 @@ std::string capsule(double length, const std::string& more = "") {
 }
 
 /// Flat on the block, then turned about the vertical by 60 degrees and lifted at one end by 10, as it goes.
-ToolPose rolled_pose(const Way& way, double t) {
-  const double share = std::min(t / way.seconds(), 1.0);
-  const Quat turn(AngleAxisd(share * std::numbers::pi / 3, Vec3::UnitY()));
-  const Quat tilt(AngleAxisd(-share * std::numbers::pi / 18, Vec3::UnitX()));
+ToolPose rolled_pose(const Direction& way, double t) {
+  const double fraction = std::min(t / way.seconds(), 1.0);
+  const Quat turn(AngleAxisd(fraction * std::numbers::pi / 3, Vec3::UnitY()));
+  const Quat tilt(AngleAxisd(-fraction * std::numbers::pi / 18, Vec3::UnitX()));
   return {way.at(t), turn * tilt};
 }
 
 World rolled(const Setting& setting, const std::string& more) {
   World world = block_of(setting);
-  const Way way = press_and_draw(setting, Vec3(0.004, 0, -0.004));
+  const Direction way = press_and_draw(setting, Vec3(0.004, 0, -0.004));
   world.seconds = way.seconds() + kRest;
   world.file.tools = {capsule(0.012, more)};
   world.hands = [way](double t) {
@@ -45,7 +45,7 @@ World rolled(const Setting& setting, const std::string& more) {
 
 Verdict capsule_on_end(const Setting& setting, const Column& column) {
   World ball = block_of(setting);
-  const Way way = press_and_draw(setting, Vec3(0.004, 0, 0));
+  const Direction way = press_and_draw(setting, Vec3(0.004, 0, 0));
   ball.seconds = way.seconds() + kRest;
   ball.file.tools = {tool(kToolRadius, "friction = 0.3")};
   ball.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t))}; };
@@ -66,9 +66,9 @@ Verdict capsule_reversed(const Setting& setting, const Column& column) {
     pose = ToolPose(far_end(shape, pose), pose.q_W * Quat(AngleAxisd(2 * kQuarter, Vec3::UnitX())));
     return inputs;
   };
-  const Told about_other_end = [shape](const Felt& felt) -> Vectors {
-    const Vec3 arm = felt.poses.front().p_W - far_end(shape, felt.poses.front());
-    return {felt.force.front(), felt.torque.front() + arm.cross(felt.force.front())};
+  const Published about_other_end = [shape](const Rendered& rendered) -> Vectors {
+    const Vec3 arm = rendered.poses.front().p_W - far_end(shape, rendered.poses.front());
+    return {rendered.force.front(), rendered.torque.front() + arm.cross(rendered.force.front())};
   };
   return compare(watch(reversed, column), force_and_torque_of, as_in(watch(world, column), about_other_end),
                  kSame, "the same model under the same capsule, its tip the other end");
@@ -93,8 +93,8 @@ Verdict world_turned(const Setting& setting, const Column& column) {
     pose = ToolPose(turn * pose.p_W, Quat(turn) * pose.q_W);
     return inputs;
   };
-  const Told back = [turn](const Felt& felt) -> Vectors {
-    return {turn.transpose() * felt.force.front(), turn.transpose() * felt.torque.front()};
+  const Published back = [turn](const Rendered& rendered) -> Vectors {
+    return {turn.transpose() * rendered.force.front(), turn.transpose() * rendered.torque.front()};
   };
   return compare(watch(turned, column), back, as_in(watch(world, column), force_and_torque_of), kSame,
                  "the same model, turned with everything in it");
@@ -103,7 +103,7 @@ Verdict world_turned(const Setting& setting, const Column& column) {
 /// Spheres so near each other that what lies between them is 0.8 % of the radius further in.
 Verdict capsule_as_spheres(const Setting& setting, const Column& column) {
   World world = block_of(setting);
-  const Way way = press_and_draw(setting, Vec3(0.002, 0, 0));
+  const Direction way = press_and_draw(setting, Vec3(0.002, 0, 0));
   world.seconds = way.seconds() + kRest;
   constexpr int kSpheres = 8;
   const Vec3 apart(0, 0, 0.001);
@@ -116,18 +116,18 @@ Verdict capsule_as_spheres(const Setting& setting, const Column& column) {
     for (int i = 0; i < kSpheres; ++i) inputs.push_back(at(way.at(t) + i * apart));
     return inputs;
   };
-  const Told sum = [apart](const Felt& felt) -> Vectors {
+  const Published sum = [apart](const Rendered& rendered) -> Vectors {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-    for (std::size_t i = 0; i < felt.force.size(); ++i) {
-      force += felt.force[i];
-      torque += (static_cast<double>(i) * apart).cross(felt.force[i]);
+    for (std::size_t i = 0; i < rendered.force.size(); ++i) {
+      force += rendered.force[i];
+      torque += (static_cast<double>(i) * apart).cross(rendered.force[i]);
     }
     return {force, torque};
   };
   // Nothing tells how much each sphere bears of an organ that goes as one; of a rigid one each bears all.
   if (!column.row->deforms()) {
-    const Vec3 felt = 800 * setting.depth * Vec3::UnitY();
-    return compare(watch(world, column), force_of, at_the_end(world, {felt}), kSame,
+    const Vec3 rendered = 800 * setting.depth * Vec3::UnitY();
+    return compare(watch(world, column), force_of, at_the_end(world, {rendered}), kSame,
                    "closed form: stiffness x depth");
   }
   return compare(watch(world, column), force_and_torque_of, as_in(watch(spheres, column), sum), kBound,
@@ -136,7 +136,7 @@ Verdict capsule_as_spheres(const Setting& setting, const Column& column) {
 
 Verdict trocar_far(const Setting& setting, const Column& column) {
   World ball = block_of(setting);
-  const Way way = press_and_draw(setting, Vec3(0.004, 0, 0));
+  const Direction way = press_and_draw(setting, Vec3(0.004, 0, 0));
   ball.seconds = way.seconds() + kRest;
   ball.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t))}; };
   World trocar = ball;
@@ -148,14 +148,14 @@ Verdict trocar_far(const Setting& setting, const Column& column) {
 const Vec3 kPivot(0.001, 0.012, 0.05);
 
 /// The shaft lies on the block; the tip goes down, and along.
-Way lever(const Setting& setting) {
+Direction lever(const Setting& setting) {
   const Vec3 above(0.001, 0.008, -0.01), in(0.001, kToolRadius - setting.depth, -0.01);
   return {{above, in, in + Vec3(0.004, 0, 0), in + Vec3(0.004, 0, 0.003)}, setting.speed};
 }
 
 Verdict trocar_lever(const Setting& setting, const Column& column) {
   World trocar = block_of(setting);
-  const Way way = lever(setting);
+  const Direction way = lever(setting);
   trocar.seconds = way.seconds() + kRest;
   trocar.file.tools = {
       tool(kToolRadius, fmt::format("shape = \"trocar\"\npivot = [{}, {}, {}]\nshaft_radius = {}", kPivot[0],
@@ -169,9 +169,9 @@ Verdict trocar_lever(const Setting& setting, const Column& column) {
   };
   // By virtual work: the hand at the tip bears what the contact turns about the pivot, and what pushes along
   // the axis.
-  const Told at_tip = [](const Felt& felt) -> Vectors {
-    const Vec3 arm = felt.poses.front().p_W - kPivot, axis = arm.normalized(), f = felt.force.front();
-    const Vec3 about_pivot = felt.torque.front() + arm.cross(f);
+  const Published at_tip = [](const Rendered& rendered) -> Vectors {
+    const Vec3 arm = rendered.poses.front().p_W - kPivot, axis = arm.normalized(), f = rendered.force.front();
+    const Vec3 about_pivot = rendered.torque.front() + arm.cross(f);
     return {axis * axis.dot(f) + about_pivot.cross(axis) / arm.norm()};
   };
   return compare(watch(trocar, column), force_of, as_in(watch(lying, column), at_tip), kSame,

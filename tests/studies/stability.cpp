@@ -50,9 +50,9 @@ double depth_of(const std::string& world, double stiffness) {
 /// What is seen of a hand that presses.
 class Watch {
  public:
-  void see(double t, double start, const Vec3& place, const Vec3& felt, const Vec3& right) {
+  void see(double t, double start, const Vec3& place, const Vec3& rendered, const Vec3& right) {
     if (t > start) {
-      error2_ += (felt - right).squaredNorm();
+      error2_ += (rendered - right).squaredNorm();
       force2_ += right.squaredNorm();
     }
     if (t >= kWatch) {
@@ -101,8 +101,8 @@ Run run(const Cell& cell, double stiffness, int seed) {
   test::ClosedLoop loop(device, pipeline, test::served(organ), loop_of(cell.link, seed));
   Watch watch;
   while (loop.seconds() < kEnd) {
-    const Vec3 felt = loop.tick().f_D;
-    watch.see(loop.seconds(), start, device.place(), felt, organ(device.place()).f);
+    const Vec3 rendered = loop.tick().f_D;
+    watch.see(loop.seconds(), start, device.place(), rendered, organ(device.place()).f);
   }
   return watch.result(pipeline.limiter().fault() != Fault::kNone);
 }
@@ -212,9 +212,8 @@ void study(const std::vector<Cell>& all, const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
   std::vector<Cell> walls;  // one for each operator and world
   for (const Cell& cell : all) {
-    const bool known = std::any_of(walls.begin(), walls.end(), [&](const Cell& wall) {
-      return wall.person == cell.person && wall.world == cell.world;
-    });
+    const bool known = std::ranges::any_of(
+        walls, [&](const Cell& wall) { return wall.person == cell.person && wall.world == cell.world; });
     if (!known) walls.push_back({cell.person, kDirect, cell.world, false, cell.link});
   }
   std::vector<double> limits(walls.size());
@@ -222,9 +221,8 @@ void study(const std::vector<Cell>& all, const std::filesystem::path& out) {
     limits[k] = is_slide(walls[k].world) ? PressAndSlide::stiffnesses().back() : threshold(walls[k]);
   });
   const auto direct = [&](const Cell& cell) {
-    const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Cell& w) {
-      return w.person == cell.person && w.world == cell.world;
-    });
+    const auto wall = std::ranges::find_if(
+        walls, [&](const Cell& w) { return w.person == cell.person && w.world == cell.world; });
     return limits[static_cast<std::size_t>(wall - walls.begin())];
   };
   std::vector<Json> rows(all.size());

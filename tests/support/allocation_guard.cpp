@@ -8,13 +8,13 @@
 namespace {
 thread_local std::size_t g_count = 0;
 thread_local bool g_counting = false;
-thread_local std::size_t g_left = 0;  // allocations until one fails; 0: none does
+thread_local std::size_t g_remaining = 0;  // allocations until one fails; 0: none does
 void count_one() {
   if (g_counting) ++g_count;
 }
 /// Whether this one fails.
 [[maybe_unused]] bool fails() {
-  return g_left > 0 && --g_left == 0;
+  return g_remaining > 0 && --g_remaining == 0;
 }
 }  // namespace
 
@@ -62,13 +62,13 @@ std::size_t AllocationGuard::count() const {
 }
 
 AllocationFailure::AllocationFailure(std::size_t n) {
-  g_left = n;
+  g_remaining = n;
 }
 AllocationFailure::~AllocationFailure() {
-  g_left = 0;
+  g_remaining = 0;
 }
 bool AllocationFailure::happened() const {
-  return g_left == 0;
+  return g_remaining == 0;
 }
 
 }  // namespace palpate::test

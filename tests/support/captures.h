@@ -47,15 +47,15 @@ inline Content read_all(const std::filesystem::path& path) {
   protocol::CaptureReader reader(path);
   Content content;
   protocol::CapturedDatagram datagram;
-  double share = 0;
+  double fraction = 0;
   while (reader.next(datagram)) {
-    CHECK(reader.share() >= share);
-    share = reader.share();
+    CHECK(reader.fraction() >= fraction);
+    fraction = reader.fraction();
     content.times.push_back(datagram.t);
     content.payloads.push_back(hex(datagram.bytes));
     content.lengths.push_back(datagram.length);
   }
-  CHECK(reader.share() == 1);
+  CHECK(reader.fraction() == 1);
   CHECK_FALSE(reader.next(datagram));
   content.skipped = reader.skipped();
   content.packets = reader.packets();

@@ -8,16 +8,16 @@
 namespace palpate::test {
 
 /// The tetrahedra that are `chosen`, by number, with the vertices that they need.
-inline sim::TetMesh part_of(const sim::TetMesh& whole, const std::function<bool(int)>& chosen) {
+inline sim::TetMesh part_of(const sim::TetMesh& entire, const std::function<bool(int)>& chosen) {
   sim::TetMesh mesh;
-  std::vector<int> number(whole.vertices.size(), -1);
-  for (int t = 0; t < static_cast<int>(whole.tetrahedra.size()); ++t) {
+  std::vector<int> number(entire.vertices.size(), -1);
+  for (int t = 0; t < static_cast<int>(entire.tetrahedra.size()); ++t) {
     if (!chosen(t)) continue;
-    sim::Tetrahedron corners = whole.tetrahedra[t];
+    sim::Tetrahedron corners = entire.tetrahedra[t];
     for (int& v : corners) {
       if (number[v] < 0) {
         number[v] = static_cast<int>(mesh.vertices.size());
-        mesh.vertices.push_back(whole.vertices[v]);
+        mesh.vertices.push_back(entire.vertices[v]);
       }
       v = number[v];
     }
@@ -29,10 +29,10 @@ inline sim::TetMesh part_of(const sim::TetMesh& whole, const std::function<bool(
 /// The tetrahedra of a grid (`grid_block`) whose middles are inside, with the vertices that they need.
 inline sim::TetMesh carved(const std::vector<double>& x, const std::vector<double>& y,
                            const std::vector<double>& z, const std::function<bool(const Vec3&)>& inside) {
-  const sim::TetMesh whole = sim::grid_block(x, y, z);
-  return part_of(whole, [&](int t) {
+  const sim::TetMesh entire = sim::grid_block(x, y, z);
+  return part_of(entire, [&](int t) {
     Vec3 middle = Vec3::Zero();
-    for (const int v : whole.tetrahedra[t]) middle += whole.vertices[v] / 4;
+    for (const int v : entire.tetrahedra[t]) middle += entire.vertices[v] / 4;
     return inside(middle);
   });
 }

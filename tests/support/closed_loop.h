@@ -43,13 +43,13 @@ inline Server served(Organ organ) {
   const auto step = [=, number = std::uint64_t{0}](const protocol::ToolState& tool) mutable {
     using protocol::ForceSample;
     ForceSample sample{.number = ++number, .tool_t_ns = tool.t_ns, .p_W = tool.p_W};
-    const client::Linearised here = organ(tool.p_W);
-    sample.f_W = here.f;
-    if ((tool.flags & protocol::ToolState::kWantsHere) != 0) {
-      sample.flags |= ForceSample::kHasHere;
-      sample.here = on_the_wire(here);
+    const client::Linearised at_tool = organ(tool.p_W);
+    sample.f_W = at_tool.f;
+    if ((tool.flags & protocol::ToolState::kRequestsTangent) != 0) {
+      sample.flags |= ForceSample::kHasTangent;
+      sample.at_tool = on_the_wire(at_tool);
     }
-    if ((tool.flags & protocol::ToolState::kWantsAhead) != 0) {
+    if ((tool.flags & protocol::ToolState::kRequestsAhead) != 0) {
       const Vec3 way = to_seconds(Time{tool.lead_ns}) * tool.v_W;
       sample.flags |= ForceSample::kHasAhead;
       sample.ahead_p_W = tool.p_W + (way.norm() > 2e-3 ? Vec3(2e-3 * way.normalized()) : way);
@@ -125,7 +125,7 @@ class ClosedLoop {
   Server server_;
   ClosedLoopSettings settings_;
   protocol::LinkSimulator link_, good_link_;
-  protocol::ReplayWindow window_{protocol::ClientSession::kFarthestSample};
+  protocol::ReplayWindow window_{protocol::ClientSession::kMaxSample};
   protocol::LinkStats stats_;
   std::uint64_t ticks_ = 0, steps_ = 0, sent_ = 0;
   std::optional<protocol::ForceSample> arrived_;

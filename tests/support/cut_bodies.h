@@ -13,7 +13,7 @@ inline sim::TetMesh rest_of(const sim::TetMesh& mesh, const sim::CutMesh& cut) {
   sim::TetMesh rest = mesh;
   rest.tetrahedra.clear();
   for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t) {
-    if (cut.is_left(t)) rest.tetrahedra.push_back(mesh.tetrahedra[static_cast<std::size_t>(t)]);
+    if (cut.remains(t)) rest.tetrahedra.push_back(mesh.tetrahedra[static_cast<std::size_t>(t)]);
   }
   return rest;
 }
@@ -29,8 +29,8 @@ inline std::vector<sim::Triangle> by_mesh_vertices(const sim::Surface& surface) 
 
 /// Each with its smallest corner first, as it is oriented; ascending.
 inline std::vector<sim::Triangle> in_order(std::vector<sim::Triangle> triangles) {
-  for (sim::Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-  std::sort(triangles.begin(), triangles.end());
+  for (sim::Triangle& t : triangles) std::rotate(t.begin(), std::ranges::min_element(t), t.end());
+  std::ranges::sort(triangles);
   return triangles;
 }
 

@@ -97,7 +97,7 @@ struct Session {
   bool says(const std::string& text, int times) const {
     return wait([&](const nlohmann::json&) {
       const std::vector<std::string> lines = said();
-      return std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
+      return std::ranges::count_if(lines, [&](const std::string& line) {
                return line.find(text) != std::string::npos;
              }) >= times;
     });

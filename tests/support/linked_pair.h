@@ -138,8 +138,8 @@ class LinkedPair {
     while (const auto bytes = up_.receive(link_time())) receive_at_server(*bytes);
     while (const auto bytes = good_up_.receive(link_time())) receive_at_server(*bytes);
     if (ticks_ % kTimer == 0) {
-      for (const auto& gone : server_.expire(server_time()))
-        if (newest_ && newest_->first == gone.session) newest_.reset();
+      for (const auto& removed : server_.expire(server_time()))
+        if (newest_ && newest_->first == removed.session) newest_.reset();
     }
     if (static_cast<double>(steps_) / settings_.sim_hz <= seconds() + 1e-9) {
       ++steps_;

@@ -10,7 +10,7 @@
 namespace palpate::test {
 
 constexpr Time kTick = std::chrono::milliseconds(2);
-inline const auto kWholeModel = [](protocol::SurfacePage&) { return true; };
+inline const auto kEntireModel = [](protocol::SurfacePage&) { return true; };
 
 /// Slides over the block, 1 to 2 mm deep, turning at its ends; leaves it once in each 0.8 s.
 inline Vec3 slide(Time t) {
@@ -41,7 +41,7 @@ struct Listener {
     place = p;
     t += kTick;
     if (auto sample = block.exchange(t, p, v)) {
-      told(*sample);
+      published(*sample);
       law.take(client::sample_of(*sample, &model), p, t);
       newest = *sample;
     }
@@ -52,7 +52,7 @@ struct Listener {
   client::SurfaceModel model;
   client::ForceEstimate law{std::make_unique<client::LocalContact>()};
   protocol::ForceSample newest;
-  std::function<void(protocol::ForceSample&)> told = [](protocol::ForceSample&) {
+  std::function<void(protocol::ForceSample&)> published = [](protocol::ForceSample&) {
   };  ///< changes what it hears
   Time t = std::chrono::seconds(1);
   Vec3 place = slide(t);

@@ -46,7 +46,7 @@ struct ModelCase {
   /// Of its name; or "no linear law".
   bool has(std::string_view word) const {
     const auto all = words();
-    return word == "no linear law" ? !linear() : std::find(all.begin(), all.end(), word) != all.end();
+    return word == "no linear law" ? !linear() : std::ranges::find(all, word) != all.end();
   }
   /// Writes the choice into a scene, and has iterations go on until rounding ends them. Where it moves only
   /// what can be cut, that is what lies beyond z = 0.
@@ -90,9 +90,9 @@ inline const std::vector<Exemption> kExemptions{
     {"implicit", {"stvk"}, "deep press", "its law softens under pressure, and collapses under so much"},
 };
 inline bool exempt(const ModelCase& choice, std::string_view from) {
-  return std::any_of(kExemptions.begin(), kExemptions.end(), [&](const Exemption& e) {
+  return std::ranges::any_of(kExemptions, [&](const Exemption& e) {
     return e.model == choice.row.name && e.from == from &&
-           std::all_of(e.with.begin(), e.with.end(), [&](std::string_view word) { return choice.has(word); });
+           std::ranges::all_of(e.with, [&](std::string_view word) { return choice.has(word); });
   });
 }
 
@@ -129,12 +129,12 @@ inline std::vector<ModelCase> model_cases() {
   return cases;
 }
 
-/// Those of them that are `asked`.
-template <class Asked>
-std::vector<ModelCase> model_cases(const Asked& asked) {
+/// Those of them that are `requested`.
+template <class Requested>
+std::vector<ModelCase> model_cases(const Requested& requested) {
   std::vector<ModelCase> cases;
   for (const ModelCase& one : model_cases()) {
-    if (asked(one)) cases.push_back(one);
+    if (requested(one)) cases.push_back(one);
   }
   return cases;
 }

@@ -29,17 +29,17 @@ inline std::vector<Message> one_of_each() {
   force.step_ns = 70000;
   force.flags = ForceSample::kInContact;
   ToolState asking = tool;
-  asking.flags = ToolState::kWantsHere | ToolState::kWantsAhead;
+  asking.flags = ToolState::kRequestsTangent | ToolState::kRequestsAhead;
   asking.lead_ns = 0x0102030;
-  ForceSample whole = force;
-  whole.flags = ForceSample::kHasHere | ForceSample::kHasAhead;
-  whole.surface_v_W = {0.25, 0, -0.5};
-  whole.here = {{-1, -2, -3, -4, -5, -6}, {0, 1, 0}, 0.5};
-  whole.ahead_p_W = {0.5, -1, 2};
-  whole.ahead_f_W = {0, 1.5, 0};
-  whole.ahead = {{-8, 0, 0, -16, 0, -32}, {0, 0, 0}, 0};
+  ForceSample entire = force;
+  entire.flags = ForceSample::kHasTangent | ForceSample::kHasAhead;
+  entire.surface_v_W = {0.25, 0, -0.5};
+  entire.at_tool = {{-1, -2, -3, -4, -5, -6}, {0, 1, 0}, 0.5};
+  entire.ahead_p_W = {0.5, -1, 2};
+  entire.ahead_f_W = {0, 1.5, 0};
+  entire.ahead = {{-8, 0, 0, -16, 0, -32}, {0, 0, 0}, 0};
   ToolState fetching = tool;
-  fetching.flags = ToolState::kWantsSurface | ToolState::kAsksPages;
+  fetching.flags = ToolState::kRequestsSurface | ToolState::kAsksPages;
   fetching.pages_taken = 0x0203;
   fetching.surface_version = 0xa1b2c3d4;
   fetching.pages = {7, 8, 9, 10, 11, 12, 13, ToolState::kNoPage};
@@ -67,7 +67,7 @@ inline std::vector<Message> one_of_each() {
   ForceSample relaxing = swinging;
   relaxing.flags = ForceSample::kHasModes | ForceSample::kHasRelaxed;
   relaxing.relaxed = {.terms = 2, .first = 1, .count = 1, .vertices = 1};
-  relaxing.relaxed.share = {0.5F, 0.25F};
+  relaxing.relaxed.fraction = {0.5F, 0.25F};
   relaxing.relaxed.time = {0.125F, 2};
   relaxing.relaxed.z = {-1, 3};
   relaxing.relaxed.vertex[0] = {0x0102, {1, 2, 3, 0.5F, 0, -0.5F}};
@@ -93,12 +93,12 @@ inline std::vector<Message> one_of_each() {
   telemetry.passivity_gain = 0.5F;
   telemetry.faded = 1, telemetry.clamped = 2, telemetry.slewed = 3, telemetry.damped = 4;
   telemetry.device = {'m', 'e'};
-  telemetry.felt_law = {'a', ':', ' ', 'b'};
+  telemetry.rendered_law = {'a', ':', ' ', 'b'};
   telemetry.named = 1;
   telemetry.name = {'c'};
   telemetry.error_percent = -1;
   telemetry.laws = 2, telemetry.count = 2;
-  telemetry.felt = {0.5F, 2};
+  telemetry.rendered = {0.5F, 2};
   telemetry.by_law = {1, -2, 3, 0.5F};
   const Pointer pointer{.tool = 1, .number = 0x0102, .p_W = {0.5, -1, 2}, .buttons = 5};
   return {Hello{.nonce = {42}, .attempt = 5},
@@ -108,7 +108,7 @@ inline std::vector<Message> one_of_each() {
           tool,
           force,
           asking,
-          whole,
+          entire,
           fetching,
           on_surface,
           page,

@@ -16,7 +16,7 @@ struct PageDecoder {
   std::vector<std::uint32_t> corners;
   std::vector<std::uint8_t> flags;
   std::vector<double> positions;  // (3 n), m
-  std::size_t surfaces = 0, whole_ones = 0, named = 0, cuts = 0, whole_cuts = 0;
+  std::size_t surfaces = 0, entire_ones = 0, named = 0, cuts = 0, entire_cuts = 0;
   std::vector<double> sample_forces;
   std::vector<double> tick_times, tick_forces;  // of all ticks so far; the force felt
 
@@ -74,37 +74,37 @@ struct PageDecoder {
     all<std::uint8_t>(3);
     version = get<std::uint32_t>();
     triangles = get<std::uint32_t>();
-    const auto k = get<std::uint32_t>(), whole = get<std::uint32_t>();
-    if (whole == 1 && k != triangles) throw std::runtime_error("whole, but not all");
+    const auto k = get<std::uint32_t>(), entire = get<std::uint32_t>();
+    if (entire == 1 && k != triangles) throw std::runtime_error("whole, but not all");
     std::vector<std::uint32_t> places;
-    if (whole == 0) places = all<std::uint32_t>(k);
+    if (entire == 0) places = all<std::uint32_t>(k);
     corners.resize(3 * triangles);
     for (std::uint32_t i = 0; i < k; ++i) {
       for (std::size_t c = 0; c < 3; ++c)
-        corners.at(3 * (whole == 1 ? i : places[i]) + c) = get<std::uint32_t>();
+        corners.at(3 * (entire == 1 ? i : places[i]) + c) = get<std::uint32_t>();
     }
     end();
     ++cuts;
-    whole_cuts += whole;
+    entire_cuts += entire;
   }
   void surface() {
     all<std::uint8_t>(3);
     if (get<std::uint32_t>() != version) throw std::runtime_error("a surface of another topology");
     step = get<std::uint32_t>();
     t = get<double>();
-    const auto k = get<std::uint32_t>(), whole = get<std::uint32_t>();
-    if (whole == 1 && 3 * k != positions.size()) throw std::runtime_error("whole, but not all");
+    const auto k = get<std::uint32_t>(), entire = get<std::uint32_t>();
+    if (entire == 1 && 3 * k != positions.size()) throw std::runtime_error("whole, but not all");
     std::vector<std::uint32_t> numbers;
-    if (whole == 0) numbers = all<std::uint32_t>(k);
+    if (entire == 0) numbers = all<std::uint32_t>(k);
     for (std::uint32_t i = 0; i < k; ++i) {
-      const std::size_t v = whole == 1 ? i : numbers[i];
+      const std::size_t v = entire == 1 ? i : numbers[i];
       for (std::size_t c = 0; c < 3; ++c)
         positions.at(3 * v + c) =
             static_cast<double>(box_min[c]) + static_cast<double>(box_size[c]) * get<std::uint16_t>() / 65535;
     }
     end();
     ++surfaces;
-    whole_ones += whole;
+    entire_ones += entire;
     named += k;
   }
   void ticks() {

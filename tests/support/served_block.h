@@ -56,14 +56,14 @@ class ServedBlock {
     if (t >= due_) {
       due_ = (due_ == Time{} ? t : due_) + period_;
       ToolState state{.tick = ++ticks_, .t_ns = t.count(), .p_W = p, .v_W = v, .lead_ns = lead.count()};
-      state.flags = ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface;
+      state.flags = ToolState::kRequestsTangent | ToolState::kRequestsAhead | ToolState::kRequestsSurface;
       inputs_.front() = {7, state, true};
       const auto outcomes = served_.step(inputs_, to_seconds(period_));
-      on_the_way_.push_back({t + delay_, outcomes.front().answer.value()});
+      in_transit_.push_back({t + delay_, outcomes.front().answer.value()});
     }
     std::optional<protocol::ForceSample> newest;
-    for (; !on_the_way_.empty() && on_the_way_.front().first <= t; on_the_way_.pop_front())
-      newest = on_the_way_.front().second;
+    for (; !in_transit_.empty() && in_transit_.front().first <= t; in_transit_.pop_front())
+      newest = in_transit_.front().second;
     return newest;
   }
   void hold_second_tool(const Vec3& p) { inputs_[1] = {8, {.tool = 1, .tick = ++ticks_, .p_W = p}, true}; }
@@ -77,7 +77,7 @@ class ServedBlock {
   std::vector<sim::SessionInput> inputs_;
   Time delay_, period_, due_{};
   std::uint64_t ticks_ = 0;
-  std::deque<std::pair<Time, protocol::ForceSample>> on_the_way_;
+  std::deque<std::pair<Time, protocol::ForceSample>> in_transit_;
 };
 
 }  // namespace palpate::test

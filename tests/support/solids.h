@@ -94,7 +94,7 @@ inline sim::TetMesh hollow_sphere(double a, double b, int level, int layers) {
   }
   for (int l = 0; l < layers; ++l) {
     for (std::array<int, 3> f : faces) {
-      std::sort(f.begin(), f.end());  // so that neighbours cut their common face the same way
+      std::ranges::sort(f);  // so that neighbours cut their common face the same way
       const std::array<std::array<int, 4>, 3> cut{
           {{f[0] + l * n, f[1] + l * n, f[2] + l * n, f[2] + (l + 1) * n},
            {f[0] + l * n, f[1] + l * n, f[1] + (l + 1) * n, f[2] + (l + 1) * n},

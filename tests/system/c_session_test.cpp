@@ -15,7 +15,7 @@ namespace {
 
 struct Session {
   palpate_session* session = nullptr;
-  palpate_felt felt{};
+  palpate_felt rendered{};
   std::size_t allocations = 0;  // in ticks
 
   explicit Session(const std::string& address) {
@@ -26,7 +26,7 @@ struct Session {
     const int code = palpate_session_open(&options, &session, error, sizeof error);
     INFO(error);
     REQUIRE(code == PALPATE_OK);
-    felt.struct_size = sizeof felt;
+    rendered.struct_size = sizeof rendered;
   }
   ~Session() { palpate_session_close(session); }
 
@@ -36,10 +36,10 @@ struct Session {
     tool.flags = flags;
     tool.position[1] = y;
     const AllocationGuard guard;
-    const int code = palpate_session_tick(session, &tool, &felt);
+    const int code = palpate_session_tick(session, &tool, &rendered);
     allocations += guard.count();
     REQUIRE(code == PALPATE_OK);
-    return felt.force[1];
+    return rendered.force[1];
   }
   /// The force after so many ticks there.
   double hold(double y, int ticks) {
@@ -69,17 +69,17 @@ TEST_CASE("a session of the C interface: soft start, the wall's force, none wher
   Server server({}, "127.0.0.1:0", rigid_block(folder));
   Session c(server.address);
   CHECK(c.tick(kDeep) == 0);
-  CHECK(c.felt.state == PALPATE_WAITING);
-  CHECK(c.felt.age == -1);
+  CHECK(c.rendered.state == PALPATE_WAITING);
+  CHECK(c.rendered.age == -1);
   CHECK(c.hold(kDeep, 100) < 0.9);
   CHECK(c.hold(kDeep, 600) == Approx(1).epsilon(0.01));
-  CHECK(c.felt.state == PALPATE_LIVE);
-  CHECK(c.felt.normal[1] == Approx(1));
+  CHECK(c.rendered.state == PALPATE_LIVE);
+  CHECK(c.rendered.normal[1] == Approx(1));
   CHECK(c.tick(kDeep, PALPATE_LOST) == 0);
   CHECK(c.tick(kDeep) < 0.1);
   CHECK(c.hold(kDeep, 700) == Approx(1).epsilon(0.01));
   CHECK(c.tick(std::nan("")) == 0);
-  CHECK(c.felt.fault == PALPATE_NO_FAULT);
+  CHECK(c.rendered.fault == PALPATE_NO_FAULT);
   CHECK(palpate_session_rearm(c.session) == PALPATE_OK);
 }
 
@@ -91,7 +91,7 @@ TEST_CASE(
   CHECK(c.hold(kDeep, 700) == Approx(1).epsilon(0.01));
   server.process.signal(SIGKILL);
   CHECK(c.hold(kDeep, 300) == 0);
-  CHECK(c.felt.state == PALPATE_SILENT);
-  CHECK(c.felt.law_newton > 0.5);
+  CHECK(c.rendered.state == PALPATE_SILENT);
+  CHECK(c.rendered.law_newton > 0.5);
   CHECK(c.allocations == 0);
 }

@@ -143,8 +143,8 @@ TEST_CASE(
   CHECK(session.count("image_bytes") == 8000);
   CHECK(session.count("largest_dac") == 0);
   session.end();
-  const std::string gone = "the Falcon was unplugged", loading = "loading the Falcon's firmware";
-  check_lines(session.said(), {gone, loading, gone, loading, gone, loading, "pull the grip"});
+  const std::string removed = "the Falcon was unplugged", loading = "loading the Falcon's firmware";
+  check_lines(session.said(), {removed, loading, removed, loading, removed, loading, "pull the grip"});
 }
 
 TEST_CASE(

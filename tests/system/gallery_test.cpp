@@ -49,16 +49,17 @@ CONTRACT("a scene of the gallery is felt, and seen by a page", GalleryScene, sce
   WebPage page(address);
   REQUIRE(page.open());
   page.hello();
-  const auto told = page.next_text("scene");
-  REQUIRE(told.is_object());
-  REQUIRE(told["tools"].size() == scene.clients.size());
+  const auto published = page.next_text("scene");
+  REQUIRE(published.is_object());
+  REQUIRE(published["tools"].size() == scene.clients.size());
   Process clients("haptic_client", arguments);
 
   // Until each tool has touched, a force was told, and what deforms has moved by more than rounding.
   std::vector<bool> touched(scene.clients.size());
-  double farthest = 0;
+  double furthest = 0;
   const auto seen = [&] {
-    return std::ranges::all_of(touched, std::identity()) && (farthest > 2e-4 || told["model"] == "rigid") &&
+    return std::ranges::all_of(touched, std::identity()) &&
+           (furthest > 2e-4 || published["model"] == "rigid") &&
            std::ranges::any_of(page.decoder.sample_forces, [](double newton) { return newton > 0.01; });
   };
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(25);
@@ -67,7 +68,7 @@ CONTRACT("a scene of the gallery is felt, and seen by a page", GalleryScene, sce
     REQUIRE(frame);
     const auto& rest = page.decoder.rest;
     for (std::size_t k = 0; page.decoder.surfaces > 0 && k < rest.size(); ++k)
-      farthest = std::max(farthest, std::abs(page.decoder.positions[k] - static_cast<double>(rest[k])));
+      furthest = std::max(furthest, std::abs(page.decoder.positions[k] - static_cast<double>(rest[k])));
     if (frame->kind != 1) continue;
     const auto text = nlohmann::json::parse(frame->payload);
     if (!text.contains("state")) continue;
@@ -75,7 +76,7 @@ CONTRACT("a scene of the gallery is felt, and seen by a page", GalleryScene, sce
     for (std::size_t k = 0; k < touched.size(); ++k)
       if (tools[k]["contact"] == true) touched[k] = true;
   }
-  CAPTURE(touched, farthest, server.output(), clients.output());
+  CAPTURE(touched, furthest, server.output(), clients.output());
   CHECK(seen());
   CHECK(page.decoder.triangles > 100);
   clients.signal(SIGINT);

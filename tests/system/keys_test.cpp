@@ -205,7 +205,7 @@ TEST_CASE(
   const Endpoint to = resolve(server.address, "test");
   palpate::Doorbell bell;
   std::vector<Datagram> answers;
-  int looks = 0;
+  int polls = 0;
   const auto send = [&](const Message& message) {
     std::array<std::byte, kMaxDatagram> bytes;
     const std::size_t size = encode({}, message, bytes);
@@ -225,7 +225,7 @@ TEST_CASE(
               .on_doorbell = [] {},
               .on_timer =
                   [&] {
-                    if (++looks == 5) socket.stop();
+                    if (++polls == 5) socket.stop();
                   }});
   REQUIRE(answers.size() == 1);
   CHECK(std::get<Refuse>(answers[0].message).reason == RefuseReason::kVersion);
@@ -248,7 +248,7 @@ TEST_CASE("pages: what one ask names several times is sent once, and asks withou
   };
   const auto ask = [&](auto page_of) {
     ToolState state{.tick = ++tick, .t_ns = palpate::now().count(), .p_W = {0, 0.2, 0}};
-    state.flags = ToolState::kWantsSurface | (version != 0 ? ToolState::kAsksPages : 0);
+    state.flags = ToolState::kRequestsSurface | (version != 0 ? ToolState::kAsksPages : 0);
     state.surface_version = version;
     for (std::uint32_t i = 0; i < 8; ++i) state.pages[i] = page_of(i);
     send(state);

@@ -48,7 +48,7 @@ struct Waiting {
   /// As soon as these are named, as a thread takes its name only once it runs; or what is there after two
   /// seconds.
   std::pair<std::multiset<std::string>, unsigned> threads(const std::multiset<std::string>& expected) const {
-    for (int looks = 0; looks < 200 && threads().first != expected; ++looks)
+    for (int polls = 0; polls < 200 && threads().first != expected; ++polls)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     return threads();
   }
@@ -127,10 +127,10 @@ TEST_CASE("left out: a tool that goes beyond its workspace is told of, and count
 }
 
 TEST_CASE("left out: what a workspace leaves out is not in resident memory either") {
-  const std::string whole = kSceneFolder + "liver_paper.toml", some = kSceneFolder + "liver_falcon.toml";
-  const long saved = explained(whole)["bytes"].get<long>() - explained(some)["bytes"].get<long>();
+  const std::string entire = kSceneFolder + "liver_paper.toml", some = kSceneFolder + "liver_falcon.toml";
+  const long saved = explained(entire)["bytes"].get<long>() - explained(some)["bytes"].get<long>();
   CHECK(saved > 5'000'000);
-  const long resident = Waiting(whole).resident() - Waiting(some).resident();
+  const long resident = Waiting(entire).resident() - Waiting(some).resident();
   CAPTURE(saved, resident);
   CHECK(10 * resident > 7 * saved);
 }

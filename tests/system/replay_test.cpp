@@ -123,7 +123,7 @@ TEST_CASE("captures that are none, or broken, and wrong motions: one line, exit 
   const TemporaryFolder folder;
   const auto file = [&](const std::string& name) { return (folder.path() / name).string(); };
   record(file("a.pcap"));
-  const std::string whole = bytes_of(file("a.pcap"));
+  const std::string entire = bytes_of(file("a.pcap"));
   const auto says = [](const std::string& said, const std::string& text) {
     CAPTURE(said);
     CHECK(said.find(text) != std::string::npos);
@@ -135,10 +135,10 @@ TEST_CASE("captures that are none, or broken, and wrong motions: one line, exit 
   says(replay(file("none.pcap"), out, 2), "none.pcap: no such file");
   says(replay(with("empty.pcap", ""), out, 2), "is empty");
   says(replay(with("text.pcap", "hello"), out, 2), "is not a capture");
-  says(replay(with("header.pcap", whole.substr(0, 24)), out, 2), "holds no tool states");
+  says(replay(with("header.pcap", entire.substr(0, 24)), out, 2), "holds no tool states");
   says(replay(file("a.pcap"), {"--method", "constnat"}, 2), "did you mean \"constant\"?");
   CHECK_FALSE(std::filesystem::exists(file("o.csv")));
-  says(replay(with("cut.pcap", whole.substr(0, whole.size() / 2)), out), "ends in the middle of a packet");
+  says(replay(with("cut.pcap", entire.substr(0, entire.size() / 2)), out), "ends in the middle of a packet");
   CHECK(std::filesystem::exists(file("o.csv")));
   const auto record_error = [&](const std::vector<std::string>& arguments) {
     std::vector<std::string> all{"record", kScene, "--out", file("r.pcap")};
@@ -188,13 +188,13 @@ TEST_CASE("no output overwrites an input, another output, a link or an earlier r
   const TemporaryFolder folder;
   const auto file = [&](const std::string& name) { return (folder.path() / name).string(); };
   record(file("a.pcap"));
-  const std::string whole = bytes_of(file("a.pcap"));
+  const std::string entire = bytes_of(file("a.pcap"));
   CHECK(replay(file("a.pcap"), {"--out", file("a.pcap")}, 2).find("name the same file") != std::string::npos);
   CHECK(replay(file("a.pcap"), {"--out", file("x"), "--report", file("./x")}, 2).find("name the same file") !=
         std::string::npos);
   std::filesystem::create_symlink("a.pcap", file("link"));
   CHECK(replay(file("a.pcap"), {"--out", file("link")}, 2).find("name the same file") != std::string::npos);
-  const bool untouched = bytes_of(file("a.pcap")) == whole;
+  const bool untouched = bytes_of(file("a.pcap")) == entire;
   CHECK(untouched);
   std::filesystem::create_symlink("there.csv", file("link.csv"));
   replay(file("a.pcap"), {"--out", file("link.csv")});
@@ -203,7 +203,7 @@ TEST_CASE("no output overwrites an input, another output, a link or an earlier r
   const std::string said =
       output_of("haptic_client", client_arguments("127.0.0.1:9", {"--record", file("a.pcap")}), 1);
   CHECK(said.find("no answer") != std::string::npos);
-  const bool still_there = bytes_of(file("a.pcap")) == whole;
+  const bool still_there = bytes_of(file("a.pcap")) == entire;
   CHECK(still_there);
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) ==
         4);  // nothing half-written left

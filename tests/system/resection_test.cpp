@@ -80,8 +80,8 @@ TEST_CASE(
   CHECK(cut[0] > 0.8 * simulated);
   CHECK(cut[1] > 20);
   CHECK(cut[2] > 0.6 * simulated);
-  const Json felt = read_json(file("second.json"))["tools"][0];
-  CHECK(felt["force"]["max_newton"].get<double>() <= 8);
-  CHECK(felt["safety"]["not_finite"] == 0);
-  CHECK(felt["link"]["lost"].get<int>() > 5);
+  const Json rendered = read_json(file("second.json"))["tools"][0];
+  CHECK(rendered["force"]["max_newton"].get<double>() <= 8);
+  CHECK(rendered["safety"]["not_finite"] == 0);
+  CHECK(rendered["link"]["lost"].get<int>() > 5);
 }

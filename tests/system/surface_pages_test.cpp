@@ -40,9 +40,9 @@ struct Asker {
     if (const auto hello = session.poll(now)) send(*hello);
     if (!session.welcomed()) return;
     ToolState state{.tick = ++ticks, .t_ns = now.count(), .p_W = {-0.02, 0.1, 0}};
-    state.flags = ToolState::kWantsSurface;
+    state.flags = ToolState::kRequestsSurface;
     if (version != 0) {
-      const bool wrong = ++asked < 40;
+      const bool wrong = ++requested < 40;
       state.flags |= ToolState::kAsksPages;
       state.surface_version = wrong ? version ^ 2 : version;
       for (std::uint32_t i = 0; i < 8; ++i) state.pages[i] = (wrong ? 8 : 0) + i;
@@ -59,7 +59,7 @@ struct Asker {
   Endpoint server;
   ClientSession session{Nonce{77}};
   LinkStats stats;
-  std::uint64_t ticks = 0, asked = 0;
+  std::uint64_t ticks = 0, requested = 0;
   std::uint32_t version = 0;
   std::set<std::uint32_t> came;
 };

@@ -105,10 +105,10 @@ TEST_CASE("two devices that cannot be told apart, or a tool too many: one line, 
   CHECK(refused({"--device", "falcon:2-1", "--device", "falcon:2-1"}).find("the same device falcon:2-1") !=
         std::string::npos);
   const TemporaryFolder folder;
-  const std::string here = folder.write("a.toml", "server = \"127.0.0.1:1\"\n").string(),
+  const std::string at_tool = folder.write("a.toml", "server = \"127.0.0.1:1\"\n").string(),
                     there = folder.write("b.toml", "server = \"127.0.0.1:2\"\n").string();
-  CHECK(refused({here, there}).find("b.toml:1: server \"127.0.0.1:2\"") != std::string::npos);
-  CHECK(refused({here, here, "--device", "simulated"}).find("2 client files, but 1 --device") !=
+  CHECK(refused({at_tool, there}).find("b.toml:1: server \"127.0.0.1:2\"") != std::string::npos);
+  CHECK(refused({at_tool, at_tool, "--device", "simulated"}).find("2 client files, but 1 --device") !=
         std::string::npos);
   const Server one_tool;
   CHECK(output_of("haptic_client",

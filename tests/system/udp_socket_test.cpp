@@ -16,11 +16,12 @@ namespace {
 struct Echo {
   explicit Echo(const std::string& address) : socket(resolve(address, "test")) {
     thread = std::jthread([this] {
-      socket.run(bell, std::chrono::seconds(1),
-                 {.on_datagram = [this](auto bytes,
-                                        const Endpoint& from) { socket.send(bytes, from, socket.asked()); },
-                  .on_doorbell = [] {},
-                  .on_timer = [] {}});
+      socket.run(
+          bell, std::chrono::seconds(1),
+          {.on_datagram = [this](auto bytes,
+                                 const Endpoint& from) { socket.send(bytes, from, socket.requested()); },
+           .on_doorbell = [] {},
+           .on_timer = [] {}});
     });
   }
   ~Echo() {
@@ -86,8 +87,8 @@ TEST_CASE("an address that is ours no more does not keep a datagram from leaving
   Echo echo("127.0.0.1:0");
   UdpSocket socket(Endpoint{});
   const std::array<std::byte, 4> bytes{};
-  const Endpoint gone{.address = {192, 0, 2, 1}, .port = 1};
-  CHECK(!socket.send(bytes, echo.socket.local(), gone));
+  const Endpoint removed{.address = {192, 0, 2, 1}, .port = 1};
+  CHECK(!socket.send(bytes, echo.socket.local(), removed));
 }
 
 TEST_CASE("a datagram arrived when the kernel had it, however late it is read") {

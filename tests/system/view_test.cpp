@@ -20,8 +20,8 @@ namespace {
 struct PlayedSession {
   std::vector<nlohmann::json> texts;
   PageDecoder page;
-  std::vector<double> times, whole_at;
-  double farthest = 0;  // that a vertex was from rest, m
+  std::vector<double> times, entire_at;
+  double furthest = 0;  // that a vertex was from rest, m
 
   explicit PlayedSession(const std::string& bytes) {
     std::size_t at = 0;
@@ -44,12 +44,12 @@ struct PlayedSession {
     }
   }
   void take(const std::string& record, double t) {
-    const std::size_t whole = page.whole_ones;
+    const std::size_t entire = page.entire_ones;
     page.take(std::as_bytes(std::span(record)));
-    if (page.whole_ones > whole) whole_at.push_back(t);
+    if (page.entire_ones > entire) entire_at.push_back(t);
     if (record[0] != 2) return;
     for (std::size_t k = 0; k < page.rest.size(); ++k)
-      farthest = std::max(farthest, std::abs(page.positions[k] - static_cast<double>(page.rest[k])));
+      furthest = std::max(furthest, std::abs(page.positions[k] - static_cast<double>(page.rest[k])));
   }
 };
 
@@ -97,10 +97,10 @@ TEST_CASE("view: a capture with its scene is stepped again, to the same forces")
   CHECK(played.page.surfaces == samples);
   CHECK(*std::ranges::max_element(played.page.sample_forces) ==
         Approx(recorded["max_newton"].get<double>()).epsilon(1e-5));
-  CHECK(played.farthest > 1e-3);
-  for (std::size_t k = 1; k < played.whole_at.size(); ++k)
-    CHECK(played.whole_at[k] - played.whole_at[k - 1] <= 1);
-  CHECK(played.whole_at.size() >= 10);
+  CHECK(played.furthest > 1e-3);
+  for (std::size_t k = 1; k < played.entire_at.size(); ++k)
+    CHECK(played.entire_at[k] - played.entire_at[k - 1] <= 1);
+  CHECK(played.entire_at.size() >= 10);
   CHECK(played.texts.back()["state"]["step"] == samples);
   CHECK(viewed.said.find("stepped again") != std::string::npos);
   CHECK(viewed.said.find("is it the scene") == std::string::npos);
@@ -132,9 +132,10 @@ TEST_CASE("scenes: the gallery is found beside an installed program as in the so
   const auto said = output_of("sim_server", {"scenes"}, 0);
   namespace fs = std::filesystem;
   for (const auto& entry : fs::directory_iterator(fs::path(source_dir()) / "configs" / "scenes")) {
-    const bool told = said.find(fmt::format("\n{}: ", entry.path().stem().string())) != std::string::npos;
+    const bool published =
+        said.find(fmt::format("\n{}: ", entry.path().stem().string())) != std::string::npos;
     CAPTURE(entry.path());
-    CHECK(told == (bytes_of(entry.path()).find("\n# Needs: ") != std::string::npos));
+    CHECK(published == (bytes_of(entry.path()).find("\n# Needs: ") != std::string::npos));
   }
   CHECK(said.find("wall: A stiff wall\n  A stiff wall: nothing deforms") != std::string::npos);
 
@@ -149,9 +150,9 @@ TEST_CASE("scenes: the gallery is found beside an installed program as in the so
   std::ofstream(folder.path() / "share/palpate/scenes/mine.toml")
       << "# Of mine.\n# Needs: it.\ntitle = \"Mine\"\n";
   std::ofstream(folder.path() / "share/palpate/scenes/test.toml") << "# Of a test.\ntitle = \"Test\"\n";
-  const auto told = output_of(called, {"scenes"}, 0);
-  CHECK(told.find("mine: Mine\n  Of mine.\n  Needs: it.\n") != std::string::npos);
-  CHECK(told.find("Of a test") == std::string::npos);
+  const auto published = output_of(called, {"scenes"}, 0);
+  CHECK(published.find("mine: Mine\n  Of mine.\n  Needs: it.\n") != std::string::npos);
+  CHECK(published.find("Of a test") == std::string::npos);
 }
 
 #endif

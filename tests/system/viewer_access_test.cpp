@@ -176,13 +176,13 @@ TEST_CASE("viewer: beyond this machine the page is served to who says that it is
   const TemporaryFolder folder;
   const std::string key = (folder.path() / "palpate.key").string();
   output_of("sim_server", {"keygen", key}, 0);
-  const std::vector<std::string> asked{"run",   kScene, "--listen", "127.0.0.1:0",
-                                       "--key", key,    "--viewer", "0.0.0.0:0"};
-  const auto said = output_of("sim_server", asked, 2);
+  const std::vector<std::string> requested{"run",   kScene, "--listen", "127.0.0.1:0",
+                                           "--key", key,    "--viewer", "0.0.0.0:0"};
+  const auto said = output_of("sim_server", requested, 2);
   CHECK(std::ranges::count(said, '\n') == 1);
   for (const char* part : {"--viewer: 0.0.0.0:0 is not this machine", "ssh -L", "--insecure"})
     CHECK(said.find(part) != std::string::npos);
-  auto insecure = asked;
+  auto insecure = requested;
   insecure.insert(insecure.end(), {"--insecure", "--seconds", "0.1"});
   const auto warned = output_of("sim_server", insecure, 0);
   CHECK(warned.find("--viewer: 0.0.0.0:0 is not this machine") != std::string::npos);
@@ -196,9 +196,9 @@ TEST_CASE("viewer: a port that is taken, or an address that is none, is told in 
   CHECK(said.find("--viewer: cannot listen on 127.0.0.1:" + port) != std::string::npos);
   CHECK(std::ranges::count(said, '\n') == 1);
   for (const char* wrong : {"nowhere", "70000", "1.2.3.4.5:80"}) {
-    const auto told = output_of("sim_server", {"run", kScene, "--viewer", wrong}, 2);
-    CHECK(told.find("--viewer") != std::string::npos);
-    CHECK(std::ranges::count(told, '\n') == 1);
+    const auto published = output_of("sim_server", {"run", kScene, "--viewer", wrong}, 2);
+    CHECK(published.find("--viewer") != std::string::npos);
+    CHECK(std::ranges::count(published, '\n') == 1);
   }
   CHECK(output_of("sim_server", {"run", kScene, "--viewer", "192.0.2.7:8080"}, 2).find("no such address") !=
         std::string::npos);

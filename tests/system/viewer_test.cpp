@@ -86,7 +86,7 @@ TEST_CASE("viewer: a page opened before, during and after a session sees the org
   CHECK(*std::ranges::max_element(before.decoder.sample_forces) > 0.1);
   CHECK(before.decoder.positions == after.decoder.positions);
   CHECK(during.decoder.positions == after.decoder.positions);
-  CHECK(after.decoder.whole_ones == 1);
+  CHECK(after.decoder.entire_ones == 1);
 }
 
 TEST_CASE("viewer: who has the token pauses, steps once, and goes on") {
@@ -100,9 +100,8 @@ TEST_CASE("viewer: who has the token pauses, steps once, and goes on") {
   CHECK(scene["control"] == true);
   CHECK(scene["pausable"] == true);
   const auto& names = scene["scenes"];
-  CHECK(std::find(names.begin(), names.end(), "liver_breathing") != names.end());
-  CHECK(std::find(names.begin(), names.end(), "liver_paper") ==
-        names.end());  // which does not say what it needs
+  CHECK(std::ranges::find(names, "liver_breathing") != names.end());
+  CHECK(std::ranges::find(names, "liver_paper") == names.end());  // which does not say what it needs
   CHECK(std::ranges::is_sorted(names));
   reader.say(R"({"pause": true})");
   CHECK(reader.next_text("refused").is_string());
@@ -149,16 +148,17 @@ TEST_CASE("viewer: a page is told what only the client knows, and by whom a tool
   Process client("haptic_client", client_arguments(server.address, {"--seconds", "5"}));
   WebPage page(server.page);
   page.hello();
-  nlohmann::json told;
-  for (int k = 0; k < 200 && (told.is_null() || told["felt"][1] == 0); ++k) told = page.next_text("client");
-  REQUIRE(told.is_object());
-  CHECK(told["tool"] == 0);
-  CHECK(told["law"].get<std::string>().size() > 3);
-  CHECK(told["laws"].size() >= 3);
-  CHECK(told["errors_percent"].size() == told["laws"].size());
-  CHECK(told["interventions"].contains("clamped"));
-  CHECK(told["has_motors"] == false);
-  CHECK(told["p"].size() == 3);
+  nlohmann::json published;
+  for (int k = 0; k < 200 && (published.is_null() || published["felt"][1] == 0); ++k)
+    published = page.next_text("client");
+  REQUIRE(published.is_object());
+  CHECK(published["tool"] == 0);
+  CHECK(published["law"].get<std::string>().size() > 3);
+  CHECK(published["laws"].size() >= 3);
+  CHECK(published["errors_percent"].size() == published["laws"].size());
+  CHECK(published["interventions"].contains("clamped"));
+  CHECK(published["has_motors"] == false);
+  CHECK(published["p"].size() == 3);
   const auto& ticks = page.decoder;
   while (ticks.tick_times.size() < 500) REQUIRE(page.next());
   CHECK(*std::ranges::max_element(ticks.tick_forces) > 0.05);
@@ -215,23 +215,23 @@ TEST_CASE("viewer: strain energy is sent to who wants it, where the model knows 
   Server server({"--viewer", "0"}, "127.0.0.1:0", source_dir() + "/configs/scenes/" + scene + ".toml");
   const PageAddress address = PageAddress::of(server.process);
   Process client("haptic_client", client_arguments(server.address, {"--seconds", "6"}));
-  WebPage looks(address), wants(address);
-  looks.hello(), wants.hello();
-  CHECK(wants.next_text("scene")["fields"][0] == "strain_energy");
-  wants.say(R"({"want": {"field": "strain_energy"}})");
+  WebPage polls(address), request(address);
+  polls.hello(), request.hello();
+  CHECK(request.next_text("scene")["fields"][0] == "strain_energy");
+  request.say(R"({"want": {"field": "strain_energy"}})");
   float largest = 0;
   std::size_t size = 0;
   for (int k = 0; k < 1000 && largest < 0.1F; ++k) {
-    const auto frame = wants.next();
+    const auto frame = request.next();
     REQUIRE(frame);
     if (frame->kind != 2 || frame->payload[0] != 5) continue;
     std::memcpy(&largest, frame->payload.data() + 12, 4);
     size = frame->payload.size();
   }
   CHECK(largest >= 0.1F);
-  CHECK(size == 16 + wants.decoder.flags.size());
+  CHECK(size == 16 + request.decoder.flags.size());
   for (int k = 0; k < 100; ++k) {
-    const auto frame = looks.next();
+    const auto frame = polls.next();
     REQUIRE(frame);
     CHECK((frame->kind != 2 || frame->payload[0] != 5));
   }

@@ -24,7 +24,7 @@ std::string DeviceEntry::node() const {
 }
 
 DeviceEntry device_entry(const wire::Frame& frame) {
-  const auto end = std::find(frame.payload.begin(), frame.payload.end(), 0);
+  const auto end = std::ranges::find(frame.payload, 0);
   DeviceEntry entry{{frame.payload.begin(), end}, frame.header.bus, frame.header.address, {}};
   if (end != frame.payload.end()) entry.descriptors.assign(end + 1, frame.payload.end());
   return entry;
@@ -53,8 +53,7 @@ std::vector<DeviceEntry> list_devices() {
 
 std::optional<std::string> sysfs_attribute(const std::string& name, const std::string& attribute) {
   const auto devices = list_devices();
-  const auto device =
-      std::find_if(devices.begin(), devices.end(), [&](const DeviceEntry& d) { return d.name == name; });
+  const auto device = std::ranges::find_if(devices, [&](const DeviceEntry& d) { return d.name == name; });
   if (device == devices.end()) return std::nullopt;
   if (attribute == "busnum") return std::to_string(device->bus) + "\n";
   if (attribute == "devnum") return std::to_string(device->address) + "\n";

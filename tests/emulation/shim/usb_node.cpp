@@ -64,7 +64,7 @@ int UsbNode::attach(int bus, int address) {
   const bool sent = wire::send(link_, frame, ends[1]);
   close(ends[1]);
   if (!sent) return -ENODEV;
-  while (replies_.empty() && !gone_) pump(true);
+  while (replies_.empty() && !removed_) pump(true);
   if (replies_.empty()) return -ENODEV;
   const int status = replies_.front().header.status;
   replies_.clear();
@@ -84,7 +84,7 @@ bool UsbNode::fill() const {
 }
 
 void UsbNode::leave() {
-  gone_ = true;
+  removed_ = true;
   fill();
   if (link_ >= 0) close(link_);
   link_ = -1;
@@ -98,7 +98,7 @@ void UsbNode::leave() {
 }
 
 void UsbNode::pump(bool wait) {
-  if (gone_) return;
+  if (removed_) return;
   const bool open = reader_.fill(link_, wait);
   while (const auto frame = reader_.next()) {
     if (frame->header.kind == Kind::kComplete) {
@@ -131,7 +131,7 @@ void UsbNode::complete(const Frame& frame) {
 
 int UsbNode::submit(usbdevfs_urb* urb) {
   pump(false);
-  if (gone_) return -ENODEV;
+  if (removed_) return -ENODEV;
   if (urb->type == USBDEVFS_URB_TYPE_ISO) return -EINVAL;
   if (is_control(*urb) && urb->buffer_length < kSetupSize) return -EINVAL;
   urb->actual_length = 0;
@@ -144,28 +144,27 @@ int UsbNode::submit(usbdevfs_urb* urb) {
 
 int UsbNode::discard(const usbdevfs_urb* urb) {
   pump(false);
-  const auto found =
-      std::find_if(pending_.begin(), pending_.end(), [urb](const auto& p) { return p.second == urb; });
+  const auto found = std::ranges::find_if(pending_, [urb](const auto& p) { return p.second == urb; });
   if (found == pending_.end()) return -EINVAL;
   Frame frame;
   frame.header.kind = Kind::kDiscard;
   frame.header.id = found->first;
-  if (!gone_) wire::send(link_, frame);
+  if (!removed_) wire::send(link_, frame);
   return 0;
 }
 
 int UsbNode::reap(void** urb) {
   if (completed_.empty()) pump(false);
-  if (completed_.empty() && !gone_) {
+  if (completed_.empty() && !removed_) {
     if (!fill()) leave();  // an emulator that was killed
     pump(false);           // what came before the filling found nothing to empty
     Frame drain;
     drain.header.kind = Kind::kDrain;
-    if (!completed_.empty() && !gone_) wire::send(link_, drain);
+    if (!completed_.empty() && !removed_) wire::send(link_, drain);
   }
-  if (completed_.empty() && gone_ && !pending_.empty())
+  if (completed_.empty() && removed_ && !pending_.empty())
     finish(pending_.begin()->first, pending_.begin()->second, -ESHUTDOWN);
-  if (completed_.empty()) return gone_ ? -ENODEV : -EAGAIN;
+  if (completed_.empty()) return removed_ ? -ENODEV : -EAGAIN;
   *urb = completed_.front();
   completed_.pop_front();
   return 0;
@@ -176,8 +175,8 @@ int UsbNode::ask(Kind kind, int interface, wire::Bytes* answer) {
   frame.header.kind = kind;
   frame.header.status = interface;
   pump(false);
-  if (gone_ || !wire::send(link_, frame)) return -ENODEV;
-  while (replies_.empty() && !gone_) pump(true);
+  if (removed_ || !wire::send(link_, frame)) return -ENODEV;
+  while (replies_.empty() && !removed_) pump(true);
   if (replies_.empty()) return -ENODEV;
   const Frame reply = replies_.front();
   replies_.pop_front();
@@ -190,7 +189,7 @@ int UsbNode::get_driver(usbdevfs_getdriver* driver) {
   const int status = ask(Kind::kGetDriver, static_cast<int>(driver->interface), &name);
   name.resize(std::min(name.size(), sizeof driver->driver - 1));
   std::memset(driver->driver, 0, sizeof driver->driver);
-  std::copy(name.begin(), name.end(), driver->driver);
+  std::ranges::copy(name, driver->driver);
   return status;
 }
 
@@ -231,7 +230,7 @@ int UsbNode::ioctl(unsigned long request, void* argument) {
     case USBDEVFS_CLEAR_HALT:
     case USBDEVFS_RESETEP:
     case USBDEVFS_RESET:
-      return gone_ ? -ENODEV : 0;
+      return removed_ ? -ENODEV : 0;
     default:
       return -ENOTTY;
   }

@@ -43,7 +43,7 @@ class UsbNode {
 
   std::mutex mutex_;
   int poll_socket_ = -1, link_ = -1;
-  bool gone_ = false;
+  bool removed_ = false;
   wire::FrameReader reader_;
   std::uint64_t last_id_ = 0;
   std::map<std::uint64_t, usbdevfs_urb*> pending_;

@@ -24,8 +24,8 @@ TEST_CASE(
 }
 
 TEST_CASE("relaxation: under a force held, one term creeps as a standard linear solid, to 1 / (1 - share)") {
-  constexpr double kShare = 0.6, kTime = 0.2;
-  const std::array series{Relaxation{kShare, kTime}};
+  constexpr double kFraction = 0.6, kTime = 0.2;
+  const std::array series{Relaxation{kFraction, kTime}};
   const Vec3 f(1, -2, 0.5);
   for (const double h : {0.002, 0.015}) {
     std::array<Vec3, kMostRelaxations> psi;
@@ -33,7 +33,7 @@ TEST_CASE("relaxation: under a force held, one term creeps as a standard linear 
     double worst = 0;
     for (int i = 1; i <= 400; ++i) {
       SeriesStep::over(h, series).creep(psi, f, f);
-      const double crept = -std::expm1(-(1 - kShare) * i * h / kTime) / (1 - kShare);  // psi / f
+      const double crept = -std::expm1(-(1 - kFraction) * i * h / kTime) / (1 - kFraction);  // psi / f
       worst = std::max(worst, (psi[0] - crept * f).norm() / f.norm());
     }
     CHECK(worst < (h < 0.01 ? 1e-5 : 5e-4));  // of the second order in h

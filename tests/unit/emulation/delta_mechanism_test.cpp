@@ -42,13 +42,13 @@ TEST_CASE("delta mechanism: the links meet everywhere in the workspace, whatever
 }
 
 TEST_CASE("delta mechanism: turned by a third of a turn, the legs swap") {
-  DeltaMechanism here, turned;
+  DeltaMechanism at_tool, turned;
   const double c = -0.5, s = std::sqrt(3) / 2;  // 120 degrees: right becomes top, top left, left right
-  REQUIRE(here.move_to({0.02, -0.01, 0.12}));
+  REQUIRE(at_tool.move_to({0.02, -0.01, 0.12}));
   REQUIRE(turned.move_to({c * 0.02 + s * 0.01, s * 0.02 - c * 0.01, 0.12}));
-  CHECK(turned.thigh(0) == Approx(here.thigh(1)));
-  CHECK(turned.thigh(1) == Approx(here.thigh(2)));
-  CHECK(turned.thigh(2) == Approx(here.thigh(0)));
+  CHECK(turned.thigh(0) == Approx(at_tool.thigh(1)));
+  CHECK(turned.thigh(1) == Approx(at_tool.thigh(2)));
+  CHECK(turned.thigh(2) == Approx(at_tool.thigh(0)));
 }
 
 TEST_CASE("delta mechanism: the Jacobian is the change of the angles, and its force does their work") {

@@ -84,7 +84,7 @@ class Rig {
 };
 
 /// From the plug to the wall: firmware, homing, a press of 20 mm.
-std::vector<double> whole_session() {
+std::vector<double> entire_session() {
   Rig rig({}, {"", 0.2, 400, 8}, "constant", 800, {.sim_hz = 1000, .link = {.delay = 0.001}});
   rig.command("hand target 0 0 0.13");
   rig.run(2);
@@ -115,7 +115,7 @@ struct Ledger {
 }  // namespace
 
 TEST_CASE("a session with the Falcon, from firmware to wall, gives the same trace every time, bit by bit") {
-  const std::vector<double> once = whole_session(), again = whole_session();
+  const std::vector<double> once = entire_session(), again = entire_session();
   CHECK(once == again);
 }
 

@@ -51,10 +51,10 @@ class FailingPort : public test::EmulatedPort {
   using EmulatedPort::EmulatedPort;
   void fail(bool for_good) {
     lost_ = true;
-    gone_ = for_good;
+    removed_ = for_good;
   }
   bool open(Time now) noexcept override {
-    if (gone_) return false;
+    if (removed_) return false;
     lost_ = false;
     return EmulatedPort::open(now);
   }
@@ -69,20 +69,20 @@ class FailingPort : public test::EmulatedPort {
   const char* trouble() const noexcept override { return lost_ ? "a transfer failed" : ""; }
 
  private:
-  bool lost_ = false, gone_ = false;
+  bool lost_ = false, removed_ = false;
 };
 
 /// A port whose first transfers stay on the way for so many looks at it.
 class SlowPort : public test::EmulatedPort {
  public:
   using EmulatedPort::EmulatedPort;
-  void hold_up(int looks) { looks_ = looks; }
+  void hold_up(int polls) { polls_ = polls; }
   State state() const noexcept override {
-    return looks_ > 0 && looks_-- > 0 ? State::kBusy : EmulatedPort::state();
+    return polls_ > 0 && polls_-- > 0 ? State::kBusy : EmulatedPort::state();
   }
 
  private:
-  mutable int looks_ = 0;
+  mutable int polls_ = 0;
 };
 
 nlohmann::json state_of(emulation::Falcon& falcon) {
@@ -140,11 +140,11 @@ TEST_CASE("a Falcon that comes back while another has had its zero gets one, too
   emulation::Falcon first({.loaded = true, .homed = true}), second({.loaded = true, .homed = true});
   leave_pushing(first);
   leave_pushing(second);
-  int looks = 0;
+  int polls = 0;
   const Silenced silenced = silence_falcons({}, [&](UsbPorts& ports) {
-    ++looks;
-    if (looks == 1) ports.push_back(std::make_unique<test::EmulatedPort>(first));
-    if (looks == 4) {
+    ++polls;
+    if (polls == 1) ports.push_back(std::make_unique<test::EmulatedPort>(first));
+    if (polls == 4) {
       CHECK(ports.empty());
       CHECK(state_of(first)["dac"] == nlohmann::json({0, 0, 0}));
       ports.push_back(std::make_unique<test::EmulatedPort>(second));

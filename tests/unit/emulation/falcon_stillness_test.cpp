@@ -71,18 +71,18 @@ TEST_CASE("a Falcon whose encoders stand still loses its force where that was as
   Rig rig(2);
   rig.command("hand tremor 0.0001 tremor_rate 9");
   CHECK(rig.run(10, 3) == kReady);
-  const double felt = rig.torque();
-  CHECK(felt > 200);
+  const double rendered = rig.torque();
+  CHECK(rendered > 200);
   rig.command("fault freeze");
   rig.run(1.9, 3);
-  CHECK(rig.torque() == Approx(felt).epsilon(0.1));
+  CHECK(rig.torque() == Approx(rendered).epsilon(0.1));
   CHECK(rig.run(0.65, 3).find("its force fades until one does") != std::string::npos);
-  CHECK(rig.torque() == Approx(0.45 * felt).epsilon(0.15));  // 0.55 s into a fade of 1 s
+  CHECK(rig.torque() == Approx(0.45 * rendered).epsilon(0.15));  // 0.55 s into a fade of 1 s
   rig.run(5, 3);
   CHECK(rig.torque() == 0);  // and stays away, though nothing pushes any more
   rig.command("fault freeze 0");
   CHECK(rig.run(0.5, 3) == "the Falcon moves again: its force rises");
-  CHECK(rig.torque() == Approx(0.5 * felt).epsilon(0.15));
+  CHECK(rig.torque() == Approx(0.5 * rendered).epsilon(0.15));
   rig.run(2, 3);
-  CHECK(rig.torque() == Approx(felt).epsilon(0.1));
+  CHECK(rig.torque() == Approx(rendered).epsilon(0.1));
 }

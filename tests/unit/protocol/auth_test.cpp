@@ -92,14 +92,14 @@ TEST_CASE("the longest sample and a page have room for a tag, and a sealed one d
   ForceSample longest;
   longest.flags = 0x3fc;
   longest.relaxed.terms = 1;
-  longest.relaxed.share[0] = 0.5F;
+  longest.relaxed.fraction[0] = 0.5F;
   longest.relaxed.time[0] = 1;
   longest.number = 1;
   longest.surface.tool_radius = 0.005;
-  longest.modes.count = kMostSlowModes;
+  longest.modes.count = kMaxPublishedModes;
   ForceSample driven = longest;
   driven.flags = (longest.flags & ~ForceSample::kHasRelaxed) | ForceSample::kHasModalLoads;
-  driven.modal_loads.count = ModalLoads::room(kMostSlowModes);
+  driven.modal_loads.count = ModalLoads::room(kMaxPublishedModes);
   ForceSample all_driven = driven;
   all_driven.modes.count = all_driven.modal_loads.count = 53;
   CHECK(ModalLoads::room(53) == 53);
@@ -117,19 +117,19 @@ TEST_CASE("the longest sample and a page have room for a tag, and a sealed one d
 
 TEST_CASE("a cookie is of one address, port and nonce, and for 10 to 20 s") {
   const Cookies cookies({1, 2, 3}), others({1, 2, 4});
-  const Endpoint here{.address = {10, 0, 0, 1}, .port = 1000};
+  const Endpoint at_tool{.address = {10, 0, 0, 1}, .port = 1000};
   const Nonce nonce{42};
   for (const Time now : {Time{0s}, Time{9999ms}, Time{123456789s}}) {
-    const Cookie cookie = cookies.make(nonce, here, now);
-    CHECK(cookies.valid(cookie, nonce, here, now));
-    CHECK(cookies.valid(cookie, nonce, here, now + 10s));
-    CHECK_FALSE(cookies.valid(cookie, nonce, here, now + 20s));
-    CHECK_FALSE(cookies.valid(cookie, Nonce{43}, here, now));
+    const Cookie cookie = cookies.make(nonce, at_tool, now);
+    CHECK(cookies.valid(cookie, nonce, at_tool, now));
+    CHECK(cookies.valid(cookie, nonce, at_tool, now + 10s));
+    CHECK_FALSE(cookies.valid(cookie, nonce, at_tool, now + 20s));
+    CHECK_FALSE(cookies.valid(cookie, Nonce{43}, at_tool, now));
     CHECK_FALSE(cookies.valid(cookie, nonce, {.address = {10, 0, 0, 2}, .port = 1000}, now));
     CHECK_FALSE(cookies.valid(cookie, nonce, {.address = {10, 0, 0, 1}, .port = 1001}, now));
     CHECK_FALSE(cookies.valid(cookie, nonce, {.address = {10, 0, 0, 1}, .port = 1000, .v6 = true}, now));
-    CHECK_FALSE(others.valid(cookie, nonce, here, now));
-    CHECK_FALSE(cookies.valid({}, nonce, here, now));
+    CHECK_FALSE(others.valid(cookie, nonce, at_tool, now));
+    CHECK_FALSE(cookies.valid({}, nonce, at_tool, now));
   }
 }
 

@@ -79,10 +79,10 @@ TEST_CASE("the share of the file that was read is that of its bytes", "[capture]
   CaptureReader reader(write_file(folder, bytes(kPcapLittle + packet + packet)));
   CapturedDatagram datagram;
   REQUIRE(reader.next(datagram));
-  CHECK(reader.share() == 71.0 / 118);
+  CHECK(reader.fraction() == 71.0 / 118);
   REQUIRE(reader.next(datagram));
   CHECK_FALSE(reader.next(datagram));
-  CHECK(reader.share() == 1);
+  CHECK(reader.fraction() == 1);
 }
 
 TEST_CASE("other traffic, fragments and damaged packets are skipped and counted", "[capture]") {
@@ -104,10 +104,10 @@ TEST_CASE("other traffic, fragments and damaged packets are skipped and counted"
 
 TEST_CASE("a capture cut at any byte: refused within its header, else read up to the cut", "[capture]") {
   const std::string packet = "00f15365 40e20100 1f000000 1f000000" + kPal;
-  const Bytes whole = bytes(kPcapLittle + packet + packet);
-  for (std::size_t size = 1; size < whole.size(); ++size) {
+  const Bytes entire = bytes(kPcapLittle + packet + packet);
+  for (std::size_t size = 1; size < entire.size(); ++size) {
     CAPTURE(size);
-    const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    const Bytes cut(entire.begin(), entire.begin() + static_cast<std::ptrdiff_t>(size));
     if (size < 24) {
       CHECK(refusal(cut).starts_with(": is not a capture ("));
       continue;
@@ -127,10 +127,10 @@ TEST_CASE("a capture cut at any byte: refused within its header, else read up to
 
 TEST_CASE("a pcapng cut at any byte is refused or read up to the cut", "[capture]") {
   const std::string packet = enhanced(kStampUs);
-  const Bytes whole = bytes(kSection + kInterface + packet + packet);
-  for (std::size_t size = 1; size < whole.size(); ++size) {
+  const Bytes entire = bytes(kSection + kInterface + packet + packet);
+  for (std::size_t size = 1; size < entire.size(); ++size) {
     CAPTURE(size);
-    const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    const Bytes cut(entire.begin(), entire.begin() + static_cast<std::ptrdiff_t>(size));
     if (size < 48) {
       CHECK(refusal(cut).starts_with(": is not a capture ("));
       continue;

@@ -118,17 +118,17 @@ TEST_CASE("a file that cannot be opened for writing is named", "[capture]") {
 }
 
 TEST_CASE("a full disk is told at once when asked, at the latest after 32 kB, and for ever", "[capture]") {
-  CaptureWriter asked("/dev/full");
-  CHECK(pal(asked, kNano));
-  CHECK_FALSE(asked.flush());
-  CHECK_FALSE(pal(asked, kNano));
-  CHECK_FALSE(asked.flush());
-  CHECK(asked.packets() == 0);
-  CaptureWriter not_asked("/dev/full");
+  CaptureWriter requested("/dev/full");
+  CHECK(pal(requested, kNano));
+  CHECK_FALSE(requested.flush());
+  CHECK_FALSE(pal(requested, kNano));
+  CHECK_FALSE(requested.flush());
+  CHECK(requested.packets() == 0);
+  CaptureWriter not_requested("/dev/full");
   int written = 0;
-  while (written < 10000 && pal(not_asked, kNano)) ++written;
+  while (written < 10000 && pal(not_requested, kNano)) ++written;
   CHECK(written == (32 * 1024 - 24) / 47);
-  CHECK_FALSE(pal(not_asked, kNano));
+  CHECK_FALSE(pal(not_requested, kNano));
 }
 
 TEST_CASE("a file that may not grow ends with a whole packet", "[capture]") {

@@ -115,9 +115,9 @@ TEST_CASE("more modes than there are, or wild ones, are refused") {
     Datagram datagram;
     return decode(encoded(kHeader, sample), datagram);
   };
-  CHECK(verdict(kMostSlowModes, 1e6F, -1e6F) == Verdict::kAccepted);
+  CHECK(verdict(kMaxPublishedModes, 1e6F, -1e6F) == Verdict::kAccepted);
   CHECK(verdict(0, 1e6F, 0) == Verdict::kAccepted);
-  CHECK(verdict(kMostSlowModes + 1, 0, 0) == Verdict::kValue);
+  CHECK(verdict(kMaxPublishedModes + 1, 0, 0) == Verdict::kValue);
   CHECK(verdict(255, 0, 0) == Verdict::kValue);
   CHECK(verdict(1, 2e6F, 0) == Verdict::kValue);
   CHECK(verdict(1, 0, -2e6F) == Verdict::kValue);
@@ -132,9 +132,9 @@ TEST_CASE("loads on more modes than there are, or wild ones, are refused") {
     Datagram datagram;
     return decode(encoded(kHeader, sample), datagram);
   };
-  CHECK(verdict(kMostSlowModes, -1e6F) == Verdict::kAccepted);
+  CHECK(verdict(kMaxPublishedModes, -1e6F) == Verdict::kAccepted);
   CHECK(verdict(0, 0) == Verdict::kAccepted);
-  CHECK(verdict(kMostSlowModes + 1, 0) == Verdict::kValue);
+  CHECK(verdict(kMaxPublishedModes + 1, 0) == Verdict::kValue);
   CHECK(verdict(2, 2e6F) == Verdict::kValue);
   CHECK(verdict(2, NAN) == Verdict::kNotFinite);
 }
@@ -147,8 +147,8 @@ TEST_CASE("a series that no tissue has, or more of what relaxes than a sample te
     return decode(encoded(kHeader, sample), datagram);
   };
   CHECK(verdict([](RelaxedState&) {}) == Verdict::kAccepted);
-  CHECK(verdict([](RelaxedState& r) { r.share[0] = 0.8F; }) == Verdict::kValue);  // 1.05 together
-  CHECK(verdict([](RelaxedState& r) { r.share[0] = -0.1F; }) == Verdict::kValue);
+  CHECK(verdict([](RelaxedState& r) { r.fraction[0] = 0.8F; }) == Verdict::kValue);  // 1.05 together
+  CHECK(verdict([](RelaxedState& r) { r.fraction[0] = -0.1F; }) == Verdict::kValue);
   CHECK(verdict([](RelaxedState& r) { r.time[1] = 0; }) == Verdict::kValue);
   CHECK(verdict([](RelaxedState& r) { r.time[1] = 2e6F; }) == Verdict::kValue);
   CHECK(verdict([](RelaxedState& r) { r.time[1] = NAN; }) == Verdict::kNotFinite);

@@ -162,18 +162,18 @@ TEST_CASE("no mutated datagram gets through, and what it says of numbers changes
 }
 
 TEST_CASE("with a key a session goes on from another address at once, and without one it does not") {
-  const Endpoint elsewhere{.address = {10, 0, 0, 1}, .port = 1001};
+  const Endpoint remote{.address = {10, 0, 0, 1}, .port = 1001};
   Network n;
   REQUIRE(n.shake_hands());
   REQUIRE(n.to_server(n.state()));
   const Bytes late = n.state();
-  CHECK(n.to_server(n.state(), elsewhere));
-  CHECK(n.server.holder(0)->endpoint == elsewhere);
+  CHECK(n.to_server(n.state(), remote));
+  CHECK(n.server.holder(0)->endpoint == remote);
   CHECK_FALSE(n.to_server(late, kClient));  // overtaken: the answer goes where the newest came from
-  CHECK(n.server.holder(0)->endpoint == elsewhere);
+  CHECK(n.server.holder(0)->endpoint == remote);
   Network open(Key{}, {});
   REQUIRE(open.shake_hands());
-  CHECK_FALSE(open.to_server(open.state(), elsewhere));
+  CHECK_FALSE(open.to_server(open.state(), remote));
   CHECK(open.server.holder(0)->endpoint == kClient);
 }
 

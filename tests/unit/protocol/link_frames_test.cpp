@@ -190,16 +190,16 @@ TEST_CASE("lengths that do not add up are malformed", "[capture]") {
 
 TEST_CASE("every truncation: malformed within the headers, a cut payload behind them", "[capture]") {
   for (const Frame& frame : one_of_each()) {
-    const Bytes whole = bytes(frame.text);
-    for (std::size_t size = 0; size < whole.size(); ++size) {
+    const Bytes entire = bytes(frame.text);
+    for (std::size_t size = 0; size < entire.size(); ++size) {
       CAPTURE(static_cast<int>(frame.link), frame.text, size);
       // A copy of exactly this size, so that a sanitizer sees a read beyond it.
-      const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+      const Bytes cut(entire.begin(), entire.begin() + static_cast<std::ptrdiff_t>(size));
       UdpFrame found;
       const FrameVerdict got = parse_frame(frame.link, cut, found);
-      REQUIRE(got == (size + 3 < whole.size() ? kMalformed : kDatagram));
+      REQUIRE(got == (size + 3 < entire.size() ? kMalformed : kDatagram));
       CHECK(found.length == (got == kDatagram ? 3 : 0));
-      CHECK(found.payload.size() == (got == kDatagram ? size + 3 - whole.size() : 0));
+      CHECK(found.payload.size() == (got == kDatagram ? size + 3 - entire.size() : 0));
     }
   }
 }
@@ -207,10 +207,10 @@ TEST_CASE("every truncation: malformed within the headers, a cut payload behind 
 TEST_CASE("a changed byte never leads beyond the frame, and only a datagram writes the result", "[capture]") {
   test::Random random(7);
   for (const Frame& frame : one_of_each()) {
-    const Bytes whole = bytes(frame.text);
+    const Bytes entire = bytes(frame.text);
     for (int i = 0; i < 2000; ++i) {
-      const auto size = static_cast<std::ptrdiff_t>(random.bits() % (whole.size() + 1));
-      Bytes changed(whole.begin(), whole.begin() + size);
+      const auto size = static_cast<std::ptrdiff_t>(random.bits() % (entire.size() + 1));
+      Bytes changed(entire.begin(), entire.begin() + size);
       for (int n = 0; n < 3 && !changed.empty(); ++n) {
         changed[random.bits() % changed.size()] = static_cast<std::byte>(random.bits());
       }

@@ -71,7 +71,7 @@ bool plausible(std::uint64_t count, double tries, double p) {
 const LinkConditions kEverything{.delay = 0.02,
                                  .jitter = 0.03,
                                  .loss = 0.05,
-                                 .burst_begin = 0.01,
+                                 .burst_start = 0.01,
                                  .burst_end = 0.25,
                                  .duplicates = 0.1,
                                  .reordered = 0.1,
@@ -108,7 +108,7 @@ TEST_CASE("link simulator: jitter is even between nothing and its bound, and let
   CHECK(mean == Approx(0.015).epsilon(0.02));
   CHECK(std::sqrt(squares / 20000 - mean * mean) == Approx(0.03 / std::sqrt(12)).epsilon(0.02));
   const auto order = numbers(jittered);
-  CHECK_FALSE(std::is_sorted(order.begin(), order.end()));
+  CHECK_FALSE(std::ranges::is_sorted(order));
 }
 
 TEST_CASE("link simulator: single losses and bursts have their share, bursts their mean length") {
@@ -116,10 +116,10 @@ TEST_CASE("link simulator: single losses and bursts have their share, bursts the
   const Run single = run({.loss = 0.05}, kCount);
   CHECK(plausible(single.counts.lost, kCount, 0.05));
   CHECK(single.counts.delivered + single.counts.lost == kCount);
-  const Run bursts = run({.burst_begin = 0.01, .burst_end = 0.25}, kCount);
-  const auto here = numbers(bursts);
+  const Run bursts = run({.burst_start = 0.01, .burst_end = 0.25}, kCount);
+  const auto at_tool = numbers(bursts);
   int gaps = 0;
-  for (std::size_t i = 1; i < here.size(); ++i) gaps += here[i] > here[i - 1] + 1 ? 1 : 0;
+  for (std::size_t i = 1; i < at_tool.size(); ++i) gaps += at_tool[i] > at_tool[i - 1] + 1 ? 1 : 0;
   const auto lost = static_cast<double>(bursts.counts.lost_in_bursts);
   CHECK(bursts.counts.lost == 0);
   // One burst may follow another at once: a gap lasts until a burst ends and none begins, on average

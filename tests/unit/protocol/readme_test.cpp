@@ -12,9 +12,9 @@ using namespace palpate::protocol;
 namespace {
 
 /// The cells "payload" and "datagram" of the table of messages, by the name of the message.
-std::map<std::string, std::pair<std::string, std::string>> sizes_told() {
+std::map<std::string, std::pair<std::string, std::string>> sizes_published() {
   std::ifstream file(palpate::test::source_dir() + "/protocol/README.md");
-  std::map<std::string, std::pair<std::string, std::string>> told;
+  std::map<std::string, std::pair<std::string, std::string>> published;
   std::string line;
   while (std::getline(file, line) && line.find("## Messages") == std::string::npos) {
   }
@@ -26,9 +26,9 @@ std::map<std::string, std::pair<std::string, std::string>> sizes_told() {
       const std::size_t a = s.find_first_not_of(' '), b = s.find_last_not_of(' ');
       return a == std::string::npos ? std::string() : s.substr(a, b - a + 1);
     };
-    if (row.size() >= 6) told[bare(row[2])] = {bare(row[4]), bare(row[5])};
+    if (row.size() >= 6) published[bare(row[2])] = {bare(row[4]), bare(row[5])};
   }
-  return told;
+  return published;
 }
 
 std::size_t size_of(const Message& message) {
@@ -43,10 +43,10 @@ std::string range(std::size_t least, std::size_t most) {
 }  // namespace
 
 TEST_CASE("the sizes in protocol/README.md are those of the code") {
-  const auto told = sizes_told();
+  const auto published = sizes_published();
   ToolState all;
-  all.flags =
-      ToolState::kWantsHere | ToolState::kWantsAhead | ToolState::kWantsSurface | ToolState::kAsksPages;
+  all.flags = ToolState::kRequestsTangent | ToolState::kRequestsAhead | ToolState::kRequestsSurface |
+              ToolState::kAsksPages;
   const std::map<std::string, std::pair<std::size_t, std::size_t>> sizes{
       {"Challenge", {size_of(Challenge{}), size_of(Challenge{})}},
       {"Welcome", {size_of(Welcome{}), size_of(Welcome{})}},
@@ -59,9 +59,9 @@ TEST_CASE("the sizes in protocol/README.md are those of the code") {
       {"SurfacePage", {size_of(SurfacePage{}), size_of(SurfacePage{})}}};
   for (const auto& [name, size] : sizes) {
     CAPTURE(name);
-    REQUIRE(told.contains(name));
-    CHECK(told.at(name).first == range(size.first - kHeaderBytes, size.second - kHeaderBytes));
-    CHECK(told.at(name).second == range(size.first, size.second));
+    REQUIRE(published.contains(name));
+    CHECK(published.at(name).first == range(size.first - kHeaderBytes, size.second - kHeaderBytes));
+    CHECK(published.at(name).second == range(size.first, size.second));
   }
-  CHECK(told.at("Hello").second == std::to_string(size_of(Hello{})));
+  CHECK(published.at("Hello").second == std::to_string(size_of(Hello{})));
 }

@@ -53,8 +53,8 @@ TEST_CASE("a recording goes on in new files at its size, nothing is lost between
   CHECK(recorder.stats().files == 14);
   CHECK(recorder.stats().packets == 150);
   CHECK(recorder.stats().dropped == 0);
-  for (const char* gone : {"F.pcap", "F-2.pcap", "F-3.pcap", "F-4.pcap"})
-    CHECK_FALSE(std::filesystem::exists(path(gone)));
+  for (const char* expired : {"F.pcap", "F-2.pcap", "F-3.pcap", "F-4.pcap"})
+    CHECK_FALSE(std::filesystem::exists(path(expired)));
   std::uint64_t next = 45;
   for (int file = 5; file <= 14; ++file) {
     for (const std::uint64_t tick : ticks_in(path("F-" + std::to_string(file) + ".pcap")))

@@ -11,8 +11,8 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr Time kTick = 10ms, kSample = 30ms, kHealed = 1100ms, kLook = 200ms;
-constexpr std::uint64_t kWild = std::uint64_t{1} << 62;
+constexpr Time kTick = 10ms, kSample = 30ms, kHealed = 1100ms, kPollPeriod = 200ms;
+constexpr std::uint64_t kUnbounded = std::uint64_t{1} << 62;
 const Endpoint kClient{.port = 1000};
 
 /// Both ends and what happens between them, in virtual time, a tick of the client every 10 ms.
@@ -107,7 +107,8 @@ std::vector<Event> events() {
       {"an old sample once more", [](World& w) {
          if (w.old_sample) w.to_client(*w.old_sample);
        }}};
-  for (const std::uint64_t ahead : {std::uint64_t{20}, std::uint64_t{500}, kWild, ~std::uint64_t{0} - 1000}) {
+  for (const std::uint64_t ahead :
+       {std::uint64_t{20}, std::uint64_t{500}, kUnbounded, ~std::uint64_t{0} - 1000}) {
     all.push_back({"a sample with a wild sequence", [ahead](World& w) {
                      w.to_client({{w.of_client(), w.sent() + ahead}, ForceSample{.number = w.sample + 1}});
                    }});
@@ -127,9 +128,9 @@ std::vector<Event> events() {
 
 /// Whether values pass both ways at the end of 1.1 s of a good network.
 bool heals(World world) {
-  world.pass(kHealed - kLook);
+  world.pass(kHealed - kPollPeriod);
   world.states_passed = world.samples_passed = 0;
-  world.pass(kLook);
+  world.pass(kPollPeriod);
   return world.states_passed > 0 && world.samples_passed > 0;
 }
 

@@ -207,13 +207,13 @@ TEST_CASE("Bye frees the tool at once, strangers' datagrams are counted, not obe
   Pair pair;
   pair.shake_hands();
   const Header theirs{77, 1};
-  CHECK(pair.server.receive({theirs, Bye{}}, kOther, pair.now, {}, pair.server_stats).left == nullptr);
+  CHECK(pair.server.receive({theirs, Bye{}}, kOther, pair.now, {}, pair.server_stats).departed == nullptr);
   CHECK(pair.server.receive({{123, 1}, ToolState{.tick = 1}}, kClient, pair.now, {}, pair.server_stats)
             .tool_state == nullptr);
   CHECK(pair.server_stats.rejected == 2);
   const auto outcome =
       pair.server.receive({pair.client.next_header(), Bye{}}, kClient, pair.now, {}, pair.server_stats);
-  CHECK(outcome.left != nullptr);
+  CHECK(outcome.departed != nullptr);
   CHECK(pair.server.members().empty());
   CHECK(pair.client.receive({{5, 1}, ForceSample{.number = 1}}, pair.now, pair.client_stats) == nullptr);
   CHECK(pair.client_stats.rejected == 1);
@@ -294,8 +294,8 @@ TEST_CASE("two sessions from one address hold a tool each, with its radius, apar
 
   // One leaves: the other stays, and the free tool goes to who asks next.
   const auto outcome = server.receive({left.next_header(), Bye{}}, kClient, now, {}, stats);
-  REQUIRE(outcome.left != nullptr);
-  CHECK(outcome.left->tool == 0);
+  REQUIRE(outcome.departed != nullptr);
+  CHECK(outcome.departed->tool == 0);
   CHECK(server.holder(1)->session == 88);
   CHECK(server.receive({right.next_header(), ToolState{.tool = 1, .tick = 2}}, kClient, now, {}, stats)
             .tool_state != nullptr);
@@ -306,9 +306,9 @@ TEST_CASE("two sessions from one address hold a tool each, with its radius, apar
   now += 799ms;
   server.receive({right.next_header(), ToolState{.tool = 1, .tick = 3}}, kClient, now, {}, stats);
   now += 1ms;
-  const auto gone = server.expire(now);
-  REQUIRE(gone.size() == 1);
-  CHECK(gone[0].tool == 0);
+  const auto expired = server.expire(now);
+  REQUIRE(expired.size() == 1);
+  CHECK(expired[0].tool == 0);
   CHECK(server.holder(1) != nullptr);
 }
 

@@ -62,8 +62,8 @@ TEST_CASE("Coulomb: random problems are solved to the conditions of Signorini an
     REQUIRE(solver.solve(problem.g_matrix, problem.g, problem.mu, z));
     CHECK(violation(problem, z) < 1e-10);
     for (Eigen::Index k = 0; k < z.size(); k += 3) {
-      const double share = z[k] > 0 ? z.segment<2>(k + 1).norm() / (problem.mu * z[k]) : -1;
-      (share < 0 ? opens : share < 1 - 1e-9 ? sticks : slips) += 1;
+      const double fraction = z[k] > 0 ? z.segment<2>(k + 1).norm() / (problem.mu * z[k]) : -1;
+      (fraction < 0 ? opens : fraction < 1 - 1e-9 ? sticks : slips) += 1;
     }
   }
   CHECK(std::min({sticks, slips, opens}) > 100);

@@ -138,9 +138,9 @@ TEST_CASE("friction: a soft face is carried along until it slips: 3/c, then mu F
   Path path(single_triangle(c, 0));
   path.go(pressed(depth));
   const double lag = kMu * normal * c / 3;
-  for (const double share : {0.2, 0.6, 0.95}) {
-    const ContactForce force = path.go(pressed(depth) + share * lag * Vec3::UnitZ());
-    CHECK(force.force[2] == Approx(-3 / c * share * lag).epsilon(1e-5));
+  for (const double fraction : {0.2, 0.6, 0.95}) {
+    const ContactForce force = path.go(pressed(depth) + fraction * lag * Vec3::UnitZ());
+    CHECK(force.force[2] == Approx(-3 / c * fraction * lag).epsilon(1e-5));
   }
   const ContactForce slips = path.go(pressed(depth), pressed(depth) + 4 * lag * Vec3::UnitZ(), 40);
   // Off its middle the face tilts.
@@ -198,13 +198,13 @@ TEST_CASE("friction: partial slip as of Cattaneo and Mindlin") {
   const double normal = path.go(pressed(4e-4)).force[1], limit = kMu * normal;
   const double x_0 = 1e-8, begin = path.look(pressed(4e-4)).force[0];
   const double stiffness = -(path.look(pressed(4e-4) + x_0 * Vec3::UnitX()).force[0] - begin) / x_0;
-  const double whole = 1.5 * limit / stiffness;  // where all slips
+  const double entire = 1.5 * limit / stiffness;  // where all slips
   double last = 0, last_slope = 1e9;
   for (int i = 1; i <= 12; ++i) {
-    const double share = i / 10.0;
-    const double pull = -path.go(pressed(4e-4) + share * whole * Vec3::UnitX()).force[0];
-    const double mindlin = limit * (1 - std::pow(std::max(0.0, 1 - share), 1.5));
-    CAPTURE(share, pull / limit, mindlin / limit);
+    const double fraction = i / 10.0;
+    const double pull = -path.go(pressed(4e-4) + fraction * entire * Vec3::UnitX()).force[0];
+    const double mindlin = limit * (1 - std::pow(std::max(0.0, 1 - fraction), 1.5));
+    CAPTURE(fraction, pull / limit, mindlin / limit);
     CHECK(pull == Approx(mindlin).margin(0.08 * limit));
     CHECK(pull > last);
     CHECK(pull - last < last_slope + 0.01 * limit);  // softer and softer

@@ -167,9 +167,9 @@ TEST_CASE("a trocar: what touches the shaft halfway is felt with half its force,
   CHECK((force.force - 0.5 * on_shaft).norm() < 1e-9);
   CHECK(force.torque == Vec3::Zero());
   Bench at_tip(ridge(0.1, 1e-3), tool);
-  const ContactForce whole = at_tip.at(Vec3(0.1, 0.0025, 0));
-  REQUIRE(whole.contacts == 1);
-  CHECK(whole.force[1] == Approx(0.0005 / (1e-3 / 2)).epsilon(1e-4));
+  const ContactForce entire = at_tip.at(Vec3(0.1, 0.0025, 0));
+  REQUIRE(entire.contacts == 1);
+  CHECK(entire.force[1] == Approx(0.0005 / (1e-3 / 2)).epsilon(1e-4));
 }
 
 TEST_CASE("a trocar: force along the shaft and across it do the work of the contact (virtual work)") {

@@ -95,8 +95,8 @@ TEST_CASE("Falcon: torques give the force by virtual work, and clipping keeps th
   for (int i = 0; i < 500; ++i) {
     const Vec3 p = place(random), f = random.vector(2), dac = falcon::motor_commands(f, p, kK);
     const Mat3 j = *falcon::jacobian(p);
-    const Vec3 felt = j.transpose() * (-dac / kK);  // J^T tau
-    CHECK((felt - f).norm() < 1e-9);
+    const Vec3 rendered = j.transpose() * (-dac / kK);  // J^T tau
+    CHECK((rendered - f).norm() < 1e-9);
     const Vec3 clipped = falcon::motor_commands(100 * f, p, kK);
     CHECK(clipped.cwiseAbs().maxCoeff() <= 4096 * (1 + 1e-12));
     const Vec3 weaker = j.transpose() * (-clipped / kK);

@@ -43,7 +43,7 @@ struct Port : UsbTransport {
     if (incoming.empty()) return 0;
     const Packet packet = incoming.front();
     incoming.pop_front();
-    std::copy(packet.begin(), packet.end(), out.begin());
+    std::ranges::copy(packet, out.begin());
     return packet.size();
   }
   State state() const noexcept override { return lost ? State::kLost : State::kIdle; }

@@ -49,12 +49,12 @@ TEST_CASE("SpaceMouse: buttons, of a model with two bytes and of one with four")
 }
 
 TEST_CASE("SpaceMouse: truncated, too long, unknown and empty reports change nothing") {
-  const auto whole = report_of({1, 100, 0, 100, 0, 100, 0, 100, 0, 100, 0, 100, 0, 100, 0});
+  const auto entire = report_of({1, 100, 0, 100, 0, 100, 0, 100, 0, 100, 0, 100, 0, 100, 0});
   const auto battery = report_of({0x17, 50, 0}), light = report_of({4, 1}), buttons = report_of({3, 1});
   SpaceMouseState state{.push_D = {0.1, 0.2, 0.3}, .buttons = 7};
-  for (std::size_t size = 0; size <= whole.size(); ++size) {
+  for (std::size_t size = 0; size <= entire.size(); ++size) {
     if (size == 7 || size == 13) continue;
-    CHECK_FALSE(take_spacemouse_report(std::span(whole).first(size), state));
+    CHECK_FALSE(take_spacemouse_report(std::span(entire).first(size), state));
   }
   for (const auto& report : {battery, light, buttons}) CHECK_FALSE(take_spacemouse_report(report, state));
   CHECK(state.push_D == Vec3(0.1, 0.2, 0.3));
@@ -98,7 +98,7 @@ TEST_CASE("SpaceMouse: random bytes stay in range and take no memory") {
 TEST_CASE("SpaceMouse: models with six axes are known, others of the maker are not") {
   const auto known = [](std::uint16_t vendor, std::uint16_t product) {
     const auto ids = spacemouse_ids();
-    return std::find(ids.begin(), ids.end(), UsbId{vendor, product}) != ids.end();
+    return std::ranges::find(ids, UsbId{vendor, product}) != ids.end();
   };
   CHECK(spacemouse_ids().size() == 21);
   CHECK(known(0x046d, 0xc626));

@@ -58,7 +58,7 @@ class MemoryPort : public UsbTransport {
     if (line_.state != State::kIdle || line_.reports.empty()) return 0;
     const Report report = line_.reports.front();
     line_.reports.pop_front();
-    std::copy(report.begin(), report.end(), out.begin());
+    std::ranges::copy(report, out.begin());
     return report.size();
   }
   State state() const noexcept override { return line_.state; }

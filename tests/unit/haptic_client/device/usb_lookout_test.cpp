@@ -12,20 +12,20 @@ TEST_CASE("USB: looked for at first, then when something is plugged in") {
   lookout.failed(1s, true);
   CHECK_FALSE(lookout.due(1s));
   CHECK_FALSE(lookout.due(10h));
-  lookout.look();
+  lookout.poll();
   CHECK(lookout.due(10h));
 }
 
 TEST_CASE("USB: a device that cannot be used, or a system that tells nothing: twice a second") {
-  for (const auto& [told, absent] : {std::pair(true, false), {false, true}, {false, false}}) {
-    CAPTURE(told, absent);
-    UsbLookout lookout(told);
+  for (const auto& [published, absent] : {std::pair(true, false), {false, true}, {false, false}}) {
+    CAPTURE(published, absent);
+    UsbLookout lookout(published);
     lookout.failed(1s, absent);
     CHECK_FALSE(lookout.due(1499ms));
     CHECK(lookout.due(1500ms));
     lookout.failed(1500ms, absent);
     CHECK_FALSE(lookout.due(1999ms));
-    lookout.look();
+    lookout.poll();
     CHECK(lookout.due(1501ms));
   }
 }

@@ -121,7 +121,7 @@ TEST_CASE(
             capture.page({.version = 5, .page = static_cast<std::uint32_t>(tick) + i}, tick + i);
       }
       ToolState state = state_at(tick, 0);
-      state.flags = ToolState::kWantsSurface;
+      state.flags = ToolState::kRequestsSurface;
       state.pages_taken = tick < 12 ? 0 : tick < 14 ? 2 : 3 * (tick / 10);
       capture.state(state, tick);
     }

@@ -70,7 +70,7 @@ TEST_CASE("in one pass the same as all at once, whatever the order of small and 
     force.push_back(f);
     table.add({0, 0, f}, Reference({0, 0, r}));
   }
-  const double peak = *std::max_element(reference.begin(), reference.end()), floor = 0.1 * peak;
+  const double peak = *std::ranges::max_element(reference), floor = 0.1 * peak;
   double sum = 0, squares = 0, paper = 0, paper_max = 0, paper_force = 0;
   std::vector<double> errors;
   for (std::size_t i = 0; i < reference.size(); ++i) {
@@ -80,7 +80,7 @@ TEST_CASE("in one pass the same as all at once, whatever the order of small and 
     paper_max = std::max(paper_max, e / quotient);
     paper_force = std::max(paper_force, force[i] / quotient);
   }
-  std::sort(errors.begin(), errors.end());
+  std::ranges::sort(errors);
   const auto n = static_cast<double>(reference.size());
   const ErrorMetrics m = table.metrics();
   CHECK(m.mean_percent == Approx(100 * (sum / n) / std::sqrt(squares / n)));

@@ -61,7 +61,7 @@ TEST_CASE("latency counts: the law is judged with the samples it had") {
 
 TEST_CASE("each tick is told once, by its number, what it was held against") {
   Scoring scoring({"constant"}, 500, "test");
-  std::map<std::uint64_t, Vec3> told;
+  std::map<std::uint64_t, Vec3> published;
   const int latency = 7;
   ErrorSums sums;
   for (int k = 0; k < 400; ++k) {
@@ -72,10 +72,10 @@ TEST_CASE("each tick is told once, by its number, what it was held against") {
     scoring.tick({to_seconds(k * kTick), 0, 0}, k * kTick,
                  of >= 0 && of % kTicksPerSample == 0 ? &sample : nullptr, sums);
     for (const auto& [number, reference] : scoring.newly_scored())
-      CHECK(told.emplace(number, reference).second);
+      CHECK(published.emplace(number, reference).second);
   }
-  CHECK(told.size() == scoring.scored());
-  for (const auto& [number, reference] : told) {
+  CHECK(published.size() == scoring.scored());
+  for (const auto& [number, reference] : published) {
     CHECK(reference.y() == Approx(1 + 5 * to_seconds(static_cast<int>(number) * kTick)));
     CHECK(number < 400 - latency);
   }

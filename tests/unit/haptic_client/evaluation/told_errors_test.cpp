@@ -6,7 +6,7 @@ using namespace palpate;
 using namespace palpate::client;
 
 TEST_CASE("told errors: a mean by the size of the force, with the source of most of it, unknown left out") {
-  ToldErrors errors;
+  PublishedErrors errors;
   CHECK_FALSE(errors.mean().mesh.known());
   errors.add({{ErrorSource::kEstimated, 4}, {ErrorSource::kUnknown, 0}}, 3);
   errors.add({{ErrorSource::kUnknown, 0}, {ErrorSource::kUnknown, 0}}, 100);

@@ -9,8 +9,8 @@ using namespace std::chrono_literals;
 namespace {
 
 /// Gives the force it is told to, whatever the samples say.
-struct Told : Extrapolator {
-  explicit Told(const double* force) : force_n(force) {}
+struct Published : Extrapolator {
+  explicit Published(const double* force) : force_n(force) {}
   void update(const Sample&) noexcept override {}
   void restart() noexcept override {}
   Vec3 force(const Vec3&, Time) noexcept override { return {0, *force_n, 0}; }
@@ -28,22 +28,22 @@ struct Two {
 
   Two() {
     std::vector<BestRecent::Law> laws;
-    laws.push_back({"first", std::make_unique<Told>(&first)});
-    laws.push_back({"second", std::make_unique<Told>(&second)});
+    laws.push_back({"first", std::make_unique<Published>(&first)});
+    laws.push_back({"second", std::make_unique<Published>(&second)});
     law = std::make_unique<BestRecent>(std::move(laws));
   }
   /// Ticks of 2 ms; every 30 ms a sample of 20 ms ago, when the force was 1 N.
-  void go(double seconds, double right = 1) {
+  void move_to(double seconds, double right = 1) {
     for (const Time end = now + from_seconds(seconds); now < end; now += 2ms) {
       if (now.count() % 30'000'000 == 0 && now > 20ms) {
         if (cuts) law->surface_cut();
         law->update({.number = ++number, .t = now - 20ms, .f = {0, right, 0}, .cutting = cutting});
       }
-      law->begin_tick(now);
+      law->start_tick(now);
       law->force(Vec3::Zero(), now);
     }
   }
-  double felt() { return law->force(Vec3::Zero(), now)[1]; }
+  double rendered() { return law->force(Vec3::Zero(), now)[1]; }
 };
 
 }  // namespace
@@ -51,46 +51,46 @@ struct Two {
 TEST_CASE("best recent: without a sample, and of equals, the most trusted law") {
   Two laws;
   laws.first = laws.second = 1.5;
-  CHECK(laws.law->stand_in() == "second");
-  laws.go(1);
-  CHECK(laws.law->stand_in() == "second");
+  CHECK(laws.law->substitute() == "second");
+  laws.move_to(1);
+  CHECK(laws.law->substitute() == "second");
 }
 
 TEST_CASE("best recent: the law whose predictions were better by a fifth takes over, not one a bit better") {
   Two laws;
   laws.first = 1.5, laws.second = 1.55;  // off by 0.5 and 0.55 N
-  laws.go(3);
-  CHECK(laws.law->stand_in() == "second");
+  laws.move_to(3);
+  CHECK(laws.law->substitute() == "second");
   laws.first = 1.1;
-  laws.go(3);
-  CHECK(laws.law->stand_in() == "first");
-  CHECK(laws.felt() == 1.1);
+  laws.move_to(3);
+  CHECK(laws.law->substitute() == "first");
+  CHECK(laws.rendered() == 1.1);
   laws.second = 1.09;
-  laws.go(3);
-  CHECK(laws.law->stand_in() == "first");
+  laws.move_to(3);
+  CHECK(laws.law->substitute() == "first");
   laws.second = 1.01;
-  laws.go(3);
-  CHECK(laws.law->stand_in() == "second");
+  laws.move_to(3);
+  CHECK(laws.law->substitute() == "second");
 }
 
 TEST_CASE(
     "best recent: what a law gave when the tool was there counts, not what it gives when the sample comes") {
   Two laws;
   laws.first = 1, laws.second = 2;
-  laws.go(0.1);  // the first is right at the ticks that samples answer ...
+  laws.move_to(0.1);  // the first is right at the ticks that samples answer ...
   laws.law->restart();
-  laws.go(0.05);
-  CHECK(laws.law->stand_in() == "second");  // forgotten
-  laws.go(0.1);
-  CHECK(laws.law->stand_in() == "first");
+  laws.move_to(0.05);
+  CHECK(laws.law->substitute() == "second");  // forgotten
+  laws.move_to(0.1);
+  CHECK(laws.law->substitute() == "first");
 }
 
 TEST_CASE("best recent: what laws gave until tissue went counts, too, however often it goes") {
   Two laws;
   laws.first = 1, laws.second = 0.4;
   laws.cuts = true;
-  laws.go(0.3);
-  CHECK(laws.law->stand_in() == "first");
+  laws.move_to(0.3);
+  CHECK(laws.law->substitute() == "first");
 }
 
 TEST_CASE(
@@ -98,64 +98,64 @@ TEST_CASE(
     "none") {
   Two laws;
   laws.first = 1, laws.second = 3;
-  laws.go(1);
-  REQUIRE(laws.law->stand_in() == "first");
-  laws.go(0.1, 0);
-  CHECK(laws.felt() == 0);
-  laws.go(5, 0);  // nobody pushes: nothing is learned
-  CHECK(laws.law->stand_in() == "first");
-  laws.go(0.1);
-  CHECK(laws.felt() == 1);
+  laws.move_to(1);
+  REQUIRE(laws.law->substitute() == "first");
+  laws.move_to(0.1, 0);
+  CHECK(laws.rendered() == 0);
+  laws.move_to(5, 0);  // nobody pushes: nothing is learned
+  CHECK(laws.law->substitute() == "first");
+  laws.move_to(0.1);
+  CHECK(laws.rendered() == 1);
 }
 
 TEST_CASE(
     "best recent: for eight samples from a cut on no law gives more than the largest of the last eight") {
   Two laws;
   laws.first = laws.second = 1.2;
-  laws.go(1);
-  CHECK(laws.felt() == 1.2);
+  laws.move_to(1);
+  CHECK(laws.rendered() == 1.2);
   laws.cuts = true;
-  laws.go(0.03);
+  laws.move_to(0.03);
   laws.cuts = false;
-  CHECK(laws.felt() == Approx(1));
-  laws.go(0.03, 0.7);  // a seventh of the window on, that of 1 N is the largest still
-  CHECK(laws.felt() == Approx(1));
+  CHECK(laws.rendered() == Approx(1));
+  laws.move_to(0.03, 0.7);  // a seventh of the window on, that of 1 N is the largest still
+  CHECK(laws.rendered() == Approx(1));
   laws.first = laws.second = 0.4;  // less is given as it is
-  CHECK(laws.felt() == 0.4);
+  CHECK(laws.rendered() == 0.4);
   laws.first = laws.second = 1.2;
-  laws.go(0.18, 0.7);
-  CHECK(laws.felt() == Approx(1));
-  laws.go(0.03, 0.7);
-  CHECK(laws.felt() == 1.2);
+  laws.move_to(0.18, 0.7);
+  CHECK(laws.rendered() == Approx(1));
+  laws.move_to(0.03, 0.7);
+  CHECK(laws.rendered() == 1.2);
   laws.cuts = true;
-  laws.go(0.03, 0.7);
-  CHECK(laws.felt() == Approx(0.7));
+  laws.move_to(0.03, 0.7);
+  CHECK(laws.rendered() == Approx(0.7));
   laws.law->restart();
   laws.cuts = false;
-  laws.go(0.03, 0.7);
-  CHECK(laws.felt() == 1.2);
+  laws.move_to(0.03, 0.7);
+  CHECK(laws.rendered() == 1.2);
 }
 
 TEST_CASE(
     "best recent: while the tool cuts no law gives 3 % more than the largest of the last eight samples") {
   Two laws;
   laws.first = laws.second = 1.2;
-  laws.go(1);
-  REQUIRE(laws.felt() == 1.2);
+  laws.move_to(1);
+  REQUIRE(laws.rendered() == 1.2);
   laws.cutting = true;
-  laws.go(1);
-  CHECK(laws.felt() == Approx(1.03));
+  laws.move_to(1);
+  CHECK(laws.rendered() == Approx(1.03));
   laws.cutting = false;
-  laws.go(0.03);
-  CHECK(laws.felt() == 1.2);
+  laws.move_to(0.03);
+  CHECK(laws.rendered() == 1.2);
 }
 
 TEST_CASE("best recent: from a cut on a law that was a bit better takes over, too") {
   Two laws;
   laws.first = 0.91, laws.second = 0.9;  // off by 0.09 and 0.1 N
-  laws.go(3);
-  REQUIRE(laws.law->stand_in() == "second");
+  laws.move_to(3);
+  REQUIRE(laws.law->substitute() == "second");
   laws.cuts = true;
-  laws.go(0.03);
-  CHECK(laws.law->stand_in() == "first");
+  laws.move_to(0.03);
+  CHECK(laws.law->substitute() == "first");
 }

@@ -44,14 +44,14 @@ TEST_CASE(
     CAPTURE(friction);
     const Surface surface = block.under(kRadius, friction);
     ContactOnPatch contact, fresh;
-    CHECK(contact.go(surface, below(-0.9 * kRadius)));
+    CHECK(contact.move_to(surface, below(-0.9 * kRadius)));
     for (const double deep : {kDeepest + 1e-6, 0.007, 0.0075}) {
-      CHECK_FALSE(contact.go(surface, below(deep)));
+      CHECK_FALSE(contact.move_to(surface, below(deep)));
       CHECK_FALSE(contact.probe(surface, below(deep)));
     }
     // From where it stood, or had got to, its path would be another.
     const Vec3 place(0.0013, 0.85 * kRadius, 0.0002);
-    const auto force = contact.go(surface, place), right = fresh.go(surface, place);
+    const auto force = contact.move_to(surface, place), right = fresh.move_to(surface, place);
     REQUIRE(force);
     REQUIRE(right);
     CHECK(right->norm() > 0.01);
@@ -62,7 +62,7 @@ TEST_CASE(
 TEST_CASE("contact on a patch: it enters as deep as that") {
   const OnBlock block;
   ContactOnPatch contact;
-  const auto force = contact.go(block.under(kRadius), below(kDeepest - 1e-6));
+  const auto force = contact.move_to(block.under(kRadius), below(kDeepest - 1e-6));
   REQUIRE(force);
   CHECK((*force)[1] > 0.5);
 }
@@ -74,12 +74,12 @@ TEST_CASE("contact on a patch: after a jump it enters anew, but with friction on
     CAPTURE(friction);
     const Surface surface = block.under(kRadius, friction);
     ContactOnPatch contact, fresh;
-    REQUIRE(contact.go(surface, place));
-    const auto there = contact.go(surface, far), right = fresh.go(surface, far);
+    REQUIRE(contact.move_to(surface, place));
+    const auto there = contact.move_to(surface, far), right = fresh.move_to(surface, far);
     REQUIRE(right);
     CHECK(right->norm() > 0.01);
     CHECK(there.has_value() == (friction == 0));
-    CHECK(contact.go(surface, far) == right);
+    CHECK(contact.move_to(surface, far) == right);
   }
 }
 
@@ -89,11 +89,11 @@ TEST_CASE("contact on a patch: a tool tiny against its way returns without an an
     CAPTURE(radius);
     ContactOnPatch contact;
     const Surface surface = block.under(radius);
-    contact.go(surface, below(-0.001));
-    CHECK_FALSE(contact.go(surface, below(0.004)));
+    contact.move_to(surface, below(-0.001));
+    CHECK_FALSE(contact.move_to(surface, below(0.004)));
     CHECK_FALSE(contact.probe(surface, below(0.004)));
-    contact.go(surface, below(-0.001));
-    CHECK_FALSE(contact.go(surface, below(0.004)));
+    contact.move_to(surface, below(-0.001));
+    CHECK_FALSE(contact.move_to(surface, below(0.004)));
   }
 }
 
@@ -117,7 +117,7 @@ TEST_CASE(
   int unanswered = 0;
   for (int i = 0; i < 300; ++i) {
     const Vec3 p(0.004 * std::sin(0.1 * i), 0.004 - 0.002 * std::sin(0.13 * i), 0.003 * std::cos(0.07 * i));
-    unanswered += contact.go(surface, p) ? 0 : 1;
+    unanswered += contact.move_to(surface, p) ? 0 : 1;
     most = std::max(most, contact.work());
   }
   CHECK(most <= ContactOnPatch::kMostWork);

@@ -25,13 +25,15 @@ struct StoodInFor : Extrapolator {
   void update(const Sample&) noexcept override {}
   void restart() noexcept override {}
   Vec3 force(const Vec3&, Time) noexcept override { return {0, simpler ? 3.0 : 1.0, 0}; }
-  Wants wants() const noexcept override { return {.here = true}; }  // so that it is asked from the beginning
+  Request request() const noexcept override {
+    return {.at_tool = true};
+  }  // so that it is asked from the beginning
   bool stepped_down() const noexcept override { return simpler; }
   bool simpler = false;
 };
 /// From 50 until 80 ms.
 struct StoodInForATime : StoodInFor {
-  void begin_tick(Time now) noexcept override { simpler = now >= 50ms && now < 80ms; }
+  void start_tick(Time now) noexcept override { simpler = now >= 50ms && now < 80ms; }
 };
 /// From sample 2 until sample 3.
 struct StoodInForASample : StoodInFor {

@@ -21,14 +21,14 @@ const protocol::LinkConditions kBad{
 struct Asking : Listener {
   Vec3 tick(const Vec3& p) {
     const Time now = t + kTick;
-    if (now - asked >= 8ms && newest.number > 0) ask(p, now);
+    if (now - requested >= 8ms && newest.number > 0) ask(p, now);
     answer(now);
     take(now);
     return Listener::tick(p);
   }
   void ask(const Vec3& p, Time now) {
-    asked = now;
-    ToolState state{.tick = ++asks, .p_W = p, .flags = ToolState::kWantsSurface | ToolState::kAsksPages};
+    requested = now;
+    ToolState state{.tick = ++asks, .p_W = p, .flags = ToolState::kRequestsSurface | ToolState::kAsksPages};
     if (!model.choose_missing(p, 3 * 0.005, now, state.pages)) return;
     state.surface_version = model.version();
     send(up, state, now);
@@ -62,7 +62,7 @@ struct Asking : Listener {
 
   protocol::LinkSimulator up{kBad, 3}, down{kBad, 4};
   sim::SurfacePager pager{block.simulation, 0};
-  Time asked{};
+  Time requested{};
   std::uint64_t asks = 0, pages = 0;
 };
 
@@ -119,7 +119,7 @@ TEST_CASE("local contact: the model asked for over a bad link comes whole, and m
 TEST_CASE(
     "local contact: more triangles near the tool than it has room for: it says so, and is two tangents") {
   Beside listener(crowded_scene(), crowded_mesh());
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   listener.place = {0, 0.018, 0.001};
   std::array<std::uint32_t, 8> none;
   REQUIRE_FALSE(listener.model.choose_missing(listener.place, 0.05, 1s, none));
@@ -129,7 +129,7 @@ TEST_CASE(
     const Vec3 given = listener.tick(p);
     if (p[1] > 0.0145) continue;
     CHECK(listener.law.stepped_down());
-    CHECK(listener.law.stand_in() == "two_tangents");
+    CHECK(listener.law.substitute() == "two_tangents");
     CHECK(given == listener.simpler);
     pressed += given.norm() > 0.5 ? 1 : 0;
   }
@@ -139,7 +139,7 @@ TEST_CASE(
 TEST_CASE(
     "local contact: another version of the surface while it presses: two tangents until its pages are here") {
   Beside listener;
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   sim::Simulation truth(block_scene(), block_mesh());
   double peak = 0;
   int simpler = 0;
@@ -157,7 +157,7 @@ TEST_CASE(
   simpler = 0;
   follow_for(200ms);
   CHECK(simpler == 0);
-  listener.told = [](protocol::ForceSample& sample) { sample.surface.version ^= 2; };
+  listener.published = [](protocol::ForceSample& sample) { sample.surface.version ^= 2; };
   follow_for(100ms);
   CHECK(simpler > 30);  // from the next sample on, 30 ms later at most
   protocol::SurfaceState other = sim::SurfacePager(listener.block.simulation, 0).state();
@@ -176,7 +176,7 @@ TEST_CASE(
 
 TEST_CASE("local contact: a surface of more vertices than it takes is left to two tangents") {
   Beside listener;
-  listener.told = [](protocol::ForceSample& sample) {
+  listener.published = [](protocol::ForceSample& sample) {
     sample.surface.vertices = SurfaceModel::kMostVertices + 1;
   };
   int pressed = 0;

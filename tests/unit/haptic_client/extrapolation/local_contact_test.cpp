@@ -37,7 +37,7 @@ TEST_CASE(
     "delay") {
   for (const Time delay : {0ms, 35ms, 80ms}) {
     Listener listener(delay);
-    listener.learn(kWholeModel);
+    listener.learn(kEntireModel);
     const Errors errors = follow(listener);
     CAPTURE(delay.count(), errors.mean, errors.largest);
     CHECK(errors.mean < 5e-4);
@@ -107,7 +107,7 @@ TEST_CASE("local contact: of a tool that sticks already it says nothing before t
   double before = 0, after = 0;  // largest errors, N
   for (int i = 0; i < 240; ++i) {
     if (i == 200)
-      listener.learn(kWholeModel);  // it does not know how far the tool has drawn the tissue aside
+      listener.learn(kEntireModel);  // it does not know how far the tool has drawn the tissue aside
     const Vec3 p(4e-5 * i, 0.003, 0.0005), given = listener.tick(p), right = truth.step(p, 0.002).force;
     double& largest = i < 200 ? before : after;
     if (i >= 100) largest = std::max(largest, (given - right).norm());
@@ -120,14 +120,14 @@ TEST_CASE("local contact: pages that come while the tool presses help from the n
   Listener listener;
   listener.learn([](const protocol::SurfacePage& page) { return page.page < 100; });
   follow(listener, 600ms);
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   follow(listener, 100ms);
   CHECK(follow(listener, 1s).mean < 5e-4);
 }
 
 TEST_CASE("local contact: what the other tool presses is felt through the tissue") {
   Listener listener(35ms, 2);
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   sim::Simulation truth(block_scene(2), block_mesh());
   const Vec3 other(0.008, 0.0025, 0);
   listener.block.hold_second_tool(other);
@@ -145,9 +145,9 @@ TEST_CASE("local contact: what the other tool presses is felt through the tissue
 TEST_CASE(
     "local contact: at rest for a minute it holds its force, and lets go at once when the tool leaves") {
   Listener listener;
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   const Vec3 deep(0.001, 0.0035, 0.0005), out(0.001, 0.006, 0.0005);
-  for (double share = 0; share < 1; share += 0.005) listener.tick(out + share * (deep - out));
+  for (double fraction = 0; fraction < 1; fraction += 0.005) listener.tick(out + fraction * (deep - out));
   const Vec3 first = listener.tick(deep);
   Vec3 settled = first, last = first;
   for (int i = 0; i < 50; ++i) settled = listener.tick(deep);  // a sample of that place has come
@@ -187,7 +187,7 @@ TEST_CASE(
 
 TEST_CASE("local contact: a delay that jumps from 5 to 200 ms changes nothing that is felt") {
   Listener listener(5ms);
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   follow(listener, 500ms);
   listener.block.set_delay(200ms);
   CHECK(follow(listener, 2s).largest < 0.01);
@@ -195,7 +195,7 @@ TEST_CASE("local contact: a delay that jumps from 5 to 200 ms changes nothing th
 
 TEST_CASE("local contact: samples older than three periods, where time stands still for laws: as exact") {
   Listener listener(80ms, 1, 10ms);
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   const Errors errors = follow(listener);
   CAPTURE(errors.mean, errors.largest);
   CHECK(errors.mean < 5e-4);
@@ -204,7 +204,7 @@ TEST_CASE("local contact: samples older than three periods, where time stands st
 
 TEST_CASE("local contact: ticks and arrivals do not allocate") {
   Listener listener;
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   follow(listener, 600ms);
   std::vector<std::pair<Vec3, std::optional<protocol::ForceSample>>> ticks;
   for (int i = 0; i < 400; ++i) {

@@ -16,7 +16,7 @@ using protocol::SurfacePages;
 
 namespace {
 
-constexpr double kShare = 0.5, kTime = 0.125;        // of a term, s
+constexpr double kFraction = 0.5, kTime = 0.125;     // of a term, s
 constexpr double kW = 30, kDamping = 4, kShape = 2;  // rad/s, 1/s, 1/sqrt(kg): 0.25 kg
 
 /// A triangle that one mode moves along y as one piece.
@@ -38,15 +38,15 @@ struct Triangle {
     for (const SurfacePage& page : {places, corners, spectrum, shapes}) model.take(page);
   }
   /// Of a tissue that relaxes by one term.
-  Surface told(double q, double v, double z) const {
-    Surface surface = told(q, v);
+  Surface published(double q, double v, double z) const {
+    Surface surface = published(q, v);
     surface.relaxed = {.terms = 1, .count = 1};
-    surface.relaxed.share[0] = static_cast<float>(kShare);
+    surface.relaxed.fraction[0] = static_cast<float>(kFraction);
     surface.relaxed.time[0] = static_cast<float>(kTime);
     surface.relaxed.z[0] = static_cast<float>(z);
     return surface;
   }
-  Surface told(double q, double v) const {
+  Surface published(double q, double v) const {
     Surface surface{.model = &model, .tool = {.radius = 0.005}};
     surface.modes.count = 1;
     surface.modes.q[0] = static_cast<float>(q);
@@ -64,8 +64,8 @@ std::pair<double, double> swung(double t) {
 /// q, q' and z at time t (s) from a state, under a force p that is held: x' = A (x - rest), by eigenvectors.
 Eigen::Vector3d relaxed(double t, const Eigen::Vector3d& from, double p) {
   Eigen::Matrix3d a;
-  a << 0, 1, 0, -kW * kW, -kDamping, kW * kW * kShare, 1 / kTime, 0, -1 / kTime;
-  const double q = p / (kW * kW * (1 - kShare));
+  a << 0, 1, 0, -kW * kW, -kDamping, kW * kW * kFraction, 1 / kTime, 0, -1 / kTime;
+  const double q = p / (kW * kW * (1 - kFraction));
   const Eigen::Vector3d rest(q, 0, q);
   const Eigen::EigenSolver<Eigen::Matrix3d> eigen(a);
   const Eigen::Vector3cd start = eigen.eigenvectors().inverse() * (from - rest),
@@ -80,16 +80,16 @@ TEST_CASE("modal memory: a mode of a tissue that relaxes is a standard linear so
   for (const Time tick : {2000us, 333us, 1777us}) {
     CAPTURE(tick.count());
     ModalMemory memory;
-    REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
-    REQUIRE(memory.take(triangle.told(0, 0, 0), 1s, Vec3::Zero()));
+    REQUIRE(memory.place_near(triangle.model, Vec3::Zero()));
+    REQUIRE(memory.take(triangle.published(0, 0, 0), 1s, Vec3::Zero()));
     const Vec3 f(0, 3, 0);  // N, on the tool
     const double p = -3 * kShape;
     memory.advance(1s + 1us);
-    memory.press(f);  // from now on
+    memory.apply_loads(f);  // from now on
     double worst = 0;
     for (Time t = 1s + tick; t < 2s; t += tick) {
       memory.advance(t);
-      memory.press(f);
+      memory.apply_loads(f);
       const double right = kShape * relaxed(to_seconds(t - 1s), Eigen::Vector3d::Zero(), p)[0];
       worst = std::max(worst, std::abs(memory.displacement()[1] - right));
     }
@@ -105,18 +105,18 @@ TEST_CASE("modal memory: what followed a mode late is set right by the first sam
   for (const Time delay : {0ms, 36ms, 80ms}) {
     CAPTURE(delay.count());
     ModalMemory memory;
-    REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
-    REQUIRE(memory.take(triangle.told(0.01, 0, -0.01), 0s, Vec3::Zero()));  // wrong: z is 0.004
+    REQUIRE(memory.place_near(triangle.model, Vec3::Zero()));
+    REQUIRE(memory.take(triangle.published(0.01, 0, -0.01), 0s, Vec3::Zero()));  // wrong: z is 0.004
     Time sampled = 30ms;
     double before = 0, worst = 0;
     for (Time t = 2ms; t < 1s; t += 2ms) {
       if (t == sampled + delay) {
         const Eigen::Vector3d then = relaxed(to_seconds(sampled), from, 0);
-        REQUIRE(memory.take(triangle.told(then[0], then[1], then[2]), sampled, Vec3::Zero()));
+        REQUIRE(memory.take(triangle.published(then[0], then[1], then[2]), sampled, Vec3::Zero()));
         sampled += 30ms;
       }
       memory.advance(t);
-      memory.press(Vec3::Zero());
+      memory.apply_loads(Vec3::Zero());
       const double off = std::abs(memory.displacement()[1] - kShape * relaxed(to_seconds(t), from, 0)[0]);
       (t < 30ms + delay ? before : worst) = std::max(t < 30ms + delay ? before : worst, off);
     }
@@ -131,12 +131,12 @@ TEST_CASE("modal memory: goes on as the closed form, whatever the ticks") {
   for (const Time tick : {2000us, 1000us, 333us, 1777us}) {
     CAPTURE(tick.count());
     ModalMemory memory;
-    REQUIRE(memory.stand_near(triangle.model, Vec3(0.001, 0, 0.001)));
-    REQUIRE(memory.take(triangle.told(0.01, 0), 1s, Vec3::Zero()));
+    REQUIRE(memory.place_near(triangle.model, Vec3(0.001, 0, 0.001)));
+    REQUIRE(memory.take(triangle.published(0.01, 0), 1s, Vec3::Zero()));
     double worst = 0;
     for (Time t = 1s + tick; t < 1200ms; t += tick) {
       memory.advance(t);
-      memory.press(Vec3::Zero());
+      memory.apply_loads(Vec3::Zero());
       worst = std::max(worst, std::abs(memory.displacement()[1] - kShape * swung(to_seconds(t - 1s)).first));
     }
     CHECK(worst < 1e-5 * kShape * 0.01);
@@ -146,13 +146,13 @@ TEST_CASE("modal memory: goes on as the closed form, whatever the ticks") {
 TEST_CASE("modal memory: a force on the tool pushes the surface the other way, at last by 1 / w^2") {
   const Triangle triangle;
   ModalMemory memory;
-  REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
-  REQUIRE(memory.take(triangle.told(0, 0), 0s, Vec3::Zero()));
+  REQUIRE(memory.place_near(triangle.model, Vec3::Zero()));
+  REQUIRE(memory.take(triangle.published(0, 0), 0s, Vec3::Zero()));
   const std::array loads{SurfaceLoad{0, Vec3(0, -1, 0)}, SurfaceLoad{1, Vec3(0, -1, 0)}};
-  REQUIRE(memory.bear(triangle.model, loads));
+  REQUIRE(memory.carry(triangle.model, loads));
   for (Time t = 2ms; t < 10s; t += 2ms) {
     memory.advance(t);
-    memory.press(Vec3(0, 2, 0));  // N, on the tool
+    memory.apply_loads(Vec3(0, 2, 0));  // N, on the tool
   }
   CHECK(memory.displacement()[1] == Approx(-2 * kShape * kShape / (kW * kW)).epsilon(1e-4));
 }
@@ -160,21 +160,21 @@ TEST_CASE("modal memory: a force on the tool pushes the surface the other way, a
 namespace {
 
 /// How far off a memory that began with an error is, at most, once the first sample has told it better, m.
-double worst_once_told(const Triangle& triangle, Time delay, Time period, bool asked_before) {
+double worst_once_published(const Triangle& triangle, Time delay, Time period, bool requested_before) {
   ModalMemory memory;
-  REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
-  REQUIRE(memory.take(triangle.told(0.013, 0.1), 0s, Vec3::Zero()));  // wrong: it is at 0.01, at rest
+  REQUIRE(memory.place_near(triangle.model, Vec3::Zero()));
+  REQUIRE(memory.take(triangle.published(0.013, 0.1), 0s, Vec3::Zero()));  // wrong: it is at 0.01, at rest
   Time sampled = 30ms;
   double worst = 0;
   const auto tick = [&](Time t) {
     memory.advance(t);
-    memory.press(Vec3::Zero());
+    memory.apply_loads(Vec3::Zero());
   };
   for (Time t = 2ms; t < 1s; t += 2ms) {
     if (t == sampled + delay) {
-      if (asked_before) tick(t);
+      if (requested_before) tick(t);
       const auto [q, v] = swung(to_seconds(sampled));
-      REQUIRE(memory.take(triangle.told(q, v), sampled, Vec3::Zero()));
+      REQUIRE(memory.take(triangle.published(q, v), sampled, Vec3::Zero()));
       sampled += period;
     }
     tick(t);
@@ -192,9 +192,9 @@ TEST_CASE("modal memory: an error is set right by the first sample that tells of
     // Up to a sample a tick: then some tell of the very tick at which another one came.
     for (const Time period : {30ms, 10ms, 4ms, 2ms}) {
       CAPTURE(delay.count(), period.count());
-      CHECK(worst_once_told(triangle, delay, period, false) < 1e-4 * kShape * 0.01);
+      CHECK(worst_once_published(triangle, delay, period, false) < 1e-4 * kShape * 0.01);
       // Who blends asks a law before it hears the sample, and again afterwards.
-      CHECK(worst_once_told(triangle, delay, period, true) < 1e-4 * kShape * 0.01);
+      CHECK(worst_once_published(triangle, delay, period, true) < 1e-4 * kShape * 0.01);
     }
   }
 }
@@ -220,13 +220,13 @@ TEST_CASE("modal memory: loads of other tools that grow evenly drive it as the c
   for (const Time delay : {0ms, 36ms, 80ms}) {
     CAPTURE(delay.count());
     ModalMemory memory;
-    REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
+    REQUIRE(memory.place_near(triangle.model, Vec3::Zero()));
     Time sampled = 0ms;
     double before = 0, worst = 0;
     for (Time t = 0ms; t < 600ms; t += 2ms) {
       if (t == sampled + delay) {
         const auto [q, v] = ramped(to_seconds(sampled), kRate);
-        Surface surface = triangle.told(q, v);
+        Surface surface = triangle.published(q, v);
         surface.modal_loads.count = 1;
         surface.modal_loads.load[0] = static_cast<float>(kRate * to_seconds(sampled));
         REQUIRE(memory.take(surface, sampled, Vec3::Zero()));
@@ -234,7 +234,7 @@ TEST_CASE("modal memory: loads of other tools that grow evenly drive it as the c
       }
       if (!memory.known()) continue;
       memory.advance(t);
-      memory.press(Vec3::Zero());
+      memory.apply_loads(Vec3::Zero());
       const double off = std::abs(memory.displacement()[1] - kShape * ramped(to_seconds(t), kRate).first);
       // The next samples have no tick of their time to compare; and from no load to one is no trend yet.
       (t < 120ms + delay ? before : worst) = std::max(t < 120ms + delay ? before : worst, off);
@@ -249,20 +249,20 @@ TEST_CASE("modal memory: loads of other tools that grow evenly drive it as the c
 TEST_CASE("modal memory: amplitudes of no organ, an unknown spectrum, or a long silence: it knows nothing") {
   const Triangle triangle;
   ModalMemory memory;
-  CHECK_FALSE(memory.take(triangle.told(0.01, 0), 0s, Vec3::Zero()));  // it stands nowhere
-  REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
-  CHECK_FALSE(memory.take(triangle.told(1000, 0), 0s, Vec3::Zero()));
+  CHECK_FALSE(memory.take(triangle.published(0.01, 0), 0s, Vec3::Zero()));  // it stands nowhere
+  REQUIRE(memory.place_near(triangle.model, Vec3::Zero()));
+  CHECK_FALSE(memory.take(triangle.published(1000, 0), 0s, Vec3::Zero()));
   CHECK_FALSE(memory.known());
-  REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
-  REQUIRE(memory.take(triangle.told(0.01, 0), 0s, Vec3::Zero()));
+  REQUIRE(memory.place_near(triangle.model, Vec3::Zero()));
+  REQUIRE(memory.take(triangle.published(0.01, 0), 0s, Vec3::Zero()));
   memory.advance(299ms);
   CHECK(memory.known());
   memory.advance(700ms);
   CHECK_FALSE(memory.known());
   const SurfaceModel nothing;
-  Surface unknown = triangle.told(0.01, 0);
+  Surface unknown = triangle.published(0.01, 0);
   unknown.model = &nothing;
-  REQUIRE(memory.stand_near(triangle.model, Vec3::Zero()));
+  REQUIRE(memory.place_near(triangle.model, Vec3::Zero()));
   CHECK_FALSE(memory.take(unknown, 1s, Vec3::Zero()));
 }
 
@@ -270,18 +270,18 @@ TEST_CASE("modal memory: neither ticks nor samples allocate") {
   const Triangle triangle;
   ModalMemory memory;
   const test::AllocationGuard guard;
-  memory.stand_near(triangle.model, Vec3::Zero());
+  memory.place_near(triangle.model, Vec3::Zero());
   for (Time t = 2ms; t < 1s; t += 2ms) {
-    if (t.count() % 30'000'000 == 0) memory.take(triangle.told(0.01, 0), t - 20ms, Vec3::Zero());
+    if (t.count() % 30'000'000 == 0) memory.take(triangle.published(0.01, 0), t - 20ms, Vec3::Zero());
     memory.advance(t);
-    memory.press(Vec3(0, 1, 0));
+    memory.apply_loads(Vec3(0, 1, 0));
   }
   const std::array loads{SurfaceLoad{1, Vec3(0, -1, 0)}};
   for (Time t = 1s; t < 2s; t += 2ms) {  // and where it relaxes
-    memory.stand_near(triangle.model, Vec3::Zero());
-    if (t.count() % 30'000'000 == 0) memory.take(triangle.told(0.01, 0, 0.001), t - 20ms, Vec3::Zero());
+    memory.place_near(triangle.model, Vec3::Zero());
+    if (t.count() % 30'000'000 == 0) memory.take(triangle.published(0.01, 0, 0.001), t - 20ms, Vec3::Zero());
     memory.advance(t);
-    memory.press(Vec3(0, 1, 0), loads);
+    memory.apply_loads(Vec3(0, 1, 0), loads);
   }
   CHECK(memory.known());
   CHECK(guard.count() == 0);

@@ -15,7 +15,7 @@ namespace {
 Sample moving(Time t, const Vec3& v) {
   Sample sample{.number = 1, .t = t};
   sample.surface_v = v;
-  sample.here = Linearised{};
+  sample.at_tool = Linearised{};
   return sample;
 }
 
@@ -25,7 +25,7 @@ OrganMotion after(std::initializer_list<Sample> samples) {
   return motion;
 }
 
-const Vec3 kSlow(0.01, -0.02, 0.03), kFaster(0.02, -0.02, 0.01);
+const Vec3 kSlowConvergence(0.01, -0.02, 0.03), kFaster(0.02, -0.02, 0.01);
 
 }  // namespace
 
@@ -58,8 +58,8 @@ TEST_CASE("organ motion: by its velocity alone after one sample, an outage, or a
   };
   CHECK(OrganMotion().since_sample(1s) == Vec3::Zero());
   CHECK(even(after({moving(1s, kFaster)}), 1040ms));
-  CHECK(even(after({moving(1s, kSlow), moving(1301ms, kFaster)}), 1341ms));
-  OrganMotion motion = after({moving(1s, kSlow)});
+  CHECK(even(after({moving(1s, kSlowConvergence), moving(1301ms, kFaster)}), 1341ms));
+  OrganMotion motion = after({moving(1s, kSlowConvergence)});
   motion.restart();
   motion.update(moving(1030ms, kFaster));
   CHECK(even(motion, 1070ms));
@@ -72,32 +72,34 @@ TEST_CASE("organ motion: what is too hard for an organ is another place, not an 
 
 TEST_CASE("organ motion: at rest it is zero, bit by bit, and where a sample tells nothing of it") {
   CHECK(after({moving(1s, Vec3::Zero()), moving(1030ms, Vec3::Zero())}).since_sample(2s) == Vec3::Zero());
-  Sample silent = moving(1030ms, kSlow);
-  silent.here.reset();
-  CHECK(after({moving(1s, kSlow), silent}).since_sample(1070ms) == Vec3::Zero());
+  Sample silent = moving(1030ms, kSlowConvergence);
+  silent.at_tool.reset();
+  CHECK(after({moving(1s, kSlowConvergence), silent}).since_sample(1070ms) == Vec3::Zero());
   CHECK(after({silent, moving(1060ms, kFaster)}).since_sample(1100ms) == Vec3(0.04 * kFaster));
 }
 
 TEST_CASE("organ motion: finite whatever it is told") {
-  for (const double wild : {1e30, std::numeric_limits<double>::infinity(), std::nan("")}) {
-    const OrganMotion motion =
-        after({moving(1s, kSlow), moving(1030ms, {0, wild, 0}), moving(1060ms, kSlow)});
+  for (const double implausible : {1e30, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    const OrganMotion motion = after({moving(1s, kSlowConvergence), moving(1030ms, {0, implausible, 0}),
+                                      moving(1060ms, kSlowConvergence)});
     CHECK(motion.since_sample(Time{1LL << 62}).allFinite());
-    CHECK(after({moving(1s, {wild, 0, 0})}).since_sample(2s) == Vec3::Zero());
+    CHECK(after({moving(1s, {implausible, 0, 0})}).since_sample(2s) == Vec3::Zero());
   }
 }
 
 TEST_CASE("organ motion: what other tools add has no acceleration where one of them has come or gone") {
   const auto pushed = [](Time t, const Vec3& v) {
-    Sample sample = moving(t, kSlow + v);
+    Sample sample = moving(t, kSlowConvergence + v);
     sample.others = OtherTools{.v = v};
     return sample;
   };
   const auto ahead = [](const OrganMotion& motion) { return motion.since_sample(70ms); };  // 40 ms on
   const Vec3 v(0, -0.01, 0);
-  CHECK((ahead(after({pushed(0ms, Vec3::Zero()), pushed(30ms, v)})) - 0.04 * (kSlow + v)).norm() < 1e-15);
-  CHECK((ahead(after({pushed(0ms, v), pushed(30ms, Vec3::Zero())})) - 0.04 * kSlow).norm() < 1e-15);
+  CHECK((ahead(after({pushed(0ms, Vec3::Zero()), pushed(30ms, v)})) - 0.04 * (kSlowConvergence + v)).norm() <
+        1e-15);
+  CHECK((ahead(after({pushed(0ms, v), pushed(30ms, Vec3::Zero())})) - 0.04 * kSlowConvergence).norm() <
+        1e-15);
   const Vec3 faster = 1.5 * v;  // the same tools, faster: followed as the supports are
-  const Vec3 right = 0.04 * (kSlow + faster) + 0.5 * 0.04 * 0.04 * (faster - v) / 0.03;
+  const Vec3 right = 0.04 * (kSlowConvergence + faster) + 0.5 * 0.04 * 0.04 * (faster - v) / 0.03;
   CHECK((ahead(after({pushed(0ms, v), pushed(30ms, faster)})) - right).norm() < 1e-15);
 }

@@ -53,9 +53,9 @@ TEST_CASE("surface model: of the largest surface that a server offers, it keeps 
     model.take(page);
   };
   const auto fetch = [&](const Vec3& p) {
-    std::array<std::uint32_t, 8> asked;
-    for (int round = 0; model.choose_missing(p, 0.015, std::chrono::seconds(1 + round), asked); ++round) {
-      for (const std::uint32_t page : asked)
+    std::array<std::uint32_t, 8> requested;
+    for (int round = 0; model.choose_missing(p, 0.015, std::chrono::seconds(1 + round), requested); ++round) {
+      for (const std::uint32_t page : requested)
         if (page != protocol::ToolState::kNoPage) answer(page);
       REQUIRE(round < 3000);
     }

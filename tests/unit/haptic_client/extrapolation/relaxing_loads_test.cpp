@@ -16,8 +16,8 @@ using protocol::SurfacePages;
 
 namespace {
 
-constexpr double kShare = 0.5, kTime = 0.2, kCompliance = 0.004;  // -, s, m/N
-constexpr std::array kSeries{Relaxation{kShare, kTime}};
+constexpr double kFraction = 0.5, kTime = 0.2, kCompliance = 0.004;  // -, s, m/N
+constexpr std::array kSeries{Relaxation{kFraction, kTime}};
 constexpr std::uint32_t kVertices = 60, kHeld = 59;
 
 /// Vertices that do not move each other, the last of them held.
@@ -42,12 +42,12 @@ SurfaceModel surface() {
 }
 
 double crept(double t) {
-  return -std::expm1(-(1 - kShare) * t / kTime) / (1 - kShare);
+  return -std::expm1(-(1 - kFraction) * t / kTime) / (1 - kFraction);
 }
 
-protocol::RelaxedState told(int number, const Vec3& psi) {
+protocol::RelaxedState published(int number, const Vec3& psi) {
   protocol::RelaxedState state{.terms = 1, .vertices = 1};
-  state.share[0] = static_cast<float>(kShare);
+  state.fraction[0] = static_cast<float>(kFraction);
   state.time[0] = static_cast<float>(kTime);
   state.vertex[0].number = static_cast<std::uint16_t>(number);
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -63,21 +63,21 @@ TEST_CASE(
   const std::array pressed{SurfaceLoad{3, Vec3(0, -2, 1)}, SurfaceLoad{kHeld, Vec3(0, -5, 0)}};
   RelaxingLoads loads;
   loads.begin(0s, kSeries);
-  loads.press(model, pressed, 0.5);
+  loads.apply_loads(model, pressed, 0.5);
   const Vec3 f(0, -1, 0.5);
   for (Time t = 2ms; t <= 300ms; t += 2ms) {
     loads.advance(t);
-    loads.press(model, pressed, 0.5);
+    loads.apply_loads(model, pressed, 0.5);
   }
-  CHECK((loads.creep(model, 3) - kCompliance * kShare * crept(0.3) * f).norm() < 1e-4 * kCompliance);
+  CHECK((loads.creep(model, 3) - kCompliance * kFraction * crept(0.3) * f).norm() < 1e-4 * kCompliance);
   CHECK(loads.creep(model, 4).isZero(0));
   CHECK(loads.creep(model, kHeld).isZero(0));  // the wall does not creep
   for (Time t = 302ms; t <= 500ms; t += 2ms) {
-    loads.press(model, {}, 0);
+    loads.apply_loads(model, {}, 0);
     loads.advance(t);
   }
-  const double left = crept(0.3) * std::exp(-(1 - kShare) * 0.2 / kTime);
-  CHECK((loads.creep(model, 3) - kCompliance * kShare * left * f).norm() < 1e-4 * kCompliance);
+  const double left = crept(0.3) * std::exp(-(1 - kFraction) * 0.2 / kTime);
+  CHECK((loads.creep(model, 3) - kCompliance * kFraction * left * f).norm() < 1e-4 * kCompliance);
 }
 
 TEST_CASE(
@@ -92,14 +92,14 @@ TEST_CASE(
       Time t = 400ms;
       for (; t <= 400ms + delay; t += tick) {
         loads.advance(t);
-        loads.press(model, pressed, 1);
+        loads.apply_loads(model, pressed, 1);
       }
-      loads.take(model, told(3, {0, -crept(0.4), 0}), 400ms);
+      loads.take(model, published(3, {0, -crept(0.4), 0}), 400ms);
       for (; t <= 600ms; t += tick) {
         loads.advance(t);
-        loads.press(model, pressed, 1);
+        loads.apply_loads(model, pressed, 1);
       }
-      const Vec3 right(0, -kCompliance * kShare * crept(to_seconds(t - tick)), 0);
+      const Vec3 right(0, -kCompliance * kFraction * crept(to_seconds(t - tick)), 0);
       CHECK((loads.creep(model, 3) - right).norm() < 2e-3 * right.norm());
     }
   }
@@ -114,8 +114,8 @@ TEST_CASE("relaxing loads: vertices beyond their number, and of no model, change
   for (int number = 0; number < 2 * static_cast<int>(kVertices); ++number, t += 2ms) {
     const std::array pressed{SurfaceLoad{number % static_cast<int>(kHeld), Vec3(0, -1, 0)}};
     loads.advance(t);
-    loads.press(model, pressed, 1);
-    loads.take(model, told(60000, Vec3(0, -1, 0)), t);
+    loads.apply_loads(model, pressed, 1);
+    loads.take(model, published(60000, Vec3(0, -1, 0)), t);
     CHECK(loads.creeping().size() <= RelaxingLoads::kMost);
   }
   CHECK(loads.creep(model, (2 * static_cast<int>(kVertices) - 2) % static_cast<int>(kHeld)).norm() > 0);

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-using Asked = std::array<std::uint32_t, 8>;
+using Requested = std::array<std::uint32_t, 8>;
 
 struct Served {
   sim::Simulation block{test::block_scene(), test::block_mesh()};
@@ -28,8 +28,8 @@ struct Served {
   int fetch(const Vec3& p, double reach) {
     int came = 0;
     SurfacePage page;
-    for (Asked asked; model.choose_missing(p, reach, now += 8ms, asked);) {
-      for (const std::uint32_t number : asked) {
+    for (Requested requested; model.choose_missing(p, reach, now += 8ms, requested);) {
+      for (const std::uint32_t number : requested) {
         if (number == ToolState::kNoPage) continue;
         REQUIRE(pager.page(number, page));
         model.take(page);
@@ -70,12 +70,12 @@ TEST_CASE("surface model: page by page it becomes the server's surface and compl
     const Vec3 sum = a + b + c;
     return std::array{std::lround(sum[0] * 1e6), std::lround(sum[1] * 1e6), std::lround(sum[2] * 1e6)};
   };
-  std::multiset<std::array<long, 3>> here, there;
+  std::multiset<std::array<long, 3>> at_tool, there;
   const auto rest = served.model.rest();
-  for (const auto& t : served.model.triangles()) here.insert(key(rest[t[0]], rest[t[1]], rest[t[2]]));
+  for (const auto& t : served.model.triangles()) at_tool.insert(key(rest[t[0]], rest[t[1]], rest[t[2]]));
   const auto& x = served.block.rest();
   for (const auto& t : served.block.touchable(0)) there.insert(key(x[t[0]], x[t[1]], x[t[2]]));
-  CHECK(here == there);
+  CHECK(at_tool == there);
   // The same compliance, vertex by vertex.
   std::vector<int> vertex(rest.size(), -1);
   for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -103,26 +103,27 @@ TEST_CASE("surface model: page by page it becomes the server's surface and compl
 
 TEST_CASE("surface model: the nearest pages first, none twice within 200 ms, again when they were lost") {
   Served served;
-  Asked asked;
-  REQUIRE(served.model.choose_missing({0, 0, 0}, 0.006, 1s, asked));
-  const Asked first = asked;
+  Requested requested;
+  REQUIRE(served.model.choose_missing({0, 0, 0}, 0.006, 1s, requested));
+  const Requested first = requested;
   std::set<std::uint32_t> seen(first.begin(), first.end());
-  while (served.model.choose_missing({0, 0, 0}, 0.006, 1100ms, asked)) {
-    for (const std::uint32_t page : asked) CHECK((page == ToolState::kNoPage || seen.insert(page).second));
+  while (served.model.choose_missing({0, 0, 0}, 0.006, 1100ms, requested)) {
+    for (const std::uint32_t page : requested)
+      CHECK((page == ToolState::kNoPage || seen.insert(page).second));
   }
-  CHECK(served.model.choose_missing({0, 0, 0}, 0.006, 1201ms, asked));
-  CHECK(asked == first);
+  CHECK(served.model.choose_missing({0, 0, 0}, 0.006, 1201ms, requested));
+  CHECK(requested == first);
   served.now = 2s;
   SurfacePage page;
   while (!served.model.has_shape()) {  // the shape alone
-    served.model.choose_missing({0, 0, 0}, 0.006, served.now += 300ms, asked);
-    for (const std::uint32_t number : asked) {
+    served.model.choose_missing({0, 0, 0}, 0.006, served.now += 300ms, requested);
+    for (const std::uint32_t number : requested) {
       if (served.pager.page(number, page)) served.model.take(page);
     }
   }
-  REQUIRE(served.model.choose_missing({0.02, 0, 0.02}, 0.006, 60s, asked));
+  REQUIRE(served.model.choose_missing({0.02, 0, 0.02}, 0.006, 60s, requested));
   const SurfacePages pages{served.pager.state().vertices, served.pager.state().triangles};
-  const auto [a, b] = pages.clusters_of(asked[0]);
+  const auto [a, b] = pages.clusters_of(requested[0]);
   REQUIRE(a == b);
   const Vec3 near = served.model.rest()[SurfacePages::kCluster * a];
   CHECK((near - Vec3(0.02, 0, 0.02)).norm() < 0.012);
@@ -140,9 +141,9 @@ TEST_CASE(
   SurfacePage page;
   served.pager.page(0, page);
   served.model.take(page);  // of the old version
-  Asked asked;
-  REQUIRE(served.model.choose_missing({0, 0, 0}, 0.006, 9s, asked));
-  CHECK(asked[0] == 0);
+  Requested requested;
+  REQUIRE(served.model.choose_missing({0, 0, 0}, 0.006, 9s, requested));
+  CHECK(requested[0] == 0);
   served.model.announce(served.pager.state());
   REQUIRE(served.model.version() == version);
   const SurfacePages pages{served.pager.state().vertices, served.pager.state().triangles};
@@ -158,7 +159,7 @@ TEST_CASE(
   other.version ^= 4;
   served.model.announce(other);
   CHECK(served.model.version() == 0);
-  CHECK_FALSE(served.model.choose_missing({0, 0, 0}, 0.006, 99s, asked));
+  CHECK_FALSE(served.model.choose_missing({0, 0, 0}, 0.006, 99s, requested));
 }
 
 TEST_CASE("surface model: full, it forgets the oldest, it does not allocate") {
@@ -171,8 +172,8 @@ TEST_CASE("surface model: full, it forgets the oldest, it does not allocate") {
     model.announce(state);
     for (std::uint32_t page = 0; page < pages.first_tile() + SurfaceModel::kRoom + 2; ++page)
       model.take({.version = 3, .page = page, .values = {static_cast<float>(page)}});
-    Asked asked;
-    model.choose_missing({0, 0, 0}, 0.006, 1s, asked);
+    Requested requested;
+    model.choose_missing({0, 0, 0}, 0.006, 1s, requested);
     allocations = guard.count();
   }
   CHECK(allocations == 0);
@@ -204,8 +205,8 @@ TEST_CASE("surface model: what it forgot for want of room it asks for again wher
   Time now = 1s;
   const auto fetch = [&](double x) {
     std::size_t came = 0;
-    for (Asked asked; came < 50000 && model.choose_missing({x, 0, 0}, 3, now += 300ms, asked);) {
-      for (const std::uint32_t number : asked) {
+    for (Requested requested; came < 50000 && model.choose_missing({x, 0, 0}, 3, now += 300ms, requested);) {
+      for (const std::uint32_t number : requested) {
         if (number == ToolState::kNoPage) continue;
         answer(number);
         ++came;
@@ -239,7 +240,7 @@ TEST_CASE("surface model: a page that is known later is asked for again, but was
   served.fetch(Vec3::Zero(), 0);  // the shape, and what is nearest
   const Vec3 far(0.02, 0, 0);
   SurfaceModel& model = served.model;
-  Asked first, none, again;
+  Requested first, none, again;
   REQUIRE(model.choose_missing(far, 0.003, served.now += 8ms, first));
   for (const std::uint32_t number : first) {
     if (number == ToolState::kNoPage) continue;
@@ -254,8 +255,8 @@ TEST_CASE("surface model: a page that is known later is asked for again, but was
   served.now += 100ms;
   REQUIRE(model.choose_missing(far, 0.003, served.now, again));
   CHECK(again == first);
-  CHECK(model.asked_again() == 0);
+  CHECK(model.requested_again() == 0);
   served.now += 250ms;  // nobody answers
   REQUIRE(model.choose_missing(far, 0.003, served.now, again));
-  CHECK(model.asked_again() == first.size());
+  CHECK(model.requested_again() == first.size());
 }

@@ -56,7 +56,7 @@ Served serve(std::string_view model, Time delay, std::span<const Relaxation> rel
   };
   Listener listener(scene(rate), block_mesh());
   listener.block.set_delay(delay);
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   sim::Simulation truth(scene(500), block_mesh());
   std::vector<sim::ToolInput> inputs(tools);
   const auto force_at = [&](Time t) {
@@ -69,7 +69,7 @@ Served serve(std::string_view model, Time delay, std::span<const Relaxation> rel
   Served sums;
   double peak = 0;
   int ticks = 0;
-  listener.told = [&](protocol::ForceSample& sample) {
+  listener.published = [&](protocol::ForceSample& sample) {
     constant.take(client::sample_of(sample), listener.place, listener.t);
   };
   for (; listener.t < 4s; ++ticks) {
@@ -140,7 +140,7 @@ TEST_CASE("swinging tissue: what has relaxed is felt, by one term or two, at any
 TEST_CASE("swinging tissue: who joins where the tissue has relaxed feels what others feel 0.3 s later") {
   const sim::Scene scene = swinging("implicit", 33.3, kRelaxing);
   Listener there(scene, block_mesh()), joins(scene, block_mesh());
-  for (Listener* const listener : {&there, &joins}) listener->learn(kWholeModel);
+  for (Listener* const listener : {&there, &joins}) listener->learn(kEntireModel);
   const auto touching = [](Time t) -> Vec3 {
     const double s = to_seconds(t - 1s);
     return {0.004 * std::sin(3 * s), 0.003 + 0.001 * std::cos(2 * std::numbers::pi * 2.5 * s), 0.0005};
@@ -148,11 +148,11 @@ TEST_CASE("swinging tissue: who joins where the tissue has relaxed feels what ot
   double peak = 0, sum = 0;
   int ticks = 0;
   for (; there.t < 4s;) {
-    const Vec3 p = touching(there.t + kTick), felt = there.tick(p), other = joins.tick(p);
+    const Vec3 p = touching(there.t + kTick), rendered = there.tick(p), other = joins.tick(p);
     if (there.t == 3s) joins.law = client::ForceEstimate{std::make_unique<client::LocalContact>()};
-    peak = std::max(peak, felt.norm());
+    peak = std::max(peak, rendered.norm());
     if (there.t < 3300ms) continue;
-    sum += (felt - other).norm();
+    sum += (rendered - other).norm();
     ++ticks;
   }
   CHECK(peak > 0.05);
@@ -161,18 +161,18 @@ TEST_CASE("swinging tissue: who joins where the tissue has relaxed feels what ot
 
 TEST_CASE("swinging tissue: a memory that no organ has is never felt") {
   Listener listener(swinging("implicit", 33.3, kRelaxing), block_mesh());
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   int samples = 0;
-  listener.told = [&](protocol::ForceSample& sample) {
+  listener.published = [&](protocol::ForceSample& sample) {
     if (++samples < 30 || samples > 60) return;
     sample.relaxed.z.fill(samples % 2 == 0 ? 1e5F : -3);
     for (auto& vertex : sample.relaxed.vertex) vertex.psi.fill(samples % 3 == 0 ? 1e6F : 20);
   };
   double largest = 0, wildest = 0;
   for (; listener.t < 4s;) {
-    const bool wild = samples >= 30 && samples < 75;
+    const bool implausible = samples >= 30 && samples < 75;
     const double newton = listener.tick(presses(listener.t + kTick)).norm();
-    (wild ? wildest : largest) = std::max(wild ? wildest : largest, newton);
+    (implausible ? wildest : largest) = std::max(implausible ? wildest : largest, newton);
   }
   CHECK(largest > 0.05);
   CHECK(wildest < 3 * largest);
@@ -181,20 +181,20 @@ TEST_CASE("swinging tissue: a memory that no organ has is never felt") {
 TEST_CASE("swinging tissue: amplitudes, and loads of other tools, that no organ has are never felt") {
   const bool of_others = GENERATE(false, true);
   Listener listener(swinging("reduced", 33.3), block_mesh());
-  listener.learn(kWholeModel);
-  bool wild = false;
-  listener.told = [&](protocol::ForceSample& sample) {
-    if (wild && !of_others) sample.modes.q.fill(1e5F);
-    if (!wild || !of_others) return;
+  listener.learn(kEntireModel);
+  bool implausible = false;
+  listener.published = [&](protocol::ForceSample& sample) {
+    if (implausible && !of_others) sample.modes.q.fill(1e5F);
+    if (!implausible || !of_others) return;
     sample.flags |= protocol::ForceSample::kHasModalLoads;
     sample.modal_loads.count = sample.modes.count;
     sample.modal_loads.load.fill(1e6F);
   };
   double largest = 0, wildest = 0;
   for (; listener.t < 4s;) {
-    wild = listener.t > 2s && listener.t < 3s;
+    implausible = listener.t > 2s && listener.t < 3s;
     const double newton = listener.tick(presses(listener.t + kTick)).norm();
-    (wild ? wildest : largest) = std::max(wild ? wildest : largest, newton);
+    (implausible ? wildest : largest) = std::max(implausible ? wildest : largest, newton);
   }
   CHECK(largest > 0.05);
   CHECK(wildest < 2 * largest);
@@ -202,9 +202,9 @@ TEST_CASE("swinging tissue: amplitudes, and loads of other tools, that no organ 
 
 TEST_CASE("swinging tissue: modes that come and go with each sample do no harm") {
   Listener listener(swinging("reduced", 33.3), block_mesh());
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   int samples = 0;
-  listener.told = [&](protocol::ForceSample& sample) {
+  listener.published = [&](protocol::ForceSample& sample) {
     if (++samples > 30 && samples % 3 == 0) sample.flags &= ~protocol::ForceSample::kHasModes;
   };
   double largest = 0;
@@ -215,7 +215,7 @@ TEST_CASE("swinging tissue: modes that come and go with each sample do no harm")
 
 TEST_CASE("swinging tissue: after a silence of the server nothing of the old motion is left") {
   Listener listener(swinging("reduced", 33.3), block_mesh());
-  listener.learn(kWholeModel);
+  listener.learn(kEntireModel);
   double largest = 0;
   for (; listener.t < 2s;) largest = std::max(largest, listener.tick(presses(listener.t + kTick)).norm());
   for (int i = 0; i < 250; ++i) {  // 0.5 s without a sample, the tool held

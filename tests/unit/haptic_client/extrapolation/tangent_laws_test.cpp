@@ -30,7 +30,7 @@ Linearised wall(const Vec3& p) {
 
 Sample at_the_wall(std::uint64_t number, const Vec3& p) {
   Sample sample = triplet(number, p, wall(p).f);
-  sample.here = wall(p);
+  sample.at_tool = wall(p);
   return sample;
 }
 
@@ -43,7 +43,7 @@ TEST_CASE("learned stiffness: one step along a spring teaches it along the step,
   learned->update(triplet(1, p0, f(p0)));
   learned->update(triplet(2, p1, f(p1)));
   // With r = -k s the update is -k s s^T / sigma (2 - |s|^2 / sigma): almost -k along the step.
-  const double sigma = 1e-6 + 1e-10, share = 1e-6 / sigma, k = 800 * share * (2 - share);
+  const double sigma = 1e-6 + 1e-10, fraction = 1e-6 / sigma, k = 800 * fraction * (2 - fraction);
   const Vec3 p(0.002, 0.0085, -0.001);
   CHECK((learned->force(p, 70ms) - (f(p1) + Vec3(0, k * 0.0005, 0))).norm() < 1e-12);
 }

@@ -18,10 +18,10 @@ namespace {
 constexpr double kForce = 3, kSlew = 500;  // N, N/s
 
 /// Numbers, ordinary ones and others; the same for the same seed.
-class Wild {
+class Implausible {
  public:
   /// `any_count`: also of more than there is room for, which the codec refuses.
-  Wild(std::uint64_t seed, bool any_count) : random_(seed), any_count_(any_count) {}
+  Implausible(std::uint64_t seed, bool any_count) : random_(seed), any_count_(any_count) {}
   std::uint64_t below(std::uint64_t end) { return random_.bits() % end; }
   bool once_in(std::uint64_t n) { return below(n) == 0; }
 
@@ -57,7 +57,7 @@ class Wild {
     if (!once_in(40)) s.flags &= ~ForceSample::kPaused;
     s.others.v_W = vector();
     for (double& c : s.others.compliance) c = once_in(20) ? number() : ordinary(0.01);
-    s.surface_v_W = vector(), s.here = linearisation();
+    s.surface_v_W = vector(), s.at_tool = linearisation();
     s.ahead_p_W = place(), s.ahead_f_W = vector(), s.ahead = linearisation();
     s.surface = {.version = static_cast<std::uint32_t>(below(40) == 0 ? below(3) : 1),
                  .vertices = 6,
@@ -80,16 +80,16 @@ class Wild {
     };
     s.modes.count = count(3, s.modes.q.size());
     s.modal_loads.count = count(s.modes.count, s.modal_loads.load.size());
-    s.relaxed.terms = count(1 + below(2), s.relaxed.share.size());
-    s.relaxed.count = count(3, s.relaxed.z.size() / s.relaxed.share.size());
+    s.relaxed.terms = count(1 + below(2), s.relaxed.fraction.size());
+    s.relaxed.count = count(3, s.relaxed.z.size() / s.relaxed.fraction.size());
     s.relaxed.first = count(0, s.modes.q.size() - std::min<std::size_t>(s.relaxed.count, s.modes.q.size()));
-    s.relaxed.vertices = count(2, s.relaxed.vertex.size() / s.relaxed.share.size());
+    s.relaxed.vertices = count(2, s.relaxed.vertex.size() / s.relaxed.fraction.size());
     fill(s.modes.q), fill(s.modes.v), fill(s.modal_loads.load);
     s.relaxed.terms = static_cast<std::uint8_t>(once_in(10) ? below(256) : 1 + below(2));
     s.relaxed.first = static_cast<std::uint8_t>(once_in(10) ? below(256) : 0);
     s.relaxed.count = static_cast<std::uint8_t>(once_in(10) ? below(256) : 3);
     s.relaxed.vertices = static_cast<std::uint8_t>(once_in(10) ? below(256) : 2);
-    for (float& share : s.relaxed.share) share = once_in(20) ? amplitude() : 0.3F;
+    for (float& fraction : s.relaxed.fraction) fraction = once_in(20) ? amplitude() : 0.3F;
     for (float& time : s.relaxed.time) time = once_in(20) ? amplitude() : 0.5F;
     fill(s.relaxed.z);
     for (auto& vertex : s.relaxed.vertex) {
@@ -130,18 +130,19 @@ bool is_let_in(const protocol::Message& message) {
 /// Runs a law on wild input; returns the largest force that came out.
 double largest_force(const ExtrapolatorRow& law, bool through_the_wire, int ticks) {
   Pipeline pipeline(law.make(), {}, {.max_force = kForce, .max_slew = kSlew});
-  Wild wild(13, through_the_wire);
+  Implausible implausible(13, through_the_wire);
   Time t = 1s;
   Vec3 last = Vec3::Zero();
   double largest = 0;
   for (int tick = 0; tick < ticks; ++tick) {
-    const Time dt = wild.once_in(500) ? Time{1s} : Time{static_cast<Time::rep>(wild.below(4'000'000))};
+    const Time dt =
+        implausible.once_in(500) ? Time{1s} : Time{static_cast<Time::rep>(implausible.below(4'000'000))};
     t += dt;
-    const ForceSample sample = wild.sample(t);
-    const protocol::SurfacePage page = wild.page();
-    const bool fresh = wild.once_in(4) && (!through_the_wire || is_let_in(sample)),
-               paged = wild.once_in(8) && is_let_in(page);
-    const DeviceReading reading{.t = t, .p_D = wild.place(), .valid = !wild.once_in(300)};
+    const ForceSample sample = implausible.sample(t);
+    const protocol::SurfacePage page = implausible.page();
+    const bool fresh = implausible.once_in(4) && (!through_the_wire || is_let_in(sample)),
+               paged = implausible.once_in(8) && is_let_in(page);
+    const DeviceReading reading{.t = t, .p_D = implausible.place(), .valid = !implausible.once_in(300)};
     const Vec3 f = pipeline
                        .tick(reading, fresh ? &sample : nullptr,
                              std::span(&page, static_cast<std::size_t>(paged ? 1 : 0)))
@@ -156,7 +157,7 @@ double largest_force(const ExtrapolatorRow& law, bool through_the_wire, int tick
     if (dropped) REQUIRE(f.isZero(0));
     last = f;
     largest = std::max(largest, f.norm());
-    if (wild.once_in(8)) pipeline.rearm();
+    if (implausible.once_in(8)) pipeline.rearm();
   }
   return largest;
 }

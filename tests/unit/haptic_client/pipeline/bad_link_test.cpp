@@ -18,7 +18,7 @@ protocol::LinkConditions bad_link(double corrupted) {
   return {.delay = 0.005,
           .jitter = 0.05,
           .loss = 0.05,
-          .burst_begin = 0.02,
+          .burst_start = 0.02,
           .burst_end = 0.2,
           .duplicates = 0.1,
           .reordered = 0.1,
@@ -69,10 +69,10 @@ test::Server served(sim::Simulation& block) {
 
 /// What a hand felt that presses the block and slides over it, against the force of the block where it was,
 /// N.
-struct Felt {
+struct Rendered {
   double largest = 0, largest_true = 0;
-  double off_at_end = 0;     // largest error in the last second, N: the link has long been good again
-  bool whole_at_end = true;  // the model served then
+  double off_at_end = 0;      // largest error in the last second, N: the link has long been good again
+  bool entire_at_end = true;  // the model served then
   protocol::LinkCounts counts = {};
 };
 
@@ -86,26 +86,26 @@ SimulatedOperator presser() {
                       Vec3(0, 0.007, 0.004), Vec3(0.004, 0.001, 0), Vec3(-0.004, 0.001, 0)})};
 }
 
-Felt press_block(const protocol::LinkConditions& link) {
+Rendered press_block(const protocol::LinkConditions& link) {
   SimulatedOperator hand = presser();
   Pipeline pipeline(std::make_unique<LocalContact>(), {}, {.max_force = kMost, .max_slew = 100});
   sim::Simulation block(test::block_scene(), test::block_mesh()),
       truth(test::block_scene(), test::block_mesh());
   test::ClosedLoop loop(hand, pipeline, served(block), {.link = link, .seed = 7, .faults_end = kFaultsEnd});
-  Felt felt;
+  Rendered rendered;
   while (loop.seconds() < kEnd) {
     const bool last = loop.seconds() >= kLastSecond;
     const auto simpler = pipeline.stats().stepped_down;
     const TickResult tick = loop.tick();
     if (!tick.f_D.allFinite()) return {.largest = std::nan("")};
     const Vec3 right = truth.step(tick.tool.p_W, 0.001).force;
-    felt.largest = std::max(felt.largest, tick.f_D.norm());
-    felt.largest_true = std::max(felt.largest_true, right.norm());
-    if (last) felt.off_at_end = std::max(felt.off_at_end, (tick.f_D - right).norm());
-    if (last && pipeline.stats().stepped_down > simpler) felt.whole_at_end = false;
+    rendered.largest = std::max(rendered.largest, tick.f_D.norm());
+    rendered.largest_true = std::max(rendered.largest_true, right.norm());
+    if (last) rendered.off_at_end = std::max(rendered.off_at_end, (tick.f_D - right).norm());
+    if (last && pipeline.stats().stepped_down > simpler) rendered.entire_at_end = false;
   }
-  felt.counts = loop.link();
-  return felt;
+  rendered.counts = loop.link();
+  return rendered;
 }
 
 }  // namespace
@@ -114,9 +114,9 @@ TEST_CASE("bad link: whatever it does to the samples, the force is finite and wi
   for (const ExtrapolatorRow& row : extrapolators()) {
     CAPTURE(row.name);
     protocol::LinkCounts counts = {};
-    const double felt = largest_force(row, 0, counts);
-    CHECK(felt <= kMost * (1 + 1e-9));
-    CHECK(felt > 0.5);
+    const double rendered = largest_force(row, 0, counts);
+    CHECK(rendered <= kMost * (1 + 1e-9));
+    CHECK(rendered > 0.5);
     for (const std::uint64_t count :
          {counts.lost, counts.lost_in_bursts, counts.partitioned, counts.duplicated, counts.reordered})
       CHECK(count > 0);
@@ -140,7 +140,7 @@ TEST_CASE("bad link: a law that has its model feels no more than the truth, and 
        &LinkCounts::delivered},
       {"jitter", {.delay = 0.005, .jitter = 0.1}, &LinkCounts::delivered},
       {"lost", {.delay = 0.005, .loss = 0.3}, &LinkCounts::lost},
-      {"bursts", {.delay = 0.005, .burst_begin = 0.05, .burst_end = 0.2}, &LinkCounts::lost_in_bursts},
+      {"bursts", {.delay = 0.005, .burst_start = 0.05, .burst_end = 0.2}, &LinkCounts::lost_in_bursts},
       {"twice", {.delay = 0.005, .jitter = 0.02, .duplicates = 0.3}, &LinkCounts::duplicated},
       {"reordered", {.delay = 0.005, .reordered = 0.3, .reorder_delay = 0.1}, &LinkCounts::reordered},
       {"a thin line", {.delay = 0.005, .bandwidth = 20'000}, &LinkCounts::dropped_by_queue},
@@ -148,15 +148,15 @@ TEST_CASE("bad link: a law that has its model feels no more than the truth, and 
       {"all at once", bad_link(0), &LinkCounts::dropped_by_queue}};
   for (const Fault& fault : faults) {
     CAPTURE(fault.name);
-    const Felt felt = press_block(fault.link);
-    CHECK(felt.largest <= 1.01 * felt.largest_true);
-    CHECK(felt.largest > 0.5);
-    CHECK(felt.off_at_end < 0.01 * felt.largest_true);
-    CHECK(felt.whole_at_end);
-    CHECK(felt.counts.*fault.counted > 0);
+    const Rendered rendered = press_block(fault.link);
+    CHECK(rendered.largest <= 1.01 * rendered.largest_true);
+    CHECK(rendered.largest > 0.5);
+    CHECK(rendered.off_at_end < 0.01 * rendered.largest_true);
+    CHECK(rendered.entire_at_end);
+    CHECK(rendered.counts.*fault.counted > 0);
   }
   // A wrong byte may be any force or end the session, as above.
-  const Felt felt = press_block(bad_link(0.2));
-  CHECK(felt.largest <= kMost * (1 + 1e-9));
-  CHECK(felt.counts.corrupted > 0);
+  const Rendered rendered = press_block(bad_link(0.2));
+  CHECK(rendered.largest <= kMost * (1 + 1e-9));
+  CHECK(rendered.counts.corrupted > 0);
 }

@@ -29,7 +29,7 @@ struct Line {
         ++came;
       }
       const std::size_t pages = pace.allowed(now);
-      pace.asked(pages);
+      pace.requested(pages);
       for (std::size_t i = 0; i < pages; ++i) send();
     }
   }

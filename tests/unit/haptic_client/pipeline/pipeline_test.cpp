@@ -271,11 +271,11 @@ TEST_CASE("what a tick tells the server is enough to feel the same force again, 
     const bool fresh = tick % 16 == 0 && !(tick > 2900 && tick < 3000), pause = tick > 2000 && tick < 2200;
     if (pause) sample.flags |= ForceSample::kPaused;
     const DeviceReading reading{.t = t, .p_D = random.vector(0.01), .buttons = 3, .valid = !lost};
-    const TickResult felt = live.tick(reading, fresh ? &sample : nullptr);
-    CHECK(felt.used == (fresh && !pause));
-    const TickResult replayed = again.feel(felt.tool, felt.used ? &sample : nullptr);
-    CHECK(replayed.f_D == felt.f_D);
-    CHECK(replayed.tool.newest_sample == felt.tool.newest_sample);
+    const TickResult rendered = live.tick(reading, fresh ? &sample : nullptr);
+    CHECK(rendered.used == (fresh && !pause));
+    const TickResult replayed = again.render(rendered.tool, rendered.used ? &sample : nullptr);
+    CHECK(replayed.f_D == rendered.f_D);
+    CHECK(replayed.tool.newest_sample == rendered.tool.newest_sample);
   }
   CHECK(again.limiter().fault() == Fault::kNone);
   CHECK(again.limiter().counts().slewed == live.limiter().counts().slewed);

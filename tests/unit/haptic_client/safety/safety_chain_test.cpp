@@ -59,9 +59,11 @@ struct World {
 class Stroke {
  public:
   static constexpr double kStart = 1.2;  // s: the soft start is over
-  Stroke(const Hand& hand, const World& world, double speed, double press)
+  Stroke(const Hand& hand, const World& world, double speed, double apply_loads)
       : world_(world),
-        reached_(kStart + (kAbove + press / world.stiffness + press / hand.settings.hand_stiffness) / speed),
+        reached_(kStart +
+                 (kAbove + apply_loads / world.stiffness + apply_loads / hand.settings.hand_stiffness) /
+                     speed),
         person_(hand.settings,
                 Trajectory({0, kStart, reached_}, {Vec3(0, kAbove, 0), Vec3(0, kAbove, 0),
                                                    Vec3(0, kAbove - speed * (reached_ - kStart), 0)})),
@@ -208,10 +210,10 @@ TEST_CASE("passivity leaves a law that is stable alone") {
 
 TEST_CASE("a wall whose force is mostly not felt is told of") {
   Stroke stroke(kHands[0], {"constant", 2e4}, 0.02, 1.5);
-  CHECK(!stroke.pipeline.felt_share().weak());
-  bool told = false;
-  stroke.run_to(6, [&](const Vec3&) { told = told || stroke.pipeline.felt_share().weak(); });
-  CHECK(told);
+  CHECK(!stroke.pipeline.rendered_fraction().weak());
+  bool published = false;
+  stroke.run_to(6, [&](const Vec3&) { published = published || stroke.pipeline.rendered_fraction().weak(); });
+  CHECK(published);
   Stroke soft(kHands[0], {"constant", 100}, 0.02, 1.5);
-  soft.run_to(6, [&](const Vec3&) { CHECK(!soft.pipeline.felt_share().weak()); });
+  soft.run_to(6, [&](const Vec3&) { CHECK(!soft.pipeline.rendered_fraction().weak()); });
 }

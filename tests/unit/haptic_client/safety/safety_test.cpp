@@ -61,30 +61,30 @@ TEST_CASE("a share of the largest force is kept along its direction") {
 }
 
 TEST_CASE("less than half of the force for half a second is noticed, shorter, or of a small force, is not") {
-  FeltShare share;
-  const auto felt = [&](double law, double written, double seconds) {
-    for (double t = 0; t < seconds - kDt / 2; t += kDt) share.tick({0, law, 0}, {0, written, 0}, kDt);
-    return share.weak();
+  RenderedFraction fraction;
+  const auto rendered = [&](double law, double written, double seconds) {
+    for (double t = 0; t < seconds - kDt / 2; t += kDt) fraction.tick({0, law, 0}, {0, written, 0}, kDt);
+    return fraction.weak();
   };
-  CHECK(!felt(2, 1.01, 5));
-  CHECK(!felt(2, 0.99, 0.498));
-  CHECK(felt(2, 0.99, 0.004));
-  CHECK(!felt(2, 2, kDt));
-  CHECK(!felt(0.19, 0, 5));
-  CHECK(felt(2, -2, 0.6));
-  CHECK(share.total_s() == Approx(0.502 + 0.6));
-  share.restart();
-  CHECK(!share.weak());
+  CHECK(!rendered(2, 1.01, 5));
+  CHECK(!rendered(2, 0.99, 0.498));
+  CHECK(rendered(2, 0.99, 0.004));
+  CHECK(!rendered(2, 2, kDt));
+  CHECK(!rendered(0.19, 0, 5));
+  CHECK(rendered(2, -2, 0.6));
+  CHECK(fraction.total_s() == Approx(0.502 + 0.6));
+  fraction.restart();
+  CHECK(!fraction.weak());
 }
 
 TEST_CASE("anything at all goes in, and within the limits it comes out") {
   test::Random random(12);
   Limiter limiter({.max_force = 3, .max_slew = 200});
   Vec3 last = kNone;
-  const double wild[] = {0, 1e-320, 1e30, 1e308, -1e308, 5, -0.1};
+  const double implausible[] = {0, 1e-320, 1e30, 1e308, -1e308, 5, -0.1};
   for (int tick = 0; tick < 20000; ++tick) {
     Vec3 f = random.vector(10);
-    if (tick % 3 == 0) f[tick % 2] = wild[random.bits() % 7];
+    if (tick % 3 == 0) f[tick % 2] = implausible[random.bits() % 7];
     const Vec3 out = limit(limiter, f);
     REQUIRE(out.allFinite());
     REQUIRE(out.norm() <= 3 * (1 + 1e-12));
@@ -133,8 +133,8 @@ TEST_CASE("half a second of a force that no tissue makes latches, a shorter one 
     CHECK(limiter.fault() == Fault::kNone);
     limiter.push(limiter.clamp({0, 1, 0}, dt), dt);  // once less: it counts from the start
     for (int tick = 0; tick < 252; ++tick) limiter.push(limiter.clamp({0, size, 0}, dt), dt);
-    CHECK((limiter.fault() == Fault::kWild) == (size > 800));
-    CHECK(limiter.counts().wild == (size > 800 ? 1 : 0));
+    CHECK((limiter.fault() == Fault::kExcessive) == (size > 800));
+    CHECK(limiter.counts().implausible == (size > 800 ? 1 : 0));
     if (size < 800) continue;
     CHECK(limiter.push({0, 1, 0}, dt).isZero(0));
     limiter.rearm();

@@ -81,13 +81,13 @@ TEST_CASE("a client's machine that slept, with a clock that slept too or not, ha
 }
 
 TEST_CASE("a network that is gone for a while: no force from 0.4 s on, all of it 2 s after its return") {
-  const double gone = GENERATE(0.6, 3.0, 60.0);
+  const double removed = GENERATE(0.6, 3.0, 60.0);
   protocol::LinkConditions link = delayed();
-  link.partitions = {{from_seconds(1 + 4), from_seconds(1 + 4 + gone)}};
+  link.partitions = {{from_seconds(1 + 4), from_seconds(1 + 4 + removed)}};
   Pressing pressing({.up = link, .down = link});
   CHECK_THAT(pressing.after(4), WithinRel(kRest, 0.01));
   CHECK(pressing.after(0.46) == 0);
-  CHECK(pressing.after(gone - 0.46) == 0);
+  CHECK(pressing.after(removed - 0.46) == 0);
   CHECK_THAT(pressing.after(2.1), WithinRel(kRest, 0.01));
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("a tenth lost, a tenth overtaken and late, in bursts: once that is ove
   const auto seed = GENERATE(range(1, 6));
   const protocol::LinkConditions link{.delay = 0.04,
                                       .jitter = 0.03,
-                                      .burst_begin = 0.014,
+                                      .burst_start = 0.014,
                                       .burst_end = 0.125,
                                       .duplicates = 0.05,
                                       .reordered = 0.1,

@@ -10,15 +10,15 @@ using protocol::ForceSample;
 TEST_CASE("link figures: the stiffness is that into the surface, of samples in contact only") {
   LinkFigures figures;
   ForceSample sample{.number = 1, .tool_t_ns = 1'000'000};
-  sample.flags = ForceSample::kHasHere | ForceSample::kInContact;
-  sample.here.tangent = {-100, -20, 0, -300, 0, -50};  // xx xy xz yy yz zz
-  sample.here.normal_W = {0.6, 0.8, 0};
+  sample.flags = ForceSample::kHasTangent | ForceSample::kInContact;
+  sample.at_tool.tangent = {-100, -20, 0, -300, 0, -50};  // xx xy xz yy yz zz
+  sample.at_tool.normal_W = {0.6, 0.8, 0};
   figures.sample(sample, 3ms);
   // n.Kn = 0.36 * 100 + 2 * 0.48 * 20 + 0.64 * 300, by hand
   CHECK(figures.stiffest == Approx(36 + 19.2 + 192));
   CHECK(figures.age_ns.max() == 2'000'000);
-  sample.here.tangent = {-1e6, 0, 0, -1e6, 0, -1e6};
-  sample.flags = ForceSample::kHasHere;
+  sample.at_tool.tangent = {-1e6, 0, 0, -1e6, 0, -1e6};
+  sample.flags = ForceSample::kHasTangent;
   figures.sample(sample, 4ms);
   CHECK(figures.stiffest == Approx(247.2));
   sample.tool_t_ns = 9'000'000;  // from the future: no age

@@ -16,7 +16,7 @@ using protocol::Telemetry;
 namespace {
 
 std::string text(const Telemetry::Name& name) {
-  return {name.begin(), std::find(name.begin(), name.end(), std::uint8_t{0})};
+  return {name.begin(), std::ranges::find(name, std::uint8_t{0})};
 }
 
 /// A client that feels a constant force, tick by tick, with two laws beside.
@@ -57,22 +57,22 @@ TEST_CASE(
     Client client(rate_hz);
     for (int i = 0; i < 2 * rate_hz; ++i) CHECK(client.tick(1) == nullptr);
     client.maker.want(true);
-    std::vector<Telemetry> told;
+    std::vector<Telemetry> published;
     for (int i = 0; i < 2 * rate_hz; ++i)
-      if (const Telemetry* message = client.tick(1)) told.push_back(*message);
-    CHECK(told.size() >= 2 * 30 - 1);
-    CHECK(told.size() <= 2 * 34);
+      if (const Telemetry* message = client.tick(1)) published.push_back(*message);
+    CHECK(published.size() >= 2 * 30 - 1);
+    CHECK(published.size() <= 2 * 34);
     double covered = 0;
-    for (const Telemetry& message : told) covered += 1e-9 * message.dt_ns * message.count;
+    for (const Telemetry& message : published) covered += 1e-9 * message.dt_ns * message.count;
     CHECK_THAT(covered, WithinRel(2.0, 0.04));
-    for (std::size_t i = 1; i < told.size(); ++i) {
-      const double apart = 1e-9 * static_cast<double>(told[i].t_ns - told[i - 1].t_ns);
-      CHECK_THAT(apart, WithinRel(1e-9 * told[i].dt_ns * told[i].count, 1e-6));
+    for (std::size_t i = 1; i < published.size(); ++i) {
+      const double apart = 1e-9 * static_cast<double>(published[i].t_ns - published[i - 1].t_ns);
+      CHECK_THAT(apart, WithinRel(1e-9 * published[i].dt_ns * published[i].count, 1e-6));
     }
-    CHECK_THAT(1e9 / told.back().period_ns, WithinRel(rate_hz, 1e-3));
+    CHECK_THAT(1e9 / published.back().period_ns, WithinRel(rate_hz, 1e-3));
     // The last tick before the next sample sees the oldest one; a message may miss that tick.
     const double oldest = (std::floor(rate_hz / 30) - 1) / rate_hz;
-    CHECK_THAT(1e-9 * static_cast<double>(told.back().age_ns), WithinAbs(oldest, 1.01 / rate_hz));
+    CHECK_THAT(1e-9 * static_cast<double>(published.back().age_ns), WithinAbs(oldest, 1.01 / rate_hz));
   }
 }
 
@@ -90,13 +90,13 @@ TEST_CASE("telemetry: what is felt, by which law, on which device, and the laws 
   REQUIRE(newest != nullptr);
   CHECK(names == std::array<std::string, 2>{"constant", "linear_time"});
   CHECK(text(newest->device) == "falcon");
-  CHECK(text(newest->felt_law) == "constant");
+  CHECK(text(newest->rendered_law) == "constant");
   CHECK(newest->flags == Telemetry::kHasMotors);
   CHECK(newest->missed == 7);
   REQUIRE(newest->laws == 2);
   REQUIRE(newest->count == 16);
   for (std::size_t i = 0; i < newest->count; ++i) {
-    CHECK_THAT(newest->felt[i], WithinRel(1.5F, 1e-4F));
+    CHECK_THAT(newest->rendered[i], WithinRel(1.5F, 1e-4F));
     CHECK_THAT(newest->by_law[2 * i], WithinRel(1.5F, 1e-6F));
   }
   CHECK_THAT(newest->f_W[1], WithinRel(1.5, 1e-4));

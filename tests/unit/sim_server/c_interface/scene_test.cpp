@@ -59,21 +59,21 @@ struct LaterForceSample : palpate_force_sample {
 
 TEST_CASE("c_interface: the tangent of a block is the difference of its forces") {
   const Scene scene = open_scene(kConfigs + "scenes/block.toml");
-  constexpr double kDeep = 0.004, kApart = 1e-6;  // m: 2 mm deep
-  const auto low = step(scene, at(0, kDeep - kApart / 2, 0), 0);
-  const auto high = step(scene, at(0, kDeep + kApart / 2, 0), 0);
-  const auto here = step(scene, at(0, kDeep, 0), PALPATE_WANTS_TANGENT);
-  CHECK((here.flags & PALPATE_IN_CONTACT) != 0);
-  REQUIRE((here.flags & PALPATE_HAS_TANGENT) != 0);
+  constexpr double kDeep = 0.004, kSpacing = 1e-6;  // m: 2 mm deep
+  const auto low = step(scene, at(0, kDeep - kSpacing / 2, 0), 0);
+  const auto high = step(scene, at(0, kDeep + kSpacing / 2, 0), 0);
+  const auto at_tool = step(scene, at(0, kDeep, 0), PALPATE_WANTS_TANGENT);
+  CHECK((at_tool.flags & PALPATE_IN_CONTACT) != 0);
+  REQUIRE((at_tool.flags & PALPATE_HAS_TANGENT) != 0);
   CHECK((low.flags & PALPATE_HAS_TANGENT) == 0);
-  CHECK(here.force[1] > 0.3);
-  CHECK(here.normal[1] > 0.9);
-  CHECK(here.gap == 0);
+  CHECK(at_tool.force[1] > 0.3);
+  CHECK(at_tool.normal[1] > 0.9);
+  CHECK(at_tool.gap == 0);
   for (int i = 0; i < 3; ++i)
-    CHECK(here.tangent[3 * i + 1] == Approx((high.force[i] - low.force[i]) / kApart).margin(2));
-  CHECK(here.tangent[4] < -100);
-  CHECK(here.time_ns == 90'000'000);
-  CHECK(here.number == 3);
+    CHECK(at_tool.tangent[3 * i + 1] == Approx((high.force[i] - low.force[i]) / kSpacing).margin(2));
+  CHECK(at_tool.tangent[4] < -100);
+  CHECK(at_tool.time_ns == 90'000'000);
+  CHECK(at_tool.number == 3);
 }
 
 TEST_CASE(

@@ -48,31 +48,32 @@ TetMesh stirred_block(double moved) {
 }
 
 /// A tool that presses, and whose client wants to know the surface.
-struct Told {
-  explicit Told(TetMesh mesh, const char* model = "tensor_mass") : Told(cut_scene(model), std::move(mesh)) {}
-  Told(const Scene& scene, TetMesh mesh) : simulation(scene, std::move(mesh)) {}
+struct Published {
+  explicit Published(TetMesh mesh, const char* model = "tensor_mass")
+      : Published(cut_scene(model), std::move(mesh)) {}
+  Published(const Scene& scene, TetMesh mesh) : simulation(scene, std::move(mesh)) {}
   Simulation simulation;
-  ToolInput input{.pose = ToolPose(Vec3(0.001, 0.001, 0.0005)), .wants = {.surface_shift = true}};
+  ToolInput input{.pose = ToolPose(Vec3(0.001, 0.001, 0.0005)), .request = {.surface_shift = true}};
 
   const ToolAnswer& step() { return simulation.step({&input, 1}, 1 / kRate).front(); }
-  const ToolAnswer& go_on(int steps) {
+  const ToolAnswer& continue_(int steps) {
     for (int k = 1; k < steps; ++k) step();
     return step();
   }
 };
 
 /// Of these mesh vertices, that are on the surface of both, how each gives way to each; with the told modes.
-Eigen::MatrixXd told_compliance(const Simulation& simulation, std::span<const int> nodes) {
+Eigen::MatrixXd published_compliance(const Simulation& simulation, std::span<const int> nodes) {
   std::vector<int> vertices;
-  for (const int node : nodes) vertices.push_back(simulation.resection()->left().number_of(node));
+  for (const int node : nodes) vertices.push_back(simulation.resection()->remaining().number_of(node));
   ContactPatch patch;
   patch.reserve(static_cast<int>(vertices.size()), 0);
   patch.free.resize(vertices.size());
   simulation.traits().client->residual_compliance(vertices, patch);
   const auto size = 3 * static_cast<Eigen::Index>(vertices.size());
   Eigen::MatrixXd sum = patch.compliance.topLeftCorner(size, size);
-  const SlowModes& modes = *simulation.published_modes();
-  for (Eigen::Index k = 0; k < modes.told; ++k) {
+  const PublishedModes& modes = *simulation.published_modes();
+  for (Eigen::Index k = 0; k < modes.published; ++k) {
     Eigen::VectorXd shape(size);
     for (std::size_t i = 0; i < vertices.size(); ++i)
       shape.segment<3>(3 * static_cast<Eigen::Index>(i)) = modes.shapes.col(k).segment<3>(3 * vertices[i]);
@@ -98,11 +99,11 @@ Eigen::MatrixXd static_compliance(const TetMesh& mesh, std::span<const int> node
 /// Where the told modes, and the loads by the compliance of the rest, have moved the vertices that bear a
 /// load, and where these are, from rest, m.
 struct Moved {
-  Eigen::VectorXd told, is;
+  Eigen::VectorXd published, is;
 };
-Moved moved_in(const Told& told, const ToolAnswer& answer) {
-  const Simulation& simulation = told.simulation;
-  const SlowModes& modes = *simulation.published_modes();
+Moved moved_in(const Published& published, const ToolAnswer& answer) {
+  const Simulation& simulation = published.simulation;
+  const PublishedModes& modes = *simulation.published_modes();
   std::vector<int> vertices;
   Eigen::VectorXd forces(3 * static_cast<Eigen::Index>(simulation.loads(0).size()));
   for (const NodalLoad& load : simulation.loads(0)) {
@@ -117,8 +118,8 @@ Moved moved_in(const Told& told, const ToolAnswer& answer) {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const auto row = 3 * static_cast<Eigen::Index>(i);
     const auto v = static_cast<std::size_t>(vertices[i]);
-    moved.told.segment<3>(row) +=
-        modes.shapes.middleRows<3>(3 * vertices[i]).leftCols(modes.told) * answer.modes->q;
+    moved.published.segment<3>(row) +=
+        modes.shapes.middleRows<3>(3 * vertices[i]).leftCols(modes.published) * answer.modes->q;
     moved.is.segment<3>(row) = simulation.positions()[v] - simulation.rest()[v];
   }
   return moved;
@@ -149,15 +150,15 @@ TEST_CASE("a surface that can be cut: where a tool holds still, its modes stand 
   for (const auto& [model, moved] :
        {std::pair("tensor_mass", 0.0), std::pair("tensor_mass", 0.0013), std::pair("hybrid", 0.0013)}) {
     CAPTURE(model, moved);
-    Told told(stirred_block(moved), model);
-    const ToolAnswer& answer = told.go_on(150);
+    Published published(stirred_block(moved), model);
+    const ToolAnswer& answer = published.continue_(150);
     REQUIRE(answer.contacts > 0);
     REQUIRE(answer.modes != nullptr);
-    const SlowModes& modes = *told.simulation.published_modes();
-    Eigen::VectorXd held = Eigen::VectorXd::Zero(modes.told);
-    for (const NodalLoad& load : told.simulation.loads(0))
-      held += modes.shapes.middleRows<3>(3 * load.vertex).leftCols(modes.told).transpose() * load.force;
-    held.array() /= modes.frequencies.head(modes.told).array().square();
+    const PublishedModes& modes = *published.simulation.published_modes();
+    Eigen::VectorXd held = Eigen::VectorXd::Zero(modes.published);
+    for (const NodalLoad& load : published.simulation.loads(0))
+      held += modes.shapes.middleRows<3>(3 * load.vertex).leftCols(modes.published).transpose() * load.force;
+    held.array() /= modes.frequencies.head(modes.published).array().square();
     CHECK((answer.modes->q - held).norm() < 0.02 * held.norm());  // contact in a pit chatters
     CHECK(answer.modes->v.norm() < 0.01 * (answer.modes->q.cwiseProduct(modes.frequencies)).norm());
   }
@@ -166,17 +167,18 @@ TEST_CASE("a surface that can be cut: where a tool holds still, its modes stand 
 TEST_CASE("a surface that can be cut: it moves to where its told modes and the rest's compliance lead") {
   for (const char* model : {"tensor_mass", "hybrid"}) {
     CAPTURE(model);
-    Told told(deep_block(), model);
+    Published published(deep_block(), model);
     int steps = 0;  // it holds still, and what is told begins as it stands
-    while (told.step().modes == nullptr && steps < 60) ++steps;
+    while (published.step().modes == nullptr && steps < 60) ++steps;
     double off = 0, largest = 0;
     for (int k = 0; k < 90; ++k) {
-      told.input.pose = ToolPose(Vec3(0.004 * std::sin(0.1 * k), 0.001 - 0.002 * std::sin(0.25 * k), 0.0005));
-      const ToolAnswer& answer = told.step();
-      const Moved moved = moved_in(told, answer);
-      if (k == 0) CHECK((moved.told - moved.is).norm() < 0.02 * moved.is.norm());
+      published.input.pose =
+          ToolPose(Vec3(0.004 * std::sin(0.1 * k), 0.001 - 0.002 * std::sin(0.25 * k), 0.0005));
+      const ToolAnswer& answer = published.step();
+      const Moved moved = moved_in(published, answer);
+      if (k == 0) CHECK((moved.published - moved.is).norm() < 0.02 * moved.is.norm());
       largest = std::max(largest, moved.is.norm());
-      off = std::max(off, (moved.told - moved.is).norm());
+      off = std::max(off, (moved.published - moved.is).norm());
     }
     CHECK(largest > 0.002);
     CHECK(off < 0.06 * largest);  // contact chatters
@@ -185,23 +187,24 @@ TEST_CASE("a surface that can be cut: it moves to where its told modes and the r
 
 TEST_CASE("a surface that can be cut: what is told of it, before and after, is a static model's compliance") {
   const TetMesh mesh = deep_block();
-  Told told{TetMesh(mesh)};
+  Published published{TetMesh(mesh)};
   const std::vector<Removal> removals = some_removed(mesh);
   REQUIRE(removals.size() == 6);
-  told.simulation.set_cut_options({.planned = removals});
+  published.simulation.set_cut_options({.planned = removals});
   const std::vector<int> nodes = top_of(mesh);
-  told.go_on(40);
-  const Eigen::MatrixXd whole = told_compliance(told.simulation, nodes);
+  published.continue_(40);
+  const Eigen::MatrixXd entire = published_compliance(published.simulation, nodes);
   const Eigen::MatrixXd right = static_compliance(mesh, nodes);
-  CHECK((whole - right).norm() < 1e-6 * right.norm());
-  told.go_on(100);
-  REQUIRE(told.simulation.resection()->left().count() == mesh.tetrahedra.size() - 6);
-  TetMesh left = mesh;
-  keep_tetrahedra(left, [&](std::size_t t) {
+  CHECK((entire - right).norm() < 1e-6 * right.norm());
+  published.continue_(100);
+  REQUIRE(published.simulation.resection()->remaining().count() == mesh.tetrahedra.size() - 6);
+  TetMesh remaining = mesh;
+  keep_tetrahedra(remaining, [&](std::size_t t) {
     return std::ranges::none_of(removals,
                                 [&](const Removal& r) { return r.tetrahedron == static_cast<int>(t); });
   });
-  const Eigen::MatrixXd cut = told_compliance(told.simulation, nodes), anew = static_compliance(left, nodes);
+  const Eigen::MatrixXd cut = published_compliance(published.simulation, nodes),
+                        anew = static_compliance(remaining, nodes);
   CHECK((anew - right).norm() > 0.01 * right.norm());
   CHECK((cut - anew).norm() < 1e-6 * anew.norm());
 }
@@ -210,12 +213,12 @@ TEST_CASE("a surface that can be cut is told no more in the step that cuts it, a
   const TetMesh mesh = deep_block();
   std::vector<std::uint32_t> versions[2];
   for (int run = 0; run < 2; ++run) {
-    Told told{TetMesh(mesh)};
-    told.simulation.set_cut_options({.planned = some_removed(mesh)});
+    Published published{TetMesh(mesh)};
+    published.simulation.set_cut_options({.planned = some_removed(mesh)});
     for (int k = 0; k < 120; ++k) {
-      const ToolAnswer& answer = told.step();
-      CHECK((answer.modes != nullptr) == (told.simulation.published_surface() != nullptr));
-      versions[run].push_back(SurfacePager(told.simulation, 0).state().version);
+      const ToolAnswer& answer = published.step();
+      CHECK((answer.modes != nullptr) == (published.simulation.published_surface() != nullptr));
+      versions[run].push_back(SurfacePager(published.simulation, 0).state().version);
     }
   }
   CHECK(versions[0] == versions[1]);
@@ -234,44 +237,44 @@ TEST_CASE("a surface that can be cut is told no more in the step that cuts it, a
 TEST_CASE("a surface that can be cut: what a blade has parted is told as a static model's compliance of it") {
   Scene scene = cut_scene("tensor_mass");
   scene.tools[0].blade = Vec3(0, -0.012, 0);
-  Told told(scene, shaken_block({8, 4, 8}));
-  told.input.buttons = 2;
+  Published published(scene, shaken_block({8, 4, 8}));
+  published.input.buttons = 2;
   for (int k = 0; k <= 60; ++k) {
-    told.input.pose = ToolPose(Vec3(-0.022 + 0.02 * k / 60, 0.0025, 0.001));
-    told.step();
+    published.input.pose = ToolPose(Vec3(-0.022 + 0.02 * k / 60, 0.0025, 0.001));
+    published.step();
   }
-  told.input.buttons = 0;
-  told.go_on(60);
-  const Resection& cut = *told.simulation.resection();
+  published.input.buttons = 0;
+  published.continue_(60);
+  const Resection& cut = *published.simulation.resection();
   REQUIRE(cut.totals().splits > 3);
-  REQUIRE(told.simulation.published_modes() != nullptr);
-  const TetMesh& parted = told.simulation.mesh();
-  TetMesh left;  // without spare vertices
-  std::vector<int> number(parted.vertices.size(), -1);
+  REQUIRE(published.simulation.published_modes() != nullptr);
+  const TetMesh& separated = published.simulation.mesh();
+  TetMesh remaining;  // without spare vertices
+  std::vector<int> number(separated.vertices.size(), -1);
   for (int v = 0; v < static_cast<int>(number.size()); ++v) {
-    if (cut.left().around(v).empty()) continue;
-    number[static_cast<std::size_t>(v)] = static_cast<int>(left.vertices.size());
-    left.vertices.push_back(parted.vertices[static_cast<std::size_t>(v)]);
+    if (cut.remaining().around(v).empty()) continue;
+    number[static_cast<std::size_t>(v)] = static_cast<int>(remaining.vertices.size());
+    remaining.vertices.push_back(separated.vertices[static_cast<std::size_t>(v)]);
   }
-  for (Tetrahedron t : parted.tetrahedra) {
+  for (Tetrahedron t : separated.tetrahedra) {
     for (int& v : t) v = number[static_cast<std::size_t>(v)];
-    left.tetrahedra.push_back(t);
+    remaining.tetrahedra.push_back(t);
   }
   REQUIRE(cut.totals().tetrahedra == 0);
-  const auto whole = static_cast<int>(shaken_block({8, 4, 8}).vertices.size());
+  const auto entire = static_cast<int>(shaken_block({8, 4, 8}).vertices.size());
   std::vector<int> nodes, same;  // on the top, beside where the blade went: copies, too
   int copies = 0;
   for (int v = 0; v < static_cast<int>(number.size()); ++v) {
-    const Vec3& x = parted.vertices[static_cast<std::size_t>(v)];
+    const Vec3& x = separated.vertices[static_cast<std::size_t>(v)];
     if (x[1] < -0.001 || std::abs(x[2]) > 0.006 || x[0] > 0 || number[static_cast<std::size_t>(v)] < 0)
       continue;
     nodes.push_back(v);
     same.push_back(number[static_cast<std::size_t>(v)]);
-    copies += v >= whole ? 1 : 0;
+    copies += v >= entire ? 1 : 0;
   }
   REQUIRE(copies > 0);
-  const Eigen::MatrixXd right = static_compliance(left, same);
-  CHECK((told_compliance(told.simulation, nodes) - right).norm() < 1e-6 * right.norm());
+  const Eigen::MatrixXd right = static_compliance(remaining, same);
+  CHECK((published_compliance(published.simulation, nodes) - right).norm() < 1e-6 * right.norm());
 }
 
 TEST_CASE("a surface that can be cut: of a piece that hangs on nothing nothing is told, nor of its motion") {
@@ -282,7 +285,7 @@ TEST_CASE("a surface that can be cut: of a piece that hangs on nothing nothing i
     scene.cutting->smallest_piece = 0;
     if (scene.cutting->plan)
       scene.cutting->plan = CutPlan{.point = Vec3(0.01, 0, 0), .normal = Vec3::UnitX(), .within = 0.0155};
-    Told told(scene, TetMesh(mesh));
+    Published published(scene, TetMesh(mesh));
     std::vector<Removal> around;  // of a corner of the top: what is between it and the rest
     const auto in_piece = [](const Vec3& x) { return x[0] > 0.0049 && x[1] > -0.0051 && x[2] > 0.0049; };
     const auto in_box = [](const Vec3& x) { return x[0] > -1e-9 && x[1] > -0.0101 && x[2] > -1e-9; };
@@ -290,14 +293,15 @@ TEST_CASE("a surface that can be cut: of a piece that hangs on nothing nothing i
       const Vec3 centre = centre_of(mesh, mesh.tetrahedra[static_cast<std::size_t>(t)]);
       if (in_box(centre) && !in_piece(centre)) around.push_back({0.5, t});
     }
-    told.simulation.set_cut_options({.planned = around});
-    told.input.pose = ToolPose(Vec3(0.004, 0.001, 0.004));
-    told.go_on(100);
-    const auto surface = told.simulation.published_surface();
+    published.simulation.set_cut_options({.planned = around});
+    published.input.pose = ToolPose(Vec3(0.004, 0.001, 0.004));
+    published.continue_(100);
+    const auto surface = published.simulation.published_surface();
     REQUIRE(surface != nullptr);
-    REQUIRE(told.simulation.resection()->totals().tetrahedra == around.size());
+    REQUIRE(published.simulation.resection()->totals().tetrahedra == around.size());
     const auto of_piece = [&](int vertex) {
-      return in_piece(mesh.vertices[static_cast<std::size_t>(told.simulation.surface().vertices[vertex])]);
+      return in_piece(
+          mesh.vertices[static_cast<std::size_t>(published.simulation.surface().vertices[vertex])]);
     };
     CHECK(surface->shape.vertices.size() > 50);
     CHECK(std::ranges::none_of(surface->shape.vertices, of_piece));
@@ -307,40 +311,40 @@ TEST_CASE("a surface that can be cut: of a piece that hangs on nothing nothing i
 
 TEST_CASE("a surface that can be cut: cut again while it is looked at, it is told of what is left at last") {
   const TetMesh mesh = deep_block();
-  Told told{TetMesh(mesh)};
+  Published published{TetMesh(mesh)};
   std::vector<Removal> removals = some_removed(mesh);
   for (std::size_t k = 0; k < removals.size(); ++k) removals[k].t = 1 + 0.16 * static_cast<double>(k);
-  told.simulation.set_cut_options({.planned = removals});
-  told.go_on(51);
+  published.simulation.set_cut_options({.planned = removals});
+  published.continue_(51);
   for (int k = 51; k < 90; ++k) {  // the last goes at 1.8 s
-    CHECK(told.step().modes == nullptr);
+    CHECK(published.step().modes == nullptr);
   }
-  told.go_on(60);
-  TetMesh left = mesh;
-  keep_tetrahedra(left, [&](std::size_t t) {
+  published.continue_(60);
+  TetMesh remaining = mesh;
+  keep_tetrahedra(remaining, [&](std::size_t t) {
     return std::ranges::none_of(removals,
                                 [&](const Removal& r) { return r.tetrahedron == static_cast<int>(t); });
   });
   const std::vector<int> nodes = top_of(mesh);
-  const Eigen::MatrixXd right = static_compliance(left, nodes);
-  CHECK((told_compliance(told.simulation, nodes) - right).norm() < 1e-6 * right.norm());
+  const Eigen::MatrixXd right = static_compliance(remaining, nodes);
+  CHECK((published_compliance(published.simulation, nodes) - right).norm() < 1e-6 * right.norm());
 }
 
 TEST_CASE("a surface that can be cut: compliance follows the tool within one model, its pages come later") {
-  Told told(deep_block({24, 4, 24}));  // 1538 vertices on the surface: of 250 it is told
-  told.input.pose = ToolPose(Vec3(-0.008, 0.003, 0));
-  told.go_on(60);
-  SurfacePager here(told.simulation, 0);
-  REQUIRE(here.state().version != 0);
-  told.input.pose = ToolPose(Vec3(0.004, 0.003, 0));
-  told.go_on(60);
-  SurfacePager there(told.simulation, 0);
-  CHECK(there.state().version == here.state().version);
-  REQUIRE(there.pages().count() == here.pages().count());
+  Published published(deep_block({24, 4, 24}));  // 1538 vertices on the surface: of 250 it is told
+  published.input.pose = ToolPose(Vec3(-0.008, 0.003, 0));
+  published.continue_(60);
+  SurfacePager at_tool(published.simulation, 0);
+  REQUIRE(at_tool.state().version != 0);
+  published.input.pose = ToolPose(Vec3(0.004, 0.003, 0));
+  published.continue_(60);
+  SurfacePager there(published.simulation, 0);
+  CHECK(there.state().version == at_tool.state().version);
+  REQUIRE(there.pages().count() == at_tool.pages().count());
   std::size_t first = 0, second = 0, both = 0;
-  for (std::uint32_t number = here.pages().first_tile(); number < here.pages().spectrum(); ++number) {
+  for (std::uint32_t number = at_tool.pages().first_tile(); number < at_tool.pages().spectrum(); ++number) {
     protocol::SurfacePage a, b;
-    REQUIRE(here.page(number, a));
+    REQUIRE(at_tool.page(number, a));
     REQUIRE(there.page(number, b));
     const bool in_first = a.page == number, in_second = b.page == number;
     if (!in_first) CHECK(a.page == number + protocol::SurfacePages::kNotYet);
@@ -358,9 +362,10 @@ TEST_CASE("a surface that can be cut: compliance follows the tool within one mod
 TEST_CASE("a surface that can be cut: who is in a hurry waits for nothing, and is told it later",
           "[threads]") {
   const TetMesh mesh = deep_block();
-  Told told{TetMesh(mesh)};
-  told.simulation.set_cut_options({.waits_for_background = false});
-  const auto told_by_now = [&] { return told.step().modes != nullptr; };
-  for (int k = 0; k < 2000 && !told_by_now(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  CHECK(told_by_now());
+  Published published{TetMesh(mesh)};
+  published.simulation.set_cut_options({.waits_for_background = false});
+  const auto published_by_now = [&] { return published.step().modes != nullptr; };
+  for (int k = 0; k < 2000 && !published_by_now(); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  CHECK(published_by_now());
 }

@@ -50,13 +50,13 @@ TEST_CASE("slow modes: with what they give way to at rest, the rest is the stati
   for (const std::string_view model : {"tensor_mass", "reduced", "implicit"}) {
     CAPTURE(model);
     const Simulation swings(soft_block(model), block_mesh());
-    const SlowModes* const modes = swings.published_modes();
+    const PublishedModes* const modes = swings.published_modes();
     REQUIRE(modes != nullptr);
-    REQUIRE(modes->told == 20);
+    REQUIRE(modes->published == 20);
     Eigen::MatrixXd sum =
         of_patch([&](ContactPatch& patch) { swings.traits().client->residual_compliance(kSome, patch); });
     CHECK((sum - right).norm() > 0.05 * right.norm());  // the modes matter
-    for (Eigen::Index k = 0; k < modes->told; ++k) {
+    for (Eigen::Index k = 0; k < modes->published; ++k) {
       Eigen::VectorXd shape(3 * kSome.size());
       for (std::size_t i = 0; i < kSome.size(); ++i)
         shape.segment<3>(3 * static_cast<Eigen::Index>(i)) = modes->shapes.col(k).segment<3>(3 * kSome[i]);
@@ -72,12 +72,12 @@ TEST_CASE("slow modes: where they stand is where the surface has swung to, under
     Scene scene = soft_block(model);
     scene.deformation.of<RayleighDamping>().stiffness = 3e-3;  // what is quick is soon gone
     Simulation swings(scene, block_mesh());
-    const SlowModes& modes = *swings.published_modes();
+    const PublishedModes& modes = *swings.published_modes();
     std::vector<ToolInput> input(1);
     const Vec3 pressed(0.001, 0.002, 0.0005);
     double worst = 0, largest = 0;
     for (int step = 0; step < 60; ++step) {
-      input[0] = {.wants = {.here = true, .surface_shift = true}};
+      input[0] = {.request = {.at_tool = true, .surface_shift = true}};
       input[0].pose =
           step < 20 ? Vec3(pressed + Vec3(0, std::max(0.0, 0.005 - 0.0005 * step), 0)) : Vec3(0, 0.012, 0);
       const ToolAnswer answer = swings.step(input, kStep).front();
@@ -87,12 +87,12 @@ TEST_CASE("slow modes: where they stand is where the surface has swung to, under
       if (step < 25) continue;
       // Free of the tool for some steps: what is left is slow.
       for (const int v : kSome) {
-        Vec3 told = Vec3::Zero();
-        for (Eigen::Index k = 0; k < modes.told; ++k)
-          told += answer.modes->q[k] * modes.shapes.col(k).segment<3>(3 * v);
+        Vec3 published = Vec3::Zero();
+        for (Eigen::Index k = 0; k < modes.published; ++k)
+          published += answer.modes->q[k] * modes.shapes.col(k).segment<3>(3 * v);
         const Vec3 moved =
             swings.positions()[static_cast<std::size_t>(v)] - swings.rest()[static_cast<std::size_t>(v)];
-        worst = std::max(worst, (told - moved).norm());
+        worst = std::max(worst, (published - moved).norm());
         largest = std::max(largest, moved.norm());
       }
     }
@@ -110,11 +110,11 @@ TEST_CASE(
     scene.deformation.of<RayleighDamping>().stiffness = 3e-3;
     scene.material->relaxations = {{0.4, 0.1}, {0.2, 0.7}};
     Simulation swings(scene, block_mesh());
-    const SlowModes& modes = *swings.published_modes();
+    const PublishedModes& modes = *swings.published_modes();
     REQUIRE(modes.relaxations.size() == 2);
     std::vector<ToolInput> input(1);
     const auto step = [&](const Vec3& p) {
-      input[0] = {.pose = p, .wants = {.here = true, .surface_shift = true}};
+      input[0] = {.pose = p, .request = {.at_tool = true, .surface_shift = true}};
       return swings.step(input, kStep).front();
     };
     ToolAnswer answer;
@@ -136,12 +136,12 @@ TEST_CASE(
     for (std::size_t v = 0; v < all.size(); ++v)
       phi.segment<3>(static_cast<Eigen::Index>(3 * v)) +=
           0.4 * answer.modes->psi[2 * v] + 0.2 * answer.modes->psi[2 * v + 1];
-    const Eigen::VectorXd told = patch.compliance.topLeftCorner(size, size) * phi +
-                                 modes.shapes.leftCols(modes.told) * answer.modes->q;
+    const Eigen::VectorXd published = patch.compliance.topLeftCorner(size, size) * phi +
+                                      modes.shapes.leftCols(modes.published) * answer.modes->q;
     double worst = 0, largest = 0;
     for (std::size_t v = 0; v < all.size(); ++v) {
       const Vec3 moved = swings.positions()[v] - swings.rest()[v];
-      worst = std::max(worst, (moved - told.segment<3>(static_cast<Eigen::Index>(3 * v))).norm());
+      worst = std::max(worst, (moved - published.segment<3>(static_cast<Eigen::Index>(3 * v))).norm());
       largest = std::max(largest, moved.norm());
     }
     CAPTURE(held, worst, largest);
@@ -171,10 +171,10 @@ TEST_CASE(
     scene.deformation.of<RayleighDamping>() = {.mass = 20, .stiffness = 3e-3};  // at rest soon
     scene.tools.push_back(scene.tools.front());
     Simulation swings(scene, block_mesh());
-    const SlowModes& modes = *swings.published_modes();
+    const PublishedModes& modes = *swings.published_modes();
     std::vector<ToolInput> inputs(2);
-    inputs[0] = {.pose = Vec3(0.004, 0.003, 0.001), .wants = {.here = true, .surface_shift = true}};
-    inputs[1] = {.pose = Vec3(-0.008, 0.0025, -0.008), .wants = {.here = true, .surface_shift = true}};
+    inputs[0] = {.pose = Vec3(0.004, 0.003, 0.001), .request = {.at_tool = true, .surface_shift = true}};
+    inputs[1] = {.pose = Vec3(-0.008, 0.0025, -0.008), .request = {.at_tool = true, .surface_shift = true}};
     std::span<const ToolAnswer> answers;
     for (int i = 0; i < 300; ++i) answers = swings.step(inputs, kStep);
     for (std::size_t tool = 0; tool < 2; ++tool) {
@@ -185,8 +185,9 @@ TEST_CASE(
       // At rest, w^2 q is how hard both tools together drive a mode.
       Eigen::VectorXd driven = *answer.modal_loads;
       for (const NodalLoad& load : swings.loads(tool))
-        driven += modes.shapes.middleRows<3>(3 * load.vertex).leftCols(modes.told).transpose() * load.force;
-      const Eigen::VectorXd w2 = modes.frequencies.head(modes.told).array().square();
+        driven +=
+            modes.shapes.middleRows<3>(3 * load.vertex).leftCols(modes.published).transpose() * load.force;
+      const Eigen::VectorXd w2 = modes.frequencies.head(modes.published).array().square();
       const Eigen::VectorXd pulled = w2.cwiseProduct(answer.modes->q);
       CHECK((pulled - driven).norm() < 1e-3 * driven.norm());
       CHECK(answer.modal_loads->norm() > 0.1 * driven.norm());
@@ -196,17 +197,17 @@ TEST_CASE(
       });
       const auto vertex = static_cast<int>(place - swings.rest().begin());
       const auto row = 3 * static_cast<Eigen::Index>(vertex);
-      Vec3 told =
-          *answer.surface_shift_W + modes.shapes.middleRows<3>(row).leftCols(modes.told) * answer.modes->q;
+      Vec3 published = *answer.surface_shift_W +
+                       modes.shapes.middleRows<3>(row).leftCols(modes.published) * answer.modes->q;
       ContactPatch patch;
       patch.reserve(2, 0);
       patch.free.resize(2);
       for (const NodalLoad& load : swings.loads(tool)) {
         swings.traits().client->residual_compliance(std::array{vertex, load.vertex}, patch);
-        told += patch.compliance.block<3, 3>(0, 3) * load.force;
+        published += patch.compliance.block<3, 3>(0, 3) * load.force;
       }
       const Vec3 moved = swings.positions()[static_cast<std::size_t>(vertex)] - *place;
-      CHECK((told - moved).norm() < 1e-3 * moved.norm());
+      CHECK((published - moved).norm() < 1e-3 * moved.norm());
       CHECK(answer.surface_shift_W->norm() > 0.01 * moved.norm());
     }
   }
@@ -221,7 +222,7 @@ TEST_CASE("slow modes: on supports that move they stand where the tool has moved
   REQUIRE(moves.published_modes() != nullptr);
   std::vector<ToolInput> input(1);
   const auto step = [&](Simulation& simulation, const Vec3& p) -> ToolAnswer {
-    input[0] = {.pose = p, .wants = {.here = true, .surface_shift = true}};
+    input[0] = {.pose = p, .request = {.at_tool = true, .surface_shift = true}};
     return simulation.step(input, kStep).front();
   };
   double worst = 0, largest = 0;
@@ -243,7 +244,7 @@ TEST_CASE("slow modes: on supports that move they stand where the tool has moved
 
 TEST_CASE("slow modes: their pages are numbered behind the tiles, and hold shapes and spectrum") {
   const Simulation swings(soft_block("reduced"), block_mesh());
-  const SlowModes& modes = *swings.published_modes();
+  const PublishedModes& modes = *swings.published_modes();
   SurfacePager pager(swings, 0);
   const protocol::SurfacePages pages = pager.pages();
   CHECK(pages.modes == 20);

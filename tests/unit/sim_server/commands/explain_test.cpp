@@ -73,11 +73,10 @@ struct Bench {
     throw std::runtime_error("not built: " + part);
   }
   bool has(const std::string& part) const {
-    return std::any_of(explanation.built.begin(), explanation.built.end(),
-                       [&](const BuiltPart& row) { return row.part == part; });
+    return std::ranges::any_of(explanation.built, [&](const BuiltPart& row) { return row.part == part; });
   }
-  const LeftOut* left_out(const std::string& what) const {
-    for (const LeftOut& row : explanation.left_out) {
+  const Omitted* omitted(const std::string& what) const {
+    for (const Omitted& row : explanation.omitted) {
       if (row.what.find(what) != std::string::npos) return &row;
     }
     return nullptr;
@@ -131,7 +130,7 @@ TEST_CASE("explain: what a quasi-static scene with a reach builds, by line, and 
   CHECK(bench.built("mesh").bytes == 24 * mesh.vertices.size() + 16 * mesh.tetrahedra.size());
   for (const BuiltPart& part : bench.explanation.built) CHECK(part.setup_ms >= 0);
 
-  const LeftOut* reach = bench.left_out("out of reach");
+  const Omitted* reach = bench.omitted("out of reach");
   REQUIRE(reach != nullptr);
   CHECK(reach->why == bench.line("reach = "));
   CHECK(reach->note == "measured");
@@ -142,21 +141,21 @@ TEST_CASE("explain: what a quasi-static scene with a reach builds, by line, and 
   CHECK(reach->setup_ms.has_value());
   CHECK(reach->step_ms.has_value());
 
-  const LeftOut* whole = bench.left_out("other free vertices");
-  REQUIRE(whole != nullptr);
+  const Omitted* entire = bench.omitted("other free vertices");
+  REQUIRE(entire != nullptr);
   const double free = 9 * 4 * 4;  // of 9 x 4 x 5 vertices, the 9 x 4 at z = 0 are fixed
-  CHECK(whole->bytes.value() == 72 * (free * free - r * r));
-  CHECK(whole->note.find("computed") == 0);
-  CHECK_FALSE(whole->setup_ms.has_value());
+  CHECK(entire->bytes.value() == 72 * (free * free - r * r));
+  CHECK(entire->note.find("computed") == 0);
+  CHECK_FALSE(entire->setup_ms.has_value());
 }
 
 TEST_CASE("explain: without a reach none is left out, elasticity is not left out where it is built") {
   const Bench bench(kMesh + kFixed + kMaterial + model("quasi_static") + kTool);
   const double all = reachable_free(0);
   CHECK(static_cast<double>(bench.built("compliance").bytes) == 72 * all * all);
-  CHECK(bench.left_out("reach") == nullptr);
-  CHECK(bench.left_out("elasticity") == nullptr);
-  CHECK(bench.left_out("recording") != nullptr);
+  CHECK(bench.omitted("reach") == nullptr);
+  CHECK(bench.omitted("elasticity") == nullptr);
+  CHECK(bench.omitted("recording") != nullptr);
 }
 
 TEST_CASE("explain: what a scene in motion builds: tensors with its sub-steps, and compliance") {
@@ -168,46 +167,46 @@ TEST_CASE("explain: what a scene in motion builds: tensors with its sub-steps, a
   CHECK(bench.built("tensors").detail.find("144 vertices, ") == 0);  // of 9 x 4 x 5, without 9 x 4
   CHECK(bench.built("tensors").detail.find(" sub-steps of ") != std::string::npos);
   CHECK(bench.built("material").detail == "nothing kept");
-  CHECK(bench.left_out("other free vertices") != nullptr);
-  CHECK(bench.left_out("elasticity") == nullptr);
+  CHECK(bench.omitted("other free vertices") != nullptr);
+  CHECK(bench.omitted("elasticity") == nullptr);
   CHECK(bench.explanation.steps.contacts == 200);
 }
 
 TEST_CASE("explain: motion at rest, tangents and a tool's tree are left out, by line") {
   const std::string away = "[[tool]]\nradius = 0.005\nreach = [[5, 5, 5], [6, 6, 6]]\n";
   const Bench rests(kMesh + kFixed + kMaterial + model("quasi_static") + kTool + away);
-  const LeftOut* motion = rests.left_out("motion");
+  const Omitted* motion = rests.omitted("motion");
   REQUIRE(motion != nullptr);
   CHECK(motion->why == rests.line("model = "));
   const TetMesh mesh = shelf();
   CHECK(motion->bytes.value() == 224.0 * static_cast<double>(mesh.vertices.size()));
-  CHECK(rests.left_out("collision tree of tool 2")->why == rests.line("reach = "));
-  CHECK(rests.left_out("collision tree of tool 1") == nullptr);
-  CHECK(rests.left_out("tangents")->step_ms.has_value());
-  CHECK(rests.left_out("factor of") == nullptr);
+  CHECK(rests.omitted("collision tree of tool 2")->why == rests.line("reach = "));
+  CHECK(rests.omitted("collision tree of tool 1") == nullptr);
+  CHECK(rests.omitted("tangents")->step_ms.has_value());
+  CHECK(rests.omitted("factor of") == nullptr);
   const Bench moves(kMesh + kFixed + kMaterial + model("tensor_mass") + kTool);
-  CHECK(moves.left_out("motion") == nullptr);
-  CHECK(moves.left_out("factor of the stiffness matrix")->why == moves.line("model = "));
+  CHECK(moves.omitted("motion") == nullptr);
+  CHECK(moves.omitted("factor of the stiffness matrix")->why == moves.line("model = "));
 }
 
 TEST_CASE("explain: what cutting keeps is there where something is cut, and left out elsewhere") {
   const std::string scene = kMesh + kFixed + kMaterial + model("tensor_mass") + kTool;
   const Bench without(scene), with(scene + "cut_buttons = 1\n[cutting]\n");
-  CHECK(with.left_out("cutting") == nullptr);
+  CHECK(with.omitted("cutting") == nullptr);
   CHECK(with.built("resection").where == with.line("[cutting]"));
-  REQUIRE(without.left_out("cutting") != nullptr);
-  CHECK(without.left_out("cutting")->bytes.value() == static_cast<double>(with.built("resection").bytes));
+  REQUIRE(without.omitted("cutting") != nullptr);
+  CHECK(without.omitted("cutting")->bytes.value() == static_cast<double>(with.built("resection").bytes));
 }
 
 TEST_CASE("explain: friction is left out, and what it would cost is measured, unless a tool has some") {
   const std::string scene = kMesh + kFixed + kMaterial + model("quasi_static") + kTool;
   const Bench without(scene), with(scene + "friction = 0.2\n");
-  const LeftOut* row = without.left_out("friction");
+  const Omitted* row = without.omitted("friction");
   REQUIRE(row != nullptr);
   CHECK(row->why == without.line("[[tool]]"));
   CHECK(row->note == "measured");
   CHECK(row->bytes.value() > 0);
-  CHECK(with.left_out("friction") == nullptr);
+  CHECK(with.omitted("friction") == nullptr);
   CHECK(with.built("contact").detail.find("friction 0.2") != std::string::npos);
 }
 
@@ -215,7 +214,7 @@ TEST_CASE("explain: a rigid scene leaves elasticity out, measured where it could
   const Bench bench(kMesh + kFixed + kMaterial + model("rigid") + kTool);
   const double all = reachable_free(0);
   for (const char* part : {"stiffness matrix", "its factor", "compliance"}) CHECK_FALSE(bench.has(part));
-  const LeftOut* elasticity = bench.left_out("elasticity");
+  const Omitted* elasticity = bench.omitted("elasticity");
   REQUIRE(elasticity != nullptr);
   CHECK(elasticity->why == bench.line("model = "));
   CHECK(elasticity->note == "measured");
@@ -227,12 +226,12 @@ TEST_CASE("explain: a rigid scene leaves elasticity out, measured where it could
 
 TEST_CASE("explain: what elasticity would need is named where the scene lacks it") {
   const Bench neither(kMesh + model("rigid") + kTool), loose(kMesh + kMaterial + model("rigid") + kTool);
-  const LeftOut* row = neither.left_out("elasticity");
+  const Omitted* row = neither.omitted("elasticity");
   REQUIRE(row != nullptr);
   CHECK(row->why == "no [material], no [[fixed]] section");
   CHECK_FALSE(row->bytes.has_value());
   CHECK_FALSE(row->setup_ms.has_value());
-  row = loose.left_out("elasticity");
+  row = loose.omitted("elasticity");
   REQUIRE(row != nullptr);
   CHECK(row->why == "no [[fixed]] section");
   CHECK(loose.built("material").detail == "not used");
@@ -243,7 +242,7 @@ TEST_CASE("explain: a variant whose compliance would fill 2 GB is computed, not 
   const Bench bench(kMesh + kFixed + kMaterial + model("quasi_static") + "compliance_tolerance = 0\n" +
                         kTool + "reach = [[0.09, -1, 0.09], [1, 1, 1]]\n",
                     plate);
-  const LeftOut* reach = bench.left_out("out of reach");
+  const Omitted* reach = bench.omitted("out of reach");
   REQUIRE(reach != nullptr);
   const double all = 56 * 2 * 55;  // every vertex lies on the surface; those at z = 0 are fixed
   CHECK(reach->bytes.value() == 72 * all * all - static_cast<double>(bench.built("compliance").bytes));
@@ -255,7 +254,7 @@ TEST_CASE("explain: a variant that cannot be built says why") {
   // One vertex does not hold a body.
   const Bench bench(kMesh + "[[fixed]]\nbox = [[-0.041, -0.001, -0.001], [-0.039, 0.001, 0.001]]\n" +
                     kMaterial + model("rigid") + kTool);
-  const LeftOut* elasticity = bench.left_out("elasticity");
+  const Omitted* elasticity = bench.omitted("elasticity");
   REQUIRE(elasticity != nullptr);
   CHECK(elasticity->note.find("cannot be built: ") == 0);
   CHECK(elasticity->note.find("can turn about the one place -0.04,0,0") != std::string::npos);
@@ -277,12 +276,12 @@ TEST_CASE(
     "nothing") {
   const Bench bench(kMesh + kFixed + kMaterial + model("quasi_static") + kTool + kReach);
   Simulation simulation(bench.explanation.scene);
-  const Press press = find_press(bench.explanation.scene, simulation);
-  const Vec3 vertex = press.place - 0.6 * 0.004 * press.normal;
+  const Press apply_loads = find_press(bench.explanation.scene, simulation);
+  const Vec3 vertex = apply_loads.place - 0.6 * 0.004 * apply_loads.normal;
   CHECK(vertex[1] >= kTop - 0.0101);
   CHECK(vertex[2] > 0.001);
-  CHECK(simulation.step(press.place + 0.41 * 0.004 * press.normal, 1e-3).force == Vec3::Zero());
-  CHECK(simulation.step(press.place, 1e-3).force.norm() > 0.001);
+  CHECK(simulation.step(apply_loads.place + 0.41 * 0.004 * apply_loads.normal, 1e-3).force == Vec3::Zero());
+  CHECK(simulation.step(apply_loads.place, 1e-3).force.norm() > 0.001);
 }
 
 TEST_CASE("explain: each of several tools with its radius, what it reaches, and its own contact memory") {
@@ -299,10 +298,10 @@ TEST_CASE("explain: each of several tools with its radius, what it reaches, and 
   CHECK_FALSE(both.has("contact"));
   const double r = reachable_free(0.029), all = reachable_free(0);
   CHECK(static_cast<double>(both.built("compliance").bytes) == 72 * r * r);
-  REQUIRE(both.left_out("out of reach") != nullptr);
+  REQUIRE(both.omitted("out of reach") != nullptr);
   // One that reaches everything: nothing is out of reach.
   const Bench wide(kMesh + kFixed + kMaterial + model("quasi_static") + kTool + kReach + second);
-  CHECK(wide.left_out("out of reach") == nullptr);
+  CHECK(wide.omitted("out of reach") == nullptr);
   CHECK(static_cast<double>(wide.built("compliance").bytes) == 72 * all * all);
 }
 

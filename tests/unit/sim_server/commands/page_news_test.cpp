@@ -34,13 +34,13 @@ TEST_CASE("page news: ticks have a time of ours, whatever the client's clock say
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
   for (const std::int64_t t_ns : {kLeast, kMost, std::int64_t{0}, kMost, kLeast, std::int64_t{7}, kLeast}) {
     CAPTURE(t_ns);
-    protocol::Telemetry told;
-    told.t_ns = t_ns;
-    told.dt_ns = 2'000'000;
-    told.count = 3;
-    mailboxes.tools[0].telemetry.push(told);
+    protocol::Telemetry published;
+    published.t_ns = t_ns;
+    published.dt_ns = 2'000'000;
+    published.count = 3;
+    mailboxes.tools[0].telemetry.push(published);
     feed.ticks.clear();
-    hooks.news(now);
+    hooks.events(now);
     REQUIRE(feed.ticks.size() == 1);
     const ClientTicks& ticks = feed.ticks.front();
     CHECK(ticks.t + 2 * 0.002 == Approx(to_seconds(now - began)).margin(1e-5));
@@ -57,19 +57,19 @@ TEST_CASE("page news: nothing of a client that left is said of the next") {
   Time now = began;
   const auto tell = [&](std::uint8_t named, float error) {
     now += std::chrono::seconds(1);
-    protocol::Telemetry told;
-    told.t_ns = now.count();
-    told.laws = 2;
-    told.named = named;
-    told.error_percent = error;
-    mailboxes.tools[0].telemetry.push(told);
-    hooks.news(now);
+    protocol::Telemetry published;
+    published.t_ns = now.count();
+    published.laws = 2;
+    published.named = named;
+    published.error_percent = error;
+    mailboxes.tools[0].telemetry.push(published);
+    hooks.events(now);
   };
   const auto hold = [&](bool held) {
     PeerCounts counts;
     counts.held = held;
     mailboxes.tools[0].peer.write(counts);
-    hooks.news(now);
+    hooks.events(now);
   };
   hold(true);
   tell(0, 3);

@@ -112,7 +112,7 @@ TEST_CASE("pictures: how far from the plan something was cut is told where there
     show_organ(simulation, picture);
     REQUIRE(picture.resection.has_value());
     CHECK(std::isnan(picture.resection->mean_distance));
-    CHECK(std::isnan(picture.resection->farthest));
-    CHECK(std::isnan(picture.resection->mean_parted_distance));
+    CHECK(std::isnan(picture.resection->furthest));
+    CHECK(std::isnan(picture.resection->mean_separated_distance));
   }
 }

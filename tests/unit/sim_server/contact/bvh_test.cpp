@@ -41,8 +41,8 @@ struct Skin {
     return moved;
   }
   Vec3 place(test::Random& random) const {
-    const Vec3 share = random.vector(0.75);
-    return box.center() + share.cwiseProduct(box.sizes());
+    const Vec3 fraction = random.vector(0.75);
+    return box.center() + fraction.cwiseProduct(box.sizes());
   }
   Surface surface;
   std::vector<Vec3> rest, now;
@@ -87,7 +87,7 @@ std::vector<int> in_order(const std::vector<Triangle>& triangles) {
   std::vector<int> vertices;
   for (const Triangle& t : triangles) {
     for (const int vertex : t) {
-      if (std::find(vertices.begin(), vertices.end(), vertex) == vertices.end()) vertices.push_back(vertex);
+      if (std::ranges::find(vertices, vertex) == vertices.end()) vertices.push_back(vertex);
     }
   }
   return vertices;
@@ -131,7 +131,7 @@ void check_nearest(Skin skin) {
     };
     const auto closer = [&](const Triangle& a, const Triangle& b) { return to(a) < to(b); };
     const auto foot = finder.foot(skin.now, p);
-    CHECK(foot.triangle == *std::min_element(triangles.begin(), triangles.end(), closer));
+    CHECK(foot.triangle == *std::ranges::min_element(triangles, closer));
     CHECK((foot.of(skin.now) - p).squaredNorm() == to(foot.triangle));
     int corner = triangles.front()[0];
     for (const Triangle& t : triangles) {
@@ -154,27 +154,25 @@ void check_crowded(Skin skin, double length) {
   patch.reserve(finder.max_nodes(), finder.max_triangles());
   for (int i = 0; i < 30; ++i) {
     const Vec3 p = 0.1 * skin.place(random), q = p + 0.1 * length * random.vector(1).normalized();
-    const auto kept = gathered(finder, skin, p, q, kReach, patch);
-    REQUIRE(kept.size() <= static_cast<std::size_t>(finder.max_triangles()));
+    const auto stored = gathered(finder, skin, p, q, kReach, patch);
+    REQUIRE(stored.size() <= static_cast<std::size_t>(finder.max_triangles()));
     REQUIRE(finder.vertices().size() <= static_cast<std::size_t>(finder.max_nodes()));
     REQUIRE(patch.free.size() == finder.vertices().size());
-    const auto is_kept = [&](const Triangle& t) {
-      return std::find(kept.begin(), kept.end(), t) != kept.end();
-    };
-    double farthest_kept = 0, nearest_left = kReach;
+    const auto is_stored = [&](const Triangle& t) { return std::ranges::find(stored, t) != stored.end(); };
+    double max_stored = 0, nearest_remaining = kReach;
     for (const Triangle& t : skin.surface.triangles) {
       const double distance = distance_of(skin, p, q, t);
-      if (is_kept(t)) {
-        farthest_kept = std::max(farthest_kept, distance);
+      if (is_stored(t)) {
+        max_stored = std::max(max_stored, distance);
       } else {
-        nearest_left = std::min(nearest_left, distance);
+        nearest_remaining = std::min(nearest_remaining, distance);
       }
     }
-    CHECK(farthest_kept <= nearest_left);
-    CHECK(kept.size() < skin.surface.triangles.size());
+    CHECK(max_stored <= nearest_remaining);
+    CHECK(stored.size() < skin.surface.triangles.size());
     std::vector<Triangle> next;
     for (const Triangle& t : skin.surface.triangles) {
-      if (distance_of(skin, p, q, t) <= nearest_left / 0.9) next.push_back(t);
+      if (distance_of(skin, p, q, t) <= nearest_remaining / 0.9) next.push_back(t);
     }
     CHECK((next.size() > static_cast<std::size_t>(finder.max_triangles()) ||
            in_order(next).size() > static_cast<std::size_t>(finder.max_nodes())));
@@ -205,7 +203,7 @@ TEST_CASE("a hierarchy lists whose boxes meet a box in ascending order, of an em
   Bvh bvh(skin.rest, skin.surface.triangles);
   const auto all = bvh.near(skin.box);
   CHECK(all.size() == skin.surface.triangles.size());
-  CHECK(std::is_sorted(all.begin(), all.end()));
+  CHECK(std::ranges::is_sorted(all));
   const Eigen::AlignedBox3d far(Vec3(1, 1, 1), Vec3(2, 2, 2));
   CHECK(bvh.near(far).empty());
   for (Vec3& x : skin.rest) x += Vec3(1.5, 1.5, 1.5);

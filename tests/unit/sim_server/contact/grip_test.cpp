@@ -64,16 +64,16 @@ TEST_CASE("a grasped organ on a spring pulls by the spring's formula, with its e
   test::Random random(5);
   for (int i = 0; i < 20; ++i) {
     const Vec3 x = random.vector(0.04);
-    const ToolForce felt = organ.step(kPlace + x, kDt);
-    CHECK_FALSE(felt.flagged);
-    CHECK((felt.force - pull_of(x)).norm() < 1e-6 * pull_of(x).norm());
+    const ToolForce rendered = organ.step(kPlace + x, kDt);
+    CHECK_FALSE(rendered.flagged);
+    CHECK((rendered.force - pull_of(x)).norm() < 1e-6 * pull_of(x).norm());
     Mat3 right;
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 d = 1e-6 * Vec3::Unit(axis);
       right.col(axis) = (pull_of(x + d) - pull_of(x - d)) / 2e-6;
     }
-    CHECK((felt.tangent - right).norm() < 1e-6 * right.norm());
-    CHECK((felt.tangent - felt.tangent.transpose()).norm() < 1e-9 * right.norm());
+    CHECK((rendered.tangent - right).norm() < 1e-6 * right.norm());
+    CHECK((rendered.tangent - rendered.tangent.transpose()).norm() < 1e-9 * right.norm());
   }
   CHECK(organ.step(kPlace, kDt).force.norm() < 1e-9);
 }
@@ -140,7 +140,7 @@ TEST_CASE("served: the buttons of a tool state grasp, parts are told without eff
   std::vector<SessionInput> inputs{{7, {.tick = 1}, true}};
   auto& state = inputs[0].state;
   using protocol::ForceSample;
-  state.flags = protocol::ToolState::kWantsHere | protocol::ToolState::kWantsAhead;
+  state.flags = protocol::ToolState::kRequestsTangent | protocol::ToolState::kRequestsAhead;
   state.lead_ns = 20'000'000;
   state.v_W = {0.05, 0, 0};
   state.p_W = kPlace;
@@ -157,10 +157,10 @@ TEST_CASE("served: the buttons of a tool state grasp, parts are told without eff
   CHECK(allocations == 0);
   CHECK((sample.flags & ForceSample::kInContact) != 0);
   CHECK(sample.f_W[1] < -0.05);
-  CHECK(sample.here.gap == 0);
+  CHECK(sample.at_tool.gap == 0);
   const Vec3 way = sample.ahead_p_W - sample.p_W;
   CHECK(way[0] == Approx(0.001));
-  const auto& k = sample.here.tangent;
+  const auto& k = sample.at_tool.tangent;
   CHECK((sample.ahead_f_W - sample.f_W - way[0] * Vec3(k[0], k[1], k[2])).norm() < 1e-9);
   CHECK((tools.step(inputs, kDt)[0].answer->f_W - sample.f_W).norm() < 1e-9);
 }

@@ -58,25 +58,25 @@ struct Block {
 TEST_CASE("tissue: what others move matters to a tool where that met it, or where it may come to meet it") {
   Block block;
   Tissue& tissue = block.tissue;
-  const int met = block.free.front(), other = block.free.back();
+  const int touched = block.free.front(), other = block.free.back();
   const double compliance = block.compliance(other);
   REQUIRE(compliance > 0);
   const auto load_by_other = [&](int vertex, double newton) {
-    ToolTissue second = tissue.met_by(1);
+    ToolTissue second = tissue.touched_by(1);
     const NodalLoad load{vertex, Vec3(0, newton, 0)};
     second.set_loads({&load, 1});
-    second.press();
+    second.apply_loads();
   };
   const auto matters = [&](bool any, int vertex, double way) {
     load_by_other(other, 0);
-    ToolTissue first = tissue.met_by(0);
-    any ? first.mark_solved() : first.mark_solved({&met, 1});
+    ToolTissue first = tissue.touched_by(0);
+    any ? first.mark_solved() : first.mark_solved({&touched, 1});
     load_by_other(vertex, way / compliance);
-    return tissue.met_by(0).moved();
+    return tissue.touched_by(0).moved();
   };
   CHECK(!matters(false, other, 0.1 * kRadius));
   CHECK(matters(true, other, 0.1 * kRadius));
-  CHECK(matters(false, met, 0.1 * kRadius));
+  CHECK(matters(false, touched, 0.1 * kRadius));
   CHECK(matters(false, other, 0.3 * kRadius));
   CHECK(!matters(true, other, 1e-10 * kRadius));
 }
@@ -90,7 +90,7 @@ TEST_CASE("grip: of vertices that give way by themselves each takes its own load
   Grip grip(tool, rest, block.surface.triangles, 100);
   REQUIRE(grip.vertices().size() > 5);
   const Vec3 way(1e-4, 2e-4, -3e-4);  // m
-  const Grip::Pull pull = grip.pull(*tool.grasp_place + way, block.tissue.met_by(0));
+  const Grip::Pull pull = grip.pull(*tool.grasp_place + way, block.tissue.touched_by(0));
   CHECK(pull.converged);
   CHECK(pull.rounds == 1);
   const std::vector<NodalLoad> loads(block.tissue.loads_of(0).begin(), block.tissue.loads_of(0).end());

@@ -54,29 +54,29 @@ ToolAnswer slide_at(Simulation& simulation, double x, bool cuts, double dt = kSt
   return step(simulation, Vec3(x, 0.0025, 0.001), {.buttons = static_cast<std::uint16_t>(cuts ? 1 : 0)}, dt);
 }
 
-std::unique_ptr<Simulation> parted_along_x(const Scene& scene) {
+std::unique_ptr<Simulation> separated_along_x(const Scene& scene) {
   auto cut = std::make_unique<Simulation>(scene, shaken_block({8, 4, 8}));
   for (int i = 0; i <= 60; ++i) slide_at(*cut, -0.022 + 0.02 * i / 60, true);
   return cut;
 }
 
 /// At rest by and by: the force is that of linear elasticity on what is left as a mesh of its own.
-void check_bears_as_never_whole(Simulation& cut) {
+void check_bears_as_never_entire(Simulation& cut) {
   const ResectionTotals& totals = cut.resection()->totals();
   REQUIRE(totals.splits > 3);
   CHECK(totals.tetrahedra == 0);
-  Simulation whole(soft_block_scene(kDepth, "quasi_static", ElasticLaw::kLinear, 0.003),
-                   part_of(cut.mesh(), [&](int t) { return cut.resection()->left().is_left(t); }));
+  Simulation entire(soft_block_scene(kDepth, "quasi_static", ElasticLaw::kLinear, 0.003),
+                    part_of(cut.mesh(), [&](int t) { return cut.resection()->remaining().remains(t); }));
   const Vec3 place(-0.008, 0.001, 0.0035);
-  ToolAnswer felt, right;
-  for (int i = 0; i < 300; ++i) felt = step(cut, place, {}, kStep);
-  for (int i = 22; i >= 0; --i) right = step(whole, place + Vec3(0, 5e-4 * i, 0), {}, kStep);
+  ToolAnswer rendered, right;
+  for (int i = 0; i < 300; ++i) rendered = step(cut, place, {}, kStep);
+  for (int i = 22; i >= 0; --i) right = step(entire, place + Vec3(0, 5e-4 * i, 0), {}, kStep);
   REQUIRE(right.force.norm() > 0.05);
-  CHECK((felt.force - right.force).norm() < 1e-6 * right.force.norm());
+  CHECK((rendered.force - right.force).norm() < 1e-6 * right.force.norm());
 }
 
-void check_bears_as_never_whole(const Scene& scene) {
-  check_bears_as_never_whole(*parted_along_x(scene));
+void check_bears_as_never_entire(const Scene& scene) {
+  check_bears_as_never_entire(*separated_along_x(scene));
 }
 
 constexpr int kAnything = 600;  // steps
@@ -105,10 +105,10 @@ std::uint64_t flagged_by_anything(Scene scene, unsigned seed = 2) {
       const double axis_y = anywhere(0.1), axis_x = anywhere(1), angle = anywhere(0.6);
       q_from = std::exchange(q_to, Quat(Eigen::AngleAxisd(angle, Vec3(axis_x, axis_y, 1).normalized())));
     }
-    const double share = (i % 12 + 1) / 12.0;
+    const double fraction = (i % 12 + 1) / 12.0;
     std::vector<ToolInput> inputs(2);
     const bool bounces = i / 100 % 2 == 1 && i % 2 == 0;
-    inputs[0] = {.pose = ToolPose(Vec3(from + share * (to - from)), q_from.slerp(share, q_to)),
+    inputs[0] = {.pose = ToolPose(Vec3(from + fraction * (to - from)), q_from.slerp(fraction, q_to)),
                  .buttons = static_cast<std::uint16_t>(bounces ? 0 : 1)};
     inputs[1] = {.pose = ToolPose(Vec3(-0.01 + 0.02 * i / kAnything, 0.0025, 0.012)), .buttons = 1};
     for (const ToolAnswer& answer : simulation.step(inputs, kStep))
@@ -119,10 +119,10 @@ std::uint64_t flagged_by_anything(Scene scene, unsigned seed = 2) {
   CHECK(totals.tetrahedra > 20);
   CHECK(largest < 20);
   double volume = 0, enclosed = 0;
-  const CutMesh& left = simulation.resection()->left();
+  const CutMesh& remaining = simulation.resection()->remaining();
   const TetMesh& mesh = simulation.mesh();
   for (int t = 0; t < static_cast<int>(mesh.tetrahedra.size()); ++t)
-    volume += left.is_left(t) ? six_volumes(mesh, mesh.tetrahedra[t]) / 6 : 0;
+    volume += remaining.remains(t) ? six_volumes(mesh, mesh.tetrahedra[t]) / 6 : 0;
   for (const Triangle& t : simulation.surface().triangles) {
     const auto at = [&](int v) { return mesh.vertices[simulation.surface().vertices[v]]; };
     enclosed += at(t[0]).dot(at(t[1]).cross(at(t[2]))) / 6;
@@ -165,12 +165,12 @@ void check_halves_part(Scene scene) {
 }  // namespace
 
 TEST_CASE("what a blade has parted bears a tool at rest as a body that was never whole") {
-  check_bears_as_never_whole(finely_stepped(blade_scene("tensor_mass")));
+  check_bears_as_never_entire(finely_stepped(blade_scene("tensor_mass")));
 }
 
 TEST_CASE("implicit: what a blade has parted bears a tool at rest as a body that was never whole") {
   for (const auto solver : {Solver::kDirect, Solver::kQuasiNewton})
-    check_bears_as_never_whole(implicit_scene(ElasticLaw::kLinear, solver));
+    check_bears_as_never_entire(implicit_scene(ElasticLaw::kLinear, solver));
 }
 
 TEST_CASE("hybrid: what a blade has parted bears a tool at rest as a body that was never whole") {
@@ -178,7 +178,7 @@ TEST_CASE("hybrid: what a blade has parted bears a tool at rest as a body that w
   scene.tools[0].blade = Vec3(0, -0.008, 0);
   scene.cutting->region =
       Region{.box = Box{Vec3(-1, -0.012, -0.012), Vec3(0.002, 1, 0.012)}, .where = "test"};
-  check_bears_as_never_whole(finely_stepped(std::move(scene)));
+  check_bears_as_never_entire(finely_stepped(std::move(scene)));
 }
 
 TEST_CASE("a blade stops at the end of what can be cut, and says so") {
@@ -196,10 +196,10 @@ TEST_CASE("a blade stops at the end of what can be cut, and says so") {
     const auto inside = cut_within(0.016), beyond = cut_within(0.001);
     CHECK(inside->resection()->totals().time_at_end == 0);
     CHECK(beyond->resection()->totals().time_at_end > 0);
-    const int copies = beyond->resection()->left().spares().first;
+    const int copies = beyond->resection()->remaining().spares().first;
     for (int v = copies - static_cast<int>(beyond->resection()->totals().splits); v < copies; ++v)
       CHECK(beyond->mesh().vertices[static_cast<std::size_t>(v)].x() < 0.006);  // the end, and a cell of 5 mm
-    check_bears_as_never_whole(*beyond);
+    check_bears_as_never_entire(*beyond);
   }
 }
 
@@ -207,7 +207,7 @@ TEST_CASE("the area that a blade has parted is that of its way within the body")
   Simulation simulation(blade_scene("tensor_mass"), shaken_block({16, 8, 16}));
   for (int i = 0; i <= 60; ++i) slide_at(simulation, -0.022 + 0.02 * i / 60, true);
   CHECK(simulation.resection()->totals().splits > 5);
-  CHECK(simulation.resection()->totals().parted_area ==
+  CHECK(simulation.resection()->totals().separated_area ==
         Approx(0.018 * 0.0095).epsilon(0.2));  // cells of 2.5 mm
 }
 
@@ -224,7 +224,7 @@ TEST_CASE("a blade does the work of what it parts, against its way") {
     work -= on_blade.x() * speed;
   }
   // It owes a little at the end: what it parted last is done over the next length of an edge or so.
-  const double all = scene.cutting->toughness * simulation.resection()->totals().parted_area;
+  const double all = scene.cutting->toughness * simulation.resection()->totals().separated_area;
   CHECK(work < all);
   CHECK(work > 0.85 * all);
   CHECK(simulation.flagged().to_text().empty());
@@ -238,13 +238,13 @@ TEST_CASE(
   double work = 0, before = 0, largest_drop = 0;  // J, N
   for (int i = 0; i <= 110; ++i) {
     // It cuts in every third step alone, and is let go for good in the middle of the block.
-    const ToolAnswer felt = slide_at(simulation, -0.022 + speed * i, i < 66 && i % 3 != 2);
-    const double along = simulation.tool(0).force().force.x() - felt.force.x();
+    const ToolAnswer rendered = slide_at(simulation, -0.022 + speed * i, i < 66 && i % 3 != 2);
+    const double along = simulation.tool(0).force().force.x() - rendered.force.x();
     work += along * speed;
     if (i == 66) largest_drop = before - along;
     before = along;
   }
-  const double all = scene.cutting->toughness * simulation.resection()->totals().parted_area;
+  const double all = scene.cutting->toughness * simulation.resection()->totals().separated_area;
   REQUIRE(all > 1e-4);
   CHECK(work < all);
   CHECK(work > 0.95 * all);
@@ -281,18 +281,18 @@ TEST_CASE("of a blade that is felt nobody is told a tangent, which would be of t
   Simulation simulation(implicit_scene(ElasticLaw::kLinear, Solver::kDirect), shaken_block({8, 4, 8}));
   const auto here_at = [&](int i, bool cuts) {
     ToolInput input{.buttons = static_cast<std::uint16_t>(cuts ? 1 : 0)};
-    input.wants.here = true;
-    return step(simulation, Vec3(-0.018 + 1e-3 * i, 0.0025, 0.001), input, kStep).here.has_value();
+    input.request.at_tool = true;
+    return step(simulation, Vec3(-0.018 + 1e-3 * i, 0.0025, 0.001), input, kStep).at_tool.has_value();
   };
   for (int i = 0; i < 3; ++i) CHECK(here_at(i, false));
-  int felt = 0;
+  int rendered = 0;
   for (int i = 3; i < 20; ++i) {
-    const bool told = here_at(i, true);
+    const bool published = here_at(i, true);
     const Vec3 on_blade = simulation.cut()->log().back().f_W - simulation.tool(0).force().force;
-    CHECK(told == on_blade.isZero(0));
-    felt += told ? 0 : 1;
+    CHECK(published == on_blade.isZero(0));
+    rendered += published ? 0 : 1;
   }
-  CHECK(felt > 10);
+  CHECK(rendered > 10);
   here_at(20, false);
   CHECK(here_at(20, false));
 }

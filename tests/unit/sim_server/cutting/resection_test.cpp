@@ -31,7 +31,7 @@ Scene cut_scene(std::string_view model, double power = 2) {
   return scene;
 }
 
-ToolAnswer press(Simulation& simulation, const Vec3& p, bool hot) {
+ToolAnswer apply_loads(Simulation& simulation, const Vec3& p, bool hot) {
   return step(simulation, p, {.buttons = static_cast<std::uint16_t>(hot ? 1 : 0)}, kStep);
 }
 
@@ -39,7 +39,7 @@ ToolAnswer press(Simulation& simulation, const Vec3& p, bool hot) {
 double largest_force(Simulation& simulation, int steps, bool hot) {
   double largest = 0;
   for (int i = 0; i < steps; ++i)
-    largest = std::max(largest, press(simulation, Vec3(0.001, 0.001, 0.0005), hot).force.norm());
+    largest = std::max(largest, apply_loads(simulation, Vec3(0.001, 0.001, 0.0005), hot).force.norm());
   return largest;
 }
 
@@ -56,13 +56,13 @@ TEST_CASE("what is left bears a tool at rest as a body that was never whole") {
     largest_force(cut, 45, true);
     REQUIRE(cut.resection()->totals().tetrahedra > 5);
     Scene scene = soft_block_scene(kDepth, "quasi_static", ElasticLaw::kLinear, 0.003);
-    Simulation whole(scene, rest_of(deep_block(), cut.resection()->left()));
+    Simulation entire(scene, rest_of(deep_block(), cut.resection()->remaining()));
     const Vec3 place(0.001, -0.001, 0.0005);
-    ToolAnswer felt, right;
-    for (int i = 0; i < 300; ++i) felt = press(cut, place, false);
-    for (int i = 22; i >= 0; --i) right = step(whole, place + Vec3(0, 5e-4 * i, 0), {}, kStep);
+    ToolAnswer rendered, right;
+    for (int i = 0; i < 300; ++i) rendered = apply_loads(cut, place, false);
+    for (int i = 22; i >= 0; --i) right = step(entire, place + Vec3(0, 5e-4 * i, 0), {}, kStep);
     REQUIRE(right.force.norm() > 0.05);
-    CHECK((felt.force - right.force).norm() < 1e-6 * right.force.norm());
+    CHECK((rendered.force - right.force).norm() < 1e-6 * right.force.norm());
   }
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("a removal under full indentation is no kick") {
     CHECK(simulation.resection()->totals().tetrahedra > 10);
     CHECK(after <= 1.02 * before);
     CHECK(simulation.flagged().to_text().empty());
-    CHECK(press(simulation, Vec3(0.001, 0.001, 0.0005), false).force.norm() < 0.5 * before);
+    CHECK(apply_loads(simulation, Vec3(0.001, 0.001, 0.0005), false).force.norm() < 0.5 * before);
   }
 }
 
@@ -85,16 +85,16 @@ TEST_CASE("the elastic energy that went is what the body lost") {
   Scene scene = cut_scene("tensor_mass");
   Simulation simulation(scene, deep_block());
   for (int i = 0; i < 60; ++i) largest_force(simulation, 1, false);  // at rest
-  const Solid whole(simulation.mesh(), *scene.material);
-  Solid left(simulation.mesh(), *scene.material);
+  const Solid entire(simulation.mesh(), *scene.material);
+  Solid remaining(simulation.mesh(), *scene.material);
   double lost = 0;
   while (simulation.resection()->totals().tetrahedra == 0) {
     const std::vector<Vec3> x(simulation.nodes().begin(), simulation.nodes().end());
     largest_force(simulation, 1, true);
-    for (std::size_t t = 0; t < left.elements(); ++t) {
-      if (!simulation.resection()->left().is_left(static_cast<int>(t))) left.remove(t);
+    for (std::size_t t = 0; t < remaining.elements(); ++t) {
+      if (!simulation.resection()->remaining().remains(static_cast<int>(t))) remaining.remove(t);
     }
-    lost = whole.energy(x) - left.energy(x);
+    lost = entire.energy(x) - remaining.energy(x);
   }
   REQUIRE(lost > 0);
   CHECK(simulation.resection()->totals().elastic == Approx(lost).epsilon(1e-3));
@@ -108,13 +108,13 @@ TEST_CASE("the momentum that goes with a loose piece is what tools gave it, and 
   scene.deformation.of<RayleighDamping>().mass = 0;
   scene.cutting->smallest_piece = 1e-9;
   Simulation simulation(scene, deep_block());
-  constexpr double kFree = 0.2, kGone = 0.4, kShort = 1e-3;  // s: it comes loose, and goes; a step
+  constexpr double kFree = 0.2, kRemoved = 0.4, kShort = 1e-3;  // s: it comes loose, and goes; a step
   std::vector<Removal> removals;
   double mass = 0;
   for (int t = 0; t < static_cast<int>(simulation.mesh().tetrahedra.size()); ++t) {
     const Tetrahedron& corners = simulation.mesh().tetrahedra[static_cast<std::size_t>(t)];
     const double y = centre_of(simulation.mesh(), corners).y();
-    if (y > -0.01) removals.push_back({y > -0.005 ? kGone : kFree, t});
+    if (y > -0.01) removals.push_back({y > -0.005 ? kRemoved : kFree, t});
     if (y > -0.005) mass += scene.material->density * six_volumes(simulation.mesh(), corners) / 6;
   }
   std::ranges::stable_sort(removals, {}, &Removal::t);
@@ -163,7 +163,7 @@ TEST_CASE("two hot tips cut at once, and a tool that grasps lets go of what is g
     }
     for (std::size_t tool = 0; tool < 3; ++tool) {
       for (const NodalLoad& load : simulation.loads(tool))
-        CHECK(simulation.resection()->left().on_surface(load.vertex));
+        CHECK(simulation.resection()->remaining().on_surface(load.vertex));
     }
   }
   CHECK(simulation.resection()->totals().tetrahedra > 50);
@@ -183,16 +183,16 @@ TEST_CASE("a body can be cut until nothing but what holds it is left, or nothing
     }
   };
   int steps = 0;
-  for (; simulation.resection()->left().count() > 0 && steps < 600; ++steps) {
-    const ToolAnswer answer = press(simulation, Vec3(0, 0.002 - 1e-4 * steps, 0), steps % 2 == 0);
+  for (; simulation.resection()->remaining().count() > 0 && steps < 600; ++steps) {
+    const ToolAnswer answer = apply_loads(simulation, Vec3(0, 0.002 - 1e-4 * steps, 0), steps % 2 == 0);
     CHECK(answer.force.allFinite());
     CHECK(answer.force.norm() < 20);
     if (steps % 20 == 0) check_held();
   }
   check_held();
-  CHECK(simulation.resection()->left().count() == 0);
+  CHECK(simulation.resection()->remaining().count() == 0);
   CHECK(simulation.surface().triangles.empty());
-  const ToolAnswer nothing = press(simulation, Vec3::Zero(), true);
+  const ToolAnswer nothing = apply_loads(simulation, Vec3::Zero(), true);
   CHECK(nothing.force == Vec3::Zero());
   CHECK(simulation.failures().other == 0);
   CHECK(simulation.resection()->totals().volume == Approx(0.04 * 0.04 * kDepth));
@@ -201,14 +201,14 @@ TEST_CASE("a body can be cut until nothing but what holds it is left, or nothing
 TEST_CASE("a tip heats for as long as it is pressed, never before") {
   Simulation simulation(cut_scene("tensor_mass", 200), deep_block());
   const ResectionTotals& totals = simulation.resection()->totals();
-  CHECK_FALSE(press(simulation, Vec3(0.001, 0.001, 0.0005), false).cutting);
-  CHECK(press(simulation, Vec3(0.001, 0.001, 0.0005), true).cutting);
+  CHECK_FALSE(apply_loads(simulation, Vec3(0.001, 0.001, 0.0005), false).cutting);
+  CHECK(apply_loads(simulation, Vec3(0.001, 0.001, 0.0005), true).cutting);
   CHECK(totals.hot_time == 0);  // the button went down somewhere in that step
   CHECK(totals.tetrahedra == 0);
-  CHECK_FALSE(press(simulation, Vec3(0.001, 0.001, 0.0005), false).cutting);
+  CHECK_FALSE(apply_loads(simulation, Vec3(0.001, 0.001, 0.0005), false).cutting);
   CHECK(totals.hot_time == kStep);
   CHECK(totals.tetrahedra > 0);
-  press(simulation, Vec3(0.001, 0.001, 0.0005), false);
+  apply_loads(simulation, Vec3(0.001, 0.001, 0.0005), false);
   CHECK(totals.hot_time == kStep);
 }
 
@@ -235,7 +235,7 @@ TEST_CASE("a resection gives the same bytes each time") {
   std::uint64_t hashes[2];
   for (std::uint64_t& hash : hashes) {
     Simulation simulation(cut_scene("tensor_mass", 10), deep_block());
-    for (int i = 0; i < 60; ++i) press(simulation, Vec3(0.0002 * i, 0.001 - 5e-5 * i, 0), i % 3 != 0);
+    for (int i = 0; i < 60; ++i) apply_loads(simulation, Vec3(0.0002 * i, 0.001 - 5e-5 * i, 0), i % 3 != 0);
     CHECK(simulation.resection()->totals().tetrahedra > 5);
     hash = simulation.state_hash();
   }

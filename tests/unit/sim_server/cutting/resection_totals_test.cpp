@@ -44,7 +44,7 @@ TEST_CASE("tensors after removals have the bits of a fresh assembly of what is l
   std::minstd_rand random(3);
   std::vector<int> order(mesh.tetrahedra.size());
   std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), random);
+  std::ranges::shuffle(order, random);
   for (std::size_t at = 0; at + 40 < order.size(); at += 40) {
     const std::span<const int> removed = std::span(order).subspan(at, 40);
     cut.remove(removed, surface);
@@ -83,8 +83,8 @@ TEST_CASE("volume, area and distances of what is gone are those of the cells tha
   CHECK(totals.volume == Approx(125e-9));
   CHECK(totals.cut_area == Approx(5 * 25e-6));
   CHECK(totals.mean_distance() == Approx(0.0075));
-  CHECK(totals.farthest > 0.0075);
-  CHECK(totals.farthest < 0.01);
+  CHECK(totals.furthest > 0.0075);
+  CHECK(totals.furthest < 0.01);
   remove_cell_at(Vec3(-0.0025, -0.0025, 0.0025));  // next to it: their common side is gone
   CHECK(totals.volume == Approx(250e-9));
   CHECK(totals.cut_area == Approx(8 * 25e-6));
@@ -149,17 +149,17 @@ TEST_CASE("ten thousand removals leave a closed surface, tensors as assembled an
   std::size_t bytes = 0;
   std::vector<int> order(mesh.tetrahedra.size());
   std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), std::minstd_rand(5));
+  std::ranges::shuffle(order, std::minstd_rand(5));
   REQUIRE(order.size() > 10000);
   for (int k = 0; k < 10000; ++k) {
     if (k == 2000) bytes = resection.bytes();
     const std::span<const int> one(&order[static_cast<std::size_t>(k)], 1);
-    tensors.remove(resection.remove(one, surface), resection.left(), material);
+    tensors.remove(resection.remove(one, surface), resection.remaining(), material);
   }
-  CHECK(resection.left().count() == mesh.tetrahedra.size() - 10000);
+  CHECK(resection.remaining().count() == mesh.tetrahedra.size() - 10000);
   CHECK(resection.totals().tetrahedra == 10000);
   CHECK(resection.bytes() <= bytes);
-  const TetMesh rest = rest_of(mesh, resection.left());
+  const TetMesh rest = rest_of(mesh, resection.remaining());
   const OuterFaces right = outer_faces(rest);
   CHECK(right.overlaps.empty());
   CHECK(in_order(by_mesh_vertices(surface)) == in_order(right.triangles));

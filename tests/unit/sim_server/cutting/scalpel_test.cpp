@@ -40,14 +40,14 @@ struct Cut {
     const Parting parting = cut.part(stroke.faces, surface);
     for (const Split& split : parting.splits)
       places[cut.number_of(split.copy)] = places[cut.number_of(split.vertex)];
-    for (Piece& piece : finder.parted(cut, parting.tetrahedra)) pieces.push_back(std::move(piece));
+    for (Piece& piece : finder.separated(cut, parting.tetrahedra)) pieces.push_back(std::move(piece));
   }
   /// From outside to outside, in so many steps: turned by `turn` (rad) about z, and by `lean` about x.
   void go_through(double x, double turn, double lean, int steps) {
     const Quat q(Eigen::AngleAxisd(turn, Vec3::UnitZ()) * Eigen::AngleAxisd(lean, Vec3::UnitY()));
     const Vec3 along = q * Vec3(0, -1, 0), ahead = q * Vec3(0, 0, 1), from(x, 0.02, 0);
-    const auto edge_at = [&](double share) {
-      const Vec3 a = from + (2 * share - 1) * 0.04 * ahead;
+    const auto edge_at = [&](double fraction) {
+      const Vec3 a = from + (2 * fraction - 1) * 0.04 * ahead;
       return BladeEdge{a, a + 0.06 * along};
     };
     for (int i = 1; i <= steps; ++i) go(edge_at((i - 1.0) / steps), edge_at(static_cast<double>(i) / steps));
@@ -110,7 +110,7 @@ TEST_CASE("what another tool touches does not slide onto the way of a blade, as 
 }
 
 TEST_CASE("tissue that trembles under a blade is parted as tissue at rest is") {
-  const auto parted_area = [](double trembles) {  // m, across the way of the blade
+  const auto separated_area = [](double trembles) {  // m, across the way of the blade
     Cut body({12, 6, 12});
     const std::vector<Vec3> rest = body.places;
     std::vector<Vec3> were = body.places;
@@ -140,7 +140,7 @@ TEST_CASE("tissue that trembles under a blade is parted as tissue at rest is") {
     }
     return body.cut.cut_area();
   };
-  const double still = parted_area(0);
+  const double still = separated_area(0);
   REQUIRE(still > 2 * 0.04 * kDepth);
-  CHECK(parted_area(1e-4) == Approx(still).epsilon(0.15));
+  CHECK(separated_area(1e-4) == Approx(still).epsilon(0.15));
 }

@@ -50,7 +50,7 @@ TEST_CASE("patch test: prescribing a linear field on the boundary gives it insid
     u.segment<3>(3 * v) = gradient * x;
     (is_inner(x) ? inner : outer).push_back(v);
   }
-  REQUIRE(std::count_if(inner.begin(), inner.end(), [](int v) { return v < 64; }) == 8);
+  REQUIRE(std::ranges::count_if(inner, [](int v) { return v < 64; }) == 8);
   // Solve K_ii u_i = -K_io u_o with the program's own dofs and Cholesky.
   const FreeDofs dofs(n, outer);
   const SparseCholesky factor = factor_of(solid, dofs);

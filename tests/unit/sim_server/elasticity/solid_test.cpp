@@ -210,7 +210,7 @@ TEST_CASE("solid: the same bytes with one thread and two") {
 
 TEST_CASE("a tetrahedron pushed through itself is inverted, a sliver that turns over is not told of") {
   const std::vector<Vec3> corners{{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}};
-  for (const auto& [height, told] :
+  for (const auto& [height, published] :
        {std::pair(0.008, true), std::pair(0.0005, true), std::pair(0.00002, false)}) {
     CAPTURE(height);
     TetMesh mesh{.vertices = corners, .tetrahedra = {{0, 1, 2, 3}}, .surface_tags = {}};
@@ -221,7 +221,7 @@ TEST_CASE("a tetrahedron pushed through itself is inverted, a sliver that turns 
     x[3][2] = 1e-9;
     CHECK_FALSE(any_inverted(solid, x));
     x[3][2] = -1e-9;
-    CHECK(any_inverted(solid, x) == told);
+    CHECK(any_inverted(solid, x) == published);
   }
 }
 

@@ -44,7 +44,7 @@ Eigen::Map<const Eigen::VectorXd> as_vector(const std::vector<double>& x) {
 }
 
 void start_in(ExplicitMotion& motion, const Eigen::VectorXd& u) {
-  std::copy(u.begin(), u.end(), motion.state.u.begin());
+  std::ranges::copy(u, motion.state.u.begin());
 }
 
 /// t and a of the recursion, by least squares over a run in one mode.
@@ -81,7 +81,7 @@ double energy(const Tissue& tissue, const ExplicitMotion& motion) {
 }
 
 /// What symplectic Euler keeps to the last bit but rounding: 1/2 v M v + 1/2 u K (u - h v).
-double kept_energy(const Tissue& tissue, const ExplicitMotion& motion, double h) {
+double stored_energy(const Tissue& tissue, const ExplicitMotion& motion, double h) {
   const auto u = as_vector(motion.state.u), v = as_vector(motion.state.v);
   return 0.5 * v.dot(tissue.dense.mass.cwiseProduct(v)) + 0.5 * u.dot(tissue.dense.stiffness * (u - h * v));
 }
@@ -153,12 +153,12 @@ TEST_CASE("explicit motion: the highest frequency, and the sub-step at which a m
   for (const RayleighDamping damping :
        {kUndamped, RayleighDamping{50, 0}, RayleighDamping{0, 1e-4}, RayleighDamping{200, 2e-3}}) {
     const double limit = longest_sub_step(highest, damping);
-    for (const double share : {0.999, 1.001}) {
+    for (const double fraction : {0.999, 1.001}) {
       ExplicitMotion motion(tissue.tensors, damping);
       start_in(motion, tissue.dense.modes.rightCols<1>());
-      for (int i = 0; i < 20000; ++i) motion.run(1, share * limit, kNone);
+      for (int i = 0; i < 20000; ++i) motion.run(1, fraction * limit, kNone);
       const double grown = as_vector(motion.state.u).norm() / tissue.dense.modes.rightCols<1>().norm();
-      CHECK((share < 1 ? grown < 100 : !(grown < 1e3)));
+      CHECK((fraction < 1 ? grown < 100 : !(grown < 1e3)));
     }
   }
 }
@@ -203,13 +203,13 @@ TEST_CASE("explicit motion: energy stays without damping over 1e4 sub-steps, and
   ExplicitMotion motion(tissue.tensors, kUndamped);
   test::Random random(5);
   for (double& u : motion.state.u) u = random.between(-1e-3, 1e-3);
-  const double kept = kept_energy(tissue, motion, h), first = energy(tissue, motion);
+  const double stored = stored_energy(tissue, motion, h), first = energy(tissue, motion);
   double most = 0;
   for (int i = 0; i < 10000; ++i) {
     motion.run(1, h, kNone);
     most = std::max(most, energy(tissue, motion));
   }
-  CHECK(kept_energy(tissue, motion, h) == Approx(kept).epsilon(1e-10));
+  CHECK(stored_energy(tissue, motion, h) == Approx(stored).epsilon(1e-10));
   CHECK(most < first * (1 + 0.95) / (1 - 0.95));  // h w / 2 = 0.95 for the worst mode
 
   const RayleighDamping damping{20, 1e-4};
@@ -313,14 +313,14 @@ TEST_CASE("ExplicitMotion: a sub-step that begins before the last kicks ends as 
     const int kicks = std::array{40, 2, vertices + 20, 0}[static_cast<std::size_t>(round % 4)];
     for (int k = 0; k < kicks; ++k) {
       const int place = kicks == 2 ? vertices / 2 : (k * 37 + 11 * round) % vertices;
-      motion.kick(place, kStep, Vec3(0.01 * std::cos(k), 0.02, -0.01 * round));
+      motion.add_impulse(place, kStep, Vec3(0.01 * std::cos(k), 0.02, -0.01 * round));
     }
   };
   const auto moved = [&](int threads, bool begins, bool drops) {
     ExplicitMotion motion(tensors, {3, 2e-4}, 1, threads);
     motion.run(kStep);
     for (int round = 0; round < 12; ++round) {
-      if (begins) motion.begin_next();
+      if (begins) motion.start_next();
       kick_round(motion, round);
       if (drops) motion.drop_next();
       round == 9 ? motion.run(kStep) : motion.run_on(kStep);
@@ -340,6 +340,6 @@ TEST_CASE("ExplicitMotion: a sub-step that begins before the last kicks ends as 
   }
   for (int end = 0; end < 20; ++end) {  // while helpers are at it
     ExplicitMotion motion(tensors, {3, 2e-4}, 1, 2);
-    motion.begin_next();
+    motion.start_next();
   }
 }

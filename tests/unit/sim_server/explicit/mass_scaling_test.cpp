@@ -33,16 +33,16 @@ double mass_of(const TetMesh& mesh, std::size_t tetrahedron) {
   return kSoft.density * six_volumes(mesh, mesh.tetrahedra[tetrahedron]) / 6;
 }
 
-Scene cuttable_scene(double share) {
+Scene cuttable_scene(double fraction) {
   Scene scene = soft_block_scene(0.02, "tensor_mass", ElasticLaw::kLinear, 0.003);
   scene.tools[0].cut_buttons = 1;
   scene.cutting = Cutting{.power = 2, .energy = 1e7, .where = "test"};
-  scene.deformation.of<AddedMass>().share = share;
+  scene.deformation.of<AddedMass>().fraction = fraction;
   return scene;
 }
 
 /// What the model says of its tensors.
-std::string told_of_tensors(const Simulation& simulation) {
+std::string published_of_tensors(const Simulation& simulation) {
   for (const MemoryPart& part : simulation.memory()) {
     if (part.name == "tensors") return part.detail;
   }
@@ -50,22 +50,22 @@ std::string told_of_tensors(const Simulation& simulation) {
 }
 
 int sub_steps_of(const Simulation& simulation) {
-  const std::string told = told_of_tensors(simulation);
-  const std::size_t end = told.find(" sub-steps");
+  const std::string published = published_of_tensors(simulation);
+  const std::size_t end = published.find(" sub-steps");
   REQUIRE(end != std::string::npos);
-  return std::stoi(told.substr(told.rfind(' ', end - 1)));
+  return std::stoi(published.substr(published.rfind(' ', end - 1)));
 }
 
 }  // namespace
 
 TEST_CASE("scale_masses: no element alone is above its frequency, nor is the body, and no more is added") {
   const TetMesh mesh = shaken_block({4, 3, 4});
-  double whole = 0;
-  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) whole += mass_of(mesh, e);
+  double entire = 0;
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) entire += mass_of(mesh, e);
   double before = 0;
-  for (const double share : {0.0, 0.01, 0.05, 0.2}) {
-    CAPTURE(share);
-    const MassScaling scaling = scale_masses(mesh, kSoft, share);
+  for (const double fraction : {0.0, 0.01, 0.05, 0.2}) {
+    CAPTURE(fraction);
+    const MassScaling scaling = scale_masses(mesh, kSoft, fraction);
     double highest = 0, added = 0;
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
       CHECK(scaling.factors[e] >= 1);
@@ -78,7 +78,7 @@ TEST_CASE("scale_masses: no element alone is above its frequency, nor is the bod
     }
     CHECK(highest == Approx(scaling.frequency).epsilon(1e-3));
     CHECK(scaling.added == Approx(added).margin(1e-12));
-    CHECK(added <= share * whole * (1 + 1e-9));
+    CHECK(added <= fraction * entire * (1 + 1e-9));
     CHECK(highest_frequency(ElasticTensors(mesh, kSoft, {0, 1, 2}, scaling.factors)) <= scaling.frequency);
     if (before > 0) CHECK(scaling.frequency < before);
     before = scaling.frequency;
@@ -89,18 +89,18 @@ TEST_CASE(
     "added_mass: the more a body may get, the fewer sub-steps it takes, and at rest it bears a tool alike") {
   const TetMesh mesh = shaken_block({12, 4, 8});
   std::vector<int> sub_steps;
-  std::vector<Vec3> felt;
-  for (const double share : {0.0, 0.05, 0.2}) {
-    Scene scene = cuttable_scene(share);
+  std::vector<Vec3> rendered;
+  for (const double fraction : {0.0, 0.05, 0.2}) {
+    Scene scene = cuttable_scene(fraction);
     sub_steps.push_back(sub_steps_of(Simulation(scene, mesh)));
     scene.deformation.of<ContactInstants>().instants = 200;
     Simulation simulation(scene, mesh);
     Vec3 force;
     for (int i = 0; i < 300; ++i) force = step(simulation, Vec3(0.001, -0.001, 0), {}, 1.0 / 30).force;
-    felt.push_back(force);
+    rendered.push_back(force);
   }
   CHECK(sub_steps[1] < sub_steps[0]);
   CHECK(sub_steps[2] < sub_steps[1]);
-  REQUIRE(felt[0].norm() > 0.05);
-  for (const Vec3& force : felt) CHECK((force - felt[0]).norm() < 1e-4 * felt[0].norm());
+  REQUIRE(rendered[0].norm() > 0.05);
+  for (const Vec3& force : rendered) CHECK((force - rendered[0]).norm() < 1e-4 * rendered[0].norm());
 }

@@ -26,7 +26,7 @@ std::vector<std::vector<int>> flooded_pieces(const TetMesh& mesh, const CutMesh&
   std::vector<std::vector<int>> pieces;
   std::vector<char> seen(mesh.tetrahedra.size());
   for (int from = 0; from < static_cast<int>(seen.size()); ++from) {
-    if (!cut.is_left(from) || seen[from] != 0) continue;
+    if (!cut.remains(from) || seen[from] != 0) continue;
     std::vector<int> piece{from};
     seen[from] = 1;
     for (std::size_t i = 0; i < piece.size(); ++i) {
@@ -36,7 +36,7 @@ std::vector<std::vector<int>> flooded_pieces(const TetMesh& mesh, const CutMesh&
         piece.push_back(other);
       }
     }
-    std::sort(piece.begin(), piece.end());
+    std::ranges::sort(piece);
     pieces.push_back(std::move(piece));
   }
   return pieces;
@@ -48,14 +48,14 @@ TEST_CASE("the surface of what is left is that of a mesh of what is left, after 
   Cutting body(test::corner_block(Vec3(3, 2, 2), {3, 2, 2}));
   std::vector<int> order(body.mesh.tetrahedra.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  std::shuffle(order.begin(), order.end(), std::minstd_rand(7));
+  std::ranges::shuffle(order, std::minstd_rand(7));
   for (const int t : order) {
     body.cut.remove({&t, 1}, body.surface);
     const auto triangles = by_mesh_vertices(body.surface);
     CHECK(in_order(triangles) == in_order(outer_faces(rest_of(body.mesh, body.cut)).triangles));
     CHECK(open_edges(triangles) == 0);
     for (std::size_t slot = 0; slot < triangles.size(); ++slot)
-      CHECK(body.cut.is_left(body.cut.tetrahedron_of(slot)));
+      CHECK(body.cut.remains(body.cut.tetrahedron_of(slot)));
     for (int v = 0; v < static_cast<int>(body.surface.vertices.size()); ++v) {
       const bool used = std::ranges::any_of(body.surface.triangles, [v](const Triangle& triangle) {
         return std::ranges::count(triangle, v) > 0;
@@ -96,7 +96,7 @@ TEST_CASE("the area of a cut is that of the walls of a slit, and none once all i
     for (int t = 0; t < static_cast<int>(body.mesh.tetrahedra.size()); ++t) {
       double x = 0;
       for (const int v : body.mesh.tetrahedra[t]) x += body.mesh.vertices[v].x() / 4;
-      if (body.cut.is_left(t) && x >= from && x <= to) gone.push_back(t);
+      if (body.cut.remains(t) && x >= from && x <= to) gone.push_back(t);
     }
     body.cut.remove(gone, body.surface);
     return body.cut.cut_area();
@@ -123,16 +123,16 @@ TEST_CASE("what removals cut off is what a flood of the whole mesh finds") {
     };
     PieceFinder finder(body.cut, held);
     while (body.cut.count() > 0) {
-      std::vector<int> left;
+      std::vector<int> remaining;
       for (int t = 0; t < static_cast<int>(body.mesh.tetrahedra.size()); ++t) {
-        if (body.cut.is_left(t)) left.push_back(t);
+        if (body.cut.remains(t)) remaining.push_back(t);
       }
-      std::shuffle(left.begin(), left.end(), random);
-      left.resize(std::min<std::size_t>(left.size(), 1 + random() % 5));
+      std::ranges::shuffle(remaining, random);
+      remaining.resize(std::min<std::size_t>(remaining.size(), 1 + random() % 5));
       const auto before = flooded_pieces(body.mesh, body.cut);
-      body.cut.remove(left, body.surface);
+      body.cut.remove(remaining, body.surface);
       const auto pieces = flooded_pieces(body.mesh, body.cut);
-      const std::vector<Piece> found = finder.cut_off(body.cut, left);
+      const std::vector<Piece> found = finder.cut_off(body.cut, remaining);
       // Nothing but whole pieces, each once, and none is found where none came apart.
       for (const Piece& piece : found) {
         CHECK(std::ranges::count(pieces, piece.tetrahedra) == 1);
@@ -148,9 +148,9 @@ TEST_CASE("what removals cut off is what a flood of the whole mesh finds") {
           ++of_it;
           held_of_it += is_held(piece) ? 1 : 0;
         }
-        const bool let_go = is_held(was) && held_of_it == 0;
-        cut_off += of_it > 0 && !let_go ? of_it - 1 : of_it;
-        let_go_at_last += let_go && of_it > 0 ? 1 : 0;
+        const bool release = is_held(was) && held_of_it == 0;
+        cut_off += of_it > 0 && !release ? of_it - 1 : of_it;
+        let_go_at_last += release && of_it > 0 ? 1 : 0;
       }
       CHECK(found.size() == cut_off);
       // What is loose goes, as a resection may have it, or stays.

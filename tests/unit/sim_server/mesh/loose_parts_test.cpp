@@ -74,26 +74,26 @@ TEST_CASE("hinges are named by their vertices, parts that share three not in one
 
 TEST_CASE("two bodies that meet in an edge are joined by a hinge, which holds no turn") {
   const TetMesh mesh = hinged_cubes();
-  const auto left = vertices(mesh, [](const Vec3& x) { return x[0] == 0; });
-  const auto loose = loose_parts(mesh, left);
+  const auto remaining = vertices(mesh, [](const Vec3& x) { return x[0] == 0; });
+  const auto loose = loose_parts(mesh, remaining);
   REQUIRE(loose.size() == 1);
   CHECK(loose[0].tetrahedra == 6);
   CHECK(loose[0].hold == Hold::kLine);
   CHECK(loose[0].place.head<2>() == Eigen::Vector2d(1, 1));
   CHECK(to_text(loose[0]).find("6 tetrahedra hang on a hinge at 1,1,") == 0);
-  auto with_one_more = left;  // of the other
+  auto with_one_more = remaining;  // of the other
   with_one_more.push_back(vertices(mesh, [](const Vec3& x) { return x == Vec3(2, 2, 0); }).front());
   CHECK(loose_parts(mesh, with_one_more).empty());
 }
 
 TEST_CASE("loose parts that are dropped leave what is held, its stiffness, and all vertices") {
   TetMesh mesh = hinged_cubes();
-  const TetMesh whole = mesh;
+  const TetMesh entire = mesh;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)  // as many times as far along x
     mesh.stiffness.push_back(1 + centre_of(mesh, mesh.tetrahedra[t])[0]);
   drop_loose_parts(mesh, vertices(mesh, [](const Vec3& x) { return x[0] == 2; }));
-  CHECK(mesh.vertices == whole.vertices);
-  REQUIRE(2 * mesh.tetrahedra.size() == whole.tetrahedra.size());
+  CHECK(mesh.vertices == entire.vertices);
+  REQUIRE(2 * mesh.tetrahedra.size() == entire.tetrahedra.size());
   REQUIRE(mesh.stiffness.size() == mesh.tetrahedra.size());
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     CHECK(centre_of(mesh, mesh.tetrahedra[t])[0] > 1);  // the first cube hung on a hinge

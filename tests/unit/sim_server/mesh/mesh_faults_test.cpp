@@ -182,10 +182,10 @@ TEST_CASE("bodies that share faces vertex by vertex are joined", "[mesh]") {
   CHECK(fault.cure == Cure::kMended);
   CHECK(fault.count == 4);
   CHECK(has(fault.example, "vertices 1 and 8 are both at (1, 0, 0)"));
-  const TetMesh whole = grid_block({0, 1, 2}, {0, 1}, {0, 1});
+  const TetMesh entire = grid_block({0, 1, 2}, {0, 1}, {0, 1});
   CHECK(mesh.vertices.size() == 12);
   CHECK(mesh.tetrahedra.size() == 12);
-  const MeshInfo info = describe(mesh), expected = describe(whole);
+  const MeshInfo info = describe(mesh), expected = describe(entire);
   CHECK(info.edges == expected.edges);
   CHECK(info.boundary_triangles == 20);  // two on each unit square of the skin
   CHECK(info.volume == Approx(2));

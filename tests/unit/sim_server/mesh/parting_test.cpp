@@ -43,16 +43,16 @@ std::array<int, 3> corners_of(const TetMesh& mesh, int face) {
 }
 
 /// Bodies that hang together by faces that were not parted: of each tetrahedron the lowest of its own.
-std::vector<int> bodies_without(const TetMesh& whole, const std::set<std::array<int, 3>>& parted) {
+std::vector<int> bodies_without(const TetMesh& entire, const std::set<std::array<int, 3>>& separated) {
   std::map<std::array<int, 3>, std::vector<int>> sides;
-  for (int face = 0; face < static_cast<int>(4 * whole.tetrahedra.size()); ++face)
-    sides[corners_of(whole, face)].push_back(face / 4);
-  std::vector<int> body(whole.tetrahedra.size());
+  for (int face = 0; face < static_cast<int>(4 * entire.tetrahedra.size()); ++face)
+    sides[corners_of(entire, face)].push_back(face / 4);
+  std::vector<int> body(entire.tetrahedra.size());
   for (std::size_t t = 0; t < body.size(); ++t) body[t] = static_cast<int>(t);
   for (bool changed = true; changed;) {
     changed = false;
     for (const auto& [corners, of] : sides) {
-      if (of.size() < 2 || parted.contains(corners) || body[of[0]] == body[of[1]]) continue;
+      if (of.size() < 2 || separated.contains(corners) || body[of[0]] == body[of[1]]) continue;
       body[of[0]] = body[of[1]] = std::min(body[of[0]], body[of[1]]);
       changed = true;
     }
@@ -92,11 +92,11 @@ int most_fans(const Body& body, const std::set<int>& stay_one) {
 
 TEST_CASE("parted faces are surface on both sides, and vertices are as many as there are fans around them") {
   Body body({6, 2, 6});
-  const TetMesh whole = body.mesh;
-  const double volume = describe(whole).volume, area = 2 * 0.04 * 0.04 + 4 * 0.04 * 0.02;
+  const TetMesh entire = body.mesh;
+  const double volume = describe(entire).volume, area = 2 * 0.04 * 0.04 + 4 * 0.04 * 0.02;
   std::minstd_rand random(5);
-  std::set<std::array<int, 3>> parted;  // by corners of the whole mesh
-  double parted_area = 0;
+  std::set<std::array<int, 3>> separated;  // by corners of the whole mesh
+  double separated_area = 0;
   PieceFinder finder(body.cut, {});
   std::size_t bodies = 1;
   for (int round = 0; round < 6; ++round) {
@@ -109,23 +109,24 @@ TEST_CASE("parted faces are surface on both sides, and vertices are as many as t
       const Vec3 middle(0, -0.01, 0);
       std::erase_if(faces, [&](int face) {
         const auto side = [&](int t) {
-          return centre_of(whole, whole.tetrahedra[t])[round / 2] > middle[round / 2];
+          return centre_of(entire, entire.tetrahedra[t])[round / 2] > middle[round / 2];
         };
         return side(face / 4) == side(body.cut.across(face) / 4);
       });
     }
     for (const int face : faces) {
-      const auto [a, b, c] = corners_of(whole, face);
-      parted.insert({a, b, c});
-      parted_area +=
-          0.5 * (whole.vertices[b] - whole.vertices[a]).cross(whole.vertices[c] - whole.vertices[a]).norm();
+      const auto [a, b, c] = corners_of(entire, face);
+      separated.insert({a, b, c});
+      separated_area +=
+          0.5 *
+          (entire.vertices[b] - entire.vertices[a]).cross(entire.vertices[c] - entire.vertices[a]).norm();
     }
     const Parting parting = body.cut.part(faces, body.surface);
     REQUIRE_FALSE(parting.ran_out);
     CHECK(most_fans(body, {}) == 1);
     // The surface: each parted face twice, what was outside once; closed; of the right area.
-    CHECK(body.surface.triangles.size() == boundary_surface(whole).triangles.size() + 2 * parted.size());
-    CHECK(body.cut.cut_area() == Approx(2 * parted_area));
+    CHECK(body.surface.triangles.size() == boundary_surface(entire).triangles.size() + 2 * separated.size());
+    CHECK(body.cut.cut_area() == Approx(2 * separated_area));
     double all = 0, six = 0;
     std::map<std::pair<int, int>, int> along;
     for (const Triangle& t : body.surface.triangles) {
@@ -139,16 +140,16 @@ TEST_CASE("parted faces are surface on both sides, and vertices are as many as t
       six += x[0].dot(x[1].cross(x[2]));
     }
     CHECK(std::ranges::all_of(along, [](const auto& edge) { return edge.second == 0; }));
-    CHECK(all == Approx(area + 2 * parted_area));
+    CHECK(all == Approx(area + 2 * separated_area));
     CHECK(six / 6 == Approx(volume));
     // Tetrahedra have the same corners as before, by place.
-    for (std::size_t t = 0; t < whole.tetrahedra.size(); ++t) {
+    for (std::size_t t = 0; t < entire.tetrahedra.size(); ++t) {
       for (int k = 0; k < 4; ++k)
-        CHECK(body.mesh.vertices[body.mesh.tetrahedra[t][k]] == whole.vertices[whole.tetrahedra[t][k]]);
+        CHECK(body.mesh.vertices[body.mesh.tetrahedra[t][k]] == entire.vertices[entire.tetrahedra[t][k]]);
     }
     // Pieces.
-    const std::vector<int> body_of = bodies_without(whole, parted);
-    const std::vector<Piece> found = finder.parted(body.cut, parting.tetrahedra);
+    const std::vector<int> body_of = bodies_without(entire, separated);
+    const std::vector<Piece> found = finder.separated(body.cut, parting.tetrahedra);
     const std::size_t now = std::set<int>(body_of.begin(), body_of.end()).size();
     CHECK(found.size() == now - bodies);
     bodies = now;
@@ -206,32 +207,32 @@ TEST_CASE("tensors after slides and partings are those of a fresh assembly") {
     faces.resize(faces.size() / 5);
     tensors.part(body.cut.part(faces, body.surface), reshaped, body.cut, material);
     const std::vector<int> removed{static_cast<int>(random() % body.mesh.tetrahedra.size())};
-    if (!body.cut.is_left(removed[0])) continue;
+    if (!body.cut.remains(removed[0])) continue;
     body.cut.remove(removed, body.surface);
     tensors.remove(removed, body.cut, material);
   }
-  TetMesh left = body.mesh;
-  left.tetrahedra.clear();
+  TetMesh remaining = body.mesh;
+  remaining.tetrahedra.clear();
   for (int t = 0; t < static_cast<int>(body.mesh.tetrahedra.size()); ++t) {
-    if (body.cut.is_left(t)) left.tetrahedra.push_back(body.mesh.tetrahedra[t]);
+    if (body.cut.remains(t)) remaining.tetrahedra.push_back(body.mesh.tetrahedra[t]);
   }
   std::vector<int> still;
-  for (int v = 0; v < static_cast<int>(left.vertices.size()); ++v) {
+  for (int v = 0; v < static_cast<int>(remaining.vertices.size()); ++v) {
     if (tensors.places()[v] < 0) still.push_back(v);
   }
-  const ElasticTensors fresh(left, material, still);
+  const ElasticTensors fresh(remaining, material, still);
   REQUIRE(fresh.vertices() == tensors.vertices());
   REQUIRE(fresh.vertices() > 300);
   std::vector<double> x(3 * fresh.masses().size()), y(x.size()), x_fresh(x.size()), y_fresh(x.size());
   for (double& value : x) value = static_cast<double>(random()) / std::minstd_rand::max() - 0.5;
-  for (std::size_t v = 0; v < left.vertices.size(); ++v) {
+  for (std::size_t v = 0; v < remaining.vertices.size(); ++v) {
     const int at = tensors.places()[v], at_fresh = fresh.places()[v];
     for (int i = 0; at >= 0 && i < 3; ++i) x_fresh[3 * at_fresh + i] = x[3 * at + i];
   }
   tensors.multiply(x.data(), y.data());
   fresh.multiply(x_fresh.data(), y_fresh.data());
   const double size = *std::ranges::max_element(y);
-  for (std::size_t v = 0; v < left.vertices.size(); ++v) {
+  for (std::size_t v = 0; v < remaining.vertices.size(); ++v) {
     const int at = tensors.places()[v], at_fresh = fresh.places()[v];
     for (int i = 0; at >= 0 && i < 3; ++i)
       CHECK(std::abs(y[3 * at + i] - y_fresh[3 * at_fresh + i]) < 1e-12 * size);

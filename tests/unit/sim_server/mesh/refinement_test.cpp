@@ -35,8 +35,8 @@ TEST_CASE("a refined mesh has eight tetrahedra for one, an eighth in size, in th
   const TetMesh coarse = uneven_block(), fine = refined(coarse);
   REQUIRE(fine.tetrahedra.size() == 8 * coarse.tetrahedra.size());
   for (std::size_t t = 0; t < fine.tetrahedra.size(); ++t) {
-    const double whole = six_volumes(coarse, coarse.tetrahedra[t / 8]);
-    CHECK(six_volumes(fine, fine.tetrahedra[t]) == Approx(whole / 8).epsilon(1e-12));
+    const double entire = six_volumes(coarse, coarse.tetrahedra[t / 8]);
+    CHECK(six_volumes(fine, fine.tetrahedra[t]) == Approx(entire / 8).epsilon(1e-12));
   }
   for (std::size_t v = 0; v < coarse.vertices.size(); ++v) CHECK(fine.vertices[v] == coarse.vertices[v]);
   // Euler: one more vertex on each edge.
@@ -59,7 +59,7 @@ TEST_CASE("what is tagged stays tagged, and no more") {
   for (const TetMesh& fine : {refined(uneven_block()), halved(halved(uneven_block())), in_a_corner()}) {
     for (std::size_t v = 0; v < fine.vertices.size(); ++v) {
       const auto& floor = fine.surface_tags.at("floor");
-      const bool tagged = std::find(floor.begin(), floor.end(), static_cast<int>(v)) != floor.end();
+      const bool tagged = std::ranges::find(floor, static_cast<int>(v)) != floor.end();
       CHECK(tagged == (fine.vertices[v].y() == 0));
     }
   }

@@ -86,7 +86,7 @@ TEST_CASE("the face between two tetrahedra is inside", "[mesh]") {
   const Surface surface = boundary_surface(two_tetrahedra());
   CHECK(surface.triangles.size() == 6);
   for (Triangle t : surface.triangles) {
-    std::sort(t.begin(), t.end());
+    std::ranges::sort(t);
     CHECK(t != Triangle{1, 2, 3});
   }
 }
@@ -98,7 +98,7 @@ TEST_CASE("the surface of a cube is closed, outward and numbered without the ver
   CHECK(surface.triangles.size() == static_cast<std::size_t>(12 * n * n));
   CHECK(surface.vertices.size() ==
         static_cast<std::size_t>((n + 1) * (n + 1) * (n + 1) - (n - 1) * (n - 1) * (n - 1)));
-  CHECK(std::is_sorted(surface.vertices.begin(), surface.vertices.end()));
+  CHECK(std::ranges::is_sorted(surface.vertices));
   CHECK(std::abs(enclosed_volume(mesh, surface) - 1) < 1e-12);
   check_closed(surface);
 }
@@ -144,12 +144,12 @@ TEST_CASE("where edges have a vertex in the middle, each face of the surface is 
   REQUIRE(surface.triangles.size() == 4 * plain.triangles.size());
   // Euler, of a closed surface without handles: vertices - triangles / 2 = 2.
   CHECK(surface.vertices.size() == static_cast<std::size_t>(24 * n * n + 2));
-  CHECK(std::is_sorted(surface.vertices.begin(), surface.vertices.end()));
+  CHECK(std::ranges::is_sorted(surface.vertices));
   check_closed(surface);
   CHECK(std::abs(enclosed_volume(mesh, surface) - 1) < 1e-12);
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-    const Vec3 whole = area_of(mesh, plain, plain.triangles[i / 4]);
-    CHECK((area_of(mesh, surface, surface.triangles[i]) - whole / 4).norm() < 1e-15);
+    const Vec3 entire = area_of(mesh, plain, plain.triangles[i / 4]);
+    CHECK((area_of(mesh, surface, surface.triangles[i]) - entire / 4).norm() < 1e-15);
     const std::size_t part = i % 4;
     const int first = surface.vertices[surface.triangles[i][0]];
     if (part < 3) CHECK(first == plain.vertices[plain.triangles[i / 4][part]]);

@@ -42,42 +42,42 @@ Scene static_scene() {
   return soft_block_scene(kDepth, "quasi_static", ElasticLaw::kLinear, 0.003);
 }
 
-TetMesh what_is_left(const Simulation& simulation) {
-  return rest_of(simulation.mesh(), simulation.resection()->left());
+TetMesh what_is_remaining(const Simulation& simulation) {
+  return rest_of(simulation.mesh(), simulation.resection()->remaining());
 }
 
-ToolAnswer press(Simulation& simulation, const Vec3& p, bool hot = false) {
+ToolAnswer apply_loads(Simulation& simulation, const Vec3& p, bool hot = false) {
   return step(simulation, p, {.buttons = static_cast<std::uint16_t>(hot ? 1 : 0)}, kStep);
 }
 
 /// What a body at rest answers to a tool that comes down to `p`.
 ToolAnswer pressed_slowly(Simulation& simulation, const Vec3& p) {
-  ToolAnswer felt;
-  for (int i = 22; i >= 0; --i) felt = press(simulation, p + Vec3(0, 5e-4 * i, 0));
-  return felt;
+  ToolAnswer rendered;
+  for (int i = 22; i >= 0; --i) rendered = apply_loads(simulation, p + Vec3(0, 5e-4 * i, 0));
+  return rendered;
 }
 
 }  // namespace
 
 TEST_CASE("hybrid: at rest it bears a tool as the whole body at rest does, wherever it presses") {
-  Simulation whole(static_scene(), block());
+  Simulation entire(static_scene(), block());
   for (const int layers : {0, 2}) {
     Simulation hybrid(hybrid_scene(layers), block());
     for (const Vec3& p :
          {Vec3(0.001, -0.001, 0.0005), Vec3(0.011, -0.001, 0.0015), Vec3(0.022, -0.001, 0.001)}) {
       CAPTURE(layers, p.x());
-      const Vec3 right = pressed_slowly(whole, p).force;
+      const Vec3 right = pressed_slowly(entire, p).force;
       pressed_slowly(hybrid, p);
-      ToolAnswer felt;
-      for (int i = 0; i < 240; ++i) felt = press(hybrid, p);
+      ToolAnswer rendered;
+      for (int i = 0; i < 240; ++i) rendered = apply_loads(hybrid, p);
       REQUIRE(right.norm() > 0.1);
-      CHECK((felt.force - right).norm() < 1e-6 * right.norm());
+      CHECK((rendered.force - right).norm() < 1e-6 * right.norm());
       double apart = 0;
-      for (std::size_t v = 0; v < whole.rest().size(); ++v) {
+      for (std::size_t v = 0; v < entire.rest().size(); ++v) {
         const auto& all = hybrid.surface().vertices;
-        const auto there = std::ranges::find(all, whole.surface().vertices[v]) - all.begin();
-        apart = std::max(apart,
-                         (hybrid.positions()[static_cast<std::size_t>(there)] - whole.positions()[v]).norm());
+        const auto there = std::ranges::find(all, entire.surface().vertices[v]) - all.begin();
+        apart = std::max(
+            apart, (hybrid.positions()[static_cast<std::size_t>(there)] - entire.positions()[v]).norm());
       }
       CHECK(apart < 1e-8);
     }
@@ -88,15 +88,15 @@ TEST_CASE("hybrid: cut, it bears a tool at rest as a body that was never whole")
   Scene scene = hybrid_scene();
   scene.deformation.of<ContactInstants>().instants = 800;  // in a pit contact chatters at longer ones
   Simulation hybrid(scene, block());
-  for (int i = 0; i < 45; ++i) press(hybrid, Vec3(0.001, 0.001, 0.0005), true);
+  for (int i = 0; i < 45; ++i) apply_loads(hybrid, Vec3(0.001, 0.001, 0.0005), true);
   REQUIRE(hybrid.resection()->totals().tetrahedra > 5);
-  Simulation whole(static_scene(), what_is_left(hybrid));
+  Simulation entire(static_scene(), what_is_remaining(hybrid));
   const Vec3 place(0.001, -0.001, 0.0005);
-  const Vec3 right = pressed_slowly(whole, place).force;
-  ToolAnswer felt;
-  for (int i = 0; i < 300; ++i) felt = press(hybrid, place);
+  const Vec3 right = pressed_slowly(entire, place).force;
+  ToolAnswer rendered;
+  for (int i = 0; i < 300; ++i) rendered = apply_loads(hybrid, place);
   REQUIRE(right.norm() > 0.05);
-  CHECK((felt.force - right).norm() < 1e-6 * right.norm());
+  CHECK((rendered.force - right).norm() < 1e-6 * right.norm());
 }
 
 TEST_CASE("hybrid: with all of the body in motion it is tensor_mass, to the last bit") {
@@ -106,7 +106,7 @@ TEST_CASE("hybrid: with all of the body in motion it is tensor_mass, to the last
   Simulation moving(scene, block());
   for (int i = 0; i < 40; ++i) {
     const Vec3 p(0.0002 * i, 0.001 - 5e-5 * i, 0);
-    CHECK(press(hybrid, p, true).force == press(moving, p, true).force);
+    CHECK(apply_loads(hybrid, p, true).force == apply_loads(moving, p, true).force);
   }
   CHECK(hybrid.resection()->totals().tetrahedra > 3);
   CHECK(hybrid.state_hash() == moving.state_hash());
@@ -116,7 +116,7 @@ TEST_CASE("hybrid: undamped, it keeps its energy") {
   Scene scene = hybrid_scene(0);
   scene.deformation.of<RayleighDamping>() = {.mass = 0, .stiffness = 0};
   Simulation hybrid(scene, block());
-  for (int i = 0; i < 10; ++i) press(hybrid, Vec3(0.001, -0.002, 0.0005));
+  for (int i = 0; i < 10; ++i) apply_loads(hybrid, Vec3(0.001, -0.002, 0.0005));
   const auto largest_of = [&](int steps) {  // displacement while it swings free
     double most = 0;
     std::vector<ToolInput> lifted(1);
@@ -211,11 +211,11 @@ TEST_CASE("hybrid: a piece that is cut off goes with what of it is condensed") {
   scene.fixed.front().box = Box{Vec3(-1, -1, -1), Vec3(-0.0299, 1, 1)};
   Simulation hybrid(scene, mesh);
   const std::size_t all = mesh.tetrahedra.size();
-  for (int i = 0; i < 60; ++i) press(hybrid, Vec3(0, 0.0495, 0), true);
+  for (int i = 0; i < 60; ++i) apply_loads(hybrid, Vec3(0, 0.0495, 0), true);
   const ResectionTotals& totals = hybrid.resection()->totals();
   CHECK(totals.dropped_pieces > 0);
   CHECK(totals.tetrahedra > all / 2);
-  CHECK(hybrid.resection()->left().count() < all / 2);
+  CHECK(hybrid.resection()->remaining().count() < all / 2);
   for (const Vec3& x : hybrid.positions()) CHECK(x.norm() < 0.1);
   for (const Triangle& triangle : hybrid.surface().triangles) {
     for (const int v : triangle) CHECK(hybrid.rest()[static_cast<std::size_t>(v)].x() < 1e-2);

@@ -59,8 +59,8 @@ TEST_CASE(
     scene.deformation.of<ImplicitSettings>().max_newton = 30;
     Simulation simulation(scene, shallow_block());
     // Saint Venant and Kirchhoff's collapses under more.
-    const ToolForce felt = pressed(simulation, law == ElasticLaw::kStVenantKirchhoff ? 0.002 : 0.004);
-    REQUIRE(felt.contacts > 0);
+    const ToolForce rendered = pressed(simulation, law == ElasticLaw::kStVenantKirchhoff ? 0.002 : 0.004);
+    REQUIRE(rendered.contacts > 0);
     // The same body with its surface held where it is now, but for what moves freely inside: the force that
     // the held surface takes is the tool's.
     const Solid solid(shallow_block(), *scene.material);
@@ -78,8 +78,8 @@ TEST_CASE(
     for (std::size_t i = 0; i < f.size(); ++i) {
       if (solid.rest()[i][1] > -0.0159) above += f[i];
     }
-    CAPTURE(static_cast<int>(law), felt.force.transpose(), above.transpose());
-    CHECK((felt.force + above).norm() < 1e-4 * felt.force.norm());
+    CAPTURE(static_cast<int>(law), rendered.force.transpose(), above.transpose());
+    CHECK((rendered.force + above).norm() < 1e-4 * rendered.force.norm());
   }
 }
 

@@ -39,15 +39,15 @@ struct Bar {
   /// A pull (N) along the bar, even over its free end: of a quadratic triangle a third on each middle and
   /// nothing on the corners (Zienkiewicz and Taylor 2000, volume 1, chapter 8).
   std::vector<NodalLoad> pulled(double force) const {
-    std::map<int, double> share;  // of the area of the end
+    std::map<int, double> fraction;  // of the area of the end
     for (std::size_t i = 3; i < surface.triangles.size(); i += 4) {
       const Triangle& middle = surface.triangles[i];
       const Vec3 a = rest(middle[0]), area = 2 * (rest(middle[1]) - a).cross(rest(middle[2]) - a);
       if (a[0] < kLong || rest(middle[1])[0] < kLong || rest(middle[2])[0] < kLong) continue;
-      for (const int v : middle) share[v] += area.norm() / 3;
+      for (const int v : middle) fraction[v] += area.norm() / 3;
     }
     std::vector<NodalLoad> loads;
-    for (const auto& [v, area] : share) loads.push_back({v, force * area / kArea * Vec3::UnitX()});
+    for (const auto& [v, area] : fraction) loads.push_back({v, force * area / kArea * Vec3::UnitX()});
     return loads;
   }
 };

@@ -94,15 +94,15 @@ TEST_CASE("quasi-static: a bar with fibres along it, pulled at its end, gets lon
   const ElementKind element = GENERATE(ElementKind::kLinear, ElementKind::kNodalPressure);
   Bench bench({5e3, 0, 1000, ElasticLaw::kLinear, element, Fibres{Vec3::UnitX(), 2e4}});
   constexpr double kPull = 0.2, kLength = 0.03, kArea = 0.02 * 0.025;
-  std::map<int, double> share;  // of the force, by surface vertex
+  std::map<int, double> fraction;  // of the force, by surface vertex
   for (const Triangle& t : bench.surface.triangles) {
     const auto at = [&](int corner) { return bench.mesh.vertices[bench.surface.vertices[t[corner]]]; };
     if (at(0)[0] < kLength || at(1)[0] < kLength || at(2)[0] < kLength) continue;
     const double area = 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
-    for (const int corner : t) share[corner] += area / kArea / 3;
+    for (const int corner : t) fraction[corner] += area / kArea / 3;
   }
   std::vector<NodalLoad> loads;
-  for (const auto& [vertex, part] : share) loads.push_back({vertex, part * kPull * Vec3::UnitX()});
+  for (const auto& [vertex, part] : fraction) loads.push_back({vertex, part * kPull * Vec3::UnitX()});
   const double longer = kPull * kLength / ((5e3 + 2e4) * kArea);
   const std::span<const Vec3> moved = bench.model->apply(loads);
   for (std::size_t v = 0; v < moved.size(); ++v) {

@@ -114,9 +114,8 @@ TEST_CASE("reduced: slow modes move as they do by themselves, all the rest stand
     const Bench bench(count);
     const Dense dense(bench);
     Reduced model(bench.inputs());
-    const int pressed = *std::find_if(bench.reachable.begin(), bench.reachable.end(), [&](int v) {
-      return bench.mesh.vertices[bench.surface.vertices[v]][1] == 0;
-    });
+    const int pressed = *std::ranges::find_if(
+        bench.reachable, [&](int v) { return bench.mesh.vertices[bench.surface.vertices[v]][1] == 0; });
     const int node = bench.surface.vertices[pressed];
     Eigen::VectorXd q = Eigen::VectorXd::Zero(dense.squares.size()), v = q;
     double peak = 0, off = 0;

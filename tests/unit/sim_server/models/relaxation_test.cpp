@@ -42,16 +42,16 @@ const std::vector<Relaxation> kSeries{{0.3, 0.2}, {0.25, 1.5}};
 
 /// R at time t of a strain that came all at once.
 double relaxed(double t) {
-  double left = 1;
-  for (const auto& [share, time] : kSeries) left += share * std::expm1(-t / time);
-  return left;
+  double remaining = 1;
+  for (const auto& [fraction, time] : kSeries) remaining += fraction * std::expm1(-t / time);
+  return remaining;
 }
 /// The same of a strain that came evenly from t = 0 to h: the mean of R over the times since.
 double relaxed_after_ramp(double t, double h) {
-  double left = 1;
-  for (const auto& [share, time] : kSeries)
-    left += share * (std::exp(-(t - h) / time) * -std::expm1(-h / time) * time / h - 1);
-  return left;
+  double remaining = 1;
+  for (const auto& [fraction, time] : kSeries)
+    remaining += fraction * (std::exp(-(t - h) / time) * -std::expm1(-h / time) * time / h - 1);
+  return remaining;
 }
 
 }  // namespace
@@ -84,17 +84,17 @@ TEST_CASE(
     "relaxation: under loads that are held a linear tissue creeps as its closed form, in second order") {
   // Of one term: u(t) = u_0 (1 - g exp(-(1 - g) t / tau)) / (1 - g), by Laplace's transform of R. A load
   // comes evenly within its first step: as if all at once in the middle of it.
-  const double share = 0.4, time = 0.3, end = 0.6;
+  const double fraction = 0.4, time = 0.3, end = 0.6;
   const TetMesh mesh = little_block(kCells);
   const Surface surface = boundary_surface(mesh);
   const auto moved_by_the_end = [&](std::vector<Relaxation> relaxations, double rate_hz) {
     Scene scene = grasped("implicit", ElasticLaw::kLinear, std::move(relaxations), rate_hz);
     const std::vector<int> fixed = fixed_vertices(scene, mesh);
     Implicit model({scene, mesh, surface, fixed, {}, kSilent});
-    const auto top =
-        static_cast<int>(std::find_if(surface.vertices.begin(), surface.vertices.end(),
-                                      [&](int v) { return mesh.vertices[v].isApprox(Vec3(0.005, 0, 0)); }) -
-                         surface.vertices.begin());
+    const auto top = static_cast<int>(
+        std::ranges::find_if(surface.vertices,
+                             [&](int v) { return mesh.vertices[v].isApprox(Vec3(0.005, 0, 0)); }) -
+        surface.vertices.begin());
     REQUIRE(top < static_cast<int>(surface.vertices.size()));
     Vec3 at = Vec3::Zero();
     for (int i = 0; i < std::lround(end * rate_hz); ++i) {
@@ -106,8 +106,8 @@ TEST_CASE(
   const Vec3 at_once = moved_by_the_end({}, 30);
   const auto error = [&](double rate_hz) {
     const double since = end - 0.5 / rate_hz;
-    const Vec3 exact = (1 - share * std::exp(-(1 - share) * since / time)) / (1 - share) * at_once;
-    return (moved_by_the_end({{share, time}}, rate_hz) - exact).norm() / exact.norm();
+    const Vec3 exact = (1 - fraction * std::exp(-(1 - fraction) * since / time)) / (1 - fraction) * at_once;
+    return (moved_by_the_end({{fraction, time}}, rate_hz) - exact).norm() / exact.norm();
   };
   const double coarse = error(20), fine = error(40);
   CAPTURE(coarse, fine);

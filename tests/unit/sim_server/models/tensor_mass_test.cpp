@@ -39,7 +39,7 @@ struct Bench {
   ModelInputs inputs() const { return {scene, mesh, surface, fixed, reachable, kSilent}; }
   /// The free top vertex nearest to a place.
   int top(double x, double z) const {
-    return *std::min_element(reachable.begin(), reachable.end(), [&](int a, int b) {
+    return *std::ranges::min_element(reachable, [&](int a, int b) {
       return (at(a) - Vec3(x, 0, z)).squaredNorm() < (at(b) - Vec3(x, 0, z)).squaredNorm();
     });
   }
@@ -219,13 +219,13 @@ TEST_CASE("a sphere on a block of tensor_mass: the force comes to that of quasi_
   const Vec3 pressed(0.001, 0.0035, 0.002);  // 1.5 mm deep at rest
   const ToolForce expected = still.step(pressed, kPeriod);
   REQUIRE(expected.force[1] > 0.1);
-  ToolForce felt;
+  ToolForce rendered;
   for (int i = 0; i < 60; ++i) {
-    felt = moving.step(pressed, kPeriod);
-    CHECK_FALSE(felt.flagged);
-    CHECK(felt.force.allFinite());
+    rendered = moving.step(pressed, kPeriod);
+    CHECK_FALSE(rendered.flagged);
+    CHECK(rendered.force.allFinite());
   }
-  CHECK((felt.force - expected.force).norm() < 0.01 * expected.force.norm());
+  CHECK((rendered.force - expected.force).norm() < 0.01 * expected.force.norm());
   // And the tissue stands where that force holds it.
   CHECK(largest(moving.positions(), still.positions()) < 0.02 * 0.0015);
   moving.lift_tool();
@@ -234,21 +234,21 @@ TEST_CASE("a sphere on a block of tensor_mass: the force comes to that of quasi_
 }
 
 TEST_CASE("tensor_mass: the tangent is the slope of the force over a period") {
-  const auto felt_at = [](const Vec3& last) {
+  const auto rendered_at = [](const Vec3& last) {
     Simulation simulation(test::shallow_block_scene("tensor_mass"), test::shallow_block());
     for (int i = 0; i < 5; ++i)
       simulation.step(Vec3(0.001 + 0.0004 * i, 0.0045 - 0.0003 * i, 0.002), kPeriod);
     return simulation.step(last, kPeriod);
   };
   const Vec3 place(0.0031, 0.0031, 0.0021);
-  const ToolForce felt = felt_at(place);
-  REQUIRE(felt.contacts > 0);
-  REQUIRE_FALSE(felt.flagged);
+  const ToolForce rendered = rendered_at(place);
+  REQUIRE(rendered.contacts > 0);
+  REQUIRE_FALSE(rendered.flagged);
   constexpr double kStep = 1e-7;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 d = kStep * Vec3::Unit(axis);
-    const Vec3 slope = (felt_at(place + d).force - felt_at(place - d).force) / (2 * kStep);
-    CHECK((felt.tangent.col(axis) - slope).norm() < 1e-4 * felt.tangent.norm());
+    const Vec3 slope = (rendered_at(place + d).force - rendered_at(place - d).force) / (2 * kStep);
+    CHECK((rendered.tangent.col(axis) - slope).norm() < 1e-4 * rendered.tangent.norm());
   }
 }
 
@@ -279,9 +279,9 @@ TEST_CASE("two tools on tensor_mass come to rest as on quasi_static, and let go"
                                                     ToolPose(Vec3(0.006, 0.0035, 0.001))};
   const auto expected = still.step(test::inputs(places), kPeriod);
   for (int i = 0; i < 60; ++i) moving.step(test::inputs(places), kPeriod);
-  const auto felt = moving.step(test::inputs(places), kPeriod);
+  const auto rendered = moving.step(test::inputs(places), kPeriod);
   for (std::size_t i = 0; i < 2; ++i)
-    CHECK((felt[i].force - expected[i].force).norm() < 0.01 * expected[i].force.norm());
+    CHECK((rendered[i].force - expected[i].force).norm() < 0.01 * expected[i].force.norm());
   const std::vector<ToolInput> nowhere(2);
   for (int i = 0; i < 60; ++i) moving.step(nowhere, kPeriod);
   CHECK(largest(moving.positions(), moving.rest()) < 1e-6);

@@ -101,12 +101,12 @@ TEST_CASE("tool reach: a cone meets each triangle that has a place in it, and no
                  c = a + random.vector(0.01);
       double nearest = 1;
       for (const Vec3& x : inside) nearest = std::min(nearest, (x - (a + b + c) / 3).norm());
-      if (nearest < cone.around) CHECK(may_meet(cone, a, b, c));
+      if (nearest < cone.around) CHECK(may_touch(cone, a, b, c));
       const double size = std::max((b - a).norm(), (c - a).norm());
       // The places are nearly 10 mm apart where they are sparse.
       const bool away = nearest > cone.around + size + 0.012;
       far += away;
-      if (away) CHECK_FALSE(may_meet(cone, a, b, c));
+      if (away) CHECK_FALSE(may_touch(cone, a, b, c));
     }
     if (tilt < 100) CHECK(far > 200);
   }
@@ -116,12 +116,12 @@ TEST_CASE(
     "tool reach: a cone reaches so far around itself, and no farther: beside it, beyond it, behind it") {
   const Cone cone{Vec3::Zero(), Vec3::UnitX(), std::numbers::pi / 6, 0.1, 0.004};
   const Vec3 edge(std::sqrt(0.75), 0.5, 0), out(-0.5, std::sqrt(0.75), 0);
-  const auto met = [&](const Vec3& x) { return may_meet(cone, x, x, x); };
+  const auto touched = [&](const Vec3& x) { return may_touch(cone, x, x, x); };
   for (const double off : {0.0, 0.0039, 0.0041, 0.05}) {
     CAPTURE(off);
-    CHECK(met(0.05 * edge + off * out) == (off < 0.004));
-    CHECK(met((0.1 + off) * Vec3::UnitX()) == (off < 0.004));
-    CHECK(met(-off * Vec3::UnitX()) == (off < 0.004));
+    CHECK(touched(0.05 * edge + off * out) == (off < 0.004));
+    CHECK(touched((0.1 + off) * Vec3::UnitX()) == (off < 0.004));
+    CHECK(touched(-off * Vec3::UnitX()) == (off < 0.004));
   }
 }
 
@@ -147,13 +147,13 @@ TEST_CASE("tool reach: the scenes that ship leave much of the liver out, and los
   for (const char* name : {"liver_falcon", "liver_trocar"}) {
     DYNAMIC_SECTION(name) {
       const Scene scene = read_scene(test::source_dir() + "/configs/scenes/" + name + ".toml");
-      Scene whole = scene;
-      whole.tools[0].reach.reset();
-      Simulation some(scene), all(whole);
+      Scene entire = scene;
+      entire.tools[0].reach.reset();
+      Simulation some(scene), all(entire);
       const auto nodes = [](const Simulation& simulation, const Scene& of) {
         return reachable_vertices(simulation.surface(), simulation.mesh(), of.tools).size();
       };
-      CHECK(10 * nodes(some, scene) < 8 * nodes(all, whole));
+      CHECK(10 * nodes(some, scene) < 8 * nodes(all, entire));
       const Trajectory motion(
           TrajectorySettings{.file = test::source_dir() + "/configs/trajectories/liver_paper.csv"});
       double most = 0, off = 0;
@@ -178,8 +178,7 @@ TEST_CASE("tool reach: a tool that reaches nothing has no collision tree, and th
   CHECK(two.touchable(1).empty());
   const auto memory = two.memory();
   const auto bytes = [&](const std::string& part) {
-    return std::find_if(memory.begin(), memory.end(), [&](const MemoryPart& p) { return p.name == part; })
-        ->bytes;
+    return std::ranges::find_if(memory, [&](const MemoryPart& p) { return p.name == part; })->bytes;
   };
   CHECK(2 * bytes("contact of tool 2") < bytes("contact of tool 1"));
   for (int i = 0; i < 10; ++i) {

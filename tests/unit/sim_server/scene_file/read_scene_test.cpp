@@ -71,8 +71,8 @@ TEST_CASE("a scene without a tool, or with too many, is refused with what to do"
 TEST_CASE("a tool slips freely unless the scene gives it friction") {
   CHECK(read_scene(SceneFile(tool_sections(1)).file).tools[0].shape.friction == 0);
   CHECK(read_scene(SceneFile(tool_sections(1) + "friction = 0.3\n").file).tools[0].shape.friction == 0.3);
-  const SceneFile wild(tool_sections(1) + "friction = 30\n");
-  CHECK(wild.error().starts_with(wild.file + ":9: "));
+  const SceneFile implausible(tool_sections(1) + "friction = 30\n");
+  CHECK(implausible.error().starts_with(implausible.file + ":9: "));
 }
 
 TEST_CASE("a capsule needs a length, a trocar a pivot and a shaft no thicker than the tip") {

@@ -37,7 +37,7 @@ struct SceneWith {
       }
       if (head != section) return;
       text += wrong;
-      line = 1 + std::count(text.begin(), text.end(), '\n');
+      line = 1 + std::ranges::count(text, '\n');
       text += "\n";
     };
     add("", {"rate_hz = 30"});
@@ -160,9 +160,9 @@ TEST_CASE("[cutting]: a region without any tetrahedron, elements and supports th
 }
 
 TEST_CASE("[material]: values out of range, and names that are none") {
-  constexpr const char* kShare = "[[material.relaxation]]\ntime = 1\nshare = ";
-  const std::string none = std::string(kShare) + "0", all = std::string(kShare) + "1",
-                    too_many = std::string(kShare) + "0.6\n" + kShare + "0.4";
+  constexpr const char* kFraction = "[[material.relaxation]]\ntime = 1\nshare = ";
+  const std::string none = std::string(kFraction) + "0", all = std::string(kFraction) + "1",
+                    too_many = std::string(kFraction) + "0.6\n" + kFraction + "0.4";
   for (const Wrong& wrong : {
            Wrong{"[material]", "young_modulus = 0", "young_modulus", "between 0.001"},
            Wrong{"[material]", "poisson_ratio = 0.5", "poisson_ratio", "between 0 and 0.499999"},

@@ -81,7 +81,7 @@ TEST_CASE("a recorded resection, stepped again from its capture alone, gives the
     REQUIRE((blade ? 6 * totals.splits : totals.tetrahedra) > 20);
     ServedTools served(second);
     std::vector<SessionInput> inputs(1);
-    std::size_t answers = 0, left = 0;
+    std::size_t answers = 0, remaining = 0;
     read_captured_steps(
         folder.path() / "a.pcap", [&](const ToolState& state) { inputs[0].path.add(state); },
         [&](const CapturedAnswer& answer) {
@@ -94,9 +94,9 @@ TEST_CASE("a recorded resection, stepped again from its capture alone, gives the
           CHECK(outcome.answer->cuts == answer.sample.cuts);
           ++answers;
         },
-        [&](std::uint64_t) { ++left; });
+        [&](std::uint64_t) { ++remaining; });
     CHECK(answers > 40);
-    CHECK(left == 1);
+    CHECK(remaining == 1);
     CHECK(second.state_hash() == hash);
     CHECK(second.resection()->totals().tetrahedra == first.resection()->totals().tetrahedra);
   }
@@ -105,7 +105,8 @@ TEST_CASE("a recorded resection, stepped again from its capture alone, gives the
 TEST_CASE("tissue that can be cut by tensor_mass gives way over a sub-step, and tells no tangents of that") {
   Simulation simulation(cut_scene("tensor_mass"), deep_block());
   ServedTools served(simulation);
-  std::vector<SessionInput> inputs{{7, {.flags = ToolState::kWantsHere | ToolState::kWantsAhead}, true}};
+  std::vector<SessionInput> inputs{
+      {7, {.flags = ToolState::kRequestsTangent | ToolState::kRequestsAhead}, true}};
   ToolState& state = inputs[0].state;
   int touched = 0;
   for (int k = 1; k <= 30; ++k) {
@@ -115,7 +116,7 @@ TEST_CASE("tissue that can be cut by tensor_mass gives way over a sub-step, and 
     const auto& outcome = served.step(inputs, 0.02).front();
     touched += outcome.force.contacts > 0 ? 1 : 0;
     REQUIRE(outcome.answer);
-    CHECK((outcome.answer->flags & (ForceSample::kHasHere | ForceSample::kHasAhead)) == 0);
+    CHECK((outcome.answer->flags & (ForceSample::kHasTangent | ForceSample::kHasAhead)) == 0);
   }
   CHECK(touched > 5);
   CHECK(touched < 30);
@@ -169,7 +170,7 @@ TEST_CASE(
     VirtualSession session(often, {&path, 1}, 0.003, {500, kTicks}, capture);
     for (std::uint64_t k = 0; k <= static_cast<std::uint64_t>(kTicks); ++k) session.tick(k);
   }
-  CHECK(often.resection()->left().count() == heated.resection()->left().count());
+  CHECK(often.resection()->remaining().count() == heated.resection()->remaining().count());
   for (std::size_t i = 0; i < removals.size(); ++i) {
     CHECK(often.cut()->removals()[i].tetrahedron == removals[i].tetrahedron);
     CHECK(std::abs(often.cut()->removals()[i].t - removals[i].t) < 1 / 500.0 + 1e-9);

@@ -32,11 +32,11 @@ TEST_CASE("linearise: in contact the tangent is the slope of the force, elsewher
   Simulation liver(test::liver_scene());
   const double top = touching(liver);
   liver.lift_tool();
-  const ToolForce felt = liver.step(at(top - 0.003), kDt);
+  const ToolForce rendered = liver.step(at(top - 0.003), kDt);
   const std::uint64_t before = liver.state_hash();
-  const auto here = liver.linearise(0, at(top - 0.003), &felt);
-  CHECK(here.tangent == felt.tangent);
-  CHECK(here.plane.gap == 0);
+  const auto at_tool = liver.linearise(0, at(top - 0.003), &rendered);
+  CHECK(at_tool.tangent == rendered.tangent);
+  CHECK(at_tool.plane.gap == 0);
   const auto ahead = liver.linearise(0, at(top - 0.004), nullptr);
   constexpr double kStep = 1e-6;
   for (int axis = 0; axis < 3; ++axis) {
@@ -67,9 +67,9 @@ TEST_CASE("linearise: near the surface its plane, gap and stiffness, far away no
   // Half a millimetre beyond the plane, the force is what the plane foretells, within the bend of the law.
   const double beyond = near.plane.gap + 0.0003;
   const Vec3 p = at(top + 0.002) - beyond * near.plane.normal_W;
-  const Vec3 foretold = -0.0003 * (near.tangent * near.plane.normal_W);
+  const Vec3 predicted = -0.0003 * (near.tangent * near.plane.normal_W);
   const ToolForce real = liver.step(p, kDt);
-  CHECK((foretold - real.force).norm() < 0.2 * real.force.norm());
+  CHECK((predicted - real.force).norm() < 0.2 * real.force.norm());
   liver.step(at(top + 0.002), kDt);
   CHECK(liver.state_hash() == before);
   const ToolForce far = liver.step(at(top + 0.02), kDt);
@@ -90,34 +90,34 @@ TEST_CASE("parts of a sample: only those asked for, not of a lost device, and no
     state.flags = flags;
     return *tools.step(inputs, kDt)[0].answer;
   };
-  constexpr std::uint32_t kParts = ForceSample::kHasHere | ForceSample::kHasAhead;
+  constexpr std::uint32_t kParts = ForceSample::kHasTangent | ForceSample::kHasAhead;
   CHECK((answer(0).flags & kParts) == 0);
-  CHECK((answer(ToolState::kWantsHere).flags & kParts) == ForceSample::kHasHere);
+  CHECK((answer(ToolState::kRequestsTangent).flags & kParts) == ForceSample::kHasTangent);
   state.v_W = {0, -0.1, 0};
   state.lead_ns = 10'000'000;
-  const ForceSample both = answer(ToolState::kWantsHere | ToolState::kWantsAhead);
+  const ForceSample both = answer(ToolState::kRequestsTangent | ToolState::kRequestsAhead);
   CHECK((both.flags & kParts) == kParts);
   CHECK((both.ahead_p_W - at(top - 0.004)).norm() < 1e-12);  // 10 ms at 0.1 m/s
   CHECK(both.ahead_f_W.norm() > both.f_W.norm());
   constexpr std::uint32_t kAll = kParts | ForceSample::kHasSurface;
-  const ForceSample surface = answer(ToolState::kWantsSurface);
+  const ForceSample surface = answer(ToolState::kRequestsSurface);
   CHECK((surface.flags & kAll) == ForceSample::kHasSurface);
   CHECK(surface.surface.version == SurfacePager(liver, 0).state().version);
   CHECK(surface.surface.version != 0);
-  CHECK(surface.here.tangent == protocol::Linearisation{}.tangent);
+  CHECK(surface.at_tool.tangent == protocol::Linearisation{}.tangent);
   CHECK(surface.ahead_p_W == Vec3::Zero());
-  const ForceSample here = answer(ToolState::kWantsHere);
-  CHECK((here.flags & kAll) == ForceSample::kHasHere);
-  CHECK(here.here.tangent[3] == Approx(both.here.tangent[3]));
-  CHECK(here.ahead_p_W == Vec3::Zero());
-  CHECK(here.surface.version == 0);
+  const ForceSample at_tool = answer(ToolState::kRequestsTangent);
+  CHECK((at_tool.flags & kAll) == ForceSample::kHasTangent);
+  CHECK(at_tool.at_tool.tangent[3] == Approx(both.at_tool.tangent[3]));
+  CHECK(at_tool.ahead_p_W == Vec3::Zero());
+  CHECK(at_tool.surface.version == 0);
   state.lead_ns = 1'000'000'000;
-  CHECK((answer(ToolState::kWantsAhead).ahead_p_W - at(top - 0.005)).norm() < 1e-12);  // at most 2 mm
-  CHECK((answer(ToolState::kWantsHere | ToolState::kDeviceLost).flags & kParts) == 0);
+  CHECK((answer(ToolState::kRequestsAhead).ahead_p_W - at(top - 0.005)).norm() < 1e-12);  // at most 2 mm
+  CHECK((answer(ToolState::kRequestsTangent | ToolState::kDeviceLost).flags & kParts) == 0);
   std::size_t allocations = 1;
   {
     const test::AllocationGuard guard;
-    answer(ToolState::kWantsHere | ToolState::kWantsAhead);
+    answer(ToolState::kRequestsTangent | ToolState::kRequestsAhead);
     allocations = guard.count();
   }
   CHECK(allocations == 0);

@@ -90,7 +90,7 @@ TEST_CASE("moving supports: a common translation moves the body as one, at the v
   Simulation organ(block_scene({kBreath}), block());
   double t = 0;
   for (int i = 0; i < 20; ++i) {
-    const ToolAnswer far = test::step(organ, Vec3(0, 1, 0), {.wants = {.here = true}}, 0.11);
+    const ToolAnswer far = test::step(organ, Vec3(0, 1, 0), {.request = {.at_tool = true}}, 0.11);
     t += 0.11;
     for (std::size_t v = 0; v < organ.positions().size(); ++v) {
       const Vec3 rest = organ.mesh().vertices[organ.surface().vertices[v]];
@@ -110,14 +110,14 @@ TEST_CASE("a tool that moves with the organ feels what it felt at rest, a restin
     Simulation resting(still, block()), moving(breathing, block());
     for (int i = 1; i <= 40; ++i) {
       const double t = 0.05 * i;
-      const ToolInput asks{.wants = {.here = true}};
+      const ToolInput asks{.request = {.at_tool = true}};
       const ToolAnswer right = test::step(resting, kPressed, asks, 0.05),
-                       felt = test::step(moving, kPressed + at(kBreath, t), asks, 0.05);
+                       rendered = test::step(moving, kPressed + at(kBreath, t), asks, 0.05);
       CAPTURE(model, i);
       REQUIRE(right.force[1] > 0.1);
-      CHECK((felt.force - right.force).norm() < inertia * right.force.norm());
-      CHECK_FALSE(felt.flagged);
-      CHECK((felt.surface_v_W - speed_of(kBreath, t)).norm() <
+      CHECK((rendered.force - right.force).norm() < inertia * right.force.norm());
+      CHECK_FALSE(rendered.flagged);
+      CHECK((rendered.surface_v_W - speed_of(kBreath, t)).norm() <
             1e-12 + 0.2 * inertia * kTau / kBreath.period * kBreath.amplitude);
       CHECK(right.surface_v_W == Vec3::Zero());
     }
@@ -132,11 +132,12 @@ TEST_CASE("friction does not feel a tool and an organ that go along together") {
     organ.step(kPressed, 0);
     resting.step(kPressed, 0);
     for (int i = 1; i < 40; ++i) {
-      const ToolForce felt = organ.step(kPressed + at(kBreath, 0.05 * i), 0.05),
+      const ToolForce rendered = organ.step(kPressed + at(kBreath, 0.05 * i), 0.05),
                       right = resting.step(kPressed, 0.05);
       CAPTURE(model, i);
       REQUIRE(right.force[1] > 0.1);
-      CHECK((felt.force - right.force).norm() < (model == "quasi_static" ? 0.01 : 0.02) * right.force.norm());
+      CHECK((rendered.force - right.force).norm() <
+            (model == "quasi_static" ? 0.01 : 0.02) * right.force.norm());
     }
   }
 }
@@ -151,9 +152,10 @@ TEST_CASE("friction feels what the tissue slips as it swings, also on supports t
     double most = 0, off = 0;
     for (int i = 1; i <= 100; ++i) {
       const Vec3 p = kPressed + (1 - 0.01 * i) * Vec3(-0.001, 0.002, 0);
-      const ToolForce felt = organ.step(p + at(kBreath, 0.001 * i), 0.001), right = resting.step(p, 0.001);
+      const ToolForce rendered = organ.step(p + at(kBreath, 0.001 * i), 0.001),
+                      right = resting.step(p, 0.001);
       most = std::max(most, right.force.norm());
-      off = std::max(off, (felt.force - right.force).norm());
+      off = std::max(off, (rendered.force - right.force).norm());
     }
     CAPTURE(model);
     REQUIRE(most > 0.1);
@@ -170,8 +172,10 @@ TEST_CASE("a surface that comes up 6 mm in one step takes the tool in front of i
     moving.step(kPressed, 0);
     resting.step(kPressed, 0);
     // Meanwhile the tool has gone back to where it touches 1.5 mm deep again: 5.6 mm up.
-    const ToolForce felt = moving.step(kPressed + at(fast, 0.03), 0.03), right = resting.step(kPressed, 0.03);
-    CHECK((felt.force - right.force).norm() < (model == "quasi_static" ? 1e-6 : 0.05) * right.force.norm());
+    const ToolForce rendered = moving.step(kPressed + at(fast, 0.03), 0.03),
+                    right = resting.step(kPressed, 0.03);
+    CHECK((rendered.force - right.force).norm() <
+          (model == "quasi_static" ? 1e-6 : 0.05) * right.force.norm());
     // Twice as far, and the tool was as near to the bottom as to the top that went over it.
     const SupportMotion faster{Vec3::UnitY(), 0.075, 1.0};
     Simulation jumping(block_scene({faster}, model, 0.03), block());
@@ -198,10 +202,10 @@ TEST_CASE("a tool that stays while the organ breathes under it feels no jolt: th
   for (const std::string_view model : models()) {
     Simulation moving(block_scene({breath}, model, kStep), block());
     for (int i = 0; i < 300; ++i) {
-      const ToolForce felt = moving.step(kPressed, kStep);
-      CAPTURE(model, i, felt.force.transpose(), expected[i].transpose());
-      CHECK_FALSE(felt.flagged);
-      if (i >= 50) CHECK((felt.force - expected[i]).norm() < 0.02 * most);  // after the tool came down
+      const ToolForce rendered = moving.step(kPressed, kStep);
+      CAPTURE(model, i, rendered.force.transpose(), expected[i].transpose());
+      CHECK_FALSE(rendered.flagged);
+      if (i >= 50) CHECK((rendered.force - expected[i]).norm() < 0.02 * most);  // after the tool came down
     }
   }
 }
@@ -213,7 +217,7 @@ TEST_CASE(
   std::vector<SessionInput> inputs{{7, {.tick = 1}, true}};
   auto& state = inputs[0].state;
   using protocol::ToolState;
-  state.flags = ToolState::kWantsHere | ToolState::kWantsAhead;
+  state.flags = ToolState::kRequestsTangent | ToolState::kRequestsAhead;
   state.lead_ns = 50'000'000;
   const double t = 0.5;
   state.t_ns = from_seconds(t).count();
@@ -288,7 +292,7 @@ TEST_CASE(
     scene.tools.push_back(scene.tools[0]);
     Simulation two(scene, block()), none(scene, block());
     std::vector<ToolInput> inputs(2);
-    const auto go_on = [&](int steps) {
+    const auto continue_ = [&](int steps) {
       for (int i = 0; i < steps; ++i) {
         two.step(inputs, 0.01);
         none.step(std::vector<ToolInput>(2), 0.01);
@@ -296,13 +300,13 @@ TEST_CASE(
     };
     inputs[0].pose = ToolPose(kPressed);
     inputs[1].pose = ToolPose(kPressed + Vec3(0.012, 0, 0));
-    go_on(40);
+    continue_(40);
     REQUIRE(two.tool(0).force().contacts > 0);
     two.lift_tool(1);  // its client has left
     inputs[1].pose.reset();
-    go_on(10);
+    continue_(10);
     inputs[0].pose = ToolPose(kPressed + Vec3(0, 0.03, 0));
-    go_on(400);
+    continue_(400);
     double off = 0;
     for (std::size_t v = 0; v < two.positions().size(); ++v)
       off = std::max(off, (two.positions()[v] - none.positions()[v]).norm());

@@ -95,7 +95,7 @@ TEST_CASE("served tools: a tool that changes hands does not travel from one to t
 
 TEST_CASE("served tools: no tangent is made that nobody asked for, and the force is the same without") {
   Served asks, asks_not;
-  asks.inputs[0].state.flags |= protocol::ToolState::kWantsHere;
+  asks.inputs[0].state.flags |= protocol::ToolState::kRequestsTangent;
   asks.step(), asks_not.step();
   const ToolForce &with = asks.simulation.tool(0).force(), &without = asks_not.simulation.tool(0).force();
   REQUIRE(with.contacts > 0);

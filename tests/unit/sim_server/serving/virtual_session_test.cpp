@@ -47,11 +47,11 @@ struct Captured {
 };
 
 Captured run(const VirtualLink& link, double seconds, const std::filesystem::path& file) {
-  Press press;
+  Press apply_loads;
   Captured found;
   {
     protocol::CaptureWriter capture(file);
-    VirtualSession session(press.simulation, {&press.motion, 1}, 0.005, link, capture);
+    VirtualSession session(apply_loads.simulation, {&apply_loads.motion, 1}, 0.005, link, capture);
     for (std::uint64_t k = 0; k <= static_cast<std::uint64_t>(seconds * link.ticks_hz); ++k) session.tick(k);
     session.leave();
     found.late = session.stats().late;
@@ -108,7 +108,7 @@ Order order_of(Simulation& simulation, const Trajectory& motion, double seconds)
   return order;
 }
 
-protocol::SurfacePages whole_model(const Simulation& simulation) {
+protocol::SurfacePages entire_model(const Simulation& simulation) {
   const auto state = SurfacePager(simulation, 0).state();
   return {state.vertices, state.triangles};
 }
@@ -209,14 +209,14 @@ TEST_CASE("virtual time: the pages of the surface come right after the first sam
   const Order order = order_of(block, motion, 0.3);
   CHECK(order.samples_before_pages == 3);
   CHECK(order.nameless == 2);
-  CHECK(order.pages == whole_model(block).count());
+  CHECK(order.pages == entire_model(block).count());
   CHECK(order.samples_behind_pages > 3);
 }
 
 TEST_CASE("virtual time: of a surface that the tool stays away from, the shape comes and no compliance") {
   Simulation block(test::block_scene(), test::block_mesh());
   const Order order = order_of(block, {{0, 0.3}, {{0, 0.1, 0}, {0.02, 0.1, 0}}}, 0.3);
-  CHECK(order.pages == whole_model(block).first_tile());
+  CHECK(order.pages == entire_model(block).first_tile());
   CHECK(order.nameless == 0);
   CHECK(order.samples_behind_pages > 5);
 }
@@ -228,7 +228,7 @@ TEST_CASE("virtual time: of a long surface, compliance comes where the tool is")
   for (int i = 0; i <= 80; ++i) along.push_back(0.005 * i);
   Simulation bar(scene, grid_block(along, {-0.016, -0.008, 0}, {-0.01, 0, 0.01}));
   const Order order = order_of(bar, {{0, 0.3}, {{0.02, 0.006, 0}, {0.02, 0.004, 0}}}, 0.3);
-  const auto all = whole_model(bar);
+  const auto all = entire_model(bar);
   CHECK(order.pages > all.first_tile());
   CHECK(order.pages - all.first_tile() < (all.count() - all.first_tile()) / 4);  // of 90 mm in 400
   const SurfacePager pager(bar, 0);
@@ -257,7 +257,7 @@ TEST_CASE("virtual time: two tools that hold one organ feel each other, by the s
   for (std::size_t i = 0; i < 2; ++i) scene.tools[i].grasp_place = places[i];
   constexpr double kMoved = 0.001;  // m
   // What a tool feels of the other one's motion along an axis: Maxwell and Betti, F1 of u2 = F2 of u1.
-  const auto felt = [&](std::size_t tool, int axis) {
+  const auto rendered = [&](std::size_t tool, int axis) {
     Simulation block(scene, test::block_mesh());
     std::vector<Trajectory> motions;
     for (std::size_t i = 0; i < 2; ++i)
@@ -283,8 +283,8 @@ TEST_CASE("virtual time: two tools that hold one organ feel each other, by the s
   };
   Mat3 first, second;
   for (int axis = 0; axis < 3; ++axis) {
-    first.col(axis) = felt(0, axis) / kMoved;
-    second.col(axis) = felt(1, axis) / kMoved;
+    first.col(axis) = rendered(0, axis) / kMoved;
+    second.col(axis) = rendered(1, axis) / kMoved;
   }
   CAPTURE(first, second);
   CHECK(first.norm() > 1);  // N/m

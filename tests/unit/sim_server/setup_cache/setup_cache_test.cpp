@@ -78,24 +78,24 @@ TEST_CASE("setup cache: an entry with any byte of header or numbers changed, or 
   const auto keep = [&] { cache.keep({.key = key_of(7), .seconds = 1, .what = "seven"}, numbers(12)); };
   keep();
   const fs::path file = file_of(folder.path(), 7);
-  const std::string whole = bytes_of(file);
-  REQUIRE(whole.size() == 4096 + 12 * 12 * sizeof(double));
+  const std::string entire = bytes_of(file);
+  REQUIRE(entire.size() == 4096 + 12 * 12 * sizeof(double));
   const std::size_t header = 288;  // bytes that mean something; the rest of the page is padding
-  for (std::size_t at = 0; at < whole.size(); at += at < header ? 1 : at < 4096 ? 4096 - header : 7) {
+  for (std::size_t at = 0; at < entire.size(); at += at < header ? 1 : at < 4096 ? 4096 - header : 7) {
     if (at >= header && at < 4096) continue;
     CAPTURE(at);
-    std::string spoilt = whole;
+    std::string spoilt = entire;
     spoilt[at] = static_cast<char>(spoilt[at] ^ 0x40);
     write_bytes(file, spoilt);
     CHECK_FALSE(cache.find(key_of(7)));
     CHECK_FALSE(fs::exists(file));  // removed, to be made again
   }
-  for (const std::size_t size : {std::size_t{0}, std::size_t{10}, std::size_t{4096}, whole.size() - 1}) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{10}, std::size_t{4096}, entire.size() - 1}) {
     CAPTURE(size);
-    write_bytes(file, whole.substr(0, size));
+    write_bytes(file, entire.substr(0, size));
     CHECK_FALSE(cache.find(key_of(7)));
   }
-  write_bytes(file, whole + "x");
+  write_bytes(file, entire + "x");
   CHECK_FALSE(cache.find(key_of(7)));
   keep();
   CHECK(cache.find(key_of(7)));

@@ -24,10 +24,10 @@ Simulation organ(const std::string& model, double young_modulus) {
 
 /// After steps enough to come to rest, N.
 Vec3 force_at(Simulation& simulation, const Vec3& p) {
-  ToolForce told;
-  for (int i = 0; i < 20; ++i) told = simulation.step(ToolPose(p), kDt);
-  CHECK_FALSE(told.flagged);
-  return told.force;
+  ToolForce published;
+  for (int i = 0; i < 20; ++i) published = simulation.step(ToolPose(p), kDt);
+  CHECK_FALSE(published.flagged);
+  return published.force;
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ Scene moving_block(std::string_view model, double rate_hz, int instants) {
 
 /// Presses 3 mm deep in 0.1 s, and slides.
 Vec3 place(double t) {
-  const double share = std::min(t / 0.1, 1.0);
-  return {0.001 + 0.01 * t, 0.006 - 0.004 * share * share, 0.0005};
+  const double fraction = std::min(t / 0.1, 1.0);
+  return {0.001 + 0.01 * t, 0.006 - 0.004 * fraction * fraction, 0.0005};
 }
 
 }  // namespace
@@ -40,9 +40,9 @@ TEST_CASE("instants: a step with contact at ten of them is ten steps") {
     if (!row.moves || !row.deforms()) continue;
     const std::string_view model = row.name;
     CAPTURE(model);
-    Simulation whole(moving_block(model, 1 / kStep, kInstants), block_mesh()),
+    Simulation entire(moving_block(model, 1 / kStep, kInstants), block_mesh()),
         cut(moving_block(model, kInstants / kStep, 1), block_mesh());
-    REQUIRE(whole.instants() == kInstants);
+    REQUIRE(entire.instants() == kInstants);
     std::vector<ToolInput> input(1);
     for (int step = 1; step <= 10; ++step) {
       Vec3 sum = Vec3::Zero(), last;
@@ -55,7 +55,7 @@ TEST_CASE("instants: a step with contact at ten of them is ten steps") {
       }
       input[0].pose = place(kStep * step);
       input[0].path = path;
-      const ToolAnswer answer = whole.step(input, kStep).front();
+      const ToolAnswer answer = entire.step(input, kStep).front();
       CHECK((answer.force - last).norm() <= 1e-9 * last.norm());
       CHECK((answer.mean_force - sum / kInstants).norm() <= 1e-9 * sum.norm());
     }
@@ -64,7 +64,7 @@ TEST_CASE("instants: a step with contact at ten of them is ten steps") {
 }
 
 TEST_CASE("instants: without a path the tool goes evenly and straight from where it was told last") {
-  Simulation told(moving_block("tensor_mass", 1 / kStep, 4), block_mesh()),
+  Simulation published(moving_block("tensor_mass", 1 / kStep, 4), block_mesh()),
       silent(moving_block("tensor_mass", 1 / kStep, 4), block_mesh());
   std::vector<ToolInput> input(1);
   Vec3 from = place(0);
@@ -73,7 +73,7 @@ TEST_CASE("instants: without a path the tool goes evenly and straight from where
     std::vector<PathPoint> path;
     for (int k = 1; k < 4; ++k) path.push_back({Vec3(from + 0.25 * k * (to - from))});
     input[0] = {.pose = to, .path = path};
-    const Vec3 right = told.step(input, kStep).front().force;
+    const Vec3 right = published.step(input, kStep).front().force;
     input[0].path = {};
     CHECK((silent.step(input, kStep).front().force - right).norm() <= 1e-9 * right.norm());
     from = to;

@@ -64,10 +64,11 @@ TEST_CASE(
       const Vec3 place(0.002 + 2e-4 * k, (kind.holds ? 0.004 : -0.011) + 1e-4 * k, 0.001);
       inputs[0].pose.reset();
       if (k % 10 < 8) inputs[0].pose = ToolPose(kind.radius < 0.001 ? place + Vec3(0, 0.0108, 0) : place);
-      const Vec3 felt = near.step(inputs, kStep)[0].force, right = everywhere.step(inputs, kStep)[0].force;
+      const Vec3 rendered = near.step(inputs, kStep)[0].force,
+                 right = everywhere.step(inputs, kStep)[0].force;
       largest = std::max(largest, right.norm());
-      CAPTURE(k, felt.transpose(), right.transpose());
-      REQUIRE((felt - right).norm() <= 1e-9 * (1e-3 + right.norm()));
+      CAPTURE(k, rendered.transpose(), right.transpose());
+      REQUIRE((rendered - right).norm() <= 1e-9 * (1e-3 + right.norm()));
     }
     CHECK(largest > 1e-3);
     CHECK(near.state_hash() == everywhere.state_hash());
@@ -96,10 +97,10 @@ TEST_CASE(
   everywhere.free_motion(near.sub_step());
   for (int k = 0; k < 50; ++k) {
     const std::vector<NodalLoad> loads{{vertex, Vec3(0, -0.1, 0)}};
-    const Vec3 told = near.apply(loads)[static_cast<std::size_t>(vertex)],
+    const Vec3 published = near.apply(loads)[static_cast<std::size_t>(vertex)],
                right = everywhere.apply(loads)[static_cast<std::size_t>(vertex)];
-    CAPTURE(k, told.transpose(), right.transpose());
-    REQUIRE(told == right);
+    CAPTURE(k, published.transpose(), right.transpose());
+    REQUIRE(published == right);
     const FreeMotion motion = near.free_motion(near.sub_step());
     everywhere.free_motion(near.sub_step());
     CHECK(std::ranges::count(*motion.moved, vertex) > 0);
@@ -135,11 +136,11 @@ TEST_CASE("narrowed contact: tissue that was pulled far, and is let go, springs 
       inputs[0].pose = ToolPose(held);
       if (lifted && !holds) inputs[0].pose.reset();
       inputs[2].pose = ToolPose(Vec3(0.002, k < 25 ? 0.02 : 0.0002, 0.001));
-      const auto felt = near.step(inputs, kStep), right = everywhere.step(inputs, kStep);
+      const auto rendered = near.step(inputs, kStep), right = everywhere.step(inputs, kStep);
       CAPTURE(k);
       for (const std::size_t i : {0, 2}) {
-        CAPTURE(i, felt[i].force.transpose(), right[i].force.transpose());
-        REQUIRE((felt[i].force - right[i].force).norm() <= 1e-9 * (1e-3 + right[i].force.norm()));
+        CAPTURE(i, rendered[i].force.transpose(), right[i].force.transpose());
+        REQUIRE((rendered[i].force - right[i].force).norm() <= 1e-9 * (1e-3 + right[i].force.norm()));
       }
       largest = std::max(largest, right[0].force.norm());
       if (k >= 30) late = std::max(late, right[2].force.norm());
@@ -162,11 +163,11 @@ TEST_CASE("contact that looks around the tools alone within a step finds what co
       const double down = std::min(0.006, 0.0005 * k), along = k < 15 ? 0 : 0.008 * std::sin(1.6 * (k - 15));
       inputs[0].pose = ToolPose(Vec3(along, 0.004 - down + (k > 50 ? 0.02 : 0), 0.0005));
       inputs[0].buttons = k > 25 && k < 40 ? 1 : 0;
-      const Vec3 felt = near.step(inputs, kStep)[0].force;
+      const Vec3 rendered = near.step(inputs, kStep)[0].force;
       const Vec3 right = everywhere.step(inputs, kStep)[0].force;
       touched += right.norm() > 0 ? 1 : 0;
-      CAPTURE(k, felt.transpose(), right.transpose());
-      REQUIRE((felt - right).norm() <= 1e-9 * (1e-3 + right.norm()));
+      CAPTURE(k, rendered.transpose(), right.transpose());
+      REQUIRE((rendered - right).norm() <= 1e-9 * (1e-3 + right.norm()));
     }
     CHECK(touched > 20);
     CHECK(everywhere.resection()->totals().tetrahedra > 5);

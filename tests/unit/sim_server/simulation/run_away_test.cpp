@@ -125,13 +125,13 @@ TEST_CASE("run away: what was felt before an organ ran away fades, and does not 
   const Vec3 place(0.001, kRadius, 0.002), far = place + Vec3(0, 1, 0);  // 20 times its size
   scene.tools[0].grasp_place = place;
   Simulation simulation(scene, thick_block());
-  const ToolForce felt = simulation.step(ToolPose(place + Vec3(0, 0.002, 0)), kDt);
-  CHECK_FALSE(felt.flagged);
-  REQUIRE(felt.force.norm() > 0.1);
-  for (const double share : {0.5, 0.25, 0.125}) {
+  const ToolForce rendered = simulation.step(ToolPose(place + Vec3(0, 0.002, 0)), kDt);
+  CHECK_FALSE(rendered.flagged);
+  REQUIRE(rendered.force.norm() > 0.1);
+  for (const double fraction : {0.5, 0.25, 0.125}) {
     const ToolForce held = simulation.step(ToolPose(far), kDt);
     CHECK(held.flagged);
-    CHECK((held.force - share * felt.force).norm() < 1e-12);
+    CHECK((held.force - fraction * rendered.force).norm() < 1e-12);
     CHECK(held.tangent.isZero(0));
   }
   simulation.lift_tool(0);

@@ -10,14 +10,14 @@ using namespace std::chrono_literals;
 
 namespace {
 Time g_now;
-Time told_time() {
+Time published_time() {
   return g_now;
 }
 }  // namespace
 
 TEST_CASE("set-up times: from one call to the next, counted for the stage that the first of them named") {
   int calls = 0;
-  SetupTimes times([&](std::string_view, double) { ++calls; }, &told_time);
+  SetupTimes times([&](std::string_view, double) { ++calls; }, &published_time);
   g_now = 100ms;
   times("mesh", 0);
   g_now = 103ms;
@@ -39,7 +39,7 @@ TEST_CASE("set-up times: from one call to the next, counted for the stage that t
 }
 
 TEST_CASE("set-up times: a stage that comes again goes on where it was") {
-  SetupTimes times({}, &told_time);
+  SetupTimes times({}, &published_time);
   g_now = 0ms;
   times("a", 0);
   g_now = 1ms;

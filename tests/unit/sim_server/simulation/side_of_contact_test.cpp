@@ -33,15 +33,15 @@ TEST_CASE("a tool that the tissue closed over is taken back to the side it touch
     for (int i = 0; i < 60; ++i)
       most = std::max(most, slowly.step(ToolPose(deep + (1 - i / 59.0) * Vec3(0, 0.0125, 0)), kDt).force.y());
     REQUIRE(most > 1);
-    ToolForce told;
+    ToolForce published;
     for (int i = 0; i < 90; ++i) {
-      told = at_once.step(ToolPose(deep), kDt);
-      CAPTURE(static_cast<int>(law), i, told.force.transpose(), most);
-      CHECK((told.flagged || told.force.y() > 0));
-      CHECK((told.flagged || told.force.norm() < 3 * most));
+      published = at_once.step(ToolPose(deep), kDt);
+      CAPTURE(static_cast<int>(law), i, published.force.transpose(), most);
+      CHECK((published.flagged || published.force.y() > 0));
+      CHECK((published.flagged || published.force.norm() < 3 * most));
     }
-    CHECK_FALSE(told.flagged);
-    CHECK(told.force.y() > 0);
+    CHECK_FALSE(published.flagged);
+    CHECK(published.force.y() > 0);
   }
 }
 
@@ -61,12 +61,12 @@ TEST_CASE("two tools that pinch what cannot give way stay where they were, flagg
   CHECK(step(0.001, -0.002)[0].force.x() == Approx(-0.8));
   for (int i = 0; i <= 40; ++i) {
     const double depth = 0.005 * std::min(1.0, i / 20.0);
-    const auto felt = step(depth, depth);
-    CAPTURE(i, felt[0].force.transpose(), felt[1].force.transpose());
-    if (i > 0) CHECK((felt[0].flagged && felt[1].flagged));
-    CHECK(felt[0].force.x() < 1e-9);
-    CHECK(felt[1].force.x() > -1e-9);
-    CHECK(felt[0].force.norm() < 8);
+    const auto rendered = step(depth, depth);
+    CAPTURE(i, rendered[0].force.transpose(), rendered[1].force.transpose());
+    if (i > 0) CHECK((rendered[0].flagged && rendered[1].flagged));
+    CHECK(rendered[0].force.x() < 1e-9);
+    CHECK(rendered[1].force.x() > -1e-9);
+    CHECK(rendered[0].force.norm() < 8);
   }
   const auto alone = step(-0.002, 0.001);
   CHECK(alone[0].force.norm() == 0);

@@ -116,8 +116,8 @@ TEST_CASE("a tool that begins inside the organ is pushed out through the nearest
 TEST_CASE("a wild position gives no force and says so, and the tool enters afresh") {
   Simulation liver(test::liver_scene());
   const Vec3 place = on_liver(liver, -0.02, 0, 0.003), good = liver.step(place, kDt).force;
-  for (const double wild : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
-    const ToolForce given_up = liver.step(Vec3(0, wild, 0), kDt);
+  for (const double implausible : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+    const ToolForce given_up = liver.step(Vec3(0, implausible, 0), kDt);
     CHECK(given_up.flagged);
     CHECK(given_up.force == Vec3::Zero());
     CHECK((liver.step(place, kDt).force - good).norm() < 1e-9);

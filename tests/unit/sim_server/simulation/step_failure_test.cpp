@@ -41,22 +41,22 @@ TEST_CASE("a step that runs out of memory holds the last answer, flagged and cou
   for (std::size_t n = 1; !last; n = n + 1 + n / 4) {
     CAPTURE(n);
     Simulation simulation = pressed_block();
-    ToolForce told;
+    ToolForce published;
     {
       const AllocationFailure failure(n);
-      told = simulation.step(kPressed, kDt);
+      published = simulation.step(kPressed, kDt);
       last = !failure.happened();
     }
     if (last) break;
     // What a library makes of it by itself may settle in the end.
     const bool threw = simulation.failures().out_of_memory + simulation.failures().other == 1;
     failed += threw ? 1 : 0;
-    CHECK((told.force - rests).norm() < 0.01 * rests.norm());
-    if (threw) CHECK(told.flagged);
-    if (threw) CHECK(told.tangent.isZero());
-    for (int i = 0; i < 20; ++i) told = simulation.step(kPressed, kDt);
-    CHECK_FALSE(told.flagged);
-    CHECK((told.force - rests).norm() < 0.01 * rests.norm());
+    CHECK((published.force - rests).norm() < 0.01 * rests.norm());
+    if (threw) CHECK(published.flagged);
+    if (threw) CHECK(published.tangent.isZero());
+    for (int i = 0; i < 20; ++i) published = simulation.step(kPressed, kDt);
+    CHECK_FALSE(published.flagged);
+    CHECK((published.force - rests).norm() < 0.01 * rests.norm());
   }
   CHECK(failed > 5);
 }
@@ -66,10 +66,10 @@ TEST_CASE("the force of a tissue that answers no more fades, and a lifted tool f
   double before = simulation.step(kPressed, kDt).force.norm();
   for (int i = 0; i < 5; ++i) {
     const AllocationFailure failure(1);
-    const ToolForce told = simulation.step(kPressed, kDt);
-    CHECK(told.flagged);
-    CHECK(told.force.norm() == Approx(i == 0 ? before : before / 2).epsilon(1e-3));
-    before = told.force.norm();
+    const ToolForce published = simulation.step(kPressed, kDt);
+    CHECK(published.flagged);
+    CHECK(published.force.norm() == Approx(i == 0 ? before : before / 2).epsilon(1e-3));
+    before = published.force.norm();
   }
   CHECK(simulation.failures().out_of_memory == 5);
   CHECK(simulation.flagged().threw == 5);
@@ -87,9 +87,9 @@ TEST_CASE(
     simulation.lift_tool(0);
     CHECK(failure.happened());
   }
-  std::vector<ToolInput> left = kTwo;
-  left[0].pose.reset();
-  const auto answers = simulation.step(left, kDt);
+  std::vector<ToolInput> remaining = kTwo;
+  remaining[0].pose.reset();
+  const auto answers = simulation.step(remaining, kDt);
   CHECK(answers[0].force.isZero());
   CHECK(answers[1].force.norm() > 0.05);
   const std::vector<ToolInput> away(2);

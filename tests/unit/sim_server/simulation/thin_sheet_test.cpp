@@ -25,14 +25,14 @@ Simulation sheet(const std::string& model, ElasticLaw law, double thickness) {
 /// for 2 s; the steps that were flagged while it was held.
 std::pair<double, int> pressed(Simulation simulation, double speed, double begin, double depth = kDepth) {
   const double arrives = begin + (depth + kClear) / speed;
-  ToolForce told;
+  ToolForce published;
   int flagged = 0;
   for (double t = 0; t < arrives + 2; t += kDt) {
     const double way = std::clamp((t - begin) * speed, 0.0, depth + kClear);
-    told = simulation.step(ToolPose(Vec3(0.0011, kRadius + kClear - way, 0.0007)), kDt);
-    if (t > arrives + 1) flagged += told.flagged ? 1 : 0;
+    published = simulation.step(ToolPose(Vec3(0.0011, kRadius + kClear - way, 0.0007)), kDt);
+    if (t > arrives + 1) flagged += published.flagged ? 1 : 0;
   }
-  return {told.force.y(), flagged};
+  return {published.force.y(), flagged};
 }
 
 }  // namespace
@@ -67,9 +67,9 @@ TEST_CASE("thin sheets: one that bends by five tool radii is still felt, in ever
     // A membrane under a ball that is small against it stiffens or stays as stiff: of the linear law, as the
     // contact grows.
     const double half = pressed(sheet(model, ElasticLaw::kLinear, 0.003), 0.1, 0.1, 0.014).first;
-    const auto [whole, flagged] = pressed(sheet(model, ElasticLaw::kLinear, 0.003), 0.1, 0.1, 0.028);
+    const auto [entire, flagged] = pressed(sheet(model, ElasticLaw::kLinear, 0.003), 0.1, 0.1, 0.028);
     CAPTURE(model, half);
-    CHECK(whole > 1.8 * half);
+    CHECK(entire > 1.8 * half);
     CHECK(flagged == 0);
   }
 }

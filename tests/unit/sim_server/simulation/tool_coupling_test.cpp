@@ -29,15 +29,15 @@ struct Held : Simulation {
     for (std::size_t i = 0; i < moved.size(); ++i) {
       inputs[i].pose = ToolPose(kPlaces[i] + moved[i]);
       inputs[i].v_W = velocities[i];
-      inputs[i].wants = {.tangent = true, .here = true};
+      inputs[i].request = {.tangent = true, .at_tool = true};
     }
     return step(inputs, kDt);
   }
 };
 
 /// What a law makes of an answer: the force on a tool that has gone on by `d`, a time `t` later.
-Vec3 foretold(const ToolAnswer& answer, const Vec3& d, double t) {
-  return answer.force + answer.here->tangent * (d - t * answer.others->v_W);
+Vec3 predicted(const ToolAnswer& answer, const Vec3& d, double t) {
+  return answer.force + answer.at_tool->tangent * (d - t * answer.others->v_W);
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ TEST_CASE("tools that hold linear tissue: each knows what it will feel, whicheve
   for (std::size_t i = 0; i < tools; ++i) {
     REQUIRE(then[i].others);
     const double change = (now[i].force - then[i].force).norm();
-    CHECK((foretold(then[i], t * v[i], t) - now[i].force).norm() < 1e-6 * change);
+    CHECK((predicted(then[i], t * v[i], t) - now[i].force).norm() < 1e-6 * change);
     // Whoever leaves the others out is far off.
     CHECK((then[i].force + then[i].tangent * t * v[i] - now[i].force).norm() > 0.02 * change);
   }
@@ -72,7 +72,7 @@ TEST_CASE("tools that hold several vertices each: what the others do is foretold
   const double t = 0.05;
   moved[1] += t * v[1];
   const Vec3 now = block.at(moved, still)[0].force;
-  CHECK((foretold(then, Vec3::Zero(), t) - now).norm() < 0.15 * (now - then.force).norm());
+  CHECK((predicted(then, Vec3::Zero(), t) - now).norm() < 0.15 * (now - then.force).norm());
 }
 
 TEST_CASE("one tool alone, and one beside a tool that is lifted, is told of no other") {
@@ -81,10 +81,10 @@ TEST_CASE("one tool alone, and one beside a tool that is lifted, is told of no o
   const ToolAnswer alone = one.at({&moved, 1}, {&v, 1})[0];
   CHECK_FALSE(alone.others);
   std::vector<ToolInput> inputs(2);
-  inputs[0] = {.pose = ToolPose(kPlaces[0] + moved), .v_W = v, .wants = {.tangent = true, .here = true}};
+  inputs[0] = {.pose = ToolPose(kPlaces[0] + moved), .v_W = v, .request = {.tangent = true, .at_tool = true}};
   const ToolAnswer beside = two.step(inputs, kDt)[0];
   CHECK_FALSE(beside.others);
-  CHECK((beside.here->tangent - alone.here->tangent).norm() < 1e-9 * alone.here->tangent.norm());
+  CHECK((beside.at_tool->tangent - alone.at_tool->tangent).norm() < 1e-9 * alone.at_tool->tangent.norm());
 }
 
 TEST_CASE("tools that are told of each other: a step does not allocate") {
@@ -94,7 +94,7 @@ TEST_CASE("tools that are told of each other: a step does not allocate") {
   for (std::size_t i = 0; i < 3; ++i)
     inputs[i] = {.pose = ToolPose(kPlaces[i] + moved[i]),
                  .v_W = {0.01, 0, 0},
-                 .wants = {.tangent = true, .here = true}};
+                 .request = {.tangent = true, .at_tool = true}};
   block.step(inputs, kDt);
   const test::AllocationGuard guard;
   const auto answers = block.step(inputs, kDt);
@@ -107,18 +107,18 @@ TEST_CASE(
     "two tools that press one place: no tangent is more than ten times that with the other's load held") {
   const Scene scene = test::wide_block_scene(2, 0.005);
   int settled = 0;
-  for (const double apart : {0.0, 1e-4, 5e-4, 1e-3, 2e-3, 4e-3}) {
+  for (const double spacing : {0.0, 1e-4, 5e-4, 1e-3, 2e-3, 4e-3}) {
     Simulation block(scene, test::wide_block());
     std::vector<ToolInput> inputs(2);
     for (int step = 0; step < 10; ++step) {
       for (std::size_t i = 0; i < 2; ++i)
-        inputs[i] = {.pose = ToolPose(Vec3(i == 0 ? 0 : apart, 0.0045 - 2e-4 * step, 0.001)),
+        inputs[i] = {.pose = ToolPose(Vec3(i == 0 ? 0 : spacing, 0.0045 - 2e-4 * step, 0.001)),
                      .v_W = {0, -0.01, 0},
-                     .wants = {.tangent = true, .here = true}};
+                     .request = {.tangent = true, .at_tool = true}};
       for (const ToolAnswer& answer : block.step(inputs, kDt)) {
-        if (!answer.here || answer.contacts == 0) continue;
+        if (!answer.at_tool || answer.contacts == 0) continue;
         ++settled;
-        CHECK(answer.here->tangent.norm() <= 10 * answer.tangent.norm());
+        CHECK(answer.at_tool->tangent.norm() <= 10 * answer.tangent.norm());
       }
     }
   }
@@ -128,12 +128,12 @@ TEST_CASE(
 TEST_CASE("a tool whose velocity no hand has moves no surface under another") {
   Held block(2);
   const std::vector<Vec3> moved{{0, 0.004, 0.001}, {0.002, 0.003, 0}};
-  const auto told = [&](const Vec3& v) {
+  const auto published = [&](const Vec3& v) {
     const std::vector<Vec3> velocities{v, Vec3::Zero()};
     const auto answer = block.at(moved, velocities)[1];
     return answer.others ? answer.others->v_W.norm() : 0;
   };
-  told({0, 1, 0});
-  CHECK(told({0, 1, 0}) > 1e-3);
-  CHECK(told({0, 100, 0}) == 0);
+  published({0, 1, 0});
+  CHECK(published({0, 1, 0}) > 1e-3);
+  CHECK(published({0, 100, 0}) == 0);
 }

@@ -21,7 +21,7 @@ constexpr double kDt = 0.03, kRadius = 0.005;
 using Places = std::vector<std::optional<ToolPose>>;
 
 /// The tool centre that presses `depth` deep at x.
-Vec3 press(double x, double depth) {
+Vec3 apply_loads(double x, double depth) {
   return {x, kRadius - depth, 0.0013};
 }
 
@@ -93,12 +93,12 @@ double distance(const Simulation& block, const Vec3& p) {
 TEST_CASE("two tools: where they come to rest, all contacts together are in equilibrium") {
   // By the stiffness matrix: the tissue is held by the forces that the tools report, near them and nowhere
   // else, both tools touch and neither is in the tissue: the conditions of the joint problem.
-  const Vec3 a = press(-0.0065, 0.0025), b = press(0.0065, 0.002);
+  const Vec3 a = apply_loads(-0.0065, 0.0025), b = apply_loads(0.0065, 0.002);
   Block two(2);
   const auto forces = two.at({a, b});
   const Eigen::VectorXd held = holding_forces(two);
   Vec3 on_a = Vec3::Zero(), on_b = Vec3::Zero();
-  double elsewhere = 0;
+  double remote = 0;
   for (std::size_t v = 0; v < two.mesh().vertices.size(); ++v) {
     const Vec3& x = two.mesh().vertices[v];
     const Vec3 force = held.segment<3>(3 * static_cast<Eigen::Index>(v));
@@ -107,12 +107,12 @@ TEST_CASE("two tools: where they come to rest, all contacts together are in equi
     } else if ((x - b).norm() < 0.0125 && x[0] > 1e-6) {
       on_b += force;
     } else {
-      elsewhere = std::max(elsewhere, force.norm());
+      remote = std::max(remote, force.norm());
     }
   }
   CHECK(relative(-on_a, forces[0].force) < 1e-6);
   CHECK(relative(-on_b, forces[1].force) < 1e-6);
-  CHECK(elsewhere < 1e-6 * forces[0].force.norm());
+  CHECK(remote < 1e-6 * forces[0].force.norm());
   // 1e-9 m/N stand in series with every contact (ContactSolver::contact_compliance).
   CHECK(distance(two, a) == Approx(kRadius).margin(2e-9));
   CHECK(distance(two, b) == Approx(kRadius).margin(2e-9));
@@ -121,15 +121,15 @@ TEST_CASE("two tools: where they come to rest, all contacts together are in equi
 TEST_CASE("two tools: one that is lifted, or only near, leaves the other as if it were alone, bit by bit") {
   Block alone(1), two(2);
   for (double depth = -0.004; depth < 0.004; depth += 0.0007) {
-    const ToolForce expected = alone.at({press(0.003, depth)})[0];
-    const auto first = two.at({press(0.003, depth), {}});
+    const ToolForce expected = alone.at({apply_loads(0.003, depth)})[0];
+    const auto first = two.at({apply_loads(0.003, depth), {}});
     CHECK(first[0].force == expected.force);
     CHECK(first[1].force == Vec3::Zero());
   }
   two.lift_tool(0);
   alone.lift_tool();
-  const ToolForce expected = alone.at({press(-0.004, 0.002)})[0];
-  const auto second = two.at({press(0.02, -0.02), press(-0.004, 0.002)});
+  const ToolForce expected = alone.at({apply_loads(-0.004, 0.002)})[0];
+  const auto second = two.at({apply_loads(0.02, -0.02), apply_loads(-0.004, 0.002)});
   CHECK(second[1].force == expected.force);
   CHECK(second[0].force == Vec3::Zero());
 }
@@ -137,7 +137,7 @@ TEST_CASE("two tools: one that is lifted, or only near, leaves the other as if i
 TEST_CASE("two tools pressing symmetrically feel equal forces, and less than either would alone") {
   Block two(2), alone(1);
   // The mesh is not symmetric (its diagonals run one way): exchange the tools instead.
-  const Vec3 a = press(-0.006, 0.002), b = press(0.006, 0.002);
+  const Vec3 a = apply_loads(-0.006, 0.002), b = apply_loads(0.006, 0.002);
   const auto forces = two.at({a, b}), swapped = Block(2).at({b, a});
   CHECK(relative(forces[0].force, swapped[1].force) < 1e-6);
   CHECK(relative(forces[1].force, swapped[0].force) < 1e-6);
@@ -151,14 +151,14 @@ TEST_CASE("two tools pressing symmetrically feel equal forces, and less than eit
 
 TEST_CASE("two tools far apart feel almost what each feels alone") {
   Block two(2), alone(1);
-  const auto forces = two.at({press(-0.033, 0.002), press(0.033, 0.002)});
-  CHECK(relative(forces[0].force, alone.at({press(-0.033, 0.002)})[0].force) < 0.02);
+  const auto forces = two.at({apply_loads(-0.033, 0.002), apply_loads(0.033, 0.002)});
+  CHECK(relative(forces[0].force, alone.at({apply_loads(-0.033, 0.002)})[0].force) < 0.02);
   alone.lift_tool();
-  CHECK(relative(forces[1].force, alone.at({press(0.033, 0.002)})[0].force) < 0.02);
+  CHECK(relative(forces[1].force, alone.at({apply_loads(0.033, 0.002)})[0].force) < 0.02);
 }
 
 TEST_CASE("two tools: the equilibrium does not depend on who came first or how") {
-  const Vec3 a = press(-0.0055, 0.0025), b = press(0.0062, 0.0021);
+  const Vec3 a = apply_loads(-0.0055, 0.0025), b = apply_loads(0.0062, 0.0021);
   Block at_once(2), in_turn(2), by_path(2);
   const auto expected = at_once.at({a, b});
   REQUIRE(expected[0].contacts > 1);
@@ -177,7 +177,7 @@ TEST_CASE("two tools: the equilibrium does not depend on who came first or how")
 
 TEST_CASE("two tools: the forces are those of the energy that both share (reciprocity)") {
   // dF_a/dp_b = (dF_b/dp_a)^T: true of the joint equilibrium of an elastic body, of no other answer.
-  const Vec3 a = press(-0.0061, 0.0021), b = press(0.0058, 0.0024);
+  const Vec3 a = apply_loads(-0.0061, 0.0021), b = apply_loads(0.0058, 0.0024);
   constexpr double kStep = 2e-6;
   Block two(2);
   const auto difference = [&](std::size_t mover, int axis) {
@@ -200,12 +200,12 @@ TEST_CASE("two tools: the forces are those of the energy that both share (recipr
 TEST_CASE("two tools: one that presses moves the surface from under the other") {
   Block two(2);
   const double touching = 0.0002;
-  REQUIRE(two.at({press(0.006, touching), {}})[0].contacts > 0);
-  const auto forces = two.at({press(0.006, touching), press(-0.003, 0.004)});
+  REQUIRE(two.at({apply_loads(0.006, touching), {}})[0].contacts > 0);
+  const auto forces = two.at({apply_loads(0.006, touching), apply_loads(-0.003, 0.004)});
   CHECK(top_near(two, 0.005) < -0.0003);
   CHECK(forces[0].contacts == 0);
   CHECK(forces[0].force == Vec3::Zero());
-  CHECK(two.at({press(0.006, touching), {}})[0].contacts > 0);
+  CHECK(two.at({apply_loads(0.006, touching), {}})[0].contacts > 0);
 }
 
 TEST_CASE(
@@ -213,7 +213,7 @@ TEST_CASE(
   // The tissue is pressed by the same sphere, so it gives the same force, whoever carries how much of it.
   for (const double depth : {0.0005, 0.002, 0.003}) {
     CAPTURE(depth);
-    const Vec3 place = press(0.0013, depth);
+    const Vec3 place = apply_loads(0.0013, depth);
     Block alone(1), two(2), in_turn(2);
     const Vec3 single = alone.at({place})[0].force;
     in_turn.at({{}, place});
@@ -223,25 +223,25 @@ TEST_CASE(
       for (const ToolForce& force : forces) CHECK(force.force.dot(single) >= 0);
     }
     const Vec3 beside = place + Vec3(0.001, 0, 0);
-    const auto apart = Block(2).at({place, beside});
+    const auto spacing = Block(2).at({place, beside});
     const double other = Block(1).at({beside})[0].force[1];
-    CHECK_FALSE(apart[0].flagged);
-    CHECK_FALSE(apart[1].flagged);
-    for (const ToolForce& force : apart) CHECK(force.force[1] >= 0);
+    CHECK_FALSE(spacing[0].flagged);
+    CHECK_FALSE(spacing[1].flagged);
+    for (const ToolForce& force : spacing) CHECK(force.force[1] >= 0);
     // Each helps the other to hold the tissue down.
     constexpr double kRounding = 1 + 1e-9;  // the first touch may be of one alone
-    CHECK(apart[0].force[1] < kRounding * single[1]);
-    CHECK(apart[1].force[1] < kRounding * other);
-    CHECK(kRounding * (apart[0].force[1] + apart[1].force[1]) > std::max(single[1], other));
+    CHECK(spacing[0].force[1] < kRounding * single[1]);
+    CHECK(spacing[1].force[1] < kRounding * other);
+    CHECK(kRounding * (spacing[0].force[1] + spacing[1].force[1]) > std::max(single[1], other));
   }
 }
 
 TEST_CASE("two tools on a rigid organ do not feel each other") {
   Block two(2, "rigid"), alone(1, "rigid");
-  const auto forces = two.at({press(-0.004, 0.002), press(0.004, 0.003)});
-  CHECK(forces[0].force == alone.at({press(-0.004, 0.002)})[0].force);
+  const auto forces = two.at({apply_loads(-0.004, 0.002), apply_loads(0.004, 0.003)});
+  CHECK(forces[0].force == alone.at({apply_loads(-0.004, 0.002)})[0].force);
   alone.lift_tool();
-  CHECK(forces[1].force == alone.at({press(0.004, 0.003)})[0].force);
+  CHECK(forces[1].force == alone.at({apply_loads(0.004, 0.003)})[0].force);
 }
 
 TEST_CASE("tools of their own size and reach: compliance is kept for what either can reach") {
@@ -271,8 +271,8 @@ TEST_CASE("tools of their own size and reach: compliance is kept for what either
 
 TEST_CASE("two tools: a wild place takes away that tool only") {
   Block two(2), alone(1);
-  const Vec3 a = press(-0.006, 0.002);
-  two.at({a, press(0.006, 0.002)});
+  const Vec3 a = apply_loads(-0.006, 0.002);
+  two.at({a, apply_loads(0.006, 0.002)});
   const auto forces = two.at({a, Vec3(0, std::nan(""), 0)});
   CHECK(forces[1].flagged);
   CHECK(forces[1].force == Vec3::Zero());
@@ -284,7 +284,7 @@ TEST_CASE("any paths of two tools give finite forces, in settled answers but for
   Block two(2);
   test::Random random(3);
   int flagged = 0, both = 0, most = 0;
-  Vec3 a = press(-0.01, 0), b = press(0.01, 0);
+  Vec3 a = apply_loads(-0.01, 0), b = apply_loads(0.01, 0);
   for (int i = 0; i < 400; ++i) {
     a += random.vector(0.002), b += random.vector(0.002);
     a = a.cwiseMax(Vec3(-0.03, 0.0005, -0.01)).cwiseMin(Vec3(0.03, 0.01, 0.01));
@@ -310,8 +310,8 @@ TEST_CASE("steps of eight tools in contact do not allocate, and leave the tissue
   const std::uint64_t rest = eight.state_hash();
   std::vector<ToolInput> all(8), some(8), none(8);
   for (int i = 0; i < 8; ++i) {
-    all[i].pose = press(0.009 * i - 0.0315, 0.004);
-    if (i % 3 == 1) some[i].pose = press(0.009 * i - 0.0305, 0.003);
+    all[i].pose = apply_loads(0.009 * i - 0.0315, 0.004);
+    if (i % 3 == 1) some[i].pose = apply_loads(0.009 * i - 0.0305, 0.003);
   }
   all[0].pose = Vec3(-0.0315, -0.001, 0.0013);
   std::size_t allocations = 1;

@@ -126,11 +126,9 @@ TEST_CASE("dynamics: with damping every law comes to rest in its static equilibr
                                ElasticLaw::kNeoHookean}) {
     const Solid solid(small_block(), soft(law));
     const std::vector<Vec3> force = pull(solid, Vec3(1, 0.5, 0));
-    const Equilibrium rest =
-        find_equilibrium(solid,
-                         {[&](auto, std::span<Vec3> f) { std::copy(force.begin(), force.end(), f.begin()); },
-                          held_below(solid)},
-                         "test");
+    const Equilibrium rest = find_equilibrium(
+        solid, {[&](auto, std::span<Vec3> f) { std::ranges::copy(force, f.begin()); }, held_below(solid)},
+        "test");
     Dynamics dynamics(solid, held_below(solid), {.rayleigh_mass = 20, .rayleigh_stiffness = 0.02}, "test");
     for (int step = 0; step < 200; ++step) {
       dynamics.start_step(0.03);
@@ -162,7 +160,7 @@ TEST_CASE("dynamics: a quasi-Newton step answers what it learned last, and on a 
   QuasiNewton method;
   const Eigen::VectorXd load = Eigen::VectorXd::Random(dofs.count);
   Eigen::VectorXd place = Eigen::VectorXd::Zero(dofs.count), before = place;
-  double first = 0, left = 0;
+  double first = 0, remaining = 0;
   for (int i = 0; i < 12; ++i) {
     const Eigen::VectorXd resistance = times(place);
     method.add_point(place, resistance);
@@ -171,13 +169,13 @@ TEST_CASE("dynamics: a quasi-Newton step answers what it learned last, and on a 
       CHECK((method.direction(matrix, change) - (place - before)).norm() <
             1e-9 * (place - before).norm() + 1e-12 * place.norm());
     }
-    left = (load - resistance).norm();
-    if (i == 1) first = left;
+    remaining = (load - resistance).norm();
+    if (i == 1) first = remaining;
     before = place;
     place += method.direction(matrix, load - resistance);
   }
-  CAPTURE(first, left);
-  CHECK(left < 1e-3 * first);  // the old matrix alone would take 0.3 of it off a step, at most
+  CAPTURE(first, remaining);
+  CHECK(remaining < 1e-3 * first);  // the old matrix alone would take 0.3 of it off a step, at most
   method.clear();
   CHECK((method.direction(matrix, load) - matrix.solve(load)).norm() == 0);
 }
@@ -190,14 +188,14 @@ TEST_CASE("dynamics: solved with a factor of the background, a step ends where a
   for (const Solver solver : {Solver::kDirect, Solver::kQuasiNewton}) {
     for (const bool second : {false, true}) {
       Dynamics dynamics(solid, held_below(solid), {2, 0, second, solver, 3}, "test");
-      int looks = 0;
+      int polls = 0;
       for (int step = 0; step < 20; ++step) {  // bends far, so that a factor of before is of another place
         dynamics.start_step(0.02);
-        looks += dynamics.solve(pull(solid, Vec3(0.1 * std::min(step, 10), 0, 0)), 100, 1e-10);
+        polls += dynamics.solve(pull(solid, Vec3(0.1 * std::min(step, 10), 0, 0)), 100, 1e-10);
         dynamics.finish_step();
       }
       CAPTURE(static_cast<int>(solver), second);
-      CHECK(looks < 20 * 30);
+      CHECK(polls < 20 * 30);
       ends.emplace_back(dynamics.position().begin(), dynamics.position().end());
     }
   }
@@ -252,12 +250,12 @@ TEST_CASE("dynamics: a strain that is held relaxes along its Prony series, under
       dynamics.solve(none, 5, 1e-12);
       dynamics.finish_step();
       // The strain comes within the first step, evenly: each term has relaxed by gamma when it ends.
-      double share = 1;
+      double fraction = 1;
       for (const auto& [part, time] : relaxations)
-        share += part * (std::exp(-(step - 1) * h / time) * (1 - std::exp(-h / time)) * time / h - 1);
+        fraction += part * (std::exp(-(step - 1) * h / time) * (1 - std::exp(-h / time)) * time / h - 1);
       dynamics.internal_forces(f);
       solid.forces(dynamics.position(), at_once);
-      REQUIRE((f[0] - share * at_once[0]).norm() < 1e-9 * at_once[0].norm());
+      REQUIRE((f[0] - fraction * at_once[0]).norm() < 1e-9 * at_once[0].norm());
     }
     CHECK((f[0].norm() / at_once[0].norm()) == Approx(0.45 + 0.25 * std::exp(-3 / 1.5)).epsilon(0.02));
   }
@@ -282,8 +280,8 @@ TEST_CASE("dynamics: rounding that no factor makes less is no reason to factor a
     for (int i = 0; i < 50; ++i) {
       if (i == 40) before = dynamics.factors();
       dynamics.start_step(0.05);
-      const int looks = dynamics.solve(force, 60, kNever);
-      if (i >= 40) CHECK(looks < 3);
+      const int polls = dynamics.solve(force, 60, kNever);
+      if (i >= 40) CHECK(polls < 3);
       dynamics.finish_step();
     }
     CHECK(dynamics.factors() == before);
@@ -305,13 +303,13 @@ TEST_CASE("dynamics: a move without a line search that led far from balance is t
       std::vector<Vec3> weight;
       for (const double mass : solid.masses()) weight.emplace_back(mass * gravity);
       dynamics.start_step(0.02);
-      double before = 1, left = dynamics.iterate(weight, 1e-5);
-      for (int i = 0; i < 100 && left > 1e-5; ++i) {
-        before = left;
-        left = dynamics.iterate(weight, 1e-5);
-        if (before <= 0.1) worst = std::max(worst, left);  // 0.1: what is trusted
+      double before = 1, remaining = dynamics.iterate(weight, 1e-5);
+      for (int i = 0; i < 100 && remaining > 1e-5; ++i) {
+        before = remaining;
+        remaining = dynamics.iterate(weight, 1e-5);
+        if (before <= 0.1) worst = std::max(worst, remaining);  // 0.1: what is trusted
       }
-      CHECK(left <= 1e-5);
+      CHECK(remaining <= 1e-5);
       dynamics.finish_step();
     }
     CHECK(worst < 0.5);

@@ -36,7 +36,7 @@ TEST_CASE("equations of motion: a body that flies is in balance where its veloci
   motion.restart(solid.rest(), std::vector<Vec3>(solid.rest().size(), v));
   const std::vector<Vec3> none(solid.rest().size(), Vec3::Zero());
   for (int step = 0; step < 5; ++step) {
-    motion.begin_step(0.01);
+    motion.start_step(0.01);
     CHECK(motion.residual(none).relative < 1e-3);
     motion.end_step(false);
   }
@@ -59,7 +59,7 @@ TEST_CASE("equations of motion: a residual is the load less inertia, damping and
     load[i] = random.vector(0.5);
   }
   motion.restart(from, v);
-  motion.begin_step(h);
+  motion.start_step(h);
   for (std::size_t i = 0; i < v.size(); ++i)
     CHECK((motion.position()[i] - from[i] - h * v[i]).norm() < 1e-15);
   motion.move_to(to);
@@ -100,10 +100,10 @@ TEST_CASE("equations of motion: internal forces of the start of a step serve onl
   for (EquationsOfMotion* each : {&motion, &again}) {
     each->set_negligible_force(1e-9);
     each->restart(shaken(solid, 1e-3), none);
-    each->begin_step(0.01);
+    each->start_step(0.01);
     each->residual(none);
     each->end_step(true);
-    each->begin_step(0.01);
+    each->start_step(0.01);
   }
   // One with its held node elsewhere: the forces at the start of the step are others.
   motion.mutable_position()[0] += Vec3(1e-3, 0, 0);

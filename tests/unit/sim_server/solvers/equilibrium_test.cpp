@@ -270,14 +270,13 @@ TEST_CASE("equilibrium: turned by a quarter, a body bears its load as before") {
         start.push_back(turn * x);
         if (x[1] > 0.099) forces[i] = turn * Vec3(0.2, -0.1, 0.05);
       }
-      const Equilibrium found = find_equilibrium(solid,
-                                                 {[&](std::span<const Vec3>, std::span<Vec3> f) {
-                                                    std::copy(forces.begin(), forces.end(), f.begin());
-                                                  },
-                                                  held,
-                                                  {},
-                                                  start},
-                                                 "test");
+      const Equilibrium found = find_equilibrium(
+          solid,
+          {[&](std::span<const Vec3>, std::span<Vec3> f) { std::ranges::copy(forces, f.begin()); },
+           held,
+           {},
+           start},
+          "test");
       std::vector<Vec3> back = found.x;
       for (Vec3& x : back) x = turn.transpose() * x;
       return back;

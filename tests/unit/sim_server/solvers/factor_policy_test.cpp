@@ -27,7 +27,7 @@ struct Iterations {
 
 TEST_CASE("factor policy: on demand, the first slow iteration of a step with a stale factor has A factored") {
   Iterations iterate{FactorPolicy({.refresh_steps = 1})};
-  CHECK_FALSE(iterate.policy.begin_step(0));  // never exchanged
+  CHECK_FALSE(iterate.policy.start(0));  // never exchanged
   CHECK(iterate(1, true) == Decision::kKeep);
   CHECK(iterate.policy.state() == State::kFresh);
   CHECK(iterate(0.1) == Decision::kKeep);
@@ -44,7 +44,7 @@ TEST_CASE("factor policy: on demand, the first slow iteration of a step with a s
   CHECK(iterate.policy.uses_conjugate_gradients());
   CHECK(iterate(0.0001) == Decision::kKeep);
   CHECK(iterate.policy.uses_conjugate_gradients());  // not slow: as long as that serves
-  CHECK_FALSE(iterate.policy.begin_step(1));
+  CHECK_FALSE(iterate.policy.start(1));
   CHECK(iterate.policy.state() == State::kStale);
   iterate(1);
   CHECK(iterate(0.9) == Decision::kRefactor);  // of the next step
@@ -53,14 +53,14 @@ TEST_CASE("factor policy: on demand, the first slow iteration of a step with a s
 }
 
 TEST_CASE("factor policy: a body that was far from balance gets every factor that it asks for") {
-  for (const bool cautious : {false, true}) {
+  for (const bool damped : {false, true}) {
     Iterations iterate{FactorPolicy({})};
-    iterate.policy.begin_step(1, cautious);
+    iterate.policy.start(1, damped);
     iterate(1, true);
     int factors = 0;
     for (int i = 0; i < 20; ++i) factors += iterate(0.9) == Decision::kKeep ? 0 : 1;
-    CHECK(factors == (cautious ? 20 : 3));
-    CHECK(iterate.policy.uses_conjugate_gradients() != cautious);
+    CHECK(factors == (damped ? 20 : 3));
+    CHECK(iterate.policy.uses_conjugate_gradients() != damped);
   }
 }
 
@@ -75,26 +75,26 @@ TEST_CASE("factor policy: the first iteration of a step, or under other loads, i
   iterate(1);
   iterate.policy.loads_changed();
   CHECK(iterate(5) == Decision::kKeep);
-  iterate.policy.begin_step(3);
+  iterate.policy.start(3);
   CHECK(iterate(5) == Decision::kKeep);
   CHECK(iterate(5) == Decision::kRefactor);
 }
 
 TEST_CASE("factor policy: of the background, a slow iteration goes on by conjugate gradients") {
   Iterations iterate{FactorPolicy({.background = true, .refresh_steps = 3})};
-  CHECK(iterate.policy.begin_step(0));
-  CHECK_FALSE(iterate.policy.begin_step(0));  // once
+  CHECK(iterate.policy.start(0));
+  CHECK_FALSE(iterate.policy.start(0));  // once
   iterate(1);
   CHECK_FALSE(iterate.policy.uses_conjugate_gradients());
   CHECK(iterate(0.9) == Decision::kKeep);
   CHECK(iterate.policy.uses_conjugate_gradients());
-  CHECK_FALSE(iterate.policy.begin_step(1));
+  CHECK_FALSE(iterate.policy.start(1));
   CHECK_FALSE(iterate.policy.uses_conjugate_gradients());  // tried again in each step
-  CHECK_FALSE(iterate.policy.begin_step(2));
+  CHECK_FALSE(iterate.policy.start(2));
   iterate(1);
   iterate(1);
   CHECK(iterate.policy.uses_conjugate_gradients());
-  CHECK(iterate.policy.begin_step(3));
+  CHECK(iterate.policy.start(3));
   iterate.policy.replaced();
   CHECK_FALSE(iterate.policy.uses_conjugate_gradients());
 }
@@ -104,7 +104,7 @@ TEST_CASE("factor policy: a tiny residual that a fresh factor does not lessen is
   iterate(1e-6);
   CHECK(iterate(0.9e-6) == Decision::kRefactor);  // the factor was stale
   CHECK(iterate(0.8e-6) == Decision::kStop);
-  iterate.policy.begin_step(1);
+  iterate.policy.start(1);
   CHECK(iterate(1.5e-6) == Decision::kStop);  // the same rounding
   CHECK(iterate(1.7e-6) == Decision::kKeep);
 
@@ -112,7 +112,7 @@ TEST_CASE("factor policy: a tiny residual that a fresh factor does not lessen is
   FactorPolicy light({});
   CHECK(light.decide({{}, 1e3, 0.9e-6}, 1, true) != Decision::kStop);
   CHECK(light.decide({{}, 1e3, 0.8e-6}, 0.9e-6, false) == Decision::kStop);
-  light.begin_step(1, false);
+  light.start(1, false);
   CHECK(light.decide({{}, 1, 1e-3}, 1, false) != Decision::kStop);
 
   // A tiny one that a stale factor leaves is not, whatever that factor has been through before.
@@ -120,7 +120,7 @@ TEST_CASE("factor policy: a tiny residual that a fresh factor does not lessen is
   later(1);
   CHECK(later(0.9) == Decision::kRefactor);
   later(1e-2);
-  later.policy.begin_step(1);
+  later.policy.start(1);
   later(1e-7);
   CHECK(later(0.9e-7) == Decision::kRefactor);
   CHECK(later(0.8e-7) == Decision::kStop);

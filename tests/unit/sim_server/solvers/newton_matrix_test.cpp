@@ -48,26 +48,26 @@ Eigen::VectorXd some_load(Eigen::Index n) {
 
 /// A bar that is held at one end, and cut half through where x is 24 mm: vertices there became two, and one
 /// of the copies once more.
-struct PartedBar {
-  TetMesh whole = grid_block(test::lines(0, 0.06, 5), test::lines(0, 0.02, 2), test::lines(0, 0.02, 2));
-  TetMesh parted;
+struct SeparatedBar {
+  TetMesh entire = grid_block(test::lines(0, 0.06, 5), test::lines(0, 0.02, 2), test::lines(0, 0.02, 2));
+  TetMesh separated;
   std::vector<Split> splits;
   std::vector<int> beyond;  // tetrahedra that have copies as corners
 
-  PartedBar() {
-    const auto vertices = static_cast<int>(whole.vertices.size());
+  SeparatedBar() {
+    const auto vertices = static_cast<int>(entire.vertices.size());
     std::set<int> of_near, split;
-    for (const Tetrahedron& corners : whole.tetrahedra) {
-      if (centre_of(whole, corners).x() < 0.024) of_near.insert(corners.begin(), corners.end());
+    for (const Tetrahedron& corners : entire.tetrahedra) {
+      if (centre_of(entire, corners).x() < 0.024) of_near.insert(corners.begin(), corners.end());
     }
-    for (int v = 0; v < vertices; ++v) whole.vertices.push_back(Vec3(whole.vertices[std::size_t(v)]));
-    whole.vertices.push_back(Vec3(whole.vertices.back()));
-    parted = whole;
-    for (std::size_t t = 0; t < parted.tetrahedra.size(); ++t) {
-      if (centre_of(whole, whole.tetrahedra[t]).x() < 0.024) continue;
+    for (int v = 0; v < vertices; ++v) entire.vertices.push_back(Vec3(entire.vertices[std::size_t(v)]));
+    entire.vertices.push_back(Vec3(entire.vertices.back()));
+    separated = entire;
+    for (std::size_t t = 0; t < separated.tetrahedra.size(); ++t) {
+      if (centre_of(entire, entire.tetrahedra[t]).x() < 0.024) continue;
       bool changed = false;
-      for (int& corner : parted.tetrahedra[t]) {
-        if (of_near.contains(corner) && whole.vertices[std::size_t(corner)].y() > 0) {
+      for (int& corner : separated.tetrahedra[t]) {
+        if (of_near.contains(corner) && entire.vertices[std::size_t(corner)].y() > 0) {
           split.insert(corner);
           corner += vertices;
           changed = true;
@@ -79,9 +79,9 @@ struct PartedBar {
     // One tetrahedron alone with a copy of a copy.
     const int copy = splits.back().copy;
     splits.push_back({copy, 2 * vertices});
-    whole.vertices.back() = parted.vertices.back() = Vec3(whole.vertices[std::size_t(copy)]);
+    entire.vertices.back() = separated.vertices.back() = Vec3(entire.vertices[std::size_t(copy)]);
     for (const int t : beyond) {
-      Tetrahedron& corners = parted.tetrahedra[std::size_t(t)];
+      Tetrahedron& corners = separated.tetrahedra[std::size_t(t)];
       if (std::ranges::find(corners, copy) == corners.end()) continue;
       std::ranges::replace(corners, copy, 2 * vertices);
       break;
@@ -89,7 +89,7 @@ struct PartedBar {
   }
   std::vector<HeldAxes> held() const {
     std::vector<HeldAxes> held;
-    for (const Vec3& x : whole.vertices) held.push_back(x.x() == 0 ? kAllAxes : 0);
+    for (const Vec3& x : entire.vertices) held.push_back(x.x() == 0 ? kAllAxes : 0);
     return held;
   }
   FreeDofs dofs() const { return FreeDofs(held()); }
@@ -97,7 +97,7 @@ struct PartedBar {
   Eigen::VectorXd load(const FreeDofs& dofs) const {
     const Eigen::VectorXd some = some_load(dofs.count);
     Eigen::VectorXd load = Eigen::VectorXd::Zero(dofs.count);
-    for (const Tetrahedron& corners : parted.tetrahedra) {
+    for (const Tetrahedron& corners : separated.tetrahedra) {
       for (const int v : corners) {
         const int first = dofs.first[std::size_t(v)];
         if (first >= 0) load.segment<3>(first) = some.segment<3>(first);
@@ -119,7 +119,7 @@ struct PartedBar {
   }
   /// A of the parted one, at `x`.
   StiffnessMatrix matrix(const FreeDofs& dofs, const std::vector<Vec3>& x) const {
-    const Solid solid(parted, corotational(ElementKind::kLinear));
+    const Solid solid(separated, corotational(ElementKind::kLinear));
     StiffnessMatrix exact = solid.stiffness_matrix(dofs);
     solid.add_stiffness(x, exact);
     exact.add_to_diagonal(solid.masses(), kC * kC);
@@ -178,41 +178,41 @@ TEST_CASE("Newton matrix: one that was built elsewhere is turned by the differen
 
 TEST_CASE(
     "Newton matrix: of a body of which vertices became two, the next one is that of the body as it is") {
-  const PartedBar bar;
+  const SeparatedBar bar;
   const FreeDofs dofs = bar.dofs();
-  Solid solid(bar.whole, corotational(ElementKind::kLinear));
+  Solid solid(bar.entire, corotational(ElementKind::kLinear));
   NewtonMatrix matrix(solid, dofs, {}, "test");
   Solid::Scratch scratch(solid);
-  solid.reshape(bar.parted, bar.beyond);
+  solid.reshape(bar.separated, bar.beyond);
   matrix.part(bar.splits);
   matrix.build(solid, solid.rest(), solid.masses(), {}, kC, scratch);
   const Eigen::VectorXd load = bar.load(dofs), moved = matrix.solve(load).col(0);
-  const Eigen::VectorXd left = load - bar.matrix(dofs, solid.rest()).times(moved).col(0);
-  CHECK(left.norm() < 1e-4 * load.norm());
+  const Eigen::VectorXd remaining = load - bar.matrix(dofs, solid.rest()).times(moved).col(0);
+  CHECK(remaining.norm() < 1e-4 * load.norm());
 }
 
 TEST_CASE("Newton matrix: bordered, the one from before vertices became two solves what the body is now") {
-  const PartedBar bar;
+  const SeparatedBar bar;
   const FreeDofs dofs = bar.dofs();
   // Made at rest; or where the body is, and cut before anything has turned.
   for (const auto& [turned, made_there] : {std::pair{false, false}, {true, false}, {true, true}}) {
     CAPTURE(turned, made_there);
-    Solid solid(bar.whole, corotational(ElementKind::kLinear));
+    Solid solid(bar.entire, corotational(ElementKind::kLinear));
     NewtonMatrix matrix(solid, dofs, {}, "test");
     Solid::Scratch scratch(solid);
     const std::vector<Vec3> x = turned ? carried(solid) : solid.rest();
     matrix.build(solid, made_there ? x : solid.rest(), solid.masses(), {}, kC, scratch);
     if (!made_there) matrix.turn_to(solid, x);
     bar.note_shapes(solid, x, matrix);
-    solid.reshape(bar.parted, bar.beyond);
+    solid.reshape(bar.separated, bar.beyond);
     matrix.part(std::span(bar.splits).first(3));  // at once or by and by
     matrix.part(std::span(bar.splits).subspan(3));
     matrix.turn_to(solid, x);
     CHECK(matrix.make_border(solid, solid.masses()) == static_cast<int>(bar.splits.size()));
     CHECK(matrix.make_border(solid, solid.masses()) == 0);
     const Eigen::VectorXd load = bar.load(dofs);
-    const Eigen::VectorXd left = load - bar.matrix(dofs, x).times(matrix.turned_solve(load)).col(0);
-    CHECK(left.norm() < 1e-4 * load.norm());
+    const Eigen::VectorXd remaining = load - bar.matrix(dofs, x).times(matrix.turned_solve(load)).col(0);
+    CHECK(remaining.norm() < 1e-4 * load.norm());
     // As columns, too.
     const std::vector<int> first{dofs.first[static_cast<std::size_t>(bar.splits.back().copy)]};
     const Eigen::MatrixXd column = matrix.columns(first, 1e-3);
@@ -224,9 +224,9 @@ TEST_CASE("Newton matrix: bordered, the one from before vertices became two solv
 TEST_CASE("dynamics: in the step after nodes became two the factor goes on, and it converges as any",
           "[threads]") {
   using Solver = DynamicsSettings::Solver;
-  const PartedBar bar;
+  const SeparatedBar bar;
   for (const Solver solver : {Solver::kDirect, Solver::kQuasiNewton}) {
-    Solid solid(bar.whole, corotational(ElementKind::kLinear));
+    Solid solid(bar.entire, corotational(ElementKind::kLinear));
     Dynamics dynamics(solid, bar.held(), {.solver = solver, .refresh_steps = 1000, .cut = true}, "test");
     std::vector<Vec3> pull(solid.rest().size(), Vec3::Zero());  // by 27 mm
     for (std::size_t i = 0; i < pull.size(); ++i)
@@ -245,7 +245,7 @@ TEST_CASE("dynamics: in the step after nodes became two the factor goes on, and 
     const int ordinary = step(), before = dynamics.factors();
     dynamics.note_shapes(bar.beyond);
     for (const auto& [node, copy] : bar.splits) dynamics.copy(node, copy);
-    solid.reshape(bar.parted, bar.beyond);
+    solid.reshape(bar.separated, bar.beyond);
     std::vector<Dynamics::NodeMass> masses;
     for (int node = 0; node < solid.nodes(); ++node)
       masses.push_back({node, solid.masses()[static_cast<std::size_t>(node)]});
@@ -259,14 +259,14 @@ TEST_CASE("dynamics: in the step after nodes became two the factor goes on, and 
 }
 
 TEST_CASE("Newton matrix: a border that does not fit the factor still makes it positive definite") {
-  const PartedBar bar;
+  const SeparatedBar bar;
   const FreeDofs dofs = bar.dofs();
-  Solid solid(bar.whole, corotational(ElementKind::kLinear));
+  Solid solid(bar.entire, corotational(ElementKind::kLinear));
   NewtonMatrix matrix(solid, dofs, {}, "test");
   Solid::Scratch scratch(solid);
   matrix.build(solid, solid.rest(), solid.masses(), {}, kC, scratch);
   bar.note_shapes(solid, solid.rest(), matrix, 6);
-  solid.reshape(bar.parted, bar.beyond);
+  solid.reshape(bar.separated, bar.beyond);
   matrix.part(bar.splits);
   matrix.make_border(solid, solid.masses());
   const Eigen::MatrixXd inverse = matrix.solve(Eigen::MatrixXd::Identity(dofs.count, dofs.count));
@@ -287,9 +287,9 @@ TEST_CASE("Newton matrix: what is held along an axis stays held") {
   Eigen::VectorXd load = some_load(dofs.count);
   dofs.hold(load);
   const Eigen::VectorXd moved = matrix.turned_solve(load);
-  Eigen::VectorXd kept = moved;
-  dofs.hold(kept);
-  CHECK((moved - kept).norm() <= 1e-6 * moved.norm());
+  Eigen::VectorXd stored = moved;
+  dofs.hold(stored);
+  CHECK((moved - stored).norm() <= 1e-6 * moved.norm());
 }
 
 TEST_CASE("Newton matrix: of a body about to buckle, with more inertia it still leads downhill, each time") {

@@ -112,14 +112,14 @@ TEST_CASE("newton: where A is not positive definite, conjugate gradients stop wi
 TEST_CASE("newton: the product with the Jacobian is that of a difference whose size is the nudge") {
   const Eigen::MatrixXd a = with_spectrum(Eigen::VectorXd::LinSpaced(12, 1, 9));
   const Eigen::VectorXd d = Eigen::VectorXd::Random(12), force = Eigen::VectorXd::Random(12);
-  const double largest = d.cwiseAbs().maxCoeff(), nudge = 1e-3;
+  const double largest = d.cwiseAbs().maxCoeff(), offset = 1e-3;
   double step = 0;
   // r(x + s d) = r - s A d - s^2 d / 2, whose difference is A d + s d / 2.
   const auto along = [&](double s) {
     step = s;
     return Residual{force - s * (a * d) - 0.5 * s * s * d, 1, 1};
   };
-  const Eigen::VectorXd found = jacobian_times(d, force, nudge, along);
-  CHECK(step * largest == Approx(nudge));
+  const Eigen::VectorXd found = jacobian_times(d, force, offset, along);
+  CHECK(step * largest == Approx(offset));
   CHECK((found - (a * d + 0.5 * step * d)).norm() < 1e-10);
 }

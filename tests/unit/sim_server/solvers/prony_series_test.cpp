@@ -23,7 +23,7 @@ Mat3 stress_of(const PronySeries& series, const Mat3& elastic, std::size_t point
 /// second.
 double ramp(double t) {
   double sum = t;
-  for (const auto& [share, time] : kTerms) sum -= share * (t + time * std::expm1(-t / time));
+  for (const auto& [fraction, time] : kTerms) sum -= fraction * (t + time * std::expm1(-t / time));
   return sum;
 }
 

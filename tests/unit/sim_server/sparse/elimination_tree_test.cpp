@@ -52,7 +52,7 @@ TEST_CASE("a postorder has each vertex directly after all of its descendants") {
     const std::vector<int> parent = parents_of_columns(graph);
     const std::vector<int> order = postorder(parent);
     std::vector<int> sorted = order;
-    std::sort(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
     for (int v = 0; v < graph.vertices(); ++v) REQUIRE(sorted[v] == v);
     const std::vector<int> above = renumbered_parents(parent, order);
     for (int place = 0; place < graph.vertices(); ++place) {

@@ -62,9 +62,9 @@ TEST_CASE("a block of the inverse is that of the dense inverse, and symmetric to
     const auto m = static_cast<Eigen::Index>(unknowns.size());
     Eigen::MatrixXd block(m, m);
     double last = -1;
-    factor.inverse_block(unknowns, block, [&](double share) {
-      CHECK(share > last);
-      last = share;
+    factor.inverse_block(unknowns, block, [&](double fraction) {
+      CHECK(fraction > last);
+      last = fraction;
     });
     CHECK(last >= 0);
     CHECK((block - exact(unknowns, unknowns)).cwiseAbs().maxCoeff() < 1e-11 * exact.cwiseAbs().maxCoeff());
@@ -101,9 +101,9 @@ Eigen::MatrixXd from_rows(const FactoredMatrix& factor, std::span<const int> unk
     }
   };
   double last = -1;
-  factor.inverse_rows(unknowns, begins, take, [&](double share) {
-    CHECK(share > last);
-    last = share;
+  factor.inverse_rows(unknowns, begins, take, [&](double fraction) {
+    CHECK(fraction > last);
+    last = fraction;
   });
   CHECK(last >= 0);
   return block;

@@ -54,8 +54,8 @@ void check_against_elimination(const MatrixGraph& graph, const Elimination& elim
     const std::span<const int> rows = nodes.rows_of(s);
     const int first = nodes.first[s], columns = nodes.first[s + 1] - first;
     REQUIRE(columns > 0);
-    CHECK(std::is_sorted(rows.begin(), rows.end()));
-    CHECK(std::adjacent_find(rows.begin(), rows.end()) == rows.end());
+    CHECK(std::ranges::is_sorted(rows));
+    CHECK(std::ranges::adjacent_find(rows) == rows.end());
     for (int c = 0; c < columns; ++c) {
       CHECK(rows[c] == first + c);
       for (const int row : rows.subspan(c)) held(row, first + c) = true;

@@ -41,7 +41,7 @@ double way_of(const SupportMotion& motion, double t) {
 std::vector<std::string_view> built(std::initializer_list<std::string_view> names) {
   std::vector<std::string_view> all;
   for (const DeformationModelRow& row : models_without_cutting()) {
-    if (std::find(names.begin(), names.end(), row.name) != names.end()) all.push_back(row.name);
+    if (std::ranges::find(names, row.name) != names.end()) all.push_back(row.name);
   }
   return all;
 }

@@ -17,17 +17,17 @@ Trajectory even_way() {
   return {{0.0, 2.0}, {Vec3::Zero(), Vec3(0, -2 * kSpeed, 0)}};
 }
 
-/// A spring that the tool presses from the beginning; `share` of its true force, one site that goes along.
-Trace spring(double dt, double share, const Mat3& tangent) {
+/// A spring that the tool presses from the beginning; `fraction` of its true force, one site that goes along.
+Trace spring(double dt, double fraction, const Mat3& tangent) {
   Trace trace;
   trace.dt = dt;
   trace.sites = 1;
   for (int k = 1; k * dt < 2 + 1e-9; ++k) {
     const Vec3 place = even_way().at(k * dt);
     trace.places.push_back(place);
-    trace.forces.push_back(-share * kStiffness * place);
+    trace.forces.push_back(-fraction * kStiffness * place);
     trace.tangents.push_back(tangent);
-    trace.moved.push_back(share * place);
+    trace.moved.push_back(fraction * place);
   }
   return trace;
 }
@@ -53,16 +53,16 @@ TEST_CASE("what is right but late is felt late, by the step and the link, and he
   // In the mean the place is old by dt + latency and half a step for which it is held.
   const double off = kStiffness * kSpeed * (kDt + kLatency + kDt / 2);
   const double size = kStiffness * kSpeed * 2 / std::sqrt(3.0);
-  CHECK(errors.felt == Approx(100 * off / size).epsilon(0.03));
+  CHECK(errors.rendered == Approx(100 * off / size).epsilon(0.03));
 }
 
 TEST_CASE("the exact tangent takes what is late away, once the first force is there") {
   const Trace truth = spring(0.001, 1, Mat3::Zero());
   const Mat3 tangent = -kStiffness * Mat3::Identity();
-  const double felt = errors_of(spring(0.04, 1, tangent), truth, even_way(), 0.01).felt;
+  const double rendered = errors_of(spring(0.04, 1, tangent), truth, even_way(), 0.01).rendered;
   // Until 2 dt + latency = 0.09 s there is none: the mean of the force there, over all 2 s.
   const double before = kStiffness * kSpeed * 0.09 * 0.09 / 2 / 2;
-  CHECK(felt == Approx(100 * before / (kStiffness * kSpeed * 2 / std::sqrt(3.0))).epsilon(0.05));
+  CHECK(rendered == Approx(100 * before / (kStiffness * kSpeed * 2 / std::sqrt(3.0))).epsilon(0.05));
 }
 
 TEST_CASE("a trace reads back as it was, and half of one is none") {
@@ -85,8 +85,8 @@ TEST_CASE("a trace reads back as it was, and half of one is none") {
 
 TEST_CASE("what runs apart tells its errors and its crashes here") {
   const std::vector<char> own(128 << 20, 1);  // of this process, and not of those
-  [[maybe_unused]] const double small = run_apart("small", [] {});
-  const double big = run_apart("big", [] { std::vector<char> much(64 << 20, 1); });
+  [[maybe_unused]] const double small = run_separately("small", [] {});
+  const double big = run_separately("big", [] { std::vector<char> much(64 << 20, 1); });
   CHECK(big > 64e6);
 #if !defined(PALPATE_SANITIZED)  // they keep more
   CHECK(small < 8e6);
@@ -94,7 +94,7 @@ TEST_CASE("what runs apart tells its errors and its crashes here") {
 #endif
   const auto said = [](const std::function<void()>& work) -> std::string {
     try {
-      run_apart("case", work);
+      run_separately("case", work);
     } catch (const Error& error) {
       return error.what();
     }

@@ -103,7 +103,7 @@ TEST_CASE("viewer: what moved, added up by another decoder, is the whole surface
     }
   }
   CHECK(page.named == named);
-  CHECK(page.whole_ones == 1);
+  CHECK(page.entire_ones == 1);
 }
 
 TEST_CASE("viewer: where most of it moved, the whole is shorter than what moved") {
@@ -144,7 +144,7 @@ TEST_CASE("viewer: a field is told as shares of its largest value") {
 TEST_CASE("viewer: ticks of a client, a row of laws for each") {
   ClientTicks ticks{.tool = 1, .laws = 2, .count = 3, .t = 1.5, .dt = 0.002F};
   for (std::size_t k = 0; k < 3; ++k) {
-    ticks.felt[k] = static_cast<float>(k);
+    ticks.rendered[k] = static_cast<float>(k);
     ticks.by_law[k][1] = static_cast<float>(10 + k);
   }
   Bytes message;

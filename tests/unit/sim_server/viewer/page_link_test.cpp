@@ -42,7 +42,7 @@ struct Session {
     picture.positions = {x, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     picture.tools[0].sample = {number, 0.02 * static_cast<double>(number), 2.5F, 0};
     feed->pictures.publish();
-    maker->look(time);
+    maker->update(time);
   }
   /// All that the page gets now; how many messages.
   int take_all() {
@@ -86,7 +86,7 @@ TEST_CASE("viewer: a page gets the scene, the topology, the state and the whole 
   CHECK(scene["pausable"] == false);
   CHECK_FALSE(scene.contains("scenes"));
   CHECK(session.last_text()["state"]["step"] == 1);
-  CHECK(session.page.whole_ones == 1);
+  CHECK(session.page.entire_ones == 1);
   CHECK(session.page.positions[0] == Approx(0.25).margin(1e-4));
   CHECK(session.page.sample_forces == std::vector<double>{2.5});
   CHECK(session.take_all() == 0);
@@ -114,9 +114,9 @@ TEST_CASE("viewer: while nothing steps a page gets states, and no surfaces") {
   session.step(1);
   session.take_all();
   const std::size_t before = session.texts.size();
-  for (int look = 0; look < 100; ++look) {
+  for (int update = 0; update < 100; ++update) {
     session.time += 10ms;
-    session.maker->look(session.time);
+    session.maker->update(session.time);
     session.take_all();
   }
   CHECK(session.texts.size() - before >= 5);
@@ -205,13 +205,13 @@ TEST_CASE("viewer: what is cut away is told place by place, and wholly to a page
   cut(2, 1);
   CHECK(session.page.version == 2);
   CHECK(session.page.cuts == 1);
-  CHECK(session.page.whole_cuts == 0);
+  CHECK(session.page.entire_cuts == 0);
   CHECK(shown(session.page) == now);
   now = {{1, 2, 3}};
   cut(3, 5);  // pictures between were not shown
   CHECK(shown(session.page) == now);
   CHECK(session.page.step == 3);
-  CHECK(session.page.whole_ones == 1);
+  CHECK(session.page.entire_ones == 1);
   now.clear();
   cut(4, 6);
   CHECK(shown(session.page).empty());
@@ -261,10 +261,10 @@ TEST_CASE("viewer: rates are measured over the last second") {
 
   // While nobody looked, steps went on: they are not of the second in which a page comes back.
   session.feed->pages = 0;
-  session.maker->look(session.time);
+  session.maker->update(session.time);
   session.feed->pages = 1;
   session.time += 10s;
-  session.maker->look(session.time);
+  session.maker->update(session.time);
   session.take_all();
   CHECK(session.last_text()["state"]["rate_hz"].is_null());
   for (std::uint64_t step = 701; step <= 760; ++step) session.step(step);
@@ -286,23 +286,23 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   client.intervention_names = {SeenClient::Name{"clamped"}};
   client.intervention_counts = {3};
   session.feed->clients[0] = client;
-  ++session.feed->client_news[0];
-  session.maker->look(session.time);
+  ++session.feed->client_events[0];
+  session.maker->update(session.time);
   CHECK(session.take_all() == 0);  // of a client that has left
   session.feed->peers[0].held = true;
   ClientTicks ticks{.tool = 0, .laws = 2, .count = 1};
   for (int k = 0; k < 20; ++k) {
     session.feed->ticks.push_back(ticks);
   }
-  session.maker->look(session.time);
+  session.maker->update(session.time);
   // Of the ticks the newest sixteen.
   CHECK(session.take_all() == 1 + 16);
-  const auto told = session.last_text()["client"];
-  CHECK(told["law"] == "linear_position");
-  CHECK(told["errors_percent"][0] == 12.5);
-  CHECK(told["errors_percent"][1].is_null());
-  CHECK(told["interventions"]["clamped"] == 3);
-  CHECK(told["states"] == std::vector<std::string>{"clutched"});
-  session.maker->look(session.time);
+  const auto published = session.last_text()["client"];
+  CHECK(published["law"] == "linear_position");
+  CHECK(published["errors_percent"][0] == 12.5);
+  CHECK(published["errors_percent"][1].is_null());
+  CHECK(published["interventions"]["clamped"] == 3);
+  CHECK(published["states"] == std::vector<std::string>{"clutched"});
+  session.maker->update(session.time);
   CHECK(session.take_all() == 0);
 }
