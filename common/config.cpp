@@ -7,6 +7,8 @@
 #include <toml++/toml.h>
 
 #include "common/error.h"
+#include "common/log.h"
+#include "common/renamed_keys.h"
 #include "common/text.h"
 
 namespace palpate {
@@ -18,8 +20,21 @@ struct Config::Node {
   std::set<std::string> requested;
 
   const toml::node* find(const std::string& key) {
-    requested.insert(key);
-    return table->get(key);
+    const bool first_time = requested.insert(key).second;
+    const toml::node* node = table->get(key);
+    const std::string former(former_name(key));
+    if (node != nullptr || former.empty() || !table->contains(former)) return node;
+    node = table->get(former);
+    requested.insert(former);
+    if (first_time)
+      log::warning("{}: `{}` is named `{}` now; the former name works for one release more", at(*node),
+                   full(former), key);
+    return node;
+  }
+  /// The node of `key`, or of its former name, without a request for it.
+  const toml::node* peek(const std::string& key) const {
+    const toml::node* node = table->get(key);
+    return node != nullptr ? node : table->get(former_name(key));
   }
   std::string at(const toml::node& node) const {
     return fmt::format("{}:{}", file, node.source().begin.line);
@@ -87,7 +102,7 @@ Config Config::read(const std::filesystem::path& file) {
 }
 
 std::string Config::where(const std::string& key) const {
-  const toml::node* node = key.empty() ? nullptr : node_->table->get(key);
+  const toml::node* node = key.empty() ? nullptr : node_->peek(key);
   return node_->at(node == nullptr ? *node_->table : *node);
 }
 
@@ -96,7 +111,7 @@ bool Config::has(const std::string& key) const {
 }
 
 bool Config::says(const std::string& key) const {
-  return node_->table->contains(key);
+  return node_->peek(key) != nullptr;
 }
 
 double Config::number(const std::string& key, const Range& range, std::optional<double> otherwise) const {

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "common/error.h"
+#include "common/renamed_keys.h"
 
 namespace palpate {
 namespace fs = std::filesystem;
@@ -121,7 +122,8 @@ void write_csv(const fs::path& file, const std::string& text) {
   write_atomically(file, text, Contents::kTable);
 }
 
-void write_json(const fs::path& file, const Json& json) {
+void write_json(const fs::path& file, Json json) {
+  add_former_keys(json);
   write_atomically(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", Contents::kReport);
 }
 

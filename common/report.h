@@ -55,8 +55,9 @@ void check_writable(const std::filesystem::path& file, Contents contents);
 /// Writes a table of `csv_of`, whole or not at all. Throws `Error`.
 void write_csv(const std::filesystem::path& file, const std::string& text);
 
-/// Writes a JSON document, indented, whole or not at all. Throws `Error`.
-void write_json(const std::filesystem::path& file, const Json& json);
+/// Writes a JSON document, indented, atomically, with the former names of its keys (`add_former_keys`).
+/// Throws `Error`.
+void write_json(const std::filesystem::path& file, Json json);
 
 /// An array of flat objects with the same keys as CSV: a line of keys, then a line an object.
 std::string csv_of(const Json& rows);

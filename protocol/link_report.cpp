@@ -16,7 +16,7 @@ Json link_report(const LinkStats& stats) {
           {"reordered", stats.reordered},
           {"overtaken", stats.overtaken},
           {"duplicated", stats.duplicated},
-          {"wild", stats.implausible},
+          {"implausible", stats.implausible},
           {"began_anew", stats.began_anew},
           {"rejected", stats.rejected},
           {"rejected_by", reasons}};

@@ -18,7 +18,7 @@ std::string published_since(const LinkStats& before, const LinkStats& now) {
   add("reordered", before.reordered, now.reordered);
   add("overtaken", before.overtaken, now.overtaken);
   add("duplicated", before.duplicated, now.duplicated);
-  add("wild", before.implausible, now.implausible);
+  add("implausible", before.implausible, now.implausible);
   add("times begun anew", before.began_anew, now.began_anew);
   for (std::size_t i = 0; i < now.rejected_by.size(); ++i)
     add(fmt::format("rejected ({})", name_of(static_cast<Verdict>(i))).c_str(), before.rejected_by[i],

@@ -49,7 +49,7 @@ double percent(double part, double entire) {
 TestedLink tested_link(const Json& tool, double seconds) {
   const Json& link = tool["link"];
   const double came = tool["force"]["samples"].get<double>(), lost = link["values_lost"].get<double>();
-  return {.law = tool["felt"]["law"].get<std::string>(),
+  return {.law = tool["rendered"]["law"].get<std::string>(),
           .age_p99_ms = link["age_ms"]["p99"].get<double>(),
           .stiffest_n_m = link["stiffest_n_m"].get<double>(),
           .samples_hz = came / seconds,  // of all the time, so that a server that went silent shows
@@ -93,7 +93,7 @@ void print_verdict(const Json& verdict) {
              verdict["reasons"].empty() ? "" : verdict["reasons"][0].get<std::string>());
   for (std::size_t i = 1; i < verdict["reasons"].size(); ++i)
     fmt::print("              {}\n", verdict["reasons"][i].get<std::string>());
-  if (verdict["grade"] != name_of(Grade::kPass)) print_causes(verdict["what_to_look_at"]);
+  if (verdict["grade"] != name_of(Grade::kPass)) print_causes(verdict["what_to_check"]);
   std::fflush(stdout);
 }
 
@@ -131,7 +131,7 @@ int test_link(const ClientConfig& requested, const CommtestOptions& options) {
                        {"verdict",
                         {{"grade", name_of(verdict.grade)},
                          {"reasons", verdict.reasons},
-                         {"what_to_look_at", link_causes(tool.local())}}}};
+                         {"what_to_check", link_causes(tool.local())}}}};
   fmt::print("haptic_client: link to {}\n", config.server);
   print_round_trip(report["round_trip"]);
   print_session(of_tool, seconds);
@@ -173,13 +173,13 @@ int test_device(const ClientConfig& config, const CommtestOptions& options) {
                        {"usable", usable},
                        {"exchange_us", quantiles(took_ns, 1e3)},
                        {"period_us", quantiles(between_ns, 1e3)},
-                       {"what_to_look_at", machine_causes()}};
+                       {"what_to_check", machine_causes()}};
   fmt::print("  exchange    {}: one reading and one force\n", quantiles_text(report["exchange_us"], "us"));
   fmt::print("  period      {}; {} of {} deadlines missed\n", quantiles_text(report["period_us"], "us"), late,
              ticks + late);
   fmt::print("  readings    {} of {} usable{}{}\n", usable, ticks,
              usable < ticks ? "; the device says: " : "", usable < ticks ? device->status() : "");
-  print_causes(report["what_to_look_at"]);
+  print_causes(report["what_to_check"]);
   if (options.json) write_json(*options.json, report);
   return usable > 0 ? 0 : 1;
 }

@@ -111,7 +111,7 @@ Json describe_capture(const CaptureSurvey& found, const CapturedRun& run, const 
           {"packets", found.packets},
           {"ours", found.ours},
           {"refused", found.refused},
-          {"left_out", found.omitted},
+          {"omitted", found.omitted},
           {"other_traffic", found.other},
           {"sessions", found.runs.size()},
           {"tool_states", run.ticks},
@@ -136,9 +136,9 @@ void say_how_exact(const Json& capture, const CapturedRun& run, const std::strin
   if (run.first_tick > 1)
     log::info("{}: begins in mid-session, at tick {}: the force starts softly there", file, run.first_tick);
   const auto count = [&](const char* key) { return capture[key].get<std::uint64_t>(); };
-  if (count("left_out") > 0)
+  if (count("omitted") > 0)
     log::warning("{}: holds more sessions than can be told apart; {} datagrams were left out", file,
-                 count("left_out"));
+                 count("omitted"));
   if (count("missing_ticks") + count("missing_samples") + count("missing_pages") + count("backward_ticks") >
       0) {
     log::warning(

@@ -67,7 +67,7 @@ Json methods_report(const Scoring& scoring) {
 Json reference_report(const Scoring& scoring) {
   Json report = {{"name", name_of(scoring.mostly_between())}};
   for (const auto kind : {ReferenceKind::kContact, ReferenceKind::kHermite, ReferenceKind::kLine}) {
-    report["shares"][std::string(name_of(kind))] =
+    report["fractions"][std::string(name_of(kind))] =
         per(static_cast<double>(scoring.between(kind)), static_cast<double>(scoring.scored()));
   }
   return report;
@@ -177,10 +177,10 @@ std::string row_name(const std::string& law, const Json& scores) {
 std::string rendered_text(const Json& tool) {
   const auto method = tool["method"].get<std::string>();
   std::string text;
-  for (const auto& [name, fraction] : tool["felt"]["laws"].items())
+  for (const auto& [name, fraction] : tool["rendered"]["laws"].items())
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, percent_text(fraction.get<double>()));
   if (text.empty()) return fmt::format("nothing; asked for: {}", method);
-  if (tool["felt"]["law"] == method) return text;
+  if (tool["rendered"]["law"] == method) return text;
   if (chooses(method)) return fmt::format("{} ({})", text, method);
   return fmt::format("{} (asked for: {})", text, method);
 }
@@ -197,7 +197,7 @@ void print_substitutes(const Json& methods) {
 /// "contact 98 %, hermite 2 %".
 std::string reference_text(const Json& reference) {
   std::string text;
-  for (const auto& [name, fraction] : reference["shares"].items()) {
+  for (const auto& [name, fraction] : reference["fractions"].items()) {
     if (fraction.get<double>() > 0)
       text += fmt::format("{}{} {:.3g} %", text.empty() ? "" : ", ", name, 100 * fraction.get<double>());
   }
@@ -267,7 +267,7 @@ void print_tool(const Json& tool) {
       number(safety, "clamped"), number(safety, "slewed"), number(safety, "damped"),
       number(safety, "softened"), number(safety, "lost"), number(safety, "clutched"),
       number(safety, "ramped"), number(safety, "not_finite"), number(safety, "storms"),
-      number(safety, "wild"));
+      number(safety, "implausible"));
   if (safety.value("cut_by_motors", 0) > 0) {
     fmt::print("          {:.0f} ticks: the motors of the device could not give the whole force\n",
                number(safety, "cut_by_motors"));
@@ -312,7 +312,7 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
   return {{"device", config.device.name},
           {"port", config.device.port},
           {"method", config.method},
-          {"felt", rendered},
+          {"rendered", rendered},
           {"force",
            {{"samples", stats.samples},
             {"overtaken", stats.overtaken},
@@ -339,7 +339,7 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
             {"clutched", stats.clutched},
             {"not_finite", limiter.not_finite},
             {"storms", limiter.storms},
-            {"wild", limiter.implausible}}},
+            {"implausible", limiter.implausible}}},
           {"scored_ticks", observation.scoring().scored()},
           {"reference", reference_report(observation.scoring())},
           {"methods", methods_report(observation.scoring())},

@@ -56,7 +56,7 @@ Json error_budget_report(const std::string& method, const Observation& observati
 }
 
 void print_error_budget(const Json& tool) {
-  const Json& rendered = tool["felt"];
+  const Json& rendered = tool["rendered"];
   if (rendered["laws"].empty()) return;
   fmt::print(
       "  error   of the force, % of its root mean square; the law of the tissue itself is not in it\n");

@@ -122,13 +122,13 @@ def draw_felt(axes, rows):
                       key=lambda r: r["dt_ms"])
         if len(line) < 2:
             continue
-        (drawn,) = axes.loglog([r["dt_ms"] for r in line], [above(r["felt_error_percent"]) for r in line], "--",
+        (drawn,) = axes.loglog([r["dt_ms"] for r in line], [above(r["rendered_error_percent"]) for r in line], "--",
                                linewidth=0.9, label=label_of(line[0]))
         kept = [r for r in line if r["step_ms_p50"] <= r["dt_ms"]]
-        axes.loglog([r["dt_ms"] for r in kept], [above(r["felt_error_percent"]) for r in kept], "-o",
+        axes.loglog([r["dt_ms"] for r in kept], [above(r["rendered_error_percent"]) for r in kept], "-o",
                     color=drawn.get_color())
         late = [r for r in line if r["step_ms_p50"] > r["dt_ms"]]
-        axes.loglog([r["dt_ms"] for r in late], [above(r["felt_error_percent"]) for r in late], "o",
+        axes.loglog([r["dt_ms"] for r in late], [above(r["rendered_error_percent"]) for r in late], "o",
                     color=drawn.get_color(), markerfacecolor="white")
     axes.plot([], [], "o", color="0.4", label="this machine keeps up")
     axes.plot([], [], "o", color="0.4", markerfacecolor="white", label="it does not: a step takes longer")

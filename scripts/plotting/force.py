@@ -164,7 +164,7 @@ def heading_of(trace, report, server, tool):
         if not 1 <= tool <= len(tools):
             raise Unusable(f"{report.file}: has no tool {tool}, it has {len(tools)}")
         node = tools[tool - 1]
-        found = at_work(node["felt"]) if "felt" in node else None
+        found = at_work(node["rendered"]) if "rendered" in node else None
         if found:
             parts.append(f"felt: {in_words(found[0])}, {share_text(found[1])} of the time")
         if len(tools) > 1:

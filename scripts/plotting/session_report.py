@@ -155,7 +155,7 @@ def names_of(methods):
 def felt_of(node, laws):
     """What was felt, for the title, and its row: that of the law really felt, or of the one asked for."""
     method = node["method"].text()
-    found = at_work(node["felt"]) if "felt" in node else None
+    found = at_work(node["rendered"]) if "rendered" in node else None
     if not found:
         return method, method
     law, share = found
@@ -175,7 +175,7 @@ def two_figures(value):
 
 def error_of(node):
     """"mesh 3.5 % (estimated), time step 0 % (none), extrapolation 0.24 % (measured)"; empty of an older report."""
-    felt = node["felt"] if "felt" in node else None
+    felt = node["rendered"] if "rendered" in node else None
     if not felt or "mesh_percent" not in felt:
         return ""
     parts = []

@@ -55,7 +55,7 @@ LAW = 'law = "corotational"'
 VARIANTS = {  # of liver_implicit: what stands instead of its law
     "implicit_linear": 'law = "linear"',
     "implicit_neo_hookean": 'law = "neo_hookean"',
-    "implicit_prony": 'law = "linear"\nrelaxation = [{ share = 0.5, time = 0.2 }]',
+    "implicit_prony": 'law = "linear"\nrelaxation = [{ fraction = 0.5, time = 0.2 }]',
 }
 TWO_TOOLS = "two_tools"
 SECOND_TOOL = '\n[[tool]]\nshape = "sphere"\nradius = 0.005\n'

@@ -60,7 +60,7 @@ Json report_of(const CondenseOptions& options, const Simulation& simulation, con
               {"stages_ms", times.to_json()}};
   if (made) {
     const MumpsCosts& costs = *made;
-    report["factor"] = {{"unknowns", costs.unknowns},      {"kept", costs.stored},
+    report["factor"] = {{"unknowns", costs.unknowns},      {"stored", costs.stored},
                         {"gflop", 1e-9 * costs.flops},     {"analysis_s", costs.analysis_s},
                         {"factor_s", costs.factor_s},      {"schur_s", costs.schur_s},
                         {"rank_mb", to_json(costs.memory)}};

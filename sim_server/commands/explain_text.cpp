@@ -198,7 +198,7 @@ Json to_json(const Explanation& explanation) {
           {"bytes", total_bytes(explanation)},
           {"setup_ms", total_setup_ms(explanation)},
           {"built", built},
-          {"left_out", omitted},
+          {"omitted", omitted},
           {"free", steps_json(explanation.steps.free_ns)},
           {"contact", contact},
           {"bytes_per_tetrahedron",

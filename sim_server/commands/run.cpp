@@ -106,7 +106,7 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
                      {"contact_steps", stats.tools[i].contact_steps},
                      {"beyond_steps", stats.tools[i].beyond_steps},
                      {"missed_by_m", missed_by(stats.tools[i])},
-                     {"felt", rendered_report(errors, i)},
+                     {"rendered", rendered_report(errors, i)},
                      {"sessions", link.tools[i].so_far.load()}});
   }
   return tools;
@@ -146,7 +146,7 @@ std::string cost_text(const char* what, const Json& rendered, const char* percen
 /// Of each tool that pressed on tissue.
 void print_errors(const Json& report) {
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
-    const Json& rendered = report["tools"][i]["felt"];
+    const Json& rendered = report["tools"][i]["rendered"];
     if (rendered.is_null()) continue;
     fmt::print("            tool {}, {:.1f} elements to its radius where it pressed: {}, {}\n", i + 1,
                rendered["elements_per_radius"].get<double>(),

@@ -213,7 +213,7 @@ CondensedPart::CondensedPart(const ModelInputs& inputs, const std::vector<int>& 
   VibrationModes found;
   const int count = std::min(modes.most, statics.dofs.count / kUnknownsPerMode);
   require_memory(8.0 * statics.dofs.count * (4.0 * count + 20), free_memory(), inputs.scene.source,
-                 fmt::format("{} modes of what is not in motion", count), "ask for fewer `rest_modes`");
+                 fmt::format("{} modes of what is not in motion", count), "ask for fewer `condensed_modes`");
   if (count > 0) found = statics.modes(count, inputs.scene.source);
   for (std::size_t p = 0; p < all_.size(); ++p) {
     Part& part = all_[p];

@@ -47,7 +47,7 @@ CuttableMotion::CuttableMotion(const ModelInputs& inputs, const RegionInMotion* 
   state_.near = NearTools(inputs.surface.vertices.size());
   state_.rest_places = inputs.mesh.vertices;
   const std::vector<char> moves = region != nullptr ? region->vertices(inputs.mesh) : std::vector<char>();
-  const CondensedPart::Modes modes{.most = region != nullptr ? region->rest_modes : 0};
+  const CondensedPart::Modes modes{.most = region != nullptr ? region->condensed_modes : 0};
   body_ =
       std::make_unique<CuttableBody>(inputs, scaling_.factors, region != nullptr ? &moves : nullptr, modes);
   if (published_bodies(inputs.scene) > 0) publisher_.emplace(inputs, body_->tensors);

@@ -10,7 +10,7 @@ namespace palpate::sim {
 struct RegionInMotion {
   std::vector<char> removable;  ///< of tetrahedra, 1 or 0
   int layers = 1;               ///< of tetrahedra around those
-  int rest_modes = 0;           ///< of the rest, that swing, at most
+  int condensed_modes = 0;      ///< of the rest, that swing, at most
 
   /// Returns 1 for each mesh vertex that is in motion, else 0.
   std::vector<char> vertices(const TetMesh& mesh) const;

@@ -8,12 +8,13 @@ namespace palpate::sim {
 HybridSettings HybridSettings::read(const Config& config) {
   HybridSettings read;
   read.layers = static_cast<int>(config.integer("layers", {0, 100, "layers of tetrahedra"}, read.layers));
-  read.rest_modes = static_cast<int>(config.integer("rest_modes", {0, 1000, "modes"}, read.rest_modes));
+  read.condensed_modes =
+      static_cast<int>(config.integer("condensed_modes", {0, 1000, "modes"}, read.condensed_modes));
   return read;
 }
 
 std::string HybridSettings::to_text() const {
-  return fmt::format("layers = {}\nrest_modes = {}\n", layers, rest_modes);
+  return fmt::format("layers = {}\ncondensed_modes = {}\n", layers, condensed_modes);
 }
 
 std::unique_ptr<DeformationModel> Hybrid::make(const ModelInputs& inputs) {
@@ -21,7 +22,7 @@ std::unique_ptr<DeformationModel> Hybrid::make(const ModelInputs& inputs) {
   const auto& settings = inputs.scene.deformation.of<HybridSettings>();
   return std::make_unique<CuttableMotion>(
       inputs, RegionInMotion{removable_tetrahedra(*inputs.scene.cutting, inputs.mesh), settings.layers,
-                             settings.rest_modes});
+                             settings.condensed_modes});
 }
 
 double Hybrid::estimated_bytes(const Scene& scene, const MeshCounts& counts) {

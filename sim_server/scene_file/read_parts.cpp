@@ -54,13 +54,15 @@ std::vector<Relaxation> read_relaxations(const Config& material) {
   std::vector<Relaxation> relaxations;
   double fractions = 0;
   for (const Config& section : material.tables("relaxation")) {
-    relaxations.push_back({section.number("share", {1e-6, 0.999999, "of the stress at once"}),
+    relaxations.push_back({section.number("fraction", {1e-6, 0.999999, "of the stress at once"}),
                            section.number("time", {1e-4, 1e6, "s"})});
     section.reject_unknown();
     fractions += relaxations.back().fraction;
     if (fractions > 0.999999)
-      fail("{}: the shares of all [[material.relaxation]] are {:g} together; less than 1 leaves some stress",
-           section.where("share"), fractions);
+      fail(
+          "{}: the fractions of all [[material.relaxation]] are {:g} together; less than 1 leaves some "
+          "stress",
+          section.where("fraction"), fractions);
   }
   return relaxations;
 }

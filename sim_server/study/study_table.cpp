@@ -40,7 +40,7 @@ Json facts_of(const StudyRow& row) {
   facts["force_error_percent"] = row.errors.force;
   facts["worst_force_error_percent"] = row.errors.worst_force;
   facts["surface_error_percent"] = row.errors.surface;
-  facts["felt_error_percent"] = row.errors.rendered;
+  facts["rendered_error_percent"] = row.errors.rendered;
   facts["flagged_steps"] = row.flagged;
   facts["state_hash"] = fmt::format("{:016x}", row.state_hash);
   return facts;

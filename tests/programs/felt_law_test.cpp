@@ -51,8 +51,8 @@ struct Replayed {
 
 TEST_CASE("felt law: where samples bring the triplet alone, everything names the law that stood in") {
   const Replayed r({"--plain"});
-  CHECK(r.tool["felt"]["law"] == "learned_stiffness");
-  CHECK(r.tool["felt"]["laws"] == Json{{"learned_stiffness", 1.0}});
+  CHECK(r.tool["rendered"]["law"] == "learned_stiffness");
+  CHECK(r.tool["rendered"]["laws"] == Json{{"learned_stiffness", 1.0}});
   CHECK(r.tool["methods"]["local_contact"]["at_work"]["law"] == "learned_stiffness");
   CHECK(r.tool["methods"]["constant"]["at_work"]["law"] == "constant");
   CHECK_THAT(r.said, Catch::Contains("felt: learned_stiffness 100 % (asked for: local_contact)"));
@@ -65,11 +65,11 @@ TEST_CASE("felt law: where samples bring the triplet alone, everything names the
 
 TEST_CASE("felt law: where it was itself, its share is told, and all shares make one") {
   const Replayed r({});
-  CHECK(r.tool["felt"]["law"] == "local_contact");
+  CHECK(r.tool["rendered"]["law"] == "local_contact");
   double sum = 0;
-  for (const auto& [law, fraction] : r.tool["felt"]["laws"].items()) sum += fraction.get<double>();
+  for (const auto& [law, fraction] : r.tool["rendered"]["laws"].items()) sum += fraction.get<double>();
   CHECK(sum == Approx(1));
-  CHECK(r.tool["felt"]["laws"]["local_contact"].get<double>() > 0.9);
+  CHECK(r.tool["rendered"]["laws"]["local_contact"].get<double>() > 0.9);
   CHECK_THAT(r.said, Catch::Contains("felt: local_contact ") && !Catch::Contains("asked for"));
   CHECK(drawn(r.report(), "tool.felt") == "local_contact\n");
 }

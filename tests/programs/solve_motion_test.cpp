@@ -15,7 +15,7 @@ using namespace palpate::test;
 namespace {
 
 const std::string kTop = "surface_tag = \"top\"\n",
-                  kRelaxes = "[[material.relaxation]]\nshare = 0.5\ntime = 0.1\n";
+                  kRelaxes = "[[material.relaxation]]\nfraction = 0.5\ntime = 0.1\n";
 
 /// Stress along the column, Pa: the mean over its tetrahedra.
 double stress_in(const SolveBench& bench) {

@@ -58,7 +58,7 @@ TEST_CASE("solve: relaxing under a load that stays, it creeps to where half the 
   Bench bench;
   const std::string scene = bench.scene(
       "[[load]]\ntraction = [0, -100, 0]\nbox = [[-1, 0.399, -1], [1, 1, 1]]\n[[material.relaxation]]\n"
-      "share = 0.5\ntime = 0.2\n",
+      "fraction = 0.5\ntime = 0.2\n",
       "element = \"p1\"");
   const std::string at_once =
       output_of("sim_server", {"solve", scene, "--out", bench.out, "--probe", "0,0.4,0"}, 0);

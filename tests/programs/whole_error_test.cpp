@@ -42,7 +42,7 @@ struct PressedColumn {
                      {"replay", capture, "--client", kClient, "--method", "two_tangents", "--report", report,
                       "--out", (folder.path() / "trace.csv").string()},
                      0);
-    return read_json(report)["tools"][0]["felt"];
+    return read_json(report)["tools"][0]["rendered"];
   }
   /// The mean error of the felt law by the rows of the trace where it or the force it is held against pushes,
   /// % of the root mean square of that force in contact.

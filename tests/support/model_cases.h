@@ -60,7 +60,7 @@ struct ModelCase {
     scene.deformation.of<sim::ImplicitSettings>().solver = solver;
     scene.deformation.of<sim::ImplicitSettings>().refresh_steps = 2;
     scene.deformation.of<sim::ReducedSettings>().modes = 8;
-    scene.deformation.of<sim::HybridSettings>() = {.rest_modes = kRestModes, .layers = 0};
+    scene.deformation.of<sim::HybridSettings>() = {.condensed_modes = kRestModes, .layers = 0};
     if (row.needs_cutting)
       scene.cutting = sim::Cutting{.region = sim::Region{.box = sim::Box{Vec3(-1, -1, 0), Vec3(1, 1, 1)}}};
     scene.deformation.of<sim::ImplicitSettings>().tolerance = 1e-11;

@@ -96,3 +96,17 @@ TEST_CASE("an unknown key is refused with the nearest known one") {
   };
   CHECK(error_of(use) == ":3: unknown key `[material] poison_ratio`; did you mean \"poisson_ratio\"?");
 }
+
+TEST_CASE("a key under its former name counts as the key, unless both are there") {
+  const Config former = config_of("share = 0.25");
+  CHECK(former.has("fraction"));
+  CHECK(former.number("fraction", {}) == 0.25);
+  CHECK(former.where("fraction") == (folder().path() / "test.toml").string() + ":1");
+  CHECK_NOTHROW(former.reject_unknown());
+  CHECK(error_of([] {
+          config_of("\nshare = 2").number("fraction", {0, 1});
+        }) == ":2: `fraction` must be between 0 and 1, not 2");
+  const Config both = config_of("fraction = 0.5\nshare = 0.25");
+  CHECK(both.number("fraction", {}) == 0.5);
+  CHECK(error_of([&] { both.reject_unknown(); }).starts_with(":2: unknown key `share`"));
+}

@@ -309,7 +309,7 @@ TEST_CASE("explain: JSON in plain units, a table that says the same") {
   const Bench bench(kMesh + kFixed + kMaterial + model("quasi_static") + kTool + kReach);
   const Json json = to_json(bench.explanation);
   for (const char* key : {"scene", "title", "model", "rate_hz", "rate_where", "possible_rate_hz", "bytes",
-                          "setup_ms", "built", "left_out", "free", "contact", "state_hash"}) {
+                          "setup_ms", "built", "omitted", "free", "contact", "state_hash"}) {
     CHECK(json.contains(key));
   }
   std::size_t sum = 0;
@@ -322,7 +322,7 @@ TEST_CASE("explain: JSON in plain units, a table that says the same") {
   REQUIRE(std::sscanf(json["built"][0]["detail"].get<std::string>().c_str(), "%d vertices, %d tetrahedra",
                       &vertices, &tetrahedra) == 2);
   CHECK(json["bytes_per_tetrahedron"].get<double>() == Approx(static_cast<double>(sum) / tetrahedra));
-  for (const Json& row : json["left_out"]) {
+  for (const Json& row : json["omitted"]) {
     for (const char* key : {"what", "why", "bytes", "setup_ms", "step_ms", "note"}) CHECK(row.contains(key));
   }
   for (const char* which : {"free", "contact"}) {

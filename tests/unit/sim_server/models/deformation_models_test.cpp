@@ -62,7 +62,7 @@ TEST_CASE("what a scene sets of its model is written as it was read, each key") 
                                                        {"modes", "17"},
                                                        {"client_modes", "11"},
                                                        {"layers", "2"},
-                                                       {"rest_modes", "13"},
+                                                       {"condensed_modes", "13"},
                                                        {"integrator", "\"bdf2\""},
                                                        {"solver", "\"quasi_newton\""},
                                                        {"refresh_steps", "19"},

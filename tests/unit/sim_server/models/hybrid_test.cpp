@@ -162,7 +162,7 @@ TEST_CASE("hybrid: with modes of the rest it moves as the whole body in motion d
   };
   const auto right = swing(*std::make_unique<CuttableMotion>(inputs));
   const auto error_with = [&](int modes) {
-    scene.deformation.of<HybridSettings>().rest_modes = modes;
+    scene.deformation.of<HybridSettings>().condensed_modes = modes;
     const auto found = swing(*Hybrid::make(inputs));
     double error = 0, all = 0;
     for (std::size_t i = 0; i < right.size(); ++i) {

@@ -160,7 +160,7 @@ TEST_CASE("[cutting]: a region without any tetrahedron, elements and supports th
 }
 
 TEST_CASE("[material]: values out of range, and names that are none") {
-  constexpr const char* kFraction = "[[material.relaxation]]\ntime = 1\nshare = ";
+  constexpr const char* kFraction = "[[material.relaxation]]\ntime = 1\nfraction = ";
   const std::string none = std::string(kFraction) + "0", all = std::string(kFraction) + "1",
                     too_many = std::string(kFraction) + "0.6\n" + kFraction + "0.4";
   for (const Wrong& wrong : {
@@ -174,9 +174,9 @@ TEST_CASE("[material]: values out of range, and names that are none") {
                  "a length above 0"},
            Wrong{"[material]", "[material.fibres]\ndirection = [1, 0, 0]\nmodulus = 0", "modulus",
                  "between 0.001"},
-           Wrong{"[material]", none.c_str(), "share", "between 1e-06 and 0.999999"},
-           Wrong{"[material]", all.c_str(), "share", "between 1e-06 and 0.999999"},
-           Wrong{"[material]", too_many.c_str(), "shares", "are 1 together; less than 1"},
+           Wrong{"[material]", none.c_str(), "fraction", "between 1e-06 and 0.999999"},
+           Wrong{"[material]", all.c_str(), "fraction", "between 1e-06 and 0.999999"},
+           Wrong{"[material]", too_many.c_str(), "fractions", "are 1 together; less than 1"},
            Wrong{"[material]", "[[material.inclusion]]\ncenter = [0, 0, 0]\nradius = 1\nyoung_modulus = 0",
                  "young_modulus", "between 0.001"},
            Wrong{"[material]", "inclusion = [{young_modulus = 1}]", "[[material.inclusion]]", "one of `box`"},
@@ -186,7 +186,7 @@ TEST_CASE("[material]: values out of range, and names that are none") {
                  "element = \"p1_nodal_pressure\"\n"
                  "inclusion = [{young_modulus = 1, center = [0, 0, 0], radius = 1}]",
                  "[[material.inclusion]]", "take \"p1\" or \"p2\""},
-           Wrong{"[material]", "[[material.relaxation]]\nshare = 0.5\ntime = 0", "time",
+           Wrong{"[material]", "[[material.relaxation]]\nfraction = 0.5\ntime = 0", "time",
                  "between 0.0001 and 1000000 (s)"},
        })
     check_refused(wrong);
@@ -251,7 +251,7 @@ TEST_CASE("a model that does not deform refuses a material that asks for it, and
   for (const char* model : {"rigid", "spring"}) {
     for (const auto& [material, models] : std::initializer_list<std::pair<const char*, const char*>>{
              {"law = \"corotational\"", ": implicit"},
-             {"[[material.relaxation]]\nshare = 0.5\ntime = 1", ": implicit"},
+             {"[[material.relaxation]]\nfraction = 0.5\ntime = 1", ": implicit"},
              {"[material.fibres]\ndirection = [1, 0, 0]\nmodulus = 1e4", ": quasi_static, implicit"},
              {"inclusion = [{young_modulus = 1, center = [0, 0, 0], radius = 1}]", ": quasi_static, "},
              {"element = \"p2\"", ": quasi_static, implicit"}}) {
