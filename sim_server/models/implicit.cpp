@@ -122,7 +122,7 @@ Implicit::Implicit(const ModelInputs& inputs)
 
 /// Where the body is at time 0, and how fast it goes.
 void Implicit::begin(const ModelInputs& inputs) {
-  const auto flexibility = [this](const Eigen::MatrixXd& f) { return dynamics_.matrix().solve(f); };
+  const auto flexibility = [this](const Eigen::MatrixXd& f) { return dynamics_.factor().matrix().solve(f); };
   const auto responses =
       support_responses(inputs, solid_, dynamics_.dofs(), flexibility, Following::kSwinging);
   if (!responses.empty()) supports_.emplace(inputs, responses);
@@ -248,8 +248,8 @@ FreeMotion Implicit::restore(const std::any& saved) {
 /// After each iteration: the surface at the trial point, and without the loads that the linearisation was
 /// made under. Drops the columns of another factor.
 void Implicit::update_surface() {
-  if (step_.factors != dynamics_.factors()) {
-    step_.factors = dynamics_.factors();
+  if (step_.factors != dynamics_.factor().count()) {
+    step_.factors = dynamics_.factor().count();
     replace_columns();
   }
   for (std::size_t v = 0; v < node_.size(); ++v) positions_[v] = dynamics_.position()[node_[v]];
@@ -295,7 +295,7 @@ void Implicit::replace_columns() {
   std::ranges::fill(columns_.slot, -1);
   std::ranges::fill(columns_.requested, std::uint8_t{0});
   columns_.slots = 0;
-  const Columns& ready = dynamics_.background_columns();
+  const Columns& ready = dynamics_.factor().background_columns();
   for (std::size_t k = 0; k < ready.first.size(); ++k)
     columns_.slot[vertex_[static_cast<std::size_t>(ready.first[k] / 3)]] = static_cast<int>(k);
   if (!ready.first.empty()) keep_columns(ready.values);
@@ -310,7 +310,7 @@ void Implicit::find_columns(std::span<const int> vertices) const {
     missing.push_back(dof_[v]);
   }
   if (missing.empty()) return;
-  keep_columns(dynamics_.matrix().columns(missing, settings_.column_tolerance()));
+  keep_columns(dynamics_.factor().matrix().columns(missing, settings_.column_tolerance()));
 }
 
 void Implicit::keep_columns(const Eigen::MatrixXd& columns) const {

@@ -11,22 +11,15 @@
 namespace palpate::sim {
 namespace {
 
-// Shares of the size of the body. A force that moves a node by less than the first counts as none, so that a
-// body at rest is at rest; a factor of a place farther off than the second is of elsewhere; and so far nodes
-// are moved to find how forces change.
+// Fractions of the size of the body. A force that moves a node by less than the first counts as none, so that
+// a body at rest is at rest; a factor of a configuration farther off than the second is stale; and nodes are
+// moved by the third to find how forces change.
 constexpr double kNegligibleDisplacement = 1e-9, kRemote = 1e-4, kOffset = 1e-7;
 // Relative residuals. Where the last trial step of a step leaves more than the first, velocities mean
 // nothing, and the step ends at rest: each step from there lowers the energy, however far Newton's method is
 // from balance. Where no more than the second is left, and loads change by no more, the linearisation is
-// trusted without a line search. A body whose step began with no more than the third has come to rest. A step
-// with a bordered factor that ended with more than the fourth is the last with it.
-constexpr double kAdrift = 0.1, kTrusted = 0.1, kAtRest = 1e-6, kBadlyServed = 0.01;
-
-double largest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
-  double squared = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) squared = std::max(squared, (a[i] - b[i]).squaredNorm());
-  return std::sqrt(squared);
-}
+// trusted without a line search. A body whose step began with no more than the third has come to rest.
+constexpr double kAdrift = 0.1, kTrusted = 0.1, kAtRest = 1e-6;
 
 /// Of a linear law one factor serves for ever, unless the body is cut.
 bool one_factor_serves(const Solid& solid, const DynamicsSettings& settings) {
@@ -44,13 +37,13 @@ Dynamics::Dynamics(const Solid& solid, std::vector<HeldAxes> held, const Dynamic
     : solid_(&solid),
       linear_(one_factor_serves(solid, settings)),
       motion_(solid, std::move(held), settings),
-      matrix_(solid, motion_.dofs(), settings, where),
       size_(diagonal_of(solid.rest())),
-      policy_({.background = factors_in_background(solid, settings),
-               .refresh_steps = settings.refresh_steps,
-               .negligible_force = kNegligibleDisplacement * size_ * matrix_.mean_diagonal()}) {
-  motion_.set_negligible_force(kNegligibleDisplacement * size_ * matrix_.mean_diagonal());
-  if (factors_in_background(solid, settings)) background_.emplace(solid, motion_.dofs(), settings, where);
+      factor_(solid, motion_, settings,
+              {.background = factors_in_background(solid, settings),
+               .negligible_distance = kNegligibleDisplacement * size_,
+               .remote_distance = kRemote * size_},
+              where) {
+  motion_.set_negligible_force(kNegligibleDisplacement * size_ * factor_.matrix().mean_diagonal());
 }
 
 void Dynamics::set_state(std::vector<Vec3> x, std::span<const Vec3> v) {
@@ -58,94 +51,28 @@ void Dynamics::set_state(std::vector<Vec3> x, std::span<const Vec3> v) {
 }
 
 void Dynamics::start_step(double h) {
-  quasi_newton_.restart();
   trial_residual_ = 0;
   trusted_.resize(0);
   iterated_ = false;
   at_predictor_ = true;
   motion_.start_step(h);
-  if (policy_.start(motion_.time().steps(), damped_)) exchange_factors();
-  matrix_.turn_to(*solid_, motion_.position());
-  matrix_.make_border(*solid_, motion_.masses());
-  const bool serves_badly = matrix_.is_bordered() && relative_residual_ > kBadlyServed;
-  if (matrix_.border_misfits() || serves_badly) matrix_.expire();
-}
-
-void Dynamics::factor() {
-  matrix_.build(*solid_, motion_.position(), motion_.masses(), motion_.viscosity(), motion_.time().c(),
-                motion_.scratch());
-  factored_at_.assign(motion_.position().begin(), motion_.position().end());
-  from_background_ = cut_since_factored_ = false;
-  count_new_factor();
-}
-
-void Dynamics::count_new_factor() {
-  quasi_newton_.clear();
-  ++factors_;
-}
-
-void Dynamics::refactor_if_moved() {
-  if (background_) return;
-  if (!cut_since_factored_ && largest_distance(motion_.position(), factored_at_) <= kRemote * size_) return;
-  factor();
-  policy_.replaced();
-}
-
-void Dynamics::replace_background_factor() {
-  if (!background_) return;
-  factor();
-  policy_.replaced();
-}
-
-/// Takes the factor that the background has made, if it made one, and has it begin the next from where the
-/// body is now.
-void Dynamics::exchange_factors() {
-  if (background_->begun() && background_->exchange(matrix_)) {
-    from_background_ = true;
-    count_new_factor();
-    policy_.replaced();
-  }
-  background_->begin(motion_.time().position(), motion_.masses(), motion_.viscosity(), motion_.time().c(),
-                     requested_columns_);
+  factor_.start_step(motion_, damped_, relative_residual_);
 }
 
 void Dynamics::remove(std::span<const int> tetrahedra, std::span<const NodeMass> masses) {
-  if (background_) background_->remove(tetrahedra);
+  factor_.remove(tetrahedra);
   continue_with(masses);
-}
-
-void Dynamics::note_shapes(std::span<const int> tetrahedra) {
-  for (const int t : tetrahedra) {
-    NewtonMatrix::Blocks blocks;
-    auto* block = blocks.data();
-    solid_->stiffness_of(static_cast<std::size_t>(t), motion_.position(), motion_.viscosity(),
-                         motion_.scratch(),
-                         [&](int i, int j, const Mat3& k) { *block++ = matrix_.to_rest(i, j, k); });
-    matrix_.note_shape(t, blocks);
-    if (background_) background_->note_shape(t, blocks);
-  }
 }
 
 void Dynamics::part(std::span<const Split> splits, std::span<const NodeMass> masses) {
-  matrix_.part(splits);
-  if (background_) background_->part(splits);
+  factor_.part(splits);
   continue_with(masses);
-  from_background_ = false;  // its columns are of nodes that were one
-  count_new_factor();
 }
 
 /// Between two steps, with a body that has been cut.
 void Dynamics::continue_with(std::span<const NodeMass> masses) {
   for (const auto& [node, mass] : masses) mass > 0 ? motion_.set_mass(node, mass) : motion_.stop(node);
   motion_.forget_forces();
-  cut_since_factored_ = true;
-  quasi_newton_.clear();
-  policy_.replaced();
-}
-
-const Columns& Dynamics::background_columns() const {
-  static const Columns none;
-  return from_background_ ? background_->columns() : none;
 }
 
 Residual Dynamics::evaluate(std::span<const Vec3> external) {
@@ -182,22 +109,14 @@ double Dynamics::iterate(std::span<const Vec3> external, double tolerance) {
 double Dynamics::newton_iteration(std::span<const Vec3> external, double tolerance) {
   const double previous = relative_residual_;
   if (at_predictor_) limit_predictor(external);
-  const bool other_c = matrix_.c() != motion_.time().c();
-  if (other_c) {
-    factor();
-    policy_.replaced();
-  }
+  const bool factored = factor_.match_step_length(motion_);
   const Residual residual = evaluate_move(external);
   if (!std::isfinite(residual.relative)) {
     return_();
     return 0;
   }
   if (residual.relative <= tolerance) return residual.relative;
-  using Decision = FactorPolicy::Decision;
-  const Decision decision = policy_.decide(residual, previous, other_c);
-  if (decision == Decision::kStop) return 0;
-  if (decision == Decision::kRefactorChecked) matrix_.check_precision();
-  if (decision != Decision::kKeep) factor();
+  if (!factor_.prepare(motion_, residual, previous, factored)) return 0;
   const Eigen::VectorXd d = search_direction(residual, external);
   if (damped_ || residual.relative > kTrusted) {
     search_along(d, residual, external);
@@ -222,17 +141,12 @@ int Dynamics::solve(std::span<const Vec3> external, int max_iterations, double t
 
 /// Where A could not be factored, a little along the residual.
 Eigen::VectorXd Dynamics::search_direction(const Residual& residual, std::span<const Vec3> external) {
-  if (background_)
-    quasi_newton_.add_point(motion_.unknowns(), -residual.force + motion_.by_unknowns(external));
-  Eigen::VectorXd d = policy_.uses_conjugate_gradients() ? inexact_direction(residual, external)
-                                                         : solve_turned(residual.force);
-  if (!d.allFinite()) d = residual.force / matrix_.largest_diagonal();
+  if (factor_.learns())
+    factor_.add_point(motion_.unknowns(), -residual.force + motion_.by_unknowns(external));
+  Eigen::VectorXd d = factor_.uses_conjugate_gradients() ? inexact_direction(residual, external)
+                                                         : factor_.direction(residual.force);
+  if (!d.allFinite()) d = residual.force / factor_.matrix().largest_diagonal();
   return d;
-}
-
-/// By the factor, and what the quasi-Newton method has learned.
-Eigen::VectorXd Dynamics::solve_turned(const Eigen::VectorXd& b) {
-  return quasi_newton_.direction(matrix_, b);
 }
 
 Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<const Vec3> external) {
@@ -243,7 +157,7 @@ Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<
       return motion_.residual(external);
     });
   };
-  const auto precondition = [&](const Eigen::VectorXd& v) { return solve_turned(v); };
+  const auto precondition = [&](const Eigen::VectorXd& v) { return factor_.direction(v); };
   Eigen::VectorXd d = conjugate_gradients(residual.force, times, precondition);
   motion_.move_to(start);
   return d;
@@ -296,8 +210,7 @@ bool Dynamics::inside_out() const {
 }
 
 std::size_t Dynamics::bytes() const {
-  return motion_.bytes() + matrix_.bytes() + factored_at_.size() * sizeof(Vec3) +
-         (background_ ? background_->bytes() : 0);
+  return motion_.bytes() + factor_.bytes();
 }
 
 }  // namespace palpate::sim

@@ -1,16 +1,12 @@
 #pragma once
-#include <optional>
-
-#include "sim_server/solvers/equations_of_motion.h"
-#include "sim_server/solvers/factor_policy.h"
-#include "sim_server/solvers/quasi_newton.h"
+#include "sim_server/solvers/newton_factor.h"
 
 namespace palpate::sim {
 
 /// Implicit dynamics of a body: at the end of each step of length h
 ///   M a + alpha M v + beta df/dt + f(x) = f_ext   (`EquationsOfMotion`; backward Euler or BDF2),
-/// by Newton's method on A = (1 + beta c) K + (c^2 + alpha c) M (`NewtonMatrix`), where `FactorPolicy` says
-/// which factor of A serves. Its search directions come in one of two ways:
+/// by Newton's method on A = (1 + beta c) K + (c^2 + alpha c) M (`NewtonMatrix`), with the factor of A that
+/// `NewtonFactor` provides. Its search directions come in one of two ways:
 /// - from the sparse Cholesky factor of A, where a stale one serves as long as iterations with it are not
 ///   slow; where three new ones in a step have not been enough, by conjugate gradients that the last of them
 ///   preconditions;
@@ -29,9 +25,7 @@ class Dynamics {
 
   /// Waits for background work, so that this can be copied. A copy is the state of the motion as a value, of
   /// the same body; assigning it back continues from there, byte for byte.
-  void wait() const {
-    if (background_) background_->wait();
-  }
+  void wait() const { factor_.wait(); }
   /// Sets the positions `x` (nodes, m) before the first step, at rest, or at these velocities (nodes, m/s).
   void set_state(std::vector<Vec3> x, std::span<const Vec3> v = {});
   /// Begins a step of `h` (s > 0); the trial point is where the velocity leads.
@@ -52,9 +46,9 @@ class Dynamics {
   bool inside_out() const;
   /// Factors A at the trial point, where the factor is of a place elsewhere and none comes from the
   /// background.
-  void refactor_if_moved();
+  void refactor_if_moved() { factor_.refactor_if_moved(motion_); }
   /// Factors at the trial point, in place of a factor that the background made elsewhere.
-  void replace_background_factor();
+  void replace_background_factor() { factor_.replace_background_factor(motion_); }
   /// The trial point is the end of the step.
   void finish_step();
 
@@ -70,7 +64,7 @@ class Dynamics {
   void remove(std::span<const int> tetrahedra, std::span<const NodeMass> masses);
   /// Between two steps, before `slide`, `copy` and `part`: these will have other shapes, or other corners.
   /// O(tetrahedra).
-  void note_shapes(std::span<const int> tetrahedra);
+  void note_shapes(std::span<const int> tetrahedra) { factor_.note_shapes(motion_, tetrahedra); }
   /// Between two steps: a node goes towards another by this share of the way, as fast as what is there.
   void slide(int node, int towards, double fraction) { motion_.slide(node, towards, fraction); }
   /// Between two steps: a node goes on from where another is, as fast.
@@ -93,21 +87,17 @@ class Dynamics {
   /// The external forces change before the next `iterate`: that its residual is no smaller is not the fault
   /// of a stale factor.
   void loads_changed() {
-    policy_.loads_changed();
+    factor_.loads_changed();
     trusted_.resize(0);
   }
   /// Moves the trial point by the increment `d` (m, by unknowns) that a linearisation foretells of these
   /// external forces (nodes, N); by less where the forces there would throw the body back.
   void apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> external);
 
-  /// The matrix A and its factor; stale where it was made in the background.
-  const NewtonMatrix& matrix() const { return matrix_; }
-  /// Returns how often the factor has changed: results of its `solve` hold while this number does.
-  int factors() const { return factors_; }
-  /// The factor begun next in the background comes with the columns of A^-1 from these unknowns on.
-  void request_columns(std::vector<int> first) { requested_columns_ = std::move(first); }
-  /// The columns that came with the factor in use; none where it is not of the background.
-  const Columns& background_columns() const;
+  /// Returns the matrix A and its factor.
+  const NewtonFactor& factor() const { return factor_; }
+  /// Requests the columns of A^-1 from these unknowns on, with the factor begun next in the background.
+  void request_columns(std::vector<int> first) { factor_.request_columns(std::move(first)); }
 
   /// Returns the kinetic energy at the end of the last step, J.
   double kinetic_energy() const { return motion_.kinetic_energy(); }
@@ -125,15 +115,11 @@ class Dynamics {
  private:
   /// True if one iteration with one factor solves each step.
   bool is_linear() const { return linear_; }
-  Eigen::VectorXd solve_turned(const Eigen::VectorXd& b);
   Residual evaluate(std::span<const Vec3> external);
   Residual evaluate_move(std::span<const Vec3> external);
   void trust(const Eigen::VectorXd& d);
   void return_();
   void continue_with(std::span<const NodeMass> masses);
-  void factor();
-  void count_new_factor();
-  void exchange_factors();
   double newton_iteration(std::span<const Vec3> external, double tolerance);
   Eigen::VectorXd search_direction(const Residual& residual, std::span<const Vec3> external);
   Eigen::VectorXd inexact_direction(const Residual& residual, std::span<const Vec3> external);
@@ -143,16 +129,8 @@ class Dynamics {
   const Solid* solid_;
   bool linear_;
   EquationsOfMotion motion_;
-  NewtonMatrix matrix_;
   double size_;  // of the body, m
-  FactorPolicy policy_;
-  std::optional<BackgroundMatrix> background_;
-  QuasiNewton quasi_newton_;
-  bool from_background_ = false;  // the factor in use
-  bool cut_since_factored_ = false;
-  int factors_ = 0;
-  std::vector<Vec3> factored_at_;  // m, where A was factored last, but in the background
-  std::vector<int> requested_columns_;
+  NewtonFactor factor_;
   double relative_residual_ = 0;  // that the last iteration found
   Eigen::VectorXd trusted_;       // m, the last move, if it was without a line search; else empty
   std::vector<Vec3> trusted_from_;

@@ -101,7 +101,7 @@ void run_implicit(benchmark::State& state, const Body& body, const DynamicsSetti
                   const Forces& forces, std::optional<double> peers_ms) {
   const Solid solid(body.mesh, tissue(ElasticLaw::kCorotational));
   Dynamics dynamics(solid, body.held, settings, "race");
-  const int before = dynamics.factors();
+  const int before = dynamics.factor().count();
   std::vector<double> ms;
   double moved = 0;
   for (auto _ : state) {
@@ -125,7 +125,7 @@ void run_implicit(benchmark::State& state, const Body& body, const DynamicsSetti
   state.counters["p50"] = 1e3 * ms[ms.size() / 2];
   state.counters["worst"] = ms.back();
   state.counters["moved"] = 1e3 * moved;
-  state.counters["factors"] = dynamics.factors() - before;
+  state.counters["factors"] = dynamics.factor().count() - before;
   if (peers_ms) compare(state, mean, *peers_ms);
 }
 

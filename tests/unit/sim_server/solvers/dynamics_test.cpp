@@ -278,13 +278,13 @@ TEST_CASE("dynamics: rounding that no factor makes less is no reason to factor a
     constexpr double kNever = 1e-17;
     int before = 0;
     for (int i = 0; i < 50; ++i) {
-      if (i == 40) before = dynamics.factors();
+      if (i == 40) before = dynamics.factor().count();
       dynamics.start_step(0.05);
       const int polls = dynamics.solve(force, 60, kNever);
       if (i >= 40) CHECK(polls < 3);
       dynamics.finish_step();
     }
-    CHECK(dynamics.factors() == before);
+    CHECK(dynamics.factor().count() == before);
   }
 }
 

@@ -235,14 +235,14 @@ TEST_CASE("dynamics: in the step after nodes became two the factor goes on, and 
     const auto step = [&] {
       dynamics.start_step(1.0 / 60);
       int iterations = dynamics.solve(pull, 50, 1e-2);
-      factors = dynamics.factors();
+      factors = dynamics.factor().count();
       iterations += dynamics.solve(pull, 50, 1e-8);
       CHECK(dynamics.relative_residual() <= 1e-8);
       dynamics.finish_step();
       return iterations;
     };
     for (int i = 0; i < 10; ++i) step();
-    const int ordinary = step(), before = dynamics.factors();
+    const int ordinary = step(), before = dynamics.factor().count();
     dynamics.note_shapes(bar.beyond);
     for (const auto& [node, copy] : bar.splits) dynamics.copy(node, copy);
     solid.reshape(bar.separated, bar.beyond);
@@ -354,5 +354,6 @@ TEST_CASE("dynamics: a body that spins freely by three turns makes at most three
     dynamics.finish_step();
   }
   CHECK(dynamics.kinetic_energy() > 0.9 * begin);
-  CHECK(dynamics.factors() <= 3);  // at two c, of backward Euler's first step and of BDF2, and one more
+  CHECK(dynamics.factor().count() <=
+        3);  // at two c, of backward Euler's first step and of BDF2, and one more
 }
