@@ -27,7 +27,7 @@ class Grip {
                       const std::function<bool(int)>& on_surface);
 
   /// Sets which of the device's buttons are pressed.
-  void apply_loads(std::uint16_t buttons) noexcept { pressed_ = (buttons & buttons_) != 0; }
+  void set_buttons(std::uint16_t buttons) noexcept { pressed_ = (buttons & buttons_) != 0; }
   /// True if the jaws open, or close, at the next step.
   bool opens() const { return closed_ && buttons_ != 0 && !pressed_; }
   bool closes() const { return !closed_ && pressed_; }

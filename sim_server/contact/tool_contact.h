@@ -59,8 +59,8 @@ class ToolContact {
 
   /// Sets which of the device's buttons are pressed, also while the tool is lifted: the next `advance_to`
   /// grasps, or releases.
-  void apply_loads(std::uint16_t buttons) noexcept {
-    if (grip_) grip_->apply_loads(buttons);
+  void set_buttons(std::uint16_t buttons) noexcept {
+    if (grip_) grip_->set_buttons(buttons);
   }
   /// Goes to `pose` on a straight line (with friction: as `path` says), turning evenly, in increments on
   /// which no point of its axis goes farther than half its radius, so that a fast tool does not jump through

@@ -44,9 +44,10 @@ struct PathPoint {
 /// Input of one tool in a step.
 struct ToolInput {
   std::optional<ToolPose> pose = {};  ///< of its tip now; none: the tool is lifted
-  std::uint16_t buttons = 0;          ///< of its device, pressed now: some tools grasp or cut by them
-  Vec3 v_W = Vec3::Zero();            ///< of its tip, m/s: how fast it pushes the organ under other tools
-  Bend bend = {};                     ///< of the path from its last point to `pose`; used by friction alone
+  bool enters = false;        ///< it was lifted before: no contact or motion of the step before counts
+  std::uint16_t buttons = 0;  ///< of its device, pressed now: some tools grasp or cut by them
+  Vec3 v_W = Vec3::Zero();    ///< of its tip, m/s: how fast it pushes the organ under other tools
+  Bend bend = {};             ///< of the path from its last point to `pose`; used by friction alone
   /// Poses at the instants within the step before `pose` (`Simulation::instants` - 1), evenly in time.
   /// Of another length, such as empty: the tool went straight and evenly from its pose of the step before.
   std::span<const PathPoint> path = {};

@@ -123,13 +123,19 @@ void ServedTools::follow_surface() noexcept {
 std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionInput> inputs,
                                                         double dt) noexcept {
   assert(inputs.size() == holders_.size());
+  bool handed_over = false;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    hand_over(i, inputs[i].session);
+    const bool enters = hand_over(i, inputs[i].session);
     inputs_[i] = input_of(i, inputs[i]);
+    inputs_[i].enters = enters;
+    handed_over = handed_over || enters;
     holders_[i].before = inputs[i].state;
   }
-  if (std::ranges::all_of(holders_, [](const Holder& h) { return h.session == 0; })) return {};
-  const std::span<const ToolAnswer> answers = simulation_.step(inputs_, dt);
+  const bool held = std::ranges::any_of(holders_, [](const Holder& h) { return h.session != 0; });
+  if (!held && !handed_over) return {};
+  const std::span<const ToolAnswer> answers =
+      simulation_.step(inputs_, held ? dt : 0);  // or free of the last
+  if (!held) return {};
   follow_surface();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     outcomes_[i] = {answers[i], {}};
@@ -139,12 +145,12 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionI
   return outcomes_;
 }
 
-/// In another hand, or nobody's, it does not travel from one to the other.
-void ServedTools::hand_over(std::size_t tool, std::uint64_t session) noexcept {
-  if (session == holders_[tool].session) return;
-  simulation_.lift_tool(tool);
+/// Returns true if the tool is in another hand, or nobody's: it does not travel from one to the other.
+bool ServedTools::hand_over(std::size_t tool, std::uint64_t session) noexcept {
+  if (session == holders_[tool].session) return false;
   holders_[tool] = {};
   holders_[tool].session = session;
+  return true;
 }
 
 std::optional<ForceSample> ServedTools::paused(std::size_t tool, const SessionInput& input) noexcept {

@@ -55,7 +55,7 @@ class ServedTools {
     protocol::ToolState before{};  // of the step before
     protocol::ForceSample last{};
   };
-  void hand_over(std::size_t tool, std::uint64_t session) noexcept;
+  bool hand_over(std::size_t tool, std::uint64_t session) noexcept;
   void make_pagers();
   void follow_surface() noexcept;
   ToolInput input_of(std::size_t tool, const SessionInput& input) noexcept;

@@ -186,6 +186,9 @@ std::span<const Vec3> Simulation::nodes() const noexcept {
 
 std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, double dt) noexcept {
   assert(inputs.size() == tools_.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (inputs[i].enters) separate_tool(i);
+  }
   try {
     advance(inputs, dt);
     status_.failed = false;
@@ -238,7 +241,7 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
     ++published_.version;
     make_room_for_modes();
   }
-  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].apply_loads(inputs[i].buttons);
+  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].set_buttons(inputs[i].buttons);
   if (tissue_.traits.cuttable != nullptr && instants() > 1) restrict_contact(inputs);
   for (int instant = 1; instant <= instants(); ++instant)
     advance_to_instant(inputs, instant, dt / instants());
@@ -310,7 +313,7 @@ PathPoint Simulation::at_instant(std::size_t tool, const ToolInput& input, int i
 void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int instant, double dt) {
   move_organ(dt);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (!inputs[i].pose) lift_tool(i);
+    if (!inputs[i].pose) separate_tool(i);
     if (tools_.size() > 1) tools_[i].keep(tissue_.loads_of(i));
   }
   for (std::size_t i = 0; i < tools_.size(); ++i) {

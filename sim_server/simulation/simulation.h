@@ -61,9 +61,6 @@ class Simulation {
   /// be solved for. At most two contact solves.
   Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* known);
 
-  /// Takes a tool away: the tissue goes free of it.
-  void lift_tool(std::size_t tool = 0) noexcept;
-
   std::size_t tools() const { return tools_.size(); }
   /// Contact instants within a step.
   int instants() const { return tissue_.traits.instants; }
@@ -147,6 +144,7 @@ class Simulation {
   PathPoint at_instant(std::size_t tool, const ToolInput& input, int instant) const;
   PathPoint contact_point(std::size_t tool, const ToolInput& input, int instant) const;
   void add_recent(std::size_t tool, const ToolPose& pose);
+  void separate_tool(std::size_t tool) noexcept;
   void advance_to_instant(std::span<const ToolInput> inputs, int instant, double dt);
   void count_flagged() noexcept;
   void hold_answers(std::span<const ToolInput> inputs) noexcept;

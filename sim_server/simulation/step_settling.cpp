@@ -93,7 +93,8 @@ void Simulation::restrict_contact(std::span<const ToolInput> inputs) {
   tissue_.traits.cuttable->restrict_contact(places_, organ_.surface.triangles);
 }
 
-void Simulation::lift_tool(std::size_t tool) noexcept {
+/// Takes a tool away: the tissue becomes free of it.
+void Simulation::separate_tool(std::size_t tool) noexcept {
   answers_[tool] = {};
   tracks_[tool].from.reset();
   tracks_[tool].recent.clear();

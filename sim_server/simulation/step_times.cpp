@@ -56,12 +56,13 @@ std::vector<int> candidates(const Scene& scene, const Simulation& simulation) {
   return all;
 }
 
-/// Comes from outside to `apply_loads`.
-ToolForce approach(const Scene& scene, Simulation& simulation, const Press& apply_loads) {
-  simulation.lift_tool();
-  simulation.step(apply_loads.place + 2 * scene.tools.front().shape.radius * apply_loads.normal,
-                  period_of(scene));
-  return simulation.step(apply_loads.place, period_of(scene));
+/// Comes from outside to `site`.
+ToolForce approach(const Scene& scene, Simulation& simulation, const Press& site) {
+  std::vector<ToolInput> inputs(simulation.tools());
+  inputs.front() = {.pose = ToolPose(site.place + 2 * scene.tools.front().shape.radius * site.normal),
+                    .enters = true};
+  simulation.step(inputs, period_of(scene));
+  return simulation.step(site.place, period_of(scene));
 }
 
 ToolForce timed_step(Simulation& simulation, std::span<ToolInput> inputs, const Vec3& p_W, double dt,
@@ -80,12 +81,11 @@ Press find_press(const Scene& scene, Simulation& simulation) {
   std::vector<Press> unsettled;
   for (const int vertex : candidates(scene, simulation)) {
     const Vec3& normal = normals[vertex];
-    Press apply_loads{at(simulation, vertex) + (1 - kDepth) * scene.tools.front().shape.radius * normal,
-                      normal};
-    const ToolForce force = approach(scene, simulation, apply_loads);
-    simulation.lift_tool();
-    if (force.contacts > 0 && !force.flagged) return apply_loads;
-    unsettled.insert(force.contacts > 0 ? unsettled.begin() : unsettled.end(), apply_loads);
+    Press site{at(simulation, vertex) + (1 - kDepth) * scene.tools.front().shape.radius * normal, normal};
+    const ToolForce force = approach(scene, simulation, site);
+    simulation.step(std::vector<ToolInput>(simulation.tools()), 0);
+    if (force.contacts > 0 && !force.flagged) return site;
+    unsettled.insert(force.contacts > 0 ? unsettled.begin() : unsettled.end(), site);
   }
   if (unsettled.empty())
     fail(
@@ -96,31 +96,31 @@ Press find_press(const Scene& scene, Simulation& simulation) {
   return unsettled.front();
 }
 
-StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& apply_loads, int steps,
+StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& site, int steps,
                      const Progress& progress, const ToolRequest& request) {
   const double radius = scene.tools.front().shape.radius, dt = period_of(scene);
   const auto slide = [&](int i) {
     return kSlide * radius * std::sin(2 * std::numbers::pi * i / kSlideSteps);
   };
-  Vec3 above = apply_loads.place;
+  Vec3 above = site.place;
   for (const Vec3& x : simulation.positions()) above[1] = std::max(above[1], x[1] + kClear * radius);
   std::vector<ToolInput> inputs(simulation.tools());
   inputs.front().request = request;
   StepTimes times;
   const auto report = [&](int done) { progress("timing steps", 0.5 * done / steps); };
   report(0);
-  simulation.lift_tool();
+  simulation.step(std::vector<ToolInput>(simulation.tools()), 0);
   simulation.step(above, dt);
   for (int i = 1; i <= steps; ++i) {
     timed_step(simulation, inputs, above + slide(i) * Vec3::UnitX(), dt, times.free_ns);
     report(i);
   }
-  const Vec3 tangent = apply_loads.normal.unitOrthogonal();
-  approach(scene, simulation, apply_loads);
+  const Vec3 tangent = site.normal.unitOrthogonal();
+  approach(scene, simulation, site);
   const FlaggedSteps before = simulation.flagged();
   for (int i = 1; i <= steps; ++i) {
     const ToolForce force =
-        timed_step(simulation, inputs, apply_loads.place + slide(i) * tangent, dt, times.contact_ns);
+        timed_step(simulation, inputs, site.place + slide(i) * tangent, dt, times.contact_ns);
     times.contacts += force.contacts > 0 ? 1 : 0;
     times.flagged += force.flagged ? 1 : 0;
     report(steps + i);

@@ -25,7 +25,7 @@ struct StepTimes {
 
 /// Takes `steps` steps free, then as many in contact, and leaves the tool there: `state_hash` then tells
 /// whether two runs agree. `request`: of the tool, in each of them. One thread; asks the clock twice a step.
-StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& apply_loads, int steps,
+StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& site, int steps,
                      const Progress& progress = kSilent, const ToolRequest& request = {});
 
 }  // namespace palpate::sim

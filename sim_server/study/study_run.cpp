@@ -28,10 +28,9 @@ double eased(double fraction) {
 
 Trajectory press_and_slide(const StudyCase& one) {
   Simulation simulation = simulation_of(one);
-  const Press apply_loads = find_press(one.scene, simulation);
+  const Press site = find_press(one.scene, simulation);
   const double radius = one.scene.tools.front().shape.radius;
-  const Vec3 touching = apply_loads.place + 0.4 * radius * apply_loads.normal,
-             along = apply_loads.normal.unitOrthogonal();
+  const Vec3 touching = site.place + 0.4 * radius * site.normal, along = site.normal.unitOrthogonal();
   std::vector<double> t;
   std::vector<Vec3> p;
   for (int i = 0; i <= static_cast<int>(kCompleteSurface * kRows); ++i) {
@@ -40,8 +39,8 @@ Trajectory press_and_slide(const StudyCase& one) {
     const double slid =
         std::sin(2 * std::numbers::pi * eased((now - kPress) / (kCompleteSurface - 2 * kPress)));
     t.push_back(now);
-    p.emplace_back(touching + radius * ((kClear - (kClear + kDepth) * down) * apply_loads.normal +
-                                        kSlide * slid * along));
+    p.emplace_back(touching +
+                   radius * ((kClear - (kClear + kDepth) * down) * site.normal + kSlide * slid * along));
   }
   return {std::move(t), std::move(p)};
 }

@@ -11,6 +11,7 @@
 #include "tests/bench/bench.h"
 #include "tests/bench/liver.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tool_inputs.h"
 
 namespace palpate::bench {
 using namespace sim;
@@ -55,7 +56,7 @@ struct Liver {
   explicit Liver(std::string_view name) : scene(scene_called(name)), simulation(scene) {
     press = find_press(scene, simulation);
     hash = contact_hash(scene, simulation, press);
-    simulation.lift_tool();
+    test::lift_tools(simulation);
     above = press.place;
     for (const Vec3& x : simulation.positions()) above[1] = std::max(above[1], x[1] + 10 * radius());
     simulation.step(above, kPeriod);
@@ -95,7 +96,7 @@ void run_free(benchmark::State& state, std::string_view model) {
   Liver* const on = liver(state, model);
   if (on == nullptr) return;
   show(state, on->free_hash);
-  on->simulation.lift_tool();
+  test::lift_tools(on->simulation);
   time_steps_at(state, on->simulation, slide(on->above, Vec3::UnitX(), on->radius()));
 }
 
@@ -103,7 +104,7 @@ void run_contact(benchmark::State& state, std::string_view model) {
   Liver* const on = liver(state, model);
   if (on == nullptr) return;
   show(state, on->hash);
-  on->simulation.lift_tool();
+  test::lift_tools(on->simulation);
   on->simulation.step(on->press.place + 2 * on->radius() * on->press.normal, kPeriod);
   const ToolForce first = on->simulation.step(on->press.place, kPeriod);
   if (first.contacts == 0 || first.flagged) return state.SkipWithError("no settled contact to time");
@@ -155,7 +156,7 @@ void run_virtual_session(benchmark::State& state) {
   const Trajectory motion(
       TrajectorySettings{.file = PALPATE_SOURCE_DIR "/configs/trajectories/liver_paper.csv"});
   const auto record = [&](const std::filesystem::path& file) {
-    on->simulation.lift_tool();
+    test::lift_tools(on->simulation);
     protocol::CaptureWriter capture(file);
     VirtualSession session(on->simulation, {&motion, 1}, on->radius(), kLink, capture);
     for (std::uint64_t k = 0; k < kTicks; ++k) session.tick(k);

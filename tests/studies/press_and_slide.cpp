@@ -8,6 +8,7 @@
 #include "sim_server/tissue/contact_instants.h"
 #include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/random.h"
+#include "tests/support/tool_inputs.h"
 
 namespace palpate::studies {
 using client::DeviceReading;
@@ -129,7 +130,7 @@ struct PressAndSlide::Block {
   /// At rest, without the tool. Tissue that swings is built anew: it remembers.
   sim::Simulation& begin(double rate_hz) {
     if (swings || !simulation) simulation.emplace(scene_of(young_modulus, swings, rate_hz), mesh());
-    simulation->lift_tool();
+    test::lift_tools(*simulation);
     return *simulation;
   }
   /// A server that begins afresh, and tells that `compliance`.

@@ -14,6 +14,11 @@ inline std::vector<sim::ToolInput> inputs(std::span<const std::optional<ToolPose
   return inputs;
 }
 
+/// Lifts all tools, while no time passes.
+inline void lift_tools(sim::Simulation& simulation) {
+  simulation.step(std::vector<sim::ToolInput>(simulation.tools()), 0);
+}
+
 /// One step of tool 0 of `simulation` at `p_W` (m), asked and told whatever else `input` says, the others
 /// lifted.
 inline sim::ToolAnswer step(sim::Simulation& simulation, const Vec3& p_W, sim::ToolInput input, double dt) {

@@ -55,8 +55,8 @@ TEST_CASE("trajectories: interpolation, ends, repetition, scale and offset") {
 
 TEST_CASE("trajectories: one that ends near its start stays at its end unless it is asked to repeat") {
   const test::TemporaryFolder folder;
-  const auto apply_loads = folder.write("press.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,-0.0005,0\n");
-  const Trajectory once({.file = apply_loads}), again({.file = apply_loads, .repeat = true});
+  const auto press = folder.write("press.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,-0.0005,0\n");
+  const Trajectory once({.file = press}), again({.file = press, .repeat = true});
   CHECK(once.at(7.25)[1] == -0.0005);
   CHECK(again.at(7.25)[1] == Approx(-0.000125));
   const auto far = folder.write("far.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,-0.5,0\n");

@@ -78,7 +78,7 @@ const Law kHertz{[](const Vec3& p, double) {
 const Law kHardening{[](const Vec3& p, double) { return Vec3(-200 * (1 + p.squaredNorm() / 1e-4) * p); }};
 
 /// Down to 2 mm and up again in 0.6 s, going sideways.
-Vec3 apply_loads(double s) {
+Vec3 press(double s) {
   return {0.01 * s, -0.001 * (1 - std::cos(2 * std::numbers::pi * s / 0.6)), 0.004 * std::sin(9 * s)};
 }
 
@@ -86,7 +86,7 @@ Vec3 apply_loads(double s) {
 
 TEST_CASE("between samples: on a sphere pressed into an elastic body the curve errs a tenth of the line") {
   for (const double begin : {0.12, 0.2, 0.29, 0.41}) {
-    const Off off = compare(kHertz, apply_loads, begin);
+    const Off off = compare(kHertz, press, begin);
     CAPTURE(begin, off.curve, off.line);
     CHECK(off.kind == ReferenceKind::kHermite);
     CHECK(off.curve < 0.1 * off.line);
@@ -132,9 +132,9 @@ TEST_CASE(
 TEST_CASE("between samples: the curve goes with the organ") {
   Law moving{[](const Vec3& p, double s) { return kHertz.force(p - Vec3(0, 0.03 * s, 0), s); }};
   moving.organ_v = {0, 0.03, 0};
-  const Path follows = [](double s) -> Vec3 { return apply_loads(s) + Vec3(0, 0.03 * s, 0); };
+  const Path follows = [](double s) -> Vec3 { return press(s) + Vec3(0, 0.03 * s, 0); };
   for (const double begin : {0.2, 0.29}) {
-    const Off off = compare(moving, follows, begin), still = compare(kHertz, apply_loads, begin);
+    const Off off = compare(moving, follows, begin), still = compare(kHertz, press, begin);
     CHECK(off.kind == ReferenceKind::kHermite);
     CHECK(off.curve == Approx(still.curve).epsilon(1e-3));
   }
@@ -147,7 +147,7 @@ TEST_CASE("between samples: without tangents, or with such as nothing agrees wit
            [](Sample& s) {
              if (s.number == 2) s.at_tool.reset();
            }}) {
-    const Off off = compare(kHertz, apply_loads, 0.2, change);
+    const Off off = compare(kHertz, press, 0.2, change);
     CHECK(off.kind == ReferenceKind::kLine);
     CHECK(off.curve == off.line);
   }
@@ -161,7 +161,7 @@ TEST_CASE("a score against the curve is that against the law itself, and the pap
   std::vector<Vec3> rights, givens;
   for (int k = 0; k <= 20 * kSteps; ++k) {
     const double s = 0.1 + k * to_seconds(kStep);
-    const Sample sample = sampled(kHertz, apply_loads, s, 1 + k / kSteps);
+    const Sample sample = sampled(kHertz, press, s, 1 + k / kSteps);
     const bool arrived = k % kSteps == 0;
     if (arrived && k > 0) {
       for (std::size_t i = 0; i < rights.size(); ++i) {
@@ -173,7 +173,7 @@ TEST_CASE("a score against the curve is that against the law itself, and the pap
       givens.clear();
     }
     if (arrived) newest = sample.f;
-    scoring.tick(apply_loads(s), from_seconds(s), arrived ? &sample : nullptr, sums);
+    scoring.tick(press(s), from_seconds(s), arrived ? &sample : nullptr, sums);
     rights.push_back(sample.f);
     givens.push_back(scoring.forces()[0]);
   }

@@ -59,11 +59,9 @@ struct World {
 class Stroke {
  public:
   static constexpr double kStart = 1.2;  // s: the soft start is over
-  Stroke(const Hand& hand, const World& world, double speed, double apply_loads)
+  Stroke(const Hand& hand, const World& world, double speed, double press)
       : world_(world),
-        reached_(kStart +
-                 (kAbove + apply_loads / world.stiffness + apply_loads / hand.settings.hand_stiffness) /
-                     speed),
+        reached_(kStart + (kAbove + press / world.stiffness + press / hand.settings.hand_stiffness) / speed),
         person_(hand.settings,
                 Trajectory({0, kStart, reached_}, {Vec3(0, kAbove, 0), Vec3(0, kAbove, 0),
                                                    Vec3(0, kAbove - speed * (reached_ - kStart), 0)})),

@@ -276,12 +276,12 @@ TEST_CASE(
     "nothing") {
   const Bench bench(kMesh + kFixed + kMaterial + model("quasi_static") + kTool + kReach);
   Simulation simulation(bench.explanation.scene);
-  const Press apply_loads = find_press(bench.explanation.scene, simulation);
-  const Vec3 vertex = apply_loads.place - 0.6 * 0.004 * apply_loads.normal;
+  const Press press = find_press(bench.explanation.scene, simulation);
+  const Vec3 vertex = press.place - 0.6 * 0.004 * press.normal;
   CHECK(vertex[1] >= kTop - 0.0101);
   CHECK(vertex[2] > 0.001);
-  CHECK(simulation.step(apply_loads.place + 0.41 * 0.004 * apply_loads.normal, 1e-3).force == Vec3::Zero());
-  CHECK(simulation.step(apply_loads.place, 1e-3).force.norm() > 0.001);
+  CHECK(simulation.step(press.place + 0.41 * 0.004 * press.normal, 1e-3).force == Vec3::Zero());
+  CHECK(simulation.step(press.place, 1e-3).force.norm() > 0.001);
 }
 
 TEST_CASE("explain: each of several tools with its radius, what it reaches, and its own contact memory") {

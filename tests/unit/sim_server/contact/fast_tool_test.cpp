@@ -4,6 +4,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
 #include "tests/support/soft_block.h"
+#include "tests/support/tool_inputs.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -52,7 +53,7 @@ TEST_CASE(
     const ToolForce force = fast.step({Vec3(0.0398, -0.004, 0), kLevel}, kDt);
     CHECK(force.force.allFinite());
     CHECK((force.contacts > 0 || force.flagged));  // it is in the tissue
-    fast.lift_tool();
+    test::lift_tools(fast);
     fast.step({Vec3(0, 0.2, 0), kLevel}, kDt);
     CHECK(fast.state_hash() == rest);
   }

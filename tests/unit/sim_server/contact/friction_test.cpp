@@ -35,7 +35,7 @@ struct Block : Simulation {
   }
 };
 
-Vec3 apply_loads(double x, double depth, double z = 0.0013) {
+Vec3 press(double x, double depth, double z = 0.0013) {
   return {x, kRadius - depth, z};
 }
 
@@ -49,8 +49,8 @@ TEST_CASE("friction on a rigid organ: mu F_n against the slide, whatever the ste
   for (const double step : {1e-4, 1e-3, 1e-2}) {
     Block rigid(1, kMu, "rigid");
     ToolForce force;
-    rigid.step(apply_loads(-0.02, -0.001), kDt);
-    for (double x = -0.02; x <= 0.02; x += step) force = rigid.step(apply_loads(x, 0.002), kDt);
+    rigid.step(press(-0.02, -0.001), kDt);
+    for (double x = -0.02; x <= 0.02; x += step) force = rigid.step(press(x, 0.002), kDt);
     CAPTURE(step);
     CHECK_FALSE(force.flagged);
     CHECK(force.force[1] == Approx(1.6).epsilon(1e-4));
@@ -61,13 +61,13 @@ TEST_CASE("friction on a rigid organ: mu F_n against the slide, whatever the ste
 TEST_CASE("friction: the way between two places is bent as the velocities say, wild ones hardly matter") {
   // Round an arc of 4 mm radius, 30 degrees a step, 2 mm deep.
   constexpr double kTurn = 0.5, kArc = 0.004;
-  const auto at = [](double phi) { return apply_loads(kArc * std::cos(phi), 0.002, kArc * std::sin(phi)); };
+  const auto at = [](double phi) { return press(kArc * std::cos(phi), 0.002, kArc * std::sin(phi)); };
   const auto velocity = [](double phi) -> Vec3 {
     return kArc * kTurn / kDt * Vec3(-std::sin(phi), 0, std::cos(phi));
   };
   Block truth, straight, bent, implausible;
   for (Block* block : {&truth, &straight, &bent, &implausible}) {
-    block->step(apply_loads(kArc, -0.001, 0), kDt);
+    block->step(press(kArc, -0.001, 0), kDt);
     block->step(at(0), kDt);
   }
   double by_line = 0, by_cubic = 0;
@@ -91,11 +91,11 @@ TEST_CASE("friction: the way between two places is bent as the velocities say, w
 
 TEST_CASE("friction: a tool at rest holds its force for as long as it stays") {
   Block organ;
-  organ.step(apply_loads(0, -0.001), kDt);
-  organ.step(apply_loads(0, 0.002), kDt);
-  const Vec3 slid = organ.step(apply_loads(0.004, 0.002), kDt).force;
+  organ.step(press(0, -0.001), kDt);
+  organ.step(press(0, 0.002), kDt);
+  const Vec3 slid = organ.step(press(0.004, 0.002), kDt).force;
   Vec3 last = slid;
-  for (int i = 0; i < 2000; ++i) last = organ.step(apply_loads(0.004, 0.002), kDt).force;
+  for (int i = 0; i < 2000; ++i) last = organ.step(press(0.004, 0.002), kDt).force;
   CHECK(slid[0] < -0.05 * slid[1]);
   CHECK(relative(last, slid) < 1e-5);  // 1e-10 m/N of creep in each
 }
@@ -103,7 +103,7 @@ TEST_CASE("friction: a tool at rest holds its force for as long as it stays") {
 TEST_CASE("friction: looking ahead changes nothing, bit by bit, and foretells the step itself") {
   Block plain, looked;
   test::Random random(5);
-  Vec3 p = apply_loads(0, 0);
+  Vec3 p = press(0, 0);
   for (int i = 0; i < 60; ++i) {
     p += random.vector(0.0015) - 0.0002 * Vec3::UnitY();
     p[1] = std::clamp(p[1], 0.0015, 0.0055);
@@ -121,16 +121,16 @@ TEST_CASE("friction: looking ahead changes nothing, bit by bit, and foretells th
 
 TEST_CASE("friction: one tool moves the tissue under another that rests, it is dragged, and returns") {
   Block two(2), alone;
-  alone.step(apply_loads(-0.006, 0.002), kDt);
-  const Vec3 before = two.at({apply_loads(-0.006, 0.002), {}})[0].force;
-  CHECK(relative(before, alone.step(apply_loads(-0.006, 0.002), kDt).force) < 1e-6);
+  alone.step(press(-0.006, 0.002), kDt);
+  const Vec3 before = two.at({press(-0.006, 0.002), {}})[0].force;
+  CHECK(relative(before, alone.step(press(-0.006, 0.002), kDt).force) < 1e-6);
   // The other slides away from the first and carries tissue with it.
-  two.at({apply_loads(-0.006, 0.002), apply_loads(0.007, 0.002)});
-  for (int i = 0; i < 12; ++i) two.at({apply_loads(-0.006, 0.002), apply_loads(0.007 + 0.0005 * i, 0.002)});
-  const auto after = two.at({apply_loads(-0.006, 0.002), apply_loads(0.013, 0.002)});
+  two.at({press(-0.006, 0.002), press(0.007, 0.002)});
+  for (int i = 0; i < 12; ++i) two.at({press(-0.006, 0.002), press(0.007 + 0.0005 * i, 0.002)});
+  const auto after = two.at({press(-0.006, 0.002), press(0.013, 0.002)});
   CHECK_FALSE(after[0].flagged);
   CHECK(after[0].force[0] > before[0] + 0.002 * before[1]);
-  const Vec3 remaining = two.at({apply_loads(-0.006, 0.002), {}})[0].force;
+  const Vec3 remaining = two.at({press(-0.006, 0.002), {}})[0].force;
   CHECK(remaining.allFinite());
   CHECK(relative(remaining, before) < 0.1);
 }
@@ -141,8 +141,8 @@ TEST_CASE("friction: tools that change places feel the same, whoever comes first
   // In steps of a stride each: between strides the tools move in turns, which costs 0.2 % at ten times that.
   for (int i = 0; i <= 120; ++i) {
     const double s = i / 120.0;
-    const Vec3 a = apply_loads(-0.0065 + 0.002 * s, 0.0025 * std::min(1.0, 2 * s)),
-               b = apply_loads(0.0065, 0.002 * std::min(1.0, 2 * s), 0.0013 + 0.002 * s);
+    const Vec3 a = press(-0.0065 + 0.002 * s, 0.0025 * std::min(1.0, 2 * s)),
+               b = press(0.0065, 0.002 * std::min(1.0, 2 * s), 0.0013 + 0.002 * s);
     forces = two.at({a, b});
     others = swapped.at({b, a});
   }
@@ -156,21 +156,21 @@ TEST_CASE("friction: a tool with, and one without, on one organ") {
   mixed.tools[1].shape.friction = kMu;
   Simulation simulation(mixed, test::wide_block());
   Block alone(1, kMu);
-  Places places{{}, apply_loads(0, 0.002)};
+  Places places{{}, press(0, 0.002)};
   simulation.step(test::inputs(places), kDt);
   alone.step(*places[1], kDt);
-  places[1] = apply_loads(0.004, 0.002);
+  places[1] = press(0.004, 0.002);
   CHECK(simulation.step(test::inputs(places), kDt)[1].force == alone.step(*places[1], kDt).force);
-  places = {apply_loads(0.004, 0.002), {}};
+  places = {press(0.004, 0.002), {}};
   const Vec3 smooth = simulation.step(test::inputs(places), kDt)[0].force;
-  CHECK(smooth == Block(1, 0).step(apply_loads(0.004, 0.002), kDt).force);
+  CHECK(smooth == Block(1, 0).step(press(0.004, 0.002), kDt).force);
 }
 
 TEST_CASE("friction: any path gives finite forces, in settled answers but for a few") {
   Block organ;
   test::Random random(3);
   int flagged = 0, touched = 0;
-  Vec3 p = apply_loads(-0.01, 0);
+  Vec3 p = press(-0.01, 0);
   for (int i = 0; i < 500; ++i) {
     p += random.vector(0.003);
     p = p.cwiseMax(Vec3(-0.03, 0.0005, -0.01)).cwiseMin(Vec3(0.03, 0.01, 0.01));
@@ -186,15 +186,14 @@ TEST_CASE("friction: any path gives finite forces, in settled answers but for a 
 
 TEST_CASE("friction: steps and looks ahead do not allocate, with two tools") {
   Block two(2);
-  const std::vector<ToolInput> at_tool{{.pose = apply_loads(-0.006, 0.002)},
-                                       {.pose = apply_loads(0.006, 0.002)}},
-      there{{.pose = apply_loads(-0.009, 0.002)}, {.pose = apply_loads(0.004, 0.003)}};
+  const std::vector<ToolInput> at_tool{{.pose = press(-0.006, 0.002)}, {.pose = press(0.006, 0.002)}},
+      there{{.pose = press(-0.009, 0.002)}, {.pose = press(0.004, 0.003)}};
   std::size_t allocations = 1;
   {
     const test::AllocationGuard guard;
     two.step(at_tool, kDt);
     two.step(there, kDt);
-    two.linearise(0, apply_loads(-0.0095, 0.002), nullptr);
+    two.linearise(0, press(-0.0095, 0.002), nullptr);
     allocations = guard.count();
   }
   CHECK(allocations == 0);

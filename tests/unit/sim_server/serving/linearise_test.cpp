@@ -4,6 +4,7 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
+#include "tests/support/tool_inputs.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -17,7 +18,7 @@ double touching(Simulation& liver) {
   double low = 0.05, high = 0.10;
   while (high - low > 1e-9) {
     const double y = 0.5 * (low + high);
-    liver.lift_tool();
+    test::lift_tools(liver);
     (liver.step(Vec3(kAbove[0], y, kAbove[2]), kDt).contacts > 0 ? low : high) = y;
   }
   return high;
@@ -31,7 +32,7 @@ Vec3 at(double y) {
 TEST_CASE("linearise: in contact the tangent is the slope of the force, elsewhere, and nothing changes") {
   Simulation liver(test::liver_scene());
   const double top = touching(liver);
-  liver.lift_tool();
+  test::lift_tools(liver);
   const ToolForce rendered = liver.step(at(top - 0.003), kDt);
   const std::uint64_t before = liver.state_hash();
   const auto at_tool = liver.linearise(0, at(top - 0.003), &rendered);
@@ -55,7 +56,7 @@ TEST_CASE("linearise: in contact the tangent is the slope of the force, elsewher
 TEST_CASE("linearise: near the surface its plane, gap and stiffness, far away nothing") {
   Simulation liver(test::liver_scene());
   const double top = touching(liver);
-  liver.lift_tool();
+  test::lift_tools(liver);
   const ToolForce free = liver.step(at(top + 0.002), kDt);
   REQUIRE(free.contacts == 0);
   const std::uint64_t before = liver.state_hash();
@@ -79,7 +80,7 @@ TEST_CASE("linearise: near the surface its plane, gap and stiffness, far away no
 TEST_CASE("parts of a sample: only those asked for, not of a lost device, and no allocation") {
   Simulation liver(test::liver_scene());
   const double top = touching(liver);
-  liver.lift_tool();
+  test::lift_tools(liver);
   ServedTools tools(liver);
   std::vector<SessionInput> inputs{{7, {.tick = 1}, true}};
   auto& state = inputs[0].state;

@@ -47,11 +47,11 @@ struct Captured {
 };
 
 Captured run(const VirtualLink& link, double seconds, const std::filesystem::path& file) {
-  Press apply_loads;
+  Press press;
   Captured found;
   {
     protocol::CaptureWriter capture(file);
-    VirtualSession session(apply_loads.simulation, {&apply_loads.motion, 1}, 0.005, link, capture);
+    VirtualSession session(press.simulation, {&press.motion, 1}, 0.005, link, capture);
     for (std::uint64_t k = 0; k <= static_cast<std::uint64_t>(seconds * link.ticks_hz); ++k) session.tick(k);
     session.leave();
     found.late = session.stats().late;

@@ -28,16 +28,16 @@ Press press_block(ElasticLaw law, double speed, double begin) {
   scene.deformation.model = "implicit";
   Simulation simulation(scene,
                         grid_block(lines(-0.03, 0.03, 12), lines(-0.04, 0, 8), lines(-0.03, 0.03, 12)));
-  Press apply_loads;
+  Press press;
   for (double t = 0; t < begin + (kDepth + kClear) / speed + 0.5; t += kDt) {
     const double removed = std::clamp((t - begin) * speed, 0.0, kDepth + kClear);
     const ToolForce published =
         simulation.step(ToolPose(Vec3(0.0011, kRadius + kClear - removed, 0.0007)), kDt);
-    apply_loads.force = published.force.y();
-    apply_loads.flagged += published.flagged ? 1 : 0;
-    apply_loads.most_work = std::max(apply_loads.most_work, published.iterations);
+    press.force = published.force.y();
+    press.flagged += published.flagged ? 1 : 0;
+    press.most_work = std::max(press.most_work, published.iterations);
   }
-  return apply_loads;
+  return press;
 }
 
 }  // namespace
@@ -67,11 +67,11 @@ TEST_CASE("ordinary presses: every step is solved, with the force of a slow pres
     REQUIRE(right > 0.5);
     for (const double speed : {0.05, 0.1, 0.15}) {
       for (const double phase : {0.0, 0.5}) {
-        const Press apply_loads = press_block(law, speed, 0.1 + phase * kDt);
-        CAPTURE(static_cast<int>(law), speed, phase, apply_loads.most_work);
-        CHECK(apply_loads.flagged == 0);
-        CHECK(apply_loads.force == Approx(right).epsilon(0.005));
-        CHECK(apply_loads.most_work < 400);
+        const Press press = press_block(law, speed, 0.1 + phase * kDt);
+        CAPTURE(static_cast<int>(law), speed, phase, press.most_work);
+        CHECK(press.flagged == 0);
+        CHECK(press.force == Approx(right).epsilon(0.005));
+        CHECK(press.most_work < 400);
       }
     }
   }

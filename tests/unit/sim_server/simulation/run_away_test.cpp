@@ -6,6 +6,7 @@
 #include "tests/support/random.h"
 #include "tests/support/soft_block.h"
 #include "tests/support/solids.h"
+#include "tests/support/tool_inputs.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -134,6 +135,6 @@ TEST_CASE("run away: what was felt before an organ ran away fades, and does not 
     CHECK((held.force - fraction * rendered.force).norm() < 1e-12);
     CHECK(held.tangent.isZero(0));
   }
-  simulation.lift_tool(0);
+  test::lift_tools(simulation);
   CHECK(simulation.step(ToolPose(far), kDt).force.isZero(0));
 }

@@ -6,6 +6,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
+#include "tests/support/tool_inputs.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -44,7 +45,7 @@ TEST_CASE(
     double largest = 0, sum = 0;
     int count = 0, flagged = 0;
     Vec3 before = Vec3::Zero();
-    liver.lift_tool();
+    test::lift_tools(liver);
     for (double x = -0.06; x < 0.015; x += 1e-5) {
       const ToolForce force = liver.step(on_liver(liver, x, 0.004, depth), kDt);
       if (count > 0) largest = std::max(largest, (force.force - before).norm());
@@ -67,7 +68,7 @@ TEST_CASE("the tangent agrees with finite differences of the force to 1e-6") {
   for (int i = 0; i < 30; ++i) {
     const Vec3 p = on_liver(liver, random.between(-0.05, 0.01), random.between(-0.01, 0.02),
                             random.between(0.001, 0.004));
-    liver.lift_tool();
+    test::lift_tools(liver);
     const ToolForce force = liver.step(p, kDt);
     constexpr double kStep = 1e-7;
     Mat3 difference;

@@ -21,7 +21,7 @@ constexpr double kDt = 0.03, kRadius = 0.005;
 using Places = std::vector<std::optional<ToolPose>>;
 
 /// The tool centre that presses `depth` deep at x.
-Vec3 apply_loads(double x, double depth) {
+Vec3 press(double x, double depth) {
   return {x, kRadius - depth, 0.0013};
 }
 
@@ -93,7 +93,7 @@ double distance(const Simulation& block, const Vec3& p) {
 TEST_CASE("two tools: where they come to rest, all contacts together are in equilibrium") {
   // By the stiffness matrix: the tissue is held by the forces that the tools report, near them and nowhere
   // else, both tools touch and neither is in the tissue: the conditions of the joint problem.
-  const Vec3 a = apply_loads(-0.0065, 0.0025), b = apply_loads(0.0065, 0.002);
+  const Vec3 a = press(-0.0065, 0.0025), b = press(0.0065, 0.002);
   Block two(2);
   const auto forces = two.at({a, b});
   const Eigen::VectorXd held = holding_forces(two);
@@ -121,15 +121,15 @@ TEST_CASE("two tools: where they come to rest, all contacts together are in equi
 TEST_CASE("two tools: one that is lifted, or only near, leaves the other as if it were alone, bit by bit") {
   Block alone(1), two(2);
   for (double depth = -0.004; depth < 0.004; depth += 0.0007) {
-    const ToolForce expected = alone.at({apply_loads(0.003, depth)})[0];
-    const auto first = two.at({apply_loads(0.003, depth), {}});
+    const ToolForce expected = alone.at({press(0.003, depth)})[0];
+    const auto first = two.at({press(0.003, depth), {}});
     CHECK(first[0].force == expected.force);
     CHECK(first[1].force == Vec3::Zero());
   }
-  two.lift_tool(0);
-  alone.lift_tool();
-  const ToolForce expected = alone.at({apply_loads(-0.004, 0.002)})[0];
-  const auto second = two.at({apply_loads(0.02, -0.02), apply_loads(-0.004, 0.002)});
+  test::lift_tools(two);
+  test::lift_tools(alone);
+  const ToolForce expected = alone.at({press(-0.004, 0.002)})[0];
+  const auto second = two.at({press(0.02, -0.02), press(-0.004, 0.002)});
   CHECK(second[1].force == expected.force);
   CHECK(second[0].force == Vec3::Zero());
 }
@@ -137,7 +137,7 @@ TEST_CASE("two tools: one that is lifted, or only near, leaves the other as if i
 TEST_CASE("two tools pressing symmetrically feel equal forces, and less than either would alone") {
   Block two(2), alone(1);
   // The mesh is not symmetric (its diagonals run one way): exchange the tools instead.
-  const Vec3 a = apply_loads(-0.006, 0.002), b = apply_loads(0.006, 0.002);
+  const Vec3 a = press(-0.006, 0.002), b = press(0.006, 0.002);
   const auto forces = two.at({a, b}), swapped = Block(2).at({b, a});
   CHECK(relative(forces[0].force, swapped[1].force) < 1e-6);
   CHECK(relative(forces[1].force, swapped[0].force) < 1e-6);
@@ -151,14 +151,14 @@ TEST_CASE("two tools pressing symmetrically feel equal forces, and less than eit
 
 TEST_CASE("two tools far apart feel almost what each feels alone") {
   Block two(2), alone(1);
-  const auto forces = two.at({apply_loads(-0.033, 0.002), apply_loads(0.033, 0.002)});
-  CHECK(relative(forces[0].force, alone.at({apply_loads(-0.033, 0.002)})[0].force) < 0.02);
-  alone.lift_tool();
-  CHECK(relative(forces[1].force, alone.at({apply_loads(0.033, 0.002)})[0].force) < 0.02);
+  const auto forces = two.at({press(-0.033, 0.002), press(0.033, 0.002)});
+  CHECK(relative(forces[0].force, alone.at({press(-0.033, 0.002)})[0].force) < 0.02);
+  test::lift_tools(alone);
+  CHECK(relative(forces[1].force, alone.at({press(0.033, 0.002)})[0].force) < 0.02);
 }
 
 TEST_CASE("two tools: the equilibrium does not depend on who came first or how") {
-  const Vec3 a = apply_loads(-0.0055, 0.0025), b = apply_loads(0.0062, 0.0021);
+  const Vec3 a = press(-0.0055, 0.0025), b = press(0.0062, 0.0021);
   Block at_once(2), in_turn(2), by_path(2);
   const auto expected = at_once.at({a, b});
   REQUIRE(expected[0].contacts > 1);
@@ -177,7 +177,7 @@ TEST_CASE("two tools: the equilibrium does not depend on who came first or how")
 
 TEST_CASE("two tools: the forces are those of the energy that both share (reciprocity)") {
   // dF_a/dp_b = (dF_b/dp_a)^T: true of the joint equilibrium of an elastic body, of no other answer.
-  const Vec3 a = apply_loads(-0.0061, 0.0021), b = apply_loads(0.0058, 0.0024);
+  const Vec3 a = press(-0.0061, 0.0021), b = press(0.0058, 0.0024);
   constexpr double kStep = 2e-6;
   Block two(2);
   const auto difference = [&](std::size_t mover, int axis) {
@@ -200,12 +200,12 @@ TEST_CASE("two tools: the forces are those of the energy that both share (recipr
 TEST_CASE("two tools: one that presses moves the surface from under the other") {
   Block two(2);
   const double touching = 0.0002;
-  REQUIRE(two.at({apply_loads(0.006, touching), {}})[0].contacts > 0);
-  const auto forces = two.at({apply_loads(0.006, touching), apply_loads(-0.003, 0.004)});
+  REQUIRE(two.at({press(0.006, touching), {}})[0].contacts > 0);
+  const auto forces = two.at({press(0.006, touching), press(-0.003, 0.004)});
   CHECK(top_near(two, 0.005) < -0.0003);
   CHECK(forces[0].contacts == 0);
   CHECK(forces[0].force == Vec3::Zero());
-  CHECK(two.at({apply_loads(0.006, touching), {}})[0].contacts > 0);
+  CHECK(two.at({press(0.006, touching), {}})[0].contacts > 0);
 }
 
 TEST_CASE(
@@ -213,7 +213,7 @@ TEST_CASE(
   // The tissue is pressed by the same sphere, so it gives the same force, whoever carries how much of it.
   for (const double depth : {0.0005, 0.002, 0.003}) {
     CAPTURE(depth);
-    const Vec3 place = apply_loads(0.0013, depth);
+    const Vec3 place = press(0.0013, depth);
     Block alone(1), two(2), in_turn(2);
     const Vec3 single = alone.at({place})[0].force;
     in_turn.at({{}, place});
@@ -238,10 +238,10 @@ TEST_CASE(
 
 TEST_CASE("two tools on a rigid organ do not feel each other") {
   Block two(2, "rigid"), alone(1, "rigid");
-  const auto forces = two.at({apply_loads(-0.004, 0.002), apply_loads(0.004, 0.003)});
-  CHECK(forces[0].force == alone.at({apply_loads(-0.004, 0.002)})[0].force);
-  alone.lift_tool();
-  CHECK(forces[1].force == alone.at({apply_loads(0.004, 0.003)})[0].force);
+  const auto forces = two.at({press(-0.004, 0.002), press(0.004, 0.003)});
+  CHECK(forces[0].force == alone.at({press(-0.004, 0.002)})[0].force);
+  test::lift_tools(alone);
+  CHECK(forces[1].force == alone.at({press(0.004, 0.003)})[0].force);
 }
 
 TEST_CASE("tools of their own size and reach: compliance is kept for what either can reach") {
@@ -261,8 +261,7 @@ TEST_CASE("tools of their own size and reach: compliance is kept for what either
   Simulation simulation(both, test::wide_block());
   const Places swapped{Vec3(0.03, 0.002, 0), Vec3(-0.03, 0.002, 0)};
   for (const ToolForce& force : simulation.step(test::inputs(swapped), kDt)) CHECK(force.contacts == 0);
-  simulation.lift_tool(0);
-  simulation.lift_tool(1);
+  test::lift_tools(simulation);
   const Places placed{Vec3(-0.03, 0.004, 0), Vec3(0.03, 0.004, 0)};
   const auto forces = simulation.step(test::inputs(placed), kDt);
   CHECK(forces[0].contacts > 0);
@@ -271,8 +270,8 @@ TEST_CASE("tools of their own size and reach: compliance is kept for what either
 
 TEST_CASE("two tools: a wild place takes away that tool only") {
   Block two(2), alone(1);
-  const Vec3 a = apply_loads(-0.006, 0.002);
-  two.at({a, apply_loads(0.006, 0.002)});
+  const Vec3 a = press(-0.006, 0.002);
+  two.at({a, press(0.006, 0.002)});
   const auto forces = two.at({a, Vec3(0, std::nan(""), 0)});
   CHECK(forces[1].flagged);
   CHECK(forces[1].force == Vec3::Zero());
@@ -284,7 +283,7 @@ TEST_CASE("any paths of two tools give finite forces, in settled answers but for
   Block two(2);
   test::Random random(3);
   int flagged = 0, both = 0, most = 0;
-  Vec3 a = apply_loads(-0.01, 0), b = apply_loads(0.01, 0);
+  Vec3 a = press(-0.01, 0), b = press(0.01, 0);
   for (int i = 0; i < 400; ++i) {
     a += random.vector(0.002), b += random.vector(0.002);
     a = a.cwiseMax(Vec3(-0.03, 0.0005, -0.01)).cwiseMin(Vec3(0.03, 0.01, 0.01));
@@ -310,8 +309,8 @@ TEST_CASE("steps of eight tools in contact do not allocate, and leave the tissue
   const std::uint64_t rest = eight.state_hash();
   std::vector<ToolInput> all(8), some(8), none(8);
   for (int i = 0; i < 8; ++i) {
-    all[i].pose = apply_loads(0.009 * i - 0.0315, 0.004);
-    if (i % 3 == 1) some[i].pose = apply_loads(0.009 * i - 0.0305, 0.003);
+    all[i].pose = press(0.009 * i - 0.0315, 0.004);
+    if (i % 3 == 1) some[i].pose = press(0.009 * i - 0.0305, 0.003);
   }
   all[0].pose = Vec3(-0.0315, -0.001, 0.0013);
   std::size_t allocations = 1;
