@@ -315,7 +315,10 @@ struct Telemetry {
   float passivity_gain = 1;             ///< [0, 1]
   /// Counts of the session: how often the force was faded; ticks in which the limiter cut it (force, slew),
   /// or passivity damped it.
-  std::uint32_t faded = 0, clamped = 0, slewed = 0, damped = 0;
+  struct Interventions {
+    std::uint32_t faded = 0, clamped = 0, slewed = 0, damped = 0;
+  };
+  Interventions interventions{};
   Name device = {};
   Name rendered_law = {};  ///< the law that is felt; behind a colon, which one stands in
   /// The law of column `named`, and its mean error so far, %, below 0: not known. Another one in each
@@ -330,9 +333,9 @@ struct Telemetry {
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.flags), v(m.t_ns), v(m.dt_ns), v(m.p_W), v(m.f_W), v(m.age_ns), v(m.period_ns),
-        v(m.longest_period_ns), v(m.ticks), v(m.missed), v(m.passivity_gain), v(m.faded), v(m.clamped),
-        v(m.slewed), v(m.damped), v(m.device), v(m.rendered_law), v(m.named), v(m.name), v(m.error_percent),
-        v(m.laws), v(m.count);
+        v(m.longest_period_ns), v(m.ticks), v(m.missed), v(m.passivity_gain), v(m.interventions.faded),
+        v(m.interventions.clamped), v(m.interventions.slewed), v(m.interventions.damped), v(m.device),
+        v(m.rendered_law), v(m.named), v(m.name), v(m.error_percent), v(m.laws), v(m.count);
     for (std::size_t i = 0; i < m.count && i < kMostTicks; ++i) v(m.rendered[i]);
     for (std::size_t i = 0; i < m.count * m.laws && i < m.by_law.size(); ++i) v(m.by_law[i]);
   }

@@ -23,64 +23,65 @@ SimplexHessian hessian_of(const Contact& c, bool pivots, std::span<const Vec3> x
 /// no curvature; the tip last.
 void ContactSolver::collect_nodes(int tip) noexcept {
   constexpr int kUnseen = -1, kLoaded = -2;
-  nodes_.clear();
-  std::fill_n(slot_of_node_.begin(), tip + 1, kUnseen);
+  second_.nodes.clear();
+  std::fill_n(second_.slot_of_node.begin(), tip + 1, kUnseen);
   const auto for_each_node = [&](auto&& visit) {
-    for (const int k : considered_) {
+    for (const int k : second_.considered) {
       for (int i = 0; i < contacts_[k].size; ++i) visit(k, contacts_[k].node[i]);
     }
   };
   const auto add = [&](int node) {
-    slot_of_node_[node] = static_cast<int>(nodes_.size());
-    nodes_.push_back(node);
+    second_.slot_of_node[node] = static_cast<int>(second_.nodes.size());
+    second_.nodes.push_back(node);
   };
   for_each_node([&](int k, int node) {
-    if (lambda_[rows_of_contact() * k] != 0) slot_of_node_[node] = kLoaded;
+    if (lambda_[rows_of_contact() * k] != 0) second_.slot_of_node[node] = kLoaded;
   });
   for_each_node([&](int, int node) {
-    if (slot_of_node_[node] == kUnseen) add(node);
+    if (second_.slot_of_node[node] == kUnseen) add(node);
   });
-  unloaded_ = static_cast<int>(nodes_.size());
+  second_.unloaded = static_cast<int>(second_.nodes.size());
   for_each_node([&](int, int node) {
-    if (slot_of_node_[node] == kLoaded) add(node);
+    if (second_.slot_of_node[node] == kLoaded) add(node);
   });
   add(tip);
 }
 
 void ContactSolver::differentiate_contacts(int tip) noexcept {
   const int rows = rows_of_contact();
-  const auto n = rows * static_cast<Eigen::Index>(considered_.size()),
-             size = 3 * static_cast<Eigen::Index>(nodes_.size());
-  curvature_.shape(size, size);
-  curvature_.setZero();
-  jacobian_.shape(n, size);
-  jacobian_.setZero();
+  const auto n = rows * static_cast<Eigen::Index>(second_.considered.size()),
+             size = 3 * static_cast<Eigen::Index>(second_.nodes.size());
+  second_.curvature.shape(size, size);
+  second_.curvature.setZero();
+  second_.jacobian.shape(n, size);
+  second_.jacobian.setZero();
   if (rows > 1) {
-    spread_.shape(size, n);
-    spread_.setZero();
+    second_.spread.shape(size, n);
+    second_.spread.setZero();
   }
   for (Eigen::Index row = 0; row < n; row += rows) {
-    const int k = considered_[static_cast<std::size_t>(row / rows)];
+    const int k = second_.considered[static_cast<std::size_t>(row / rows)];
     const Contact& c = contacts_[k];
     std::array<Vec3, 3> x;
     std::array<int, 4> slot;
     for (int i = 0; i < c.size; ++i) {
       x[i] = deformed_[c.node[i]];
-      slot[i] = slot_of_node_[c.node[i]];
-      jacobian_.block<1, 3>(row, 3 * slot[i]) = -c.weight[i] * c.normal.transpose();
+      slot[i] = second_.slot_of_node[c.node[i]];
+      second_.jacobian.block<1, 3>(row, 3 * slot[i]) = -c.weight[i] * c.normal.transpose();
     }
-    slot[c.size] = slot_of_node_[tip];
-    jacobian_.block<1, 3>(row, 3 * slot[c.size]) = c.at_tip(c.normal).transpose();
+    slot[c.size] = second_.slot_of_node[tip];
+    second_.jacobian.block<1, 3>(row, 3 * slot[c.size]) = c.at_tip(c.normal).transpose();
     if (rows > 1) {
       differentiate_friction(k, row, {slot.data(), static_cast<std::size_t>(c.size) + 1});
       continue;
     }
     const double force = lambda_[k];
     if (force == 0) continue;
-    const SimplexHessian h = hessian_of(c, pivots_, {x.data(), static_cast<std::size_t>(c.size)}, nullptr);
+    const SimplexHessian h =
+        hessian_of(c, path_.pivots, {x.data(), static_cast<std::size_t>(c.size)}, nullptr);
     for (int i = 0; i <= c.size; ++i) {
       for (int j = 0; j <= c.size; ++j) {
-        curvature_.block<3, 3>(3 * slot[i], 3 * slot[j]) += force * h.block<3, 3>(3 * i, 3 * j);
+        second_.curvature.block<3, 3>(3 * slot[i], 3 * slot[j]) += force * h.block<3, 3>(3 * i, 3 * j);
       }
     }
   }
@@ -95,10 +96,11 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
   std::array<Vec3, 3> x, moved;
   for (int i = 0; i < c.size; ++i) {
     x[i] = deformed_[c.node[i]];
-    moved[i] = x[i] - was_[c.node[i]];
+    moved[i] = x[i] - path_.was[c.node[i]];
   }
   WeightGradient weights;
-  const SimplexHessian h = hessian_of(c, pivots_, {x.data(), static_cast<std::size_t>(c.size)}, &weights);
+  const SimplexHessian h =
+      hessian_of(c, path_.pivots, {x.data(), static_cast<std::size_t>(c.size)}, &weights);
   // dn, as d gap / dx_i = -b_i n and the b_i sum to one.
   Eigen::Matrix<double, 3, 12> turn = Eigen::Matrix<double, 3, 12>::Zero();
   for (int i = 0; i < c.size; ++i) turn -= h.middleRows<3>(3 * i);
@@ -114,8 +116,8 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
     // M is symmetric.
     const Mat3 fraction = j == c.size ? lever : Mat3(-c.weight[j] * Mat3::Identity());
     const int at = 3 * slot[j];
-    spread_.block<3, 3>(at, row) = fraction * frame;
-    jacobian_.block<2, 3>(row + 1, at) =
+    second_.spread.block<3, 3>(at, row) = fraction * frame;
+    second_.jacobian.block<2, 3>(row + 1, at) =
         frame.rightCols<2>().transpose() * (fraction + slip.middleCols<3>(3 * j));
     for (int i = 0; i <= c.size; ++i) {
       Mat3 block = bend.middleCols<3>(3 * j);
@@ -125,7 +127,7 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
         block *= -c.weight[i];
       }
       if (i < c.size) block -= force * weights.row(i).segment<3>(3 * j);
-      curvature_.block<3, 3>(3 * slot[i], at) += block;
+      second_.curvature.block<3, 3>(3 * slot[i], at) += block;
     }
   }
 }
@@ -133,8 +135,8 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
 /// False where more is near the tool than there is room for.
 bool ContactSolver::differentiate_considered(const ContactPatch& patch) noexcept {
   collect_nodes(patch.nodes());
-  if (static_cast<int>(nodes_.size()) > most_nodes_ + 1 ||
-      static_cast<int>(considered_.size()) > most_contacts_)
+  if (static_cast<int>(second_.nodes.size()) > most_nodes_ + 1 ||
+      static_cast<int>(second_.considered.size()) > most_contacts_)
     return false;
   differentiate_contacts(patch.nodes());
   return true;

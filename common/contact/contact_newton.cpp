@@ -19,18 +19,18 @@ constexpr double kNearby = 2;  // of what moves: a gap that wide is not closed
 /// Calls `visit` with the place among the nodes considered of each node of a contact, then of the tip.
 template <class Visit>
 void ContactSolver::each_slot(Eigen::Index contact, const Visit& visit) const {
-  const Contact& c = contacts_[considered_[static_cast<std::size_t>(contact)]];
-  for (int i = 0; i < c.size; ++i) visit(slot_of_node_[c.node[i]]);
-  visit(static_cast<int>(nodes_.size()) - 1);
+  const Contact& c = contacts_[second_.considered[static_cast<std::size_t>(contact)]];
+  for (int i = 0; i < c.size; ++i) visit(second_.slot_of_node[c.node[i]]);
+  visit(static_cast<int>(second_.nodes.size()) - 1);
 }
 
 /// Calls `visit` with the first row and column of each block (3 x 3) of S that is not zero, among those of
 /// the loaded nodes.
 template <class Visit>
 void ContactSolver::each_block_of_curvature(const Visit& visit) const {
-  for (Eigen::Index j = 3 * unloaded_; j < curvature_.cols(); j += 3) {
-    for (Eigen::Index i = 3 * unloaded_; i < curvature_.rows(); i += 3) {
-      if (const Mat3 block = curvature_.block<3, 3>(i, j); !block.isZero(0)) visit(i, j, block);
+  for (Eigen::Index j = 3 * second_.unloaded; j < second_.curvature.cols(); j += 3) {
+    for (Eigen::Index i = 3 * second_.unloaded; i < second_.curvature.rows(); i += 3) {
+      if (const Mat3 block = second_.curvature.block<3, 3>(i, j); !block.isZero(0)) visit(i, j, block);
     }
   }
 }
@@ -38,20 +38,22 @@ void ContactSolver::each_block_of_curvature(const Visit& visit) const {
 /// C over the nodes considered; and I - C S over the loaded ones, as elsewhere it is C S to their right and
 /// I.
 void ContactSolver::assemble_system(const ContactPatch& patch) noexcept {
-  const auto count = static_cast<Eigen::Index>(nodes_.size()), size = 3 * count;
-  compliance_.shape(size, size);
-  compliance_.setZero();
+  const auto count = static_cast<Eigen::Index>(second_.nodes.size()), size = 3 * count;
+  second_.compliance.shape(size, size);
+  second_.compliance.setZero();
   for (Eigen::Index j = 0; j + 1 < count; ++j) {
     for (Eigen::Index i = 0; i + 1 < count; ++i) {
-      compliance_.block<3, 3>(3 * i, 3 * j) = patch.compliance.block<3, 3>(3 * nodes_[i], 3 * nodes_[j]);
+      second_.compliance.block<3, 3>(3 * i, 3 * j) =
+          patch.compliance.block<3, 3>(3 * second_.nodes[i], 3 * second_.nodes[j]);
     }
   }
-  compliance_.bottomRightCorner<3, 3>().diagonal().setConstant(patch.tool_compliance);
-  const Eigen::Index first = 3 * unloaded_, loaded = size - first;
-  system_.shape(loaded, loaded);
-  system_.setIdentity();
+  second_.compliance.bottomRightCorner<3, 3>().diagonal().setConstant(patch.tool_compliance);
+  const Eigen::Index first = 3 * second_.unloaded, loaded = size - first;
+  second_.system.shape(loaded, loaded);
+  second_.system.setIdentity();
   each_block_of_curvature([&](Eigen::Index i, Eigen::Index j, const Mat3& block) {
-    system_.middleCols<3>(j - first) -= compliance_.block(first, i, loaded, 3).lazyProduct(block);
+    second_.system.middleCols<3>(j - first) -=
+        second_.compliance.block(first, i, loaded, 3).lazyProduct(block);
   });
 }
 
@@ -62,9 +64,9 @@ void ContactSolver::spread_over(Eigen::Index first, bool forces,
   moved.setZero();
   for (Eigen::Index row = 0; row < moved.cols(); ++row) {
     each_slot(row / rows, [&](int slot) {
-      const Vec3 load = forces && rows > 1 ? Vec3(spread_.block<3, 1>(3 * slot, row))
-                                           : Vec3(jacobian_.block<1, 3>(row, 3 * slot).transpose());
-      moved.col(row) += compliance_.block(first, 3 * slot, moved.rows(), 3).lazyProduct(load);
+      const Vec3 load = forces && rows > 1 ? Vec3(second_.spread.block<3, 1>(3 * slot, row))
+                                           : Vec3(second_.jacobian.block<1, 3>(row, 3 * slot).transpose());
+      moved.col(row) += second_.compliance.block(first, 3 * slot, moved.rows(), 3).lazyProduct(load);
     });
   }
 }
@@ -74,41 +76,42 @@ void ContactSolver::spread_over(Eigen::Index first, bool forces,
 /// I - C S. With the compliance that the curvature adds over the loaded nodes alone: C~ = C + C S C~.
 bool ContactSolver::respond(const ContactPatch& patch,
                             const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept {
-  const auto unknowns = 3.0 * static_cast<double>(nodes_.size() - static_cast<std::size_t>(unloaded_)),
-             right = static_cast<double>(considered_.size()) * rows_of_contact() + 3;
+  const auto unknowns =
+                 3.0 * static_cast<double>(second_.nodes.size() - static_cast<std::size_t>(second_.unloaded)),
+             right = static_cast<double>(second_.considered.size()) * rows_of_contact() + 3;
   if (!work_.spend(unknowns * unknowns * (unknowns / 3 + right + 30))) return false;
   assemble_system(patch);
   const int rows = rows_of_contact();
-  const auto n = rows * static_cast<Eigen::Index>(considered_.size()), size = loads.rows();
-  const Eigen::Index first = 3 * unloaded_, loaded = size - first, columns = n + loads.cols();
+  const auto n = rows * static_cast<Eigen::Index>(second_.considered.size()), size = loads.rows();
+  const Eigen::Index first = 3 * second_.unloaded, loaded = size - first, columns = n + loads.cols();
   response_.shape(size, columns);
   spread_over(0, true, response_.leftCols(n));
-  response_.rightCols(loads.cols()).noalias() = compliance_ * loads;
+  response_.rightCols(loads.cols()).noalias() = second_.compliance * loads;
   delassus_.shape(n, columns);
   delassus_.setZero();
   for (Eigen::Index column = 0; column < columns; ++column) {
     for (Eigen::Index row = 0; row < n; ++row) {
       each_slot(row / rows, [&](int slot) {
         delassus_(row, column) +=
-            jacobian_.block<1, 3>(row, 3 * slot).dot(response_.col(column).segment<3>(3 * slot));
+            second_.jacobian.block<1, 3>(row, 3 * slot).dot(response_.col(column).segment<3>(3 * slot));
       });
     }
   }
-  toward_.shape(loaded, n);  // C B^T
+  second_.toward.shape(loaded, n);  // C B^T
   if (rows > 1) {
-    spread_over(first, false, toward_);
+    spread_over(first, false, second_.toward);
   } else {
-    toward_ = response_.bottomLeftCorner(loaded, n);
+    second_.toward = response_.bottomLeftCorner(loaded, n);
   }
   auto at_loads = response_.bottomRows(loaded);
-  system_sign_ = gauss_solve(system_, at_loads);
-  if (system_sign_ == 0) return false;
-  bent_.shape(loaded, columns);
-  bent_.setZero();
+  second_.system_sign = gauss_solve(second_.system, at_loads);
+  if (second_.system_sign == 0) return false;
+  second_.bent.shape(loaded, columns);
+  second_.bent.setZero();
   each_block_of_curvature([&](Eigen::Index i, Eigen::Index j, const Mat3& block) {
-    bent_.middleRows<3>(i - first) += block.lazyProduct(at_loads.middleRows<3>(j - first));
+    second_.bent.middleRows<3>(i - first) += block.lazyProduct(at_loads.middleRows<3>(j - first));
   });
-  delassus_.noalias() += toward_.transpose() * bent_;
+  delassus_.noalias() += second_.toward.transpose() * second_.bent;
   for (Eigen::Index row = 0; row < n; ++row)
     delassus_(row, row) += row % rows == 0 ? contact_compliance_ : friction_compliance_;
   return true;
@@ -125,30 +128,31 @@ bool ContactSolver::solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>&
                                         Eigen::Ref<Eigen::VectorXd> force) noexcept {
   constexpr int kExchanges = 4;
   const auto n = gap.size();
-  active_.clear();
+  second_.active.clear();
   for (int k = 0; k < n; ++k) {
-    if (lambda_[considered_[static_cast<std::size_t>(k)]] > 0) active_.push_back(k);
+    if (lambda_[second_.considered[static_cast<std::size_t>(k)]] > 0) second_.active.push_back(k);
   }
   for (int exchange = 0; exchange < kExchanges; ++exchange) {
-    const auto size = static_cast<Eigen::Index>(active_.size());
-    if (static_cast<std::size_t>(size * size) * sizeof(double) > system_.bytes()) return false;
-    system_.shape(size, size);  // whose own values have been used
-    auto solution = rhs_.col(2).head(size);
+    const auto size = static_cast<Eigen::Index>(second_.active.size());
+    if (static_cast<std::size_t>(size * size) * sizeof(double) > second_.system.bytes()) return false;
+    second_.system.shape(size, size);  // whose own values have been used
+    auto solution = second_.rhs.col(2).head(size);
     for (Eigen::Index j = 0; j < size; ++j) {
-      solution[j] = -gap[active_[j]];
-      for (Eigen::Index i = 0; i < size; ++i) system_(i, j) = delassus_(active_[i], active_[j]);
+      solution[j] = -gap[second_.active[j]];
+      for (Eigen::Index i = 0; i < size; ++i)
+        second_.system(i, j) = delassus_(second_.active[i], second_.active[j]);
     }
-    if (gauss_solve(system_, solution) * system_sign_ <= 0) return false;
+    if (gauss_solve(second_.system, solution) * second_.system_sign <= 0) return false;
     force.setZero();
-    for (Eigen::Index i = 0; i < size; ++i) force[active_[i]] = solution[i];
+    for (Eigen::Index i = 0; i < size; ++i) force[second_.active[i]] = solution[i];
     auto slack = slack_.head(n);
     slack = gap;
     slack.noalias() += delassus_.leftCols(n) * force;
     bool settled = true;
-    active_.clear();
+    second_.active.clear();
     for (int k = 0; k < n; ++k) {
       const bool was_active = force[k] != 0, active = was_active ? force[k] > 0 : slack[k] < 0;
-      if (active) active_.push_back(k);
+      if (active) second_.active.push_back(k);
       settled &= active == was_active;
     }
     if (settled) return true;
@@ -159,70 +163,70 @@ bool ContactSolver::solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>&
 /// False where there are no such forces, or where they are those of a state that is not stable.
 bool ContactSolver::solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                           Eigen::Ref<Eigen::VectorXd> force) noexcept {
-  if (friction_ > 0) return solve_contacts(gap, force);
-  return solve_on_active_set(gap, force) || (system_sign_ > 0 && solve_contacts(gap, force));
+  if (path_.friction > 0) return solve_contacts(gap, force);
+  return solve_on_active_set(gap, force) || (second_.system_sign > 0 && solve_contacts(gap, force));
 }
 
 /// The contacts that a Newton step may close or open where the plain step moves things by `change` (m): those
 /// with a force, and those whose gap it leaves small. With friction all.
 void ContactSolver::consider_near(double change) noexcept {
-  considered_.clear();
+  second_.considered.clear();
   const auto n = static_cast<Eigen::Index>(contacts_.size());
-  if (friction_ == 0) {
+  if (path_.friction == 0) {
     auto slack = slack_.head(n);
     slack = gap_.head(n);
     slack.noalias() += delassus_ * lambda_.head(n);
   }
   for (int k = 0; k < n; ++k) {
-    if (friction_ > 0 || lambda_[k] > 0 || slack_[k] < kNearby * change) considered_.push_back(k);
+    if (path_.friction > 0 || lambda_[k] > 0 || slack_[k] < kNearby * change) second_.considered.push_back(k);
   }
 }
 
 bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
                                 double change, Eigen::Ref<Eigen::VectorXd> next) noexcept {
   consider_near(change);
-  if (considered_.empty()) return false;
+  if (second_.considered.empty()) return false;
   if (!differentiate_considered(patch)) return false;
-  const auto n = rows_of_contact() * static_cast<Eigen::Index>(considered_.size()),
-             size = 3 * static_cast<Eigen::Index>(nodes_.size());
-  const Eigen::Index loaded = size - 3 * unloaded_;
-  auto local = moved_.col(0).head(size), load = moved_.col(1).head(size);
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    local.segment<3>(3 * static_cast<Eigen::Index>(i)) = u.segment<3>(3 * nodes_[i]);
+  const auto n = rows_of_contact() * static_cast<Eigen::Index>(second_.considered.size()),
+             size = 3 * static_cast<Eigen::Index>(second_.nodes.size());
+  const Eigen::Index loaded = size - 3 * second_.unloaded;
+  auto local = second_.moved.col(0).head(size), load = second_.moved.col(1).head(size);
+  for (std::size_t i = 0; i < second_.nodes.size(); ++i) {
+    local.segment<3>(3 * static_cast<Eigen::Index>(i)) = u.segment<3>(3 * second_.nodes[i]);
   }
-  load.noalias() = curvature_ * local;
+  load.noalias() = second_.curvature * local;
   if (!respond(patch, load)) return false;
-  auto gap = rhs_.col(0).head(n), lambda = rhs_.col(1).head(n);
+  auto gap = second_.rhs.col(0).head(n), lambda = second_.rhs.col(1).head(n);
   for (Eigen::Index row = 0; row < n; ++row) {  // w - A^T u, which `gap_` holds
-    const int rows = rows_of_contact(), k = considered_[static_cast<std::size_t>(row / rows)];
+    const int rows = rows_of_contact(), k = second_.considered[static_cast<std::size_t>(row / rows)];
     gap[row] = gap_[rows * k + row % rows];
   }
   gap -= delassus_.col(n);  // B C~ S u
-  if (friction_ > 0) {
-    gap.noalias() += spread_.transpose() * local;
-    gap.noalias() -= jacobian_ * local;
+  if (path_.friction > 0) {
+    gap.noalias() += second_.spread.transpose() * local;
+    gap.noalias() -= second_.jacobian * local;
   }
   if (!solve_newton_contacts(gap, lambda)) return false;
   auto forces = lambda_.head(rows_of_contact() * static_cast<Eigen::Index>(contacts_.size()));
   forces.setZero();
   for (Eigen::Index row = 0; row < n; ++row) {
-    const int rows = rows_of_contact(), k = considered_[static_cast<std::size_t>(row / rows)];
+    const int rows = rows_of_contact(), k = second_.considered[static_cast<std::size_t>(row / rows)];
     forces[rows * k + row % rows] = lambda[row];
   }
   store(forces);
   // Force at the new geometry, to first order: A z+ + S (u+ - u).
-  auto moved = moved_.col(2).head(loaded);  // u+ - u of the loaded nodes
+  auto moved = second_.moved.col(2).head(loaded);  // u+ - u of the loaded nodes
   moved = -response_.col(n).tail(loaded) - local.tail(loaded);
   moved.noalias() += response_.bottomLeftCorner(loaded, n) * lambda;
-  load.noalias() = curvature_.rightCols(loaded) * moved;
-  if (friction_ > 0) {
-    load.noalias() += spread_ * lambda;
+  load.noalias() = second_.curvature.rightCols(loaded) * moved;
+  if (path_.friction > 0) {
+    load.noalias() += second_.spread * lambda;
   } else {
-    load.noalias() += jacobian_.transpose() * lambda;
+    load.noalias() += second_.jacobian.transpose() * lambda;
   }
   node_force_.head(3 * patch.nodes()).setZero();
-  for (Eigen::Index i = 0; i + 1 < static_cast<Eigen::Index>(nodes_.size()); ++i)
-    node_force_.segment<3>(3 * nodes_[i]) = load.segment<3>(3 * i);
+  for (Eigen::Index i = 0; i + 1 < static_cast<Eigen::Index>(second_.nodes.size()); ++i)
+    node_force_.segment<3>(3 * second_.nodes[i]) = load.segment<3>(3 * i);
   displace(patch, load.tail<3>(), next);
   return next.allFinite();
 }
@@ -231,48 +235,48 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
 bool ContactSolver::differentiate_forces(
     Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept {
   const auto n = change.rows();
-  if (friction_ == 0) {
+  if (path_.friction == 0) {
     change = -change;
     return gauss_solve(delassus_.leftCols(n), change) != 0;
   }
   auto force = gap_.head(n), slack = slack_.head(n);
   for (Eigen::Index i = 0; i < n; i += 3) {
-    const int k = considered_[static_cast<std::size_t>(i / 3)];
+    const int k = second_.considered[static_cast<std::size_t>(i / 3)];
     force.segment<3>(i) = lambda_.segment<3>(3 * k);
     slack.segment<3>(i) = friction_compliance_ * force.segment<3>(i);
     slack.segment<2>(i + 1) += frames_[k].rightCols<2>().transpose() * travel(contacts_[k]);
     slack[i] = 0;
   }
-  return coulomb_.differentiate(delassus_.leftCols(n), force, slack, friction_, change);
+  return coulomb_.differentiate(delassus_.leftCols(n), force, slack, path_.friction, change);
 }
 
 Mat3 ContactSolver::tangent(const ContactPatch& patch) noexcept {
-  has_load_change_ = false;
-  if (considered_.empty()) return Mat3::Zero();
+  second_.has_load_change = false;
+  if (second_.considered.empty()) return Mat3::Zero();
   const Mat3 k = tangent_of_considered(patch);
   if (!k.allFinite()) return Mat3::Zero();
-  has_load_change_ = friction_ == 0 && !k.isZero(0);
-  return friction_ > 0 ? k : Mat3(0.5 * (k + k.transpose()));
+  second_.has_load_change = path_.friction == 0 && !k.isZero(0);
+  return path_.friction > 0 ? k : Mat3(0.5 * (k + k.transpose()));
 }
 
 Mat3 ContactSolver::tangent_of_considered(const ContactPatch& patch) noexcept {
   if (!differentiate_considered(patch)) return Mat3::Zero();
-  const auto n = rows_of_contact() * static_cast<Eigen::Index>(considered_.size()),
-             size = 3 * static_cast<Eigen::Index>(nodes_.size());
-  auto moved = moved_.topRows(size);  // E + C~ S E: how the geometry follows the tool at fixed forces
-  if (!respond(patch, curvature_.rightCols<3>())) return Mat3::Zero();
+  const auto n = rows_of_contact() * static_cast<Eigen::Index>(second_.considered.size()),
+             size = 3 * static_cast<Eigen::Index>(second_.nodes.size());
+  auto moved = second_.moved.topRows(size);  // E + C~ S E: how the geometry follows the tool at fixed forces
+  if (!respond(patch, second_.curvature.rightCols<3>())) return Mat3::Zero();
   moved = response_.rightCols<3>();
   moved.bottomRows<3>() += Mat3::Identity();
-  auto force_change = rhs_.topRows(n);
-  force_change.noalias() = jacobian_ * moved;
+  auto force_change = second_.rhs.topRows(n);
+  force_change.noalias() = second_.jacobian * moved;
   if (!differentiate_forces(force_change)) return Mat3::Zero();
   moved.noalias() += response_.leftCols(n) * force_change;
-  auto loads = load_change_.topRows(size);
-  loads.noalias() = curvature_ * moved;
-  if (friction_ > 0) {
-    loads.noalias() += spread_ * force_change;
+  auto loads = second_.load_change.topRows(size);
+  loads.noalias() = second_.curvature * moved;
+  if (path_.friction > 0) {
+    loads.noalias() += second_.spread * force_change;
   } else {
-    loads.noalias() += jacobian_.transpose() * force_change;
+    loads.noalias() += second_.jacobian.transpose() * force_change;
   }
   return loads.bottomRows<3>();
 }

@@ -80,36 +80,38 @@ void ContactPatch::require(int node) noexcept {
 
 ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
     : complementarity_(max_triangles),
-      coulomb_(friction ? max_triangles : 0),
-      slot_of_node_(static_cast<std::size_t>(max_nodes + 1)) {
+      coulomb_(friction ? max_triangles : 0) {
+  second_.slot_of_node.resize(static_cast<std::size_t>(max_nodes + 1));
   const int unknowns = 3 * (max_nodes + 1), per_contact = friction ? 3 : 1,
             rows = per_contact * max_triangles;
   most_nodes_ = std::min(max_nodes, std::max(kFewest, static_cast<int>(kTouching * max_nodes)));
   most_contacts_ = std::min(max_triangles, std::max(kFewest, static_cast<int>(kTouching * max_triangles)));
   const int touching = 3 * (most_nodes_ + 1), touched = per_contact * most_contacts_;
-  for (BoundedMatrix* square : {&curvature_, &compliance_, &system_}) square->reserve(touching, touching);
-  for (BoundedMatrix* tall : {&response_, &bent_, &toward_}) tall->reserve(touching, touched + 3);
-  jacobian_.reserve(touched, touching);
-  if (friction) spread_.reserve(touching, touched);
+  for (BoundedMatrix* square : {&second_.curvature, &second_.compliance, &second_.system})
+    square->reserve(touching, touching);
+  for (BoundedMatrix* tall : {&response_, &second_.bent, &second_.toward})
+    tall->reserve(touching, touched + 3);
+  second_.jacobian.reserve(touched, touching);
+  if (friction) second_.spread.reserve(touching, touched);
   delassus_.reserve(rows, rows + 3);
   gap_.resize(rows);
   lambda_.resize(rows);
   next_.resize(unknowns);
   increment_.resize(unknowns);
   node_force_.resize(3 * max_nodes);
-  moved_.resize(unknowns, 3);
-  load_change_.resize(unknowns, 3);
-  rhs_.resize(rows, 3);
+  second_.moved.resize(unknowns, 3);
+  second_.load_change.resize(unknowns, 3);
+  second_.rhs.resize(rows, 3);
   contacts_.reserve(static_cast<std::size_t>(max_triangles));
-  considered_.reserve(static_cast<std::size_t>(max_triangles));
-  active_.reserve(static_cast<std::size_t>(max_triangles));
+  second_.considered.reserve(static_cast<std::size_t>(max_triangles));
+  second_.active.reserve(static_cast<std::size_t>(max_triangles));
   deformed_.reserve(static_cast<std::size_t>(max_nodes));
-  nodes_.reserve(static_cast<std::size_t>(max_nodes + 1));
+  second_.nodes.reserve(static_cast<std::size_t>(max_nodes + 1));
   slack_.resize(rows);
   rendered_.reserve(static_cast<std::size_t>(max_triangles));
   if (!friction) return;
   frames_.reserve(static_cast<std::size_t>(max_triangles));
-  was_.reserve(static_cast<std::size_t>(max_nodes));
+  path_.was.reserve(static_cast<std::size_t>(max_nodes));
 }
 
 Vec3 ContactSolver::direction(int contact, int row) const {
@@ -127,30 +129,30 @@ double ContactSolver::contact_compliance(const ContactPatch& patch, int nodes) n
 
 /// How far the tip went over the surface at a contact in this increment.
 Vec3 ContactSolver::travel(const Contact& c) const {
-  Vec3 travel = c.at_tip(tip_ - tip_was_) + turned_ * c.arm;
-  for (int i = 0; i < c.size; ++i) travel -= c.weight[i] * (deformed_[c.node[i]] - was_[c.node[i]]);
+  Vec3 travel = c.at_tip(path_.tip - path_.tip_was) + path_.turned * c.arm;
+  for (int i = 0; i < c.size; ++i) travel -= c.weight[i] * (deformed_[c.node[i]] - path_.was[c.node[i]]);
   return travel;
 }
 
 void ContactSolver::start_increment(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
                                     const IncrementStart& start) noexcept {
-  friction_ = tool.friction;
-  pivots_ = tool.trocar.has_value();
+  path_.friction = tool.friction;
+  path_.pivots = tool.trocar.has_value();
   rendered_.clear();  // whose nodes are those of another patch
-  if (friction_ == 0) return;
-  assert(spread_.size() > 0);  // it was made for friction
-  was_.assign(start.nodes.begin(), start.nodes.begin() + patch.nodes());
-  tip_was_ = start.tip;
-  turned_.setZero();  // a sphere may spin, a pivoting shaft turns by its tip
+  if (path_.friction == 0) return;
+  assert(second_.spread.size() > 0);  // it was made for friction
+  path_.was.assign(start.nodes.begin(), start.nodes.begin() + patch.nodes());
+  path_.tip_was = start.tip;
+  path_.turned.setZero();  // a sphere may spin, a pivoting shaft turns by its tip
   if (tool.length > 0 && !tool.trocar)
-    turned_ = Mat3::Identity() - (start.q_W * pose.q_W.conjugate()).toRotationMatrix();
+    path_.turned = Mat3::Identity() - (start.q_W * pose.q_W.conjugate()).toRotationMatrix();
 }
 
 /// Gaps, and slips, of the contacts as they would be without forces; and the Delassus operator.
 void ContactSolver::linearise(ContactPatch& patch, const Vec3& p_W,
                               const Eigen::Ref<const Eigen::VectorXd>& u) noexcept {
   const int m = patch.nodes(), n = static_cast<int>(contacts_.size()), rows = rows_of_contact();
-  tip_ = p_W + u.tail<3>();
+  path_.tip = p_W + u.tail<3>();
   frames_.clear();
   for (int k = 0; k < n; ++k) {
     const Contact& c = contacts_[k];
@@ -248,8 +250,8 @@ bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                    Eigen::Ref<Eigen::VectorXd> force) noexcept {
   const auto delassus = delassus_.leftCols(gap.size());
   recall(force);
-  if (friction_ == 0) return complementarity_.solve(delassus, gap, force);
-  return coulomb_.solve(delassus, gap, friction_, force);
+  if (path_.friction == 0) return complementarity_.solve(delassus, gap, force);
+  return coulomb_.solve(delassus, gap, path_.friction, force);
 }
 
 /// Keeps the forces of this iteration, as what to start from in the next, whose contacts are not all the
@@ -273,7 +275,7 @@ void ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
     };
     const auto rendered = std::ranges::find_if(rendered_, same);
     if (rendered == rendered_.end()) continue;
-    if (friction_ > 0) {
+    if (path_.friction > 0) {
       force.segment<3>(3 * k) = frames_[k].transpose() * rendered->force;
     } else {
       force[k] = rendered->force.norm();
@@ -317,27 +319,27 @@ void ContactSolver::collect_result(int nodes, ContactForce& result) noexcept {
   const int rows = rows_of_contact();
   force_size_ = 3 * nodes;
   node_force_.head(force_size_).setZero();
-  considered_.clear();
+  second_.considered.clear();
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
     if (!(lambda_[rows * k] > 0)) continue;
-    considered_.push_back(k);
+    second_.considered.push_back(k);
     const Contact& c = contacts_[k];
     for (int row = 0; row < rows; ++row) {
       const double size = lambda_[rows * k + row];
       const Vec3 d = direction(k, row);
       result.force += size * c.at_tip(d);
       // The tip's normals pass through its centre; and what a pivot carries is not felt.
-      if ((row > 0 || c.part != Contact::kTip) && !pivots_) result.torque += c.arm.cross(size * d);
+      if ((row > 0 || c.part != Contact::kTip) && !path_.pivots) result.torque += c.arm.cross(size * d);
       for (int i = 0; i < c.size; ++i) node_force_.segment<3>(3 * c.node[i]) -= size * c.weight[i] * d;
     }
   }
-  result.contacts = static_cast<int>(considered_.size());
+  result.contacts = static_cast<int>(second_.considered.size());
 }
 
 std::size_t ContactSolver::bytes() const {
   return coulomb_.bytes() + complementarity_.bytes() + delassus_.bytes() + response_.bytes() +
-         curvature_.bytes() + compliance_.bytes() + bent_.bytes() + toward_.bytes() + system_.bytes() +
-         jacobian_.bytes() + spread_.bytes();
+         second_.curvature.bytes() + second_.compliance.bytes() + second_.bent.bytes() +
+         second_.toward.bytes() + second_.system.bytes() + second_.jacobian.bytes() + second_.spread.bytes();
 }
 
 }  // namespace palpate

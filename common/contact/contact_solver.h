@@ -122,9 +122,9 @@ class ContactSolver {
   /// friction, or without a tangent.
   template <class Visit>
   void for_load_changes(const Visit& visit) const {
-    if (!has_load_change_) return;
-    for (std::size_t i = 0; i + 1 < nodes_.size(); ++i)
-      visit(nodes_[i], Mat3(load_change_.middleRows<3>(3 * static_cast<Eigen::Index>(i))));
+    if (!second_.has_load_change) return;
+    for (std::size_t i = 0; i + 1 < second_.nodes.size(); ++i)
+      visit(second_.nodes[i], Mat3(second_.load_change.middleRows<3>(3 * static_cast<Eigen::Index>(i))));
   }
 
   /// Returns the memory of its matrices, bytes.
@@ -139,7 +139,7 @@ class ContactSolver {
   static double contact_compliance(double mean) noexcept;
 
  private:
-  int rows_of_contact() const { return friction_ > 0 ? 3 : 1; }
+  int rows_of_contact() const { return path_.friction > 0 ? 3 : 1; }
   Vec3 direction(int contact, int row) const;
   Vec3 travel(const Contact& c) const;
   void start_increment(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
@@ -196,20 +196,24 @@ class ContactSolver {
   BoundedMatrix delassus_;  // and B C~ of other loads, to its right
   Eigen::VectorXd gap_, lambda_, slack_, next_, increment_, node_force_;
   int force_size_ = 0;
-  // The increment: friction coefficient, where its nodes and the tip began, and where the tip is.
-  double friction_ = 0;
-  bool pivots_ = false;
-  std::vector<Vec3> was_;
-  Vec3 tip_was_ = Vec3::Zero(), tip_ = Vec3::Zero();
-  Mat3 turned_ = Mat3::Zero();  // what the tool's turn in the increment did to an arm of now
-  // Second order: the contacts considered, their nodes (the tip last), and matrices over those nodes.
-  std::vector<int> considered_, active_, nodes_, slot_of_node_;
-  int system_sign_ = 1;  // of the determinant of I - C S
-  int unloaded_ = 0;     // of nodes_, the first ones
-  BoundedMatrix curvature_, compliance_, bent_, toward_, system_, jacobian_;
-  BoundedMatrix spread_;  // W^T, only with friction
-  Eigen::Matrix<double, Eigen::Dynamic, 3> moved_, rhs_, load_change_;
-  bool has_load_change_ = false;
+  /// The increment in hand.
+  struct Increment {
+    double friction = 0;  // Coulomb's coefficient
+    bool pivots = false;
+    std::vector<Vec3> was;                            // where its nodes began, m
+    Vec3 tip_was = Vec3::Zero(), tip = Vec3::Zero();  // where the tip began, and is, m
+    Mat3 turned = Mat3::Zero();  // what the tool's turn in the increment did to an arm of now
+  } path_;
+  /// Second derivatives: the contacts considered, their nodes (the tip last), and matrices over those nodes.
+  struct SecondOrder {
+    std::vector<int> considered, active, nodes, slot_of_node;
+    int system_sign = 1;  // of the determinant of I - C S
+    int unloaded = 0;     // of `nodes`, the first ones
+    BoundedMatrix curvature, compliance, bent, toward, system, jacobian;
+    BoundedMatrix spread;  // W^T, only with friction
+    Eigen::Matrix<double, Eigen::Dynamic, 3> moved, rhs, load_change;
+    bool has_load_change = false;
+  } second_;
 };
 
 }  // namespace palpate

@@ -47,9 +47,9 @@ constexpr std::int16_t kPushing = 200;  // DAC units: more than what friction ho
 
 void FalconMachine::enter(FalconPhase phase, Time now) noexcept {
   phase_ = phase;
-  entered_ = heard_ = now;
+  times_.entered = times_.heard = now;
   gain_ = 1;
-  ran_ = Time::zero();
+  times_.ran = Time::zero();
   requested_ = false;
   tries_ = 0;
   answered_ = 0;
@@ -89,9 +89,9 @@ void FalconMachine::take(UsbTransport& port, Time now) noexcept {
     const Bytes came(bytes.data(), strip_ftdi_status({packet.data(), size}, bytes));
     if (packets) {
       stream_.push(came, [&](const FalconStatus& status) {
-        if (!status_ || status.encoder != status_->encoder) moved_ = now;
+        if (!status_ || status.encoder != status_->encoder) times_.moved = now;
         status_ = status;
-        heard_ = now;
+        times_.heard = now;
       });
     } else {
       const std::size_t room = std::min(came.size(), answer_.size() - answered_);
@@ -102,7 +102,7 @@ void FalconMachine::take(UsbTransport& port, Time now) noexcept {
 }
 
 void FalconMachine::begin(UsbTransport& port, Time now) noexcept {
-  if (now < retry_at_) return;
+  if (now < times_.retry_at) return;
   if (!port.open(now)) {
     if (port.trouble()[0] != 0) {
       message_ = port.trouble();
@@ -156,7 +156,7 @@ void FalconMachine::probe(UsbTransport& port, Time now) noexcept {
     if (!status_->all_homed()) message_ = kHomeIt;
     return enter(FalconPhase::kUnhomed, now);
   }
-  if (requested_ && now - sent_ < kProbePeriod) return;
+  if (requested_ && now - times_.sent < kProbePeriod) return;
   if (tries_ < kProbes) {
     if (send(port, encode_falcon({}), now)) ++tries_;
     return;
@@ -174,7 +174,7 @@ void FalconMachine::boot(UsbTransport& port, Time now) noexcept {
     ftdi(port, kBaud, kBaud140k);
     return enter(FalconPhase::kHandshake, now);
   }
-  if (requested_ && now - sent_ < kBootPeriod) return;
+  if (requested_ && now - times_.sent < kBootPeriod) return;
   if (tries_ == kBootTries) return boot_mode(port, now);
   answered_ = 0;
   if (send(port, kAreYouThere, now)) ++tries_;
@@ -190,7 +190,7 @@ void FalconMachine::handshake(UsbTransport& port, Time now) noexcept {
     answered_ = 0;
     send(port, kReadyForImage, now);
   }
-  if (now - entered_ > kHandshakePatience) boot_mode(port, now);
+  if (now - times_.entered > kHandshakePatience) boot_mode(port, now);
 }
 
 void FalconMachine::upload(UsbTransport& port, Time now) noexcept {
@@ -208,12 +208,12 @@ void FalconMachine::upload(UsbTransport& port, Time now) noexcept {
     }
     return upload(port, now);
   }
-  if (requested_ && now - sent_ > kEchoPatience) return boot_mode(port, now);
+  if (requested_ && now - times_.sent > kEchoPatience) return boot_mode(port, now);
   if (!requested_) send(port, chunk, now);
 }
 
 void FalconMachine::run(UsbTransport& port, Time now) noexcept {
-  if (now - heard_ > kLongestSilence)
+  if (now - times_.heard > kLongestSilence)
     return give_up(port, now, kSearchAgain, "the Falcon stopped answering; trying again");
   if (!status_) return;
   if (phase_ == FalconPhase::kUnhomed && status_->all_homed()) {
@@ -229,14 +229,14 @@ void FalconMachine::run(UsbTransport& port, Time now) noexcept {
 /// Tells of encoders that stand still under force; where that was asked for, the force fades with them, and
 /// rises again when one moves.
 void FalconMachine::watch_encoders(Time now) noexcept {
-  if (!pushes_) moved_ = now;
-  const double dt = ran_ > Time::zero() ? to_seconds(now - ran_) : 0;
-  ran_ = now;
+  if (!pushes_) times_.moved = now;
+  const double dt = times_.ran > Time::zero() ? to_seconds(now - times_.ran) : 0;
+  times_.ran = now;
   if (frozen_fade_ == Time::zero()) {
-    if (now - moved_ > kUnmoved) message_ = kFrozen;
+    if (now - times_.moved > kUnmoved) message_ = kFrozen;
     return;
   }
-  const bool frozen = now - moved_ > frozen_fade_;
+  const bool frozen = now - times_.moved > frozen_fade_;
   if (frozen) message_ = kFading;
   if (!frozen && message_ == kFading) message_ = kMovesAgain;
   gain_ = std::clamp(gain_ + (frozen ? -dt : dt) / kFadeTime, 0.0, 1.0);
@@ -260,7 +260,7 @@ bool FalconMachine::command(UsbTransport& port, const std::array<std::int16_t, 3
 }
 
 std::optional<FalconStatus> FalconMachine::status(Time now) const noexcept {
-  if (phase_ != FalconPhase::kReady || now - heard_ > kFresh) return {};
+  if (phase_ != FalconPhase::kReady || now - times_.heard > kFresh) return {};
   return status_;
 }
 
@@ -268,8 +268,8 @@ void FalconMachine::lose(UsbTransport& port, Time now) noexcept {
   const char* const why = port.trouble();
   failing_ = false;
   // One that is still there may still push: it is taken up again soon, the first time.
-  const bool soon = why[0] != 0 && (lost_ == Time::zero() || now - lost_ > kLoadAgain);
-  lost_ = now;
+  const bool soon = why[0] != 0 && (times_.lost == Time::zero() || now - times_.lost > kLoadAgain);
+  times_.lost = now;
   give_up(port, now, soon ? kProbePeriod : kSearchAgain, why[0] != 0 ? why : kUnplugged);
 }
 
@@ -278,14 +278,14 @@ void FalconMachine::give_up(UsbTransport& port, Time now, Time wait, const char*
   zero_in_transit_ = false;  // it may not have left
   message_ = message;
   enter(FalconPhase::kClosed, now);
-  retry_at_ = now + wait;
+  times_.retry_at = now + wait;
 }
 
 /// Once requests and bytes before it are through, so that nothing overtakes a change of the line.
 bool FalconMachine::send(UsbTransport& port, std::span<const std::byte> bytes, Time now) noexcept {
   if (port.state() != UsbTransport::State::kIdle || !port.write(bytes)) return false;
   requested_ = true;
-  sent_ = now;
+  times_.sent = now;
   return true;
 }
 

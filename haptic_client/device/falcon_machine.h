@@ -69,7 +69,9 @@ class FalconMachine {
   double gain_ = 1;  // of the torques
   FalconPhase phase_ = FalconPhase::kClosed;
   std::atomic<const char*> message_{"looking for a Falcon"};
-  Time entered_{}, sent_{}, heard_{}, moved_{}, ran_{}, retry_at_{}, lost_{};
+  struct Times {
+    Time entered{}, sent{}, heard{}, moved{}, ran{}, retry_at{}, lost{};
+  } times_;
   bool known_ = false;    // it was there once
   bool failing_ = false;  // it refused its firmware, and was told so
   bool pushes_ = false;   // a torque that a hand feels

@@ -25,10 +25,10 @@ ContactOnPatch::ContactOnPatch(const Accuracy& accuracy)
       without_friction_(kMostNodes, kMostTriangles),
       with_friction_(kMostNodes, kMostTriangles, true),
       slot_of_vertex_(SurfaceModel::kMostVertices, -1),
-      moved_(SurfaceModel::kMostVertices),
-      crept_(SurfaceModel::kMostVertices, Vec3::Zero()),
-      went_(SurfaceModel::kMostVertices, Vec3::Zero()),
-      near_(SurfaceModel::kMostVertices),
+      near_{.is_near = std::vector<char>(SurfaceModel::kMostVertices),
+            .moved = std::vector<Vec3>(SurfaceModel::kMostVertices),
+            .crept = std::vector<Vec3>(SurfaceModel::kMostVertices, Vec3::Zero()),
+            .went = std::vector<Vec3>(SurfaceModel::kMostVertices, Vec3::Zero())},
       u_(3 * (kMostNodes + 1)),
       u_before_(3 * (kMostNodes + 1)) {
   patch_.reserve(kMostNodes, kMostTriangles);
@@ -37,7 +37,7 @@ ContactOnPatch::ContactOnPatch(const Accuracy& accuracy)
   loads_.reserve(kMostNodes);
   stored_loads_.reserve(kMostNodes);
   shapes_.reserve(kMostNodes);
-  far_creep_.reserve(kMostNodes);
+  far_.creep.reserve(kMostNodes);
 }
 
 void ContactOnPatch::separate() noexcept {
@@ -166,12 +166,12 @@ void ContactOnPatch::note_loads(const ContactSolver& solved) noexcept {
 /// How the nodes of the patch went in the last increment, so that the next patch knows; returns that of the
 /// tip.
 Vec3 ContactOnPatch::note_directions(std::size_t vertices) noexcept {
-  std::fill_n(went_.begin(), vertices, Vec3::Zero());
+  std::fill_n(near_.went.begin(), vertices, Vec3::Zero());
   if (motion_.isZero(0)) return Vec3::Zero();
   const auto went = [&](int slot) -> Vec3 {
     return u_.segment<3>(3 * slot) - u_before_.segment<3>(3 * slot);
   };
-  for (int i = 0; i < patch_.nodes(); ++i) went_[vertices_[i]] = went(i);
+  for (int i = 0; i < patch_.nodes(); ++i) near_.went[vertices_[i]] = went(i);
   return went(patch_.nodes());
 }
 
@@ -186,8 +186,8 @@ bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept 
     return false;
   find_far_creep(*surface.model);
   for (int i = 0; i < patch_.nodes(); ++i) {
-    u_.segment<3>(3 * i) = moved_[vertices_[i]];
-    u_before_.segment<3>(3 * i) = moved_[vertices_[i]] - went_[vertices_[i]];
+    u_.segment<3>(3 * i) = near_.moved[vertices_[i]];
+    u_before_.segment<3>(3 * i) = near_.moved[vertices_[i]] - near_.went[vertices_[i]];
   }
   u_.segment<3>(3 * patch_.nodes()) = state_.tip_offset;
   u_before_.segment<3>(3 * patch_.nodes()) = state_.tip_offset - tip_went;
@@ -198,7 +198,7 @@ bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept 
 bool ContactOnPatch::displace_near(const Surface& surface, const Vec3& p) noexcept {
   const SurfaceModel& model = *surface.model;
   const auto rest = model.rest();
-  std::fill_n(near_.begin(), rest.size(), 0);
+  std::fill_n(near_.is_near.begin(), rest.size(), 0);
   int count = 0;
   const auto displace = [&](int vertex) {
     if (++count > kMostNear) return false;
@@ -208,27 +208,27 @@ bool ContactOnPatch::displace_near(const Surface& surface, const Vec3& p) noexce
       if (!c) return false;
       u += *c * load.force;
     }
-    moved_[vertex] = u;
-    crept_[vertex] =
+    near_.moved[vertex] = u;
+    near_.crept[vertex] =
         memory_ != nullptr ? Vec3(memory_->creep(model, vertex) - memory_->crept()) : Vec3(Vec3::Zero());
-    near_[vertex] = 1;
+    near_.is_near[vertex] = 1;
     return true;
   };
   double largest = memory_ != nullptr ? memory_->crept().norm() : 0;
   for (const Load& load : loads_) {
     if (!displace(load.vertex)) return false;
-    largest = std::max(largest, (moved_[load.vertex] + crept_[load.vertex]).norm());
+    largest = std::max(largest, (near_.moved[load.vertex] + near_.crept[load.vertex]).norm());
   }
   const double reach = (1 + 2 * kMargin) * surface.tool.radius + largest;
   const double surely = reach + model.longest_edge();
   for (const auto& t : model.triangles()) {
     if ((rest[t[0]] - p).squaredNorm() > surely * surely) continue;
-    if (near_[t[0]] != 0 && near_[t[1]] != 0 && near_[t[2]] != 0) continue;
+    if (near_.is_near[t[0]] != 0 && near_.is_near[t[1]] != 0 && near_.is_near[t[2]] != 0) continue;
     const auto w = closest_point(p, rest[t[0]], rest[t[1]], rest[t[2]]).weight;
     if ((w[0] * rest[t[0]] + w[1] * rest[t[1]] + w[2] * rest[t[2]] - p).squaredNorm() > reach * reach)
       continue;
     for (const int vertex : t) {
-      if (near_[vertex] == 0 && !displace(vertex)) return false;
+      if (near_.is_near[vertex] == 0 && !displace(vertex)) return false;
     }
   }
   return true;
@@ -239,13 +239,15 @@ bool ContactOnPatch::take_triangles(const Surface& surface, const Vec3& p) noexc
   const auto rest = surface.model->rest();
   const double reach = (1 + kMargin) * surface.tool.radius;
   const Vec3 tip = p + state_.tip_offset;
-  const auto is_placed = [&](int vertex) -> Vec3 { return rest[vertex] + moved_[vertex] + crept_[vertex]; };
+  const auto is_placed = [&](int vertex) -> Vec3 {
+    return rest[vertex] + near_.moved[vertex] + near_.crept[vertex];
+  };
   for (const int vertex : vertices_) slot_of_vertex_[vertex] = -1;
   vertices_.clear();
   patch_.triangles.clear();
   patch_.free.clear();
   for (const auto& t : surface.model->triangles()) {
-    if (near_[t[0]] == 0 || near_[t[1]] == 0 || near_[t[2]] == 0) continue;
+    if (near_.is_near[t[0]] == 0 || near_.is_near[t[1]] == 0 || near_.is_near[t[2]] == 0) continue;
     const Vec3 a = is_placed(t[0]), b = is_placed(t[1]), c = is_placed(t[2]);
     const auto w = closest_point(tip, a, b, c).weight;
     if ((w[0] * a + w[1] * b + w[2] * c - tip).squaredNorm() > reach * reach) continue;
@@ -290,14 +292,14 @@ bool ContactOnPatch::take_shapes(const SurfaceModel& model) noexcept {
 
 /// Where the patch is free of the tool, by the slow modes of now and by what has crept.
 void ContactOnPatch::warp(const SurfaceModel& model) noexcept {
-  if (!memory_->creeping().empty() && ++far_creep_age_ > kFarCreepAge) find_far_creep(model);
+  if (!memory_->creeping().empty() && ++far_.age > kFarCreepAge) find_far_creep(model);
   for (int i = 0; i < patch_.nodes(); ++i)
     patch_.free[i] = model.rest()[vertices_[i]] + memory_->warp(shapes_[i]) + creep_of(i) - memory_->crept();
 }
 
 /// How far a patch node has crept, m.
 Vec3 ContactOnPatch::creep_of(int node) const noexcept {
-  Vec3 sum = far_creep_[node];
+  Vec3 sum = far_.creep[node];
   for (const Load& load : memory_->creeping()) {
     const int slot = slot_of_vertex_[load.vertex];
     if (slot >= 0) sum += patch_.compliance.block<3, 3>(3 * node, 3 * slot) * load.force;
@@ -307,13 +309,13 @@ Vec3 ContactOnPatch::creep_of(int node) const noexcept {
 
 /// Loads beyond the patch only fade: what they do need not be found at each increment.
 void ContactOnPatch::find_far_creep(const SurfaceModel& model) noexcept {
-  far_creep_age_ = 0;
-  far_creep_.assign(vertices_.size(), Vec3::Zero());
+  far_.age = 0;
+  far_.creep.assign(vertices_.size(), Vec3::Zero());
   if (memory_ == nullptr) return;
   for (const Load& load : memory_->creeping()) {
     if (slot_of_vertex_[load.vertex] >= 0) continue;
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      if (const auto c = model.compliance(vertices_[i], load.vertex)) far_creep_[i] += *c * load.force;
+      if (const auto c = model.compliance(vertices_[i], load.vertex)) far_.creep[i] += *c * load.force;
     }
   }
 }

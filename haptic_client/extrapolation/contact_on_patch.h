@@ -84,15 +84,21 @@ class ContactOnPatch {
   std::vector<Vec3> start_;                  // where the patch nodes were when the increment began, m
   const ModalMemory* memory_ = nullptr;      // of this call
   std::vector<ModalMemory::Shapes> shapes_;  // of the patch nodes
-  std::vector<Vec3> far_creep_;  // of the patch nodes, m: by loads beyond the patch that are not forgotten
-  int far_creep_age_ = 0;        // in increments
+  /// Creep by loads beyond the patch that are not forgotten.
+  struct FarCreep {
+    std::vector<Vec3> creep;  // of the patch nodes, m
+    int age = 0;              // in increments
+  } far_;
   std::vector<Load> loads_, stored_loads_;
   std::uint64_t solves_ = 0;
-  double work_remaining_ = 0;   // of this call
-  std::vector<Vec3> moved_;     // displacement of vertices, m; where near_ says so
-  std::vector<Vec3> crept_;     // besides, relative to where `memory_` stands, m; likewise
-  std::vector<Vec3> went_;      // of vertices in the last increment, m; 0 where not known
-  std::vector<char> near_;      // whether a vertex is near enough to be looked at
+  double work_remaining_ = 0;  // of this call
+  /// Vertices of the model near the tool.
+  struct NearVertices {
+    std::vector<char> is_near;  // whether a vertex is near enough to matter
+    std::vector<Vec3> moved;    // displacement, m, where it is near
+    std::vector<Vec3> crept;    // in addition, relative to `memory_`, m; likewise
+    std::vector<Vec3> went;     // in the last increment, m; 0 where not known
+  } near_;
   Eigen::VectorXd u_;           // of the patch nodes, then of the tip
   Eigen::VectorXd u_before_;    // when the last increment began
   Vec3 motion_ = Vec3::Zero();  // the last increment; 0: not known

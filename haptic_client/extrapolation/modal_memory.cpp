@@ -18,8 +18,8 @@ constexpr Time kTrendBase = std::chrono::milliseconds(20);  // and from samples 
 ModalMemory::ModalMemory() = default;
 
 void ModalMemory::restart() noexcept {
-  known_ = standing_ = driven_ = false;
-  others_ = others_before_ = {};
+  known_ = standing_ = others_.driven = false;
+  others_.now = others_.before = {};
   past_.forget();
 }
 
@@ -40,7 +40,7 @@ bool ModalMemory::take_spectrum(const Surface& surface) noexcept {
 }
 
 bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
-  if (!take_spectrum(surface) || !standing_ || foot_version_ != version_) {
+  if (!take_spectrum(surface) || !standing_ || foot_.version != version_) {
     restart();
     return false;
   }
@@ -105,7 +105,7 @@ void ModalMemory::take_series(const protocol::RelaxedState& published) noexcept 
   system_.series = series;
   short_step_.prepare(to_seconds(kStep), system_);
   loads_.begin(time_, system_.relaxations());
-  crept_.setZero();
+  foot_.crept.setZero();
 }
 
 double ModalMemory::Trend::at(std::size_t mode, Time now) const noexcept {
@@ -115,50 +115,50 @@ double ModalMemory::Trend::at(std::size_t mode, Time now) const noexcept {
 /// Loads that would lead the surface farther than any organ goes count as none. What two samples differ by
 /// tells of the trend the less, the nearer they are.
 void ModalMemory::take_loads(const protocol::ModalLoads& published, Time t) noexcept {
-  driven_ = published.count > 0 || driven_;
-  if (!driven_) return;
-  others_before_ = others_;
-  others_ = {.t = t};
+  others_.driven = published.count > 0 || others_.driven;
+  if (!others_.driven) return;
+  others_.before = others_.now;
+  others_.now = {.t = t};
   ModalNumbers led{};
   const std::size_t count = std::min<std::size_t>(published.count, system_.count);
   for (std::size_t k = 0; k < count; ++k) {
-    others_.load[k] = static_cast<double>(published.load[k]);
-    led[k] = others_.load[k] / (system_.w[k] * system_.w[k]);
+    others_.now.load[k] = static_cast<double>(published.load[k]);
+    led[k] = others_.now.load[k] / (system_.w[k] * system_.w[k]);
   }
-  if (!(at(led).norm() <= kMaxSwing)) others_.load = {};
-  const double interval = to_seconds(t - others_before_.t);
+  if (!(at(led).norm() <= kMaxSwing)) others_.now.load = {};
+  const double interval = to_seconds(t - others_.before.t);
   if (!known_ || !(interval > 0 && interval < to_seconds(kTrend))) return;
   double change = 0, size = 0;  // squared
   for (std::size_t k = 0; k < system_.count; ++k) {
-    const double now = others_.load[k], was = others_before_.load[k];
+    const double now = others_.now.load[k], was = others_.before.load[k];
     change += (now - was) * (now - was);
     size += std::max(now * now, was * was);
   }
   if (change > kOther * kOther * size) return;  // one of them has come, or gone
   const double fraction = std::min(1.0, interval / to_seconds(kTrendBase));
   for (std::size_t k = 0; k < system_.count; ++k) {
-    const double rate = (others_.load[k] - others_before_.load[k]) / interval;
-    others_.rate[k] = others_before_.rate[k] + fraction * (rate - others_before_.rate[k]);
+    const double rate = (others_.now.load[k] - others_.before.load[k]) / interval;
+    others_.now.rate[k] = others_.before.rate[k] + fraction * (rate - others_.before.rate[k]);
   }
 }
 
 void ModalMemory::creep_at_foot() noexcept {
-  crept_ = system_.terms > 0 && standing_ && model_ != nullptr ? loads_.creep(*model_, foot_vertex_)
-                                                               : Vec3(Vec3::Zero());
-  if (!(crept_.norm() <= kMaxSwing)) restart();
+  foot_.crept = system_.terms > 0 && standing_ && model_ != nullptr ? loads_.creep(*model_, foot_.vertex)
+                                                                    : Vec3(Vec3::Zero());
+  if (!(foot_.crept.norm() <= kMaxSwing)) restart();
 }
 
 void ModalMemory::begin(Time t, const Vec3& f) noexcept {
   state_ = published_;
   time_ = tick_ = tick_before_ = compared_ = t;
-  bearing_ = foot_;
+  bearing_ = foot_.shapes;
   force_ = force_of(f);
   past_.forget();
   if (system_.terms == 0) return;
   loads_.begin(t, system_.relaxations());
-  const SurfaceLoad load{foot_vertex_, -f};
+  const SurfaceLoad load{foot_.vertex, -f};
   loads_.apply_loads(*model_, {&load, 1}, 1);
-  crept_.setZero();
+  foot_.crept.setZero();
 }
 
 /// What the modes were off by at the tick of the sample goes on by itself, driven by no more than what other
@@ -176,15 +176,15 @@ void ModalMemory::correct(ModalState& before, Time t) noexcept {
       off.z[j][k] = published_.z[j][k] - before.z[j][k];
   }
   add(off, before);
-  if (!driven_) add(free_motion(off, to_seconds(time_ - t), system_), state_);
+  if (!others_.driven) add(free_motion(off, to_seconds(time_ - t), system_), state_);
   Time reached = t;
   const auto publication = [&] {
     ModalNumbers force{};
-    for (std::size_t k = 0; driven_ && k < system_.count; ++k)
-      force[k] = others_.at(k, reached + kStep / 2) - others_before_.at(k, reached + kStep / 2);
+    for (std::size_t k = 0; others_.driven && k < system_.count; ++k)
+      force[k] = others_.now.at(k, reached + kStep / 2) - others_.before.at(k, reached + kStep / 2);
     return force;
   };
-  bool added = !driven_;
+  bool added = !others_.driven;
   past_.for_each_since(t, [&](Time tick, ModalState& then) {
     for (; reached + kStep <= tick; reached += kStep) {
       if (!added && reached + kStep > time_) {
@@ -213,7 +213,7 @@ bool ModalMemory::carry(const SurfaceModel& model, std::span<const SurfaceLoad> 
   for (const SurfaceLoad& load : loads) sum += load.force;
   const double size = sum.squaredNorm();
   if (!(size > 0)) {
-    bearing_ = foot_;
+    bearing_ = foot_.shapes;
     return standing_;
   }
   std::fill_n(bearing_.begin(), system_.count, Vec3::Zero());
@@ -223,7 +223,7 @@ bool ModalMemory::carry(const SurfaceModel& model, std::span<const SurfaceLoad> 
 }
 
 bool ModalMemory::place_near(const SurfaceModel& model, const Vec3& p_rest) noexcept {
-  if (standing_ && foot_version_ == model.generation() && (p_rest - foot_at_).norm() < kSamePlace)
+  if (standing_ && foot_.version == model.generation() && (p_rest - foot_.at).norm() < kSamePlace)
     return true;
   if (!model.has_shape()) return standing_ = false;
   const auto rest = model.rest();
@@ -235,18 +235,18 @@ bool ModalMemory::place_near(const SurfaceModel& model, const Vec3& p_rest) noex
     least = distance;
     nearest = static_cast<int>(v);
   }
-  foot_at_ = p_rest;
-  foot_version_ = model.generation();
-  foot_vertex_ = nearest;
-  std::ranges::fill(foot_, Vec3::Zero());
-  standing_ = nearest >= 0 && model.add_shapes(nearest, 1, foot_);
+  foot_.at = p_rest;
+  foot_.version = model.generation();
+  foot_.vertex = nearest;
+  std::ranges::fill(foot_.shapes, Vec3::Zero());
+  standing_ = nearest >= 0 && model.add_shapes(nearest, 1, foot_.shapes);
   creep_at_foot();
   return standing_;
 }
 
 Vec3 ModalMemory::at(const ModalNumbers& q) const noexcept {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < system_.count; ++k) sum += q[k] * foot_[k];
+  for (std::size_t k = 0; k < system_.count; ++k) sum += q[k] * foot_.shapes[k];
   return sum;
 }
 
@@ -260,7 +260,7 @@ ModalNumbers ModalMemory::force_of(const Vec3& f) const noexcept {
 void ModalMemory::advance(Time t) noexcept {
   if (t - time_ > kOutage) return restart();
   for (; time_ + kStep <= t; time_ += kStep)
-    short_step_.advance(state_, driven_ ? all_forces(time_ + kStep / 2) : force_);
+    short_step_.advance(state_, others_.driven ? all_forces(time_ + kStep / 2) : force_);
   if (system_.terms > 0) {
     loads_.advance(t);
     creep_at_foot();
@@ -273,13 +273,13 @@ void ModalMemory::advance(Time t) noexcept {
 
 /// At a time up to a step after `time_`.
 ModalState ModalMemory::now(Time t) const noexcept {
-  return soon(state_, driven_ ? all_forces(t) : force_, t - time_);
+  return soon(state_, others_.driven ? all_forces(t) : force_, t - time_);
 }
 
 /// Of the tool, and of others.
 ModalNumbers ModalMemory::all_forces(Time t) const noexcept {
   ModalNumbers force = force_;
-  for (std::size_t k = 0; k < system_.count; ++k) force[k] += others_.at(k, t);
+  for (std::size_t k = 0; k < system_.count; ++k) force[k] += others_.now.at(k, t);
   return force;
 }
 

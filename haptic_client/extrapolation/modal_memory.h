@@ -48,9 +48,9 @@ class ModalMemory {
 
   /// Returns the displacement (m) of the surface under the tool by the modes and by creep. It is that at the
   /// tick of `advance`, or at the sample of `take`, whichever came last.
-  Vec3 displacement() const noexcept { return at(present_) + crept_; }
+  Vec3 displacement() const noexcept { return at(present_) + foot_.crept; }
   /// Returns the part of it that is creep, and the loads (N) that would hold all of it on the compliance.
-  const Vec3& crept() const noexcept { return crept_; }
+  const Vec3& crept() const noexcept { return foot_.crept; }
   std::span<const SurfaceLoad> creeping() const noexcept { return loads_.creeping(); }
   /// Returns the creep of a vertex, m.
   Vec3 creep(const SurfaceModel& model, int vertex) const noexcept { return loads_.creep(model, vertex); }
@@ -61,7 +61,7 @@ class ModalMemory {
   /// the present modes.
   Vec3 warp(const Shapes& shapes) const noexcept {
     Vec3 sum = Vec3::Zero();
-    for (std::size_t k = 0; k < system_.count; ++k) sum += present_[k] * (shapes[k] - foot_[k]);
+    for (std::size_t k = 0; k < system_.count; ++k) sum += present_[k] * (shapes[k] - foot_.shapes[k]);
     return sum;
   }
 
@@ -81,16 +81,21 @@ class ModalMemory {
   void creep_at_foot() noexcept;
 
   bool known_ = false, standing_ = false;
-  std::uint64_t version_ = 0, foot_version_ = 0;  // of the surface model that spectrum and foot are of
+  std::uint64_t version_ = 0;  // of the surface model that the spectrum is of
   ModalSystem system_;
   ModalSteps short_step_;
   std::size_t first_published_ = 0, end_published_ = 0;  // of the modes whose z the newest sample tells of
   RelaxingLoads loads_;
   const SurfaceModel* model_ = nullptr;  // of the newest sample
-  int foot_vertex_ = 0;
-  Vec3 crept_ = Vec3::Zero();  // where it stands, m
-  Shapes foot_{}, bearing_{};
-  Vec3 foot_at_ = Vec3::Zero();   // m, of `place_near`
+  /// The vertex of the surface under the tool.
+  struct Foot {
+    std::uint64_t version = 0;  // of the surface model
+    int vertex = 0;
+    Vec3 crept = Vec3::Zero();  // its creep, m
+    Shapes shapes{};
+    Vec3 at = Vec3::Zero();  // m, of `place_near`
+  } foot_;
+  Shapes bearing_{};
   ModalState state_, published_;  // at `time_`; of the newest sample
   ModalNumbers force_{};          // of the tool, held from the last tick on, N/sqrt(kg)
   /// Load of other tools on the modes: a line in time from the sample at `t` on.
@@ -98,8 +103,11 @@ class ModalMemory {
     Time t{};
     ModalNumbers load{}, rate{};  // N/sqrt(kg), and a second
     double at(std::size_t mode, Time now) const noexcept;
-  } others_, others_before_;
-  bool driven_ = false;  // whether there are others
+  };
+  struct Others {
+    Trend now, before;
+    bool driven = false;  // whether there are others
+  } others_;
   Time time_{}, tick_{}, tick_before_{}, compared_{};
   ModalNumbers present_{};
   Vec3 drift_ = Vec3::Zero();

@@ -96,10 +96,10 @@ void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline
   next_.ticks = result.tool.tick;
   next_.missed = missed;
   next_.passivity_gain = static_cast<float>(std::clamp(pipeline.passivity().gain(), 0.0, 1.0));
-  next_.faded = in_32_bits(pipeline.watchdog().ramped());
-  next_.clamped = in_32_bits(pipeline.limiter().counts().clamped);
-  next_.slewed = in_32_bits(pipeline.limiter().counts().slewed);
-  next_.damped = in_32_bits(pipeline.passivity().counts().damped);
+  next_.interventions.faded = in_32_bits(pipeline.watchdog().ramped());
+  next_.interventions.clamped = in_32_bits(pipeline.limiter().counts().clamped);
+  next_.interventions.slewed = in_32_bits(pipeline.limiter().counts().slewed);
+  next_.interventions.damped = in_32_bits(pipeline.passivity().counts().damped);
   next_.rendered_law = {};
   append(next_.rendered_law, law_);
   if (const std::string_view other = pipeline.substitute(); !other.empty())

@@ -77,10 +77,10 @@ void ToolEvents::take(const protocol::Telemetry& published, Time now, Time began
 void ToolEvents::note_interventions(const protocol::Telemetry& published) {
   using Name = SeenClient::Name;
   client_.interventions = 0;
-  for (const auto& [name, count] : {std::pair{Name{"faded"}, std::uint64_t{published.faded}},
-                                    {Name{"clamped"}, std::uint64_t{published.clamped}},
-                                    {Name{"slewed"}, std::uint64_t{published.slewed}},
-                                    {Name{"damped"}, std::uint64_t{published.damped}}}) {
+  for (const auto& [name, count] : {std::pair{Name{"faded"}, std::uint64_t{published.interventions.faded}},
+                                    {Name{"clamped"}, std::uint64_t{published.interventions.clamped}},
+                                    {Name{"slewed"}, std::uint64_t{published.interventions.slewed}},
+                                    {Name{"damped"}, std::uint64_t{published.interventions.damped}}}) {
     client_.intervention_names[client_.interventions] = name;
     client_.intervention_counts[client_.interventions++] = count;
   }

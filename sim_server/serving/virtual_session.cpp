@@ -45,7 +45,10 @@ VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajector
       capture_(capture),
       server_(link.rate_hz, {tool_radius}),
       session_(session_number(motions[link.tool], link)),
-      near_(served_.pager(link.tool)->state().vertices) {}
+      client_pages_{.surface = 0,
+                    .near = protocol::NearTiles(served_.pager(link.tool)->state().vertices),
+                    .sent = {},
+                    .has = {}} {}
 
 Time VirtualSession::time_of(std::uint64_t k) const {
   return from_seconds(static_cast<double>(k) / link_.ticks_hz);
@@ -63,7 +66,7 @@ void VirtualSession::tick(std::uint64_t k) {
     state.flags |= ToolState::kRequestsTangent | ToolState::kRequestsAhead | ToolState::kRequestsSurface |
                    ToolState::kRequestsErrors;
     state.pages_taken = pages_;
-    state.lead_ns = (took_ + link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
+    state.lead_ns = (lateness_.took + link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
   }
   note_paths(state);
   step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
@@ -86,18 +89,18 @@ bool VirtualSession::is_due(double steps_due) const {
 }
 
 Time VirtualSession::deadline() const {
-  return put_off_to_ + from_seconds(static_cast<double>(steps_since_) / link_.rate_hz);
+  return lateness_.put_off_to + from_seconds(static_cast<double>(lateness_.steps_since) / link_.rate_hz);
 }
 
 /// The deadline moves on by a period, or to the end of a step that took longer. When the step is done.
 Time VirtualSession::pass(Time begun, Time took) {
   const Time done = begun + took;
-  took_ = took;
-  ++steps_since_;
+  lateness_.took = took;
+  ++lateness_.steps_since;
   if (done > deadline()) {
     stats_.late += static_cast<std::uint64_t>(to_seconds(done - deadline()) * link_.rate_hz) + 1;
-    put_off_to_ = done;
-    steps_since_ = 0;
+    lateness_.put_off_to = done;
+    lateness_.steps_since = 0;
   }
   return done;
 }
@@ -167,13 +170,13 @@ void VirtualSession::keep_session(Time t) {
 void VirtualSession::send_shape(Time t) {
   const SurfacePager& pager = *served_.pager(link_.tool);
   const SurfacePages pages = pager.pages();
-  surface_ = pager.state().version;
+  client_pages_.surface = pager.state().version;
   for (std::uint32_t page = 0; page < pages.first_tile(); ++page) send_page(page, t);
   if (pages.modes > 0) send_page(pages.spectrum(), t);
-  near_ = NearTiles(pager.state().vertices);
-  near_.take(pager.rest());
-  has_.assign(pages.count() - pages.first_tile(), 0);
-  sent_.clear();
+  client_pages_.near = NearTiles(pager.state().vertices);
+  client_pages_.near.take(pager.rest());
+  client_pages_.has.assign(pages.count() - pages.first_tile(), 0);
+  client_pages_.sent.clear();
 }
 
 /// What the client lacks of it by now, around where the tool is, in the frame of the organ at rest. Of one
@@ -181,12 +184,12 @@ void VirtualSession::send_shape(Time t) {
 void VirtualSession::send_surface(const ForceSample& sample, Time t) {
   const SurfacePager& pager = *served_.pager(link_.tool);
   if (sample.surface.version != pager.state().version) return;
-  if (sample.surface.version != surface_) send_shape(t);
+  if (sample.surface.version != client_pages_.surface) send_shape(t);
   const SurfacePages pages = pager.pages();
   const double reach = NearTiles::reach(sample.surface.tool_radius, newest_v_W_.norm());
-  near_.search(newest_p_W_ - sample.surface.shift_W);
-  if (near_.distance() > reach && sample.f_W.isZero(0)) return;
-  near_.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
+  client_pages_.near.search(newest_p_W_ - sample.surface.shift_W);
+  if (client_pages_.near.distance() > reach && sample.f_W.isZero(0)) return;
+  client_pages_.near.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
     pages.for_clusters(a, b, [&](std::uint32_t page) { keep_page(page, pages.first_tile(), t); });
     return true;
   });
@@ -195,13 +198,13 @@ void VirtualSession::send_surface(const ForceSample& sample, Time t) {
 /// Sends a page that the client no longer has, which then forgets its oldest.
 void VirtualSession::keep_page(std::uint32_t page, std::uint32_t first_tile, Time t) {
   const std::uint32_t tile = page - first_tile;
-  if (has_[tile] != 0 || !send_page(page, t)) return;
-  if (sent_.size() == NearTiles::kStored) {
-    has_[sent_.front()] = 0;
-    sent_.pop_front();
+  if (client_pages_.has[tile] != 0 || !send_page(page, t)) return;
+  if (client_pages_.sent.size() == NearTiles::kStored) {
+    client_pages_.has[client_pages_.sent.front()] = 0;
+    client_pages_.sent.pop_front();
   }
-  has_[tile] = 1;
-  sent_.push_back(tile);
+  client_pages_.has[tile] = 1;
+  client_pages_.sent.push_back(tile);
 }
 
 /// Whether there is one by now. A client that asks in vain learns nothing, so it need not be in a capture.

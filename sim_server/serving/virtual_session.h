@@ -95,14 +95,19 @@ class VirtualSession {
   protocol::ClientSession client_{protocol::Nonce{1}};
   protocol::LinkStats server_stats_, client_stats_;
   std::deque<InTransit> in_transit_;
-  std::uint32_t surface_ = 0;  // version of the one whose pages were sent
-  protocol::NearTiles near_;
-  std::deque<std::uint32_t> sent_;  // pages of tiles and shapes that the client still has, the oldest first
-  std::vector<char> has_;           // by page from the first tile on: whether it is among them
+  /// Pages of the surface that the client has.
+  struct Pages {
+    std::uint32_t surface = 0;  // version of the one whose pages were sent
+    protocol::NearTiles near;
+    std::deque<std::uint32_t> sent;  // of tiles and shapes, the oldest first
+    std::vector<char> has;           // by page from the first tile on: whether it is among them
+  } client_pages_;
   std::uint64_t steps_ = 0, newest_ = 0, pages_ = 0;
-  // Where steps take time: when one began that was put off, how many came since, and what the last one took.
-  Time put_off_to_{}, took_{};
-  std::uint64_t steps_since_ = 0;
+  /// Where steps take time.
+  struct Lateness {
+    Time put_off_to{}, took{};      // when a late step began; what the last one took
+    std::uint64_t steps_since = 0;  // the late one
+  } lateness_;
   Time now_{}, answered_{};  // of the newest tool state, and of the newest that a step answered
   Vec3 newest_p_W_ = Vec3::Zero(), newest_v_W_ = Vec3::Zero();
   VirtualSessionStats stats_;

@@ -22,16 +22,16 @@ std::optional<PageLink::Kind> PageLink::next(const Showing& showing, Time now, B
   }
   if (const auto kind = begin(showing, out)) return kind;
   if (!showing.live) return {};
-  if (now - state_at_ >= kStateEach || (state_ != showing.pictures && may_follow(now - state_at_))) {
-    state_ = showing.pictures;
+  if (now - state_at_ >= kStateEach || (received_.state != showing.pictures && may_follow(now - state_at_))) {
+    received_.state = showing.pictures;
     state_at_ = now;
     return put_text(state_text(*showing.picture, showing.peers, showing.rates, showing.paused), out);
   }
   if (next_surface(showing, now, out) || next_sample(showing, out)) return Kind::kBinary;
   Kind kind = Kind::kBinary;
   if (next_of_client(showing, out, kind)) return kind;
-  if (requests_field_ && field_ != showing.fields && !showing.field.empty()) {
-    field_ = showing.fields;
+  if (requests_field_ && received_.field != showing.fields && !showing.field.empty()) {
+    received_.field = showing.fields;
     write_field(showing.version, showing.field, out);
     return Kind::kBinary;
   }
@@ -45,30 +45,30 @@ std::optional<PageLink::Kind> PageLink::begin(const Showing& showing, Bytes& out
     return put_text(scene_text(*showing.scene, may_control_), out);
   }
   if (!showing.live || showing.positions.empty()) return {};
-  if (version_ == 0) {
-    version_ = Showing::kCompleteSurface;
-    surface_ = state_ = 0;
-    has_.clear();
-    write_topology(showing.scene->organ, showing.box, version_, out);
+  if (received_.version == 0) {
+    received_.version = Showing::kCompleteSurface;
+    received_.surface = received_.state = 0;
+    received_.positions.clear();
+    write_topology(showing.scene->organ, showing.box, received_.version, out);
     return Kind::kBinary;
   }
-  if (version_ == showing.version && !complete_triangles_) return {};
-  if (version_ == Showing::kCompleteSurface) has_triangles_ = showing.scene->organ.triangles;
-  version_ = showing.version;
-  write_triangles(version_, showing.triangles, has_triangles_, std::exchange(complete_triangles_, false),
-                  out);
+  if (received_.version == showing.version && !complete_triangles_) return {};
+  if (received_.version == Showing::kCompleteSurface) received_.triangles = showing.scene->organ.triangles;
+  received_.version = showing.version;
+  write_triangles(received_.version, showing.triangles, received_.triangles,
+                  std::exchange(complete_triangles_, false), out);
   return Kind::kBinary;
 }
 
 bool PageLink::next_surface(const Showing& showing, Time now, Bytes& out) {
-  if (surface_ == showing.pictures || !may_follow(now - surface_at_) || showing.positions.empty())
+  if (received_.surface == showing.pictures || !may_follow(now - surface_at_) || showing.positions.empty())
     return false;
-  const bool complete = has_.empty();
-  if (complete) has_.resize(showing.positions.size());
+  const bool complete = received_.positions.empty();
+  if (complete) received_.positions.resize(showing.positions.size());
   const Picture& picture = *showing.picture;
   write_surface({showing.version, static_cast<std::uint32_t>(picture.step), picture.t}, showing.positions,
-                has_, complete, out);
-  surface_ = showing.pictures;
+                received_.positions, complete, out);
+  received_.surface = showing.pictures;
   surface_at_ = now;
   // The same step may be shown again, as when a page opens while paused: it is told of once.
   const auto step = static_cast<std::uint32_t>(picture.step);
@@ -101,8 +101,8 @@ std::vector<PagePointer> PageLink::released() const {
 bool PageLink::next_sample(const Showing& showing, Bytes& out) {
   for (std::size_t i = 0; i < showing.scene->tools.size(); ++i) {
     const SeenTool::Sample& sample = showing.picture->tools[i].sample;
-    if (sample.number == 0 || sample.number == samples_[i]) continue;
-    samples_[i] = sample.number;
+    if (sample.number == 0 || sample.number == received_.samples[i]) continue;
+    received_.samples[i] = sample.number;
     write_sample(static_cast<std::uint8_t>(i), sample, out);
     return true;
   }
@@ -111,16 +111,17 @@ bool PageLink::next_sample(const Showing& showing, Bytes& out) {
 
 bool PageLink::next_of_client(const Showing& showing, Bytes& out, Kind& kind) {
   for (std::size_t i = 0; i < showing.clients.size(); ++i) {
-    if (showing.client_events[i] == clients_[i] || !showing.peers[i].held) continue;
-    clients_[i] = showing.client_events[i];
+    if (showing.client_events[i] == received_.clients[i] || !showing.peers[i].held) continue;
+    received_.clients[i] = showing.client_events[i];
     kind = put_text(client_text(showing.clients[i]), out);
     return true;
   }
-  if (ticks_ == showing.ticks_so_far) return false;
-  ticks_ = std::max(
-      ticks_, showing.ticks_so_far - std::min<std::uint64_t>(showing.ticks_so_far, Showing::kTicksStored));
-  write_ticks(showing.ticks[ticks_ % Showing::kTicksStored], out);
-  ++ticks_;
+  if (received_.ticks == showing.ticks_so_far) return false;
+  received_.ticks =
+      std::max(received_.ticks,
+               showing.ticks_so_far - std::min<std::uint64_t>(showing.ticks_so_far, Showing::kTicksStored));
+  write_ticks(showing.ticks[received_.ticks % Showing::kTicksStored], out);
+  ++received_.ticks;
   kind = Kind::kBinary;
   return true;
 }

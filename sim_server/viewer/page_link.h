@@ -57,8 +57,8 @@ class PageLink {
   std::vector<PagePointer> released() const;
   /// The next surface is a whole one, and so are the triangles before it, where some have been removed.
   void forget_surface() noexcept {
-    has_.clear();
-    complete_triangles_ = version_ > Showing::kCompleteSurface;
+    received_.positions.clear();
+    complete_triangles_ = received_.version > Showing::kCompleteSurface;
   }
   /// The newest reason is told.
   void refuse(std::string why) { refused_ = std::move(why); }
@@ -83,12 +83,15 @@ class PageLink {
   Time opened_, state_at_{}, surface_at_{};
   protocol::TokenBucket messages_;
   bool greeted_ = false, may_control_ = false, requests_field_ = false, knows_scene_ = false;
-  std::uint32_t version_ = 0;                                      // of the topology that it has; 0: none
-  std::uint64_t surface_ = 0, state_ = 0, field_ = 0, ticks_ = 0;  // the newest that it has got
-  std::vector<std::uint16_t> has_;                                 // (3 n)
-  std::vector<Triangle> has_triangles_;                            // where the organ is cut
-  bool complete_triangles_ = false;                                // to be sent again
-  std::array<std::uint64_t, kMaxTools> samples_{}, clients_{};
+  /// The newest that the page has received.
+  struct Received {
+    std::uint32_t version = 0;  // of the topology; 0: none
+    std::uint64_t surface = 0, state = 0, field = 0, ticks = 0;
+    std::vector<std::uint16_t> positions;  // (3 n)
+    std::vector<Triangle> triangles;       // where the organ is cut
+    std::array<std::uint64_t, kMaxTools> samples{}, clients{};
+  } received_;
+  bool complete_triangles_ = false;  // to be sent again
   std::string refused_;
   bool tells_ = false;                     // what it drew
   std::vector<std::uint32_t> in_transit_;  // steps of surfaces, the oldest first

@@ -91,7 +91,7 @@ inline std::vector<Message> one_of_each() {
   telemetry.ticks = 9;
   telemetry.missed = 2;
   telemetry.passivity_gain = 0.5F;
-  telemetry.faded = 1, telemetry.clamped = 2, telemetry.slewed = 3, telemetry.damped = 4;
+  telemetry.interventions = {.faded = 1, .clamped = 2, .slewed = 3, .damped = 4};
   telemetry.device = {'m', 'e'};
   telemetry.rendered_law = {'a', ':', ' ', 'b'};
   telemetry.named = 1;
