@@ -176,7 +176,7 @@ TEST_CASE("an interface belongs to one program at a time, two devices to two") {
   CHECK(contains(smoke(emulator, {"timeouts"}), "timeout"));
 }
 
-TEST_CASE("on the wall clock: the same session, at the pace of the hardware") {
+TEST_CASE("on the wall clock: the same session, at the pace of the hardware", "[in_time]") {
   const Emulator emulator({"falcon:2-1"}, {"--clock", "wall"});
   const auto client = emulator.start("usb_smoke", {"falcon", "300"});
   CHECK(client->wait_for("loaded 8192"));

@@ -28,7 +28,7 @@ struct Bench {
                  "5 4 2 0 0 2 4 5 7\n$EndElements\n");
     scene = folder
                 .write("wall.toml",
-                       "rate_hz = 0\n[mesh]\nfile = \"wall.msh\"\n[deformation]\nmodel = "
+                       "rate_hz = 1000\n[mesh]\nfile = \"wall.msh\"\n[deformation]\nmodel = "
                        "\"rigid\"\nstiffness = 800\n"
                        "[[tool]]\nradius = 0.005\n")
                 .string();

@@ -54,7 +54,7 @@ TEST_CASE("calibrate: from homing to the line for the client file, no force befo
   CHECK(state["opens"] == 1);  // the guardian had nothing to do
 }
 
-TEST_CASE("calibrate: Ctrl-C with the weight on it: zero force, one line, no result", "[beside]") {
+TEST_CASE("calibrate: Ctrl-C with the weight on it: zero force, one line, no result") {
   for (const int signal : {SIGINT, SIGTERM}) {
     Calibrating table;
     table.hang();
@@ -95,7 +95,7 @@ TEST_CASE("calibrate: wrong use is one clear line") {
   CHECK(output_of("haptic_client", {"calibrate", "--help"}, 0).find("Example: ") != std::string::npos);
 }
 
-TEST_CASE("calibrate: where no Falcon is plugged in, one line says so, and what else there is", "[beside]") {
+TEST_CASE("calibrate: where no Falcon is plugged in, one line says so, and what else there is") {
   Emulator falcon{{"falcon:2-1"}, {"--loaded"}};
   const auto client = falcon.start("haptic_client", {"calibrate", "falcon:3-7", "--mass", "0.2"});
   CHECK(client->wait(12) == 1);

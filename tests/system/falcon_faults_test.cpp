@@ -20,8 +20,7 @@ TEST_CASE(
   check_lines(session.said(), {"loading the Falcon's firmware", "pull the grip", "homed: ready"});
 }
 
-TEST_CASE("Falcon faults: an image that is too short or too long is refused, half of one is told of once",
-          "[beside]") {
+TEST_CASE("Falcon faults: an image that is too short or too long is refused, half of one is told of once") {
   Session session({}, {"permission"});  // so that the first client keeps off
   const auto image = [&](std::size_t size) {
     return session.bench.folder.write("other.bin", std::string(size, 'x')).string();
@@ -57,7 +56,8 @@ TEST_CASE("Falcon faults: a control request stalls: told as such, and not as unp
                                "pull the grip"});
 }
 
-TEST_CASE("Falcon faults: split, joined, flooded and spoilt replies: nothing lost, never more force") {
+TEST_CASE("Falcon faults: split, joined, flooded and spoilt replies: nothing lost, never more force",
+          "[in_time]") {
   Session session(kHomedAlready);
   REQUIRE(session.client->wait_for("Falcon homed: ready"));
   REQUIRE(session.press());
@@ -174,7 +174,8 @@ TEST_CASE(
   check_soft_starts(session.trace, 1, 2);
 }
 
-TEST_CASE("Falcon faults: a round trip of 20 ms all at once, and back: no storm, no latch, the ticks go on") {
+TEST_CASE("Falcon faults: a round trip of 20 ms all at once, and back: no storm, no latch, the ticks go on",
+          "[in_time]") {
   Session session(kHomedAlready);
   REQUIRE(session.client->wait_for("Falcon homed: ready"));
   REQUIRE(session.press());
@@ -190,7 +191,8 @@ TEST_CASE("Falcon faults: a round trip of 20 ms all at once, and back: no storm,
   check_lines(session.said(), {"homed: ready"});
 }
 
-TEST_CASE("Falcon faults: packets stop for a moment: no force without a place, nothing said, then softly") {
+TEST_CASE("Falcon faults: packets stop for a moment: no force without a place, nothing said, then softly",
+          "[in_time]") {
   Session session(kHomedAlready);
   REQUIRE(session.client->wait_for("Falcon homed: ready"));
   REQUIRE(session.press());
@@ -221,7 +223,7 @@ TEST_CASE(
               {"homed: ready", "stopped answering", "loading the Falcon's firmware", "pull the grip"});
 }
 
-TEST_CASE("Falcon faults: its IN transfers hang: zero at once, and back without a new homing") {
+TEST_CASE("Falcon faults: its IN transfers hang: zero at once, and back without a new homing", "[in_time]") {
   Session session(kHomedAlready);
   REQUIRE(session.client->wait_for("Falcon homed: ready"));
   REQUIRE(session.press());

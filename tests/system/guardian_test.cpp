@@ -94,7 +94,7 @@ TEST_CASE("guardian: a client that was stopped is ended, and its device switched
   CHECK(hand.client->wait() == -SIGKILL);
 }
 
-TEST_CASE("guardian: a device that is gone does not keep the other waiting") {
+TEST_CASE("guardian: a device that is gone does not keep the other waiting", "[in_time]") {
   const Bench bench;
   Wall wall(bench.folder.write("two.toml", bytes_of(bench.scene) + "[[tool]]\nradius = 0.005\n").string());
   Emulator falcons({"falcon:2-1", "falcon:3-2"}, {"--loaded", "--homed"});
@@ -128,7 +128,7 @@ TEST_CASE("guardian: each device that does not take its last zero is looked afte
                                 " could not be taken over") != std::string::npos);
 }
 
-TEST_CASE("guardian: without a port, a Falcon that another program holds keeps nobody waiting") {
+TEST_CASE("guardian: without a port, a Falcon that another program holds keeps nobody waiting", "[in_time]") {
   const Bench bench;
   Wall wall(bench);
   Emulator falcons({"falcon:2-1", "falcon:3-2"}, {"--loaded", "--homed"});
@@ -142,7 +142,7 @@ TEST_CASE("guardian: without a port, a Falcon that another program holds keeps n
   CHECK(goes_silent(falcons, "3-2", 0.8));
 }
 
-TEST_CASE("Ctrl-C: the force is off before anything is reported") {
+TEST_CASE("Ctrl-C: the force is off before anything is reported", "[in_time]") {
   Leaning hand("falcon:2-1");
   hand.client->signal(SIGINT);
   CHECK(goes_silent(hand.falcon, "2-1", 0.5));

@@ -35,7 +35,8 @@ struct KeyBench {
 }  // namespace
 
 #ifdef PALPATE_WITH_CAPTURE
-TEST_CASE("keys: with the same key a session is as ever, and every datagram of the capture has a tag of it") {
+TEST_CASE("keys: with the same key a session is as ever, and every datagram of the capture has a tag of it",
+          "[in_time]") {
   const KeyBench bench;
   const std::string capture = (bench.folder.path() / "F.pcap").string();
   Server server(bench.with_key());
@@ -61,8 +62,7 @@ TEST_CASE("keys: with the same key a session is as ever, and every datagram of t
 }
 #endif
 
-TEST_CASE("keys: another key, none, or one where the server has none: exit 1, and what to look at",
-          "[beside]") {
+TEST_CASE("keys: another key, none, or one where the server has none: exit 1, and what to look at") {
   const KeyBench bench, other;
   Server keyed(bench.with_key());
   for (const auto& more : {std::vector<std::string>{"--key", other.key}, std::vector<std::string>{}})
@@ -144,7 +144,8 @@ std::size_t state(std::uint64_t k, std::span<std::byte> out) {
 }  // namespace
 
 TEST_CASE(
-    "keys: an established session keeps its rate under floods, and a client that joins under one gets in") {
+    "keys: an established session keeps its rate under floods, and a client that joins under one gets in",
+    "[in_time]") {
   const KeyBench bench;
   for (const bool keyed : {false, true}) {
     const auto more = [&](std::vector<std::string> all) { return keyed ? bench.with_key(all) : all; };
@@ -175,7 +176,8 @@ TEST_CASE(
 }
 #endif
 
-TEST_CASE("commtest: a good link on loopback passes, nobody there is exit 1, wrong use is exit 2") {
+TEST_CASE("commtest: a good link on loopback passes, nobody there is exit 1, wrong use is exit 2",
+          "[in_time]") {
   const TemporaryFolder folder;
   const std::string json = (folder.path() / "link.json").string();
   Server server;
@@ -231,7 +233,8 @@ TEST_CASE(
   CHECK(std::get<Refuse>(answers[0].message).reason == RefuseReason::kVersion);
 }
 
-TEST_CASE("pages: what one ask names several times is sent once, and asks without end get a budget of them") {
+TEST_CASE("pages: what one ask names several times is sent once, and asks without end get a budget of them",
+          "[in_time]") {
   Server server;
   UdpSocket socket(resolve("127.0.0.1:0", "test"));
   const Endpoint to = resolve(server.address, "test");

@@ -28,7 +28,8 @@ struct Recorded {
 
 }  // namespace
 
-TEST_CASE("replay --live: the captured tool presses the live organ as it pressed the recorded one") {
+TEST_CASE("replay --live: the captured tool presses the live organ as it pressed the recorded one",
+          "[in_time]") {
   const Recorded recorded;
   Server server({"--report", recorded.path("server.json")});
   output_of("haptic_client",
@@ -48,7 +49,8 @@ TEST_CASE("replay --live: the captured tool presses the live organ as it pressed
 
 TEST_CASE(
     "replay --serve: a live client feels the captured forces in their own time, and the player ends with "
-    "them") {
+    "them",
+    "[in_time]") {
   const Recorded recorded;
   Process player("sim_server", {"replay", "--serve", recorded.file, "--listen", "127.0.0.1:0"});
   REQUIRE(player.wait_for("listening on "));

@@ -100,7 +100,8 @@ TEST_CASE("a session: force in contact, zero out of it, nothing above the clamp,
 
 TEST_CASE(
     "the server is killed and started again: force to zero within 400 ms, said once, back by itself and "
-    "softly") {
+    "softly",
+    "[in_time]") {
   const TemporaryFolder folder;
   const std::string trace = (folder.path() / "trace.csv").string(),
                     report = (folder.path() / "report.json").string();
@@ -155,7 +156,8 @@ TEST_CASE(
   CHECK(read_json(report)["tools"][0]["safety"]["ramped"] == 1);
 }
 
-TEST_CASE("the client is killed: the server drops its tool within a second and takes the next client") {
+TEST_CASE("the client is killed: the server drops its tool within a second and takes the next client",
+          "[in_time]") {
   Server server;
   Process first("haptic_client", client_arguments(server.address, {}));
   REQUIRE(server.process.wait_for("a client took the tool"));
@@ -193,7 +195,7 @@ TEST_CASE("Ctrl-C on either side leaves cleanly with its report") {
   CHECK(read_json(theirs).contains("state_hash"));
 }
 
-TEST_CASE("Ctrl-C while waiting for a server ends the client, exit 0, with its report") {
+TEST_CASE("Ctrl-C while waiting for a server ends the client, exit 0, with its report", "[in_time]") {
   const TemporaryFolder folder;
   const std::string report = (folder.path() / "report.json").string();
   Process client("haptic_client", client_arguments("127.0.0.1:9", {"--report", report}));
@@ -205,7 +207,7 @@ TEST_CASE("Ctrl-C while waiting for a server ends the client, exit 0, with its r
   CHECK(client.output().find("largest force") == std::string::npos);
 }
 
-TEST_CASE("no server: exit 1 after 5 s with what to look at, port in use: exit 1", "[beside]") {
+TEST_CASE("no server: exit 1 after 5 s with what to look at, port in use: exit 1") {
   CHECK(output_of("haptic_client", client_arguments("127.0.0.1:9", {}), 1)
             .find("no answer from a server at 127.0.0.1:9") != std::string::npos);
   // The limited broadcast: the system refuses to send there.

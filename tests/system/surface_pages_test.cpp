@@ -74,8 +74,8 @@ TEST_CASE("pages of a surface are those asked for, of the version that the serve
   CHECK(asker.came == std::set<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7});
 }
 
-TEST_CASE(
-    "a session on a liver that tells its surface: its pages come, and the law solves contact with them") {
+TEST_CASE("a session on a liver that tells its surface: its pages come, and the law solves contact with them",
+          "[in_time]") {
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "report.json").string();
   Server server;

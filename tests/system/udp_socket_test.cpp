@@ -91,7 +91,7 @@ TEST_CASE("an address that is ours no more does not keep a datagram from leaving
   CHECK(!socket.send(bytes, echo.socket.local(), removed));
 }
 
-TEST_CASE("a datagram arrived when the kernel had it, however late it is read") {
+TEST_CASE("a datagram arrived when the kernel had it, however late it is read", "[in_time]") {
   Echo echo("127.0.0.1:0");
   const auto answer = ask(echo.socket.local(), std::chrono::milliseconds(60));
   REQUIRE(answer);

@@ -30,7 +30,7 @@ TEST_CASE("viewer: a name that is not ours is shown nothing") {
   CHECK(WebPage(server.page).open());
 }
 
-TEST_CASE("viewer: a page that breaks the rules is closed, and no other", "[beside]") {
+TEST_CASE("viewer: a page that breaks the rules is closed, and no other") {
   Watched server;
   WebPage good(server.page);
   good.hello();
@@ -107,7 +107,7 @@ TEST_CASE("viewer: sixteen pages may look on, and the seventeenth when one has g
   for (WebPage& page : pages) CHECK(page.next_text("state").is_object());
 }
 
-TEST_CASE("viewer: connections that say nothing do not keep a page out for long", "[beside]") {
+TEST_CASE("viewer: connections that say nothing do not keep a page out for long") {
   const Watched server;
   std::list<TcpEnd> silent;
   for (int k = 0; k < 60; ++k) silent.emplace_back(server.page.port);
