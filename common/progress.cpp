@@ -13,6 +13,7 @@ namespace palpate {
 namespace {
 
 using namespace std::chrono_literals;
+// Before the first estimate; between two lines on a terminal; in a file.
 constexpr Time kFirstEstimate = 2s, kTerminalPeriod = 1s, kLinePeriod = 10s;
 
 }  // namespace

@@ -28,7 +28,7 @@ void make_ordinary(const char* name) {
 }
 
 void make_background(const char* name) {
-  constexpr int kNice = 10;
+  constexpr int kNice = 10;  // behind any thread that steps or renders
   make_ordinary(name);
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);  // of this thread alone, on Linux
 }

@@ -24,7 +24,7 @@ namespace {
 
 /// What a path leads to, also where the last link dangles.
 fs::path without_links(fs::path file) {
-  constexpr int kMostLinks = 40;
+  constexpr int kMostLinks = 40;  // as Linux follows at most (ELOOP)
   std::error_code failed;
   for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(file, failed)); ++i)
     file = file.parent_path() / fs::read_symlink(file, failed);

@@ -40,7 +40,7 @@ std::string suggestion(std::string_view name, std::span<const std::string> candi
 
 void fail_unknown_name(std::string_view name, std::string_view what, std::string_view where,
                        std::span<const std::string> known) {
-  constexpr std::size_t kFew = 8;
+  constexpr std::size_t kFew = 8;  // names that fit in a line
   std::string also = suggestion(name, known);
   if (also.ends_with('?') && known.size() <= kFew) also += fmt::format(" known: {}", fmt::join(known, ", "));
   fail("{}: unknown {} \"{}\"{}", where, what, name, also);

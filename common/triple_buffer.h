@@ -29,7 +29,7 @@ class TripleBuffer {
   const T& front() const noexcept { return slots_[front_]; }
 
  private:
-  static constexpr std::uint32_t kFresh = 4, kIndex = 3;
+  static constexpr std::uint32_t kFresh = 4, kIndex = 3;  // a bit beside the index, and the mask of the index
   std::array<T, 3> slots_{};
   std::atomic<std::uint32_t> middle_{1};
   alignas(64) std::uint32_t back_ = 0;   // the writer's own

@@ -16,8 +16,8 @@
 namespace palpate::protocol {
 namespace {
 
-constexpr int kSnapLength = 65535;
-constexpr std::size_t kFileHeader = 24, kPacketHeader = 16;
+constexpr int kSnapLength = 65535;                           // the largest IP packet
+constexpr std::size_t kFileHeader = 24, kPacketHeader = 16;  // bytes, of the pcap format
 constexpr std::size_t kChunk =
     32 * 1024;  // flushed together, so that the file always ends with a whole packet
 constexpr std::size_t kBuffer = kChunk + kPacketHeader + kSnapLength + kFileHeader;

@@ -21,7 +21,7 @@ namespace palpate::protocol {
 namespace {
 
 constexpr const char* kWord = "palpate-key";
-constexpr std::size_t kMostKeys = 255;
+constexpr std::size_t kMostKeys = 255;  // the number of a key is a byte of the header; 0 is none
 
 /// What two programs share must stay between them.
 void require_private(const std::filesystem::path& file) {

@@ -9,7 +9,8 @@ namespace {
 using Bytes = std::span<const std::byte>;
 
 constexpr std::uint16_t kEtherIpv4 = 0x0800, kEtherIpv6 = 0x86dd, kEtherNone = 0;
-constexpr std::uint8_t kUdp = 17;
+constexpr std::uint8_t kUdp = 17;  // number of the protocol (IANA)
+// Bytes (RFC 791, 8200, 768).
 constexpr std::size_t kIpv4Header = 20, kIpv6Header = 40, kUdpHeader = 8, kMaxLengthField = 65535;
 // IPv6 extension headers that stand in front of what is carried.
 constexpr std::uint8_t kHopByHop = 0, kRouting = 43, kFragmentHeader = 44, kDestinationOptions = 60;

@@ -23,7 +23,7 @@ enum class LinkType : int {
   kIpv6 = 229,
   kCooked2 = 276,
 };
-constexpr int kMaxVlanTags = 4;
+constexpr int kMaxVlanTags = 4;  // two with IEEE 802.1ad, and as many again
 constexpr std::string_view kLinkTypesRead =
     "Ethernet, Linux cooked (SLL, SLL2), raw IP, BSD loopback (NULL, LOOP)";
 

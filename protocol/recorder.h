@@ -56,7 +56,7 @@ class Recorder {
   /// When `run` has returned.
   Stats stats() const;
   const std::filesystem::path& file() const { return path_; }
-  static constexpr std::uint64_t kStoredFiles = 10;
+  static constexpr std::uint64_t kStoredFiles = 10;  // of a recording with a quota; the oldest goes
 
  private:
   struct Packet {

@@ -22,8 +22,8 @@ class Stray {
   /// Ends the row, as a number in the expected range came.
   void end_row() noexcept { in_a_row_ = 0; }
 
-  static constexpr int kEnough = 4;
-  static constexpr std::uint64_t kNear = 64;
+  static constexpr int kEnough = 4;           // in a row: the sender began again
+  static constexpr std::uint64_t kNear = 64;  // in a row: the width of the window
 
  private:
   std::uint64_t last_ = 0;
@@ -113,7 +113,7 @@ class NewestOnly {
   }
 
  private:
-  static constexpr std::uint64_t kMaxDistance = 1 << 16;
+  static constexpr std::uint64_t kMaxDistance = 1 << 16;  // 131 s of ticks at 500 Hz
 
   std::uint64_t newest_ = 0, sequence_ = 0;
   Stray stray_;

@@ -34,7 +34,7 @@ Endpoint from_asio(const udp::endpoint& endpoint) {
 /// Asks routers for expedited forwarding (RFC 3246): forces are few, and worth nothing when late. Not all
 /// grant it.
 void expedite(udp::socket& socket, bool v6) {
-  constexpr int kExpedited = 46 << 2;
+  constexpr int kExpedited = 46 << 2;  // DSCP 46, expedited forwarding (RFC 3246)
   std::error_code ignored;
   if (v6) {
     socket.set_option(asio::detail::socket_option::integer<IPPROTO_IPV6, IPV6_TCLASS>(kExpedited), ignored);

@@ -6,6 +6,7 @@
 namespace palpate {
 namespace {
 constexpr int kPatience = 10;  // block exchanges allowed without progress
+// Of the largest gap: rounding of an exchange, ten thousand times the unit roundoff.
 constexpr double kNoise = 1e-12;
 }  // namespace
 

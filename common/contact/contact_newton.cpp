@@ -126,7 +126,7 @@ bool ContactSolver::respond(const ContactPatch& patch,
 /// theorem 16.3).
 bool ContactSolver::solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                         Eigen::Ref<Eigen::VectorXd> force) noexcept {
-  constexpr int kExchanges = 4;
+  constexpr int kExchanges = 4;  // of the active set in an iteration; the next iteration goes on from there
   const auto n = gap.size();
   second_.active.clear();
   for (int k = 0; k < n; ++k) {

@@ -12,7 +12,7 @@ constexpr int kMaxNewton = 30;  // steps; the first so many are taken whole, whe
 constexpr int kFreely = 8, kHalvings = 6;
 constexpr double kGain = 0.95;
 constexpr int kRounds = 6, kSweeps = 20;  // rounds of sweeps, each twice as many as before
-constexpr double kTolerance = 1e-12;
+constexpr double kTolerance = 1e-12;      // of the residual, by contact
 
 /// Into the disc of radius r.
 Eigen::Vector2d project(const Eigen::Vector2d& v, double r) {

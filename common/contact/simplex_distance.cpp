@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kParallel = 1e-12;
+constexpr double kParallel = 1e-12;  // sine squared of the angle: below, two segments count as parallel
 
 ClosestPoint corner(int i) noexcept {
   ClosestPoint point{{0, 0, 0}, 1};

@@ -22,6 +22,7 @@
 namespace palpate::client {
 namespace {
 
+// 9: tool, version and number of a page.
 constexpr double kPageBytes = protocol::kHeaderBytes + 9 + 4 * protocol::SurfacePage::kValues;
 
 /// What a capture was like, and what the laws made of it, plain and blended.

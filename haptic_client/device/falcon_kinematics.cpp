@@ -11,9 +11,10 @@ namespace palpate::client::falcon {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::array kAzimuth{105 * kDegree, -15 * kDegree, -135 * kDegree};
+constexpr std::array kAzimuth{105 * kDegree, -15 * kDegree, -135 * kDegree};  // of the three legs
+// Quadrature of 320 lines; ratio of the capstan drive.
 constexpr double kCountsPerTurn = 4 * 320, kCapstan = 110 / 14.25;
-constexpr double kAngleAtZero = 35 * kDegree;
+constexpr double kAngleAtZero = 35 * kDegree;  // of a leg where its encoder counts 0
 // Lengths of the legs, m, under Stamper's names.
 constexpr double a = 0.060, b = 0.1025, c = 0.01443, d = 0.01125, e = 0.01125, f = -0.025, r = 0.0400,
                  s = -0.02309;

@@ -43,7 +43,7 @@ constexpr auto kIds = [] {
   return ids;
 }();
 
-constexpr std::byte kMotion{1}, kButtons{3};
+constexpr std::byte kMotion{1}, kButtons{3};                               // numbers of the reports
 constexpr std::size_t kTranslation = 7, kSixAxes = 13, kLeastButtons = 3;  // bytes, with the report's number
 
 std::uint16_t number_at(std::span<const std::byte> report, std::size_t at) {

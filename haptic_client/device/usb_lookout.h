@@ -16,7 +16,7 @@ class UsbLookout {
   void failed(Time now, bool absent) noexcept { next_ = absent && published_ ? Time::max() : now + kAgain; }
 
  private:
-  static constexpr Time kAgain = std::chrono::milliseconds(500);
+  static constexpr Time kAgain = std::chrono::milliseconds(500);  // between two tries
   bool published_;
   Time next_ = Time::min();
 };

@@ -200,6 +200,7 @@ bool UsbPort::open(Time now) noexcept {
 void UsbPort::close() noexcept {
   Libusb& u = *usb_;
   if (u.handle == nullptr) return;
+  // For transfers that were cancelled; libusb ends them at the next event.
   constexpr Time kPatience = std::chrono::seconds(1);
   constexpr long kRound = 10'000;  // us
   u.closing = true;                // what completes now is not asked for again

@@ -8,7 +8,7 @@ namespace palpate::client {
 using namespace protocol;
 
 namespace {
-constexpr std::size_t kStoredSamples = 2048;
+constexpr std::size_t kStoredSamples = 2048;  // a minute at 33 Hz, far beyond any delay of a link
 }
 
 CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& progress) {

@@ -4,8 +4,9 @@
 
 namespace palpate::client {
 namespace {
+// Between two states: beyond, the motion between them is not known.
 constexpr Time kGap = std::chrono::seconds(1);
-}
+}  // namespace
 
 bool Resampler::pass() {
   before_ = after_;

@@ -4,7 +4,7 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kMostCorrection = 3;
+constexpr double kMostCorrection = 3;  // factor on the stiffness of the local model, either way
 // Of the largest force: below it, F_loc says little of how wrong the model is.
 constexpr double kDoubt = 0.02;
 constexpr double kFirm = 0.7;  // of the largest force: a touch that tells of the factor where tissue swings

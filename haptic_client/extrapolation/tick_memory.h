@@ -42,8 +42,8 @@ class TickMemory {
   void forget() noexcept { written_ = 0; }
 
  private:
-  static constexpr std::size_t kTicks = 1024;
-  static constexpr Time kLongestGap = std::chrono::milliseconds(12);
+  static constexpr std::size_t kTicks = 1024;  // a quarter of a second at 4 kHz, a second at 1 kHz
+  static constexpr Time kLongestGap = std::chrono::milliseconds(12);  // beyond, the loop was held up
   struct Row {
     Time t;
     Entry entry;

@@ -7,6 +7,7 @@ namespace palpate::client {
 /// That a haptic loop goes on, for the guardian in another process: one for each loop, so that none hides
 /// another that hangs.
 struct Heartbeat {
+  // Numbers that no count of ticks reaches.
   static constexpr std::uint64_t kEnded = ~std::uint64_t{0}, kReleasedPushing = kEnded - 1;
 
   void beat() noexcept { ticks.fetch_add(1, std::memory_order_relaxed); }
