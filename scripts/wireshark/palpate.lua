@@ -4,13 +4,12 @@
 
 local FOLDER = debug.getinfo(1, "S").source:match("^@?(.*[/\\])") or ""
 local function part(name) return dofile(FOLDER .. name) end
-local P = part("palpate_fields.lua")()
+local P = part("palpate_fields.lua")(part("palpate_table.lua"), part("palpate_words.lua")())
 local read_message, new_reader = part("palpate_messages.lua")(P)
 local sessions = part("palpate_sessions.lua")(P, part("blake2b.lua"))
 
 local PORT = 45130
-local HELLO, CHALLENGE, WELCOME, REFUSE, BYE, TOOL_STATE, FORCE_SAMPLE, TELEMETRY, POINTER, SURFACE_PAGE =
-  table.unpack(P.types)
+local TYPE = P.types
 local F, E, flag_lists = P.fields, P.experts, P.flag_lists
 
 local palpate = Proto("palpate", "Palpate")
@@ -39,36 +38,35 @@ local function names_of(name, set)
   return table.concat(names, ",")
 end
 
-local info_of = {}  -- by type: what matters of a whole message
+local info_of = {}  -- by type, where a line says more than the type: what matters of a whole message
 
-info_of[HELLO] = function(v)
+info_of[TYPE.Hello] = function(v)
   return (" nonce %s%s"):format(hex_of(v.nonce), v.cookie == P.no_nonce and "" or ", with a cookie")
 end
-info_of[CHALLENGE] = function(v) return " nonce " .. hex_of(v.nonce) end
-info_of[WELCOME] = function(v)
+info_of[TYPE.Challenge] = function(v) return " nonce " .. hex_of(v.nonce) end
+info_of[TYPE.Welcome] = function(v)
   return (" nonce %s, tool %d, %g Hz, radius %g mm"):format(hex_of(v.nonce), v.tool, v.rate, v.tool_radius * 1e3)
 end
-info_of[REFUSE] = function(v) return " " .. (P.reasons[v.reason] or "for an unknown reason") end
-info_of[BYE] = function() return "" end
-info_of[TOOL_STATE] = function(v, result)
+info_of[TYPE.Refuse] = function(v) return " " .. (P.reasons[v.reason] or "for an unknown reason") end
+info_of[TYPE.ToolState] = function(v, result)
   return (" tool %d, tick %s, p %s, used sample %s%s%s"):format(
     v.tool, tostring(v.tick), in_mm(v.p), tostring(v.newest_sample),
     result.age and (", %.1f ms old"):format(result.age) or "",
     v.state == 0 and "" or ", " .. names_of("state", v.state_set))
 end
-info_of[FORCE_SAMPLE] = function(v, result)
+info_of[TYPE.ForceSample] = function(v, result)
   return (" tool %d, number %s, answers tick %s%s, |f| %.3f N%s"):format(
     v.tool, tostring(v.sample), tostring(v.tool_tick),
     result.round_trip and (" after %.1f ms"):format(result.round_trip) or "", size_of(v.f),
     v.answer == 0 and "" or ", " .. names_of("answer", v.answer_set))
 end
-info_of[TELEMETRY] = function(v)
+info_of[TYPE.Telemetry] = function(v)
   return (" tool %d, feels %.3f N by %s on %s, %d ticks told"):format(v.tool, size_of(v.f), v.felt_law, v.device, v.count)
 end
-info_of[POINTER] = function(v)
+info_of[TYPE.Pointer] = function(v)
   return (" tool %d, number %s, p %s"):format(v.tool, tostring(v.pointer), in_mm(v.p))
 end
-info_of[SURFACE_PAGE] = function(v, result)
+info_of[TYPE.SurfacePage] = function(v, result)
   return (" tool %d, page %d of model %d%s"):format(
     v.tool, v.page, v["page.version"], result.page_kind and ": " .. result.page_kind or "")
 end
@@ -76,9 +74,9 @@ end
 -- The dissector -------------------------------------------------------------------------------------------------------
 
 -- Who sent a datagram: the type tells, but for a Bye. That is the server's unless it comes from the client's address.
-local FROM_CLIENT = {[HELLO] = true, [TOOL_STATE] = true, [TELEMETRY] = true}
 local function sender_of(d)
-  if d.type ~= BYE then return FROM_CLIENT[d.type] and "client" or "server" end
+  local sender = P.messages[d.type] and P.messages[d.type].sender or "server"
+  if sender ~= "either" then return sender end
   local client = sessions.client_of(d.session)
   if client then return d.source == client and "client" or "server" end
   return d.source:match(":" .. PORT .. "$") and "server" or "client"
@@ -158,7 +156,7 @@ local function read_payload(d, tvb, tree)
   if r.short then
     r:fault(branch, d.cut and "cut" or "bad_length", d.cut and "cut short by the capture"
       or ("a payload of %d bytes is too short for this type"):format(d.payload))
-  elseif r:left() > 0 then
+  elseif r:rest() > 0 then
     branch:add(F.extra, tvb:range(P.header + r.at, size - r.at))
   end
   d.values, d.faults, d.is_whole = r.values, r.faults, not r.short
@@ -170,7 +168,7 @@ local function show(result, d, tree)
     if value ~= nil then tree:add(F[name], value):set_generated() end
   end
   add("tag_verdict", result.tag_verdict)
-  if d.is_whole and d.type == FORCE_SAMPLE and d.values.f then add("force", size_of(d.values.f)) end
+  if d.is_whole and d.type == TYPE.ForceSample and d.values.f then add("force", size_of(d.values.f)) end
   add("age", result.age)
   add("round_trip", result.round_trip)
   add("answers", result.answers)
@@ -182,7 +180,7 @@ end
 -- Fills the Info column: type, essentials, and in brackets what is wrong.
 local function tell(pinfo, d, result)
   local text = P.type_names[d.type] or "Datagram"
-  if d.is_whole then text = text .. info_of[d.type](d.values, result) end
+  if d.is_whole and info_of[d.type] then text = text .. info_of[d.type](d.values, result) end
   for _, fault in ipairs(d.faults) do text = text .. " [" .. fault .. "]" end
   for _, found in ipairs(result.experts) do text = text .. " [" .. found[2] .. "]" end
   pinfo.cols.info:set(text)

@@ -2,8 +2,7 @@
 -- palpate.lua: gives a function of what palpate_fields.lua gives, and of the hash.
 
 return function(P, blake2b)
-  local HELLO, CHALLENGE, WELCOME, REFUSE, BYE, TOOL_STATE, FORCE_SAMPLE, TELEMETRY, POINTER, SURFACE_PAGE =
-    table.unpack(P.types)
+  local TYPE = P.types
   local STALE = 300  -- ms of age at which a client begins to fade a force
 
   -- Keys and tags -------------------------------------------------------------------------------------------------------
@@ -48,7 +47,7 @@ return function(P, blake2b)
     return known
   end
 
-  local BEFORE_SESSION = {[HELLO] = true, [CHALLENGE] = true, [WELCOME] = true, [REFUSE] = true}
+  local BEFORE_SESSION = {[TYPE.Hello] = true, [TYPE.Challenge] = true, [TYPE.Welcome] = true, [TYPE.Refuse] = true}
 
   -- The verdict on a tag, in words. `all` is the datagram without its tag; `session` is what is known of it, or nil.
   local function judge_tag(d, all, tag, session)
@@ -125,20 +124,20 @@ return function(P, blake2b)
   local follow = {}  -- by type: what an accepted datagram tells of its session, and what the session tells of it
 
   -- A Welcome whose tag is good is not replaced by one whose tag is not.
-  follow[WELCOME] = function(d, session, result)
+  follow[TYPE.Welcome] = function(d, session, result)
     if session.is_proven and result.tag_verdict ~= "good" then return end
     session.client_nonce, session.server_nonce = d.values.nonce, d.values.server_nonce
     session.client, session.is_proven = d.destination, result.tag_verdict == "good"
   end
 
-  follow[TOOL_STATE] = function(d, session, result)
+  follow[TYPE.ToolState] = function(d, session, result)
     session.client = session.client or d.source
     session.ticks[tostring(d.values.tick)] = {time = d.time, frame = d.frame}
     local used = session.tool_ts[tostring(d.values.newest_sample)]
     if used then result.age = ms_between((d.values.t - used):tonumber() / 1e9, 0) end
   end
 
-  follow[FORCE_SAMPLE] = function(d, session, result)
+  follow[TYPE.ForceSample] = function(d, session, result)
     local v = d.values
     local asked = session.ticks[tostring(v.tool_tick)]
     if asked then
@@ -177,13 +176,15 @@ return function(P, blake2b)
       (page - 1) % mode_groups * MODES_PER_PAGE, math.floor((page - 1) / mode_groups))
   end
 
-  follow[SURFACE_PAGE] = function(d, session, result)
+  follow[TYPE.SurfacePage] = function(d, session, result)
     local surface = session.surfaces[d.values["page.version"]]
     if surface then result.page_kind = kind_of_page(d.values.page, surface) end
   end
 
-  local COUNTED = {[WELCOME] = true, [BYE] = true, [TOOL_STATE] = true, [FORCE_SAMPLE] = true, [TELEMETRY] = true,
-                   [POINTER] = true, [SURFACE_PAGE] = true}
+  -- Whether datagrams of a type have a sequence number of their session.
+  local function is_counted(type_of_message)
+    return type_of_message == TYPE.Welcome or not BEFORE_SESSION[type_of_message]
+  end
 
   -- The first pass over a datagram that its receiver would read: the verdict on its tag, on its sequence number, and what
   -- follows from those before it.
@@ -202,7 +203,7 @@ return function(P, blake2b)
       local session = sessions[d.session]
       if session and session.is_proven then return result end
     end
-    if not COUNTED[d.type] or #d.faults > 0 then return result end
+    if not is_counted(d.type) or #d.faults > 0 then return result end
     local session = session_of(d.session)
     local is_new, kind, text = session.windows[d.from]:take(d.sequence)
     if kind then say(kind, text) end
