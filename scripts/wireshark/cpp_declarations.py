@@ -242,7 +242,8 @@ def declare_alias(statement, scope, _):
 def declare_struct(statement, scope, _):
     words = statement.words
     if len(words) < 5 or words[2] != "{" or words[-2] != "}":
-        raise NotUnderstood(statement.place, f"'{' '.join(words[:3])}' is not one that is known", "write struct NAME {...};")
+        raise NotUnderstood(statement.place, f"'{' '.join(words[:3])}' is not one that is known",
+                            "write struct NAME {...};")
     struct = Scope(words[1], scope, statement.before)
     declare_all(statement.tokens[3:-2], struct)
     scope.types[struct.name] = struct
@@ -266,8 +267,8 @@ def take_function(statement, scope, _):
         scope.visitor = statement.tokens
 
 
-READERS = {"enum": declare_enum, "using": declare_alias, "struct": declare_struct,
-           "constexpr": declare_constants, "static": declare_constants, "inline": declare_constants}
+READERS = {"enum": declare_enum, "using": declare_alias, "struct": declare_struct, "constexpr": declare_constants,
+           "static": declare_constants, "inline": declare_constants}
 
 
 def declare_all(tokens, scope, skips=False):

@@ -206,7 +206,8 @@ def size_of(struct, path, token):
     member = struct.members.get(path[0]) if len(path) == 1 else None
     kind = resolve(member.type, member.scope, member.place) if member else None
     if not isinstance(kind, dict) or "element" not in kind:
-        raise NotUnderstood(token.place, f"{struct.name}::fields: m.{'.'.join(path)} is no array", "give the size of an array")
+        raise NotUnderstood(token.place, f"{struct.name}::fields: m.{'.'.join(path)} is no array",
+                            "give the size of an array")
     return kind["size"]
 
 

@@ -38,7 +38,7 @@ local function names_of(name, set)
   return table.concat(names, ",")
 end
 
-local info_of = {}  -- by type, where a line says more than the type: what matters of a whole message
+local info_of = {}  -- by type, where a line says more than the type: what matters of a message
 
 info_of[TYPE.Hello] = function(v)
   return (" nonce %s%s"):format(hex_of(v.nonce), v.cookie == P.no_nonce and "" or ", with a cookie")

@@ -1,6 +1,6 @@
--- Names and labels of Palpate's fields where those of palpate_table.lua would not do: names that users filter by, and what a
--- line of the tree says. For palpate_fields.lua: gives a function, so that nothing happens where Wireshark loads this file by
--- itself.
+-- Names and labels of Palpate's fields where those of palpate_table.lua would not do: names that users filter by, and what
+-- a line of the tree says. For palpate_fields.lua: gives a function, so that nothing happens where Wireshark loads this
+-- file by itself.
 
 return function()
   -- Lists below that are written by hand. An entry that fits nothing in the table is a mistake, as after a change of
