@@ -17,7 +17,7 @@ return function()
   local function check_used()
     for _, list in ipairs(lists) do
       for key in pairs(list.entries) do
-        if not list.used[key] then error(("palpate_fields.lua: messages.h has no %s %s"):format(list.what, key), 0) end
+        if not list.used[key] then error(("palpate_words.lua: messages.h has no %s %s"):format(list.what, key), 0) end
       end
     end
   end
