@@ -342,26 +342,10 @@ return {
       {name = "ticks", type = "u64", about = "of the session"},
       {name = "missed", type = "u64", about = "of the session"},
       {name = "passivity_gain", type = "f32", about = "[0, 1]"},
-      {
-        name = "faded",
-        type = "u32",
-        about = "Counts of the session: how often the force was faded; ticks in which the limiter cut it (force, slew), or passivity damped it.",
-      },
-      {
-        name = "clamped",
-        type = "u32",
-        about = "Counts of the session: how often the force was faded; ticks in which the limiter cut it (force, slew), or passivity damped it.",
-      },
-      {
-        name = "slewed",
-        type = "u32",
-        about = "Counts of the session: how often the force was faded; ticks in which the limiter cut it (force, slew), or passivity damped it.",
-      },
-      {
-        name = "damped",
-        type = "u32",
-        about = "Counts of the session: how often the force was faded; ticks in which the limiter cut it (force, slew), or passivity damped it.",
-      },
+      {name = "interventions.faded", type = "u32"},
+      {name = "interventions.clamped", type = "u32"},
+      {name = "interventions.slewed", type = "u32"},
+      {name = "interventions.damped", type = "u32"},
       {name = "device", type = "text", size = 32},
       {
         name = "rendered_law",
