@@ -10,7 +10,7 @@ namespace {
 struct Row {
   double elements_per_radius, percent;
 };
-// simulation/README.md says how they were measured.
+// tests/studies/RESULTS.md says how they were measured.
 constexpr std::array kLinear{Row{0.4, 189}, Row{0.63, 147}, Row{1, 104}, Row{1.4, 71},
                              Row{2, 51},    Row{2.9, 38},   Row{4, 29}};
 constexpr std::array kQuadratic{Row{0.4, 53},  Row{0.63, 35}, Row{1, 15},

@@ -40,7 +40,7 @@ class MeshResolution {
 };
 
 /// Returns the error of the force (% of its root mean square) by a mesh of so many elements to a radius of
-/// the tool: from a table measured on a liver under a sphere (simulation/README.md), interpolated in
+/// the tool: from a table measured on a liver under a sphere (tests/studies/RESULTS.md), interpolated in
 /// logarithms, held at its ends. A guess for another shape; `sim_server study` measures that. Nothing for
 /// elements that are not in the table.
 std::optional<double> estimated_mesh_error(ElementKind element, double elements_per_radius) noexcept;

@@ -70,7 +70,7 @@ TEST_CASE("error of the force: friction and tissue in motion depend on the steps
     const DiscretisationErrors errors = ErrorOfForce(scene, simulation).of_step(0, loads);
     CHECK(errors.mesh.source == ErrorSource::kEstimated);
     CHECK(errors.mesh.percent >
-          29);  // p1, less than four elements to a radius: the table of simulation/README.md
+          29);  // p1, less than four elements to a radius: the table of tests/studies/RESULTS.md
     CHECK(errors.time_step.percent == 0);
     return errors.time_step.source;
   };
