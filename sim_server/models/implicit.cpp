@@ -197,7 +197,6 @@ std::optional<FreeMotion> Implicit::relinearise() {
   const int most = is_near ? settings_.max_newton : kMoreIterations * settings_.max_newton;
   if (is_linear() || ++step_.iterations > most) return {};
   apply_new_loads();
-  if (step_.iterations == settings_.max_newton + 1) dynamics_.replace_background_factor();
   if (!step_.relinearised) dynamics_.loads_changed();
   step_.relinearised = true;
   if (dynamics_.iterate(external_forces(), settings_.tolerance) <= settings_.tolerance) return {};

@@ -47,8 +47,6 @@ class Dynamics {
   /// Factors A at the trial point, where the factor is of a place elsewhere and none comes from the
   /// background.
   void refactor_if_moved() { factor_.refactor_if_moved(motion_); }
-  /// Factors at the trial point, in place of a factor that the background made elsewhere.
-  void replace_background_factor() { factor_.replace_background_factor(motion_); }
   /// The trial point is the end of the step.
   void finish_step();
 

@@ -12,12 +12,12 @@ constexpr double kSameRounding = 2;           // of a known rounding: a residual
 
 }  // namespace
 
-bool FactorPolicy::start(int steps_before, bool damped) {
+bool FactorPolicy::start(int steps_before, bool damped, bool unbalanced) {
   comparable_ = false;
   demanded_ = 0;
   damped_ = damped;
   if (state_ == State::kOutdated) state_ = State::kStale;
-  const bool due = settings_.background && steps_before % settings_.refresh_steps == 0;
+  const bool due = settings_.background && (unbalanced || steps_before % settings_.refresh_steps == 0);
   if (!due || steps_before == exchanged_) return false;
   exchanged_ = steps_before;
   return true;

@@ -43,8 +43,9 @@ class FactorPolicy {
   explicit FactorPolicy(const Settings& settings) : settings_(settings) {}
 
   /// A step begins, after so many others: whether it takes the factor that the background has made, and has
-  /// the next one begun. Once for each number of steps. `damped`: one before ended far from balance.
-  bool start(int steps_before, bool damped = false);
+  /// the next one begun. Once for each number of steps. `damped`: one before ended far from balance;
+  /// `unbalanced`: the one before was not solved, which is no fault of the loads.
+  bool start(int steps_before, bool damped = false, bool unbalanced = false);
   /// The next residual is of other loads: that it is no smaller says nothing of the factor.
   void loads_changed() { comparable_ = false; }
   /// There is another factor, for another reason than a `Decision`.

@@ -6,9 +6,9 @@
 namespace palpate::sim {
 namespace {
 
-// A step with a bordered factor that ended with a larger relative residual is the last with it. It leaves no
-// more than the relative residual at which a step counts as solved (`Implicit`).
-constexpr double kBadlyServed = 0.01;
+// Relative residual at which a step no longer counts as solved (`Implicit`): the next step takes another
+// factor, of the background, or in place of a bordered one.
+constexpr double kUnbalanced = 0.01;
 
 double largest_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
   double squared = 0;
@@ -32,10 +32,10 @@ NewtonFactor::NewtonFactor(const Solid& solid, const EquationsOfMotion& motion,
 
 void NewtonFactor::start_step(EquationsOfMotion& motion, bool damped, double relative_residual) {
   quasi_newton_.restart();
-  if (policy_.start(motion.time().steps(), damped)) exchange(motion);
+  if (policy_.start(motion.time().steps(), damped, relative_residual > kUnbalanced)) exchange(motion);
   matrix_.turn_to(*solid_, motion.position());
   matrix_.make_border(*solid_, motion.masses());
-  const bool serves_badly = matrix_.is_bordered() && relative_residual > kBadlyServed;
+  const bool serves_badly = matrix_.is_bordered() && relative_residual > kUnbalanced;
   if (matrix_.border_misfits() || serves_badly) matrix_.expire();
 }
 
@@ -72,12 +72,6 @@ void NewtonFactor::refactor_if_moved(EquationsOfMotion& motion) {
   if (background_) return;
   if (!cut_since_factored_ && largest_distance(motion.position(), factored_at_) <= settings_.remote_distance)
     return;
-  factor(motion);
-  policy_.replaced();
-}
-
-void NewtonFactor::replace_background_factor(EquationsOfMotion& motion) {
-  if (!background_) return;
   factor(motion);
   policy_.replaced();
 }

@@ -28,8 +28,9 @@ class NewtonFactor {
   void wait() const {
     if (background_) background_->wait();
   }
-  /// Starts a step: takes the factor of the background where one is due, and has it begin the next. `damped`:
-  /// a step before ended far from balance; `relative_residual`: of the last iteration of the step before.
+  /// Starts a step: takes the factor of the background where one is due, or where the step before was not
+  /// balanced, and has it begin the next. `damped`: a step before ended far from balance;
+  /// `relative_residual`: of the last iteration of the step before.
   void start_step(EquationsOfMotion& motion, bool damped, double relative_residual);
   /// Factors A at the trial point if the step has another length than the one that A is of. Returns whether
   /// it did.
@@ -52,8 +53,6 @@ class NewtonFactor {
 
   /// Factors A at the trial point if the factor is of a remote one and none comes from the background.
   void refactor_if_moved(EquationsOfMotion& motion);
-  /// Factors A at the trial point, in place of a factor that the background made for another.
-  void replace_background_factor(EquationsOfMotion& motion);
 
   /// Between two steps: these tetrahedra have been removed from the body.
   void remove(std::span<const int> tetrahedra);
