@@ -94,9 +94,17 @@ struct Bye {
 struct ToolState {
   static constexpr MessageType kType = MessageType::kToolState;
   /// Bits of `flags`: what this tick saw, and which parts of the answer it asks for.
-  static constexpr std::uint16_t kDeviceLost = 1, kRearmed = 2, kClutched = 4, kRequestsTangent = 8,
-                                 kRequestsAhead = 16, kRequestsSurface = 32, kAsksPages = 64,
-                                 kRequestsErrors = 128, kInPause = 256;
+  enum Flag : std::uint16_t {
+    kDeviceLost = 1,
+    kRearmed = 2,
+    kClutched = 4,
+    kRequestsTangent = 8,
+    kRequestsAhead = 16,
+    kRequestsSurface = 32,
+    kAsksPages = 64,
+    kRequestsErrors = 128,
+    kInPause = 256,
+  };
   static constexpr std::uint32_t kNoPage = 0xffffffff;
   std::uint8_t tool = 0;
   std::uint64_t tick = 0;           ///< haptic tick, from 1
@@ -221,17 +229,24 @@ struct RelaxedState {
 
 struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
-  /// Bits of `flags`; from kHasTangent on: which parts follow.
-  static constexpr std::uint32_t kInContact = 1, kFlagged = 2, kHasTangent = 4, kHasAhead = 8,
-                                 kHasSurface = 16, kHasErrors = 32, kHasOthers = 64, kHasModes = 128,
-                                 kHasMean = 256, kHasRelaxed = 512;
-  /// Requests to the client: to send `Telemetry`; to release the force, as the simulation is paused and this
-  /// sample repeats the last one.
-  static constexpr std::uint32_t kRequestsTelemetry = 1024, kPaused = 2048;
-  /// Flags of more parts.
-  static constexpr std::uint32_t kHasModalLoads = 4096, kHasCuts = 8192;
-  /// The tip was hot, or the blade cut: what it touches may give way at any time.
-  static constexpr std::uint32_t kCutting = 16384;
+  /// Bits of `flags`. Those called `kHas...` say which parts follow.
+  enum Flag : std::uint32_t {
+    kInContact = 1,
+    kFlagged = 2,
+    kHasTangent = 4,
+    kHasAhead = 8,
+    kHasSurface = 16,
+    kHasErrors = 32,
+    kHasOthers = 64,
+    kHasModes = 128,
+    kHasMean = 256,
+    kHasRelaxed = 512,
+    kRequestsTelemetry = 1024,  ///< the client is to send `Telemetry`
+    kPaused = 2048,  ///< release the force: the simulation is paused, and this sample repeats the last one
+    kHasModalLoads = 4096,
+    kHasCuts = 8192,
+    kCutting = 16384,  ///< the tip was hot, or the blade cut: what it touches may give way at any time
+  };
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
   std::uint64_t tool_tick = 0;  ///< echoed from the ToolState it answers, as are:
@@ -299,20 +314,29 @@ struct Telemetry {
   static constexpr MessageType kType = MessageType::kTelemetry;
   static constexpr std::size_t kMostTicks = 24, kMostLaws = 8, kNameBytes = 32;
   /// Bits of `flags`.
-  static constexpr std::uint16_t kHasMotors = 1, kFault = 2, kClutched = 4, kDeviceLost = 8, kFading = 16,
-                                 kPaused = 32;
+  enum Flag : std::uint16_t {
+    kHasMotors = 1,
+    kFault = 2,
+    kClutched = 4,
+    kDeviceLost = 8,
+    kFading = 16,
+    kPaused = 32,
+  };
   using Name = std::array<std::uint8_t, kNameBytes>;  ///< ASCII, then zeros
   std::uint8_t tool = 0;
   std::uint16_t flags = 0;
-  std::int64_t t_ns = 0;                ///< of the newest tick, on the client's own clock
-  std::uint32_t dt_ns = 0;              ///< between two of the ticks told
-  Vec3 p_W = Vec3::Zero();              ///< where the tool is by now, m
-  Vec3 f_W = Vec3::Zero();              ///< force that is felt there, N
-  std::int64_t age_ns = 0;              ///< of the newest sample: the largest since the message before
-  std::uint32_t period_ns = 0;          ///< of the loop since the message before, mean
-  std::uint32_t longest_period_ns = 0;  ///< and longest
-  std::uint64_t ticks = 0, missed = 0;  ///< of the session
-  float passivity_gain = 1;             ///< [0, 1]
+  std::int64_t t_ns = 0;    ///< of the newest tick, on the client's own clock
+  std::uint32_t dt_ns = 0;  ///< between two of the ticks told
+  Vec3 p_W = Vec3::Zero();  ///< where the tool is by now, m
+  Vec3 f_W = Vec3::Zero();  ///< force that is felt there, N
+  std::int64_t age_ns = 0;  ///< of the newest sample: the largest since the message before
+  struct Loop {
+    std::uint32_t period_ns = 0;          ///< of the loop since the message before, mean
+    std::uint32_t longest_period_ns = 0;  ///< and longest
+    std::uint64_t ticks = 0, missed = 0;  ///< of the session
+  };
+  Loop loop{};
+  float passivity_gain = 1;  ///< [0, 1]
   /// Counts of the session: how often the force was faded; ticks in which the limiter cut it (force, slew),
   /// or passivity damped it.
   struct Interventions {
@@ -332,10 +356,11 @@ struct Telemetry {
   std::array<float, kMostTicks* kMostLaws> by_law = {};  ///< `laws` of a tick in a row
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.tool), v(m.flags), v(m.t_ns), v(m.dt_ns), v(m.p_W), v(m.f_W), v(m.age_ns), v(m.period_ns),
-        v(m.longest_period_ns), v(m.ticks), v(m.missed), v(m.passivity_gain), v(m.interventions.faded),
-        v(m.interventions.clamped), v(m.interventions.slewed), v(m.interventions.damped), v(m.device),
-        v(m.rendered_law), v(m.named), v(m.name), v(m.error_percent), v(m.laws), v(m.count);
+    v(m.tool), v(m.flags), v(m.t_ns), v(m.dt_ns), v(m.p_W), v(m.f_W), v(m.age_ns), v(m.loop.period_ns),
+        v(m.loop.longest_period_ns), v(m.loop.ticks), v(m.loop.missed), v(m.passivity_gain),
+        v(m.interventions.faded), v(m.interventions.clamped), v(m.interventions.slewed),
+        v(m.interventions.damped), v(m.device), v(m.rendered_law), v(m.named), v(m.name), v(m.error_percent),
+        v(m.laws), v(m.count);
     for (std::size_t i = 0; i < m.count && i < kMostTicks; ++i) v(m.rendered[i]);
     for (std::size_t i = 0; i < m.count * m.laws && i < m.by_law.size(); ++i) v(m.by_law[i]);
   }

@@ -90,11 +90,11 @@ void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline
   next_.age_ns = oldest_ns_;
   const std::int64_t spent = last_ns_ - start_ns_;
   const auto periods = static_cast<std::int64_t>(seen_);
-  next_.period_ns = in_32_bits(spent / periods);
+  next_.loop.period_ns = in_32_bits(spent / periods);
   next_.dt_ns = in_32_bits(spent / periods * static_cast<std::int64_t>(every_));
-  next_.longest_period_ns = in_32_bits(longest_ns_);
-  next_.ticks = result.tool.tick;
-  next_.missed = missed;
+  next_.loop.longest_period_ns = in_32_bits(longest_ns_);
+  next_.loop.ticks = result.tool.tick;
+  next_.loop.missed = missed;
   next_.passivity_gain = static_cast<float>(std::clamp(pipeline.passivity().gain(), 0.0, 1.0));
   next_.interventions.faded = in_32_bits(pipeline.watchdog().ramped());
   next_.interventions.clamped = in_32_bits(pipeline.limiter().counts().clamped);

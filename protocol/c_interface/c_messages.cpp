@@ -13,11 +13,18 @@ namespace {
 constexpr double kMaxDistance = 1e9;  // m, m/s: as in the protocol
 constexpr double kUnit = 1e-6;        // how far a quaternion's square may be from 1: as there
 
-static_assert(PALPATE_LOST == ToolState::kDeviceLost && PALPATE_REARMED == ToolState::kRearmed &&
-              PALPATE_CLUTCHED == ToolState::kClutched &&
-              PALPATE_WANTS_TANGENT == ToolState::kRequestsTangent);
-static_assert(PALPATE_IN_CONTACT == ForceSample::kInContact && PALPATE_FLAGGED == ForceSample::kFlagged &&
-              PALPATE_HAS_TANGENT == ForceSample::kHasTangent && PALPATE_HAS_MEAN == ForceSample::kHasMean);
+/// True if a bit of the C interface is that of the message.
+constexpr bool same(int bit, std::uint32_t flag) {
+  return static_cast<std::uint32_t>(bit) == flag;
+}
+
+static_assert(same(PALPATE_LOST, ToolState::kDeviceLost) && same(PALPATE_REARMED, ToolState::kRearmed) &&
+              same(PALPATE_CLUTCHED, ToolState::kClutched) &&
+              same(PALPATE_WANTS_TANGENT, ToolState::kRequestsTangent));
+static_assert(same(PALPATE_IN_CONTACT, ForceSample::kInContact) &&
+              same(PALPATE_FLAGGED, ForceSample::kFlagged) &&
+              same(PALPATE_HAS_TANGENT, ForceSample::kHasTangent) &&
+              same(PALPATE_HAS_MEAN, ForceSample::kHasMean));
 static_assert(PALPATE_TOOL_STATE == static_cast<int>(ToolState::kType) &&
               PALPATE_FORCE_SAMPLE == static_cast<int>(ForceSample::kType));
 

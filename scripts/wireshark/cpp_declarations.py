@@ -213,8 +213,22 @@ def read_enum_value(tokens, enum, about):
     return tokens[0].text
 
 
+def declare_flags(statement, scope):
+    """Of a plain `enum NAME : TYPE {...}` in a struct: each value is a constant of that type."""
+    opening = statement.words.index("{")
+    type_, _ = read_type(statement.tokens[3:opening], statement.place)
+    tokens = [token for token in statement.tokens[opening + 1 : -2] if token.kind not in ("before", "behind")]
+    for part in split(tokens, ","):
+        if part:
+            read_enum_value(part, Enum(statement.words[1], type_, {}, {}), "")
+            scope.constants[part[0].text] = Constant(type_, part[2:], scope, part[0].place)
+
+
 def declare_enum(statement, scope, _):
     words = statement.words
+    if len(words) > 5 and words[2] == ":" and "{" in words:
+        declare_flags(statement, scope)
+        return
     if len(words) < 8 or words[1] != "class" or words[3] != ":" or "{" not in words:
         raise NotUnderstood(statement.place, f"'{' '.join(words[:3])}' has no type on the wire",
                             "write enum class NAME : std::uint8_t {...};")

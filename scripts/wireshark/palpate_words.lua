@@ -37,6 +37,8 @@ return function()
     ["RelaxedState.fraction"] = "share", ["RelaxedState.vertex.number"] = "vertex", ["RelaxedState.vertex.psi"] = "psi",
     ["Telemetry.flags"] = "telemetry", ["Telemetry.age"] = "sample_age", ["Telemetry.rendered_law"] = "felt_law",
     ["Telemetry.name"] = "law", ["Telemetry.error"] = "law_error", ["Telemetry.rendered"] = "felt",
+    ["Telemetry.loop.period"] = "period", ["Telemetry.loop.longest_period"] = "longest_period",
+    ["Telemetry.loop.ticks"] = "ticks", ["Telemetry.loop.missed"] = "missed",
     ["Telemetry.interventions.faded"] = "faded", ["Telemetry.interventions.clamped"] = "clamped",
     ["Telemetry.interventions.slewed"] = "slewed", ["Telemetry.interventions.damped"] = "damped",
     ["Pointer.number"] = "pointer",

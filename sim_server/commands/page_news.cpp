@@ -59,8 +59,8 @@ void ToolEvents::take(const protocol::Telemetry& published, Time now, Time began
         published.error_percent < 0 ? std::nanf("") : published.error_percent;
   }
   client_.age_ms = 1e-6 * static_cast<double>(published.age_ns);
-  client_.period_ms = 1e-6 * published.period_ns;
-  client_.missed = published.missed;
+  client_.period_ms = 1e-6 * published.loop.period_ns;
+  client_.missed = published.loop.missed;
   client_.passivity_gain = static_cast<double>(published.passivity_gain);
   client_.rendered_W = published.f_W;
   client_.p_W = published.p_W;

@@ -86,10 +86,10 @@ inline std::vector<Message> one_of_each() {
   telemetry.p_W = {0.5, -1, 2};
   telemetry.f_W = {0, 1.5, 0};
   telemetry.age_ns = 0x01020304;
-  telemetry.period_ns = 2000000;
-  telemetry.longest_period_ns = 0x0506;
-  telemetry.ticks = 9;
-  telemetry.missed = 2;
+  telemetry.loop.period_ns = 2000000;
+  telemetry.loop.longest_period_ns = 0x0506;
+  telemetry.loop.ticks = 9;
+  telemetry.loop.missed = 2;
   telemetry.passivity_gain = 0.5F;
   telemetry.interventions = {.faded = 1, .clamped = 2, .slewed = 3, .damped = 4};
   telemetry.device = {'m', 'e'};

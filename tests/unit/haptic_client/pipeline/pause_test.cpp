@@ -26,7 +26,7 @@ struct Session {
       if (!silent && ticks % (paused ? 100 : 33) == 0) {
         sample = ForceSample{.number = ++samples, .tool_t_ns = from_seconds(1 + t).count()};
         sample->f_W = {0, 2, 0};
-        sample->flags = paused ? ForceSample::kPaused : 0;
+        sample->flags = paused ? ForceSample::kPaused : 0U;
       }
       result = pipeline.tick({.t = from_seconds(1 + t), .p_D = {0.1 * t, 0, 0}}, sample ? &*sample : nullptr);
     }

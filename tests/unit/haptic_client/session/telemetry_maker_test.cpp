@@ -69,7 +69,7 @@ TEST_CASE(
       const double apart = 1e-9 * static_cast<double>(published[i].t_ns - published[i - 1].t_ns);
       CHECK_THAT(apart, WithinRel(1e-9 * published[i].dt_ns * published[i].count, 1e-6));
     }
-    CHECK_THAT(1e9 / published.back().period_ns, WithinRel(rate_hz, 1e-3));
+    CHECK_THAT(1e9 / published.back().loop.period_ns, WithinRel(rate_hz, 1e-3));
     // The last tick before the next sample sees the oldest one; a message may miss that tick.
     const double oldest = (std::floor(rate_hz / 30) - 1) / rate_hz;
     CHECK_THAT(1e-9 * static_cast<double>(published.back().age_ns), WithinAbs(oldest, 1.01 / rate_hz));
@@ -92,7 +92,7 @@ TEST_CASE("telemetry: what is felt, by which law, on which device, and the laws 
   CHECK(text(newest->device) == "falcon");
   CHECK(text(newest->rendered_law) == "constant");
   CHECK(newest->flags == Telemetry::kHasMotors);
-  CHECK(newest->missed == 7);
+  CHECK(newest->loop.missed == 7);
   REQUIRE(newest->laws == 2);
   REQUIRE(newest->count == 16);
   for (std::size_t i = 0; i < newest->count; ++i) {
