@@ -79,8 +79,7 @@ void ContactPatch::require(int node) noexcept {
 }
 
 ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
-    : complementarity_(max_triangles),
-      coulomb_(friction ? max_triangles : 0) {
+    : complementarity_(max_triangles), coulomb_(friction ? max_triangles : 0) {
   second_.slot_of_node.resize(static_cast<std::size_t>(max_nodes + 1));
   const int unknowns = 3 * (max_nodes + 1), per_contact = friction ? 3 : 1,
             rows = per_contact * max_triangles;
