@@ -16,7 +16,7 @@ namespace palpate::sim {
 
 /// The materials that a model is for, each with those before it.
 enum class Materials {
-  kNone,    ///< it does not deform, and passes over a plain material
+  kNone,    ///< it passes over a plain material, and counts as one that does not deform
   kPlain,   ///< law "linear", element "p1", no fibres
   kLinear,  ///< law "linear" with any element and fibres
   kAny,     ///< any law, element, fibres and relaxation, and any [[load]]

@@ -216,7 +216,8 @@ class DeformationModel {
   /// Returns the properties and capabilities of this model. The same at each call; read once, at set-up.
   virtual ModelTraits traits() noexcept = 0;
 
-  /// Returns the memory of this model, by parts.
+  /// Returns the memory of this model, by parts. `explain` adds details to parts of these names:
+  /// "compliance", "stiffness matrix", "its factor" (`sim_server/commands/explain.cpp`).
   virtual std::vector<MemoryPart> memory() const = 0;
 };
 

@@ -158,6 +158,7 @@ CONTRACT("let go, a body in motion never gains energy", ModelCase, choice,
 
 CONTRACT("let go, a body without mass is back at rest at once", ModelCase, choice,
          model_cases([](const ModelCase& c) { return !c.row.takes<sim::RayleighDamping>(); })) {
+  INFO("a model that has no static limit is exempt in tests/support/model_cases.h: \"static limit\"");
   ModelBench bench(choice, {.thin = true});
   const double moved = bench.largest_way(bench.step(pull(bench, 1)));
   if (!exempt(choice, "static limit")) CHECK(moved > 1e-3);
@@ -180,6 +181,7 @@ CONTRACT("under loads that stay, a body comes to rest in the static equilibrium,
   double off = 0;
   for (int v = 0; v < bench.size(); ++v)
     off = std::max(off, (moved[v] - found.x[bench.surface.vertices[v]]).norm());
+  INFO("a model that has no static limit is exempt in tests/support/model_cases.h: \"static limit\"");
   CAPTURE(off, bench.largest_way(moved));
   CHECK(bench.largest_way(moved) > 0.002);
   CHECK(off < 1e-6 * bench.largest_way(moved));

@@ -73,6 +73,7 @@ TEST_CASE("what a scene sets of its model is written as it was read, each key") 
     std::string text = "[deformation]\nmodel = \"" + std::string(row.name) + "\"\n";
     for (const std::string_view key : row.keys()) {
       CAPTURE(row.name, key);
+      INFO("give each key of a model a value in `values` above");
       REQUIRE(values.contains(key));
       if (key.empty()) continue;
       text += std::string(key) + " = " + values.at(key) + "\n";
