@@ -191,7 +191,8 @@ bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept 
   }
   u_.segment<3>(3 * patch_.nodes()) = state_.tip_offset;
   u_before_.segment<3>(3 * patch_.nodes()) = state_.tip_offset - tip_went;
-  return std::ranges::all_of(loads_, [&](const Load& load) { return slot_of_vertex_[load.vertex] >= 0; });
+  return std::ranges::all_of(loads_,
+                             [&](const VertexLoad& load) { return slot_of_vertex_[load.vertex] >= 0; });
 }
 
 /// Where the loads have moved what may be near the tool; nothing moves farther than what they press.
@@ -203,7 +204,7 @@ bool ContactOnPatch::displace_near(const Surface& surface, const Vec3& p) noexce
   const auto displace = [&](int vertex) {
     if (++count > kMostNear) return false;
     Vec3 u = Vec3::Zero();
-    for (const Load& load : loads_) {
+    for (const VertexLoad& load : loads_) {
       const auto c = model.compliance(vertex, load.vertex);
       if (!c) return false;
       u += *c * load.force;
@@ -215,7 +216,7 @@ bool ContactOnPatch::displace_near(const Surface& surface, const Vec3& p) noexce
     return true;
   };
   double largest = memory_ != nullptr ? memory_->crept().norm() : 0;
-  for (const Load& load : loads_) {
+  for (const VertexLoad& load : loads_) {
     if (!displace(load.vertex)) return false;
     largest = std::max(largest, (near_.moved[load.vertex] + near_.crept[load.vertex]).norm());
   }
@@ -300,7 +301,7 @@ void ContactOnPatch::warp(const SurfaceModel& model) noexcept {
 /// How far a patch node has crept, m.
 Vec3 ContactOnPatch::creep_of(int node) const noexcept {
   Vec3 sum = far_.creep[node];
-  for (const Load& load : memory_->creeping()) {
+  for (const VertexLoad& load : memory_->creeping()) {
     const int slot = slot_of_vertex_[load.vertex];
     if (slot >= 0) sum += patch_.compliance.block<3, 3>(3 * node, 3 * slot) * load.force;
   }
@@ -312,7 +313,7 @@ void ContactOnPatch::find_far_creep(const SurfaceModel& model) noexcept {
   far_.age = 0;
   far_.creep.assign(vertices_.size(), Vec3::Zero());
   if (memory_ == nullptr) return;
-  for (const Load& load : memory_->creeping()) {
+  for (const VertexLoad& load : memory_->creeping()) {
     if (slot_of_vertex_[load.vertex] >= 0) continue;
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       if (const auto c = model.compliance(vertices_[i], load.vertex)) far_.creep[i] += *c * load.force;

@@ -47,13 +47,12 @@ class ContactOnPatch {
   double work() const noexcept { return kMostWork - work_remaining_; }
   /// Returns the loads on the surface there, and how often contact has been solved; each solve may change the
   /// loads.
-  std::span<const SurfaceLoad> loads() const noexcept { return loads_; }
+  std::span<const VertexLoad> loads() const noexcept { return loads_; }
   std::uint64_t solves() const noexcept { return solves_; }
   /// Returns how the force changed with the place around the last one, N/m.
   const Mat3& tangent() const noexcept { return state_.tangent; }
 
  private:
-  using Load = SurfaceLoad;
   double near(const Surface& surface) const noexcept;
   ContactSolver::Effort effort(const Surface& surface) const noexcept;
   bool increment(const Surface& surface, const Vec3& p) noexcept;
@@ -89,7 +88,7 @@ class ContactOnPatch {
     std::vector<Vec3> creep;  // of the patch nodes, m
     int age = 0;              // in increments
   } far_;
-  std::vector<Load> loads_, stored_loads_;
+  std::vector<VertexLoad> loads_, stored_loads_;
   std::uint64_t solves_ = 0;
   double work_remaining_ = 0;  // of this call
   /// Vertices of the model near the tool.

@@ -156,7 +156,7 @@ void ModalMemory::begin(Time t, const Vec3& f) noexcept {
   past_.forget();
   if (system_.terms == 0) return;
   loads_.begin(t, system_.relaxations());
-  const SurfaceLoad load{foot_.vertex, -f};
+  const VertexLoad load{foot_.vertex, -f};
   loads_.apply_loads(*model_, {&load, 1}, 1);
   foot_.crept.setZero();
 }
@@ -208,17 +208,15 @@ void ModalMemory::add(const ModalState& more, ModalState& state) const noexcept 
   }
 }
 
-bool ModalMemory::carry(const SurfaceModel& model, std::span<const SurfaceLoad> loads) noexcept {
-  Vec3 sum = Vec3::Zero();
-  for (const SurfaceLoad& load : loads) sum += load.force;
-  const double size = sum.squaredNorm();
-  if (!(size > 0)) {
+bool ModalMemory::carry(const SurfaceModel& model, std::span<const VertexLoad> loads) noexcept {
+  const Vec3 sum = sum_of(loads);
+  if (!(sum.squaredNorm() > 0)) {
     bearing_ = foot_.shapes;
     return standing_;
   }
   std::fill_n(bearing_.begin(), system_.count, Vec3::Zero());
-  return std::ranges::all_of(loads, [&](const SurfaceLoad& load) {
-    return model.add_shapes(load.vertex, load.force.dot(sum) / size, bearing_);
+  return std::ranges::all_of(loads, [&](const VertexLoad& load) {
+    return model.add_shapes(load.vertex, fraction_of(load, sum), bearing_);
   });
 }
 
@@ -302,7 +300,7 @@ ModalState ModalMemory::soon(ModalState state, const ModalNumbers& force, Time r
   return state;
 }
 
-void ModalMemory::apply_loads(const Vec3& f, std::span<const SurfaceLoad> loads) noexcept {
+void ModalMemory::apply_loads(const Vec3& f, std::span<const VertexLoad> loads) noexcept {
   // From the last tick to this one the force went from the last to this, not all at once: the mean counts.
   const ModalNumbers force = force_of(f);
   const double half = 0.5 * to_seconds(tick_ - tick_before_);
@@ -312,8 +310,7 @@ void ModalMemory::apply_loads(const Vec3& f, std::span<const SurfaceLoad> loads)
   if (tick != nullptr) *tick = now(tick_);
   force_ = force;
   if (system_.terms == 0 || model_ == nullptr) return;
-  Vec3 sum = Vec3::Zero();
-  for (const SurfaceLoad& load : loads) sum += load.force;
+  const Vec3 sum = sum_of(loads);
   const double size = sum.squaredNorm();
   loads_.apply_loads(*model_, loads, size > 0 ? std::max(0.0, -f.dot(sum) / size) : 0);
 }

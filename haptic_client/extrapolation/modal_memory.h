@@ -39,19 +39,19 @@ class ModalMemory {
   /// does not know the shapes there.
   bool place_near(const SurfaceModel& model, const Vec3& p_rest) noexcept;
   /// The force of the tool is borne by the surface as these loads are; none: where it stands.
-  bool carry(const SurfaceModel& model, std::span<const SurfaceLoad> loads) noexcept;
+  bool carry(const SurfaceModel& model, std::span<const VertexLoad> loads) noexcept;
 
   /// Goes on to the tick at `t`, under the force of the last.
   void advance(Time t) noexcept;
   /// The force on the tool at that tick, N, and the loads that it is about; remembers the tick.
-  void apply_loads(const Vec3& f, std::span<const SurfaceLoad> loads = {}) noexcept;
+  void apply_loads(const Vec3& f, std::span<const VertexLoad> loads = {}) noexcept;
 
   /// Returns the displacement (m) of the surface under the tool by the modes and by creep. It is that at the
   /// tick of `advance`, or at the sample of `take`, whichever came last.
   Vec3 displacement() const noexcept { return at(present_) + foot_.crept; }
   /// Returns the part of it that is creep, and the loads (N) that would hold all of it on the compliance.
   const Vec3& crept() const noexcept { return foot_.crept; }
-  std::span<const SurfaceLoad> creeping() const noexcept { return loads_.creeping(); }
+  std::span<const VertexLoad> creeping() const noexcept { return loads_.creeping(); }
   /// Returns the creep of a vertex, m.
   Vec3 creep(const SurfaceModel& model, int vertex) const noexcept { return loads_.creep(model, vertex); }
   /// Returns the difference (m) of the displacement in the sample of `take` from the predicted one at that

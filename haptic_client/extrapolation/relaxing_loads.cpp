@@ -47,11 +47,11 @@ void RelaxingLoads::advance(Time t) noexcept {
   note_creeping();
 }
 
-void RelaxingLoads::apply_loads(const SurfaceModel& model, std::span<const SurfaceLoad> loads,
+void RelaxingLoads::apply_loads(const SurfaceModel& model, std::span<const VertexLoad> loads,
                                 double fraction) noexcept {
   if (terms_ == 0) return;
   for (Vertex& vertex : vertices_) vertex.load.setZero();
-  for (const SurfaceLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     if (Vertex* const vertex = find_or_add(model, load.vertex)) vertex->load = fraction * load.force;
   }
   std::erase_if(vertices_,
@@ -149,7 +149,7 @@ void RelaxingLoads::note_creeping() noexcept {
 
 Vec3 RelaxingLoads::creep(const SurfaceModel& model, int vertex) const noexcept {
   Vec3 sum = Vec3::Zero();
-  for (const SurfaceLoad& load : creeping_) {
+  for (const VertexLoad& load : creeping_) {
     if (const auto c = model.compliance(vertex, load.vertex)) sum += *c * load.force;
   }
   return sum;

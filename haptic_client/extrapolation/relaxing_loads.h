@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/vertex_load.h"
 #include "common/relaxation.h"
 #include "haptic_client/extrapolation/surface_model.h"
 #include "haptic_client/extrapolation/tick_memory.h"
@@ -27,12 +28,12 @@ class RelaxingLoads {
   /// Goes on to `t` under the loads of the last `apply_loads`.
   void advance(Time t) noexcept;
   /// The surface bears these loads from the time of `advance` on, times `fraction`.
-  void apply_loads(const SurfaceModel& model, std::span<const SurfaceLoad> loads, double fraction) noexcept;
+  void apply_loads(const SurfaceModel& model, std::span<const VertexLoad> loads, double fraction) noexcept;
   /// Takes the memory of some vertices at `t` as the server published it.
   void take(const SurfaceModel& model, const protocol::RelaxedState& published, Time t) noexcept;
 
   /// The loads that would hold the surface where it has crept to, N.
-  std::span<const SurfaceLoad> creeping() const noexcept { return creeping_; }
+  std::span<const VertexLoad> creeping() const noexcept { return creeping_; }
   /// Returns that creep of a vertex, m; vertices that the model does not know count as 0.
   Vec3 creep(const SurfaceModel& model, int vertex) const noexcept;
 
@@ -62,8 +63,8 @@ class RelaxingLoads {
   Terms series_{};
   std::size_t terms_ = 0;
   Time time_{}, noted_{};
-  std::vector<Vertex> vertices_;       // at most `kMost`
-  std::vector<SurfaceLoad> creeping_;  // of these
+  std::vector<Vertex> vertices_;      // at most `kMost`
+  std::vector<VertexLoad> creeping_;  // of these
   TickMemory<Loads> past_;
 };
 

@@ -10,12 +10,6 @@
 
 namespace palpate::client {
 
-/// A load on the surface.
-struct SurfaceLoad {
-  int vertex;  ///< of its model
-  Vec3 force;  ///< N
-};
-
 /// Model of the surface that the tool can reach, as known to the client. It holds its shape at rest and its
 /// compliance, as they come in pages from the server (protocol/surface_pages.h), and the slow modes of a body
 /// in motion. It finds the missing pages, the nearest first; it stores those near the tool, and drops the

@@ -71,7 +71,7 @@ const Eigen::VectorXd& PublishedMotion::amplitudes(std::span<const double> u) no
   return q_;
 }
 
-void PublishedMotion::advance(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
+void PublishedMotion::advance(double time, std::span<const VertexLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
                               Eigen::Ref<Eigen::VectorXd> v) noexcept {
   force_.setZero();
   modes_.add_drive(loads, force_);
@@ -85,7 +85,7 @@ void PublishedMotion::advance(double time, std::span<const NodalLoad> loads, Eig
   stepped_ = time;
 }
 
-void PublishedMotion::push(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
+void PublishedMotion::push(double time, std::span<const VertexLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
                            Eigen::Ref<Eigen::VectorXd> v) noexcept {
   force_.setZero();
   modes_.add_drive(loads, force_);
@@ -98,7 +98,7 @@ void PublishedMotion::place_as(const PublishedMotion& before) noexcept {
   v_ = before.v_;
 }
 
-void PublishedMotion::place_under(std::span<const NodalLoad> loads) noexcept {
+void PublishedMotion::place_under(std::span<const VertexLoad> loads) noexcept {
   q_.setZero();
   v_.setZero();
   modes_.add_drive(loads, q_);

@@ -36,16 +36,16 @@ class PublishedMotion {
   /// Amplitudes of the told modes alone, of displacements u (m).
   const Eigen::VectorXd& amplitudes(std::span<const double> u) noexcept;
   /// Advances that state by `time` (s) under constant loads, and writes amplitudes and rates.
-  void advance(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
+  void advance(double time, std::span<const VertexLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
                Eigen::Ref<Eigen::VectorXd> v) noexcept;
   /// Writes the amplitudes `time` (s) before that state, and the rates that these loads added since.
-  void push(double time, std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
+  void push(double time, std::span<const VertexLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
             Eigen::Ref<Eigen::VectorXd> v) noexcept;
   /// Advances the modes by `time` (s) under these loads, for a model without a state over all unknowns: from
   /// their own state, from that of `before`, or from equilibrium under the loads.
-  void continue_(double time, std::span<const NodalLoad> loads) noexcept { advance(time, loads, q_, v_); }
+  void continue_(double time, std::span<const VertexLoad> loads) noexcept { advance(time, loads, q_, v_); }
   void place_as(const PublishedMotion& before) noexcept;
-  void place_under(std::span<const NodalLoad> loads) noexcept;
+  void place_under(std::span<const VertexLoad> loads) noexcept;
   const Eigen::VectorXd& amplitudes() const noexcept { return q_; }
   const Eigen::VectorXd& rates() const noexcept { return v_; }
   void set(const Eigen::VectorXd& amplitudes, const Eigen::VectorXd& rates) {
@@ -55,7 +55,7 @@ class PublishedMotion {
 
   /// Returns the compliance (m/N) of the surface that bears these loads, as one piece, to a force held for
   /// `seconds`. Modes faster than the published ones are in equilibrium then.
-  Mat3 compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
+  Mat3 compliance(std::span<const VertexLoad> loads, double seconds) const noexcept {
     return residual_.of_loads(loads) + modes_.yield_(loads, seconds, 0, modes_.published);
   }
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept {

@@ -19,12 +19,12 @@ PublishedRelaxation::PublishedRelaxation(const PublishedModes& modes) : terms_(m
 }
 
 void PublishedRelaxation::advance(double h, const Eigen::VectorXd& q,
-                                  std::span<const NodalLoad> loads) noexcept {
+                                  std::span<const VertexLoad> loads) noexcept {
   step(h, q, loads, memory_);
 }
 
 void PublishedRelaxation::predict_tangent(double h, const Eigen::VectorXd& q,
-                                          std::span<const NodalLoad> loads, Eigen::MatrixXd& z,
+                                          std::span<const VertexLoad> loads, Eigen::MatrixXd& z,
                                           std::vector<Vec3>& psi) noexcept {
   predicted_ = memory_;
   step(h, q, loads, predicted_);
@@ -32,7 +32,7 @@ void PublishedRelaxation::predict_tangent(double h, const Eigen::VectorXd& q,
   psi = predicted_.psi;
 }
 
-void PublishedRelaxation::step(double h, const Eigen::VectorXd& q, std::span<const NodalLoad> loads,
+void PublishedRelaxation::step(double h, const Eigen::VectorXd& q, std::span<const VertexLoad> loads,
                                Memory& memory) noexcept {
   const SeriesStep series = SeriesStep::over(h, terms_);
   for (std::size_t j = 0; j < terms_.size(); ++j) {
@@ -41,7 +41,7 @@ void PublishedRelaxation::step(double h, const Eigen::VectorXd& q, std::span<con
   }
   memory.q = q;
   std::ranges::fill(loads_, Vec3::Zero());
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     if (held_[static_cast<std::size_t>(load.vertex)] == 0)
       loads_[static_cast<std::size_t>(load.vertex)] += load.force;
   }

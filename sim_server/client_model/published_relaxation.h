@@ -15,9 +15,9 @@ class PublishedRelaxation {
   explicit PublishedRelaxation(const PublishedModes& modes);
 
   /// A step of `h` (s > 0) has ended with the told modes at `q`, under these loads.
-  void advance(double h, const Eigen::VectorXd& q, std::span<const NodalLoad> loads) noexcept;
+  void advance(double h, const Eigen::VectorXd& q, std::span<const VertexLoad> loads) noexcept;
   /// Writes the memory at the end of the step in hand, if that ends so.
-  void predict_tangent(double h, const Eigen::VectorXd& q, std::span<const NodalLoad> loads,
+  void predict_tangent(double h, const Eigen::VectorXd& q, std::span<const VertexLoad> loads,
                        Eigen::MatrixXd& z, std::vector<Vec3>& psi) noexcept;
   std::size_t bytes() const;
 
@@ -28,7 +28,7 @@ class PublishedRelaxation {
     std::vector<Vec3> f;    // (surface vertices) N
     std::vector<Vec3> psi;  // (surface vertices x terms) N
   };
-  void step(double h, const Eigen::VectorXd& q, std::span<const NodalLoad> loads, Memory& memory) noexcept;
+  void step(double h, const Eigen::VectorXd& q, std::span<const VertexLoad> loads, Memory& memory) noexcept;
 
   std::vector<Relaxation> terms_;
   std::vector<char> held_;   // of surface vertices

@@ -46,9 +46,9 @@ void PublishedModes::take_out(std::span<const int> vertices, const Eigen::Vector
   }
 }
 
-void PublishedModes::add_drive(std::span<const NodalLoad> loads,
+void PublishedModes::add_drive(std::span<const VertexLoad> loads,
                                Eigen::Ref<Eigen::VectorXd> drive) const noexcept {
-  for (const NodalLoad& load : loads)
+  for (const VertexLoad& load : loads)
     drive.noalias() +=
         shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex)).leftCols(published).transpose() *
         load.force;
@@ -60,13 +60,13 @@ Eigen::VectorXd PublishedModes::published_at_rest() const {
   return yields;
 }
 
-Mat3 PublishedModes::yield_(std::span<const NodalLoad> loads, double seconds, double before,
+Mat3 PublishedModes::yield_(std::span<const VertexLoad> loads, double seconds, double before,
                             Eigen::Index end) const noexcept {
   const Vec3 sum = sum_of(loads);
   Mat3 yields = Mat3::Zero();
   for (Eigen::Index k = 0; k < end; ++k) {
     Vec3 moves = Vec3::Zero();
-    for (const NodalLoad& load : loads)
+    for (const VertexLoad& load : loads)
       moves += fraction_of(load, sum) * shapes.col(k).segment<3>(3 * load.vertex);
     const double more = ModeStep::over(seconds, frequencies[k], damping[k]).q_of_p -
                         ModeStep::over(before, frequencies[k], damping[k]).q_of_p;

@@ -56,12 +56,12 @@ struct PublishedModes {
   void take_out(std::span<const int> vertices, const Eigen::VectorXd& yields,
                 ContactPatch& patch) const noexcept;
   /// Adds how hard these loads drive each of the told modes, N/sqrt(kg).
-  void add_drive(std::span<const NodalLoad> loads, Eigen::Ref<Eigen::VectorXd> drive) const noexcept;
+  void add_drive(std::span<const VertexLoad> loads, Eigen::Ref<Eigen::VectorXd> drive) const noexcept;
   /// Returns the static compliance of each published mode, 1 / w^2, and 0 for the others.
   Eigen::VectorXd published_at_rest() const;
   /// Returns how much more (m/N) the first `end` modes yield to a force held for `seconds` than to one held
   /// for `before` (s), for the surface that bears these loads as one piece.
-  Mat3 yield_(std::span<const NodalLoad> loads, double seconds, double before,
+  Mat3 yield_(std::span<const VertexLoad> loads, double seconds, double before,
               Eigen::Index end) const noexcept;
 
   std::size_t bytes() const {

@@ -24,13 +24,9 @@ OrganShape shape_of(const Scene& scene, const Simulation& simulation) {
   return organ;
 }
 
-void show_loads(std::span<const NodalLoad> loads, SeenTool& seen) noexcept {
+void show_loads(std::span<const VertexLoad> loads, SeenTool& seen) noexcept {
   seen.load_count = std::min(loads.size(), SeenTool::kMostLoads);
-  for (std::size_t k = 0; k < seen.load_count; ++k) {
-    seen.loads[k].vertex = static_cast<std::uint32_t>(loads[k].vertex);
-    for (std::size_t i = 0; i < 3; ++i)
-      seen.loads[k].force[i] = static_cast<float>(loads[k].force[static_cast<Eigen::Index>(i)]);
-  }
+  std::copy_n(loads.begin(), seen.load_count, seen.loads.begin());
 }
 
 /// A body of its own beside the one that is stepped, which another thread uses.

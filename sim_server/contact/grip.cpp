@@ -85,10 +85,8 @@ void Grip::open() noexcept {
 }
 
 /// What is missing to the place of each vertex, into `misfit_`; the largest component.
-double Grip::misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const NodalLoad> own) {
-  Vec3 sum = Vec3::Zero();
-  for (const NodalLoad& load : own) sum += load.force;
-  const Vec3 tip = p_W - patch_.tool_compliance * sum;
+double Grip::misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const VertexLoad> own) {
+  const Vec3 tip = p_W - patch_.tool_compliance * sum_of(own);
   double largest = 0;
   for (std::size_t i = 0; i < own.size(); ++i) {
     const Vec3 missing =
@@ -160,7 +158,7 @@ Mat3 Grip::tangent() noexcept {
 Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
   const std::size_t held = vertices_.size();
   const auto size = 3 * static_cast<Eigen::Index>(held);
-  const std::span<NodalLoad> own = tissue.loads_on(vertices_);
+  const std::span<VertexLoad> own = tissue.loads_on(vertices_);
   Pull pull{.vertices = static_cast<int>(held)};
   for (bool settled = false; !settled; ++pull.rounds) {
     tissue.apply_loads();
@@ -172,7 +170,7 @@ Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
     for (std::size_t i = 0; i < held; ++i)
       own[i].force += change.segment<3>(3 * static_cast<Eigen::Index>(i));
   }
-  for (const NodalLoad& load : own) pull.force -= load.force;
+  for (const VertexLoad& load : own) pull.force -= load.force;
   if (pull.converged) pull.tangent = tangent();
   return pull;
 }

@@ -52,7 +52,7 @@ class Grip {
   std::size_t bytes() const;
 
  private:
-  double misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const NodalLoad> own);
+  double misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const VertexLoad> own);
   bool take_compliance(const ToolTissue& tissue);
   bool factor(const ToolTissue& tissue);
   void solve(Eigen::Ref<Eigen::VectorXd> misfit) const noexcept;

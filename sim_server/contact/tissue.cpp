@@ -44,7 +44,7 @@ void Tissue::reserve(std::span<const int> most_loads, std::span<const double> ra
 }
 
 void Tissue::drop_loads(const std::function<bool(int)>& on_surface) {
-  const auto removed = [&](const NodalLoad& load) { return !on_surface(load.vertex); };
+  const auto removed = [&](const VertexLoad& load) { return !on_surface(load.vertex); };
   for (ToolLoads& tool : tools_) {
     tool.others -=
         static_cast<std::size_t>(std::ranges::count_if(std::span(tool.loads).first(tool.others), removed));
@@ -237,7 +237,7 @@ void ToolTissue::mark_solved(std::span<const int> touched) noexcept {
   if (!mine.touched_any) mine.touched.assign(touched.begin(), touched.end());
 }
 
-void ToolTissue::set_loads(std::span<const NodalLoad> loads) {
+void ToolTissue::set_loads(std::span<const VertexLoad> loads) {
   auto& mine = tissue_.tools_[tool_];
   mine.loads.erase(mine.loads.begin() + static_cast<long>(mine.others), mine.loads.end());
   mine.loads.insert(mine.loads.end(), loads.begin(), loads.end());
@@ -249,9 +249,9 @@ void ToolTissue::release() {
   apply_loads();
 }
 
-std::span<NodalLoad> ToolTissue::loads_on(std::span<const int> vertices) {
+std::span<VertexLoad> ToolTissue::loads_on(std::span<const int> vertices) {
   auto& mine = tissue_.tools_[tool_];
-  const auto same = [](const NodalLoad& load, int vertex) { return load.vertex == vertex; };
+  const auto same = [](const VertexLoad& load, int vertex) { return load.vertex == vertex; };
   const auto own = mine.own();
   if (!std::equal(own.begin(), own.end(), vertices.begin(), vertices.end(), same)) {
     drop_loads();

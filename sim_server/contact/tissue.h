@@ -40,7 +40,7 @@ class Tissue {
   /// nothing.
   ToolTissue touched_by(std::size_t tool);
   /// The loads that this tool puts on it by now.
-  std::span<const NodalLoad> loads_of(std::size_t tool) const noexcept { return tools_[tool].own(); }
+  std::span<const VertexLoad> loads_of(std::size_t tool) const noexcept { return tools_[tool].own(); }
   /// Returns the memory that this tool alone takes, bytes.
   std::size_t bytes_of(std::size_t tool) const { return tools_[tool].pushed.size() * sizeof(Vec3); }
   /// A tool that is lifted has no loads, and knows of no other's.
@@ -62,24 +62,24 @@ class Tissue {
  private:
   friend class ToolTissue;
   struct ToolLoads {
-    std::vector<NodalLoad> loads;  // of the other tools, then its own
-    std::size_t others = 0;        // how many of them are the others'
-    std::span<const Vec3> free;    // the tissue's, or `pushed`
-    std::vector<Vec3> pushed;      // free under the loads of the other tools; empty where there are none
-    std::uint64_t pushed_in = 0;   // the motion in which that was
-    double radius = 0;             // m
-    std::vector<int> touched;      // vertices that mattered when its contact was last solved
-    bool touched_any = true;       // any may have
-    double went = 0;               // how far others have pushed any since then, in all, m
-    std::vector<Vec3> solved;      // positions when its contact was last solved
-    Vec3 carried = Vec3::Zero();   // how far it and the organ have gone since, m
-    std::vector<Vec3> shift;       // how far the surface has gone since then besides, m
-    double remaining = 0;          // the share of `shift` that is still to come
-    bool shift_of_moved = false;   // it is told of what `moved_` says alone
-    std::uint64_t solved_in = 0;   // the motion in which that was
-    std::uint64_t looked_in = 0;   // that in which it last looked for contact, at `positions`; 0: elsewhere
+    std::vector<VertexLoad> loads;  // of the other tools, then its own
+    std::size_t others = 0;         // how many of them are the others'
+    std::span<const Vec3> free;     // the tissue's, or `pushed`
+    std::vector<Vec3> pushed;       // free under the loads of the other tools; empty where there are none
+    std::uint64_t pushed_in = 0;    // the motion in which that was
+    double radius = 0;              // m
+    std::vector<int> touched;       // vertices that mattered when its contact was last solved
+    bool touched_any = true;        // any may have
+    double went = 0;                // how far others have pushed any since then, in all, m
+    std::vector<Vec3> solved;       // positions when its contact was last solved
+    Vec3 carried = Vec3::Zero();    // how far it and the organ have gone since, m
+    std::vector<Vec3> shift;        // how far the surface has gone since then besides, m
+    double remaining = 0;           // the share of `shift` that is still to come
+    bool shift_of_moved = false;    // it is told of what `moved_` says alone
+    std::uint64_t solved_in = 0;    // the motion in which that was
+    std::uint64_t looked_in = 0;    // that in which it last looked for contact, at `positions`; 0: elsewhere
     std::vector<Vec3> positions_at, free_at;  // of the surface, at that
-    std::span<const NodalLoad> own() const { return std::span(loads).subspan(others); }
+    std::span<const VertexLoad> own() const { return std::span(loads).subspan(others); }
   };
   bool touches(std::size_t tool);
   bool push(ToolLoads& tool);
@@ -111,15 +111,15 @@ class ToolTissue {
   std::span<const Vec3> positions() const;
   std::span<const Vec3> before() const { return tissue_.before; }
 
-  std::span<const NodalLoad> loads() const { return tissue_.loads_of(tool_); }
+  std::span<const VertexLoad> loads() const { return tissue_.loads_of(tool_); }
   /// The vertices that may have moved since this tool last looked for contact, which it does now; none: any.
   std::span<const int> moved_since_search() noexcept;
   /// Replaces the loads of this tool; the tissue follows at `apply_loads`.
-  void set_loads(std::span<const NodalLoad> loads);
+  void set_loads(std::span<const VertexLoad> loads);
   /// The loads of this tool on `vertices`, to be changed in place: what is there where they are on these by
   /// now, else zeros.
-  std::span<NodalLoad> loads_on(std::span<const int> vertices);
-  void add_load(const NodalLoad& load) { tissue_.tools_[tool_].loads.push_back(load); }
+  std::span<VertexLoad> loads_on(std::span<const int> vertices);
+  void add_load(const VertexLoad& load) { tissue_.tools_[tool_].loads.push_back(load); }
   void drop_loads() { set_loads({}); }
   /// The tissue goes where all loads press it.
   void apply_loads();

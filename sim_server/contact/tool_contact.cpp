@@ -65,7 +65,7 @@ void ToolContact::change_surface(std::span<const Vec3> rest, const Surface& surf
   filled_.clear();
   predictor_.changes.clear();
   stored_predictor_.changes.clear();
-  std::erase_if(stored_loads_, [&](const NodalLoad& load) { return !on_surface(load.vertex); });
+  std::erase_if(stored_loads_, [&](const VertexLoad& load) { return !on_surface(load.vertex); });
   for (State* const state : {&now_, &stored_}) {
     if (state->side >= 0 && !on_surface(state->side)) state->side = -1;
   }
@@ -178,11 +178,11 @@ Vec3 ToolContact::path_offset(double fraction, const Vec3& motion) const noexcep
 }
 
 Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue, std::span<const Vec3> velocities,
-                                   std::span<const NodalLoad> loads) const noexcept {
+                                   std::span<const VertexLoad> loads) const noexcept {
   if (velocities.empty()) return Vec3::Zero();
   Vec3 sum = Vec3::Zero();
   double weights = 0;
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     const double weight = load.force.norm();
     sum += weight * velocities[load.vertex];
     weights += weight;
@@ -245,7 +245,7 @@ bool ToolContact::exhausted() const {
   return now_.force.iterations >= kMaxIterations + kMaxSettling;
 }
 
-void ToolContact::keep(std::span<const NodalLoad> loads) {
+void ToolContact::keep(std::span<const VertexLoad> loads) {
   stored_ = now_;
   stored_predictor_ = predictor_;
   stored_loads_.assign(loads.begin(), loads.end());

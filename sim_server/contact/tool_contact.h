@@ -76,12 +76,12 @@ class ToolContact {
   /// Returns the velocity of the surface where the tool touches, by these loads (the mean by force), or else
   /// at the point nearest to `p_W`. `velocities`: of the surface vertices, m/s; empty: it rests.
   Vec3 surface_velocity(const Vec3& p_W, const Tissue& tissue, std::span<const Vec3> velocities,
-                        std::span<const NodalLoad> loads) const noexcept;
+                        std::span<const VertexLoad> loads) const noexcept;
   /// Solves its last increment again, on the surface as it is free by now.
   void settle(ToolTissue tissue);
   /// Remembers where it stands and what it feels, with its `loads`; `restore` takes it, and the tissue, back
   /// there, bit by bit.
-  void keep(std::span<const NodalLoad> loads);
+  void keep(std::span<const VertexLoad> loads);
   void restore(ToolTissue tissue);
   /// Returns the force that the tool would have at `p_W` (m), with its present orientation. Leaves no trace,
   /// bit by bit.
@@ -169,7 +169,7 @@ class ToolContact {
     Mat3 grasp_tangent = Mat3::Zero();  // N/m, to the end of the step
   };
   State now_, stored_;
-  std::vector<NodalLoad> stored_loads_;
+  std::vector<VertexLoad> stored_loads_;
   /// Foretells the loads at the next place, to first order: how those at the place that was differentiated
   /// last change with the tool's.
   struct Predictor {

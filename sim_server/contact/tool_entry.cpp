@@ -73,7 +73,7 @@ Vec3 ToolContact::place_at_entry(const ToolPose& pose, const Vec3& inside, doubl
 void ToolContact::store_side(const ToolTissue& tissue) noexcept {
   now_.side = -1;
   double most = 0;
-  for (const NodalLoad& load : tissue.loads()) {
+  for (const VertexLoad& load : tissue.loads()) {
     if (load.force.squaredNorm() <= most) continue;
     most = load.force.squaredNorm();
     now_.side = load.vertex;

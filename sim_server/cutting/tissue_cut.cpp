@@ -122,7 +122,7 @@ void TissueCut::part_by(std::size_t tool, double dt, CutOrgan& organ) {
   std::vector<int> touched;  // by others: a vertex in a grip does not slide
   for (std::size_t other = 0; other < tools_.size(); ++other) {
     if (other == tool) continue;
-    for (const NodalLoad& load : organ.tissue.loads_of(other))
+    for (const VertexLoad& load : organ.tissue.loads_of(other))
       touched.push_back(organ.surface.vertices[static_cast<std::size_t>(load.vertex)]);
   }
   resection_.keep(std::move(touched));

@@ -49,14 +49,14 @@ void CondensedPart::follow(std::span<double> force) const noexcept {
   }
 }
 
-void CondensedPart::advance(double h, std::span<const NodalLoad> loads) noexcept {
+void CondensedPart::advance(double h, std::span<const VertexLoad> loads) noexcept {
   for (Part& part : all_) {
     if (part.removed) continue;
     part.p_v *= 1 - h * damping_.mass;
     part.p_v.array() -= h * part.squares * part.p_bent.array();
     part.p_v.noalias() += h * (part.driven * part.bent);
   }
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     if (!has(load.vertex)) continue;
     const auto v = static_cast<std::size_t>(load.vertex);
     Part& part = all_[static_cast<std::size_t>(part_[v])];
@@ -91,19 +91,19 @@ void CondensedPart::start_step() noexcept {
   std::erase_if(watched_, [&](int vertex) { return seen_[static_cast<std::size_t>(vertex)] < step_ - 1; });
 }
 
-void CondensedPart::apply_loads(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
+void CondensedPart::apply_loads(std::span<const VertexLoad> loads, bool all, std::span<const Vec3> free,
                                 std::span<Vec3> positions) const noexcept {
   const std::span<const int> loaded_vertices = all ? vertices() : watched();
   for (const int vertex : loaded_vertices) {
     const auto v = static_cast<std::size_t>(vertex);
     positions[v] = free[v];
-    for (const NodalLoad& load : loads) {
+    for (const VertexLoad& load : loads) {
       if (has(load.vertex)) positions[v] += compliance(vertex, load.vertex) * load.force;
     }
   }
 }
 
-void CondensedPart::hand_down(const NodalLoad& load, std::span<double> force) const noexcept {
+void CondensedPart::hand_down(const VertexLoad& load, std::span<double> force) const noexcept {
   const auto v = static_cast<std::size_t>(load.vertex);
   const Part& part = all_[static_cast<std::size_t>(part_[v])];
   const auto columns = part.carrying.middleCols<3>(row_[v]);

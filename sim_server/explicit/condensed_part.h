@@ -48,7 +48,7 @@ class CondensedPart {
   /// Adds what r does on the border as looked at, but for loads on r, to `force` (3 x places).
   void follow(std::span<double> force) const noexcept;
   /// The modes go on by h (s) from what was looked at, under these loads.
-  void advance(double h, std::span<const NodalLoad> loads) noexcept;
+  void advance(double h, std::span<const VertexLoad> loads) noexcept;
   /// True if a surface vertex is condensed and within reach of tools.
   bool has(int vertex) const noexcept { return part_[static_cast<std::size_t>(vertex)] >= 0; }
   /// Returns those vertices, ascending.
@@ -65,10 +65,10 @@ class CondensedPart {
   Mat3 compliance(int vertex, int other) const noexcept;
   /// Puts what is watched, or `all` of them, where `free` and W f_s say (surface vertices, m). Loads on
   /// others are passed over. O(loads x what is watched), or of all.
-  void apply_loads(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
+  void apply_loads(std::span<const VertexLoad> loads, bool all, std::span<const Vec3> free,
                    std::span<Vec3> positions) const noexcept;
   /// Adds T^T f_s of one load on one of them to `force` (3 x places).
-  void hand_down(const NodalLoad& load, std::span<double> force) const noexcept;
+  void hand_down(const VertexLoad& load, std::span<double> force) const noexcept;
 
   /// The part that a mesh vertex belongs to, or -1.
   int part_of(int mesh_vertex) const { return part_of_[static_cast<std::size_t>(mesh_vertex)]; }

@@ -77,7 +77,7 @@ CuttableModel::Removed CuttableMotion::remove(std::span<const int> tetrahedra, c
   for (const int t : tetrahedra) add(lost_with(t, remaining));
   add(body_->remove(tetrahedra, remaining, material_));
   show_corners(tetrahedra, remaining);
-  std::erase_if(state_.loads, [&](const NodalLoad& load) { return !remaining.on_surface(load.vertex); });
+  std::erase_if(state_.loads, [&](const VertexLoad& load) { return !remaining.on_surface(load.vertex); });
   return removed;
 }
 

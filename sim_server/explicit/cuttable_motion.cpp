@@ -135,7 +135,7 @@ void CuttableMotion::restrict_contact(std::span<const Neighbourhood> places,
   state_.instant = 0;  // also after a step that threw
   state_.near.search_in(places, triangles, body_->first, state_.free,
                         kFaster * std::sqrt(fastest) * sub_step_ * instants_);
-  for (const NodalLoad& load : state_.loads) {
+  for (const VertexLoad& load : state_.loads) {
     if (body_->first[static_cast<std::size_t>(load.vertex)] >= 0) state_.near.add(load.vertex);
   }
   // None at all would mean that any may have moved.
@@ -182,23 +182,23 @@ void CuttableMotion::follow() noexcept {
 /// The rest goes to where the border takes it at the end of the sub-step, if loads on that stay as they are:
 /// what is loaded, and, seldomer, what else contact looks at; all of it where a step ends.
 void CuttableMotion::carry_rest() noexcept {
-  const auto at = [&](const NodalLoad& load) {
+  const auto at = [&](const VertexLoad& load) {
     return Eigen::Map<Vec3>(body_->motion.state.u.data() +
                             body_->first[static_cast<std::size_t>(load.vertex)]);
   };
-  const auto moves = [&](const NodalLoad& load) {
+  const auto moves = [&](const VertexLoad& load) {
     return body_->first[static_cast<std::size_t>(load.vertex)] >= 0;
   };
   unloaded_.clear();
-  for (const NodalLoad& load : state_.loads) {
+  for (const VertexLoad& load : state_.loads) {
     if (moves(load)) unloaded_.push_back(at(load));
   }
-  for (const NodalLoad& load : state_.loads) {
+  for (const VertexLoad& load : state_.loads) {
     if (moves(load)) at(load) += sub_step_ * impulse_of(load);
   }
   body_->rest->place_at(body_->motion.state.u);
   auto before = unloaded_.begin();
-  for (const NodalLoad& load : state_.loads) {
+  for (const VertexLoad& load : state_.loads) {
     if (moves(load)) at(load) = *before++;
   }
   const auto carry = [&](int vertex) {
@@ -208,7 +208,7 @@ void CuttableMotion::carry_rest() noexcept {
   const bool ends = state_.instant + 1 == instants_;
   if (ends || state_.instant % kSubStepsPerSearch == 0)
     std::ranges::for_each(ends ? body_->rest->vertices() : body_->rest->watched(), carry);
-  for (const NodalLoad& load : state_.loads) {
+  for (const VertexLoad& load : state_.loads) {
     if (body_->rest->has(load.vertex)) carry(load.vertex);
   }
 }
@@ -217,7 +217,7 @@ void CuttableMotion::carry_rest() noexcept {
 void CuttableMotion::take_sub_step() noexcept {
   if (body_->rest) {
     std::ranges::copy(state_.force, body_->motion.state.f.begin());
-    for (const NodalLoad& load : state_.loads) {
+    for (const VertexLoad& load : state_.loads) {
       if (body_->rest->has(load.vertex)) body_->rest->hand_down(load, body_->motion.state.f);
     }
     body_->rest->advance(sub_step_, state_.loads);
@@ -249,7 +249,7 @@ void CuttableMotion::update_free(std::span<const int> vertices) noexcept {
 
 /// What a load on a vertex in motion does over the sub-step adds to what all else did.
 void CuttableMotion::end_sub_step() noexcept {
-  for (const NodalLoad& load : state_.loads) {
+  for (const VertexLoad& load : state_.loads) {
     const int first = body_->first[static_cast<std::size_t>(load.vertex)];
     if (first < 0) continue;
     body_->motion.add_impulse(first / 3, sub_step_, impulse_of(load));
@@ -278,7 +278,7 @@ void CuttableMotion::apply_loads() noexcept {
   note_loaded();
   become_free(state_.loaded_vertices);
   state_.loaded_vertices.clear();
-  for (const NodalLoad& load : state_.loads) state_.loaded_vertices.push_back(load.vertex);
+  for (const VertexLoad& load : state_.loads) state_.loaded_vertices.push_back(load.vertex);
   note_loaded();
   compliance_->move(state_.loads, state_.instant == 0, state_.free, state_.positions);
 }
@@ -287,9 +287,9 @@ void CuttableMotion::compliance(std::span<const int> vertices, ContactPatch& pat
   compliance_->fill(vertices, patch);
 }
 
-std::span<const Vec3> CuttableMotion::apply(std::span<const NodalLoad> loads) noexcept {
+std::span<const Vec3> CuttableMotion::apply(std::span<const VertexLoad> loads) noexcept {
   state_.loads.assign(loads.begin(), loads.end());
-  for (const NodalLoad& load : state_.loads) {
+  for (const VertexLoad& load : state_.loads) {
     if (body_->rest) body_->rest->watch({&load.vertex, 1});
     observe(load.vertex);
   }

@@ -39,7 +39,7 @@ class CuttableMotion final : public DeformationModel,
                         std::span<const Triangle> triangles) noexcept override;
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
-  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  std::span<const Vec3> apply(std::span<const VertexLoad> loads) noexcept override;
   std::span<const Vec3> nodes() const noexcept override;
   Removed remove(std::span<const int> tetrahedra, const CutMesh& remaining) override;
   void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& remaining) override;
@@ -73,7 +73,7 @@ class CuttableMotion final : public DeformationModel,
   void update_free(std::span<const int> vertices) noexcept;
   void carry_rest() noexcept;
   /// Returns the change of velocity (m/s) of a vertex in motion by a load over a sub-step.
-  Vec3 impulse_of(const NodalLoad& load) const {
+  Vec3 impulse_of(const VertexLoad& load) const {
     const int place = body_->first[static_cast<std::size_t>(load.vertex)] / 3;
     return sub_step_ / body_->tensors.masses()[static_cast<std::size_t>(place)] * load.force;
   }
@@ -91,7 +91,7 @@ class CuttableMotion final : public DeformationModel,
     int instant = 0;                    // contact instants of this step that are done
     bool changed = true;                // the body is not as its last sub-step left it
     bool ended = false;                 // the sub-step in hand has ended, as tissue was removed
-    std::vector<NodalLoad> loads;       // over the sub-step
+    std::vector<VertexLoad> loads;      // over the sub-step
     std::vector<char> shown;            // of surface vertices: triangles have or had them as corners
     std::vector<int> moving, exposed;   // surface vertices in motion; those of them that are shown
     NearTools near;                     // of these, where contact is searched within a step

@@ -53,7 +53,7 @@ std::vector<MemoryPart> CuttableMotion::memory() const {
                sizeof(Vec3) +
            (state_.moving.capacity() + state_.exposed.capacity() + state_.loaded_vertices.capacity()) *
                sizeof(int) +
-           state_.shown.size() + state_.loads.capacity() * sizeof(NodalLoad) +
+           state_.shown.size() + state_.loads.capacity() * sizeof(VertexLoad) +
            (body_->first.size() + node_.size()) * sizeof(int)}};
   if (publisher_)
     parts.push_back(

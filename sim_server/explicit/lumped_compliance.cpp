@@ -54,9 +54,9 @@ void LumpedCompliance::fill(std::span<const int> vertices, ContactPatch& patch) 
   }
 }
 
-void LumpedCompliance::move(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
+void LumpedCompliance::move(std::span<const VertexLoad> loads, bool all, std::span<const Vec3> free,
                             std::span<Vec3> positions) const noexcept {
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     if (rest_ == nullptr || !rest_->has(load.vertex))
       positions[static_cast<std::size_t>(load.vertex)] += own(load.vertex) * load.force;
   }

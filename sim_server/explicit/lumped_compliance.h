@@ -25,7 +25,7 @@ class LumpedCompliance final : public ComplianceSource {
   void fill(std::span<const int> vertices, ContactPatch& patch) const noexcept;
   /// Moves `positions` (surface vertices, m), those of loads at `free`, by what `loads` do; `all` as in
   /// `CondensedPart::apply_loads`.
-  void move(std::span<const NodalLoad> loads, bool all, std::span<const Vec3> free,
+  void move(std::span<const VertexLoad> loads, bool all, std::span<const Vec3> free,
             std::span<Vec3> positions) const noexcept;
 
  private:

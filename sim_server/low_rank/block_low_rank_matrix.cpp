@@ -101,26 +101,26 @@ Mat3 BlockLowRankMatrix::block_of_pair(int row, int column) const noexcept {
   return product.cast<double>();
 }
 
-void BlockLowRankMatrix::add_product(std::span<const PointLoad> loads, Eigen::VectorXd& moved) noexcept {
+void BlockLowRankMatrix::add_product(std::span<const VertexLoad> loads, Eigen::VectorXd& moved) noexcept {
   for (int tile = 0; tile < tiles(); ++tile) {
-    const auto on_it = [&](const PointLoad& load) { return tile_of_[load.point] == tile; };
+    const auto on_it = [&](const VertexLoad& load) { return tile_of_[load.vertex] == tile; };
     if (std::ranges::any_of(loads, on_it)) add_of_tile(tile, loads, moved);
   }
   if (signs_.size() == 0) return;
   amplitudes_.setZero();
-  for (const PointLoad& load : loads)
-    amplitudes_.noalias() += shapes_.middleCols<3>(3 * static_cast<Eigen::Index>(load.point)) * load.force;
+  for (const VertexLoad& load : loads)
+    amplitudes_.noalias() += shapes_.middleCols<3>(3 * static_cast<Eigen::Index>(load.vertex)) * load.force;
   amplitudes_.array() *= signs_.array();
   moved.noalias() += shapes_.transpose() * amplitudes_;
 }
 
 /// What the loads on one tile do to all points.
-void BlockLowRankMatrix::add_of_tile(int loaded, std::span<const PointLoad> loads,
+void BlockLowRankMatrix::add_of_tile(int loaded, std::span<const VertexLoad> loads,
                                      Eigen::VectorXd& moved) noexcept {
   const auto for_loads = [&](const auto& work) {
-    for (const PointLoad& load : loads) {
-      if (tile_of_[load.point] == loaded)
-        work(3 * (load.point - begins_[loaded]), Eigen::Vector3f(load.force.cast<float>()));
+    for (const VertexLoad& load : loads) {
+      if (tile_of_[load.vertex] == loaded)
+        work(3 * (load.vertex - begins_[loaded]), Eigen::Vector3f(load.force.cast<float>()));
     }
   };
   for (int tile = 0; tile < tiles(); ++tile) {

@@ -4,15 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "common/types.h"
+#include "common/contact/vertex_load.h"
 
 namespace palpate::sim {
-
-/// A load on one point.
-struct PointLoad {
-  int point = 0;
-  Vec3 force = Vec3::Zero();
-};
 
 /// A symmetric matrix W (3n x 3n) of 3 x 3 blocks, one for each pair of n points that lie in tiles of
 /// neighbours: block low-rank (Amestoy et al. 2015), each tile on the diagonal dense, each pair of tiles as a
@@ -40,7 +34,7 @@ class BlockLowRankMatrix {
   /// Block of two points. No allocation. O(rank + k).
   Mat3 block(int row, int column) const noexcept;
   /// Adds W f to `moved` (3n). One thread; no allocation. O(n (rank x loaded tiles + k)).
-  void add_product(std::span<const PointLoad> loads, Eigen::VectorXd& moved) noexcept;
+  void add_product(std::span<const VertexLoad> loads, Eigen::VectorXd& moved) noexcept;
 
   /// Numbers, and what describes them.
   std::size_t bytes() const;
@@ -66,7 +60,7 @@ class BlockLowRankMatrix {
   static std::size_t index(int first, int second);
   void compress(int tile, int other, const Eigen::Ref<const Eigen::MatrixXd>& block, double tolerance);
   Mat3 block_of_pair(int row, int column) const noexcept;
-  void add_of_tile(int loaded, std::span<const PointLoad> loads, Eigen::VectorXd& moved) noexcept;
+  void add_of_tile(int loaded, std::span<const VertexLoad> loads, Eigen::VectorXd& moved) noexcept;
 
   std::vector<int> begins_;
   std::vector<int> tile_of_;  // (n)

@@ -182,11 +182,11 @@ void Implicit::apply_new_loads() {
 }
 
 /// Adds the displacement (m, by unknowns) that loads cause by the linearisation, times `sign`.
-void Implicit::add_response(std::span<const NodalLoad> loads, double sign, Eigen::VectorXd& moved) const {
+void Implicit::add_response(std::span<const VertexLoad> loads, double sign, Eigen::VectorXd& moved) const {
   std::vector<int> vertices;
-  for (const NodalLoad& load : loads) vertices.push_back(load.vertex);
+  for (const VertexLoad& load : loads) vertices.push_back(load.vertex);
   find_columns(vertices);
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     if (dof_[load.vertex] >= 0)
       moved += columns_.values.middleCols<3>(3 * columns_.slot[load.vertex]) * (sign * load.force);
   }
@@ -252,7 +252,7 @@ void Implicit::update_surface() {
     replace_columns();
   }
   for (std::size_t v = 0; v < node_.size(); ++v) positions_[v] = dynamics_.position()[node_[v]];
-  for (const NodalLoad& load : linearised_loads_) {  // what holds the body is no part of its motion
+  for (const VertexLoad& load : linearised_loads_) {  // what holds the body is no part of its motion
     if (dof_[load.vertex] < 0) positions_[load.vertex] += held_compliance_ * load.force;
   }
   std::ranges::copy(positions_, free_.begin());
@@ -263,7 +263,7 @@ void Implicit::update_surface() {
 std::span<const Vec3> Implicit::external_forces() {
   std::ranges::fill(external_, Vec3::Zero());
   scene_loads_.add_forces(dynamics_.position(), external_);
-  for (const NodalLoad& load : linearised_loads_) external_[node_[load.vertex]] += load.force;
+  for (const VertexLoad& load : linearised_loads_) external_[node_[load.vertex]] += load.force;
   return external_;
 }
 
@@ -341,19 +341,19 @@ void Implicit::compliance(std::span<const int> vertices, ContactPatch& patch) co
 }
 
 /// Moves `positions` (surface vertices, m) by the displacement that loads cause, times `sign`.
-void Implicit::apply_loads(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const {
+void Implicit::apply_loads(std::span<const VertexLoad> loads, double sign, std::span<Vec3> positions) const {
   if (loads.empty()) return;
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(dynamics_.dofs().count);
   add_response(loads, sign, moved);
   for (std::size_t v = 0; v < positions.size(); ++v) {
     if (dof_[v] >= 0) positions[v] += moved.segment<3>(dof_[v]);
   }
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     if (dof_[load.vertex] < 0) positions[load.vertex] += sign * held_compliance_ * load.force;
   }
 }
 
-std::span<const Vec3> Implicit::apply(std::span<const NodalLoad> loads) {
+std::span<const Vec3> Implicit::apply(std::span<const VertexLoad> loads) {
   loads_.assign(loads.begin(), loads.end());
   std::ranges::copy(free_, positions_.begin());
   apply_loads(loads_, 1, positions_);

@@ -67,11 +67,11 @@ class Implicit final : public DeformationModel,
   static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   FreeMotion free_motion(double dt) override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const override;
-  Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
+  Mat3 later_compliance(std::span<const VertexLoad> loads, double seconds) const noexcept override;
   const PublishedModes* modes() const noexcept override { return &published_->modes(); }
   void read_modes(ModalMotion& state) override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
-  std::span<const Vec3> apply(std::span<const NodalLoad> loads) override;
+  std::span<const Vec3> apply(std::span<const VertexLoad> loads) override;
   std::optional<FreeMotion> relinearise() override;
   /// Unbalanced where the last iteration found a relative residual above 1 %.
   Balance balance() const noexcept override;
@@ -101,8 +101,8 @@ class Implicit final : public DeformationModel,
   void clear_columns();
   void find_columns(std::span<const int> vertices) const;
   void keep_columns(const Eigen::MatrixXd& columns) const;
-  void add_response(std::span<const NodalLoad> loads, double sign, Eigen::VectorXd& moved) const;
-  void apply_loads(std::span<const NodalLoad> loads, double sign, std::span<Vec3> positions) const;
+  void add_response(std::span<const VertexLoad> loads, double sign, Eigen::VectorXd& moved) const;
+  void apply_loads(std::span<const VertexLoad> loads, double sign, std::span<Vec3> positions) const;
   std::span<const Vec3> external_forces();
   /// True if one iteration solves each step, with the columns of one factor for good.
   bool is_linear() const { return solid_.material().law == ElasticLaw::kLinear && !may_be_cut_; }
@@ -129,7 +129,7 @@ class Implicit final : public DeformationModel,
     Progress progress;
     SurfaceColumns columns;
     std::vector<Vec3> free, positions;
-    std::vector<NodalLoad> loads, linearised_loads;
+    std::vector<VertexLoad> loads, linearised_loads;
   };
 
   bool may_be_cut_;
@@ -149,8 +149,8 @@ class Implicit final : public DeformationModel,
   std::vector<int> node_, dof_;      // per surface vertex: its node; its first unknown, or -1: held
   std::vector<Triangle> triangles_;  // of the surface, where columns are requested of the background
   std::vector<int> vertex_;          // per three unknowns: the surface vertex, or -1: inside
-  std::vector<Vec3> free_, positions_, external_;    // m; surface vertices; N, nodes
-  std::vector<NodalLoad> loads_, linearised_loads_;  // now; those that the linearisation was made under
+  std::vector<Vec3> free_, positions_, external_;     // m; surface vertices; N, nodes
+  std::vector<VertexLoad> loads_, linearised_loads_;  // now; those that the linearisation was made under
   mutable SurfaceColumns columns_;
 };
 

@@ -53,7 +53,7 @@ CuttableModel::Removed Implicit::remove(std::span<const int> tetrahedra, const C
     solid_.remove(e);
   }
   dynamics_.remove(tetrahedra, masses_of(touched, remaining));
-  const auto hangs_on_nothing = [&](const NodalLoad& load) { return !remaining.on_surface(load.vertex); };
+  const auto hangs_on_nothing = [&](const VertexLoad& load) { return !remaining.on_surface(load.vertex); };
   std::erase_if(loads_, hangs_on_nothing);
   linearised_loads_ = loads_;
   return removed;

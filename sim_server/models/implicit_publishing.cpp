@@ -10,12 +10,12 @@ std::span<const double> numbers(const Eigen::VectorXd& all) {
 
 }  // namespace
 
-Mat3 Implicit::later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
+Mat3 Implicit::later_compliance(std::span<const VertexLoad> loads, double seconds) const noexcept {
   if (!published_) return Mat3::Zero();
   const Vec3 sum = sum_of(loads);
   Mat3 yields = published_->compliance(loads, seconds);
-  for (const NodalLoad& a : loads) {
-    for (const NodalLoad& b : loads) {
+  for (const VertexLoad& a : loads) {
+    for (const VertexLoad& b : loads) {
       if (dof_[a.vertex] < 0 || dof_[b.vertex] < 0 || columns_.slot[b.vertex] < 0) continue;
       yields -= fraction_of(a, sum) * fraction_of(b, sum) *
                 columns_.values.block<3, 3>(dof_[a.vertex], 3 * columns_.slot[b.vertex]);

@@ -32,7 +32,7 @@ void QuasiStatic::compliance(std::span<const int> vertices, ContactPatch& patch)
   compliance_.fill(vertices, patch);
 }
 
-std::span<const Vec3> QuasiStatic::apply(std::span<const NodalLoad> loads) noexcept {
+std::span<const Vec3> QuasiStatic::apply(std::span<const VertexLoad> loads) noexcept {
   const auto is_of = [&](const Answer& answer) {
     return answer.valid && std::ranges::equal(answer.loads, loads);
   };

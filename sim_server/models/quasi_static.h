@@ -18,7 +18,7 @@ class QuasiStatic final : public DeformationModel, public StatefulModel {
   static double estimated_bytes(const Scene& scene, const MeshCounts& counts);
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
-  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  std::span<const Vec3> apply(std::span<const VertexLoad> loads) noexcept override;
   ModelTraits traits() noexcept override {
     return {.constant_compliance = true, .columns = &compliance_, .state = this};
   }
@@ -30,7 +30,7 @@ class QuasiStatic final : public DeformationModel, public StatefulModel {
   /// Answer to the last loads, or to those before: a tool that is probed ahead returns to its place with its
   /// loads there.
   struct Answer {
-    std::vector<NodalLoad> loads;
+    std::vector<VertexLoad> loads;
     std::vector<Vec3> positions;
     bool valid = false;  // false: the supports have moved since
   };

@@ -119,7 +119,7 @@ void Reduced::compliance(std::span<const int> vertices, ContactPatch& patch) con
   compliance_.fill(vertices, patch);
 }
 
-Mat3 Reduced::later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
+Mat3 Reduced::later_compliance(std::span<const VertexLoad> loads, double seconds) const noexcept {
   return modes_->yield_(loads, seconds, period_, modes_->frequencies.size());
 }
 
@@ -135,9 +135,9 @@ void Reduced::residual_compliance(std::span<const int> vertices, ContactPatch& p
   modes_->take_out(vertices, beyond_residual_, patch);
 }
 
-std::span<const Vec3> Reduced::apply(std::span<const NodalLoad> loads) noexcept {
+std::span<const Vec3> Reduced::apply(std::span<const VertexLoad> loads) noexcept {
   p_.setZero();
-  for (const NodalLoad& load : loads)
+  for (const VertexLoad& load : loads)
     p_.noalias() +=
         modes_->shapes.middleRows<3>(3 * static_cast<Eigen::Index>(load.vertex)).transpose() * load.force;
   loads_.assign(loads.begin(), loads.end());
@@ -145,7 +145,7 @@ std::span<const Vec3> Reduced::apply(std::span<const NodalLoad> loads) noexcept 
   return positions_;
 }
 
-void Reduced::apply_loads(std::span<const NodalLoad> loads) noexcept {
+void Reduced::apply_loads(std::span<const VertexLoad> loads) noexcept {
   std::ranges::copy(free_, positions_.begin());
   compliance_.move(loads, positions_);
 }

@@ -43,8 +43,8 @@ class Reduced final : public DeformationModel,
   /// Any `dt` > 0 is taken for one period.
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
-  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
-  Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
+  std::span<const Vec3> apply(std::span<const VertexLoad> loads) noexcept override;
+  Mat3 later_compliance(std::span<const VertexLoad> loads, double seconds) const noexcept override;
   const PublishedModes* modes() const noexcept override { return &*modes_; }
   void read_modes(ModalMotion& state) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
@@ -56,7 +56,7 @@ class Reduced final : public DeformationModel,
  private:
   struct State {
     Eigen::VectorXd q, v, p, q_free;  // (modes) m sqrt(kg), m sqrt(kg)/s, N/sqrt(kg), m sqrt(kg)
-    std::vector<NodalLoad> loads;     // of the last `apply`
+    std::vector<VertexLoad> loads;    // of the last `apply`
     std::vector<Vec3> free, positions;
     std::optional<MovingSupports::State> supports;
   };
@@ -64,7 +64,7 @@ class Reduced final : public DeformationModel,
   FreeMotion free_motion_now() const;
   /// The surface as its supports move it.
   std::span<const Vec3> unloaded() const noexcept { return supports_ ? supports_->positions() : rest_; }
-  void apply_loads(std::span<const NodalLoad> loads) noexcept;
+  void apply_loads(std::span<const VertexLoad> loads) noexcept;
 
   int instants_ = 1;  // within a step of the scene
   double period_;     // s, from one to the next
@@ -77,7 +77,7 @@ class Reduced final : public DeformationModel,
   Eigen::VectorXd beyond_residual_;     // (modes) m^2 kg/N: what of `compliance_` is theirs
   Eigen::VectorXd q_, v_, p_, q_free_;  // (modes) m sqrt(kg), m sqrt(kg)/s, N/sqrt(kg)
   Eigen::VectorXd moved_;               // (3 surface vertices) m
-  std::vector<NodalLoad> loads_;        // of the last `apply`
+  std::vector<VertexLoad> loads_;       // of the last `apply`
 };
 
 }  // namespace palpate::sim

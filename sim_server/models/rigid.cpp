@@ -28,7 +28,7 @@ void Rigid::compliance(std::span<const int> vertices, ContactPatch& patch) const
   patch.tool_compliance = 1 / stiffness_;
 }
 
-std::span<const Vec3> Rigid::apply(std::span<const NodalLoad>) noexcept {
+std::span<const Vec3> Rigid::apply(std::span<const VertexLoad>) noexcept {
   return rest_;
 }
 

@@ -29,7 +29,7 @@ class Rigid final : public DeformationModel {
   static double estimated_bytes(const Scene&, const MeshCounts&) { return 0; }
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
-  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  std::span<const Vec3> apply(std::span<const VertexLoad> loads) noexcept override;
   ModelTraits traits() noexcept override { return {.constant_compliance = true}; }
   std::vector<MemoryPart> memory() const override;
 

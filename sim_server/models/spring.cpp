@@ -78,16 +78,16 @@ void Spring::compliance(std::span<const int> vertices, ContactPatch& patch) cons
   }
 }
 
-std::span<const Vec3> Spring::apply(std::span<const NodalLoad> loads) noexcept {
+std::span<const Vec3> Spring::apply(std::span<const VertexLoad> loads) noexcept {
   Vec3 force = Vec3::Zero();
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     if (held_[load.vertex] == 0) force += load.force;
   }
   const Vec3 linear = force.cwiseQuotient(stiffness_);
   state_.moved = linear / hardening(force.dot(linear) / stiffness_.mean() * per_length2_);
   for (std::size_t v = 0; v < rest_.size(); ++v)
     state_.positions[v] = held_[v] != 0 ? rest_[v] : Vec3(rest_[v] + state_.moved);
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     if (held_[load.vertex] != 0) state_.positions[load.vertex] += held_compliance_ * load.force;
   }
   return state_.positions;

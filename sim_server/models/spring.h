@@ -36,7 +36,7 @@ class Spring final : public DeformationModel, public StatefulModel {
   FreeMotion free_motion(double dt) noexcept override;
   /// T^-1 for every pair of free vertices, under the loads of now.
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
-  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
+  std::span<const Vec3> apply(std::span<const VertexLoad> loads) noexcept override;
   ModelTraits traits() noexcept override { return {.constant_compliance = per_length2_ == 0, .state = this}; }
   std::vector<MemoryPart> memory() const override;
   std::any save() override { return state_; }

@@ -177,7 +177,7 @@ void TensorMass::update_free() noexcept {
 /// Of the loads that move something: their first number, and their force.
 template <class Act>
 void TensorMass::for_loads(const Act& act) const {
-  for (const NodalLoad& load : loads_) {
+  for (const VertexLoad& load : loads_) {
     if (compliance_.yields(load.vertex)) act(first_[load.vertex], load.force);
   }
 }
@@ -214,7 +214,7 @@ void TensorMass::calm_loaded() noexcept {
   });
 }
 
-void TensorMass::apply_loads(std::span<const NodalLoad> loads) noexcept {
+void TensorMass::apply_loads(std::span<const VertexLoad> loads) noexcept {
   std::ranges::copy(free_, positions_.begin());
   compliance_.move(loads, positions_);
 }
@@ -223,13 +223,13 @@ void TensorMass::compliance(std::span<const int> vertices, ContactPatch& patch) 
   compliance_.fill(vertices, patch);
 }
 
-std::span<const Vec3> TensorMass::apply(std::span<const NodalLoad> loads) noexcept {
+std::span<const Vec3> TensorMass::apply(std::span<const VertexLoad> loads) noexcept {
   loads_.assign(loads.begin(), loads.end());
   apply_loads(loads);
   return positions_;
 }
 
-Mat3 TensorMass::later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept {
+Mat3 TensorMass::later_compliance(std::span<const VertexLoad> loads, double seconds) const noexcept {
   if (!published_) return Mat3::Zero();
   return published_->compliance(loads, seconds) - compliance_.of_loads(loads);
 }
@@ -260,7 +260,7 @@ std::vector<MemoryPart> TensorMass::memory() const {
       {"compliance", compliance_.bytes(), compliance_.detail()},
       {"motion", motion_.bytes() + 4 * force_.size() * sizeof(double)},
       {"positions", (rest_.size() + free_.size() + positions_.size() + 2 * nodes_.size()) * sizeof(Vec3) +
-                        loads_.capacity() * sizeof(NodalLoad) + first_.size() * sizeof(int) +
+                        loads_.capacity() * sizeof(VertexLoad) + first_.size() * sizeof(int) +
                         compliance_.index_bytes()}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
   if (published_) parts.push_back({"motion told to clients", published_->bytes(), published_->detail()});

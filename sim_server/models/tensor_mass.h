@@ -39,8 +39,8 @@ class TensorMass final : public DeformationModel,
   /// about it. The loads of the last `apply` are those of the period that ends; the next runs free of any.
   FreeMotion free_motion(double dt) noexcept override;
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
-  std::span<const Vec3> apply(std::span<const NodalLoad> loads) noexcept override;
-  Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept override;
+  std::span<const Vec3> apply(std::span<const VertexLoad> loads) noexcept override;
+  Mat3 later_compliance(std::span<const VertexLoad> loads, double seconds) const noexcept override;
   const PublishedModes* modes() const noexcept override { return &published_->modes(); }
   void read_modes(ModalMotion& state) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
@@ -58,7 +58,7 @@ class TensorMass final : public DeformationModel,
   struct State {
     ExplicitMotion::Snapshot motion;
     ExplicitMotion::State begin;
-    std::vector<NodalLoad> loads;
+    std::vector<VertexLoad> loads;
     std::vector<Vec3> free, positions;
     std::optional<MovingSupports::State> supports;
   };
@@ -71,7 +71,7 @@ class TensorMass final : public DeformationModel,
   void run_on() noexcept;
   void calm_loaded() noexcept;
   void update_free() noexcept;
-  void apply_loads(std::span<const NodalLoad> loads) noexcept;
+  void apply_loads(std::span<const VertexLoad> loads) noexcept;
 
   SurfaceCompliance compliance_;
   ElasticTensors tensors_;
@@ -81,7 +81,7 @@ class TensorMass final : public DeformationModel,
   ExplicitMotion motion_;                     // at the end of the period, free of loads
   ExplicitMotion::State start_;               // at its beginning
   std::vector<double> force_;                 // over it, N
-  std::vector<NodalLoad> loads_;              // over it
+  std::vector<VertexLoad> loads_;             // over it
   std::optional<MovingSupports> supports_;    // where some move
   std::optional<PublishedMotion> published_;  // unless the scene leaves it out
   std::vector<int> first_;  // per surface vertex: its first number in `motion_`, or -1: fixed

@@ -35,7 +35,7 @@ std::optional<double> ErrorOfForce::finest(std::size_t tool, std::span<const Tri
 }
 
 DiscretisationErrors ErrorOfForce::of_step(std::size_t tool,
-                                           std::span<const NodalLoad> loads) const noexcept {
+                                           std::span<const VertexLoad> loads) const noexcept {
   return of(tool, tools_[tool].mesh.of(loads));
 }
 

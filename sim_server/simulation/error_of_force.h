@@ -17,9 +17,11 @@ class ErrorOfForce {
                const std::optional<DiscretisationErrors>& studied = {});
 
   /// Returns the errors of a step in which a tool loads the surface so. O(loads); does not allocate.
-  DiscretisationErrors of_step(std::size_t tool, std::span<const NodalLoad> loads) const noexcept;
+  DiscretisationErrors of_step(std::size_t tool, std::span<const VertexLoad> loads) const noexcept;
   /// Adds a step, which is then part of `elements_per_radius` and `of_all_steps`.
-  void add_step(std::size_t tool, std::span<const NodalLoad> loads) noexcept { tools_[tool].mesh.add(loads); }
+  void add_step(std::size_t tool, std::span<const VertexLoad> loads) noexcept {
+    tools_[tool].mesh.add(loads);
+  }
 
   /// Elements to a radius of a tool that can press, where the mesh is finest of what it can touch; nothing
   /// where no mesh of elements is touched so.

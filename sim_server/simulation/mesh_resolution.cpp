@@ -72,9 +72,9 @@ void MeshResolution::set_inside(const Surface& surface, const TetMesh& mesh, dou
   }
 }
 
-MeshResolution::Sums MeshResolution::sums_of(std::span<const NodalLoad> loads) const noexcept {
+MeshResolution::Sums MeshResolution::sums_of(std::span<const VertexLoad> loads) const noexcept {
   Sums sums;
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     const double weight = load.force.norm();
     if (!std::isfinite(weight) || fineness_[load.vertex] == 0) continue;  // that of a copy is not known
     sums.elements += weight * fineness_[load.vertex];
@@ -83,7 +83,7 @@ MeshResolution::Sums MeshResolution::sums_of(std::span<const NodalLoad> loads) c
   return sums;
 }
 
-std::optional<double> MeshResolution::of(std::span<const NodalLoad> loads) const noexcept {
+std::optional<double> MeshResolution::of(std::span<const VertexLoad> loads) const noexcept {
   const Sums sums = sums_of(loads);
   if (sums.weight == 0) return {};
   return sums.elements / sums.weight;
@@ -97,7 +97,7 @@ std::optional<double> MeshResolution::finest(std::span<const Triangle> touchable
   return most;
 }
 
-void MeshResolution::add(std::span<const NodalLoad> loads) noexcept {
+void MeshResolution::add(std::span<const VertexLoad> loads) noexcept {
   const Sums sums = sums_of(loads);
   all_.elements += sums.elements;
   all_.weight += sums.weight;

@@ -20,11 +20,11 @@ class MeshResolution {
   MeshResolution(const Surface& surface, std::span<const Vec3> rest, double radius, const TetMesh& mesh);
 
   /// Mean over what the tool loads in one step; nothing where it loads nothing. O(loads); does not allocate.
-  std::optional<double> of(std::span<const NodalLoad> loads) const noexcept;
+  std::optional<double> of(std::span<const VertexLoad> loads) const noexcept;
   /// Returns the finest resolution that a tool can touch; nothing where it can touch nothing. O(triangles).
   std::optional<double> finest(std::span<const Triangle> touchable) const;
   /// Adds what the tool loads in one step. O(loads); does not allocate.
-  void add(std::span<const NodalLoad> loads) noexcept;
+  void add(std::span<const VertexLoad> loads) noexcept;
   /// Mean over all loads so far; nothing before the first.
   std::optional<double> elements_per_radius() const noexcept;
 
@@ -35,7 +35,7 @@ class MeshResolution {
   struct Sums {
     double elements = 0, weight = 0;
   };
-  Sums sums_of(std::span<const NodalLoad> loads) const noexcept;
+  Sums sums_of(std::span<const VertexLoad> loads) const noexcept;
   Sums all_;
 };
 

@@ -73,7 +73,7 @@ class Simulation {
   std::shared_ptr<const PublishedSurface> published_surface() const noexcept;
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
   /// Loads of a tool on the surface.
-  std::span<const NodalLoad> loads(std::size_t tool) const noexcept { return tissue_.loads_of(tool); }
+  std::span<const VertexLoad> loads(std::size_t tool) const noexcept { return tissue_.loads_of(tool); }
   /// Distance of a tool from the surface that it can touch, m; nothing for a lifted tool. O(vertices).
   std::optional<double> gap(std::size_t tool) const noexcept;
   /// Triangles that a tool can touch; corners: surface vertices.

@@ -125,7 +125,7 @@ Vec3 Simulation::residual_shift(std::size_t tool, int vertex) {
   Vec3 shift = Vec3::Zero();
   for (std::size_t other = 0; other < tools_.size(); ++other) {
     if (other == tool) continue;
-    for (const NodalLoad& load : tissue_.loads_of(other)) {
+    for (const VertexLoad& load : tissue_.loads_of(other)) {
       tissue_.traits.client->residual_compliance(std::array{vertex, load.vertex}, pair_);
       shift += pair_.compliance.block<3, 3>(0, 3) * load.force;
     }

@@ -8,9 +8,9 @@ namespace {
 constexpr double kLittle = 1e-3;  // N: what the tissue is asked about on top of its loads
 constexpr double kMostFeedback = 0.9;
 
-double weight_of(std::span<const NodalLoad> loads) noexcept {
+double weight_of(std::span<const VertexLoad> loads) noexcept {
   double sum = 0;
-  for (const NodalLoad& load : loads) sum += load.force.norm();
+  for (const VertexLoad& load : loads) sum += load.force.norm();
   return sum;
 }
 
@@ -63,9 +63,9 @@ OtherTools ToolCoupling::others_of(std::size_t tool, std::span<const ToolContact
 void ToolCoupling::load(const Tissue& tissue, std::size_t tools, std::size_t pressed, const Vec3& force) {
   loads_.clear();
   for (std::size_t k = 0; k < tools; ++k) {
-    const std::span<const NodalLoad> own = tissue.loads_of(k);
+    const std::span<const VertexLoad> own = tissue.loads_of(k);
     const double all = weight_of(own);
-    for (const NodalLoad& load : own) {
+    for (const VertexLoad& load : own) {
       const double fraction = all > 0 ? load.force.norm() / all : 1 / static_cast<double>(own.size());
       loads_.push_back({load.vertex, k == pressed ? Vec3(load.force + fraction * force) : load.force});
     }

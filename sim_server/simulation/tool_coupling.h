@@ -34,7 +34,7 @@ class ToolCoupling {
   /// (I - M_i K_i)^-1: how far tool i goes relative to the surface under it, for each m that it goes.
   const Mat3& relative_motion(std::size_t tool) const noexcept { return relative_[tool]; }
   std::size_t bytes() const {
-    return (surface_.capacity() + moved_.capacity()) * sizeof(Vec3) + loads_.capacity() * sizeof(NodalLoad);
+    return (surface_.capacity() + moved_.capacity()) * sizeof(Vec3) + loads_.capacity() * sizeof(VertexLoad);
   }
 
  private:
@@ -46,7 +46,7 @@ class ToolCoupling {
   OtherTools others_of(std::size_t tool, std::span<const ToolContact> tools,
                        std::span<const Vec3> velocities) const;
 
-  std::vector<NodalLoad> loads_;
+  std::vector<VertexLoad> loads_;
   std::vector<Vec3> surface_, moved_;  // vertices: where they are, m; how far one force carries them, m/N
   Matrix compliance_;                  // G (3n x 3n), zero on the diagonal
   std::vector<OtherTools> others_;

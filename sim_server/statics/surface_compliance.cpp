@@ -239,20 +239,20 @@ void SurfaceCompliance::fill(int node, ContactPatch& patch) const noexcept {
     patch.compliance.block<3, 3>(3 * i, 3 * node) = block(patch.vertices[i], patch.vertices[node]);
 }
 
-Mat3 SurfaceCompliance::of_loads(std::span<const NodalLoad> loads) const noexcept {
+Mat3 SurfaceCompliance::of_loads(std::span<const VertexLoad> loads) const noexcept {
   const Vec3 sum = sum_of(loads);
   Mat3 yields = Mat3::Zero();
-  for (const NodalLoad& a : loads) {
-    for (const NodalLoad& b : loads)
+  for (const VertexLoad& a : loads) {
+    for (const VertexLoad& b : loads)
       yields += fraction_of(a, sum) * fraction_of(b, sum) * block(a.vertex, b.vertex);
   }
   return yields;
 }
 
-void SurfaceCompliance::move(std::span<const NodalLoad> loads, std::span<Vec3> positions) noexcept {
+void SurfaceCompliance::move(std::span<const VertexLoad> loads, std::span<Vec3> positions) noexcept {
   moved_.setZero();
   loads_.clear();
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     const int column = row_[load.vertex];
     if (column < 0) {
       positions[load.vertex] += held_compliance_ * load.force;

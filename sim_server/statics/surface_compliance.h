@@ -73,15 +73,15 @@ class SurfaceCompliance final : public ComplianceSource {
   /// True if the tissue yields at a surface vertex: it is free, and a tool can reach it.
   bool yields(int vertex) const noexcept { return row_[vertex] >= 0; }
   /// Returns the compliance (m/N) of the surface that bears these loads, as one piece. O(loads^2).
-  Mat3 of_loads(std::span<const NodalLoad> loads) const noexcept;
+  Mat3 of_loads(std::span<const VertexLoad> loads) const noexcept;
   /// Moves `positions` (surface vertices, m) by what `loads` do. O(r x loads); in tiles, O(r x rank x loaded
   /// tiles).
-  void move(std::span<const NodalLoad> loads, std::span<Vec3> positions) noexcept;
+  void move(std::span<const VertexLoad> loads, std::span<Vec3> positions) noexcept;
 
   /// Returns the memory of W and of the numbers of its rows, bytes.
   std::size_t bytes() const;
   std::size_t index_bytes() const {
-    return (row_.size() + vertices().size()) * sizeof(int) + loads_.capacity() * sizeof(PointLoad);
+    return (row_.size() + vertices().size()) * sizeof(int) + loads_.capacity() * sizeof(VertexLoad);
   }
 
  private:
@@ -103,9 +103,9 @@ class SurfaceCompliance final : public ComplianceSource {
   std::optional<BlockLowRankMatrix> tiles_;
   Eigen::Map<Eigen::MatrixXd> compliance_{nullptr, 0, 0};  // the dense one
   std::string note_;
-  double held_compliance_;        // m/N, of a fixed vertex under the tool itself
-  Eigen::VectorXd moved_;         // (3r) what the loads of a `move` do, m
-  std::vector<PointLoad> loads_;  // of a `move`, on tiles
+  double held_compliance_;         // m/N, of a fixed vertex under the tool itself
+  Eigen::VectorXd moved_;          // (3r) what the loads of a `move` do, m
+  std::vector<VertexLoad> loads_;  // of a `move`, on tiles
 };
 
 }  // namespace palpate::sim

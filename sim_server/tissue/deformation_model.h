@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/contact/contact_solver.h"
+#include "common/contact/vertex_load.h"
 #include "sim_server/mesh/tet_mesh.h"
 
 namespace palpate::sim {
@@ -17,26 +18,6 @@ struct Parting;
 struct PublishedSurface;
 struct PublishedModes;
 struct ModalMotion;
-
-/// A force on one vertex of the surface.
-struct NodalLoad {
-  int vertex;  ///< surface vertex
-  Vec3 force;  ///< N, world
-  bool operator==(const NodalLoad&) const = default;
-};
-
-/// Returns the fraction of `sum` that a load contributes along it, 0 where the sum is 0. The fractions of all
-/// loads add up to 1.
-inline double fraction_of(const NodalLoad& load, const Vec3& sum) {
-  const double size = sum.squaredNorm();
-  return size > 0 ? load.force.dot(sum) / size : 0;
-}
-/// Returns the sum of the forces of these loads, N.
-inline Vec3 sum_of(std::span<const NodalLoad> loads) {
-  Vec3 sum = Vec3::Zero();
-  for (const NodalLoad& load : loads) sum += load.force;
-  return sum;
-}
 
 /// Shape of the surface free of contact (n vertices, world frame). Valid until the model is called again.
 struct FreeMotion {
@@ -147,7 +128,7 @@ class LaterCompliance {
   virtual ~LaterCompliance() = default;
   /// Returns how much more (m/N, symmetric) the surface that bears these loads, as one piece, yields to a
   /// force held for `seconds` than to one held to the end of the step, which `compliance` describes.
-  virtual Mat3 later_compliance(std::span<const NodalLoad> loads, double seconds) const noexcept = 0;
+  virtual Mat3 later_compliance(std::span<const VertexLoad> loads, double seconds) const noexcept = 0;
 };
 
 /// Capability of a model that knows the positions of all mesh vertices.
@@ -211,7 +192,7 @@ class DeformationModel {
   virtual void compliance(std::span<const int> vertices, ContactPatch& patch) const = 0;
 
   /// Replaces the loads. Returns the positions (n) under them, valid until the next call.
-  virtual std::span<const Vec3> apply(std::span<const NodalLoad> loads) = 0;
+  virtual std::span<const Vec3> apply(std::span<const VertexLoad> loads) = 0;
 
   /// Returns the properties and capabilities of this model. The same at each call; read once, at set-up.
   virtual ModelTraits traits() noexcept = 0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/contact/tool.h"
+#include "common/contact/vertex_load.h"
 #include "common/discretisation_error.h"
 #include "sim_server/mesh/tet_mesh.h"
 
@@ -34,12 +35,6 @@ struct SceneFacts {
   std::vector<std::string> fields{};  ///< what the organ can be coloured by here
 };
 
-/// A force on a vertex of the surface, N.
-struct SeenLoad {
-  std::uint32_t vertex = 0;
-  std::array<float, 3> force{};
-};
-
 /// State of one tool after a step. World frame, m, N.
 struct SeenTool {
   static constexpr std::size_t kMostLoads = 64;
@@ -47,7 +42,7 @@ struct SeenTool {
   ToolPose pose;
   Vec3 f_W = Vec3::Zero();
   std::size_t load_count = 0;  ///< of `loads`, at most `kMostLoads`: the rest is not shown
-  std::array<SeenLoad, kMostLoads> loads{};
+  std::array<VertexLoad, kMostLoads> loads{};
   /// Newest force sample of the tool; number 0: none yet.
   struct Sample {
     std::uint64_t number = 0;

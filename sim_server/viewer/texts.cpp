@@ -41,10 +41,9 @@ Json tool_json(const Tool& tool) {
 
 Json loads_json(const SeenTool& tool) {
   Json loads = Json::array();
-  for (const SeenLoad& load : std::span(tool.loads).first(tool.load_count)) {
-    const auto& f = load.force;
-    loads.push_back({load.vertex, brief(static_cast<double>(f[0])), brief(static_cast<double>(f[1])),
-                     brief(static_cast<double>(f[2]))});
+  for (const VertexLoad& load : std::span(tool.loads).first(tool.load_count)) {
+    const Vec3 f = load.force.cast<float>().cast<double>();
+    loads.push_back({load.vertex, brief(f[0]), brief(f[1]), brief(f[2])});
   }
   return loads;
 }

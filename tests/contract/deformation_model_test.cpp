@@ -13,7 +13,7 @@ using namespace palpate::test;
 namespace {
 
 /// Two loads, turned as the scene is: large enough for the laws to differ.
-std::vector<NodalLoad> two_loads(const ModelBench& bench, const Mat3& turn = Mat3::Identity()) {
+std::vector<VertexLoad> two_loads(const ModelBench& bench, const Mat3& turn = Mat3::Identity()) {
   return {{bench.size() - 1, turn * Vec3(0.06, -0.03, -0.12)}, {bench.size() - 4, turn * Vec3(0, 0.05, 0.1)}};
 }
 
@@ -43,9 +43,9 @@ CONTRACT("every deformation model", ModelCase, choice, model_cases()) {
     CHECK((c.norm() > 0 || patch.tool_compliance > 0));
   }
   SECTION("loads move the surface by compliance times load, and it comes back without them") {
-    std::vector<NodalLoad> loads{{0, Vec3(0.01, -0.02, 0.03)}, {n - 1, Vec3(-0.05, 0.01, -0.1)}};
+    std::vector<VertexLoad> loads{{0, Vec3(0.01, -0.02, 0.03)}, {n - 1, Vec3(-0.05, 0.01, -0.1)}};
     Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * n);
-    for (const NodalLoad& load : loads) f.segment<3>(3 * load.vertex) = load.force;
+    for (const VertexLoad& load : loads) f.segment<3>(3 * load.vertex) = load.force;
     const Eigen::VectorXd expected = c * f;
     const std::span<const Vec3> at = model.free_motion(1e-3).positions;
     const std::vector<Vec3> free(at.begin(), at.end());
@@ -57,14 +57,14 @@ CONTRACT("every deformation model", ModelCase, choice, model_cases()) {
     for (int v = 0; v < n; ++v) CHECK((back[v] - free[v]).norm() < 1e-12);
   }
   SECTION("fixed vertices never move") {
-    const std::span<const Vec3> moved = model.apply(std::vector<NodalLoad>{{n - 1, Vec3(1, 1, 1)}});
+    const std::span<const Vec3> moved = model.apply(std::vector<VertexLoad>{{n - 1, Vec3(1, 1, 1)}});
     for (int v = 0; v < n; ++v) {
       const Vec3& rest = bench.mesh.vertices[bench.surface.vertices[v]];
       if (rest[2] == 0) CHECK(moved[v] == rest);
     }
   }
   SECTION("a step does not allocate") {
-    const std::vector<NodalLoad> loads{{0, Vec3(0.01, 0, 0)}};
+    const std::vector<VertexLoad> loads{{0, Vec3(0.01, 0, 0)}};
     std::size_t allocations = 1;
     {
       const test::AllocationGuard guard;
@@ -85,7 +85,7 @@ CONTRACT("compliance is the slope of where loads lead, once all is said about th
   const int held = held_until_fresh(choice);
   const auto pressed = [&](int axis, double by) {
     auto bench = std::make_unique<ModelBench>(choice, kDamped);
-    std::vector<NodalLoad> loads = two_loads(*bench);
+    std::vector<VertexLoad> loads = two_loads(*bench);
     for (int i = 0; i < 5 + held; ++i) bench->step(loads);
     loads[0].force[axis] += by;
     const std::span<const Vec3> moved = bench->instant(loads);

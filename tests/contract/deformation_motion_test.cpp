@@ -86,7 +86,7 @@ struct Fading {
   }
 };
 
-std::vector<NodalLoad> pull(const ModelBench& bench, double fraction) {
+std::vector<VertexLoad> pull(const ModelBench& bench, double fraction) {
   return {{bench.size() - 1, fraction * Vec3(0.06, -0.03, 0.1)},
           {bench.size() - 3, fraction * Vec3(0, 0.1, -0.05)}};
 }
@@ -107,9 +107,9 @@ CONTRACT("what a body stores is never more than loads have put in, and a cycle o
   double work = 0, most = 0;
   std::vector<Vec3> before = bench.step({});
   for (int i = 0; i < 300; ++i) {
-    const std::vector<NodalLoad> loads = pull(bench, fraction_of(i));
+    const std::vector<VertexLoad> loads = pull(bench, fraction_of(i));
     const std::vector<Vec3> now = bench.step(loads);
-    for (const NodalLoad& load : loads) work += load.force.dot(now[load.vertex] - before[load.vertex]);
+    for (const VertexLoad& load : loads) work += load.force.dot(now[load.vertex] - before[load.vertex]);
     const double elastic = stores ? body.elastic(now) : 0;
     most = std::max(most, elastic);
     CHECK(elastic <= work * (1 + 1e-9) + 1e-18);
@@ -168,14 +168,14 @@ CONTRACT("let go, a body without mass is back at rest at once", ModelCase, choic
 CONTRACT("under loads that stay, a body comes to rest in the static equilibrium, to 1e-6", ModelCase, choice,
          model_cases([](const ModelCase& c) { return !exempt(c, "static limit"); })) {
   ModelBench bench(choice, {.rate_hz = 30, .rayleigh_mass = 30, .rayleigh_stiffness = 1e-3});
-  const std::vector<NodalLoad> loads = pull(bench, 1);
+  const std::vector<VertexLoad> loads = pull(bench, 1);
   std::vector<Vec3> moved;
   for (int i = 0; i < 120; ++i) moved = bench.step(loads);
   const Solid solid(bench.mesh, relaxed(*bench.scene.material));
   std::vector<HeldAxes> held(bench.mesh.vertices.size(), 0);
   for (const int v : bench.fixed) held[v] = kAllAxes;
   const auto forces = [&](std::span<const Vec3>, std::span<Vec3> f) {
-    for (const NodalLoad& load : loads) f[bench.surface.vertices[load.vertex]] += load.force;
+    for (const VertexLoad& load : loads) f[bench.surface.vertices[load.vertex]] += load.force;
   };
   const Equilibrium found = find_equilibrium(solid, {.forces = forces, .held = held}, "test");
   double off = 0;

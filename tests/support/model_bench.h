@@ -52,14 +52,14 @@ struct ModelBench {
   const Vec3& rest(int v) const { return mesh.vertices[surface.vertices[v]]; }
 
   /// Where the next of the instants of a step leads under these loads, looked at again until all is said.
-  std::span<const Vec3> instant(std::span<const sim::NodalLoad> loads) {
+  std::span<const Vec3> instant(std::span<const VertexLoad> loads) {
     model->free_motion(1 / scene.rate_hz / traits.instants);
     std::span<const Vec3> moved = model->apply(loads);
     while (traits.nonlinear && traits.nonlinear->relinearise()) moved = model->apply(loads);
     return moved;
   }
   /// Where one step under these loads leads.
-  std::vector<Vec3> step(std::span<const sim::NodalLoad> loads) {
+  std::vector<Vec3> step(std::span<const VertexLoad> loads) {
     for (int i = 1; i < traits.instants; ++i) instant(loads);
     const std::span<const Vec3> moved = instant(loads);
     return {moved.begin(), moved.end()};

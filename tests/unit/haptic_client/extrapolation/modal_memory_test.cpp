@@ -148,7 +148,7 @@ TEST_CASE("modal memory: a force on the tool pushes the surface the other way, a
   ModalMemory memory;
   REQUIRE(memory.place_near(triangle.model, Vec3::Zero()));
   REQUIRE(memory.take(triangle.published(0, 0), 0s, Vec3::Zero()));
-  const std::array loads{SurfaceLoad{0, Vec3(0, -1, 0)}, SurfaceLoad{1, Vec3(0, -1, 0)}};
+  const std::array loads{VertexLoad{0, Vec3(0, -1, 0)}, VertexLoad{1, Vec3(0, -1, 0)}};
   REQUIRE(memory.carry(triangle.model, loads));
   for (Time t = 2ms; t < 10s; t += 2ms) {
     memory.advance(t);
@@ -276,7 +276,7 @@ TEST_CASE("modal memory: neither ticks nor samples allocate") {
     memory.advance(t);
     memory.apply_loads(Vec3(0, 1, 0));
   }
-  const std::array loads{SurfaceLoad{1, Vec3(0, -1, 0)}};
+  const std::array loads{VertexLoad{1, Vec3(0, -1, 0)}};
   for (Time t = 1s; t < 2s; t += 2ms) {  // and where it relaxes
     memory.place_near(triangle.model, Vec3::Zero());
     if (t.count() % 30'000'000 == 0) memory.take(triangle.published(0.01, 0, 0.001), t - 20ms, Vec3::Zero());

@@ -60,7 +60,7 @@ protocol::RelaxedState published(int number, const Vec3& psi) {
 TEST_CASE(
     "relaxing loads: a vertex that is pressed creeps by the closed form, and comes back when it is not") {
   const SurfaceModel model = surface();
-  const std::array pressed{SurfaceLoad{3, Vec3(0, -2, 1)}, SurfaceLoad{kHeld, Vec3(0, -5, 0)}};
+  const std::array pressed{VertexLoad{3, Vec3(0, -2, 1)}, VertexLoad{kHeld, Vec3(0, -5, 0)}};
   RelaxingLoads loads;
   loads.begin(0s, kSeries);
   loads.apply_loads(model, pressed, 0.5);
@@ -83,7 +83,7 @@ TEST_CASE(
 TEST_CASE(
     "relaxing loads: what a sample says of the past goes on to now under the loads since, in any delay") {
   const SurfaceModel model = surface();
-  const std::array pressed{SurfaceLoad{3, Vec3(0, -1, 0)}};
+  const std::array pressed{VertexLoad{3, Vec3(0, -1, 0)}};
   for (const Time delay : {0ms, 20ms, 90ms}) {
     for (const Time tick : {2ms, 5ms}) {
       CAPTURE(delay.count(), tick.count());
@@ -112,7 +112,7 @@ TEST_CASE("relaxing loads: vertices beyond their number, and of no model, change
   loads.begin(0s, kSeries);
   Time t = 2ms;
   for (int number = 0; number < 2 * static_cast<int>(kVertices); ++number, t += 2ms) {
-    const std::array pressed{SurfaceLoad{number % static_cast<int>(kHeld), Vec3(0, -1, 0)}};
+    const std::array pressed{VertexLoad{number % static_cast<int>(kHeld), Vec3(0, -1, 0)}};
     loads.advance(t);
     loads.apply_loads(model, pressed, 1);
     loads.take(model, published(60000, Vec3(0, -1, 0)), t);

@@ -106,7 +106,7 @@ Moved moved_in(const Published& published, const ToolAnswer& answer) {
   const PublishedModes& modes = *simulation.published_modes();
   std::vector<int> vertices;
   Eigen::VectorXd forces(3 * static_cast<Eigen::Index>(simulation.loads(0).size()));
-  for (const NodalLoad& load : simulation.loads(0)) {
+  for (const VertexLoad& load : simulation.loads(0)) {
     forces.segment<3>(3 * static_cast<Eigen::Index>(vertices.size())) = load.force;
     vertices.push_back(load.vertex);
   }
@@ -156,7 +156,7 @@ TEST_CASE("a surface that can be cut: where a tool holds still, its modes stand 
     REQUIRE(answer.modes != nullptr);
     const PublishedModes& modes = *published.simulation.published_modes();
     Eigen::VectorXd held = Eigen::VectorXd::Zero(modes.published);
-    for (const NodalLoad& load : published.simulation.loads(0))
+    for (const VertexLoad& load : published.simulation.loads(0))
       held += modes.shapes.middleRows<3>(3 * load.vertex).leftCols(modes.published).transpose() * load.force;
     held.array() /= modes.frequencies.head(modes.published).array().square();
     CHECK((answer.modes->q - held).norm() < 0.02 * held.norm());  // contact in a pit chatters

@@ -132,7 +132,7 @@ TEST_CASE(
     swings.traits().client->residual_compliance(all, patch);
     const auto size = static_cast<Eigen::Index>(3 * all.size());
     Eigen::VectorXd phi = Eigen::VectorXd::Zero(size);
-    for (const NodalLoad& load : swings.loads(0)) phi.segment<3>(3 * load.vertex) += load.force;
+    for (const VertexLoad& load : swings.loads(0)) phi.segment<3>(3 * load.vertex) += load.force;
     for (std::size_t v = 0; v < all.size(); ++v)
       phi.segment<3>(static_cast<Eigen::Index>(3 * v)) +=
           0.4 * answer.modes->psi[2 * v] + 0.2 * answer.modes->psi[2 * v + 1];
@@ -152,7 +152,7 @@ TEST_CASE(
     double off = 0, force = 0;
     for (Eigen::Index k = 0; k < 5; ++k) {
       double pushed = 0;
-      for (const NodalLoad& load : swings.loads(0))
+      for (const VertexLoad& load : swings.loads(0))
         pushed += modes.shapes.col(k).segment<3>(3 * load.vertex).dot(load.force);
       const double w2 = modes.frequencies[k] * modes.frequencies[k], q = answer.modes->q[k];
       off += std::abs(w2 * (q - 0.4 * answer.modes->z(k, 0) - 0.2 * answer.modes->z(k, 1)) - pushed);
@@ -184,7 +184,7 @@ TEST_CASE(
       REQUIRE(answer.force.norm() > 0.01);
       // At rest, w^2 q is how hard both tools together drive a mode.
       Eigen::VectorXd driven = *answer.modal_loads;
-      for (const NodalLoad& load : swings.loads(tool))
+      for (const VertexLoad& load : swings.loads(tool))
         driven +=
             modes.shapes.middleRows<3>(3 * load.vertex).leftCols(modes.published).transpose() * load.force;
       const Eigen::VectorXd w2 = modes.frequencies.head(modes.published).array().square();
@@ -202,7 +202,7 @@ TEST_CASE(
       ContactPatch patch;
       patch.reserve(2, 0);
       patch.free.resize(2);
-      for (const NodalLoad& load : swings.loads(tool)) {
+      for (const VertexLoad& load : swings.loads(tool)) {
         swings.traits().client->residual_compliance(std::array{vertex, load.vertex}, patch);
         published += patch.compliance.block<3, 3>(0, 3) * load.force;
       }

@@ -65,11 +65,8 @@ TEST_CASE("pictures: what is held and what a tool reaches is told, and the loads
   const ToolForce force = simulation.step(Vec3(0.01, 0.0405, 0.01), 0.03);
   REQUIRE(force.contacts > 0);
   show_organ(simulation, picture);
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < picture.tools[0].load_count; ++k) {
-    const auto& f = picture.tools[0].loads[k].force;
-    sum += Vec3(static_cast<double>(f[0]), static_cast<double>(f[1]), static_cast<double>(f[2]));
-  }
+  const SeenTool& tool = picture.tools[0];
+  const Vec3 sum = sum_of(std::span(tool.loads).first(tool.load_count));
   CHECK((sum + force.force).norm() < 1e-5 * force.force.norm());
   for (std::size_t v = 0; v < facts.organ.rest.size(); ++v)
     CHECK(static_cast<double>(picture.positions[3 * v + 1]) ==

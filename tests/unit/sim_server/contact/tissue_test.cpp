@@ -47,7 +47,7 @@ struct Block {
   }
   /// How far a vertex goes per force on it, m/N.
   double compliance(int vertex) {
-    const NodalLoad load{vertex, Vec3(0, 1, 0)};
+    const VertexLoad load{vertex, Vec3(0, 1, 0)};
     const auto v = static_cast<std::size_t>(vertex);
     return (tissue.model->apply({&load, 1})[v] - tissue.free[v]).y();
   }
@@ -63,7 +63,7 @@ TEST_CASE("tissue: what others move matters to a tool where that met it, or wher
   REQUIRE(compliance > 0);
   const auto load_by_other = [&](int vertex, double newton) {
     ToolTissue second = tissue.touched_by(1);
-    const NodalLoad load{vertex, Vec3(0, newton, 0)};
+    const VertexLoad load{vertex, Vec3(0, newton, 0)};
     second.set_loads({&load, 1});
     second.apply_loads();
   };
@@ -93,10 +93,10 @@ TEST_CASE("grip: of vertices that give way by themselves each takes its own load
   const Grip::Pull pull = grip.pull(*tool.grasp_place + way, block.tissue.touched_by(0));
   CHECK(pull.converged);
   CHECK(pull.rounds == 1);
-  const std::vector<NodalLoad> loads(block.tissue.loads_of(0).begin(), block.tissue.loads_of(0).end());
+  const std::vector<VertexLoad> loads(block.tissue.loads_of(0).begin(), block.tissue.loads_of(0).end());
   REQUIRE(loads.size() == grip.vertices().size());
   double stiffness = 0;  // N/m
-  for (const NodalLoad& load : loads) {
+  for (const VertexLoad& load : loads) {
     const double compliance = block.compliance(load.vertex);
     CHECK((load.force - way / compliance).norm() <= 1e-5 * load.force.norm());
     stiffness += 1 / compliance;

@@ -162,7 +162,7 @@ TEST_CASE("two hot tips cut at once, and a tool that grasps lets go of what is g
       CHECK(answer.force.norm() < 20);
     }
     for (std::size_t tool = 0; tool < 3; ++tool) {
-      for (const NodalLoad& load : simulation.loads(tool))
+      for (const VertexLoad& load : simulation.loads(tool))
         CHECK(simulation.resection()->remaining().on_surface(load.vertex));
     }
   }

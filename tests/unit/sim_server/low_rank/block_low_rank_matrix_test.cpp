@@ -110,7 +110,7 @@ TEST_CASE(
       CHECK((dense(matrix, Sheet::kPoints) - exact).cwiseAbs().maxCoeff() <
             2 * kTolerance * sheet.smallest());
     }
-    std::vector<PointLoad> loads;
+    std::vector<VertexLoad> loads;
     Eigen::VectorXd forces = Eigen::VectorXd::Zero(3 * Sheet::kPoints);
     for (const int point : {0, 3, 399, 120, 121, 3}) {
       loads.push_back({point, random.vector(1)});

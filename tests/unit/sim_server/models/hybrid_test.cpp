@@ -155,7 +155,7 @@ TEST_CASE("hybrid: with modes of the rest it moves as the whole body in motion d
     for (int i = 0; i < 800; ++i) {
       const Vec3 force = i < 400 ? Vec3(0.02, -0.1, 0.01) : Vec3(Vec3::Zero());
       model.free_motion(kStep / 200);
-      const auto at = model.apply(std::vector<NodalLoad>{{cuttable, force}, {condensed, 0.5 * force}});
+      const auto at = model.apply(std::vector<VertexLoad>{{cuttable, force}, {condensed, 0.5 * force}});
       if (i % 20 == 19) seen.push_back({at[cuttable], at[condensed]});
     }
     return seen;

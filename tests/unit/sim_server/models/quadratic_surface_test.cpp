@@ -38,7 +38,7 @@ struct Bar {
 
   /// A pull (N) along the bar, even over its free end: of a quadratic triangle a third on each middle and
   /// nothing on the corners (Zienkiewicz and Taylor 2000, volume 1, chapter 8).
-  std::vector<NodalLoad> pulled(double force) const {
+  std::vector<VertexLoad> pulled(double force) const {
     std::map<int, double> fraction;  // of the area of the end
     for (std::size_t i = 3; i < surface.triangles.size(); i += 4) {
       const Triangle& middle = surface.triangles[i];
@@ -46,7 +46,7 @@ struct Bar {
       if (a[0] < kLong || rest(middle[1])[0] < kLong || rest(middle[2])[0] < kLong) continue;
       for (const int v : middle) fraction[v] += area.norm() / 3;
     }
-    std::vector<NodalLoad> loads;
+    std::vector<VertexLoad> loads;
     for (const auto& [v, area] : fraction) loads.push_back({v, force * area / kArea * Vec3::UnitX()});
     return loads;
   }
@@ -57,7 +57,7 @@ struct Bar {
 TEST_CASE("a bar of quadratic elements, pulled evenly at its surface, gets longer by F L / (E A)") {
   Bar bar;
   constexpr double kPull = 0.02;
-  const std::vector<NodalLoad> loads = bar.pulled(kPull);
+  const std::vector<VertexLoad> loads = bar.pulled(kPull);
   REQUIRE(loads.size() == 16);  // sides and diagonals of 2 x 2 squares: 12 and 4
   const double longer = kPull * kLong / (kTissue.young_modulus * kArea);
   int models = 0;

@@ -71,7 +71,7 @@ TEST_CASE("quasi-static: every element, with fibres or without, moves as a dense
     if (solid.rest()[i][0] == 0) held.push_back(i);
   }
   const FreeDofs dofs(solid.nodes(), held);
-  std::vector<NodalLoad> loads;
+  std::vector<VertexLoad> loads;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(dofs.count);
   for (const int vertex : {3, 17, 30}) {
     const int first = dofs.first[bench.surface.vertices[vertex]];
@@ -101,7 +101,7 @@ TEST_CASE("quasi-static: a bar with fibres along it, pulled at its end, gets lon
     const double area = 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
     for (const int corner : t) fraction[corner] += area / kArea / 3;
   }
-  std::vector<NodalLoad> loads;
+  std::vector<VertexLoad> loads;
   for (const auto& [vertex, part] : fraction) loads.push_back({vertex, part * kPull * Vec3::UnitX()});
   const double longer = kPull * kLength / ((5e3 + 2e4) * kArea);
   const std::span<const Vec3> moved = bench.model->apply(loads);

@@ -122,7 +122,7 @@ TEST_CASE("reduced: slow modes move as they do by themselves, all the rest stand
     for (int step = 0; step < 12; ++step) {
       const Vec3 force = step < 6 ? Vec3(0.02, -0.05 - 0.01 * step, 0.01) : Vec3(Vec3::Zero());
       model.free_motion(kPeriod);
-      const std::span<const Vec3> moved = model.apply(std::vector<NodalLoad>{{pressed, force}});
+      const std::span<const Vec3> moved = model.apply(std::vector<VertexLoad>{{pressed, force}});
       // Each mode for itself, in steps far shorter than it takes.
       const Eigen::VectorXd p = dense.modes.middleRows<3>(dense.dofs.first[node]).transpose() * force;
       for (Eigen::Index k = 0; k < q.size(); ++k) {
@@ -159,8 +159,8 @@ TEST_CASE("reduced: under a load that stays it comes to rest where quasi_static 
   const Bench bench(3);
   Reduced model(bench.inputs());
   QuasiStatic statics(bench.inputs());
-  const std::vector<NodalLoad> loads{{bench.reachable[7], Vec3(0.02, -0.05, 0.01)},
-                                     {bench.reachable.back(), Vec3(0, 0.03, 0)}};
+  const std::vector<VertexLoad> loads{{bench.reachable[7], Vec3(0.02, -0.05, 0.01)},
+                                      {bench.reachable.back(), Vec3(0, 0.03, 0)}};
   std::span<const Vec3> moved;
   for (int step = 0; step < 300; ++step) {
     model.free_motion(kPeriod);

@@ -99,7 +99,7 @@ TEST_CASE(
     Vec3 at = Vec3::Zero();
     for (int i = 0; i < std::lround(end * rate_hz); ++i) {
       model.free_motion(1 / rate_hz);
-      at = model.apply(std::vector<NodalLoad>{{top, Vec3(0.01, -0.05, 0)}})[top];
+      at = model.apply(std::vector<VertexLoad>{{top, Vec3(0.01, -0.05, 0)}})[top];
     }
     return Vec3(at - Vec3(0.005, 0, 0));
   };

@@ -101,11 +101,11 @@ TEST_CASE("tensor_mass: what loads do in a period is what stepping through it do
     const FreeMotion motion = model.free_motion(kPeriod * (period % 2 == 0 ? 1.01 : 0.99));
     CHECK(motion.velocities.empty());
     CHECK(off(motion.positions, all) < 1e-15);
-    const std::vector<NodalLoad> loads{{a, Vec3(0.05, -0.2, 0.01 * period)}, {b, Vec3(0, -0.1, 0)}};
-    const auto moved = model.apply(period == 3 ? std::span<const NodalLoad>() : loads);
+    const std::vector<VertexLoad> loads{{a, Vec3(0.05, -0.2, 0.01 * period)}, {b, Vec3(0, -0.1, 0)}};
+    const auto moved = model.apply(period == 3 ? std::span<const VertexLoad>() : loads);
     if (period == 3) continue;
     std::vector<double> force = none;
-    for (const NodalLoad& load : loads)
+    for (const VertexLoad& load : loads)
       Eigen::Map<Vec3>(force.data() + 3 * tensors.places()[bench.surface.vertices[load.vertex]]) = load.force;
     twin.state = begin;
     twin.run(model.sub_steps(), model.sub_step(), force);
@@ -117,8 +117,8 @@ TEST_CASE("tensor_mass: under a constant load it comes to rest where quasi_stati
   const Bench bench;
   TensorMass model(bench.inputs());
   QuasiStatic still(bench.inputs());
-  const std::vector<NodalLoad> loads{{bench.top(0, 0), Vec3(0.05, -0.2, 0)},
-                                     {bench.top(-0.01, 0.01), Vec3(0, -0.1, 0.1)}};
+  const std::vector<VertexLoad> loads{{bench.top(0, 0), Vec3(0.05, -0.2, 0)},
+                                      {bench.top(-0.01, 0.01), Vec3(0, -0.1, 0.1)}};
   const auto expected = still.apply(loads);
   std::vector<Vec3> rest;
   for (int v = 0; v < static_cast<int>(bench.surface.vertices.size()); ++v) rest.push_back(bench.at(v));
@@ -136,7 +136,7 @@ TEST_CASE("tensor_mass: its nodes inside are those of a body at equilibrium, onc
   const Bench bench;
   TensorMass model(bench.inputs());
   CHECK(std::ranges::equal(model.nodes(), bench.mesh.vertices));
-  const std::vector<NodalLoad> loads{{bench.top(0, 0), Vec3(0.05, -0.2, 0)}};
+  const std::vector<VertexLoad> loads{{bench.top(0, 0), Vec3(0.05, -0.2, 0)}};
   std::span<const Vec3> surface;
   for (int i = 0; i < 100; ++i) {
     model.free_motion(kPeriod);
@@ -179,7 +179,7 @@ TEST_CASE("tensor_mass: without damping its compliance is positive all the same"
 TEST_CASE("tensor_mass: no time, no motion, any other step is a period") {
   const Bench bench;
   TensorMass model(bench.inputs()), other(bench.inputs());
-  const std::vector<NodalLoad> loads{{bench.top(0, 0), Vec3(0, -0.2, 0)}};
+  const std::vector<VertexLoad> loads{{bench.top(0, 0), Vec3(0, -0.2, 0)}};
   for (TensorMass* const m : {&model, &other}) {
     m->free_motion(kPeriod);
     m->apply(loads);

@@ -33,8 +33,8 @@ TEST_CASE("mesh resolution: the radius over the edges that meet where the tool p
   const TwoTriangles two;
   MeshResolution mesh(two.surface, two.rest, kRadius);
   CHECK_FALSE(mesh.elements_per_radius());
-  CHECK_FALSE(mesh.of(std::span<const NodalLoad>{}));
-  const std::vector<NodalLoad> fine{{0, {0, 3, 0}}}, coarse{{4, {0, 0, 1}}};
+  CHECK_FALSE(mesh.of(std::span<const VertexLoad>{}));
+  const std::vector<VertexLoad> fine{{0, {0, 3, 0}}}, coarse{{4, {0, 0, 1}}};
   CHECK(*mesh.of(fine) == Approx(kRadius / two.h));
   CHECK(*mesh.of(coarse) == Approx(kRadius / (2 * two.h)));
   mesh.add(fine), mesh.add(coarse);
@@ -47,7 +47,7 @@ TEST_CASE("mesh resolution: the radius over the edges that meet where the tool p
 TEST_CASE("mesh resolution: where edges have a vertex in their middle, an element is what the edge spans") {
   TwoTriangles two;
   two.surface.per_face = 4;  // these are the quarters of faces with edges twice as long
-  CHECK(*MeshResolution(two.surface, two.rest, kRadius).of(std::vector<NodalLoad>{{0, {1, 0, 0}}}) ==
+  CHECK(*MeshResolution(two.surface, two.rest, kRadius).of(std::vector<VertexLoad>{{0, {1, 0, 0}}}) ==
         Approx(kRadius / (2 * two.h)));
 }
 
@@ -56,8 +56,8 @@ TEST_CASE("mesh resolution: a copy of a vertex, of which nothing is known, tells
   two.rest.push_back(two.rest[0]);
   two.surface.vertices.push_back(6);  // of no triangle yet
   const MeshResolution mesh(two.surface, two.rest, kRadius);
-  CHECK_FALSE(mesh.of(std::vector<NodalLoad>{{6, {0, 1, 0}}}));
-  CHECK(*mesh.of(std::vector<NodalLoad>{{0, {0, 1, 0}}, {6, {0, 1, 0}}}) == Approx(kRadius / two.h));
+  CHECK_FALSE(mesh.of(std::vector<VertexLoad>{{6, {0, 1, 0}}}));
+  CHECK(*mesh.of(std::vector<VertexLoad>{{0, {0, 1, 0}}, {6, {0, 1, 0}}}) == Approx(kRadius / two.h));
 }
 
 TEST_CASE("error of the force: friction and tissue in motion depend on the steps taken, the others do not") {
@@ -66,7 +66,7 @@ TEST_CASE("error of the force: friction and tissue in motion depend on the steps
     scene.deformation.model = model;
     scene.tools.front().shape.friction = friction;
     const Simulation simulation(scene);
-    const std::vector<NodalLoad> loads{{0, {0, 1, 0}}};
+    const std::vector<VertexLoad> loads{{0, {0, 1, 0}}};
     const DiscretisationErrors errors = ErrorOfForce(scene, simulation).of_step(0, loads);
     CHECK(errors.mesh.source == ErrorSource::kEstimated);
     CHECK(errors.mesh.percent >
@@ -93,7 +93,7 @@ TEST_CASE(
   CHECK(found->mesh.percent == 12.5F);
   CHECK(found->time_step.percent == 0.25F);
   const Simulation simulation(scene);
-  const std::vector<NodalLoad> loads{{0, {0, 1, 0}}};
+  const std::vector<VertexLoad> loads{{0, {0, 1, 0}}};
   const DiscretisationErrors errors = ErrorOfForce(scene, simulation, found).of_step(0, loads);
   CHECK(errors.mesh.source == ErrorSource::kMeasured);
   CHECK(errors.mesh.percent == 12.5F);

@@ -96,7 +96,7 @@ TEST_CASE(
   near.free_motion(near.sub_step());
   everywhere.free_motion(near.sub_step());
   for (int k = 0; k < 50; ++k) {
-    const std::vector<NodalLoad> loads{{vertex, Vec3(0, -0.1, 0)}};
+    const std::vector<VertexLoad> loads{{vertex, Vec3(0, -0.1, 0)}};
     const Vec3 published = near.apply(loads)[static_cast<std::size_t>(vertex)],
                right = everywhere.apply(loads)[static_cast<std::size_t>(vertex)];
     CAPTURE(k, published.transpose(), right.transpose());

@@ -109,8 +109,8 @@ struct Plate {
 };
 
 /// Three loads, one of them on what is held.
-std::vector<NodalLoad> loads_on(const Plate& plate) {
-  std::vector<NodalLoad> loads;
+std::vector<VertexLoad> loads_on(const Plate& plate) {
+  std::vector<VertexLoad> loads;
   for (const Vec3& at : {Vec3(0.14, 0.14, 0.01), Vec3(0.07, 0.02, 0.01), Vec3(0, 0.05, 0.01)}) {
     for (std::size_t v = 0; v < plate.surface.vertices.size(); ++v) {
       if ((plate.mesh.vertices[static_cast<std::size_t>(plate.surface.vertices[v])] - at).norm() < 1e-9)
@@ -129,7 +129,7 @@ TEST_CASE(
   constexpr double kTolerance = 1e-4;
   const Plate plate(model, 0);
   const auto dense = plate.make(), tiled = Plate(model, kTolerance).make();
-  const std::vector<NodalLoad> loads = loads_on(plate);
+  const std::vector<VertexLoad> loads = loads_on(plate);
   REQUIRE(loads.size() == 3);
   const auto bytes_of = [](const DeformationModel& of) {
     std::size_t bytes = 0;
@@ -140,7 +140,7 @@ TEST_CASE(
   CHECK(2 * bytes_of(*tiled) < bytes_of(*dense));
 
   std::vector<int> vertices;
-  for (const NodalLoad& load : loads) vertices.push_back(load.vertex);
+  for (const VertexLoad& load : loads) vertices.push_back(load.vertex);
   vertices.push_back(vertices[1] + 1);
   ContactPatch a, b;
   for (ContactPatch* const patch : {&a, &b}) {
@@ -177,7 +177,7 @@ TEST_CASE(
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path());
   const Plate plate("quasi_static", 1e-4);
-  const std::vector<NodalLoad> loads = loads_on(plate);
+  const std::vector<VertexLoad> loads = loads_on(plate);
   const auto moved = [&](DeformationModel& model) {
     const auto at = model.apply(loads);
     return std::vector<Vec3>(at.begin(), at.end());
