@@ -47,9 +47,9 @@ bool valid(const ToolState& m) noexcept {
          is_time(m.t_ns) && m.lead_ns >= 0 && m.lead_ns <= kMaxLead;
 }
 bool valid(const Linearisation& m) noexcept {
-  const bool tangent = std::ranges::all_of(m.tangent, [](double k) { return std::abs(k) <= kMaxMagnitude; });
   const double size = m.normal_W.squaredNorm();
-  return tangent && (size == 0 || std::abs(size - 1) < 1e-6) && m.gap >= 0 && m.gap <= kMaxMagnitude;
+  return m.tangent.cwiseAbs().maxCoeff() <= kMaxMagnitude && (size == 0 || std::abs(size - 1) < 1e-6) &&
+         m.gap >= 0 && m.gap <= kMaxMagnitude;
 }
 /// Says nothing of a radius of 0 where there is no surface.
 bool valid(const SurfaceState& m) noexcept {

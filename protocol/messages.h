@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <variant>
 
+#include "common/contact/linearisation.h"
 #include "common/damped_mode.h"
 #include "common/discretisation_error.h"
 #include "common/relaxation.h"
-#include "common/types.h"
 
 namespace palpate::protocol {
 
@@ -129,17 +129,11 @@ struct ToolState {
   }
 };
 
-/// The force near a place, to first order: F(p) = f + K (p - place) in contact; free of it, the nearest
-/// surface and how stiff it will be.
-struct Linearisation {
-  std::array<double, 6> tangent = {};  ///< K = dF/dp, N/m, symmetric: xx, xy, xz, yy, yz, zz
-  Vec3 normal_W = Vec3::Zero();        ///< outward, unit; zero: no surface near
-  double gap = 0;                      ///< m from tool to surface; 0 in contact
-  template <class Self, class Visitor>
-  static void fields(Self& m, Visitor&& v) {
-    v(m.tangent), v(m.normal_W), v(m.gap);
-  }
-};
+/// Visits a `Linearisation` without its place and force, which a message has beside it.
+template <class Self, class Visitor>
+void linearisation_fields(Self& m, Visitor&& v) {
+  v(m.tangent), v(m.normal_W), v(m.gap);
+}
 
 /// Which model of the surface the tool can touch there is (its pages: `SurfacePage`), and where it stands.
 struct SurfaceState {
@@ -276,8 +270,8 @@ struct ForceSample {
   static void fields(Self& m, Visitor&& v) {
     v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
         v(m.flags);
-    if ((m.flags & kHasTangent) != 0) v(m.surface_v_W), Linearisation::fields(m.at_tool, v);
-    if ((m.flags & kHasAhead) != 0) v(m.ahead_p_W), v(m.ahead_f_W), Linearisation::fields(m.ahead, v);
+    if ((m.flags & kHasTangent) != 0) v(m.surface_v_W), linearisation_fields(m.at_tool, v);
+    if ((m.flags & kHasAhead) != 0) v(m.ahead_p_W), v(m.ahead_f_W), linearisation_fields(m.ahead, v);
     if ((m.flags & kHasSurface) != 0) SurfaceState::fields(m.surface, v);
     if ((m.flags & kHasErrors) != 0) {
       v(m.errors.mesh.source), v(m.errors.mesh.percent);

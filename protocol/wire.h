@@ -32,6 +32,12 @@ class Writer {
   void operator()(double value) noexcept { (*this)(std::bit_cast<std::uint64_t>(value)); }
   void operator()(float value) noexcept { (*this)(std::bit_cast<std::uint32_t>(value)); }
   void operator()(const Vec3& v) noexcept { (*this)(v[0]), (*this)(v[1]), (*this)(v[2]); }
+  /// Symmetric: xx, xy, xz, yy, yz, zz.
+  void operator()(const Mat3& m) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) (*this)(m(i, j));
+    }
+  }
   template <class T, std::size_t N>
   void operator()(const std::array<T, N>& values) noexcept {
     for (const T& value : values) (*this)(value);
@@ -76,6 +82,11 @@ class Reader {
   void operator()(double& value) noexcept { read_real<std::uint64_t>(value); }
   void operator()(float& value) noexcept { read_real<std::uint32_t>(value); }
   void operator()(Vec3& v) noexcept { (*this)(v[0]), (*this)(v[1]), (*this)(v[2]); }
+  void operator()(Mat3& m) noexcept {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) (*this)(m(i, j)), m(j, i) = m(i, j);
+    }
+  }
   template <class T, std::size_t N>
   void operator()(std::array<T, N>& values) noexcept {
     for (T& value : values) (*this)(value);

@@ -20,7 +20,7 @@ double smooth(double s) {
 }
 
 /// The slope of a sample, or nothing that can be used.
-const Linearised* slope(const Sample& sample) {
+const Linearisation* slope(const Sample& sample) {
   return sample.at_tool && usable(*sample.at_tool) ? &*sample.at_tool : nullptr;
 }
 
@@ -34,7 +34,7 @@ std::string_view name_of(ReferenceKind kind) noexcept {
 BetweenSamples::BetweenSamples(const Sample& before, const Sample& after) noexcept
     : before_(before), after_(after), end_(after.p - organ(after.t) - before.p), place_(before.p) {
   missed_ = after.f - before.f;
-  if (has_slopes()) missed_ -= 0.5 * (before.at_tool->k + after.at_tool->k) * end_;
+  if (has_slopes()) missed_ -= 0.5 * (before.at_tool->tangent + after.at_tool->tangent) * end_;
 }
 
 /// How far the organ has moved since t_n, m: as the velocities say, and to where it really came.
@@ -76,25 +76,26 @@ Vec3 BetweenSamples::at(const PathTick& tick) noexcept {
 
 /// Whether both ends have slopes, and these lead from one to the other better than nothing does.
 bool BetweenSamples::has_slopes() const noexcept {
-  const Linearised *first = slope(before_), *there = slope(after_);
+  const Linearisation *first = slope(before_), *there = slope(after_);
   if (first == nullptr || there == nullptr) return false;
   const bool pushed = !before_.f.isZero(0), pushes = !after_.f.isZero(0);
   if (!pushed && !pushes) return true;
   if (pushed && pushes) {
     const double changed = (after_.f - before_.f).norm();
-    const Vec3 missed = after_.f - before_.f - 0.5 * (first->k + there->k) * end_;
-    return missed.norm() <= std::max({changed, (first->k * end_).norm(), (there->k * end_).norm()});
+    const Vec3 missed = after_.f - before_.f - 0.5 * (first->tangent + there->tangent) * end_;
+    return missed.norm() <=
+           std::max({changed, (first->tangent * end_).norm(), (there->tangent * end_).norm()});
   }
-  const Linearised &free = pushed ? *there : *first, &touching = pushed ? *first : *there;
-  const double depth = -(free.gap + free.normal.dot(pushed ? Vec3(-end_) : end_));
-  return depth > kLeastDepth && -touching.f.dot(touching.k * free.normal) > 0;
+  const Linearisation &free = pushed ? *there : *first, &touching = pushed ? *first : *there;
+  const double depth = -(free.gap + free.normal_W.dot(pushed ? Vec3(-end_) : end_));
+  return depth > kLeastDepth && -touching.f_W.dot(touching.tangent * free.normal_W) > 0;
 }
 
 Vec3 BetweenSamples::hermite(const Vec3& x, double fraction) const noexcept {
   const bool pushed = !before_.f.isZero(0), pushes = !after_.f.isZero(0);
   if (!pushed && !pushes) return Vec3::Zero();
   if (!pushed || !pushes) return onset(x);
-  const Mat3 &k = before_.at_tool->k, stiffer = after_.at_tool->k - k;
+  const Mat3 &k = before_.at_tool->tangent, stiffer = after_.at_tool->tangent - k;
   const Vec3 d = x - before_.p;
   return before_.f + k * d + fraction * (stiffer * (d - 0.5 * fraction * end_)) + smooth(fraction) * missed_;
 }
@@ -102,14 +103,14 @@ Vec3 BetweenSamples::hermite(const Vec3& x, double fraction) const noexcept {
 /// The tool is free at one of the samples, and touches at the other.
 Vec3 BetweenSamples::onset(const Vec3& x) const noexcept {
   const bool leaves = !before_.f.isZero(0);
-  const Linearised &free = leaves ? *after_.at_tool : *before_.at_tool,
-                   &touching = leaves ? *before_.at_tool : *after_.at_tool;
+  const Linearisation &free = leaves ? *after_.at_tool : *before_.at_tool,
+                      &touching = leaves ? *before_.at_tool : *after_.at_tool;
   const Vec3& f = leaves ? before_.f : after_.f;
   const Vec3 free_at = leaves ? Vec3(before_.p + end_) : before_.p,
              touching_at = leaves ? before_.p : Vec3(before_.p + end_);
-  const auto depth = [&](const Vec3& p) { return -(free.gap + free.normal.dot(p - free_at)); };
+  const auto depth = [&](const Vec3& p) { return -(free.gap + free.normal_W.dot(p - free_at)); };
   const double deepest = depth(touching_at);
-  const double power = -f.dot(touching.k * free.normal) * deepest / f.squaredNorm();
+  const double power = -f.dot(touching.tangent * free.normal_W) * deepest / f.squaredNorm();
   return std::pow(std::max(depth(x), 0.0) / deepest, std::clamp(power, 1.0, kMostPower)) * f;
 }
 

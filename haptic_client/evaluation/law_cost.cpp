@@ -21,10 +21,10 @@ using namespace std::chrono_literals;
 Sample full_sample(std::uint64_t number, Time t) {
   const double depth = 1e-3 + 1e-4 * static_cast<double>(number % 7);
   Sample sample{.number = number, .t = t, .p = {depth, 0, 0}, .f = {0, 1e3 * depth, 0.1}};
-  Linearised linear{.p = sample.p, .f = sample.f, .normal = {0, 1, 0}};
-  linear.k << -100, 20, 0, 20, -800, 30, 0, 30, -90;
+  Linearisation linear{.p_W = sample.p, .f_W = sample.f, .normal_W = {0, 1, 0}};
+  linear.tangent << -100, 20, 0, 20, -800, 30, 0, 30, -90;
   sample.at_tool = linear;
-  linear.p += Vec3(1e-3, 0, 0);
+  linear.p_W += Vec3(1e-3, 0, 0);
   sample.ahead = linear;
   return sample;
 }

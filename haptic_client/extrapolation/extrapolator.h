@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "common/contact/linearisation.h"
 #include "common/contact/tool.h"
 #include "common/damped_mode.h"
 #include "common/time.h"
@@ -16,15 +17,6 @@
 namespace palpate::client {
 
 class SurfaceModel;
-
-/// The force near a place, to first order, as the server sees it.
-struct Linearised {
-  Vec3 p = Vec3::Zero();       ///< the place, m, world
-  Vec3 f = Vec3::Zero();       ///< force there, N; zero: free
-  Mat3 k = Mat3::Zero();       ///< dF/dp, N/m, symmetric; free: as it will be when the tool touches
-  Vec3 normal = Vec3::Zero();  ///< of the surface, towards the tool; zero: none near
-  double gap = 0;              ///< between surface and tool, m; 0 in contact
-};
 
 /// Model and state of the surface near the tool.
 struct Surface {
@@ -50,13 +42,13 @@ struct OtherTools {
 /// Sample of the simulation: the triplet (t_n, P_n, F_n) of Picinbono and Lombardo (1999), and what a law
 /// requested beyond it.
 struct Sample {
-  std::uint64_t number = 0;                ///< of the sample, from 1
-  Time t{};                                ///< when the tool was at `p`, client clock
-  Vec3 p = Vec3::Zero();                   ///< tool position, m, world
-  Vec3 f = Vec3::Zero();                   ///< force on the tool there, N, world
-  Vec3 surface_v = Vec3::Zero();           ///< of the organ there, by all that moves it, m/s, world
-  std::optional<Linearised> at_tool = {};  ///< at `p`
-  std::optional<Linearised> ahead = {};    ///< where the tool was expected by now
+  std::uint64_t number = 0;                   ///< of the sample, from 1
+  Time t{};                                   ///< when the tool was at `p`, client clock
+  Vec3 p = Vec3::Zero();                      ///< tool position, m, world
+  Vec3 f = Vec3::Zero();                      ///< force on the tool there, N, world
+  Vec3 surface_v = Vec3::Zero();              ///< of the organ there, by all that moves it, m/s, world
+  std::optional<Linearisation> at_tool = {};  ///< at `p`
+  std::optional<Linearisation> ahead = {};    ///< where the tool was expected by now
   std::optional<Surface> surface = {};
   std::optional<OtherTools> others = {};  ///< what `surface_v` has of them, and more
   std::uint32_t cuts = 0;                 ///< in how many steps so far tissue has been removed
@@ -83,9 +75,10 @@ inline Vec3 without_pull(const Vec3& f, const Vec3& rendered) noexcept {
 
 /// True if a law may use this part of a sample: it is within the bounds of the protocol, what a server can
 /// mean in SI units.
-inline bool usable(const Linearised& l) noexcept {
+inline bool usable(const Linearisation& l) noexcept {
   const auto bounded = [](const auto& m) { return (m.array().abs() <= 1e9).all(); };
-  return bounded(l.p) && bounded(l.f) && bounded(l.k) && bounded(l.normal) && l.gap >= 0 && l.gap <= 1e9;
+  return bounded(l.p_W) && bounded(l.f_W) && bounded(l.tangent) && bounded(l.normal_W) && l.gap >= 0 &&
+         l.gap <= 1e9;
 }
 inline bool usable(const Surface& s) noexcept {
   const Tool& tool = s.tool;

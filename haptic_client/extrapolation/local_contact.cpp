@@ -107,10 +107,10 @@ void LocalContact::compare(const Vec3& local) noexcept {
 
 /// The tool is free, but was expected to touch by now: the server has said what it would feel.
 void LocalContact::compare_ahead() noexcept {
-  if (!newest_.ahead || !newest_.ahead->f.allFinite() || newest_.ahead->f.isZero(0)) return;
-  const auto local = contact_.probe(*newest_.surface, at_rest(newest_.ahead->p, newest_.t), memory());
-  if (local && !local->isZero(0) && believable(*local, newest_.ahead->f))
-    learn_factor(newest_.ahead->f, *local);
+  if (!newest_.ahead || !newest_.ahead->f_W.allFinite() || newest_.ahead->f_W.isZero(0)) return;
+  const auto local = contact_.probe(*newest_.surface, at_rest(newest_.ahead->p_W, newest_.t), memory());
+  if (local && !local->isZero(0) && believable(*local, newest_.ahead->f_W))
+    learn_factor(newest_.ahead->f_W, *local);
 }
 
 void LocalContact::restart() noexcept {

@@ -17,14 +17,14 @@ Mat3 restoring_part(const Mat3& k) noexcept {
   return part.allFinite() ? part : Mat3(Mat3::Zero());
 }
 
-Vec3 force_at(const Linearised& l, const Vec3& p) noexcept {
-  const Vec3 x = p - l.p;
-  if (!(x.cwiseAbs().maxCoeff() < kMaxPlace)) return l.f;
-  if (l.f.isZero(0)) {
-    const double depth = l.gap + l.normal.dot(x);
-    return depth < 0 ? Vec3(depth * (l.k * l.normal)) : Vec3(Vec3::Zero());
+Vec3 force_at(const Linearisation& l, const Vec3& p) noexcept {
+  const Vec3 x = p - l.p_W;
+  if (!(x.cwiseAbs().maxCoeff() < kMaxPlace)) return l.f_W;
+  if (l.f_W.isZero(0)) {
+    const double depth = l.gap + l.normal_W.dot(x);
+    return depth < 0 ? Vec3(depth * (l.tangent * l.normal_W)) : Vec3(Vec3::Zero());
   }
-  return without_pull(l.f + l.k * x, l.f);
+  return without_pull(l.f_W + l.tangent * x, l.f_W);
 }
 
 void Tangent::update(const Sample& sample) noexcept {
@@ -32,7 +32,7 @@ void Tangent::update(const Sample& sample) noexcept {
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = with_usable_parts(sample);
   motion_.update(newest_);
-  if (newest_.at_tool) newest_.at_tool->k = restoring_part(newest_.at_tool->k);
+  if (newest_.at_tool) newest_.at_tool->tangent = restoring_part(newest_.at_tool->tangent);
 }
 
 void Tangent::restart() noexcept {

@@ -11,7 +11,7 @@ Mat3 restoring_part(const Mat3& k) noexcept;
 /// A linearisation at `p`: in contact f + K (p - place), zero where it would pull; free of it the surface's
 /// plane, as stiff as the server says it is: K n (gap + n . (p - place)) beyond it. Zero where no surface is
 /// near.
-Vec3 force_at(const Linearised& l, const Vec3& p) noexcept;
+Vec3 force_at(const Linearisation& l, const Vec3& p) noexcept;
 
 /// F = F_n + K_n (P - P_n - s(t)), K_n = dF/dP the server's own tangent at P_n, s how far the organ has moved
 /// since (`OrganMotion`). The first contact comes at the plane that the sample tells, not a sample late.

@@ -23,8 +23,11 @@ Mat3 symmetric(const std::array<double, 6>& k) noexcept {
   return m;
 }
 
-Linearised linearised(const Vec3& p, const Vec3& f, const protocol::Linearisation& l) noexcept {
-  return {.p = p, .f = f, .k = symmetric(l.tangent), .normal = l.normal_W, .gap = l.gap};
+/// A message has place and force beside the linearisation.
+Linearisation placed(Linearisation l, const Vec3& p_W, const Vec3& f_W) noexcept {
+  l.p_W = p_W;
+  l.f_W = f_W;
+  return l;
 }
 
 double seconds_between(const ToolState& before, Time t) {
@@ -37,8 +40,8 @@ Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
   Sample sample{s.number, Time{s.tool_t_ns}, s.p_W, s.f_W, s.surface_v_W};
   if ((s.flags & ForceSample::kHasCuts) != 0) sample.cuts = s.cuts;
   sample.cutting = (s.flags & ForceSample::kCutting) != 0;
-  if ((s.flags & ForceSample::kHasTangent) != 0) sample.at_tool = linearised(s.p_W, s.f_W, s.at_tool);
-  if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = linearised(s.ahead_p_W, s.ahead_f_W, s.ahead);
+  if ((s.flags & ForceSample::kHasTangent) != 0) sample.at_tool = placed(s.at_tool, s.p_W, s.f_W);
+  if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = placed(s.ahead, s.ahead_p_W, s.ahead_f_W);
   if ((s.flags & ForceSample::kHasOthers) != 0) {
     sample.others = OtherTools{s.others.v_W, symmetric(s.others.compliance)};
     sample.surface_v += s.others.v_W;

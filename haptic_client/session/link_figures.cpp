@@ -16,10 +16,9 @@ void LinkFigures::sample(const ForceSample& sample, Time now) noexcept {
   const std::int64_t age = now.count() - sample.tool_t_ns;
   if (age >= 0) age_ns.add(age);
   if ((sample.flags & ForceSample::kHasTangent) == 0 || (sample.flags & ForceSample::kInContact) == 0) return;
-  const auto& k = sample.at_tool.tangent;
+  const Mat3& k = sample.at_tool.tangent;
   const Vec3& n = sample.at_tool.normal_W;
-  const Vec3 kn{k[0] * n[0] + k[1] * n[1] + k[2] * n[2], k[1] * n[0] + k[3] * n[1] + k[4] * n[2],
-                k[2] * n[0] + k[4] * n[1] + k[5] * n[2]};
+  const Vec3 kn = k.col(0) * n[0] + k.col(1) * n[1] + k.col(2) * n[2];
   stiffest = std::max(stiffest, -n.dot(kn));
 }
 

@@ -63,9 +63,7 @@ void write_force_sample(const ForceSample& from, palpate_force_sample& to) noexc
   write(from.torque_W, to.torque);
   write(from.at_tool.normal_W, to.normal);
   to.gap = from.at_tool.gap;
-  const auto& k = from.at_tool.tangent;
-  const double entire[9] = {k[0], k[1], k[2], k[1], k[3], k[4], k[2], k[4], k[5]};
-  std::copy(entire, entire + 9, to.tangent);
+  std::copy_n(from.at_tool.tangent.data(), 9, to.tangent);
   write(from.surface_v_W, to.surface_velocity);
   write(from.mean_f_W, to.mean_force);
   to.step_ns = from.step_ns;

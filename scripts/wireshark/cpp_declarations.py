@@ -274,11 +274,21 @@ def declare_members(statement, scope, block):
         scope.members[name.text] = Member(type_, about, block, len(names) - 1 - i, scope, name.place)
 
 
+def visited_by(name):
+    """The struct that a visitor is of: X of X::fields, OtherTools of other_tools_fields; None: it is no visitor."""
+    if name.endswith("::fields"):
+        return name.removesuffix("::fields")
+    return "".join(map(str.capitalize, name.split("_")[:-1])) if name.endswith("_fields") else None
+
+
 def take_function(statement, scope, _):
-    """Only `fields` says something of the wire."""
-    words = statement.words
-    if "fields" in words and words[words.index("fields") + 1] == "(":
+    """Only visitors say something of the wire: `fields`, and that of a struct of another header, which comes in its place."""
+    name = statement.words[statement.words.index("(") - 1]
+    if name == "fields":
         scope.visitor = statement.tokens
+    elif visited_by(name) in scope.types:
+        struct = scope.types[visited_by(name)] = scope.types.pop(visited_by(name))
+        struct.visitor = statement.tokens
 
 
 READERS = {"enum": declare_enum, "using": declare_alias, "struct": declare_struct, "constexpr": declare_constants,

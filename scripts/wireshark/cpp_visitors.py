@@ -1,13 +1,13 @@
 """Reads the visitor `fields` of a struct: what it visits, in wire order, as steps. For make_fields. A step is one of
 
-    Visit(path, struct)    v(m.a), v(m.a.b), v(m.a[i].b): path ("a", "b"); X::fields(m.a, v): struct "X"
+    Visit(path, struct)    v(m.a), v(m.a.b), v(m.a[i].b): path ("a", "b"); X::fields(m.a, v) or x_fields(m.a, v): struct "X"
     If(flag, steps)        if ((m.flags & kBit) != 0) ...
     Loop(count, ...)       for (std::size_t i = 0; i < m.n && i < kMost && (i + 1) * m.each <= kRoom; ++i) ...
     Limit(name, most)      const auto n = std::min<std::size_t>(m.n, kMost);
 """
 import dataclasses
 
-from cpp_declarations import NotUnderstood, Token, number_of
+from cpp_declarations import NotUnderstood, Token, number_of, visited_by
 
 
 @dataclasses.dataclass
@@ -136,14 +136,14 @@ def visits(body):
 def visit(body):
     token, change = body.tokens[body.at], "write v(m.member), X::fields(m.member, v), if, or a counted for"
     name = body.take_name(change)
-    is_call = name.endswith("::fields")
-    if not is_call and name != "v":
+    struct = visited_by(name)
+    if struct is None and name != "v":
         body.at -= 1
         raise body.fault(f"'{name}' is not a statement that is known", change)
     body.take("(", change=change)
     path, indices = place(body, change)
-    body.take(*[",", "v", ")"] if is_call else [")"], change=change)
-    return Visit(path, indices, name.removesuffix("::fields") if is_call else None, token)
+    body.take(*[",", "v", ")"] if struct else [")"], change=change)
+    return Visit(path, indices, struct, token)
 
 
 def place(body, change):

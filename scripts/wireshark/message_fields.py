@@ -69,13 +69,15 @@ def resolve(type_, scope, place):
         return {"type": SCALARS[type_.name]}
     if type_.name == "Vec3":
         return {"type": "f64", "parts": ["x", "y", "z"]}
+    if type_.name == "Mat3":  # symmetric
+        return {"element": {"type": "f64"}, "size": 6}
     if type_.name == "std::array" and len(type_.arguments) == 2:
         element = resolve(read_type(type_.arguments[0], place)[0], scope, place)
         return {"element": element, "size": number_of(type_.arguments[1], scope)}
     found = scope.find("types", type_.name)
     if found is None:
         raise NotUnderstood(place, f"the type {type_} is not one that is known on the wire",
-                            f"write {', '.join(SCALARS)}, Vec3, std::array, an enum or a struct")
+                            f"write {', '.join(SCALARS)}, Vec3, Mat3, std::array, an enum or a struct")
     return resolve_alias(found) if isinstance(found, Alias) else found
 
 

@@ -3,17 +3,11 @@
 #include <span>
 #include <vector>
 
+#include "common/contact/linearisation.h"
 #include "sim_server/client_model/slow_modes.h"
 #include "sim_server/contact/tool_contact.h"
 
 namespace palpate::sim {
-
-/// Force on a tool near a place, to first order.
-struct Linearised {
-  Vec3 force = Vec3::Zero();    ///< N
-  Mat3 tangent = Mat3::Zero();  ///< N/m; free of contact: the tangent that it will have in contact
-  SurfacePlane plane;           ///< of contact, or the nearest; no normal: none within twice the radius
-};
 
 /// Motion of the surface near one tool that the other tools cause, to first order.
 struct OtherTools {
@@ -63,12 +57,7 @@ struct ToolAnswer : ToolForce {
   Vec3 surface_v_W = Vec3::Zero();
   /// Motion of that surface by the other tools. Set with `at_tool` and `ahead`, of several tools.
   std::optional<OtherTools> others = {};
-  std::optional<Linearised> at_tool = {};
-  struct Ahead {
-    Vec3 p_W;  ///< m
-    Linearised there;
-  };
-  std::optional<Ahead> ahead = {};
+  std::optional<Linearisation> at_tool = {}, ahead = {};
   /// Displacement of the surface nearest to the tool from rest, free of that tool but under all others, m;
   /// with `modes`, only that by its supports and by the part of the other tools' loads that no published mode
   /// carries. O(vertices).

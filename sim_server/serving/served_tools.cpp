@@ -13,13 +13,6 @@ namespace {
 
 constexpr double kLongestBend = 0.1;  // s between two states; after more, velocities tell nothing of the path
 
-protocol::Linearisation on_the_wire(const Linearised& l) noexcept {
-  const Mat3 k = 0.5 * (l.tangent + l.tangent.transpose());  // of friction, the part that stores energy
-  return {.tangent = {k(0, 0), k(0, 1), k(0, 2), k(1, 1), k(1, 2), k(2, 2)},
-          .normal_W = l.plane.normal_W,
-          .gap = l.plane.gap};
-}
-
 protocol::ModalState on_the_wire(const ModalMotion& modes) noexcept {
   protocol::ModalState published{.count = static_cast<std::uint8_t>(modes.q.size())};
   for (Eigen::Index k = 0; k < modes.q.size(); ++k) {
@@ -42,13 +35,13 @@ void publish_nearby(const ToolAnswer& answer, ForceSample& sample) noexcept {
   if (answer.at_tool) {
     sample.flags |= ForceSample::kHasTangent;
     sample.surface_v_W = answer.surface_v_W;
-    sample.at_tool = on_the_wire(*answer.at_tool);
+    sample.at_tool = *answer.at_tool;
   }
   if (answer.ahead) {
     sample.flags |= ForceSample::kHasAhead;
     sample.ahead_p_W = answer.ahead->p_W;
-    sample.ahead_f_W = answer.ahead->there.force;
-    sample.ahead = on_the_wire(answer.ahead->there);
+    sample.ahead_f_W = answer.ahead->f_W;
+    sample.ahead = *answer.ahead;
   }
   if (answer.others) {
     sample.flags |= ForceSample::kHasOthers;

@@ -58,8 +58,9 @@ class Simulation {
 
   /// Returns the force on a tool at `p_W` (m), near its place, to first order; without effect on anything.
   /// Throws what the model throws. `known`: the answer of `step` for that place, with its tangent; null: to
-  /// be solved for. At most two contact solves.
-  Linearised linearise(std::size_t tool, const Vec3& p_W, const ToolForce* known);
+  /// be solved for. Symmetric without friction; without a normal where no surface is within twice the radius.
+  /// At most two contact solves.
+  Linearisation linearise(std::size_t tool, const Vec3& p_W, const ToolForce* known);
 
   std::size_t tools() const { return tools_.size(); }
   /// Contact instants within a step.
@@ -156,7 +157,8 @@ class Simulation {
   void solve_contacts();
   void restore_touching();
   void couple(std::span<const ToolInput> inputs);
-  Linearised linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there, const ToolForce* known);
+  Linearisation linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there,
+                                  const ToolForce* known);
   void add_wanted(std::size_t tool, const ToolInput& input);
   Vec3 surface_shift(std::size_t tool, const Vec3& p_W);
   Vec3 residual_shift(std::size_t tool, int vertex);

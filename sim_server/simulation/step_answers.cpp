@@ -33,13 +33,13 @@ void Simulation::couple(std::span<const ToolInput> inputs) {
 
 /// At `there`, with the places of the other tools held, not their loads: they give way, and the surface comes
 /// along. The tangent is symmetric, as on the wire.
-Linearised Simulation::linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there,
-                                         const ToolForce* known) {
-  if (!status_.coupled) return linearise(tool, there, known);
-  const Mat3& relative = coupling_->relative_motion(tool);
-  Linearised l = linearise(tool, p_W + relative * (there - p_W), known);
-  const Mat3 k = l.tangent * relative;
-  l.tangent = 0.5 * (k + k.transpose());
+Linearisation Simulation::linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there,
+                                            const ToolForce* known) {
+  const Mat3* const relative = status_.coupled ? &coupling_->relative_motion(tool) : nullptr;
+  Linearisation l = linearise(tool, relative ? Vec3(p_W + *relative * (there - p_W)) : there, known);
+  const Mat3 k = relative ? Mat3(l.tangent * *relative) : l.tangent;
+  l.tangent = 0.5 * (k + k.transpose());  // of friction, the part that stores energy
+  l.p_W = there;
   return l;
 }
 
@@ -67,7 +67,7 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
     const Vec3 motion = request.ahead->seconds * (request.ahead->v_W - v_W);  // on the organ as it stands
     Vec3 there = p_W + std::min(1.0, kMaxAhead / motion.norm()) * motion;
     if (!there.allFinite()) there = p_W;
-    answer.ahead = {there, linearise_coupled(tool, p_W, there, nullptr)};
+    answer.ahead = linearise_coupled(tool, p_W, there, nullptr);
   }
   if (!request.surface_shift || tools_[tool].holds()) return;  // what is grasped is no matter of contact
   if (cut_ && !(cut_->published() && cut_->published()->covers(p_W))) return;
@@ -88,21 +88,20 @@ void Simulation::publish_modes(std::size_t tool) {
   answers_[tool].modal_loads = &driven;
 }
 
-Linearised Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* known) {
+Linearisation Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* known) {
   ToolContact& contact = tools_[tool];
   if (!contact.placed()) return {};
   const ToolTissue tissue = tissue_.touched_by(tool);
   const ToolForce there = known != nullptr ? *known : contact.probe(p_W, tissue);
   if (there.contacts > 0) {
     const double size = there.force.norm();
-    return {there.force, there.tangent, {size > 0 ? Vec3(there.force / size) : Vec3(Vec3::Zero()), 0}};
+    return {p_W, there.force, there.tangent, size > 0 ? Vec3(there.force / size) : Vec3(Vec3::Zero()), 0};
   }
-  Linearised linearised{.plane = contact.nearest(p_W, tissue_)};
-  if (linearised.plane.gap > kNearby * contact.radius()) return {};
+  const SurfacePlane plane = contact.nearest(p_W, tissue_);
+  if (plane.gap > kNearby * contact.radius()) return {};
   // A little beyond the first touch, so that it is known how stiff the surface is.
-  const double beyond = linearised.plane.gap + kProbeDepth * contact.radius();
-  linearised.tangent = contact.probe(p_W - beyond * linearised.plane.normal_W, tissue).tangent;
-  return linearised;
+  const Vec3 touching = p_W - (plane.gap + kProbeDepth * contact.radius()) * plane.normal_W;
+  return {p_W, Vec3::Zero(), contact.probe(touching, tissue).tangent, plane.normal_W, plane.gap};
 }
 
 std::optional<double> Simulation::gap(std::size_t tool) const noexcept {

@@ -117,11 +117,12 @@ CONTRACT("every extrapolation law", ExtrapolatorRow, row, extrapolators()) {
     const auto near = [&] { return Vec3(kPressed + random.vector(0.001)); };
     // A wall, mostly, with some wild numbers in it; one in three is free.
     const auto any_linear = [&] {
-      Linearised l{.p = near(), .f = random.vector(2), .normal = {0, 1, 0}, .gap = 0.001};
-      l.k = -500 * Mat3::Identity();
-      if (random.between(0, 3) < 1) l.f.setZero();
-      double* const numbers[] = {&l.p[0],    &l.p[1],      &l.f[0],      &l.f[2],      &l.k(0, 0), &l.k(1, 1),
-                                 &l.k(0, 1), &l.normal[0], &l.normal[1], &l.normal[2], &l.gap};
+      Linearisation l{.p_W = near(), .f_W = random.vector(2), .normal_W = {0, 1, 0}, .gap = 0.001};
+      l.tangent = -500 * Mat3::Identity();
+      if (random.between(0, 3) < 1) l.f_W.setZero();
+      auto& [p, f, k, n, gap] = l;
+      double* const numbers[] = {&p[0],    &p[1], &f[0], &f[2], &k(0, 0), &k(1, 1),
+                                 &k(0, 1), &n[0], &n[1], &n[2], &gap};
       for (double* const number : numbers) *number = random.between(0, 8) < 1 ? any() : *number;
       return l;
     };

@@ -80,11 +80,6 @@ Mat3 slope_of(const ModelCase& choice, Direction way, double step) {
   return slope;
 }
 
-Mat3 tangent_of(const protocol::ForceSample& sample) {
-  const auto& t = sample.at_tool.tangent;
-  return (Mat3() << t[0], t[1], t[2], t[1], t[3], t[4], t[2], t[4], t[5]).finished();
-}
-
 }  // namespace
 
 CONTRACT("a model that knows no compliance of later tells clients no tangents, in contact and before it",
@@ -103,7 +98,7 @@ CONTRACT(
     ModelCase, choice, model_cases(tells_tangents)) {
   const Direction way{.last = Vec3(0.0028, 0.0030, 0.0015), .held = held_until_fresh(choice)};
   ToolForce rendered;
-  const Mat3 sent = tangent_of(answer_to(choice, way, &rendered));
+  const Mat3 sent = answer_to(choice, way, &rendered).at_tool.tangent;
   REQUIRE(rendered.contacts > 0);
   REQUIRE_FALSE(rendered.flagged);
   const Mat3 slope = slope_of(choice, way, 1e-6);
@@ -116,7 +111,7 @@ CONTRACT(
 CONTRACT("in motion too the stiffness sent is that slope, but for the age of its factor", ModelCase, choice,
          model_cases([](const ModelCase& c) { return exempt(c, "slope in motion"); })) {
   const Direction way{.last = Vec3(0.0028, 0.0030, 0.0015)};
-  const Mat3 sent = tangent_of(answer_to(choice, way)), slope = slope_of(choice, way, 1e-6);
+  const Mat3 sent = answer_to(choice, way).at_tool.tangent, slope = slope_of(choice, way, 1e-6);
   CAPTURE(sent, slope, (sent - slope).norm() / slope.norm());
   CHECK((sent - slope).norm() < (choice.solver == ModelCase::Solver::kDirect ? 0.06 : 0.15) * slope.norm());
 }
@@ -131,7 +126,7 @@ CONTRACT("with friction the stiffness sent is that of a tool that sticks, or sli
       Direction way{.held = std::max(1, held_until_fresh(choice)), .friction = 0.3, .drag = drag};
       way.last = way.place(way.steps() - 1) + (slides ? drag : Vec3(-drag));
       ToolForce rendered;
-      const Mat3 sent = tangent_of(answer_to(choice, way, &rendered));
+      const Mat3 sent = answer_to(choice, way, &rendered).at_tool.tangent;
       REQUIRE(rendered.contacts > 0);
       REQUIRE_FALSE(rendered.flagged);
       const Mat3 slope = slope_of(choice, way, 1e-7), stores = 0.5 * (slope + slope.transpose());

@@ -216,7 +216,7 @@ Run PressAndSlide::run(const Cell& cell, double stiffness, int seed, bool compar
     path.push_back(hand.encoder.place());
     if (loop.seconds() > kSettled && thrown(path.back()[1], block.depth)) return {};
     if (!compare || block.swings || path.size() % kCompared != 0 || loop.seconds() < kWatch) continue;
-    const Vec3 right = block.simulation->linearise(0, path.back(), nullptr).force;
+    const Vec3 right = block.simulation->linearise(0, path.back(), nullptr).f_W;
     error2 += (rendered - right).squaredNorm();
     force2 += right.squaredNorm();
   }

@@ -79,9 +79,9 @@ Run run_direct(Encoder& device, const test::Organ& organ, double start) {
   Watch watch;
   for (int tick = 0; tick < kEnd * kHapticHz; ++tick) {
     const double t = tick / kHapticHz;
-    const Vec3 f = clamped(organ(device.read(from_seconds(1 + t)).p_D).f);
+    const Vec3 f = clamped(organ(device.read(from_seconds(1 + t)).p_D).f_W);
     device.write(f);
-    watch.see(t, start, device.place(), f, organ(device.place()).f);
+    watch.see(t, start, device.place(), f, organ(device.place()).f_W);
   }
   return watch.result(false);
 }
@@ -102,7 +102,7 @@ Run run(const Cell& cell, double stiffness, int seed) {
   Watch watch;
   while (loop.seconds() < kEnd) {
     const Vec3 rendered = loop.tick().f_D;
-    watch.see(loop.seconds(), start, device.place(), rendered, organ(device.place()).f);
+    watch.see(loop.seconds(), start, device.place(), rendered, organ(device.place()).f_W);
   }
   return watch.result(pipeline.limiter().fault() != Fault::kNone);
 }

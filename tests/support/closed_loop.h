@@ -24,7 +24,7 @@ struct ClosedLoopSettings {
 };
 
 /// An organ that is a function of the tool's place: with its tangent, and its surface out of contact.
-using Organ = std::function<client::Linearised(const Vec3& p_W)>;
+using Organ = std::function<Linearisation(const Vec3& p_W)>;
 
 /// What the loop asks at the other end of the link.
 struct Server {
@@ -36,26 +36,18 @@ struct Server {
 
 /// A server with that organ.
 inline Server served(Organ organ) {
-  const auto on_the_wire = [](const client::Linearised& l) {
-    const Mat3& k = l.k;
-    return protocol::Linearisation{{k(0, 0), k(0, 1), k(0, 2), k(1, 1), k(1, 2), k(2, 2)}, l.normal, l.gap};
-  };
   const auto step = [=, number = std::uint64_t{0}](const protocol::ToolState& tool) mutable {
     using protocol::ForceSample;
     ForceSample sample{.number = ++number, .tool_t_ns = tool.t_ns, .p_W = tool.p_W};
-    const client::Linearised at_tool = organ(tool.p_W);
-    sample.f_W = at_tool.f;
-    if ((tool.flags & protocol::ToolState::kRequestsTangent) != 0) {
-      sample.flags |= ForceSample::kHasTangent;
-      sample.at_tool = on_the_wire(at_tool);
-    }
+    sample.at_tool = organ(tool.p_W);
+    sample.f_W = sample.at_tool.f_W;
+    if ((tool.flags & protocol::ToolState::kRequestsTangent) != 0) sample.flags |= ForceSample::kHasTangent;
     if ((tool.flags & protocol::ToolState::kRequestsAhead) != 0) {
       const Vec3 way = to_seconds(Time{tool.lead_ns}) * tool.v_W;
       sample.flags |= ForceSample::kHasAhead;
       sample.ahead_p_W = tool.p_W + (way.norm() > 2e-3 ? Vec3(2e-3 * way.normalized()) : way);
-      const client::Linearised ahead = organ(sample.ahead_p_W);
-      sample.ahead_f_W = ahead.f;
-      sample.ahead = on_the_wire(ahead);
+      sample.ahead = organ(sample.ahead_p_W);
+      sample.ahead_f_W = sample.ahead.f_W;
     }
     return std::optional(sample);
   };
@@ -135,9 +127,9 @@ class ClosedLoop {
 /// A wall that begins at y = 0 and pushes upwards (N/m).
 inline Organ wall(double stiffness) {
   return [stiffness](const Vec3& p_W) {
-    client::Linearised l{.p = p_W, .normal = {0, 1, 0}, .gap = std::max(p_W[1], 0.0)};
-    l.f[1] = stiffness * std::max(-p_W[1], 0.0);
-    l.k(1, 1) = -stiffness;
+    Linearisation l{.p_W = p_W, .normal_W = {0, 1, 0}, .gap = std::max(p_W[1], 0.0)};
+    l.f_W[1] = stiffness * std::max(-p_W[1], 0.0);
+    l.tangent(1, 1) = -stiffness;
     return l;
   };
 }
@@ -147,10 +139,10 @@ inline Organ wall(double stiffness) {
 inline Organ hertz_wall(double stiffness, double force) {
   const double c = std::pow(stiffness / (1.5 * std::cbrt(force)), 1.5);
   return [c](const Vec3& p_W) {
-    client::Linearised l{.p = p_W, .normal = {0, 1, 0}, .gap = std::max(p_W[1], 0.0)};
+    Linearisation l{.p_W = p_W, .normal_W = {0, 1, 0}, .gap = std::max(p_W[1], 0.0)};
     const double depth = std::max(-p_W[1], 0.0);
-    l.f[1] = c * std::pow(depth, 1.5);
-    l.k(1, 1) = -1.5 * c * std::sqrt(std::max(depth, 2e-4));  // free: as it will be at 0.2 mm
+    l.f_W[1] = c * std::pow(depth, 1.5);
+    l.tangent(1, 1) = -1.5 * c * std::sqrt(std::max(depth, 2e-4));  // free: as it will be at 0.2 mm
     return l;
   };
 }

@@ -34,10 +34,11 @@ inline std::vector<Message> one_of_each() {
   ForceSample entire = force;
   entire.flags = ForceSample::kHasTangent | ForceSample::kHasAhead;
   entire.surface_v_W = {0.25, 0, -0.5};
-  entire.at_tool = {{-1, -2, -3, -4, -5, -6}, {0, 1, 0}, 0.5};
+  const Mat3 slope{{-1, -2, -3}, {-2, -4, -5}, {-3, -5, -6}};
+  entire.at_tool = {.tangent = slope, .normal_W = {0, 1, 0}, .gap = 0.5};
   entire.ahead_p_W = {0.5, -1, 2};
   entire.ahead_f_W = {0, 1.5, 0};
-  entire.ahead = {{-8, 0, 0, -16, 0, -32}, {0, 0, 0}, 0};
+  entire.ahead.tangent.diagonal() << -8, -16, -32;
   ToolState fetching = tool;
   fetching.flags = ToolState::kRequestsSurface | ToolState::kAsksPages;
   fetching.pages_taken = 0x0203;

@@ -31,11 +31,11 @@ struct Law {
 Sample sampled(const Law& law, const Path& path, double s, std::uint64_t number) {
   const Vec3 p = path(s);
   Sample sample{number, from_seconds(s), p, law.force(p, s), law.organ_v};
-  Linearised at_tool{.p = p, .f = sample.f, .normal = {0, 1, 0}, .gap = std::max(p[1], 0.0)};
+  Linearisation at_tool{.p_W = p, .f_W = sample.f, .normal_W = {0, 1, 0}, .gap = std::max(p[1], 0.0)};
   constexpr double kH = 1e-7;
   for (int i = 0; i < 3; ++i) {
     const Vec3 h = kH * Vec3::Unit(i);
-    at_tool.k.col(i) = (law.force(p + h, s) - law.force(p - h, s)) / (2 * kH);
+    at_tool.tangent.col(i) = (law.force(p + h, s) - law.force(p - h, s)) / (2 * kH);
   }
   sample.at_tool = at_tool;
   return sample;
@@ -142,8 +142,8 @@ TEST_CASE("between samples: the curve goes with the organ") {
 
 TEST_CASE("between samples: without tangents, or with such as nothing agrees with, it is the line") {
   for (const auto& change : std::vector<std::function<void(Sample&)>>{
-           [](Sample& s) { s.at_tool.reset(); }, [](Sample& s) { s.at_tool->k(1, 1) *= -20; },
-           [](Sample& s) { s.at_tool->k(0, 1) = std::numeric_limits<double>::quiet_NaN(); },
+           [](Sample& s) { s.at_tool.reset(); }, [](Sample& s) { s.at_tool->tangent(1, 1) *= -20; },
+           [](Sample& s) { s.at_tool->tangent(0, 1) = std::numeric_limits<double>::quiet_NaN(); },
            [](Sample& s) {
              if (s.number == 2) s.at_tool.reset();
            }}) {

@@ -15,7 +15,7 @@ namespace {
 Sample moving(Time t, const Vec3& v) {
   Sample sample{.number = 1, .t = t};
   sample.surface_v = v;
-  sample.at_tool = Linearised{};
+  sample.at_tool = Linearisation{};
   return sample;
 }
 

@@ -20,16 +20,16 @@ Sample triplet(std::uint64_t number, const Vec3& p, const Vec3& f) {
 }
 
 /// A wall at y = 0 of 1000 N/m, as a server tells it from `p`.
-Linearised wall(const Vec3& p) {
-  Linearised l{.p = p, .normal = {0, 1, 0}, .gap = std::max(p[1], 0.0)};
-  l.f = {0, 1000 * std::max(-p[1], 0.0), 0};
-  l.k.setZero();
-  l.k(1, 1) = -1000;
+Linearisation wall(const Vec3& p) {
+  Linearisation l{.p_W = p, .normal_W = {0, 1, 0}, .gap = std::max(p[1], 0.0)};
+  l.f_W = {0, 1000 * std::max(-p[1], 0.0), 0};
+  l.tangent.setZero();
+  l.tangent(1, 1) = -1000;
   return l;
 }
 
 Sample at_the_wall(std::uint64_t number, const Vec3& p) {
-  Sample sample = triplet(number, p, wall(p).f);
+  Sample sample = triplet(number, p, wall(p).f_W);
   sample.at_tool = wall(p);
   return sample;
 }
@@ -110,7 +110,7 @@ TEST_CASE("two tangents: here at the sample, ahead at the expected place, smooth
   const auto two = law("two_tangents");
   Sample sample = at_the_wall(1, {0, -0.001, 0});
   sample.ahead = wall({0, -0.003, 0});
-  sample.ahead->f = {0, 5, 0};  // a wall that grows stiffer
+  sample.ahead->f_W = {0, 5, 0};  // a wall that grows stiffer
   two->update(sample);
   CHECK((two->force({0, -0.001, 0}, 40ms) - Vec3(0, 1, 0)).norm() < 1e-12);
   CHECK((two->force({0, -0.003, 0}, 40ms) - Vec3(0, 5, 0)).norm() < 1e-3);
@@ -131,10 +131,10 @@ TEST_CASE("a sample without tangents: the stiffness that was learned") {
 }
 
 TEST_CASE("no force along a tangent ends at once, or pulls, as a tool lifts off sideways, with friction") {
-  Linearised l{.p = Vec3::Zero(), .f = {0, 1, 0}, .normal = {0, 1, 0}};
-  l.k = -500 * Mat3::Identity();
+  Linearisation l{.p_W = Vec3::Zero(), .f_W = {0, 1, 0}, .normal_W = {0, 1, 0}};
+  l.tangent = -500 * Mat3::Identity();
   for (const double sideways : {0.0, 0.3, 1.0, 3.0}) {
-    Vec3 before = l.f;
+    Vec3 before = l.f_W;
     for (int i = 1; i <= 1000; ++i) {
       const Vec3 f = force_at(l, 1e-5 * i * Vec3(sideways, 0.4, 0));
       CHECK(f[1] >= 0);

@@ -39,10 +39,12 @@ class Implausible {
   double number() { return vector()[static_cast<long>(below(3))]; }
   double ordinary(double size) { return random_.vector(size)[0]; }
 
-  protocol::Linearisation linearisation() {
-    protocol::Linearisation l;
+  Linearisation linearisation() {
+    Linearisation l;
     const double size = once_in(4) ? 1e30 : 2000;  // N/m; of either sign: no tissue, but it may be sent
-    for (double& k : l.tangent) k = once_in(40) ? number() : ordinary(size);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) l.tangent(i, j) = l.tangent(j, i) = once_in(40) ? number() : ordinary(size);
+    }
     l.normal_W = once_in(3) ? vector() : random_.vector(1).normalized();
     l.gap = once_in(20) ? number() : std::abs(ordinary(0.002));
     return l;

@@ -11,13 +11,13 @@ TEST_CASE("link figures: the stiffness is that into the surface, of samples in c
   LinkFigures figures;
   ForceSample sample{.number = 1, .tool_t_ns = 1'000'000};
   sample.flags = ForceSample::kHasTangent | ForceSample::kInContact;
-  sample.at_tool.tangent = {-100, -20, 0, -300, 0, -50};  // xx xy xz yy yz zz
+  sample.at_tool.tangent << -100, -20, 0, -20, -300, 0, 0, 0, -50;
   sample.at_tool.normal_W = {0.6, 0.8, 0};
   figures.sample(sample, 3ms);
   // n.Kn = 0.36 * 100 + 2 * 0.48 * 20 + 0.64 * 300, by hand
   CHECK(figures.stiffest == Approx(36 + 19.2 + 192));
   CHECK(figures.age_ns.max() == 2'000'000);
-  sample.at_tool.tangent = {-1e6, 0, 0, -1e6, 0, -1e6};
+  sample.at_tool.tangent = -1e6 * Mat3::Identity();
   sample.flags = ForceSample::kHasTangent;
   figures.sample(sample, 4ms);
   CHECK(figures.stiffest == Approx(247.2));

@@ -133,7 +133,7 @@ TEST_CASE("before a shaft touches, the nearest surface is told for all of it, as
   Simulation simulation = organ(tool);
   const Vec3 tip(0.1, 0.004, 0.0013);
   CHECK(simulation.step(tip, kDt).contacts == 0);
-  const SurfacePlane plane = simulation.linearise(0, tip, nullptr).plane;
+  const Linearisation plane = simulation.linearise(0, tip, nullptr);
   CHECK(plane.normal_W[1] == Approx(1).epsilon(1e-6));
   // 2 mm clear all along the block; where on a parallel edge is a matter of choice: x from -40 to 40 mm.
   CHECK(plane.gap >= Approx(0.002 * 0.2 / 0.14));
@@ -143,11 +143,10 @@ TEST_CASE("before a shaft touches, the nearest surface is told for all of it, as
   const Quat tilted = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3(0.8, -0.6, 0));
   const Vec3 high(-0.02, 0.037, 0.0013);  // its far end is 30 mm lower: 7 mm above the top
   CHECK(capsule.step({high, tilted}, kDt).contacts == 0);
-  const auto linearised = capsule.linearise(0, high, nullptr);
-  const SurfacePlane& below = linearised.plane;
+  const Linearisation below = capsule.linearise(0, high, nullptr);
   CHECK(below.gap == Approx(0.002));
   CHECK(below.normal_W[1] == Approx(1));
-  CHECK(linearised.tangent(1, 1) < 0);
+  CHECK(below.tangent(1, 1) < 0);
 }
 
 TEST_CASE("an instrument at a trocar: its shaft presses the edge of the organ and its tip is free") {

@@ -160,8 +160,7 @@ TEST_CASE("served: the buttons of a tool state grasp, parts are told without eff
   CHECK(sample.at_tool.gap == 0);
   const Vec3 way = sample.ahead_p_W - sample.p_W;
   CHECK(way[0] == Approx(0.001));
-  const auto& k = sample.at_tool.tangent;
-  CHECK((sample.ahead_f_W - sample.f_W - way[0] * Vec3(k[0], k[1], k[2])).norm() < 1e-9);
+  CHECK((sample.ahead_f_W - sample.f_W - way[0] * sample.at_tool.tangent.col(0)).norm() < 1e-9);
   CHECK((tools.step(inputs, kDt)[0].answer->f_W - sample.f_W).norm() < 1e-9);
 }
 
