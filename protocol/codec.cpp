@@ -62,7 +62,7 @@ bool valid(const DiscretisationError& m) noexcept {
   return m.source <= ErrorSource::kNone && m.percent >= 0 && m.percent <= kMaxPercent;
 }
 bool valid(const OtherTools& m) noexcept {
-  return small(m.v_W) && std::ranges::all_of(m.compliance, [](double c) { return std::abs(c) <= 1e6; });
+  return small(m.v_W) && m.compliance.cwiseAbs().maxCoeff() <= 1e6;
 }
 bool valid(const ModalState& m) noexcept {
   const auto bounded = [](float x) { return std::abs(x) <= kMaxAmplitude; };

@@ -150,17 +150,11 @@ struct SurfaceState {
   }
 };
 
-/// Motion of the surface near this tool by the other tools on the organ, to first order.
-struct OtherTools {
-  Vec3 v_W = Vec3::Zero();  ///< at that velocity, with the force of this tool held, m/s
-  /// Compliance of the other tools: additional motion for each N more of this tool's load on the tissue, m/N,
-  /// symmetric, in the order of `tangent`.
-  std::array<double, 6> compliance = {};
-  template <class Self, class Visitor>
-  static void fields(Self& m, Visitor&& v) {
-    v(m.v_W), v(m.compliance);
-  }
-};
+/// Visits `OtherTools`.
+template <class Self, class Visitor>
+void other_tools_fields(Self& m, Visitor&& v) {
+  v(m.v_W), v(m.compliance);
+}
 
 /// State of the slow modes of a body in motion; their shapes on its surface: `SurfacePage`s.
 struct ModalState {
@@ -277,7 +271,7 @@ struct ForceSample {
       v(m.errors.mesh.source), v(m.errors.mesh.percent);
       v(m.errors.time_step.source), v(m.errors.time_step.percent);
     }
-    if ((m.flags & kHasOthers) != 0) OtherTools::fields(m.others, v);
+    if ((m.flags & kHasOthers) != 0) other_tools_fields(m.others, v);
     if ((m.flags & kHasModes) != 0) ModalState::fields(m.modes, v);
     if ((m.flags & kHasMean) != 0) v(m.mean_f_W);
     if ((m.flags & kHasRelaxed) != 0) RelaxedState::fields(m.relaxed, v);

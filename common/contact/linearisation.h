@@ -13,4 +13,12 @@ struct Linearisation {
   double gap = 0;                ///< m from tool to surface; 0 in contact
 };
 
+/// Motion of the surface near this tool by the other tools on the organ, to first order.
+struct OtherTools {
+  Vec3 v_W = Vec3::Zero();  ///< at that velocity, with the force of this tool held, m/s
+  /// Compliance of the other tools: additional motion for each N more of this tool's load on the tissue, m/N,
+  /// symmetric, in the order of `tangent`.
+  Mat3 compliance = Mat3::Zero();
+};
+
 }  // namespace palpate

@@ -33,12 +33,6 @@ struct Surface {
   protocol::ModalLoads modal_loads = {};  ///< how hard other tools drive the modes, N/sqrt(kg)
 };
 
-/// Motion of the surface near this tool by the other tools on the organ, to first order.
-struct OtherTools {
-  Vec3 v = Vec3::Zero();           ///< m/s, world, with the force of this tool held
-  Mat3 compliance = Mat3::Zero();  ///< m/N, symmetric: for each N more that this tool presses the tissue with
-};
-
 /// Sample of the simulation: the triplet (t_n, P_n, F_n) of Picinbono and Lombardo (1999), and what a law
 /// requested beyond it.
 struct Sample {
@@ -93,7 +87,7 @@ inline bool usable(const Surface& s) noexcept {
          protocol::valid(s.relaxed) && protocol::valid(s.modal_loads);
 }
 inline bool usable(const OtherTools& o) noexcept {
-  return (o.v.array().abs() <= 1e9).all() && (o.compliance.array().abs() <= 1e6).all();
+  return (o.v_W.array().abs() <= 1e9).all() && (o.compliance.array().abs() <= 1e6).all();
 }
 /// The sample without those parts that are not.
 inline Sample with_usable_parts(Sample sample) noexcept {

@@ -25,7 +25,7 @@ void LocalContact::update(const Sample& sample) noexcept {
   if (!usable(sample) || (newest_.number > 0 && sample.t <= newest_.t)) return;
   newest_ = with_usable_parts(sample);
   if (swings() && newest_.others) {  // the modes know better what they do
-    newest_.surface_v -= newest_.others->v;
+    newest_.surface_v -= newest_.others->v_W;
     newest_.others.reset();
   }
   rendered_last_ = newest_.f;

@@ -15,7 +15,7 @@ void OrganMotion::update(const Sample& sample) noexcept {
   known_ = sample.at_tool && sample.surface_v.norm() <= kFastest;
   if (!known_) return;
   v_ = sample.surface_v;
-  if (sample.others) others_ = sample.others->v;
+  if (sample.others) others_ = sample.others->v_W;
   const Time period = t_ - before.t_;
   if (!before.known_ || period <= Time::zero() || period > kOutage) return;
   const Vec3 faster = others_ - before.others_;

@@ -17,12 +17,6 @@ constexpr double kDamperFraction = 0.25;                       // of the largest
 constexpr double kFadeDamping = 2;         // N s/m, in the device frame, while the force fades
 constexpr double kFadeDampingRise = 0.03;  // s, from none to all of it and back: no step of a fast hand
 
-Mat3 symmetric(const std::array<double, 6>& k) noexcept {
-  Mat3 m;
-  m << k[0], k[1], k[2], k[1], k[3], k[4], k[2], k[4], k[5];
-  return m;
-}
-
 /// A message has place and force beside the linearisation.
 Linearisation placed(Linearisation l, const Vec3& p_W, const Vec3& f_W) noexcept {
   l.p_W = p_W;
@@ -43,7 +37,7 @@ Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
   if ((s.flags & ForceSample::kHasTangent) != 0) sample.at_tool = placed(s.at_tool, s.p_W, s.f_W);
   if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = placed(s.ahead, s.ahead_p_W, s.ahead_f_W);
   if ((s.flags & ForceSample::kHasOthers) != 0) {
-    sample.others = OtherTools{s.others.v_W, symmetric(s.others.compliance)};
+    sample.others = s.others;
     sample.surface_v += s.others.v_W;
   }
   if ((s.flags & ForceSample::kHasSurface) != 0 && model != nullptr) {

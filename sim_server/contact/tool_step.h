@@ -9,12 +9,6 @@
 
 namespace palpate::sim {
 
-/// Motion of the surface near one tool that the other tools cause, to first order.
-struct OtherTools {
-  Vec3 v_W = Vec3::Zero();         ///< m/s, with the force of this tool held
-  Mat3 compliance = Mat3::Zero();  ///< m/N: for each N more that this tool presses the tissue with
-};
-
 /// Outputs of a step for one tool beyond its force. Nothing is computed that nobody asks for.
 struct ToolRequest {
   bool tangent = true;   ///< dF/dp of `ToolForce`

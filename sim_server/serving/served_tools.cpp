@@ -45,8 +45,7 @@ void publish_nearby(const ToolAnswer& answer, ForceSample& sample) noexcept {
   }
   if (answer.others) {
     sample.flags |= ForceSample::kHasOthers;
-    const Mat3& c = answer.others->compliance;
-    sample.others = {answer.others->v_W, {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)}};
+    sample.others = *answer.others;
   }
 }
 

@@ -58,7 +58,7 @@ inline std::vector<Message> one_of_each() {
   with_errors.errors = {{ErrorSource::kEstimated, 3.5F}, {ErrorSource::kNone, 0}};
   ForceSample among_others = force;
   among_others.flags = ForceSample::kHasOthers;
-  among_others.others = {{0.5, 0, -1}, {-1, -2, -3, -4, -5, -6}};
+  among_others.others = {{0.5, 0, -1}, slope};
   ForceSample swinging = force;
   swinging.flags = ForceSample::kHasModes | ForceSample::kHasMean;
   swinging.modes.count = 2;

@@ -90,7 +90,7 @@ TEST_CASE("organ motion: finite whatever it is told") {
 TEST_CASE("organ motion: what other tools add has no acceleration where one of them has come or gone") {
   const auto pushed = [](Time t, const Vec3& v) {
     Sample sample = moving(t, kSlowConvergence + v);
-    sample.others = OtherTools{.v = v};
+    sample.others = OtherTools{.v_W = v};
     return sample;
   };
   const auto ahead = [](const OrganMotion& motion) { return motion.since_sample(70ms); };  // 40 ms on

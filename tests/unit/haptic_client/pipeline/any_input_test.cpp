@@ -39,12 +39,18 @@ class Implausible {
   double number() { return vector()[static_cast<long>(below(3))]; }
   double ordinary(double size) { return random_.vector(size)[0]; }
 
+  Mat3 symmetric(std::uint64_t seldom, double size) {
+    Mat3 m;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) m(i, j) = m(j, i) = once_in(seldom) ? number() : ordinary(size);
+    }
+    return m;
+  }
+
   Linearisation linearisation() {
     Linearisation l;
     const double size = once_in(4) ? 1e30 : 2000;  // N/m; of either sign: no tissue, but it may be sent
-    for (int i = 0; i < 3; ++i) {
-      for (int j = i; j < 3; ++j) l.tangent(i, j) = l.tangent(j, i) = once_in(40) ? number() : ordinary(size);
-    }
+    l.tangent = symmetric(40, size);
     l.normal_W = once_in(3) ? vector() : random_.vector(1).normalized();
     l.gap = once_in(20) ? number() : std::abs(ordinary(0.002));
     return l;
@@ -58,7 +64,7 @@ class Implausible {
     s.flags = static_cast<std::uint32_t>(below(2 * ForceSample::kCutting));
     if (!once_in(40)) s.flags &= ~ForceSample::kPaused;
     s.others.v_W = vector();
-    for (double& c : s.others.compliance) c = once_in(20) ? number() : ordinary(0.01);
+    s.others.compliance = symmetric(20, 0.01);
     s.surface_v_W = vector(), s.at_tool = linearisation();
     s.ahead_p_W = place(), s.ahead_f_W = vector(), s.ahead = linearisation();
     s.surface = {.version = static_cast<std::uint32_t>(below(40) == 0 ? below(3) : 1),
