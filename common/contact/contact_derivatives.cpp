@@ -20,11 +20,12 @@ SimplexHessian hessian_of(const Contact& c, bool pivots, std::span<const Vec3> x
 }  // namespace
 
 /// The nodes of the contacts considered: first those that no contact with a force is on, for which there is
-/// no curvature; the tip last.
-void ContactSolver::collect_nodes(int tip) noexcept {
+/// no curvature; the tips last.
+void ContactSolver::collect_nodes(int nodes) noexcept {
   constexpr int kUnseen = -1, kLoaded = -2;  // marks of a node that is not numbered yet
   second_.nodes.clear();
-  std::fill_n(second_.slot_of_node.begin(), tip + 1, kUnseen);
+  const int tools = static_cast<int>(tools_.size());
+  std::fill_n(second_.slot_of_node.begin(), nodes + tools, kUnseen);
   const auto for_each_node = [&](auto&& visit) {
     for (const int k : second_.considered) {
       for (int i = 0; i < contacts_[k].size; ++i) visit(k, contacts_[k].node[i]);
@@ -44,10 +45,10 @@ void ContactSolver::collect_nodes(int tip) noexcept {
   for_each_node([&](int, int node) {
     if (second_.slot_of_node[node] == kLoaded) add(node);
   });
-  add(tip);
+  for (int t = 0; t < tools; ++t) add(nodes + t);
 }
 
-void ContactSolver::differentiate_contacts(int tip) noexcept {
+void ContactSolver::differentiate_contacts(int nodes) noexcept {
   const int rows = rows_of_contact();
   const auto n = rows * static_cast<Eigen::Index>(second_.considered.size()),
              size = 3 * static_cast<Eigen::Index>(second_.nodes.size());
@@ -69,7 +70,7 @@ void ContactSolver::differentiate_contacts(int tip) noexcept {
       slot[i] = second_.slot_of_node[c.node[i]];
       second_.jacobian.block<1, 3>(row, 3 * slot[i]) = -c.weight[i] * c.normal.transpose();
     }
-    slot[c.size] = second_.slot_of_node[tip];
+    slot[c.size] = second_.slot_of_node[nodes + c.tool];
     second_.jacobian.block<1, 3>(row, 3 * slot[c.size]) = c.at_tip(c.normal).transpose();
     if (rows > 1) {
       differentiate_friction(k, row, {slot.data(), static_cast<std::size_t>(c.size) + 1});
@@ -78,7 +79,7 @@ void ContactSolver::differentiate_contacts(int tip) noexcept {
     const double force = lambda_[k];
     if (force == 0) continue;
     const SimplexHessian h =
-        hessian_of(c, path_.pivots, {x.data(), static_cast<std::size_t>(c.size)}, nullptr);
+        hessian_of(c, tools_[c.tool].pivots, {x.data(), static_cast<std::size_t>(c.size)}, nullptr);
     for (int i = 0; i <= c.size; ++i) {
       for (int j = 0; j <= c.size; ++j) {
         second_.curvature.block<3, 3>(3 * slot[i], 3 * slot[j]) += force * h.block<3, 3>(3 * i, 3 * j);
@@ -96,11 +97,11 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
   std::array<Vec3, 3> x, moved;
   for (int i = 0; i < c.size; ++i) {
     x[i] = deformed_[c.node[i]];
-    moved[i] = x[i] - path_.was[c.node[i]];
+    moved[i] = x[i] - was_[c.node[i]];
   }
   WeightGradient weights;
   const SimplexHessian h =
-      hessian_of(c, path_.pivots, {x.data(), static_cast<std::size_t>(c.size)}, &weights);
+      hessian_of(c, tools_[c.tool].pivots, {x.data(), static_cast<std::size_t>(c.size)}, &weights);
   // dn, as d gap / dx_i = -b_i n and the b_i sum to one.
   Eigen::Matrix<double, 3, 12> turn = Eigen::Matrix<double, 3, 12>::Zero();
   for (int i = 0; i < c.size; ++i) turn -= h.middleRows<3>(3 * i);
@@ -135,7 +136,7 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
 /// False where more is near the tool than there is room for.
 bool ContactSolver::differentiate_considered(const ContactPatch& patch) noexcept {
   collect_nodes(patch.nodes());
-  if (static_cast<int>(second_.nodes.size()) > most_nodes_ + 1 ||
+  if (static_cast<int>(second_.nodes.size()) > most_nodes_ + static_cast<int>(tools_.size()) ||
       static_cast<int>(second_.considered.size()) > most_contacts_)
     return false;
   differentiate_contacts(patch.nodes());

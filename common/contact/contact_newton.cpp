@@ -21,7 +21,7 @@ template <class Visit>
 void ContactSolver::each_slot(Eigen::Index contact, const Visit& visit) const {
   const Contact& c = contacts_[second_.considered[static_cast<std::size_t>(contact)]];
   for (int i = 0; i < c.size; ++i) visit(second_.slot_of_node[c.node[i]]);
-  visit(static_cast<int>(second_.nodes.size()) - 1);
+  visit(static_cast<int>(tip_of(c.tool)));
 }
 
 /// Calls `visit` with the first row and column of each block (3 x 3) of S that is not zero, among those of
@@ -41,13 +41,14 @@ void ContactSolver::assemble_system(const ContactPatch& patch) noexcept {
   const auto count = static_cast<Eigen::Index>(second_.nodes.size()), size = 3 * count;
   second_.compliance.shape(size, size);
   second_.compliance.setZero();
-  for (Eigen::Index j = 0; j + 1 < count; ++j) {
-    for (Eigen::Index i = 0; i + 1 < count; ++i) {
+  const auto tips = static_cast<Eigen::Index>(tools_.size());
+  for (Eigen::Index j = 0; j + tips < count; ++j) {
+    for (Eigen::Index i = 0; i + tips < count; ++i) {
       second_.compliance.block<3, 3>(3 * i, 3 * j) =
           patch.compliance.block<3, 3>(3 * second_.nodes[i], 3 * second_.nodes[j]);
     }
   }
-  second_.compliance.bottomRightCorner<3, 3>().diagonal().setConstant(patch.tool_compliance);
+  second_.compliance.bottomRightCorner(3 * tips, 3 * tips).diagonal().setConstant(patch.tool_compliance);
   const Eigen::Index first = 3 * second_.unloaded, loaded = size - first;
   second_.system.shape(loaded, loaded);
   second_.system.setIdentity();
@@ -163,7 +164,7 @@ bool ContactSolver::solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>&
 /// False where there are no such forces, or where they are those of a state that is not stable.
 bool ContactSolver::solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                           Eigen::Ref<Eigen::VectorXd> force) noexcept {
-  if (path_.friction > 0) return solve_contacts(gap, force);
+  if (has_friction_) return solve_contacts(gap, force);
   return solve_on_active_set(gap, force) || (second_.system_sign > 0 && solve_contacts(gap, force));
 }
 
@@ -172,13 +173,13 @@ bool ContactSolver::solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd
 void ContactSolver::consider_near(double change) noexcept {
   second_.considered.clear();
   const auto n = static_cast<Eigen::Index>(contacts_.size());
-  if (path_.friction == 0) {
+  if (!has_friction_) {
     auto slack = slack_.head(n);
     slack = gap_.head(n);
     slack.noalias() += delassus_ * lambda_.head(n);
   }
   for (int k = 0; k < n; ++k) {
-    if (path_.friction > 0 || lambda_[k] > 0 || slack_[k] < kNearby * change) second_.considered.push_back(k);
+    if (has_friction_ || lambda_[k] > 0 || slack_[k] < kNearby * change) second_.considered.push_back(k);
   }
 }
 
@@ -202,7 +203,7 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
     gap[row] = gap_[rows * k + row % rows];
   }
   gap -= delassus_.col(n);  // B C~ S u
-  if (path_.friction > 0) {
+  if (has_friction_) {
     gap.noalias() += second_.spread.transpose() * local;
     gap.noalias() -= second_.jacobian * local;
   }
@@ -219,15 +220,17 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
   moved = -response_.col(n).tail(loaded) - local.tail(loaded);
   moved.noalias() += response_.bottomLeftCorner(loaded, n) * lambda;
   load.noalias() = second_.curvature.rightCols(loaded) * moved;
-  if (path_.friction > 0) {
+  if (has_friction_) {
     load.noalias() += second_.spread * lambda;
   } else {
     load.noalias() += second_.jacobian.transpose() * lambda;
   }
   node_force_.head(3 * patch.nodes()).setZero();
-  for (Eigen::Index i = 0; i + 1 < static_cast<Eigen::Index>(second_.nodes.size()); ++i)
+  for (Eigen::Index i = 0; i < tip_of(0); ++i)
     node_force_.segment<3>(3 * second_.nodes[i]) = load.segment<3>(3 * i);
-  displace(patch, load.tail<3>(), next);
+  for (std::size_t t = 0; t < tools_.size(); ++t)
+    tools_[t].tip_load = load.segment<3>(3 * tip_of(static_cast<int>(t)));
+  displace(patch, next);
   return next.allFinite();
 }
 
@@ -235,7 +238,7 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
 bool ContactSolver::differentiate_forces(
     Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept {
   const auto n = change.rows();
-  if (path_.friction == 0) {
+  if (!has_friction_) {
     change = -change;
     return gauss_solve(delassus_.leftCols(n), change) != 0;
   }
@@ -247,38 +250,45 @@ bool ContactSolver::differentiate_forces(
     slack.segment<2>(i + 1) += frames_[k].rightCols<2>().transpose() * travel(contacts_[k]);
     slack[i] = 0;
   }
-  return coulomb_.differentiate(delassus_.leftCols(n), force, slack, path_.friction, change);
+  auto friction = friction_.head(n / 3);
+  for (Eigen::Index k = 0; k < friction.size(); ++k)
+    friction[k] = contacts_[second_.considered[static_cast<std::size_t>(k)]].friction;
+  return coulomb_.differentiate(delassus_.leftCols(n), force, slack, friction, change);
 }
 
-Mat3 ContactSolver::tangent(const ContactPatch& patch) noexcept {
+Mat3 ContactSolver::tangent(const ContactPatch& patch, int tool) noexcept {
   second_.has_load_change = false;
+  second_.considered.clear();
+  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
+    if (contacts_[k].tool == tool && lambda_[rows_of_contact() * k] > 0) second_.considered.push_back(k);
+  }
   if (second_.considered.empty()) return Mat3::Zero();
-  const Mat3 k = tangent_of_considered(patch);
+  const Mat3 k = tangent_of_considered(patch, tool);
   if (!k.allFinite()) return Mat3::Zero();
-  second_.has_load_change = path_.friction == 0 && !k.isZero(0);
-  return path_.friction > 0 ? k : Mat3(0.5 * (k + k.transpose()));
+  second_.has_load_change = !has_friction_ && !k.isZero(0);
+  return has_friction_ ? k : Mat3(0.5 * (k + k.transpose()));
 }
 
-Mat3 ContactSolver::tangent_of_considered(const ContactPatch& patch) noexcept {
+Mat3 ContactSolver::tangent_of_considered(const ContactPatch& patch, int tool) noexcept {
   if (!differentiate_considered(patch)) return Mat3::Zero();
   const auto n = rows_of_contact() * static_cast<Eigen::Index>(second_.considered.size()),
              size = 3 * static_cast<Eigen::Index>(second_.nodes.size());
   auto moved = second_.moved.topRows(size);  // E + C~ S E: how the geometry follows the tool at fixed forces
-  if (!respond(patch, second_.curvature.rightCols<3>())) return Mat3::Zero();
+  if (!respond(patch, second_.curvature.middleCols<3>(3 * tip_of(tool)))) return Mat3::Zero();
   moved = response_.rightCols<3>();
-  moved.bottomRows<3>() += Mat3::Identity();
+  moved.middleRows<3>(3 * tip_of(tool)) += Mat3::Identity();
   auto force_change = second_.rhs.topRows(n);
   force_change.noalias() = second_.jacobian * moved;
   if (!differentiate_forces(force_change)) return Mat3::Zero();
   moved.noalias() += response_.leftCols(n) * force_change;
   auto loads = second_.load_change.topRows(size);
   loads.noalias() = second_.curvature * moved;
-  if (path_.friction > 0) {
+  if (has_friction_) {
     loads.noalias() += second_.spread * force_change;
   } else {
     loads.noalias() += second_.jacobian.transpose() * force_change;
   }
-  return loads.bottomRows<3>();
+  return loads.middleRows<3>(3 * tip_of(tool));
 }
 
 }  // namespace palpate

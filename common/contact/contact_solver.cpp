@@ -16,7 +16,8 @@ constexpr int kFewest = 96;
 constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
 
 /// Displacement difference tip minus surface along a direction: a row of W u.
-double along(const Contact& c, const Vec3& direction, int tip, const Eigen::Ref<const Eigen::VectorXd>& u) {
+double along(const Contact& c, const Vec3& direction, Eigen::Index tip,
+             const Eigen::Ref<const Eigen::VectorXd>& u) {
   Vec3 relative = u.segment<3>(3 * tip);
   for (int i = 0; i < c.size; ++i) relative -= c.weight[i] * u.segment<3>(3 * c.node[i]);
   if (c.fraction == 1) return direction.dot(relative);
@@ -78,14 +79,14 @@ void ContactPatch::require(int node) noexcept {
   filled[node] = 1;
 }
 
-ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
+ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction, int tools)
     : complementarity_(max_triangles), coulomb_(friction ? max_triangles : 0) {
-  second_.slot_of_node.resize(static_cast<std::size_t>(max_nodes + 1));
-  const int unknowns = 3 * (max_nodes + 1), per_contact = friction ? 3 : 1,
+  second_.slot_of_node.resize(static_cast<std::size_t>(max_nodes + tools));
+  const int unknowns = 3 * (max_nodes + tools), per_contact = friction ? 3 : 1,
             rows = per_contact * max_triangles;
   most_nodes_ = std::min(max_nodes, std::max(kFewest, static_cast<int>(kTouching * max_nodes)));
   most_contacts_ = std::min(max_triangles, std::max(kFewest, static_cast<int>(kTouching * max_triangles)));
-  const int touching = 3 * (most_nodes_ + 1), touched = per_contact * most_contacts_;
+  const int touching = 3 * (most_nodes_ + tools), touched = per_contact * most_contacts_;
   for (BoundedMatrix* square : {&second_.curvature, &second_.compliance, &second_.system})
     square->reserve(touching, touching);
   for (BoundedMatrix* tall : {&response_, &second_.bent, &second_.toward})
@@ -105,12 +106,14 @@ ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction)
   second_.considered.reserve(static_cast<std::size_t>(max_triangles));
   second_.active.reserve(static_cast<std::size_t>(max_triangles));
   deformed_.reserve(static_cast<std::size_t>(max_nodes));
-  second_.nodes.reserve(static_cast<std::size_t>(max_nodes + 1));
+  second_.nodes.reserve(static_cast<std::size_t>(max_nodes + tools));
+  tools_.reserve(static_cast<std::size_t>(tools));
   slack_.resize(rows);
   rendered_.reserve(static_cast<std::size_t>(max_triangles));
   if (!friction) return;
   frames_.reserve(static_cast<std::size_t>(max_triangles));
-  path_.was.reserve(static_cast<std::size_t>(max_nodes));
+  was_.reserve(static_cast<std::size_t>(max_nodes));
+  friction_.resize(max_triangles);
 }
 
 Vec3 ContactSolver::direction(int contact, int row) const {
@@ -128,30 +131,58 @@ double ContactSolver::contact_compliance(const ContactPatch& patch, int nodes) n
 
 /// How far the tip went over the surface at a contact in this increment.
 Vec3 ContactSolver::travel(const Contact& c) const {
-  Vec3 travel = c.at_tip(path_.tip - path_.tip_was) + path_.turned * c.arm;
-  for (int i = 0; i < c.size; ++i) travel -= c.weight[i] * (deformed_[c.node[i]] - path_.was[c.node[i]]);
+  const Increment& tool = tools_[c.tool];
+  Vec3 travel = c.at_tip(tool.tip - tool.tip_was) + tool.turned * c.arm;
+  for (int i = 0; i < c.size; ++i) travel -= c.weight[i] * (deformed_[c.node[i]] - was_[c.node[i]]);
   return travel;
 }
 
-void ContactSolver::start_increment(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
-                                    const IncrementStart& start) noexcept {
-  path_.friction = tool.friction;
-  path_.pivots = tool.trocar.has_value();
+/// The place of a tool's tip among the nodes considered.
+Eigen::Index ContactSolver::tip_of(int tool) const {
+  return static_cast<Eigen::Index>(second_.nodes.size() - tools_.size()) + tool;
+}
+
+void ContactSolver::start_increment(const ContactPatch& patch, std::span<const TouchingTool> tools) noexcept {
+  has_friction_ = std::ranges::any_of(tools, [](const TouchingTool& t) { return t.tool->friction > 0; });
   rendered_.clear();  // whose nodes are those of another patch
-  if (path_.friction == 0) return;
+  tools_.clear();
+  for (const TouchingTool& t : tools) {
+    Increment& increment = tools_.emplace_back();
+    increment.pivots = t.tool->trocar.has_value();
+    increment.radius = t.tool->radius;
+    increment.tip_was = t.start.tip;
+    // A sphere may spin, a pivoting shaft turns by its tip.
+    if (has_friction_ && t.tool->length > 0 && !t.tool->trocar)
+      increment.turned = Mat3::Identity() - (t.start.q_W * t.pose.q_W.conjugate()).toRotationMatrix();
+  }
+  if (!has_friction_) return;
   assert(second_.spread.size() > 0);  // it was made for friction
-  path_.was.assign(start.nodes.begin(), start.nodes.begin() + patch.nodes());
-  path_.tip_was = start.tip;
-  path_.turned.setZero();  // a sphere may spin, a pivoting shaft turns by its tip
-  if (tool.length > 0 && !tool.trocar)
-    path_.turned = Mat3::Identity() - (start.q_W * pose.q_W.conjugate()).toRotationMatrix();
+  const auto nodes = tools.front().start.nodes;
+  was_.assign(nodes.begin(), nodes.begin() + patch.nodes());
+}
+
+/// What each tool may touch, with the nodes and tips displaced by `u`, where things still move by `change`
+/// (m).
+void ContactSolver::find_contacts(std::span<const TouchingTool> tools,
+                                  const Eigen::Ref<const Eigen::VectorXd>& u, double change) noexcept {
+  contacts_.clear();
+  const auto tips = u.size() - 3 * static_cast<Eigen::Index>(tools.size());
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    const std::size_t first = contacts_.size();
+    const Vec3 tip = tools[t].pose.p_W + u.segment<3>(tips + 3 * static_cast<Eigen::Index>(t));
+    tools_[t].tip = tip;
+    find_contacts_on_patch(deformed_, tools[t].triangles, *tools[t].tool, {tip, tools[t].pose.q_W},
+                           margin_for(change, *tools[t].tool), contacts_);
+    for (Contact& c : std::span(contacts_).subspan(first)) {
+      c.tool = static_cast<int>(t);
+      c.friction = tools[t].tool->friction;
+    }
+  }
 }
 
 /// Gaps, and slips, of the contacts as they would be without forces; and the Delassus operator.
-void ContactSolver::linearise(ContactPatch& patch, const Vec3& p_W,
-                              const Eigen::Ref<const Eigen::VectorXd>& u) noexcept {
+void ContactSolver::linearise(ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u) noexcept {
   const int m = patch.nodes(), n = static_cast<int>(contacts_.size()), rows = rows_of_contact();
-  path_.tip = p_W + u.tail<3>();
   frames_.clear();
   for (int k = 0; k < n; ++k) {
     const Contact& c = contacts_[k];
@@ -163,7 +194,7 @@ void ContactSolver::linearise(ContactPatch& patch, const Vec3& p_W,
     for (int row = 0; row < rows; ++row) {
       const Vec3 d = direction(k, row);
       const double now = row == 0 ? c.distance - c.radius : d.dot(travel(c));
-      gap_[rows * k + row] = now - along(c, d, m, u);
+      gap_[rows * k + row] = now - along(c, d, m + c.tool, u);
     }
   }
   assemble_delassus(patch);
@@ -184,7 +215,7 @@ void ContactSolver::assemble_delassus(const ContactPatch& patch) noexcept {
       moved.noalias() += patch.compliance.block(0, 3 * b.node[j], size, 3) * (b.weight[j] * db);
     for (int row = 0; row <= column; ++row) {
       const Contact& a = contacts_[row / rows];
-      Vec3 relative = a.at_tip(at_tip);
+      Vec3 relative = a.tool == b.tool ? a.at_tip(at_tip) : Vec3(Vec3::Zero());
       for (int i = 0; i < a.size; ++i) relative += a.weight[i] * moved.segment<3>(3 * a.node[i]);
       delassus_(row, column) = delassus_(column, row) = direction(row / rows, row % rows).dot(relative);
     }
@@ -196,7 +227,16 @@ void ContactSolver::assemble_delassus(const ContactPatch& patch) noexcept {
 ContactForce ContactSolver::solve(ContactPatch& patch, const Tool& tool, const ToolPose& pose,
                                   Eigen::Ref<Eigen::VectorXd> u, const IncrementStart& start,
                                   const Effort& effort) noexcept {
-  start_increment(patch, tool, pose, start);
+  const TouchingTool one{&tool, pose, start, patch.triangles};
+  ContactForce force;
+  solve(patch, std::span(&one, 1), u, std::span(&force, 1), effort);
+  return force;
+}
+
+void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> tools,
+                          Eigen::Ref<Eigen::VectorXd> u, std::span<ContactForce> forces,
+                          const Effort& effort) noexcept {
+  start_increment(patch, tools);
   work_.allow(effort.work);
   complementarity_.count_work(work_);
   coulomb_.count_work(work_);
@@ -205,34 +245,34 @@ ContactForce ContactSolver::solve(ContactPatch& patch, const Tool& tool, const T
   const int m = patch.nodes();
   ContactForce result;
   result.converged = false;
-  auto next = next_.head(3 * (m + 1)), increment = increment_.head(3 * (m + 1));
-  double change = effort.expected * tool.radius, last_change = tool.radius;
+  const double radius = std::ranges::min(tools_, {}, &Increment::radius).radius;
+  auto next = next_.head(u.size()), increment = increment_.head(u.size());
+  double change = effort.expected * radius, last_change = radius;
   PlainStep step;
   NewtonTurns turns;
   bool newton_worked = false;
   while (true) {
     ++result.iterations;
     deform(patch.free, u, deformed_);
-    find_contacts_on_patch(deformed_, patch.triangles, tool, {pose.p_W + u.tail<3>(), pose.q_W},
-                           margin_for(change, tool), contacts_);
+    find_contacts(tools, u, change);
     const auto rows = static_cast<double>(contacts_.size()) * rows_of_contact();
     if (!work_.spend(rows * (27.0 * m + 9 * rows))) {
       contacts_.clear();
       next = u;
       break;
     }
-    linearise(patch, pose.p_W, u);
+    linearise(patch, u);
     solve_linearised(patch, next);
     change = (next - u).cwiseAbs().maxCoeff();
-    result.converged = change <= effort.tolerance * tool.radius && !work_.is_spent();
+    result.converged = change <= effort.tolerance * radius && !work_.is_spent();
     if (result.converged || result.iterations == effort.max_iterations) break;
     // Plain iteration, where Newton fails: never so far that the surface could pass the tip.
     const bool onward = result.iterations == 1 || increment.dot(next - u) > 0;
-    increment = std::min(step.after(onward), kLongestMove * tool.radius / change) * (next - u);
+    increment = std::min(step.after(onward), kLongestMove * radius / change) * (next - u);
     if (newton_worked && change > last_change) turns.miss();
     last_change = change;
     newton_worked = turns.next() && newton_step(patch, u, change, next) &&
-                    (next - u).cwiseAbs().maxCoeff() < kLongestMove * tool.radius;
+                    (next - u).cwiseAbs().maxCoeff() < kLongestMove * radius;
     if (newton_worked) {
       u = next;
     } else {
@@ -240,8 +280,7 @@ ContactForce ContactSolver::solve(ContactPatch& patch, const Tool& tool, const T
     }
   }
   u = next;
-  collect_result(m, result);
-  return result;
+  collect_result(m, result, forces);
 }
 
 /// Forces in the rows of the contacts, on the Delassus operator as it stands.
@@ -249,8 +288,10 @@ bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                    Eigen::Ref<Eigen::VectorXd> force) noexcept {
   const auto delassus = delassus_.leftCols(gap.size());
   recall(force);
-  if (path_.friction == 0) return complementarity_.solve(delassus, gap, force);
-  return coulomb_.solve(delassus, gap, path_.friction, force);
+  if (!has_friction_) return complementarity_.solve(delassus, gap, force);
+  auto friction = friction_.head(gap.size() / 3);
+  for (Eigen::Index k = 0; k < friction.size(); ++k) friction[k] = contacts_[k].friction;
+  return coulomb_.solve(delassus, gap, friction, force);
 }
 
 /// Keeps the forces of this iteration, as what to start from in the next, whose contacts are not all the
@@ -262,7 +303,7 @@ void ContactSolver::store(const Eigen::Ref<const Eigen::VectorXd>& force) noexce
     if (!(force[rows * k] > 0)) continue;
     const Vec3 rendered =
         rows > 1 ? Vec3(frames_[k] * force.segment<3>(3 * k)) : force[k] * contacts_[k].normal;
-    rendered_.push_back({contacts_[k].node, contacts_[k].part, rendered});
+    rendered_.push_back({contacts_[k].node, contacts_[k].part, contacts_[k].tool, rendered});
   }
 }
 
@@ -270,11 +311,12 @@ void ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
   force.setZero();
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
     const auto same = [&](const Rendered& rendered) {
-      return rendered.node == contacts_[k].node && rendered.part == contacts_[k].part;
+      return rendered.node == contacts_[k].node && rendered.part == contacts_[k].part &&
+             rendered.tool == contacts_[k].tool;
     };
     const auto rendered = std::ranges::find_if(rendered_, same);
     if (rendered == rendered_.end()) continue;
-    if (path_.friction > 0) {
+    if (has_friction_) {
       force.segment<3>(3 * k) = frames_[k].transpose() * rendered->force;
     } else {
       force[k] = rendered->force.norm();
@@ -290,49 +332,64 @@ void ContactSolver::solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen
   store(lambda);
   auto load = node_force_.head(3 * patch.nodes());
   load.setZero();
-  Vec3 tip_load = Vec3::Zero();
+  for (Increment& tool : tools_) tool.tip_load.setZero();
   for (int row = 0; row < n; ++row) {
     if (lambda[row] == 0) continue;
     const int rows = rows_of_contact();
     const Contact& c = contacts_[row / rows];
     const Vec3 force = lambda[row] * direction(row / rows, row % rows);
     for (int i = 0; i < c.size; ++i) load.segment<3>(3 * c.node[i]) -= c.weight[i] * force;
-    tip_load += c.at_tip(force);
+    tools_[c.tool].tip_load += c.at_tip(force);
   }
-  displace(patch, tip_load, next);
+  displace(patch, next);
 }
 
-/// The displacement under the loads in `node_force_`, and one on the tip.
-void ContactSolver::displace(const ContactPatch& patch, const Vec3& tip_load,
-                             Eigen::Ref<Eigen::VectorXd> next) const noexcept {
+/// The displacement under the loads in `node_force_`, and those on the tips.
+void ContactSolver::displace(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) const noexcept {
   const Eigen::Index size = 3 * patch.nodes();
   auto moved = next.head(size);
   moved.setZero();
   for (Eigen::Index k = 0; k < size; ++k) {
     if (node_force_[k] != 0) moved += node_force_[k] * patch.compliance.col(k).head(size);
   }
-  next.tail<3>() = patch.tool_compliance * tip_load;
+  for (std::size_t t = 0; t < tools_.size(); ++t)
+    next.segment<3>(size + 3 * static_cast<Eigen::Index>(t)) = patch.tool_compliance * tools_[t].tip_load;
 }
 
-void ContactSolver::collect_result(int nodes, ContactForce& result) noexcept {
+void ContactSolver::collect_result(int nodes, const ContactForce& outcome,
+                                   std::span<ContactForce> forces) noexcept {
   const int rows = rows_of_contact();
   force_size_ = 3 * nodes;
   node_force_.head(force_size_).setZero();
-  second_.considered.clear();
+  std::ranges::fill(forces, outcome);
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
     if (!(lambda_[rows * k] > 0)) continue;
-    second_.considered.push_back(k);
     const Contact& c = contacts_[k];
+    ContactForce& result = forces[c.tool];
+    ++result.contacts;
     for (int row = 0; row < rows; ++row) {
       const double size = lambda_[rows * k + row];
       const Vec3 d = direction(k, row);
       result.force += size * c.at_tip(d);
       // The tip's normals pass through its centre; and what a pivot carries is not felt.
-      if ((row > 0 || c.part != Contact::kTip) && !path_.pivots) result.torque += c.arm.cross(size * d);
+      if ((row > 0 || c.part != Contact::kTip) && !tools_[c.tool].pivots)
+        result.torque += c.arm.cross(size * d);
       for (int i = 0; i < c.size; ++i) node_force_.segment<3>(3 * c.node[i]) -= size * c.weight[i] * d;
     }
   }
-  result.contacts = static_cast<int>(second_.considered.size());
+}
+
+void ContactSolver::node_forces_of(int tool, Eigen::Ref<Eigen::VectorXd> forces) const noexcept {
+  const int rows = rows_of_contact();
+  forces.setZero();
+  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
+    const Contact& c = contacts_[k];
+    if (c.tool != tool || !(lambda_[rows * k] > 0)) continue;
+    for (int row = 0; row < rows; ++row) {
+      for (int i = 0; i < c.size; ++i)
+        forces.segment<3>(3 * c.node[i]) -= lambda_[rows * k + row] * c.weight[i] * direction(k, row);
+    }
+  }
 }
 
 std::size_t ContactSolver::bytes() const {

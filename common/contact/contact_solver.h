@@ -68,8 +68,17 @@ struct IncrementStart {
   Quat q_W = Quat::Identity();  ///< the tool's orientation
 };
 
-/// Unilateral contact of a tool with an elastic triangle patch, with Coulomb friction where the tool has
-/// some. Finds displacements u of the nodes and of the tool tip, and forces f = lambda n + t, with
+/// A tool in a solve.
+struct TouchingTool {
+  const Tool* tool;  ///< not null
+  ToolPose pose;
+  IncrementStart start = {};                           ///< read where a tool of the solve has friction
+  std::span<const std::array<int, 3>> triangles = {};  ///< of the patch: those that it may touch
+};
+
+/// Unilateral contact of tools with an elastic triangle patch, with Coulomb friction where a tool has some:
+/// one problem for all of them. Finds displacements u of the nodes and of the tips, and forces
+/// f = lambda n + t, with
 ///   u = C W^T f,   lambda >= 0,   gap(x + u) >= 0,   lambda . gap = 0,
 ///   |t| <= mu lambda,   t = -mu lambda s / |s| where it slips by s in the increment, s = 0 where it sticks,
 /// gap = distance to each feature minus radius, W = tip minus the contact point's share of each node, C the
@@ -84,8 +93,8 @@ struct IncrementStart {
 class ContactSolver {
  public:
   /// Largest patch it will be given; whether tools with friction will come, which takes nine times the memory
-  /// per pair of contacts.
-  ContactSolver(int max_nodes, int max_triangles, bool friction = false);
+  /// per pair of contacts; how many tools at once, at most `kMaxTools`.
+  ContactSolver(int max_nodes, int max_triangles, bool friction = false, int tools = 1);
 
   /// Limits and tolerances of a solve.
   struct Effort {
@@ -95,10 +104,13 @@ class ContactSolver {
     double work = std::numeric_limits<double>::infinity();  ///< multiplications, before it gives up
   };
 
-  /// Solves for a tool at `pose`. `u` (3 (m + 1): nodes, then tip; m) holds the displacement to look from and
-  /// gets the solution, which does not depend on it but by rounding. `start` is read where the tool has
-  /// friction, and only then. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful of contacts,
-  /// with friction some ten times that.
+  /// Solves for all `tools` (T) at once, and writes the force on each into `forces` (T). `u` (3 (m + T):
+  /// nodes, then tips; m) holds the displacement to look from and gets the solution, which does not depend on
+  /// it but by rounding. Cost: iterations x (contacts^2 x nodes); about 20 us for a handful of contacts, with
+  /// friction some ten times that.
+  void solve(ContactPatch& patch, std::span<const TouchingTool> tools, Eigen::Ref<Eigen::VectorXd> u,
+             std::span<ContactForce> forces, const Effort& effort = kUsualEffort) noexcept;
+  /// Solves for one tool, at `pose`, that may touch all triangles of the patch.
   ContactForce solve(ContactPatch& patch, const Tool& tool, const ToolPose& pose,
                      Eigen::Ref<Eigen::VectorXd> u, const IncrementStart& start = {},
                      const Effort& effort = kUsualEffort) noexcept;
@@ -109,13 +121,15 @@ class ContactSolver {
 
   /// Nodal forces on the patch nodes (3m, N) of the last solve; the tissue feels minus what the tool feels.
   Eigen::Ref<const Eigen::VectorXd> node_forces() const { return node_force_.head(force_size_); }
+  /// Writes the part of these forces that one tool exerts into `forces` (3m).
+  void node_forces_of(int tool, Eigen::Ref<Eigen::VectorXd> forces) const noexcept;
 
-  /// Tangent dF/dp of the last solve (N/m), by the implicit function theorem on the touching features, with
-  /// the curvature of their gaps. Symmetric without friction. With it: how F follows the end of this same
-  /// increment; where contacts slip it is not symmetric, as friction turns with the slide and grows with the
-  /// pressure, and where they slip by little it is steep across the slide. Zero when nothing touches or where
-  /// it is not defined.
-  Mat3 tangent(const ContactPatch& patch) noexcept;
+  /// Tangent dF/dp of one tool of the last solve (N/m), the loads of the others held, by the implicit
+  /// function theorem on the features it touches, with the curvature of their gaps. Symmetric without
+  /// friction. With it: how F follows the end of this same increment; where contacts slip it is not
+  /// symmetric, as friction turns with the slide and grows with the pressure, and where they slip by little
+  /// it is steep across the slide. Zero when nothing touches or where it is not defined.
+  Mat3 tangent(const ContactPatch& patch, int tool = 0) noexcept;
 
   /// Visits the change of the forces on the patch nodes with the tool position, to first order (N/m). Calls
   /// `visit` with a node and a `Mat3` for each. Of the last `tangent`, before another `solve`; no calls with
@@ -123,7 +137,7 @@ class ContactSolver {
   template <class Visit>
   void for_load_changes(const Visit& visit) const {
     if (!second_.has_load_change) return;
-    for (std::size_t i = 0; i + 1 < second_.nodes.size(); ++i)
+    for (std::size_t i = 0; i + tools_.size() < second_.nodes.size(); ++i)
       visit(second_.nodes[i], Mat3(second_.load_change.middleRows<3>(3 * static_cast<Eigen::Index>(i))));
   }
 
@@ -139,24 +153,25 @@ class ContactSolver {
   static double contact_compliance(double mean) noexcept;
 
  private:
-  int rows_of_contact() const { return path_.friction > 0 ? 3 : 1; }
+  int rows_of_contact() const { return has_friction_ ? 3 : 1; }
+  Eigen::Index tip_of(int tool) const;
   Vec3 direction(int contact, int row) const;
   Vec3 travel(const Contact& c) const;
-  void start_increment(const ContactPatch& patch, const Tool& tool, const ToolPose& pose,
-                       const IncrementStart& start) noexcept;
-  void linearise(ContactPatch& patch, const Vec3& p_W, const Eigen::Ref<const Eigen::VectorXd>& u) noexcept;
+  void start_increment(const ContactPatch& patch, std::span<const TouchingTool> tools) noexcept;
+  void find_contacts(std::span<const TouchingTool> tools, const Eigen::Ref<const Eigen::VectorXd>& u,
+                     double change) noexcept;
+  void linearise(ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u) noexcept;
   void assemble_delassus(const ContactPatch& patch) noexcept;
-  void displace(const ContactPatch& patch, const Vec3& tip_load,
-                Eigen::Ref<Eigen::VectorXd> next) const noexcept;
+  void displace(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) const noexcept;
   bool solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                       Eigen::Ref<Eigen::VectorXd> force) noexcept;
   void store(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept;
   void recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept;
   void solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) noexcept;
-  void collect_result(int nodes, ContactForce& result) noexcept;
+  void collect_result(int nodes, const ContactForce& outcome, std::span<ContactForce> forces) noexcept;
   // Second order, in contact_derivatives.cpp:
-  void collect_nodes(int tip) noexcept;
-  void differentiate_contacts(int tip) noexcept;
+  void collect_nodes(int nodes) noexcept;
+  void differentiate_contacts(int nodes) noexcept;
   void differentiate_friction(int contact, Eigen::Index row, std::span<const int> slot) noexcept;
   bool differentiate_considered(const ContactPatch& patch) noexcept;
   // and in contact_newton.cpp:
@@ -175,7 +190,7 @@ class ContactSolver {
   bool newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u, double change,
                    Eigen::Ref<Eigen::VectorXd> next) noexcept;
   bool differentiate_forces(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
-  Mat3 tangent_of_considered(const ContactPatch& patch) noexcept;
+  Mat3 tangent_of_considered(const ContactPatch& patch, int tool) noexcept;
 
   WorkBudget work_;
   double contact_compliance_ = 0, friction_compliance_ = 0;  // m/N, of this patch
@@ -188,22 +203,26 @@ class ContactSolver {
   struct Rendered {
     std::array<int, 3> node;
     Contact::Part part;
+    int tool;
     Vec3 force;
   };
   std::vector<Rendered> rendered_;  // what touched in the iteration before
   std::vector<Vec3> deformed_;
   BoundedMatrix response_;  // C~ A, then C~ of other loads, in the rows of the loaded nodes
   BoundedMatrix delassus_;  // and B C~ of other loads, to its right
-  Eigen::VectorXd gap_, lambda_, slack_, next_, increment_, node_force_;
+  Eigen::VectorXd gap_, lambda_, slack_, friction_, next_, increment_, node_force_;
   int force_size_ = 0;
-  /// The increment in hand.
+  std::vector<Vec3> was_;  // where the nodes began in the increment in hand, m
+  /// A tool in the increment in hand.
   struct Increment {
-    double friction = 0;  // Coulomb's coefficient
     bool pivots = false;
-    std::vector<Vec3> was;                            // where its nodes began, m
+    double radius = 0;                                // m
     Vec3 tip_was = Vec3::Zero(), tip = Vec3::Zero();  // where the tip began, and is, m
-    Mat3 turned = Mat3::Zero();  // what the tool's turn in the increment did to an arm of now
-  } path_;
+    Mat3 turned = Mat3::Zero();    // what the tool's turn in the increment did to an arm of now
+    Vec3 tip_load = Vec3::Zero();  // N
+  };
+  std::vector<Increment> tools_;
+  bool has_friction_ = false;  // one of them
   /// Second derivatives: the contacts considered, their nodes (the tip last), and matrices over those nodes.
   struct SecondOrder {
     std::vector<int> considered, active, nodes, slot_of_node;

@@ -20,10 +20,10 @@ Eigen::Vector2d project(const Eigen::Vector2d& v, double r) {
   return size <= r ? v : Eigen::Vector2d(r / size * v);
 }
 
-void put_into_cones(double mu, Eigen::Ref<Eigen::VectorXd> z) {
+void put_into_cones(const Eigen::Ref<const Eigen::VectorXd>& mu, Eigen::Ref<Eigen::VectorXd> z) {
   for (Eigen::Index k = 0; k < z.size(); k += 3) {
     z[k] = std::max(0.0, z[k]);
-    z.segment<2>(k + 1) = project(z.segment<2>(k + 1), mu * z[k]);
+    z.segment<2>(k + 1) = project(z.segment<2>(k + 1), mu[k / 3] * z[k]);
   }
 }
 
@@ -41,7 +41,7 @@ CoulombSolver::CoulombSolver(int capacity)
   closed_.reserve(static_cast<std::size_t>(capacity));
 }
 
-bool CoulombSolver::solve(const Matrix& g_matrix, const Vector& g, double mu,
+bool CoulombSolver::solve(const Matrix& g_matrix, const Vector& g, const Vector& mu,
                           Eigen::Ref<Eigen::VectorXd> z) noexcept {
   if (g.size() == 0) return true;
   scale(g_matrix);
@@ -76,7 +76,7 @@ void CoulombSolver::compute_slack(const Matrix& g_matrix, const Vector& g, const
 
 /// What is left of the conditions: of z - Pi(z - rho w), with Pi the projection on the friction cone (the
 /// radius of its cut taken from lambda as it is), in shares of what rounding makes of them; solved below 1.
-double CoulombSolver::residual(const Vector& g, double mu, const Vector& z) const noexcept {
+double CoulombSolver::residual(const Vector& g, const Vector& mu, const Vector& z) const noexcept {
   const double largest_force = z.cwiseAbs().maxCoeff(), largest_gap = g.cwiseAbs().maxCoeff();
   double sum = 0;
   for (Eigen::Index k = 0; k < g.size() / 3; ++k) {
@@ -84,14 +84,14 @@ double CoulombSolver::residual(const Vector& g, double mu, const Vector& z) cons
     const double along = lambda - std::max(0.0, lambda - rho_n * slack_[3 * k]);
     const Eigen::Vector2d beta = z.segment<2>(3 * k + 1);
     const Eigen::Vector2d across =
-        beta - project(beta - rho_t * slack_.segment<2>(3 * k + 1), mu * std::max(0.0, lambda));
+        beta - project(beta - rho_t * slack_.segment<2>(3 * k + 1), mu[k] * std::max(0.0, lambda));
     sum += std::pow(along / (largest_force + rho_n * largest_gap), 2) +
            across.squaredNorm() / std::pow(largest_force + rho_t * largest_gap, 2);
   }
   return std::sqrt(sum) / kTolerance;
 }
 
-void CoulombSolver::classify(const Vector& z, const Vector& w, double mu) noexcept {
+void CoulombSolver::classify(const Vector& z, const Vector& w, const Vector& mu) noexcept {
   closed_.clear();
   for (int k = 0; k < static_cast<int>(z.size() / 3); ++k) {
     const double along = z[3 * k] - rho_[2 * k] * w[3 * k];
@@ -101,16 +101,16 @@ void CoulombSolver::classify(const Vector& z, const Vector& w, double mu) noexce
     closed_.push_back(k);
     const Eigen::Vector2d across = z.segment<2>(3 * k + 1) - rho_[2 * k + 1] * w.segment<2>(3 * k + 1);
     const double size = across.norm();
-    status.is = size <= mu * along ? Status::kSticks : Status::kSlips;
+    status.is = size <= mu[k] * along ? Status::kSticks : Status::kSlips;
     if (status.is == Status::kSticks) continue;
     status.direction = across / size;
-    status.fraction = mu * std::clamp(z[3 * k], 0.0, along) / size;
+    status.fraction = mu[k] * std::clamp(z[3 * k], 0.0, along) / size;
   }
 }
 
 /// The rows of a Newton step over the closed contacts: gap and stick say G z = -g; what slips says
 ///   (I - kappa P) beta - mu lambda d + kappa rho P G_t z = -kappa rho P g_t,   P = I - d d^T.
-void CoulombSolver::assemble(const Matrix& g_matrix, double mu) noexcept {
+void CoulombSolver::assemble(const Matrix& g_matrix, const Vector& mu) noexcept {
   const auto n = static_cast<Eigen::Index>(closed_.size());
   system_.shape(3 * n, 3 * n);
   for (Eigen::Index c = 0; c < n; ++c) {
@@ -129,7 +129,7 @@ void CoulombSolver::assemble(const Matrix& g_matrix, double mu) noexcept {
     }
     // Per length of slip, like the rows of G: the system keeps one scale.
     auto own = system_.block<2, 3>(3 * r + 1, 3 * r);
-    own.col(0) -= mu * status.direction;
+    own.col(0) -= mu[closed_[r]] * status.direction;
     own.rightCols<2>() += Eigen::Matrix2d::Identity() - status.fraction * normal * normal.transpose();
     system_.middleRows<2>(3 * r + 1) /= rho;
   }
@@ -157,7 +157,7 @@ bool CoulombSolver::solve_closed(const Source& constant, Target&& z) noexcept {
   return true;
 }
 
-bool CoulombSolver::newton(const Matrix& g_matrix, const Vector& g, double mu,
+bool CoulombSolver::newton(const Matrix& g_matrix, const Vector& g, const Vector& mu,
                            Eigen::Ref<Eigen::VectorXd> z) noexcept {
   const auto n = z.size();
   auto trial = trial_.head(n), direction = direction_.head(n), from = from_.head(n), slack = slack_.head(n);
@@ -191,7 +191,7 @@ bool CoulombSolver::newton(const Matrix& g_matrix, const Vector& g, double mu,
   return false;
 }
 
-void CoulombSolver::relax(const Matrix& g_matrix, const Vector& g, double mu, int sweeps,
+void CoulombSolver::relax(const Matrix& g_matrix, const Vector& g, const Vector& mu, int sweeps,
                           Eigen::Ref<Eigen::VectorXd> z) noexcept {
   if (!z.allFinite()) z.setZero();
   compute_slack(g_matrix, g, z);
@@ -203,7 +203,7 @@ void CoulombSolver::relax(const Matrix& g_matrix, const Vector& g, double mu, in
       z[3 * k] = lambda;
       const Eigen::Vector2d before = z.segment<2>(3 * k + 1);
       const Eigen::Vector2d beta =
-          project(before - rho_[2 * k + 1] * slack.segment<2>(3 * k + 1), mu * lambda);
+          project(before - rho_[2 * k + 1] * slack.segment<2>(3 * k + 1), mu[k] * lambda);
       for (int axis = 0; axis < 2; ++axis) {
         if (beta[axis] != before[axis]) slack += (beta[axis] - before[axis]) * g_matrix.col(3 * k + 1 + axis);
       }
@@ -212,7 +212,7 @@ void CoulombSolver::relax(const Matrix& g_matrix, const Vector& g, double mu, in
   }
 }
 
-bool CoulombSolver::differentiate(const Matrix& g_matrix, const Vector& z, const Vector& w, double mu,
+bool CoulombSolver::differentiate(const Matrix& g_matrix, const Vector& z, const Vector& w, const Vector& mu,
                                   Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept {
   scale(g_matrix);
   classify(z, w, mu);

@@ -24,11 +24,11 @@ class CoulombSolver {
   /// Counts its work in `work` from this call on, and stops where that is spent; `work` must outlive it.
   void count_work(WorkBudget& work) noexcept { work_ = &work; }
 
-  /// `z` (3n): where to start, overwritten by the solution, which obeys the conditions to 1e-12 of the
-  /// largest force. False where the bound on iterations, or on work, was reached: z then lies in the friction
-  /// cones, no more.
+  /// `mu` (n): Coulomb's coefficient of each contact, 0: it slips freely. `z` (3n): where to start,
+  /// overwritten by the solution, which obeys the conditions to 1e-12 of the largest force. False where the
+  /// bound on iterations, or on work, was reached: z then lies in the friction cones, no more.
   bool solve(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix, const Eigen::Ref<const Eigen::VectorXd>& g,
-             double mu, Eigen::Ref<Eigen::VectorXd> z) noexcept;
+             const Eigen::Ref<const Eigen::VectorXd>& mu, Eigen::Ref<Eigen::VectorXd> z) noexcept;
 
   /// Differentiates a solution z, with its slack w (both 3n): `change` (3n x 3) is the change of w at fixed
   /// z, overwritten by that of z. Implicit function theorem on the present contacts: contacts that are closed
@@ -36,7 +36,8 @@ class CoulombSolver {
   /// that is singular.
   bool differentiate(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
                      const Eigen::Ref<const Eigen::VectorXd>& z, const Eigen::Ref<const Eigen::VectorXd>& w,
-                     double mu, Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
+                     const Eigen::Ref<const Eigen::VectorXd>& mu,
+                     Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
 
   std::size_t bytes() const { return system_.bytes(); }
 
@@ -51,11 +52,12 @@ class CoulombSolver {
   };
   void scale(const Matrix& g_matrix) noexcept;
   void compute_slack(const Matrix& g_matrix, const Vector& g, const Vector& z) noexcept;
-  double residual(const Vector& g, double mu, const Vector& z) const noexcept;
-  void classify(const Vector& z, const Vector& w, double mu) noexcept;
-  void assemble(const Matrix& g_matrix, double mu) noexcept;
-  bool newton(const Matrix& g_matrix, const Vector& g, double mu, Eigen::Ref<Eigen::VectorXd> z) noexcept;
-  void relax(const Matrix& g_matrix, const Vector& g, double mu, int sweeps,
+  double residual(const Vector& g, const Vector& mu, const Vector& z) const noexcept;
+  void classify(const Vector& z, const Vector& w, const Vector& mu) noexcept;
+  void assemble(const Matrix& g_matrix, const Vector& mu) noexcept;
+  bool newton(const Matrix& g_matrix, const Vector& g, const Vector& mu,
+              Eigen::Ref<Eigen::VectorXd> z) noexcept;
+  void relax(const Matrix& g_matrix, const Vector& g, const Vector& mu, int sweeps,
              Eigen::Ref<Eigen::VectorXd> z) noexcept;
   template <class Source, class Target>
   bool solve_closed(const Source& constant, Target&& z) noexcept;

@@ -29,11 +29,14 @@ struct Search {
   const Vec3& tip;
   double margin;
   std::vector<Contact>& contacts;
+  std::size_t first = contacts.size();  // those before are of other tools
 
   void add(Contact contact, Contact::Part part, const Vec3& on_axis, const Vec3& to_tool, double radius,
            const Vec3& face) noexcept {
     const auto same = [&](const Contact& other) { return other.node == contact.node && other.part == part; };
-    if (contacts.size() == contacts.capacity() || std::ranges::any_of(contacts, same)) return;
+    if (contacts.size() == contacts.capacity() ||
+        std::ranges::any_of(std::span(contacts).subspan(first), same))
+      return;
     contact.part = part;
     contact.distance = to_tool.norm();
     contact.radius = radius;
@@ -76,7 +79,6 @@ struct Search {
 void find_contacts_on_patch(std::span<const Vec3> x, std::span<const std::array<int, 3>> triangles,
                             const Tool& tool, const ToolPose& pose, double margin,
                             std::vector<Contact>& contacts) noexcept {
-  contacts.clear();
   Search search{x, pose.p_W, margin, contacts};
   const Vec3 far = far_end(tool, pose);
   for (const auto& triangle : triangles) {

@@ -21,6 +21,8 @@ struct Contact {
   Vec3 axis;        ///< of the shaft: from the pivot to the tip, or of unit length; else 0
   double
       fraction;  ///< how much a sideways motion of the tip moves the tool there: below 1 on a pivoting shaft
+  int tool = 0;  ///< which of those that are solved for
+  double friction = 0;  ///< Coulomb's coefficient
 
   /// A force f on the tool here, as the force at its tip that does the same work (Tool); and M^T f for M
   /// which takes a small motion of the tip to that of the tool here.
@@ -35,7 +37,7 @@ struct Contact {
 /// closest point is the projection on a convex set. An axis touches triangles with its ends, as spheres do,
 /// and edges with what lies between its ends: no closest pair of axis and face is ever lost, though an axis
 /// parallel to a face has many; only along an edge parallel to it does a contact jump, and then the place and
-/// not the normal. Writes into `contacts` as many as it has room for (its capacity is not grown). Distances
+/// not the normal. Appends to `contacts` as many as it has room for (its capacity is not grown). Distances
 /// are unsigned: the caller sees to it that the axis stays on the outside (see ContactSolver). O(triangles +
 /// contacts^2).
 void find_contacts_on_patch(std::span<const Vec3> x, std::span<const std::array<int, 3>> triangles,
